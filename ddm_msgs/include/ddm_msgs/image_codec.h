@@ -1,0 +1,43 @@
+// Image codec: any camera image in, the grey values of the paper's y out.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ros/time.h>
+#include <sensor_msgs/Image.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace ddm {
+
+/// Grey values of a camera image at the size that the model works with.
+///
+///   y_i = k_i / 255,   k = decodeImage(image, size),   i row by row from the top left corner
+///
+/// A mono8 (or 8UC1) image of size x size without padding is returned byte for byte. Any other is
+/// turned into grey first, then cut to its central square if it is not square (an odd column or row
+/// is left out on the right or at the bottom), then resized by area averaging (cv::INTER_AREA).
+///
+/// Encodings: mono8, mono16, rgb8, bgr8, rgba8, bgra8 and their 16 bit forms; bayer_*8, bayer_*16;
+/// yuv422 (luma as it is sent); 8UC1/3/4 and 16UC1/3/4 (three channels in OpenCV's
+/// order blue, green, red); 32FC1 and 64FC1 with grey values in [0, 1]. 16 bit is divided by 257,
+/// so that 65535 becomes 255. Floats become k = round(255 grey).
+///
+/// @param image  as it came over the wire; nothing in it is trusted
+/// @param size   width and height of the result                                 [1 ... 16384]
+/// @return       grey values k                                                  [size * size]
+/// @throws std::invalid_argument if the size is out of range, the image is empty or larger than
+///         16384 x 16384, its encoding is not one of the above, its step or data do not fit its
+///         size, its 16 bit or float pixels are big-endian, or a float is outside [0, 1] or NaN
+std::vector<std::uint8_t> decodeImage(const sensor_msgs::Image& image, int size);
+
+/// The inverse: a mono8 image without padding. decodeImage(encodeImage(k, size, ...), size) == k.
+///
+/// @param grey  grey values k, row by row from the top left corner              [size * size]
+/// @param size  width and height                                                [1 ... 16384]
+/// @throws std::invalid_argument if the size is out of range or `grey` has another length
+sensor_msgs::Image encodeImage(const std::vector<std::uint8_t>& grey, int size,
+                               const ros::Time& stamp, const std::string& frame_id);
+
+}  // namespace ddm

@@ -1,0 +1,29 @@
+// Names of the wire contract, relative: remap them or push them into a namespace.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace ddm {
+namespace topics {
+
+constexpr char kImage[] = "camera/image_raw";        ///< sensor_msgs/Image
+constexpr char kGoalImage[] = "goal_image";          ///< sensor_msgs/Image, latched
+constexpr char kTorque[] = "torque";                 ///< ddm_msgs/Torque
+constexpr char kEffortCommand[] = "effort_command";  ///< std_msgs/Float64 [N m]
+constexpr char kGroundTruth[] =
+    "ground_truth/joint_states";    ///< sensor_msgs/JointState, evaluation only
+constexpr char kModel[] = "model";  ///< ddm_msgs/Model, latched
+constexpr char kPlan[] = "plan";    ///< ddm_msgs/Plan
+constexpr char kPredictionImage[] =
+    "prediction_image";  ///< sensor_msgs/Image: the plan's last frame, decoded
+constexpr char kFeatureSpaceImage[] =
+    "feature_space_image";  ///< sensor_msgs/Image: what the model thinks
+
+constexpr char kReset[] = "reset";                     ///< ddm_msgs/Reset
+constexpr char kStartRecording[] = "start_recording";  ///< ddm_msgs/StartRecording
+constexpr char kStopRecording[] = "stop_recording";    ///< ddm_msgs/StopRecording
+
+constexpr char kTrain[] = "train";         ///< ddm_msgs/Train.action
+constexpr char kRunTrial[] = "run_trial";  ///< ddm_msgs/RunTrial.action
+
+}  // namespace topics
+}  // namespace ddm

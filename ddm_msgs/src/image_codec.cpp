@@ -1,0 +1,184 @@
+// Image codec: checks first, then grey, square, resize.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_msgs/image_codec.h"
+
+#include <cv_bridge/cv_bridge.h>
+#include <sensor_msgs/image_encodings.h>
+
+#include <algorithm>
+#include <boost/make_shared.hpp>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <opencv2/imgproc.hpp>
+#include <sstream>
+#include <stdexcept>
+
+namespace ddm {
+namespace {
+
+namespace encodings = sensor_msgs::image_encodings;
+
+constexpr int kMaxSize = 16384;
+
+/// Encodings that are accepted -> the encoding that cv_bridge shall take the pixels for.
+const std::map<std::string, std::string>& acceptedEncodings() {
+  static const std::map<std::string, std::string> accepted = [] {
+    // OpenCV's own names say nothing about colours; cv_bridge would refuse to turn them into grey.
+    std::map<std::string, std::string> out = {
+        {"8UC1", "mono8"},    {"8UC3", "bgr8"},   {"8UC4", "bgra8"},
+        {"16UC1", "mono16"},  {"16UC3", "bgr16"}, {"16UC4", "bgra16"},
+        {"yuv422", "yuv422"}, {"32FC1", "32FC1"}, {"64FC1", "64FC1"}};
+    for (const char* layout : {"mono", "rgb", "bgr", "rgba", "bgra", "bayer_rggb", "bayer_bggr",
+                               "bayer_gbrg", "bayer_grbg"}) {
+      for (const char* bits : {"8", "16"}) {
+        out[std::string(layout) + bits] = std::string(layout) + bits;
+      }
+    }
+    return out;
+  }();
+  return accepted;
+}
+
+[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("image: " + what); }
+
+void requireSize(int size) {
+  if (size < 1 || size > kMaxSize) {
+    refuse("size must lie in [1, " + std::to_string(kMaxSize) + "], got " + std::to_string(size));
+  }
+}
+
+std::string extent(const sensor_msgs::Image& image) {
+  return std::to_string(image.width) + " x " + std::to_string(image.height) + " " + image.encoding;
+}
+
+/// The encoding to read the pixels as. Throws unless every pixel lies within the data.
+std::string checkedEncoding(const sensor_msgs::Image& image) {
+  const auto found = acceptedEncodings().find(image.encoding);
+  if (found == acceptedEncodings().end()) {
+    std::string known;
+    for (const auto& entry : acceptedEncodings()) known += " " + entry.first;
+    refuse("unknown encoding '" + image.encoding + "', known are" + known);
+  }
+  if (image.width < 1 || image.height < 1 || image.width > kMaxSize || image.height > kMaxSize) {
+    refuse("width and height must lie in [1, " + std::to_string(kMaxSize) + "], got " +
+           extent(image));
+  }
+  const std::string& encoding = found->second;
+  const std::size_t depth_bytes = encodings::bitDepth(encoding) / 8;
+  const std::size_t row_bytes = image.width * depth_bytes * encodings::numChannels(encoding);
+  if (image.step < row_bytes) {
+    refuse("step must be at least " + std::to_string(row_bytes) + " bytes for " + extent(image) +
+           ", got " + std::to_string(image.step));
+  }
+  const std::size_t data_bytes = std::size_t{image.step} * image.height;
+  if (image.data.size() != data_bytes) {
+    refuse("data must hold step * height = " + std::to_string(data_bytes) + " bytes for " +
+           extent(image) + ", got " + std::to_string(image.data.size()));
+  }
+  if (image.is_bigendian && depth_bytes > 1) {
+    refuse("big-endian pixels are not supported, got " + extent(image) +
+           "; publish little-endian or 8 bit");
+  }
+  // OpenCV leaves a mosaic black that is smaller than its filter, and pairs the columns of yuv422.
+  if (encodings::isBayer(encoding) && (image.width < 3 || image.height < 3)) {
+    refuse("a Bayer mosaic needs at least 3 x 3 pixels, got " + extent(image));
+  }
+  if (encodings::numChannels(encoding) == 2 && image.width % 2 != 0) {
+    refuse("yuv422 needs an even width, got " + extent(image));
+  }
+  return encoding;
+}
+
+template <class Real>
+void requireUnitRange(const cv::Mat& grey) {
+  for (int row = 0; row < grey.rows; ++row) {
+    for (int col = 0; col < grey.cols; ++col) {
+      const Real value = grey.at<Real>(row, col);
+      if (value >= Real{0} && value <= Real{1}) continue;  // so that NaN does not pass
+      std::ostringstream out;
+      out << "float grey values must lie in [0, 1], got " << value << " at row " << row
+          << ", column " << col;
+      refuse(out.str());
+    }
+  }
+}
+
+/// One channel, of the depth that the image has.
+cv::Mat greyImage(const sensor_msgs::Image& image, const std::string& encoding) {
+  // The view shares the caller's bytes and does not outlive this function.
+  const cv::Mat pixels = cv_bridge::toCvShare(image, boost::shared_ptr<void const>())->image;
+  if (pixels.depth() == CV_32F || pixels.depth() == CV_64F) {
+    if (pixels.depth() == CV_32F) requireUnitRange<float>(pixels);
+    if (pixels.depth() == CV_64F) requireUnitRange<double>(pixels);
+    return pixels.clone();
+  }
+  const auto view = boost::make_shared<cv_bridge::CvImage>(image.header, encoding, pixels);
+  const char* grey = pixels.depth() == CV_16U ? "mono16" : "mono8";
+  return cv_bridge::cvtColor(view, grey)->image;
+}
+
+cv::Mat centralSquare(const cv::Mat& grey) {
+  const int side = std::min(grey.cols, grey.rows);
+  return grey(cv::Rect((grey.cols - side) / 2, (grey.rows - side) / 2, side, side));
+}
+
+double greyScale(int depth) {
+  if (depth == CV_8U) return 1.0;
+  if (depth == CV_16U) return 1.0 / 257.0;
+  return 255.0;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> decodeImage(const sensor_msgs::Image& image, int size) {
+  requireSize(size);
+  const std::string encoding = checkedEncoding(image);
+  const auto side = static_cast<std::uint32_t>(size);
+  if (encoding == "mono8" && image.width == side && image.height == side && image.step == side) {
+    return image.data;
+  }
+  cv::Mat grey;
+  try {
+    grey = centralSquare(greyImage(image, encoding));
+    if (grey.rows != size) cv::resize(grey, grey, cv::Size(size, size), 0, 0, cv::INTER_AREA);
+  } catch (const cv_bridge::Exception& e) {
+    refuse("cannot convert " + extent(image) + " to grey: " + e.what());
+  } catch (const cv::Exception& e) {
+    refuse("cannot convert " + extent(image) + " to grey: " + e.what());
+  }
+  const double scale = greyScale(grey.depth());
+  grey.convertTo(grey, CV_64F);
+  std::vector<std::uint8_t> out;
+  out.reserve(grey.total());
+  for (int row = 0; row < size; ++row) {
+    for (int col = 0; col < size; ++col) {
+      const double value = std::round(scale * grey.at<double>(row, col));
+      out.push_back(static_cast<std::uint8_t>(std::min(255.0, std::max(0.0, value))));
+    }
+  }
+  return out;
+}
+
+sensor_msgs::Image encodeImage(const std::vector<std::uint8_t>& grey, int size,
+                               const ros::Time& stamp, const std::string& frame_id) {
+  requireSize(size);
+  const auto side = static_cast<std::uint32_t>(size);
+  if (grey.size() != std::size_t{side} * side) {
+    refuse("an image of size " + std::to_string(size) + " needs " +
+           std::to_string(std::size_t{side} * side) + " grey values, got " +
+           std::to_string(grey.size()));
+  }
+  sensor_msgs::Image image;
+  image.header.stamp = stamp;
+  image.header.frame_id = frame_id;
+  image.width = side;
+  image.height = side;
+  image.encoding = "mono8";
+  image.is_bigendian = 0;
+  image.step = side;
+  image.data = grey;
+  return image;
+}
+
+}  // namespace ddm

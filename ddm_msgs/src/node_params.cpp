@@ -1,0 +1,54 @@
+// Parameters of a ROS node as a YAML tree.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_msgs/node_params.h"
+
+#include <ros/param.h>
+
+#include <stdexcept>
+
+#include "ddm_msgs/param_value.h"
+
+namespace ddm {
+
+YAML::Node toYaml(XmlRpc::XmlRpcValue value, const std::string& name) {
+  switch (value.getType()) {
+    case XmlRpc::XmlRpcValue::TypeBoolean:
+      return valueToYaml(static_cast<bool&>(value));
+    case XmlRpc::XmlRpcValue::TypeInt:
+      return valueToYaml(static_cast<int&>(value));
+    case XmlRpc::XmlRpcValue::TypeDouble:
+      return valueToYaml(static_cast<double&>(value));
+    case XmlRpc::XmlRpcValue::TypeString:
+      return valueToYaml(static_cast<std::string&>(value));
+    case XmlRpc::XmlRpcValue::TypeArray: {
+      YAML::Node out(YAML::NodeType::Sequence);
+      for (int i = 0; i < value.size(); ++i) {
+        out.push_back(toYaml(value[i], name + "[" + std::to_string(i) + "]"));
+      }
+      out.SetStyle(YAML::EmitterStyle::Flow);
+      return out;
+    }
+    case XmlRpc::XmlRpcValue::TypeStruct: {
+      YAML::Node out(YAML::NodeType::Map);
+      for (auto& member : value) {
+        out[member.first] = toYaml(member.second, name + "/" + member.first);
+      }
+      return out;
+    }
+    default:
+      throw std::invalid_argument("parameter " + name +
+                                  " must be a number, a text, true or false, a list or a block");
+  }
+}
+
+YAML::Node nodeParams(const ros::NodeHandle& pnh) {
+  XmlRpc::XmlRpcValue value;
+  if (!ros::param::get(pnh.getNamespace(), value)) return YAML::Node(YAML::NodeType::Map);
+  if (value.getType() != XmlRpc::XmlRpcValue::TypeStruct) {
+    throw std::invalid_argument("parameter " + pnh.getNamespace() +
+                                " must be the namespace of a node's parameters, not a value");
+  }
+  return toYaml(value, pnh.getNamespace());
+}
+
+}  // namespace ddm

@@ -1,0 +1,208 @@
+// Strict configuration reader: files, merging, and the collection of problems.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_msgs/param_reader.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+namespace ddm {
+namespace {
+
+const std::set<std::string>& blocksOfThisRepository() {
+  static const std::set<std::string> blocks = {
+      "plant", "camera", "sim",        "image",      "model",    "training",   "data_set",
+      "mpc",   "trial",  "evaluation", "experiment", "recorder", "controller", "run"};
+  return blocks;
+}
+
+/// Number of characters to insert, delete or replace to turn one word into the other.
+std::size_t editDistance(const std::string& from, const std::string& to) {
+  std::vector<std::size_t> row(to.size() + 1);
+  for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= from.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= to.size(); ++j) {
+      const std::size_t replaced = diagonal + (from[i - 1] == to[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+/// " (did you mean horizon? known keys: horizon, epsilon)"
+template <class Names>
+std::string hint(const std::string& name, const char* kind, const Names& known) {
+  std::string list, nearest;
+  std::size_t nearest_distance = std::min<std::size_t>(3, (name.size() + 1) / 2);
+  for (const std::string& candidate : known) {
+    list += (list.empty() ? "" : ", ") + candidate;
+    const std::size_t distance = editDistance(name, candidate);
+    if (distance < nearest_distance) {
+      nearest_distance = distance;
+      nearest = candidate;
+    }
+  }
+  const std::string question = nearest.empty() ? "" : "did you mean " + nearest + "? ";
+  return " (" + question + "known " + kind + ": " + list + ")";
+}
+
+/// A value in one line, for a message.
+std::string asText(const YAML::Node& node) {
+  constexpr std::size_t kMaxLength = 120;
+  if (node.IsNull()) return "nothing";
+  if (node.IsScalar() && node.Scalar().empty()) return "an empty text";
+  std::string text;
+  if (node.IsScalar()) {
+    text = node.Scalar();
+  } else {
+    YAML::Node copy = YAML::Clone(node);
+    copy.SetStyle(YAML::EmitterStyle::Flow);
+    text = YAML::Dump(copy);
+  }
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  std::replace_if(text.begin(), text.end(), is_control, ' ');
+  return text.size() <= kMaxLength ? text : text.substr(0, kMaxLength) + "...";
+}
+
+[[noreturn]] void refuseAt(const std::string& path, const YAML::Mark& mark,
+                           const std::string& what) {
+  throw std::invalid_argument(path + ":" + std::to_string(mark.line + 1) + ": " + what);
+}
+
+void requireUniqueKeys(const YAML::Node& map, const std::string& path) {
+  std::set<std::string> seen;
+  for (const auto& entry : map) {
+    if (!entry.first.IsScalar()) refuseAt(path, entry.first.Mark(), "a key must be a plain name");
+    if (!seen.insert(entry.first.Scalar()).second) {
+      refuseAt(path, entry.first.Mark(), "'" + entry.first.Scalar() + "' is given twice");
+    }
+  }
+}
+
+std::string readText(const std::string& path) {
+  // A folder opens like a file and then reads as an empty one.
+  std::error_code ignored;
+  std::ifstream in(path);
+  std::ostringstream text;
+  if (in && in.peek() != std::ifstream::traits_type::eof()) text << in.rdbuf();
+  if (std::filesystem::is_directory(path, ignored) || !in || !text) {
+    throw std::runtime_error("cannot read the configuration file " + path);
+  }
+  return text.str();
+}
+
+YAML::Node loadFile(const std::string& path) {
+  const std::string text = readText(path);
+  std::vector<YAML::Node> documents;
+  try {
+    documents = YAML::LoadAll(text);
+  } catch (const YAML::Exception& e) {
+    refuseAt(path, e.mark, "not valid YAML: " + e.msg);
+  }
+  if (documents.empty() || (documents.size() == 1 && documents[0].IsNull())) {
+    return YAML::Node(YAML::NodeType::Map);  // a preset may consist of comments
+  }
+  if (documents.size() > 1) {
+    refuseAt(path, documents[1].Mark(), "only one YAML document is allowed in a file");
+  }
+  if (!documents[0].IsMap()) {
+    refuseAt(path, documents[0].Mark(), "expected a map of blocks, got " + asText(documents[0]));
+  }
+  requireUniqueKeys(documents[0], path);
+  for (const auto& block : documents[0]) {
+    if (block.second.IsMap()) requireUniqueKeys(block.second, path);
+  }
+  return documents[0];
+}
+
+}  // namespace
+
+ParamReader::ParamReader(const YAML::Node& root, std::string source) : source_(std::move(source)) {
+  if (root.IsDefined() && !root.IsNull() && !root.IsMap()) {
+    throw std::invalid_argument("the configuration must be a map of blocks, got " + asText(root));
+  }
+  root_ = root.IsDefined() && root.IsMap() ? root : YAML::Node(YAML::NodeType::Map);
+}
+
+ParamReader ParamReader::fromFiles(const std::vector<std::string>& paths) {
+  YAML::Node merged(YAML::NodeType::Map);
+  std::string source;
+  for (const std::string& path : paths) {
+    const YAML::Node file = loadFile(path);
+    for (const auto& block : file) {
+      const std::string name = block.first.Scalar();
+      YAML::Node target = merged[name];
+      if (target.IsDefined() && target.IsMap() && block.second.IsMap()) {
+        for (const auto& entry : block.second) {
+          target[entry.first.Scalar()] = YAML::Clone(entry.second);
+        }
+      } else if (!target.IsDefined() || !block.second.IsNull()) {
+        merged[name] = YAML::Clone(block.second);  // or an alias would change with its anchor
+      }
+    }
+    source += (source.empty() ? "" : ", ") + path;
+  }
+  return ParamReader(merged, source);
+}
+
+YAML::Node ParamReader::openBlock(const std::string& block) {
+  read_.insert(block);
+  const YAML::Node& root = root_;
+  const YAML::Node values = root[block];
+  if (values.IsDefined() && values.IsMap()) return values;
+  if (values.IsDefined() && !values.IsNull()) {
+    report(block + " must be a block of keys, got " + asText(values));
+  }
+  return YAML::Node(YAML::NodeType::Map);
+}
+
+void ParamReader::reportUnknownKeys(const std::string& block, const YAML::Node& values,
+                                    const std::vector<std::string>& known_keys) {
+  for (const auto& entry : values) {
+    const std::string key = asText(entry.first);
+    if (std::find(known_keys.begin(), known_keys.end(), key) == known_keys.end()) {
+      report("unknown key " + block + "/" + key + hint(key, "keys", known_keys));
+    }
+  }
+}
+
+void ParamReader::reportWrongType(const std::string& path, const YAML::Node& value,
+                                  const char* expected) {
+  report(path + " must be " + expected + ", got " + asText(value));
+}
+
+void ParamReader::report(const std::string& problem) {
+  // A block may be read by two parts of one program.
+  if (std::find(problems_.begin(), problems_.end(), problem) == problems_.end()) {
+    problems_.push_back(problem);
+  }
+}
+
+std::vector<std::string> ParamReader::problems() const {
+  std::vector<std::string> out = problems_;
+  for (const auto& entry : root_) {
+    const std::string name = asText(entry.first);
+    if (name == "version") continue;  // a saved configuration says which code made it
+    if (blocksOfThisRepository().count(name) + read_.count(name) + ignored_.count(name) == 0) {
+      out.push_back("unknown block " + name + hint(name, "blocks", blocksOfThisRepository()));
+    }
+  }
+  return out;
+}
+
+void ParamReader::requireValid() const {
+  const std::vector<std::string> all = problems();
+  if (all.empty()) return;
+  std::string message =
+      "invalid configuration" + (source_.empty() ? "" : " (" + source_ + ")") + ":";
+  for (const std::string& problem : all) message += "\n - " + problem;
+  throw std::invalid_argument(message);
+}
+
+}  // namespace ddm
