@@ -1,0 +1,74 @@
+// Parameters of the plants, the camera and the simulator; one struct = one YAML block.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace ddm {
+
+/// Parameters of the plant. YAML block `plant:`.
+struct PlantOptions {
+  std::string type = "pendulum";  ///< which plant, see plantTypes()
+  double gravity = 0.0;           ///< g [m/s^2]. The paper's published runs fit 0
+  double length = 1.0;            ///< l, length of the rod [m]
+  double mass = 1.0;              ///< m, mass of the rod [kg]
+  double friction = 1.0;          ///< b, viscous friction [N m s/rad]
+  double max_torque = 6.0;        ///< bound on |u| [N m]
+  double dt = 0.2;                ///< time step, u is held constant over it [s]
+  double start_std = 0.1;         ///< standard deviation of the start state [rad], [rad/s]
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("type", type);
+    visitor("gravity", gravity);
+    visitor("length", length);
+    visitor("mass", mass);
+    visitor("friction", friction);
+    visitor("max_torque", max_torque);
+    visitor("dt", dt);
+    visitor("start_std", start_std);
+  }
+
+  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  std::vector<std::string> problems() const;
+};
+
+/// The values that `plant/type` may have.
+std::vector<std::string> plantTypes();
+
+/// Parameters of the camera and of what it sees. YAML block `camera:`.
+struct CameraOptions {
+  int size = 51;                ///< width and height of the image [pixels]
+  double half_extent = 1.2;     ///< from the image centre to its edge [m]
+  double rod_half_width = 0.1;  ///< half the width of the rod [m]
+  double edge_softness = 0.2;   ///< width over which grey falls from 1 to 0 [m]
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("size", size);
+    visitor("half_extent", half_extent);
+    visitor("rod_half_width", rod_half_width);
+    visitor("edge_softness", edge_softness);
+  }
+
+  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  std::vector<std::string> problems() const;
+};
+
+/// Parameters of sim_node: how simulated time passes. YAML block `sim:`.
+struct SimOptions {
+  bool lockstep = true;   ///< true: an image waits for its torque; false: real time
+  double watchdog = 5.0;  ///< lock-step: wall time that a torque may take [s]
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("lockstep", lockstep);
+    visitor("watchdog", watchdog);
+  }
+
+  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  std::vector<std::string> problems() const;
+};
+
+}  // namespace ddm

@@ -1,0 +1,57 @@
+// Real time: the plant moves by itself every dt, as a robot would.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "realtime_sim.h"
+
+#include <utility>
+
+namespace ddm {
+namespace {
+
+constexpr int kMaxStepsHeld = 2;  // without a newer torque the motor is off from the third step on
+
+ros::Time wallNow() {  // ros::Time::now() would follow /clock if somebody else published one
+  const ros::WallTime now = ros::WallTime::now();
+  return ros::Time(now.sec, now.nsec);
+}
+
+}  // namespace
+
+RealtimeSim::RealtimeSim(ros::NodeHandle nh, std::unique_ptr<Plant> plant)
+    : SimNode(nh, std::move(plant), /*clock=*/false) {
+  switchMotorOff();
+  publisher().publishGoal(wallNow());
+  timer_ = nh.createWallTimer(ros::WallDuration(this->plant().dt()), &RealtimeSim::onTick, this);
+}
+
+ros::Time RealtimeSim::beginTrial(const ddm_msgs::Reset::Request& request) {
+  switchMotorOff();  // the torque on hold was meant for another state
+  timer_.stop();     // stop and start, so that the first step is a whole one
+  timer_.start();
+  const ros::Time stamp = wallNow();
+  publishFrame(stamp);
+  ROS_INFO("%s %u starts in real time", request.evaluation ? "evaluation" : "trial", request.trial);
+  return stamp;
+}
+
+void RealtimeSim::takeTorque(const ros::Time& /*stamp*/, const Eigen::VectorXd& torque,
+                             const std::string& /*publisher*/) {
+  held_ = torque;
+  steps_held_ = 0;
+}
+
+void RealtimeSim::torqueRefused(const ros::Time& /*stamp*/, const std::string& /*reason*/) {
+  switchMotorOff();
+}
+
+void RealtimeSim::switchMotorOff() { held_ = Eigen::VectorXd::Zero(plant().torqueDim()); }
+
+void RealtimeSim::onTick(const ros::WallTimerEvent& /*event*/) {
+  if (++steps_held_ > kMaxStepsHeld) switchMotorOff();
+  if (!advance(held_)) {
+    timer_.stop();
+    return;
+  }
+  publishFrame(wallNow());
+}
+
+}  // namespace ddm

@@ -1,0 +1,35 @@
+// Real time: the plant moves by itself every dt, as a robot would.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "sim_node.h"
+
+namespace ddm {
+
+/// Every dt of wall time: step under the newest torque (zero-order hold), show an image.
+///
+/// Stamps are wall time and no clock is published. A torque acts for two periods at most: without a
+/// newer one the motor is switched off, and a torque that cannot be applied switches it off at
+/// once. Starts at rest; a reset sets the state at any time, and its num_steps has no effect.
+class RealtimeSim : public SimNode {
+ public:
+  RealtimeSim(ros::NodeHandle nh, std::unique_ptr<Plant> plant);
+
+ private:
+  ros::Time beginTrial(const ddm_msgs::Reset::Request& request) override;
+  void takeTorque(const ros::Time& stamp, const Eigen::VectorXd& torque,
+                  const std::string& publisher) override;
+  void torqueRefused(const ros::Time& stamp, const std::string& reason) override;
+
+  void switchMotorOff();
+  void onTick(const ros::WallTimerEvent& event);
+
+  Eigen::VectorXd held_;  ///< newest torque, zero when the motor is off [N m]
+  int steps_held_ = 0;    ///< steps taken under held_
+  ros::WallTimer timer_;
+};
+
+}  // namespace ddm

@@ -1,0 +1,74 @@
+// The plant behind topics: what lock-step and real time have in common.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim_node.h"
+
+#include <random>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "ddm_msgs/topics.h"
+
+namespace ddm {
+namespace {
+
+constexpr int kQueueSize = 10;
+
+Eigen::VectorXd toEigen(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+}  // namespace
+
+SimNode::SimNode(ros::NodeHandle nh, std::unique_ptr<Plant> plant, bool clock)
+    : plant_(std::move(plant)),
+      publisher_(nh, *plant_, clock),
+      applied_(Eigen::VectorXd::Zero(plant_->torqueDim())) {
+  torque_sub_ = nh.subscribe(topics::kTorque, kQueueSize, &SimNode::onTorque, this,
+                             ros::TransportHints().tcpNoDelay());
+  // Last: whoever sees the service finds everything else in place.
+  reset_server_ = nh.advertiseService(topics::kReset, &SimNode::onReset, this);
+}
+
+bool SimNode::advance(const Eigen::VectorXd& torque) {
+  try {
+    applied_ = plant_->step(torque);
+    return true;
+  } catch (const std::range_error& e) {
+    ROS_ERROR_STREAM("the trial ends, a reset starts another: " << e.what());
+    return false;
+  }
+}
+
+bool SimNode::onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Response& response) {
+  std::mt19937_64 engine = startStream(request.seed, request.trial, request.evaluation);
+  try {
+    plant_->setState(request.start.empty() ? plant_->drawStart(engine) : toEigen(request.start));
+  } catch (const std::invalid_argument& e) {
+    response.success = false;
+    response.message = std::string("field `start` of the request: ") + e.what();
+    ROS_WARN_STREAM("reset refused, nothing has changed: " << response.message);
+    return true;
+  }
+  applied_.setZero();
+  response.start = beginTrial(request);
+  response.success = true;
+  return true;
+}
+
+void SimNode::onTorque(const ros::MessageEvent<ddm_msgs::Torque const>& event) {
+  const ddm_msgs::Torque& message = *event.getMessage();
+  const Eigen::VectorXd torque = toEigen(message.torque);
+  if (torque.size() == plant_->torqueDim() && torque.allFinite()) {
+    takeTorque(message.header.stamp, torque, event.getPublisherName());
+    return;
+  }
+  std::ostringstream reason;
+  reason << "torque refused: " << event.getPublisherName() << " published [" << torque.transpose()
+         << "] N m on " << torqueTopic() << ", it must be " << plant_->torqueDim()
+         << " finite number(s)";
+  ROS_ERROR_STREAM(reason.str());
+  torqueRefused(message.header.stamp, reason.str());
+}
+
+}  // namespace ddm

@@ -1,0 +1,61 @@
+// The plant behind topics: what lock-step and real time have in common.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ddm_msgs/Reset.h>
+#include <ddm_msgs/Torque.h>
+#include <ros/ros.h>
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+
+#include "ddm_sim/plant.h"
+#include "sim_publisher.h"
+
+namespace ddm {
+
+/// Answers `reset`, refuses torques that no motor could follow, and hands the others to the mode.
+/// Made for a single-threaded spinner: no callback runs before the object is complete.
+class SimNode {
+ public:
+  virtual ~SimNode() = default;
+  SimNode(const SimNode&) = delete;
+  SimNode& operator=(const SimNode&) = delete;
+
+ protected:
+  SimNode(ros::NodeHandle nh, std::unique_ptr<Plant> plant, bool clock);
+
+  /// Steps the plant and remembers the applied torque.
+  /// @return false if the plant has no next state; the reason has been logged
+  bool advance(const Eigen::VectorXd& torque);
+
+  void publishFrame(const ros::Time& stamp) const { publisher_.publishFrame(applied_, stamp); }
+
+  const Plant& plant() const { return *plant_; }
+  const SimPublisher& publisher() const { return publisher_; }
+  std::string torqueTopic() const { return torque_sub_.getTopic(); }
+
+ private:
+  bool onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Response& response);
+  void onTorque(const ros::MessageEvent<ddm_msgs::Torque const>& event);
+
+  /// The plant has been set to its start: show the first image.
+  /// @return stamp of that image
+  virtual ros::Time beginTrial(const ddm_msgs::Reset::Request& request) = 0;
+
+  /// A torque that the plant can take.
+  virtual void takeTorque(const ros::Time& stamp, const Eigen::VectorXd& torque,
+                          const std::string& publisher) = 0;
+
+  /// A torque that was refused; `reason` names its publisher and value and has been logged.
+  virtual void torqueRefused(const ros::Time& stamp, const std::string& reason) = 0;
+
+  std::unique_ptr<Plant> plant_;
+  SimPublisher publisher_;
+  Eigen::VectorXd applied_;  ///< torque of the last step, zero at a start [N m]
+  ros::ServiceServer reset_server_;
+  ros::Subscriber torque_sub_;
+};
+
+}  // namespace ddm

@@ -1,0 +1,45 @@
+// sim_node: a simulated plant with a camera and a motor.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ros/ros.h>
+#include <yaml-cpp/yaml.h>
+
+#include <cstdlib>
+#include <exception>
+#include <memory>
+
+#include "ddm_msgs/node_params.h"
+#include "ddm_msgs/param_reader.h"
+#include "ddm_sim/plant_factory.h"
+#include "lockstep_sim.h"
+#include "realtime_sim.h"
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "sim_node");
+  ros::NodeHandle nh;
+  ros::NodeHandle pnh("~");  // outside the try: its destructor shuts the log down
+  try {
+    ddm::ParamReader params(ddm::nodeParams(pnh), pnh.getNamespace());
+    const auto plant = params.read<ddm::PlantOptions>("plant");
+    const auto camera = params.read<ddm::CameraOptions>("camera");
+    const auto sim = params.read<ddm::SimOptions>("sim");
+    params.requireValid();
+
+    YAML::Node effective;
+    effective["plant"] = ddm::toYaml(plant);
+    effective["camera"] = ddm::toYaml(camera);
+    effective["sim"] = ddm::toYaml(sim);
+    ROS_INFO_STREAM("sim_node: effective configuration\n" << effective);
+
+    std::unique_ptr<ddm::SimNode> node;
+    if (sim.lockstep) {
+      node = std::make_unique<ddm::LockstepSim>(nh, ddm::makePlant(plant, camera), sim);
+    } else {
+      node = std::make_unique<ddm::RealtimeSim>(nh, ddm::makePlant(plant, camera));
+    }
+    ros::spin();
+  } catch (const std::exception& e) {
+    ROS_FATAL_STREAM("sim_node: " << e.what());
+    return EXIT_FAILURE;
+  }
+  return EXIT_SUCCESS;
+}

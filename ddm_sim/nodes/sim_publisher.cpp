@@ -1,0 +1,58 @@
+// What the simulator shows on the wire: camera image, ground truth, goal image and clock.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim_publisher.h"
+
+#include <image_transport/image_transport.h>
+#include <rosgraph_msgs/Clock.h>
+#include <sensor_msgs/Image.h>
+#include <sensor_msgs/JointState.h>
+
+#include <vector>
+
+#include "ddm_msgs/image_codec.h"
+#include "ddm_msgs/topics.h"
+
+namespace ddm {
+namespace {
+
+constexpr char kFrameId[] = "camera";
+constexpr int kQueueSize = 10;
+
+std::vector<double> toVector(const Eigen::VectorXd& values) {
+  return std::vector<double>(values.data(), values.data() + values.size());
+}
+
+}  // namespace
+
+SimPublisher::SimPublisher(ros::NodeHandle nh, const Plant& plant, bool clock) : plant_(plant) {
+  if (clock) clock_ = nh.advertise<rosgraph_msgs::Clock>("/clock", 1, /*latch=*/true);
+  goal_image_ = nh.advertise<sensor_msgs::Image>(topics::kGoalImage, 1, /*latch=*/true);
+  ground_truth_ = nh.advertise<sensor_msgs::JointState>(topics::kGroundTruth, kQueueSize);
+  image_ = image_transport::ImageTransport(nh).advertise(topics::kImage, kQueueSize);
+}
+
+void SimPublisher::publishGoal(const ros::Time& stamp) const {
+  goal_image_.publish(
+      encodeImage(plant_.render(plant_.goalState()), plant_.imageSize(), stamp, kFrameId));
+}
+
+void SimPublisher::publishClock(const ros::Time& stamp) const {
+  rosgraph_msgs::Clock clock;
+  clock.clock = stamp;
+  clock_.publish(clock);
+}
+
+void SimPublisher::publishFrame(const Eigen::VectorXd& applied, const ros::Time& stamp) const {
+  const Eigen::VectorXd& state = plant_.state();
+  sensor_msgs::JointState joints;
+  joints.header.stamp = stamp;
+  joints.name = plant_.jointNames();
+  const auto num_joints = static_cast<Eigen::Index>(joints.name.size());
+  joints.position = toVector(state.head(num_joints));
+  joints.velocity = toVector(state.tail(state.size() - num_joints));
+  joints.effort = toVector(applied);
+  ground_truth_.publish(joints);
+  image_.publish(encodeImage(plant_.render(state), plant_.imageSize(), stamp, kFrameId));
+}
+
+}  // namespace ddm

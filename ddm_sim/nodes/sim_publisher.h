@@ -1,0 +1,40 @@
+// What the simulator shows on the wire: camera image, ground truth, goal image and clock.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <image_transport/publisher.h>
+#include <ros/node_handle.h>
+
+#include <Eigen/Core>
+
+#include "ddm_sim/plant.h"
+
+namespace ddm {
+
+/// Turns states of a plant into messages. Advertises in its constructor; keeps no state of its own.
+class SimPublisher {
+ public:
+  /// @param nh      its namespace holds the topics
+  /// @param plant   must outlive this object
+  /// @param clock   also publish /clock: true in lock-step only
+  SimPublisher(ros::NodeHandle nh, const Plant& plant, bool clock);
+
+  /// The goal image, latched: also whoever comes later sees it.
+  void publishGoal(const ros::Time& stamp) const;
+
+  /// Simulated time, latched. Must not run backwards.
+  void publishClock(const ros::Time& stamp) const;
+
+  /// The present state of the plant: ground truth, then the image, with the same stamp.
+  /// @param applied  torque of the step that led here [N m]
+  void publishFrame(const Eigen::VectorXd& applied, const ros::Time& stamp) const;
+
+ private:
+  const Plant& plant_;
+  ros::Publisher clock_;
+  ros::Publisher goal_image_;
+  ros::Publisher ground_truth_;
+  image_transport::Publisher image_;
+};
+
+}  // namespace ddm

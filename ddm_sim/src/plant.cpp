@@ -1,0 +1,75 @@
+// A plant: checks, saturation and start states, the same for every plant.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_sim/plant.h"
+
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+namespace ddm {
+namespace {
+
+constexpr std::uint32_t kStartRole = 1;  // id of the role "start state" among the random streams
+
+void requireFinite(const char* name, const Eigen::VectorXd& value, Eigen::Index size) {
+  if (value.size() == size && value.allFinite()) return;
+  std::ostringstream message;
+  message << "plant: the " << name << " must be " << size << " finite number(s), got ["
+          << value.transpose() << "]";
+  throw std::invalid_argument(message.str());
+}
+
+}  // namespace
+
+Plant::Plant(Eigen::VectorXd start, int torque_dim, double dt, double max_torque, double start_std)
+    : start_(std::move(start)),
+      state_(start_),
+      torque_dim_(torque_dim),
+      dt_(dt),
+      max_torque_(max_torque),
+      start_std_(start_std) {}
+
+void Plant::setState(const Eigen::VectorXd& state) {
+  requireFinite("state", state, state_.size());
+  state_ = state;
+}
+
+Eigen::VectorXd Plant::drawStart(std::mt19937_64& engine) const {
+  std::normal_distribution<double> standard_normal;
+  Eigen::VectorXd start = start_;
+  for (Eigen::Index i = 0; i < start.size(); ++i) start[i] += start_std_ * standard_normal(engine);
+  return start;
+}
+
+Eigen::VectorXd Plant::step(const Eigen::VectorXd& torque) {
+  requireFinite("torque", torque, torque_dim_);
+  const Eigen::VectorXd applied = torque.cwiseMax(-max_torque_).cwiseMin(max_torque_);
+  const Eigen::VectorXd next = advance(state_, applied);
+  if (!next.allFinite()) {
+    std::ostringstream message;
+    message << "plant: the state [" << state_.transpose()
+            << "] leaves the range of double within one step; use a smaller state or other plant "
+               "parameters";
+    throw std::range_error(message.str());
+  }
+  state_ = next;
+  return applied;
+}
+
+double Plant::goalError(const Eigen::VectorXd& state) const {
+  requireFinite("state", state, state_.size());
+  return distanceToGoal(state);
+}
+
+std::vector<std::uint8_t> Plant::render(const Eigen::VectorXd& state) const {
+  requireFinite("state", state, state_.size());
+  return draw(state);
+}
+
+std::mt19937_64 startStream(std::uint64_t seed, std::uint32_t trial, bool evaluation) {
+  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
+                         trial, evaluation ? 1U : 0U, kStartRole};
+  return std::mt19937_64(sequence);
+}
+
+}  // namespace ddm

@@ -1,0 +1,80 @@
+// Parameters of the plants, the camera and the simulator: what values are valid.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_sim/plant_options.h"
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+
+namespace ddm {
+namespace {
+
+/// Collects the problems of one block, each as "block/key must <rule>, got <value>".
+class Checker {
+ public:
+  explicit Checker(std::string block) : block_(std::move(block)) {}
+
+  template <class Value>
+  void require(bool ok, const char* key, const std::string& rule, const Value& value) {
+    if (ok) return;
+    std::ostringstream problem;
+    problem << block_ << '/' << key << " must " << rule << ", got " << value;
+    problems_.push_back(problem.str());
+  }
+
+  std::vector<std::string> problems() const { return problems_; }
+
+ private:
+  std::string block_;
+  std::vector<std::string> problems_;
+};
+
+// Written so that NaN fails; an infinite length or mass has no physics either.
+bool positive(double value) { return value > 0.0 && value <= std::numeric_limits<double>::max(); }
+bool notNegative(double value) {
+  return value >= 0.0 && value <= std::numeric_limits<double>::max();
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::string> plantTypes() { return {"pendulum"}; }
+
+std::vector<std::string> PlantOptions::problems() const {
+  const std::vector<std::string> types = plantTypes();
+  const bool known = std::find(types.begin(), types.end(), type) != types.end();
+  Checker plant("plant");
+  plant.require(known, "type", "be one of: " + joined(types), "\"" + type + "\"");
+  plant.require(notNegative(gravity), "gravity", "be >= 0 and finite", gravity);
+  plant.require(positive(length), "length", "be > 0 and finite", length);
+  plant.require(positive(mass), "mass", "be > 0 and finite", mass);
+  plant.require(notNegative(friction), "friction", "be >= 0 and finite", friction);
+  plant.require(positive(max_torque), "max_torque", "be > 0 and finite", max_torque);
+  // Stamps count whole nanoseconds, and one below a millisecond is none that a camera can keep.
+  plant.require(dt >= 1e-3 && dt <= 10.0, "dt", "lie in [0.001, 10] s", dt);
+  plant.require(notNegative(start_std), "start_std", "be >= 0 and finite", start_std);
+  return plant.problems();
+}
+
+std::vector<std::string> CameraOptions::problems() const {
+  Checker camera("camera");
+  camera.require(size >= 4 && size <= 1024, "size", "lie in [4, 1024] pixels", size);
+  camera.require(positive(half_extent), "half_extent", "be > 0 and finite", half_extent);
+  camera.require(positive(rod_half_width), "rod_half_width", "be > 0 and finite", rod_half_width);
+  camera.require(positive(edge_softness), "edge_softness", "be > 0 and finite", edge_softness);
+  return camera.problems();
+}
+
+std::vector<std::string> SimOptions::problems() const {
+  Checker sim("sim");
+  sim.require(watchdog >= 0.1 && watchdog <= 86400.0, "watchdog", "lie in [0.1, 86400] s",
+              watchdog);
+  return sim.problems();
+}
+
+}  // namespace ddm

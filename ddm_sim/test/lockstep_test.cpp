@@ -1,0 +1,233 @@
+// Tests of sim_node in lock-step, over the wire.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <ros/ros.h>
+
+#include <limits>
+#include <memory>
+
+#include "ddm_sim/plant_factory.h"
+#include "sim_client.h"
+
+namespace ddm {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+class Lockstep : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    client_ = std::make_unique<SimClient>();
+    ASSERT_TRUE(client_->connect());
+  }
+  static void TearDownTestSuite() { client_.reset(); }
+  void SetUp() override { client_->forget(); }
+
+  /// Starts a trial and waits for its first image.
+  /// @return its stamp
+  static ros::Time begin(std::uint32_t num_steps, const std::vector<double>& start = {0.0, 0.0}) {
+    client_->forget();
+    const ddm_msgs::Reset::Response response = client_->reset(num_steps, start);
+    EXPECT_TRUE(response.success) << response.message;
+    EXPECT_TRUE(client_->waitForImages(1));
+    return response.start;
+  }
+
+  /// The trial that was running has ended: a torque for its frame does not bring another one, and
+  /// the next image is the first of the next trial.
+  static void expectIdle(const ros::Time& stamp_on_show) {
+    const std::size_t shown = client_->images.size();
+    client_->publish(stamp_on_show, {0.0});
+    const ddm_msgs::Reset::Response response = client_->reset(0, {0.0, 0.0});
+    ASSERT_TRUE(client_->waitForImages(shown + 1));
+    EXPECT_EQ(client_->images[shown].header.stamp, response.start);
+  }
+
+  static std::unique_ptr<SimClient> client_;
+};
+
+std::unique_ptr<SimClient> Lockstep::client_;
+
+// The first test, by its place in this file: nothing has been reset before it.
+TEST_F(Lockstep, ShowsClockAndGoalButNoImageBeforeTheFirstReset) {
+  ASSERT_TRUE(client_->waitUntil([] { return !client_->clocks.empty(); }));
+  ASSERT_TRUE(client_->waitUntil([] { return !client_->goals.empty(); }));
+  EXPECT_EQ(client_->clocks[0], ros::Time(1, 0));
+  const ros::Time start = begin(0);
+  ASSERT_EQ(client_->images.size(), 1U);
+  EXPECT_EQ(client_->images[0].header.stamp, start);
+}
+
+TEST_F(Lockstep, ShowsTheGoalStateOnTheGoalImage) {
+  const auto plant = makePlant(PlantOptions(), CameraOptions());
+  ASSERT_FALSE(client_->goals.empty());
+  EXPECT_EQ(client_->goals[0].data, plant->render(plant->goalState()));
+  EXPECT_EQ(client_->goals[0].encoding, "mono8");
+  EXPECT_EQ(client_->goals[0].width, 51U);
+  EXPECT_EQ(client_->goals[0].height, 51U);
+}
+
+TEST_F(Lockstep, ShowsExactlyTheImagesAskedForEachDtAfterTheLast) {
+  const ros::Time start = begin(5);
+  for (std::size_t t = 0; t < 5; ++t) {
+    ASSERT_TRUE(client_->waitForImages(t + 1));
+    const ros::Time stamp = client_->images[t].header.stamp;
+    EXPECT_EQ(stamp.toNSec(), start.toNSec() + t * 200000000ULL);
+    client_->publish(stamp, {1.0});
+  }
+  ASSERT_TRUE(client_->waitForLog("5 frames answered"));
+  EXPECT_EQ(client_->images.size(), 5U);
+  expectIdle(client_->images[4].header.stamp);
+}
+
+TEST_F(Lockstep, MovesThePlantAsTheLibraryDoesAndTellsTheTruthOfEachImage) {
+  const auto plant = makePlant(PlantOptions(), CameraOptions());
+  plant->setState(Eigen::Vector2d(0.3, -1.7));
+  begin(4, {0.3, -1.7});
+  const std::vector<double> torques{2.0, -9.0, 0.5};  // the second one saturates
+  double applied = 0.0;
+  for (std::size_t t = 0; t < 4; ++t) {
+    ASSERT_TRUE(client_->waitForImages(t + 1));
+    const sensor_msgs::JointState& truth = client_->truths[t];
+    const sensor_msgs::Image& image = client_->images[t];
+    EXPECT_EQ(truth.header.stamp, image.header.stamp);
+    EXPECT_EQ(truth.name, std::vector<std::string>{"pendulum"});
+    EXPECT_EQ(truth.position, std::vector<double>{plant->state()[0]});
+    EXPECT_EQ(truth.velocity, std::vector<double>{plant->state()[1]});
+    EXPECT_EQ(truth.effort, std::vector<double>{applied});
+    EXPECT_EQ(image.data, plant->render(plant->state()));
+    if (t == 3) break;
+    client_->publish(image.header.stamp, {torques[t]});
+    applied = plant->step(Eigen::VectorXd::Constant(1, torques[t]))[0];
+  }
+}
+
+TEST_F(Lockstep, CountsAndIgnoresATorqueWithAnotherStamp) {
+  const ros::Time start = begin(0);
+  client_->publish(start + ros::Duration(0, 1), {6.0});
+  ASSERT_TRUE(client_->waitForLog("ignored (1 so far), waiting for frame 0"));
+  EXPECT_EQ(client_->images.size(), 1U);
+  client_->publish(start, {1.0});
+  ASSERT_TRUE(client_->waitForImages(2));
+  EXPECT_EQ(client_->truths[1].effort, std::vector<double>{1.0});
+  client_->publish(start, {6.0});  // answered before: no longer the stamp on show
+  client_->publish(client_->images[1].header.stamp, {2.0});
+  ASSERT_TRUE(client_->waitForImages(3));
+  EXPECT_EQ(client_->truths[2].effort, std::vector<double>{2.0});
+}
+
+TEST_F(Lockstep, RefusesATorqueThatIsNotFiniteNamesItsPublisherAndEndsTheTrial) {
+  const std::vector<std::pair<double, std::string>> cases{{kNaN, "nan]"}, {-kInfinity, "[-inf]"}};
+  for (const auto& [value, text] : cases) {
+    const ros::Time start = begin(0);
+    client_->publish(start, {value});
+    ASSERT_TRUE(client_->waitForLog("torque refused: " + ros::this_node::getName()));
+    EXPECT_TRUE(client_->logged(text)) << text;
+    ASSERT_TRUE(client_->waitForLog("trial 0 ends at frame 0"));
+    expectIdle(start);
+  }
+}
+
+TEST_F(Lockstep, RefusesATorqueOfAnotherSizeAndEndsTheTrial) {
+  for (const std::vector<double>& torque : {std::vector<double>{}, std::vector<double>{1.0, 2.0}}) {
+    const ros::Time start = begin(0);
+    client_->publish(start, torque);
+    ASSERT_TRUE(client_->waitForLog("it must be 1 finite number(s)"));
+    expectIdle(start);
+  }
+}
+
+TEST_F(Lockstep, GoesOnAfterABadTorqueThatAnswersAnotherFrame) {
+  const ros::Time start = begin(0);
+  client_->publish(start + ros::Duration(7.0), {kNaN});
+  ASSERT_TRUE(client_->waitForLog("torque refused"));
+  client_->publish(start, {1.0});
+  EXPECT_TRUE(client_->waitForImages(2));
+}
+
+TEST_F(Lockstep, NamesThePublisherThatKeepsSilentAndGoesIdle) {
+  const ros::Time start = begin(0);
+  client_->publish(start, {1.0});
+  ASSERT_TRUE(client_->waitForImages(2));
+  ASSERT_TRUE(client_->waitForLog("no torque for frame 1"));
+  EXPECT_TRUE(
+      client_->logged("within 2.5 s: publisher(s) of /torque: " + ros::this_node::getName()));
+  expectIdle(client_->images[1].header.stamp);
+}
+
+TEST_F(Lockstep, SaysWhenNobodyPublishesTorques) {
+  client_->stopPublishing();
+  begin(0);
+  const bool said = client_->waitForLog("nobody publishes /torque");
+  client_->advertise();
+  ASSERT_TRUE(client_->waitForTorqueSubscriber());
+  EXPECT_TRUE(said);
+}
+
+TEST_F(Lockstep, StartsEachTrialAtLeastASecondLaterAndNeverTurnsTheClockBack) {
+  ros::Time last;
+  for (int trial = 0; trial < 3; ++trial) {
+    const ros::Time start = begin(0);
+    if (trial > 0) {
+      EXPECT_GE(start - last, ros::Duration(1.0));
+    }
+    client_->publish(start, {1.0});
+    ASSERT_TRUE(client_->waitForImages(2));
+    last = client_->images[1].header.stamp;
+    ASSERT_TRUE(client_->waitUntil([last] { return client_->clocks.back() == last; }));
+  }
+  for (std::size_t i = 1; i < client_->clocks.size(); ++i) {
+    ASSERT_GE(client_->clocks[i], client_->clocks[i - 1]);
+  }
+}
+
+TEST_F(Lockstep, CutsARunningTrialShortOnReset) {
+  const ros::Time old_start = begin(0);
+  const ros::Time start = begin(0, {1.0, 0.0});
+  EXPECT_TRUE(client_->waitForLog("cut short"));
+  client_->publish(old_start, {1.0});
+  client_->publish(start, {0.0});
+  ASSERT_TRUE(client_->waitForImages(2));
+  EXPECT_EQ(client_->truths[0].position, std::vector<double>{1.0});
+  EXPECT_EQ(client_->truths[1].effort, std::vector<double>{0.0});
+}
+
+TEST_F(Lockstep, DrawsTheStartThatTheLibraryDraws) {
+  const auto plant = makePlant(PlantOptions(), CameraOptions());
+  std::mt19937_64 engine = startStream(7, 3, false);
+  const Eigen::VectorXd expected = plant->drawStart(engine);
+  ASSERT_TRUE(client_->reset(0, {}, /*seed=*/7, /*trial=*/3).success);
+  ASSERT_TRUE(client_->waitForImages(1));
+  EXPECT_EQ(client_->truths[0].position, std::vector<double>{expected[0]});
+  EXPECT_EQ(client_->truths[0].velocity, std::vector<double>{expected[1]});
+}
+
+TEST_F(Lockstep, RefusesABadStartAndLeavesTheTrialAlone) {
+  const ros::Time start = begin(0, {0.5, 0.0});
+  for (const std::vector<double>& bad :
+       {std::vector<double>{1.0}, std::vector<double>{1.0, kNaN}}) {
+    const ddm_msgs::Reset::Response response = client_->reset(0, bad);
+    EXPECT_FALSE(response.success);
+    EXPECT_NE(response.message.find("2 finite number(s)"), std::string::npos) << response.message;
+  }
+  client_->publish(start, {0.0});
+  ASSERT_TRUE(client_->waitForImages(2));
+  EXPECT_EQ(client_->truths.size(), 2U);
+}
+
+TEST_F(Lockstep, EndsATrialWhoseStateLeavesTheRangeOfDouble) {
+  const ros::Time start = begin(0, {1.7e308, 1.7e308});
+  client_->publish(start, {0.0});
+  ASSERT_TRUE(client_->waitForLog("leaves the range of double"));
+  expectIdle(start);
+}
+
+}  // namespace
+}  // namespace ddm
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "lockstep_test");
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}

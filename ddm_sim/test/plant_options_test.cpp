@@ -1,0 +1,147 @@
+// Tests of the options: valid ranges, and that the shipped YAML files say what the structs say.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_sim/plant_options.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+#include <stdexcept>
+
+#include "ddm_msgs/param_reader.h"
+#include "ddm_sim/plant_factory.h"
+
+namespace ddm {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const std::string kConfig = std::string(DDM_SIM_SOURCE_DIR) + "/config/";
+
+template <class Options>
+std::string yaml(const Options& options) {
+  return YAML::Dump(toYaml(options));
+}
+
+template <class Options>
+std::set<std::string> keys(Options options) {
+  std::set<std::string> out;
+  auto collect = [&out](const std::string& key, const auto&) { out.insert(key); };
+  options.visit(collect);
+  return out;
+}
+
+std::set<std::string> keys(const YAML::Node& block) {
+  std::set<std::string> out;
+  for (const auto& entry : block) out.insert(entry.first.as<std::string>());
+  return out;
+}
+
+/// Sets each key of type double to `value` in turn and counts how often that is no problem.
+template <class Options>
+int numAccepted(double value) {
+  int accepted = 0;
+  for (const std::string& name : keys(Options())) {
+    Options options;
+    bool is_double = false;
+    auto set = [&](const std::string& key, auto& member) {
+      if constexpr (std::is_same_v<decltype(member), double&>) {
+        if (key == name) {
+          member = value;
+          is_double = true;
+        }
+      }
+    };
+    options.visit(set);
+    if (is_double && options.problems().empty()) ++accepted;
+  }
+  return accepted;
+}
+
+TEST(PlantOptions, DefaultsAreValid) {
+  EXPECT_TRUE(PlantOptions().problems().empty());
+  EXPECT_TRUE(CameraOptions().problems().empty());
+  EXPECT_TRUE(SimOptions().problems().empty());
+}
+
+TEST(PlantOptions, RefuseNaNInfinityAndNegativeNumbersInEveryKey) {
+  for (const double bad : {kNaN, kInfinity, -kInfinity, -1.0}) {
+    EXPECT_EQ(numAccepted<PlantOptions>(bad), 0) << bad;
+    EXPECT_EQ(numAccepted<CameraOptions>(bad), 0) << bad;
+    EXPECT_EQ(numAccepted<SimOptions>(bad), 0) << bad;
+  }
+}
+
+TEST(PlantOptions, AllowNoGravityNoFrictionAndNoSpread) {
+  PlantOptions options;
+  options.gravity = options.friction = options.start_std = 0.0;
+  EXPECT_TRUE(options.problems().empty());
+}
+
+TEST(PlantOptions, ReportEachProblemWithKeyRuleAndValue) {
+  PlantOptions options;
+  options.length = -2.5;
+  options.type = "cart";
+  const std::vector<std::string> expected{"plant/type must be one of: pendulum, got \"cart\"",
+                                          "plant/length must be > 0 and finite, got -2.5"};
+  EXPECT_EQ(options.problems(), expected);
+}
+
+TEST(PlantOptions, ReportAnImageSizeOutOfRange) {
+  for (const int size : {-1, 0, 3, 1025}) {
+    CameraOptions options;
+    options.size = size;
+    ASSERT_EQ(options.problems().size(), 1U);
+    EXPECT_EQ(options.problems()[0],
+              "camera/size must lie in [4, 1024] pixels, got " + std::to_string(size));
+  }
+}
+
+TEST(PlantFactory, RefusesAnUnknownTypeAndListsTheKnownOnes) {
+  PlantOptions options;
+  options.type = "cart";
+  try {
+    makePlant(options, CameraOptions());
+    FAIL() << "a cart was made";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_NE(std::string(e.what()).find("pendulum"), std::string::npos) << e.what();
+  }
+}
+
+TEST(Config, ManualSaysWhatTheStructsSay) {
+  auto reader = ParamReader::fromFiles({kConfig + "pendulum.yaml", kConfig + "sim.yaml"});
+  const auto plant = reader.read<PlantOptions>("plant");
+  const auto camera = reader.read<CameraOptions>("camera");
+  const auto sim = reader.read<SimOptions>("sim");
+  ASSERT_NO_THROW(reader.requireValid());
+  EXPECT_EQ(yaml(plant), yaml(PlantOptions()));
+  EXPECT_EQ(yaml(camera), yaml(CameraOptions()));
+  EXPECT_EQ(yaml(sim), yaml(SimOptions()));
+}
+
+TEST(Config, ManualNamesEveryKey) {
+  const YAML::Node sim = YAML::LoadFile(kConfig + "sim.yaml");
+  EXPECT_EQ(keys(YAML::LoadFile(kConfig + "pendulum.yaml")["plant"]), keys(PlantOptions()));
+  EXPECT_EQ(keys(sim["camera"]), keys(CameraOptions()));
+  EXPECT_EQ(keys(sim["sim"]), keys(SimOptions()));
+}
+
+TEST(Config, PendulumGravityIsTheClassicalHardOne) {
+  auto reader = ParamReader::fromFiles({kConfig + "pendulum_gravity.yaml"});
+  const auto plant = reader.read<PlantOptions>("plant");
+  ASSERT_NO_THROW(reader.requireValid());
+  EXPECT_EQ(plant.gravity, 9.82);
+  EXPECT_EQ(plant.friction, 0.01);
+  EXPECT_EQ(plant.max_torque, 2.5);
+  EXPECT_EQ(plant.dt, 0.1);
+}
+
+TEST(Config, TellsALearnerTheTorqueLimitOfTheSamePlant) {
+  const YAML::Node config = YAML::LoadFile(kConfig + "pendulum_gravity.yaml");
+  for (const char* block : {"mpc", "model"}) {
+    EXPECT_EQ(config[block]["max_torque"].as<double>(), config["plant"]["max_torque"].as<double>());
+  }
+}
+
+}  // namespace
+}  // namespace ddm

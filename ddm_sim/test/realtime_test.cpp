@@ -1,0 +1,111 @@
+// Tests of sim_node in real time, over the wire.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <ros/ros.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+
+#include "sim_client.h"
+
+namespace ddm {
+namespace {
+
+class Realtime : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    client_ = std::make_unique<SimClient>();
+    ASSERT_TRUE(client_->connect());
+  }
+  static void TearDownTestSuite() { client_.reset(); }
+  void SetUp() override {
+    client_->reset(0, {0.0, 0.0});
+    client_->forget();
+  }
+
+  /// Waits for the first image that shows this torque at work, from now on.
+  static bool waitForEffort(double effort) {
+    const std::size_t seen = client_->truths.size();
+    return client_->waitUntil([seen, effort] {
+      for (std::size_t i = seen; i < client_->truths.size(); ++i) {
+        if (client_->truths[i].effort[0] == effort) return true;
+      }
+      return false;
+    });
+  }
+
+  static std::ptrdiff_t numFramesWithEffort(double effort) {
+    return std::count_if(client_->truths.begin(), client_->truths.end(),
+                         [effort](const auto& truth) { return truth.effort[0] == effort; });
+  }
+
+  static std::unique_ptr<SimClient> client_;
+};
+
+std::unique_ptr<SimClient> Realtime::client_;
+
+TEST_F(Realtime, ShowsImagesByItselfStampedWithWallTime) {
+  const double before = ros::WallTime::now().toSec();
+  ASSERT_TRUE(client_->waitForImages(4));
+  const double after = ros::WallTime::now().toSec();
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double stamp = client_->images[i].header.stamp.toSec();
+    EXPECT_GT(stamp, before - 1.0);
+    EXPECT_LT(stamp, after);
+    EXPECT_EQ(client_->truths[i].header.stamp, client_->images[i].header.stamp);
+  }
+  const double three_periods =
+      (client_->images[3].header.stamp - client_->images[0].header.stamp).toSec();
+  EXPECT_GT(three_periods, 2 * 0.2);  // generous to a busy machine, but no burst of images
+}
+
+TEST_F(Realtime, HoldsATorqueForTwoPeriodsAndThenSwitchesTheMotorOff) {
+  client_->publish(ros::Time(5, 0), {3.0});
+  ASSERT_TRUE(waitForEffort(3.0));
+  ASSERT_TRUE(waitForEffort(0.0));
+  ASSERT_TRUE(waitForEffort(0.0));  // and it stays off
+  EXPECT_EQ(numFramesWithEffort(3.0), 2);
+}
+
+TEST_F(Realtime, SwitchesTheMotorOffAtATorqueThatIsNotFinite) {
+  client_->publish(ros::Time(5, 0), {4.0});
+  client_->publish(ros::Time(5, 0), {std::numeric_limits<double>::quiet_NaN()});
+  ASSERT_TRUE(client_->waitForLog("torque refused: " + ros::this_node::getName()));
+  ASSERT_TRUE(client_->waitForImages(client_->images.size() + 3));
+  EXPECT_LE(numFramesWithEffort(4.0), 1);  // one if a period ended between the two messages
+}
+
+TEST_F(Realtime, ResetsAtAnyTimeAndDropsTheTorqueOnHold) {
+  client_->publish(ros::Time(5, 0), {5.0});
+  ASSERT_TRUE(waitForEffort(5.0));
+  const ddm_msgs::Reset::Response response = client_->reset(0, {2.0, 0.0});
+  ASSERT_TRUE(response.success);
+  const auto isFirst = [&response](const auto& truth) {
+    return truth.header.stamp == response.start;
+  };
+  std::vector<sensor_msgs::JointState>& truths = client_->truths;
+  ASSERT_TRUE(client_->waitUntil([&] {
+    const auto first = std::find_if(truths.begin(), truths.end(), isFirst);
+    return truths.end() - first >= 3;
+  }));
+  const auto first = std::find_if(truths.begin(), truths.end(), isFirst);
+  EXPECT_EQ(first->position[0], 2.0);
+  EXPECT_EQ((first + 1)->position[0], 2.0);  // no gravity, no torque: it stays
+  EXPECT_EQ((first + 1)->effort[0], 0.0);
+}
+
+TEST_F(Realtime, PublishesNoClock) {
+  ros::master::V_TopicInfo published;
+  ASSERT_TRUE(ros::master::getTopics(published));
+  for (const ros::master::TopicInfo& topic : published) EXPECT_NE(topic.name, "/clock");
+}
+
+}  // namespace
+}  // namespace ddm
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "realtime_test");
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,123 @@
+// Test client of sim_node: collects what it publishes and waits for conditions with a limit.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ddm_msgs/Reset.h>
+#include <ddm_msgs/Torque.h>
+#include <gtest/gtest.h>
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+#include <rosgraph_msgs/Clock.h>
+#include <rosgraph_msgs/Log.h>
+#include <sensor_msgs/Image.h>
+#include <sensor_msgs/JointState.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "ddm_msgs/topics.h"
+
+namespace ddm {
+
+class SimClient {
+ public:
+  SimClient() {
+    image_ = nh_.subscribe(topics::kImage, 1000, &SimClient::onImage, this);
+    truth_ = nh_.subscribe(topics::kGroundTruth, 1000, &SimClient::onTruth, this);
+    goal_ = nh_.subscribe(topics::kGoalImage, 10, &SimClient::onGoal, this);
+    clock_ = nh_.subscribe("/clock", 1000, &SimClient::onClock, this);
+    log_ = nh_.subscribe("/rosout", 1000, &SimClient::onLog, this);
+    advertise();
+    reset_ = nh_.serviceClient<ddm_msgs::Reset>(topics::kReset);
+  }
+
+  void advertise() { torque_ = nh_.advertise<ddm_msgs::Torque>(topics::kTorque, 1000); }
+  void stopPublishing() { torque_.shutdown(); }
+
+  /// Everything is connected, the log too: a refused reset is seen in it. No trial has started.
+  bool connect() {
+    if (!reset_.waitForExistence(ros::Duration(-1)) || !waitForTorqueSubscriber()) return false;
+    return waitUntil([this] {
+      ddm_msgs::Reset refused;
+      refused.request.start = {1.0, 2.0, 3.0};
+      reset_.call(refused);
+      return image_.getNumPublishers() == 1 && truth_.getNumPublishers() == 1 &&
+             logged("reset refused");
+    });
+  }
+
+  bool waitForTorqueSubscriber() {
+    return waitUntil([this] { return torque_.getNumSubscribers() == 1; });
+  }
+
+  /// Handles callbacks until the condition holds.
+  /// @return false if it does not within the limit
+  bool waitUntil(const std::function<bool()>& condition, double limit = 12.0) {
+    const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(limit);
+    while (!condition()) {
+      if (ros::WallTime::now() > end || !ros::ok()) return false;
+      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.02));
+    }
+    return true;
+  }
+
+  bool waitForImages(std::size_t count) {
+    return waitUntil([this, count] { return images.size() >= count && truths.size() >= count; });
+  }
+  bool waitForLog(const std::string& part) {
+    return waitUntil([this, part] { return logged(part); });
+  }
+
+  ddm_msgs::Reset::Response reset(std::uint32_t num_steps, const std::vector<double>& start = {},
+                                  std::uint64_t seed = 0, std::uint32_t trial = 0) {
+    ddm_msgs::Reset call;
+    call.request.seed = seed;
+    call.request.trial = trial;
+    call.request.num_steps = num_steps;
+    call.request.start = start;
+    EXPECT_TRUE(reset_.call(call));
+    return call.response;
+  }
+
+  void publish(const ros::Time& stamp, const std::vector<double>& torque) {
+    ddm_msgs::Torque message;
+    message.header.stamp = stamp;
+    message.torque = torque;
+    torque_.publish(message);
+  }
+
+  bool logged(const std::string& part) const {
+    for (const std::string& line : log_lines) {
+      if (line.find(part) != std::string::npos) return true;
+    }
+    return false;
+  }
+
+  void forget() {
+    images.clear();
+    truths.clear();
+    log_lines.clear();
+  }
+
+  std::vector<sensor_msgs::Image> images;
+  std::vector<sensor_msgs::JointState> truths;
+  std::vector<sensor_msgs::Image> goals;
+  std::vector<ros::Time> clocks;
+  std::vector<std::string> log_lines;
+
+ private:
+  void onImage(const sensor_msgs::Image& image) { images.push_back(image); }
+  void onTruth(const sensor_msgs::JointState& truth) { truths.push_back(truth); }
+  void onGoal(const sensor_msgs::Image& goal) { goals.push_back(goal); }
+  void onClock(const rosgraph_msgs::Clock& clock) { clocks.push_back(clock.clock); }
+  void onLog(const rosgraph_msgs::Log& log) { log_lines.push_back(log.msg); }
+
+  ros::NodeHandle nh_;
+  ros::Subscriber image_, truth_, goal_, clock_, log_;
+  ros::Publisher torque_;
+  ros::ServiceClient reset_;
+};
+
+}  // namespace ddm

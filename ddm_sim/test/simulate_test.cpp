@@ -1,0 +1,245 @@
+// Tests of the program simulate as a user calls it: files in, files and exit code out.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <sstream>
+
+#include "ddm_sim/plant_factory.h"
+
+namespace ddm {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Result {
+  int exit_code;
+  std::string out;
+  std::string err;
+};
+
+std::string contents(const fs::path& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// Rows of the trajectory: step, time, angle, rate. Checks the header.
+std::vector<std::vector<double>> rows(const std::string& csv) {
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "step,time_s,angle_rad,rate_rad_per_s");
+  std::vector<std::vector<double>> out;
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    std::vector<double> row;
+    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(std::stod(cell));
+    EXPECT_EQ(row.size(), 4U) << line;
+    out.push_back(row);
+  }
+  return out;
+}
+
+class Simulate : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "simulate_test_XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+    // The package is looked up in the sources: the test needs no workspace to be sourced.
+    setenv("ROS_PACKAGE_PATH", DDM_SIM_SOURCE_DIR, /*overwrite=*/1);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Result run(const std::string& options, const std::string& input) const {
+    std::ofstream(folder_ / "in") << input;
+    const std::string folder = folder_.string();
+    const std::string command = std::string(DDM_SIM_SIMULATE) + " " + options + " < " + folder +
+                                "/in > " + folder + "/out 2> " + folder + "/err";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(folder_ / "out"),
+            contents(folder_ / "err")};
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Simulate, WritesTheTrajectoryOfThePlant) {
+  const Result result =
+      run("--plant pendulum --angle 0.25 --rate -3", "torque_nm\n1\n-2.5\n6\n0\n");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto table = rows(result.out);
+  ASSERT_EQ(table.size(), 5U);
+  const auto plant = makePlant(PlantOptions(), CameraOptions());
+  plant->setState(Eigen::Vector2d(0.25, -3.0));
+  const std::vector<double> torques{1.0, -2.5, 6.0, 0.0};
+  for (std::size_t t = 0; t < table.size(); ++t) {
+    if (t > 0) plant->step(Eigen::VectorXd::Constant(1, torques[t - 1]));
+    EXPECT_EQ(table[t][0], t);
+    EXPECT_NEAR(table[t][1], 0.2 * t, 1e-15);
+    EXPECT_EQ(table[t][2], plant->state()[0]);  // 17 digits: the same double
+    EXPECT_EQ(table[t][3], plant->state()[1]);
+  }
+}
+
+TEST_F(Simulate, WritesTheStartAloneForNoTorques) {
+  const Result result = run("--plant pendulum --angle 1", "torque_nm\n");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out, "step,time_s,angle_rad,rate_rad_per_s\n0,0,1,0\n");
+}
+
+TEST_F(Simulate, TakesAStartExactlyInEverySpellingOfANegativeNumber) {
+  for (const char* options :
+       {"--angle -0.001 --rate -.5", "--angle=-0.001 --rate=-5e-1", "--angle -1e-3 --rate -0.5"}) {
+    const Result result = run(std::string("--plant pendulum ") + options, "torque_nm\n");
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(rows(result.out).at(0), (std::vector<double>{0, 0, -0.001, -0.5})) << options;
+  }
+}
+
+TEST_F(Simulate, SaturatesTorquesAsTheMotorDoes) {
+  EXPECT_EQ(run("--plant pendulum", "torque_nm\n100\n").out,
+            run("--plant pendulum", "torque_nm\n6\n").out);
+  EXPECT_EQ(run("--plant pendulum_gravity", "torque_nm\n-6\n").out,
+            run("--plant pendulum_gravity", "torque_nm\n-2.5\n").out);
+}
+
+TEST_F(Simulate, KnowsThePlantWithGravity) {
+  const Result result = run("--plant pendulum_gravity --angle 1", "torque_nm\n0\n");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(rows(result.out).at(1)[1], 0.1);
+  EXPECT_LT(rows(result.out).at(1)[2], 0.95);  // it falls
+}
+
+TEST_F(Simulate, WritesOnePictureARow) {
+  const fs::path frames = folder_ / "new" / "frames";
+  const Result result =
+      run("--plant pendulum --angle 0.5 --frames " + frames.string(), "torque_nm\n1\n1\n");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(std::distance(fs::directory_iterator(frames), fs::directory_iterator()), 3);
+  const auto plant = makePlant(PlantOptions(), CameraOptions());
+  const auto table = rows(result.out);
+  for (int t = 0; t < 3; ++t) {
+    const fs::path path = frames / ("frame_000" + std::to_string(t) + ".png");
+    const cv::Mat image = cv::imread(path.string(), cv::IMREAD_UNCHANGED);
+    ASSERT_EQ(image.type(), CV_8UC1) << path;
+    const std::vector<std::uint8_t> grey(image.begin<std::uint8_t>(), image.end<std::uint8_t>());
+    EXPECT_EQ(grey, plant->render(Eigen::Vector2d(table[t][2], table[t][3]))) << path;
+  }
+}
+
+TEST_F(Simulate, LetsALaterConfigurationFileWin) {
+  const std::string first = (folder_ / "first.yaml").string();
+  const std::string second = (folder_ / "second.yaml").string();
+  std::ofstream(first) << "plant: {dt: 0.5, max_torque: 1.0}\n";
+  std::ofstream(second) << "plant: {dt: 0.25}\n";
+  const Result result =
+      run("--plant pendulum --config " + first + " --config " + second, "torque_nm\n6\n");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(rows(result.out).at(1)[1], 0.25);
+  EXPECT_EQ(rows(result.out).at(1)[3], 1.0 - std::exp(-0.75));  // u = 1, not 6
+}
+
+TEST_F(Simulate, PrintsItsOptionsOnRequest) {
+  const Result result = run("--help", "");
+  EXPECT_EQ(result.exit_code, 0);
+  for (const char* option : {"--plant", "--angle", "--rate", "--frames", "--config", "saturates"}) {
+    EXPECT_TRUE(contains(result.out, option)) << option;
+  }
+}
+
+TEST_F(Simulate, ListsTheKnownPlantsWhenThePlantIsUnknown) {
+  for (const char* plant : {"cart", "sim", "../config/pendulum", "''"}) {
+    const Result result = run(std::string("--plant ") + plant, "torque_nm\n");
+    EXPECT_EQ(result.exit_code, 2) << plant;
+    EXPECT_TRUE(contains(result.err, "pendulum, pendulum_gravity")) << result.err;
+    EXPECT_EQ(result.out, "");
+  }
+}
+
+TEST_F(Simulate, RefusesAWrongCommandLineAndNamesTheWord) {
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"", "--plant"},
+      {"--plant pendulum --angel 3", "--angel"},
+      {"--plant pendulum --ang 3", "--ang"},
+      {"--plant pendulum -0.5", "-0.5"},
+      {"--plant pendulum --angle", "--angle"},
+      {"--plant pendulum --angle nan", "nan"},
+      {"--plant pendulum --rate inf", "inf"},
+      {"--plant pendulum --rate 1m", "1m"},
+      {"--plant pendulum --angle ''", "--angle"},
+      {"--plant pendulum --angle 1 --angle 2", "--angle"},
+      {"--plant pendulum trajectory.csv", "trajectory.csv"}};
+  for (const auto& [options, word] : cases) {
+    const Result result = run(options, "torque_nm\n1\n");
+    EXPECT_EQ(result.exit_code, 2) << options;
+    EXPECT_TRUE(contains(result.err, word)) << options << ": " << result.err;
+    EXPECT_EQ(result.out, "") << options;
+  }
+}
+
+TEST_F(Simulate, RefusesBadTorquesAndWritesNothing) {
+  const std::vector<std::pair<std::string, std::string>> cases{{"", "line 1"},
+                                                               {"1\n2\n", "line 1"},
+                                                               {"torque_nm\n1\nnan\n", "line 3"},
+                                                               {"torque_nm\n1\n2\nx\n", "line 4"}};
+  for (const auto& [input, line] : cases) {
+    const fs::path frames = folder_ / "frames";
+    const Result result = run("--plant pendulum --frames " + frames.string(), input);
+    EXPECT_EQ(result.exit_code, 1) << input;
+    EXPECT_TRUE(contains(result.err, line)) << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_FALSE(fs::exists(frames));
+  }
+}
+
+TEST_F(Simulate, RefusesABadConfigurationFile) {
+  const std::string path = (folder_ / "bad.yaml").string();
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"plant: {dt: -1}\n", "plant/dt"},
+      {"plant: {lenght: 1}\n", "lenght"},
+      {"camera: {size: many}\n", "camera/size"},
+      {"plant: {type: cart}\n", "plant/type"}};
+  for (const auto& [yaml, word] : cases) {
+    std::ofstream(path) << yaml;
+    const Result result = run("--plant pendulum --config " + path, "torque_nm\n1\n");
+    EXPECT_EQ(result.exit_code, 1) << yaml;
+    EXPECT_TRUE(contains(result.err, word)) << result.err;
+    EXPECT_EQ(result.out, "");
+  }
+  const Result missing = run("--plant pendulum --config /no/such.yaml", "torque_nm\n1\n");
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_TRUE(contains(missing.err, "/no/such.yaml")) << missing.err;
+}
+
+TEST_F(Simulate, SaysWhichPictureCannotBeWritten) {
+  std::ofstream(folder_ / "file") << "not a folder";
+  const Result result =
+      run("--plant pendulum --frames " + (folder_ / "file").string(), "torque_nm\n1\n");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(contains(result.err, (folder_ / "file").string())) << result.err;
+  EXPECT_EQ(result.out, "");
+}
+
+TEST_F(Simulate, NoticesWhenItsOutputCannotBeWritten) {
+  const std::string command = std::string("printf 'torque_nm\\n1\\n' | ") + DDM_SIM_SIMULATE +
+                              " --plant pendulum > /dev/full 2> " + (folder_ / "err").string();
+  const int status = std::system(command.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  EXPECT_TRUE(contains(contents(folder_ / "err"), "standard output"));
+}
+
+}  // namespace
+}  // namespace ddm

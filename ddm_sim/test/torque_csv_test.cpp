@@ -1,0 +1,71 @@
+// Tests of the torque reader: what it takes, and what it says of the rest.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "torque_csv.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <stdexcept>
+
+namespace ddm {
+namespace {
+
+std::vector<double> read(const std::string& text) {
+  std::istringstream input(text);
+  return readTorques(input);
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    read(text);
+  } catch (const std::runtime_error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(TorqueCsv, ReadsOneValueALine) {
+  EXPECT_EQ(read("torque_nm\n1\n-2.5e-1\n+.5\n"), (std::vector<double>{1.0, -0.25, 0.5}));
+}
+
+TEST(TorqueCsv, ReadsALastLineWithoutItsEnd) {
+  EXPECT_EQ(read("torque_nm\n1\n2"), (std::vector<double>{1.0, 2.0}));
+}
+
+TEST(TorqueCsv, ReadsWindowsLineEndsAndEmptyLinesAtTheEnd) {
+  EXPECT_EQ(read("torque_nm\r\n1\r\n 2\t\r\n\r\n\n"), (std::vector<double>{1.0, 2.0}));
+}
+
+TEST(TorqueCsv, TakesTheHeaderAloneForNoTorques) {
+  EXPECT_TRUE(read("torque_nm\n").empty());
+  EXPECT_TRUE(read("torque_nm").empty());
+}
+
+TEST(TorqueCsv, RefusesInputWithoutItsHeader) {
+  for (const char* text : {"", "\n", "1\n2\n", "torque\n1\n", "torque_nm,step\n1,2\n"}) {
+    EXPECT_NE(refusal(text).find("line 1: must be the header torque_nm"), std::string::npos)
+        << text;
+  }
+}
+
+TEST(TorqueCsv, RefusesWhatIsNoFiniteNumberAndNamesTheLineAndTheValue) {
+  for (const char* bad : {"nan", "NaN", "inf", "-inf", "1e999", "0x10", "abc", "1,2", "1 2",
+                          "1.2.3", "1 # comment", "--1", "e5", "1e"}) {
+    const std::string message = refusal("torque_nm\n1\n" + std::string(bad) + "\n2\n");
+    EXPECT_NE(message.find("line 3"), std::string::npos) << bad << ": " << message;
+    EXPECT_NE(message.find("\"" + std::string(bad) + "\""), std::string::npos) << message;
+  }
+}
+
+TEST(TorqueCsv, RefusesAnEmptyLineBetweenValues) {
+  EXPECT_NE(refusal("torque_nm\n1\n\n2\n").find("line 3"), std::string::npos);
+}
+
+TEST(TorqueCsv, ShowsNoControlCharactersOfABinaryFile) {
+  const std::string message = refusal(std::string("torque_nm\n\x1b[31m") + std::string(500, 'x'));
+  EXPECT_EQ(message.find('\x1b'), std::string::npos);
+  EXPECT_LT(message.size(), 200U);
+}
+
+}  // namespace
+}  // namespace ddm

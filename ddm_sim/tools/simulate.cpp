@@ -1,0 +1,205 @@
+// simulate: moves a plant under given torques, without a master. Torques in, trajectory out.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ros/package.h>
+
+#include <algorithm>
+#include <boost/program_options.hpp>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "ddm_msgs/param_reader.h"
+#include "ddm_sim/plant_factory.h"
+#include "torque_csv.h"
+
+namespace ddm {
+namespace {
+
+namespace fs = std::filesystem;
+namespace po = boost::program_options;
+
+constexpr int kExitData = 1;
+constexpr int kExitUsage = 2;
+
+constexpr char kAbout[] =
+    "Moves a plant under given torques: rosrun ddm_sim simulate --plant NAME [options]\n"
+    "    < torques.csv > trajectory.csv\n\n"
+    "Input:  the header torque_nm, then one torque [N m] a line, N of them. A torque beyond the\n"
+    "        plant's max_torque saturates, as the motor does.\n"
+    "Output: the header step,time_s,angle_rad,rate_rad_per_s, then N + 1 rows. Row 0 is the "
+    "start;\n"
+    "        the angle is not wrapped. Nothing is written if any of the input is wrong.\n"
+    "Exit:   0 done, 1 bad data, 2 bad options.\n\n"
+    "Options";
+
+/// Wrong use of the command line, as opposed to wrong data.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct Arguments {
+  std::string plant;
+  double angle = 0.0;  ///< [rad]
+  double rate = 0.0;   ///< [rad/s]
+  std::string frames;  ///< folder, empty = none
+  std::vector<std::string> configs;
+};
+
+double finiteOption(const po::variables_map& given, const std::string& name) {
+  double value = 0.0;
+  const auto& text = given[name].as<std::string>();
+  if (!parseNumber(text, &value)) {
+    throw UsageError("option --" + name + " must be a finite number, got \"" + text + "\"");
+  }
+  return value;
+}
+
+po::options_description describedOptions() {
+  using Text = std::string;
+  po::options_description options(kAbout);
+  auto add = options.add_options();
+  add("help", "print this and exit");
+  add("plant", po::value<Text>()->value_name("NAME"), "a file config/NAME.yaml of this package");
+  add("angle", po::value<Text>()->value_name("RAD")->default_value("0"),
+      "start angle [rad], taken exactly; 0 hangs, counter-clockwise is positive");
+  add("rate", po::value<Text>()->value_name("RAD_PER_S")->default_value("0"),
+      "start rate [rad/s], taken exactly");
+  add("frames", po::value<Text>()->value_name("DIR"),
+      "also write one picture a row: DIR/frame_0000.png, ... The folder is made if need be; "
+      "pictures "
+      "of these names in it are replaced");
+  add("config", po::value<std::vector<Text>>()->value_name("FILE"),
+      "YAML file whose blocks `plant` and `camera` differ from the plant's own; repeatable, later "
+      "wins");
+  return options;
+}
+
+/// @return false if only help was asked for, and printed
+bool parseArguments(int argc, char** argv, Arguments* arguments) {
+  const po::options_description options = describedOptions();
+  po::variables_map given;
+  try {
+    // No short options and no abbreviations: a word like -0.5 is then a value and never an option.
+    namespace style = po::command_line_style;
+    constexpr int kStyle = style::allow_long | style::long_allow_adjacent | style::long_allow_next;
+    const po::parsed_options parsed =
+        po::command_line_parser(argc, argv).options(options).style(kStyle).run();
+    for (const po::option& option : parsed.options) {
+      if (option.position_key < 0) continue;  // a word that belongs to an option
+      throw UsageError("unexpected \"" + option.value.front() + "\"; each value needs its option");
+    }
+    po::store(parsed, given);
+  } catch (const po::error& e) {
+    throw UsageError(e.what());
+  }
+  if (given.count("help") != 0) {
+    std::cout << options;
+    return false;
+  }
+  if (given.count("plant") == 0) throw UsageError("option --plant NAME is missing");
+  arguments->plant = given["plant"].as<std::string>();
+  arguments->angle = finiteOption(given, "angle");
+  arguments->rate = finiteOption(given, "rate");
+  if (given.count("frames") != 0) arguments->frames = given["frames"].as<std::string>();
+  if (given.count("config") != 0) {
+    arguments->configs = given["config"].as<std::vector<std::string>>();
+  }
+  return true;
+}
+
+/// The package's files for this plant, then the user's own.
+/// @throws UsageError with the known plants if there is none of this name
+std::vector<std::string> configFiles(const Arguments& arguments) {
+  const std::string package = ros::package::getPath("ddm_sim");
+  if (package.empty()) {
+    throw std::runtime_error(
+        "package ddm_sim not found; source the setup.bash of the workspace that holds it");
+  }
+  const std::string camera_file = "sim";
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(package) / "config")) {
+    const fs::path name = entry.path().filename();
+    if (name.extension() == ".yaml" && name.stem() != camera_file) names.push_back(name.stem());
+  }
+  std::sort(names.begin(), names.end());
+  if (std::find(names.begin(), names.end(), arguments.plant) == names.end()) {
+    std::string known;
+    for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
+    throw UsageError("option --plant must be one of: " + known + "; got \"" + arguments.plant +
+                     "\"");
+  }
+  const std::string folder = package + "/config/";
+  std::vector<std::string> files{folder + camera_file + ".yaml",
+                                 folder + arguments.plant + ".yaml"};
+  files.insert(files.end(), arguments.configs.begin(), arguments.configs.end());
+  return files;
+}
+
+std::unique_ptr<Plant> configuredPlant(const Arguments& arguments) {
+  ParamReader params = ParamReader::fromFiles(configFiles(arguments));
+  const auto plant = params.read<PlantOptions>("plant");
+  const auto camera = params.read<CameraOptions>("camera");
+  params.requireValid();
+  return makePlant(plant, camera);
+}
+
+void writeFrame(const Plant& plant, const std::string& folder, std::size_t row) {
+  std::vector<std::uint8_t> grey = plant.render(plant.state());
+  char name[32];
+  std::snprintf(name, sizeof(name), "frame_%04zu.png", row);
+  const std::string path = (fs::path(folder) / name).string();
+  const cv::Mat image(plant.imageSize(), plant.imageSize(), CV_8UC1, grey.data());
+  bool written = false;
+  try {
+    written = cv::imwrite(path, image);
+  } catch (const cv::Exception&) {  // the path below says more than its text
+  }
+  if (!written)
+    throw std::runtime_error(path + " cannot be written; check the folder and its disk");
+}
+
+std::string csvRow(const Plant& plant, std::size_t row) {
+  char text[128];
+  std::snprintf(text, sizeof(text), "%zu,%.17g,%.17g,%.17g\n", row,
+                static_cast<double>(row) * plant.dt(), plant.state()[0], plant.state()[1]);
+  return text;
+}
+
+void simulate(const Arguments& arguments) {
+  const std::unique_ptr<Plant> plant = configuredPlant(arguments);
+  plant->setState(Eigen::Vector2d(arguments.angle, arguments.rate));
+  const std::vector<double> torques = readTorques(std::cin);
+  if (!arguments.frames.empty()) fs::create_directories(arguments.frames);
+
+  std::string trajectory = "step,time_s,angle_rad,rate_rad_per_s\n";
+  for (std::size_t row = 0; row <= torques.size(); ++row) {
+    if (row > 0) plant->step(Eigen::VectorXd::Constant(1, torques[row - 1]));
+    trajectory += csvRow(*plant, row);
+    if (!arguments.frames.empty()) writeFrame(*plant, arguments.frames, row);
+  }
+  std::cout << trajectory << std::flush;
+  if (!std::cout) throw std::runtime_error("standard output cannot be written");
+}
+
+}  // namespace
+}  // namespace ddm
+
+int main(int argc, char** argv) {
+  try {
+    ddm::Arguments arguments;
+    if (ddm::parseArguments(argc, argv, &arguments)) ddm::simulate(arguments);
+  } catch (const ddm::UsageError& e) {
+    std::cerr << "simulate: " << e.what() << "\nsimulate --help lists the options\n";
+    return ddm::kExitUsage;
+  } catch (const std::exception& e) {
+    std::cerr << "simulate: " << e.what() << '\n';
+    return ddm::kExitData;
+  }
+  return EXIT_SUCCESS;
+}
