@@ -1,0 +1,49 @@
+// The trials recorded so far as one data set; each bag is read once.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_bag_io/bag_cache.h"
+
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+
+namespace ddm {
+
+const BagContent& BagCache::contentOf(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) {
+    throw std::runtime_error("bag " + path + ": " + std::strerror(errno));
+  }
+  const std::int64_t modified =
+      std::int64_t{status.st_mtim.tv_sec} * 1000000000 + status.st_mtim.tv_nsec;
+  const auto bytes = static_cast<std::uintmax_t>(status.st_size);
+  const auto known = entries_.find(path);
+  if (known != entries_.end() && known->second.modified == modified &&
+      known->second.bytes == bytes) {
+    return known->second.content;
+  }
+  entries_.erase(path);
+  Entry entry{modified, bytes, readBag(path, image_size_, options_)};
+  return entries_.emplace(path, std::move(entry)).first->second.content;
+}
+
+DataSet BagCache::read(const std::vector<std::string>& paths) {
+  if (paths.empty()) throw std::runtime_error("no bag was given: there is nothing to learn from");
+  const std::string camera = contentOf(paths.front()).camera;
+  const int torque_dim = contentOf(paths.front()).data.torqueDim();
+  DataSet data(image_size_, torque_dim);
+  for (const std::string& path : paths) {
+    const BagContent& content = contentOf(path);
+    if (content.camera != camera || content.data.torqueDim() != torque_dim) {
+      throw std::runtime_error("bag " + path + " (" + content.camera + ", " +
+                               std::to_string(content.data.torqueDim()) + " torque(s)) and bag " +
+                               paths.front() + " (" + camera + ", " + std::to_string(torque_dim) +
+                               " torque(s)) are of different robots: train on one of them");
+    }
+    data.append(content.data);
+  }
+  return data;
+}
+
+}  // namespace ddm

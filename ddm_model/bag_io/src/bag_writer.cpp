@@ -1,0 +1,76 @@
+// Writes the bag of one trial, so that what is under the final name is always complete.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_bag_io/bag_writer.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+
+namespace ddm {
+namespace {
+
+constexpr std::uint32_t kChunkBytes = 32 * 1024;
+
+}  // namespace
+
+BagWriter::BagWriter(const std::string& path, const BagOptions& options)
+    : path_(path), options_(options) {
+  try {
+    bag_.open(path_ + ".active", rosbag::bagmode::Write);
+    bag_.setCompression(rosbag::compression::LZ4);
+    bag_.setChunkThreshold(kChunkBytes);
+  } catch (const std::exception& e) {
+    throw std::runtime_error("cannot write bag " + path_ + ".active: " + e.what());
+  }
+}
+
+BagWriter::~BagWriter() {
+  try {
+    if (bag_.isOpen()) bag_.close();  // stays PATH.active: nobody said that it is complete
+  } catch (const std::exception&) {   // a destructor has nobody to tell
+  }
+}
+
+template <class Message>
+void BagWriter::writeAt(const std::string& topic, const ros::Time& stamp, const Message& message) {
+  try {
+    bag_.write(topic, std::max(stamp, ros::TIME_MIN), message);
+  } catch (const std::exception& e) {
+    throw std::runtime_error("cannot write bag " + path_ + ".active: " + e.what());
+  }
+}
+
+void BagWriter::write(const sensor_msgs::Image& image) {
+  writeAt(options_.image_topic, image.header.stamp, image);
+  images_.insert(image.header.stamp);
+}
+
+void BagWriter::write(const ddm_msgs::Torque& torque) {
+  writeAt(options_.torque_topic, torque.header.stamp, torque);
+  torques_.insert(torque.header.stamp);
+}
+
+void BagWriter::writeGoal(const sensor_msgs::Image& goal, const ros::Time& stamp) {
+  writeAt(options_.goal_topic, stamp, goal);
+}
+
+int BagWriter::numFrames() const {
+  return static_cast<int>(
+      std::count_if(images_.begin(), images_.end(),
+                    [this](const ros::Time& stamp) { return torques_.count(stamp) > 0; }));
+}
+
+void BagWriter::close() {
+  try {
+    bag_.close();
+  } catch (const std::exception& e) {
+    throw std::runtime_error("cannot complete bag " + path_ + ".active: " + e.what());
+  }
+  if (std::rename((path_ + ".active").c_str(), path_.c_str()) != 0) {
+    throw std::runtime_error("cannot rename " + path_ + ".active: " + std::strerror(errno));
+  }
+}
+
+}  // namespace ddm

@@ -1,0 +1,28 @@
+// A model on the wire.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_bag_io/model_message.h"
+
+#include <ddm_model/model_file.h>
+
+namespace ddm {
+
+ddm_msgs::Model toMessage(const Ddm& model, const ros::Time& stamp) {
+  const std::string bytes = serialiseModel(model);
+  ddm_msgs::Model message;
+  message.header.stamp = stamp;
+  message.id = modelId(bytes);
+  message.trial = model.info().trial;
+  message.frames = model.info().frames;
+  message.seed = model.info().seed;
+  message.image_size = static_cast<std::uint32_t>(model.imageSize());
+  message.feature_dim = static_cast<std::uint32_t>(model.featureDim());
+  message.torque_dim = static_cast<std::uint32_t>(model.torqueDim());
+  message.order = static_cast<std::uint32_t>(model.options().order);
+  message.v_r = model.info().v_r;
+  message.v_p = model.info().v_p;
+  message.config_hash = checksum(model.info().config);
+  message.data.assign(bytes.begin(), bytes.end());
+  return message;
+}
+
+}  // namespace ddm

@@ -1,0 +1,97 @@
+// Fully connected arctan network: the common building block of g^-1, g and f.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace ddm {
+
+/// Fully connected network (paper, Sec. 2.1).
+///
+///   a_0 = input,   a_l = atan(W_l a_{l-1} + b_l) for l < L,   a_L = W_L a_{L-1} + b_L, or its atan
+///
+/// Samples are columns. The parameters live in a flat vector owned by the caller, so that the joint
+/// objective V_R + V_P is a plain function of theta and the solver needs to know no layers.
+/// Scalar is float for training and double for planning and for the gradient tests.
+template <class Scalar>
+class Mlp {
+ public:
+  using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
+  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+
+  enum class Output { kLinear, kArctan };  ///< activation of the last layer
+
+  /// What backward() needs from the forward pass it differentiates, and the memory for both. Handed
+  /// over explicitly: a backward() can never silently use the activations of another batch. Buffers
+  /// grow to the largest batch seen and are then used again.
+  struct Tape {
+    Eigen::Index num_samples = 0;     ///< N of the last forward pass
+    std::vector<Matrix> activations;  ///< a_0 ... a_L, each [width_l x >= N]
+    std::vector<Matrix>
+        slopes;  ///< da_l/d(W_l a_{l-1} + b_l) for l = 1 ... L, each [width_l x >= N]
+
+    /// @return a_L  [width_L x N]
+    typename Matrix::ColsBlockXpr output() { return activations.back().leftCols(num_samples); }
+  };
+
+  /// @param widths  layer widths, input first                                             [L + 1]
+  /// @param output  activation of the last layer
+  /// @throws std::invalid_argument if there are fewer than two widths or one is < 1
+  Mlp(std::vector<int> widths, Output output);
+
+  const std::vector<int>& widths() const { return widths_; }
+  int numLayers() const { return static_cast<int>(widths_.size()) - 1; }
+  int inputDim() const { return widths_.front(); }
+  int outputDim() const { return widths_.back(); }
+  /// @return P, the number of parameters: W_1 (column-major), b_1, ..., W_L, b_L
+  Eigen::Index numParams() const { return num_params_; }
+
+  /// Views of one layer (0 is the first) inside a parameter vector.
+  Eigen::Map<Matrix> weights(Scalar* theta, int layer) const;
+  Eigen::Map<Vector> biases(Scalar* theta, int layer) const;
+  Eigen::Map<const Matrix> weights(const Scalar* theta, int layer) const;
+  Eigen::Map<const Vector> biases(const Scalar* theta, int layer) const;
+
+  /// @param theta   parameters                                                            [P]
+  /// @param inputs  one sample per column                                       [width_0 x N]
+  /// @param tape    out: activations and slopes; tape->output() is the result
+  /// @pre sizes as above (checked by eigen_assert, i.e. in debug builds only)
+  void forward(const Scalar* theta, const Eigen::Ref<const Matrix>& inputs, Tape* tape) const;
+
+  /// Vector-Jacobian product of forward(). Uses the tape up: its slopes become the error signals.
+  /// @param theta      parameters of the forward pass                                     [P]
+  /// @param tape       tape of the forward pass
+  /// @param d_outputs  dV/d output                                              [width_L x N]
+  /// @param d_theta    dV/d theta is ADDED to this (see V_R + V_P); null: not wanted      [P]
+  /// @param d_inputs   out: dV/d input; null: not wanted                        [width_0 x N]
+  void backward(const Scalar* theta, Tape* tape, const Eigen::Ref<const Matrix>& d_outputs,
+                Scalar* d_theta, Matrix* d_inputs) const;
+
+ private:
+  std::vector<int> widths_;
+  Output output_;
+  std::vector<Eigen::Index> offsets_;  // where each layer starts in theta
+  Eigen::Index num_params_ = 0;
+};
+
+/// Random parameters: weights N(0, gain^2 / fan-in), biases 0. (Fixed for a given libstdc++.)
+/// @param theta  out: parameters  [P]
+template <class Scalar>
+void randomise(const Mlp<Scalar>& net, double gain, std::mt19937_64* rng, Scalar* theta) {
+  std::normal_distribution<double> normal;
+  for (int layer = 0; layer < net.numLayers(); ++layer) {
+    Eigen::Map<typename Mlp<Scalar>::Matrix> w = net.weights(theta, layer);
+    const double scale = gain / std::sqrt(static_cast<double>(w.cols()));
+    for (Eigen::Index i = 0; i < w.size(); ++i)
+      w.data()[i] = static_cast<Scalar>(scale * normal(*rng));
+    net.biases(theta, layer).setZero();
+  }
+}
+
+extern template class Mlp<float>;
+extern template class Mlp<double>;
+
+}  // namespace ddm

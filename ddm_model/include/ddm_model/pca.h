@@ -1,0 +1,45 @@
+// Principal component analysis: images y to scores, before the encoder and after the decoder.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "ddm_model/data_set.h"
+
+namespace ddm {
+
+/// Orthonormal basis of the leading principal components.
+///
+///   score = scale * basis^T (y - mean),      y_hat = mean + basis * score / scale
+///
+/// One common scale for all scores keeps the geometry of the pixels.
+struct Pca {
+  Eigen::VectorXf mean;      ///< mean image                                [D]
+  Eigen::MatrixXf basis;     ///< orthonormal columns, leading one first    [D x pca_dim]
+  Eigen::VectorXd variance;  ///< variance along each column [grey^2]    [pca_dim]
+  float scale = 1.0F;        ///< 1 / grey
+
+  /// @param pixels  grey values k of N images      [D x N]
+  /// @return        scores [-]                     [pca_dim x N]
+  Eigen::MatrixXf project(
+      const Eigen::Ref<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>>& pixels)
+      const;
+
+  /// @param scores  [pca_dim x N]
+  /// @return        images, not clamped to [0, 1]  [D x N]
+  Eigen::MatrixXf reconstruct(const Eigen::Ref<const Eigen::MatrixXf>& scores) const;
+};
+
+/// Leading principal components of all images of a data set, its goal image included, by subspace
+/// iteration from a fixed start (Halko, Martinsson, Tropp 2011, Alg. 4.4 and Sec. 4.5). Exact where
+/// there are at most as many images as the iterated subspace has dimensions.
+///
+/// Tolerance: the iteration ends when the variance captured changes by less than 1e-6 of itself.
+/// @param data       at least dim + 1 images
+/// @param dim        number of components
+/// @param score_std  standard deviation that the leading score shall have; fixes the scale
+/// @throws std::invalid_argument if there are too few images or they are all the same
+Pca fitPca(const DataSet& data, int dim, double score_std);
+
+}  // namespace ddm

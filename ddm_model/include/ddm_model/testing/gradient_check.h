@@ -1,0 +1,86 @@
+// Gradient check: analytic gradients against central differences in double precision.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace ddm {
+namespace testing {
+
+/// A differentiable function. Writes its gradient where `gradient` is not null.
+using DifferentiableFunction =
+    std::function<double(const Eigen::VectorXd& x, Eigen::VectorXd* gradient)>;
+
+/// Derivative of f at x along a direction by central differences of fourth order:
+///
+///   f' = (8 (f(x + h d) - f(x - h d)) - (f(x + 2 h d) - f(x - 2 h d))) / (12 h) + O(h^4)
+///
+/// With h = 7e-4 the truncation and the rounding of a function of size 1 are both about 1e-12.
+inline double centralDifference(const DifferentiableFunction& f, const Eigen::VectorXd& x,
+                                const Eigen::VectorXd& direction, double h) {
+  const auto at = [&](double step) { return f(x + step * direction, nullptr); };
+  return (8.0 * (at(h) - at(-h)) - (at(2.0 * h) - at(-2.0 * h))) / (12.0 * h);
+}
+
+constexpr double kDifferenceStep = 7e-4;
+
+/// Checks every entry. The error of an entry is relative to max(|entry|, 1e-3 of the largest one):
+/// what is next to nothing beside the others cannot be measured by differences.
+/// @return failure if the worst error exceeds the tolerance or is NaN; it names the entry
+inline ::testing::AssertionResult gradientMatches(const DifferentiableFunction& f,
+                                                  const Eigen::VectorXd& x,
+                                                  double tolerance = 1e-6) {
+  Eigen::VectorXd gradient =
+      Eigen::VectorXd::Constant(x.size(), std::numeric_limits<double>::quiet_NaN());
+  const double value = f(x, &gradient);
+  if (!(value == f(x, nullptr))) {
+    return ::testing::AssertionFailure() << "the value differs with and without gradient";
+  }
+  if (gradient.size() != x.size()) {
+    return ::testing::AssertionFailure()
+           << "the gradient has " << gradient.size() << " entries, x has " << x.size();
+  }
+  Eigen::VectorXd numeric(x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const double h = kDifferenceStep * std::max(1.0, std::abs(x[i]));
+    numeric[i] = centralDifference(f, x, Eigen::VectorXd::Unit(x.size(), i), h);
+  }
+  if (!gradient.allFinite() || !numeric.allFinite()) {  // or NaN would hide in a maximum
+    return ::testing::AssertionFailure() << "not finite: analytic " << gradient.transpose()
+                                         << ", numeric " << numeric.transpose();
+  }
+  const double floor = std::max(1e-3 * gradient.lpNorm<Eigen::Infinity>(), 1e-12);
+  const Eigen::VectorXd error =
+      (gradient - numeric).cwiseAbs().cwiseQuotient(gradient.cwiseAbs().cwiseMax(floor));
+  Eigen::Index at = 0;
+  if (error.maxCoeff(&at) <= tolerance) return ::testing::AssertionSuccess();
+  return ::testing::AssertionFailure()
+         << "worst entry " << at << " of " << x.size() << ": analytic " << gradient[at]
+         << ", numeric " << numeric[at] << ", relative error " << error[at];
+}
+
+/// Checks the derivative along one direction: for sizes at which every entry would take too long.
+/// The direction should not be orthogonal to the gradient; the error is relative to the derivative.
+inline ::testing::AssertionResult directionalDerivativeMatches(const DifferentiableFunction& f,
+                                                               const Eigen::VectorXd& x,
+                                                               const Eigen::VectorXd& direction,
+                                                               double tolerance = 1e-6) {
+  Eigen::VectorXd gradient;
+  f(x, &gradient);
+  const Eigen::VectorXd unit = direction.normalized();
+  const double analytic = gradient.dot(unit);
+  const double numeric = centralDifference(f, x, unit, kDifferenceStep);
+  const double error = std::abs(analytic - numeric) / std::max(std::abs(analytic), 1e-12);
+  if (error <= tolerance) return ::testing::AssertionSuccess();  // NaN fails
+  return ::testing::AssertionFailure()
+         << "analytic " << analytic << ", numeric " << numeric << ", relative error " << error;
+}
+
+}  // namespace testing
+}  // namespace ddm

@@ -1,0 +1,50 @@
+// Training: PCA, initial parameters, then V_R + V_P minimised by (L-)BFGS.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <random>
+#include <string>
+
+#include "ddm_model/data_set.h"
+#include "ddm_model/ddm.h"
+#include "ddm_model/model_options.h"
+
+namespace ddm {
+
+/// State of a training under way.
+struct TrainingProgress {
+  int iteration = 0;
+  double v_r = 0.0;            ///< [grey^2]
+  double v_p = 0.0;            ///< [grey^2]
+  double gradient_norm = 0.0;  ///< largest entry of the scaled objective's gradient
+  double fraction_done = 0.0;  ///< iterations over their cap
+};
+
+/// Called after each iteration; false ends the training without a model.
+using TrainingCallback = std::function<bool(const TrainingProgress&)>;
+
+/// What a training came to. Numerical trouble is told here, never thrown.
+struct TrainingResult {
+  std::optional<Ddm> model;  ///< empty if the training failed or was cancelled
+  std::string message;       ///< why there is no model, or how the solver ended
+  int iterations = 0;
+  int evaluations = 0;        ///< of the objective with its gradient
+  double initial_cost = 0.0;  ///< scaled objective before
+  double final_cost = 0.0;    ///< and after
+  double seconds = 0.0;       ///< wall time [s]
+};
+
+/// Initial parameters are drawn from this stream. (Fixed for a given libstdc++.)
+std::mt19937_64 initialisationStream(std::uint64_t seed, std::uint32_t trial);
+
+/// Trains a model from scratch on all data: a warm start from the last optimum gets stuck.
+/// @param info  seed, trial and config are kept; frames, V_R and V_P are filled in
+/// @throws std::invalid_argument if the data are too few for the options, or all the same
+TrainingResult train(const DataSet& data, const ModelOptions& model,
+                     const TrainingOptions& training, ModelInfo info,
+                     const TrainingCallback& callback = nullptr);
+
+}  // namespace ddm

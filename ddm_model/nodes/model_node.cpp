@@ -1,0 +1,85 @@
+// model_node: trains a model from the recorded bags and publishes it.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "model_node.h"
+
+#include <ddm_bag_io/model_message.h>
+#include <ddm_msgs/topics.h>
+
+namespace ddm {
+namespace {
+
+const ros::WallDuration kFeedbackPeriod(0.05);
+
+}  // namespace
+
+ModelNode::ModelNode(ros::NodeHandle nh, const ModelConfig& config)
+    : config_(config),
+      bags_(config.image.size, config.data_set),
+      model_pub_(nh.advertise<ddm_msgs::Model>(topics::kModel, 1, /*latch=*/true)),
+      server_(
+          nh, topics::kTrain, [this](const ddm_msgs::TrainGoalConstPtr& goal) { train(goal); },
+          /*auto_start=*/false) {
+  server_.start();
+}
+
+void ModelNode::train(const ddm_msgs::TrainGoalConstPtr& goal) {
+  ddm_msgs::TrainResult result;
+  try {
+    const DataSet data = bags_.read(goal->bags);
+    if (!data.hasGoal()) {
+      ROS_WARN("no bag holds a goal image: the model can predict, but not be planned with");
+    }
+    const TrainingResult training = trainOn(data, *goal);
+    result.train_time = training.seconds;
+    result.evaluations = training.evaluations;
+    if (!training.model && server_.isPreemptRequested()) {
+      server_.setPreempted(result, training.message);
+    } else if (!training.model) {
+      ROS_ERROR_STREAM("trial " << goal->trial << ": " << training.message);
+      server_.setAborted(result, training.message);
+    } else {
+      publish(*training.model, &result);
+      ROS_INFO("trial %u: learned from %u frames in %.2f s, V_R %.4g, V_P %.4g", goal->trial,
+               result.frames, result.train_time, result.v_r, result.v_p);
+      server_.setSucceeded(result);
+    }
+  } catch (const std::exception& e) {
+    ROS_ERROR_STREAM("trial " << goal->trial << ": cannot train: " << e.what());
+    server_.setAborted(result, e.what());
+  }
+}
+
+TrainingResult ModelNode::trainOn(const DataSet& data, const ddm_msgs::TrainGoal& goal) {
+  ModelInfo info;
+  info.seed = goal.seed;
+  info.trial = goal.trial;
+  info.config = toText(config_);
+  return ddm::train(data, config_.model, config_.training, info,
+                    [this](const TrainingProgress& progress) { return reportProgress(progress); });
+}
+
+bool ModelNode::reportProgress(const TrainingProgress& progress) {
+  const ros::WallTime now = ros::WallTime::now();
+  if (now - last_feedback_ >= kFeedbackPeriod) {
+    last_feedback_ = now;
+    ddm_msgs::TrainFeedback feedback;
+    feedback.iteration = progress.iteration;
+    feedback.v_r = progress.v_r;
+    feedback.v_p = progress.v_p;
+    feedback.gradient_norm = progress.gradient_norm;
+    feedback.fraction_done = progress.fraction_done;
+    server_.publishFeedback(feedback);
+  }
+  return ros::ok() && !server_.isPreemptRequested();
+}
+
+void ModelNode::publish(const Ddm& model, ddm_msgs::TrainResult* result) {
+  const ddm_msgs::Model message = toMessage(model, ros::Time::now());
+  model_pub_.publish(message);
+  result->model_id = message.id;
+  result->frames = message.frames;
+  result->v_r = message.v_r;
+  result->v_p = message.v_p;
+}
+
+}  // namespace ddm

@@ -1,0 +1,60 @@
+// trial_recorder: one bag per trial, complete or not under its final name.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ddm_bag_io/bag_writer.h>
+#include <ddm_msgs/StartRecording.h>
+#include <ddm_msgs/StopRecording.h>
+#include <image_transport/image_transport.h>
+#include <ros/ros.h>
+
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+
+namespace ddm {
+
+/// Block `recorder`.
+struct RecorderOptions {
+  double timeout = 5.0;  ///< wall time that the last messages of a trial may take to arrive [s]
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("timeout", timeout);
+  }
+  std::vector<std::string> problems() const;
+};
+
+/// Services `start_recording` and `stop_recording`; writes images, torques and the goal image.
+/// Needs a spinner with two threads or more: stopping waits for messages on their way.
+class TrialRecorder {
+ public:
+  TrialRecorder(ros::NodeHandle nh, const BagOptions& bag, const RecorderOptions& options);
+
+ private:
+  bool start(ddm_msgs::StartRecording::Request& request,
+             ddm_msgs::StartRecording::Response& response);
+  bool stop(ddm_msgs::StopRecording::Request& request, ddm_msgs::StopRecording::Response& response);
+  void writeGoal(const ros::Time& stamp);
+  template <class Message>
+  void record(const Message& message);
+
+  BagOptions bag_options_;
+  RecorderOptions options_;
+  std::mutex mutex_;
+  std::condition_variable frame_written_;
+  std::unique_ptr<BagWriter> bag_;  // null while not recording
+  ros::Time after_;                 // messages up to this stamp are of an earlier trial
+  std::string error_;               // first write that failed
+  sensor_msgs::ImageConstPtr goal_;
+  bool goal_written_ = false;
+  int num_recordings_ = 0;
+  image_transport::ImageTransport transport_;
+  image_transport::Subscriber image_sub_;
+  ros::Subscriber torque_sub_;
+  ros::Subscriber goal_sub_;
+  ros::ServiceServer start_server_;
+  ros::ServiceServer stop_server_;
+};
+
+}  // namespace ddm

@@ -1,0 +1,59 @@
+// The activation sigma = arctan of the paper, on whole arrays, together with its slope.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/arctan.h"
+
+#include <cmath>
+
+namespace ddm {
+namespace {
+
+template <class Scalar>
+struct Polynomial;
+
+template <>
+struct Polynomial<float> {
+  static constexpr float kTerms[] = {0.9999999818F,  -0.3333303671F,  0.1999187203F,
+                                     -0.1419779779F, 0.1061837064F,   -0.07456854826F,
+                                     0.04213762359F, -0.01573124912F, 0.002766283502F};
+};
+
+template <>
+struct Polynomial<double> {
+  static constexpr double kTerms[] = {
+      0.99999999999999999912,   -0.33333333333333247768,    0.19999999999986156752,
+      -0.14285714284820428681,  0.11111111080383853272,     -0.090909084403388434368,
+      0.076922984329856850364,  -0.066665728062897631729,   0.058816472367174149812,
+      -0.052591037894858816568, 0.04743705966432169634,     -0.042828645702794473778,
+      0.038129809754225042164,  -0.032641162929770771668,   0.025947105703956302528,
+      -0.018386836817918876021, 0.011122014669752633411,    -0.0054847789718093558289,
+      0.0020906335352636761286, -0.00057279257812920965769, 0.000099784108119530313592,
+      -8.2679958173371501883e-6};
+};
+
+// Branches are written as selections of values that exist anyway: only then does the loop
+// vectorise.
+template <class Scalar>
+void arctanOf(const Scalar* x, Scalar* y, Scalar* slope, Eigen::Index n) {
+  constexpr int kNumTerms = sizeof(Polynomial<Scalar>::kTerms) / sizeof(Scalar);
+  const Scalar half_pi = static_cast<Scalar>(1.57079632679489661923);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Scalar value = x[i];
+    const Scalar magnitude = std::abs(value);
+    const bool steep = magnitude > Scalar(1);
+    const Scalar numerator = steep ? Scalar(-1) : magnitude;
+    const Scalar denominator = steep ? magnitude : Scalar(1);
+    const Scalar r = numerator / denominator;
+    const Scalar s = r * r;
+    Scalar p = Polynomial<Scalar>::kTerms[kNumTerms - 1];
+    for (int k = kNumTerms - 2; k >= 0; --k) p = p * s + Polynomial<Scalar>::kTerms[k];
+    slope[i] = Scalar(1) / (Scalar(1) + value * value);
+    y[i] = std::copysign((steep ? half_pi : Scalar(0)) + r * p, value);
+  }
+}
+
+}  // namespace
+
+void arctan(const float* x, float* y, float* slope, Eigen::Index n) { arctanOf(x, y, slope, n); }
+void arctan(const double* x, double* y, double* slope, Eigen::Index n) { arctanOf(x, y, slope, n); }
+
+}  // namespace ddm

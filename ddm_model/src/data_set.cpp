@@ -1,0 +1,64 @@
+// The experience that a model is trained on: images and torques of all trials so far.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/data_set.h"
+
+#include <stdexcept>
+#include <string>
+
+namespace ddm {
+
+DataSet::DataSet(int image_size, int torque_dim)
+    : image_size_(image_size), torque_dim_(torque_dim) {
+  if (image_size < 1 || torque_dim < 1) {
+    throw std::invalid_argument("data set: image size and torque dimension must be >= 1");
+  }
+}
+
+void DataSet::append(const Grey& grey, const Eigen::VectorXd& torque, bool new_piece) {
+  if (static_cast<Eigen::Index>(grey.size()) != numPixels()) {
+    throw std::invalid_argument("data set: an image must have " + std::to_string(numPixels()) +
+                                " pixels, got " + std::to_string(grey.size()));
+  }
+  if (torque.size() != torque_dim_) {
+    throw std::invalid_argument("data set: a torque must have " + std::to_string(torque_dim_) +
+                                " value(s), got " + std::to_string(torque.size()));
+  }
+  if (!torque.allFinite()) throw std::invalid_argument("data set: a torque must be finite");
+  if (new_piece || pieces_.empty()) pieces_.push_back({num_frames_, 0});
+  pixels_.insert(pixels_.end(), grey.begin(), grey.end());
+  torques_.insert(torques_.end(), torque.data(), torque.data() + torque.size());
+  ++pieces_.back().size;
+  ++num_frames_;
+}
+
+void DataSet::append(const DataSet& other) {
+  if (other.image_size_ != image_size_ || other.torque_dim_ != torque_dim_) {
+    throw std::invalid_argument("data set: image size or torque dimension differ");
+  }
+  for (const Piece& piece : other.pieces_) {
+    pieces_.push_back({piece.begin + num_frames_, piece.size});
+  }
+  pixels_.insert(pixels_.end(), other.pixels_.begin(), other.pixels_.end());
+  torques_.insert(torques_.end(), other.torques_.begin(), other.torques_.end());
+  num_frames_ += other.num_frames_;
+  if (goal_.empty()) goal_ = other.goal_;
+}
+
+void DataSet::setGoal(const Grey& grey) {
+  if (static_cast<Eigen::Index>(grey.size()) != numPixels()) {
+    throw std::invalid_argument("goal image: must have " + std::to_string(numPixels()) +
+                                " pixels, got " + std::to_string(grey.size()));
+  }
+  goal_ = grey;
+}
+
+Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>> DataSet::pixels()
+    const {
+  return {pixels_.data(), numPixels(), num_frames_};
+}
+
+Eigen::Map<const Eigen::MatrixXd> DataSet::torques() const {
+  return {torques_.data(), torque_dim_, num_frames_};
+}
+
+}  // namespace ddm

@@ -1,0 +1,64 @@
+// A trained deep dynamical model: images to features, features to images, features ahead in time.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/ddm.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace ddm {
+
+Ddm::Ddm(ModelOptions options, int image_size, int torque_dim, Pca pca, Eigen::VectorXd theta,
+         Grey goal, ModelInfo info)
+    : options_(std::move(options)),
+      image_size_(image_size),
+      networks_(options_, torque_dim),
+      pca_(std::move(pca)),
+      theta_(std::move(theta)),
+      goal_(std::move(goal)),
+      info_(std::move(info)) {
+  const Eigen::Index num_pixels = static_cast<Eigen::Index>(image_size_) * image_size_;
+  if (pca_.mean.size() != num_pixels || pca_.basis.rows() != num_pixels ||
+      pca_.basis.cols() != options_.pca_dim || theta_.size() != networks_.numParams() ||
+      (!goal_.empty() && static_cast<Eigen::Index>(goal_.size()) != num_pixels)) {
+    throw std::invalid_argument("model: sizes of PCA, parameters or goal image do not fit");
+  }
+  if (!theta_.allFinite() || !pca_.basis.allFinite() || !pca_.mean.allFinite() ||
+      !(pca_.scale > 0.0F) || !std::isfinite(pca_.scale)) {
+    throw std::invalid_argument("model: holds values that are not finite");
+  }
+  if (hasGoal()) goal_feature_ = encode(goal_);
+}
+
+Eigen::VectorXd Ddm::encode(const Grey& grey) const {
+  if (static_cast<Eigen::Index>(grey.size()) != pca_.mean.size()) {
+    throw std::invalid_argument("model: an image must have " + std::to_string(pca_.mean.size()) +
+                                " pixels, got " + std::to_string(grey.size()));
+  }
+  const Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>> pixels(
+      grey.data(), pca_.mean.size(), 1);
+  Mlp<double>::Tape tape;
+  networks_.encoder().forward(networks_.encoderOf(theta_.data()),
+                              pca_.project(pixels).cast<double>(), &tape);
+  return tape.output();
+}
+
+Grey Ddm::decode(const Eigen::VectorXd& z) const {
+  Mlp<double>::Tape tape;
+  networks_.decoder().forward(networks_.decoderOf(theta_.data()), z, &tape);
+  const Eigen::MatrixXd scores = tape.output();
+  const Eigen::MatrixXf image = pca_.reconstruct(scores.cast<float>());
+  Grey grey(image.size());
+  for (Eigen::Index i = 0; i < image.size(); ++i) {
+    grey[i] = static_cast<std::uint8_t>(
+        std::lround(255.0F * std::min(1.0F, std::max(0.0F, image(i, 0)))));
+  }
+  return grey;
+}
+
+const Eigen::VectorXd& Ddm::goalFeature() const {
+  if (!hasGoal()) throw std::logic_error("model has no goal image: train it with one");
+  return goal_feature_;
+}
+
+}  // namespace ddm

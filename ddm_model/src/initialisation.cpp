@@ -1,0 +1,64 @@
+// Initial parameters: the auto-encoder from layer-wise PCA, the predictor at random.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/initialisation.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace ddm {
+namespace {
+
+/// PCA of the layer's inputs as the start of an encoder layer and its mirror image in the decoder.
+/// @return the encoder layer's output for the inputs  [width_out x M]
+Eigen::MatrixXd initialisePair(const Eigen::MatrixXd& inputs, double layer_std,
+                               Eigen::Map<Eigen::MatrixXd> encoder_w,
+                               Eigen::Map<Eigen::VectorXd> encoder_b,
+                               Eigen::Map<Eigen::MatrixXd> decoder_w,
+                               Eigen::Map<Eigen::VectorXd> decoder_b) {
+  const Eigen::VectorXd mean = inputs.rowwise().mean();
+  const Eigen::MatrixXd centred = inputs.colwise() - mean;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(centred * centred.transpose() /
+                                                             static_cast<double>(inputs.cols()));
+  const Eigen::Index rank = std::min(encoder_w.rows(), inputs.rows());
+  Eigen::MatrixXd basis = eigen.eigenvectors().rightCols(rank).rowwise().reverse();
+  for (Eigen::Index k = 0; k < rank; ++k) {
+    Eigen::Index largest;
+    basis.col(k).cwiseAbs().maxCoeff(&largest);
+    if (basis(largest, k) < 0.0) basis.col(k) *= -1.0;  // an arbitrary sign, made definite
+  }
+  const double spread = std::sqrt(std::max(eigen.eigenvalues().tail<1>()[0], 1e-12));
+  const double c = layer_std / spread;
+  encoder_w.topRows(rank) = c * basis.transpose();
+  encoder_b.head(rank) = -c * basis.transpose() * mean;
+  decoder_w.leftCols(rank) = basis / c;
+  decoder_b = mean;
+  return ((encoder_w * inputs).colwise() + encoder_b).array().atan();
+}
+
+}  // namespace
+
+Eigen::VectorXd initialTheta(const Networks<double>& networks, const Eigen::MatrixXd& scores,
+                             const TrainingOptions& options, std::mt19937_64* rng) {
+  const Mlp<double>& encoder = networks.encoder();
+  const Mlp<double>& decoder = networks.decoder();
+  Eigen::VectorXd theta(networks.numParams());
+  double* const theta_e = networks.encoderOf(theta.data());
+  double* const theta_d = networks.decoderOf(theta.data());
+  randomise(networks.f(), options.predictor_gain, rng, networks.predictorOf(theta.data()));
+  randomise(encoder, 1.0, rng, theta_e);
+  randomise(decoder, 1.0, rng, theta_d);
+
+  const std::vector<int> mirrored(decoder.widths().rbegin(), decoder.widths().rend());
+  if (encoder.widths() != mirrored) return theta;
+  Eigen::MatrixXd inputs = scores;
+  for (int layer = 0; layer < encoder.numLayers(); ++layer) {
+    const int mirror = decoder.numLayers() - 1 - layer;
+    inputs = initialisePair(inputs, options.layer_std, encoder.weights(theta_e, layer),
+                            encoder.biases(theta_e, layer), decoder.weights(theta_d, mirror),
+                            decoder.biases(theta_d, mirror));
+  }
+  return theta;
+}
+
+}  // namespace ddm

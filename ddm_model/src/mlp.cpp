@@ -1,0 +1,114 @@
+// Fully connected arctan network: the common building block of g^-1, g and f.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/mlp.h"
+
+#include <stdexcept>
+#include <string>
+
+#include "ddm_model/arctan.h"
+
+namespace ddm {
+namespace {
+
+/// Room for n columns; a first batch may be empty, yet must have its rows.
+template <class Matrix>
+void reserve(Eigen::Index rows, Eigen::Index n, Matrix* matrix) {
+  if (matrix->rows() != rows || matrix->cols() < n) matrix->resize(rows, n);
+}
+
+}  // namespace
+
+template <class Scalar>
+Mlp<Scalar>::Mlp(std::vector<int> widths, Output output)
+    : widths_(std::move(widths)), output_(output) {
+  if (widths_.size() < 2) throw std::invalid_argument("Mlp needs an input and an output width");
+  for (int width : widths_) {
+    if (width < 1) {
+      throw std::invalid_argument("Mlp: a width must be >= 1, got " + std::to_string(width));
+    }
+  }
+  for (size_t l = 1; l < widths_.size(); ++l) {
+    offsets_.push_back(num_params_);
+    num_params_ += static_cast<Eigen::Index>(widths_[l]) * (widths_[l - 1] + 1);
+  }
+}
+
+template <class Scalar>
+Eigen::Map<typename Mlp<Scalar>::Matrix> Mlp<Scalar>::weights(Scalar* theta, int layer) const {
+  return {theta + offsets_[layer], widths_[layer + 1], widths_[layer]};
+}
+
+template <class Scalar>
+Eigen::Map<typename Mlp<Scalar>::Vector> Mlp<Scalar>::biases(Scalar* theta, int layer) const {
+  const Eigen::Index num_weights = static_cast<Eigen::Index>(widths_[layer + 1]) * widths_[layer];
+  return {theta + offsets_[layer] + num_weights, widths_[layer + 1]};
+}
+
+template <class Scalar>
+Eigen::Map<const typename Mlp<Scalar>::Matrix> Mlp<Scalar>::weights(const Scalar* theta,
+                                                                    int layer) const {
+  return {theta + offsets_[layer], widths_[layer + 1], widths_[layer]};
+}
+
+template <class Scalar>
+Eigen::Map<const typename Mlp<Scalar>::Vector> Mlp<Scalar>::biases(const Scalar* theta,
+                                                                   int layer) const {
+  const Eigen::Index num_weights = static_cast<Eigen::Index>(widths_[layer + 1]) * widths_[layer];
+  return {theta + offsets_[layer] + num_weights, widths_[layer + 1]};
+}
+
+template <class Scalar>
+void Mlp<Scalar>::forward(const Scalar* theta, const Eigen::Ref<const Matrix>& inputs,
+                          Tape* tape) const {
+  eigen_assert(inputs.rows() == inputDim());
+  const Eigen::Index n = inputs.cols();
+  tape->num_samples = n;
+  tape->activations.resize(widths_.size());
+  tape->slopes.resize(widths_.size() - 1);
+  reserve(inputDim(), n, &tape->activations[0]);
+  tape->activations[0].leftCols(n) = inputs;
+  for (int layer = 0; layer < numLayers(); ++layer) {
+    Matrix& a = tape->activations[layer + 1];
+    Matrix& slope = tape->slopes[layer];
+    reserve(widths_[layer + 1], n, &a);
+    reserve(widths_[layer + 1], n, &slope);
+    a.leftCols(n).noalias() = weights(theta, layer) * tape->activations[layer].leftCols(n);
+    a.leftCols(n).colwise() += biases(theta, layer);
+    const bool linear = layer + 1 == numLayers() && output_ == Output::kLinear;
+    if (!linear) arctan(a.data(), a.data(), slope.data(), a.rows() * n);
+  }
+}
+
+template <class Scalar>
+void Mlp<Scalar>::backward(const Scalar* theta, Tape* tape,
+                           const Eigen::Ref<const Matrix>& d_outputs, Scalar* d_theta,
+                           Matrix* d_inputs) const {
+  const Eigen::Index n = tape->num_samples;
+  eigen_assert(d_outputs.rows() == outputDim() && d_outputs.cols() == n);
+  if (output_ == Output::kLinear) {
+    tape->slopes.back().leftCols(n) = d_outputs;
+  } else {
+    tape->slopes.back().leftCols(n).array() *= d_outputs.array();
+  }
+  for (int layer = numLayers() - 1; layer >= 0; --layer) {
+    const auto delta = tape->slopes[layer].leftCols(n);
+    if (d_theta != nullptr) {
+      weights(d_theta, layer).noalias() += delta * tape->activations[layer].leftCols(n).transpose();
+      biases(d_theta, layer) += delta.rowwise().sum();
+    }
+    if (layer > 0) {
+      // a_layer has served its purpose: its memory takes the error that arrives there.
+      auto arriving = tape->activations[layer].leftCols(n);
+      arriving.noalias() = weights(theta, layer).transpose() * delta;
+      tape->slopes[layer - 1].leftCols(n).array() *= arriving.array();
+    } else if (d_inputs != nullptr) {
+      d_inputs->resize(inputDim(), n);
+      d_inputs->noalias() = weights(theta, layer).transpose() * delta;
+    }
+  }
+}
+
+template class Mlp<float>;
+template class Mlp<double>;
+
+}  // namespace ddm

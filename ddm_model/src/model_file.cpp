@@ -1,0 +1,268 @@
+// Model file: a trained model as bytes, with version and checksum.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/model_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <boost/crc.hpp>
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <type_traits>
+#include <vector>
+
+namespace ddm {
+namespace {
+
+constexpr char kMagic[] = "DDMMODEL";
+constexpr size_t kMagicSize = sizeof(kMagic) - 1;
+constexpr std::uint32_t kVersion = 1;
+constexpr size_t kHeaderSize = kMagicSize + 4 + 8 + 4;
+
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "model files are little-endian");
+
+std::uint32_t crc32(const char* bytes, size_t size) {
+  boost::crc_32_type crc;
+  crc.process_bytes(bytes, size);
+  return crc.checksum();
+}
+
+class Writer {
+ public:
+  template <class Number>
+  void number(Number value) {
+    static_assert(std::is_arithmetic<Number>::value, "numbers only");
+    bytes_.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  }
+  template <class Number>
+  void array(const Number* values, size_t count) {
+    number<std::uint64_t>(count);
+    if (count > 0) bytes_.append(reinterpret_cast<const char*>(values), count * sizeof(Number));
+  }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+class Reader {
+ public:
+  Reader(const char* bytes, size_t size) : at_(bytes), left_(size) {}
+
+  template <class Number>
+  Number number() {
+    Number value;
+    std::memcpy(&value, take(sizeof(Number)), sizeof(Number));
+    return value;
+  }
+  template <class Number>
+  std::vector<Number> array() {
+    const auto count = number<std::uint64_t>();
+    if (count > left_ / sizeof(Number))
+      throw std::runtime_error("an array is longer than the file");
+    std::vector<Number> values(count);
+    if (count > 0) std::memcpy(values.data(), take(count * sizeof(Number)), count * sizeof(Number));
+    return values;
+  }
+  std::string text() {
+    const std::vector<char> characters = array<char>();
+    return std::string(characters.begin(), characters.end());
+  }
+  size_t left() const { return left_; }
+
+ private:
+  const char* take(size_t size) {
+    if (size > left_) throw std::runtime_error("its content ends early");
+    const char* const taken = at_;
+    at_ += size;
+    left_ -= size;
+    return taken;
+  }
+
+  const char* at_;
+  size_t left_;
+};
+
+void writeOptions(const ModelOptions& options, Writer* out) {
+  const auto widths = [out](const std::vector<int>& values) {
+    const std::vector<std::int32_t> fixed(values.begin(), values.end());
+    out->array(fixed.data(), fixed.size());
+  };
+  out->number<std::int32_t>(options.pca_dim);
+  out->number<std::int32_t>(options.feature_dim);
+  out->number<std::int32_t>(options.order);
+  widths(options.encoder_widths);
+  widths(options.decoder_widths);
+  widths(options.predictor_widths);
+  out->number<double>(options.max_torque);
+}
+
+ModelOptions readOptions(Reader* in) {
+  const auto widths = [in] {
+    const std::vector<std::int32_t> fixed = in->array<std::int32_t>();
+    return std::vector<int>(fixed.begin(), fixed.end());
+  };
+  ModelOptions options;
+  options.pca_dim = in->number<std::int32_t>();
+  options.feature_dim = in->number<std::int32_t>();
+  options.order = in->number<std::int32_t>();
+  options.encoder_widths = widths();
+  options.decoder_widths = widths();
+  options.predictor_widths = widths();
+  options.max_torque = in->number<double>();
+  for (const std::string& problem : options.problems()) throw std::runtime_error(problem);
+  return options;
+}
+
+ModelInfo readInfo(Reader* in) {
+  ModelInfo info;
+  info.seed = in->number<std::uint64_t>();
+  info.trial = in->number<std::uint32_t>();
+  info.frames = in->number<std::uint32_t>();
+  info.v_r = in->number<double>();
+  info.v_p = in->number<double>();
+  info.config = in->text();
+  return info;
+}
+
+Ddm readContent(Reader* in) {
+  const ModelOptions options = readOptions(in);
+  const int image_size = in->number<std::int32_t>();
+  const int torque_dim = in->number<std::int32_t>();
+  if (image_size < 1 || image_size > 16384) throw std::runtime_error("its image size is absurd");
+  if (torque_dim < 1 || torque_dim > 1000) throw std::runtime_error("its torque size is absurd");
+  ModelInfo info = readInfo(in);
+  Pca pca;
+  pca.scale = in->number<float>();
+  const std::vector<float> mean = in->array<float>();
+  const std::vector<float> basis = in->array<float>();
+  const std::vector<double> variance = in->array<double>();
+  const std::vector<double> theta = in->array<double>();
+  Grey goal = in->array<std::uint8_t>();
+  if (in->left() > 0) throw std::runtime_error("there are bytes after its content");
+  const auto num_pixels = static_cast<size_t>(image_size) * image_size;
+  const auto pca_dim = static_cast<size_t>(options.pca_dim);
+  if (mean.size() != num_pixels || basis.size() != num_pixels * pca_dim ||
+      variance.size() != pca_dim) {
+    throw std::runtime_error("the sizes of its PCA do not fit");
+  }
+  pca.mean = Eigen::Map<const Eigen::VectorXf>(mean.data(), mean.size());
+  pca.basis = Eigen::Map<const Eigen::MatrixXf>(basis.data(), num_pixels, pca_dim);
+  pca.variance = Eigen::Map<const Eigen::VectorXd>(variance.data(), variance.size());
+  return Ddm(options, image_size, torque_dim, std::move(pca),
+             Eigen::Map<const Eigen::VectorXd>(theta.data(), theta.size()), std::move(goal),
+             std::move(info));
+}
+
+std::string reason() { return std::strerror(errno); }
+
+}  // namespace
+
+std::string serialiseModel(const Ddm& model) {
+  Writer content;
+  writeOptions(model.options(), &content);
+  content.number<std::int32_t>(model.imageSize());
+  content.number<std::int32_t>(model.torqueDim());
+  content.number<std::uint64_t>(model.info().seed);
+  content.number<std::uint32_t>(model.info().trial);
+  content.number<std::uint32_t>(model.info().frames);
+  content.number<double>(model.info().v_r);
+  content.number<double>(model.info().v_p);
+  content.array(model.info().config.data(), model.info().config.size());
+  content.number<float>(model.pca().scale);
+  content.array(model.pca().mean.data(), model.pca().mean.size());
+  content.array(model.pca().basis.data(), model.pca().basis.size());
+  content.array(model.pca().variance.data(), model.pca().variance.size());
+  content.array(model.theta().data(), model.theta().size());
+  content.array(model.goal().data(), model.goal().size());
+
+  Writer header;
+  header.number<std::uint32_t>(kVersion);
+  header.number<std::uint64_t>(content.bytes().size());
+  header.number<std::uint32_t>(crc32(content.bytes().data(), content.bytes().size()));
+  return kMagic + header.bytes() + content.bytes();
+}
+
+Ddm deserialiseModel(const std::string& bytes, const std::string& source) {
+  const auto fail = [&source](const std::string& why) -> std::runtime_error {
+    return std::runtime_error("model " + source + ": " + why);
+  };
+  if (bytes.compare(0, kMagicSize, kMagic) != 0) {
+    throw fail("is not a DDM model (it does not begin with " + std::string(kMagic) + ")");
+  }
+  if (bytes.size() < kHeaderSize) throw fail("is cut short: copy or train it again");
+  Reader header(bytes.data() + kMagicSize, kHeaderSize - kMagicSize);
+  const auto version = header.number<std::uint32_t>();
+  if (version != kVersion) {
+    throw fail("has format version " + std::to_string(version) + ", this program reads version " +
+               std::to_string(kVersion) + ": train it again from its bags");
+  }
+  const auto size = header.number<std::uint64_t>();
+  if (size != bytes.size() - kHeaderSize) {
+    throw fail("is cut short or has grown: " + std::to_string(bytes.size() - kHeaderSize) +
+               " bytes of content where it announces " + std::to_string(size) +
+               "; copy or train it again");
+  }
+  if (header.number<std::uint32_t>() != crc32(bytes.data() + kHeaderSize, size)) {
+    throw fail("is damaged (wrong checksum): copy or train it again");
+  }
+  Reader content(bytes.data() + kHeaderSize, size);
+  try {
+    return readContent(&content);
+  } catch (const std::exception& e) {
+    throw fail(std::string("makes no sense: ") + e.what());
+  }
+}
+
+std::string checksum(const std::string& text) {
+  char digits[9];
+  std::snprintf(digits, sizeof(digits), "%08x", crc32(text.data(), text.size()));
+  return digits;
+}
+
+std::string modelId(const std::string& bytes) { return checksum(bytes); }
+
+void writeFileAtomically(const std::string& path, const std::string& bytes) {
+  const std::string unfinished = path + ".unfinished";
+  const int file = ::open(unfinished.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (file < 0) throw std::runtime_error("cannot write " + unfinished + ": " + reason());
+  size_t written = 0;
+  while (written < bytes.size()) {
+    const ssize_t count = ::write(file, bytes.data() + written, bytes.size() - written);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) {
+      const std::string why = reason();
+      ::close(file);
+      ::unlink(unfinished.c_str());
+      throw std::runtime_error("cannot write " + unfinished + ": " + why);
+    }
+    written += static_cast<size_t>(count);
+  }
+  const bool stored = ::fsync(file) == 0;
+  const bool closed = ::close(file) == 0;
+  if (!stored || !closed || ::rename(unfinished.c_str(), path.c_str()) != 0) {
+    const std::string why = reason();
+    ::unlink(unfinished.c_str());
+    throw std::runtime_error("cannot write " + path + ": " + why);
+  }
+}
+
+std::string readFile(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  file.peek();  // a folder can be opened; only reading from it fails
+  if (!file.is_open() || file.bad()) {
+    throw std::runtime_error("cannot read " + path + ": " + reason());
+  }
+  file.clear();  // an empty file is no failure
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  if (file.bad()) throw std::runtime_error("cannot read " + path + ": " + reason());
+  return bytes.str();
+}
+
+}  // namespace ddm

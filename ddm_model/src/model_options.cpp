@@ -1,0 +1,66 @@
+// Parameters of the deep dynamical model and of its training: what makes them valid.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/model_options.h"
+
+#include <cmath>
+#include <sstream>
+
+namespace ddm {
+namespace {
+
+template <class Value>
+void require(bool ok, const std::string& rule, const Value& value, std::vector<std::string>* out) {
+  if (ok) return;
+  std::ostringstream text;
+  text << rule << ", got " << value;
+  out->push_back(text.str());
+}
+
+void requireWidths(const std::vector<int>& widths, const std::string& key,
+                   std::vector<std::string>* out) {
+  for (int width : widths) {
+    require(width >= 1 && width <= 4096, key + " must lie in [1, 4096] each", width, out);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> ImageOptions::problems() const {
+  std::vector<std::string> out;
+  require(size >= 4 && size <= 1024, "image/size must lie in [4, 1024]", size, &out);
+  return out;
+}
+
+std::vector<std::string> ModelOptions::problems() const {
+  std::vector<std::string> out;
+  require(pca_dim >= 1 && pca_dim <= 1000, "model/pca_dim must lie in [1, 1000]", pca_dim, &out);
+  require(feature_dim >= 1 && feature_dim <= 100, "model/feature_dim must lie in [1, 100]",
+          feature_dim, &out);
+  require(order >= 1 && order <= 50, "model/order must lie in [1, 50]", order, &out);
+  requireWidths(encoder_widths, "model/encoder_widths", &out);
+  requireWidths(decoder_widths, "model/decoder_widths", &out);
+  requireWidths(predictor_widths, "model/predictor_widths", &out);
+  require(max_torque > 0.0 && std::isfinite(max_torque), "model/max_torque must be > 0", max_torque,
+          &out);
+  return out;
+}
+
+std::vector<std::string> TrainingOptions::problems() const {
+  std::vector<std::string> out;
+  require(solver == "lbfgs" || solver == "bfgs", "training/solver must be lbfgs or bfgs", solver,
+          &out);
+  require(max_iterations >= 1, "training/max_iterations must be >= 1", max_iterations, &out);
+  require(function_tolerance >= 0.0 && function_tolerance < 1.0,
+          "training/function_tolerance must lie in [0, 1)", function_tolerance, &out);
+  require(lbfgs_rank >= 1 && lbfgs_rank <= 1000, "training/lbfgs_rank must lie in [1, 1000]",
+          lbfgs_rank, &out);
+  require(score_std > 0.0 && std::isfinite(score_std), "training/score_std must be > 0", score_std,
+          &out);
+  require(layer_std > 0.0 && std::isfinite(layer_std), "training/layer_std must be > 0", layer_std,
+          &out);
+  require(predictor_gain >= 0.0 && std::isfinite(predictor_gain),
+          "training/predictor_gain must be >= 0", predictor_gain, &out);
+  return out;
+}
+
+}  // namespace ddm

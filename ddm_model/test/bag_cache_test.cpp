@@ -1,0 +1,104 @@
+// Tests of the bag cache: bags are read once, and trials never joined.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_bag_io/bag_cache.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "ddm_model/testing/expect_error.h"
+#include "ddm_model/testing/temp_folder.h"
+#include "toy_bags.h"
+
+namespace ddm {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::throwsNaming;
+using testing::toyTrial;
+
+class BagCacheTest : public ::testing::Test {
+ protected:
+  std::string write(const std::string& name, const DataSet& trial) const {
+    testing::writeTrial(folder_.file(name), trial);
+    return folder_.file(name);
+  }
+
+  const testing::TempFolder folder_;
+  BagCache cache_{testing::kToySize, BagOptions()};
+};
+
+TEST_F(BagCacheTest, KeepsTrialsApartAndInOrder) {
+  const DataSet data =
+      cache_.read({write("b.bag", toyTrial(7, 1)), write("a.bag", toyTrial(5, 2))});
+  ASSERT_EQ(data.pieces().size(), 2U);
+  EXPECT_EQ(data.pieces()[0].size, 7);
+  EXPECT_EQ(data.pieces()[1].begin, 7);
+  EXPECT_EQ(data.pieces()[1].size, 5);
+  EXPECT_EQ(data.torques()(0, 7), toyTrial(5, 2).torques()(0, 0));
+  EXPECT_TRUE(data.hasGoal());
+}
+
+TEST_F(BagCacheTest, ReadsABagOnlyOnceAndAgainWhenTheFileChanges) {
+  const std::string path = write("a.bag", toyTrial(7, 1));
+  const fs::file_time_type time = fs::last_write_time(path);
+  const auto size = fs::file_size(path);
+  EXPECT_EQ(cache_.read({path}).numFrames(), 7);
+  std::ofstream(path, std::ios::trunc) << std::string(size, 'x');  // cannot be read any more
+  fs::last_write_time(path, time);
+  EXPECT_EQ(cache_.read({path}).numFrames(), 7);
+  fs::last_write_time(path, time + std::chrono::milliseconds(1));
+  EXPECT_THROW(cache_.read({path}), std::runtime_error);
+  write("a.bag", toyTrial(9, 1));
+  EXPECT_EQ(cache_.read({path}).numFrames(), 9);
+}
+
+TEST_F(BagCacheTest, AChangedBagDoesNotMakeItReadTheOthersAgain) {
+  const std::string a = write("a.bag", toyTrial(7, 1)), b = write("b.bag", toyTrial(5, 2));
+  const fs::file_time_type time = fs::last_write_time(a);
+  EXPECT_EQ(cache_.read({a, b}).numFrames(), 12);
+  const auto size = fs::file_size(a);
+  std::ofstream(a, std::ios::trunc) << std::string(size, 'x');
+  fs::last_write_time(a, time);
+  write("b.bag", toyTrial(6, 2));
+  EXPECT_EQ(cache_.read({b, a}).numFrames(), 13);
+}
+
+TEST_F(BagCacheTest, RefusesToMixCameras) {
+  const std::string small = write("small.bag", toyTrial(5, 1));
+  const std::string large = write("large.bag", toyTrial(5, 1, 16));
+  EXPECT_TRUE(throwsNaming<std::runtime_error>(
+      [&] {
+        cache_.read({small, large});
+      },
+      {small, large, "8x8 mono8", "16x16 mono8"}));
+}
+
+TEST_F(BagCacheTest, RefusesToMixNumbersOfMotors) {
+  const std::string one = write("one.bag", toyTrial(5, 1)), two = folder_.file("two.bag");
+  {
+    testing::ToyBag bag(two);
+    bag.image(1.0, 0.0);
+    bag.torque(1.0, {1.0, 2.0});
+  }
+  EXPECT_TRUE(throwsNaming<std::runtime_error>(
+      [&] {
+        cache_.read({one, two});
+      },
+      {one, two, "1 torque", "2 torque"}));
+}
+
+TEST_F(BagCacheTest, NamesTheBagThatIsMissingAndRefusesAnEmptyList) {
+  const std::string path = write("a.bag", toyTrial(5, 1)), missing = folder_.file("b.bag");
+  EXPECT_TRUE(throwsNaming<std::runtime_error>(
+      [&] {
+        cache_.read({path, missing});
+      },
+      {missing, "No such file"}));
+  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { cache_.read({}); }, {"no bag was given"}));
+}
+
+}  // namespace
+}  // namespace ddm

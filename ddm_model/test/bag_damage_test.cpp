@@ -1,0 +1,195 @@
+// Tests of the bag reader's refusals: each names the bag and what is wrong with it.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <std_msgs/Float64.h>
+
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+
+#include "ddm_bag_io/bag_reader.h"
+#include "ddm_bag_io/bag_writer.h"
+#include "ddm_model/model_file.h"
+#include "ddm_model/testing/expect_error.h"
+#include "ddm_model/testing/temp_folder.h"
+#include "toy_bags.h"
+
+namespace ddm {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::imageMessage;
+using testing::torqueMessage;
+using testing::ToyBag;
+using testing::toyImage;
+
+class BagDamage : public ::testing::Test {
+ protected:
+  ::testing::AssertionResult isRefused(const std::vector<std::string>& parts = {}) const {
+    std::vector<std::string> all = {"bag " + path_};
+    all.insert(all.end(), parts.begin(), parts.end());
+    return testing::throwsNaming<std::runtime_error>(
+        [this] { readBag(path_, testing::kToySize, BagOptions()); }, all);
+  }
+  std::string goodBytes() const {
+    testing::writeTrial(path_, testing::toyTrial(30, 1));
+    return readFile(path_);
+  }
+  void writeBytes(const std::string& bytes) const {
+    std::ofstream(path_, std::ios::binary | std::ios::trunc) << bytes;
+  }
+
+  const testing::TempFolder folder_;
+  std::string path_ = folder_.file("trial.bag");
+};
+
+TEST_F(BagDamage, ABagCutShortAnywhereIsRefused) {
+  const std::string bytes = goodBytes();
+  const size_t size = bytes.size();
+  for (size_t kept : {size_t{1}, size_t{5}, size_t{13}, size_t{20}, size_t{4109}, size_t{4200},
+                      size / 3, size / 2, size - 1000, size - 100, size - 1}) {
+    writeBytes(bytes.substr(0, kept));
+    EXPECT_TRUE(isRefused()) << kept << " of " << size << " bytes";
+  }
+}
+
+TEST_F(BagDamage, ABrokenChunkIsRefused) {
+  const std::string bytes = goodBytes();
+  for (size_t at : {4300, 4600, 5000}) {  // behind the file header of 4096 bytes
+    std::string damaged = bytes;
+    for (int i = 0; i < 4; ++i) damaged[at + i] ^= char(0x55);
+    writeBytes(damaged);
+    EXPECT_TRUE(isRefused()) << "bytes " << at << " to " << at + 3;
+  }
+}
+
+TEST_F(BagDamage, WhatIsNoBagIsRefused) {
+  EXPECT_TRUE(isRefused());  // there is none
+  writeBytes("");
+  EXPECT_TRUE(isRefused());
+  writeBytes("step,torque_nm\n0,1.5\n");
+  EXPECT_TRUE(isRefused());
+  fs::remove(path_);
+  fs::create_directory(path_);
+  EXPECT_TRUE(isRefused());
+}
+
+TEST_F(BagDamage, ARecordingThatWasNotCompletedIsRefusedWithTheRemedy) {
+  BagWriter writer(path_, BagOptions());
+  for (int t = 0; t < 5; ++t) {
+    writer.write(imageMessage(1.0 + 0.2 * t, toyImage(0.1 * t)));
+    writer.write(torqueMessage(1.0 + 0.2 * t, {1.0}));
+  }
+  fs::copy_file(path_ + ".active", folder_.file("renamed.bag"));
+  path_ = folder_.file("trial.bag.active");
+  EXPECT_TRUE(isRefused({"not completed", "rosbag reindex"}));
+  path_ = folder_.file("renamed.bag");  // a new name does not make it complete
+  EXPECT_TRUE(isRefused());
+}
+
+TEST_F(BagDamage, MissingTopicsAreRefusedWithThoseThatAreThere) {
+  { ToyBag(path_).image(1.0, 0.0); }
+  EXPECT_TRUE(isRefused({"no topic torque", "camera/image_raw", "data_set/torque_topic"}));
+  { ToyBag(path_).torque(1.0, {1.0}); }
+  EXPECT_TRUE(isRefused({"no topic camera/image_raw", "data_set/image_topic"}));
+  { ToyBag bag(path_); }
+  EXPECT_TRUE(isRefused({"it holds: nothing"}));
+}
+
+TEST_F(BagDamage, ATopicOfAnotherTypeIsRefused) {
+  {
+    ToyBag bag(path_);
+    bag.image(1.0, 0.0);
+    bag.write("torque", 1.0, std_msgs::Float64());
+  }
+  EXPECT_TRUE(isRefused({"std_msgs/Float64", "ddm_msgs/Torque", "data_set/torque_topic"}));
+}
+
+TEST_F(BagDamage, TorquesThatAreNotFiniteAreRefusedWithTheirTime) {
+  for (double bad :
+       {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
+    {
+      ToyBag bag(path_);
+      bag.frame(1.0, 0.0, 1.0);
+      bag.frame(1.2, 0.0, bad);
+    }
+    EXPECT_TRUE(isRefused({"torque at 1.2", "finite"}));
+  }
+}
+
+TEST_F(BagDamage, TorquesThatChangeTheirNumberAreRefused) {
+  {
+    ToyBag bag(path_);
+    bag.frame(1.0, 0.0, 1.0);
+    bag.image(1.2, 0.1);
+    bag.torque(1.2, {1.0, 2.0});
+  }
+  EXPECT_TRUE(isRefused({"has 2 value(s)", "1 are due"}));
+  {
+    ToyBag bag(path_);
+    bag.image(1.0, 0.0);
+    bag.torque(1.0, {});
+  }
+  EXPECT_TRUE(isRefused({"has 0 value(s)"}));
+}
+
+TEST_F(BagDamage, ImagesThatChangeSizeOrEncodingAreRefused) {
+  sensor_msgs::Image colour = imageMessage(1.2, toyImage(0.1));
+  colour.encoding = "8UC1";
+  for (const sensor_msgs::Image& other : {imageMessage(1.2, toyImage(0.1, 16), 16), colour}) {
+    {
+      ToyBag bag(path_);
+      bag.frame(1.0, 0.0, 1.0);
+      bag.image(1.2, other);
+      bag.torque(1.2, {1.0});
+    }
+    EXPECT_TRUE(isRefused({"8x8 mono8", other.encoding, "1.2", "one camera setting per bag"}));
+  }
+}
+
+TEST_F(BagDamage, ImagesThatCannotBeDecodedAreRefusedWithTheirTime) {
+  sensor_msgs::Image image = imageMessage(1.0, toyImage(0.0));
+  image.data.resize(7);
+  {
+    ToyBag bag(path_);
+    bag.image(1.0, image);
+    bag.torque(1.0, {1.0});
+  }
+  EXPECT_TRUE(isRefused({"image at 1.0"}));
+  {
+    ToyBag bag(path_);
+    bag.frame(1.0, 0.0, 1.0);
+    bag.goal(1.0, image);
+  }
+  EXPECT_TRUE(isRefused({"goal image"}));
+}
+
+TEST_F(BagDamage, TwoDifferentMessagesWithOneStampAreRefused) {
+  {
+    ToyBag bag(path_);
+    bag.frame(1.0, 0.0, 1.0);
+    bag.image(1.0, 0.5);
+  }
+  EXPECT_TRUE(isRefused({"two different images", "1.0"}));
+  {
+    ToyBag bag(path_);
+    bag.frame(1.0, 0.0, 1.0);
+    bag.torque(1.0, {2.0});
+  }
+  EXPECT_TRUE(isRefused({"two different torques", "1.0"}));
+}
+
+TEST_F(BagDamage, ABagWithoutASinglePairIsRefusedWithTheRemedy) {
+  {
+    ToyBag bag(path_);
+    for (int t = 0; t < 5; ++t) {
+      bag.image(1.0 + 0.2 * t, 0.1 * t);
+      bag.torque(1.05 + 0.2 * t, {1.0});  // stamped with a time of its own
+    }
+  }
+  EXPECT_TRUE(isRefused({"5 images", "5 torques", "stamp each torque with the image"}));
+}
+
+}  // namespace
+}  // namespace ddm

@@ -1,0 +1,242 @@
+// Tests of the bag reader: how frames are found, and where pieces begin.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_bag_io/bag_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "ddm_model/testing/expect_error.h"
+#include "ddm_model/testing/temp_folder.h"
+#include "toy_bags.h"
+
+namespace ddm {
+namespace {
+
+using testing::imageMessage;
+using testing::kToySize;
+using testing::torqueMessage;
+using testing::ToyBag;
+using testing::toyImage;
+
+class BagReader : public ::testing::Test {
+ protected:
+  BagContent read(const BagOptions& options = BagOptions()) const {
+    return readBag(path_, kToySize, options);
+  }
+  std::vector<Eigen::Index> pieceSizes() const {
+    const BagContent content = read();
+    std::vector<Eigen::Index> sizes;
+    for (const Piece& piece : content.data.pieces()) sizes.push_back(piece.size);
+    return sizes;
+  }
+  ::testing::AssertionResult isRefused(const std::vector<std::string>& parts,
+                                       const BagOptions& options = BagOptions()) const {
+    std::vector<std::string> all = {"bag " + path_};
+    all.insert(all.end(), parts.begin(), parts.end());
+    return testing::throwsNaming<std::runtime_error>([&] { read(options); }, all);
+  }
+
+  const testing::TempFolder folder_;
+  const std::string path_ = folder_.file("trial.bag");
+};
+
+using Sizes = std::vector<Eigen::Index>;
+
+TEST_F(BagReader, GivesBackTheTrialThatWasWritten) {
+  const DataSet trial = testing::toyTrial(20, 1);
+  testing::writeTrial(path_, trial);
+  const BagContent content = read();
+  EXPECT_EQ(content.data.pixels(), trial.pixels());
+  EXPECT_EQ(content.data.torques(), trial.torques());
+  EXPECT_EQ(content.data.pieces().size(), 1U);
+  EXPECT_EQ(content.data.goal(), toyImage(3.0));
+  EXPECT_EQ(content.camera, "8x8 mono8");
+  EXPECT_EQ(content.num_images_without_torque, 0);
+  EXPECT_EQ(content.num_torques_without_image, 0);
+}
+
+TEST_F(BagReader, PairsByHeaderStampWhateverTheOrderOfRecording) {
+  {
+    ToyBag bag(path_);
+    bag.write("torque", 5.0, torqueMessage(1.2, {12.0}));
+    bag.image(5.1, imageMessage(1.0, toyImage(0.0)));
+    bag.image(5.2, imageMessage(1.2, toyImage(0.2)));
+    bag.write("torque", 5.3, torqueMessage(1.0, {10.0}));
+  }
+  const DataSet data = read().data;
+  ASSERT_EQ(data.numFrames(), 2);
+  EXPECT_EQ(data.torques(), Eigen::RowVector2d(10.0, 12.0));
+  EXPECT_EQ(data.pixels()(5, 1), toyImage(0.2)[5]);
+}
+
+TEST_F(BagReader, AnImageWithoutTorqueSplitsTheTrial) {
+  {
+    ToyBag bag(path_);
+    for (int t = 0; t < 10; ++t) {
+      bag.image(1.0 + 0.2 * t, 0.1 * t);
+      if (t != 4) bag.torque(1.0 + 0.2 * t, {1.0});
+    }
+    bag.torque(50.0, {1.0});
+  }
+  EXPECT_EQ(pieceSizes(), (Sizes{4, 5}));
+  EXPECT_EQ(read().num_images_without_torque, 1);
+  EXPECT_EQ(read().num_torques_without_image, 1);
+}
+
+TEST_F(BagReader, AnImageWithoutTorqueSplitsEvenWhereTimeHasNoGap) {
+  {
+    ToyBag bag(path_);
+    for (double stamp : {1.0, 1.2, 1.4, 1.6, 1.8}) bag.frame(stamp, stamp, 1.0);
+    bag.image(1.5, 0.0);
+  }
+  EXPECT_EQ(pieceSizes(), (Sizes{3, 2}));
+}
+
+TEST_F(BagReader, AGapInTimeSplitsTheTrialAndJitterDoesNot) {
+  {
+    ToyBag bag(path_);
+    double stamp = 1.0;
+    for (int t = 0; t < 12; ++t) {
+      stamp += t == 5 ? 0.4 : (t % 2 == 0 ? 0.17 : 0.23);
+      bag.frame(stamp, 0.1 * t, 1.0);
+    }
+  }
+  EXPECT_EQ(pieceSizes(), (Sizes{5, 7}));
+}
+
+TEST_F(BagReader, AGapSplitsEvenTheShortestTrialAndOneThatBeginsAtTimeZero) {
+  {
+    ToyBag bag(path_);
+    for (double stamp : {0.0, 0.2, 0.8}) {
+      bag.image(stamp + 1.0, imageMessage(stamp, toyImage(stamp)));
+      bag.write("torque", stamp + 1.0, torqueMessage(stamp, {1.0}));
+    }
+  }
+  EXPECT_EQ(pieceSizes(), (Sizes{2, 1}));
+  {
+    ToyBag bag(path_);
+    for (double stamp : {0.0, 0.6, 0.8, 1.0}) {
+      bag.image(stamp + 1.0, imageMessage(stamp, toyImage(stamp)));
+      bag.write("torque", stamp + 1.0, torqueMessage(stamp, {1.0}));
+    }
+  }
+  EXPECT_EQ(pieceSizes(), (Sizes{1, 3}));
+}
+
+TEST_F(BagReader, FindsTopicsUnderAnyNamespaceAsPlainRosbagRecordWritesThem) {
+  for (const std::string& prefix : {std::string("/"), std::string("/robot/left/")}) {
+    BagOptions topics;
+    topics.image_topic = prefix + topics.image_topic;
+    topics.torque_topic = prefix + topics.torque_topic;
+    topics.goal_topic = prefix + topics.goal_topic;
+    testing::writeTrial(path_, testing::toyTrial(5, 1), /*with_goal=*/true, topics);
+    EXPECT_EQ(read().data.numFrames(), 5) << prefix;
+    EXPECT_TRUE(read().data.hasGoal()) << prefix;
+    EXPECT_EQ(read(topics).data.numFrames(), 5) << prefix;
+  }
+}
+
+TEST_F(BagReader, TakesTopicsOfOtherNames) {
+  BagOptions topics;
+  topics.image_topic = "/usb_cam/image_mono";
+  topics.torque_topic = "/motor/command";
+  topics.goal_topic = "/goal";
+  testing::writeTrial(path_, testing::toyTrial(5, 1), /*with_goal=*/true, topics);
+  EXPECT_EQ(read(topics).data.numFrames(), 5);
+  EXPECT_TRUE(
+      isRefused({"no topic camera/image_raw", "/usb_cam/image_mono", "data_set/image_topic"}));
+}
+
+TEST_F(BagReader, DoesNotTakeHalfAWordForATopic) {
+  BagOptions topics;
+  topics.torque_topic = "/desired_torque";
+  testing::writeTrial(path_, testing::toyTrial(5, 1), /*with_goal=*/true, topics);
+  EXPECT_TRUE(isRefused({"no topic torque", "/desired_torque", "data_set/torque_topic"}));
+}
+
+TEST_F(BagReader, AsksWhichOfTwoTopicsIsMeantAndTakesTheAnswer) {
+  {
+    ToyBag bag(path_);
+    for (int t = 0; t < 5; ++t) {
+      const double stamp = 1.0 + 0.2 * t;
+      bag.write("/camera/image_raw", stamp, imageMessage(stamp, toyImage(0.1 * t)));
+      bag.write("/left/torque", stamp, torqueMessage(stamp, {1.0}));
+      bag.write("/right/torque", stamp, torqueMessage(stamp, {2.0}));
+    }
+  }
+  EXPECT_TRUE(isRefused({"/left/torque", "/right/torque", "data_set/torque_topic"}));
+  BagOptions options;
+  options.torque_topic = "/right/torque";
+  EXPECT_EQ(read(options).data.torques()(0, 0), 2.0);
+}
+
+TEST_F(BagReader, ATopicOfTheVeryNameWinsOverOneInANamespace) {
+  {
+    ToyBag bag(path_);
+    for (int t = 0; t < 5; ++t) {
+      const double stamp = 1.0 + 0.2 * t;
+      bag.write("/camera/image_raw", stamp, imageMessage(stamp, toyImage(0.1 * t)));
+      bag.write("/left/torque", stamp, torqueMessage(stamp, {1.0}));
+      bag.write("/torque", stamp, torqueMessage(stamp, {2.0}));
+      bag.write("/right/torque", stamp, torqueMessage(stamp, {3.0}));
+    }
+  }
+  EXPECT_EQ(read().data.torques()(0, 0), 2.0);
+}
+
+TEST_F(BagReader, ConvertsImagesOfAnotherSizeAndEncoding) {
+  {
+    ToyBag bag(path_);
+    for (int t = 0; t < 5; ++t) {
+      const double stamp = 1.0 + 0.2 * t;
+      sensor_msgs::Image image = imageMessage(stamp, Grey(24 * 24, 100), 24);
+      image.encoding = "rgb8";
+      image.step = 3 * 24;
+      image.data.assign(3 * 24 * 24, 100);
+      bag.image(stamp, image);
+      bag.torque(stamp, {1.0});
+    }
+    bag.goal(9.0, imageMessage(9.0, Grey(16 * 16, 40), 16));
+  }
+  const BagContent content = read();
+  EXPECT_EQ(content.camera, "24x24 rgb8");
+  EXPECT_EQ(content.data.numPixels(), 64);
+  EXPECT_EQ(content.data.pixels()(17, 2), 100);
+  EXPECT_EQ(content.data.goal(), Grey(64, 40));
+}
+
+TEST_F(BagReader, TakesTheLastGoalImageAndDoesWithoutOne) {
+  {
+    ToyBag bag(path_);
+    bag.goal(1.0, imageMessage(1.0, toyImage(1.0)));
+    bag.goal(2.0, imageMessage(2.0, toyImage(2.0)));
+    bag.frame(1.0, 0.0, 0.0);
+  }
+  EXPECT_EQ(read().data.goal(), toyImage(2.0));
+  testing::writeTrial(path_, testing::toyTrial(5, 1), /*with_goal=*/false);
+  EXPECT_FALSE(read().data.hasGoal());
+}
+
+TEST_F(BagReader, ForgivesMessagesThatWereRecordedTwice) {
+  {
+    ToyBag bag(path_);
+    for (int t = 0; t < 5; ++t) {
+      bag.frame(1.0 + 0.2 * t, 0.1 * t, 1.0);
+      bag.frame(1.0 + 0.2 * t, 0.1 * t, 1.0);
+    }
+  }
+  EXPECT_EQ(pieceSizes(), (Sizes{5}));
+}
+
+TEST_F(BagReader, ReadsTorquesOfSeveralMotors) {
+  {
+    ToyBag bag(path_);
+    bag.image(1.0, 0.0);
+    bag.torque(1.0, {1.0, -2.0, 3.0});
+  }
+  EXPECT_EQ(read().data.torques(), Eigen::Vector3d(1.0, -2.0, 3.0));
+}
+
+}  // namespace
+}  // namespace ddm

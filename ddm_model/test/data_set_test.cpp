@@ -1,0 +1,103 @@
+// Tests of the data set: pieces, seams, refusals.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/data_set.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+
+#include "ddm_model/testing/expect_error.h"
+
+namespace ddm {
+namespace {
+
+using testing::throwsNaming;
+
+Eigen::VectorXd torque(double value) { return Eigen::VectorXd::Constant(1, value); }
+
+/// Frames of 2 x 2 pixels that all have the grey value and torque of their index.
+DataSet numbered(int first, int count) {
+  DataSet data(2, 1);
+  for (int i = first; i < first + count; ++i) {
+    data.append(Grey(4, static_cast<std::uint8_t>(i)), torque(i), i == first);
+  }
+  return data;
+}
+
+TEST(DataSet, KeepsPixelsAndTorquesInTheOrderTheyCame) {
+  DataSet data(2, 2);
+  data.append({1, 2, 3, 4}, Eigen::Vector2d(0.5, -0.5), true);
+  data.append({5, 6, 7, 8}, Eigen::Vector2d(1.5, -1.5), false);
+  ASSERT_EQ(data.numFrames(), 2);
+  EXPECT_EQ(data.numPixels(), 4);
+  EXPECT_EQ(data.pixels()(0, 1), 5);
+  EXPECT_EQ(data.pixels()(3, 0), 4);
+  EXPECT_EQ(data.torques().col(1), Eigen::Vector2d(1.5, -1.5));
+}
+
+TEST(DataSet, BeginsAPieceWhereItIsToldTo) {
+  DataSet data(2, 1);
+  for (bool new_piece : {false, false, true, true, false}) {  // the first always begins one
+    data.append(Grey(4), torque(0.0), new_piece);
+  }
+  ASSERT_EQ(data.pieces().size(), 3U);
+  EXPECT_EQ(data.pieces()[0].begin, 0);
+  EXPECT_EQ(data.pieces()[0].size, 2);
+  EXPECT_EQ(data.pieces()[1].begin, 2);
+  EXPECT_EQ(data.pieces()[1].size, 1);
+  EXPECT_EQ(data.pieces()[2].begin, 3);
+  EXPECT_EQ(data.pieces()[2].size, 2);
+}
+
+TEST(DataSet, KeepsASeamBetweenTwoTrials) {
+  DataSet data = numbered(0, 3);
+  data.append(numbered(10, 2));
+  ASSERT_EQ(data.numFrames(), 5);
+  ASSERT_EQ(data.pieces().size(), 2U);
+  EXPECT_EQ(data.pieces()[1].begin, 3);
+  EXPECT_EQ(data.pieces()[1].size, 2);
+  EXPECT_EQ(data.pixels()(0, 3), 10);
+  EXPECT_EQ(data.torques()(0, 4), 11.0);
+}
+
+TEST(DataSet, TakesOverAGoalOnlyWhereItHasNone) {
+  DataSet with_goal = numbered(0, 1);
+  with_goal.setGoal(Grey(4, 9));
+  DataSet data = numbered(0, 1);
+  EXPECT_FALSE(data.hasGoal());
+  data.append(with_goal);
+  EXPECT_EQ(data.goal(), Grey(4, 9));
+  DataSet other = numbered(0, 1);
+  other.setGoal(Grey(4, 7));
+  data.append(other);
+  EXPECT_EQ(data.goal(), Grey(4, 9));
+}
+
+TEST(DataSet, RefusesFramesThatDoNotFit) {
+  DataSet data(2, 1);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { data.append(Grey(5), torque(0), true); },
+                                                  {"4 pixels", "got 5"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [&] { data.append(Grey(4), Eigen::Vector2d(0, 0), true); }, {"1 value", "got 2"}));
+  for (double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+        [&] { data.append(Grey(4), torque(bad), true); }, {"finite"}));
+  }
+  EXPECT_TRUE(
+      throwsNaming<std::invalid_argument>([&] { data.setGoal(Grey(3)); }, {"4 pixels", "got 3"}));
+  EXPECT_EQ(data.numFrames(), 0);  // nothing of a refused frame is kept
+  EXPECT_TRUE(data.pieces().empty());
+}
+
+TEST(DataSet, RefusesAnotherRobot) {
+  DataSet data(2, 1);
+  EXPECT_THROW(data.append(DataSet(3, 1)), std::invalid_argument);
+  EXPECT_THROW(data.append(DataSet(2, 2)), std::invalid_argument);
+  EXPECT_THROW(DataSet(0, 1), std::invalid_argument);
+  EXPECT_THROW(DataSet(2, 0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace ddm

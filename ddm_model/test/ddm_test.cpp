@@ -1,0 +1,128 @@
+// Tests of a trained model: images to features and back, refusals.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/ddm.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+
+#include "ddm_model/testing/expect_error.h"
+#include "toy_data.h"
+
+namespace ddm {
+namespace {
+
+using testing::throwsNaming;
+using testing::toyImage;
+using testing::toyModel;
+
+/// The toy model with one of its parts replaced.
+struct Parts {
+  ModelOptions options = testing::toyModelOptions();
+  int image_size = testing::kToySize;
+  int torque_dim = 1;
+  Pca pca = toyModel().pca();
+  Eigen::VectorXd theta = toyModel().theta();
+  Grey goal = toyImage(1.0);
+
+  Ddm model() const { return Ddm(options, image_size, torque_dim, pca, theta, goal, ModelInfo()); }
+};
+
+TEST(Ddm, EncodesThroughPcaAndEncoder) {
+  const Ddm model = toyModel();
+  const Grey image = toyImage(0.5);
+  const Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>> pixels(
+      image.data(), static_cast<Eigen::Index>(image.size()), 1);
+  const Networks<double> nets(model.options(), 1);
+  Mlp<double>::Tape tape;
+  nets.encoder().forward(model.theta().data(), model.pca().project(pixels).cast<double>(), &tape);
+  ASSERT_EQ(model.encode(image).size(), 2);
+  EXPECT_EQ(model.encode(image), tape.output());
+}
+
+TEST(Ddm, DecodesToWhatAnImageCanShow) {
+  const Ddm model = toyModel();
+  const Grey dull = model.decode(Eigen::Vector2d(0.1, -0.2));
+  EXPECT_EQ(dull.size(), 64U);
+  const Grey bright = model.decode(Eigen::Vector2d(50.0, -50.0));
+  EXPECT_EQ(*std::min_element(bright.begin(), bright.end()), 0);  // clamped, not wrapped around
+  EXPECT_EQ(*std::max_element(bright.begin(), bright.end()), 255);
+}
+
+TEST(Ddm, DecodesThroughDecoderAndPcaToTheNearestGreyValue) {
+  Parts parts;
+  parts.pca.mean *= 0.05F;
+  parts.pca.mean.array() += 0.5F;
+  parts.pca.basis *= 0.001F;  // nothing is clamped
+  const Ddm model = parts.model();
+  const Eigen::Vector2d z(0.3, -0.6);
+  const Networks<double> nets(model.options(), 1);
+  Mlp<double>::Tape tape;
+  nets.decoder().forward(nets.decoderOf(model.theta().data()), z, &tape);
+  const Eigen::MatrixXf image = model.pca().reconstruct(tape.output().cast<float>());
+  const Grey grey = model.decode(z);
+  for (int i = 0; i < 64; ++i) EXPECT_NEAR(grey[i], 255.0F * image(i, 0), 0.501F);
+}
+
+TEST(Ddm, KnowsTheFeatureOfItsGoal) {
+  const Ddm model = toyModel();
+  EXPECT_EQ(model.goalFeature(), model.encode(model.goal()));
+}
+
+TEST(Ddm, WithoutAGoalImageSaysSo) {
+  const Ddm model = toyModel(/*with_goal=*/false);
+  EXPECT_FALSE(model.hasGoal());
+  EXPECT_TRUE(throwsNaming<std::logic_error>([&] { model.goalFeature(); }, {"no goal image"}));
+}
+
+TEST(Ddm, HandsOutThePredictorsParameters) {
+  const Ddm model = toyModel();
+  const Networks<double> nets(model.options(), 1);
+  EXPECT_EQ(model.thetaP() - model.theta().data(),
+            nets.encoder().numParams() + nets.decoder().numParams());
+  const Ddm copy = model;  // must not point into the original
+  EXPECT_EQ(copy.thetaP() - copy.theta().data(), model.thetaP() - model.theta().data());
+  EXPECT_EQ(model.torqueDim(), 1);
+  EXPECT_EQ(model.featureDim(), 2);
+}
+
+TEST(Ddm, RefusesAnImageOfAnotherSize) {
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([] { toyModel().encode(Grey(63)); },
+                                                  {"64 pixels", "got 63"}));
+}
+
+TEST(Ddm, RefusesPartsThatDoNotFit) {
+  const auto refuses = [](const std::function<void(Parts*)>& spoil) {
+    Parts parts;
+    spoil(&parts);
+    return throwsNaming<std::invalid_argument>([&] { parts.model(); }, {"do not fit"});
+  };
+  EXPECT_NO_THROW(Parts().model());
+  EXPECT_TRUE(refuses([](Parts* parts) { parts->image_size = 9; }));
+  EXPECT_TRUE(refuses([](Parts* parts) { parts->torque_dim = 2; }));
+  EXPECT_TRUE(refuses([](Parts* parts) { parts->options.feature_dim = 3; }));
+  EXPECT_TRUE(refuses([](Parts* parts) { parts->options.pca_dim = 5; }));
+  EXPECT_TRUE(refuses([](Parts* parts) { parts->pca.mean.conservativeResize(63); }));
+  EXPECT_TRUE(refuses([](Parts* parts) { parts->theta.conservativeResize(10); }));
+  EXPECT_TRUE(refuses([](Parts* parts) { parts->goal.pop_back(); }));
+}
+
+TEST(Ddm, RefusesValuesThatAreNotFinite) {
+  const auto refuses = [](const std::function<void(Parts*)>& spoil) {
+    Parts parts;
+    spoil(&parts);
+    return throwsNaming<std::invalid_argument>([&] { parts.model(); }, {"not finite"});
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_TRUE(refuses([&](Parts* parts) { parts->theta[5] = nan; }));
+  EXPECT_TRUE(refuses([&](Parts* parts) { parts->pca.mean[5] = nan; }));
+  EXPECT_TRUE(refuses([&](Parts* parts) { parts->pca.basis(3, 3) = nan; }));
+  EXPECT_TRUE(refuses([&](Parts* parts) { parts->pca.scale = nan; }));
+  EXPECT_TRUE(refuses([&](Parts* parts) { parts->pca.scale = 0.0F; }));
+}
+
+}  // namespace
+}  // namespace ddm

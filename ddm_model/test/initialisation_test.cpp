@@ -1,0 +1,122 @@
+// Tests of the initial parameters: layer-wise PCA of the auto-encoder, random predictor.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/initialisation.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+#include "ddm_model/objective.h"
+#include "ddm_model/pca.h"
+#include "toy_data.h"
+
+namespace ddm {
+namespace {
+
+class Initialisation : public ::testing::Test {
+ protected:
+  Eigen::VectorXd initial(const ModelOptions& options, unsigned seed = 1) const {
+    std::mt19937_64 rng(seed);
+    return initialTheta(Networks<double>(options, 1), scores_, training_, &rng);
+  }
+
+  /// V_R over its value for a model that knows nothing.
+  double cost(const ModelOptions& options, const Eigen::VectorXd& theta) const {
+    const Networks<double> nets(options, 1);
+    TrainingData<double> data{scores_, data_.torques(), data_.pieces()};
+    JointObjective<double> objective(nets, data);
+    return objective.weight() * objective.evaluate(theta, nullptr).v_r;
+  }
+
+  const DataSet data_ = testing::toyTrial(80, 1);
+  const Eigen::MatrixXd scores_ = fitPca(data_, 6, 1.0).project(data_.pixels()).cast<double>();
+  TrainingOptions training_;
+};
+
+TEST_F(Initialisation, ReconstructsFarBetterThanARandomStart) {
+  ModelOptions options = testing::toyModelOptions();
+  options.encoder_widths = {5, 4};
+  options.decoder_widths = {4, 5};
+  const Networks<double> nets(options, 1);
+  const double start = cost(options, initial(options));
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const Eigen::VectorXd random = testing::randomMatrix(nets.numParams(), 1, seed);
+    EXPECT_LT(start, 0.5 * cost(options, 0.4 * random)) << "seed " << seed;
+  }
+}
+
+TEST_F(Initialisation, MirroredLayersFormAProjectionOntoPrincipalComponents) {
+  const ModelOptions options = testing::toyModelOptions();  // 6-5-2-5-6
+  const Networks<double> nets(options, 1);
+  const Eigen::VectorXd theta = initial(options);
+  Eigen::MatrixXd inputs = scores_;
+  for (int layer = 0; layer < 2; ++layer) {
+    const Eigen::MatrixXd encoder_w = nets.encoder().weights(theta.data(), layer);
+    const Eigen::VectorXd encoder_b = nets.encoder().biases(theta.data(), layer);
+    const Eigen::MatrixXd decoder_w =
+        nets.decoder().weights(nets.decoderOf(theta.data()), 1 - layer);
+    const Eigen::VectorXd decoder_b =
+        nets.decoder().biases(nets.decoderOf(theta.data()), 1 - layer);
+    const Eigen::VectorXd mean = inputs.rowwise().mean();
+    const Eigen::MatrixXd centred = inputs.colwise() - mean;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(centred * centred.transpose());
+    const Eigen::MatrixXd basis = eigen.eigenvectors().rightCols(encoder_w.rows());
+    EXPECT_TRUE((decoder_w * encoder_w).isApprox(basis * basis.transpose(), 1e-6)) << layer;
+    EXPECT_TRUE(decoder_b.isApprox(mean, 1e-9) || mean.norm() < 1e-4) << layer;
+    EXPECT_LT((encoder_w * mean + encoder_b).norm(), 1e-9) << layer;
+    const Eigen::MatrixXd before_arctan = (encoder_w * inputs).colwise() + encoder_b;
+    const double spread = std::sqrt(before_arctan.row(0).array().square().mean());
+    EXPECT_NEAR(spread, training_.layer_std, 1e-6) << layer;
+    inputs = before_arctan.array().atan();
+  }
+}
+
+TEST_F(Initialisation, DrawsOnlyThePredictorFromTheStream) {
+  const ModelOptions options = testing::toyModelOptions();
+  const Networks<double> nets(options, 1);
+  const Eigen::VectorXd a = initial(options, 1), again = initial(options, 1);
+  const Eigen::VectorXd b = initial(options, 2);
+  EXPECT_EQ(a, again);
+  const Eigen::Index num_ae = a.size() - nets.f().numParams();
+  EXPECT_EQ(a.head(num_ae), b.head(num_ae));
+  EXPECT_NE(a.tail(nets.f().numParams()), b.tail(nets.f().numParams()));
+}
+
+TEST_F(Initialisation, PredictorGainScalesThePredictor) {
+  const ModelOptions options = testing::toyModelOptions();
+  const Eigen::Index num_f = Networks<double>(options, 1).f().numParams();
+  const Eigen::VectorXd normal = initial(options).tail(num_f);
+  training_.predictor_gain = 3.0;
+  EXPECT_TRUE(initial(options).tail(num_f).isApprox(3.0 * normal, 1e-12));
+  training_.predictor_gain = 0.0;
+  EXPECT_EQ(initial(options).tail(num_f).norm(), 0.0);
+}
+
+TEST_F(Initialisation, UnitsBeyondTheRankOfTheInputStartAtRandom) {
+  ModelOptions options = testing::toyModelOptions();
+  options.encoder_widths = options.decoder_widths = {9};  // more than the 6 scores
+  const Networks<double> nets(options, 1);
+  const Eigen::VectorXd theta = initial(options);
+  EXPECT_TRUE(theta.allFinite());
+  const Eigen::MatrixXd w = nets.encoder().weights(theta.data(), 0);
+  EXPECT_GT(w.bottomRows(3).rowwise().squaredNorm().minCoeff(), 0.0);
+  EXPECT_NE(w.bottomRows(3), nets.encoder().weights(initial(options, 2).data(), 0).bottomRows(3));
+}
+
+TEST_F(Initialisation, AnAutoEncoderThatIsNotMirroredStartsAtRandom) {
+  ModelOptions options = testing::toyModelOptions();
+  options.decoder_widths = {4};
+  const Eigen::VectorXd a = initial(options, 1), b = initial(options, 2);
+  EXPECT_TRUE(a.allFinite());
+  EXPECT_NE(a.head(30), b.head(30));  // the encoder's first weights
+}
+
+TEST_F(Initialisation, StaysFiniteWhereThereIsNoSpread) {
+  std::mt19937_64 rng(1);
+  const ModelOptions options = testing::toyModelOptions();
+  const Eigen::MatrixXd nothing = Eigen::MatrixXd::Zero(6, 20);
+  EXPECT_TRUE(initialTheta(Networks<double>(options, 1), nothing, training_, &rng).allFinite());
+}
+
+}  // namespace
+}  // namespace ddm

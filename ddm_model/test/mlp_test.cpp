@@ -1,0 +1,195 @@
+// Tests of the fully connected network: values, gradients, memory.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/mlp.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "ddm_model/prediction_model.h"
+#include "ddm_model/testing/expect_error.h"
+#include "ddm_model/testing/gradient_check.h"
+#include "random_matrix.h"
+
+namespace ddm {
+namespace {
+
+using Net = Mlp<double>;
+using testing::randomMatrix;
+
+const std::vector<std::vector<int>> kDepths = {{4, 2}, {4, 5, 2}, {4, 6, 3, 6, 2}};
+const Net::Output kOutputs[] = {Net::Output::kLinear, Net::Output::kArctan};
+
+/// |net(inputs) - targets|^2 as a function of theta or of the inputs, by one forward and backward.
+double squaredError(const Net& net, const Eigen::VectorXd& theta, const Eigen::MatrixXd& inputs,
+                    const Eigen::MatrixXd& targets, Eigen::VectorXd* d_theta,
+                    Eigen::MatrixXd* d_inputs) {
+  Net::Tape tape;
+  net.forward(theta.data(), inputs, &tape);
+  const Eigen::MatrixXd residual = tape.output() - targets;
+  if (d_theta != nullptr) d_theta->setZero(theta.size());
+  net.backward(theta.data(), &tape, 2.0 * residual, d_theta != nullptr ? d_theta->data() : nullptr,
+               d_inputs);
+  return residual.squaredNorm();
+}
+
+TEST(Mlp, ComputesTheDocumentedFormula) {
+  const Net net({2, 3, 1}, Net::Output::kLinear);
+  const Eigen::VectorXd theta = randomMatrix(net.numParams(), 1, 1);
+  const Eigen::MatrixXd inputs = randomMatrix(2, 5, 2);
+  Net::Tape tape;
+  net.forward(theta.data(), inputs, &tape);
+  const Eigen::Map<const Eigen::MatrixXd> w1(theta.data(), 3, 2), w2(theta.data() + 9, 1, 3);
+  for (int i = 0; i < 5; ++i) {
+    const Eigen::VectorXd hidden =
+        (w1 * inputs.col(i) + theta.segment(6, 3)).unaryExpr([](double x) { return std::atan(x); });
+    EXPECT_NEAR(tape.output()(0, i), (w2 * hidden)(0) + theta[12], 1e-14);
+  }
+}
+
+TEST(Mlp, PutsTheOutputThroughTheArctanWhereAskedTo) {
+  const Net linear({3, 2}, Net::Output::kLinear), arctan({3, 2}, Net::Output::kArctan);
+  const Eigen::VectorXd theta = randomMatrix(linear.numParams(), 1, 1);
+  const Eigen::MatrixXd inputs = randomMatrix(3, 4, 2);
+  Net::Tape a, b;
+  linear.forward(theta.data(), inputs, &a);
+  arctan.forward(theta.data(), inputs, &b);
+  const Eigen::MatrixXd expected = a.output().array().atan();
+  EXPECT_TRUE(b.output().isApprox(expected, 1e-14));
+}
+
+TEST(Mlp, GradientInThetaMatchesDifferencesForEveryDepthAndOutput) {
+  for (const auto& widths : kDepths) {
+    for (Net::Output output : kOutputs) {
+      const Net net(widths, output);
+      const Eigen::MatrixXd inputs = randomMatrix(4, 7, 1), targets = randomMatrix(2, 7, 2);
+      const auto f = [&](const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
+        return squaredError(net, theta, inputs, targets, gradient, nullptr);
+      };
+      EXPECT_TRUE(testing::gradientMatches(f, randomMatrix(net.numParams(), 1, 3)))
+          << widths.size() - 1 << " layers, output " << static_cast<int>(output);
+    }
+  }
+}
+
+TEST(Mlp, GradientInTheInputsMatchesDifferencesForEveryDepthAndOutput) {
+  for (const auto& widths : kDepths) {
+    for (Net::Output output : kOutputs) {
+      const Net net(widths, output);
+      const Eigen::VectorXd theta = randomMatrix(net.numParams(), 1, 1);
+      const Eigen::MatrixXd targets = randomMatrix(2, 3, 2);
+      const auto f = [&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+        const Eigen::MatrixXd inputs = Eigen::Map<const Eigen::MatrixXd>(x.data(), 4, 3);
+        Eigen::MatrixXd d_inputs;
+        const double value = squaredError(net, theta, inputs, targets, nullptr, &d_inputs);
+        if (gradient != nullptr) *gradient = Eigen::Map<Eigen::VectorXd>(d_inputs.data(), 12);
+        return value;
+      };
+      EXPECT_TRUE(testing::gradientMatches(f, randomMatrix(12, 1, 3)))
+          << widths.size() - 1 << " layers, output " << static_cast<int>(output);
+    }
+  }
+}
+
+TEST(Mlp, BackwardAddsToTheGradientThatIsThere) {
+  const Net net({4, 5, 2}, Net::Output::kLinear);
+  const Eigen::VectorXd theta = randomMatrix(net.numParams(), 1, 1);
+  const Eigen::MatrixXd inputs = randomMatrix(4, 7, 2), d_outputs = randomMatrix(2, 7, 3);
+  Eigen::VectorXd alone = Eigen::VectorXd::Zero(theta.size());
+  Eigen::VectorXd added = Eigen::VectorXd::Constant(theta.size(), 10.0);
+  for (Eigen::VectorXd* gradient : {&alone, &added}) {
+    Net::Tape tape;
+    net.forward(theta.data(), inputs, &tape);
+    net.backward(theta.data(), &tape, d_outputs, gradient->data(), nullptr);
+  }
+  EXPECT_TRUE(added.isApprox(alone.array().matrix() + Eigen::VectorXd::Constant(theta.size(), 10.0),
+                             1e-12));
+}
+
+TEST(Mlp, ATapeServesBatchesThatShrinkAndGrow) {
+  const Net net({4, 5, 2}, Net::Output::kArctan);
+  const Eigen::VectorXd theta = randomMatrix(net.numParams(), 1, 1);
+  Net::Tape used;
+  for (int size : {0, 9, 3, 1, 0, 12}) {
+    const Eigen::MatrixXd inputs = randomMatrix(4, size, 10 + size);
+    const Eigen::MatrixXd d_outputs = randomMatrix(2, size, 20 + size);
+    Eigen::VectorXd d_theta[2];
+    Eigen::MatrixXd output[2], d_inputs[2];
+    Net::Tape fresh;
+    Net::Tape* const tapes[] = {&used, &fresh};
+    for (int i = 0; i < 2; ++i) {
+      d_theta[i] = Eigen::VectorXd::Zero(theta.size());
+      net.forward(theta.data(), inputs, tapes[i]);
+      output[i] = tapes[i]->output();
+      net.backward(theta.data(), tapes[i], d_outputs, d_theta[i].data(), &d_inputs[i]);
+    }
+    EXPECT_EQ(output[0].cols(), size);
+    EXPECT_TRUE(output[0] == output[1] && d_theta[0] == d_theta[1] && d_inputs[0] == d_inputs[1])
+        << size << " samples";
+  }
+}
+
+TEST(Mlp, ATapeKeepsItsMemoryWhenTheBatchShrinks) {
+  const Net net({4, 5, 2}, Net::Output::kLinear);
+  const Eigen::VectorXd theta = randomMatrix(net.numParams(), 1, 1);
+  Net::Tape tape;
+  net.forward(theta.data(), randomMatrix(4, 9, 2), &tape);
+  const double* const before = tape.activations[1].data();
+  net.forward(theta.data(), randomMatrix(4, 3, 3), &tape);
+  net.forward(theta.data(), randomMatrix(4, 9, 4), &tape);
+  EXPECT_EQ(tape.activations[1].data(), before);
+}
+
+TEST(Mlp, SinglePrecisionAgreesWithDouble) {
+  const Mlp<float> single({4, 6, 2}, Mlp<float>::Output::kLinear);
+  const Net net({4, 6, 2}, Net::Output::kLinear);
+  const Eigen::VectorXd theta = randomMatrix(net.numParams(), 1, 1);
+  const Eigen::VectorXf theta_single = theta.cast<float>();
+  const Eigen::MatrixXd inputs = randomMatrix(4, 7, 2);
+  Net::Tape tape;
+  Mlp<float>::Tape tape_single;
+  net.forward(theta.data(), inputs, &tape);
+  single.forward(theta_single.data(), inputs.cast<float>(), &tape_single);
+  EXPECT_TRUE(tape_single.output().cast<double>().isApprox(tape.output(), 1e-5));
+}
+
+TEST(Mlp, RandomWeightsHaveTheSpreadOfTheirFanInAndNoBias) {
+  const Net net({400, 50, 3}, Net::Output::kLinear);
+  Eigen::VectorXd theta(net.numParams());
+  std::mt19937_64 rng(1);
+  randomise(net, 2.0, &rng, theta.data());
+  const double spread = std::sqrt(net.weights(theta.data(), 0).array().square().mean());
+  EXPECT_NEAR(spread, 2.0 / 20.0, 0.002);
+  EXPECT_EQ(net.biases(theta.data(), 0).norm(), 0.0);
+  EXPECT_EQ(net.biases(theta.data(), 1).norm(), 0.0);
+}
+
+TEST(Mlp, RefusesShapesThatAreNoNetwork) {
+  EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>([] { Net({4}, Net::Output::kLinear); },
+                                                           {"an input and an output width"}));
+  EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
+      [] {
+        Net({4, 0, 2}, Net::Output::kLinear);
+      },
+      {">= 1", "got 0"}));
+}
+
+TEST(PredictionModel, LaysOutItsRegressorNewestFirst) {
+  ModelOptions options;
+  options.feature_dim = 3;
+  options.order = 4;
+  const PredictionModel<double> f(options, /*torque_dim=*/2);
+  EXPECT_EQ(f.regressorDim(), 4 * (3 + 2));
+  EXPECT_EQ(f.featureRow(0), 0);
+  EXPECT_EQ(f.torqueRow(0), 3);
+  EXPECT_EQ(f.featureRow(1), 5);
+  EXPECT_EQ(f.torqueRow(3), 18);
+}
+
+TEST(PredictionModel, OfThePaperIsA642Network) {
+  const PredictionModel<double> f(ModelOptions{}, /*torque_dim=*/1);
+  EXPECT_EQ(f.network().widths(), (std::vector<int>{6, 4, 2}));
+}
+
+}  // namespace
+}  // namespace ddm

@@ -1,0 +1,112 @@
+// Tests of the configuration: the manual and the defaults say the same.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_bag_io/model_config.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+#include <stdexcept>
+
+#include "ddm_model/testing/expect_error.h"
+#include "trial_recorder.h"
+
+namespace ddm {
+namespace {
+
+using testing::throwsNaming;
+
+std::set<std::string> keysOf(const YAML::Node& map) {
+  std::set<std::string> keys;
+  for (const auto& entry : map) keys.insert(entry.first.as<std::string>());
+  return keys;
+}
+
+/// Whether the manual's block has each key of the struct, no other, and the struct's defaults.
+template <class Options>
+::testing::AssertionResult manualEqualsDefaults(const std::string& block) {
+  const YAML::Node manual = YAML::LoadFile(DDM_MODEL_MANUAL)[block];
+  const YAML::Node defaults = toYaml(Options());
+  if (!manual.IsMap() || keysOf(manual) != keysOf(defaults)) {
+    return ::testing::AssertionFailure() << "keys differ: the manual has\n"
+                                         << manual << "\nthe struct\n"
+                                         << defaults;
+  }
+  ParamReader reader = ParamReader::fromFiles({DDM_MODEL_MANUAL});
+  const std::string read = YAML::Dump(toYaml(reader.template read<Options>(block)));
+  if (read != YAML::Dump(defaults)) {
+    return ::testing::AssertionFailure() << "values differ: the manual has\n"
+                                         << read << "\nthe struct\n"
+                                         << defaults;
+  }
+  return ::testing::AssertionSuccess();
+}
+
+TEST(ModelManual, HasTheKeysAndDefaultsOfEachBlock) {
+  EXPECT_TRUE(manualEqualsDefaults<ImageOptions>("image"));
+  EXPECT_TRUE(manualEqualsDefaults<ModelOptions>("model"));
+  EXPECT_TRUE(manualEqualsDefaults<TrainingOptions>("training"));
+  EXPECT_TRUE(manualEqualsDefaults<BagOptions>("data_set"));
+  EXPECT_TRUE(manualEqualsDefaults<RecorderOptions>("recorder"));
+}
+
+TEST(ModelManual, HasNoOtherBlock) {
+  EXPECT_EQ(keysOf(YAML::LoadFile(DDM_MODEL_MANUAL)),
+            (std::set<std::string>{"image", "model", "training", "data_set", "recorder"}));
+}
+
+TEST(ModelManual, IsAValidConfiguration) {
+  ParamReader reader = ParamReader::fromFiles({DDM_MODEL_MANUAL});
+  readModelConfig(&reader);
+  reader.read<RecorderOptions>("recorder");
+  EXPECT_NO_THROW(reader.requireValid());
+}
+
+TEST(ModelConfig, ItsTextReadsBackAsTheSameConfiguration) {
+  ModelConfig config;
+  config.image.size = 33;
+  config.model.encoder_widths = {};
+  config.model.max_torque = 0.1 + 0.2;
+  config.training.solver = "bfgs";
+  config.data_set.goal_topic = "/aim";
+  ParamReader reader(YAML::Load(toText(config)));
+  EXPECT_EQ(toText(readModelConfig(&reader)), toText(config));
+  EXPECT_NO_THROW(reader.requireValid());
+}
+
+TEST(ModelConfig, ReportsTheProblemsOfAllBlocksAtOnce) {
+  ParamReader reader(YAML::Load(
+      "{image: {size: 0}, model: {ordre: 3}, training: {solver: 7}, data_set: {goal_topic: ''}}"));
+  readModelConfig(&reader);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [&] { reader.requireValid(); },
+      {"image/size", "model/ordre", "training/solver", "data_set/goal_topic"}));
+}
+
+TEST(BagOptions, RefusesTopicsWithoutAName) {
+  EXPECT_TRUE(BagOptions().problems().empty());
+  for (std::string BagOptions::*topic :
+       {&BagOptions::image_topic, &BagOptions::torque_topic, &BagOptions::goal_topic}) {
+    for (const char* bad : {"", "/", "camera/"}) {
+      BagOptions options;
+      options.*topic = bad;
+      ASSERT_EQ(options.problems().size(), 1U) << bad;
+      EXPECT_NE(options.problems().front().find("got '" + std::string(bad) + "'"),
+                std::string::npos);
+    }
+  }
+}
+
+TEST(RecorderOptions, RefusesATimeoutThatIsNone) {
+  EXPECT_TRUE(RecorderOptions().problems().empty());
+  for (double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
+                     std::numeric_limits<double>::infinity()}) {
+    RecorderOptions options;
+    options.timeout = bad;
+    ASSERT_EQ(options.problems().size(), 1U) << bad;
+    EXPECT_EQ(options.problems().front().rfind("recorder/timeout must be > 0, got ", 0), 0U);
+  }
+}
+
+}  // namespace
+}  // namespace ddm

@@ -1,0 +1,183 @@
+// Tests of the model file: every byte comes back, and no damage goes unseen.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/model_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+
+#include "ddm_model/testing/expect_error.h"
+#include "ddm_model/testing/temp_folder.h"
+#include "toy_data.h"
+
+namespace ddm {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::throwsNaming;
+using testing::toyModel;
+
+// Layout: magic (8 bytes), version (4), size of the content (8), CRC-32 of the content (4).
+constexpr size_t kVersionAt = 8;
+constexpr size_t kChecksumAt = 20;
+constexpr size_t kContentAt = 24;
+
+::testing::AssertionResult isRefused(const std::string& bytes,
+                                     const std::vector<std::string>& parts = {}) {
+  std::vector<std::string> all = {"trial_007.model"};
+  all.insert(all.end(), parts.begin(), parts.end());
+  return throwsNaming<std::runtime_error>([&] { deserialiseModel(bytes, "trial_007.model"); }, all);
+}
+
+/// The bytes with a checksum that fits whatever their content is now.
+std::string sealed(std::string bytes) {
+  const auto crc =
+      static_cast<std::uint32_t>(std::stoul(checksum(bytes.substr(kContentAt)), nullptr, 16));
+  std::memcpy(&bytes[kChecksumAt], &crc, sizeof(crc));
+  return bytes;
+}
+
+TEST(ModelFile, ComesBackBitForBit) {
+  for (bool with_goal : {true, false}) {
+    const Ddm model = toyModel(with_goal);
+    const std::string bytes = serialiseModel(model);
+    const Ddm back = deserialiseModel(bytes, "memory");
+    EXPECT_EQ(serialiseModel(back), bytes);
+    EXPECT_EQ(back.theta(), model.theta());
+    EXPECT_EQ(back.pca().basis, model.pca().basis);
+    EXPECT_EQ(back.pca().variance, model.pca().variance);
+    EXPECT_EQ(back.goal(), model.goal());
+    EXPECT_EQ(back.info().seed, model.info().seed);
+    EXPECT_EQ(back.info().trial, 7U);
+    EXPECT_EQ(back.info().frames, 800U);
+    EXPECT_EQ(back.info().v_p, model.info().v_p);
+    EXPECT_EQ(back.info().config, model.info().config);
+    EXPECT_EQ(back.options().encoder_widths, model.options().encoder_widths);
+    EXPECT_EQ(back.options().max_torque, model.options().max_torque);
+    EXPECT_EQ(back.encode(testing::toyImage(0.5)), model.encode(testing::toyImage(0.5)));
+  }
+}
+
+TEST(ModelFile, CutShortAnywhereIsRefused) {
+  const std::string bytes = serialiseModel(toyModel());
+  for (size_t size = 0; size < bytes.size(); ++size) {
+    ASSERT_TRUE(isRefused(bytes.substr(0, size))) << size << " of " << bytes.size() << " bytes";
+  }
+  EXPECT_TRUE(isRefused(bytes.substr(0, bytes.size() - 1), {"cut short"}));
+}
+
+TEST(ModelFile, AnyByteThatIsDamagedIsNoticed) {
+  const std::string bytes = serialiseModel(toyModel());
+  for (size_t at = 0; at < bytes.size(); ++at) {
+    for (char flip : {char(0x01), char(0x80), char(0xff)}) {
+      std::string damaged = bytes;
+      damaged[at] ^= flip;
+      ASSERT_TRUE(isRefused(damaged)) << "byte " << at;
+    }
+  }
+}
+
+TEST(ModelFile, BytesAfterTheEndAreRefused) {
+  EXPECT_TRUE(isRefused(serialiseModel(toyModel()) + '\0', {"cut short or has grown"}));
+}
+
+TEST(ModelFile, AnotherVersionIsRefusedWithBothVersionsAndTheRemedy) {
+  std::string bytes = serialiseModel(toyModel());
+  bytes[kVersionAt] = 2;
+  EXPECT_TRUE(isRefused(bytes, {"format version 2", "reads version 1", "train it again"}));
+}
+
+TEST(ModelFile, WhatIsNoModelIsRefused) {
+  EXPECT_TRUE(isRefused("", {"not a DDM model"}));
+  EXPECT_TRUE(
+      isRefused("# a text file, and longer than the header of a model\n", {"not a DDM model"}));
+  EXPECT_TRUE(isRefused("DDMMODEL", {"cut short"}));
+}
+
+TEST(ModelFile, ContentThatMakesNoSenseIsRefusedThoughItsChecksumFits) {
+  const std::string bytes = serialiseModel(toyModel());
+  const auto withNumber = [&bytes](size_t at, std::int32_t value) {
+    std::string changed = bytes;
+    std::memcpy(&changed[kContentAt + at], &value, sizeof(value));
+    return sealed(changed);
+  };
+  EXPECT_EQ(withNumber(0, 6), bytes);  // pca_dim comes first: nothing has changed
+  EXPECT_TRUE(isRefused(withNumber(0, 7), {"makes no sense", "PCA"}));
+  EXPECT_TRUE(isRefused(withNumber(0, -1), {"makes no sense", "model/pca_dim"}));
+  EXPECT_TRUE(isRefused(withNumber(8, 0), {"makes no sense", "model/order"}));
+  EXPECT_TRUE(isRefused(withNumber(12, 0x7fffffff), {"makes no sense", "longer than the file"}));
+}
+
+TEST(ModelFile, NoContentWhateverItIsDoesMoreThanBeRefused) {
+  const std::string bytes = serialiseModel(toyModel());
+  int refused = 0;
+  for (size_t at = kContentAt; at < bytes.size(); ++at) {
+    for (char flip : {char(0x01), char(0x7f), char(0x80), char(0xff)}) {
+      std::string changed = bytes;
+      changed[at] ^= flip;
+      try {
+        deserialiseModel(sealed(changed), "trial_007.model");
+      } catch (const std::runtime_error&) {
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(refused, 50);
+}
+
+TEST(ModelFile, EqualModelsHaveEqualIdsAndOthersOtherIds) {
+  const std::string bytes = serialiseModel(toyModel());
+  EXPECT_EQ(modelId(bytes), modelId(serialiseModel(toyModel())));
+  EXPECT_NE(modelId(bytes), modelId(serialiseModel(toyModel(/*with_goal=*/false))));
+  EXPECT_EQ(modelId(bytes).size(), 8U);
+}
+
+TEST(ModelFile, ItsChecksumIsTheCommonCrc32) {
+  EXPECT_EQ(checksum("123456789"), "cbf43926");  // the check value of CRC-32
+  EXPECT_EQ(checksum(""), "00000000");
+}
+
+TEST(ModelFile, IsWrittenAndReadAgain) {
+  const testing::TempFolder folder;
+  const std::string path = folder.file("a.model"), bytes = serialiseModel(toyModel());
+  writeFileAtomically(path, "an older and much shorter file");
+  writeFileAtomically(path, bytes);
+  EXPECT_EQ(readFile(path), bytes);
+  EXPECT_FALSE(fs::exists(path + ".unfinished"));
+  writeFileAtomically(folder.file("empty"), "");
+  EXPECT_EQ(readFile(folder.file("empty")), "");
+}
+
+TEST(ModelFile, AWriteThatFailsLeavesTheOldFile) {
+  const testing::TempFolder folder;
+  const std::string path = folder.file("a.model");
+  writeFileAtomically(path, "old");
+  fs::create_directory(path + ".unfinished");  // cannot be opened for writing, not even by root
+  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { writeFileAtomically(path, "new"); },
+                                               {path, "directory"}));
+  EXPECT_EQ(readFile(path), "old");
+}
+
+TEST(ModelFile, ARenameThatFailsLeavesNothingBehind) {
+  const testing::TempFolder folder;
+  const std::string path = folder.file("a.model");
+  fs::create_directories(path + "/in_the_way");
+  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { writeFileAtomically(path, "new"); }, {path}));
+  EXPECT_FALSE(fs::exists(path + ".unfinished"));
+  EXPECT_TRUE(fs::exists(path + "/in_the_way"));
+}
+
+TEST(ModelFile, FilesThatCannotBeReadAreNamed) {
+  const testing::TempFolder folder;
+  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { readFile(folder.file("missing")); },
+                                               {folder.file("missing"), "No such file"}));
+  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { readFile(folder.file("")); },
+                                               {folder.file(""), "directory"}));
+  EXPECT_TRUE(throwsNaming<std::runtime_error>(
+      [&] { writeFileAtomically(folder.file("missing/a"), "new"); }, {folder.file("missing/a")}));
+}
+
+}  // namespace
+}  // namespace ddm

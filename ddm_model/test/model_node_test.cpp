@@ -1,0 +1,154 @@
+// Tests of model_node: the action `train` and the latched topic `model`.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <actionlib/client/simple_action_client.h>
+#include <ddm_msgs/Model.h>
+#include <ddm_msgs/TrainAction.h>
+#include <ddm_msgs/topics.h>
+#include <gtest/gtest.h>
+#include <ros/ros.h>
+#include <ros/topic.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <fstream>
+#include <mutex>
+
+#include "ddm_model/model_file.h"
+#include "ddm_model/testing/temp_folder.h"
+#include "subprocess.h"
+#include "toy_bags.h"
+
+namespace ddm {
+namespace {
+
+using Client = actionlib::SimpleActionClient<ddm_msgs::TrainAction>;
+using State = actionlib::SimpleClientGoalState;
+using testing::contains;
+
+const ros::Duration kLimit(20.0);
+
+class ModelNodeTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    testing::writeTrial(folder_.file("a.bag"), testing::toyTrial(30, 1));
+    testing::writeTrial(folder_.file("b.bag"), testing::toyTrial(30, 2));
+    ASSERT_TRUE(client_.waitForServer(kLimit));
+  }
+
+  ddm_msgs::TrainGoal goal(const std::vector<std::string>& bags, std::uint64_t seed = 1) const {
+    ddm_msgs::TrainGoal goal;
+    for (const std::string& bag : bags) goal.bags.push_back(folder_.file(bag));
+    goal.seed = seed;
+    goal.trial = 4;
+    return goal;
+  }
+
+  const testing::TempFolder folder_;
+  Client client_{topics::kTrain, /*spin_thread=*/true};
+};
+
+TEST_F(ModelNodeTest, TrainsAndPublishesTheWholeModelLatched) {
+  ASSERT_EQ(client_.sendGoalAndWait(goal({"a.bag", "b.bag"}), kLimit), State::SUCCEEDED);
+  const auto result = client_.getResult();
+  // Subscribes after it was published.
+  const auto message = ros::topic::waitForMessage<ddm_msgs::Model>(topics::kModel, kLimit);
+  ASSERT_TRUE(message);
+  const std::string bytes(message->data.begin(), message->data.end());
+  EXPECT_EQ(message->id, modelId(bytes));
+  EXPECT_EQ(message->id, result->model_id);
+  const Ddm model = deserialiseModel(bytes, "topic model");
+  EXPECT_EQ(model.info().frames, 60U);
+  EXPECT_EQ(model.goal(), testing::toyImage(3.0));
+  EXPECT_EQ(message->frames, 60U);
+  EXPECT_EQ(message->seed, 1U);
+  EXPECT_EQ(message->trial, 4U);
+  EXPECT_EQ(message->image_size, 8U);
+  EXPECT_EQ(message->feature_dim, 2U);
+  EXPECT_EQ(message->torque_dim, 1U);
+  EXPECT_EQ(message->order, 2U);
+  EXPECT_EQ(message->v_r, model.info().v_r);
+  EXPECT_EQ(message->config_hash, checksum(model.info().config));
+  EXPECT_EQ(result->frames, 60U);
+  EXPECT_EQ(result->v_p, model.info().v_p);
+  EXPECT_GT(result->evaluations, 0U);
+  EXPECT_GT(result->train_time, 0.0);
+}
+
+TEST_F(ModelNodeTest, TheSameSeedGivesTheSameModel) {
+  std::vector<std::string> ids;
+  for (std::uint64_t seed : {1, 1, 2}) {
+    ASSERT_EQ(client_.sendGoalAndWait(goal({"a.bag"}, seed), kLimit), State::SUCCEEDED);
+    ids.push_back(client_.getResult()->model_id);
+  }
+  EXPECT_EQ(ids[0], ids[1]);
+  EXPECT_NE(ids[0], ids[2]);
+}
+
+TEST_F(ModelNodeTest, AbortsNamingABadBagAndGoesOn) {
+  std::ofstream(folder_.file("text.bag")) << "no bag at all\n";
+  for (const char* bad : {"missing.bag", "text.bag", "b.bag.active"}) {
+    EXPECT_EQ(client_.sendGoalAndWait(goal({"a.bag", bad}), kLimit), State::ABORTED) << bad;
+    EXPECT_TRUE(contains(client_.getState().getText(), folder_.file(bad)))
+        << client_.getState().getText();
+  }
+  EXPECT_EQ(client_.sendGoalAndWait(goal({"a.bag"}), kLimit), State::SUCCEEDED);
+}
+
+TEST_F(ModelNodeTest, AbortsWhereThereIsTooLittleToLearnFrom) {
+  EXPECT_EQ(client_.sendGoalAndWait(goal({}), kLimit), State::ABORTED);
+  EXPECT_TRUE(contains(client_.getState().getText(), "no bag was given"));
+  testing::writeTrial(folder_.file("short.bag"), testing::toyTrial(4, 1));
+  EXPECT_EQ(client_.sendGoalAndWait(goal({"short.bag"}), kLimit), State::ABORTED);
+  EXPECT_TRUE(contains(client_.getState().getText(), "model/pca_dim"));
+}
+
+TEST_F(ModelNodeTest, TellsItsProgressAndCanBePreempted) {
+  testing::writeTrial(folder_.file("long.bag"), testing::toyTrial(300, 1, 24));
+  Client slow("slow/train", /*spin_thread=*/true);
+  ASSERT_TRUE(slow.waitForServer(kLimit));
+  std::mutex mutex;
+  std::condition_variable arrived;
+  ddm_msgs::TrainFeedback latest;
+  bool any = false;
+  slow.sendGoal(goal({"long.bag"}), Client::SimpleDoneCallback(), Client::SimpleActiveCallback(),
+                [&](const ddm_msgs::TrainFeedbackConstPtr& feedback) {
+                  const std::lock_guard<std::mutex> lock(mutex);
+                  latest = *feedback;
+                  any = true;
+                  arrived.notify_all();
+                });
+  {
+    std::unique_lock<std::mutex> lock(mutex);
+    ASSERT_TRUE(arrived.wait_for(lock, std::chrono::seconds(20), [&] { return any; }));
+    EXPECT_GT(latest.v_r, 0.0);
+    EXPECT_GT(latest.v_p, 0.0);
+    EXPECT_GT(latest.gradient_norm, 0.0);
+    EXPECT_GE(latest.fraction_done, 0.0);
+    EXPECT_LE(latest.fraction_done, 1.0);
+  }
+  slow.cancelGoal();
+  ASSERT_TRUE(slow.waitForResult(kLimit));
+  EXPECT_EQ(slow.getState(), State::PREEMPTED);
+  EXPECT_EQ(slow.getResult()->model_id, "");
+}
+
+TEST_F(ModelNodeTest, RefusesToStartWithParametersThatAreWrong) {
+  ros::param::set("/wrong_model_node/training/max_iteratoins", 3);
+  ros::param::set("/wrong_model_node/model/order", 0);
+  const testing::Outcome outcome =
+      testing::run("timeout 20 " DDM_MODEL_NODE " __name:=wrong_model_node");
+  EXPECT_EQ(outcome.exit_code, 1);
+  const std::string text = outcome.out + outcome.err;
+  EXPECT_TRUE(contains(text, "training/max_iteratoins")) << text;
+  EXPECT_TRUE(contains(text, "model/order must lie in [1, 50], got 0")) << text;
+}
+
+}  // namespace
+}  // namespace ddm
+
+int main(int argc, char** argv) {
+  ::testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "model_node_test");
+  const ros::NodeHandle nh;  // keeps the node alive between the tests
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,286 @@
+// Tests of the joint objective V_R + V_P: the formula, the gradient, the borders of pieces.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/objective.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "ddm_model/testing/expect_error.h"
+#include "ddm_model/testing/gradient_check.h"
+#include "random_matrix.h"
+
+namespace ddm {
+namespace {
+
+using testing::randomMatrix;
+
+ModelOptions tinyOptions() {
+  ModelOptions options;
+  options.pca_dim = 4;
+  options.encoder_widths = {3};
+  options.decoder_widths = {3};
+  options.predictor_widths = {3};
+  return options;
+}
+
+/// Random scores and torques; frames that are in no piece are allowed.
+TrainingData<double> randomData(int pca_dim, int torque_dim, int num_frames, bool with_goal,
+                                std::vector<Piece> pieces) {
+  TrainingData<double> data;
+  data.scores = randomMatrix(pca_dim, num_frames + (with_goal ? 1 : 0), 1);
+  data.torques = randomMatrix(torque_dim, num_frames, 2);
+  data.pieces = std::move(pieces);
+  return data;
+}
+
+Eigen::VectorXd applied(const Mlp<double>& net, const double* theta, const Eigen::VectorXd& input) {
+  Mlp<double>::Tape tape;
+  net.forward(theta, input, &tape);
+  return tape.output();
+}
+
+/// V_R and V_P straight from the formula: one image at a time, piece by piece.
+JointObjective<double>::Value slowValue(const Networks<double>& nets,
+                                        const TrainingData<double>& data,
+                                        const Eigen::VectorXd& theta) {
+  const auto z = [&](Eigen::Index t) {
+    return applied(nets.encoder(), nets.encoderOf(theta.data()), data.scores.col(t));
+  };
+  const auto decoded = [&](const Eigen::VectorXd& feature) {
+    return applied(nets.decoder(), nets.decoderOf(theta.data()), feature);
+  };
+  JointObjective<double>::Value value;
+  for (Eigen::Index t = 0; t < data.scores.cols(); ++t) {
+    value.v_r += (data.scores.col(t) - decoded(z(t))).squaredNorm();
+  }
+  const int n = nets.prediction_model.order();
+  for (const Piece& piece : data.pieces) {
+    for (Eigen::Index t = piece.begin + n - 1; t + 1 < piece.begin + piece.size; ++t) {
+      Eigen::VectorXd h(0);
+      for (int lag = 0; lag < n; ++lag) {
+        const Eigen::VectorXd feature = z(t - lag), torque = data.torques.col(t - lag);
+        Eigen::VectorXd longer(h.size() + feature.size() + torque.size());
+        longer << h, feature, torque;
+        h = longer;
+      }
+      const Eigen::VectorXd predicted = applied(nets.f(), nets.predictorOf(theta.data()), h);
+      value.v_p += (data.scores.col(t + 1) - decoded(predicted)).squaredNorm();
+    }
+  }
+  return value;
+}
+
+/// V_R + V_P as a function of theta.
+testing::DifferentiableFunction jointFunction(JointObjective<double>* objective) {
+  return [objective](const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
+    const auto value = objective->evaluate(theta, gradient);
+    return value.v_r + value.v_p;
+  };
+}
+
+TEST(JointObjective, EqualsASlowComputationFromTheFormula) {
+  for (int order : {1, 2, 3}) {
+    for (bool with_goal : {false, true}) {
+      ModelOptions options = tinyOptions();
+      options.order = order;
+      const Networks<double> nets(options, 2);
+      const auto data = randomData(4, 2, 20, with_goal, {{0, 7}, {7, 2}, {9, 1}, {10, 10}});
+      JointObjective<double> objective(nets, data);
+      const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
+      const auto value = objective.evaluate(theta, nullptr);
+      const auto slow = slowValue(nets, data, theta);
+      EXPECT_NEAR(value.v_r, slow.v_r, 1e-11 * slow.v_r) << "order " << order;
+      EXPECT_NEAR(value.v_p, slow.v_p, 1e-11 * slow.v_p) << "order " << order;
+    }
+  }
+}
+
+TEST(JointObjective, EqualsTheFormulaAcrossTheBordersOfItsBlocks) {
+  const Networks<double> nets(tinyOptions(), 1);
+  const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
+  for (int num_frames : {127, 128, 129, 256, 300}) {
+    const auto data =
+        randomData(4, 1, num_frames, true, {{0, 126}, {126, Eigen::Index(num_frames - 126)}});
+    JointObjective<double> objective(nets, data);
+    const auto value = objective.evaluate(theta, nullptr);
+    const auto slow = slowValue(nets, data, theta);
+    EXPECT_NEAR(value.v_r, slow.v_r, 1e-11 * slow.v_r) << num_frames << " frames";
+    EXPECT_NEAR(value.v_p, slow.v_p, 1e-11 * slow.v_p) << num_frames << " frames";
+  }
+}
+
+TEST(JointObjective, GradientMatchesDifferencesForEveryParameter) {
+  for (int order : {1, 2, 3}) {
+    ModelOptions options = tinyOptions();
+    options.order = order;
+    const Networks<double> nets(options, 2);
+    JointObjective<double> objective(nets,
+                                     randomData(4, 2, 16, true, {{0, 6}, {6, 2}, {8, 1}, {9, 7}}));
+    EXPECT_TRUE(
+        testing::gradientMatches(jointFunction(&objective), randomMatrix(nets.numParams(), 1, 3)))
+        << "order " << order;
+  }
+}
+
+TEST(JointObjective, GradientMatchesDifferencesAcrossTheBordersOfItsBlocks) {
+  const Networks<double> nets(tinyOptions(), 1);
+  JointObjective<double> objective(nets, randomData(4, 1, 131, true, {{0, 130}, {130, 1}}));
+  EXPECT_TRUE(
+      testing::gradientMatches(jointFunction(&objective), randomMatrix(nets.numParams(), 1, 3)));
+}
+
+/// One objective over the data, and one in which every image counts twice but every prediction
+/// once: with V_R + V_P and 2 V_R + V_P the gradient of each term can be told apart.
+class SingleTerms : public ::testing::Test {
+ protected:
+  static TrainingData<double> imagesTwice(TrainingData<double> data) {
+    const Eigen::MatrixXd once = data.scores;
+    data.scores.resize(once.rows(), 2 * once.cols());
+    data.scores << once, once;
+    return data;
+  }
+
+  const TrainingData<double> data_ = randomData(4, 1, 12, false, {{0, 5}, {5, 7}});
+  const Networks<double> nets_{tinyOptions(), 1};
+  JointObjective<double> once_{nets_, data_};
+  JointObjective<double> twice_{nets_, imagesTwice(data_)};
+  const Eigen::VectorXd theta_ = randomMatrix(nets_.numParams(), 1, 3);
+};
+
+TEST_F(SingleTerms, GradientOfTheReconstructionErrorMatchesDifferences) {
+  const auto v_r = [this](const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
+    if (gradient != nullptr) {
+      Eigen::VectorXd of_once;
+      once_.evaluate(theta, &of_once);
+      twice_.evaluate(theta, gradient);
+      *gradient -= of_once;
+    }
+    return once_.evaluate(theta, nullptr).v_r;
+  };
+  EXPECT_TRUE(testing::gradientMatches(v_r, theta_));
+}
+
+TEST_F(SingleTerms, GradientOfThePredictionErrorMatchesDifferences) {
+  const auto v_p = [this](const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
+    if (gradient != nullptr) {
+      Eigen::VectorXd of_twice;
+      once_.evaluate(theta, gradient);
+      twice_.evaluate(theta, &of_twice);
+      *gradient = 2.0 * *gradient - of_twice;
+    }
+    return once_.evaluate(theta, nullptr).v_p;
+  };
+  EXPECT_TRUE(testing::gradientMatches(v_p, theta_));
+}
+
+TEST(JointObjective, DirectionalDerivativeMatchesAtTheSizeOfThePaper) {
+  const Networks<double> nets(ModelOptions{}, 1);
+  JointObjective<double> objective(
+      nets, randomData(50, 1, 400, true, {{0, 100}, {100, 100}, {200, 200}}));
+  const Eigen::VectorXd theta = 0.2 * randomMatrix(nets.numParams(), 1, 3);
+  Eigen::VectorXd gradient;
+  objective.evaluate(theta, &gradient);
+  for (unsigned seed : {4U, 5U}) {
+    const Eigen::VectorXd direction =
+        gradient.normalized() + randomMatrix(nets.numParams(), 1, seed).normalized();
+    EXPECT_TRUE(testing::directionalDerivativeMatches(jointFunction(&objective), theta, direction));
+  }
+}
+
+TEST(JointObjective, SinglePrecisionAgreesWithDouble) {
+  const Networks<double> nets(tinyOptions(), 1);
+  const Networks<float> nets_single(tinyOptions(), 1);
+  const auto data = randomData(4, 1, 200, true, {{0, 200}});
+  TrainingData<float> single{data.scores.cast<float>(), data.torques.cast<float>(), data.pieces};
+  const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
+  Eigen::VectorXd gradient;
+  Eigen::VectorXf gradient_single;
+  const auto value = JointObjective<double>(nets, data).evaluate(theta, &gradient);
+  const auto value_single =
+      JointObjective<float>(nets_single, single).evaluate(theta.cast<float>(), &gradient_single);
+  EXPECT_NEAR(value_single.v_r / value.v_r, 1.0, 1e-5);
+  EXPECT_NEAR(value_single.v_p / value.v_p, 1.0, 1e-5);
+  EXPECT_TRUE(gradient_single.cast<double>().isApprox(gradient, 1e-4));
+}
+
+TEST(JointObjective, PredictsOnlyFramesWithAFullHistoryInTheirPiece) {
+  const Networks<double> nets(tinyOptions(), 1);  // n = 2
+  const auto predictions = [&nets](std::vector<Piece> pieces) {
+    return JointObjective<double>(nets, randomData(4, 1, 10, true, std::move(pieces)))
+        .numPredictions();
+  };
+  EXPECT_EQ(predictions({{0, 10}}), 8);
+  EXPECT_EQ(predictions({{0, 5}, {5, 5}}), 6);
+  EXPECT_EQ(predictions({{0, 2}, {2, 1}, {3, 3}, {6, 2}}), 1);
+}
+
+TEST(JointObjective, NoPredictionStraddlesTwoPieces) {
+  const Networks<double> nets(tinyOptions(), 1);
+  const auto data = randomData(4, 1, 10, false, {{0, 5}, {5, 5}});
+  auto changed = data;  // the last torque of a piece answers an image that has no successor
+  changed.torques(0, 4) += 100.0;
+  changed.torques(0, 9) += 100.0;
+  auto straddling = changed;
+  straddling.pieces = {{0, 10}};
+  auto joined = data;
+  joined.pieces = {{0, 10}};
+  const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
+  const auto v_p = [&](const TrainingData<double>& with) {
+    return JointObjective<double>(nets, with).evaluate(theta, nullptr).v_p;
+  };
+  EXPECT_EQ(v_p(data), v_p(changed));
+  EXPECT_NE(v_p(joined), v_p(straddling));  // the check above can fail
+}
+
+TEST(JointObjective, TheOrderOfThePiecesDoesNotMatter) {
+  const Networks<double> nets(tinyOptions(), 1);
+  const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
+  const auto value = [&](std::vector<Piece> pieces) {
+    JointObjective<double> objective(nets, randomData(4, 1, 200, false, std::move(pieces)));
+    return objective.evaluate(theta, nullptr).v_p;
+  };
+  EXPECT_EQ(value({{0, 90}, {90, 110}}), value({{90, 110}, {0, 90}}));
+}
+
+TEST(JointObjective, CopesWithBlocksInWhichNothingIsPredicted) {
+  const Networks<double> nets(tinyOptions(), 1);
+  const auto data = randomData(4, 1, 300, true, {{0, 1}, {290, 10}});
+  JointObjective<double> objective(nets, data);
+  const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
+  Eigen::VectorXd gradient;
+  const auto value = objective.evaluate(theta, &gradient);
+  EXPECT_NEAR(value.v_p, slowValue(nets, data, theta).v_p, 1e-11 * value.v_p);
+  EXPECT_TRUE(testing::directionalDerivativeMatches(jointFunction(&objective), theta, gradient));
+}
+
+TEST(JointObjective, ItsWeightMakesAUselessModelCostAboutOne) {
+  const Networks<double> nets(tinyOptions(), 1);
+  JointObjective<double> objective(nets, randomData(4, 1, 50, true, {{0, 50}}));
+  const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(nets.numParams());
+  EXPECT_NEAR(objective.weight() * objective.evaluate(nothing, nullptr).v_r, 1.0, 1e-12);
+}
+
+TEST(JointObjective, RefusesDataInWhichNoPieceIsLongEnough) {
+  const Networks<double> nets(tinyOptions(), 1);
+  EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
+      [&] {
+        JointObjective<double>(nets, randomData(4, 1, 6, true, {{0, 2}, {2, 2}, {4, 1}}));
+      },
+      {"no prediction can be learned", "model/order = 2"}));
+}
+
+TEST(JointObjective, RefusesDataOfAnotherShape) {
+  const Networks<double> nets(tinyOptions(), 1);
+  const auto refuses = [&nets](const TrainingData<double>& data) {
+    return testing::throwsNaming<std::invalid_argument>([&] { JointObjective<double>(nets, data); },
+                                                        {"objective"});
+  };
+  EXPECT_TRUE(refuses(randomData(5, 1, 10, true, {{0, 10}})));  // scores
+  EXPECT_TRUE(refuses(randomData(4, 2, 10, true, {{0, 10}})));  // torques
+  EXPECT_TRUE(refuses(randomData(4, 1, 10, true, {{0, 11}})));  // the goal is no frame
+  EXPECT_TRUE(refuses(randomData(4, 1, 10, true, {{-1, 5}})));
+}
+
+}  // namespace
+}  // namespace ddm

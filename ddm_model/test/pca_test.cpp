@@ -1,0 +1,163 @@
+// Tests of the principal component analysis against an exact singular value decomposition.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/pca.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/SVD>
+#include <stdexcept>
+
+#include "ddm_model/testing/expect_error.h"
+#include "toy_data.h"
+
+namespace ddm {
+namespace {
+
+using testing::throwsNaming;
+
+/// Images of noise: no component stands out, the hardest case for an iteration.
+DataSet noise(int num_frames, int size, unsigned seed) {
+  std::mt19937_64 rng(seed);
+  std::uniform_int_distribution<int> grey(0, 255);
+  DataSet data(size, 1);
+  for (int t = 0; t < num_frames; ++t) {
+    Grey image(static_cast<size_t>(size) * size);
+    for (std::uint8_t& k : image) k = static_cast<std::uint8_t>(grey(rng));
+    data.append(image, Eigen::VectorXd::Zero(1), false);
+  }
+  return data;
+}
+
+/// All images with the goal last, minus their mean, in grey values.  [D x M]
+Eigen::MatrixXd centredImages(const DataSet& data) {
+  Eigen::MatrixXd images(data.numPixels(), data.numFrames() + (data.hasGoal() ? 1 : 0));
+  images.leftCols(data.numFrames()) = data.pixels().cast<double>() / 255.0;
+  for (Eigen::Index i = 0; data.hasGoal() && i < data.numPixels(); ++i) {
+    images(i, data.numFrames()) = data.goal()[i] / 255.0;
+  }
+  return images.colwise() - Eigen::VectorXd(images.rowwise().mean());
+}
+
+struct Exact {
+  Eigen::MatrixXd basis;
+  Eigen::VectorXd variance;
+};
+
+Exact exactPca(const DataSet& data, int dim) {
+  const Eigen::MatrixXd images = centredImages(data);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(images, Eigen::ComputeThinU);
+  return {svd.matrixU().leftCols(dim),
+          svd.singularValues().head(dim).array().square() / static_cast<double>(images.cols())};
+}
+
+/// Cosine of the largest angle between two subspaces of the same dimension.
+double smallestCosine(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return Eigen::JacobiSVD<Eigen::MatrixXd>(a.transpose() * b).singularValues().minCoeff();
+}
+
+TEST(Pca, FindsTheSubspaceAndVariancesOfTheExactDecomposition) {
+  DataSet data = testing::toyTrial(60, 1);
+  data.setGoal(testing::toyImage(3.0));
+  const Pca pca = fitPca(data, 6, 1.0);
+  const Exact exact = exactPca(data, 6);
+  EXPECT_GT(smallestCosine(pca.basis.cast<double>(), exact.basis), 1.0 - 1e-6);
+  for (int k = 0; k < 6; ++k) {
+    EXPECT_NEAR(pca.variance[k] / exact.variance[k], 1.0, 1e-4) << "component " << k;
+  }
+}
+
+TEST(Pca, IsExactWhereThereAreFewImages) {
+  const DataSet data = noise(12, 8, 1);  // the iterated subspace holds all of them
+  const Pca pca = fitPca(data, 6, 1.0);
+  const Exact exact = exactPca(data, 6);
+  EXPECT_GT(smallestCosine(pca.basis.cast<double>(), exact.basis), 1.0 - 1e-5);
+  EXPECT_TRUE(pca.variance.isApprox(exact.variance, 1e-5));
+}
+
+TEST(Pca, CapturesNearlyAllThatCanBeCapturedEvenOfNoise) {
+  const DataSet data = noise(200, 9, 1);
+  const Pca pca = fitPca(data, 10, 1.0);
+  EXPECT_NEAR(pca.variance.sum() / exactPca(data, 10).variance.sum(), 1.0, 1e-3);
+}
+
+TEST(Pca, ItsVariancesAreThoseOfTheScores) {
+  const DataSet data = testing::toyTrial(60, 1);
+  const Pca pca = fitPca(data, 6, 1.0);
+  const Eigen::MatrixXd scores = pca.project(data.pixels()).cast<double>() / pca.scale;
+  const Eigen::VectorXd variance = scores.array().square().rowwise().mean();
+  EXPECT_TRUE(variance.isApprox(pca.variance, 1e-4));
+  EXPECT_LT(scores.rowwise().mean().norm(), 1e-5);
+}
+
+TEST(Pca, ItsBasisIsOrthonormalEvenIfTheImagesSpanLess) {
+  DataSet few_different(testing::kToySize, 1);
+  for (int t = 0; t < 20; ++t) {
+    few_different.append(testing::toyImage(t % 3), Eigen::VectorXd::Zero(1), false);
+  }
+  for (const DataSet& data : {testing::toyTrial(60, 1), few_different}) {
+    const Pca pca = fitPca(data, 6, 1.0);
+    const Eigen::MatrixXf gram = pca.basis.transpose() * pca.basis;
+    EXPECT_LT((gram - Eigen::MatrixXf::Identity(6, 6)).cwiseAbs().maxCoeff(), 1e-5F);
+    EXPECT_GE(pca.variance.minCoeff(), 0.0);
+  }
+}
+
+TEST(Pca, GivesTheLeadingScoreTheSpreadAskedFor) {
+  const DataSet data = testing::toyTrial(60, 1);
+  for (double score_std : {0.3, 1.0, 4.0}) {
+    const Eigen::VectorXf leading =
+        fitPca(data, 6, score_std).project(data.pixels()).row(0).transpose();
+    EXPECT_NEAR(std::sqrt(leading.array().square().mean()), score_std, 1e-4 * score_std);
+  }
+}
+
+TEST(Pca, ReconstructsAllImagesFromAsManyComponentsAsTheySpan) {
+  const DataSet data = noise(12, 8, 1);
+  const Pca pca = fitPca(data, 11, 2.0);
+  const Eigen::MatrixXf restored = pca.reconstruct(pca.project(data.pixels()));
+  const Eigen::MatrixXf images = data.pixels().cast<float>() / 255.0F;
+  EXPECT_LT((restored - images).cwiseAbs().maxCoeff(), 1e-4F);
+}
+
+TEST(Pca, TheGoalImageIsPartOfTheData) {
+  DataSet data = testing::toyTrial(60, 1);
+  const Pca without = fitPca(data, 6, 1.0);
+  data.setGoal(Grey(data.numPixels(), 255));
+  const Pca with = fitPca(data, 6, 1.0);
+  const auto error = [&data](const Pca& pca) {
+    const Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>> goal(
+        data.goal().data(), data.numPixels(), 1);
+    return (pca.reconstruct(pca.project(goal)).array() - 1.0F).matrix().norm();
+  };
+  EXPECT_LT(error(with), 0.2F * error(without));
+}
+
+TEST(Pca, IsDeterministic) {
+  const DataSet data = testing::toyTrial(60, 1);
+  const Pca a = fitPca(data, 6, 1.0), b = fitPca(data, 6, 1.0);
+  EXPECT_EQ(a.basis, b.basis);
+  EXPECT_EQ(a.variance, b.variance);
+  EXPECT_EQ(a.scale, b.scale);
+}
+
+TEST(Pca, RefusesTooFewImagesWithTheirNumberAndTheRemedy) {
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [] { fitPca(testing::toyTrial(6, 1), 6, 1.0); },
+      {"model/pca_dim = 6", "at least 7 images", "got 6", "lower model/pca_dim"}));
+  EXPECT_NO_THROW(fitPca(testing::toyTrial(7, 1), 6, 1.0));
+}
+
+TEST(Pca, RefusesMoreComponentsThanPixels) {
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([] { fitPca(noise(30, 4, 1), 17, 1.0); },
+                                                  {"model/pca_dim = 17", "16 pixels"}));
+}
+
+TEST(Pca, RefusesImagesThatAreAllTheSame) {
+  DataSet data(4, 1);
+  for (int t = 0; t < 10; ++t) data.append(Grey(16, 77), Eigen::VectorXd::Zero(1), false);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { fitPca(data, 3, 1.0); },
+                                                  {"all 10 images are the same"}));
+}
+
+}  // namespace
+}  // namespace ddm

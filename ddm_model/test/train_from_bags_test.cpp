@@ -1,0 +1,165 @@
+// Tests of train_from_bags as a user calls it: files in, files and exit code out.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "ddm_model/model_file.h"
+#include "ddm_model/testing/temp_folder.h"
+#include "subprocess.h"
+#include "toy_bags.h"
+
+namespace ddm {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::contains;
+using testing::Outcome;
+
+class TrainFromBags : public ::testing::Test {
+ protected:
+  TrainFromBags() {
+    testing::writeTrial(path("a.bag"), testing::toyTrial(30, 1));
+    testing::writeTrial(path("b.bag"), testing::toyTrial(30, 2));
+    testing::writeTrial(path("goalless.bag"), testing::toyTrial(30, 3), /*with_goal=*/false);
+    write("toy.yaml",
+          "image: {size: 8}\n"
+          "model: {pca_dim: 6, encoder_widths: [5], decoder_widths: [5]}\n"
+          "training: {max_iterations: 10}\n");
+  }
+
+  std::string path(const std::string& name) const { return folder_.file(name); }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(path(name)) << text;
+  }
+
+  /// Runs the tool in the folder of the test.
+  Outcome run(const std::string& arguments) const {
+    return testing::run("cd " + folder_.file("") + " && " + DDM_MODEL_TRAIN_FROM_BAGS + " " +
+                        arguments);
+  }
+  Outcome train(const std::string& arguments) const {
+    return run("--config toy.yaml --out new.model " + arguments);
+  }
+  Ddm model() const { return deserialiseModel(readFile(path("new.model")), "new.model"); }
+
+  const testing::TempFolder folder_;
+};
+
+TEST_F(TrainFromBags, WritesAModelOfAllBags) {
+  const Outcome outcome = train("--seed 7 a.bag b.bag");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(model().info().frames, 60U);
+  EXPECT_EQ(model().info().seed, 7U);
+  EXPECT_EQ(model().info().trial, 1U);
+  EXPECT_EQ(model().goal(), testing::toyImage(3.0));
+  EXPECT_TRUE(contains(outcome.out, "id: " + modelId(readFile(path("new.model"))))) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "frames: 60\npieces: 2\ngoal: yes\n")) << outcome.out;
+  EXPECT_TRUE(contains(model().info().config, "max_iterations: 10"));
+}
+
+TEST_F(TrainFromBags, GivesTheSameModelForTheSameSeedOnly) {
+  ASSERT_EQ(train("--seed 1 a.bag").exit_code, 0);
+  const std::string first = readFile(path("new.model"));
+  ASSERT_EQ(train("--seed 1 a.bag").exit_code, 0);
+  EXPECT_EQ(readFile(path("new.model")), first);
+  ASSERT_EQ(train("--seed 2 a.bag").exit_code, 0);
+  EXPECT_NE(readFile(path("new.model")), first);
+}
+
+TEST_F(TrainFromBags, LaterConfigurationFilesWin) {
+  write("more.yaml", "training: {max_iterations: 3}\nmpc: {horizon: 15}\n");
+  ASSERT_EQ(train("--config more.yaml a.bag").exit_code, 0);
+  EXPECT_TRUE(contains(model().info().config, "max_iterations: 3"));
+  EXPECT_TRUE(contains(model().info().config, "pca_dim: 6"));
+}
+
+TEST_F(TrainFromBags, TakesTheGoalFromAnImageFile) {
+  std::string pixels;
+  for (int i = 0; i < 64; ++i) pixels += std::to_string(3 * i) + " ";
+  write("goal.pgm", "P2\n8 8\n255\n" + pixels + "\n");
+  ASSERT_EQ(train("--goal goal.pgm a.bag").exit_code, 0);  // wins over that of the bag
+  ASSERT_TRUE(model().hasGoal());
+  EXPECT_EQ(model().goal()[10], 30);
+}
+
+TEST_F(TrainFromBags, SaysWhereThereIsNoGoal) {
+  const Outcome outcome = train("goalless.bag");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_TRUE(contains(outcome.err, "no --goal and no goal_image")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.out, "goal: none"));
+  EXPECT_FALSE(model().hasGoal());
+}
+
+TEST_F(TrainFromBags, RefusesAGoalThatIsNoImage) {
+  for (const char* goal : {"toy.yaml", "missing.png"}) {
+    const Outcome outcome = train(std::string("--goal ") + goal + " a.bag");
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_TRUE(contains(outcome.err, std::string("goal image ") + goal)) << outcome.err;
+  }
+  EXPECT_FALSE(fs::exists(path("new.model")));
+}
+
+TEST_F(TrainFromBags, ExplainsItself) {
+  const Outcome outcome = run("--help");
+  EXPECT_EQ(outcome.exit_code, 0);
+  for (const char* option : {"--config", "--goal", "--seed", "--out", "BAG"}) {
+    EXPECT_TRUE(contains(outcome.out, option)) << option;
+  }
+}
+
+TEST_F(TrainFromBags, RefusesACommandLineThatMakesNoSense) {
+  const auto refused = [this](const std::string& arguments, const std::string& part) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_TRUE(contains(outcome.err, part) && contains(outcome.err, "--help")) << outcome.err;
+  };
+  refused("--out new.model --sede 1 a.bag", "--sede");
+  refused("--out new.model --seed -1 a.bag", "--seed must be >= 0, got -1");
+  refused("--out new.model --seed one a.bag", "one");
+  refused("--out new.model --seed 1 --seed 2 a.bag", "--seed");
+  refused("--out new.model", "no BAG");
+  refused("a.bag", "--out FILE is missing");
+  EXPECT_FALSE(fs::exists(path("new.model")));
+}
+
+TEST_F(TrainFromBags, RefusesAConfigurationWithMistakesAndNamesThem) {
+  write("bad.yaml", "model: {pca_dmi: 6, order: 0}\ntraining: {layer_std: .nan}\n");
+  const Outcome outcome = train("--config bad.yaml a.bag");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_TRUE(contains(outcome.err, "model/pca_dmi")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "model/order must lie in [1, 50], got 0")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "training/layer_std must be > 0, got nan")) << outcome.err;
+  EXPECT_EQ(train("--config missing.yaml a.bag").exit_code, 1);
+  EXPECT_FALSE(fs::exists(path("new.model")));
+}
+
+TEST_F(TrainFromBags, RefusesBagsItCannotUseAndNamesThem) {
+  write("text.bag", "no bag at all\n");
+  for (const char* bag : {"missing.bag", "text.bag", "b.bag.active"}) {
+    const Outcome outcome = train(std::string("a.bag ") + bag);
+    EXPECT_EQ(outcome.exit_code, 1) << bag;
+    EXPECT_TRUE(contains(outcome.err, std::string("bag ") + bag)) << outcome.err;
+  }
+  EXPECT_FALSE(fs::exists(path("new.model")));
+}
+
+TEST_F(TrainFromBags, SaysWhenThereIsTooLittleToLearnFrom) {
+  testing::writeTrial(path("short.bag"), testing::toyTrial(4, 1));
+  const Outcome outcome = train("short.bag");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_TRUE(contains(outcome.err, "record more frames or lower model/pca_dim")) << outcome.err;
+}
+
+TEST_F(TrainFromBags, LeavesTheOldModelWhereTheNewOneCannotBeWritten) {
+  write("new.model", "old");
+  fs::create_directory(path("new.model.unfinished"));
+  const Outcome outcome = train("a.bag");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_TRUE(contains(outcome.err, "cannot write new.model")) << outcome.err;
+  EXPECT_EQ(readFile(path("new.model")), "old");
+}
+
+}  // namespace
+}  // namespace ddm

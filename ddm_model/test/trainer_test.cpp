@@ -1,0 +1,176 @@
+// Tests of the training: it learns, it repeats itself, it can be stopped, it refuses.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/trainer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "ddm_model/model_file.h"
+#include "ddm_model/objective.h"
+#include "ddm_model/solver_log.h"
+#include "ddm_model/testing/expect_error.h"
+#include "toy_data.h"
+
+namespace ddm {
+namespace {
+
+using testing::throwsNaming;
+
+class Trainer : public ::testing::Test {
+ protected:
+  Trainer() {
+    silenceSolverLog();
+    data_.append(testing::toyTrial(30, 2));
+    data_.setGoal(testing::toyImage(3.0));
+    training_.max_iterations = 30;
+    info_.seed = 5;
+    info_.trial = 1;
+    info_.config = "model: {}\n";
+  }
+
+  TrainingResult run(const TrainingCallback& callback = nullptr) const {
+    return train(data_, model_, training_, info_, callback);
+  }
+  std::string trainedBytes() const { return serialiseModel(run().model.value()); }
+
+  DataSet data_ = testing::toyTrial(30, 1);
+  ModelOptions model_ = testing::toyModelOptions();
+  TrainingOptions training_;
+  ModelInfo info_;
+};
+
+TEST_F(Trainer, LowersTheCostWithEachSolver) {
+  for (const char* solver : {"lbfgs", "bfgs"}) {
+    training_.solver = solver;
+    const TrainingResult result = run();
+    ASSERT_TRUE(result.model) << solver << ": " << result.message;
+    EXPECT_LT(result.final_cost, 0.5 * result.initial_cost) << solver;
+    EXPECT_GE(result.evaluations, result.iterations) << solver;
+    EXPECT_GT(result.seconds, 0.0) << solver;
+  }
+}
+
+TEST_F(Trainer, StopsAtTheIterationCap) {
+  training_.max_iterations = 3;
+  EXPECT_EQ(run().iterations, 3);
+}
+
+TEST_F(Trainer, StopsWhereTheCostHardlyFalls) {
+  training_.max_iterations = 500;
+  training_.function_tolerance = 0.1;
+  EXPECT_LT(run().iterations, 50);
+}
+
+TEST_F(Trainer, TellsTheModelWhereItComesFrom) {
+  const Ddm model = run().model.value();
+  EXPECT_EQ(model.info().seed, 5U);
+  EXPECT_EQ(model.info().trial, 1U);
+  EXPECT_EQ(model.info().frames, 60U);
+  EXPECT_EQ(model.info().config, info_.config);
+  EXPECT_EQ(model.goal(), data_.goal());
+  EXPECT_LE(model.goalFeature().cwiseAbs().maxCoeff(), std::acos(0.0));
+}
+
+TEST_F(Trainer, ReportsTheErrorsOfTheModelItReturns) {
+  const Ddm model = run().model.value();
+  TrainingData<double> data;
+  data.scores.resize(6, 61);
+  data.scores.leftCols(60) = model.pca().project(data_.pixels()).cast<double>();
+  data.scores.col(60) =
+      model.pca()
+          .project(Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>>(
+              data_.goal().data(), data_.numPixels(), 1))
+          .cast<double>();
+  data.torques = data_.torques() / model_.max_torque;
+  data.pieces = data_.pieces();
+  const Networks<double> nets(model_, 1);
+  const auto value = JointObjective<double>(nets, data).evaluate(model.theta(), nullptr);
+  const double grey_per_score = 1.0 / model.pca().scale;
+  EXPECT_NEAR(model.info().v_r / (value.v_r * grey_per_score * grey_per_score), 1.0, 1e-3);
+  EXPECT_NEAR(model.info().v_p / (value.v_p * grey_per_score * grey_per_score), 1.0, 1e-3);
+}
+
+TEST_F(Trainer, PredictsBetterThanStandingStill) {
+  training_.max_iterations = 200;
+  const Ddm model = run().model.value();
+  const PredictionModel<double>& f = model.predictionModel();
+  double predicted_error = 0.0, still_error = 0.0;
+  const DataSet fresh = testing::toyTrial(20, 3);
+  for (int t = 1; t + 1 < 20; ++t) {
+    const auto feature = [&](int at) {
+      const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1> y = fresh.pixels().col(at);
+      return model.encode(Grey(y.data(), y.data() + y.size()));
+    };
+    Eigen::VectorXd h(f.regressorDim());
+    for (int lag = 0; lag < 2; ++lag) {
+      h.segment(f.featureRow(lag), 2) = feature(t - lag);
+      h[f.torqueRow(lag)] = fresh.torques()(0, t - lag) / model_.max_torque;
+    }
+    Mlp<double>::Tape tape;
+    f.network().forward(model.thetaP(), h, &tape);
+    predicted_error += (tape.output() - feature(t + 1)).squaredNorm();
+    still_error += (feature(t) - feature(t + 1)).squaredNorm();
+  }
+  EXPECT_LT(predicted_error, 0.5 * still_error);
+}
+
+TEST_F(Trainer, SameSeedSameBytes) { EXPECT_EQ(trainedBytes(), trainedBytes()); }
+
+TEST_F(Trainer, AnotherSeedOrTrialGivesAnotherModel) {
+  const Eigen::VectorXd theta = run().model->theta();
+  info_.seed = 6;
+  EXPECT_NE(run().model->theta(), theta);
+  info_.seed = 5 + (1ULL << 32);  // the high bits count too
+  EXPECT_NE(run().model->theta(), theta);
+  info_.seed = 5;
+  info_.trial = 2;
+  EXPECT_NE(run().model->theta(), theta);
+}
+
+TEST_F(Trainer, TellsItsProgress) {
+  std::vector<TrainingProgress> told;
+  run([&told](const TrainingProgress& progress) {
+    told.push_back(progress);
+    return true;
+  });
+  ASSERT_GE(told.size(), 10U);
+  for (size_t i = 1; i < told.size(); ++i) EXPECT_EQ(told[i].iteration, told[i - 1].iteration + 1);
+  EXPECT_EQ(told.front().fraction_done, 0.0);
+  EXPECT_LE(told.back().fraction_done, 1.0);
+  EXPECT_LT(told.back().v_r + told.back().v_p, told.front().v_r + told.front().v_p);
+  EXPECT_GT(told.back().gradient_norm, 0.0);
+}
+
+TEST_F(Trainer, StopsWithoutAModelWhereTheCallbackSaysSo) {
+  int calls = 0;
+  const TrainingResult result = run([&calls](const TrainingProgress&) { return ++calls < 4; });
+  EXPECT_EQ(calls, 4);
+  EXPECT_FALSE(result.model);
+  EXPECT_EQ(result.message, "training was cancelled");
+}
+
+TEST_F(Trainer, RefusesTooLittleData) {
+  data_ = testing::toyTrial(5, 1);
+  EXPECT_TRUE(
+      throwsNaming<std::invalid_argument>([this] { run(); }, {"model/pca_dim = 6", "got 5"}));
+}
+
+TEST_F(Trainer, RefusesDataWithoutAPieceThatIsLongEnough) {
+  DataSet pieces(testing::kToySize, 1);
+  for (unsigned seed = 1; seed <= 5; ++seed) pieces.append(testing::toyTrial(2, seed));
+  data_ = pieces;
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { run(); },
+                                                  {"no prediction can be learned", "model/order"}));
+}
+
+TEST(InitialisationStream, IsFixedBySeedAndTrial) {
+  EXPECT_EQ(initialisationStream(1, 2)(), initialisationStream(1, 2)());
+  EXPECT_NE(initialisationStream(1, 2)(), initialisationStream(1, 3)());
+  EXPECT_NE(initialisationStream(1, 2)(), initialisationStream(2, 2)());
+  EXPECT_NE(initialisationStream(1, 2)(), initialisationStream(1 + (1ULL << 32), 2)());
+}
+
+}  // namespace
+}  // namespace ddm

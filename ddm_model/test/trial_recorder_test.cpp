@@ -1,0 +1,204 @@
+// Tests of trial_recorder: complete bags under their names, incomplete ones as *.active.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_msgs/StartRecording.h>
+#include <ddm_msgs/StopRecording.h>
+#include <ddm_msgs/topics.h>
+#include <gtest/gtest.h>
+#include <ros/ros.h>
+
+#include <filesystem>
+#include <future>
+
+#include "ddm_bag_io/bag_reader.h"
+#include "ddm_model/testing/temp_folder.h"
+#include "subprocess.h"
+#include "toy_bags.h"
+
+namespace ddm {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::contains;
+using testing::imageMessage;
+using testing::torqueMessage;
+using testing::toyImage;
+
+const ros::WallDuration kLimit(20.0);
+
+class TrialRecorderTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(ros::service::waitForService(topics::kStopRecording, ros::Duration(20.0)));
+    const ros::WallTime end = ros::WallTime::now() + kLimit;
+    const auto connected = [this] {
+      return image_pub_.getNumSubscribers() == 1 && torque_pub_.getNumSubscribers() == 1 &&
+             goal_pub_.getNumSubscribers() == 1;
+    };
+    while (!connected() && ros::WallTime::now() < end) ros::WallDuration(0.01).sleep();
+    ASSERT_TRUE(connected());
+  }
+
+  bool start(const std::string& path, double after = 0.0) {
+    ddm_msgs::StartRecording call;
+    call.request.path = path;
+    call.request.after = ros::Time(after);
+    EXPECT_TRUE(ros::service::call(topics::kStartRecording, call));
+    message_ = call.response.message;
+    return call.response.success;
+  }
+  static ddm_msgs::StopRecording::Response stop(std::uint32_t num_steps) {
+    ddm_msgs::StopRecording call;
+    call.request.num_steps = num_steps;
+    EXPECT_TRUE(ros::service::call(topics::kStopRecording, call));
+    return call.response;
+  }
+  void publishImage(int t) { image_pub_.publish(imageMessage(1.0 + 0.2 * t, toyImage(0.1 * t))); }
+  void publishTorque(int t) { torque_pub_.publish(torqueMessage(1.0 + 0.2 * t, {0.5 * t})); }
+  void publishFrames(int count) {
+    for (int t = 0; t < count; ++t) {
+      publishImage(t);
+      publishTorque(t);
+    }
+  }
+
+  const testing::TempFolder folder_;
+  const std::string path_ = folder_.file("trial.bag");
+  std::string message_;
+  ros::NodeHandle nh_;
+  ros::Publisher image_pub_ = nh_.advertise<sensor_msgs::Image>(topics::kImage, 1000);
+  ros::Publisher torque_pub_ = nh_.advertise<ddm_msgs::Torque>(topics::kTorque, 1000);
+  ros::Publisher goal_pub_ = nh_.advertise<sensor_msgs::Image>(topics::kGoalImage, 1, true);
+};
+
+TEST_F(TrialRecorderTest, RecordsATrialAndRenamesItsBag) {
+  ASSERT_TRUE(start(path_)) << message_;
+  EXPECT_TRUE(fs::exists(path_ + ".active"));
+  publishFrames(10);
+  const auto response = stop(10);
+  EXPECT_TRUE(response.success) << response.message;
+  EXPECT_EQ(response.images, 10U);
+  EXPECT_EQ(response.torques, 10U);
+  EXPECT_FALSE(fs::exists(path_ + ".active"));
+  const DataSet data = readBag(path_, testing::kToySize, BagOptions()).data;
+  EXPECT_EQ(data.numFrames(), 10);
+  EXPECT_EQ(data.pieces().size(), 1U);
+  EXPECT_EQ(data.torques()(0, 9), 4.5);
+}
+
+TEST_F(TrialRecorderTest, PutsTheGoalImageIntoEachBagOnceItHasSeenIt) {
+  goal_pub_.publish(imageMessage(0.0, toyImage(3.0)));
+  const auto recordedGoal = [this](const std::string& name) {
+    EXPECT_TRUE(start(folder_.file(name))) << message_;
+    publishFrames(3);
+    EXPECT_TRUE(stop(3).success);
+    return readBag(folder_.file(name), testing::kToySize, BagOptions()).data.goal();
+  };
+  const ros::WallTime end = ros::WallTime::now() + kLimit;
+  while (recordedGoal("early.bag") != toyImage(3.0)) ASSERT_LT(ros::WallTime::now(), end);
+  EXPECT_EQ(recordedGoal("next.bag"), toyImage(3.0));
+  EXPECT_EQ(recordedGoal("one_more.bag"), toyImage(3.0));
+}
+
+TEST_F(TrialRecorderTest, WaitsForATorqueThatIsLate) {
+  ASSERT_TRUE(start(path_)) << message_;
+  publishFrames(4);
+  publishImage(4);
+  auto stopping = std::async(std::launch::async, [] { return stop(5); });
+  publishTorque(4);
+  const auto response = stopping.get();
+  EXPECT_TRUE(response.success) << response.message;
+  EXPECT_EQ(response.torques, 5U);
+}
+
+TEST_F(TrialRecorderTest, RefusesATrialWithAMissingTorqueAndKeepsWhatThereIs) {
+  ASSERT_TRUE(start(path_)) << message_;
+  publishFrames(4);
+  publishImage(4);
+  const auto response = stop(5);
+  EXPECT_FALSE(response.success);
+  EXPECT_TRUE(contains(response.message, "of 5 images and torques")) << response.message;
+  EXPECT_TRUE(contains(response.message, "5 and 4, and 4 pairs")) << response.message;
+  EXPECT_FALSE(fs::exists(path_));
+  EXPECT_TRUE(fs::exists(path_ + ".active"));
+}
+
+TEST_F(TrialRecorderTest, AnImageAfterTheLastTorqueDoesNoHarm) {
+  ASSERT_TRUE(start(path_)) << message_;
+  publishFrames(4);
+  publishImage(4);
+  EXPECT_TRUE(stop(4).success);
+  EXPECT_EQ(readBag(path_, testing::kToySize, BagOptions()).data.numFrames(), 4);
+}
+
+TEST_F(TrialRecorderTest, LeavesOutMessagesOfAnEarlierTrial) {
+  ASSERT_TRUE(start(path_, /*after=*/1.3)) << message_;
+  publishFrames(6);  // at 1.0, 1.2, ..., 2.0 s
+  const auto response = stop(4);
+  EXPECT_TRUE(response.success) << response.message;
+  EXPECT_EQ(response.images, 4U);
+  EXPECT_EQ(response.torques, 4U);
+  EXPECT_EQ(readBag(path_, testing::kToySize, BagOptions()).data.torques()(0, 0), 1.0);
+}
+
+TEST_F(TrialRecorderTest, StopsWithWhateverThereIsWhereNoNumberIsDue) {
+  ASSERT_TRUE(start(path_)) << message_;
+  const auto response = stop(0);
+  EXPECT_TRUE(response.success) << response.message;
+  EXPECT_EQ(response.images, 0U);
+  EXPECT_TRUE(fs::exists(path_));
+}
+
+TEST_F(TrialRecorderTest, RefusesToStopWhatWasNotStarted) {
+  const auto response = stop(3);
+  EXPECT_FALSE(response.success);
+  EXPECT_TRUE(contains(response.message, "nothing is being recorded"));
+}
+
+TEST_F(TrialRecorderTest, RefusesAPathThatCannotBeWritten) {
+  const std::string nowhere = folder_.file("missing/trial.bag");
+  EXPECT_FALSE(start(nowhere));
+  EXPECT_TRUE(contains(message_, nowhere)) << message_;
+  EXPECT_FALSE(stop(0).success);  // and nothing is being recorded then
+}
+
+TEST_F(TrialRecorderTest, ASecondStartLeavesTheFirstBagActive) {
+  ASSERT_TRUE(start(path_)) << message_;
+  const std::string second = folder_.file("second.bag");
+  ASSERT_TRUE(start(second)) << message_;
+  publishFrames(3);
+  EXPECT_TRUE(stop(3).success);
+  EXPECT_TRUE(fs::exists(path_ + ".active"));
+  EXPECT_FALSE(fs::exists(path_));
+  EXPECT_EQ(readBag(second, testing::kToySize, BagOptions()).data.numFrames(), 3);
+}
+
+TEST_F(TrialRecorderTest, AStartEndsAStopThatStillWaits) {
+  ASSERT_TRUE(start(path_)) << message_;
+  auto stopping = std::async(std::launch::async, [] { return stop(5); });
+  EXPECT_FALSE(start(folder_.file("missing/trial.bag")));  // drops the recording, makes no other
+  const auto response = stopping.get();
+  EXPECT_FALSE(response.success);
+  EXPECT_FALSE(response.message.empty());
+  EXPECT_FALSE(stop(0).success);  // the node is alive and not recording
+}
+
+TEST_F(TrialRecorderTest, RefusesToStartWithParametersThatAreWrong) {
+  ros::param::set("/wrong_trial_recorder/recorder/timeot", 3.0);
+  ros::param::set("/wrong_trial_recorder/data_set/image_topic", "");
+  const testing::Outcome outcome =
+      testing::run("timeout 20 " DDM_MODEL_RECORDER " __name:=wrong_trial_recorder");
+  EXPECT_EQ(outcome.exit_code, 1);
+  const std::string text = outcome.out + outcome.err;
+  EXPECT_TRUE(contains(text, "recorder/timeot")) << text;
+  EXPECT_TRUE(contains(text, "data_set/image_topic")) << text;
+}
+
+}  // namespace
+}  // namespace ddm
+
+int main(int argc, char** argv) {
+  ::testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "trial_recorder_test");
+  const ros::NodeHandle nh;  // keeps the node alive between the tests
+  return RUN_ALL_TESTS();
+}

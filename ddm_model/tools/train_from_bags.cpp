@@ -1,0 +1,138 @@
+// train_from_bags: what model_node does, from the command line and without a master.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_bag_io/bag_cache.h>
+#include <ddm_bag_io/model_config.h>
+#include <ddm_model/model_file.h>
+#include <ddm_model/solver_log.h>
+#include <ddm_model/trainer.h>
+#include <ddm_msgs/image_codec.h>
+#include <ros/time.h>
+#include <sensor_msgs/Image.h>
+#include <unistd.h>
+
+#include <boost/program_options.hpp>
+#include <cstdlib>
+#include <iostream>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <vector>
+
+namespace po = boost::program_options;
+
+namespace {
+
+constexpr int kUsageError = 2;
+
+struct Arguments {
+  std::vector<std::string> configs;
+  std::string goal;
+  std::int64_t seed = 0;  // signed: -1 is to be refused, not to become a huge number
+  std::string out;
+  std::vector<std::string> bags;
+};
+
+/// @return false where --help was asked for and has been printed
+bool parse(int argc, char** argv, Arguments* arguments) {
+  po::options_description visible(
+      "Trains a deep dynamical model from recorded bags, without a ROS master.\n\n"
+      "usage: rosrun ddm_model train_from_bags [--config FILE]... [--goal IMAGE] [--seed N]\n"
+      "                                        --out FILE BAG...\n\noptions");
+  visible.add_options()("help,h", "show this text");
+  visible.add_options()("config", po::value(&arguments->configs)->composing(),
+                        "YAML file with blocks image, model, training, data_set; repeatable, later "
+                        "files win");
+  visible.add_options()("goal", po::value(&arguments->goal),
+                        "goal image; else the goal_image of the bags");
+  visible.add_options()("seed", po::value(&arguments->seed)->default_value(0),
+                        "seed of the initial parameters");
+  visible.add_options()("out", po::value(&arguments->out), "model file to write");
+  po::options_description all = visible;
+  all.add_options()("bag", po::value(&arguments->bags));
+  po::positional_options_description positional;
+  positional.add("bag", -1);
+  po::variables_map values;
+  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
+  po::notify(values);
+  if (values.count("help") > 0) {
+    std::cout << visible << "\n";
+    return false;
+  }
+  if (arguments->out.empty()) throw po::error("--out FILE is missing: say where the model goes");
+  if (arguments->seed < 0) {
+    throw po::error("--seed must be >= 0, got " + std::to_string(arguments->seed));
+  }
+  if (arguments->bags.empty()) throw po::error("no BAG was given: there is nothing to learn from");
+  return true;
+}
+
+ddm::Grey readGoal(const std::string& path, int image_size) {
+  const cv::Mat picture = cv::imread(path, cv::IMREAD_GRAYSCALE);
+  if (picture.empty()) {
+    throw std::runtime_error("goal image " + path + ": cannot be read as an image");
+  }
+  sensor_msgs::Image image;
+  image.width = picture.cols;
+  image.height = picture.rows;
+  image.encoding = "mono8";
+  image.step = static_cast<std::uint32_t>(picture.step);
+  image.data.assign(picture.datastart, picture.dataend);
+  return ddm::decodeImage(image, image_size);
+}
+
+bool showProgress(const ddm::TrainingProgress& progress) {
+  if (::isatty(STDERR_FILENO) != 0 && progress.iteration % 10 == 0) {
+    std::cerr << "\riteration " << progress.iteration << "  V_R " << progress.v_r << "  V_P "
+              << progress.v_p << "        " << std::flush;
+  }
+  return true;
+}
+
+int run(const Arguments& arguments) {
+  ddm::ParamReader params = ddm::ParamReader::fromFiles(arguments.configs);
+  const ddm::ModelConfig config = ddm::readModelConfig(&params);
+  params.requireValid();
+  ddm::DataSet data = ddm::BagCache(config.image.size, config.data_set).read(arguments.bags);
+  if (!arguments.goal.empty()) data.setGoal(readGoal(arguments.goal, config.image.size));
+  if (!data.hasGoal()) {
+    std::cerr << "no --goal and no goal_image in the bags: the model can predict, but not be "
+                 "planned with\n";
+  }
+  std::cerr << data.numFrames() << " frames in " << data.pieces().size() << " piece(s) from "
+            << arguments.bags.size() << " bag(s)\n";
+  ddm::ModelInfo info;
+  info.seed = static_cast<std::uint64_t>(arguments.seed);
+  info.trial = static_cast<std::uint32_t>(arguments.bags.size() - 1);
+  info.config = ddm::toText(config);
+  const ddm::TrainingResult result =
+      ddm::train(data, config.model, config.training, info, showProgress);
+  if (!result.model) throw std::runtime_error(result.message);
+  const std::string bytes = ddm::serialiseModel(*result.model);
+  ddm::writeFileAtomically(arguments.out, bytes);
+  std::cerr << (::isatty(STDERR_FILENO) != 0 ? "\n" : "");
+  std::cout << "model: " << arguments.out << "\nid: " << ddm::modelId(bytes)
+            << "\nframes: " << data.numFrames() << "\npieces: " << data.pieces().size()
+            << "\ngoal: " << (data.hasGoal() ? "yes" : "none")
+            << "\nv_r: " << result.model->info().v_r << "\nv_p: " << result.model->info().v_p
+            << "\nevaluations: " << result.evaluations << "\ntrain_s: " << result.seconds << "\n";
+  return EXIT_SUCCESS;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ros::Time::init();
+  ddm::silenceSolverLog();
+  Arguments arguments;
+  try {
+    if (!parse(argc, argv, &arguments)) return EXIT_SUCCESS;
+  } catch (const po::error& e) {
+    std::cerr << "train_from_bags: " << e.what() << " (see --help)\n";
+    return kUsageError;
+  }
+  try {
+    return run(arguments);
+  } catch (const std::exception& e) {
+    std::cerr << "train_from_bags: " << e.what() << "\n";
+    return EXIT_FAILURE;
+  }
+}
