@@ -1,0 +1,48 @@
+// Epsilon-greedy exploration around a policy.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <random>
+
+#include "ddm_mpc/policy.h"
+
+namespace ddm {
+
+/// What was decided for one image.
+struct Decision {
+  Eigen::VectorXd torque;    ///< u_t [N m]; 0 where the plan failed  [torque_dim]
+  bool exploratory = false;  ///< a random torque
+  std::optional<Plan> plan;  ///< empty where exploratory
+};
+
+/// With probability epsilon a torque uniform in +-max_torque, held for hold_steps steps; otherwise
+/// the first torque of the policy's plan (paper, Sec. 3.2). epsilon = 1 is the random trial, 0 the
+/// greedy one. Exploration has a random stream of its own.
+class EpsilonGreedy {
+ public:
+  struct Options {
+    double epsilon = 0.2;     ///< [-]
+    int hold_steps = 1;       ///< [-]
+    double max_torque = 6.0;  ///< [N m]
+    int torque_dim = 1;
+  };
+
+  /// @param policy  may be null where epsilon = 1
+  /// @throws std::invalid_argument if options are out of range or the policy is missing
+  EpsilonGreedy(std::shared_ptr<Policy> policy, const Options& options, const TrialId& id);
+
+  /// @param grey  the image just seen
+  /// @throws std::invalid_argument for a wrong number of pixels
+  Decision decide(const Grey& grey);
+
+ private:
+  std::shared_ptr<Policy> policy_;
+  Options options_;
+  std::mt19937_64 rng_;
+  Eigen::VectorXd held_torque_;
+  int held_steps_left_ = 0;
+};
+
+}  // namespace ddm

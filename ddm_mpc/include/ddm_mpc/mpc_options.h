@@ -1,0 +1,36 @@
+// Parameters of the receding-horizon controller. One struct = one YAML block.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace ddm {
+
+/// Block `mpc`.
+struct MpcOptions {
+  int horizon = 15;                  ///< K, planned steps [-]
+  double control_weight = 0.01;      ///< lambda, price of torque [(N m)^-2]
+  double max_torque = 6.0;           ///< bound on |u| [N m]
+  double epsilon = 0.2;              ///< probability of a uniformly random torque [-]
+  int hold_steps = 1;                ///< steps for which a random torque is held [-]
+  int num_starts = 3;                ///< initial plans that the solver starts from [-]
+  int max_iterations = 40;           ///< cap on the BFGS iterations of each start [-]
+  double function_tolerance = 1e-4;  ///< stop when the cost changes by less than this fraction [-]
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("horizon", horizon);
+    visitor("control_weight", control_weight);
+    visitor("max_torque", max_torque);
+    visitor("epsilon", epsilon);
+    visitor("hold_steps", hold_steps);
+    visitor("num_starts", num_starts);
+    visitor("max_iterations", max_iterations);
+    visitor("function_tolerance", function_tolerance);
+  }
+  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  std::vector<std::string> problems() const;
+};
+
+}  // namespace ddm

@@ -1,0 +1,58 @@
+// Planner: the torques u_0 ... u_{K-1} that minimise the plan cost, by BFGS from several starts.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <random>
+#include <string>
+
+#include "ddm_mpc/mpc_options.h"
+#include "ddm_mpc/plan_cost.h"
+
+namespace ddm {
+
+/// How a plan came to be.
+enum class PlanStatus {
+  kConverged,       ///< the solver met its tolerance
+  kIterationLimit,  ///< usable; the search ended before that
+  kFailed,          ///< no usable plan
+};
+
+/// A plan and what it took to find it.
+struct Plan {
+  PlanStatus status = PlanStatus::kFailed;
+  std::string message;           ///< why it failed
+  Eigen::MatrixXd torques;       ///< u_0 ... u_{K-1} [N m]             [torque_dim x K]
+  Eigen::MatrixXd features;      ///< z_0, predicted z_1 ... z_K        [feature_dim x (K + 1)]
+  Eigen::VectorXd goal_feature;  ///< z_ref                         [feature_dim]
+  double cost = 0.0;             ///< J
+  int iterations = 0;            ///< over all starts
+  int evaluations = 0;           ///< over all starts
+  double solve_time = 0.0;       ///< wall time [s]
+};
+
+/// Minimises J(U) by BFGS (paper, Sec. 3.1) and keeps the best of several starts: the last plan
+/// moved on by one step, then no torque, then constant torques drawn at random. The bound holds by
+/// construction, u = max_torque tanh(v): clipping afterwards would bias the plan.
+class Planner {
+ public:
+  /// @param model  outlives the planner
+  Planner(const Ddm& model, const MpcOptions& options);
+
+  /// Forgets the last plan: the next problem is the first of a trial.
+  void clear() { last_v_.resize(0, 0); }
+
+  /// Never throws for numerical trouble: the status tells.
+  /// @param x    current state; not empty
+  /// @param rng  draws the random starts
+  Plan solve(const History& x, const Eigen::VectorXd& goal_feature, std::mt19937_64* rng);
+
+ private:
+  Eigen::MatrixXd startOf(int start, std::mt19937_64* rng) const;
+
+  MpcOptions options_;
+  PlanCost cost_;
+  Eigen::MatrixXd last_v_;  // unbounded variables of the last plan; empty: none
+};
+
+}  // namespace ddm

@@ -1,0 +1,41 @@
+// A policy: which torque answers the image just seen.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ddm_model/data_set.h>
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+
+#include "ddm_mpc/planner.h"
+
+namespace ddm {
+
+/// Which run of an experiment this is. Fixes every random draw made in it.
+struct TrialId {
+  std::uint64_t seed = 0;   ///< seed of the experiment
+  std::uint32_t trial = 0;  ///< number of the trial, 0 is the random one
+  bool evaluation = false;  ///< the greedy run after the trial
+};
+
+/// Called in turn for each frame: observe(y_t), torque() unless something else decides, apply(u_t).
+class Policy {
+ public:
+  virtual ~Policy() = default;
+
+  /// Forgets the last trial.
+  virtual void startTrial(const TrialId& id) = 0;
+
+  /// Takes in the image just seen.
+  /// @throws std::invalid_argument for a wrong number of pixels
+  virtual void observe(const Grey& grey) = 0;
+
+  /// @return a plan; its first torque answers the image just seen
+  virtual Plan plan() = 0;
+
+  /// Takes in the torque [N m] that was applied, whoever decided it.
+  virtual void apply(const Eigen::VectorXd& u) = 0;
+};
+
+}  // namespace ddm

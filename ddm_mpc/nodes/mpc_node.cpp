@@ -1,0 +1,185 @@
+// mpc_node: answers camera images with torques.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mpc_node.h"
+
+#include <ddm_model/model_file.h>
+#include <ddm_msgs/Plan.h>
+#include <ddm_msgs/Torque.h>
+#include <ddm_msgs/topic_peers.h>
+#include <ddm_msgs/topics.h>
+#include <std_msgs/Float64.h>
+
+#include <sstream>
+
+namespace ddm {
+namespace {
+
+constexpr int kQueue = 10;
+const ros::WallDuration kTick(0.1);
+
+std::vector<double> flat(const Eigen::MatrixXd& values) {
+  return std::vector<double>(values.data(), values.data() + values.size());
+}
+
+}  // namespace
+
+MpcNode::MpcNode(ros::NodeHandle nh, int image_size, const MpcOptions& mpc,
+                 const ControllerOptions& controller)
+    : image_size_(image_size),
+      mpc_(mpc),
+      controller_(controller),
+      transport_(nh),
+      torque_pub_(nh.advertise<ddm_msgs::Torque>(topics::kTorque, kQueue)),
+      effort_pub_(nh.advertise<std_msgs::Float64>(topics::kEffortCommand, kQueue)),
+      plan_pub_(nh.advertise<ddm_msgs::Plan>(topics::kPlan, kQueue)),
+      server_(nh, topics::kRunTrial, /*auto_start=*/false) {
+  server_.registerGoalCallback([this] { onGoal(); });
+  server_.registerPreemptCallback([this] { onPreempt(); });
+  model_sub_ = nh.subscribe(topics::kModel, 1, &MpcNode::onModel, this);
+  timer_ = nh.createWallTimer(kTick, [this](const ros::WallTimerEvent&) { onTick(); });
+  image_sub_ = transport_.subscribe(
+      topics::kImage, 1, &MpcNode::onImage, this,
+      image_transport::TransportHints("raw", ros::TransportHints().tcpNoDelay()));
+  server_.start();  // last: whoever sees the action finds everything else in place
+}
+
+void MpcNode::onGoal() {
+  goal_ = server_.acceptNewGoal();
+  trial_.reset();
+  last_progress_ = ros::WallTime::now();
+  beginIfReady();
+}
+
+void MpcNode::onPreempt() {
+  if (goal_ == nullptr) return;
+  const ddm_msgs::RunTrialResult result =
+      trial_ != nullptr ? trial_->result() : ddm_msgs::RunTrialResult();
+  goal_.reset();
+  trial_.reset();
+  // A new goal sets this flag too, and is accepted right after; then there is nothing left to end.
+  if (server_.isActive() && !server_.isNewGoalAvailable()) server_.setPreempted(result);
+}
+
+void MpcNode::onModel(const ddm_msgs::ModelConstPtr& message) {
+  const std::string bytes(message->data.begin(), message->data.end());
+  try {
+    model_ =
+        std::make_shared<const Ddm>(deserialiseModel(bytes, "on topic " + model_sub_.getTopic()));
+    model_id_ = modelId(bytes);
+    ROS_INFO("model %s of trial %u received", model_id_.c_str(), message->trial);
+  } catch (const std::exception& e) {
+    ROS_ERROR_STREAM("model refused: " << e.what());
+    return;
+  }
+  beginIfReady();
+}
+
+/// Starts the trial once its model is there.
+void MpcNode::beginIfReady() {
+  if (goal_ == nullptr || trial_ != nullptr) return;
+  if (!goal_->model_id.empty() && goal_->model_id != model_id_) return;
+  try {
+    trial_ = std::make_unique<TrialRun>(*goal_, goal_->model_id.empty() ? nullptr : model_,
+                                        image_size_, mpc_, controller_);
+  } catch (const std::exception& e) {
+    abort(std::string("trial refused: ") + e.what());
+    return;
+  }
+  last_progress_ = ros::WallTime::now();
+  // In lock-step the first image may have come before the goal; there will be no second one.
+  if (last_image_ != nullptr && !goal_->start.isZero()) answer(*last_image_);
+}
+
+void MpcNode::onImage(const sensor_msgs::ImageConstPtr& image) {
+  last_image_ = image;
+  if (trial_ != nullptr) answer(*image);
+}
+
+void MpcNode::answer(const sensor_msgs::Image& image) {
+  try {
+    const std::optional<Decision> decision = trial_->answer(image);
+    if (!decision) return;
+    last_progress_ = ros::WallTime::now();
+    publish(image.header, *decision);
+  } catch (const std::exception& e) {
+    publishTorque(image.header.stamp, Eigen::VectorXd::Zero(controller_.torque_dim), false);
+    abort(std::string("image refused: ") + e.what());
+    return;
+  }
+  ddm_msgs::RunTrialFeedback feedback;
+  feedback.step = trial_->result().num_steps;
+  server_.publishFeedback(feedback);
+  if (!trial_->done()) return;
+  const ddm_msgs::RunTrialResult result = trial_->result();
+  ROS_INFO("trial %u%s: %u torques, %u exploratory, %u failed plans", goal_->trial,
+           goal_->evaluation != 0 ? " (evaluation)" : "", result.num_steps, result.num_exploratory,
+           result.num_failed_plans);
+  goal_.reset();
+  trial_.reset();
+  server_.setSucceeded(result);
+}
+
+void MpcNode::publish(const std_msgs::Header& header, const Decision& decision) {
+  publishTorque(header.stamp, decision.torque, decision.exploratory);
+  if (decision.plan) publishPlan(header.stamp, *decision.plan);
+}
+
+void MpcNode::publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torque,
+                            bool exploratory) {
+  ddm_msgs::Torque message;
+  message.header.stamp = stamp;
+  message.torque = flat(torque);
+  message.exploratory = exploratory;
+  torque_pub_.publish(message);
+  if (torque.size() != 1) return;  // an effort controller drives one joint
+  std_msgs::Float64 effort;
+  effort.data = torque[0];
+  effort_pub_.publish(effort);
+}
+
+void MpcNode::publishPlan(const ros::Time& stamp, const Plan& plan) {
+  if (plan.status == PlanStatus::kFailed) {
+    ROS_WARN_STREAM_THROTTLE(5.0, "plan failed, the torque is 0: " << plan.message);
+  }
+  ddm_msgs::Plan message;
+  message.header.stamp = stamp;
+  message.horizon = static_cast<std::uint32_t>(plan.torques.cols());
+  message.torque = flat(plan.torques);
+  message.feature = flat(plan.features);
+  message.goal_feature = flat(plan.goal_feature);
+  message.cost = plan.cost;
+  message.iterations = plan.iterations;
+  message.evaluations = plan.evaluations;
+  message.status = plan.status == PlanStatus::kConverged        ? ddm_msgs::Plan::CONVERGED
+                   : plan.status == PlanStatus::kIterationLimit ? ddm_msgs::Plan::ITERATION_LIMIT
+                                                                : ddm_msgs::Plan::FAILED;
+  message.message = plan.message;
+  message.solve_time = plan.solve_time;
+  plan_pub_.publish(message);
+}
+
+void MpcNode::onTick() {
+  if (goal_ == nullptr) return;
+  const double silence = (ros::WallTime::now() - last_progress_).toSec();
+  if (silence <= controller_.timeout) return;
+  std::ostringstream reason;
+  if (trial_ == nullptr) {
+    reason << "model " << goal_->model_id << " did not come";
+  } else {
+    reason << "no image after step " << trial_->result().num_steps;
+  }
+  reason << " within " << controller_.timeout << " s: "
+         << describePublishers(trial_ == nullptr ? model_sub_.getTopic() : image_sub_.getTopic());
+  abort(reason.str());
+}
+
+void MpcNode::abort(const std::string& reason) {
+  ROS_ERROR_STREAM(reason);
+  const ddm_msgs::RunTrialResult result =
+      trial_ != nullptr ? trial_->result() : ddm_msgs::RunTrialResult();
+  goal_.reset();
+  trial_.reset();
+  server_.setAborted(result, reason);
+}
+
+}  // namespace ddm

@@ -1,0 +1,62 @@
+// mpc_node: answers camera images with torques.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <actionlib/server/simple_action_server.h>
+#include <ddm_model/ddm.h>
+#include <ddm_msgs/Model.h>
+#include <ddm_msgs/RunTrialAction.h>
+#include <image_transport/image_transport.h>
+#include <ros/ros.h>
+
+#include <memory>
+#include <string>
+
+#include "controller_options.h"
+#include "ddm_mpc/mpc_options.h"
+#include "trial_run.h"
+
+namespace ddm {
+
+/// Action `run_trial`: each image of the trial is answered on `torque` with the image's stamp. For
+/// a single-threaded spinner: all callbacks run one after the other.
+class MpcNode {
+ public:
+  MpcNode(ros::NodeHandle nh, int image_size, const MpcOptions& mpc,
+          const ControllerOptions& controller);
+
+ private:
+  void onGoal();
+  void onPreempt();
+  void onModel(const ddm_msgs::ModelConstPtr& message);
+  void onImage(const sensor_msgs::ImageConstPtr& image);
+  void onTick();
+
+  void beginIfReady();
+  void answer(const sensor_msgs::Image& image);
+  void publish(const std_msgs::Header& header, const Decision& decision);
+  void publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torque, bool exploratory);
+  void publishPlan(const ros::Time& stamp, const Plan& plan);
+  void abort(const std::string& reason);
+
+  int image_size_;
+  MpcOptions mpc_;
+  ControllerOptions controller_;
+  std::shared_ptr<const Ddm> model_;
+  std::string model_id_;
+  ddm_msgs::RunTrialGoalConstPtr goal_;    // null: no trial
+  std::unique_ptr<TrialRun> trial_;        // null: still waiting for the model
+  sensor_msgs::ImageConstPtr last_image_;  // may be the first of a trial whose goal is on its way
+  ros::WallTime last_progress_;
+
+  image_transport::ImageTransport transport_;
+  ros::Publisher torque_pub_;
+  ros::Publisher effort_pub_;
+  ros::Publisher plan_pub_;
+  image_transport::Subscriber image_sub_;
+  ros::Subscriber model_sub_;
+  ros::WallTimer timer_;
+  actionlib::SimpleActionServer<ddm_msgs::RunTrialAction> server_;
+};
+
+}  // namespace ddm

@@ -1,0 +1,32 @@
+// mpc_node: parameters, then the node.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_model/model_options.h>
+#include <ddm_model/solver_log.h>
+#include <ddm_msgs/node_params.h>
+#include <ddm_msgs/param_reader.h>
+
+#include <cstdlib>
+
+#include "mpc_node.h"
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "mpc_node");
+  ros::NodeHandle nh;
+  ros::NodeHandle pnh("~");  // outside the try: its destructor shuts the log down
+  ddm::silenceSolverLog();
+  try {
+    ddm::ParamReader params(ddm::nodeParams(pnh), pnh.getNamespace());
+    params.ignore("image_transport");  // read by image_transport itself
+    const auto image = params.read<ddm::ImageOptions>("image");
+    const auto mpc = params.read<ddm::MpcOptions>("mpc");
+    const auto controller = params.read<ddm::ControllerOptions>("controller");
+    params.requireValid();
+    ROS_INFO_STREAM("mpc_node runs with\n" << ddm::toYaml(mpc) << "\n" << ddm::toYaml(controller));
+    ddm::MpcNode node(nh, image.size, mpc, controller);
+    ros::spin();
+  } catch (const std::exception& e) {
+    ROS_FATAL_STREAM("mpc_node: " << e.what());
+    return EXIT_FAILURE;
+  }
+  return EXIT_SUCCESS;
+}

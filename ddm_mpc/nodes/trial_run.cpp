@@ -1,0 +1,81 @@
+// One trial under way: which images belong to it, and what has been answered so far.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "trial_run.h"
+
+#include <ddm_msgs/image_codec.h>
+
+#include <stdexcept>
+
+#include "ddm_mpc/mpc_policy.h"
+
+namespace ddm {
+namespace {
+
+std::shared_ptr<Policy> makePolicy(std::shared_ptr<const Ddm> model, int image_size,
+                                   const MpcOptions& mpc, const ControllerOptions& controller) {
+  if (model == nullptr) return nullptr;
+  if (model->imageSize() != image_size || model->torqueDim() != controller.torque_dim) {
+    throw std::invalid_argument(
+        "the model has images of size " + std::to_string(model->imageSize()) + " and " +
+        std::to_string(model->torqueDim()) + " torque(s), this node has image/size " +
+        std::to_string(image_size) + " and controller/torque_dim " +
+        std::to_string(controller.torque_dim) + ": start both with the same configuration");
+  }
+  return std::make_shared<MpcPolicy>(std::move(model), mpc);
+}
+
+EpsilonGreedy::Options explorationOf(const ddm_msgs::RunTrialGoal& goal, const MpcOptions& mpc,
+                                     const ControllerOptions& controller) {
+  EpsilonGreedy::Options options;
+  options.epsilon = goal.epsilon;
+  options.hold_steps = static_cast<int>(goal.hold_steps);
+  options.max_torque = mpc.max_torque;
+  options.torque_dim = controller.torque_dim;
+  return options;
+}
+
+}  // namespace
+
+TrialRun::TrialRun(const ddm_msgs::RunTrialGoal& goal, std::shared_ptr<const Ddm> model,
+                   int image_size, const MpcOptions& mpc, const ControllerOptions& controller)
+    : num_steps_(goal.num_steps),
+      image_size_(image_size),
+      policy_(makePolicy(std::move(model), image_size, mpc, controller),
+              explorationOf(goal, mpc, controller),
+              TrialId{goal.seed, goal.trial, goal.evaluation != 0}) {
+  if (num_steps_ < 1) throw std::invalid_argument("num_steps must be >= 1, got 0");
+  if (!goal.start.isZero()) last_stamp_ = goal.start - ros::Duration(0, 1);
+}
+
+std::optional<Decision> TrialRun::answer(const sensor_msgs::Image& image) {
+  if (image.header.stamp.isZero()) {
+    throw std::invalid_argument(
+        "it has no stamp, which pairs it with its torque: set it in the camera driver");
+  }
+  if (image.header.stamp <= last_stamp_) return std::nullopt;
+  const std::string camera =
+      std::to_string(image.width) + "x" + std::to_string(image.height) + " " + image.encoding;
+  if (camera_.empty()) camera_ = camera;
+  if (camera != camera_) {
+    throw std::invalid_argument("the images change from " + camera_ + " to " + camera);
+  }
+  const Decision decision = policy_.decide(decodeImage(image, image_size_));
+  last_stamp_ = image.header.stamp;
+  result_.last = last_stamp_;
+  collect(decision);
+  return decision;
+}
+
+void TrialRun::collect(const Decision& decision) {
+  ++result_.num_steps;
+  for (Eigen::Index i = 0; i < decision.torque.size(); ++i) {
+    result_.torque.push_back(decision.torque[i]);
+  }
+  result_.exploratory.push_back(decision.exploratory);
+  if (decision.exploratory) ++result_.num_exploratory;
+  if (!decision.plan) return;
+  result_.solve_time.push_back(decision.plan->solve_time);
+  if (decision.plan->status == PlanStatus::kFailed) ++result_.num_failed_plans;
+}
+
+}  // namespace ddm

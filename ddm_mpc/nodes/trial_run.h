@@ -1,0 +1,49 @@
+// One trial under way: which images belong to it, and what has been answered so far.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ddm_model/ddm.h>
+#include <ddm_msgs/RunTrialAction.h>
+#include <sensor_msgs/Image.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "controller_options.h"
+#include "ddm_mpc/epsilon_greedy.h"
+#include "ddm_mpc/mpc_options.h"
+
+namespace ddm {
+
+/// Turns the images of one `run_trial` goal into decisions and collects the result.
+class TrialRun {
+ public:
+  /// @param model  may be null where goal.epsilon = 1
+  /// @throws std::invalid_argument if goal, model and options do not fit together
+  TrialRun(const ddm_msgs::RunTrialGoal& goal, std::shared_ptr<const Ddm> model, int image_size,
+           const MpcOptions& mpc, const ControllerOptions& controller);
+
+  /// @return the decision, or nothing for an image that is not the next of this trial: one of
+  /// before
+  ///         its start, or one that was already answered
+  /// @throws std::invalid_argument for an image that cannot be used, that has no stamp, or that has
+  /// another
+  ///         size or encoding than the ones before
+  std::optional<Decision> answer(const sensor_msgs::Image& image);
+
+  bool done() const { return result_.num_steps == num_steps_; }
+  const ddm_msgs::RunTrialResult& result() const { return result_; }
+
+ private:
+  void collect(const Decision& decision);
+
+  std::uint32_t num_steps_;
+  int image_size_;
+  ros::Time last_stamp_;  // images up to this one do not count
+  std::string camera_;    // size and encoding of the images
+  EpsilonGreedy policy_;
+  ddm_msgs::RunTrialResult result_;
+};
+
+}  // namespace ddm

@@ -1,0 +1,185 @@
+// view_node: shows what the model sees, expects and knows.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "view_node.h"
+
+#include <ddm_model/model_file.h>
+#include <ddm_msgs/image_codec.h>
+#include <ddm_msgs/topics.h>
+#include <sensor_msgs/image_encodings.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+
+namespace ddm {
+namespace {
+
+constexpr int kQueue = 10;
+constexpr double kWarnPeriod = 5.0;        // [s]
+constexpr std::size_t kMaxSeen = 2000;     // images of experience
+constexpr std::uint32_t kMaxSteps = 1000;  // of a plan, as in the rules of mpc/horizon
+constexpr int kMinPanel = 255;             // width of a panel [pixels]
+constexpr int kSeparator = 3;              // between two panels [pixels]
+constexpr std::uint8_t kSeparatorGrey = 128;
+const ros::WallDuration kTick(0.1);
+
+sensor_msgs::ImagePtr toMessage(const cv::Mat& picture, const char* encoding,
+                                const std_msgs::Header& header) {
+  auto message = boost::make_shared<sensor_msgs::Image>();
+  message->header = header;
+  message->height = static_cast<std::uint32_t>(picture.rows);
+  message->width = static_cast<std::uint32_t>(picture.cols);
+  message->encoding = encoding;
+  message->step = static_cast<std::uint32_t>(picture.cols * picture.elemSize());
+  message->data.assign(picture.datastart, picture.dataend);
+  return message;
+}
+
+/// @throws std::invalid_argument if the plan cannot be drawn
+void requireDrawable(const ddm_msgs::Plan& plan) {
+  if (plan.status == ddm_msgs::Plan::FAILED) return;
+  if (plan.horizon > kMaxSteps) {
+    throw std::invalid_argument("it has " + std::to_string(plan.horizon) + " steps, at most " +
+                                std::to_string(kMaxSteps) + " can be drawn");
+  }
+  for (const double value : plan.feature) {
+    if (!std::isfinite(value)) throw std::invalid_argument("it holds features that are not finite");
+  }
+}
+
+}  // namespace
+
+ViewNode::ViewNode(ros::NodeHandle nh, int image_size) : image_size_(image_size), transport_(nh) {
+  advertise(topics::kPredictionImage, &prediction_);
+  advertise(topics::kFeatureSpaceImage, &feature_space_);
+  model_sub_ = nh.subscribe(topics::kModel, 1, &ViewNode::onModel, this);
+  plan_sub_ = nh.subscribe(topics::kPlan, kQueue, &ViewNode::onPlan, this);
+  image_sub_ = transport_.subscribe(topics::kImage, kQueue, &ViewNode::onImage, this);
+  timer_ = nh.createWallTimer(kTick, [this](const ros::WallTimerEvent&) { onTick(); });
+}
+
+void ViewNode::advertise(const char* topic, Output* output) {
+  // Somebody who comes when nothing changes any more wants to see the last state too.
+  output->publisher = transport_.advertise(
+      topic, 1,
+      [output](const image_transport::SingleSubscriberPublisher&) { output->outdated = true; });
+}
+
+void ViewNode::markOutdated() {
+  prediction_.outdated = true;
+  feature_space_.outdated = true;
+}
+
+void ViewNode::onImage(const sensor_msgs::ImageConstPtr& message) {
+  try {
+    seen_.push_back({decodeImage(*message, image_size_), Eigen::VectorXd()});
+  } catch (const std::exception& e) {
+    ROS_WARN_STREAM_THROTTLE(kWarnPeriod,
+                             "image on " << image_sub_.getTopic() << " not shown: " << e.what());
+    return;
+  }
+  if (seen_.size() > kMaxSeen) seen_.pop_front();
+  header_ = message->header;
+  markOutdated();
+}
+
+void ViewNode::onModel(const ddm_msgs::ModelConstPtr& message) {
+  const std::string bytes(message->data.begin(), message->data.end());
+  const std::string id = modelId(bytes);
+  if (id == model_id_) return;
+  try {
+    Ddm model = deserialiseModel(bytes, "on topic " + model_sub_.getTopic());
+    if (model.imageSize() != image_size_) {
+      throw std::invalid_argument("its images have size " + std::to_string(model.imageSize()) +
+                                  ", this node has image/size " + std::to_string(image_size_) +
+                                  ": start both with the same configuration");
+    }
+    if (model_) plan_.reset();  // a plan in the features of the last model means nothing in these
+    model_ = std::move(model);
+  } catch (const std::exception& e) {
+    ROS_WARN_STREAM_THROTTLE(kWarnPeriod, "model not shown: " << e.what());
+    return;
+  }
+  model_id_ = id;
+  plane_.reset();
+  for (SeenImage& seen : seen_) seen.feature.resize(0);
+  markOutdated();
+}
+
+void ViewNode::onPlan(const ddm_msgs::PlanConstPtr& message) {
+  try {
+    requireDrawable(*message);
+  } catch (const std::exception& e) {
+    ROS_WARN_STREAM_THROTTLE(kWarnPeriod,
+                             "plan on " << plan_sub_.getTopic() << " not shown: " << e.what());
+    return;
+  }
+  plan_ = message;
+  markOutdated();
+}
+
+Eigen::MatrixXd ViewNode::planFeatures() const {
+  if (!model_ || plan_ == nullptr || plan_->status == ddm_msgs::Plan::FAILED) return {};
+  const Eigen::Index dim = model_->featureDim();
+  const Eigen::Index count = static_cast<Eigen::Index>(plan_->horizon) + 1;
+  if (static_cast<Eigen::Index>(plan_->feature.size()) != dim * count) {
+    ROS_WARN_STREAM_THROTTLE(
+        kWarnPeriod, "plan on " << plan_sub_.getTopic() << " not shown: " << plan_->feature.size()
+                                << " numbers for " << count << " features of size " << dim);
+    return {};
+  }
+  return Eigen::Map<const Eigen::MatrixXd>(plan_->feature.data(), dim, count);
+}
+
+/// Three panels: the image just seen, its reconstruction, the last image of the plan. A panel whose
+/// image is not known stays black.
+sensor_msgs::ImagePtr ViewNode::drawPrediction() const {
+  if (seen_.empty()) return nullptr;
+  std::vector<Grey> images = {seen_.back().grey};
+  if (model_) {
+    images.push_back(model_->decode(model_->encode(seen_.back().grey)));
+    const Eigen::MatrixXd features = planFeatures();
+    if (features.cols() > 0) images.push_back(model_->decode(features.rightCols(1)));
+  }
+  const int scale = (kMinPanel + image_size_ - 1) / image_size_;
+  const int panel = scale * image_size_;
+  cv::Mat picture(panel, 3 * panel + 2 * kSeparator, CV_8UC1, cv::Scalar(0));
+  for (int i = 0; i < 3; ++i) {
+    const int left = i * (panel + kSeparator);
+    if (i > 0) picture.colRange(left - kSeparator, left).setTo(kSeparatorGrey);
+    if (i >= static_cast<int>(images.size())) continue;
+    const cv::Mat image(image_size_, image_size_, CV_8UC1, images[i].data());
+    cv::resize(image, picture.colRange(left, left + panel), cv::Size(panel, panel), 0.0, 0.0,
+               cv::INTER_NEAREST);
+  }
+  return toMessage(picture, sensor_msgs::image_encodings::MONO8.c_str(), header_);
+}
+
+sensor_msgs::ImagePtr ViewNode::drawFeatureSpace() {
+  if (!model_) return nullptr;
+  if (!plane_) plane_.emplace(*model_);
+  FeatureOverlay overlay;
+  overlay.experience.resize(model_->featureDim(), static_cast<Eigen::Index>(seen_.size()));
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    if (seen_[i].feature.size() == 0) seen_[i].feature = model_->encode(seen_[i].grey);
+    overlay.experience.col(static_cast<Eigen::Index>(i)) = seen_[i].feature;
+  }
+  if (!seen_.empty()) overlay.current = seen_.back().feature;
+  if (model_->hasGoal()) overlay.goal = model_->goalFeature();
+  overlay.plan = planFeatures();
+  return toMessage(plane_->draw(overlay), sensor_msgs::image_encodings::RGB8.c_str(), header_);
+}
+
+void ViewNode::onTick() {
+  const auto show = [](Output* output, const auto& draw) {
+    if (!output->outdated || output->publisher.getNumSubscribers() == 0) return;
+    output->outdated = false;
+    const sensor_msgs::ImagePtr picture = draw();
+    if (picture != nullptr) output->publisher.publish(picture);
+  };
+  show(&prediction_, [this] { return drawPrediction(); });
+  show(&feature_space_, [this] { return drawFeatureSpace(); });
+}
+
+}  // namespace ddm

@@ -1,0 +1,59 @@
+// Epsilon-greedy exploration around a policy.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_mpc/epsilon_greedy.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "ddm_mpc/random_stream.h"
+
+namespace ddm {
+
+EpsilonGreedy::EpsilonGreedy(std::shared_ptr<Policy> policy, const Options& options,
+                             const TrialId& id)
+    : policy_(std::move(policy)),
+      options_(options),
+      rng_(randomStream(id, StreamRole::kExploration)) {
+  if (!(options_.epsilon >= 0.0 && options_.epsilon <= 1.0)) {
+    throw std::invalid_argument("epsilon must lie in [0, 1], got " +
+                                std::to_string(options_.epsilon));
+  }
+  if (options_.hold_steps < 1) {
+    throw std::invalid_argument("hold_steps must be >= 1, got " +
+                                std::to_string(options_.hold_steps));
+  }
+  if (!(options_.max_torque > 0.0) || options_.torque_dim < 1) {
+    throw std::invalid_argument("max_torque must be > 0 and torque_dim >= 1");
+  }
+  if (policy_ == nullptr && options_.epsilon < 1.0) {
+    throw std::invalid_argument("a trial with epsilon < 1 needs a model");
+  }
+  if (policy_ != nullptr) policy_->startTrial(id);
+}
+
+Decision EpsilonGreedy::decide(const Grey& grey) {
+  if (policy_ != nullptr) policy_->observe(grey);
+  Decision decision;
+  if (held_steps_left_ == 0) {
+    std::uniform_real_distribution<double> probability(0.0, 1.0);
+    if (probability(rng_) < options_.epsilon) {
+      std::uniform_real_distribution<double> torque(-options_.max_torque, options_.max_torque);
+      held_torque_.resize(options_.torque_dim);
+      for (Eigen::Index i = 0; i < held_torque_.size(); ++i) held_torque_[i] = torque(rng_);
+      held_steps_left_ = options_.hold_steps;
+    }
+  }
+  if (held_steps_left_ > 0) {
+    --held_steps_left_;
+    decision.exploratory = true;
+    decision.torque = held_torque_;
+  } else {
+    decision.plan = policy_->plan();
+    decision.torque = decision.plan->torques.col(0);
+  }
+  if (policy_ != nullptr) policy_->apply(decision.torque);
+  return decision;
+}
+
+}  // namespace ddm

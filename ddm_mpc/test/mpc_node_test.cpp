@@ -1,0 +1,289 @@
+// Tests of mpc_node from outside: trials, models, and what it does when something is missing.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <actionlib/client/simple_action_client.h>
+#include <ddm_msgs/Plan.h>
+#include <ddm_msgs/RunTrialAction.h>
+#include <ddm_msgs/Torque.h>
+#include <gtest/gtest.h>
+#include <sensor_msgs/image_encodings.h>
+#include <std_msgs/Float64.h>
+
+#include <limits>
+#include <memory>
+
+#include "node_client.h"
+
+namespace ddm {
+namespace {
+
+using Client = actionlib::SimpleActionClient<ddm_msgs::RunTrialAction>;
+using State = actionlib::SimpleClientGoalState;
+
+constexpr int kSize = 8;  // as in mpc_node.test
+
+ddm_msgs::RunTrialGoal trialGoal(std::uint32_t num_steps, double epsilon,
+                                 const std::string& model_id = "") {
+  ddm_msgs::RunTrialGoal goal;
+  goal.num_steps = num_steps;
+  goal.epsilon = epsilon;
+  goal.hold_steps = 1;
+  goal.seed = 3;
+  goal.model_id = model_id;
+  return goal;
+}
+
+ddm_msgs::Model modelOfSeed(unsigned seed) {
+  RandomModelOptions options;
+  options.seed = seed;
+  return modelMessage(randomModel(options));
+}
+
+class MpcNodeTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(waitUntil([this] {
+      return action_.isServerConnected() && torque_.connected() && effort_.connected() &&
+             plan_.connected();
+    }));
+    ASSERT_TRUE(client_.connect());
+  }
+
+  void begin(const ddm_msgs::RunTrialGoal& goal) {
+    action_.sendGoal(goal);
+    ASSERT_TRUE(waitUntil([this] { return action_.getState() != State::PENDING; }));
+  }
+
+  /// Shows images until the trial has `num_steps` torques.
+  void show(std::size_t num_steps) {
+    while (torque_.messages.size() < num_steps) {
+      stamps_.push_back(client_.publishImage(kSize, torque_.messages.size()));
+      const std::size_t expected = torque_.messages.size() + 1;
+      ASSERT_TRUE(waitUntil([&] { return torque_.messages.size() >= expected; }))
+          << "no torque for step " << expected << ", " << action_.getState().getText();
+    }
+  }
+
+  void expectEnd(State::StateEnum state, const std::vector<std::string>& parts_of_text = {}) {
+    ASSERT_TRUE(waitUntil([this] { return action_.getState().isDone(); }));
+    const std::string text = action_.getState().getText();
+    EXPECT_EQ(action_.getState(), state) << action_.getState().toString() << ": " << text;
+    for (const std::string& part : parts_of_text) {
+      EXPECT_NE(text.find(part), std::string::npos) << part << " is not in: " << text;
+    }
+  }
+
+  NodeClient client_;
+  Listener<ddm_msgs::Torque> torque_{client_.nh, topics::kTorque};
+  Listener<std_msgs::Float64> effort_{client_.nh, topics::kEffortCommand};
+  Listener<ddm_msgs::Plan> plan_{client_.nh, topics::kPlan};
+  Client action_{client_.nh, topics::kRunTrial, /*spin_thread=*/false};
+  std::vector<ros::Time> stamps_;
+};
+
+TEST_F(MpcNodeTest, AnswersEachImageOfARandomTrialWithATorqueOfItsStamp) {
+  begin(trialGoal(20, /*epsilon=*/1.0));
+  show(20);
+  expectEnd(State::SUCCEEDED);
+  ASSERT_EQ(torque_.messages.size(), 20U);
+  const ddm_msgs::RunTrialResult result = *action_.getResult();
+  for (std::size_t step = 0; step < 20; ++step) {
+    EXPECT_EQ(torque_.messages[step].header.stamp, stamps_[step]);
+    EXPECT_TRUE(torque_.messages[step].exploratory);
+    ASSERT_EQ(torque_.messages[step].torque.size(), 1U);
+    EXPECT_LE(std::abs(torque_.messages[step].torque[0]), 6.0);
+    EXPECT_EQ(result.torque[step], torque_.messages[step].torque[0]);
+  }
+  EXPECT_EQ(result.num_steps, 20U);
+  EXPECT_EQ(result.num_exploratory, 20U);
+  EXPECT_TRUE(result.solve_time.empty());
+}
+
+TEST_F(MpcNodeTest, RunsTheSameRandomTrialForTheSameSeed) {
+  begin(trialGoal(5, 1.0));
+  show(5);
+  expectEnd(State::SUCCEEDED);
+  const std::vector<double> first = action_.getResult()->torque;
+  torque_.messages.clear();
+  begin(trialGoal(5, 1.0));
+  show(5);
+  expectEnd(State::SUCCEEDED);
+  EXPECT_EQ(action_.getResult()->torque, first);
+}
+
+TEST_F(MpcNodeTest, WaitsForTheModelOfTheGoalAndThenPlans) {
+  const ddm_msgs::Model model = modelOfSeed(11);
+  ddm_msgs::RunTrialGoal goal = trialGoal(4, /*epsilon=*/0.0, model.id);
+  // The first image is there before goal and model are, as in lock-step; it is answered all the
+  // same.
+  stamps_.push_back(client_.publishImage(kSize, 0));
+  goal.start = stamps_[0];
+  begin(goal);
+  EXPECT_EQ(action_.getState(), State::ACTIVE);
+  EXPECT_TRUE(torque_.messages.empty());
+  client_.publish(model);
+  ASSERT_TRUE(waitUntil([this] { return torque_.messages.size() == 1; }));
+  show(4);
+  expectEnd(State::SUCCEEDED);
+  ASSERT_TRUE(
+      waitUntil([this] { return plan_.messages.size() == 4 && effort_.messages.size() == 4; }));
+  for (std::size_t step = 0; step < 4; ++step) {
+    const ddm_msgs::Plan& plan = plan_.messages[step];
+    EXPECT_EQ(torque_.messages[step].header.stamp, stamps_[step]);
+    EXPECT_EQ(plan.header.stamp, stamps_[step]);
+    EXPECT_FALSE(torque_.messages[step].exploratory);
+    EXPECT_NE(plan.status, ddm_msgs::Plan::FAILED);
+    EXPECT_EQ(plan.horizon, 15U);
+    ASSERT_EQ(plan.torque.size(), 15U);
+    EXPECT_EQ(plan.feature.size(), 32U);
+    EXPECT_EQ(plan.goal_feature.size(), 2U);
+    EXPECT_EQ(plan.torque[0], torque_.messages[step].torque[0]);
+    EXPECT_EQ(effort_.messages[step].data, torque_.messages[step].torque[0]);
+    EXPECT_GT(plan.solve_time, 0.0);
+  }
+  EXPECT_EQ(action_.getResult()->solve_time.size(), 4U);
+}
+
+TEST_F(MpcNodeTest, PublishesZeroTorqueAndSaysSoWhereThePlanFails) {
+  RandomModelOptions options;
+  options.gain = 1e200;
+  const ddm_msgs::Model model = modelMessage(randomModel(options));
+  client_.publish(model);
+  begin(trialGoal(2, 0.0, model.id));
+  ASSERT_TRUE(waitUntil([this] {  // the goal may have come before the model
+    if (torque_.messages.empty()) client_.publishImage(kSize, 0);
+    return !torque_.messages.empty();
+  }));
+  show(2);
+  expectEnd(State::SUCCEEDED);
+  EXPECT_EQ(action_.getResult()->num_failed_plans, 2U);
+  EXPECT_EQ(torque_.messages[1].torque, std::vector<double>{0.0});
+  ASSERT_TRUE(waitUntil([this] { return plan_.messages.size() == 2; }));
+  EXPECT_EQ(plan_.messages[1].status, ddm_msgs::Plan::FAILED);
+  EXPECT_FALSE(plan_.messages[1].message.empty());
+}
+
+TEST_F(MpcNodeTest, AnswersAnImageOnlyOnceAndNoneFromBeforeTheStart) {
+  ddm_msgs::RunTrialGoal goal = trialGoal(2, 1.0);
+  const ros::Time before = client_.nextStamp();
+  const ros::Time start = client_.nextStamp();
+  const ros::Time next = client_.nextStamp();
+  goal.start = start;
+  begin(goal);
+  for (const ros::Time& stamp : {before, start, start, before, next}) {
+    client_.publish(encodeImage(randomGrey(kSize, 1), kSize, stamp, ""));
+  }
+  expectEnd(State::SUCCEEDED);
+  ASSERT_TRUE(waitUntil([this] { return torque_.messages.size() == 2; }));
+  EXPECT_EQ(torque_.messages[0].header.stamp, start);
+  EXPECT_EQ(torque_.messages[1].header.stamp, next);
+}
+
+TEST_F(MpcNodeTest, AbortsWithZeroTorqueWhenTheImagesChangeTheirSize) {
+  begin(trialGoal(10, 1.0));
+  show(3);
+  const ros::Time stamp = client_.publishImage(kSize + 1, 1);
+  expectEnd(State::ABORTED, {"image refused", "8x8 mono8", "9x9 mono8"});
+  ASSERT_TRUE(waitUntil([this] { return torque_.messages.size() == 4; }));
+  EXPECT_EQ(torque_.messages[3].header.stamp, stamp);
+  EXPECT_EQ(torque_.messages[3].torque, std::vector<double>{0.0});
+  EXPECT_EQ(action_.getResult()->num_steps, 3U);
+}
+
+TEST_F(MpcNodeTest, AbortsAtAnImageThatIsNotANumber) {
+  begin(trialGoal(10, 1.0));
+  sensor_msgs::Image image;
+  image.header.stamp = client_.nextStamp();
+  image.width = 1;
+  image.height = 1;
+  image.step = 4;
+  image.encoding = sensor_msgs::image_encodings::TYPE_32FC1;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  image.data.resize(4);
+  std::memcpy(image.data.data(), &nan, 4);
+  client_.publish(image);
+  expectEnd(State::ABORTED, {"image refused"});
+}
+
+TEST_F(MpcNodeTest, AbortsAtAnImageWithoutAStamp) {
+  begin(trialGoal(10, 1.0));
+  client_.publish(encodeImage(randomGrey(kSize, 1), kSize, ros::Time(), ""));
+  expectEnd(State::ABORTED, {"no stamp"});
+}
+
+TEST_F(MpcNodeTest, NamesTheSilentCameraWhenNoImageComes) {
+  begin(trialGoal(10, 1.0));
+  show(2);
+  expectEnd(State::ABORTED,
+            {"no image after step 2 within 1 s", "/camera/image_raw", ros::this_node::getName()});
+  EXPECT_EQ(action_.getResult()->num_steps, 2U);
+}
+
+TEST_F(MpcNodeTest, NamesTheModelThatDoesNotCome) {
+  begin(trialGoal(10, 0.0, "0badc0de"));
+  expectEnd(State::ABORTED, {"model 0badc0de did not come within 1 s", "/model"});
+}
+
+TEST_F(MpcNodeTest, RefusesToBeGreedyWithoutAModel) {
+  begin(trialGoal(10, 0.0));
+  expectEnd(State::ABORTED, {"trial refused", "needs a model"});
+}
+
+TEST_F(MpcNodeTest, RefusesATrialOfNoSteps) {
+  begin(trialGoal(0, 1.0));
+  expectEnd(State::ABORTED, {"num_steps must be >= 1"});
+}
+
+TEST_F(MpcNodeTest, RefusesAModelOfAnotherImageSizeAndNamesTheKey) {
+  RandomModelOptions options;
+  options.image_size = kSize + 2;
+  const ddm_msgs::Model model = modelMessage(randomModel(options));
+  client_.publish(model);
+  begin(trialGoal(10, 0.0, model.id));
+  expectEnd(State::ABORTED, {"size 10", "image/size 8"});
+}
+
+TEST_F(MpcNodeTest, EndsAPreemptedTrialWithWhatWasDone) {
+  begin(trialGoal(10, 1.0));
+  show(2);
+  action_.cancelGoal();
+  expectEnd(State::PREEMPTED);
+  EXPECT_EQ(action_.getResult()->num_steps, 2U);
+}
+
+TEST_F(MpcNodeTest, StartsFromTheFirstStepWhenANewGoalReplacesATrial) {
+  begin(trialGoal(10, 1.0));
+  show(3);
+  torque_.messages.clear();
+  begin(trialGoal(4, 1.0));
+  ASSERT_TRUE(waitUntil([this] { return action_.getState() == State::ACTIVE; }));
+  show(4);
+  expectEnd(State::SUCCEEDED);
+  EXPECT_EQ(action_.getResult()->num_steps, 4U);
+}
+
+TEST_F(MpcNodeTest, RefusesADamagedModelAndKeepsTheLastOne) {
+  const ddm_msgs::Model model = modelOfSeed(12);
+  ddm_msgs::RunTrialGoal goal = trialGoal(1, 0.0, model.id);
+  goal.start = client_.publishImage(kSize, 0);
+  client_.publish(model);
+  begin(goal);
+  expectEnd(State::SUCCEEDED);
+  EXPECT_TRUE(waitUntil([this] {
+    client_.publish(damagedModelMessage());
+    return client_.logged("model refused") && client_.logged("wrong checksum");
+  }));
+  torque_.messages.clear();
+  begin(trialGoal(1, 0.0, model.id));
+  show(1);
+  expectEnd(State::SUCCEEDED);
+}
+
+}  // namespace
+}  // namespace ddm
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "mpc_node_test");
+  ros::NodeHandle nh;  // keeps the node alive for all tests
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}

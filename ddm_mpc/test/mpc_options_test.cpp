@@ -1,0 +1,124 @@
+// Tests of the blocks `mpc` and `controller`: rules, and the manual in config/mpc.yaml.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_mpc/mpc_options.h"
+
+#include <ddm_msgs/param_reader.h>
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "controller_options.h"
+
+namespace ddm {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const char kManual[] = DDM_MPC_SOURCE_DIR "/config/mpc.yaml";
+
+/// The one problem of the options after `spoil` names the key.
+template <class Options>
+void expectProblem(const std::string& key, const std::function<void(Options*)>& spoil) {
+  Options options;
+  spoil(&options);
+  const std::vector<std::string> problems = options.problems();
+  ASSERT_EQ(problems.size(), 1U) << key;
+  EXPECT_EQ(problems[0].rfind(key + " must ", 0), 0U) << problems[0];
+  EXPECT_NE(problems[0].find(", got "), std::string::npos) << problems[0];
+}
+
+TEST(MpcOptions, AreValidByDefault) { EXPECT_EQ(MpcOptions().problems().size(), 0U); }
+
+TEST(MpcOptions, RefuseIntegersOutOfRange) {
+  for (const int bad : {0, -1, 1001}) {
+    expectProblem<MpcOptions>("mpc/horizon", [bad](MpcOptions* o) { o->horizon = bad; });
+    expectProblem<MpcOptions>("mpc/num_starts", [bad](MpcOptions* o) { o->num_starts = bad; });
+  }
+  for (const int bad : {0, -1}) {
+    expectProblem<MpcOptions>("mpc/hold_steps", [bad](MpcOptions* o) { o->hold_steps = bad; });
+    expectProblem<MpcOptions>("mpc/max_iterations",
+                              [bad](MpcOptions* o) { o->max_iterations = bad; });
+  }
+}
+
+TEST(MpcOptions, RefuseNumbersOutOfRangeNanIncluded) {
+  for (const double bad : {-0.1, kNan, kInfinity}) {
+    expectProblem<MpcOptions>("mpc/control_weight",
+                              [bad](MpcOptions* o) { o->control_weight = bad; });
+    expectProblem<MpcOptions>("mpc/max_torque", [bad](MpcOptions* o) { o->max_torque = bad; });
+    expectProblem<MpcOptions>("mpc/epsilon", [bad](MpcOptions* o) { o->epsilon = bad; });
+    expectProblem<MpcOptions>("mpc/function_tolerance",
+                              [bad](MpcOptions* o) { o->function_tolerance = bad; });
+  }
+  expectProblem<MpcOptions>("mpc/max_torque", [](MpcOptions* o) { o->max_torque = 0.0; });
+  expectProblem<MpcOptions>("mpc/epsilon", [](MpcOptions* o) { o->epsilon = 1.01; });
+  expectProblem<MpcOptions>("mpc/function_tolerance",
+                            [](MpcOptions* o) { o->function_tolerance = 1.0; });
+}
+
+TEST(MpcOptions, ReportAllProblemsAtOnce) {
+  MpcOptions options;
+  options.horizon = 0;
+  options.epsilon = 2.0;
+  EXPECT_EQ(options.problems().size(), 2U);
+}
+
+TEST(MpcOptions, AcceptTheEndsOfTheirRanges) {
+  MpcOptions options;
+  options.horizon = 1000;
+  options.control_weight = 0.0;
+  options.epsilon = 1.0;
+  options.num_starts = 1;
+  options.max_iterations = 1;
+  options.function_tolerance = 0.0;
+  EXPECT_EQ(options.problems().size(), 0U);
+}
+
+TEST(ControllerOptions, AreValidByDefault) { EXPECT_EQ(ControllerOptions().problems().size(), 0U); }
+
+TEST(ControllerOptions, RefuseValuesOutOfRangeNanIncluded) {
+  for (const int bad : {0, 1001}) {
+    expectProblem<ControllerOptions>("controller/torque_dim",
+                                     [bad](ControllerOptions* o) { o->torque_dim = bad; });
+  }
+  for (const double bad : {0.0, -1.0, kNan, kInfinity}) {
+    expectProblem<ControllerOptions>("controller/timeout",
+                                     [bad](ControllerOptions* o) { o->timeout = bad; });
+  }
+}
+
+std::vector<std::string> keysOf(const YAML::Node& block) {
+  std::vector<std::string> keys;
+  for (const auto& entry : block) keys.push_back(entry.first.as<std::string>());
+  return keys;
+}
+
+/// Each key of the block stands in the manual with its default, in the order of the struct.
+template <class Options>
+void expectManual(const std::string& block) {
+  ParamReader reader = ParamReader::fromFiles({kManual});
+  const YAML::Node defaults = toYaml(Options());
+  EXPECT_EQ(YAML::Dump(toYaml(reader.read<Options>(block))), YAML::Dump(defaults));
+  EXPECT_EQ(keysOf(YAML::LoadFile(kManual)[block]), keysOf(defaults));
+}
+
+TEST(Manual, GivesTheDefaultsOfTheBlockMpc) { expectManual<MpcOptions>("mpc"); }
+
+TEST(Manual, GivesTheDefaultsOfTheBlockController) {
+  expectManual<ControllerOptions>("controller");
+}
+
+TEST(Manual, HoldsNothingElse) {
+  ParamReader reader = ParamReader::fromFiles({kManual});
+  reader.read<MpcOptions>("mpc");
+  reader.read<ControllerOptions>("controller");
+  EXPECT_NO_THROW(reader.requireValid());
+  EXPECT_EQ(YAML::LoadFile(kManual).size(), 2U);
+}
+
+}  // namespace
+}  // namespace ddm

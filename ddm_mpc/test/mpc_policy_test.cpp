@@ -1,0 +1,104 @@
+// Tests of the receding-horizon policy: what it refuses, and that trials do not see each other.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_mpc/mpc_policy.h"
+
+#include <ddm_model/testing/expect_error.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "ddm_mpc/random_stream.h"
+#include "random_model.h"
+
+namespace ddm {
+namespace {
+
+constexpr int kNumSteps = 6;
+
+std::shared_ptr<const Ddm> sharedModel(const RandomModelOptions& options = {}) {
+  return std::make_shared<const Ddm>(randomModel(options));
+}
+
+/// First torques of the plans for a fixed row of images.
+std::vector<double> torquesOfATrial(Policy* policy, const TrialId& id) {
+  policy->startTrial(id);
+  std::vector<double> torques;
+  for (int step = 0; step < kNumSteps; ++step) {
+    policy->observe(randomGrey(8, 50 + step));
+    const Plan plan = policy->plan();
+    torques.push_back(plan.torques(0, 0));
+    policy->apply(plan.torques.col(0));
+  }
+  return torques;
+}
+
+TEST(MpcPolicy, RefusesAModelWithoutAGoalImage) {
+  RandomModelOptions options;
+  options.goal = false;
+  EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
+      [&options] { MpcPolicy policy(sharedModel(options), MpcOptions()); }, {"goal image"}));
+}
+
+TEST(MpcPolicy, RefusesMoreTorqueThanTheModelKnowsAndNamesBothKeys) {
+  MpcOptions options;
+  options.max_torque = 6.5;
+  EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
+      [&options] { MpcPolicy policy(sharedModel(), options); },
+      {"mpc/max_torque", "model/max_torque", "6.5", "6 N m"}));
+}
+
+TEST(MpcPolicy, AcceptsLessTorqueThanTheModelKnowsAndKeepsToIt) {
+  MpcOptions options;
+  options.max_torque = 0.5;
+  MpcPolicy policy(sharedModel(), options);
+  for (const double u : torquesOfATrial(&policy, TrialId())) EXPECT_LE(std::abs(u), 0.5);
+}
+
+TEST(MpcPolicy, GivesTheSameTorquesWhenATrialIsRunAgain) {
+  MpcPolicy policy(sharedModel(), MpcOptions());
+  const TrialId id{7, 2, false};
+  const std::vector<double> first = torquesOfATrial(&policy, id);
+  torquesOfATrial(&policy, TrialId{8, 3, true});
+  EXPECT_EQ(torquesOfATrial(&policy, id), first) << "startTrial() must forget the trial before";
+}
+
+TEST(MpcPolicy, PlansFromTheEncodedImageToTheGoalOfTheModel) {
+  const auto model = sharedModel();
+  MpcPolicy policy(model, MpcOptions());
+  policy.startTrial(TrialId());
+  const Grey grey = randomGrey(8, 3);
+  policy.observe(grey);
+  const Plan plan = policy.plan();
+  EXPECT_EQ(plan.features.col(0), model->encode(grey));
+  EXPECT_EQ(plan.goal_feature, model->goalFeature());
+}
+
+TEST(MpcPolicy, RemembersTheTorqueThatWasAppliedWhoeverDecidedIt) {
+  const auto model = sharedModel();
+  const TrialId id;
+  const auto secondPlan = [&](double applied) {
+    MpcPolicy policy(model, MpcOptions());
+    policy.startTrial(id);
+    policy.observe(randomGrey(8, 3));
+    policy.apply(Eigen::VectorXd::Constant(1, applied));
+    policy.observe(randomGrey(8, 4));
+    return policy.plan();
+  };
+  History x(2, 2, 1);
+  x.observe(model->encode(randomGrey(8, 3)));
+  x.apply(Eigen::VectorXd::Constant(1, 5.0));
+  x.observe(model->encode(randomGrey(8, 4)));
+  Planner planner(*model, MpcOptions());
+  std::mt19937_64 rng = randomStream(id, StreamRole::kPlannerStarts);
+  EXPECT_EQ(secondPlan(5.0).torques, planner.solve(x, model->goalFeature(), &rng).torques);
+  EXPECT_NE(secondPlan(5.0).torques, secondPlan(-5.0).torques);
+}
+
+TEST(MpcPolicy, RefusesAnImageOfAnotherSize) {
+  MpcPolicy policy(sharedModel(), MpcOptions());
+  policy.startTrial(TrialId());
+  EXPECT_THROW(policy.observe(randomGrey(9, 1)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace ddm

@@ -1,0 +1,146 @@
+// Tests of the plan cost: value and gradient against slow and independent computations.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_mpc/plan_cost.h"
+
+#include <ddm_model/testing/gradient_check.h>
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <tuple>
+
+#include "random_model.h"
+
+namespace ddm {
+namespace {
+
+constexpr double kControlWeight = 0.03;
+
+/// J(U) written down once more, with lists instead of matrices: the newest feature and torque stand
+/// in front.
+double slowCost(const Ddm& model, const History& x, const Eigen::VectorXd& goal,
+                const Eigen::MatrixXd& U, std::vector<Eigen::VectorXd>* predicted = nullptr) {
+  std::deque<Eigen::VectorXd> features, torques;
+  for (Eigen::Index lag = 0; lag < x.features().cols(); ++lag) {
+    features.push_back(x.features().col(lag));
+  }
+  for (Eigen::Index lag = 0; lag < x.torques().cols(); ++lag) {
+    torques.push_back(x.torques().col(lag));
+  }
+  double cost = 0.0;
+  for (Eigen::Index k = 0; k < U.cols(); ++k) {
+    torques.push_front(U.col(k));
+    std::vector<double> h;
+    for (int lag = 0; lag < model.options().order; ++lag) {
+      for (const double z : features[lag]) h.push_back(z);
+      for (const double u : torques[lag]) h.push_back(u / model.options().max_torque);
+    }
+    Mlp<double>::Tape tape;
+    model.predictionModel().network().forward(
+        model.thetaP(), Eigen::Map<const Eigen::VectorXd>(h.data(), h.size()), &tape);
+    features.push_front(tape.output());
+    cost += (features.front() - goal).squaredNorm() + kControlWeight * U.col(k).squaredNorm();
+    if (predicted != nullptr) predicted->push_back(features.front());
+  }
+  return cost;
+}
+
+/// order, torque_dim, horizon
+class PlanCostShapes : public ::testing::TestWithParam<std::tuple<int, int, int>> {
+ protected:
+  static RandomModelOptions modelOptions() {
+    RandomModelOptions options;
+    options.model.order = std::get<0>(GetParam());
+    options.torque_dim = std::get<1>(GetParam());
+    options.gain = 0.7;
+    return options;
+  }
+  const Ddm model_ = randomModel(modelOptions());
+  const int horizon_ = std::get<2>(GetParam());
+  const History x_ = randomHistory(model_, /*seed=*/10);
+  const Eigen::VectorXd goal_ = testing::randomMatrix(2, 1, 20);
+  const Eigen::MatrixXd U_ = 2.0 * testing::randomMatrix(model_.torqueDim(), horizon_, 30);
+};
+
+TEST_P(PlanCostShapes, GradientMatchesFiniteDifferences) {
+  PlanCost cost(model_, horizon_, kControlWeight);
+  cost.setProblem(x_, goal_);
+  const auto f = [&](const Eigen::VectorXd& u, Eigen::VectorXd* gradient) {
+    const Eigen::Map<const Eigen::MatrixXd> U(u.data(), model_.torqueDim(), horizon_);
+    Eigen::MatrixXd d_U;
+    const double value = cost.evaluate(U, gradient != nullptr ? &d_U : nullptr);
+    if (gradient != nullptr) {
+      *gradient = Eigen::Map<const Eigen::VectorXd>(d_U.data(), d_U.size());
+    }
+    return value;
+  };
+  const Eigen::VectorXd u = Eigen::Map<const Eigen::VectorXd>(U_.data(), U_.size());
+  EXPECT_TRUE(testing::gradientMatches(f, u, 1e-6));
+}
+
+TEST_P(PlanCostShapes, ValueAndPredictedFeaturesEqualASlowComputation) {
+  PlanCost cost(model_, horizon_, kControlWeight);
+  cost.setProblem(x_, goal_);
+  std::vector<Eigen::VectorXd> predicted;
+  const double expected = slowCost(model_, x_, goal_, U_, &predicted);
+  EXPECT_NEAR(cost.evaluate(U_, nullptr), expected, 1e-12 * expected);
+  const Eigen::MatrixXd features = cost.predictedFeatures();
+  ASSERT_EQ(features.cols(), horizon_ + 1);
+  EXPECT_EQ(features.col(0), x_.features().col(0)) << "the first one is z_0";
+  for (int k = 0; k < horizon_; ++k) {
+    EXPECT_TRUE(features.col(k + 1).isApprox(predicted[k], 1e-12)) << "step " << k + 1;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(OrdersTorquesHorizons, PlanCostShapes,
+                         ::testing::Combine(::testing::Values(1, 2, 3), ::testing::Values(1, 2),
+                                            ::testing::Values(1, 2, 3, 7, 15)));
+
+TEST(PlanCost, ForgetsTheLastProblem) {
+  const Ddm model = randomModel({});
+  const Eigen::MatrixXd U = testing::randomMatrix(1, 4, 1);
+  const History x = randomHistory(model, 5);
+  const Eigen::VectorXd goal = testing::randomMatrix(2, 1, 6);
+  PlanCost used(model, 4, kControlWeight);
+  used.setProblem(randomHistory(model, 7), testing::randomMatrix(2, 1, 8));
+  Eigen::MatrixXd d_used;
+  used.evaluate(U, &d_used);
+  used.setProblem(x, goal);
+  PlanCost fresh(model, 4, kControlWeight);
+  fresh.setProblem(x, goal);
+  Eigen::MatrixXd d_fresh;
+  EXPECT_EQ(used.evaluate(U, &d_used), fresh.evaluate(U, &d_fresh));
+  EXPECT_EQ(d_used, d_fresh);
+}
+
+TEST(PlanCost, RefusesAHorizonOfZero) {
+  const Ddm model = randomModel({});
+  EXPECT_THROW(PlanCost(model, 0, kControlWeight), std::invalid_argument);
+}
+
+TEST(PlanCost, RefusesAHistoryWithoutAnImage) {
+  const Ddm model = randomModel({});
+  PlanCost cost(model, 3, kControlWeight);
+  EXPECT_THROW(cost.setProblem(History(2, 2, 1), Eigen::Vector2d::Zero()), std::invalid_argument);
+}
+
+TEST(PlanCost, RefusesAHistoryOfAnotherModel) {
+  const Ddm model = randomModel({});
+  PlanCost cost(model, 3, kControlWeight);
+  for (const auto& [order, feature_dim, torque_dim] :
+       {std::make_tuple(3, 2, 1), std::make_tuple(2, 3, 1), std::make_tuple(2, 2, 2)}) {
+    History x(order, feature_dim, torque_dim);
+    x.observe(Eigen::VectorXd::Zero(feature_dim));
+    EXPECT_THROW(cost.setProblem(x, Eigen::Vector2d::Zero()), std::invalid_argument)
+        << order << feature_dim << torque_dim;
+  }
+}
+
+TEST(PlanCost, RefusesAGoalOfAnotherSize) {
+  const Ddm model = randomModel({});
+  PlanCost cost(model, 3, kControlWeight);
+  EXPECT_THROW(cost.setProblem(randomHistory(model, 1), Eigen::Vector3d::Zero()),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace ddm

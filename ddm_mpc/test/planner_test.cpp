@@ -1,0 +1,310 @@
+// Tests of the planner: bound, optimum, starts, warm start, and numerical trouble.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_mpc/planner.h"
+
+#include <ddm_model/solver_log.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+
+#include "random_model.h"
+
+namespace ddm {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Options with which the solver goes on until it is there.
+MpcOptions exactOptions() {
+  MpcOptions options;
+  options.max_iterations = 500;
+  options.function_tolerance = 0.0;
+  return options;
+}
+
+RandomModelOptions firstOrder(int feature_dim) {
+  RandomModelOptions options;
+  options.model.order = 1;
+  options.model.feature_dim = feature_dim;
+  return options;
+}
+
+/// z_{t+1} = z_t + c + u_t / max_torque: an integrator that drifts.
+Ddm driftingIntegrator(double drift) {
+  return linearModel(firstOrder(1), Eigen::RowVector2d(1.0, 1.0),
+                     Eigen::VectorXd::Constant(1, drift));
+}
+
+History stateAt(const Ddm& model, const Eigen::VectorXd& z) {
+  History x(model.options().order, model.featureDim(), model.torqueDim());
+  x.observe(z);
+  return x;
+}
+
+double costOf(const Ddm& model, const MpcOptions& options, const History& x,
+              const Eigen::VectorXd& goal, const Eigen::MatrixXd& U) {
+  PlanCost cost(model, options.horizon, options.control_weight);
+  cost.setProblem(x, goal);
+  return cost.evaluate(U, nullptr);
+}
+
+TEST(Planner, NeverExceedsTheTorqueBoundWhereverTheGoalIs) {
+  silenceSolverLog();
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    RandomModelOptions model_options;
+    model_options.torque_dim = 2;
+    model_options.seed = 100 * seed;
+    const Ddm model = randomModel(model_options);
+    MpcOptions options;
+    options.max_torque = 0.7;
+    options.control_weight = 0.0;
+    Planner planner(model, options);
+    std::mt19937_64 rng(seed);
+    for (int step = 0; step < 3; ++step) {
+      const Plan plan =
+          planner.solve(randomHistory(model, seed), 10.0 * testing::randomMatrix(2, 1, seed), &rng);
+      ASSERT_NE(plan.status, PlanStatus::kFailed) << plan.message;
+      EXPECT_LE(plan.torques.cwiseAbs().maxCoeff(), options.max_torque);
+    }
+  }
+}
+
+TEST(Planner, PushesAgainstTheBoundWhenTheGoalIsOutOfReach) {
+  const Ddm model = driftingIntegrator(0.0);
+  MpcOptions options = exactOptions();
+  options.control_weight = 0.0;
+  Planner planner(model, options);
+  std::mt19937_64 rng(1);
+  const Plan plan = planner.solve(stateAt(model, Eigen::VectorXd::Zero(1)),
+                                  Eigen::VectorXd::Constant(1, 1000.0), &rng);
+  EXPECT_LE(plan.torques.maxCoeff(), 6.0);
+  EXPECT_GE(plan.torques.minCoeff(), 5.9);
+}
+
+TEST(Planner, FindsTheClosedFormOptimumOfALinearModel) {
+  Eigen::MatrixXd A(2, 3);
+  A << 0.9, 0.2, 0.1, -0.2, 0.95, 0.5;  // [z, u / max_torque]
+  const Eigen::Vector2d b(0.01, -0.02);
+  const Ddm model = linearModel(firstOrder(2), A, b);
+  const MpcOptions options = exactOptions();
+  const Eigen::Vector2d z_0(0.3, -0.4), goal(0.1, 0.2);
+
+  // z_k = free_k + sum_j G_{k,j} u_j, so J is quadratic: (G'G + lambda I) u = G' (goal - free).
+  const int K = options.horizon;
+  Eigen::MatrixXd G = Eigen::MatrixXd::Zero(2 * K, K);
+  Eigen::VectorXd miss(2 * K);
+  Eigen::Vector2d free = z_0;
+  for (int k = 0; k < K; ++k) {
+    free = A.leftCols(2) * free + b;
+    miss.segment<2>(2 * k) = goal - free;
+    Eigen::Vector2d effect = A.col(2) / model.options().max_torque;
+    for (int j = k; j >= 0; --j) {
+      G.block<2, 1>(2 * k, j) = effect;
+      effect = A.leftCols(2) * effect;
+    }
+  }
+  const Eigen::MatrixXd normal =
+      G.transpose() * G + options.control_weight * Eigen::MatrixXd::Identity(K, K);
+  const Eigen::VectorXd expected = normal.fullPivLu().solve(G.transpose() * miss);
+  ASSERT_LT(expected.cwiseAbs().maxCoeff(), 0.9 * options.max_torque)
+      << "the bound must not matter";
+
+  Planner planner(model, options);
+  std::mt19937_64 rng(1);
+  const Plan plan = planner.solve(stateAt(model, z_0), goal, &rng);
+  EXPECT_EQ(plan.status, PlanStatus::kConverged);
+  EXPECT_LT((plan.torques.transpose() - expected).cwiseAbs().maxCoeff(), 1e-5);
+}
+
+TEST(Planner, FindsTheBestOfAGridForOneNonlinearStep) {
+  MpcOptions options = exactOptions();
+  options.horizon = 1;
+  options.num_starts = 10;
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    RandomModelOptions model_options;
+    model_options.seed = seed;
+    model_options.gain = 2.0;
+    const Ddm model = randomModel(model_options);
+    const History x = randomHistory(model, seed);
+    double best = kInfinity;
+    for (int i = 0; i <= 2000; ++i) {
+      const Eigen::MatrixXd U = Eigen::MatrixXd::Constant(1, 1, -6.0 + 12.0 * i / 2000);
+      best = std::min(best, costOf(model, options, x, model.goalFeature(), U));
+    }
+    Planner planner(model, options);
+    std::mt19937_64 rng(seed);
+    EXPECT_LE(planner.solve(x, model.goalFeature(), &rng).cost, best + 1e-4 * (1.0 + best))
+        << "seed " << seed;
+  }
+}
+
+TEST(Planner, IsNeverWorseThanAnyOfItsStarts) {
+  MpcOptions options;
+  options.max_iterations = 2;
+  options.num_starts = 5;
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    RandomModelOptions model_options;
+    model_options.seed = seed;
+    const Ddm model = randomModel(model_options);
+    const History x = randomHistory(model, seed);
+    Planner planner(model, options);
+    std::mt19937_64 rng(seed);
+    std::mt19937_64 same(seed);
+    const Plan plan = planner.solve(x, model.goalFeature(), &rng);
+    Eigen::MatrixXd start = Eigen::MatrixXd::Zero(1, options.horizon);
+    EXPECT_LE(plan.cost, costOf(model, options, x, model.goalFeature(), start));
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    for (int i = 1; i < options.num_starts; ++i) {
+      start.setConstant(options.max_torque * 0.95 * uniform(same));
+      EXPECT_LE(plan.cost, costOf(model, options, x, model.goalFeature(), start) + 1e-12);
+    }
+    EXPECT_EQ(rng, same) << "the starts drawn here are those of the planner";
+  }
+}
+
+TEST(Planner, ReportsTheCostAndTheFeaturesOfThePlanItReturns) {
+  const MpcOptions options;
+  for (unsigned seed = 0; seed < 10; ++seed) {  // the best start is now the first, now the last
+    RandomModelOptions model_options;
+    model_options.seed = seed;
+    const Ddm model = randomModel(model_options);
+    const History x = randomHistory(model, seed);
+    Planner planner(model, options);
+    std::mt19937_64 rng(seed);
+    const Plan plan = planner.solve(x, model.goalFeature(), &rng);
+    PlanCost cost(model, options.horizon, options.control_weight);
+    cost.setProblem(x, model.goalFeature());
+    EXPECT_NEAR(plan.cost, cost.evaluate(plan.torques, nullptr), 1e-12);
+    EXPECT_EQ(plan.features, cost.predictedFeatures());
+    EXPECT_EQ(plan.goal_feature, model.goalFeature());
+    EXPECT_GT(plan.iterations, 0);
+    EXPECT_GE(plan.evaluations, plan.iterations);
+    EXPECT_GT(plan.solve_time, 0.0);
+    EXPECT_TRUE(plan.message.empty());
+  }
+}
+
+TEST(Planner, SaysThatTheIterationCapEndedTheSearch) {
+  const Ddm model = randomModel({});
+  MpcOptions options;
+  options.max_iterations = 1;
+  options.function_tolerance = 0.0;
+  Planner planner(model, options);
+  std::mt19937_64 rng(1);
+  const Plan plan = planner.solve(randomHistory(model, 3), model.goalFeature(), &rng);
+  EXPECT_EQ(plan.status, PlanStatus::kIterationLimit);
+  EXPECT_LE(plan.iterations, options.num_starts);
+}
+
+TEST(Planner, StartsFromTheLastPlanMovedOnByOneStep) {
+  // With u_0 the goal is reached, with -drift from then on it is kept: moved on by one step, this
+  // plan is the optimum of the next problem, and as it stands it is not.
+  const double drift = -0.2;
+  const Ddm model = driftingIntegrator(drift);
+  MpcOptions options = exactOptions();
+  options.control_weight = 0.0;
+  options.num_starts = 1;
+  const Eigen::VectorXd goal = Eigen::VectorXd::Constant(1, 0.5);
+  Planner warm(model, options);
+  std::mt19937_64 rng(1);
+  const Plan first = warm.solve(stateAt(model, Eigen::VectorXd::Zero(1)), goal, &rng);
+  ASSERT_NEAR(first.torques(0, 0), 6.0 * (0.5 - drift), 1e-3);
+  ASSERT_NEAR(first.torques(0, 1), -6.0 * drift, 1e-3);
+  const History next = stateAt(model, first.features.col(1));
+  const Plan second = warm.solve(next, goal, &rng);
+  EXPECT_NEAR(second.torques(0, 0), -6.0 * drift, 1e-3);
+  EXPECT_LE(second.iterations, 3);
+
+  warm.clear();
+  const Plan cold = warm.solve(next, goal, &rng);
+  EXPECT_GT(cold.iterations, second.iterations + 3) << "after clear() it starts from no torque";
+}
+
+TEST(Planner, FindsABetterPlanFromAWarmStartOnTheSameBudget) {
+  MpcOptions options;
+  options.num_starts = 1;
+  options.max_iterations = 3;
+  options.function_tolerance = 0.0;
+  double warm_cost = 0.0, cold_cost = 0.0;
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    RandomModelOptions model_options;
+    model_options.seed = seed;
+    model_options.gain = 0.7;
+    const Ddm model = randomModel(model_options);
+    std::mt19937_64 rng(seed);
+    Planner planner(model, options);
+    History x = randomHistory(model, seed);
+    for (int step = 0; step < 5; ++step) {
+      const Plan plan = planner.solve(x, model.goalFeature(), &rng);
+      x.apply(plan.torques.col(0));
+      x.observe(plan.features.col(1));
+    }
+    warm_cost += planner.solve(x, model.goalFeature(), &rng).cost;
+    cold_cost += Planner(model, options).solve(x, model.goalFeature(), &rng).cost;
+  }
+  EXPECT_LT(warm_cost, cold_cost);
+}
+
+TEST(Planner, GivesTheSamePlanForTheSameRandomStream) {
+  const Ddm model = randomModel({});
+  Planner planner(model, MpcOptions());
+  const History x = randomHistory(model, 3);
+  std::mt19937_64 rng(1);
+  const Plan first = planner.solve(x, model.goalFeature(), &rng);
+  planner.clear();
+  rng.seed(1);
+  const Plan second = planner.solve(x, model.goalFeature(), &rng);
+  EXPECT_EQ(first.torques, second.torques);
+  EXPECT_EQ(first.cost, second.cost);
+  EXPECT_EQ(first.evaluations, second.evaluations);
+}
+
+TEST(Planner, PlansASingleStep) {
+  const Ddm model = randomModel({});
+  MpcOptions options;
+  options.horizon = 1;
+  Planner planner(model, options);
+  std::mt19937_64 rng(1);
+  for (int step = 0; step < 2; ++step) {
+    const Plan plan = planner.solve(randomHistory(model, 3), model.goalFeature(), &rng);
+    EXPECT_EQ(plan.torques.cols(), 1);
+    EXPECT_EQ(plan.features.cols(), 2);
+    EXPECT_NE(plan.status, PlanStatus::kFailed);
+  }
+}
+
+void expectFailure(const Plan& plan) {
+  EXPECT_EQ(plan.status, PlanStatus::kFailed);
+  EXPECT_FALSE(plan.message.empty());
+  EXPECT_EQ(plan.torques, Eigen::MatrixXd::Zero(1, 15));
+}
+
+TEST(Planner, FailsWithoutTorqueWhereTheModelOverflows) {
+  RandomModelOptions model_options;
+  model_options.gain = 1e200;
+  const Ddm model = randomModel(model_options);
+  Planner planner(model, MpcOptions());
+  std::mt19937_64 rng(1);
+  Plan plan;
+  EXPECT_NO_THROW(plan = planner.solve(randomHistory(model, 3), model.goalFeature(), &rng));
+  expectFailure(plan);
+}
+
+TEST(Planner, FailsOnAStateThatIsNotANumberAndPlansAgainAfterwards) {
+  const Ddm model = randomModel({});
+  Planner planner(model, MpcOptions());
+  std::mt19937_64 rng(1);
+  const History x = randomHistory(model, 3);
+  EXPECT_NE(planner.solve(x, model.goalFeature(), &rng).status, PlanStatus::kFailed);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  expectFailure(
+      planner.solve(stateAt(model, Eigen::Vector2d(nan, 0.0)), model.goalFeature(), &rng));
+  const Plan plan = planner.solve(x, model.goalFeature(), &rng);
+  EXPECT_NE(plan.status, PlanStatus::kFailed);
+  EXPECT_TRUE(plan.torques.allFinite());
+}
+
+}  // namespace
+}  // namespace ddm

@@ -1,0 +1,82 @@
+// Small models with random parameters, and images and states to go with them, for tests.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ddm_model/ddm.h>
+#include <ddm_model/history.h>
+
+#include <Eigen/QR>
+#include <random>
+
+#include "random_matrix.h"
+
+namespace ddm {
+
+/// Random grey values.
+inline Grey randomGrey(int image_size, std::uint64_t seed) {
+  std::mt19937_64 rng(seed);
+  std::uniform_int_distribution<int> byte(0, 255);
+  Grey grey(static_cast<std::size_t>(image_size) * image_size);
+  for (std::uint8_t& k : grey) k = static_cast<std::uint8_t>(byte(rng));
+  return grey;
+}
+
+/// What a test wants of its model.
+struct RandomModelOptions {
+  int image_size = 8;
+  int torque_dim = 1;
+  bool goal = true;
+  double gain = 1.0;  ///< of f: its weights and biases are N(0, gain^2)
+  unsigned seed = 1;
+  ModelOptions model;
+
+  RandomModelOptions() {
+    model.pca_dim = 5;
+    model.encoder_widths = {4};
+    model.decoder_widths = {4};
+  }
+};
+
+/// A model with an orthonormal random basis and random parameters.
+inline Ddm randomModel(const RandomModelOptions& options) {
+  const Networks<double> networks(options.model, options.torque_dim);
+  const Eigen::Index num_pixels = options.image_size * options.image_size;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(
+      testing::randomMatrix(num_pixels, options.model.pca_dim, options.seed));
+  const Eigen::MatrixXd basis =
+      qr.householderQ() * Eigen::MatrixXd::Identity(num_pixels, options.model.pca_dim);
+  Pca pca;
+  pca.mean = Eigen::VectorXf::Constant(num_pixels, 0.5F);
+  pca.basis = basis.cast<float>();
+  pca.variance = Eigen::VectorXd::Ones(options.model.pca_dim);
+  Eigen::VectorXd theta = testing::randomMatrix(networks.numParams(), 1, options.seed + 1);
+  theta.tail(networks.f().numParams()) *= options.gain;
+  Grey goal;
+  if (options.goal) goal = randomGrey(options.image_size, options.seed + 2);
+  return Ddm(options.model, options.image_size, options.torque_dim, pca, theta, goal, ModelInfo());
+}
+
+/// A model with f(h) = A h + b, no hidden layer: z_{t+1} = A h_t + b.
+/// @param A  [feature_dim x order (feature_dim + torque_dim)]
+inline Ddm linearModel(RandomModelOptions options, const Eigen::MatrixXd& A,
+                       const Eigen::VectorXd& b) {
+  options.model.predictor_widths.clear();
+  const Ddm random = randomModel(options);
+  Eigen::VectorXd theta = random.theta();
+  theta.tail(A.size() + b.size()) << Eigen::Map<const Eigen::VectorXd>(A.data(), A.size()), b;
+  return Ddm(options.model, options.image_size, options.torque_dim, random.pca(), theta,
+             random.goal(), ModelInfo());
+}
+
+/// A state in the middle of a trial, with features and torques that differ from step to step.
+inline History randomHistory(const Ddm& model, unsigned seed) {
+  History x(model.options().order, model.featureDim(), model.torqueDim());
+  for (int step = 0; step < model.options().order; ++step) {
+    x.observe(0.5 * testing::randomMatrix(model.featureDim(), 1, seed + 2 * step));
+    if (step + 1 < model.options().order)
+      x.apply(testing::randomMatrix(model.torqueDim(), 1, seed + 2 * step + 1));
+  }
+  return x;
+}
+
+}  // namespace ddm
