@@ -1,0 +1,118 @@
+// The effective configuration of an experiment: every block that decides its outcome.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "configuration.h"
+
+#include <ros/package.h>
+
+#include <algorithm>
+#include <boost/filesystem.hpp>
+#include <sstream>
+#include <stdexcept>
+
+namespace ddm {
+namespace {
+
+namespace fs = boost::filesystem;
+
+std::string packageFolder(const std::string& package) {
+  const std::string path = ros::package::getPath(package);
+  if (path.empty()) {
+    throw std::invalid_argument("package " + package +
+                                " cannot be found: source devel/setup.bash of your workspace");
+  }
+  return path;
+}
+
+/// FOLDER/NAME.yaml
+/// @throws std::invalid_argument naming what there is, if there is no such file
+std::string chooseFile(const std::string& folder, const std::string& name, const std::string& kind,
+                       const std::vector<std::string>& not_one) {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string stem = entry.path().stem().string();
+    const bool other = std::find(not_one.begin(), not_one.end(), stem) != not_one.end();
+    if (entry.path().extension() == ".yaml" && !other) names.push_back(stem);
+  }
+  std::sort(names.begin(), names.end());
+  if (std::find(names.begin(), names.end(), name) != names.end()) {
+    return folder + "/" + name + ".yaml";
+  }
+  std::string known;
+  for (const std::string& other : names) known += (known.empty() ? "" : ", ") + other;
+  throw std::invalid_argument("unknown " + kind + " '" + name + "': there are " + known);
+}
+
+/// What no block can see by itself.
+std::vector<std::string> contradictions(const Configuration& all) {
+  std::vector<std::string> out;
+  const auto require = [&out](bool ok, const std::string& rule, double value) {
+    if (ok) return;
+    std::ostringstream text;
+    text << rule << ", got " << value;
+    out.push_back(text.str());
+  };
+  require(all.mpc.max_torque <= all.plant.max_torque,
+          "mpc/max_torque must be at most plant/max_torque, beyond which the motor saturates",
+          all.mpc.max_torque);
+  require(all.mpc.max_torque <= all.model.model.max_torque,
+          "mpc/max_torque must be at most model/max_torque, which scales what f sees",
+          all.mpc.max_torque);
+  require(all.evaluation.settled_steps_strict <= all.trial.num_steps,
+          "evaluation/settled_steps_strict must be at most trial/num_steps",
+          all.evaluation.settled_steps_strict);
+  require(all.trial.num_steps > all.model.model.pca_dim,
+          "trial/num_steps must be more than model/pca_dim: the first model has one trial to learn "
+          "from",
+          all.trial.num_steps);
+  require(all.trial.num_steps > all.model.model.order,
+          "trial/num_steps must be more than model/order", all.trial.num_steps);
+  return out;
+}
+
+}  // namespace
+
+Configuration readConfiguration(ParamReader* reader) {
+  Configuration all;
+  all.experiment = reader->read<ExperimentOptions>("experiment");
+  all.trial = reader->read<TrialOptions>("trial");
+  all.evaluation = reader->read<EvaluationOptions>("evaluation");
+  all.plant = reader->read<PlantOptions>("plant");
+  all.camera = reader->read<CameraOptions>("camera");
+  all.sim = reader->read<SimOptions>("sim");
+  all.model = readModelConfig(reader);
+  all.mpc = reader->read<MpcOptions>("mpc");
+  reader->requireValid();
+  std::string problems;
+  for (const std::string& problem : contradictions(all)) problems += "\n - " + problem;
+  if (!problems.empty()) throw std::invalid_argument("invalid configuration:" + problems);
+  return all;
+}
+
+YAML::Node toYaml(const Configuration& configuration) {
+  YAML::Node out(YAML::NodeType::Map);
+  out["experiment"] = toYaml(configuration.experiment);
+  out["trial"] = toYaml(configuration.trial);
+  out["evaluation"] = toYaml(configuration.evaluation);
+  out["plant"] = toYaml(configuration.plant);
+  out["camera"] = toYaml(configuration.camera);
+  out["sim"] = toYaml(configuration.sim);
+  for (const auto& block : toYaml(configuration.model)) out[block.first] = block.second;
+  out["mpc"] = toYaml(configuration.mpc);
+  return out;
+}
+
+std::vector<std::string> configurationFiles(const std::string& preset, const std::string& plant,
+                                            const std::vector<std::string>& configs) {
+  const std::string sim = packageFolder("ddm_sim") + "/config";
+  const std::string launch = packageFolder("ddm_launch") + "/config";
+  std::vector<std::string> files = {sim + "/sim.yaml",
+                                    packageFolder("ddm_model") + "/config/model.yaml",
+                                    packageFolder("ddm_mpc") + "/config/mpc.yaml",
+                                    launch + "/experiment.yaml",
+                                    chooseFile(sim, plant, "plant", {"sim"}),
+                                    chooseFile(launch + "/presets", preset, "preset", {})};
+  files.insert(files.end(), configs.begin(), configs.end());
+  return files;
+}
+
+}  // namespace ddm

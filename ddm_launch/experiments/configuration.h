@@ -1,0 +1,44 @@
+// The effective configuration of an experiment: every block that decides its outcome.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ddm_bag_io/model_config.h>
+#include <ddm_mpc/mpc_options.h>
+#include <ddm_msgs/param_reader.h>
+#include <ddm_sim/plant_options.h>
+#include <yaml-cpp/yaml.h>
+
+#include <string>
+#include <vector>
+
+#include "experiment_options.h"
+
+namespace ddm {
+
+struct Configuration {
+  ExperimentOptions experiment;
+  TrialOptions trial;
+  EvaluationOptions evaluation;
+  PlantOptions plant;
+  CameraOptions camera;
+  SimOptions sim;
+  ModelConfig model;
+  MpcOptions mpc;
+};
+
+/// Reads all blocks and checks each, and that they fit together.
+/// @throws std::invalid_argument with all problems, one per line
+Configuration readConfiguration(ParamReader* reader);
+
+/// All blocks by name, in the order above.
+YAML::Node toYaml(const Configuration& configuration);
+
+/// The files that make up a configuration, the manual first, what differs last.
+/// @param preset   name in ddm_launch/config/presets
+/// @param plant    name in ddm_sim/config
+/// @param configs  further files, later ones win
+/// @throws std::invalid_argument naming what there is, if there is no such preset or plant
+std::vector<std::string> configurationFiles(const std::string& preset, const std::string& plant,
+                                            const std::vector<std::string>& configs);
+
+}  // namespace ddm

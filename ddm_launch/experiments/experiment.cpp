@@ -1,0 +1,106 @@
+// Algorithm 1 of the paper: adaptive MPC in feature space, in whatever world.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiment.h"
+
+#include <ddm_sim/plant_factory.h>
+
+#include <chrono>
+
+#include "evaluation.h"
+
+namespace ddm {
+namespace {
+
+/// One pass through the loop of Algorithm 1, in four phases.
+class Loop {
+ public:
+  Loop(const Configuration& configuration, World* world, RunFolder* folder, Progress* progress)
+      : configuration_(configuration),
+        world_(*world),
+        folder_(*folder),
+        progress_(*progress),
+        plant_(makePlant(configuration.plant, configuration.camera)),
+        update_([progress](double fraction) { progress->update(fraction); }) {}
+
+  void recordTrial(int trial) {
+    progress_.beginPhase(trial, trial == 0 ? "random" : "explore");
+    TrialRequest request = requestFor(trial, /*evaluation=*/false);
+    request.epsilon = trial == 0 ? 1.0 : configuration_.mpc.epsilon;
+    request.bag = folder_.bagPath(trial);
+    folder_.writeTrial(trial, world_.runTrial(request, update_));
+  }
+
+  TrainingOutcome train(int trial) {
+    progress_.beginPhase(trial, "train");
+    std::vector<std::string> bags;
+    for (int k = 0; k <= trial; ++k) bags.push_back(folder_.bagPath(k));
+    return world_.train(bags, requestFor(trial, /*evaluation=*/false).id, update_);
+  }
+
+  TrialOutcome evaluateGreedily(int trial) {
+    progress_.beginPhase(trial, "evaluate");
+    return world_.runTrial(requestFor(trial, /*evaluation=*/true), update_);
+  }
+
+  TrialRow rowOf(int trial, const TrainingOutcome& training, const TrialOutcome& greedy) const {
+    TrialRow row;
+    row.seed = configuration_.experiment.seed;
+    row.trial = trial;
+    row.frames = training.frames;
+    row.evaluation = evaluate(*plant_, greedy.states, configuration_.evaluation);
+    row.v_r = training.v_r;
+    row.v_p = training.v_p;
+    row.train_s = training.seconds;
+    row.train_evaluations = training.evaluations;
+    row.plan_ms_median = 1e3 * quantile(greedy.solve_times, 0.5);
+    row.plan_ms_p99 = 1e3 * quantile(greedy.solve_times, 0.99);
+    return row;
+  }
+
+ private:
+  TrialRequest requestFor(int trial, bool evaluation) const {
+    TrialRequest request;
+    request.id.seed = static_cast<std::uint64_t>(configuration_.experiment.seed);
+    request.id.trial = static_cast<std::uint32_t>(trial);
+    request.id.evaluation = evaluation;
+    request.num_steps = configuration_.trial.num_steps;
+    request.hold_steps = configuration_.mpc.hold_steps;
+    return request;
+  }
+
+  const Configuration& configuration_;
+  World& world_;
+  RunFolder& folder_;
+  Progress& progress_;
+  std::unique_ptr<Plant> plant_;
+  PhaseCallback update_;
+};
+
+}  // namespace
+
+void runExperiment(const Configuration& configuration, World* world, RunFolder* folder,
+                   Progress* progress) {
+  const auto start = std::chrono::steady_clock::now();
+  Loop loop(configuration, world, folder, progress);
+  const int num_finished = static_cast<int>(folder->rows().size());
+  const bool all_done = num_finished > configuration.experiment.trials;
+  if (num_finished > 0) {
+    progress->note("resuming after trial " + std::to_string(num_finished - 1));
+    if (!all_done) loop.train(num_finished - 1);
+  }
+  for (int trial = num_finished; trial <= configuration.experiment.trials; ++trial) {
+    loop.recordTrial(trial);
+    const TrainingOutcome training = loop.train(trial);
+    folder->writeModel(trial, training.model);
+    const TrialOutcome greedy = loop.evaluateGreedily(trial);
+    folder->writeEvaluation(trial, greedy);
+    folder->finishTrial(loop.rowOf(trial, training, greedy));
+    progress->finishTrial(folder->rows());
+  }
+  const double wall_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  folder->writeSummary(wall_s);
+  progress->summary(folder->rows(), folder->path(), wall_s);
+}
+
+}  // namespace ddm

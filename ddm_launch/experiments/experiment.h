@@ -1,0 +1,21 @@
+// Algorithm 1 of the paper: adaptive MPC in feature space, in whatever world.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "configuration.h"
+#include "progress.h"
+#include "run_folder.h"
+#include "world.h"
+
+namespace ddm {
+
+/// Follow a random control strategy and record; then, trial by trial: train on everything recorded,
+/// evaluate greedily, run an epsilon-greedy trial and record (paper, Alg. 1).
+///
+/// Takes up after the last trial that the folder says is finished. Its model is trained once more,
+/// which gives the same model: nothing but bags has to survive an interruption.
+/// @throws std::runtime_error with what failed; all finished trials are kept
+void runExperiment(const Configuration& configuration, World* world, RunFolder* folder,
+                   Progress* progress);
+
+}  // namespace ddm

@@ -1,0 +1,42 @@
+// Parameters of an experiment: what makes them valid.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiment_options.h"
+
+#include <cmath>
+
+namespace ddm {
+
+std::vector<std::string> ExperimentOptions::problems() const {
+  std::vector<std::string> out;
+  if (seed < 0) out.push_back("experiment/seed must be >= 0, got " + std::to_string(seed));
+  if (trials < 0 || trials > 999) {
+    out.push_back("experiment/trials must lie in [0, 999], got " + std::to_string(trials));
+  }
+  if (!(timeout > 0.0 && std::isfinite(timeout))) {
+    out.push_back("experiment/timeout must be > 0, got " + std::to_string(timeout));
+  }
+  return out;
+}
+
+std::vector<std::string> TrialOptions::problems() const {
+  if (num_steps >= 1 && num_steps <= 1000000) return {};
+  return {"trial/num_steps must lie in [1, 1000000], got " + std::to_string(num_steps)};
+}
+
+std::vector<std::string> EvaluationOptions::problems() const {
+  std::vector<std::string> out;
+  if (!(tolerance_deg > 0.0 && tolerance_deg <= 180.0)) {
+    out.push_back("evaluation/tolerance_deg must lie in (0, 180], got " +
+                  std::to_string(tolerance_deg));
+  }
+  if (settled_steps < 1) {
+    out.push_back("evaluation/settled_steps must be >= 1, got " + std::to_string(settled_steps));
+  }
+  if (settled_steps_strict < settled_steps) {
+    out.push_back("evaluation/settled_steps_strict must be >= evaluation/settled_steps, got " +
+                  std::to_string(settled_steps_strict));
+  }
+  return out;
+}
+
+}  // namespace ddm

@@ -1,0 +1,58 @@
+// Parameters of an experiment. One struct = one YAML block.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace ddm {
+
+/// Block `experiment`: what is run. Set by launch arguments and options.
+struct ExperimentOptions {
+  std::string preset = "paper";    ///< name of the preset
+  std::string plant = "pendulum";  ///< name of the plant
+  int seed = 0;                    ///< fixes every random draw
+  int trials = 15;                 ///< epsilon-greedy trials after the random one [-]
+  std::string runs;                ///< folder for everything that the experiment leaves behind
+  double timeout = 60.0;           ///< nodes: wall time without a sign of life [s]
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("preset", preset);
+    visitor("plant", plant);
+    visitor("seed", seed);
+    visitor("trials", trials);
+    visitor("runs", runs);
+    visitor("timeout", timeout);
+  }
+  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  std::vector<std::string> problems() const;
+};
+
+/// Block `trial`.
+struct TrialOptions {
+  int num_steps = 100;  ///< frames, and so torques, of one trial [-]
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("num_steps", num_steps);
+  }
+  std::vector<std::string> problems() const;
+};
+
+/// Block `evaluation`: when a greedy run is a success.
+struct EvaluationOptions {
+  double tolerance_deg = 10.0;    ///< largest distance to the goal [deg]
+  int settled_steps = 10;         ///< last frames that must be within it: `success` [-]
+  int settled_steps_strict = 25;  ///< the same for `success_strict` [-]
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("tolerance_deg", tolerance_deg);
+    visitor("settled_steps", settled_steps);
+    visitor("settled_steps_strict", settled_steps_strict);
+  }
+  std::vector<std::string> problems() const;
+};
+
+}  // namespace ddm

@@ -1,0 +1,111 @@
+// The world in this process: plant, recorder, trainer and policy without a ROS master.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "in_process_world.h"
+
+#include <ddm_model/model_file.h>
+#include <ddm_model/trainer.h>
+#include <ddm_mpc/mpc_policy.h>
+#include <ddm_msgs/Torque.h>
+#include <ddm_msgs/image_codec.h>
+#include <ddm_sim/plant_factory.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace ddm {
+namespace {
+
+/// Stamp of a frame of a trial that begins at one second, like sim_node's first.
+ros::Time stampOf(int step, double dt) {
+  const auto step_ns = static_cast<std::uint64_t>(std::llround(dt * 1e9));
+  return ros::Time(1, 0) + ros::Duration().fromNSec(static_cast<std::int64_t>(step * step_ns));
+}
+
+}  // namespace
+
+InProcessWorld::InProcessWorld(const Configuration& configuration)
+    : configuration_(configuration),
+      plant_(makePlant(configuration.plant, configuration.camera)),
+      bags_(configuration.model.image.size, configuration.model.data_set) {
+  if (!configuration.sim.lockstep) {
+    throw std::invalid_argument(
+        "sim/lockstep must be true where everything runs in one process: use experiment.launch for "
+        "real time");
+  }
+}
+
+EpsilonGreedy InProcessWorld::makePolicy(const TrialRequest& request) const {
+  EpsilonGreedy::Options options;
+  options.epsilon = request.epsilon;
+  options.hold_steps = request.hold_steps;
+  options.max_torque = configuration_.mpc.max_torque;
+  options.torque_dim = plant_->torqueDim();
+  std::shared_ptr<Policy> policy;
+  if (model_ != nullptr && request.epsilon < 1.0) {
+    policy = std::make_shared<MpcPolicy>(model_, configuration_.mpc);
+  }
+  return EpsilonGreedy(std::move(policy), options, request.id);
+}
+
+TrialOutcome InProcessWorld::runTrial(const TrialRequest& request, const PhaseCallback& progress) {
+  std::mt19937_64 start = startStream(request.id.seed, request.id.trial, request.id.evaluation);
+  plant_->setState(plant_->drawStart(start));
+  EpsilonGreedy policy = makePolicy(request);
+  std::unique_ptr<BagWriter> bag;
+  if (!request.bag.empty()) {
+    bag = std::make_unique<BagWriter>(request.bag, configuration_.model.data_set);
+    bag->writeGoal(encodeImage(plant_->render(plant_->goalState()), plant_->imageSize(),
+                               stampOf(0, plant_->dt()), "camera"),
+                   stampOf(0, plant_->dt()));
+  }
+  TrialOutcome outcome;
+  for (int step = 0; step < request.num_steps; ++step) {
+    const sensor_msgs::Image image =
+        encodeImage(plant_->render(plant_->state()), plant_->imageSize(),
+                    stampOf(step, plant_->dt()), "camera");
+    outcome.times.push_back(step * plant_->dt());
+    outcome.states.push_back(plant_->state());
+    const Decision decision = policy.decide(decodeImage(image, configuration_.model.image.size));
+    outcome.torques.push_back(decision.torque);
+    outcome.exploratory.push_back(decision.exploratory);
+    if (decision.plan) outcome.solve_times.push_back(decision.plan->solve_time);
+    if (bag != nullptr) {
+      ddm_msgs::Torque torque;
+      torque.header.stamp = image.header.stamp;
+      torque.torque.assign(decision.torque.data(), decision.torque.data() + decision.torque.size());
+      torque.exploratory = decision.exploratory;
+      bag->write(image);
+      bag->write(torque);
+    }
+    plant_->step(decision.torque);
+    progress(static_cast<double>(step + 1) / request.num_steps);
+  }
+  if (bag != nullptr) bag->close();
+  return outcome;
+}
+
+TrainingOutcome InProcessWorld::train(const std::vector<std::string>& bags, const TrialId& id,
+                                      const PhaseCallback& progress) {
+  ModelInfo info;
+  info.seed = id.seed;
+  info.trial = id.trial;
+  info.config = toText(configuration_.model);
+  const TrainingResult result =
+      ddm::train(bags_.read(bags), configuration_.model.model, configuration_.model.training, info,
+                 [&progress](const TrainingProgress& state) {
+                   progress(state.fraction_done);
+                   return true;
+                 });
+  if (!result.model) throw std::runtime_error(result.message);
+  model_ = std::make_shared<const Ddm>(*result.model);
+  TrainingOutcome outcome;
+  outcome.model = serialiseModel(*model_);
+  outcome.frames = model_->info().frames;
+  outcome.v_r = model_->info().v_r;
+  outcome.v_p = model_->info().v_p;
+  outcome.seconds = result.seconds;
+  outcome.evaluations = result.evaluations;
+  return outcome;
+}
+
+}  // namespace ddm

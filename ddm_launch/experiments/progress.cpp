@@ -1,0 +1,98 @@
+// Progress of an experiment on the terminal.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "progress.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace ddm {
+namespace {
+
+constexpr int kBarWidth = 24;
+constexpr std::chrono::milliseconds kRedrawPeriod(50);
+
+int countSuccesses(const std::vector<TrialRow>& rows) {
+  return static_cast<int>(std::count_if(
+      rows.begin(), rows.end(), [](const TrialRow& row) { return row.evaluation.success; }));
+}
+
+template <class... Values>
+std::string format(const char* pattern, Values... values) {
+  char text[256];
+  std::snprintf(text, sizeof(text), pattern, values...);
+  return text;
+}
+
+}  // namespace
+
+Progress::Progress(std::ostream* out, bool live, int num_trials)
+    : out_(out), live_(live), num_trials_(num_trials) {}
+
+void Progress::note(const std::string& text) {
+  wipe();
+  *out_ << text << std::endl;
+}
+
+void Progress::beginPhase(int trial, const std::string& phase) {
+  trial_ = trial;
+  phase_ = phase;
+  draw(0.0);
+}
+
+void Progress::update(double fraction) {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_drawn_ >= kRedrawPeriod) draw(fraction);
+}
+
+void Progress::draw(double fraction) {
+  if (!live_) return;
+  last_drawn_ = std::chrono::steady_clock::now();
+  const int filled = static_cast<int>(kBarWidth * std::min(1.0, std::max(0.0, fraction)));
+  const std::string bar = std::string(filled, '#') + std::string(kBarWidth - filled, '.');
+  *out_ << "\r\033[K"
+        << format("trial %2d/%d  %-10s [%s] %3.0f %%  %s", trial_, num_trials_, phase_.c_str(),
+                  bar.c_str(), 100.0 * fraction, success_so_far_.c_str())
+        << std::flush;
+}
+
+void Progress::wipe() {
+  if (live_) *out_ << "\r\033[K";
+}
+
+void Progress::finishTrial(const std::vector<TrialRow>& rows) {
+  wipe();
+  const TrialRow& row = rows.back();
+  std::string verdict = "no ground truth";
+  if (row.evaluation.known) {
+    verdict = format("error %5.1f deg%s", row.evaluation.final_error_deg,
+                     row.evaluation.success ? "  success" : "");
+    success_so_far_ =
+        format("success %d of %d", countSuccesses(rows), static_cast<int>(rows.size()));
+  }
+  // No more than 80 columns: a line that wraps is hard to read, and cannot be wiped.
+  *out_ << format("trial %2d/%d  %5u frames  V_R %8.3g  V_P %8.3g  %s", row.trial, num_trials_,
+                  row.frames, row.v_r, row.v_p, verdict.c_str())
+        << std::endl;
+}
+
+void Progress::summary(const std::vector<TrialRow>& rows, const std::string& folder,
+                       double wall_s) {
+  wipe();
+  double train_s = 0.0;
+  const TrialRow* first = nullptr;
+  for (const TrialRow& row : rows) {
+    train_s += row.train_s;
+    if (first == nullptr && row.evaluation.success) first = &row;
+  }
+  *out_ << "\n"
+        << rows.size() << " models trained, the last on " << rows.back().frames << " frames\n";
+  if (rows.back().evaluation.known) {
+    *out_ << countSuccesses(rows) << " of " << rows.size() << " reached the goal and stayed";
+    if (first != nullptr) *out_ << ", the first one after " << first->frames << " frames";
+    *out_ << "\n";
+  }
+  *out_ << format("%.1f s of training in all; this call took %.1f s\n", train_s, wall_s)
+        << "results: " << folder << "/trials.csv" << std::endl;
+}
+
+}  // namespace ddm

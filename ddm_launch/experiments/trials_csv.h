@@ -1,0 +1,20 @@
+// trials.csv: one row per finished trial.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "run_folder.h"
+
+namespace ddm {
+
+/// Header and rows. success, success_strict and final_error_deg are empty where they are not known.
+std::string formatTrialsCsv(const std::vector<TrialRow>& rows);
+
+/// The inverse.
+/// @param source  file, for messages
+/// @throws std::runtime_error with source, line and fault
+std::vector<TrialRow> parseTrialsCsv(const std::string& text, const std::string& source);
+
+}  // namespace ddm

@@ -1,0 +1,56 @@
+// The world that Algorithm 1 acts in: simulated in this process, or ROS nodes.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ddm_mpc/policy.h>
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace ddm {
+
+/// Fraction of a phase that is done, in [0, 1].
+using PhaseCallback = std::function<void(double)>;
+
+struct TrialRequest {
+  TrialId id;
+  int num_steps = 0;
+  double epsilon = 0.0;  ///< 1: random, needs no model
+  int hold_steps = 1;
+  std::string bag;  ///< where to record; empty: not recorded
+};
+
+struct TrialOutcome {
+  std::vector<Eigen::VectorXd> torques;  ///< one per frame [N m]
+  std::vector<bool> exploratory;         ///< one per frame
+  std::vector<double> solve_times;       ///< one per plan [s]
+  std::vector<double> times;             ///< ground truth: time since the first frame [s]
+  std::vector<Eigen::VectorXd> states;   ///< ground truth: state at each frame; empty if unknown
+};
+
+struct TrainingOutcome {
+  std::string model;         ///< the model file, byte for byte
+  std::uint32_t frames = 0;  ///< learned from
+  double v_r = 0.0;          ///< [grey^2]
+  double v_p = 0.0;          ///< [grey^2]
+  double seconds = 0.0;      ///< wall time of the training [s]
+  std::uint32_t evaluations = 0;
+};
+
+/// Errors are std::runtime_error with what failed and what to do.
+class World {
+ public:
+  virtual ~World() = default;
+
+  /// Brings the plant to its start and runs one trial, with the last model trained.
+  virtual TrialOutcome runTrial(const TrialRequest& request, const PhaseCallback& progress) = 0;
+
+  /// Trains on all bags and keeps the model for the trials to come.
+  virtual TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,
+                                const PhaseCallback& progress) = 0;
+};
+
+}  // namespace ddm

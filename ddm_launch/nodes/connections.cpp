@@ -1,0 +1,82 @@
+// Whether the publishers and subscribers of a topic have found each other.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "connections.h"
+
+#include <ros/master.h>
+#include <ros/network.h>
+#include <ros/this_node.h>
+#include <ros/xmlrpc_manager.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace ddm {
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// Nodes by topic, from one of the three lists of the master's system state.
+std::map<std::string, Names> nodesByTopic(XmlRpc::XmlRpcValue* list) {
+  std::map<std::string, Names> out;
+  for (int i = 0; i < list->size(); ++i) {
+    XmlRpc::XmlRpcValue& nodes = (*list)[i][1];
+    Names& names = out[static_cast<std::string>((*list)[i][0])];
+    for (int j = 0; j < nodes.size(); ++j) names.push_back(static_cast<std::string>(nodes[j]));
+  }
+  return out;
+}
+
+/// (topic, subscriber) of all outgoing connections of a node; empty if it does not answer.
+std::set<std::pair<std::string, std::string>> outgoingConnections(const std::string& node) {
+  std::set<std::pair<std::string, std::string>> out;
+  XmlRpc::XmlRpcValue request, response, payload;
+  request[0] = ros::this_node::getName();
+  request[1] = node;
+  if (!ros::master::execute("lookupNode", request, response, payload, false)) return out;
+  std::string host;
+  std::uint32_t port = 0;
+  const std::string uri = payload;
+  if (!ros::network::splitURI(uri, host, port)) return out;
+
+  XmlRpc::XmlRpcValue caller;
+  caller[0] = ros::this_node::getName();
+  XmlRpc::XmlRpcClient* const client =
+      ros::XMLRPCManager::instance()->getXMLRPCClient(host, static_cast<int>(port), uri);
+  if (client == nullptr) return out;
+  if (client->execute("getBusInfo", caller, response) && response.size() == 3) {
+    XmlRpc::XmlRpcValue& connections = response[2];
+    for (int i = 0; i < connections.size(); ++i) {
+      XmlRpc::XmlRpcValue& connection =
+          connections[i];  // id, destination, direction, transport, topic
+      if (static_cast<std::string>(connection[2]) != "o") continue;
+      out.emplace(static_cast<std::string>(connection[4]), static_cast<std::string>(connection[1]));
+    }
+  }
+  ros::XMLRPCManager::instance()->releaseXMLRPCClient(client);
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::string> missingConnections(const std::vector<std::string>& topics) {
+  XmlRpc::XmlRpcValue response, state;
+  if (!ros::master::execute("getSystemState", ros::this_node::getName(), response, state, false)) {
+    return {"the ROS master does not answer"};
+  }
+  std::map<std::string, Names> publishers = nodesByTopic(&state[0]);
+  std::map<std::string, Names> subscribers = nodesByTopic(&state[1]);
+  std::vector<std::string> missing;
+  for (const std::string& topic : topics) {
+    for (const std::string& publisher : publishers[topic]) {
+      const auto connections = outgoingConnections(publisher);
+      for (const std::string& subscriber : subscribers[topic]) {
+        if (connections.count({topic, subscriber}) > 0) continue;
+        missing.push_back(publisher + " -> " + subscriber + " on " + topic);
+      }
+    }
+  }
+  return missing;
+}
+
+}  // namespace ddm

@@ -1,0 +1,44 @@
+// experiment_node: Algorithm 1 with the real nodes.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_msgs/node_params.h>
+#include <ddm_msgs/param_reader.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <iostream>
+
+#include "configuration.h"
+#include "experiment.h"
+#include "ros_world.h"
+
+namespace {
+
+void run(const ros::NodeHandle& nh, const ros::NodeHandle& pnh) {
+  ddm::ParamReader params(ddm::nodeParams(pnh), pnh.getNamespace());
+  const ddm::Configuration configuration = ddm::readConfiguration(&params);
+  // roslaunch has loaded the files by name; this refuses a name that is no preset or plant.
+  ddm::configurationFiles(configuration.experiment.preset, configuration.experiment.plant, {});
+  ddm::RunFolder folder(configuration);
+  ddm::Progress progress(&std::cout, ::isatty(STDOUT_FILENO) != 0, configuration.experiment.trials);
+  for (const std::string& warning : folder.warnings()) progress.note("warning: " + warning);
+  ddm::RosWorld world(nh, configuration.experiment.timeout, ddm::RosWorld::Peers());
+  ddm::runExperiment(configuration, &world, &folder, &progress);
+  progress.note("The experiment is finished. roslaunch ends the nodes, and says so in red.");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "experiment_node");
+  const ros::NodeHandle nh;
+  const ros::NodeHandle pnh("~");  // outside the try: its destructor shuts the log down
+  ros::AsyncSpinner spinner(2);
+  spinner.start();
+  try {
+    run(nh, pnh);
+  } catch (const std::exception& e) {
+    ROS_FATAL_STREAM("experiment: " << e.what());
+    return EXIT_FAILURE;
+  }
+  return EXIT_SUCCESS;
+}

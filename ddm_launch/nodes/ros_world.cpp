@@ -1,0 +1,290 @@
+// The world of ROS nodes: plant, recorder, trainer and policy behind services and actions.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ros_world.h"
+
+#include <ddm_msgs/Reset.h>
+#include <ddm_msgs/StartRecording.h>
+#include <ddm_msgs/StopRecording.h>
+#include <ddm_msgs/topic_peers.h>
+#include <ddm_msgs/topics.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+
+#include "connections.h"
+
+namespace ddm {
+namespace {
+
+constexpr int kQueue = 1000;
+constexpr std::chrono::milliseconds kLook(
+    20);  // how often conditions without a callback are looked at
+
+}  // namespace
+
+RosWorld::RosWorld(ros::NodeHandle nh, double timeout, Peers peers)
+    : nh_(nh),
+      timeout_(timeout),
+      peers_(peers),
+      trial_client_(nh, topics::kRunTrial, /*spin_thread=*/false),
+      train_client_(nh, topics::kTrain, /*spin_thread=*/false),
+      reset_client_(nh.serviceClient<ddm_msgs::Reset>(topics::kReset)),
+      start_client_(nh.serviceClient<ddm_msgs::StartRecording>(topics::kStartRecording)),
+      stop_client_(nh.serviceClient<ddm_msgs::StopRecording>(topics::kStopRecording)) {
+  ground_truth_sub_ = nh.subscribe<sensor_msgs::JointState>(
+      topics::kGroundTruth, kQueue, [this](const sensor_msgs::JointStateConstPtr& state) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        ground_truth_.push_back(*state);
+        changed_.notify_all();
+      });
+  model_sub_ = nh.subscribe<ddm_msgs::Model>(topics::kModel, 1,
+                                             [this](const ddm_msgs::ModelConstPtr& model) {
+                                               const std::lock_guard<std::mutex> lock(mutex_);
+                                               model_ = model;
+                                               changed_.notify_all();
+                                             });
+  connect();
+}
+
+void RosWorld::connect() {
+  signOfLife();
+  const auto service = [this](ros::ServiceClient* client) {
+    waitFor([client] { return client->exists(); },
+            "service " + client->getService() + " is not offered");
+  };
+  service(&reset_client_);
+  if (peers_.recorder) service(&start_client_);
+  waitFor([this] { return trial_client_.isServerConnected(); },
+          "action " + nh_.resolveName(topics::kRunTrial) + " is not offered");
+  if (peers_.trainer) {
+    waitFor([this] { return train_client_.isServerConnected(); },
+            "action " + nh_.resolveName(topics::kTrain) + " is not offered");
+  }
+  std::vector<std::string> topics;
+  for (const char* topic : {topics::kImage, topics::kTorque, topics::kGoalImage, topics::kModel,
+                            topics::kGroundTruth}) {
+    topics.push_back(nh_.resolveName(topic));
+  }
+  std::vector<std::string> missing;
+  const auto connected = [&] {
+    missing = missingConnections(topics);
+    return missing.empty();
+  };
+  try {
+    waitFor(connected, "");
+  } catch (const std::exception&) {
+    std::string text = "nodes do not find each other:";
+    for (const std::string& connection : missing) text += "\n - " + connection;
+    throw std::runtime_error(text + "\nCheck ROS_HOSTNAME or ROS_IP on each machine");
+  }
+}
+
+void RosWorld::signOfLife() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  last_sign_of_life_ = ros::WallTime::now();
+}
+
+/// Waits for a condition, which is looked at whenever a callback has changed something.
+/// @throws std::runtime_error if nobody gave a sign of life within the timeout, or on shutdown
+void RosWorld::waitFor(const std::function<bool()>& condition, const std::string& what) {
+  for (;;) {
+    if (condition()) return;
+    if (!ros::ok()) throw std::runtime_error("interrupted; the same command resumes");
+    std::unique_lock<std::mutex> lock(mutex_);
+    if ((ros::WallTime::now() - last_sign_of_life_).toSec() > timeout_) {
+      std::ostringstream text;
+      text << what << " (waited " << timeout_ << " s)";
+      throw std::runtime_error(text.str());
+    }
+    changed_.wait_for(lock, kLook);
+  }
+}
+
+template <class Service>
+void RosWorld::call(ros::ServiceClient* client, Service* service) {
+  if (!client->call(*service)) {
+    throw std::runtime_error("service " + client->getService() + " does not answer");
+  }
+  if (!service->response.success) {
+    throw std::runtime_error("service " + client->getService() + ": " + service->response.message);
+  }
+  signOfLife();
+}
+
+/// Sends a goal and waits for its result; feedback is a sign of life.
+template <class Client, class Goal, class FeedbackCallback>
+auto RosWorld::execute(Client* client, const std::string& name, const Goal& goal,
+                       const FeedbackCallback& on_feedback) {
+  // Feedback may still come when the result is there: it must find `open` false and nothing else.
+  struct Pending {
+    bool done = false;
+    bool open = true;
+  };
+  const auto pending = std::make_shared<Pending>();
+  const auto on_done = [this, pending](const actionlib::SimpleClientGoalState&, const auto&) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    pending->done = true;
+    changed_.notify_all();
+  };
+  const auto alive = [this, pending, on_feedback](const auto& feedback) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!pending->open) return;
+    last_sign_of_life_ = ros::WallTime::now();
+    on_feedback(feedback);
+  };
+  const auto close = [this, pending] {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    pending->open = false;
+  };
+  const auto is_done = [this, pending] {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return pending->done;
+  };
+  signOfLife();
+  client->sendGoal(goal, on_done, typename Client::SimpleActiveCallback(), alive);
+  try {
+    waitFor(is_done, "action " + name + " shows no sign of life");
+  } catch (const std::exception&) {
+    close();
+    client->cancelGoal();
+    throw;
+  }
+  close();
+  const actionlib::SimpleClientGoalState state = client->getState();
+  if (state != actionlib::SimpleClientGoalState::SUCCEEDED) {
+    throw std::runtime_error("action " + name + ": " + state.toString() + ", " + state.getText());
+  }
+  return *client->getResult();
+}
+
+TrialOutcome RosWorld::runTrial(const TrialRequest& request, const PhaseCallback& progress) {
+  if (!request.bag.empty()) startRecording(request.bag);
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ground_truth_.clear();
+  }
+  const ros::Time start = reset(request);
+  const ddm_msgs::RunTrialResult result = runPolicy(request, start, progress);
+  last_image_ = result.last;
+  if (!request.bag.empty()) stopRecording(request.num_steps);
+
+  TrialOutcome outcome;
+  const size_t torque_dim = result.torque.size() / result.num_steps;
+  for (size_t step = 0; step < result.num_steps; ++step) {
+    outcome.torques.push_back(Eigen::Map<const Eigen::VectorXd>(
+        result.torque.data() + step * torque_dim, static_cast<Eigen::Index>(torque_dim)));
+    outcome.exploratory.push_back(result.exploratory[step] != 0);
+  }
+  outcome.solve_times = result.solve_time;
+  takeGroundTruth(start, request.num_steps, &outcome);
+  return outcome;
+}
+
+void RosWorld::startRecording(const std::string& bag) {
+  ddm_msgs::StartRecording service;
+  service.request.path = bag;
+  service.request.after = last_image_;
+  call(&start_client_, &service);
+}
+
+void RosWorld::stopRecording(int num_steps) {
+  ddm_msgs::StopRecording service;
+  service.request.num_steps = static_cast<std::uint32_t>(num_steps);
+  call(&stop_client_, &service);
+}
+
+ros::Time RosWorld::reset(const TrialRequest& request) {
+  ddm_msgs::Reset service;
+  service.request.seed = request.id.seed;
+  service.request.trial = request.id.trial;
+  service.request.evaluation = request.id.evaluation;
+  service.request.num_steps = static_cast<std::uint32_t>(request.num_steps);
+  call(&reset_client_, &service);
+  return service.response.start;
+}
+
+ddm_msgs::RunTrialResult RosWorld::runPolicy(const TrialRequest& request, const ros::Time& start,
+                                             const PhaseCallback& progress) {
+  ddm_msgs::RunTrialGoal goal;
+  goal.num_steps = static_cast<std::uint32_t>(request.num_steps);
+  goal.epsilon = request.epsilon;
+  goal.hold_steps = static_cast<std::uint32_t>(request.hold_steps);
+  goal.seed = request.id.seed;
+  goal.trial = request.id.trial;
+  goal.evaluation = request.id.evaluation;
+  goal.model_id = request.epsilon < 1.0 ? model_id_ : "";
+  goal.start = start;
+  const ddm_msgs::RunTrialResult result =
+      execute(&trial_client_, nh_.resolveName(topics::kRunTrial), goal,
+              [&](const ddm_msgs::RunTrialFeedbackConstPtr& feedback) {
+                progress(static_cast<double>(feedback->step) / request.num_steps);
+              });
+  if (result.num_steps != goal.num_steps || result.exploratory.size() != result.num_steps ||
+      result.torque.size() % result.num_steps != 0) {
+    throw std::runtime_error("action " + nh_.resolveName(topics::kRunTrial) +
+                             ": its result is not that of the trial");
+  }
+  return result;
+}
+
+/// State at each frame, if anybody publishes it.
+void RosWorld::takeGroundTruth(const ros::Time& start, int num_steps, TrialOutcome* outcome) {
+  if (ground_truth_sub_.getNumPublishers() == 0) return;
+  const auto belongs = [&start](const sensor_msgs::JointState& state) {
+    return state.header.stamp >= start;
+  };
+  waitFor(
+      [&] {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        return std::count_if(ground_truth_.begin(), ground_truth_.end(), belongs) >= num_steps;
+      },
+      "ground truth of the trial is incomplete, " +
+          describePublishers(ground_truth_sub_.getTopic()));
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (const sensor_msgs::JointState& joints : ground_truth_) {
+    if (!belongs(joints) || static_cast<int>(outcome->states.size()) == num_steps) continue;
+    const auto dim = static_cast<Eigen::Index>(joints.position.size());
+    const auto rate_dim = static_cast<Eigen::Index>(joints.velocity.size());
+    Eigen::VectorXd state(dim + rate_dim);
+    state.head(dim) = Eigen::Map<const Eigen::VectorXd>(joints.position.data(), dim);
+    state.tail(rate_dim) = Eigen::Map<const Eigen::VectorXd>(joints.velocity.data(), rate_dim);
+    outcome->times.push_back((joints.header.stamp - start).toSec());
+    outcome->states.push_back(state);
+  }
+}
+
+TrainingOutcome RosWorld::train(const std::vector<std::string>& bags, const TrialId& id,
+                                const PhaseCallback& progress) {
+  ddm_msgs::TrainGoal goal;
+  goal.bags = bags;
+  goal.seed = id.seed;
+  goal.trial = id.trial;
+  const ddm_msgs::TrainResult result = execute(
+      &train_client_, nh_.resolveName(topics::kTrain), goal,
+      [&](const ddm_msgs::TrainFeedbackConstPtr& feedback) { progress(feedback->fraction_done); });
+  model_id_ = result.model_id;
+  TrainingOutcome outcome;
+  outcome.model = takeModel(result.model_id);
+  outcome.frames = result.frames;
+  outcome.v_r = result.v_r;
+  outcome.v_p = result.v_p;
+  outcome.seconds = result.train_time;
+  outcome.evaluations = result.evaluations;
+  return outcome;
+}
+
+std::string RosWorld::takeModel(const std::string& model_id) {
+  waitFor(
+      [&] {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        return model_ != nullptr && model_->id == model_id;
+      },
+      "model " + model_id + " did not come, " + describePublishers(model_sub_.getTopic()));
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return std::string(model_->data.begin(), model_->data.end());
+}
+
+}  // namespace ddm

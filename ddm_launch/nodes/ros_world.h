@@ -1,0 +1,83 @@
+// The world of ROS nodes: plant, recorder, trainer and policy behind services and actions.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <actionlib/client/simple_action_client.h>
+#include <ddm_msgs/Model.h>
+#include <ddm_msgs/RunTrialAction.h>
+#include <ddm_msgs/TrainAction.h>
+#include <ros/ros.h>
+#include <sensor_msgs/JointState.h>
+
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "world.h"
+
+namespace ddm {
+
+/// Orders the nodes about; computes nothing. All waits are in wall time, because simulated time
+/// stands still while a model is trained, and all end with an error that names who is silent.
+/// Needs a running ros::AsyncSpinner.
+class RosWorld : public World {
+ public:
+  struct Peers {
+    bool recorder = true;  ///< trials are recorded
+    bool trainer = true;   ///< models are trained
+  };
+
+  /// Waits until the nodes are there and connected to each other.
+  /// @param timeout  wall time without a sign of life [s]
+  /// @throws std::runtime_error naming what is missing
+  RosWorld(ros::NodeHandle nh, double timeout, Peers peers);
+
+  TrialOutcome runTrial(const TrialRequest& request, const PhaseCallback& progress) override;
+  TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,
+                        const PhaseCallback& progress) override;
+
+  /// Plans with this model, which somebody else publishes, in the trials to come.
+  void useModel(const std::string& model_id) { model_id_ = model_id; }
+
+ private:
+  void connect();
+  void startRecording(const std::string& bag);
+  void stopRecording(int num_steps);
+  ros::Time reset(const TrialRequest& request);
+  ddm_msgs::RunTrialResult runPolicy(const TrialRequest& request, const ros::Time& start,
+                                     const PhaseCallback& progress);
+  void takeGroundTruth(const ros::Time& start, int num_steps, TrialOutcome* outcome);
+  std::string takeModel(const std::string& model_id);
+
+  template <class Client, class Goal, class FeedbackCallback>
+  auto execute(Client* client, const std::string& name, const Goal& goal,
+               const FeedbackCallback& on_feedback);
+  template <class Service>
+  void call(ros::ServiceClient* client, Service* service);
+  void signOfLife();
+  void waitFor(const std::function<bool()>& condition, const std::string& what);
+
+  ros::NodeHandle nh_;
+  double timeout_;
+  Peers peers_;
+  std::string model_id_;
+  ros::Time last_image_;  // of the last trial
+
+  std::mutex mutex_;  // guards what callbacks write, below
+  std::condition_variable changed_;
+  ros::WallTime last_sign_of_life_;
+  std::vector<sensor_msgs::JointState> ground_truth_;
+  ddm_msgs::ModelConstPtr model_;
+
+  actionlib::SimpleActionClient<ddm_msgs::RunTrialAction> trial_client_;
+  actionlib::SimpleActionClient<ddm_msgs::TrainAction> train_client_;
+  ros::ServiceClient reset_client_;
+  ros::ServiceClient start_client_;
+  ros::ServiceClient stop_client_;
+  ros::Subscriber ground_truth_sub_;
+  ros::Subscriber model_sub_;
+};
+
+}  // namespace ddm

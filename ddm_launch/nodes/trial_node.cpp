@@ -1,0 +1,114 @@
+// trial_node: one trial with the real nodes, random or with a saved model, recorded or not.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_bag_io/model_message.h>
+#include <ddm_model/model_file.h>
+#include <ddm_mpc/mpc_options.h>
+#include <ddm_msgs/node_params.h>
+#include <ddm_msgs/param_reader.h>
+#include <ddm_msgs/topics.h>
+#include <ddm_sim/plant_factory.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <iostream>
+
+#include "evaluation.h"
+#include "progress.h"
+#include "ros_world.h"
+
+namespace {
+
+/// Block `run`.
+struct RunOptions {
+  std::string model;      ///< model file; empty: a random trial
+  std::string bag;        ///< bag to write; empty: nothing is recorded
+  double epsilon = 0.0;   ///< probability of a random torque; 1 where there is no model [-]
+  int num_steps = 100;    ///< frames [-]
+  int seed = 0;           ///< fixes every random draw
+  double timeout = 60.0;  ///< wall time without a sign of life [s]
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("model", model);
+    visitor("bag", bag);
+    visitor("epsilon", epsilon);
+    visitor("num_steps", num_steps);
+    visitor("seed", seed);
+    visitor("timeout", timeout);
+  }
+  std::vector<std::string> problems() const {
+    std::vector<std::string> out;
+    if (!(epsilon >= 0.0 && epsilon <= 1.0)) {
+      out.push_back("run/epsilon must lie in [0, 1], got " + std::to_string(epsilon));
+    }
+    if (num_steps < 1) {
+      out.push_back("run/num_steps must be >= 1, got " + std::to_string(num_steps));
+    }
+    if (seed < 0) out.push_back("run/seed must be >= 0, got " + std::to_string(seed));
+    if (!(timeout > 0.0)) {
+      out.push_back("run/timeout must be > 0, got " + std::to_string(timeout));
+    }
+    return out;
+  }
+};
+
+void report(const ddm::Plant& plant, const ddm::TrialOutcome& outcome,
+            const ddm::EvaluationOptions& options, ddm::Progress* progress) {
+  const bool enough = static_cast<int>(outcome.states.size()) >= options.settled_steps_strict;
+  progress->note(std::to_string(outcome.torques.size()) + " torques");
+  if (!enough) return;
+  const ddm::Evaluation evaluation = ddm::evaluate(plant, outcome.states, options);
+  progress->note("final error " + std::to_string(evaluation.final_error_deg) + " deg: " +
+                 (evaluation.success ? "the goal was reached" : "the goal was not reached"));
+}
+
+void run(ros::NodeHandle nh, const ros::NodeHandle& pnh) {
+  ddm::ParamReader params(ddm::nodeParams(pnh), pnh.getNamespace());
+  const auto options = params.read<RunOptions>("run");
+  const auto plant = params.read<ddm::PlantOptions>("plant");
+  const auto camera = params.read<ddm::CameraOptions>("camera");
+  const auto evaluation = params.read<ddm::EvaluationOptions>("evaluation");
+  const auto mpc = params.read<ddm::MpcOptions>("mpc");
+  params.requireValid();
+
+  ros::Publisher model_pub;
+  ddm::TrialRequest request;
+  request.id.seed = static_cast<std::uint64_t>(options.seed);
+  request.num_steps = options.num_steps;
+  request.epsilon = options.model.empty() ? 1.0 : options.epsilon;
+  request.hold_steps = mpc.hold_steps;
+  request.bag = options.bag;
+  std::string model_id;
+  if (!options.model.empty()) {
+    const ddm_msgs::Model model = ddm::toMessage(
+        ddm::deserialiseModel(ddm::readFile(options.model), options.model), ros::Time::now());
+    model_pub = nh.advertise<ddm_msgs::Model>(ddm::topics::kModel, 1, /*latch=*/true);
+    model_pub.publish(model);
+    model_id = model.id;
+  }
+  ddm::RosWorld world(nh, options.timeout, {!options.bag.empty(), /*trainer=*/false});
+  world.useModel(model_id);
+  ddm::Progress progress(&std::cout, ::isatty(STDOUT_FILENO) != 0, 0);
+  progress.beginPhase(0, options.model.empty() ? "random" : "control");
+  const ddm::TrialOutcome outcome =
+      world.runTrial(request, [&progress](double fraction) { progress.update(fraction); });
+  report(*ddm::makePlant(plant, camera), outcome, evaluation, &progress);
+  if (!options.bag.empty()) progress.note("recorded: " + options.bag);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "trial_node");
+  ros::NodeHandle nh;
+  ros::NodeHandle pnh("~");  // outside the try: its destructor shuts the log down
+  ros::AsyncSpinner spinner(2);
+  spinner.start();
+  try {
+    run(nh, pnh);
+  } catch (const std::exception& e) {
+    ROS_FATAL_STREAM("trial: " << e.what());
+    return EXIT_FAILURE;
+  }
+  return EXIT_SUCCESS;
+}

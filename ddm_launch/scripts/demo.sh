@@ -1,0 +1,142 @@
+#!/usr/bin/env bash
+# From a clean Debian 12 to a learned swing-up: installs, builds, runs the paper's experiment, draws the result.
+# SPDX-License-Identifier: BSD-3-Clause
+set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/workspace.sh"
+
+usage() {
+  cat <<TEXT
+usage: bash demo.sh [--runs FOLDER] [--trials N]
+
+Learns to hold a pendulum at the target from its camera images alone: installs the Debian packages that are
+missing (as root, or through sudo), builds the workspace \$DDM_WS, runs one experiment with the real ROS nodes
+and draws a learning curve and a film strip. Called again on the same run folder it goes on where it ended.
+
+  --runs FOLDER   run folder, default \$DDM_WS/runs/demo
+  --trials N      trials after the random one, default 15 (the paper's)
+  --help          this text
+
+  DDM_WS              catkin workspace to make or use, default ~/ddm_ws
+  ROS_PARALLEL_JOBS   compiler jobs, for example -j1; default one per core, two gigabytes for each
+TEXT
+}
+
+refuse() {
+  printf 'demo.sh: %s\n\n' "$*" >&2
+  usage >&2
+  exit 2
+}
+
+parse_arguments() {
+  runs='' trials=15
+  while (($#)); do
+    case $1 in
+      --help | -h) usage && exit 0 ;;
+      --runs) [[ -n ${2:-} ]] || refuse "--runs needs a folder" ;;
+      --trials) [[ ${2:-} =~ ^[1-9][0-9]*$ ]] || refuse "--trials must be a whole number >= 1, got '${2:-}'" ;;
+      *) refuse "unknown argument '$1'" ;;
+    esac
+    printf -v "${1#--}" %s "$2"
+    shift 2
+  done
+  # written out here, before anything changes the working directory
+  [[ -z $runs ]] || runs=$(realpath -m -- "$runs")
+}
+
+# A port for the ROS master: the usual one, or any free one when another master has it.
+free_master_port() {
+  /usr/bin/python3 - <<'PYTHON'
+import socket
+
+for port in (11311, 0):
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # a master that just ended is no obstacle
+        try:
+            probe.bind(("", port))
+        except OSError:
+            continue
+        print(probe.getsockname()[1])
+        break
+PYTHON
+}
+
+# Stops unless FOLDER/summary.yaml says that the experiment finished. roslaunch returns 0 whatever happened, so
+# this file is the verdict; it must be newer than the file STARTED, or it speaks of an earlier call.
+check_summary() {  # FOLDER STARTED
+  local summary=$1/summary.yaml again="the same command goes on after the last finished trial."
+  [[ -f $summary ]] || fail "the experiment wrote no $summary: it did not finish.
+Remedy: read the lines above; $again"
+  [[ $summary -nt $2 ]] || fail "the experiment stopped before it wrote a new $summary.
+Remedy: read the lines above; $again"
+  /usr/bin/python3 - "$summary" <<'PYTHON' || fail "$summary says that the experiment did not finish.
+Remedy: read the lines above; $again"
+import sys
+import yaml
+
+with open(sys.argv[1]) as stream:
+    summary = yaml.safe_load(stream)
+sys.exit(0 if isinstance(summary, dict) and summary.get("finished") is True else 1)
+PYTHON
+}
+
+run_experiment() {
+  local port started
+  port=$(free_master_port)
+  started=$(mktemp)
+  trap "rm -f '$started'" EXIT
+  say "Running one random and $trials learning trials; a trial is learned from as soon as it ends"
+  ((port == 11311)) || echo "Another program has port 11311: use ROS_MASTER_URI=http://localhost:$port to look in."
+  mkdir -p "$runs" || fail "cannot make the run folder $runs. Remedy: choose another with --runs FOLDER."
+  roslaunch -p "$port" ddm_launch experiment.launch preset:=paper plant:=pendulum seed:=1 \
+    trials:="$trials" runs:="$runs" rviz:=false || fail "roslaunch failed: see its lines above."
+  check_summary "$runs" "$started"
+  echo "The experiment finished. (roslaunch reports the end of its main node in red, also when all is well.)"
+}
+
+draw_pictures() {
+  say "Drawing"
+  rosrun ddm_launch learning_curve "$runs" --out "$runs/learning_curve.png" || fail "no learning curve was drawn."
+  rosrun ddm_launch film_strip "$runs" --out "$runs/film_strip.png" || fail "no film strip was drawn."
+}
+
+print_result() {
+  say "Summary ($runs/summary.yaml)"
+  sed 's/^/  /' "$runs/summary.yaml"
+  cat <<TEXT
+
+Pictures
+  $runs/learning_curve.png   error and success of the greedy policy after each trial
+  $runs/film_strip.png       the last swing-up that succeeded, image by image
+
+What to try next (in a new terminal, first: export PATH=/usr/bin:\$PATH; . $DDM_WS/devel/setup.bash)
+  bash $checkout/ddm_launch/scripts/demo.sh --trials $((trials + 5))
+      goes on with more trials
+  rosrun ddm_launch film_strip $runs --out /tmp/film_strip.png --gif /tmp/swing_up.gif
+      the same swing-up as an animation
+  roslaunch ddm_launch experiment.launch preset:=paper plant:=pendulum seed:=2 trials:=15 runs:=$DDM_WS/runs/seed_2 rviz:=true
+      another seed, with the camera, the predictions and the feature space on the screen (needs the package rviz)
+  bash $checkout/ddm_launch/scripts/test.sh
+      runs every test
+TEXT
+}
+
+main() {
+  parse_arguments "$@"
+  use_system_environment
+  check_system
+  ensure_localhost_resolves
+  make_workspace
+  runs=${runs:-$DDM_WS/runs/demo}
+  install_packages "${packages_to_run[@]}"
+  say "Building (Release) into $DDM_WS/devel"
+  build_release || fail "the build failed: see the first error above."
+  set +u  # catkin's setup file reads variables that need not exist
+  . "$DDM_WS/devel/setup.bash"
+  set -u
+  run_experiment
+  draw_pictures
+  print_result
+}
+
+# Sourced (by its test) it only defines the functions.
+[[ ${BASH_SOURCE[0]} != "$0" ]] || main "$@"

@@ -1,0 +1,81 @@
+#!/usr/bin/env bash
+# Installs, builds Release and Debug, runs every test, and closes with the line "N passed, N failed".
+# SPDX-License-Identifier: BSD-3-Clause
+set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/workspace.sh"
+
+usage() {
+  cat <<TEXT
+usage: bash test.sh
+
+Installs the Debian packages that are missing (as root, or through sudo), builds the workspace \$DDM_WS, and
+runs every test: gtest, rosunit, rostest, roslaunch-check and the linters on the Release build, the gtests once
+more on a Debug build with Eigen's assertions and with warnings as errors. A case that runs in both builds
+counts once. Returns 1 if any case fails, or if a test leaves no result.
+
+  --help   this text
+
+  DDM_WS              catkin workspace to make or use, default ~/ddm_ws (Release in devel/, Debug in debug/devel/)
+  ROS_PARALLEL_JOBS   compiler jobs, for example -j1; default one per core, two gigabytes for each
+  CI                  if set, warnings are errors in the Release build too
+TEXT
+}
+
+parse_arguments() {
+  (($# == 0)) && return
+  [[ $1 == --help || $1 == -h ]] && usage && exit 0
+  printf 'test.sh: unknown argument %s\n\n' "'$1'" >&2
+  usage >&2
+  exit 2
+}
+
+# The Debug build beside the Release one: portable instruction set, assertions on, warnings are errors.
+# -O1, because Eigen without any optimisation takes minutes for what Release does in seconds.
+build_debug() {
+  local jobs
+  read -ra jobs < <(job_flags)
+  mkdir -p "$DDM_WS/debug"
+  catkin_make -C "$DDM_WS" --build "$DDM_WS/debug/build" "${jobs[@]}" \
+    -DCATKIN_DEVEL_PREFIX="$DDM_WS/debug/devel" -DCMAKE_INSTALL_PREFIX="$DDM_WS/debug/install" \
+    -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-O1 -g' -DDDM_NATIVE=OFF -DDDM_WERROR=ON "$@"
+}
+
+# Runs the tests of a build folder whose names match, one after the other. What failed is told by the results.
+run_tests() {  # BUILD_FOLDER PATTERN
+  cd "$1" || return
+  rm -rf test_results/* tests_declared.json tests_run.xml  # results of an earlier call must not count
+  ctest -R "$2" --show-only=json-v1 >tests_declared.json
+  ctest -R "$2" --output-on-failure --timeout 600 --output-junit "$1/tests_run.xml" </dev/null || true
+}
+
+durations=()
+phase() {  # TITLE COMMAND...
+  local title=$1 start=$SECONDS code=0
+  shift
+  say "$title"
+  ("$@") || code=$?
+  durations+=("$(printf '%5d s  %s' $((SECONDS - start)) "$title")")
+  ((code == 0)) || fail "$title: failed with code $code. Remedy: see the first error above."
+}
+
+main() {
+  parse_arguments "$@"
+  # the verdict is the last line, also when no test could be run
+  trap '[[ $? == 0 || -n ${reported:-} ]] || echo "0 passed, 1 failed"' EXIT
+  use_system_environment
+  check_system
+  ensure_localhost_resolves
+  make_workspace
+  phase "Packages" install_packages "${packages_to_run[@]}" "${packages_to_test[@]}"
+  phase "Release build into $DDM_WS/devel" build_release all tests
+  phase "Debug build into $DDM_WS/debug/devel" build_debug all tests
+  phase "Tests on the Release build" run_tests "$DDM_WS/build" .
+  phase "gtests on the Debug build" run_tests "$DDM_WS/debug/build" '^_ctest_[a-z_]+_gtest_'
+  say "Time"
+  printf '%s\n' "${durations[@]}"
+  reported=yes
+  say "Result"
+  /usr/bin/python3 "$checkout/ddm_launch/scripts/test_report.py" "$DDM_WS/build" "$DDM_WS/debug/build"
+}
+
+main "$@"

@@ -1,0 +1,151 @@
+#!/usr/bin/python3
+# Counts test cases from the result files of one or more catkin build folders; each case counts once.
+# SPDX-License-Identifier: BSD-3-Clause
+"""usage: test_report.py BUILD_FOLDER [BUILD_FOLDER ...]
+
+Each folder holds test_results/PACKAGE/*.xml (JUnit), tests_declared.json (ctest --show-only=json-v1) and
+tests_run.xml (ctest --output-junit). Prints each failure, then "N passed, N failed"; returns 1 if any failed.
+A case that ran in several builds (same package, result file and name) counts once and must pass in all of them.
+"""
+import glob
+import json
+import os
+import re
+import sys
+import xml.etree.ElementTree as ElementTree
+
+# rostest writes a case of this class for each program that it starts; the program's own cases are in a
+# second file. So it says something new only if it failed.
+ROSTEST_WRAPPER = "rostest.runner.RosTest"
+
+
+class Report:
+    """Verdicts by case: a case is (package, result file, name)."""
+
+    def __init__(self):
+        self.passed = set()
+        self.skipped = set()
+        self.failures = {}  # case -> list of messages
+
+    def fail(self, case, message):
+        self.failures.setdefault(case, []).append(message.strip())
+
+    def counts(self):
+        """(passed, failed)."""
+        return len(self.passed - set(self.failures)), len(self.failures)
+
+    def text(self):
+        lines = []
+        for case in sorted(self.failures):
+            lines.append("FAILED  %s: %s (%s)" % (case[0], case[2], case[1]))
+            for message in self.failures[case]:
+                lines += ["        " + line for line in message.splitlines()[:40]]
+        lines += ["skipped %s: %s (%s)" % (c[0], c[2], c[1]) for c in sorted(self.skipped - self.passed)]
+        return lines + ["%d passed, %d failed" % self.counts()]
+
+
+def read_results(report, path, build):
+    """Adds the cases of one JUnit file. Returns (number of failures in it, names of the programs it wraps)."""
+    package, name = os.path.basename(os.path.dirname(path)), os.path.basename(path)
+    try:
+        root = ElementTree.parse(path).getroot()
+    except ElementTree.ParseError as error:
+        report.fail((package, name, "the result file"), "[%s] cannot be read: %s" % (build, error))
+        return 1, []
+    failed, wrapped, found = 0, [], 0
+    for element in root.iter("testcase"):
+        found += 1
+        case = (package, name, "%s.%s" % (element.get("classname"), element.get("name")))
+        problems = element.findall("failure") + element.findall("error")
+        if element.get("classname") == ROSTEST_WRAPPER:
+            wrapped.append(element.get("name")[len("test"):])
+        if problems:
+            failed += 1
+            for problem in problems:
+                report.fail(case, "[%s] %s" % (build, problem.text or problem.get("message") or "no message"))
+        elif element.find("skipped") is not None or element.get("status") == "notrun":
+            report.skipped.add(case)
+        elif element.get("classname") != ROSTEST_WRAPPER:
+            report.passed.add(case)
+    # rosunit leaves a failed subTest out of the cases, but not out of the sum
+    declared = sum(int(root.get(key) or 0) for key in ("failures", "errors"))
+    if declared > failed:
+        failed = declared
+        report.fail((package, name, "sub-tests"), "[%s] %d failed: see the log of this test" % (build, declared))
+    if found == 0:
+        failed += 1
+        report.fail((package, name, "the result file"), "[%s] holds no test case" % build)
+    return failed, wrapped
+
+
+def declared_tests(build_folder):
+    """{name of the ctest test: its result file}."""
+    with open(os.path.join(build_folder, "tests_declared.json")) as stream:
+        tests = json.load(stream)["tests"]
+    results = {}
+    for test in tests:
+        files = [word for word in test.get("command", []) if word.endswith(".xml") and "/test_results/" in word]
+        if files:
+            results[test["name"]] = files[0]
+    return results
+
+
+def failed_tests(build_folder):
+    """{name of each ctest test that did not pass: how it ended}."""
+    root = ElementTree.parse(os.path.join(build_folder, "tests_run.xml")).getroot()
+    ends = {}
+    for element in root.iter("testcase"):
+        if element.get("status") != "run":
+            problem = element.find("failure")
+            ends[element.get("name")] = (problem is not None and problem.get("message")) or "exit code not 0"
+    return ends
+
+
+def build_name(build_folder):
+    """Its CMAKE_BUILD_TYPE, where CMake left a cache, else the folder."""
+    try:
+        with open(os.path.join(build_folder, "CMakeCache.txt")) as stream:
+            return re.search(r"^CMAKE_BUILD_TYPE:\w+=(\w+)$", stream.read(), re.MULTILINE).group(1)
+    except (OSError, AttributeError):
+        return build_folder
+
+
+def read_build(report, build_folder):
+    """Adds all results of one build folder, and a failure for each test that says nothing or too little."""
+    build = build_name(build_folder)
+    found = {}  # result file -> (failures, programs wrapped)
+    for path in sorted(glob.glob(os.path.join(build_folder, "test_results", "*", "*.xml"))):
+        if not os.path.basename(path).startswith("MISSING-"):  # told below, with the reason
+            found[os.path.abspath(path)] = read_results(report, path, build)
+    ended_badly = failed_tests(build_folder)
+    declared = declared_tests(build_folder)
+    for test, path in sorted(declared.items()):
+        package, name = os.path.basename(os.path.dirname(path)), os.path.basename(path)
+        case = (package, name, "the program")
+        end = ended_badly.get(test)
+        if os.path.abspath(path) not in found:
+            report.fail(case, "[%s] left no results (%s): see its output above" % (build, end or "it ended well"))
+            continue
+        failures, wrapped = found[os.path.abspath(path)]
+        for program in wrapped:
+            own = os.path.join(os.path.dirname(os.path.abspath(path)), "rosunit-%s.xml" % program)
+            failures += found.get(own, (0, []))[0]
+        if end and failures == 0:
+            report.fail(case, "[%s] failed (%s) although no case did: see its output above" % (build, end))
+    if not declared:
+        report.fail((build, "tests_declared.json", "the build"), "declares no test")
+
+
+def main(build_folders):
+    if not build_folders or any(folder.startswith("-") for folder in build_folders):
+        sys.stderr.write(__doc__)
+        return 2
+    report = Report()
+    for folder in build_folders:
+        read_build(report, os.path.abspath(folder))
+    print("\n".join(report.text()))
+    return 1 if report.failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

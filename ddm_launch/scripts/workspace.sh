@@ -1,0 +1,166 @@
+# Sourced by demo.sh and test.sh: from a bare system to a built catkin workspace that links this checkout.
+# SPDX-License-Identifier: BSD-3-Clause
+
+checkout=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd -P)
+
+say() { printf '\n== %s\n' "$*"; }
+
+fail() {
+  printf '\nERROR: %s\n' "$*" >&2
+  exit 1
+}
+
+# Debian 12 packages to build and run everything, tests included (both scripts share one build).
+packages_to_run=(
+  # compiler, build tool
+  build-essential cmake catkin python3-catkin-pkg python3-setuptools
+  # messages: the .msg files, then their C++ headers
+  ros-message-generation ros-message-runtime
+  ros-std-msgs ros-sensor-msgs ros-geometry-msgs ros-actionlib-msgs ros-rosgraph-msgs
+  libstd-msgs-dev libsensor-msgs-dev libactionlib-msgs-dev libros-rosgraph-msgs-dev
+  # ROS in C++
+  libroscpp-dev libactionlib-dev librosbag-dev libcv-bridge-dev libimage-transport-dev libroslib-dev
+  # libraries
+  libopencv-imgproc-dev libopencv-imgcodecs-dev libeigen3-dev libceres-dev libyaml-cpp-dev
+  libboost-dev libboost-program-options-dev libboost-filesystem-dev
+  # tests
+  libgtest-dev librostest-dev python3-rostest python3-rosunit
+  # ROS in Python and its command line tools
+  python3-rospy python3-std-msgs python3-sensor-msgs python3-actionlib python3-cv-bridge
+  python3-roslaunch python3-rosbag python3-rostopic python3-rosnode python3-rosservice
+  python3-rosparam python3-rosmsg rosbash rospack-tools
+  # figures
+  python3-matplotlib python3-numpy python3-pil python3-yaml
+)
+
+# What only the tests need: linters and the check of .rosinstall.
+packages_to_test=(catkin-lint clang-format python3-wstool git)
+
+# Debian's own tools and libraries come first, whatever Python or ROS environment the caller has active.
+use_system_environment() {
+  export PATH=/usr/bin:/bin:/usr/sbin:/sbin:$PATH
+  unset PYTHONPATH PYTHONHOME LD_LIBRARY_PATH CMAKE_PREFIX_PATH
+  unset ROS_PACKAGE_PATH ROS_ROOT ROS_DISTRO ROS_MASTER_URI ROS_IP
+  export PYTHONNOUSERSITE=1
+  export PYTHONUNBUFFERED=1 ROSCONSOLE_STDOUT_LINE_BUFFERED=1  # progress shows at once, through pipes too
+  export ROS_HOSTNAME=localhost                                # works where the host name does not resolve
+}
+
+# Stops unless this is the system that everything is tested on. Argument: an os-release file.
+check_system() {
+  local file=${1:-/etc/os-release} id='' version='' name='an unknown system'
+  if [[ -r $file ]]; then
+    id=$(. "$file" && printf %s "${ID:-}")
+    version=$(. "$file" && printf %s "${VERSION_ID:-}")
+    name=$(. "$file" && printf %s "${PRETTY_NAME:-$name}")
+  fi
+  if [[ $id == debian && $version == 12 ]]; then
+    echo "System: $name"
+    return
+  fi
+  local known='No other system has been tried.'
+  if [[ $id == ubuntu && $version == 20.04 ]]; then
+    known="The code keeps to the compiler and libraries of Ubuntu 20.04 with ROS Noetic, but has not been run
+there, and the package names of this script are Debian's. To try it, with Noetic sourced:
+    rosdep install --from-paths $checkout --ignore-src
+    catkin_make -DCMAKE_BUILD_TYPE=Release      (in a workspace whose src/ links $checkout)"
+  fi
+  fail "this is $name, but the scripts are tested on Debian 12 (bookworm) with Debian's own ROS 1 packages.
+$known
+Remedy: use Debian 12, for example in a container:
+    docker run --rm -it -v $checkout:/ddm debian:12 bash /ddm/ddm_launch/scripts/${0##*/}"
+}
+
+# Prints those of its arguments that are not installed.
+missing_packages() {
+  local installed package
+  # dpkg-query fails when it does not know one of the names; what it knows it prints all the same
+  installed=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' "$@" 2>/dev/null || true)
+  for package in "$@"; do
+    grep -qxF -- "installed $package" <<<"$installed" || echo "$package"
+  done
+}
+
+# Runs a command as root, through sudo if need be. Arguments: what to do in words, the command.
+as_root() {
+  local words=$1
+  shift
+  if [[ $(id -u) == 0 ]]; then
+    "$@"
+  elif command -v sudo >/dev/null; then
+    sudo "$@"
+  else
+    fail "to $words needs root, and there is no sudo.
+Remedy: have an administrator run, then call this script again:
+    ${*@Q}"
+  fi
+}
+
+# Installs what is missing of its arguments; asks for no password and no network when nothing is.
+install_packages() {
+  local missing
+  mapfile -t missing < <(missing_packages "$@")
+  if ((${#missing[@]} == 0)); then
+    echo "Packages: all $# installed"
+    return
+  fi
+  echo "Installing ${#missing[@]} missing Debian packages: ${missing[*]}"
+  # one command, so that whoever lacks the rights can hand it on as it is printed; waits for another apt to end
+  local apt='apt-get -o DPkg::Lock::Timeout=300'
+  as_root "install packages" env DEBIAN_FRONTEND=noninteractive sh -c \
+    "$apt update && $apt install -y --no-install-recommends ${missing[*]}" </dev/null ||
+    fail "the packages could not be installed: see apt-get's lines above.
+Remedy: check the network and /etc/apt, then call this script again."
+}
+
+# ROS needs the name localhost, which a bare system (made by debootstrap, say) does not know.
+ensure_localhost_resolves() {
+  getent hosts localhost >/dev/null && return
+  echo "The name localhost does not resolve: adding the line '127.0.0.1 localhost' to /etc/hosts"
+  as_root "add a line to /etc/hosts" sh -c 'echo "127.0.0.1 localhost" >>/etc/hosts'
+}
+
+# Makes the workspace $DDM_WS (default: ~/ddm_ws) with this checkout in its source space.
+make_workspace() {
+  DDM_WS=$(realpath -m -- "${DDM_WS:-$HOME/ddm_ws}")
+  [[ $DDM_WS != *[[:space:]]* ]] || fail "the workspace '$DDM_WS' must not have a space in its path.
+Remedy: set DDM_WS to another folder."
+  [[ $DDM_WS/ != "$checkout"/* ]] || fail "the workspace $DDM_WS lies inside the checkout $checkout.
+Remedy: set DDM_WS to a folder outside of it."
+  mkdir -p "$DDM_WS/src" || fail "cannot make $DDM_WS/src. Remedy: set DDM_WS to a folder that you may write."
+  export DDM_WS ROS_HOME=$DDM_WS/ros_home
+  [[ $checkout == "$DDM_WS/src/"* ]] && return  # cloned into the source space: nothing to link
+  local link=$DDM_WS/src/ddm
+  if [[ ! -e $link && ! -L $link ]]; then
+    ln -s "$checkout" "$link"
+  elif [[ $(realpath -m "$link") != "$checkout" ]]; then
+    fail "$link exists and is not this checkout ($checkout) but $(realpath -m "$link").
+Remedy: remove it, or set DDM_WS to another folder."
+  fi
+}
+
+# Compiler jobs: one per core, but two gigabytes for each. ROS_PARALLEL_JOBS (catkin's own) wins.
+job_flags() {
+  if [[ -n ${ROS_PARALLEL_JOBS:-} ]]; then
+    echo "$ROS_PARALLEL_JOBS"
+    return
+  fi
+  local cores memory
+  cores=$(nproc)
+  memory=$(awk '/^MemAvailable/ {print int($2 / 2000000)}' /proc/meminfo)
+  ((memory >= 1)) || memory=1
+  echo "-j$((cores < memory ? cores : memory))"
+}
+
+# The Release build, in $DDM_WS/build and $DDM_WS/devel. Arguments: make targets, or none for all programs.
+# demo.sh and test.sh must pass the same flags, or each would rebuild what the other built.
+build_release() {
+  local flags=(-DCMAKE_BUILD_TYPE=Release -DDDM_NATIVE=ON -DDDM_WERROR=OFF) jobs
+  [[ -z ${CI:-} ]] || flags[2]=-DDDM_WERROR=ON
+  read -ra jobs < <(job_flags)
+  catkin_make -C "$DDM_WS" "${jobs[@]}" "${flags[@]}" "$@" || return
+  # catkin freezes the environment of tests at the first configuration, when the devel space is still empty.
+  if ! grep -q "PYTHONPATH=.*$DDM_WS/devel/lib" "$DDM_WS/build/catkin_generated/setup_cached.sh"; then
+    catkin_make -C "$DDM_WS" --force-cmake "${jobs[@]}" "${flags[@]}" "$@"
+  fi
+}

@@ -1,0 +1,150 @@
+# Draws a greedy evaluation as a film strip (PNG) and as an animation (GIF).
+# SPDX-License-Identifier: BSD-3-Clause
+import argparse
+import math
+import os
+import subprocess
+import sys
+import tempfile
+
+import matplotlib
+matplotlib.use("Agg")  # no display needed
+import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib import font_manager  # noqa: E402
+from PIL import Image, ImageDraw, ImageFont  # noqa: E402
+import roslib.packages  # noqa: E402
+
+from ddm_launch.run_folder import Evaluation, RunFolderError, read_plant, read_trials  # noqa: E402
+
+BLUE, GREY = "#0072B2", "#666666"
+NUM_IMAGES = 12
+SUCCESS_LIMIT_RAD = math.radians(10.0)
+
+
+class Camera:
+    """Images of a run's plant in given states, drawn by the simulator with the run's own configuration."""
+
+    def __init__(self, folder):
+        self.options = ["--plant", read_plant(folder), "--config", os.path.join(folder, "config.yaml")]
+        programs = roslib.packages.find_node("ddm_sim", "simulate")
+        if not programs:
+            raise RunFolderError("the program 'simulate' of ddm_sim is not there: build the workspace, then source "
+                                 "its devel/setup.bash")
+        self.program = programs[0]
+
+    def shoot(self, angle_rad, rate_rad_per_s):
+        """The grey image of one state, as PIL image."""
+        with tempfile.TemporaryDirectory() as folder:
+            command = [self.program] + self.options + ["--angle", repr(angle_rad), "--rate", repr(rate_rad_per_s),
+                                                       "--frames", folder]
+            done = subprocess.run(command, input="torque_nm\n0\n", stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                                  universal_newlines=True)
+            images = sorted(name for name in os.listdir(folder) if name.endswith(".png"))
+            if done.returncode != 0 or not images:
+                raise RunFolderError("'%s' drew no image: %s" % (" ".join(command), done.stderr.strip()))
+            with Image.open(os.path.join(folder, images[0])) as image:
+                return image.convert("L")
+
+
+def target_error(angle_rad):
+    """Distance from the target (the rod points up, +-pi), wrapped [rad]."""
+    return abs(math.remainder(angle_rad - math.pi, 2.0 * math.pi))
+
+
+def swing_up_end(angles_rad):
+    """The step to show the film up to: a little after the target is reached for good, or the very last step."""
+    away = [k for k, angle in enumerate(angles_rad) if target_error(angle) >= SUCCESS_LIMIT_RAD]
+    arrival = away[-1] + 1 if away else 0
+    last = len(angles_rad) - 1
+    return min(last, arrival + max(5, arrival // 4))
+
+
+def steps_to_show(end, num_steps):
+    """Evenly spaced steps from 0 to `end` or a little beyond it: at most NUM_IMAGES, all below num_steps."""
+    stride = max(1, math.ceil(end / (NUM_IMAGES - 1)))
+    return list(range(0, num_steps, stride))[:NUM_IMAGES]
+
+
+def default_trial(trials):
+    """The last trial whose evaluation was a success, else the last one."""
+    successes = [row.trial for row in trials if row.success]
+    return successes[-1] if successes else trials[-1].trial
+
+
+def draw_strip(evaluation, end, camera, out):
+    """Images above, the torque over the same time below."""
+    steps = steps_to_show(end, len(evaluation.time_s))
+    last = steps[-1]
+    period = evaluation.time_s[1] - evaluation.time_s[0]
+    figure = plt.figure(figsize=(len(steps) * 1.0 + 0.6, 3.0), constrained_layout=True)
+    try:
+        grid = figure.add_gridspec(2, len(steps), height_ratios=[1.0, 1.1])
+        for column, step in enumerate(steps):
+            axes = figure.add_subplot(grid[0, column])
+            axes.imshow(camera.shoot(evaluation.angle_rad[step], evaluation.rate_rad_per_s[step]), cmap="gray",
+                        vmin=0, vmax=255)
+            axes.set_xticks([])
+            axes.set_yticks([])
+            axes.set_title("%.1f s" % evaluation.time_s[step], fontsize=10)
+        axes = figure.add_subplot(grid[1, :])
+        edges = evaluation.time_s[:last + 1] + [evaluation.time_s[last] + period]
+        torque = evaluation.torque_nm[:last + 1]
+        axes.step(edges, torque + torque[-1:], where="post", color=BLUE)
+        axes.axhline(0.0, color=GREY, linewidth=0.6)
+        for step in steps:
+            axes.axvline(evaluation.time_s[step], color=GREY, linewidth=0.6, linestyle=":")
+        axes.set_xlim(edges[0], edges[-1])
+        axes.set_xlabel("time [s]")
+        axes.set_ylabel("torque [N m]")
+        figure.savefig(out, dpi=150)
+    finally:
+        plt.close(figure)
+
+
+def draw_animation(evaluation, end, camera, out):
+    """All images up to step `end` in real time, the time and the torque written and drawn below each."""
+    size, footer = 256, 44
+    largest = max(1e-9, max(abs(torque) for torque in evaluation.torque_nm))
+    font = ImageFont.truetype(font_manager.findfont("DejaVu Sans"), 15)
+    pictures = []
+    for step in range(end + 1):
+        torque = evaluation.torque_nm[step]
+        image = camera.shoot(evaluation.angle_rad[step], evaluation.rate_rad_per_s[step])
+        picture = Image.new("RGB", (size, size + footer), "white")
+        picture.paste(image.resize((size, size), Image.NEAREST), (0, 0))
+        pen = ImageDraw.Draw(picture)
+        pen.text((8, size + 4), "%4.1f s" % evaluation.time_s[step], fill="black", font=font)
+        pen.text((130, size + 4), "%+5.1f N m" % torque, fill="black", font=font)
+        middle, tip = size // 2, size // 2 + round(torque / largest * (size // 2 - 8))
+        pen.rectangle([min(middle, tip), size + 28, max(middle, tip), size + 38], fill=BLUE)
+        pen.line([middle, size + 25, middle, size + 41], fill=GREY)
+        pictures.append(picture)
+    period = round(1000 * (evaluation.time_s[1] - evaluation.time_s[0]))  # [ms]
+    durations = [period] * end + [1500]  # the last image stays, then it starts over
+    pictures[0].save(out, format="GIF", save_all=True, append_images=pictures[1:], duration=durations, loop=0)
+
+
+def main(arguments=None, make_camera=Camera):
+    parser = argparse.ArgumentParser(
+        prog="film_strip", description="Draws the greedy evaluation of a run folder: about %d images from the start "
+        "until the rod is up, and the torque below." % NUM_IMAGES)
+    parser.add_argument("folder", metavar="DIR", help="run folder (it holds trials.csv and evaluation_NNN)")
+    parser.add_argument("--trial", type=int, metavar="N", help="default: the last that succeeded, else the last")
+    parser.add_argument("--out", metavar="FILE.png", help="picture to write; default DIR/film_strip.png")
+    parser.add_argument("--gif", metavar="FILE.gif", help="write an animation in real time too")
+    options = parser.parse_args(arguments)
+    out = options.out or os.path.join(options.folder, "film_strip.png")
+    try:
+        trial = options.trial if options.trial is not None else default_trial(read_trials(options.folder))
+        evaluation = Evaluation(options.folder, trial)
+        end = swing_up_end(evaluation.angle_rad)
+        camera = make_camera(options.folder)
+        draw_strip(evaluation, end, camera, out)
+        print("wrote %s (evaluation after trial %d)" % (out, trial))
+        if options.gif:
+            draw_animation(evaluation, end, camera, options.gif)
+            print("wrote %s" % options.gif)
+    except (RunFolderError, OSError, ValueError) as error:  # ValueError: a suffix that matplotlib cannot write
+        print("film_strip: %s" % error, file=sys.stderr)
+        return 1
+    return 0

@@ -1,0 +1,107 @@
+# Draws the learning curve of one run (final error) or of many (success rate with standard error).
+# SPDX-License-Identifier: BSD-3-Clause
+import argparse
+import math
+import os
+import sys
+
+import matplotlib
+matplotlib.use("Agg")  # no display needed
+import matplotlib.pyplot as plt  # noqa: E402
+
+from ddm_launch.run_folder import RunFolderError, read_trials  # noqa: E402
+
+# From the Okabe-Ito set: told apart by colour-blind readers, and the shapes differ too.
+BLUE, VERMILLION, GREY = "#0072B2", "#D55E00", "#666666"
+SUCCESS_LIMIT_DEG = 10.0
+
+
+def success_rates(runs):
+    """The rate of success over runs, for each number of frames that any run has.
+
+    runs: one list of Trial per run. Trials whose success is not known are left out.
+    Returns rows (frames, rate, standard error, number of runs), ascending. The standard error of a rate p over
+    n runs is sqrt(p (1 - p) / (n - 1)), as in the paper's Fig. 8; 0 for a single run.
+    """
+    by_frames = {}
+    for trials in runs:
+        for trial in trials:
+            if trial.success is not None:
+                by_frames.setdefault(trial.frames, []).append(trial.success)
+    rows = []
+    for frames, successes in sorted(by_frames.items()):
+        n = len(successes)
+        rate = sum(successes) / n
+        rows.append((frames, rate, math.sqrt(rate * (1.0 - rate) / (n - 1)) if n > 1 else 0.0, n))
+    return rows
+
+
+def draw_one(axes, trials):
+    """Final error of the greedy policy over the frames learned from, each point marked with its success."""
+    known = [trial for trial in trials if trial.final_error_deg is not None]
+    if not known:
+        raise RunFolderError("trials.csv has no final error in any row: there is nothing to draw")
+    axes.plot([t.frames for t in known], [t.final_error_deg for t in known], color=GREY, linewidth=1, zorder=1)
+    for success, marker, colour, label in ((True, "o", BLUE, "success"), (False, "X", VERMILLION, "no success"),
+                                           (None, "D", GREY, "success not known")):
+        points = [t for t in known if t.success is success]
+        if points:
+            axes.scatter([t.frames for t in points], [t.final_error_deg for t in points], marker=marker, s=70,
+                         color=colour, edgecolors="white", linewidths=0.8, zorder=2, label=label)
+    axes.axhline(SUCCESS_LIMIT_DEG, color=GREY, linewidth=1, linestyle="--", zorder=0)
+    axes.set_ylim(-6, 186)
+    axes.set_yticks([0, 10, 45, 90, 135, 180])
+    axes.set_ylabel("distance from the target at the end [°]")
+
+
+def draw_many(axes, runs):
+    """Success rate over the frames learned from, with its standard error."""
+    rows = success_rates(runs)
+    if not rows:
+        raise RunFolderError("the success is not known in any row of these runs: there is nothing to draw")
+    fewest, most = min(row[3] for row in rows), max(row[3] for row in rows)
+    runs_text = "%d runs" % most if fewest == most else "%d to %d runs" % (fewest, most)
+    axes.errorbar([row[0] for row in rows], [row[1] for row in rows], yerr=[row[2] for row in rows], color=BLUE,
+                  marker="o", markersize=6, capsize=3, label="mean and standard error, " + runs_text)
+    axes.set_ylim(-0.05, 1.05)
+    axes.set_ylabel("success rate [-]")
+
+
+def draw(folders, out):
+    """Draws the learning curve of these run folders into a picture file."""
+    runs = [read_trials(folder) for folder in folders]
+    figure, axes = plt.subplots(figsize=(7.0, 4.2), constrained_layout=True)
+    try:
+        if len(runs) == 1:
+            draw_one(axes, runs[0])
+        else:
+            draw_many(axes, runs)
+        axes.set_xlabel("frames learned from [image-torque pairs]")
+        axes.set_xlim(left=0)
+        axes.set_title("Greedy policy after each trial")
+        axes.grid(True, color="#dddddd", linewidth=0.6)
+        axes.set_axisbelow(True)
+        axes.legend(loc="best")
+        figure.savefig(out, dpi=150)
+    finally:
+        plt.close(figure)
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(
+        prog="learning_curve",
+        description="One run folder: final error after each trial. Several: success rate with standard error.")
+    parser.add_argument("folders", metavar="DIR", nargs="+", help="run folder (it holds trials.csv)")
+    parser.add_argument("--out", metavar="FILE.png",
+                        help="picture to write; default DIR/learning_curve.png, needed for several folders")
+    options = parser.parse_args(arguments)
+    if options.out is None and len(options.folders) > 1:
+        parser.error("--out FILE.png is needed when several run folders are given")
+    out = options.out or os.path.join(options.folders[0], "learning_curve.png")
+    try:
+        draw(options.folders, out)
+    except (RunFolderError, OSError, ValueError) as error:  # ValueError: a suffix that matplotlib cannot write
+        print("learning_curve: %s" % error, file=sys.stderr)
+        return 1
+    print("wrote %s" % out)
+    return 0

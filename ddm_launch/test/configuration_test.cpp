@@ -1,0 +1,222 @@
+// Tests of the configuration: every file that is shipped loads, and what contradicts is refused.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "configuration.h"
+
+#include <ddm_model/testing/expect_error.h>
+#include <ddm_model/testing/temp_folder.h>
+#include <ddm_msgs/param_reader.h>
+#include <ddm_sim/plant_factory.h>
+#include <gtest/gtest.h>
+
+#include <boost/filesystem.hpp>
+#include <functional>
+#include <limits>
+#include <set>
+
+#include "toy_run.h"
+
+namespace ddm {
+namespace {
+
+namespace fs = boost::filesystem;
+using testing::TempFolder;
+using testing::throwsNaming;
+using testing::writeText;
+
+const char kPresets[] = DDM_LAUNCH_SOURCE_DIR "/config/presets";
+
+/// Names of the YAML files in a folder.
+std::vector<std::string> namesIn(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  }
+  return names;
+}
+
+Configuration read(const std::vector<std::string>& files) {
+  ParamReader reader = ParamReader::fromFiles(files);
+  return readConfiguration(&reader);
+}
+
+std::set<std::string> keysOf(const YAML::Node& map) {
+  std::set<std::string> keys;
+  for (const auto& entry : map) keys.insert(entry.first.as<std::string>());
+  return keys;
+}
+
+/// A configuration that a YAML text changes.
+Configuration readText(const std::string& text, const std::string& preset = "paper") {
+  const TempFolder folder;
+  writeText(folder.file("differs.yaml"), text);
+  return read(configurationFiles(preset, "pendulum", {folder.file("differs.yaml")}));
+}
+
+TEST(Configuration, EveryPresetLoadsWithEveryPlant) {
+  const std::vector<std::string> presets = namesIn(kPresets);
+  ASSERT_GE(presets.size(), 2u);
+  for (const std::string& preset : presets) {
+    for (const std::string plant : {"pendulum", "pendulum_gravity"}) {
+      const Configuration all = read(configurationFiles(preset, plant, {}));
+      EXPECT_EQ(all.plant.gravity > 0.0, plant == "pendulum_gravity") << preset;
+      EXPECT_EQ(all.mpc.max_torque, all.plant.max_torque) << preset << ", " << plant;
+      EXPECT_NO_THROW(makePlant(all.plant, all.camera)) << preset << ", " << plant;
+    }
+  }
+}
+
+TEST(Configuration, ThePaperPresetHoldsTheNumbersOfThePaper) {
+  const Configuration all = read(configurationFiles("paper", "pendulum", {}));
+  EXPECT_EQ(all.model.image.size, 51);
+  EXPECT_EQ(all.model.model.pca_dim, 50);
+  EXPECT_EQ(all.model.model.feature_dim, 2);
+  EXPECT_EQ(all.model.model.order, 2);
+  EXPECT_EQ(all.model.model.encoder_widths, (std::vector<int>{25, 12, 6}));
+  EXPECT_EQ(all.model.model.decoder_widths, (std::vector<int>{6, 12, 25}));
+  EXPECT_EQ(all.model.model.predictor_widths, (std::vector<int>{4}));
+  EXPECT_EQ(all.mpc.horizon, 15);
+  EXPECT_EQ(all.mpc.control_weight, 0.01);
+  EXPECT_EQ(all.mpc.epsilon, 0.2);
+  EXPECT_EQ(all.experiment.trials, 15);
+  EXPECT_EQ(all.trial.num_steps, 100);
+  EXPECT_EQ(all.plant.dt, 0.2);
+  EXPECT_EQ(all.plant.length, 1.0);
+  EXPECT_EQ(all.plant.mass, 1.0);
+  EXPECT_EQ(all.plant.friction, 1.0);
+  EXPECT_EQ(all.evaluation.tolerance_deg, 10.0);
+}
+
+TEST(Configuration, APresetThatDoesNotExistIsRefusedWithThoseThatDo) {
+  EXPECT_TRUE(
+      throwsNaming<std::invalid_argument>([] { configurationFiles("papier", "pendulum", {}); },
+                                          {"unknown preset 'papier'", "debug, paper"}));
+}
+
+TEST(Configuration, APlantThatDoesNotExistIsRefusedWithThoseThatDo) {
+  // sim.yaml stands in the same folder but is no plant
+  for (const std::string plant : {"pendulumm", "sim", "", "../config/pendulum"}) {
+    EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+        [&] { configurationFiles("paper", plant, {}); },
+        {"unknown plant '" + plant + "'", "there are pendulum, pendulum_gravity"}))
+        << plant;
+  }
+}
+
+TEST(Configuration, LaterFilesWin) {
+  const TempFolder folder;
+  writeText(folder.file("a.yaml"), "mpc: {epsilon: 0.3, horizon: 9}\n");
+  writeText(folder.file("b.yaml"), "mpc: {epsilon: 0.4}\n");
+  const Configuration all =
+      read(configurationFiles("paper", "pendulum", {folder.file("a.yaml"), folder.file("b.yaml")}));
+  EXPECT_EQ(all.mpc.epsilon, 0.4);
+  EXPECT_EQ(all.mpc.horizon, 9);
+}
+
+TEST(Configuration, ProblemsOfAllBlocksAreReportedAtOnce) {
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [] {
+        readText(
+            "mpc: {horzion: 3, epsilon: 1.5}\nexperiment: {seed: -1}\ntrial: {num_steps: 0}\n"
+            "evaluation: {tolerance_deg: .nan, settled_steps: 0}\nplant: {dt: fast}\n"
+            "model: {order: 2.5}\nsin: {watchdog: 1}\n");
+      },
+      {"mpc/horzion", "did you mean horizon", "mpc/epsilon", "1.5", "experiment/seed", "-1",
+       "trial/num_steps", "evaluation/tolerance_deg", "nan", "evaluation/settled_steps", "plant/dt",
+       "fast", "model/order", "2.5", "unknown block sin"}));
+}
+
+TEST(Configuration, WhatContradictsIsRefused) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> contradictions = {
+      {"mpc: {max_torque: 6.5}\nmodel: {max_torque: 7.0}",
+       {"mpc/max_torque", "plant/max_torque", "got 6.5"}},
+      {"mpc: {max_torque: 6.0}\nmodel: {max_torque: 5.0}",
+       {"mpc/max_torque", "model/max_torque", "got 6"}},
+      {"trial: {num_steps: 60}\nevaluation: {settled_steps_strict: 61}",
+       {"evaluation/settled_steps_strict", "trial/num_steps", "got 61"}},
+      {"trial: {num_steps: 50}", {"trial/num_steps", "model/pca_dim", "got 50"}},
+      {"trial: {num_steps: 30}\nmodel: {pca_dim: 10, order: 30}",
+       {"trial/num_steps", "model/order", "got 30"}}};
+  for (const auto& contradiction : contradictions) {
+    EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { readText(contradiction.first); },
+                                                    contradiction.second))
+        << contradiction.first;
+  }
+}
+
+TEST(Configuration, WhatJustFitsIsAccepted) {
+  EXPECT_NO_THROW(readText("trial: {num_steps: 51}\nevaluation: {settled_steps_strict: 51}\n"));
+  EXPECT_NO_THROW(readText("trial: {num_steps: 30}\nmodel: {pca_dim: 10, order: 29}\n"));
+}
+
+TEST(Configuration, AllContradictionsAreReportedAtOnce) {
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [] { readText("mpc: {max_torque: 8.0}\ntrial: {num_steps: 20}"); },
+      {"plant/max_torque", "model/max_torque", "settled_steps_strict", "model/pca_dim"}));
+}
+
+TEST(Configuration, WhatIsSavedIsReadBackAsTheSameConfiguration) {
+  const TempFolder folder;
+  Configuration all = readText("mpc: {epsilon: 0.123456789012345678}\n", "debug");
+  all.experiment.runs = "/some/where";
+  writeText(folder.file("config.yaml"), YAML::Dump(toYaml(all)));
+  EXPECT_EQ(YAML::Dump(toYaml(read({folder.file("config.yaml")}))), YAML::Dump(toYaml(all)));
+}
+
+TEST(ExperimentManual, HasTheKeysAndDefaultsOfEachBlock) {
+  const std::string manual = DDM_LAUNCH_SOURCE_DIR "/config/experiment.yaml";
+  const YAML::Node blocks = YAML::LoadFile(manual);
+  EXPECT_EQ(keysOf(blocks), (std::set<std::string>{"experiment", "trial", "evaluation"}));
+  const Configuration defaults;
+  const YAML::Node expected = toYaml(defaults);
+  const YAML::Node there = toYaml(read({manual}));
+  for (const std::string block : {"experiment", "trial", "evaluation"}) {
+    EXPECT_EQ(keysOf(blocks[block]), keysOf(expected[block])) << block;
+    EXPECT_EQ(YAML::Dump(there[block]), YAML::Dump(expected[block])) << block;
+  }
+}
+
+TEST(ExperimentOptions, EachKeyOutOfRangeIsNamed) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  const auto problem = [](const auto& options) {
+    const std::vector<std::string> all = options.problems();
+    return all.size() == 1 ? all[0] : std::to_string(all.size()) + " problems";
+  };
+  const auto experiment = [&](const std::function<void(ExperimentOptions*)>& change) {
+    ExperimentOptions options;
+    change(&options);
+    return problem(options);
+  };
+  const auto evaluation = [&](const std::function<void(EvaluationOptions*)>& change) {
+    EvaluationOptions options;
+    change(&options);
+    return problem(options);
+  };
+  EXPECT_EQ(experiment([](ExperimentOptions*) {}), "0 problems");
+  EXPECT_EQ(experiment([](auto* o) { o->seed = -3; }), "experiment/seed must be >= 0, got -3");
+  for (const int trials : {-1, 1000}) {
+    EXPECT_EQ(experiment([&](auto* o) { o->trials = trials; }),
+              "experiment/trials must lie in [0, 999], got " + std::to_string(trials));
+  }
+  for (const double timeout : {0.0, -1.0, nan, inf}) {
+    EXPECT_NE(experiment([&](auto* o) { o->timeout = timeout; }).find("experiment/timeout must be"),
+              std::string::npos);
+  }
+  for (const int num_steps : {0, -1, 1000001}) {
+    TrialOptions options;
+    options.num_steps = num_steps;
+    EXPECT_NE(problem(options).find("trial/num_steps must lie in"), std::string::npos);
+  }
+  for (const double tolerance : {0.0, -1.0, 180.1, nan}) {
+    EXPECT_NE(
+        evaluation([&](auto* o) { o->tolerance_deg = tolerance; }).find("evaluation/tolerance_deg"),
+        std::string::npos);
+  }
+  EXPECT_NE(evaluation([](auto* o) { o->settled_steps = 0; }).find("evaluation/settled_steps must"),
+            std::string::npos);
+  EXPECT_NE(evaluation([](auto* o) { o->settled_steps_strict = 9; }).find("settled_steps_strict"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace ddm

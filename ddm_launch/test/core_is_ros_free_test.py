@@ -1,0 +1,82 @@
+#!/usr/bin/python3
+# The core libraries know nothing of ROS: neither what they include nor what they link.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import re
+import subprocess
+import sys
+import unittest
+
+import rospkg
+import rosunit
+
+CORES = ["ddm_sim", "ddm_model", "ddm_mpc"]
+ROS_INCLUDE = re.compile(
+    r'^\s*#\s*include\s*[<"]((?:ros|xmlrpcpp|\w+_msgs|actionlib|cv_bridge|image_transport|dynamic_reconfigure'
+    r'|diagnostic_updater|nodelet|pluginlib|class_loader|tf2?(?:_ros)?|ros\w+|ddm_bag_io)/[^>"]+)', re.MULTILINE)
+ROS_LIBRARY = re.compile(
+    r"^\s*(lib(?:ros\w*|xmlrpcpp|cpp_common|message_filters|actionlib|cv_bridge|image_transport|ddm_msgs"
+    r"|ddm_bag_io)\.so\S*)", re.MULTILINE)
+
+
+def sourceFiles(package):
+    """Sources and headers of the core library of a package."""
+    root = rospkg.RosPack().get_path(package)
+    files = []
+    for part in ("include", "src"):
+        for folder, _, names in os.walk(os.path.join(root, part)):
+            files += [os.path.join(folder, name) for name in names if name.endswith((".h", ".cpp"))]
+    return sorted(files)
+
+
+def rosIncludes(path):
+    with open(path) as stream:
+        return ROS_INCLUDE.findall(stream.read())
+
+
+def libraryPath(name):
+    """The library in the workspace that this test was built in, or where its caller says."""
+    folders = [argument for argument in sys.argv[1:] if os.path.isdir(argument)]
+    folders += [os.path.join(prefix, "lib") for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(":") if prefix]
+    folders += os.environ.get("LD_LIBRARY_PATH", "").split(":")
+    for folder in folders:
+        path = os.path.join(folder, "lib%s.so" % name)
+        if os.path.isfile(path):
+            return path
+    raise AssertionError("lib%s.so is in none of %s: build it first" % (name, folders))
+
+
+def linkedLibraries(name):
+    """What the loader says: all libraries that lib<name>.so needs, directly or not."""
+    return subprocess.run(["ldd", libraryPath(name)], check=True, stdout=subprocess.PIPE,
+                          universal_newlines=True).stdout
+
+
+class CoreIsRosFreeTest(unittest.TestCase):
+    def test_cores_include_no_header_of_ros(self):
+        for package in CORES:
+            files = sourceFiles(package)
+            self.assertGreater(len(files), 5, package)
+            for path in files:
+                self.assertEqual(rosIncludes(path), [], path)
+
+    def test_cores_link_no_library_of_ros(self):
+        for name in CORES:
+            libraries = linkedLibraries(name)
+            self.assertIn("libstdc++", libraries)
+            self.assertNotIn("not found", libraries)
+            self.assertEqual(ROS_LIBRARY.findall(libraries), [], name)
+
+    def test_includes_of_a_node_are_seen_as_ros(self):
+        node = os.path.join(rospkg.RosPack().get_path("ddm_mpc"), "nodes", "mpc_node.cpp")
+        self.assertIn("ddm_msgs/Plan.h", rosIncludes(node))
+        self.assertIn("ros/ros.h", rosIncludes(node.replace(".cpp", ".h")))
+
+    def test_libraries_of_the_bag_reader_are_seen_as_ros(self):
+        libraries = ROS_LIBRARY.findall(linkedLibraries("ddm_bag_io"))
+        self.assertTrue(any(name.startswith("libroscpp.so") for name in libraries), libraries)
+        self.assertTrue(any(name.startswith("librosbag_storage.so") for name in libraries), libraries)
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "core_is_ros_free_test", CoreIsRosFreeTest)

@@ -1,0 +1,94 @@
+// Tests of the evaluator: when a greedy run is a success.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation.h"
+
+#include <ddm_model/testing/expect_error.h>
+#include <ddm_sim/plant_factory.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+namespace ddm {
+namespace {
+
+using States = std::vector<Eigen::VectorXd>;
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kDegree = kPi / 180.0;
+
+class EvaluationTest : public ::testing::Test {
+ protected:
+  static Eigen::VectorXd at(double angle) { return Eigen::Vector2d(angle, 0.0); }
+
+  /// `num_settled` frames at the goal after frames far from it.
+  static States arriving(int num_settled, int num_frames = 40) {
+    States states(num_frames, at(0.0));
+    for (int i = num_frames - num_settled; i < num_frames; ++i) states[i] = at(kPi);
+    return states;
+  }
+
+  Evaluation evaluated(const States& states) const { return evaluate(*plant_, states, options_); }
+
+  std::unique_ptr<Plant> plant_ = makePlant(PlantOptions(), CameraOptions());
+  EvaluationOptions options_;
+};
+
+TEST_F(EvaluationTest, SuccessTakesTheLastTenFramesAtTheGoal) {
+  EXPECT_FALSE(evaluated(arriving(9)).success);
+  EXPECT_TRUE(evaluated(arriving(10)).success);
+}
+
+TEST_F(EvaluationTest, StrictSuccessTakesTheLast25) {
+  EXPECT_TRUE(evaluated(arriving(24)).success);
+  EXPECT_FALSE(evaluated(arriving(24)).success_strict);
+  EXPECT_TRUE(evaluated(arriving(25)).success_strict);
+}
+
+TEST_F(EvaluationTest, LeavingTheGoalAtTheVeryEndIsNoSuccess) {
+  States states(40, at(kPi));
+  states.back() = at(kPi - 11.0 * kDegree);
+  EXPECT_FALSE(evaluated(states).success);
+  EXPECT_NEAR(evaluated(states).final_error_deg, 11.0, 1e-12);
+}
+
+TEST_F(EvaluationTest, AFrameAtExactlyTheToleranceCounts) {
+  const States states(40, at(kPi - 10.0 * kDegree));
+  options_.tolerance_deg = plant_->goalError(states[0]) * 180.0 / kPi;
+  EXPECT_TRUE(evaluated(states).success);
+  options_.tolerance_deg = std::nextafter(options_.tolerance_deg, 0.0);
+  EXPECT_FALSE(evaluated(states).success);
+}
+
+TEST_F(EvaluationTest, AnglesCountModuloAWholeTurn) {
+  for (const double goal : {kPi, -kPi, 5.0 * kPi, -7.0 * kPi}) {
+    const Evaluation evaluation = evaluated(States(40, at(goal + 9.0 * kDegree)));
+    EXPECT_TRUE(evaluation.success) << goal;
+    EXPECT_NEAR(evaluation.final_error_deg, 9.0, 1e-9) << goal;
+    EXPECT_FALSE(evaluated(States(40, at(goal - 10.1 * kDegree))).success) << goal;
+  }
+}
+
+TEST_F(EvaluationTest, WithoutGroundTruthNothingIsKnown) {
+  const Evaluation evaluation = evaluated({});
+  EXPECT_FALSE(evaluation.known);
+  EXPECT_FALSE(evaluation.success);
+}
+
+TEST_F(EvaluationTest, FewerFramesThanTheStrictCriterionNeedsAreRefused) {
+  EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>([this] { evaluated(arriving(24, 24)); },
+                                                           {"at least 25", "got 24"}));
+}
+
+TEST(Quantile, IsTheValueThatAFractionDoesNotExceed) {
+  const std::vector<double> values = {5.0, 1.0, 4.0, 2.0, 3.0};
+  EXPECT_EQ(quantile(values, 0.0), 1.0);
+  EXPECT_EQ(quantile(values, 0.2), 1.0);
+  EXPECT_EQ(quantile(values, 0.5), 3.0);
+  EXPECT_EQ(quantile(values, 0.99), 5.0);
+  EXPECT_EQ(quantile(values, 1.0), 5.0);
+  EXPECT_EQ(quantile({}, 0.5), 0.0);
+}
+
+}  // namespace
+}  // namespace ddm

@@ -1,0 +1,164 @@
+// Tests of Algorithm 1: the order of its phases, what it asks of a world, and how it resumes.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiment.h"
+
+#include <ddm_model/testing/expect_error.h>
+#include <ddm_model/testing/temp_folder.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <boost/filesystem.hpp>
+#include <sstream>
+
+#include "toy_run.h"
+
+namespace ddm {
+namespace {
+
+namespace fs = boost::filesystem;
+using testing::kToySteps;
+using testing::ObedientWorld;
+using testing::textOf;
+using testing::throwsNaming;
+using testing::toyConfiguration;
+
+using Calls = std::vector<std::string>;
+
+class ExperimentTest : public ::testing::Test {
+ protected:
+  ExperimentTest() { world_.state = Eigen::Vector2d(3.14159265358979323846, 0.0); }
+
+  void run() {
+    RunFolder folder(configuration_);
+    std::ostringstream out;
+    Progress progress(&out, /*live=*/false, configuration_.experiment.trials);
+    runExperiment(configuration_, &world_, &folder, &progress);
+    terminal_ = out.str();
+  }
+
+  std::string file(const std::string& name) const { return scratch_.file("run/" + name); }
+  size_t numRows() const {
+    const std::string text = textOf(file("trials.csv"));
+    return static_cast<size_t>(std::count(text.begin(), text.end(), '\n')) - 1;
+  }
+
+  testing::TempFolder scratch_;
+  Configuration configuration_ = toyConfiguration(scratch_.file("run"));
+  ObedientWorld world_;
+  std::string terminal_;
+};
+
+TEST_F(ExperimentTest, EachTrialIsRunThenLearnedFromThenEvaluated) {
+  run();
+  EXPECT_EQ(world_.calls, (Calls{"run 0", "train 0", "evaluate 0", "run 1", "train 1", "evaluate 1",
+                                 "run 2", "train 2", "evaluate 2"}));
+}
+
+TEST_F(ExperimentTest, TrialsGiveOneModelAndRowMoreThanTheirNumber) {
+  run();
+  EXPECT_EQ(numRows(), 3u);
+  for (const std::string trial : {"000", "001", "002"}) {
+    EXPECT_TRUE(fs::exists(file("trial_" + trial + "/model.ddm"))) << trial;
+    EXPECT_TRUE(fs::exists(file("evaluation_" + trial + "/torques.csv"))) << trial;
+  }
+  EXPECT_EQ(textOf(file("trial_002/model.ddm")), "model 2");
+  EXPECT_TRUE(fs::exists(file("summary.yaml")));
+}
+
+TEST_F(ExperimentTest, NoTrialsAreTheRandomOneAndItsModel) {
+  configuration_.experiment.trials = 0;
+  run();
+  EXPECT_EQ(world_.calls, (Calls{"run 0", "train 0", "evaluate 0"}));
+  EXPECT_EQ(numRows(), 1u);
+}
+
+TEST_F(ExperimentTest, TheFirstTrialIsRandomTheOthersExploreAndEvaluationsAreGreedy) {
+  configuration_.mpc.epsilon = 0.3;
+  configuration_.mpc.hold_steps = 4;
+  run();
+  ASSERT_EQ(world_.requests.size(), 6u);
+  EXPECT_EQ(world_.requests[0].epsilon, 1.0);
+  EXPECT_EQ(world_.requests[2].epsilon, 0.3);
+  EXPECT_EQ(world_.requests[4].epsilon, 0.3);
+  for (const size_t evaluation : {1, 3, 5}) EXPECT_EQ(world_.requests[evaluation].epsilon, 0.0);
+  for (const TrialRequest& request : world_.requests) {
+    EXPECT_EQ(request.hold_steps, 4);
+    EXPECT_EQ(request.num_steps, kToySteps);
+  }
+}
+
+TEST_F(ExperimentTest, EachRunHasItsOwnIdentity) {
+  run();
+  for (size_t i = 0; i < world_.requests.size(); ++i) {
+    EXPECT_EQ(world_.requests[i].id.seed, 7u);
+    EXPECT_EQ(world_.requests[i].id.trial, i / 2);
+    EXPECT_EQ(world_.requests[i].id.evaluation, i % 2 == 1);
+  }
+}
+
+TEST_F(ExperimentTest, EvaluationsAreNotRecordedAndNotLearnedFrom) {
+  run();
+  for (const TrialRequest& request : world_.requests) {
+    EXPECT_EQ(request.bag.empty(), request.id.evaluation);
+  }
+  ASSERT_EQ(world_.bags_of_training.size(), 3u);
+  EXPECT_EQ(world_.bags_of_training[0], (Calls{file("trial_000/trial.bag")}));
+  EXPECT_EQ(world_.bags_of_training[2],
+            (Calls{file("trial_000/trial.bag"), file("trial_001/trial.bag"),
+                   file("trial_002/trial.bag")}));
+}
+
+TEST_F(ExperimentTest, ARowTellsFramesSuccessAndPlanTimesOfTheGreedyRun) {
+  configuration_.experiment.trials = 0;
+  run();
+  EXPECT_EQ(textOf(file("trials.csv")).substr(textOf(file("trials.csv")).find('\n') + 1),
+            "7,0,30,1,1,0.0,0.0,0.0,2.000,0,15.000,30.000\n");
+}
+
+TEST_F(ExperimentTest, WithoutGroundTruthSuccessStaysEmpty) {
+  configuration_.experiment.trials = 0;
+  world_.state.resize(0);
+  run();
+  EXPECT_NE(textOf(file("trials.csv")).find("\n7,0,30,,,,"), std::string::npos);
+  EXPECT_FALSE(fs::exists(file("evaluation_000/trajectory.csv")));
+}
+
+TEST_F(ExperimentTest, AnExperimentThatIsTakenUpTrainsOnceAndGoesOn) {
+  configuration_.experiment.trials = 1;
+  run();
+  world_.calls.clear();
+  configuration_.experiment.trials = 2;
+  run();
+  EXPECT_EQ(world_.calls, (Calls{"train 1", "run 2", "train 2", "evaluate 2"}));
+  EXPECT_EQ(numRows(), 3u);
+  EXPECT_NE(terminal_.find("resuming after trial 1"), std::string::npos) << terminal_;
+}
+
+TEST_F(ExperimentTest, AFinishedExperimentIsNotRunAgainButGetsItsSummary) {
+  run();
+  world_.calls.clear();
+  run();
+  EXPECT_EQ(world_.calls, Calls());
+  EXPECT_EQ(numRows(), 3u);
+  EXPECT_TRUE(fs::exists(file("summary.yaml")));
+}
+
+TEST_F(ExperimentTest, AWorldThatFailsLeavesTheFinishedTrialsAndNoVerdict) {
+  for (const size_t call : {4, 5, 6}) {  // run 1, train 1, evaluate 1
+    fs::remove_all(scratch_.file("run"));
+    world_ = ObedientWorld();
+    world_.fails_at = call;
+    EXPECT_TRUE(
+        throwsNaming<std::runtime_error>([this] { run(); }, {call == 5 ? "ran away" : "camera"}));
+    EXPECT_EQ(numRows(), 1u);
+    EXPECT_FALSE(fs::exists(file("summary.yaml")));
+    world_ = ObedientWorld();
+    run();
+    EXPECT_EQ(world_.calls[0], "train 0");
+    EXPECT_EQ(world_.calls[1], "run 1");
+    EXPECT_EQ(numRows(), 3u);
+  }
+}
+
+}  // namespace
+}  // namespace ddm

@@ -1,0 +1,126 @@
+#!/usr/bin/python3
+# The film strip: which trial and steps it shows, its pictures, and what it refuses.
+# SPDX-License-Identifier: BSD-3-Clause
+import contextlib
+import io
+import math
+import os
+import sys
+import tempfile
+import unittest
+
+from PIL import Image
+import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from ddm_launch import film_strip  # noqa: E402
+from ddm_launch.run_folder import read_trials  # noqa: E402
+import synthetic_run  # noqa: E402
+
+
+class GreyCamera:
+    """Stands in for the simulator where only the layout matters: the brightness tells the angle."""
+
+    def __init__(self, _folder):
+        pass
+
+    def shoot(self, angle_rad, _rate_rad_per_s):
+        return Image.new("L", (51, 51), round(80 * abs(angle_rad)) % 256)
+
+
+class FilmStripTest(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = os.path.join(scratch.name, "run")
+        self.gif = os.path.join(scratch.name, "swing_up.gif")
+        synthetic_run.write_run(self.folder)
+
+    def callMain(self, *arguments, make_camera=GreyCamera):
+        """Returns (exit code, what was written to stdout and stderr)."""
+        with io.StringIO() as output, contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
+            try:
+                code = film_strip.main([self.folder] + list(arguments), make_camera)
+            except SystemExit as stop:
+                code = stop.code
+            return code, output.getvalue()
+
+    def test_the_last_success_is_shown_by_default(self):
+        code, output = self.callMain()
+        self.assertEqual(code, 0, output)
+        self.assertIn("evaluation after trial 1", output)
+
+    def test_the_last_trial_is_shown_when_none_succeeded(self):
+        synthetic_run.write_trials(self.folder, ["0", "", "0"], ["170", "20", "90"])
+        self.assertEqual(film_strip.default_trial(read_trials(self.folder)), 2)
+
+    def test_a_trial_can_be_chosen(self):
+        self.assertIn("evaluation after trial 2", self.callMain("--trial", "2")[1])
+
+    def test_the_strip_ends_a_little_after_the_target_is_reached_for_good(self):
+        angles = [math.pi * min(1.0, k / 16.0) for k in range(100)]
+        self.assertEqual(film_strip.swing_up_end(angles), 21)  # within 10 degrees from step 16 on
+        passing = angles[:30] + [1.0] + [-math.pi] * 69  # overshoots once, then stays: the arrival is step 31
+        self.assertEqual(film_strip.swing_up_end(passing), 38)
+
+    def test_a_swing_up_that_never_arrives_is_shown_to_its_end(self):
+        self.assertEqual(film_strip.swing_up_end([0.01 * k for k in range(50)]), 49)
+
+    def test_images_are_evenly_spaced_and_reach_the_end(self):
+        self.assertEqual(film_strip.steps_to_show(22, 100), list(range(0, 23, 2)))
+        self.assertEqual(film_strip.steps_to_show(21, 100), list(range(0, 23, 2)))
+        self.assertEqual(film_strip.steps_to_show(99, 100), list(range(0, 100, 9)))
+        self.assertEqual(film_strip.steps_to_show(3, 4), [0, 1, 2, 3])
+
+    def test_only_the_strip_is_written_into_the_run_folder(self):
+        before = set(os.listdir(self.folder))
+        self.assertEqual(self.callMain("--gif", self.gif)[0], 0)
+        self.assertEqual(set(os.listdir(self.folder)) - before, {"film_strip.png"})
+
+    def test_the_animation_runs_in_real_time(self):
+        self.assertEqual(self.callMain("--gif", self.gif)[0], 0)
+        with Image.open(self.gif) as animation:
+            self.assertEqual(animation.n_frames, 22)
+            self.assertEqual(animation.info["duration"], 200)
+
+    def test_the_simulator_draws_the_images(self):
+        code, output = self.callMain(make_camera=film_strip.Camera)
+        self.assertEqual(code, 0, output)
+        with Image.open(os.path.join(self.folder, "film_strip.png")) as picture:
+            self.assertGreater(picture.width, 3 * picture.height)
+        camera = film_strip.Camera(self.folder)
+        hanging, upright = camera.shoot(0.0, 0.0), camera.shoot(-math.pi, 0.0)
+        self.assertEqual(hanging.size, (51, 51))
+        self.assertNotEqual(hanging.tobytes(), upright.tobytes())
+
+    def test_a_plant_that_does_not_exist_is_named(self):
+        synthetic_run.write_config(self.folder, plant="no_such_plant")
+        code, output = self.callMain(make_camera=film_strip.Camera)
+        self.assertEqual(code, 1)
+        self.assertIn("no_such_plant", output)
+
+    def test_a_trial_without_evaluation_is_named(self):
+        code, output = self.callMain("--trial", "7")
+        self.assertEqual(code, 1)
+        self.assertIn("evaluation_007", output)
+
+    def test_torques_that_do_not_match_the_trajectory_are_refused(self):
+        path = os.path.join(self.folder, "evaluation_001", "torques.csv")
+        with open(path) as stream:
+            lines = stream.readlines()
+        with open(path, "w") as stream:
+            stream.writelines(lines[:-1])
+        code, output = self.callMain()
+        self.assertEqual(code, 1)
+        self.assertIn("got 40 and 39", output)
+
+    def test_a_configuration_without_plant_is_refused(self):
+        with open(os.path.join(self.folder, "config.yaml"), "w") as stream:
+            stream.write("experiment: {}\n")
+        code, output = self.callMain(make_camera=film_strip.Camera)
+        self.assertEqual(code, 1)
+        self.assertIn("experiment/plant", output)
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "film_strip_test", FilmStripTest)

@@ -1,0 +1,105 @@
+#!/usr/bin/python3
+# The learning curve: its numbers, its pictures, and what it refuses.
+# SPDX-License-Identifier: BSD-3-Clause
+import contextlib
+import io
+import math
+import os
+import sys
+import tempfile
+import unittest
+
+from PIL import Image
+import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from ddm_launch import learning_curve  # noqa: E402
+from ddm_launch.run_folder import read_trials  # noqa: E402
+import synthetic_run  # noqa: E402
+
+
+class LearningCurveTest(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = scratch.name
+
+    def makeRun(self, name, successes, errors_deg=None):
+        folder = os.path.join(self.folder, name)
+        synthetic_run.write_trials(folder, successes, errors_deg or ["12.5"] * len(successes))
+        return folder
+
+    def callMain(self, *arguments):
+        """Returns (exit code, what was written to stderr)."""
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()) as errors:
+            try:
+                code = learning_curve.main(list(arguments))
+            except SystemExit as stop:
+                code = stop.code
+        return code, errors.getvalue()
+
+    def test_success_rate_has_the_standard_error_of_the_paper(self):
+        runs = [read_trials(self.makeRun("run_%d" % k, s)) for k, s in enumerate([["0", "1"], ["0", "1"], ["1", "1"]])]
+        rows = learning_curve.success_rates(runs)
+        self.assertEqual([row[0] for row in rows], [100, 200])
+        self.assertAlmostEqual(rows[0][1], 1.0 / 3.0)
+        self.assertAlmostEqual(rows[0][2], math.sqrt((1.0 / 3.0) * (2.0 / 3.0) / 2.0))
+        self.assertEqual(rows[1][1:], (1.0, 0.0, 3))
+
+    def test_trials_of_unknown_success_are_left_out_of_the_rate(self):
+        runs = [read_trials(self.makeRun("a", ["", "1"])), read_trials(self.makeRun("b", ["0", "0"]))]
+        self.assertEqual(learning_curve.success_rates(runs)[0], (100, 0.0, 0.0, 1))
+
+    def test_runs_of_different_length_count_where_they_have_rows(self):
+        runs = [read_trials(self.makeRun("a", ["1", "1"])), read_trials(self.makeRun("b", ["0"]))]
+        self.assertEqual([(row[0], row[3]) for row in learning_curve.success_rates(runs)], [(100, 2), (200, 1)])
+
+    def test_one_run_is_drawn_into_its_folder_by_default(self):
+        folder = self.makeRun("run", ["0", "1", ""], ["-170", "3", ""])
+        self.assertEqual(self.callMain(folder), (0, ""))
+        with Image.open(os.path.join(folder, "learning_curve.png")) as picture:
+            self.assertGreater(len(set(picture.convert("L").tobytes())), 10)  # not blank
+
+    def test_several_runs_are_drawn_into_the_file_that_is_named_and_nowhere_else(self):
+        folders = [self.makeRun(name, ["0", "1"]) for name in "ab"]
+        out = os.path.join(self.folder, "curve.png")
+        self.assertEqual(self.callMain(*folders, "--out", out), (0, ""))
+        self.assertTrue(os.path.getsize(out) > 0)
+        self.assertEqual([os.listdir(folder) for folder in folders], [["trials.csv"]] * 2)
+
+    def test_several_runs_without_a_file_name_are_refused(self):
+        code, errors = self.callMain(self.makeRun("a", ["0"]), self.makeRun("b", ["0"]))
+        self.assertEqual(code, 2)
+        self.assertIn("--out", errors)
+
+    def test_a_folder_that_is_no_run_folder_is_named(self):
+        code, errors = self.callMain(self.folder)
+        self.assertEqual(code, 1)
+        self.assertIn(os.path.join(self.folder, "trials.csv"), errors)
+
+    def test_a_cell_that_is_no_number_is_named(self):
+        code, errors = self.callMain(self.makeRun("run", ["maybe"]))
+        self.assertEqual(code, 1)
+        self.assertIn("success must hold numbers, got 'maybe'", errors)
+
+    def test_a_missing_column_is_named(self):
+        folder = self.makeRun("run", ["1"])
+        with open(os.path.join(folder, "trials.csv"), "w") as stream:
+            stream.write("trial,success\n0,1\n")
+        code, errors = self.callMain(folder)
+        self.assertEqual(code, 1)
+        self.assertIn("no column frames, final_error_deg", errors)
+
+    def test_a_run_without_any_final_error_is_refused(self):
+        code, errors = self.callMain(self.makeRun("run", [""], [""]))
+        self.assertEqual(code, 1)
+        self.assertIn("no final error", errors)
+
+    def test_a_picture_format_that_does_not_exist_is_refused(self):
+        code, errors = self.callMain(self.makeRun("run", ["1"]), "--out", os.path.join(self.folder, "curve.nonsense"))
+        self.assertEqual(code, 1)
+        self.assertIn("nonsense", errors)
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "learning_curve_test", LearningCurveTest)

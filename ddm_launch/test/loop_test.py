@@ -1,0 +1,137 @@
+#!/usr/bin/python3
+# The whole loop with the real nodes: files, terminal, bags, how it resumes, ends and refuses.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import re
+import shutil
+import signal
+import sys
+import tempfile
+import time
+import unittest
+
+import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from processes import roslaunch, run_experiment, start_roslaunch  # noqa: E402
+from run_files import differences, expected_files, files_in, read_bag, read_bytes, read_rows, read_yaml  # noqa: E402
+
+TRIALS = 2
+
+
+class LoopTest(unittest.TestCase):
+    maxDiff = None
+
+    @classmethod
+    def setUpClass(cls):
+        cls.class_scratch = tempfile.mkdtemp()
+        cls.reference = os.path.join(cls.class_scratch, "reference")
+        start = time.monotonic()
+        cls.code, cls.output = roslaunch(cls.class_scratch, *cls.experiment(cls.reference, TRIALS))
+        cls.wall_s = time.monotonic() - start
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.class_scratch)
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.scratch = scratch.name
+        self.out = os.path.join(scratch.name, "run")
+
+    @staticmethod
+    def experiment(out, trials, seed=1):
+        return ["experiment.launch", "preset:=debug", "plant:=pendulum", "seed:=%d" % seed, "trials:=%d" % trials,
+                "runs:=" + out, "rviz:=false"]
+
+    def assertSameAsOneProcess(self, out, trials):
+        """Everything but bags, whose stamps are another simulated time, and what tells wall times."""
+        one_process = os.path.join(self.scratch, "one_process")
+        code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", trials, "--out", one_process)
+        self.assertEqual(code, 0, output)
+        names = [name for name in expected_files(trials) if not name.endswith((".bag", "config.yaml"))]
+        self.assertEqual(differences(one_process, out, names), [])
+
+    def test_all_files_of_the_contract_are_written_and_no_other(self):
+        self.assertEqual(self.code, 0, self.output)
+        self.assertEqual(files_in(self.reference), expected_files(TRIALS), self.output)
+        self.assertLess(self.wall_s, 40.0)
+
+    def test_the_summary_is_the_verdict(self):
+        summary = read_yaml(self.reference, "summary.yaml")
+        self.assertIs(summary["finished"], True)
+        self.assertEqual((summary["preset"], summary["seed"], summary["trials"]), ("debug", 1, TRIALS))
+
+    def test_the_terminal_shows_each_trial_and_the_summary(self):
+        for k in range(TRIALS + 1):
+            self.assertRegex(self.output, r"trial +%d/%d +%d frames" % (k, TRIALS, 30 * (k + 1)))
+        self.assertIn("3 models trained", self.output)
+        self.assertIn("results: %s/trials.csv" % self.reference, self.output)
+        for word in ("WARN", "ERROR", "FATAL", "Traceback"):
+            self.assertNotIn(word, self.output)
+
+    def test_each_bag_holds_a_torque_for_each_image_and_the_goal(self):
+        for k in range(TRIALS + 1):
+            stamps = read_bag(os.path.join(self.reference, "trial_%03d" % k, "trial.bag"))
+            self.assertEqual(sorted(stamps), ["camera/image_raw", "goal_image", "torque"])
+            self.assertEqual(len(stamps["camera/image_raw"]), 30)
+            self.assertEqual(stamps["camera/image_raw"], stamps["torque"])
+            self.assertEqual(len(stamps["goal_image"]), 1)
+
+    def test_simulated_time_never_runs_backwards_between_trials(self):
+        stamps = []
+        for k in range(TRIALS + 1):
+            stamps += read_bag(os.path.join(self.reference, "trial_%03d" % k, "trial.bag"))["camera/image_raw"]
+        self.assertEqual(stamps, sorted(set(stamps)))
+
+    def test_the_nodes_write_what_one_process_writes(self):
+        self.assertSameAsOneProcess(self.reference, TRIALS)
+
+    def test_the_same_command_with_more_trials_resumes(self):
+        code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 0, "--out", self.out)
+        self.assertEqual(code, 0, output)  # its folder is the same, so that either driver can go on
+        _, output = roslaunch(self.scratch, *self.experiment(self.out, 1))
+        self.assertIn("resuming after trial 0", output)
+        self.assertEqual(files_in(self.out), expected_files(1), output)
+        self.assertSameAsOneProcess(self.out, 1)
+
+    def test_the_folder_of_another_seed_is_refused_and_has_no_verdict(self):
+        shutil.copytree(self.reference, self.out)
+        rows = read_bytes(self.out, "trials.csv")
+        code, output = roslaunch(self.scratch, *self.experiment(self.out, TRIALS, seed=2))
+        self.assertEqual(code, 0)  # roslaunch's way, see the head of experiment.launch
+        self.assertIn("experiment/seed: 1 there, 2 here", output)
+        self.assertIn(self.out, output)
+        self.assertNotIn("summary.yaml", files_in(self.out))
+        self.assertEqual(read_bytes(self.out, "trials.csv"), rows)
+
+    def test_an_interrupted_experiment_ends_at_once_without_a_verdict_and_goes_on_later(self):
+        launch = start_roslaunch(self.scratch, *self.experiment(self.out, 999))
+        self.addCleanup(launch.stop)
+        launch.waitForText("trial  1/999", 30.0)
+        launch.send(signal.SIGINT)
+        launch.waitForEnd(20.0)
+        self.assertNotIn("summary.yaml", files_in(self.out))
+        finished = len(read_rows(self.out, "trials.csv")) - 1
+        _, output = roslaunch(self.scratch, *self.experiment(self.out, finished))
+        self.assertIn("resuming after trial %d" % (finished - 1), output)
+        self.assertSameAsOneProcess(self.out, finished)
+
+    def test_a_node_that_dies_ends_the_experiment_without_a_verdict(self):
+        launch = start_roslaunch(self.scratch, *self.experiment(self.out, 999))
+        self.addCleanup(launch.stop)
+        launch.waitForText("trial  0/999", 30.0)
+        os.kill(int(re.search(r"process\[mpc_node-\d+\]: started with pid \[(\d+)\]", launch.output).group(1)),
+                signal.SIGKILL)
+        launch.waitForEnd(30.0)
+        self.assertIn("REQUIRED process [mpc_node", launch.output)
+        self.assertNotIn("summary.yaml", files_in(self.out))
+
+    def test_a_relative_folder_is_meant_from_where_roslaunch_was_called(self):
+        _, output = roslaunch(self.scratch, *self.experiment("here/run", 0), folder=self.scratch)
+        self.assertEqual(files_in(os.path.join(self.scratch, "here", "run")), expected_files(0), output)
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "loop_test", LoopTest)

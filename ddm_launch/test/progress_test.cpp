@@ -1,0 +1,111 @@
+// Tests of the progress on the terminal: what it says, and that files stay free of escape codes.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "progress.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "toy_run.h"
+
+namespace ddm {
+namespace {
+
+using testing::toyRow;
+
+class ProgressTest : public ::testing::Test {
+ protected:
+  /// Two trials, the second a success, and the summary.
+  std::string textOf(bool live) {
+    std::ostringstream out;
+    Progress progress(&out, live, /*num_trials=*/1);
+    progress.note("warning: mind the step");
+    for (int trial = 0; trial < 2; ++trial) {
+      progress.beginPhase(trial, "train");
+      progress.update(0.5);
+      rows_.push_back(toyRow(trial));
+      progress.finishTrial(rows_);
+    }
+    progress.summary(rows_, "/DIR", 12.34);
+    return out.str();
+  }
+
+  static bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  }
+
+  std::vector<TrialRow> rows_;
+};
+
+TEST_F(ProgressTest, AFileHoldsLinesOnly) {
+  const std::string text = textOf(/*live=*/false);
+  EXPECT_EQ(std::count_if(text.begin(), text.end(),
+                          [](unsigned char c) { return c != '\n' && (c < ' ' || c > '~'); }),
+            0)
+      << text;
+  EXPECT_FALSE(has(text, "train  ")) << text;
+}
+
+TEST_F(ProgressTest, EachFinishedTrialIsOneLineWithItsVerdict) {
+  const std::string text = textOf(/*live=*/false);
+  for (const std::string part :
+       {"trial  0/1", "trial  1/1", "30 frames", "60 frames", "0.1 deg", "success"}) {
+    EXPECT_TRUE(has(text, part)) << part << " is not in\n" << text;
+  }
+}
+
+TEST_F(ProgressTest, ATerminalShowsTrialPhaseBarAndSuccessSoFar) {
+  const std::string text = textOf(/*live=*/true);
+  for (const std::string part : {"trial  1/1", "train", "[....", "0 %", "success 0 of 1"}) {
+    EXPECT_TRUE(has(text, part)) << part << " is not in\n" << text;
+  }
+}
+
+TEST_F(ProgressTest, TheMovingLineIsWipedBeforeALineThatStays) {
+  const std::string text = textOf(/*live=*/true);
+  size_t begin = 0;
+  for (size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', begin)) {
+    const std::string line = text.substr(begin, end - begin);
+    const size_t wiped = line.rfind("\r\033[K");
+    EXPECT_EQ(line.find('[', wiped == std::string::npos ? 0 : wiped + 3), std::string::npos)
+        << line;
+    begin = end + 1;
+  }
+}
+
+TEST_F(ProgressTest, NoLineIsWiderThanATerminal) {
+  for (const bool live : {false, true}) {
+    std::istringstream lines(textOf(live));
+    rows_.clear();
+    for (std::string line; std::getline(lines, line);) {
+      for (size_t begin = 0; begin < line.size();) {
+        const size_t end = std::min(line.find('\r', begin + 1), line.size());
+        EXPECT_LE(end - begin, 80u + 4u) << line.substr(begin, end - begin);  // 4: the escape code
+        begin = end;
+      }
+    }
+  }
+}
+
+TEST_F(ProgressTest, TheSummaryCountsAndSaysWhereTheResultsAre) {
+  const std::string text = textOf(/*live=*/false);
+  for (const std::string part : {"2 models", "60 frames", "1 of 2", "12.3 s", "/DIR/trials.csv"}) {
+    EXPECT_TRUE(has(text, part)) << part << " is not in\n" << text;
+  }
+}
+
+TEST_F(ProgressTest, WithoutGroundTruthNoSuccessIsClaimed) {
+  std::ostringstream out;
+  Progress progress(&out, /*live=*/false, /*num_trials=*/0);
+  TrialRow row = toyRow(0);
+  row.evaluation = Evaluation();
+  progress.finishTrial({row});
+  progress.summary({row}, "/DIR", 1.0);
+  EXPECT_TRUE(has(out.str(), "no ground truth")) << out.str();
+  EXPECT_FALSE(has(out.str(), "success")) << out.str();
+  EXPECT_FALSE(has(out.str(), "reached")) << out.str();
+}
+
+}  // namespace
+}  // namespace ddm

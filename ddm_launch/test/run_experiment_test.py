@@ -1,0 +1,250 @@
+#!/usr/bin/python3
+# run_experiment: its files, that a seed fixes them, that an interruption changes nothing, and what it refuses.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import pty
+import shutil
+import signal
+import sys
+import tempfile
+import unittest
+
+import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from processes import Process, call, find_program, run_experiment  # noqa: E402
+from run_files import (COLUMNS, differences, expected_files, files_in, read_bag, read_bytes, read_rows,  # noqa: E402
+                       read_yaml)
+
+TRIALS = 2
+
+
+class RunExperimentTest(unittest.TestCase):
+    maxDiff = None
+
+    @classmethod
+    def setUpClass(cls):
+        cls.class_scratch = tempfile.mkdtemp()
+        cls.reference = os.path.join(cls.class_scratch, "reference")
+        cls.code, cls.output = run_experiment("--preset", "debug", "--seed", 1, "--trials", TRIALS,
+                                              "--out", cls.reference)
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.class_scratch)
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.scratch = scratch.name
+        self.out = os.path.join(scratch.name, "run")
+
+    def debug(self, trials=TRIALS, seed=1, out=None):
+        """Arguments of the reference run, into another folder."""
+        return ["--preset", "debug", "--seed", seed, "--trials", trials, "--out", out or self.out]
+
+    def write(self, name, text):
+        path = os.path.join(self.scratch, name)
+        with open(path, "w") as stream:
+            stream.write(text)
+        return path
+
+    def assertRuns(self, *arguments):
+        code, output = run_experiment(*arguments)
+        self.assertEqual(code, 0, output)
+        return output
+
+    def assertRefused(self, code, words, *arguments):
+        actual, output = run_experiment(*arguments)
+        self.assertEqual(actual, code, output)
+        for word in words:
+            self.assertIn(word, output)
+
+    def test_all_files_of_the_contract_are_written_and_no_other(self):
+        self.assertEqual(self.code, 0, self.output)
+        self.assertEqual(files_in(self.reference), expected_files(TRIALS))
+
+    def test_trials_csv_has_one_row_more_than_trials(self):
+        rows = read_rows(self.reference, "trials.csv")
+        self.assertEqual(rows[0], COLUMNS)
+        self.assertEqual([row[:3] for row in rows[1:]], [["1", "0", "30"], ["1", "1", "60"], ["1", "2", "90"]])
+        for row in rows[1:]:
+            self.assertIn(row[3], ("0", "1"))
+            self.assertTrue(all(float(value) >= 0.0 for value in row))
+
+    def test_torques_are_exact_bounded_and_tell_which_are_random(self):
+        for k in range(TRIALS + 1):
+            for kind, exploratory in (("trial", {"1"} if k == 0 else {"0", "1"}), ("evaluation", {"0"})):
+                rows = read_rows(self.reference, "%s_%03d" % (kind, k), "torques.csv")
+                self.assertEqual(rows[0], ["step", "torque_nm", "exploratory"])
+                self.assertEqual([row[0] for row in rows[1:]], [str(step) for step in range(30)])
+                self.assertTrue(all(abs(float(row[1])) <= 6.0 for row in rows[1:]))
+                self.assertTrue(all("%.17g" % float(row[1]) == row[1] for row in rows[1:]))
+                self.assertLessEqual({row[2] for row in rows[1:]}, exploratory)
+
+    def test_the_trajectory_has_a_state_for_each_torque(self):
+        rows = read_rows(self.reference, "evaluation_000", "trajectory.csv")
+        self.assertEqual(rows[0], ["step", "time_s", "angle_rad", "rate_rad_per_s"])
+        self.assertEqual(len(rows), 31)
+        self.assertAlmostEqual(float(rows[30][1]), 29 * 0.2)
+
+    def test_each_bag_holds_a_torque_for_each_image_and_the_goal(self):
+        for k in range(TRIALS + 1):
+            stamps = read_bag(os.path.join(self.reference, "trial_%03d" % k, "trial.bag"))
+            self.assertEqual(len(stamps["camera/image_raw"]), 30)
+            self.assertEqual(stamps["camera/image_raw"], stamps["torque"])
+            self.assertEqual(len(stamps["goal_image"]), 1)
+
+    def test_the_saved_configuration_is_the_effective_one(self):
+        config = read_yaml(self.reference, "config.yaml")
+        self.assertRegex(config["version"], r"^[0-9.]+ \(")
+        self.assertEqual(config["experiment"]["preset"], "debug")
+        self.assertEqual(config["experiment"]["seed"], 1)
+        self.assertEqual(config["trial"]["num_steps"], 30)
+        self.assertEqual(config["model"]["feature_dim"], 2)
+
+    def test_the_summary_is_the_verdict(self):
+        summary = read_yaml(self.reference, "summary.yaml")
+        self.assertIs(summary["finished"], True)
+        self.assertEqual((summary["trials"], summary["seed"]), (TRIALS, 1))
+        self.assertEqual(summary["success"], [int(row[3]) for row in read_rows(self.reference, "trials.csv")[1:]])
+
+    def test_the_same_seed_gives_the_same_files_but_for_times(self):
+        self.assertRuns(*self.debug())
+        self.assertEqual(differences(self.reference, self.out, expected_files(TRIALS)), [])
+
+    def test_another_seed_gives_other_torques(self):
+        self.assertRuns(*self.debug(seed=2, trials=0))
+        for name in ("trial_000/torques.csv", "evaluation_000/torques.csv"):
+            self.assertNotEqual(read_bytes(self.reference, name), read_bytes(self.out, name))
+
+    def test_trials_that_grow_give_the_same_as_all_at_once(self):
+        self.assertRuns(*self.debug(trials=0))
+        output = self.assertRuns(*self.debug())
+        self.assertIn("resuming after trial 0", output)
+        self.assertEqual(differences(self.reference, self.out, expected_files(TRIALS)), [])
+
+    def test_a_run_that_was_killed_goes_on_as_if_nothing_had_happened(self):
+        trials = 12
+        for finished in (0, 3, 6):
+            process = Process([find_program("ddm_launch", "run_experiment")] + self.debug(trials))
+            process.waitForText("trial %2d/%d" % (finished, trials), 30.0)
+            process.send(signal.SIGKILL)
+            process.waitForEnd(10.0)
+            self.assertNotIn("summary.yaml", files_in(self.out))
+        self.assertRuns(*self.debug(trials))
+        uninterrupted = os.path.join(self.scratch, "uninterrupted")
+        self.assertRuns(*self.debug(trials, out=uninterrupted))
+        self.assertEqual(differences(uninterrupted, self.out, expected_files(trials)), [])
+
+    def test_a_finished_run_is_not_changed_by_the_same_command(self):
+        shutil.copytree(self.reference, self.out)
+        before = {name: read_bytes(self.out, name) for name in files_in(self.out) if "yaml" not in name}
+        self.assertRuns(*self.debug())
+        self.assertEqual({name: read_bytes(self.out, name) for name in before}, before)
+        self.assertEqual(differences(self.reference, self.out, expected_files(TRIALS)), [])
+
+    def test_a_saved_configuration_can_be_given_again(self):
+        self.assertRuns("--preset", "paper", "--config", os.path.join(self.reference, "config.yaml"), "--seed", 1,
+                        "--trials", 1, "--out", self.out)
+        names = ["trial_001/torques.csv", "evaluation_001/torques.csv"]
+        self.assertEqual(differences(self.reference, self.out, names), [])
+
+    def test_the_folder_may_be_relative_and_new(self):
+        code, output = run_experiment(*self.debug(0, out="some/new/folder"), folder=self.scratch)
+        self.assertEqual(code, 0, output)
+        self.assertEqual(files_in(os.path.join(self.scratch, "some/new/folder")), expected_files(0))
+
+    def test_help_names_every_option(self):
+        code, output = run_experiment("--help")
+        self.assertEqual(code, 0)
+        for option in ("--preset", "--plant", "--seed", "--trials", "--out", "--config", "--help"):
+            self.assertIn(option, output)
+
+    def test_bad_options_are_refused_by_name(self):
+        out = ["--out", self.out]
+        for words, arguments in (
+                (["--nonsense"], out + ["--nonsense"]),
+                (["--out DIR is missing"], ["--preset", "debug"]),
+                (["unknown preset 'papier'", "debug, paper"], out + ["--preset", "papier"]),
+                (["unknown plant 'sim'", "pendulum, pendulum_gravity"], out + ["--plant", "sim"]),
+                (["experiment/seed", "-1"], out + ["--seed", "-1"]),
+                (["experiment/trials", "-2"], out + ["--trials", "-2"]),
+                (["experiment/trials", "1000"], out + ["--trials", "1000"]),
+                (["--seed", "one"], out + ["--seed", "one"]),
+                (["--seed", "1.5"], out + ["--seed", "1.5"]),
+                (["--seed", "99999999999"], out + ["--seed", "99999999999"]),
+                (["--trials"], out + ["--trials", ""]),
+                (["--trials", "3x"], out + ["--trials", "3x"]),
+                (["positional"], out + ["paper"])):
+            self.assertRefused(2, words, *arguments)
+        self.assertFalse(os.path.exists(self.out))
+
+    def test_a_bad_configuration_is_refused_with_all_its_problems(self):
+        bad = self.write("bad.yaml", "mpc: {horzion: 3, epsilon: 1.5}\nplant: {dt: fast}\ntrial: {num_steps: 0}\n")
+        self.assertRefused(2, ["mpc/horzion", "did you mean horizon", "mpc/epsilon", "1.5", "plant/dt", "fast",
+                               "trial/num_steps", bad], "--config", bad, "--out", self.out)
+        self.assertFalse(os.path.exists(self.out))
+
+    def test_a_configuration_that_contradicts_itself_is_refused(self):
+        bad = self.write("bad.yaml", "mpc: {max_torque: 7.0}\n")
+        self.assertRefused(2, ["mpc/max_torque", "plant/max_torque"], "--config", bad, "--out", self.out)
+
+    def test_a_configuration_file_that_cannot_be_read_is_named(self):
+        missing = os.path.join(self.scratch, "missing.yaml")
+        self.assertRefused(2, [missing], "--config", missing, "--out", self.out)
+        broken = self.write("broken.yaml", "mpc: [1\n")
+        self.assertRefused(2, [broken], "--config", broken, "--out", self.out)
+
+    def test_real_time_is_refused(self):
+        real_time = self.write("real_time.yaml", "sim: {lockstep: false}\n")
+        code, output = run_experiment("--config", real_time, *self.debug())
+        self.assertIn(code, (1, 2))
+        self.assertIn("sim/lockstep", output)
+        self.assertFalse(os.path.exists(self.out))
+
+    def test_the_folder_of_another_experiment_is_refused_and_left_as_it_is(self):
+        shutil.copytree(self.reference, self.out)
+        before = {name: read_bytes(self.out, name) for name in files_in(self.out) if name != "summary.yaml"}
+        self.assertRefused(1, [self.out, "experiment/seed: 1 there, 5 here"], *self.debug(seed=5))
+        self.assertRefused(1, ["experiment/preset: debug there, paper here", "trial/num_steps"],
+                           "--seed", 1, "--out", self.out)
+        self.assertRefused(1, ["experiment/plant: pendulum there, pendulum_gravity here"],
+                           "--plant", "pendulum_gravity", *self.debug())
+        self.assertEqual({name: read_bytes(self.out, name) for name in before}, before)
+
+    def test_a_folder_that_cannot_be_written_is_named(self):
+        for out in (self.write("plain_file", ""), "/proc/ddm"):
+            self.assertRefused(1, ["cannot make the folder", out], *self.debug(out=out))
+
+    def test_a_second_process_in_the_same_folder_is_refused(self):
+        first = Process([find_program("ddm_launch", "run_experiment")] + self.debug(999))
+        self.addCleanup(first.stop)
+        first.waitForText("trial  0/999", 30.0)
+        self.assertRefused(1, ["another experiment is running", self.out], *self.debug(999))
+        self.assertTrue(first.isRunning())
+
+    def test_a_bag_that_is_damaged_is_named(self):
+        shutil.copytree(self.reference, self.out)
+        bag = os.path.join(self.out, "trial_001", "trial.bag")
+        os.truncate(bag, os.path.getsize(bag) // 2)
+        self.assertRefused(1, [bag], *self.debug(trials=3))
+        self.assertEqual(len(read_rows(self.out, "trials.csv")), 1 + TRIALS + 1)
+
+    def test_a_terminal_shows_a_bar_and_a_file_does_not(self):
+        self.assertNotIn("\033", self.output)
+        self.assertNotIn("[###", self.output)
+        master, slave = pty.openpty()
+        self.addCleanup(os.close, master)
+        code, _ = call([find_program("ddm_launch", "run_experiment")] + self.debug(0), output=slave)
+        os.close(slave)
+        shown = b""
+        while b"results:" not in shown:
+            shown += os.read(master, 4096)
+        self.assertEqual(code, 0)
+        for part in (b"random", b"train", b"evaluate", b"[....", b"\r"):
+            self.assertIn(part, shown)
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "run_experiment_test", RunExperimentTest)

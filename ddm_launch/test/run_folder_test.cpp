@@ -1,0 +1,295 @@
+// Tests of the run folder: it resumes its own experiment, refuses any other, and loses nothing.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run_folder.h"
+
+#include <ddm_model/testing/expect_error.h>
+#include <ddm_model/testing/temp_folder.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <boost/filesystem.hpp>
+#include <cmath>
+#include <functional>
+
+#include "code_version.h"
+#include "toy_run.h"
+#include "trials_csv.h"
+
+namespace ddm {
+namespace {
+
+namespace fs = boost::filesystem;
+using testing::textOf;
+using testing::throwsNaming;
+using testing::toyConfiguration;
+using testing::toyRow;
+using testing::writeText;
+
+class RunFolderTest : public ::testing::Test {
+ protected:
+  std::string file(const std::string& name) const { return scratch_.file("run/" + name); }
+
+  /// Makes the folder and finishes this many trials in it.
+  void finish(int num_trials) {
+    RunFolder folder(configuration_);
+    for (int trial = 0; trial < num_trials; ++trial) {
+      writeText(folder.bagPath(trial), "a bag");
+      folder.finishTrial(toyRow(trial));
+    }
+  }
+
+  void expectRefused(const std::vector<std::string>& words) {
+    EXPECT_TRUE(
+        throwsNaming<std::runtime_error>([this] { RunFolder folder(configuration_); }, words));
+  }
+
+  testing::TempFolder scratch_;
+  Configuration configuration_ = toyConfiguration(scratch_.file("run"));
+};
+
+TEST_F(RunFolderTest, ANewFolderIsMadeWithTheEffectiveConfigurationAndTheVersion) {
+  configuration_.experiment.runs = file("with/parents");
+  const RunFolder folder(configuration_);
+  const YAML::Node saved = YAML::LoadFile(file("with/parents/config.yaml"));
+  EXPECT_EQ(saved["version"].as<std::string>(), codeVersion());
+  EXPECT_EQ(saved["experiment"]["seed"].as<int>(), 7);
+  EXPECT_EQ(saved["model"]["pca_dim"].as<int>(), 10);
+  EXPECT_EQ(saved["plant"]["dt"].as<double>(), 0.2);
+  EXPECT_EQ(saved.size(), 12u) << "the version and eleven blocks";
+  EXPECT_TRUE(folder.rows().empty());
+  EXPECT_TRUE(folder.warnings().empty());
+}
+
+TEST_F(RunFolderTest, TheSameExperimentTakesUpWhereItWas) {
+  finish(2);
+  const RunFolder folder(configuration_);
+  ASSERT_EQ(folder.rows().size(), 2u);
+  EXPECT_EQ(folder.rows()[1].frames, 60u);
+  EXPECT_TRUE(folder.warnings().empty());
+}
+
+TEST_F(RunFolderTest, TrialsMayGrow) {
+  finish(2);
+  configuration_.experiment.trials = 5;
+  EXPECT_EQ(RunFolder(configuration_).rows().size(), 2u);
+  EXPECT_EQ(YAML::LoadFile(file("config.yaml"))["experiment"]["trials"].as<int>(), 5);
+}
+
+TEST_F(RunFolderTest, TimeLimitsMayDiffer) {
+  finish(1);
+  configuration_.experiment.timeout = 10.0;
+  configuration_.sim.watchdog = 10.0;
+  EXPECT_EQ(RunFolder(configuration_).rows().size(), 1u);
+}
+
+TEST_F(RunFolderTest, AFolderThatWasMovedIsStillTheSameExperiment) {
+  finish(1);
+  fs::rename(scratch_.file("run"), scratch_.file("moved"));
+  configuration_.experiment.runs = scratch_.file("moved");
+  EXPECT_EQ(RunFolder(configuration_).rows().size(), 1u);
+}
+
+TEST_F(RunFolderTest, AnotherSeedPlantOrPresetIsRefusedWithBothValues) {
+  finish(1);
+  configuration_.experiment.seed = 8;
+  configuration_.experiment.plant = "pendulum_gravity";
+  configuration_.experiment.preset = "debug";
+  expectRefused({"experiment/seed: 7 there, 8 here",
+                 "experiment/plant: pendulum there, pendulum_gravity here",
+                 "experiment/preset: paper there, debug here", "use another folder"});
+}
+
+TEST_F(RunFolderTest, AnotherValueOfAnyOtherKeyIsRefused) {
+  finish(1);
+  const Configuration there = configuration_;
+  const std::vector<std::pair<std::string, std::function<void(Configuration*)>>> changes = {
+      {"trial/num_steps: 30 there, 31 here", [](auto* c) { c->trial.num_steps = 31; }},
+      {"evaluation/settled_steps: 10", [](auto* c) { c->evaluation.settled_steps = 11; }},
+      {"plant/friction: 1.0 there, 0.5 here", [](auto* c) { c->plant.friction = 0.5; }},
+      {"camera/edge_softness", [](auto* c) { c->camera.edge_softness = 0.3; }},
+      {"sim/lockstep", [](auto* c) { c->sim.lockstep = false; }},
+      {"image/size", [](auto* c) { c->model.image.size = 50; }},
+      {"model/encoder_widths",
+       [](auto* c) {
+         c->model.model.encoder_widths = {25, 12};
+       }},
+      {"training/max_iterations", [](auto* c) { c->model.training.max_iterations = 1; }},
+      {"data_set/torque_topic", [](auto* c) { c->model.data_set.torque_topic = "u"; }},
+      {"mpc/epsilon: 0.2 there, 0.20000000000000004 here",
+       [](auto* c) { c->mpc.epsilon = std::nextafter(0.2, 1.0); }}};
+  for (const auto& change : changes) {
+    configuration_ = there;
+    change.second(&configuration_);
+    expectRefused({change.first});
+  }
+}
+
+TEST_F(RunFolderTest, ARefusedFolderKeepsItsConfigurationAndRows) {
+  finish(1);
+  const std::string config = textOf(file("config.yaml"));
+  const std::string rows = textOf(file("trials.csv"));
+  configuration_.experiment.seed = 8;
+  expectRefused({"experiment/seed"});
+  EXPECT_EQ(textOf(file("config.yaml")), config);
+  EXPECT_EQ(textOf(file("trials.csv")), rows);
+}
+
+TEST_F(RunFolderTest, ARefusedFolderCanBeUsedAtOnceByItsOwnExperiment) {
+  finish(1);
+  configuration_.experiment.seed = 8;
+  expectRefused({"experiment/seed"});
+  configuration_.experiment.seed = 7;
+  EXPECT_EQ(RunFolder(configuration_).rows().size(), 1u);
+}
+
+TEST_F(RunFolderTest, AnotherVersionOfTheCodeWarns) {
+  finish(1);
+  std::string config = textOf(file("config.yaml"));
+  config.replace(0, config.find('\n'), "version: 0.0.1 (abc)");
+  writeText(file("config.yaml"), config);
+  const RunFolder folder(configuration_);
+  ASSERT_EQ(folder.warnings().size(), 1u);
+  EXPECT_NE(folder.warnings()[0].find("0.0.1 (abc)"), std::string::npos);
+  EXPECT_NE(folder.warnings()[0].find(codeVersion()), std::string::npos);
+}
+
+TEST_F(RunFolderTest, ASecondExperimentInTheSameFolderIsRefused) {
+  const RunFolder first(configuration_);
+  expectRefused({scratch_.file("run"), "another experiment is running"});
+}
+
+TEST_F(RunFolderTest, AFolderIsFreeAfterItsExperiment) {
+  { const RunFolder first(configuration_); }
+  EXPECT_NO_THROW(RunFolder second(configuration_));
+}
+
+TEST_F(RunFolderTest, AFinishedTrialWithoutItsBagIsRefused) {
+  finish(2);
+  fs::remove(file("trial_001/trial.bag"));
+  expectRefused({"trial_001/trial.bag", "missing"});
+}
+
+TEST_F(RunFolderTest, RowsThatAreNotThoseOfTheExperimentAreRefused) {
+  finish(2);
+  writeText(file("trials.csv"), formatTrialsCsv({toyRow(0), toyRow(2)}));
+  expectRefused({"trials.csv", "row 2", "trial 1"});
+  writeText(file("trials.csv"), formatTrialsCsv({toyRow(0, /*seed=*/9)}));
+  expectRefused({"trials.csv", "row 1", "seed 7"});
+  writeText(file("trials.csv"), "nonsense\n");
+  expectRefused({"trials.csv", "line 1"});
+}
+
+TEST_F(RunFolderTest, AConfigurationThatCannotBeReadIsRefused) {
+  finish(1);
+  writeText(file("config.yaml"), "experiment: [\n");
+  expectRefused({"config.yaml", "cannot be read"});
+}
+
+TEST_F(RunFolderTest, RowsWithoutAConfigurationAreRefused) {
+  finish(1);
+  fs::remove(file("config.yaml"));
+  expectRefused({"trials.csv but no config.yaml"});
+}
+
+TEST_F(RunFolderTest, NoFolderIsRefused) {
+  configuration_.experiment.runs = "";
+  expectRefused({"no folder"});
+}
+
+TEST_F(RunFolderTest, AFolderThatCannotBeMadeOrWrittenIsNamed) {
+  writeText(scratch_.file("plain_file"), "");
+  // Below /proc nobody makes files, not even root.
+  for (const std::string& path : {scratch_.file("plain_file"), scratch_.file("plain_file/run"),
+                                  std::string("/proc/ddm"), std::string("/proc/self")}) {
+    configuration_.experiment.runs = path;
+    expectRefused({"cannot", path});
+  }
+}
+
+TEST_F(RunFolderTest, FilesAreReplacedAsAWhole) {
+  RunFolder folder(configuration_);
+  folder.finishTrial(toyRow(0));
+  std::ifstream reader(file("trials.csv"));  // begins to read before the next row is written
+  folder.finishTrial(toyRow(1));
+  std::ostringstream seen;
+  seen << reader.rdbuf();
+  EXPECT_EQ(seen.str(), formatTrialsCsv({toyRow(0)}));
+  EXPECT_EQ(textOf(file("trials.csv")), formatTrialsCsv({toyRow(0), toyRow(1)}));
+}
+
+TEST_F(RunFolderTest, NothingButTheFilesOfTheContractIsLeft) {
+  {
+    RunFolder folder(configuration_);
+    testing::ObedientWorld world;
+    world.state = Eigen::Vector2d::Zero();
+    TrialRequest request;
+    request.num_steps = 2;
+    const TrialOutcome outcome = world.runTrial(request, [](double) {});
+    folder.writeTrial(0, outcome);
+    folder.writeModel(0, "model");
+    folder.writeEvaluation(0, outcome);
+    folder.finishTrial(toyRow(0));
+    folder.writeSummary(1.0);
+  }
+  std::vector<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(scratch_.file("run"))) {
+    if (fs::is_regular_file(entry)) {
+      names.push_back(fs::relative(entry.path(), scratch_.file("run")).string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{".lock", "config.yaml", "evaluation_000/torques.csv",
+                                             "evaluation_000/trajectory.csv", "summary.yaml",
+                                             "trial_000/model.ddm", "trial_000/torques.csv",
+                                             "trials.csv"}));
+}
+
+TEST_F(RunFolderTest, TorquesAreWrittenWith17Digits) {
+  RunFolder folder(configuration_);
+  TrialOutcome outcome;
+  outcome.torques = {Eigen::VectorXd::Constant(1, 0.1), Eigen::VectorXd::Constant(1, -6.0)};
+  outcome.exploratory = {true, false};
+  folder.writeTrial(3, outcome);
+  EXPECT_EQ(textOf(file("trial_003/torques.csv")),
+            "step,torque_nm,exploratory\n0,0.10000000000000001,1\n1,-6,0\n");
+}
+
+TEST_F(RunFolderTest, TheVerdictOfAnEarlierCallIsRemovedAtTheStart) {
+  {
+    RunFolder folder(configuration_);
+    folder.finishTrial(toyRow(0));
+    writeText(folder.bagPath(0), "a bag");
+    folder.writeSummary(1.0);
+  }
+  ASSERT_TRUE(fs::exists(file("summary.yaml")));
+  { const RunFolder folder(configuration_); }
+  EXPECT_FALSE(fs::exists(file("summary.yaml")));
+}
+
+TEST_F(RunFolderTest, TheSummaryHoldsTheVerdict) {
+  RunFolder folder(configuration_);
+  for (int trial = 0; trial < 3; ++trial) folder.finishTrial(toyRow(trial));
+  folder.writeSummary(2.5);
+  const YAML::Node summary = YAML::LoadFile(file("summary.yaml"));
+  EXPECT_TRUE(summary["finished"].as<bool>());
+  EXPECT_EQ(summary["trials"].as<int>(), 2);
+  EXPECT_EQ(summary["seed"].as<int>(), 7);
+  EXPECT_EQ(summary["success"].as<std::vector<int>>(), (std::vector<int>{0, 1, 0}));
+  EXPECT_DOUBLE_EQ(summary["mean_success"].as<double>(), 1.0 / 3.0);
+  EXPECT_EQ(summary["wall_s"].as<double>(), 2.5);
+}
+
+TEST_F(RunFolderTest, TheSummaryClaimsNoSuccessThatIsNotKnown) {
+  RunFolder folder(configuration_);
+  TrialRow row = toyRow(0);
+  row.evaluation = Evaluation();
+  folder.finishTrial(row);
+  folder.writeSummary(1.0);
+  const YAML::Node summary = YAML::LoadFile(file("summary.yaml"));
+  EXPECT_TRUE(summary["finished"].as<bool>());
+  EXPECT_FALSE(summary["success"].IsDefined());
+  EXPECT_FALSE(summary["mean_success"].IsDefined());
+}
+
+}  // namespace
+}  // namespace ddm

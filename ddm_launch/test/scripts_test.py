@@ -1,0 +1,186 @@
+#!/usr/bin/python3
+# demo.sh, test.sh and what they share: what they refuse, with which words, and that they do nothing twice.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import shlex
+import socket
+import subprocess
+import tempfile
+import unittest
+
+import rosunit
+
+SCRIPTS = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "scripts"))
+CHECKOUT = os.path.dirname(os.path.dirname(SCRIPTS))
+
+
+class ScriptsTest(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = os.path.realpath(scratch.name)
+        self.workspace = os.path.join(self.folder, "ws")
+
+    def call(self, *command):
+        """Returns (exit code, stdout and stderr)."""
+        environment = dict(os.environ, DDM_WS=self.workspace)
+        done = subprocess.run(command, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, universal_newlines=True)
+        return done.returncode, done.stdout
+
+    def callFunction(self, code, script="workspace.sh"):
+        """Runs bash code after sourcing a script, as strictly as the scripts run themselves."""
+        path = shlex.quote(os.path.join(SCRIPTS, script))
+        return self.call("/bin/bash", "-c", "set -euo pipefail; . %s; %s" % (path, code))
+
+    def write(self, name, text):
+        path = os.path.join(self.folder, name)
+        with open(path, "w") as stream:
+            stream.write(text)
+        return path
+
+    def test_debian_12_is_accepted(self):
+        release = self.write("os-release", 'ID=debian\nVERSION_ID="12"\nPRETTY_NAME="Debian 12"\n')
+        self.assertEqual(self.callFunction("check_system " + release), (0, "System: Debian 12\n"))
+
+    def test_another_system_is_refused_with_a_remedy(self):
+        for text in ('ID=debian\nVERSION_ID="11"\nPRETTY_NAME="It"\n', "ID=debian\nPRETTY_NAME=It\n",
+                     'ID=ubuntu\nVERSION_ID="22.04"\nPRETTY_NAME="It"\n'):
+            code, output = self.callFunction("check_system " + self.write("os-release", text))
+            self.assertEqual(code, 1)
+            self.assertIn("this is It", output)
+            self.assertIn("No other system has been tried", output)
+            self.assertIn("docker run", output)
+
+    def test_ubuntu_with_noetic_is_told_what_to_try(self):
+        release = self.write("os-release", 'ID=ubuntu\nVERSION_ID="20.04"\nPRETTY_NAME="It"\n')
+        code, output = self.callFunction("check_system " + release)
+        self.assertEqual(code, 1)
+        self.assertIn("rosdep install", output)
+
+    def test_a_system_without_a_name_is_refused(self):
+        self.assertIn("an unknown system", self.callFunction("check_system /no/such/file")[1])
+
+    def test_only_packages_that_are_not_installed_are_missing(self):
+        self.assertEqual(self.callFunction("missing_packages bash no-such-package coreutils"),
+                         (0, "no-such-package\n"))
+
+    def test_nothing_is_installed_when_nothing_is_missing(self):
+        code, output = self.callFunction("as_root() { echo CALLED; }; install_packages bash coreutils")
+        self.assertEqual((code, output), (0, "Packages: all 2 installed\n"))
+
+    def test_missing_packages_without_root_or_sudo_are_named(self):
+        code, output = self.callFunction("id() { echo 1000; }; missing_packages() { echo cmake; }; PATH=/nonexistent; "
+                                         "install_packages cmake")
+        self.assertEqual(code, 1)
+        self.assertIn("to install packages needs root, and there is no sudo", output)
+        self.assertIn("install -y --no-install-recommends cmake", output)
+
+    def test_a_system_that_knows_localhost_is_left_alone(self):
+        self.assertEqual(self.callFunction("as_root() { echo CALLED; }; getent() { true; }; ensure_localhost_resolves"),
+                         (0, ""))
+
+    def test_a_system_that_does_not_know_localhost_is_taught(self):
+        code, output = self.callFunction("as_root() { echo CALLED \"$@\"; }; getent() { false; }; "
+                                         "ensure_localhost_resolves")
+        self.assertEqual(code, 0)
+        self.assertIn("/etc/hosts", output.split("CALLED")[1])
+
+    def test_the_workspace_links_this_checkout_and_may_exist(self):
+        for _ in range(2):
+            self.assertEqual(self.callFunction("make_workspace"), (0, ""))
+            self.assertEqual(os.path.realpath(os.path.join(self.workspace, "src", "ddm")), CHECKOUT)
+
+    def test_another_folder_in_the_place_of_the_link_is_refused(self):
+        os.makedirs(os.path.join(self.workspace, "src", "ddm"))
+        code, output = self.callFunction("make_workspace")
+        self.assertEqual(code, 1)
+        self.assertIn("src/ddm exists and is not this checkout", output)
+
+    def test_a_link_to_another_checkout_is_refused(self):
+        os.makedirs(os.path.join(self.workspace, "src"))
+        os.symlink("/no/other/checkout", os.path.join(self.workspace, "src", "ddm"))
+        code, output = self.callFunction("make_workspace")
+        self.assertEqual(code, 1)
+        self.assertIn("/no/other/checkout", output)
+
+    def test_a_checkout_inside_the_source_space_is_not_linked_again(self):
+        checkout = os.path.join(self.workspace, "src", "cloned_here")
+        os.makedirs(checkout)
+        self.assertEqual(self.callFunction("checkout=%s; make_workspace" % checkout), (0, ""))
+        self.assertEqual(os.listdir(os.path.join(self.workspace, "src")), ["cloned_here"])
+
+    def test_a_workspace_inside_the_checkout_is_refused(self):
+        code, output = self.callFunction("DDM_WS=$checkout/ws; make_workspace")
+        self.assertEqual(code, 1)
+        self.assertIn("lies inside the checkout", output)
+
+    def test_a_workspace_with_a_space_in_its_path_is_refused(self):
+        code, output = self.callFunction("DDM_WS='/tmp/my ws'; make_workspace")
+        self.assertEqual(code, 1)
+        self.assertIn("must not have a space", output)
+
+    def test_unknown_arguments_are_refused_before_anything_is_done(self):
+        for script in ("demo.sh", "test.sh"):
+            code, output = self.call("/bin/bash", os.path.join(SCRIPTS, script), "--nonsense")
+            self.assertEqual(code, 2)
+            self.assertIn("unknown argument '--nonsense'", output)
+            self.assertFalse(os.path.exists(self.workspace))
+
+    def test_help_is_printed_and_nothing_is_done(self):
+        for script in ("demo.sh", "test.sh"):
+            code, output = self.call("/bin/bash", os.path.join(SCRIPTS, script), "--help")
+            self.assertEqual(code, 0)
+            self.assertTrue(output.startswith("usage: bash " + script))
+            self.assertFalse(os.path.exists(self.workspace))
+
+    def test_a_number_of_trials_that_is_none_is_refused(self):
+        for value in ("0", "-3", "many", ""):
+            code, output = self.call("/bin/bash", os.path.join(SCRIPTS, "demo.sh"), "--trials", value)
+            self.assertEqual(code, 2)
+            self.assertIn("--trials must be a whole number >= 1, got '%s'" % value, output)
+
+    def test_another_port_is_taken_when_the_masters_port_is_in_use(self):
+        with socket.socket() as holder:
+            try:
+                holder.bind(("", 11311))
+                holder.listen(1)
+            except OSError:
+                pass  # somebody's master has it: just as good
+            code, output = self.callFunction("free_master_port", "demo.sh")
+        self.assertEqual(code, 0)
+        self.assertNotEqual(int(output), 11311)
+        with socket.socket() as probe:
+            probe.bind(("", int(output)))
+
+    def checkSummary(self, text):
+        started = self.write("started", "")
+        os.utime(started, (1e9, 1e9))
+        if text is not None:
+            self.write("summary.yaml", text)
+        return self.callFunction("check_summary %s %s" % (self.folder, started), "demo.sh")
+
+    def test_a_finished_experiment_is_a_success(self):
+        self.assertEqual(self.checkSummary("finished: true\ntrials: 15\nsuccess: [0, 1]\n"), (0, ""))
+
+    def test_an_experiment_that_did_not_finish_is_a_failure(self):
+        for text in ("finished: false\n", "trials: 3\n", "no map", ""):
+            code, output = self.checkSummary(text)
+            self.assertEqual(code, 1)
+            self.assertIn("says that the experiment did not finish", output)
+
+    def test_an_experiment_without_summary_is_a_failure(self):
+        code, output = self.checkSummary(None)
+        self.assertEqual(code, 1)
+        self.assertIn("wrote no", output)
+
+    def test_the_summary_of_an_earlier_call_is_no_success(self):
+        os.utime(self.write("summary.yaml", "finished: true\n"), (1e9, 1e9))
+        started = self.write("started", "")
+        code, output = self.callFunction("check_summary %s %s" % (self.folder, started), "demo.sh")
+        self.assertEqual(code, 1)
+        self.assertIn("before it wrote a new", output)
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "scripts_test", ScriptsTest)

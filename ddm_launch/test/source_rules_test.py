@@ -1,0 +1,91 @@
+#!/usr/bin/python3
+# Rules that every source file keeps: formatting, package manifests, script syntax, licence line.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import subprocess
+import tempfile
+import unittest
+
+import rosunit
+
+CHECKOUT = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+PACKAGES = [os.path.join(CHECKOUT, name) for name in sorted(os.listdir(CHECKOUT))
+            if os.path.isfile(os.path.join(CHECKOUT, name, "package.xml"))]
+
+
+def first_lines(path, count):
+    with open(path, errors="replace") as stream:
+        return [line for _, line in zip(range(count), stream)]
+
+
+def source_files():
+    """All files of our packages, and the CI script."""
+    files = [os.path.join(CHECKOUT, ".ci", "run")]
+    for package in PACKAGES:
+        for folder, folders, names in os.walk(package):
+            folders[:] = [name for name in folders if name != "__pycache__"]
+            files += [os.path.join(folder, name) for name in names]
+    return sorted(files)
+
+
+def scripts(interpreter):
+    """Source files that this interpreter runs, told by suffix or first line."""
+    suffix = {"python3": ".py", "bash": ".sh"}[interpreter]
+    return [path for path in source_files() if path.endswith(suffix) or (
+        "." not in os.path.basename(path)
+        and "".join(first_lines(path, 1)).startswith("#!") and interpreter in first_lines(path, 1)[0])]
+
+
+CPP_FILES = [path for path in source_files() if path.endswith((".h", ".cpp"))]
+
+
+class SourceRulesTest(unittest.TestCase):
+    maxDiff = None
+
+    def assertRuns(self, *command):
+        done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              universal_newlines=True)
+        self.assertEqual(done.returncode, 0, "%s\n%s" % (" ".join(command[:4]), done.stdout))
+
+    def test_all_packages_and_kinds_of_files_are_seen(self):
+        names = [os.path.basename(package) for package in PACKAGES]
+        self.assertTrue({"ddm_msgs", "ddm_sim", "ddm_launch"} <= set(names), names)
+        self.assertGreater(len(CPP_FILES), 10)
+        self.assertIn(os.path.realpath(__file__), scripts("python3"))
+        self.assertIn(os.path.join(CHECKOUT, ".ci", "run"), scripts("bash"))
+
+    def test_cpp_files_are_formatted_by_clang_format(self):
+        self.assertRuns("clang-format", "--dry-run", "-Werror", *CPP_FILES)
+
+    def test_catkin_lint_finds_nothing(self):
+        with tempfile.TemporaryDirectory() as no_rosdep:  # the verdict must not depend on a rosdep database
+            self.assertRuns("catkin_lint", "--strict", "--offline", "--rosdep-cache-path", no_rosdep, *PACKAGES)
+
+    def test_shell_scripts_parse(self):
+        for path in scripts("bash"):
+            self.assertRuns("bash", "-n", path)
+
+    def test_python_scripts_parse(self):
+        for path in scripts("python3"):
+            with open(path) as stream:
+                compile(stream.read(), path, "exec")
+
+    def test_python_scripts_name_the_interpreter_that_has_ros(self):
+        wrong = [path for path in scripts("python3") if os.access(path, os.X_OK)
+                 and first_lines(path, 1) != ["#!/usr/bin/python3\n"]]
+        self.assertEqual(wrong, [])
+
+    def test_each_source_file_has_a_first_line_that_says_what_it_is_and_a_licence_line(self):
+        wrong = []
+        for path in CPP_FILES + scripts("python3") + scripts("bash"):
+            lines = [line for line in first_lines(path, 3) if not line.startswith("#!")]
+            if len(lines) < 2 or len(lines[0]) < 12 or "SPDX-License-Identifier: BSD-3-Clause" not in lines[1]:
+                wrong.append(os.path.relpath(path, CHECKOUT))
+        self.assertEqual(wrong, [])
+
+    def test_wstool_accepts_the_rosinstall_file(self):
+        self.assertRuns("wstool", "info", "-t", CHECKOUT)
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "source_rules_test", SourceRulesTest)

@@ -1,0 +1,137 @@
+#!/usr/bin/python3
+# The count of test cases that test.sh closes with, against result files as the test runners write them.
+# SPDX-License-Identifier: BSD-3-Clause
+import contextlib
+import importlib.util
+import io
+import json
+import os
+import tempfile
+import unittest
+
+import rosunit
+
+SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "scripts", "test_report.py")
+spec = importlib.util.spec_from_file_location("test_report", SCRIPT)
+test_report = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(test_report)
+
+PASS = '<testcase classname="Mlp" name="%s" status="run"/>'
+FAIL = ('<testcase classname="Mlp" name="%s" status="run">'
+        '<failure message="m">expected 1 &amp; got 2</failure></testcase>')
+SKIP = '<testcase classname="Mlp" name="%s" status="run"><skipped message="no"/></testcase>'
+WRAPPER = '<testcase classname="rostest.runner.RosTest" name="test%s"/>'
+
+
+class TestReportTest(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = scratch.name
+        self.declared = {}
+
+    def declare(self, file_name, end="run", build="build"):
+        """A test that ctest ran, and how it ended ("run" or "fail")."""
+        self.declared.setdefault(build, []).append((file_name, end))
+
+    def write(self, file_name, cases, failures=0, build="build"):
+        folder = os.path.join(self.folder, build, "test_results", "ddm_model")
+        os.makedirs(folder, exist_ok=True)
+        with open(os.path.join(folder, file_name), "w") as stream:
+            stream.write('<testsuite failures="%d" errors="0">%s</testsuite>' % (failures, "".join(cases)))
+
+    def report(self):
+        """Returns (exit code, lines printed)."""
+        builds = []
+        for build, tests in self.declared.items():
+            folder = os.path.join(self.folder, build)
+            os.makedirs(folder, exist_ok=True)
+            builds.append(folder)
+            names = ["_ctest_" + file_name for file_name, _ in tests]
+            with open(os.path.join(folder, "tests_declared.json"), "w") as stream:
+                results = os.path.join(folder, "test_results", "ddm_model")
+                json.dump({"tests": [{"name": name, "command": ["env.sh", os.path.join(results, file_name)]}
+                                     for name, (file_name, _) in zip(names, tests)]}, stream)
+            with open(os.path.join(folder, "tests_run.xml"), "w") as stream:
+                stream.write("<testsuite>%s</testsuite>" % "".join(
+                    '<testcase name="%s" status="%s"/>' % (name, end) for name, (_, end) in zip(names, tests)))
+        with contextlib.redirect_stdout(io.StringIO()) as output:
+            code = test_report.main(builds)
+        return code, output.getvalue().splitlines()
+
+    def test_all_passed_returns_0_and_closes_with_the_count(self):
+        self.declare("gtest-a.xml")
+        self.write("gtest-a.xml", [PASS % "One", PASS % "Two"])
+        self.assertEqual(self.report(), (0, ["2 passed, 0 failed"]))
+
+    def test_a_failure_is_named_with_its_message(self):
+        self.declare("gtest-a.xml", "fail")
+        self.write("gtest-a.xml", [PASS % "One", FAIL % "Two"], failures=1)
+        code, lines = self.report()
+        self.assertEqual((code, lines[-1]), (1, "1 passed, 1 failed"))
+        self.assertIn("Mlp.Two", lines[0])
+        self.assertIn("expected 1 & got 2", lines[1])
+
+    def test_a_case_of_two_builds_counts_once_and_must_pass_in_both(self):
+        for build, second in (("build", PASS), ("debug", FAIL)):
+            self.declare("gtest-a.xml", "run" if second == PASS else "fail", build)
+            self.write("gtest-a.xml", [PASS % "One", second % "Two"], failures=int(second == FAIL), build=build)
+        self.assertEqual(self.report()[1][-1], "1 passed, 1 failed")
+
+    def test_the_runner_of_a_rostest_is_no_case_of_its_own(self):
+        self.declare("rostest-loop.xml")
+        self.write("rostest-loop.xml", [WRAPPER % "loop"])
+        self.write("rosunit-loop.xml", [PASS % "One"])
+        self.assertEqual(self.report(), (0, ["1 passed, 0 failed"]))
+
+    def test_a_failing_rostest_counts_only_its_failing_cases(self):
+        self.declare("rostest-loop.xml", "fail")
+        self.write("rostest-loop.xml", [WRAPPER % "loop"])
+        self.write("rosunit-loop.xml", [PASS % "One", FAIL % "Two"], failures=1)
+        self.assertEqual(self.report()[1][-1], "1 passed, 1 failed")
+
+    def test_a_program_that_leaves_no_result_fails(self):
+        self.declare("gtest-a.xml")
+        self.declare("gtest-crash.xml", "fail")
+        self.write("gtest-a.xml", [PASS % "One"])
+        self.write("MISSING-gtest-crash.xml", [FAIL % "test_ran"], failures=1)
+        code, lines = self.report()
+        self.assertEqual((code, lines[-1]), (1, "1 passed, 1 failed"))
+        self.assertIn("gtest-crash.xml", lines[0])
+
+    def test_a_program_that_fails_after_its_cases_passed_fails(self):
+        self.declare("gtest-a.xml", "fail")
+        self.write("gtest-a.xml", [PASS % "One"])
+        code, lines = self.report()
+        self.assertEqual((code, lines[-1]), (1, "1 passed, 1 failed"))
+        self.assertIn("although no case did", lines[1])
+
+    def test_failures_that_only_the_sum_knows_fail(self):
+        self.declare("rosunit-a.xml", "fail")
+        self.write("rosunit-a.xml", [PASS % "One"], failures=3)
+        self.assertEqual(self.report()[1][-1], "1 passed, 1 failed")
+
+    def test_a_file_without_cases_fails(self):
+        self.declare("gtest-a.xml")
+        self.write("gtest-a.xml", [])
+        self.assertEqual(self.report()[1][-1], "0 passed, 1 failed")
+
+    def test_a_file_that_is_cut_short_fails(self):
+        self.declare("gtest-a.xml")
+        self.write("gtest-a.xml", ["<testcase"])
+        self.assertEqual(self.report()[1][-1], "0 passed, 1 failed")
+
+    def test_skipped_cases_are_named_and_count_neither_way(self):
+        self.declare("gtest-a.xml")
+        self.write("gtest-a.xml", [PASS % "One", SKIP % "Two"])
+        code, lines = self.report()
+        self.assertEqual((code, lines[-1]), (0, "1 passed, 0 failed"))
+        self.assertIn("Mlp.Two", lines[0])
+
+    def test_a_build_that_declares_no_test_fails(self):
+        self.declared["build"] = []
+        self.assertEqual(self.report()[0], 1)
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "test_report_test", TestReportTest)

@@ -1,0 +1,102 @@
+// What the tests of an experiment share: a small configuration, rows, and a world that obeys.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "configuration.h"
+#include "run_folder.h"
+#include "world.h"
+
+namespace ddm {
+namespace testing {
+
+constexpr int kToySteps = 30;
+
+/// @param runs  folder for the results
+inline Configuration toyConfiguration(const std::string& runs) {
+  Configuration all;
+  all.experiment.runs = runs;
+  all.experiment.seed = 7;
+  all.experiment.trials = 2;
+  all.trial.num_steps = kToySteps;
+  all.model.model.pca_dim = 10;
+  return all;
+}
+
+inline TrialRow toyRow(int trial, int seed = 7) {
+  TrialRow row;
+  row.seed = seed;
+  row.trial = trial;
+  row.frames = static_cast<std::uint32_t>(kToySteps * (trial + 1));
+  row.evaluation.known = true;
+  row.evaluation.success = trial % 2 == 1;
+  row.evaluation.final_error_deg = 0.1 * (trial + 1);
+  row.v_r = 1.0 / 3.0;
+  row.v_p = 1e-7;
+  row.train_s = 0.125;
+  row.train_evaluations = 26;
+  row.plan_ms_median = 0.25;
+  row.plan_ms_p99 = 1.5;
+  return row;
+}
+
+inline std::string textOf(const std::string& path) {
+  const std::ifstream in(path);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+inline void writeText(const std::string& path, const std::string& text) {
+  std::ofstream(path) << text;
+}
+
+/// Notes what is asked of it. Every greedy run ends where `state` says.
+class ObedientWorld : public World {
+ public:
+  TrialOutcome runTrial(const TrialRequest& request, const PhaseCallback& progress) override {
+    calls.push_back((request.id.evaluation ? "evaluate " : "run ") +
+                    std::to_string(request.id.trial));
+    requests.push_back(request);
+    if (calls.size() == fails_at) throw std::runtime_error("the camera fell down");
+    if (!request.bag.empty()) writeText(request.bag, "a bag");
+    progress(1.0);
+    TrialOutcome outcome;
+    for (int step = 0; step < request.num_steps; ++step) {
+      outcome.torques.push_back(Eigen::VectorXd::Constant(1, 0.1 * step));
+      outcome.exploratory.push_back(request.epsilon > 0.0);
+      outcome.solve_times.push_back(1e-3 * (step + 1));
+      if (state.size() == 0) continue;
+      outcome.times.push_back(0.2 * step);
+      outcome.states.push_back(state);
+    }
+    return outcome;
+  }
+
+  TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,
+                        const PhaseCallback& progress) override {
+    calls.push_back("train " + std::to_string(id.trial));
+    bags_of_training.push_back(bags);
+    if (calls.size() == fails_at) throw std::runtime_error("the numbers ran away");
+    progress(0.5);
+    TrainingOutcome outcome;
+    outcome.model = "model " + std::to_string(id.trial);
+    outcome.frames = static_cast<std::uint32_t>(kToySteps * bags.size());
+    outcome.seconds = 2.0;
+    return outcome;
+  }
+
+  size_t fails_at = 0;    ///< number of the call that fails, from 1; 0: none
+  Eigen::VectorXd state;  ///< empty: no ground truth
+  std::vector<std::string> calls;
+  std::vector<TrialRequest> requests;
+  std::vector<std::vector<std::string>> bags_of_training;
+};
+
+}  // namespace testing
+}  // namespace ddm

@@ -1,0 +1,109 @@
+// Tests of trials.csv: what is written is read back, what is damaged is refused.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "trials_csv.h"
+
+#include <ddm_model/testing/expect_error.h>
+#include <gtest/gtest.h>
+
+#include <boost/algorithm/string.hpp>
+
+#include "toy_run.h"
+
+namespace ddm {
+namespace {
+
+using testing::throwsNaming;
+using testing::toyRow;
+
+std::string header() { return formatTrialsCsv({}); }
+
+/// The row of trial 0 with another text in one of its columns, counted from 0.
+std::string withColumn(size_t index, const std::string& value) {
+  const std::string text = formatTrialsCsv({toyRow(0)});
+  std::string row = text.substr(header().size(), text.size() - header().size() - 1);
+  std::vector<std::string> columns;
+  boost::split(columns, row, boost::is_any_of(","));
+  columns[index] = value;
+  return header() + boost::join(columns, ",") + "\n";
+}
+
+TEST(TrialsCsv, HasTheColumnsOfTheContract) {
+  EXPECT_EQ(header(),
+            "seed,trial,frames,success,success_strict,final_error_deg,v_r,v_p,train_s,"
+            "train_evaluations,plan_ms_median,plan_ms_p99\n");
+}
+
+TEST(TrialsCsv, RowsAreReadBackAsTheyWere) {
+  const std::vector<TrialRow> rows = {toyRow(0), toyRow(1), toyRow(2)};
+  const std::vector<TrialRow> read = parseTrialsCsv(formatTrialsCsv(rows), "trials.csv");
+  ASSERT_EQ(read.size(), rows.size());
+  for (size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(read[i].seed, rows[i].seed);
+    EXPECT_EQ(read[i].trial, rows[i].trial);
+    EXPECT_EQ(read[i].frames, rows[i].frames);
+    EXPECT_EQ(read[i].evaluation.known, rows[i].evaluation.known);
+    EXPECT_EQ(read[i].evaluation.success, rows[i].evaluation.success);
+    EXPECT_EQ(read[i].evaluation.success_strict, rows[i].evaluation.success_strict);
+    EXPECT_EQ(read[i].evaluation.final_error_deg, rows[i].evaluation.final_error_deg);
+    EXPECT_EQ(read[i].v_r, rows[i].v_r);
+    EXPECT_EQ(read[i].v_p, rows[i].v_p);
+    EXPECT_EQ(read[i].train_s, rows[i].train_s);
+    EXPECT_EQ(read[i].train_evaluations, rows[i].train_evaluations);
+    EXPECT_EQ(read[i].plan_ms_median, rows[i].plan_ms_median);
+    EXPECT_EQ(read[i].plan_ms_p99, rows[i].plan_ms_p99);
+  }
+}
+
+TEST(TrialsCsv, AFileThatIsReadAndWrittenStaysTheSame) {
+  const std::string text = formatTrialsCsv({toyRow(0), toyRow(1)});
+  EXPECT_EQ(formatTrialsCsv(parseTrialsCsv(text, "trials.csv")), text);
+}
+
+TEST(TrialsCsv, SuccessIsEmptyWhereItIsNotKnown) {
+  TrialRow row = toyRow(0);
+  row.evaluation = Evaluation();
+  const std::string text = formatTrialsCsv({row});
+  EXPECT_NE(text.find("7,0,30,,,,0.333"), std::string::npos) << text;
+  EXPECT_FALSE(parseTrialsCsv(text, "trials.csv")[0].evaluation.known);
+  EXPECT_EQ(formatTrialsCsv(parseTrialsCsv(text, "trials.csv")), text);
+}
+
+TEST(TrialsCsv, AnotherHeaderIsRefused) {
+  for (const std::string text : {"", "seed,trial\n", "\n", "7,0,30,1,1,0.1,1,1,1,26,1,1\n"}) {
+    EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { parseTrialsCsv(text, "DIR/trials.csv"); },
+                                                 {"DIR/trials.csv, line 1", "seed,trial,frames"}))
+        << text;
+  }
+}
+
+TEST(TrialsCsv, ADamagedValueIsRefusedWithItsLine) {
+  const std::vector<std::pair<size_t, std::string>> faults = {
+      {0, "x"},   {0, ""},   {1, "1.5"}, {2, "-1"},      {2, ""},    {3, "2"},
+      {3, "yes"}, {4, ""},   {5, "far"}, {5, ""},        {6, "nan"}, {6, ""},
+      {7, "inf"}, {8, "1s"}, {9, "2.5"}, {10, "0.2 ms"}, {11, ""},   {11, "-inf"}};
+  for (const auto& fault : faults) {
+    EXPECT_TRUE(throwsNaming<std::runtime_error>(
+        [&] { parseTrialsCsv(withColumn(fault.first, fault.second), "DIR/trials.csv"); },
+        {"DIR/trials.csv, line 2"}))
+        << "column " << fault.first << ": '" << fault.second << "'";
+  }
+}
+
+TEST(TrialsCsv, ALineOfAnotherLengthIsRefusedWithItsNumber) {
+  const std::string good = formatTrialsCsv({toyRow(0)});
+  for (const std::string line : {"7,1,60\n", "\n", "7,1,60,1,1,0.1,1,1,1,26,1,1,1\n"}) {
+    EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { parseTrialsCsv(good + line, "trials.csv"); },
+                                                 {"trials.csv, line 3", "12 are due"}))
+        << line;
+  }
+}
+
+TEST(TrialsCsv, AFileThatIsCutShortIsRefused) {
+  const std::string text = formatTrialsCsv({toyRow(0), toyRow(1)});
+  const std::string cut = text.substr(0, text.find("0.25", text.rfind("7,1,")));
+  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { parseTrialsCsv(cut, "trials.csv"); },
+                                               {"trials.csv, line 3"}));
+}
+
+}  // namespace
+}  // namespace ddm
