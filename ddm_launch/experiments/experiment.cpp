@@ -82,6 +82,10 @@ void runExperiment(const Configuration& configuration, World* world, RunFolder* 
                    Progress* progress) {
   const auto start = std::chrono::steady_clock::now();
   Loop loop(configuration, world, folder, progress);
+  const ExperimentOptions& options = configuration.experiment;
+  progress->note("preset " + options.preset + ", plant " + options.plant + ", seed " +
+                 std::to_string(options.seed) + ", " + std::to_string(options.trials) +
+                 " trials after a random one");
   const int num_finished = static_cast<int>(folder->rows().size());
   const bool all_done = num_finished > configuration.experiment.trials;
   if (num_finished > 0) {

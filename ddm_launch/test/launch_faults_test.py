@@ -50,9 +50,6 @@ class LaunchFaultsTest(unittest.TestCase):
     def test_a_negative_seed_is_refused(self):
         self.assertRefused(["experiment/seed must be >= 0, got -1"], "preset:=debug", "seed:=-1")
 
-    def test_trials_that_are_no_number_are_refused(self):
-        self.assertRefused(["experiment/trials", "many"], "preset:=debug", "trials:=many")
-
     def test_a_misspelt_key_of_the_simulator_is_named(self):
         self.assertConfigRefused("sim: {wacthdog: 1.0}\n", ["sim/wacthdog", "did you mean watchdog?"])
 
@@ -61,10 +58,6 @@ class LaunchFaultsTest(unittest.TestCase):
 
     def test_a_misspelt_key_of_the_recorder_is_named(self):
         self.assertConfigRefused("recorder: {timeot: 1.0}\n", ["recorder/timeot", "timeout"])
-
-    def test_all_problems_of_a_configuration_are_named_at_once(self):
-        self.assertConfigRefused("evaluation: {settled_steps: 0}\ntrial: {num_step: 3}\n",
-                                 ["evaluation/settled_steps", "trial/num_step"])
 
 
 if __name__ == "__main__":

@@ -36,8 +36,8 @@ class Process:
         self._text = ""
         self._ended = False
         self._process = subprocess.Popen(
-            [str(word) for word in command], env=environment or line_by_line(), cwd=folder, stdin=subprocess.DEVNULL, stdout=output,
-            stderr=subprocess.STDOUT)
+            [str(word) for word in command], env=environment or line_by_line(), cwd=folder, stdin=subprocess.DEVNULL,
+            stdout=output, stderr=subprocess.STDOUT)
         if output == subprocess.PIPE:
             self._reader = threading.Thread(target=self._read, args=(self._process.stdout,), daemon=True)
             self._reader.start()

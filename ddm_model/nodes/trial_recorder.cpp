@@ -39,7 +39,8 @@ TrialRecorder::TrialRecorder(ros::NodeHandle nh, const BagOptions& bag,
 template <class Message>
 void TrialRecorder::record(const Message& message) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (bag_ == nullptr || !error_.empty() || message.header.stamp <= after_) return;
+  if (bag_ == nullptr || !error_.empty()) return;
+  if (!after_.isZero() && message.header.stamp <= after_) return;
   try {
     writeGoal(message.header.stamp);
     bag_->write(message);

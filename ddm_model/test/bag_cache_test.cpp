@@ -55,6 +55,11 @@ TEST_F(BagCacheTest, ReadsABagOnlyOnceAndAgainWhenTheFileChanges) {
   EXPECT_EQ(cache_.read({path}).numFrames(), 9);
 }
 
+TEST_F(BagCacheTest, RefusesABagThatIsGivenTwice) {
+  const std::string a = write("a.bag", toyTrial(7, 1)), b = write("b.bag", toyTrial(5, 2));
+  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { cache_.read({a, b, a}); }, {a, "twice"}));
+}
+
 TEST_F(BagCacheTest, AChangedBagDoesNotMakeItReadTheOthersAgain) {
   const std::string a = write("a.bag", toyTrial(7, 1)), b = write("b.bag", toyTrial(5, 2));
   const fs::file_time_type time = fs::last_write_time(a);

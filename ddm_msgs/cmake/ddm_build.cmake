@@ -15,7 +15,7 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 add_compile_options(-Wall -Wextra)
 if(DDM_NATIVE)
   # GCC 12 sees uninitialised values in its own AVX-512 header, where there are none.
-  add_compile_options(-march=native -Wno-maybe-uninitialized)
+  add_compile_options(-march=native -Wno-maybe-uninitialized -Wno-uninitialized)
 endif()
 if(DDM_WERROR)
   add_compile_options(-Werror)

@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <set>
 #include <stdexcept>
 
 namespace ddm {
@@ -33,7 +34,11 @@ DataSet BagCache::read(const std::vector<std::string>& paths) {
   const std::string camera = contentOf(paths.front()).camera;
   const int torque_dim = contentOf(paths.front()).data.torqueDim();
   DataSet data(image_size_, torque_dim);
+  std::set<std::string> seen;
   for (const std::string& path : paths) {
+    if (!seen.insert(path).second) {
+      throw std::runtime_error("bag " + path + " is given twice: it would count twice");
+    }
     const BagContent& content = contentOf(path);
     if (content.camera != camera || content.data.torqueDim() != torque_dim) {
       throw std::runtime_error("bag " + path + " (" + content.camera + ", " +

@@ -22,7 +22,7 @@ class BagCache {
 
   /// All bags as one data set, each a trial of its own, in the order given.
   /// @throws std::runtime_error as readBag() does, or if camera or number of torques differ between
-  ///         bags, or if there is no bag
+  ///         bags, or if there is no bag or one is given twice
   DataSet read(const std::vector<std::string>& paths);
 
  private:
