@@ -90,7 +90,6 @@ run_experiment() {
   roslaunch -p "$port" ddm_launch experiment.launch preset:=paper plant:=pendulum seed:=1 \
     trials:="$trials" runs:="$runs" rviz:=false || fail "roslaunch failed: see its lines above."
   check_summary "$runs" "$started"
-  echo "The experiment finished. (roslaunch reports the end of its main node in red, also when all is well.)"
 }
 
 draw_pictures() {
