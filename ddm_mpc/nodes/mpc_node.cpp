@@ -52,10 +52,7 @@ void MpcNode::onGoal() {
 
 void MpcNode::onPreempt() {
   if (goal_ == nullptr) return;
-  const ddm_msgs::RunTrialResult result =
-      trial_ != nullptr ? trial_->result() : ddm_msgs::RunTrialResult();
-  goal_.reset();
-  trial_.reset();
+  const ddm_msgs::RunTrialResult result = endTrial();
   // A new goal sets this flag too, and is accepted right after; then there is nothing left to end.
   if (server_.isActive() && !server_.isNewGoalAvailable()) server_.setPreempted(result);
 }
@@ -110,13 +107,11 @@ void MpcNode::answer(const sensor_msgs::Image& image) {
   feedback.step = trial_->result().num_steps;
   server_.publishFeedback(feedback);
   if (!trial_->done()) return;
-  const ddm_msgs::RunTrialResult result = trial_->result();
+  const ddm_msgs::RunTrialResult& so_far = trial_->result();
   ROS_INFO("trial %u%s: %u torques, %u exploratory, %u failed plans", goal_->trial,
-           goal_->evaluation != 0 ? " (evaluation)" : "", result.num_steps, result.num_exploratory,
-           result.num_failed_plans);
-  goal_.reset();
-  trial_.reset();
-  server_.setSucceeded(result);
+           goal_->evaluation != 0 ? " (evaluation)" : "", so_far.num_steps, so_far.num_exploratory,
+           so_far.num_failed_plans);
+  server_.setSucceeded(endTrial());
 }
 
 void MpcNode::publish(const std_msgs::Header& header, const Decision& decision) {
@@ -173,12 +168,19 @@ void MpcNode::onTick() {
   abort(reason.str());
 }
 
-void MpcNode::abort(const std::string& reason) {
-  ROS_ERROR_STREAM(reason);
+/// However a trial ends, an effort controller must not go on with its last torque.
+ddm_msgs::RunTrialResult MpcNode::endTrial() {
   const ddm_msgs::RunTrialResult result =
       trial_ != nullptr ? trial_->result() : ddm_msgs::RunTrialResult();
   goal_.reset();
   trial_.reset();
+  effort_pub_.publish(std_msgs::Float64());
+  return result;
+}
+
+void MpcNode::abort(const std::string& reason) {
+  ROS_ERROR_STREAM(reason);
+  const ddm_msgs::RunTrialResult result = endTrial();
   server_.setAborted(result, reason);
 }
 

@@ -37,6 +37,7 @@ class MpcNode {
   void publish(const std_msgs::Header& header, const Decision& decision);
   void publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torque, bool exploratory);
   void publishPlan(const ros::Time& stamp, const Plan& plan);
+  ddm_msgs::RunTrialResult endTrial();
   void abort(const std::string& reason);
 
   int image_size_;

@@ -125,7 +125,7 @@ TEST_F(MpcNodeTest, WaitsForTheModelOfTheGoalAndThenPlans) {
   show(4);
   expectEnd(State::SUCCEEDED);
   ASSERT_TRUE(
-      waitUntil([this] { return plan_.messages.size() == 4 && effort_.messages.size() == 4; }));
+      waitUntil([this] { return plan_.messages.size() == 4 && effort_.messages.size() == 5; }));
   for (std::size_t step = 0; step < 4; ++step) {
     const ddm_msgs::Plan& plan = plan_.messages[step];
     EXPECT_EQ(torque_.messages[step].header.stamp, stamps_[step]);
@@ -140,6 +140,7 @@ TEST_F(MpcNodeTest, WaitsForTheModelOfTheGoalAndThenPlans) {
     EXPECT_EQ(effort_.messages[step].data, torque_.messages[step].torque[0]);
     EXPECT_GT(plan.solve_time, 0.0);
   }
+  EXPECT_EQ(effort_.messages.back().data, 0.0);  // nobody drives the motor from here on
   EXPECT_EQ(action_.getResult()->solve_time.size(), 4U);
 }
 

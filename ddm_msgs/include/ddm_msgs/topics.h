@@ -14,7 +14,7 @@ constexpr char kGroundTruth[] =
 constexpr char kModel[] = "model";  ///< ddm_msgs/Model, latched
 constexpr char kPlan[] = "plan";    ///< ddm_msgs/Plan
 constexpr char kPredictionImage[] =
-    "prediction_image";  ///< sensor_msgs/Image: the plan's last frame, decoded
+    "prediction_image";  ///< sensor_msgs/Image: camera, reconstruction, prediction
 constexpr char kFeatureSpaceImage[] =
     "feature_space_image";  ///< sensor_msgs/Image: what the model thinks
 
