@@ -240,7 +240,10 @@ BagContent readBag(const std::string& path, int image_size, const BagOptions& op
     return pairFrames(readMessages(path, image_size, options), image_size);
   } catch (const rosbag::BagUnindexedException&) {
     throw std::runtime_error("bag " + path + ": was not closed; run `rosbag reindex` on it");
-  } catch (const std::exception& e) {  // rosbag and ros::serialization have exceptions of their own
+  } catch (const rosbag::BagException& e) {
+    throw std::runtime_error("bag " + path + ": " + e.what() +
+                             ": it is cut short, damaged or no bag; copy it again or leave it out");
+  } catch (const std::exception& e) {  // ros::serialization has exceptions of its own
     throw std::runtime_error("bag " + path + ": " + e.what());
   }
 }
