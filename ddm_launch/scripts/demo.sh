@@ -113,7 +113,7 @@ What to try next (in a new terminal, first: export PATH=/usr/bin:\$PATH; . $DDM_
   rosrun ddm_launch film_strip $runs --out /tmp/film_strip.png --gif /tmp/swing_up.gif
       the same swing-up as an animation
   roslaunch ddm_launch experiment.launch preset:=paper plant:=pendulum seed:=2 trials:=15 runs:=$DDM_WS/runs/seed_2 rviz:=true
-      another seed, with the camera, the predictions and the feature space on the screen (needs the package rviz)
+      another seed, with the camera, the predictions and the feature space on the screen
   bash $checkout/ddm_launch/scripts/test.sh
       runs every test
 TEXT

@@ -29,8 +29,8 @@ packages_to_run=(
   python3-rospy python3-std-msgs python3-sensor-msgs python3-actionlib python3-cv-bridge
   python3-roslaunch python3-rosbag python3-rostopic python3-rosnode python3-rosservice
   python3-rosparam python3-rosmsg rosbash rospack-tools
-  # figures
-  python3-matplotlib python3-numpy python3-pil python3-yaml
+  # what one sees: rviz and figures
+  rviz python3-matplotlib python3-numpy python3-pil python3-yaml
 )
 
 # What only the tests need: linters and the check of .rosinstall.
