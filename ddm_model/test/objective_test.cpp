@@ -8,7 +8,7 @@
 
 #include "ddm_model/testing/expect_error.h"
 #include "ddm_model/testing/gradient_check.h"
-#include "random_matrix.h"
+#include "ddm_model/testing/random_matrix.h"
 
 namespace ddm {
 namespace {

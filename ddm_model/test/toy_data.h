@@ -9,7 +9,7 @@
 #include "ddm_model/data_set.h"
 #include "ddm_model/ddm.h"
 #include "ddm_model/model_options.h"
-#include "random_matrix.h"
+#include "ddm_model/testing/random_matrix.h"
 
 namespace ddm {
 namespace testing {

@@ -4,24 +4,12 @@
 
 #include <ddm_model/ddm.h>
 #include <ddm_model/history.h>
+#include <ddm_model/testing/random_matrix.h>
 
 #include <Eigen/QR>
 #include <random>
 
 namespace ddm {
-namespace testing {
-
-/// Standard normal entries, the same for the same seed.
-inline Eigen::MatrixXd randomMatrix(Eigen::Index rows, Eigen::Index cols, unsigned seed) {
-  std::mt19937_64 rng(seed);
-  std::normal_distribution<double> normal;
-  Eigen::MatrixXd values(rows, cols);
-  for (Eigen::Index i = 0; i < values.size(); ++i) values.data()[i] = normal(rng);
-  return values;
-}
-
-}  // namespace testing
-
 /// Random grey values.
 inline Grey randomGrey(int image_size, std::uint64_t seed) {
   std::mt19937_64 rng(seed);
