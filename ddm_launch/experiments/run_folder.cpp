@@ -87,7 +87,6 @@ RunFolder::RunFolder(const Configuration& configuration)
   }
   lock();
   try {
-    fs::remove(path_ + "/summary.yaml", error);  // no verdict before the end, nor after a refusal
     const std::string file = path_ + "/config.yaml";
     YAML::Node node = toYaml(configuration_);
     if (fs::exists(file)) {
@@ -101,6 +100,8 @@ RunFolder::RunFolder(const Configuration& configuration)
     versioned["version"] = codeVersion();
     for (const auto& block : node) versioned[block.first] = block.second;
     writeFileAtomically(file, YAML::Dump(versioned) + "\n");
+    // No verdict before the end. Not sooner: a command that is refused must leave all as it is.
+    fs::remove(path_ + "/summary.yaml", error);
   } catch (...) {
     ::close(lock_file_);
     throw;

@@ -37,6 +37,7 @@ class EvaluationTest : public ::testing::Test {
 TEST_F(EvaluationTest, SuccessTakesTheLastTenFramesAtTheGoal) {
   EXPECT_FALSE(evaluated(arriving(9)).success);
   EXPECT_TRUE(evaluated(arriving(10)).success);
+  EXPECT_TRUE(evaluated(arriving(9)).known);  // a failure is known, too
 }
 
 TEST_F(EvaluationTest, StrictSuccessTakesTheLast25) {

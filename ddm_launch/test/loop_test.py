@@ -97,15 +97,15 @@ class LoopTest(unittest.TestCase):
         self.assertEqual(files_in(self.out), expected_files(1), output)
         self.assertSameAsOneProcess(self.out, 1)
 
-    def test_the_folder_of_another_seed_is_refused_and_has_no_verdict(self):
+    def test_the_folder_of_another_seed_is_refused_and_left_as_it_is(self):
         shutil.copytree(self.reference, self.out)
-        rows = read_bytes(self.out, "trials.csv")
+        before = {name: read_bytes(self.out, name) for name in files_in(self.out)}
         code, output = roslaunch(self.scratch, *self.experiment(self.out, TRIALS, seed=2))
         self.assertEqual(code, 0)  # roslaunch's way, see the head of experiment.launch
         self.assertIn("experiment/seed: 1 there, 2 here", output)
         self.assertIn(self.out, output)
-        self.assertNotIn("summary.yaml", files_in(self.out))
-        self.assertEqual(read_bytes(self.out, "trials.csv"), rows)
+        self.assertIn("summary.yaml", before)
+        self.assertEqual({name: read_bytes(self.out, name) for name in files_in(self.out)}, before)
 
     def test_an_interrupted_experiment_ends_at_once_without_a_verdict_and_goes_on_later(self):
         launch = start_roslaunch(self.scratch, *self.experiment(self.out, 999))
