@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ddm_model/schedule.h"
+
 namespace ddm {
 namespace {
 
@@ -50,7 +52,7 @@ Eigen::VectorXd initialTheta(const Networks<double>& networks, const Eigen::Matr
   randomise(decoder, 1.0, rng, theta_d);
 
   const std::vector<int> mirrored(decoder.widths().rbegin(), decoder.widths().rend());
-  if (encoder.widths() != mirrored) return theta;
+  if (encoder.widths() != mirrored || !makeSchedule(options.schedule).pca_start) return theta;
   Eigen::MatrixXd inputs = scores;
   for (int layer = 0; layer < encoder.numLayers(); ++layer) {
     const int mirror = decoder.numLayers() - 1 - layer;

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/model_options.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
+
+#include "ddm_model/schedule.h"
 
 namespace ddm {
 namespace {
@@ -47,6 +50,11 @@ std::vector<std::string> ModelOptions::problems() const {
 
 std::vector<std::string> TrainingOptions::problems() const {
   std::vector<std::string> out;
+  const std::vector<std::string> schedules = scheduleNames();
+  std::string known;
+  for (const std::string& name : schedules) known += (known.empty() ? "" : ", ") + name;
+  require(std::find(schedules.begin(), schedules.end(), schedule) != schedules.end(),
+          "training/schedule must be one of: " + known, schedule, &out);
   require(solver == "lbfgs" || solver == "bfgs", "training/solver must be lbfgs or bfgs", solver,
           &out);
   require(max_iterations >= 1, "training/max_iterations must be >= 1", max_iterations, &out);

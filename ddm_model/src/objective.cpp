@@ -61,7 +61,8 @@ Eigen::Index JointObjective<Scalar>::blockSize(Eigen::Index block) const {
 
 template <class Scalar>
 typename JointObjective<Scalar>::Value JointObjective<Scalar>::evaluate(const Vector& theta,
-                                                                        Vector* d_theta) {
+                                                                        Vector* d_theta,
+                                                                        Terms terms) {
   eigen_assert(theta.size() == networks_.numParams());
   Scalar* gradient = nullptr;
   if (d_theta != nullptr) {
@@ -73,7 +74,7 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::evaluate(const Ve
   d_features_.setZero();
   Value value;
   for (Eigen::Index block = 0; block < num_blocks; ++block) {
-    const Value part = decodeBlock(theta.data(), block, gradient);
+    const Value part = decodeBlock(theta.data(), block, terms, gradient);
     value.v_r += part.v_r;
     value.v_p += part.v_p;
   }
@@ -102,6 +103,7 @@ void JointObjective<Scalar>::encode(const Scalar* theta) {
 template <class Scalar>
 typename JointObjective<Scalar>::Value JointObjective<Scalar>::decodeBlock(const Scalar* theta,
                                                                            Eigen::Index block,
+                                                                           Terms terms,
                                                                            Scalar* d_theta) {
   const Eigen::Index begin = blockBegin(block);
   const Eigen::Index size = blockSize(block);
@@ -123,7 +125,8 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::decodeBlock(const
   value.v_p = static_cast<double>(residual_.middleCols(size, count).squaredNorm());
   if (d_theta == nullptr) return value;
 
-  residual_.leftCols(size + count) *= Scalar(2);
+  residual_.leftCols(size) *= Scalar(terms.v_r ? 2 : 0);
+  residual_.middleCols(size, count) *= Scalar(terms.v_p ? 2 : 0);
   networks_.decoder().backward(networks_.decoderOf(theta), &decoder_tape_,
                                residual_.leftCols(size + count), networks_.decoderOf(d_theta),
                                &d_decoder_input_);

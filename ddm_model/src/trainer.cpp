@@ -1,4 +1,4 @@
-// Training: PCA, initial parameters, then V_R + V_P minimised by (L-)BFGS.
+// Training: PCA, initial parameters, then the stages of a schedule minimised by (L-)BFGS.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/trainer.h"
 
@@ -11,36 +11,64 @@
 #include "ddm_model/initialisation.h"
 #include "ddm_model/objective.h"
 #include "ddm_model/pca.h"
+#include "ddm_model/schedule.h"
 
 namespace ddm {
 namespace {
 
 constexpr std::uint32_t kInitialisationRole = 2;
 
-/// The scaled joint objective in float32 as Ceres wants it: a function of doubles.
+/// Where the parameters that a stage may change lie in theta.
+struct Range {
+  Eigen::Index begin;
+  Eigen::Index size;
+};
+
+Range freeParameters(const Networks<float>& networks, Stage::Free free) {
+  const Eigen::Index num_params = networks.numParams();
+  const Eigen::Index num_auto_encoder = num_params - networks.f().numParams();
+  switch (free) {
+    case Stage::Free::kAutoEncoder:
+      return {0, num_auto_encoder};
+    case Stage::Free::kPredictor:
+      return {num_auto_encoder, num_params - num_auto_encoder};
+    case Stage::Free::kAll:
+      break;
+  }
+  return {0, num_params};
+}
+
+/// The scaled objective of one stage in float32 as Ceres wants it: a function of the free
+/// parameters, in double.
 class CeresObjective : public ceres::FirstOrderFunction {
  public:
-  CeresObjective(JointObjective<float>* objective, Eigen::Index num_params)
-      : objective_(objective), theta_(num_params), gradient_(num_params) {}
+  /// @param theta  all parameters; gives the values of those that are not free
+  CeresObjective(JointObjective<float>* objective, Terms terms, Range free,
+                 const Eigen::VectorXd& theta)
+      : objective_(objective), terms_(terms), free_(free), theta_(theta.cast<float>()) {}
 
-  bool Evaluate(const double* theta, double* cost, double* gradient) const override {
-    theta_ = Eigen::Map<const Eigen::VectorXd>(theta, theta_.size()).cast<float>();
-    last_ = objective_->evaluate(theta_, gradient != nullptr ? &gradient_ : nullptr);
+  bool Evaluate(const double* free, double* cost, double* gradient) const override {
+    theta_.segment(free_.begin, free_.size) =
+        Eigen::Map<const Eigen::VectorXd>(free, free_.size).cast<float>();
+    last_ = objective_->evaluate(theta_, gradient != nullptr ? &gradient_ : nullptr, terms_);
     ++evaluations_;
     const double weight = objective_->weight();
-    *cost = weight * (last_.v_r + last_.v_p);
+    *cost = weight * ((terms_.v_r ? last_.v_r : 0.0) + (terms_.v_p ? last_.v_p : 0.0));
     if (gradient != nullptr) {
-      Eigen::Map<Eigen::VectorXd>(gradient, gradient_.size()) = weight * gradient_.cast<double>();
+      Eigen::Map<Eigen::VectorXd>(gradient, free_.size) =
+          weight * gradient_.segment(free_.begin, free_.size).cast<double>();
     }
     return std::isfinite(*cost) && (gradient == nullptr || gradient_.allFinite());
   }
-  int NumParameters() const override { return static_cast<int>(theta_.size()); }
+  int NumParameters() const override { return static_cast<int>(free_.size); }
 
   JointObjective<float>::Value last() const { return last_; }
   int evaluations() const { return evaluations_; }
 
  private:
   JointObjective<float>* objective_;
+  Terms terms_;
+  Range free_;
   mutable Eigen::VectorXf theta_;
   mutable Eigen::VectorXf gradient_;
   mutable JointObjective<float>::Value last_;
@@ -50,28 +78,32 @@ class CeresObjective : public ceres::FirstOrderFunction {
 /// Tells progress and passes on the wish to stop.
 class ProgressCallback : public ceres::IterationCallback {
  public:
-  ProgressCallback(const CeresObjective* objective, double grey_per_score, int max_iterations,
-                   const TrainingCallback& callback)
+  /// @param before  progress when the stage began
+  /// @param share   of the whole training that one iteration of the stage is, at most
+  ProgressCallback(const CeresObjective* objective, double squared_scale,
+                   const TrainingProgress& before, double share, const TrainingCallback& callback)
       : objective_(objective),
-        squared_scale_(grey_per_score * grey_per_score),
-        max_iterations_(max_iterations),
+        squared_scale_(squared_scale),
+        before_(before),
+        share_(share),
         callback_(callback) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     if (!callback_) return ceres::SOLVER_CONTINUE;
     TrainingProgress progress;
-    progress.iteration = summary.iteration;
+    progress.iteration = before_.iteration + summary.iteration;
     progress.v_r = squared_scale_ * objective_->last().v_r;
     progress.v_p = squared_scale_ * objective_->last().v_p;
     progress.gradient_norm = summary.gradient_max_norm;
-    progress.fraction_done = static_cast<double>(summary.iteration) / max_iterations_;
+    progress.fraction_done = before_.fraction_done + share_ * summary.iteration;
     return callback_(progress) ? ceres::SOLVER_CONTINUE : ceres::SOLVER_ABORT;
   }
 
  private:
   const CeresObjective* objective_;
   double squared_scale_;
-  int max_iterations_;
+  TrainingProgress before_;
+  double share_;
   const TrainingCallback& callback_;
 };
 
@@ -101,6 +133,73 @@ TrainingData<float> trainingData(const DataSet& data, const Pca& pca, double max
   return out;
 }
 
+/// @return what turns [score^2] into [grey^2]
+double squaredScale(const Pca& pca) { return 1.0 / (static_cast<double>(pca.scale) * pca.scale); }
+
+/// The stages of a schedule, one after the other.
+class Minimisation {
+ public:
+  Minimisation(const Networks<float>& networks, JointObjective<float>* objective, const Pca& pca,
+               const TrainingOptions& training, const TrainingCallback& callback)
+      : networks_(networks),
+        objective_(*objective),
+        squared_scale_(squaredScale(pca)),
+        training_(training),
+        callback_(callback) {}
+
+  /// @return w (V_R + V_P)
+  double cost(const Eigen::VectorXd& theta) {
+    const JointObjective<float>::Value value = objective_.evaluate(theta.cast<float>(), nullptr);
+    return objective_.weight() * (value.v_r + value.v_p);
+  }
+
+  /// @param theta   in: initial parameters, out: the minimum
+  /// @param result  out: message, iterations and evaluations
+  /// @return false if there is no usable minimum; the message tells why
+  bool run(Eigen::VectorXd* theta, TrainingResult* result) {
+    const std::vector<Stage> stages = makeSchedule(training_.schedule).stages;
+    const double share = 1.0 / static_cast<double>(stages.size());
+    TrainingProgress before;
+    for (const Stage& stage : stages) {
+      before.iteration = result->iterations;
+      if (!runStage(stage, before, share / training_.max_iterations, theta, result)) return false;
+      before.fraction_done += share;
+    }
+    return true;
+  }
+
+ private:
+  bool runStage(const Stage& stage, const TrainingProgress& before, double share,
+                Eigen::VectorXd* theta, TrainingResult* result) {
+    const Range free = freeParameters(networks_, stage.free);
+    auto* const function = new CeresObjective(&objective_, stage.terms, free, *theta);
+    const ceres::GradientProblem problem(function);  // owns the function
+    ProgressCallback progress(function, squared_scale_, before, share, callback_);
+    ceres::GradientProblemSolver::Options options = solverOptions(training_);
+    options.callbacks.push_back(&progress);
+    ceres::GradientProblemSolver::Summary summary;
+    ceres::Solve(options, problem, theta->data() + free.begin, &summary);
+
+    result->message = summary.message;
+    result->iterations += static_cast<int>(summary.iterations.size()) - 1;
+    result->evaluations += function->evaluations();
+    if (summary.termination_type == ceres::USER_FAILURE) {
+      result->message = "training was cancelled";
+      return false;
+    }
+    // The solver may call a start from which it cannot move a minimum.
+    if (theta->allFinite() && summary.final_cost < summary.initial_cost) return true;
+    result->message = "training did not lower the objective: " + summary.message;
+    return false;
+  }
+
+  const Networks<float>& networks_;
+  JointObjective<float>& objective_;
+  double squared_scale_;
+  const TrainingOptions& training_;
+  const TrainingCallback& callback_;
+};
+
 }  // namespace
 
 std::mt19937_64 initialisationStream(std::uint64_t seed, std::uint32_t trial) {
@@ -120,36 +219,19 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
   Eigen::VectorXd theta = initialTheta(Networks<double>(model, data.torqueDim()),
                                        training_data.scores.cast<double>(), training, &rng);
   JointObjective<float> objective(networks, std::move(training_data));
-
-  auto* const function = new CeresObjective(&objective, theta.size());
-  const ceres::GradientProblem problem(function);  // owns the function
-  ProgressCallback progress(function, 1.0 / pca.scale, training.max_iterations, callback);
-  ceres::GradientProblemSolver::Options options = solverOptions(training);
-  options.callbacks.push_back(&progress);
-  ceres::GradientProblemSolver::Summary summary;
-  ceres::Solve(options, problem, theta.data(), &summary);
+  Minimisation minimisation(networks, &objective, pca, training, callback);
 
   TrainingResult result;
-  result.message = summary.message;
-  result.iterations = static_cast<int>(summary.iterations.size()) - 1;
-  result.initial_cost = summary.initial_cost;
-  result.final_cost = summary.final_cost;
-  const bool cancelled = summary.termination_type == ceres::USER_FAILURE;
-  const bool improved = theta.allFinite() && summary.final_cost < summary.initial_cost;
-  if (!cancelled && improved) {
+  result.initial_cost = minimisation.cost(theta);
+  if (minimisation.run(&theta, &result)) {
+    result.final_cost = minimisation.cost(theta);
     const JointObjective<float>::Value value = objective.evaluate(theta.cast<float>(), nullptr);
-    const double squared_scale = 1.0 / (static_cast<double>(pca.scale) * pca.scale);
     info.frames = static_cast<std::uint32_t>(data.numFrames());
-    info.v_r = squared_scale * value.v_r;
-    info.v_p = squared_scale * value.v_p;
+    info.v_r = squaredScale(pca) * value.v_r;
+    info.v_p = squaredScale(pca) * value.v_p;
     result.model.emplace(model, data.imageSize(), data.torqueDim(), std::move(pca),
                          std::move(theta), data.goal(), std::move(info));
-  } else if (cancelled) {
-    result.message = "training was cancelled";
-  } else {
-    result.message = "training did not lower the objective: " + summary.message;
   }
-  result.evaluations = function->evaluations();
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

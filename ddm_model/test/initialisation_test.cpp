@@ -111,6 +111,17 @@ TEST_F(Initialisation, AnAutoEncoderThatIsNotMirroredStartsAtRandom) {
   EXPECT_NE(a.head(30), b.head(30));  // the encoder's first weights
 }
 
+TEST_F(Initialisation, ASchedulesRandomStartLeavesThePcaOutAndThePredictorAsItIs) {
+  const ModelOptions options = testing::toyModelOptions();
+  const Networks<double> nets(options, 1);
+  const Eigen::VectorXd from_pca = initial(options, 1);
+  training_.schedule = "joint_random_init";
+  const Eigen::VectorXd a = initial(options, 1), b = initial(options, 2);
+  EXPECT_NE(a.head(30), b.head(30));  // the encoder's first weights
+  EXPECT_EQ(nets.encoder().biases(a.data(), 0).norm(), 0.0);
+  EXPECT_EQ(a.tail(nets.f().numParams()), from_pca.tail(nets.f().numParams()));
+}
+
 TEST_F(Initialisation, StaysFiniteWhereThereIsNoSpread) {
   std::mt19937_64 rng(1);
   const ModelOptions options = testing::toyModelOptions();

@@ -130,48 +130,34 @@ TEST(JointObjective, GradientMatchesDifferencesAcrossTheBordersOfItsBlocks) {
       testing::gradientMatches(jointFunction(&objective), randomMatrix(nets.numParams(), 1, 3)));
 }
 
-/// One objective over the data, and one in which every image counts twice but every prediction
-/// once: with V_R + V_P and 2 V_R + V_P the gradient of each term can be told apart.
-class SingleTerms : public ::testing::Test {
- protected:
-  static TrainingData<double> imagesTwice(TrainingData<double> data) {
-    const Eigen::MatrixXd once = data.scores;
-    data.scores.resize(once.rows(), 2 * once.cols());
-    data.scores << once, once;
-    return data;
-  }
-
-  const TrainingData<double> data_ = randomData(4, 1, 12, false, {{0, 5}, {5, 7}});
-  const Networks<double> nets_{tinyOptions(), 1};
-  JointObjective<double> once_{nets_, data_};
-  JointObjective<double> twice_{nets_, imagesTwice(data_)};
-  const Eigen::VectorXd theta_ = randomMatrix(nets_.numParams(), 1, 3);
-};
-
-TEST_F(SingleTerms, GradientOfTheReconstructionErrorMatchesDifferences) {
-  const auto v_r = [this](const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
-    if (gradient != nullptr) {
-      Eigen::VectorXd of_once;
-      once_.evaluate(theta, &of_once);
-      twice_.evaluate(theta, gradient);
-      *gradient -= of_once;
-    }
-    return once_.evaluate(theta, nullptr).v_r;
+/// One term alone as a function of theta.
+testing::DifferentiableFunction singleTerm(JointObjective<double>* objective, Terms terms) {
+  return [objective, terms](const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
+    const auto value = objective->evaluate(theta, gradient, terms);
+    return (terms.v_r ? value.v_r : 0.0) + (terms.v_p ? value.v_p : 0.0);
   };
-  EXPECT_TRUE(testing::gradientMatches(v_r, theta_));
 }
 
-TEST_F(SingleTerms, GradientOfThePredictionErrorMatchesDifferences) {
-  const auto v_p = [this](const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
-    if (gradient != nullptr) {
-      Eigen::VectorXd of_twice;
-      once_.evaluate(theta, gradient);
-      twice_.evaluate(theta, &of_twice);
-      *gradient = 2.0 * *gradient - of_twice;
-    }
-    return once_.evaluate(theta, nullptr).v_p;
-  };
-  EXPECT_TRUE(testing::gradientMatches(v_p, theta_));
+TEST(JointObjective, GradientOfEachTermAloneMatchesDifferences) {
+  const Networks<double> nets(tinyOptions(), 1);
+  JointObjective<double> objective(nets, randomData(4, 1, 140, true, {{0, 5}, {5, 135}}));
+  const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
+  EXPECT_TRUE(testing::gradientMatches(singleTerm(&objective, {true, false}), theta));
+  EXPECT_TRUE(testing::gradientMatches(singleTerm(&objective, {false, true}), theta));
+}
+
+TEST(JointObjective, TellsBothValuesWhicheverTermCounts) {
+  const Networks<double> nets(tinyOptions(), 1);
+  JointObjective<double> objective(nets, randomData(4, 1, 12, true, {{0, 5}, {5, 7}}));
+  const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
+  const auto both = objective.evaluate(theta, nullptr);
+  Eigen::VectorXd gradient;
+  for (const Terms terms : {Terms{true, false}, Terms{false, true}, Terms{false, false}}) {
+    const auto value = objective.evaluate(theta, &gradient, terms);
+    EXPECT_EQ(value.v_r, both.v_r);
+    EXPECT_EQ(value.v_p, both.v_p);
+  }
+  EXPECT_EQ(gradient, Eigen::VectorXd::Zero(nets.numParams()));
 }
 
 TEST(JointObjective, DirectionalDerivativeMatchesAtTheSizeOfThePaper) {

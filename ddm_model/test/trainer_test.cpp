@@ -116,6 +116,57 @@ TEST_F(Trainer, PredictsBetterThanStandingStill) {
   EXPECT_LT(predicted_error, 0.5 * still_error);
 }
 
+TEST_F(Trainer, LowersWhatItsScheduleMinimises) {
+  training_.max_iterations = 100;
+  const ModelInfo joint = run().model->info();
+  training_.schedule = "v_p_only";
+  const ModelInfo v_p_only = run().model->info();
+  training_.schedule = "sequential";
+  const ModelInfo sequential = run().model->info();
+  EXPECT_LT(v_p_only.v_p, joint.v_p);
+  EXPECT_GT(v_p_only.v_r, 10.0 * joint.v_r);
+  EXPECT_GT(v_p_only.v_r, 10.0 * sequential.v_r);
+  EXPECT_GT(sequential.v_p, joint.v_p);
+}
+
+TEST_F(Trainer, SequentialFixesTheFeaturesBeforeTheyArePredicted) {
+  // Enough steps for the auto-encoder, then f alone: what it learns moves no feature.
+  training_.schedule = "sequential";
+  training_.max_iterations = 40;
+  const Ddm model = run().model.value();
+  info_.trial = 2;  // another random start of f, the same PCA start of the auto-encoder
+  const Ddm other = run().model.value();
+  const Networks<double> nets(model_, 1);
+  const Eigen::Index num_auto_encoder = nets.numParams() - nets.f().numParams();
+  EXPECT_EQ(model.theta().head(num_auto_encoder), other.theta().head(num_auto_encoder));
+  EXPECT_NE(model.theta().tail(nets.f().numParams()), other.theta().tail(nets.f().numParams()));
+}
+
+TEST_F(Trainer, JointTrainingMovesTheFeaturesWithThePrediction) {
+  const Ddm model = run().model.value();
+  info_.trial = 2;
+  const Ddm other = run().model.value();
+  EXPECT_NE(model.theta().head(10), other.theta().head(10));
+}
+
+TEST_F(Trainer, CountsIterationsAndProgressOverAllStages) {
+  training_.schedule = "sequential";
+  training_.max_iterations = 7;
+  training_.function_tolerance = 0.0;
+  std::vector<TrainingProgress> told;
+  const TrainingResult result = run([&told](const TrainingProgress& progress) {
+    told.push_back(progress);
+    return true;
+  });
+  EXPECT_EQ(result.iterations, 14);
+  EXPECT_EQ(told.back().iteration, 14);
+  EXPECT_DOUBLE_EQ(told.back().fraction_done, 1.0);
+  for (size_t i = 1; i < told.size(); ++i) {
+    EXPECT_GE(told[i].fraction_done, told[i - 1].fraction_done) << "callback " << i;
+    EXPECT_GE(told[i].iteration, told[i - 1].iteration) << "callback " << i;
+  }
+}
+
 TEST_F(Trainer, SameSeedSameBytes) { EXPECT_EQ(trainedBytes(), trainedBytes()); }
 
 TEST_F(Trainer, AnotherSeedOrTrialGivesAnotherModel) {

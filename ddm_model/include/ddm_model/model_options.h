@@ -44,8 +44,9 @@ struct ModelOptions {
 
 /// Block `training`.
 struct TrainingOptions {
+  std::string schedule = "joint";    ///< what is minimised over what, see scheduleNames()
   std::string solver = "lbfgs";      ///< "lbfgs" or "bfgs"
-  int max_iterations = 500;          ///< cap on the iterations of the solver [-]
+  int max_iterations = 500;          ///< cap on the iterations of the solver, each stage [-]
   double function_tolerance = 1e-6;  ///< stop when V changes by less than this fraction [-]
   int lbfgs_rank = 20;               ///< pairs that L-BFGS remembers [-]
   double score_std = 1.0;            ///< spread of the leading PCA score at the encoder's input [-]
@@ -54,6 +55,7 @@ struct TrainingOptions {
 
   template <class Visitor>
   void visit(Visitor& visitor) {
+    visitor("schedule", schedule);
     visitor("solver", solver);
     visitor("max_iterations", max_iterations);
     visitor("function_tolerance", function_tolerance);

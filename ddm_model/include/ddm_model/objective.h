@@ -7,6 +7,7 @@
 
 #include "ddm_model/data_set.h"
 #include "ddm_model/networks.h"
+#include "ddm_model/schedule.h"
 
 namespace ddm {
 
@@ -43,9 +44,11 @@ class JointObjective {
   /// @throws std::invalid_argument if shapes do not fit, or no piece is longer than n frames
   JointObjective(const Networks<Scalar>& networks, TrainingData<Scalar> data);
 
-  /// @param theta    parameters                                    [P]
-  /// @param d_theta  out: d(V_R + V_P)/d theta; null: not wanted   [P]
-  Value evaluate(const Vector& theta, Vector* d_theta);
+  /// @param theta    parameters                                            [P]
+  /// @param d_theta  out: derivative of the sum of `terms`; null: not wanted   [P]
+  /// @param terms    which of the two the derivative is of
+  /// @return both values, whatever `terms` says
+  Value evaluate(const Vector& theta, Vector* d_theta, Terms terms = Terms());
 
   /// @return w
   double weight() const { return weight_; }
@@ -54,7 +57,7 @@ class JointObjective {
 
  private:
   void encode(const Scalar* theta);
-  Value decodeBlock(const Scalar* theta, Eigen::Index block, Scalar* d_theta);
+  Value decodeBlock(const Scalar* theta, Eigen::Index block, Terms terms, Scalar* d_theta);
   void predict(const Scalar* theta, Eigen::Index first, Eigen::Index count);
   void backwardThroughPrediction(const Scalar* theta, Eigen::Index first, Eigen::Index count,
                                  const Eigen::Ref<const Matrix>& d_predicted, Scalar* d_theta);

@@ -1,4 +1,4 @@
-// Training: PCA, initial parameters, then V_R + V_P minimised by (L-)BFGS.
+// Training: PCA, initial parameters, then the stages of a schedule minimised by (L-)BFGS.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -20,7 +20,7 @@ struct TrainingProgress {
   double v_r = 0.0;            ///< [grey^2]
   double v_p = 0.0;            ///< [grey^2]
   double gradient_norm = 0.0;  ///< largest entry of the scaled objective's gradient
-  double fraction_done = 0.0;  ///< iterations over their cap
+  double fraction_done = 0.0;  ///< iterations over their cap, all stages alike
 };
 
 /// Called after each iteration; false ends the training without a model.
@@ -32,15 +32,16 @@ struct TrainingResult {
   std::string message;       ///< why there is no model, or how the solver ended
   int iterations = 0;
   int evaluations = 0;        ///< of the objective with its gradient
-  double initial_cost = 0.0;  ///< scaled objective before
-  double final_cost = 0.0;    ///< and after
+  double initial_cost = 0.0;  ///< w (V_R + V_P) before, whatever the schedule minimises
+  double final_cost = 0.0;    ///< and after; 0 without a model
   double seconds = 0.0;       ///< wall time [s]
 };
 
 /// Initial parameters are drawn from this stream. (Fixed for a given libstdc++.)
 std::mt19937_64 initialisationStream(std::uint64_t seed, std::uint32_t trial);
 
-/// Trains a model from scratch on all data: a warm start from the last optimum gets stuck.
+/// Trains a model from scratch by the schedule of `training` on all data: a warm start from the
+/// last optimum gets stuck.
 /// @param info  seed, trial and config are kept; frames, V_R and V_P are filled in
 /// @throws std::invalid_argument if the data are too few for the options, or all the same
 TrainingResult train(const DataSet& data, const ModelOptions& model,

@@ -1,0 +1,43 @@
+// Training schedule: what is minimised over which parameters, one stage after the other.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace ddm {
+
+/// The terms of the objective that count.
+struct Terms {
+  bool v_r = true;  ///< V_R, reconstruction error
+  bool v_p = true;  ///< V_P, prediction error
+};
+
+/// One minimisation: `terms` over the parameters that are free, the others held fixed.
+struct Stage {
+  enum class Free { kAll, kAutoEncoder, kPredictor };
+
+  Terms terms;
+  Free free = Free::kAll;
+};
+
+/// How theta is found.
+struct Schedule {
+  bool pca_start = true;      ///< auto-encoder starts from layer-wise PCA; false: at random
+  std::vector<Stage> stages;  ///< at least one
+};
+
+/// The values that `training/schedule` may have.
+///
+///   joint              V_R + V_P over all parameters (paper, eq. 3)
+///   sequential         V_R over theta_E and theta_D, then V_P over theta_P: the features are fixed
+///                      before f is learned (the paper's counter-example, footnote in Sec. 2.3)
+///   v_p_only           V_P over all parameters: without the term that the paper calls crucial
+///   joint_random_init  as joint, without the PCA start
+std::vector<std::string> scheduleNames();
+
+/// @param name  one of scheduleNames()
+/// @throws std::invalid_argument naming the known ones
+Schedule makeSchedule(const std::string& name);
+
+}  // namespace ddm

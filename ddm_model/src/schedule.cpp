@@ -1,0 +1,41 @@
+// Training schedule: what is minimised over which parameters, one stage after the other.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/schedule.h"
+
+#include <stdexcept>
+#include <utility>
+
+namespace ddm {
+namespace {
+
+using Named = std::pair<std::string, Schedule>;
+
+std::vector<Named> schedules() {
+  const Stage joint{{true, true}, Stage::Free::kAll};
+  const Stage auto_encoder{{true, false}, Stage::Free::kAutoEncoder};
+  const Stage predictor{{false, true}, Stage::Free::kPredictor};
+  const Stage v_p_only{{false, true}, Stage::Free::kAll};
+  return {{"joint", {true, {joint}}},
+          {"sequential", {true, {auto_encoder, predictor}}},
+          {"v_p_only", {true, {v_p_only}}},
+          {"joint_random_init", {false, {joint}}}};
+}
+
+}  // namespace
+
+std::vector<std::string> scheduleNames() {
+  std::vector<std::string> names;
+  for (const Named& named : schedules()) names.push_back(named.first);
+  return names;
+}
+
+Schedule makeSchedule(const std::string& name) {
+  std::string known;
+  for (const Named& named : schedules()) {
+    if (named.first == name) return named.second;
+    known += (known.empty() ? "" : ", ") + named.first;
+  }
+  throw std::invalid_argument("unknown schedule '" + name + "': there are " + known);
+}
+
+}  // namespace ddm

@@ -1,0 +1,140 @@
+// Tests of long-term predictions: the roll-out, its errors, what they are compared with.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/long_term_prediction.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "ddm_model/history.h"
+#include "ddm_model/solver_log.h"
+#include "ddm_model/testing/expect_error.h"
+#include "ddm_model/trainer.h"
+#include "toy_data.h"
+
+namespace ddm {
+namespace {
+
+using testing::throwsNaming;
+
+Grey imageOf(const DataSet& data, Eigen::Index frame) {
+  const std::uint8_t* const first = data.pixels().col(frame).data();
+  return Grey(first, first + data.numPixels());
+}
+
+double squaredError(const Grey& a, const Grey& b) {
+  double sum = 0.0;
+  for (size_t i = 0; i < a.size(); ++i) sum += std::pow((a[i] - b[i]) / 255.0, 2);
+  return sum;
+}
+
+/// z_{t+1} ... by hand, with the features and torques written out (n = 2).
+Eigen::VectorXd predictedByHand(const Ddm& model, const DataSet& data, Eigen::Index frame,
+                                int num_steps) {
+  Eigen::VectorXd before = model.encode(imageOf(data, frame - 1));
+  Eigen::VectorXd now = model.encode(imageOf(data, frame));
+  for (int step = 0; step < num_steps; ++step) {
+    const double scale = model.options().max_torque;
+    Eigen::VectorXd h(6);
+    h << now, data.torques()(0, frame + step) / scale, before,
+        data.torques()(0, frame + step - 1) / scale;
+    Mlp<double>::Tape tape;
+    model.predictionModel().network().forward(model.thetaP(), h, &tape);
+    before = now;
+    now = tape.output();
+  }
+  return now;
+}
+
+TEST(EncodeAll, IsTheFeatureOfEachImage) {
+  const Ddm model = testing::toyModel();
+  const DataSet data = testing::toyTrial(5, 1);
+  const Eigen::MatrixXd Z = encodeAll(model, data);
+  ASSERT_EQ(Z.cols(), 5);
+  for (Eigen::Index i = 0; i < 5; ++i) EXPECT_EQ(Z.col(i), model.encode(imageOf(data, i)));
+}
+
+TEST(RollOut, FeedsPredictionsBackAndTakesTheTorquesThatFollowed) {
+  const Ddm model = testing::toyModel();
+  const DataSet data = testing::toyTrial(12, 1);
+  const Eigen::MatrixXd Z = encodeAll(model, data);
+  const Eigen::MatrixXd path = rollOut(model, Z, data.torques(), 3, 6);
+  ASSERT_EQ(path.cols(), 7);
+  EXPECT_EQ(path.col(0), Z.col(3));
+  for (int k = 1; k <= 6; ++k) {
+    EXPECT_TRUE(path.col(k).isApprox(predictedByHand(model, data, 3, k), 1e-12)) << k << " steps";
+  }
+}
+
+TEST(RollOut, UsesNothingThatComesLaterThanItsFrame) {
+  const Ddm model = testing::toyModel();
+  const DataSet data = testing::toyTrial(12, 1);
+  Eigen::MatrixXd Z = encodeAll(model, data);
+  const Eigen::MatrixXd path = rollOut(model, Z, data.torques(), 3, 6);
+  Z.rightCols(8).setConstant(100.0);
+  EXPECT_EQ(rollOut(model, Z, data.torques(), 3, 6), path);
+  Z.col(2).setZero();
+  EXPECT_NE(rollOut(model, Z, data.torques(), 3, 6), path);  // the check above can fail
+}
+
+TEST(RollOut, ReachesFromTheFirstPossibleFrameToTheLast) {
+  const Ddm model = testing::toyModel();
+  const DataSet data = testing::toyTrial(10, 1);
+  const Eigen::MatrixXd Z = encodeAll(model, data);
+  EXPECT_EQ(rollOut(model, Z, data.torques(), 1, 9).cols(), 10);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { rollOut(model, Z, data.torques(), 1, 10); },
+                                                  {"frame 1", "10 steps", "10 frames"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { rollOut(model, Z, data.torques(), 0, 1); },
+                                                  {"frame 0", "1 frames before"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [&] { rollOut(model, Z.leftCols(9), data.torques(), 1, 1); }, {"do not fit"}));
+}
+
+TEST(PredictionErrors, AreTheRootMeanSquareOverAllPredictionsAndPixels) {
+  const Ddm model = testing::toyModel();
+  DataSet data = testing::toyTrial(8, 1);
+  data.append(testing::toyTrial(5, 2));  // another piece
+  const auto errors = predictionErrors(model, data, 3);
+  ASSERT_EQ(errors.size(), 3u);
+  for (int k = 1; k <= 3; ++k) {
+    double sum = 0.0, sum_repeat = 0.0;
+    int count = 0;
+    for (Eigen::Index frame : {1, 2, 3, 4, 9}) {  // one before, three after, in the same piece
+      const Grey truth = imageOf(data, frame + k);
+      sum += squaredError(model.decode(predictedByHand(model, data, frame, k)), truth);
+      sum_repeat += squaredError(imageOf(data, frame), truth);
+      count += static_cast<int>(truth.size());
+    }
+    EXPECT_EQ(errors[k - 1].steps, k);
+    EXPECT_EQ(errors[k - 1].num_predictions, 5);
+    EXPECT_NEAR(errors[k - 1].rmse, std::sqrt(sum / count), 1e-12);
+    EXPECT_NEAR(errors[k - 1].rmse_repeat, std::sqrt(sum_repeat / count), 1e-12);
+  }
+}
+
+TEST(PredictionErrors, AreSmallForATrainedModelOnImagesItHasNotSeen) {
+  silenceSolverLog();
+  TrainingOptions training;
+  training.max_iterations = 500;
+  DataSet data(testing::kToySize, 1);  // from all round the circle
+  for (unsigned seed = 10; seed < 70; seed += 2) data.append(testing::toyTrial(20, seed));
+  const TrainingResult result = train(data, testing::toyModelOptions(), training, {});
+  ASSERT_TRUE(result.model);
+  const auto errors = predictionErrors(*result.model, testing::toyTrial(50, 2), 5);
+  for (const PredictionError& error : errors) {
+    EXPECT_LT(error.rmse, 0.8 * error.rmse_repeat) << error.steps << " steps";
+  }
+}
+
+TEST(PredictionErrors, RefusesDataWithoutALongEnoughPiece) {
+  const Ddm model = testing::toyModel();
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [&] { predictionErrors(model, testing::toyTrial(5, 1), 4); },
+      {"1 frames before", "4 after"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [&] { predictionErrors(model, testing::toyTrial(9, 1), 0); }, {"steps must be >= 1"}));
+}
+
+}  // namespace
+}  // namespace ddm

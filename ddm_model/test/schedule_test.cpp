@@ -1,0 +1,51 @@
+// Tests of the training schedules: what each minimises over what.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/schedule.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "ddm_model/testing/expect_error.h"
+
+namespace ddm {
+namespace {
+
+TEST(Schedule, EveryNameHasOneWithAStage) {
+  ASSERT_EQ(scheduleNames(),
+            (std::vector<std::string>{"joint", "sequential", "v_p_only", "joint_random_init"}));
+  for (const std::string& name : scheduleNames()) EXPECT_FALSE(makeSchedule(name).stages.empty());
+}
+
+TEST(Schedule, JointMinimisesBothTermsOverAllParametersFromPca) {
+  const Schedule joint = makeSchedule("joint");
+  EXPECT_TRUE(joint.pca_start);
+  ASSERT_EQ(joint.stages.size(), 1u);
+  EXPECT_TRUE(joint.stages[0].terms.v_r && joint.stages[0].terms.v_p);
+  EXPECT_EQ(joint.stages[0].free, Stage::Free::kAll);
+  EXPECT_FALSE(makeSchedule("joint_random_init").pca_start);
+}
+
+TEST(Schedule, SequentialLearnsTheAutoEncoderBeforeThePrediction) {
+  const Schedule sequential = makeSchedule("sequential");
+  ASSERT_EQ(sequential.stages.size(), 2u);
+  EXPECT_TRUE(sequential.stages[0].terms.v_r && !sequential.stages[0].terms.v_p);
+  EXPECT_EQ(sequential.stages[0].free, Stage::Free::kAutoEncoder);
+  EXPECT_TRUE(!sequential.stages[1].terms.v_r && sequential.stages[1].terms.v_p);
+  EXPECT_EQ(sequential.stages[1].free, Stage::Free::kPredictor);
+}
+
+TEST(Schedule, VpOnlyLeavesTheReconstructionOut) {
+  const Schedule v_p_only = makeSchedule("v_p_only");
+  ASSERT_EQ(v_p_only.stages.size(), 1u);
+  EXPECT_TRUE(!v_p_only.stages[0].terms.v_r && v_p_only.stages[0].terms.v_p);
+  EXPECT_EQ(v_p_only.stages[0].free, Stage::Free::kAll);
+}
+
+TEST(Schedule, RefusesAnUnknownName) {
+  EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
+      [] { makeSchedule("jont"); }, {"jont", "joint, sequential, v_p_only, joint_random_init"}));
+}
+
+}  // namespace
+}  // namespace ddm
