@@ -1,12 +1,12 @@
-// Cost J(U) of a plan in feature space, with its gradient in closed form.
+// Cost J(U) of a plan by a deep dynamical model, with its gradient in closed form.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_mpc/plan_cost.h"
+#include "ddm_mpc/ddm_plan_cost.h"
 
 #include <stdexcept>
 
 namespace ddm {
 
-PlanCost::PlanCost(const Ddm& model, int horizon, double control_weight)
+DdmPlanCost::DdmPlanCost(const Ddm& model, int horizon, double control_weight)
     : f_(model.predictionModel()),
       theta_p_(model.thetaP()),
       horizon_(horizon),
@@ -21,7 +21,7 @@ PlanCost::PlanCost(const Ddm& model, int horizon, double control_weight)
   if (horizon < 1) throw std::invalid_argument("plan cost: horizon must be >= 1");
 }
 
-void PlanCost::setProblem(const History& x, const Eigen::VectorXd& goal_feature) {
+void DdmPlanCost::setProblem(const History& x, const Eigen::VectorXd& goal_feature) {
   if (x.empty() || x.features().rows() != f_.featureDim() || x.features().cols() != order_ ||
       x.torques().rows() != f_.torqueDim() || goal_feature.size() != f_.featureDim()) {
     throw std::invalid_argument("plan cost: history or goal feature do not fit the model");
@@ -32,7 +32,7 @@ void PlanCost::setProblem(const History& x, const Eigen::VectorXd& goal_feature)
 }
 
 /// h of the step from z_step to z_{step+1}.
-void PlanCost::fillRegressor(int step, const Eigen::Ref<const Eigen::MatrixXd>& U) {
+void DdmPlanCost::fillRegressor(int step, const Eigen::Ref<const Eigen::MatrixXd>& U) {
   for (int lag = 0; lag < order_; ++lag) {
     regressor_.segment(f_.featureRow(lag), f_.featureDim()) =
         features_.col(order_ - 1 + step - lag);
@@ -45,7 +45,7 @@ void PlanCost::fillRegressor(int step, const Eigen::Ref<const Eigen::MatrixXd>& 
   }
 }
 
-double PlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) {
+double DdmPlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) {
   eigen_assert(U.rows() == f_.torqueDim() && U.cols() == horizon_);
   double cost = control_weight_ * U.squaredNorm();
   for (int step = 0; step < horizon_; ++step) {
@@ -74,6 +74,6 @@ double PlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::Mat
   return cost;
 }
 
-Eigen::MatrixXd PlanCost::predictedFeatures() const { return features_.rightCols(horizon_ + 1); }
+Eigen::MatrixXd DdmPlanCost::predictedFeatures() const { return features_.rightCols(horizon_ + 1); }
 
 }  // namespace ddm

@@ -12,7 +12,8 @@ namespace ddm {
 MpcPolicy::MpcPolicy(std::shared_ptr<const Ddm> model, const MpcOptions& options)
     : model_(std::move(model)),
       x_(model_->options().order, model_->featureDim(), model_->torqueDim()),
-      planner_(*model_, options) {
+      cost_(*model_, options.horizon, options.control_weight),
+      planner_(&cost_, options) {
   if (!model_->hasGoal()) {
     throw std::invalid_argument("the model has no goal image to plan to: train it with one");
   }
@@ -33,7 +34,10 @@ void MpcPolicy::startTrial(const TrialId& id) {
 
 void MpcPolicy::observe(const Grey& grey) { x_.observe(model_->encode(grey)); }
 
-Plan MpcPolicy::plan() { return planner_.solve(x_, model_->goalFeature(), &rng_); }
+Plan MpcPolicy::plan() {
+  cost_.setProblem(x_, model_->goalFeature());
+  return planner_.solve(&rng_);
+}
 
 void MpcPolicy::apply(const Eigen::VectorXd& u) { x_.apply(u); }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace ddm {
 namespace {
@@ -54,8 +55,7 @@ ceres::GradientProblemSolver::Options solverOptions(const MpcOptions& mpc) {
 
 }  // namespace
 
-Planner::Planner(const Ddm& model, const MpcOptions& options)
-    : options_(options), cost_(model, options.horizon, options.control_weight) {}
+Planner::Planner(PlanCost* cost, const MpcOptions& options) : options_(options), cost_(*cost) {}
 
 /// Unbounded variables that start number `start` begins with.
 Eigen::MatrixXd Planner::startOf(int start, std::mt19937_64* rng) const {
@@ -74,12 +74,11 @@ Eigen::MatrixXd Planner::startOf(int start, std::mt19937_64* rng) const {
   return level.replicate(1, K);
 }
 
-Plan Planner::solve(const History& x, const Eigen::VectorXd& goal_feature, std::mt19937_64* rng) {
+Plan Planner::solve(std::mt19937_64* rng) {
   const auto begin = std::chrono::steady_clock::now();
   Plan plan;
-  plan.goal_feature = goal_feature;
+  plan.goal_feature = cost_.goalFeature();
   plan.message = "no start led to a finite cost";
-  cost_.setProblem(x, goal_feature);
   auto* const function = new BoundedCost(&cost_, options_.max_torque);
   const ceres::GradientProblem problem(function);  // owns the function
   const ceres::GradientProblemSolver::Options options = solverOptions(options_);
@@ -90,11 +89,14 @@ Plan Planner::solve(const History& x, const Eigen::VectorXd& goal_feature, std::
     ceres::GradientProblemSolver::Summary summary;
     ceres::Solve(options, problem, v.data(), &summary);
     plan.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
-    const bool usable =
-        v.allFinite() && std::isfinite(summary.final_cost) && !summary.iterations.empty();
-    if (usable && (best_v.size() == 0 || summary.final_cost < plan.cost)) {
+    // Not the solver's word: where a start is an optimum already, it reports no iteration and no
+    // cost.
+    const double cost =
+        v.allFinite() ? cost_.evaluate(options_.max_torque * v.array().tanh().matrix(), nullptr)
+                      : std::numeric_limits<double>::quiet_NaN();
+    if (std::isfinite(cost) && (best_v.size() == 0 || cost < plan.cost)) {
       best_v = v;
-      plan.cost = summary.final_cost;
+      plan.cost = cost;
       plan.status = summary.termination_type == ceres::CONVERGENCE ? PlanStatus::kConverged
                                                                    : PlanStatus::kIterationLimit;
       plan.message.clear();

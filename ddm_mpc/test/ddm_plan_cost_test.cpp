@@ -1,6 +1,6 @@
 // Tests of the plan cost: value and gradient against slow and independent computations.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_mpc/plan_cost.h"
+#include "ddm_mpc/ddm_plan_cost.h"
 
 #include <ddm_model/testing/gradient_check.h>
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ double slowCost(const Ddm& model, const History& x, const Eigen::VectorXd& goal,
 }
 
 /// order, torque_dim, horizon
-class PlanCostShapes : public ::testing::TestWithParam<std::tuple<int, int, int>> {
+class DdmPlanCostShapes : public ::testing::TestWithParam<std::tuple<int, int, int>> {
  protected:
   static RandomModelOptions modelOptions() {
     RandomModelOptions options;
@@ -61,8 +61,8 @@ class PlanCostShapes : public ::testing::TestWithParam<std::tuple<int, int, int>
   const Eigen::MatrixXd U_ = 2.0 * testing::randomMatrix(model_.torqueDim(), horizon_, 30);
 };
 
-TEST_P(PlanCostShapes, GradientMatchesFiniteDifferences) {
-  PlanCost cost(model_, horizon_, kControlWeight);
+TEST_P(DdmPlanCostShapes, GradientMatchesFiniteDifferences) {
+  DdmPlanCost cost(model_, horizon_, kControlWeight);
   cost.setProblem(x_, goal_);
   const auto f = [&](const Eigen::VectorXd& u, Eigen::VectorXd* gradient) {
     const Eigen::Map<const Eigen::MatrixXd> U(u.data(), model_.torqueDim(), horizon_);
@@ -77,8 +77,8 @@ TEST_P(PlanCostShapes, GradientMatchesFiniteDifferences) {
   EXPECT_TRUE(testing::gradientMatches(f, u, 1e-6));
 }
 
-TEST_P(PlanCostShapes, ValueAndPredictedFeaturesEqualASlowComputation) {
-  PlanCost cost(model_, horizon_, kControlWeight);
+TEST_P(DdmPlanCostShapes, ValueAndPredictedFeaturesEqualASlowComputation) {
+  DdmPlanCost cost(model_, horizon_, kControlWeight);
   cost.setProblem(x_, goal_);
   std::vector<Eigen::VectorXd> predicted;
   const double expected = slowCost(model_, x_, goal_, U_, &predicted);
@@ -91,41 +91,41 @@ TEST_P(PlanCostShapes, ValueAndPredictedFeaturesEqualASlowComputation) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(OrdersTorquesHorizons, PlanCostShapes,
+INSTANTIATE_TEST_SUITE_P(OrdersTorquesHorizons, DdmPlanCostShapes,
                          ::testing::Combine(::testing::Values(1, 2, 3), ::testing::Values(1, 2),
                                             ::testing::Values(1, 2, 3, 7, 15)));
 
-TEST(PlanCost, ForgetsTheLastProblem) {
+TEST(DdmPlanCost, ForgetsTheLastProblem) {
   const Ddm model = randomModel({});
   const Eigen::MatrixXd U = testing::randomMatrix(1, 4, 1);
   const History x = randomHistory(model, 5);
   const Eigen::VectorXd goal = testing::randomMatrix(2, 1, 6);
-  PlanCost used(model, 4, kControlWeight);
+  DdmPlanCost used(model, 4, kControlWeight);
   used.setProblem(randomHistory(model, 7), testing::randomMatrix(2, 1, 8));
   Eigen::MatrixXd d_used;
   used.evaluate(U, &d_used);
   used.setProblem(x, goal);
-  PlanCost fresh(model, 4, kControlWeight);
+  DdmPlanCost fresh(model, 4, kControlWeight);
   fresh.setProblem(x, goal);
   Eigen::MatrixXd d_fresh;
   EXPECT_EQ(used.evaluate(U, &d_used), fresh.evaluate(U, &d_fresh));
   EXPECT_EQ(d_used, d_fresh);
 }
 
-TEST(PlanCost, RefusesAHorizonOfZero) {
+TEST(DdmPlanCost, RefusesAHorizonOfZero) {
   const Ddm model = randomModel({});
-  EXPECT_THROW(PlanCost(model, 0, kControlWeight), std::invalid_argument);
+  EXPECT_THROW(DdmPlanCost(model, 0, kControlWeight), std::invalid_argument);
 }
 
-TEST(PlanCost, RefusesAHistoryWithoutAnImage) {
+TEST(DdmPlanCost, RefusesAHistoryWithoutAnImage) {
   const Ddm model = randomModel({});
-  PlanCost cost(model, 3, kControlWeight);
+  DdmPlanCost cost(model, 3, kControlWeight);
   EXPECT_THROW(cost.setProblem(History(2, 2, 1), Eigen::Vector2d::Zero()), std::invalid_argument);
 }
 
-TEST(PlanCost, RefusesAHistoryOfAnotherModel) {
+TEST(DdmPlanCost, RefusesAHistoryOfAnotherModel) {
   const Ddm model = randomModel({});
-  PlanCost cost(model, 3, kControlWeight);
+  DdmPlanCost cost(model, 3, kControlWeight);
   for (const auto& [order, feature_dim, torque_dim] :
        {std::make_tuple(3, 2, 1), std::make_tuple(2, 3, 1), std::make_tuple(2, 2, 2)}) {
     History x(order, feature_dim, torque_dim);
@@ -135,9 +135,9 @@ TEST(PlanCost, RefusesAHistoryOfAnotherModel) {
   }
 }
 
-TEST(PlanCost, RefusesAGoalOfAnotherSize) {
+TEST(DdmPlanCost, RefusesAGoalOfAnotherSize) {
   const Ddm model = randomModel({});
-  PlanCost cost(model, 3, kControlWeight);
+  DdmPlanCost cost(model, 3, kControlWeight);
   EXPECT_THROW(cost.setProblem(randomHistory(model, 1), Eigen::Vector3d::Zero()),
                std::invalid_argument);
 }

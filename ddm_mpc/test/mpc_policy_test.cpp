@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ddm_mpc/random_stream.h"
+#include "model_planner.h"
 #include "random_model.h"
 
 namespace ddm {
@@ -88,7 +89,7 @@ TEST(MpcPolicy, RemembersTheTorqueThatWasAppliedWhoeverDecidedIt) {
   x.observe(model->encode(randomGrey(8, 3)));
   x.apply(Eigen::VectorXd::Constant(1, 5.0));
   x.observe(model->encode(randomGrey(8, 4)));
-  Planner planner(*model, MpcOptions());
+  ModelPlanner planner(*model, MpcOptions());
   std::mt19937_64 rng = randomStream(id, StreamRole::kPlannerStarts);
   EXPECT_EQ(secondPlan(5.0).torques, planner.solve(x, model->goalFeature(), &rng).torques);
   EXPECT_NE(secondPlan(5.0).torques, secondPlan(-5.0).torques);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "model_planner.h"
 #include "random_model.h"
 
 namespace ddm {
@@ -45,7 +46,7 @@ History stateAt(const Ddm& model, const Eigen::VectorXd& z) {
 
 double costOf(const Ddm& model, const MpcOptions& options, const History& x,
               const Eigen::VectorXd& goal, const Eigen::MatrixXd& U) {
-  PlanCost cost(model, options.horizon, options.control_weight);
+  DdmPlanCost cost(model, options.horizon, options.control_weight);
   cost.setProblem(x, goal);
   return cost.evaluate(U, nullptr);
 }
@@ -60,7 +61,7 @@ TEST(Planner, NeverExceedsTheTorqueBoundWhereverTheGoalIs) {
     MpcOptions options;
     options.max_torque = 0.7;
     options.control_weight = 0.0;
-    Planner planner(model, options);
+    ModelPlanner planner(model, options);
     std::mt19937_64 rng(seed);
     for (int step = 0; step < 3; ++step) {
       const Plan plan =
@@ -75,7 +76,7 @@ TEST(Planner, PushesAgainstTheBoundWhenTheGoalIsOutOfReach) {
   const Ddm model = driftingIntegrator(0.0);
   MpcOptions options = exactOptions();
   options.control_weight = 0.0;
-  Planner planner(model, options);
+  ModelPlanner planner(model, options);
   std::mt19937_64 rng(1);
   const Plan plan = planner.solve(stateAt(model, Eigen::VectorXd::Zero(1)),
                                   Eigen::VectorXd::Constant(1, 1000.0), &rng);
@@ -111,7 +112,7 @@ TEST(Planner, FindsTheClosedFormOptimumOfALinearModel) {
   ASSERT_LT(expected.cwiseAbs().maxCoeff(), 0.9 * options.max_torque)
       << "the bound must not matter";
 
-  Planner planner(model, options);
+  ModelPlanner planner(model, options);
   std::mt19937_64 rng(1);
   const Plan plan = planner.solve(stateAt(model, z_0), goal, &rng);
   EXPECT_EQ(plan.status, PlanStatus::kConverged);
@@ -133,7 +134,7 @@ TEST(Planner, FindsTheBestOfAGridForOneNonlinearStep) {
       const Eigen::MatrixXd U = Eigen::MatrixXd::Constant(1, 1, -6.0 + 12.0 * i / 2000);
       best = std::min(best, costOf(model, options, x, model.goalFeature(), U));
     }
-    Planner planner(model, options);
+    ModelPlanner planner(model, options);
     std::mt19937_64 rng(seed);
     EXPECT_LE(planner.solve(x, model.goalFeature(), &rng).cost, best + 1e-4 * (1.0 + best))
         << "seed " << seed;
@@ -149,7 +150,7 @@ TEST(Planner, IsNeverWorseThanAnyOfItsStarts) {
     model_options.seed = seed;
     const Ddm model = randomModel(model_options);
     const History x = randomHistory(model, seed);
-    Planner planner(model, options);
+    ModelPlanner planner(model, options);
     std::mt19937_64 rng(seed);
     std::mt19937_64 same(seed);
     const Plan plan = planner.solve(x, model.goalFeature(), &rng);
@@ -171,10 +172,10 @@ TEST(Planner, ReportsTheCostAndTheFeaturesOfThePlanItReturns) {
     model_options.seed = seed;
     const Ddm model = randomModel(model_options);
     const History x = randomHistory(model, seed);
-    Planner planner(model, options);
+    ModelPlanner planner(model, options);
     std::mt19937_64 rng(seed);
     const Plan plan = planner.solve(x, model.goalFeature(), &rng);
-    PlanCost cost(model, options.horizon, options.control_weight);
+    DdmPlanCost cost(model, options.horizon, options.control_weight);
     cost.setProblem(x, model.goalFeature());
     EXPECT_NEAR(plan.cost, cost.evaluate(plan.torques, nullptr), 1e-12);
     EXPECT_EQ(plan.features, cost.predictedFeatures());
@@ -191,7 +192,7 @@ TEST(Planner, SaysThatTheIterationCapEndedTheSearch) {
   MpcOptions options;
   options.max_iterations = 1;
   options.function_tolerance = 0.0;
-  Planner planner(model, options);
+  ModelPlanner planner(model, options);
   std::mt19937_64 rng(1);
   const Plan plan = planner.solve(randomHistory(model, 3), model.goalFeature(), &rng);
   EXPECT_EQ(plan.status, PlanStatus::kIterationLimit);
@@ -207,7 +208,7 @@ TEST(Planner, StartsFromTheLastPlanMovedOnByOneStep) {
   options.control_weight = 0.0;
   options.num_starts = 1;
   const Eigen::VectorXd goal = Eigen::VectorXd::Constant(1, 0.5);
-  Planner warm(model, options);
+  ModelPlanner warm(model, options);
   std::mt19937_64 rng(1);
   const Plan first = warm.solve(stateAt(model, Eigen::VectorXd::Zero(1)), goal, &rng);
   ASSERT_NEAR(first.torques(0, 0), 6.0 * (0.5 - drift), 1e-3);
@@ -234,7 +235,7 @@ TEST(Planner, FindsABetterPlanFromAWarmStartOnTheSameBudget) {
     model_options.gain = 0.7;
     const Ddm model = randomModel(model_options);
     std::mt19937_64 rng(seed);
-    Planner planner(model, options);
+    ModelPlanner planner(model, options);
     History x = randomHistory(model, seed);
     for (int step = 0; step < 5; ++step) {
       const Plan plan = planner.solve(x, model.goalFeature(), &rng);
@@ -242,14 +243,14 @@ TEST(Planner, FindsABetterPlanFromAWarmStartOnTheSameBudget) {
       x.observe(plan.features.col(1));
     }
     warm_cost += planner.solve(x, model.goalFeature(), &rng).cost;
-    cold_cost += Planner(model, options).solve(x, model.goalFeature(), &rng).cost;
+    cold_cost += ModelPlanner(model, options).solve(x, model.goalFeature(), &rng).cost;
   }
   EXPECT_LT(warm_cost, cold_cost);
 }
 
 TEST(Planner, GivesTheSamePlanForTheSameRandomStream) {
   const Ddm model = randomModel({});
-  Planner planner(model, MpcOptions());
+  ModelPlanner planner(model, MpcOptions());
   const History x = randomHistory(model, 3);
   std::mt19937_64 rng(1);
   const Plan first = planner.solve(x, model.goalFeature(), &rng);
@@ -261,11 +262,24 @@ TEST(Planner, GivesTheSamePlanForTheSameRandomStream) {
   EXPECT_EQ(first.evaluations, second.evaluations);
 }
 
+TEST(Planner, StaysAtTheGoalWhereAStartIsTheOptimumAlready) {
+  const Ddm model = driftingIntegrator(0.0);
+  ModelPlanner planner(model, MpcOptions());
+  std::mt19937_64 rng(1);
+  const Eigen::VectorXd goal = Eigen::VectorXd::Constant(1, 0.4);
+  for (int step = 0; step < 3; ++step) {
+    const Plan plan = planner.solve(stateAt(model, goal), goal, &rng);
+    EXPECT_EQ(plan.torques, Eigen::MatrixXd::Zero(1, 15)) << "step " << step;
+    EXPECT_EQ(plan.cost, 0.0) << "step " << step;
+    EXPECT_EQ(plan.status, PlanStatus::kConverged) << "step " << step;
+  }
+}
+
 TEST(Planner, PlansASingleStep) {
   const Ddm model = randomModel({});
   MpcOptions options;
   options.horizon = 1;
-  Planner planner(model, options);
+  ModelPlanner planner(model, options);
   std::mt19937_64 rng(1);
   for (int step = 0; step < 2; ++step) {
     const Plan plan = planner.solve(randomHistory(model, 3), model.goalFeature(), &rng);
@@ -285,7 +299,7 @@ TEST(Planner, FailsWithoutTorqueWhereTheModelOverflows) {
   RandomModelOptions model_options;
   model_options.gain = 1e200;
   const Ddm model = randomModel(model_options);
-  Planner planner(model, MpcOptions());
+  ModelPlanner planner(model, MpcOptions());
   std::mt19937_64 rng(1);
   Plan plan;
   EXPECT_NO_THROW(plan = planner.solve(randomHistory(model, 3), model.goalFeature(), &rng));
@@ -294,7 +308,7 @@ TEST(Planner, FailsWithoutTorqueWhereTheModelOverflows) {
 
 TEST(Planner, FailsOnAStateThatIsNotANumberAndPlansAgainAfterwards) {
   const Ddm model = randomModel({});
-  Planner planner(model, MpcOptions());
+  ModelPlanner planner(model, MpcOptions());
   std::mt19937_64 rng(1);
   const History x = randomHistory(model, 3);
   EXPECT_NE(planner.solve(x, model.goalFeature(), &rng).status, PlanStatus::kFailed);

@@ -1,4 +1,4 @@
-// Cost J(U) of a plan in feature space, with its gradient in closed form.
+// Cost J(U) of a plan by a deep dynamical model, with its gradient in closed form.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,36 +8,29 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "ddm_mpc/plan_cost.h"
+
 namespace ddm {
 
-/// Cost of torques from the current state x_0 on (paper, Sec. 3.1):
+/// Features as f predicts them from the current state x_0 on (paper, Sec. 3.1):
 ///
-///   J(U) = sum_{k=1}^{K} |z_k - z_ref|^2 + lambda |u_{k-1}|^2,   z_{k+1} = f(z_k, u_k, z_{k-1},
-///   u_{k-1})
-///
-/// Deviation: the paper's sum runs over z_0 ... z_{K-1}, in which z_0 is a constant and u_{K-1}
-/// acts on nothing; here it runs over the K features that the K torques bring about.
-class PlanCost {
+///   z_{k+1} = f(z_k, u_k, z_{k-1}, u_{k-1})
+class DdmPlanCost : public PlanCost {
  public:
   /// @param model           outlives the cost
   /// @param horizon         K, steps
   /// @param control_weight  lambda [(N m)^-2]
-  PlanCost(const Ddm& model, int horizon, double control_weight);
+  DdmPlanCost(const Ddm& model, int horizon, double control_weight);
 
   /// The state to plan from and the feature to plan to.
   /// @throws std::invalid_argument for a wrong size or an empty history
   void setProblem(const History& x, const Eigen::VectorXd& goal_feature);
 
-  /// @param U    torques [N m]                        [torque_dim x K]
-  /// @param d_U  out: dJ/dU; null: not wanted [1/(N m)]   [torque_dim x K]
-  /// @return     J(U)
-  double evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U);
-
-  /// z_0 and the features predicted in the last evaluate()  [feature_dim x (K + 1)]
-  Eigen::MatrixXd predictedFeatures() const;
-
-  int horizon() const { return horizon_; }
-  int torqueDim() const { return f_.torqueDim(); }
+  double evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) override;
+  Eigen::MatrixXd predictedFeatures() const override;
+  Eigen::VectorXd goalFeature() const override { return goal_feature_; }
+  int horizon() const override { return horizon_; }
+  int torqueDim() const override { return f_.torqueDim(); }
 
  private:
   void fillRegressor(int step, const Eigen::Ref<const Eigen::MatrixXd>& U);

@@ -8,6 +8,7 @@
 #include <memory>
 #include <random>
 
+#include "ddm_mpc/ddm_plan_cost.h"
 #include "ddm_mpc/mpc_options.h"
 #include "ddm_mpc/planner.h"
 #include "ddm_mpc/policy.h"
@@ -30,6 +31,7 @@ class MpcPolicy : public Policy {
  private:
   std::shared_ptr<const Ddm> model_;
   History x_;
+  DdmPlanCost cost_;
   Planner planner_;
   std::mt19937_64 rng_;
 };

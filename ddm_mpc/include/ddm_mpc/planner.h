@@ -36,22 +36,21 @@ struct Plan {
 /// construction, u = max_torque tanh(v): clipping afterwards would bias the plan.
 class Planner {
  public:
-  /// @param model  outlives the planner
-  Planner(const Ddm& model, const MpcOptions& options);
+  /// @param cost  of plans from the current state on; outlives the planner
+  Planner(PlanCost* cost, const MpcOptions& options);
 
   /// Forgets the last plan: the next problem is the first of a trial.
   void clear() { last_v_.resize(0, 0); }
 
   /// Never throws for numerical trouble: the status tells.
-  /// @param x    current state; not empty
   /// @param rng  draws the random starts
-  Plan solve(const History& x, const Eigen::VectorXd& goal_feature, std::mt19937_64* rng);
+  Plan solve(std::mt19937_64* rng);
 
  private:
   Eigen::MatrixXd startOf(int start, std::mt19937_64* rng) const;
 
   MpcOptions options_;
-  PlanCost cost_;
+  PlanCost& cost_;
   Eigen::MatrixXd last_v_;  // unbounded variables of the last plan; empty: none
 };
 
