@@ -14,8 +14,8 @@ namespace {
 
 const std::set<std::string>& blocksOfThisRepository() {
   static const std::set<std::string> blocks = {
-      "plant", "camera", "sim",        "image",      "model",    "training",   "data_set",
-      "mpc",   "trial",  "evaluation", "experiment", "recorder", "controller", "run"};
+      "plant", "camera",     "sim",        "image",    "model",      "training", "data_set",  "mpc",
+      "trial", "evaluation", "experiment", "recorder", "controller", "run",      "prediction"};
   return blocks;
 }
 

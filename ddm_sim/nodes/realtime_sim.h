@@ -27,7 +27,7 @@ class RealtimeSim : public SimNode {
   void switchMotorOff();
   void onTick(const ros::WallTimerEvent& event);
 
-  Eigen::VectorXd held_;  ///< newest torque, zero when the motor is off [N m]
+  Eigen::VectorXd held_;  ///< newest torque, zero when the motor is off
   int steps_held_ = 0;    ///< steps taken under held_
   ros::WallTimer timer_;
 };

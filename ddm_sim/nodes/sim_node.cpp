@@ -65,8 +65,9 @@ void SimNode::onTorque(const ros::MessageEvent<ddm_msgs::Torque const>& event) {
   }
   std::ostringstream reason;
   reason << "torque refused: " << event.getPublisherName() << " published [" << torque.transpose()
-         << "] N m on " << torqueTopic() << ", it must be " << plant_->torqueDim()
-         << " finite number(s)";
+         << "] on " << torqueTopic() << ", it must be " << plant_->torqueDim()
+         << " finite number(s):";
+  for (const std::string& name : plant_->torqueNames()) reason << ' ' << name;
   ROS_ERROR_STREAM(reason.str());
   torqueRefused(message.header.stamp, reason.str());
 }

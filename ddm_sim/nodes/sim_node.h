@@ -53,7 +53,7 @@ class SimNode {
 
   std::unique_ptr<Plant> plant_;
   SimPublisher publisher_;
-  Eigen::VectorXd applied_;  ///< torque of the last step, zero at a start [N m]
+  Eigen::VectorXd applied_;  ///< torque of the last step, zero at a start
   ros::ServiceServer reset_server_;
   ros::Subscriber torque_sub_;
 };

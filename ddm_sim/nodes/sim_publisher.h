@@ -26,7 +26,7 @@ class SimPublisher {
   void publishClock(const ros::Time& stamp) const;
 
   /// The present state of the plant: ground truth, then the image, with the same stamp.
-  /// @param applied  torque of the step that led here [N m]
+  /// @param applied  torque of the step that led here
   void publishFrame(const Eigen::VectorXd& applied, const ros::Time& stamp) const;
 
  private:

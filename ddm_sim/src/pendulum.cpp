@@ -5,7 +5,6 @@
 #include <array>
 #include <boost/numeric/odeint.hpp>
 #include <cmath>
-#include <stdexcept>
 
 namespace ddm {
 namespace {
@@ -17,10 +16,7 @@ constexpr double kTolerance = 1e-12;
 
 /// `plant` unchanged, so that the checks precede the first use of its values.
 const PlantOptions& checked(const PlantOptions& plant, const CameraOptions& camera) {
-  std::string all;
-  for (const std::string& problem : plant.problems()) all += "\n- " + problem;
-  for (const std::string& problem : camera.problems()) all += "\n- " + problem;
-  if (!all.empty()) throw std::invalid_argument("invalid options:" + all);
+  requireNone(problemsOf(plant, camera));
   return plant;
 }
 
@@ -37,6 +33,7 @@ double secondWeight(double x) {
 Pendulum::Pendulum(const PlantOptions& plant, const CameraOptions& camera)
     : Plant(Eigen::Vector2d::Zero(), 1, checked(plant, camera).dt, plant.max_torque,
             plant.start_std),
+      length_(plant.length),
       inertia_(plant.mass * plant.length * plant.length / 3.0),
       friction_(plant.friction),
       gravity_torque_(plant.mass * plant.gravity * plant.length / 2.0),
@@ -79,6 +76,10 @@ double Pendulum::distanceToGoal(const Eigen::VectorXd& state) const {
 
 std::vector<std::uint8_t> Pendulum::draw(const Eigen::VectorXd& state) const {
   return renderer_.render(state[0]);
+}
+
+Eigen::VectorXd Pendulum::locate(const Eigen::VectorXd& state) const {
+  return length_ * Eigen::Vector2d(std::sin(state[0]), -std::cos(state[0]));
 }
 
 }  // namespace ddm

@@ -66,6 +66,11 @@ std::vector<std::uint8_t> Plant::render(const Eigen::VectorXd& state) const {
   return draw(state);
 }
 
+Eigen::VectorXd Plant::visiblePosition(const Eigen::VectorXd& state) const {
+  requireFinite("state", state, state_.size());
+  return locate(state);
+}
+
 std::mt19937_64 startStream(std::uint64_t seed, std::uint32_t trial, bool evaluation) {
   std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
                          trial, evaluation ? 1U : 0U, kStartRole};

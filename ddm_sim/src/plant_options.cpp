@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <sstream>
+#include <stdexcept>
 
 namespace ddm {
 namespace {
@@ -43,7 +44,7 @@ std::string joined(const std::vector<std::string>& words) {
 
 }  // namespace
 
-std::vector<std::string> plantTypes() { return {"pendulum"}; }
+std::vector<std::string> plantTypes() { return {"pendulum", "moving_tile"}; }
 
 std::vector<std::string> PlantOptions::problems() const {
   const std::vector<std::string> types = plantTypes();
@@ -54,6 +55,9 @@ std::vector<std::string> PlantOptions::problems() const {
   plant.require(positive(length), "length", "be > 0 and finite", length);
   plant.require(positive(mass), "mass", "be > 0 and finite", mass);
   plant.require(notNegative(friction), "friction", "be >= 0 and finite", friction);
+  plant.require(positive(tile_width), "tile_width", "be > 0 and finite", tile_width);
+  plant.require(tile_softness >= 1.0 && positive(tile_softness), "tile_softness",
+                "be >= 1 and finite", tile_softness);
   plant.require(positive(max_torque), "max_torque", "be > 0 and finite", max_torque);
   // Stamps count whole nanoseconds, and one below a millisecond is none that a camera can keep.
   plant.require(dt >= 1e-3 && dt <= 10.0, "dt", "lie in [0.001, 10] s", dt);
@@ -75,6 +79,19 @@ std::vector<std::string> SimOptions::problems() const {
   sim.require(watchdog >= 0.1 && watchdog <= 86400.0, "watchdog", "lie in [0.1, 86400] s",
               watchdog);
   return sim.problems();
+}
+
+std::vector<std::string> problemsOf(const PlantOptions& plant, const CameraOptions& camera) {
+  std::vector<std::string> problems = plant.problems();
+  for (const std::string& problem : camera.problems()) problems.push_back(problem);
+  return problems;
+}
+
+void requireNone(const std::vector<std::string>& problems) {
+  if (problems.empty()) return;
+  std::string all;
+  for (const std::string& problem : problems) all += "\n- " + problem;
+  throw std::invalid_argument("invalid options:" + all);
 }
 
 }  // namespace ddm

@@ -14,9 +14,7 @@ RodRenderer::RodRenderer(const CameraOptions& options, double rod_length)
       rod_length_(rod_length),
       rod_half_width_(options.rod_half_width),
       edge_softness_(options.edge_softness) {
-  std::string all;
-  for (const std::string& problem : options.problems()) all += "\n- " + problem;
-  if (!all.empty()) throw std::invalid_argument("invalid options:" + all);
+  requireNone(options.problems());
   if (!(rod_length > 0.0) || !std::isfinite(rod_length)) {
     throw std::invalid_argument("RodRenderer: rod_length must be > 0 and finite, got " +
                                 std::to_string(rod_length));

@@ -188,6 +188,25 @@ TEST(Pendulum, MeasuresTheDistanceToTheGoalTheShortWayRound) {
   EXPECT_NEAR(pendulum.goalError(Eigen::Vector2d(41 * kPi - 0.2, 0.0)), 0.2, 1e-13);
 }
 
+TEST(Pendulum, LocatesTheTipOfTheRod) {
+  PlantOptions options;
+  options.length = 2.0;
+  const Pendulum pendulum(options, CameraOptions());
+  const auto tip = [&](double angle) {
+    return pendulum.visiblePosition(Eigen::Vector2d(angle, 7.0));
+  };
+  EXPECT_LT((tip(0.0) - Eigen::Vector2d(0.0, -2.0)).norm(), 1e-15);     // hangs
+  EXPECT_LT((tip(kPi / 2) - Eigen::Vector2d(2.0, 0.0)).norm(), 1e-15);  // points right
+  EXPECT_LT((tip(kPi) - Eigen::Vector2d(0.0, 2.0)).norm(), 1e-15);      // up
+  EXPECT_LT((tip(0.4) - tip(0.4 - 2 * kPi)).norm(), 1e-14);             // the picture is the same
+}
+
+TEST(Pendulum, NamesStateAndTorqueWithTheirUnits) {
+  const Pendulum pendulum{PlantOptions(), CameraOptions()};
+  EXPECT_EQ(pendulum.stateNames(), (std::vector<std::string>{"angle_rad", "rate_rad_per_s"}));
+  EXPECT_EQ(pendulum.torqueNames(), std::vector<std::string>{"torque_nm"});
+}
+
 TEST(Pendulum, RefusesOptionsWithAllTheirProblemsAtOnce) {
   PlantOptions plant;
   plant.mass = 0.0;

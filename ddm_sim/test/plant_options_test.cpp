@@ -82,8 +82,9 @@ TEST(PlantOptions, ReportEachProblemWithKeyRuleAndValue) {
   PlantOptions options;
   options.length = -2.5;
   options.type = "cart";
-  const std::vector<std::string> expected{"plant/type must be one of: pendulum, got \"cart\"",
-                                          "plant/length must be > 0 and finite, got -2.5"};
+  const std::vector<std::string> expected{
+      "plant/type must be one of: pendulum, moving_tile, got \"cart\"",
+      "plant/length must be > 0 and finite, got -2.5"};
   EXPECT_EQ(options.problems(), expected);
 }
 
@@ -104,12 +105,42 @@ TEST(PlantFactory, RefusesAnUnknownTypeAndListsTheKnownOnes) {
     makePlant(options, CameraOptions());
     FAIL() << "a cart was made";
   } catch (const std::invalid_argument& e) {
-    EXPECT_NE(std::string(e.what()).find("pendulum"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("pendulum, moving_tile"), std::string::npos) << e.what();
   }
 }
 
+TEST(PlantFactory, ReportsAnUnknownTypeTogetherWithAllOtherProblems) {
+  PlantOptions options;
+  options.type = "cart";
+  options.tile_width = 0.0;
+  CameraOptions camera;
+  camera.size = 0;
+  try {
+    makePlant(options, camera);
+    FAIL() << "a cart was made";
+  } catch (const std::invalid_argument& e) {
+    for (const char* key : {"plant/type", "plant/tile_width", "camera/size"}) {
+      EXPECT_NE(std::string(e.what()).find(key), std::string::npos) << e.what();
+    }
+  }
+}
+
+TEST(PlantFactory, MakesEveryTypeItKnows) {
+  std::set<std::vector<std::string>> states;
+  for (const std::string& type : plantTypes()) {
+    PlantOptions options;
+    options.type = type;
+    states.insert(makePlant(options, CameraOptions())->stateNames());
+  }
+  const std::set<std::vector<std::string>> expected{{"angle_rad", "rate_rad_per_s"},
+                                                    {"x_px", "y_px"}};
+  EXPECT_EQ(states, expected);
+}
+
 TEST(Config, ManualSaysWhatTheStructsSay) {
-  auto reader = ParamReader::fromFiles({kConfig + "pendulum.yaml", kConfig + "sim.yaml"});
+  // The moving tile's first, so that of its values the one that it explains alone stays.
+  auto reader = ParamReader::fromFiles(
+      {kConfig + "moving_tile.yaml", kConfig + "pendulum.yaml", kConfig + "sim.yaml"});
   const auto plant = reader.read<PlantOptions>("plant");
   const auto camera = reader.read<CameraOptions>("camera");
   const auto sim = reader.read<SimOptions>("sim");
@@ -119,9 +150,14 @@ TEST(Config, ManualSaysWhatTheStructsSay) {
   EXPECT_EQ(yaml(sim), yaml(SimOptions()));
 }
 
-TEST(Config, ManualNamesEveryKey) {
+TEST(Config, ManualNamesEveryKeyOnce) {
   const YAML::Node sim = YAML::LoadFile(kConfig + "sim.yaml");
-  EXPECT_EQ(keys(YAML::LoadFile(kConfig + "pendulum.yaml")["plant"]), keys(PlantOptions()));
+  std::set<std::string> explained = keys(YAML::LoadFile(kConfig + "pendulum.yaml")["plant"]);
+  EXPECT_EQ(explained.count("tile_width"), 0U);  // moving_tile.yaml explains it
+  explained.insert("tile_width");
+  explained.insert("tile_softness");
+  EXPECT_EQ(explained, keys(PlantOptions()));
+  EXPECT_EQ(keys(YAML::LoadFile(kConfig + "moving_tile.yaml")["plant"]).count("tile_width"), 1U);
   EXPECT_EQ(keys(sim["camera"]), keys(CameraOptions()));
   EXPECT_EQ(keys(sim["sim"]), keys(SimOptions()));
 }
@@ -136,11 +172,34 @@ TEST(Config, PendulumGravityIsTheClassicalHardOne) {
   EXPECT_EQ(plant.dt, 0.1);
 }
 
+TEST(Config, MovingTileIsThatOfTheExperiments) {
+  auto reader = ParamReader::fromFiles({kConfig + "moving_tile.yaml"});
+  const auto plant = reader.read<PlantOptions>("plant");
+  ASSERT_NO_THROW(reader.requireValid());
+  EXPECT_EQ(plant.type, "moving_tile");
+  EXPECT_EQ(plant.tile_width, 9.0);
+  EXPECT_EQ(plant.tile_softness, 8.0);
+  EXPECT_EQ(plant.max_torque, 5.0);
+  EXPECT_EQ(plant.dt, 0.2);
+  EXPECT_EQ(plant.start_std, 5.0);
+}
+
 TEST(Config, TellsALearnerTheTorqueLimitOfTheSamePlant) {
-  const YAML::Node config = YAML::LoadFile(kConfig + "pendulum_gravity.yaml");
-  for (const char* block : {"mpc", "model"}) {
-    EXPECT_EQ(config[block]["max_torque"].as<double>(), config["plant"]["max_torque"].as<double>());
+  for (const char* name : {"pendulum_gravity.yaml", "moving_tile.yaml"}) {
+    const YAML::Node config = YAML::LoadFile(kConfig + name);
+    for (const char* block : {"mpc", "model"}) {
+      EXPECT_EQ(config[block]["max_torque"].as<double>(),
+                config["plant"]["max_torque"].as<double>())
+          << name << ": " << block;
+    }
   }
+}
+
+TEST(Config, TellsALearnerTheNumberOfTorquesOfTheMovingTile) {
+  auto reader = ParamReader::fromFiles({kConfig + "moving_tile.yaml"});
+  const auto plant = makePlant(reader.read<PlantOptions>("plant"), CameraOptions());
+  const YAML::Node config = YAML::LoadFile(kConfig + "moving_tile.yaml");
+  EXPECT_EQ(config["controller"]["torque_dim"].as<int>(), plant->torqueDim());
 }
 
 }  // namespace

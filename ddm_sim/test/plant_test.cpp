@@ -86,6 +86,23 @@ TEST(Plant, RefusesToRenderOrJudgeAStateThatIsNotFinite) {
   EXPECT_THROW(plant->goalError(Eigen::VectorXd::Zero(1)), std::invalid_argument);
 }
 
+TEST(Plant, RefusesToLocateAStateOfAnotherSizeOrNotFinite) {
+  const auto plant = pendulum();
+  EXPECT_THROW(plant->visiblePosition(Eigen::Vector2d(kNaN, 0.0)), std::invalid_argument);
+  EXPECT_THROW(plant->visiblePosition(Eigen::VectorXd::Zero(1)), std::invalid_argument);
+}
+
+TEST(Plant, HasAsManyNamesAsComponents) {
+  for (const std::string& type : plantTypes()) {
+    PlantOptions options;
+    options.type = type;
+    const auto plant = makePlant(options, CameraOptions());
+    EXPECT_EQ(static_cast<int>(plant->stateNames().size()), plant->stateDim()) << type;
+    EXPECT_EQ(static_cast<int>(plant->torqueNames().size()), plant->torqueDim()) << type;
+    EXPECT_LE(static_cast<int>(plant->jointNames().size()), plant->stateDim()) << type;
+  }
+}
+
 TEST(Plant, DrawsStartStatesWithTheGivenMeanAndSpread) {
   const auto plant = pendulum();
   std::mt19937_64 engine = startStream(1, 0, false);

@@ -56,7 +56,13 @@ TEST_F(SimNodeParams, ReportsTheProblemsOfAllBlocksAtOnce) {
 
 TEST_F(SimNodeParams, RefusesAnUnknownPlantAndListsTheKnownOnes) {
   ros::param::set("/bad_sim/plant/type", "cart");
-  expectRefused({"plant/type must be one of: pendulum", "cart"});
+  expectRefused({"plant/type must be one of: pendulum, moving_tile", "cart"});
+}
+
+TEST_F(SimNodeParams, RefusesATileThatFillsThePicture) {
+  ros::param::set("/bad_sim/plant/type", "moving_tile");
+  ros::param::set("/bad_sim/plant/tile_width", 51.0);
+  expectRefused({"plant/tile_width must be smaller than camera/size (51 pixels), got 51"});
 }
 
 TEST_F(SimNodeParams, RefusesAValueOfAnotherType) {

@@ -35,12 +35,13 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// Rows of the trajectory: step, time, angle, rate. Checks the header.
-std::vector<std::vector<double>> rows(const std::string& csv) {
+/// Rows of the trajectory: step, time, two components of the state. Checks the header.
+std::vector<std::vector<double>> rows(
+    const std::string& csv, const std::string& header = "step,time_s,angle_rad,rate_rad_per_s") {
   std::istringstream lines(csv);
   std::string line;
   std::getline(lines, line);
-  EXPECT_EQ(line, "step,time_s,angle_rad,rate_rad_per_s");
+  EXPECT_EQ(line, header);
   std::vector<std::vector<double>> out;
   while (std::getline(lines, line)) {
     std::istringstream cells(line);
@@ -50,6 +51,15 @@ std::vector<std::vector<double>> rows(const std::string& csv) {
     out.push_back(row);
   }
   return out;
+}
+
+const char kTileHeader[] = "step,time_s,x_px,y_px";
+
+PlantOptions tileOptions() {
+  PlantOptions options;
+  options.type = "moving_tile";
+  options.max_torque = 5.0;
+  return options;
 }
 
 class Simulate : public ::testing::Test {
@@ -123,6 +133,70 @@ TEST_F(Simulate, KnowsThePlantWithGravity) {
   EXPECT_LT(rows(result.out).at(1)[2], 0.95);  // it falls
 }
 
+TEST_F(Simulate, TakesAWholeStartStateInOneOption) {
+  for (const char* options : {"--start -0.5,2", "--start=-5e-1,2", "--angle -0.5 --rate 2"}) {
+    const Result result = run(std::string("--plant pendulum ") + options, "torque_nm\n");
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.out, "step,time_s,angle_rad,rate_rad_per_s\n0,0,-0.5,2\n") << options;
+  }
+}
+
+TEST_F(Simulate, WritesTheTrajectoryAndThePicturesOfTheMovingTile) {
+  const fs::path frames = folder_ / "frames";
+  const Result result = run("--plant moving_tile --start 44.25,6 --frames " + frames.string(),
+                            "dx_px,dy_px\n4,-0.5\n-100,2\n0,-5\n");  // bounces, saturates, bounces
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto table = rows(result.out, kTileHeader);
+  const std::vector<std::vector<double>> expected{
+      {0, 0, 44.25, 6}, {1, 0.2, 44.75, 5.5}, {2, 0.4, 39.75, 7.5}, {3, 0.2 * 3, 39.75, 6.5}};
+  EXPECT_EQ(table, expected);
+  const auto plant = makePlant(tileOptions(), CameraOptions());
+  for (int t = 0; t < 4; ++t) {
+    const fs::path path = frames / ("frame_000" + std::to_string(t) + ".png");
+    const cv::Mat image = cv::imread(path.string(), cv::IMREAD_UNCHANGED);
+    ASSERT_EQ(image.type(), CV_8UC1) << path;
+    const std::vector<std::uint8_t> grey(image.begin<std::uint8_t>(), image.end<std::uint8_t>());
+    EXPECT_EQ(grey, plant->render(Eigen::Vector2d(table.at(t)[2], table.at(t)[3]))) << path;
+  }
+}
+
+TEST_F(Simulate, StartsTheMovingTileInTheMiddle) {
+  const Result result = run("--plant moving_tile", "dx_px,dy_px\n");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out, "step,time_s,x_px,y_px\n0,0,25.5,25.5\n");
+}
+
+TEST_F(Simulate, RefusesAnAngleOfAPlantThatHasNone) {
+  for (const char* option : {"--angle", "--rate"}) {
+    for (const char* value : {" 0", " 1"}) {  // 0 too: it would mean the upper left corner
+      const Result result =
+          run(std::string("--plant moving_tile ") + option + value, "dx_px,dy_px\n");
+      EXPECT_EQ(result.exit_code, 2) << option << value;
+      EXPECT_TRUE(contains(result.err, std::string("option ") + option +
+                                           " is for a pendulum; the state of this plant is "
+                                           "x_px,y_px, use --start"))
+          << result.err;
+      EXPECT_EQ(result.out, "");
+    }
+  }
+}
+
+TEST_F(Simulate, RefusesTheTorquesOfAnotherPlant) {
+  const Result result = run("--plant moving_tile", "torque_nm\n1\n");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(contains(result.err, "line 1: must be the header dx_px,dy_px")) << result.err;
+  EXPECT_EQ(result.out, "");
+}
+
+TEST_F(Simulate, RefusesATileThatFillsThePicture) {
+  const std::string path = (folder_ / "large.yaml").string();
+  std::ofstream(path) << "plant: {tile_width: 51}\n";
+  const Result result = run("--plant moving_tile --config " + path, "dx_px,dy_px\n");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(contains(result.err, "plant/tile_width")) << result.err;
+  EXPECT_TRUE(contains(result.err, "camera/size")) << result.err;
+}
+
 TEST_F(Simulate, WritesOnePictureARow) {
   const fs::path frames = folder_ / "new" / "frames";
   const Result result =
@@ -155,7 +229,8 @@ TEST_F(Simulate, LetsALaterConfigurationFileWin) {
 TEST_F(Simulate, PrintsItsOptionsOnRequest) {
   const Result result = run("--help", "");
   EXPECT_EQ(result.exit_code, 0);
-  for (const char* option : {"--plant", "--angle", "--rate", "--frames", "--config", "saturates"}) {
+  for (const char* option :
+       {"--plant", "--start", "--angle", "--rate", "--frames", "--config", "saturates"}) {
     EXPECT_TRUE(contains(result.out, option)) << option;
   }
 }
@@ -164,7 +239,7 @@ TEST_F(Simulate, ListsTheKnownPlantsWhenThePlantIsUnknown) {
   for (const char* plant : {"cart", "sim", "../config/pendulum", "''"}) {
     const Result result = run(std::string("--plant ") + plant, "torque_nm\n");
     EXPECT_EQ(result.exit_code, 2) << plant;
-    EXPECT_TRUE(contains(result.err, "pendulum, pendulum_gravity")) << result.err;
+    EXPECT_TRUE(contains(result.err, "moving_tile, pendulum, pendulum_gravity")) << result.err;
     EXPECT_EQ(result.out, "");
   }
 }
@@ -181,6 +256,13 @@ TEST_F(Simulate, RefusesAWrongCommandLineAndNamesTheWord) {
       {"--plant pendulum --rate 1m", "1m"},
       {"--plant pendulum --angle ''", "--angle"},
       {"--plant pendulum --angle 1 --angle 2", "--angle"},
+      {"--plant pendulum --start", "--start"},
+      {"--plant pendulum --start ''", "--start"},
+      {"--plant pendulum --start 1", "2 finite number(s) (angle_rad,rate_rad_per_s), got \"1\""},
+      {"--plant pendulum --start 1,2,3", "got \"1,2,3\""},
+      {"--plant pendulum --start 1,nan", "got \"1,nan\""},
+      {"--plant pendulum --start 1,2 --angle 1", "leave --angle and --rate out"},
+      {"--plant pendulum --rate 0 --start 1,2", "leave --angle and --rate out"},
       {"--plant pendulum trajectory.csv", "trajectory.csv"}};
   for (const auto& [options, word] : cases) {
     const Result result = run(options, "torque_nm\n1\n");

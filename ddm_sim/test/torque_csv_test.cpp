@@ -10,19 +10,33 @@
 namespace ddm {
 namespace {
 
+/// Torques of a plant with one motor.
 std::vector<double> read(const std::string& text) {
   std::istringstream input(text);
-  return readTorques(input);
+  std::vector<double> values;
+  for (const Eigen::VectorXd& torque : readTorques(input, {"torque_nm"})) {
+    EXPECT_EQ(torque.size(), 1);
+    values.push_back(torque[0]);
+  }
+  return values;
 }
 
-std::string refusal(const std::string& text) {
+std::vector<Eigen::VectorXd> readPairs(const std::string& text) {
+  std::istringstream input(text);
+  return readTorques(input, {"dx_px", "dy_px"});
+}
+
+template <class Reader>
+std::string refusal(const std::string& text, const Reader& reader) {
   try {
-    read(text);
+    reader(text);
   } catch (const std::runtime_error& e) {
     return e.what();
   }
   return "";
 }
+
+std::string refusal(const std::string& text) { return refusal(text, read); }
 
 TEST(TorqueCsv, ReadsOneValueALine) {
   EXPECT_EQ(read("torque_nm\n1\n-2.5e-1\n+.5\n"), (std::vector<double>{1.0, -0.25, 0.5}));
@@ -55,6 +69,39 @@ TEST(TorqueCsv, RefusesWhatIsNoFiniteNumberAndNamesTheLineAndTheValue) {
     EXPECT_NE(message.find("line 3"), std::string::npos) << bad << ": " << message;
     EXPECT_NE(message.find("\"" + std::string(bad) + "\""), std::string::npos) << message;
   }
+}
+
+TEST(TorqueCsv, ReadsARowOfNumbersForAPlantWithSeveralMotors) {
+  const auto torques = readPairs("dx_px,dy_px\n1,-2\n 0.5 ,\t3e-1\r\n\n");
+  ASSERT_EQ(torques.size(), 2U);
+  EXPECT_EQ(torques[0], Eigen::Vector2d(1.0, -2.0));
+  EXPECT_EQ(torques[1], Eigen::Vector2d(0.5, 0.3));
+}
+
+TEST(TorqueCsv, RefusesARowWithMoreOrFewerNumbersAndSaysHowMany) {
+  for (const char* bad : {"1", "1,", ",1", "1,2,3", "1,2,", "1;2", "1 2", "1,,2", "1,x", "nan,1"}) {
+    const std::string message = refusal("dx_px,dy_px\n1,2\n" + std::string(bad) + "\n", readPairs);
+    EXPECT_NE(message.find("line 3: a torque must be 2 finite numbers (dx_px,dy_px), got \"" +
+                           std::string(bad) + "\""),
+              std::string::npos)
+        << bad << ": " << message;
+  }
+}
+
+TEST(TorqueCsv, RefusesTheHeaderOfAnotherPlant) {
+  for (const char* text : {"torque_nm\n1\n", "dy_px,dx_px\n1,2\n", "dx_px\n1\n"}) {
+    EXPECT_NE(refusal(text, readPairs).find("line 1: must be the header dx_px,dy_px, got \""),
+              std::string::npos)
+        << text;
+  }
+}
+
+TEST(TorqueCsv, LeavesTheValuesAloneIfOneIsBad) {
+  Eigen::VectorXd values = Eigen::Vector2d(7.0, 8.0);
+  EXPECT_FALSE(parseNumbers("1,x", 2, &values));
+  EXPECT_EQ(values, Eigen::Vector2d(7.0, 8.0));
+  EXPECT_TRUE(parseNumbers("1,-2", 2, &values));
+  EXPECT_EQ(values, Eigen::Vector2d(1.0, -2.0));
 }
 
 TEST(TorqueCsv, RefusesAnEmptyLineBetweenValues) {

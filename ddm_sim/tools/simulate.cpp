@@ -10,6 +10,7 @@
 #include <iostream>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -30,11 +31,13 @@ constexpr int kExitUsage = 2;
 constexpr char kAbout[] =
     "Moves a plant under given torques: rosrun ddm_sim simulate --plant NAME [options]\n"
     "    < torques.csv > trajectory.csv\n\n"
-    "Input:  the header torque_nm, then one torque [N m] a line, N of them. A torque beyond the\n"
-    "        plant's max_torque saturates, as the motor does.\n"
-    "Output: the header step,time_s,angle_rad,rate_rad_per_s, then N + 1 rows. Row 0 is the "
-    "start;\n"
-    "        the angle is not wrapped. Nothing is written if any of the input is wrong.\n"
+    "Input:  a header, then one torque a line, N of them. The header is torque_nm for a pendulum\n"
+    "        [N m] and dx_px,dy_px for a moving tile [pixels]. A torque beyond the plant's\n"
+    "        max_torque saturates, as the motor does.\n"
+    "Output: a header, then N + 1 rows; row 0 is the start. The header is\n"
+    "        step,time_s,angle_rad,rate_rad_per_s for a pendulum, whose angle is not wrapped, and\n"
+    "        step,time_s,x_px,y_px for a moving tile. Nothing is written if any of the input is\n"
+    "        wrong.\n"
     "Exit:   0 done, 1 bad data, 2 bad options.\n\n"
     "Options";
 
@@ -45,13 +48,16 @@ struct UsageError : std::runtime_error {
 
 struct Arguments {
   std::string plant;
-  double angle = 0.0;  ///< [rad]
-  double rate = 0.0;   ///< [rad/s]
-  std::string frames;  ///< folder, empty = none
+  std::string start;            ///< whole start state, empty = not given
+  std::optional<double> angle;  ///< [rad]
+  std::optional<double> rate;   ///< [rad/s]
+  std::string frames;           ///< folder, empty = none
   std::vector<std::string> configs;
 };
 
-double finiteOption(const po::variables_map& given, const std::string& name) {
+/// @return nothing if the user did not give it
+std::optional<double> finiteOption(const po::variables_map& given, const std::string& name) {
+  if (given[name].defaulted()) return std::nullopt;
   double value = 0.0;
   const auto& text = given[name].as<std::string>();
   if (!parseNumber(text, &value)) {
@@ -66,14 +72,16 @@ po::options_description describedOptions() {
   auto add = options.add_options();
   add("help", "print this and exit");
   add("plant", po::value<Text>()->value_name("NAME"), "a file config/NAME.yaml of this package");
+  add("start", po::value<Text>()->value_name("V1,V2,..."),
+      "start state, taken exactly: the columns of the output after time_s; without it a pendulum "
+      "hangs at rest and a tile is in the middle");
   add("angle", po::value<Text>()->value_name("RAD")->default_value("0"),
-      "start angle [rad], taken exactly; 0 hangs, counter-clockwise is positive");
+      "pendulum: start angle [rad], taken exactly; 0 hangs, counter-clockwise is positive");
   add("rate", po::value<Text>()->value_name("RAD_PER_S")->default_value("0"),
-      "start rate [rad/s], taken exactly");
+      "pendulum: start rate [rad/s], taken exactly");
   add("frames", po::value<Text>()->value_name("DIR"),
       "also write one picture a row: DIR/frame_0000.png, ... The folder is made if need be; "
-      "pictures "
-      "of these names in it are replaced");
+      "pictures of these names in it are replaced");
   add("config", po::value<std::vector<Text>>()->value_name("FILE"),
       "YAML file whose blocks `plant` and `camera` differ from the plant's own; repeatable, later "
       "wins");
@@ -106,6 +114,13 @@ bool parseArguments(int argc, char** argv, Arguments* arguments) {
   arguments->plant = given["plant"].as<std::string>();
   arguments->angle = finiteOption(given, "angle");
   arguments->rate = finiteOption(given, "rate");
+  if (given.count("start") != 0) {
+    if (arguments->angle || arguments->rate) {
+      throw UsageError("option --start gives the whole state; leave --angle and --rate out");
+    }
+    arguments->start = given["start"].as<std::string>();
+    if (arguments->start.empty()) throw UsageError("option --start must not be empty");
+  }
   if (given.count("frames") != 0) arguments->frames = given["frames"].as<std::string>();
   if (given.count("config") != 0) {
     arguments->configs = given["config"].as<std::vector<std::string>>();
@@ -165,21 +180,53 @@ void writeFrame(const Plant& plant, const std::string& folder, std::size_t row) 
 }
 
 std::string csvRow(const Plant& plant, std::size_t row) {
-  char text[128];
-  std::snprintf(text, sizeof(text), "%zu,%.17g,%.17g,%.17g\n", row,
-                static_cast<double>(row) * plant.dt(), plant.state()[0], plant.state()[1]);
-  return text;
+  const auto number = [](double value) {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.17g", value);
+    return "," + std::string(text);
+  };
+  std::string text = std::to_string(row) + number(static_cast<double>(row) * plant.dt());
+  for (Eigen::Index i = 0; i < plant.state().size(); ++i) text += number(plant.state()[i]);
+  return text + "\n";
+}
+
+/// Sets the component `name` of the state, if a value was given for it by `option`.
+void setComponent(const std::string& option, const std::optional<double>& value,
+                  const std::string& name, Plant* plant) {
+  if (!value) return;
+  const std::vector<std::string> names = plant->stateNames();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    throw UsageError("option " + option + " is for a pendulum; the state of this plant is " +
+                     joinedByCommas(names) + ", use --start");
+  }
+  Eigen::VectorXd state = plant->state();
+  state[found - names.begin()] = *value;
+  plant->setState(state);
+}
+
+void setStart(const Arguments& arguments, Plant* plant) {
+  setComponent("--angle", arguments.angle, "angle_rad", plant);
+  setComponent("--rate", arguments.rate, "rate_rad_per_s", plant);
+  if (arguments.start.empty()) return;
+  Eigen::VectorXd state;
+  if (!parseNumbers(arguments.start, plant->stateDim(), &state)) {
+    throw UsageError("option --start must be " + std::to_string(plant->stateDim()) +
+                     " finite number(s) (" + joinedByCommas(plant->stateNames()) + "), got \"" +
+                     arguments.start + "\"");
+  }
+  plant->setState(state);
 }
 
 void simulate(const Arguments& arguments) {
   const std::unique_ptr<Plant> plant = configuredPlant(arguments);
-  plant->setState(Eigen::Vector2d(arguments.angle, arguments.rate));
-  const std::vector<double> torques = readTorques(std::cin);
+  setStart(arguments, plant.get());
+  const std::vector<Eigen::VectorXd> torques = readTorques(std::cin, plant->torqueNames());
   if (!arguments.frames.empty()) fs::create_directories(arguments.frames);
 
-  std::string trajectory = "step,time_s,angle_rad,rate_rad_per_s\n";
+  std::string trajectory = "step,time_s," + joinedByCommas(plant->stateNames()) + "\n";
   for (std::size_t row = 0; row <= torques.size(); ++row) {
-    if (row > 0) plant->step(Eigen::VectorXd::Constant(1, torques[row - 1]));
+    if (row > 0) plant->step(torques[row - 1]);
     trajectory += csvRow(*plant, row);
     if (!arguments.frames.empty()) writeFrame(*plant, arguments.frames, row);
   }

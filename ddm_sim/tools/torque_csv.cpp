@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "torque_csv.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <stdexcept>
@@ -9,7 +10,6 @@
 namespace ddm {
 namespace {
 
-constexpr char kHeader[] = "torque_nm";
 constexpr char kBlanks[] = " \t\r";
 
 std::string trimmed(const std::string& text) {
@@ -41,13 +41,41 @@ bool parseNumber(const std::string& text, double* value) {
   return true;
 }
 
-std::vector<double> readTorques(std::istream& input) {
-  std::string line;
-  if (!std::getline(input, line) || trimmed(line) != kHeader) {
-    throw std::runtime_error("standard input, line 1: must be the header " + std::string(kHeader) +
-                             ", got " + (line.empty() ? "nothing" : quoted(trimmed(line))));
+bool parseNumbers(const std::string& text, Eigen::Index count, Eigen::VectorXd* values) {
+  Eigen::VectorXd numbers(count);
+  std::size_t begin = 0;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    if (begin > text.size()) return false;  // fewer cells than that
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    if (!parseNumber(text.substr(begin, end - begin), &numbers[i])) return false;
+    begin = end + 1;
   }
-  std::vector<double> torques;
+  if (begin <= text.size()) return false;  // more
+  *values = numbers;
+  return true;
+}
+
+std::string joinedByCommas(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : ",") + word;
+  return out;
+}
+
+std::vector<Eigen::VectorXd> readTorques(std::istream& input,
+                                         const std::vector<std::string>& names) {
+  const std::string header = joinedByCommas(names);
+  const auto size = static_cast<Eigen::Index>(names.size());
+  const auto fail = [](std::size_t number, const std::string& what) {
+    throw std::runtime_error("standard input, line " + std::to_string(number) + ": " + what);
+  };
+  std::string line;
+  if (!std::getline(input, line) || trimmed(line) != header) {
+    fail(1, "must be the header " + header + ", got " +
+                (line.empty() ? "nothing" : quoted(trimmed(line))));
+  }
+  const std::string rule =
+      size == 1 ? "one finite number" : std::to_string(size) + " finite numbers";
+  std::vector<Eigen::VectorXd> torques;
   std::size_t number = 1;
   std::size_t first_empty = 0;
   while (std::getline(input, line)) {
@@ -57,14 +85,11 @@ std::vector<double> readTorques(std::istream& input) {
       continue;
     }
     if (first_empty != 0) {
-      throw std::runtime_error("standard input, line " + std::to_string(first_empty) +
-                               ": is empty; remove it or write a torque [N m], 0 for none");
+      fail(first_empty, "is empty; remove it or write a torque (" + header + "), 0 for none");
     }
-    double torque = 0.0;
-    if (!parseNumber(line, &torque)) {
-      throw std::runtime_error("standard input, line " + std::to_string(number) +
-                               ": a torque must be one finite number [N m], got " +
-                               quoted(trimmed(line)));
+    Eigen::VectorXd torque;
+    if (!parseNumbers(line, size, &torque)) {
+      fail(number, "a torque must be " + rule + " (" + header + "), got " + quoted(trimmed(line)));
     }
     torques.push_back(torque);
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
 #include <istream>
 #include <string>
 #include <vector>
@@ -13,10 +14,19 @@ namespace ddm {
 /// @return false, with `value` unchanged, if `text` is anything else
 bool parseNumber(const std::string& text, double* value);
 
-/// Torques of a run: the header `torque_nm`, then one value a line. Lines may end in CR LF, and
-/// empty lines at the end do not count.
-/// @return torques [N m]                                            [lines after the header]
+/// Finite decimal numbers with commas between them; each as parseNumber() takes it.
+/// @return false, with `values` unchanged, if there are not exactly `count` or one is anything else
+bool parseNumbers(const std::string& text, Eigen::Index count, Eigen::VectorXd* values);
+
+/// `words` with commas between them, as a header has them.
+std::string joinedByCommas(const std::vector<std::string>& words);
+
+/// Torques of a run: a header, then one torque a line. Lines may end in CR LF, and empty lines at
+/// the end do not count.
+/// @param names  of the components; joined by commas, the header that must stand there
+/// @return torques, each [names.size() x 1]                             [lines after the header]
 /// @throws std::runtime_error with the number of the line, what stands there and the rule
-std::vector<double> readTorques(std::istream& input);
+std::vector<Eigen::VectorXd> readTorques(std::istream& input,
+                                         const std::vector<std::string>& names);
 
 }  // namespace ddm

@@ -29,8 +29,11 @@ class Pendulum : public Plant {
   Pendulum(const PlantOptions& plant, const CameraOptions& camera);
 
   Eigen::VectorXd goalState() const override;
+  bool turns() const override { return true; }
   int imageSize() const override { return renderer_.size(); }
   std::vector<std::string> jointNames() const override { return {"pendulum"}; }
+  std::vector<std::string> stateNames() const override { return {"angle_rad", "rate_rad_per_s"}; }
+  std::vector<std::string> torqueNames() const override { return {"torque_nm"}; }
 
  private:
   Eigen::VectorXd advance(const Eigen::VectorXd& state,
@@ -38,9 +41,13 @@ class Pendulum : public Plant {
   double distanceToGoal(const Eigen::VectorXd& state) const override;
   std::vector<std::uint8_t> draw(const Eigen::VectorXd& state) const override;
 
+  /// Tip of the rod, l (sin phi, -cos phi): x to the right, y upwards from the pivot [m].
+  Eigen::VectorXd locate(const Eigen::VectorXd& state) const override;
+
   Eigen::Vector2d advanceExactly(const Eigen::Vector2d& state, double torque) const;
   Eigen::Vector2d advanceNumerically(const Eigen::Vector2d& state, double torque) const;
 
+  double length_;          ///< l [m]
   double inertia_;         ///< I [kg m^2]
   double friction_;        ///< b [N m s/rad]
   double gravity_torque_;  ///< m g l / 2 [N m]

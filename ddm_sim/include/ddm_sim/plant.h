@@ -14,6 +14,10 @@ namespace ddm {
 ///
 ///   state_{t+1} = advance(state_t, clamp(u_t, -max_torque, max_torque)),   u held constant over dt
 ///
+/// "Torque" is the word for what acts, whatever the plant: of the pendulum it is one [N m], of the
+/// moving tile they are two increments of position [pixels]. Units of states and torques are the
+/// plant's own; stateNames() and torqueNames() tell them.
+///
 /// The state is the vector of joint positions, followed by that of their rates if the plant has
 /// them: its first jointNames().size() entries are the positions. It serves evaluation alone; what
 /// a policy sees is render(). Checks of sizes and finiteness, and the saturation, stand here once,
@@ -27,7 +31,7 @@ class Plant {
   int stateDim() const { return static_cast<int>(state_.size()); }
   int torqueDim() const { return torque_dim_; }
   double dt() const { return dt_; }                 ///< time step [s]
-  double maxTorque() const { return max_torque_; }  ///< bound on every component of |u| [N m]
+  double maxTorque() const { return max_torque_; }  ///< bound on every component of |u|
 
   /// State now, at first the middle of the start states                          [stateDim() x 1]
   const Eigen::VectorXd& state() const { return state_; }
@@ -43,8 +47,8 @@ class Plant {
   Eigen::VectorXd drawStart(std::mt19937_64& engine) const;
 
   /// Moves by dt under a constant torque.
-  /// @param torque  u, saturated at +-maxTorque() in each component [N m]       [torqueDim() x 1]
-  /// @return the torque as it was applied, i.e. after the saturation [N m]      [torqueDim() x 1]
+  /// @param torque  u, saturated at +-maxTorque() in each component             [torqueDim() x 1]
+  /// @return the torque as it was applied, i.e. after the saturation            [torqueDim() x 1]
   /// @throws std::invalid_argument if it is not [torqueDim() x 1] or not finite
   /// @throws std::range_error if the state would leave the range of double. In either case nothing
   ///         has changed
@@ -53,8 +57,8 @@ class Plant {
   /// The state that a policy is to reach and hold                                [stateDim() x 1]
   virtual Eigen::VectorXd goalState() const = 0;
 
-  /// Distance of the position in `state` to the goal, >= 0. A plant with an angle: [rad], the short
-  /// way round, thus in [0, pi].
+  /// Distance of the position in `state` to the goal, >= 0, in the unit of the position. A plant
+  /// with an angle: [rad], the short way round, thus in [0, pi].
   /// @throws std::invalid_argument as setState()
   double goalError(const Eigen::VectorXd& state) const;
 
@@ -63,14 +67,31 @@ class Plant {
   /// @throws std::invalid_argument as setState()
   std::vector<std::uint8_t> render(const Eigen::VectorXd& state) const;
 
+  /// Where the part that moves is in the picture: what a learner can know of `state` from one
+  /// image. Origin, directions and unit are the plant's own: the pendulum gives the tip of its rod
+  /// [m], the moving tile its centre [pixels].
+  /// @return (x, y)                                                                        [2 x 1]
+  /// @throws std::invalid_argument as setState()
+  Eigen::VectorXd visiblePosition(const Eigen::VectorXd& state) const;
+
+  /// The positions are angles [rad], and goalError() with them.
+  virtual bool turns() const = 0;
+
   virtual int imageSize() const = 0;  ///< width and height of the picture [pixels]
   virtual std::vector<std::string> jointNames() const = 0;
+
+  /// Names of the components of a state with their units, as the headers of CSV files have them:
+  /// "angle_rad".                                                                   [stateDim()]
+  virtual std::vector<std::string> stateNames() const = 0;
+
+  /// The same for a torque: "torque_nm".                                           [torqueDim()]
+  virtual std::vector<std::string> torqueNames() const = 0;
 
  protected:
   /// @param start       middle of the start states                               [stateDim() x 1]
   /// @param torque_dim  number of motors
   /// @param dt          time step [s]
-  /// @param max_torque  bound on |u| [N m]
+  /// @param max_torque  bound on every component of |u|
   /// @param start_std   standard deviation of each component of a start state
   Plant(Eigen::VectorXd start, int torque_dim, double dt, double max_torque, double start_std);
 
@@ -80,6 +101,7 @@ class Plant {
                                   const Eigen::VectorXd& torque) const = 0;
   virtual double distanceToGoal(const Eigen::VectorXd& state) const = 0;
   virtual std::vector<std::uint8_t> draw(const Eigen::VectorXd& state) const = 0;
+  virtual Eigen::VectorXd locate(const Eigen::VectorXd& state) const = 0;  ///< visiblePosition()
 
   Eigen::VectorXd start_;
   Eigen::VectorXd state_;

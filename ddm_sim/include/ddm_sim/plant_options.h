@@ -10,13 +10,15 @@ namespace ddm {
 /// Parameters of the plant. YAML block `plant:`.
 struct PlantOptions {
   std::string type = "pendulum";  ///< which plant, see plantTypes()
-  double gravity = 0.0;           ///< g [m/s^2]. The paper's published runs fit 0
-  double length = 1.0;            ///< l, length of the rod [m]
-  double mass = 1.0;              ///< m, mass of the rod [kg]
-  double friction = 1.0;          ///< b, viscous friction [N m s/rad]
-  double max_torque = 6.0;        ///< bound on |u| [N m]
+  double gravity = 0.0;           ///< pendulum: g [m/s^2]. The paper's published runs fit 0
+  double length = 1.0;            ///< pendulum: l, length of the rod [m]
+  double mass = 1.0;              ///< pendulum: m, mass of the rod [kg]
+  double friction = 1.0;          ///< pendulum: b, viscous friction [N m s/rad]
+  double tile_width = 9.0;        ///< moving_tile: width and height of the tile [pixels]
+  double tile_softness = 8.0;     ///< moving_tile: grey falls from 1 to 0 over so much [pixels]
+  double max_torque = 6.0;        ///< bound on each |u| [N m]; moving_tile: [pixels]
   double dt = 0.2;                ///< time step, u is held constant over it [s]
-  double start_std = 0.1;         ///< standard deviation of the start state [rad], [rad/s]
+  double start_std = 0.1;         ///< standard deviation of each component of the start state
 
   template <class Visitor>
   void visit(Visitor& visitor) {
@@ -25,6 +27,8 @@ struct PlantOptions {
     visitor("length", length);
     visitor("mass", mass);
     visitor("friction", friction);
+    visitor("tile_width", tile_width);
+    visitor("tile_softness", tile_softness);
     visitor("max_torque", max_torque);
     visitor("dt", dt);
     visitor("start_std", start_std);
@@ -70,5 +74,11 @@ struct SimOptions {
   /// Everything wrong with these values, in words a user can act on. Empty means valid.
   std::vector<std::string> problems() const;
 };
+
+/// All problems of the two blocks that make a plant.
+std::vector<std::string> problemsOf(const PlantOptions& plant, const CameraOptions& camera);
+
+/// @throws std::invalid_argument with all of the problems, one a line, if there are any
+void requireNone(const std::vector<std::string>& problems);
 
 }  // namespace ddm

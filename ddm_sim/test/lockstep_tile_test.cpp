@@ -1,0 +1,92 @@
+// Tests of sim_node with the moving tile: two torques, two joints, no rates.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <ros/ros.h>
+
+#include <memory>
+
+#include "ddm_sim/plant_factory.h"
+#include "sim_client.h"
+
+namespace ddm {
+namespace {
+
+std::unique_ptr<Plant> tile() {
+  PlantOptions options;
+  options.type = "moving_tile";
+  options.max_torque = 5.0;
+  options.start_std = 5.0;
+  return makePlant(options, CameraOptions());
+}
+
+std::vector<double> toVector(const Eigen::VectorXd& values) {
+  return std::vector<double>(values.data(), values.data() + values.size());
+}
+
+class LockstepTile : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    client_ = std::make_unique<SimClient>();
+    ASSERT_TRUE(client_->connect());
+  }
+  static void TearDownTestSuite() { client_.reset(); }
+  void SetUp() override { client_->forget(); }
+
+  static std::unique_ptr<SimClient> client_;
+};
+
+std::unique_ptr<SimClient> LockstepTile::client_;
+
+TEST_F(LockstepTile, ShowsTheGoalStateOnTheGoalImage) {
+  ASSERT_TRUE(client_->waitUntil([] { return !client_->goals.empty(); }));
+  EXPECT_EQ(client_->goals[0].data, tile()->render(tile()->goalState()));
+}
+
+TEST_F(LockstepTile, MovesTheTileAsTheLibraryDoesAndTellsTheTruthOfEachImage) {
+  const auto plant = tile();
+  plant->setState(Eigen::Vector2d(44.25, 6.0));
+  ASSERT_TRUE(client_->reset(4, {44.25, 6.0}).success);
+  // The first one bounces off the right border, the second one saturates.
+  const std::vector<Eigen::Vector2d> torques{{4.0, -0.5}, {-100.0, 2.0}, {1.0, 0.0}};
+  Eigen::VectorXd applied = Eigen::Vector2d::Zero();
+  for (std::size_t t = 0; t < 4; ++t) {
+    ASSERT_TRUE(client_->waitForImages(t + 1));
+    const sensor_msgs::JointState& truth = client_->truths[t];
+    const sensor_msgs::Image& image = client_->images[t];
+    EXPECT_EQ(truth.header.stamp, image.header.stamp);
+    EXPECT_EQ(truth.name, (std::vector<std::string>{"x", "y"}));
+    EXPECT_EQ(truth.position, toVector(plant->state()));
+    EXPECT_TRUE(truth.velocity.empty());
+    EXPECT_EQ(truth.effort, toVector(applied));
+    EXPECT_EQ(image.data, plant->render(plant->state()));
+    if (t == 3) break;
+    client_->publish(image.header.stamp, toVector(torques[t]));
+    applied = plant->step(torques[t]);
+  }
+  EXPECT_EQ(plant->state(), Eigen::Vector2d(40.75, 7.5));
+}
+
+TEST_F(LockstepTile, DrawsTheStartThatTheLibraryDraws) {
+  const auto plant = tile();
+  std::mt19937_64 engine = startStream(7, 3, false);
+  ASSERT_TRUE(client_->reset(0, {}, /*seed=*/7, /*trial=*/3).success);
+  ASSERT_TRUE(client_->waitForImages(1));
+  EXPECT_EQ(client_->truths[0].position, toVector(plant->drawStart(engine)));
+}
+
+TEST_F(LockstepTile, RefusesATorqueOfOneNumberAndSaysWhichItWants) {
+  const ddm_msgs::Reset::Response response = client_->reset(0, {20.0, 20.0});
+  ASSERT_TRUE(client_->waitForImages(1));
+  client_->publish(response.start, {1.0});
+  EXPECT_TRUE(client_->waitForLog("it must be 2 finite number(s): dx_px dy_px"));
+  EXPECT_TRUE(client_->waitForLog("trial 0 ends at frame 0"));
+}
+
+}  // namespace
+}  // namespace ddm
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "lockstep_tile_test");
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}
