@@ -109,8 +109,8 @@ std::vector<std::string> configurationFiles(const std::string& preset, const std
                                     packageFolder("ddm_model") + "/config/model.yaml",
                                     packageFolder("ddm_mpc") + "/config/mpc.yaml",
                                     launch + "/experiment.yaml",
-                                    chooseFile(sim, plant, "plant", {"sim"}),
-                                    chooseFile(launch + "/presets", preset, "preset", {})};
+                                    chooseFile(launch + "/presets", preset, "preset", {}),
+                                    chooseFile(sim, plant, "plant", {"sim"})};
   files.insert(files.end(), configs.begin(), configs.end());
   return files;
 }

@@ -33,7 +33,8 @@ Configuration readConfiguration(ParamReader* reader);
 /// All blocks by name, in the order above.
 YAML::Node toYaml(const Configuration& configuration);
 
-/// The files that make up a configuration, the manual first, what differs last.
+/// The files that make up a configuration, the manual first, what differs last: a plant knows
+/// better than a preset what it needs.
 /// @param preset   name in ddm_launch/config/presets
 /// @param plant    name in ddm_sim/config
 /// @param configs  further files, later ones win

@@ -12,7 +12,7 @@ namespace ddm {
 Evaluation evaluate(const Plant& plant, const std::vector<Eigen::VectorXd>& states,
                     const EvaluationOptions& options) {
   Evaluation evaluation;
-  if (states.empty()) return evaluation;
+  if (states.empty() || !plant.turns()) return evaluation;
   if (static_cast<int>(states.size()) < options.settled_steps_strict) {
     throw std::invalid_argument("an evaluation needs at least " +
                                 std::to_string(options.settled_steps_strict) + " frames, got " +

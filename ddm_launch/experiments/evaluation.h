@@ -13,7 +13,7 @@ namespace ddm {
 
 /// What a greedy run came to.
 struct Evaluation {
-  bool known = false;            ///< false: there was no ground truth
+  bool known = false;            ///< false: no ground truth, or no angle to measure in degrees
   bool success = false;          ///< the last settled_steps frames within the tolerance
   bool success_strict = false;   ///< the last settled_steps_strict frames within it
   double final_error_deg = 0.0;  ///< distance to the goal at the last frame [deg]

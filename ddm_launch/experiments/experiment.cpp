@@ -26,7 +26,7 @@ class Loop {
     progress_.beginPhase(trial, trial == 0 ? "random" : "explore");
     TrialRequest request = requestFor(trial, /*evaluation=*/false);
     request.epsilon = trial == 0 ? 1.0 : configuration_.mpc.epsilon;
-    request.bag = folder_.bagPath(trial);
+    request.bag = folder_.beginTrial(trial);
     folder_.writeTrial(trial, world_.runTrial(request, update_));
   }
 
@@ -95,7 +95,7 @@ void runExperiment(const Configuration& configuration, World* world, RunFolder* 
   for (int trial = num_finished; trial <= configuration.experiment.trials; ++trial) {
     loop.recordTrial(trial);
     const TrainingOutcome training = loop.train(trial);
-    folder->writeModel(trial, training.model);
+    if (!training.model.empty()) folder->writeModel(trial, training.model);
     const TrialOutcome greedy = loop.evaluateGreedily(trial);
     folder->writeEvaluation(trial, greedy);
     folder->finishTrial(loop.rowOf(trial, training, greedy));

@@ -2,12 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiment_options.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace ddm {
 
+std::vector<std::string> methodNames() { return {"ddm", "oracle"}; }
+
 std::vector<std::string> ExperimentOptions::problems() const {
   std::vector<std::string> out;
+  const std::vector<std::string> methods = methodNames();
+  if (std::find(methods.begin(), methods.end(), method) == methods.end()) {
+    std::string known;
+    for (const std::string& name : methods) known += (known.empty() ? "" : ", ") + name;
+    out.push_back("experiment/method must be one of: " + known + ", got " + method);
+  }
   if (seed < 0) out.push_back("experiment/seed must be >= 0, got " + std::to_string(seed));
   if (trials < 0 || trials > 999) {
     out.push_back("experiment/trials must lie in [0, 999], got " + std::to_string(trials));
@@ -36,6 +45,20 @@ std::vector<std::string> EvaluationOptions::problems() const {
     out.push_back("evaluation/settled_steps_strict must be >= evaluation/settled_steps, got " +
                   std::to_string(settled_steps_strict));
   }
+  return out;
+}
+
+std::vector<std::string> PredictionOptions::problems() const {
+  std::vector<std::string> out;
+  const auto require = [&out](bool ok, const std::string& rule, int value) {
+    if (!ok) out.push_back("prediction/" + rule + ", got " + std::to_string(value));
+  };
+  require(training_frames >= 1 && training_frames <= 1000000,
+          "training_frames must lie in [1, 1000000]", training_frames);
+  require(max_steps >= 1 && max_steps <= 1000, "max_steps must lie in [1, 1000]", max_steps);
+  require(held_out_frames > max_steps && held_out_frames <= 1000000,
+          "held_out_frames must be more than prediction/max_steps, and at most 1000000",
+          held_out_frames);
   return out;
 }
 

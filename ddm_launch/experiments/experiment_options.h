@@ -11,6 +11,7 @@ namespace ddm {
 struct ExperimentOptions {
   std::string preset = "paper";    ///< name of the preset
   std::string plant = "pendulum";  ///< name of the plant
+  std::string method = "ddm";      ///< who learns and acts, see methodNames()
   int seed = 0;                    ///< fixes every random draw
   int trials = 15;                 ///< epsilon-greedy trials after the random one [-]
   std::string runs;                ///< folder for everything that the experiment leaves behind
@@ -20,6 +21,7 @@ struct ExperimentOptions {
   void visit(Visitor& visitor) {
     visitor("preset", preset);
     visitor("plant", plant);
+    visitor("method", method);
     visitor("seed", seed);
     visitor("trials", trials);
     visitor("runs", runs);
@@ -28,6 +30,9 @@ struct ExperimentOptions {
   /// Everything wrong with these values, in words a user can act on. Empty means valid.
   std::vector<std::string> problems() const;
 };
+
+/// The values that `experiment/method` may have.
+std::vector<std::string> methodNames();
 
 /// Block `trial`.
 struct TrialOptions {
@@ -51,6 +56,21 @@ struct EvaluationOptions {
     visitor("tolerance_deg", tolerance_deg);
     visitor("settled_steps", settled_steps);
     visitor("settled_steps_strict", settled_steps_strict);
+  }
+  std::vector<std::string> problems() const;
+};
+
+/// Block `prediction`: what prediction_experiment does.
+struct PredictionOptions {
+  int training_frames = 501;  ///< frames to learn from [-]
+  int held_out_frames = 100;  ///< frames after them to predict [-]
+  int max_steps = 8;          ///< longest prediction, steps [-]
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("training_frames", training_frames);
+    visitor("held_out_frames", held_out_frames);
+    visitor("max_steps", max_steps);
   }
   std::vector<std::string> problems() const;
 };

@@ -1,10 +1,8 @@
-// The world in this process: plant, recorder, trainer and policy without a ROS master.
+// The world in this process: plant, recorder, and who learns and acts, without a ROS master.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "in_process_world.h"
 
-#include <ddm_model/model_file.h>
-#include <ddm_model/trainer.h>
-#include <ddm_mpc/mpc_policy.h>
+#include <ddm_bag_io/bag_writer.h>
 #include <ddm_msgs/Torque.h>
 #include <ddm_msgs/image_codec.h>
 #include <ddm_sim/plant_factory.h>
@@ -26,7 +24,7 @@ ros::Time stampOf(int step, double dt) {
 InProcessWorld::InProcessWorld(const Configuration& configuration)
     : configuration_(configuration),
       plant_(makePlant(configuration.plant, configuration.camera)),
-      bags_(configuration.model.image.size, configuration.model.data_set) {
+      method_(makeMethod(configuration, *plant_)) {
   if (!configuration.sim.lockstep) {
     throw std::invalid_argument(
         "sim/lockstep must be true where everything runs in one process: use experiment.launch for "
@@ -40,11 +38,7 @@ EpsilonGreedy InProcessWorld::makePolicy(const TrialRequest& request) const {
   options.hold_steps = request.hold_steps;
   options.max_torque = configuration_.mpc.max_torque;
   options.torque_dim = plant_->torqueDim();
-  std::shared_ptr<Policy> policy;
-  if (model_ != nullptr && request.epsilon < 1.0) {
-    policy = std::make_shared<MpcPolicy>(model_, configuration_.mpc);
-  }
-  return EpsilonGreedy(std::move(policy), options, request.id);
+  return EpsilonGreedy(request.epsilon < 1.0 ? method_->policy() : nullptr, options, request.id);
 }
 
 TrialOutcome InProcessWorld::runTrial(const TrialRequest& request, const PhaseCallback& progress) {
@@ -86,26 +80,7 @@ TrialOutcome InProcessWorld::runTrial(const TrialRequest& request, const PhaseCa
 
 TrainingOutcome InProcessWorld::train(const std::vector<std::string>& bags, const TrialId& id,
                                       const PhaseCallback& progress) {
-  ModelInfo info;
-  info.seed = id.seed;
-  info.trial = id.trial;
-  info.config = toText(configuration_.model);
-  const TrainingResult result =
-      ddm::train(bags_.read(bags), configuration_.model.model, configuration_.model.training, info,
-                 [&progress](const TrainingProgress& state) {
-                   progress(state.fraction_done);
-                   return true;
-                 });
-  if (!result.model) throw std::runtime_error(result.message);
-  model_ = std::make_shared<const Ddm>(*result.model);
-  TrainingOutcome outcome;
-  outcome.model = serialiseModel(*model_);
-  outcome.frames = model_->info().frames;
-  outcome.v_r = model_->info().v_r;
-  outcome.v_p = model_->info().v_p;
-  outcome.seconds = result.seconds;
-  outcome.evaluations = result.evaluations;
-  return outcome;
+  return method_->train(bags, id, progress);
 }
 
 }  // namespace ddm

@@ -1,22 +1,20 @@
-// The world in this process: plant, recorder, trainer and policy without a ROS master.
+// The world in this process: plant, recorder, and who learns and acts, without a ROS master.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_bag_io/bag_cache.h>
-#include <ddm_bag_io/bag_writer.h>
-#include <ddm_model/ddm.h>
 #include <ddm_mpc/epsilon_greedy.h>
 #include <ddm_sim/plant.h>
 
 #include <memory>
 
 #include "configuration.h"
+#include "method.h"
 #include "world.h"
 
 namespace ddm {
 
-/// Does what the nodes do in lock-step, with the same cores and the same bags in between: the same
-/// configuration and seed give the same torques.
+/// With the method `ddm` it does what the nodes do in lock-step, with the same cores and the same
+/// bags in between: the same configuration and seed give the same torques.
 class InProcessWorld : public World {
  public:
   /// @throws std::invalid_argument if the configuration asks for real time
@@ -31,8 +29,7 @@ class InProcessWorld : public World {
 
   const Configuration& configuration_;
   std::unique_ptr<Plant> plant_;
-  BagCache bags_;
-  std::shared_ptr<const Ddm> model_;
+  std::unique_ptr<Method> method_;
 };
 
 }  // namespace ddm

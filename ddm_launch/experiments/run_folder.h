@@ -8,6 +8,7 @@
 
 #include "configuration.h"
 #include "evaluation.h"
+#include "results_folder.h"
 #include "world.h"
 
 namespace ddm {
@@ -31,25 +32,23 @@ struct TrialRow {
 ///   trial_NNN/{trial.bag,torques.csv,model.ddm}
 ///   evaluation_NNN/{torques.csv,trajectory.csv}
 ///   summary.yaml                         written last: the verdict
-///
-/// All files appear under their names only when they are complete.
 class RunFolder {
  public:
   /// Makes the folder, or opens that of the same experiment; at most one process holds it.
   /// @throws std::runtime_error if it cannot be written, is held by another process, or holds
   ///         another experiment (the keys that differ are named) or files that make no sense
   explicit RunFolder(const Configuration& configuration);
-  ~RunFolder();
-  RunFolder(const RunFolder&) = delete;
-  RunFolder& operator=(const RunFolder&) = delete;
 
-  const std::string& path() const { return path_; }
+  const std::string& path() const { return folder_.path(); }
   /// Things a user should know about a folder that is used again.
-  const std::vector<std::string>& warnings() const { return warnings_; }
+  const std::vector<std::string>& warnings() const { return folder_.warnings(); }
   /// Rows of the trials finished so far.
   const std::vector<TrialRow>& rows() const { return rows_; }
 
   std::string bagPath(int trial) const;
+  /// Makes the folder of a trial.
+  /// @return bagPath(trial)
+  std::string beginTrial(int trial) const;
   void writeTrial(int trial, const TrialOutcome& outcome);
   void writeModel(int trial, const std::string& model);
   void writeEvaluation(int trial, const TrialOutcome& outcome);
@@ -58,15 +57,12 @@ class RunFolder {
   void writeSummary(double wall_s);
 
  private:
-  std::string makeSubfolder(const std::string& name, int trial) const;
-  void lock();
-  void compareWith(const std::string& file, const YAML::Node& configuration);
   void readRows(const std::string& file);
 
   Configuration configuration_;
-  std::string path_;
-  int lock_file_ = -1;
-  std::vector<std::string> warnings_;
+  ResultsFolder folder_;
+  std::vector<std::string> torque_names_;
+  std::vector<std::string> state_names_;
   std::vector<TrialRow> rows_;
 };
 

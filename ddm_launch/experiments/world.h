@@ -32,7 +32,7 @@ struct TrialOutcome {
 };
 
 struct TrainingOutcome {
-  std::string model;         ///< the model file, byte for byte
+  std::string model;         ///< the model file, byte for byte; empty if the method has none
   std::uint32_t frames = 0;  ///< learned from
   double v_r = 0.0;          ///< [grey^2]
   double v_p = 0.0;          ///< [grey^2]

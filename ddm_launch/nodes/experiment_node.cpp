@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 #include <iostream>
+#include <stdexcept>
 
 #include "configuration.h"
 #include "experiment.h"
@@ -16,6 +17,10 @@ namespace {
 void run(const ros::NodeHandle& nh, const ros::NodeHandle& pnh) {
   ddm::ParamReader params(ddm::nodeParams(pnh), pnh.getNamespace());
   const ddm::Configuration configuration = ddm::readConfiguration(&params);
+  if (configuration.experiment.method != "ddm") {
+    throw std::invalid_argument("experiment/method must be ddm where the nodes act, got " +
+                                configuration.experiment.method + ": use run_experiment");
+  }
   // roslaunch has loaded the files by name; this refuses a name that is no preset or plant.
   ddm::configurationFiles(configuration.experiment.preset, configuration.experiment.plant, {});
   ddm::RunFolder folder(configuration);

@@ -31,10 +31,16 @@ packages_to_run=(
   python3-rosparam python3-rosmsg rosbash rospack-tools
   # what one sees: rviz and figures
   rviz python3-matplotlib python3-numpy python3-pil python3-yaml
+  # sweeps
+  parallel
 )
 
-# What only the tests need: linters and the check of .rosinstall.
-packages_to_test=(catkin-lint clang-format python3-wstool git)
+# What only the tests need: linters, the check of .rosinstall, and the other machines of sweeps, played by this one.
+packages_to_test=(
+  catkin-lint clang-format python3-wstool git
+  openssh-client openssh-server
+  slurmctld slurmd slurm-client munge
+)
 
 # Debian's own tools and libraries come first, whatever Python or ROS environment the caller has active.
 use_system_environment() {

@@ -56,7 +56,7 @@ TEST(Configuration, EveryPresetLoadsWithEveryPlant) {
   const std::vector<std::string> presets = namesIn(kPresets);
   ASSERT_GE(presets.size(), 2u);
   for (const std::string& preset : presets) {
-    for (const std::string plant : {"pendulum", "pendulum_gravity"}) {
+    for (const std::string plant : {"moving_tile", "pendulum", "pendulum_gravity"}) {
       const Configuration all = read(configurationFiles(preset, plant, {}));
       EXPECT_EQ(all.plant.gravity > 0.0, plant == "pendulum_gravity") << preset;
       EXPECT_EQ(all.mpc.max_torque, all.plant.max_torque) << preset << ", " << plant;
@@ -97,9 +97,45 @@ TEST(Configuration, APlantThatDoesNotExistIsRefusedWithThoseThatDo) {
   for (const std::string plant : {"pendulumm", "sim", "", "../config/pendulum"}) {
     EXPECT_TRUE(throwsNaming<std::invalid_argument>(
         [&] { configurationFiles("paper", plant, {}); },
-        {"unknown plant '" + plant + "'", "there are pendulum, pendulum_gravity"}))
+        {"unknown plant '" + plant + "'", "there are moving_tile, pendulum, pendulum_gravity"}))
         << plant;
   }
+}
+
+TEST(Configuration, APlantKnowsBetterThanAPresetWhatItNeeds) {
+  const Configuration tile = read(configurationFiles("paper", "moving_tile", {}));
+  const Configuration pendulum = read(configurationFiles("paper", "pendulum", {}));
+  EXPECT_EQ(tile.model.training.max_iterations, 3000);
+  EXPECT_EQ(pendulum.model.training.max_iterations, 500);
+}
+
+TEST(Configuration, EveryScheduleButTheJointHasAFileOfItsName) {
+  const std::string folder = DDM_LAUNCH_SOURCE_DIR "/config/schedules";
+  const std::vector<std::string> names = namesIn(folder);
+  EXPECT_EQ(std::set<std::string>(names.begin(), names.end()),
+            (std::set<std::string>{"sequential", "v_p_only", "joint_random_init"}));
+  for (const std::string& name : names) {
+    const Configuration all =
+        read(configurationFiles("paper", "pendulum", {folder + "/" + name + ".yaml"}));
+    EXPECT_EQ(all.model.training.schedule, name);
+  }
+}
+
+TEST(Configuration, AnUnknownMethodIsRefusedWithThoseThatThereAre) {
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [] { readText("experiment: {method: oracel}\n"); },
+      {"experiment/method must be one of: ddm, oracle", "got oracel"}));
+}
+
+TEST(Configuration, WhatIsPredictedIsChecked) {
+  PredictionOptions options;
+  EXPECT_TRUE(options.problems().empty());
+  options.training_frames = 0;
+  options.held_out_frames = 8;
+  EXPECT_EQ(options.problems().size(), 2u);
+  options = PredictionOptions();
+  options.max_steps = 0;
+  EXPECT_EQ(options.problems().size(), 1u);
 }
 
 TEST(Configuration, LaterFilesWin) {
@@ -165,11 +201,15 @@ TEST(Configuration, WhatIsSavedIsReadBackAsTheSameConfiguration) {
 TEST(ExperimentManual, HasTheKeysAndDefaultsOfEachBlock) {
   const std::string manual = DDM_LAUNCH_SOURCE_DIR "/config/experiment.yaml";
   const YAML::Node blocks = YAML::LoadFile(manual);
-  EXPECT_EQ(keysOf(blocks), (std::set<std::string>{"experiment", "trial", "evaluation"}));
   const Configuration defaults;
-  const YAML::Node expected = toYaml(defaults);
-  const YAML::Node there = toYaml(read({manual}));
-  for (const std::string block : {"experiment", "trial", "evaluation"}) {
+  YAML::Node expected = toYaml(defaults);
+  expected["prediction"] = toYaml(PredictionOptions());
+  YAML::Node there = toYaml(read({manual}));
+  ParamReader reader = ParamReader::fromFiles({manual});
+  there["prediction"] = toYaml(reader.read<PredictionOptions>("prediction"));
+  const std::set<std::string> names = {"experiment", "trial", "evaluation", "prediction"};
+  EXPECT_EQ(keysOf(blocks), names);
+  for (const std::string& block : names) {
     EXPECT_EQ(keysOf(blocks[block]), keysOf(expected[block])) << block;
     EXPECT_EQ(YAML::Dump(there[block]), YAML::Dump(expected[block])) << block;
   }

@@ -76,6 +76,13 @@ TEST_F(EvaluationTest, WithoutGroundTruthNothingIsKnown) {
   EXPECT_FALSE(evaluation.success);
 }
 
+TEST_F(EvaluationTest, OfAPlantWithoutAnAngleNothingIsKnown) {
+  PlantOptions options;
+  options.type = "moving_tile";
+  const std::unique_ptr<Plant> tile = makePlant(options, CameraOptions());
+  EXPECT_FALSE(evaluate(*tile, States(40, tile->goalState()), options_).known);
+}
+
 TEST_F(EvaluationTest, FewerFramesThanTheStrictCriterionNeedsAreRefused) {
   EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>([this] { evaluated(arriving(24, 24)); },
                                                            {"at least 25", "got 24"}));

@@ -33,7 +33,7 @@ class RunFolderTest : public ::testing::Test {
   void finish(int num_trials) {
     RunFolder folder(configuration_);
     for (int trial = 0; trial < num_trials; ++trial) {
-      writeText(folder.bagPath(trial), "a bag");
+      writeText(folder.beginTrial(trial), "a bag");
       folder.finishTrial(toyRow(trial));
     }
   }
@@ -258,7 +258,7 @@ TEST_F(RunFolderTest, TheVerdictOfAnEarlierCallIsRemovedAtTheStart) {
   {
     RunFolder folder(configuration_);
     folder.finishTrial(toyRow(0));
-    writeText(folder.bagPath(0), "a bag");
+    writeText(folder.beginTrial(0), "a bag");
     folder.writeSummary(1.0);
   }
   ASSERT_TRUE(fs::exists(file("summary.yaml")));

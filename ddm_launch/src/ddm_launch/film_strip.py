@@ -3,47 +3,20 @@
 import argparse
 import math
 import os
-import subprocess
 import sys
-import tempfile
 
 import matplotlib
 matplotlib.use("Agg")  # no display needed
 import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib import font_manager  # noqa: E402
 from PIL import Image, ImageDraw, ImageFont  # noqa: E402
-import roslib.packages  # noqa: E402
 
-from ddm_launch.run_folder import Evaluation, RunFolderError, read_plant, read_trials  # noqa: E402
+from ddm_launch.images import Camera  # noqa: E402
+from ddm_launch.run_folder import Evaluation, RunFolderError, read_trials  # noqa: E402
 
 BLUE, GREY = "#0072B2", "#666666"
 NUM_IMAGES = 12
 SUCCESS_LIMIT_RAD = math.radians(10.0)
-
-
-class Camera:
-    """Images of a run's plant in given states, drawn by the simulator with the run's own configuration."""
-
-    def __init__(self, folder):
-        self.options = ["--plant", read_plant(folder), "--config", os.path.join(folder, "config.yaml")]
-        programs = roslib.packages.find_node("ddm_sim", "simulate")
-        if not programs:
-            raise RunFolderError("the program 'simulate' of ddm_sim is not there: build the workspace, then source "
-                                 "its devel/setup.bash")
-        self.program = programs[0]
-
-    def shoot(self, angle_rad, rate_rad_per_s):
-        """The grey image of one state, as PIL image."""
-        with tempfile.TemporaryDirectory() as folder:
-            command = [self.program] + self.options + ["--angle", repr(angle_rad), "--rate", repr(rate_rad_per_s),
-                                                       "--frames", folder]
-            done = subprocess.run(command, input="torque_nm\n0\n", stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-                                  universal_newlines=True)
-            images = sorted(name for name in os.listdir(folder) if name.endswith(".png"))
-            if done.returncode != 0 or not images:
-                raise RunFolderError("'%s' drew no image: %s" % (" ".join(command), done.stderr.strip()))
-            with Image.open(os.path.join(folder, images[0])) as image:
-                return image.convert("L")
 
 
 def target_error(angle_rad):

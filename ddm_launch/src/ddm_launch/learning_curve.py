@@ -1,7 +1,6 @@
 # Draws the learning curve of one run (final error) or of many (success rate with standard error).
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
-import math
 import os
 import sys
 
@@ -9,31 +8,12 @@ import matplotlib
 matplotlib.use("Agg")  # no display needed
 import matplotlib.pyplot as plt  # noqa: E402
 
+from ddm_launch.averages import success_rates  # noqa: E402
 from ddm_launch.run_folder import RunFolderError, read_trials  # noqa: E402
 
 # From the Okabe-Ito set: told apart by colour-blind readers, and the shapes differ too.
 BLUE, VERMILLION, GREY = "#0072B2", "#D55E00", "#666666"
 SUCCESS_LIMIT_DEG = 10.0
-
-
-def success_rates(runs):
-    """The rate of success over runs, for each number of frames that any run has.
-
-    runs: one list of Trial per run. Trials whose success is not known are left out.
-    Returns rows (frames, rate, standard error, number of runs), ascending. The standard error of a rate p over
-    n runs is sqrt(p (1 - p) / (n - 1)), as in the paper's Fig. 8; 0 for a single run.
-    """
-    by_frames = {}
-    for trials in runs:
-        for trial in trials:
-            if trial.success is not None:
-                by_frames.setdefault(trial.frames, []).append(trial.success)
-    rows = []
-    for frames, successes in sorted(by_frames.items()):
-        n = len(successes)
-        rate = sum(successes) / n
-        rows.append((frames, rate, math.sqrt(rate * (1.0 - rate) / (n - 1)) if n > 1 else 0.0, n))
-    return rows
 
 
 def draw_one(axes, trials):

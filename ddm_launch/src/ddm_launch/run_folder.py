@@ -2,25 +2,30 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A run folder is what experiment.launch and run_experiment write. Nothing here writes into it."""
 import csv
+import math
 import os
 
 import yaml
+
+
+TRIAL_COLUMNS = ["trial", "frames", "success", "final_error_deg"]  # those of trials.csv that figures need
 
 
 class RunFolderError(Exception):
     """A run folder lacks something or holds something unreadable; the message names the file and the remedy."""
 
 
-def unreadable(path, error):
+def unreadable(path, error, remedy="is its folder a run folder?"):
     """The exception to raise for a file that cannot be read at all."""
     reason = getattr(error, "strerror", None) or error
-    return RunFolderError("%s cannot be read (%s): is its folder a run folder?" % (path, reason))
+    return RunFolderError("%s cannot be read (%s): %s" % (path, reason, remedy))
 
 
-def read_csv(path, columns):
+def read_csv(path, columns, remedy=None):
     """The rows of a CSV file as dictionaries of strings.
 
-    columns: those that must be there. Raises RunFolderError if the file is missing, lacks one or has no row.
+    columns: those that must be there. remedy: what to do if it is not there, for files of other folders than a run's.
+    Raises RunFolderError if the file is missing, lacks one or has no row.
     """
     try:
         with open(path, newline="") as stream:
@@ -28,21 +33,24 @@ def read_csv(path, columns):
             rows = list(reader)
             header = reader.fieldnames or []
     except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise unreadable(path, error)
+        raise unreadable(path, error, remedy) if remedy else unreadable(path, error)
     missing = [column for column in columns if column not in header]
     if missing:
         raise RunFolderError("%s has no column %s, only: %s" % (path, ", ".join(missing), ", ".join(header)))
     if not rows:
-        raise RunFolderError("%s has no row yet: wait for the first trial" % path)
+        raise RunFolderError("%s has no row yet: %s" % (path, remedy or "wait for the first trial"))
     return rows
 
 
 def number(row, column, path):
-    """A cell as float. Raises RunFolderError if it is no number."""
+    """A cell as float. Raises RunFolderError if it is no number, or not a finite one."""
     try:
-        return float(row[column])
+        value = float(row[column])
     except (TypeError, ValueError):
+        value = math.nan
+    if not math.isfinite(value):
         raise RunFolderError("%s: column %s must hold numbers, got '%s'" % (path, column, row[column]))
+    return value
 
 
 class Trial:
@@ -62,20 +70,40 @@ class Trial:
 def read_trials(folder):
     """All rows of FOLDER/trials.csv, oldest first."""
     path = os.path.join(folder, "trials.csv")
-    rows = read_csv(path, ["trial", "frames", "success", "final_error_deg"])
+    rows = read_csv(path, TRIAL_COLUMNS)
     return [Trial(row, path) for row in rows]
+
+
+def read_sweep(path, remedy="give a trials.csv or sweep.csv"):
+    """The trials of many experiments in one file, as {seed: list of Trial}.
+
+    Raises RunFolderError as read_csv() does, and if a trial of a seed is there twice.
+    """
+    runs, seen = {}, set()
+    for row in read_csv(path, ["seed"] + TRIAL_COLUMNS, remedy):
+        seed, trial = int(number(row, "seed", path)), Trial(row, path)
+        if (seed, trial.trial) in seen:
+            raise RunFolderError("%s holds trial %d of seed %d twice: give each seed once" % (path, trial.trial, seed))
+        seen.add((seed, trial.trial))
+        runs.setdefault(seed, []).append(trial)
+    return runs
+
+
+def read_setting(folder, block, key, meaning):
+    """One value of FOLDER/config.yaml as text. meaning: what it names, for the message of the RunFolderError."""
+    path = os.path.join(folder, "config.yaml")
+    try:
+        with open(path) as stream:
+            return str(yaml.safe_load(stream)[block][key])
+    except OSError as error:
+        raise unreadable(path, error)
+    except (yaml.YAMLError, KeyError, TypeError):
+        raise RunFolderError("%s does not name the %s (key %s/%s)" % (path, meaning, block, key))
 
 
 def read_plant(folder):
     """Name of the plant, from FOLDER/config.yaml (experiment/plant)."""
-    path = os.path.join(folder, "config.yaml")
-    try:
-        with open(path) as stream:
-            return str(yaml.safe_load(stream)["experiment"]["plant"])
-    except OSError as error:
-        raise unreadable(path, error)
-    except (yaml.YAMLError, KeyError, TypeError):
-        raise RunFolderError("%s does not name the plant (key experiment/plant)" % path)
+    return read_setting(folder, "experiment", "plant", "plant")
 
 
 class Evaluation:

@@ -1,0 +1,61 @@
+// Command line of the programs that run an experiment in one process.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "command_line.h"
+
+#include <iostream>
+#include <stdexcept>
+
+namespace ddm {
+
+namespace po = boost::program_options;
+
+po::options_description commonOptions(const std::string& about, Arguments* arguments) {
+  po::options_description options(about + "\n\noptions");
+  options.add_options()("help,h", "show this text");
+  options.add_options()("preset", po::value(&arguments->preset)->default_value("paper"),
+                        "name in ddm_launch/config/presets");
+  options.add_options()("plant", po::value(&arguments->plant)->default_value("pendulum"),
+                        "name in ddm_sim/config");
+  options.add_options()("seed", po::value(&arguments->seed)->default_value(0),
+                        "fixes every random draw");
+  options.add_options()("out", po::value(&arguments->out)->required(), "folder for the results");
+  options.add_options()("config", po::value(&arguments->configs)->composing(),
+                        "YAML file with what shall differ; repeatable, later files win");
+  return options;
+}
+
+bool parseCommandLine(int argc, char** argv, const po::options_description& options) {
+  po::variables_map values;
+  const po::positional_options_description no_positional;
+  po::store(po::command_line_parser(argc, argv).options(options).positional(no_positional).run(),
+            values);
+  if (values.count("help") > 0) {
+    std::cout << options << "\n";
+    return false;
+  }
+  if (values.count("out") == 0) throw po::error("--out DIR is missing: say where the results go");
+  po::notify(values);
+  return true;
+}
+
+ParamReader openConfiguration(const Arguments& arguments) {
+  return ParamReader::fromFiles(
+      configurationFiles(arguments.preset, arguments.plant, arguments.configs));
+}
+
+Configuration readConfiguration(const Arguments& arguments, ParamReader* reader) {
+  Configuration configuration = readConfiguration(reader);
+  configuration.experiment.preset = arguments.preset;
+  configuration.experiment.plant = arguments.plant;
+  configuration.experiment.seed = arguments.seed;
+  configuration.experiment.runs = arguments.out;
+  return configuration;
+}
+
+void requireValid(const ExperimentOptions& options) {
+  std::string problems;
+  for (const std::string& problem : options.problems()) problems += "\n - " + problem;
+  if (!problems.empty()) throw std::invalid_argument("invalid options:" + problems);
+}
+
+}  // namespace ddm

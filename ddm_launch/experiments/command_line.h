@@ -1,0 +1,45 @@
+// Command line of the programs that run an experiment in one process.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ddm_msgs/param_reader.h>
+
+#include <boost/program_options.hpp>
+#include <string>
+#include <vector>
+
+#include "configuration.h"
+
+namespace ddm {
+
+/// What all of them are told.
+struct Arguments {
+  std::string preset;
+  std::string plant;
+  int seed = 0;
+  std::string out;
+  std::vector<std::string> configs;
+};
+
+/// --help and the options that fill `arguments`.
+/// @param about  text above the list of options
+boost::program_options::options_description commonOptions(const std::string& about,
+                                                          Arguments* arguments);
+
+/// @return false where --help was asked for and has been printed
+/// @throws boost::program_options::error for options that are unknown, wrong or missing
+bool parseCommandLine(int argc, char** argv,
+                      const boost::program_options::options_description& options);
+
+/// The files that the arguments name. Blocks beside those of a Configuration are read first.
+ParamReader openConfiguration(const Arguments& arguments);
+
+/// Reads all blocks and sets in `experiment` what the arguments say.
+/// @throws std::invalid_argument with all problems
+Configuration readConfiguration(const Arguments& arguments, ParamReader* reader);
+
+/// Checks the block `experiment` after arguments have changed it.
+/// @throws std::invalid_argument with all problems
+void requireValid(const ExperimentOptions& options);
+
+}  // namespace ddm

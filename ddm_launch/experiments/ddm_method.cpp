@@ -1,0 +1,46 @@
+// The paper's method: deep dynamical model and MPC in its feature space.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_method.h"
+
+#include <ddm_model/model_file.h>
+#include <ddm_model/trainer.h>
+#include <ddm_mpc/mpc_policy.h>
+
+#include <stdexcept>
+
+namespace ddm {
+
+DdmMethod::DdmMethod(const Configuration& configuration)
+    : configuration_(configuration),
+      bags_(configuration.model.image.size, configuration.model.data_set) {}
+
+TrainingOutcome DdmMethod::train(const std::vector<std::string>& bags, const TrialId& id,
+                                 const PhaseCallback& progress) {
+  ModelInfo info;
+  info.seed = id.seed;
+  info.trial = id.trial;
+  info.config = toText(configuration_.model);
+  const TrainingResult result =
+      ddm::train(bags_.read(bags), configuration_.model.model, configuration_.model.training, info,
+                 [&progress](const TrainingProgress& state) {
+                   progress(state.fraction_done);
+                   return true;
+                 });
+  if (!result.model) throw std::runtime_error(result.message);
+  model_ = std::make_shared<const Ddm>(*result.model);
+  TrainingOutcome outcome;
+  outcome.model = serialiseModel(*model_);
+  outcome.frames = model_->info().frames;
+  outcome.v_r = model_->info().v_r;
+  outcome.v_p = model_->info().v_p;
+  outcome.seconds = result.seconds;
+  outcome.evaluations = result.evaluations;
+  return outcome;
+}
+
+std::shared_ptr<Policy> DdmMethod::policy() const {
+  if (model_ == nullptr) return nullptr;
+  return std::make_shared<MpcPolicy>(model_, configuration_.mpc);
+}
+
+}  // namespace ddm

@@ -1,0 +1,158 @@
+// feature_space: what a run's model makes of its experience, and what it planned at one step.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_bag_io/bag_cache.h>
+#include <ddm_model/long_term_prediction.h>
+#include <ddm_model/model_file.h>
+#include <ddm_model/solver_log.h>
+#include <ddm_mpc/epsilon_greedy.h>
+#include <ddm_mpc/mpc_policy.h>
+#include <ddm_msgs/image_codec.h>
+#include <ddm_msgs/param_value.h>
+#include <ddm_sim/plant_factory.h>
+#include <ros/time.h>
+
+#include <boost/program_options.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "configuration.h"
+
+namespace ddm {
+namespace {
+
+namespace po = boost::program_options;
+
+constexpr int kUsageError = 2;
+
+constexpr char kAbout[] =
+    "Writes the features of a run: of all frames recorded up to a trial, and of one step of the\n"
+    "greedy evaluation after it, with the plan made there. The evaluation is run again from its\n"
+    "seed, so use the machine and build that made the run.\n\n"
+    "usage: rosrun ddm_launch feature_space RUN_DIR --trial K --step S --out FILE.csv\n\n"
+    "Output: kind,step,z_1,z_2,... with kind experience, current, goal or plan\n\noptions";
+
+struct Arguments {
+  std::string run;
+  int trial = 0;
+  int step = 0;
+  std::string out;
+};
+
+/// @return false where --help was asked for and has been printed
+bool parse(int argc, char** argv, Arguments* arguments) {
+  po::options_description options(kAbout);
+  options.add_options()("help,h", "show this text");
+  options.add_options()("trial", po::value(&arguments->trial)->required(),
+                        "the model trained after this trial, and its greedy evaluation");
+  options.add_options()("step", po::value(&arguments->step)->required(),
+                        "step of the evaluation whose plan is wanted, from 0");
+  options.add_options()("out", po::value(&arguments->out)->required(), "CSV file to write");
+  po::options_description all(options);
+  all.add_options()("run", po::value(&arguments->run)->required());
+  po::positional_options_description positional;
+  positional.add("run", 1);
+  po::variables_map values;
+  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
+  if (values.count("help") > 0) {
+    std::cout << options << "\n";
+    return false;
+  }
+  po::notify(values);
+  return true;
+}
+
+std::string trialFolder(const Arguments& arguments, int trial) {
+  char number[24];
+  std::snprintf(number, sizeof(number), "/trial_%03d", trial);
+  return arguments.run + number;
+}
+
+DataSet experience(const Arguments& arguments, const Configuration& all) {
+  std::vector<std::string> bags;
+  for (int k = 0; k <= arguments.trial; ++k)
+    bags.push_back(trialFolder(arguments, k) + "/trial.bag");
+  BagCache cache(all.model.image.size, all.model.data_set);
+  return cache.read(bags);
+}
+
+/// The plan at one step of the greedy evaluation, which is run again up to there.
+Plan planAt(const Arguments& arguments, const Configuration& all,
+            std::shared_ptr<const Ddm> model) {
+  TrialId id;
+  id.seed = static_cast<std::uint64_t>(all.experiment.seed);
+  id.trial = static_cast<std::uint32_t>(arguments.trial);
+  id.evaluation = true;
+  const std::unique_ptr<Plant> plant = makePlant(all.plant, all.camera);
+  EpsilonGreedy::Options options;
+  options.epsilon = 0.0;
+  options.max_torque = all.mpc.max_torque;
+  options.torque_dim = plant->torqueDim();
+  EpsilonGreedy policy(std::make_shared<MpcPolicy>(std::move(model), all.mpc), options, id);
+  std::mt19937_64 start = startStream(id.seed, id.trial, id.evaluation);
+  plant->setState(plant->drawStart(start));
+  for (int step = 0;; ++step) {
+    const sensor_msgs::Image image =
+        encodeImage(plant->render(plant->state()), plant->imageSize(), ros::Time(1, 0), "camera");
+    const Decision decision = policy.decide(decodeImage(image, all.model.image.size));
+    if (step == arguments.step) return *decision.plan;
+    plant->step(decision.torque);
+  }
+}
+
+std::string row(const std::string& kind, Eigen::Index step,
+                const Eigen::Ref<const Eigen::VectorXd>& z) {
+  std::string text = kind + "," + std::to_string(step);
+  for (Eigen::Index i = 0; i < z.size(); ++i) text += "," + formatDouble(z[i]);
+  return text + "\n";
+}
+
+void run(const Arguments& arguments) {
+  ParamReader reader = ParamReader::fromFiles({arguments.run + "/config.yaml"});
+  const Configuration all = readConfiguration(&reader);
+  const std::string file = trialFolder(arguments, arguments.trial) + "/model.ddm";
+  const auto model = std::make_shared<const Ddm>(deserialiseModel(readFile(file), file));
+  const Eigen::MatrixXd Z = encodeAll(*model, experience(arguments, all));
+  const Plan plan = planAt(arguments, all, model);
+
+  std::string text = "kind,step";
+  for (int i = 1; i <= model->featureDim(); ++i) text += ",z_" + std::to_string(i);
+  text += "\n";
+  for (Eigen::Index i = 0; i < Z.cols(); ++i) text += row("experience", i, Z.col(i));
+  text += row("current", arguments.step, plan.features.col(0));
+  text += row("goal", 0, plan.goal_feature);
+  for (Eigen::Index k = 1; k < plan.features.cols(); ++k) {
+    text += row("plan", arguments.step + k, plan.features.col(k));
+  }
+  writeFileAtomically(arguments.out, text);
+  std::cout << "wrote " << arguments.out << "\n";
+}
+
+}  // namespace
+}  // namespace ddm
+
+int main(int argc, char** argv) {
+  ros::Time::init();
+  ddm::silenceSolverLog();
+  ddm::Arguments arguments;
+  try {
+    if (!ddm::parse(argc, argv, &arguments)) return EXIT_SUCCESS;
+    if (arguments.trial < 0 || arguments.trial > 999 || arguments.step < 0) {
+      throw std::invalid_argument("--trial must lie in [0, 999] and --step be >= 0");
+    }
+  } catch (const std::exception& e) {
+    std::cerr << "feature_space: " << e.what() << " (see --help)\n";
+    return ddm::kUsageError;
+  }
+  try {
+    ddm::run(arguments);
+  } catch (const std::exception& e) {
+    std::cerr << "feature_space: " << e.what() << "\n";
+    return EXIT_FAILURE;
+  }
+  return EXIT_SUCCESS;
+}

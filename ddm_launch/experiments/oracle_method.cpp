@@ -1,0 +1,114 @@
+// Oracle: the paper's classical MPC, on the true plant and its true state.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "oracle_method.h"
+
+#include <ddm_mpc/planner.h>
+#include <ddm_mpc/random_stream.h>
+#include <ddm_sim/plant_factory.h>
+
+#include <utility>
+
+namespace ddm {
+namespace {
+
+constexpr double kStep = 1e-5;  // of the central differences, in the units of state and torque
+
+/// Jacobian by central differences.
+/// @param f  function of a vector
+/// @return   df/dx  [f's size x x's size]
+template <class Function>
+Eigen::MatrixXd jacobian(const Function& f, const Eigen::VectorXd& x) {
+  Eigen::MatrixXd out;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    Eigen::VectorXd above = x;
+    Eigen::VectorXd below = x;
+    above[i] += kStep;
+    below[i] -= kStep;
+    const Eigen::VectorXd slope = (f(above) - f(below)) / (2.0 * kStep);
+    if (i == 0) out.resize(slope.size(), x.size());
+    out.col(i) = slope;
+  }
+  return out;
+}
+
+/// Looks at the true state instead of the image.
+class OraclePolicy : public Policy {
+ public:
+  OraclePolicy(const Configuration& configuration, const Plant& plant)
+      : plant_(plant),
+        cost_(makePlant(configuration.plant, configuration.camera), configuration.mpc.horizon,
+              configuration.mpc.control_weight),
+        planner_(&cost_, configuration.mpc) {}
+
+  void startTrial(const TrialId& id) override {
+    planner_.clear();
+    rng_ = randomStream(id, StreamRole::kPlannerStarts);
+  }
+  void observe(const Grey& /*grey*/) override { cost_.setState(plant_.state()); }
+  Plan plan() override { return planner_.solve(&rng_); }
+  void apply(const Eigen::VectorXd& /*u*/) override {}
+
+ private:
+  const Plant& plant_;
+  OraclePlanCost cost_;
+  Planner planner_;
+  std::mt19937_64 rng_;
+};
+
+}  // namespace
+
+OraclePlanCost::OraclePlanCost(std::unique_ptr<Plant> plant, int horizon, double control_weight)
+    : plant_(std::move(plant)),
+      horizon_(horizon),
+      control_weight_(control_weight),
+      goal_(plant_->visiblePosition(plant_->goalState())),
+      state_(plant_->state()),
+      states_(plant_->stateDim(), horizon + 1),
+      positions_(goal_.size(), horizon + 1) {}
+
+Eigen::VectorXd OraclePlanCost::next(const Eigen::VectorXd& state, const Eigen::VectorXd& u) const {
+  plant_->setState(state);
+  plant_->step(u);
+  return plant_->state();
+}
+
+double OraclePlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) {
+  states_.col(0) = state_;
+  positions_.col(0) = plant_->visiblePosition(state_);
+  for (int k = 0; k < horizon_; ++k) {
+    states_.col(k + 1) = next(states_.col(k), U.col(k));
+    positions_.col(k + 1) = plant_->visiblePosition(states_.col(k + 1));
+  }
+  if (d_U != nullptr) backward(U, d_U);
+  return control_weight_ * U.squaredNorm() +
+         (positions_.rightCols(horizon_).colwise() - goal_).squaredNorm();
+}
+
+void OraclePlanCost::backward(const Eigen::Ref<const Eigen::MatrixXd>& U,
+                              Eigen::MatrixXd* d_U) const {
+  *d_U = 2.0 * control_weight_ * U;
+  Eigen::VectorXd d_state = Eigen::VectorXd::Zero(states_.rows());
+  for (int k = horizon_ - 1; k >= 0; --k) {
+    const Eigen::VectorXd x = states_.col(k);
+    const Eigen::VectorXd u = U.col(k);
+    const auto position = [this](const Eigen::VectorXd& s) { return plant_->visiblePosition(s); };
+    d_state +=
+        2.0 * jacobian(position, states_.col(k + 1)).transpose() * (positions_.col(k + 1) - goal_);
+    const auto by_torque = [this, &x](const Eigen::VectorXd& v) { return next(x, v); };
+    const auto by_state = [this, &u](const Eigen::VectorXd& s) { return next(s, u); };
+    d_U->col(k) += jacobian(by_torque, u).transpose() * d_state;
+    d_state = jacobian(by_state, x).transpose() * d_state;
+  }
+}
+
+TrainingOutcome OracleMethod::train(const std::vector<std::string>& /*bags*/, const TrialId& /*id*/,
+                                    const PhaseCallback& progress) {
+  progress(1.0);
+  return {};
+}
+
+std::shared_ptr<Policy> OracleMethod::policy() const {
+  return std::make_shared<OraclePolicy>(configuration_, plant_);
+}
+
+}  // namespace ddm

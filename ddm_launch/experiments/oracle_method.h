@@ -1,0 +1,63 @@
+// Oracle: the paper's classical MPC, on the true plant and its true state.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ddm_mpc/plan_cost.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "method.h"
+
+namespace ddm {
+
+/// Cost of torques from a state of the plant on, with the plant itself as the model:
+///
+///   J(U) = sum_{k=1}^{K} |p(x_k) - p(x_goal)|^2 + lambda |u_{k-1}|^2,   x_{k+1} = plant(x_k, u_k)
+///
+/// p(x) is where the moving part is in the picture, Plant::visiblePosition(): for the pendulum a
+/// circle, as its features are after training, so that the planner meets the same problem with a
+/// perfect model. The gradient goes backwards through the steps, each with central differences.
+class OraclePlanCost : public PlanCost {
+ public:
+  OraclePlanCost(std::unique_ptr<Plant> plant, int horizon, double control_weight);
+
+  /// The state to plan from.
+  void setState(const Eigen::VectorXd& state) { state_ = state; }
+
+  double evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) override;
+  Eigen::MatrixXd predictedFeatures() const override { return positions_; }
+  Eigen::VectorXd goalFeature() const override { return goal_; }
+  int horizon() const override { return horizon_; }
+  int torqueDim() const override { return plant_->torqueDim(); }
+
+ private:
+  Eigen::VectorXd next(const Eigen::VectorXd& state, const Eigen::VectorXd& u) const;
+  void backward(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) const;
+
+  std::unique_ptr<Plant> plant_;  // imagined: never the one that is controlled
+  int horizon_;
+  double control_weight_;
+  Eigen::VectorXd goal_;
+  Eigen::VectorXd state_;
+  Eigen::MatrixXd states_;     // x_0 ... x_K
+  Eigen::MatrixXd positions_;  // p(x_0) ... p(x_K)
+};
+
+/// Plans with the planner of the DDM; learns nothing, so that its rows in trials.csv have 0 frames.
+class OracleMethod : public Method {
+ public:
+  OracleMethod(const Configuration& configuration, const Plant& plant)
+      : configuration_(configuration), plant_(plant) {}
+
+  TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,
+                        const PhaseCallback& progress) override;
+  std::shared_ptr<Policy> policy() const override;
+
+ private:
+  const Configuration& configuration_;
+  const Plant& plant_;
+};
+
+}  // namespace ddm

@@ -1,0 +1,220 @@
+// prediction_experiment: how well a model predicts frames that it was not trained on (Sec. 4.1).
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_model/long_term_prediction.h>
+#include <ddm_model/model_file.h>
+#include <ddm_model/solver_log.h>
+#include <ddm_model/trainer.h>
+#include <ddm_mpc/epsilon_greedy.h>
+#include <ddm_msgs/param_value.h>
+#include <ddm_sim/plant_factory.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "command_line.h"
+#include "progress.h"
+#include "quadratic_fit.h"
+#include "results_folder.h"
+
+namespace ddm {
+namespace {
+
+constexpr int kUsageError = 2;
+
+constexpr char kAbout[] =
+    "Records one long random trial, trains on its first frames and predicts the rest, 1 step "
+    "ahead\n"
+    "and more. Writes config.yaml, model.ddm, predictions.csv (errors by steps ahead), "
+    "features.csv\n"
+    "(of every frame), strip.csv (one prediction, step by step) and, last, summary.yaml.\n\n"
+    "usage: rosrun ddm_launch prediction_experiment --preset paper --plant moving_tile --seed 1\n"
+    "                                               --out DIR";
+
+/// A random trial: what a learner sees, and the true states behind it.
+struct Recording {
+  DataSet training;
+  DataSet held_out;
+  Eigen::MatrixXd states;     ///< of all frames            [stateDim() x N]
+  Eigen::MatrixXd positions;  ///< visiblePosition() of all  [. x N]
+};
+
+struct Experiment {
+  Configuration configuration;
+  PredictionOptions prediction;
+};
+
+/// Training and held-out frames in one go: uniformly random torques from a random start.
+Recording record(const Experiment& experiment, Plant* plant) {
+  const Configuration& all = experiment.configuration;
+  const int num_frames =
+      experiment.prediction.training_frames + experiment.prediction.held_out_frames;
+  TrialId id;
+  id.seed = static_cast<std::uint64_t>(all.experiment.seed);
+  EpsilonGreedy::Options options;
+  options.epsilon = 1.0;
+  options.hold_steps = all.mpc.hold_steps;
+  options.max_torque = all.mpc.max_torque;
+  options.torque_dim = plant->torqueDim();
+  EpsilonGreedy random(nullptr, options, id);
+  std::mt19937_64 start = startStream(id.seed, id.trial, id.evaluation);
+  plant->setState(plant->drawStart(start));
+
+  Recording out{DataSet(plant->imageSize(), plant->torqueDim()),
+                DataSet(plant->imageSize(), plant->torqueDim()),
+                Eigen::MatrixXd(plant->stateDim(), num_frames), Eigen::MatrixXd()};
+  for (int frame = 0; frame < num_frames; ++frame) {
+    const bool learn = frame < experiment.prediction.training_frames;
+    const bool first = frame == 0 || frame == experiment.prediction.training_frames;
+    const Grey grey = plant->render(plant->state());
+    const Eigen::VectorXd torque = random.decide(grey).torque;
+    (learn ? out.training : out.held_out).append(grey, torque, first);
+    const Eigen::VectorXd position = plant->visiblePosition(plant->state());
+    out.positions.conservativeResize(position.size(), num_frames);
+    out.positions.col(frame) = position;
+    out.states.col(frame) = plant->state();
+    plant->step(torque);
+  }
+  return out;
+}
+
+std::string cells(const Eigen::Ref<const Eigen::VectorXd>& values) {
+  std::string text;
+  for (Eigen::Index i = 0; i < values.size(); ++i) text += "," + formatDouble(values[i]);
+  return text;
+}
+
+/// The columns of states and features.
+std::string columns(const Plant& plant, int feature_dim) {
+  std::string text;
+  for (const std::string& name : plant.stateNames()) text += "," + name;
+  for (int i = 1; i <= feature_dim; ++i) text += ",z_" + std::to_string(i);
+  return text + "\n";
+}
+
+std::string featuresCsv(const Plant& plant, const Recording& recording, const Eigen::MatrixXd& Z) {
+  std::string text = "frame,set" + columns(plant, static_cast<int>(Z.rows()));
+  for (Eigen::Index i = 0; i < Z.cols(); ++i) {
+    const bool training = i < recording.training.numFrames();
+    text += std::to_string(i) + (training ? ",training" : ",held_out") +
+            cells(recording.states.col(i)) + cells(Z.col(i)) + "\n";
+  }
+  return text;
+}
+
+/// The prediction from the middle of the held-out frames.
+std::string stripCsv(const Plant& plant, const Recording& recording, const Ddm& model,
+                     const Eigen::MatrixXd& Z, int max_steps) {
+  const Eigen::Index frame = (recording.held_out.numFrames() - max_steps) / 2;
+  const Eigen::Index begin = recording.training.numFrames();
+  const Eigen::MatrixXd predicted = rollOut(model, Z.rightCols(recording.held_out.numFrames()),
+                                            recording.held_out.torques(), frame, max_steps);
+  std::string text = "steps" + columns(plant, static_cast<int>(Z.rows()));
+  for (int k = 0; k <= max_steps; ++k) {
+    text += std::to_string(k) + cells(recording.states.col(begin + frame + k)) +
+            cells(predicted.col(k)) + "\n";
+  }
+  return text;
+}
+
+std::string predictionsCsv(const std::vector<PredictionError>& errors, double position_r2,
+                           const ModelInfo& info, double train_s) {
+  std::string text = "seed,steps,num_predictions,rmse,rmse_repeat,position_r2,v_r,v_p,train_s\n";
+  for (const PredictionError& error : errors) {
+    text += std::to_string(info.seed) + "," + std::to_string(error.steps) + "," +
+            std::to_string(error.num_predictions) + "," + formatDouble(error.rmse) + "," +
+            formatDouble(error.rmse_repeat) + "," + formatDouble(position_r2) + "," +
+            formatDouble(info.v_r) + "," + formatDouble(info.v_p) + "," + formatDouble(train_s) +
+            "\n";
+  }
+  return text;
+}
+
+void run(const Experiment& experiment) {
+  const Configuration& all = experiment.configuration;
+  YAML::Node saved = toYaml(all);
+  saved["prediction"] = toYaml(experiment.prediction);
+  const ResultsFolder folder(all.experiment.runs, saved);
+  for (const std::string& warning : folder.warnings()) std::cout << "warning: " << warning << "\n";
+  folder.begin();
+
+  const std::unique_ptr<Plant> plant = makePlant(all.plant, all.camera);
+  const Recording recording = record(experiment, plant.get());
+  ModelInfo info;
+  info.seed = static_cast<std::uint64_t>(all.experiment.seed);
+  info.config = toText(all.model);
+  Progress progress(&std::cout, ::isatty(STDOUT_FILENO) != 0, 0);
+  progress.beginPhase(0, "train");
+  const TrainingResult result = train(recording.training, all.model.model, all.model.training, info,
+                                      [&progress](const TrainingProgress& state) {
+                                        progress.update(state.fraction_done);
+                                        return true;
+                                      });
+  if (!result.model) throw std::runtime_error(result.message);
+  const Ddm& model = *result.model;
+
+  const int max_steps = experiment.prediction.max_steps;
+  const Eigen::Index num_training = recording.training.numFrames();
+  const Eigen::Index num_held_out = recording.held_out.numFrames();
+  Eigen::MatrixXd Z(model.featureDim(), num_training + num_held_out);
+  Z << encodeAll(model, recording.training), encodeAll(model, recording.held_out);
+  const QuadraticFit fit(Z.leftCols(num_training), recording.positions.leftCols(num_training));
+  const double position_r2 =
+      fit.explained(Z.rightCols(num_held_out), recording.positions.rightCols(num_held_out));
+  const std::vector<PredictionError> errors =
+      predictionErrors(model, recording.held_out, max_steps);
+
+  folder.write("model.ddm", serialiseModel(model));
+  folder.write("features.csv", featuresCsv(*plant, recording, Z));
+  folder.write("strip.csv", stripCsv(*plant, recording, model, Z, max_steps));
+  folder.write("predictions.csv",
+               predictionsCsv(errors, position_r2, model.info(), result.seconds));
+  YAML::Node summary(YAML::NodeType::Map);
+  summary["plant"] = all.experiment.plant;
+  summary["seed"] = all.experiment.seed;
+  summary["schedule"] = all.model.training.schedule;
+  summary["rmse"] = valueToYaml(errors.back().rmse);
+  summary["rmse_repeat"] = valueToYaml(errors.back().rmse_repeat);
+  summary["position_r2"] = valueToYaml(position_r2);
+  summary["train_s"] = valueToYaml(result.seconds);
+  folder.finish(summary);
+  std::cout << "seed " << all.experiment.seed << ", schedule " << all.model.training.schedule
+            << ": " << max_steps << " steps ahead the error is " << formatDouble(errors.back().rmse)
+            << " grey, " << formatDouble(errors.back().rmse_repeat)
+            << " if the last frame is repeated; the features explain " << formatDouble(position_r2)
+            << " of the position. Results: " << folder.path() << "\n";
+}
+
+/// @return false where --help was asked for and has been printed
+bool configure(int argc, char** argv, Experiment* experiment) {
+  Arguments arguments;
+  if (!parseCommandLine(argc, argv, commonOptions(kAbout, &arguments))) return false;
+  ParamReader reader = openConfiguration(arguments);
+  experiment->prediction = reader.read<PredictionOptions>("prediction");
+  experiment->configuration = readConfiguration(arguments, &reader);
+  requireValid(experiment->configuration.experiment);
+  return true;
+}
+
+}  // namespace
+}  // namespace ddm
+
+int main(int argc, char** argv) {
+  ddm::silenceSolverLog();
+  ddm::Experiment experiment;
+  try {
+    if (!ddm::configure(argc, argv, &experiment)) return EXIT_SUCCESS;
+  } catch (const std::exception& e) {
+    std::cerr << "prediction_experiment: " << e.what() << " (see --help)\n";
+    return ddm::kUsageError;
+  }
+  try {
+    ddm::run(experiment);
+  } catch (const std::exception& e) {
+    std::cerr << "\nprediction_experiment: " << e.what() << "\n";
+    return EXIT_FAILURE;
+  }
+  return EXIT_SUCCESS;
+}

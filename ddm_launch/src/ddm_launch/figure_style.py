@@ -1,0 +1,61 @@
+# How the figures of the paper's experiments look in print: sizes, letters, colours, and how they are saved.
+# SPDX-License-Identifier: BSD-3-Clause
+import contextlib
+import sys
+
+import matplotlib
+matplotlib.use("Agg")  # no display needed
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+from PIL import Image  # noqa: E402
+
+from ddm_launch.run_folder import RunFolderError  # noqa: E402
+
+COLUMN_WIDTH, PAGE_WIDTH = 3.4, 7.0  # [in], to be printed at this size, in one column or across two
+DPI = 200
+
+# The Okabe-Ito set: told apart by colour-blind readers. Figures vary shapes and dashes along with them.
+ORANGE, SKY, GREEN, YELLOW = "#E69F00", "#56B4E9", "#009E73", "#F0E442"
+BLUE, VERMILLION, PURPLE, BLACK = "#0072B2", "#D55E00", "#CC79A7", "#000000"
+GREY = "#666666"  # for references
+
+SETTINGS = {"font.size": 8, "axes.titlesize": 8, "axes.labelsize": 8, "xtick.labelsize": 7, "ytick.labelsize": 7,
+            "legend.fontsize": 7, "axes.linewidth": 0.6, "lines.linewidth": 1.2, "lines.markersize": 4,
+            "figure.constrained_layout.w_pad": 0.03, "figure.constrained_layout.h_pad": 0.03,
+            "figure.constrained_layout.wspace": 0.02, "figure.constrained_layout.hspace": 0.02,
+            "grid.color": "#dddddd", "grid.linewidth": 0.5, "axes.axisbelow": True, "legend.framealpha": 0.9}
+
+
+@contextlib.contextmanager
+def new_figure(width, height):
+    """A figure of this size [in], closed at the end of the `with`."""
+    with plt.rc_context(SETTINGS):
+        figure = plt.figure(figsize=(width, height), dpi=DPI, constrained_layout=True)
+        try:
+            yield figure
+        finally:
+            plt.close(figure)
+
+
+def save(figure, out):
+    """Writes a PNG without time or program in it: the same figure gives the same bytes.
+
+    Raises RunFolderError if the name has another suffix, OSError if it cannot be written.
+    """
+    if not out.lower().endswith(".png"):
+        raise RunFolderError("the picture must be a .png, got '%s': give --out another name" % out)
+    figure.canvas.draw()
+    picture = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB")
+    picture = picture.quantize(256)  # about half as large; only the colours of smoothed edges move, and not visibly
+    picture.save(out, format="PNG", optimize=True, dpi=(DPI, DPI))
+
+
+def write(program, out, draw):
+    """What each figure's program does in the end: draw(out), then the exit code; a failure is told on stderr."""
+    try:
+        draw(out)
+    except (RunFolderError, OSError) as error:
+        print("%s: %s" % (program, error), file=sys.stderr)
+        return 1
+    print("wrote %s" % out)
+    return 0

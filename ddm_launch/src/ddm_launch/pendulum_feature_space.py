@@ -1,0 +1,78 @@
+# Draws the pendulum's feature space: decoded images, experience so far, current frame, goal and plan.
+# SPDX-License-Identifier: BSD-3-Clause
+import argparse
+
+from ddm_launch.feature_grid import GRID, FeatureGrid
+from ddm_launch.figure_style import COLUMN_WIDTH, GREEN, SKY, VERMILLION, YELLOW, new_figure, save, write
+from ddm_launch.images import Decoder
+from ddm_launch.run_folder import RunFolderError, number, read_csv
+
+# kind: marker, size [pt^2], colour, label, in the order of drawing. The colours are those of the paper's figure.
+KINDS = {"experience": ("o", 6, GREEN, "experience"),
+         "goal": ("*", 190, VERMILLION, "goal"),
+         "plan": ("^", 14, YELLOW, "plan"),
+         "current": ("s", 32, SKY, "current")}
+OUTSIDE = "#333333"  # where there are features and no images
+
+
+def read_space(path):
+    """The features of a file of feature_space, as {kind: list of (z_1, z_2)}, the plan in order of its steps."""
+    rows = read_csv(path, ["kind", "step", "z_1", "z_2"], "rosrun ddm_launch feature_space writes it")
+    space = {kind: [] for kind in KINDS}
+    for row in rows:
+        if row["kind"] not in space:
+            raise RunFolderError("%s: column kind must be one of %s, got '%s'" % (
+                path, ", ".join(KINDS), row["kind"]))
+        step = number(row, "step", path) if row["kind"] == "plan" else 0
+        space[row["kind"]].append((step, number(row, "z_1", path), number(row, "z_2", path)))
+    missing = [kind for kind in KINDS if not space[kind]]
+    if missing:
+        raise RunFolderError("%s has no row of kind %s: was it written by feature_space?" % (path, ", ".join(missing)))
+    space["plan"].sort()
+    return {kind: [(z_1, z_2) for _, z_1, z_2 in points] for kind, points in space.items()}
+
+
+def draw_space(axes, space, decoder):
+    """The grid over [-1, 1]^2 as in the paper; the axes reach further where a feature lies outside."""
+    grid = FeatureGrid((-1.0, -1.0), (1.0, 1.0))
+    grid.draw(axes, decoder)
+    plan_order = 3 + list(KINDS).index("plan")
+    axes.plot(*zip(*(space["current"][-1:] + space["plan"])), color=YELLOW, linewidth=0.8, zorder=plan_order)
+    for order, (kind, (marker, size, colour, label)) in enumerate(KINDS.items()):
+        if kind == "plan":
+            label = "plan, %d steps" % len(space[kind])
+        axes.scatter(*zip(*space[kind]), marker=marker, s=size, color=colour, edgecolors="black",
+                     linewidths=0.25 if kind == "experience" else 0.6, label=label, zorder=3 + order)
+    axes.set_facecolor(OUTSIDE)
+    left, right, bottom, top = grid.extent
+    points = [point for points in space.values() for point in points]
+    reach = max(abs(value) for point in points for value in point) + 0.06
+    axes.set_xlim(min(left, -reach), max(right, reach))
+    axes.set_ylim(min(bottom, -reach), max(top, reach))
+
+
+def draw(path, model, out, make_decoder=Decoder):
+    """Draws a file of feature_space over the images that the model decodes."""
+    space = read_space(path)
+    with new_figure(COLUMN_WIDTH, COLUMN_WIDTH + 0.05) as figure:
+        grid = figure.add_gridspec(2, 1, height_ratios=[1.0, 0.001])
+        axes = figure.add_subplot(grid[0])
+        draw_space(axes, space, make_decoder(model))
+        legend = figure.add_subplot(grid[1])
+        legend.axis("off")
+        legend.legend(*axes.get_legend_handles_labels(), loc="center", ncol=4, columnspacing=1.0, handletextpad=0.2,
+                      frameon=False)
+        save(figure, out)
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(
+        prog="pendulum_feature_space",
+        description="Draws a file of feature_space: %d x %d decoded images over [-1, 1] x [-1, 1], the features of all "
+        "frames so far, the current one, the goal's, and the planned ones. The axes reach beyond the images where a "
+        "feature does." % (GRID, GRID))
+    parser.add_argument("file", metavar="FILE.csv", help="what feature_space has written")
+    parser.add_argument("--model", metavar="MODEL.ddm", required=True, help="the model of that trial")
+    parser.add_argument("--out", metavar="FILE.png", required=True, help="picture to write")
+    options = parser.parse_args(arguments)
+    return write("pendulum_feature_space", options.out, lambda out: draw(options.file, options.model, out))

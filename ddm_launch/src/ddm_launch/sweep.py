@@ -1,0 +1,193 @@
+# Runs an experiment for many seeds, by GNU parallel or as a Slurm job array, and collects their rows.
+# SPDX-License-Identifier: BSD-3-Clause
+import argparse
+import os
+import re
+import sys
+import time
+
+from ddm_launch.gnu_parallel import GnuParallel
+from ddm_launch.interruption import Interrupted, raised_as_exception
+from ddm_launch.seed_script import BadOptions, SeedProgram, SweepError, TABLES
+from ddm_launch.slurm import SlurmArray, end_left_over
+from ddm_launch.sweep_folder import SweepFolder
+
+MAX_SEEDS = 100000
+FAILURE, USAGE_ERROR = 1, 2
+
+ABOUT = """\
+Runs an experiment for each seed, several at a time, and collects the rows of all seeds in DIR/sweep.csv. The same
+command again runs only the seeds that are not finished, and those from their last finished trial on; --seeds and
+--trials may grow. Returns 0 if all seeds are finished in the end."""
+
+EPILOG = """\
+example:
+  rosrun ddm_launch sweep --preset paper --plant pendulum --seeds 0:50 --trials 15 --out ~/runs/paper
+  rosrun ddm_launch sweep --seeds 0:50 --trials 15 --out ~/runs/oracle -- --method oracle
+
+in DIR:
+  sweep.csv           the rows of trials.csv (predictions.csv) of all finished seeds
+  seed_NNNN/          all that the program writes for a seed
+  logs/seed_NNNN.log  what the program said about a seed
+  joblog.tsv          GNU parallel's job log of the last call
+  run_seed.sh         one seed by hand: bash run_seed.sh SEED
+  sweep.yaml          what is run; a sweep with other options is refused in this folder
+
+hosts (--hosts FILE):
+  GNU parallel's --sshloginfile: one ssh host a line, ':' is this machine. Hosts that do not answer are left out. Each
+  needs GNU parallel, a login without password, and this workspace and DIR under the same paths (a shared file
+  system): the workspace's setup.bash is sourced there, files are not copied. The ssh command is $PARALLEL_SSH.
+
+Slurm (--slurm):
+  One task of one core for each seed. What else sbatch shall know goes into the variables that it reads itself:
+  SBATCH_PARTITION, SBATCH_TIMELIMIT, SBATCH_ACCOUNT, SBATCH_QOS, SBATCH_MEM_PER_CPU and so on. Tasks see this workspace
+  and DIR under the same paths."""
+
+
+def seed_range(text):
+    """range(A, B) of "A:B"."""
+    match = re.match(r"(\d{1,10}):(\d{1,10})$", text)
+    seeds = range(int(match.group(1)), int(match.group(2))) if match else ()
+    if not 1 <= len(seeds) <= MAX_SEEDS:
+        raise argparse.ArgumentTypeError("must be A:B with whole numbers 0 <= A < B (B excluded) and at most %d seeds, "
+                                         "got '%s'" % (MAX_SEEDS, text))
+    return seeds
+
+
+def positive(text):
+    if not re.match(r"[1-9]\d{0,5}$", text):
+        raise argparse.ArgumentTypeError("must be a whole number >= 1, got '%s'" % text)
+    return int(text)
+
+
+def make_parser():
+    parser = argparse.ArgumentParser(
+        prog="sweep", description=ABOUT, epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False, usage="rosrun ddm_launch sweep --seeds A:B --out DIR [options] [-- options of the program]")
+    parser.add_argument("--preset", default="paper", help="name in ddm_launch/config/presets; default paper")
+    parser.add_argument("--plant", default="pendulum", help="name in ddm_sim/config; default pendulum")
+    parser.add_argument("--seeds", type=seed_range, required=True, metavar="A:B", help="seeds A ... B - 1")
+    parser.add_argument("--trials", type=int, metavar="T", help="of run_experiment; default 15")
+    parser.add_argument("--out", required=True, metavar="DIR", help="folder for the results")
+    parser.add_argument("--jobs", type=positive, metavar="N",
+                        help="seeds at a time on each host, default one per core; with --slurm in all, default any")
+    parser.add_argument("--hosts", metavar="FILE", help="spread over ssh hosts")
+    parser.add_argument("--slurm", action="store_true", help="run as a Slurm job array")
+    parser.add_argument("--program", choices=sorted(TABLES), default="run_experiment",
+                        help="default run_experiment")
+    return parser
+
+
+def parse(arguments):
+    """(options, words for the program). Ends the process with code 2 and a message if they make no sense."""
+    parser = make_parser()
+    split = arguments.index("--") if "--" in arguments else len(arguments)
+    options, more = parser.parse_args(arguments[:split]), arguments[split + 1:]
+    for word in more:
+        if re.match(r"(-h|--(help|preset|plant|seed|trials|out)(=.*)?)$", word):
+            parser.error("%s after '--': only options that sweep itself has not may stand there" % word)
+    if options.program != "run_experiment" and options.trials is not None:
+        parser.error("--trials is an option of run_experiment, %s has none: leave it out" % options.program)
+    if options.program == "run_experiment" and options.trials is None:
+        options.trials = 15
+    if options.hosts is not None and options.slurm:
+        parser.error("--hosts and --slurm exclude each other: a Slurm cluster chooses its hosts itself")
+    if options.hosts is not None and not os.path.isfile(options.hosts):
+        parser.error("--hosts must name a file of ssh hosts, got '%s', which is none" % options.hosts)
+    return options, more
+
+
+class Progress:
+    """Tells which seeds finish: a line for each; nothing on a terminal, where the engine has a line of its own."""
+
+    def __init__(self, folder, seeds, pending, terminal):
+        self.folder, self.num_seeds, self.pending, self.terminal = folder, len(seeds), list(pending), terminal
+
+    def update(self):
+        """Returns how far the sweep is, in words."""
+        finished = [seed for seed in self.pending if self.folder.is_finished(seed)]
+        for seed in finished:
+            self.pending.remove(seed)
+            if not self.terminal:
+                print("seed %d finished (%s)" % (seed, self.text()), flush=True)
+        return self.text()
+
+    def text(self):
+        return "%d of %d" % (self.num_seeds - len(self.pending), self.num_seeds)
+
+
+def mean_success(last_rows):
+    """", mean success at the last trial 0.75" of the rows that know it, or nothing."""
+    known = [row["success"] for row in last_rows if row.get("success")]
+    if not known:
+        return ""
+    return ", mean success at the last trial %.2f" % (sum(float(value) for value in known) / len(known))
+
+
+def report(folder, seeds, start):
+    """Collects, says how it went, and returns whether all seeds are finished."""
+    last_rows, problems = folder.collect(seeds)
+    if problems:
+        print("sweep: not finished:", file=sys.stderr)
+        for seed, problem in problems.items():
+            print("  seed %d: %s" % (seed, problem), file=sys.stderr)
+        print("sweep: the same command goes on where this one ended", file=sys.stderr)
+    versions = folder.versions(last_rows)
+    if len(versions) > 1:
+        print("sweep: warning: the seeds come from %d versions of the code, they may not be comparable: %s"
+              % (len(versions), ", ".join(versions)), file=sys.stderr)
+    print("%d of %d seeds finished%s; this call took %.1f s" % (
+        len(last_rows), len(seeds), mean_success(last_rows.values()), time.monotonic() - start))
+    if last_rows:
+        print("results: %s" % folder.table)
+    return not problems
+
+
+def run(engine, folder, seeds, terminal):
+    """Runs those seeds that are not finished."""
+    left_over = end_left_over(folder)
+    if left_over:
+        print("ended the Slurm job %s of an earlier call that was killed" % left_over)
+    pending = [seed for seed in seeds if not folder.is_finished(seed)]
+    print("%s, preset %s, plant %s: %d of %d seeds to run" % (
+        folder.program.name, folder.program.preset, folder.program.plant, len(pending), len(seeds)), flush=True)
+    if pending:
+        folder.prepare(pending)
+        progress = Progress(folder, seeds, pending, terminal)
+        engine.run(folder, pending, progress.update)
+        progress.update()
+
+
+def sweep(options, more):
+    """Returns the exit code. Raises Interrupted, when all is tidied up, if a signal asked to end."""
+    start, terminal = time.monotonic(), sys.stderr.isatty()
+    engine = (SlurmArray(options.jobs, terminal) if options.slurm
+              else GnuParallel(options.jobs, options.hosts, terminal))
+    program = SeedProgram(options.program, options.preset, options.plant, options.trials, more)
+    program.check(options.seeds[0])
+    with SweepFolder(options.out, program) as folder:
+        interruption = None
+        try:
+            run(engine, folder, options.seeds, terminal)
+        except Interrupted as error:
+            interruption = error
+        complete = report(folder, options.seeds, start)
+    if interruption:
+        raise interruption
+    return 0 if complete else FAILURE
+
+
+def main(arguments=None):
+    options, more = parse(sys.argv[1:] if arguments is None else arguments)
+    try:
+        with raised_as_exception():
+            return sweep(options, more)
+    except Interrupted as error:
+        print("sweep: %s" % error, file=sys.stderr)
+        return 128 + error.number  # as a shell says it
+    except SweepError as error:
+        print("sweep: %s" % error, file=sys.stderr)
+        return USAGE_ERROR if isinstance(error, BadOptions) else FAILURE
+    except OSError as error:
+        print("sweep: %s" % error, file=sys.stderr)
+        return FAILURE

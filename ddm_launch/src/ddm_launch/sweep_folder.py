@@ -1,0 +1,193 @@
+# The folder of a sweep: which seeds are finished, and the rows of all of them in one table.
+# SPDX-License-Identifier: BSD-3-Clause
+import csv
+import fcntl
+import os
+
+import yaml
+
+from ddm_launch.seed_script import SweepError
+
+LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the former is ten times as fast
+
+# Keys of config.yaml in which the seeds of one sweep may differ.
+MAY_DIFFER = {"version", "experiment/seed", "experiment/trials", "experiment/runs", "experiment/timeout",
+              "sim/watchdog"}
+
+
+def read_yaml(path):
+    """The mapping in a YAML file; empty if the file is missing or holds something else."""
+    try:
+        with open(path) as stream:
+            tree = yaml.load(stream, Loader=LOADER)
+    except (OSError, UnicodeDecodeError, yaml.YAMLError):
+        return {}
+    return tree if isinstance(tree, dict) else {}
+
+
+def write_file(path, text):
+    """The file appears, or changes, only when it is complete."""
+    with open(path + ".part", "w", newline="") as stream:
+        stream.write(text)
+    os.replace(path + ".part", path)
+
+
+def flat(tree, prefix=""):
+    """{"block/key": value} of nested mappings."""
+    entries = {}
+    for key, value in tree.items():
+        entries.update(flat(value, "%s%s/" % (prefix, key)) if isinstance(value, dict) else {prefix + str(key): value})
+    return entries
+
+
+def differences(there, here, may_differ=()):
+    """Lines that name each key whose value is not the same."""
+    there, here = flat(there), flat(here)
+    return ["%s: %s there, %s here" % (key, there.get(key, "nothing"), here.get(key, "nothing"))
+            for key in sorted(set(there) | set(here)) if key not in may_differ and there.get(key) != here.get(key)]
+
+
+class SweepFolder:
+    """The folder that --out names:
+
+      sweep.yaml           what is run; another sweep in this folder is refused
+      run_seed.sh          the command of one seed
+      seed_NNNN/           the results of a seed, by the program itself
+      logs/seed_NNNN.log   what the program said when it ran last
+      joblog.tsv           GNU parallel's job log of the last call
+      slurm_job            number of the job array while it is in the hands of Slurm
+      sweep.csv            the rows of all finished seeds
+
+    A context manager: at most one sweep holds the folder at a time.
+    """
+
+    def __init__(self, path, program):
+        """Makes the folder, or opens that of the same sweep. Raises SweepError if it holds another one."""
+        self.path, self.program = os.path.abspath(path), program
+        try:
+            os.makedirs(os.path.join(self.path, "logs"), exist_ok=True)
+            self._lock = open(os.path.join(self.path, ".lock"), "a")
+        except OSError as error:
+            raise SweepError("cannot write into the folder %s (%s): choose another with --out"
+                             % (self.path, error.strerror))
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            self._lock.close()
+            raise SweepError("another sweep is running in the folder %s: wait for it, or use another folder"
+                             % self.path)
+        try:
+            self._compare()
+        except SweepError:
+            self._lock.close()
+            raise
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._lock.close()
+
+    def _compare(self):
+        path = os.path.join(self.path, "sweep.yaml")
+        here = {"program": self.program.name, "preset": self.program.preset, "plant": self.program.plant,
+                "options": self.program.options}
+        if os.path.exists(path):
+            found = differences(read_yaml(path), here)
+            if found:
+                raise SweepError("the folder %s holds another sweep, use another folder:\n - %s"
+                                 % (self.path, "\n - ".join(found)))
+        else:
+            write_file(path, yaml.safe_dump(here, sort_keys=False))
+
+    @property
+    def script(self):
+        return os.path.join(self.path, "run_seed.sh")
+
+    @property
+    def table(self):
+        return os.path.join(self.path, "sweep.csv")
+
+    def seed_folder(self, seed):
+        return os.path.join(self.path, "seed_%04d" % seed)
+
+    def log(self, seed):
+        return os.path.join(self.path, "logs", "seed_%04d.log" % seed)
+
+    def is_finished(self, seed):
+        """Whether the seed has its verdict, for as many trials as are asked for."""
+        summary = read_yaml(os.path.join(self.seed_folder(seed), "summary.yaml"))
+        trials = summary.get("trials")
+        return summary.get("finished") is True and (
+            self.program.trials is None or (isinstance(trials, int) and trials >= self.program.trials))
+
+    def prepare(self, seeds):
+        """Writes the script that runs a seed; what earlier calls said about these seeds is forgotten."""
+        write_file(self.script, self.program.script(self.path))
+        for seed in seeds:
+            if os.path.exists(self.log(seed)):
+                os.remove(self.log(seed))
+
+    def last_words(self, seed):
+        """The last line that a seed's program said, and where the rest is."""
+        try:
+            with open(self.log(seed), errors="replace") as stream:
+                lines = [line.strip() for line in stream if line.strip()]
+        except OSError:
+            return "it was not started"
+        return "%s (%s)" % (lines[-1] if lines else "it said nothing", self.log(seed))
+
+    def collect(self, seeds):
+        """Writes sweep.csv over the finished ones of these seeds; removes it if there are none.
+
+        Returns ({seed: its last row}, {seed: what is wrong with it}), together all seeds.
+        """
+        last_rows, problems, lines, first = {}, {}, [], None
+        for seed in sorted(seeds):
+            if not self.is_finished(seed):
+                problems[seed] = self.last_words(seed)
+                continue
+            try:
+                header, rows, last_row = self._read_table(seed)
+                first = first or (seed, header)
+                self._require_equal(first, seed, header)
+            except SweepError as error:
+                problems[seed] = str(error)
+                continue
+            lines += rows
+            last_rows[seed] = last_row
+        if first:
+            write_file(self.table, "\n".join([first[1]] + lines) + "\n")
+        elif os.path.exists(self.table):
+            os.remove(self.table)
+        return last_rows, problems
+
+    def _read_table(self, seed):
+        """(header line, lines, last line as a dictionary) of a finished seed, up to the trial asked for."""
+        path = os.path.join(self.seed_folder(seed), self.program.table)
+        try:
+            with open(path, newline="") as stream:
+                lines = stream.read().splitlines()
+        except (OSError, UnicodeDecodeError) as error:
+            raise SweepError("%s cannot be read (%s): remove the folder, and the seed is run again" % (path, error))
+        count = len(lines) - 1 if self.program.trials is None else self.program.trials + 1
+        rows = list(csv.DictReader(lines))
+        if not 1 <= count <= len(rows) or any(row.get("seed") != str(seed) for row in rows):
+            raise SweepError("%s must hold %s rows of seed %d: remove the folder, and the seed is run again"
+                             % (path, "some" if self.program.trials is None else count, seed))
+        return lines[0], lines[1:count + 1], rows[count - 1]
+
+    def _require_equal(self, first, seed, header):
+        """One table speaks of one experiment: same columns, same configuration as the first finished seed."""
+        there, here = (read_yaml(os.path.join(self.seed_folder(k), "config.yaml")) for k in (first[0], seed))
+        found = differences(there, here, MAY_DIFFER)
+        if header != first[1]:
+            found.append("columns of %s" % self.program.table)
+        if found:
+            raise SweepError("%s is not the experiment of seed %d: %s; use another folder for it"
+                             % (self.seed_folder(seed), first[0], ", ".join(found)))
+
+    def versions(self, seeds):
+        """All versions of the code that these seeds name in their config.yaml."""
+        return sorted({str(read_yaml(os.path.join(self.seed_folder(seed), "config.yaml")).get("version"))
+                       for seed in seeds})

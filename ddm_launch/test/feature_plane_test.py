@@ -1,0 +1,97 @@
+#!/usr/bin/python3
+# The feature plane: what is drawn where, the decoded grid, and what it refuses.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import shutil
+import sys
+
+import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from ddm_launch import feature_plane  # noqa: E402
+from ddm_launch.feature_grid import BRIGHTEST, DARKEST, FeatureGrid  # noqa: E402
+from ddm_launch.figure_style import COLUMN_WIDTH, PAGE_WIDTH, new_figure  # noqa: E402
+from ddm_launch.run_folder import RunFolderError  # noqa: E402
+import figure_case  # noqa: E402
+
+HEADER = "frame,set,x_px,y_px,z_1,z_2"
+ROWS = ("0,training,1,1,-1.0,0.0", "1,training,1,1,1.0,0.5", "2,held_out,1,1,0.0,0.25")
+
+
+class FeaturePlaneTest(figure_case.FigureCase):
+    def makeFolder(self, name, schedule):
+        """A folder of prediction_experiment with a real model."""
+        self.write(os.path.join(name, "features.csv"), HEADER, *ROWS)
+        self.write(os.path.join(name, "config.yaml"), "training:", "  schedule: %s" % schedule)
+        folder = os.path.join(self.folder, name)
+        shutil.copy(figure_case.make_run(os.path.join(self.folder, "run_" + name)), os.path.join(folder, "model.ddm"))
+        return folder
+
+    def test_the_grid_is_read_like_a_page_and_each_image_lies_around_its_feature(self):
+        grid = FeatureGrid((-1.0, 0.0), (1.0, 4.0))
+        self.assertEqual(len(grid.features), 81)
+        self.assertEqual(grid.features[0], (-1.0, 4.0))
+        self.assertEqual(grid.features[1], (-0.75, 4.0))
+        self.assertEqual(grid.features[-1], (1.0, 0.0))
+        self.assertEqual(grid.extent, (-1.125, 1.125, -0.25, 4.25))
+
+    def test_the_decoded_images_stand_at_their_features(self):
+        grid = FeatureGrid((-1.0, -1.0), (1.0, 1.0))
+        with new_figure(COLUMN_WIDTH, 3.0) as figure:
+            axes = figure.add_subplot(1, 1, 1)
+            grid.draw(axes, figure_case.GreyDecoder(""))
+            picture = axes.images[0].get_array()
+            self.assertEqual(tuple(axes.images[0].get_extent()), grid.extent)
+        self.assertEqual(picture.shape, (72, 72))
+        for row, column in ((0, 0), (0, 8), (3, 2), (8, 8)):
+            grey = DARKEST + (BRIGHTEST - DARKEST) * 3 * (9 * row + column) / 255.0
+            self.assertAlmostEqual(picture[8 * row + 4, 8 * column + 4], grey, delta=0.03)
+
+    def test_training_and_held_out_features_are_drawn_with_shapes_and_colours_of_their_own(self):
+        self.write("features.csv", HEADER, *ROWS)
+        with new_figure(COLUMN_WIDTH, 3.0) as figure:
+            axes = figure.add_subplot(1, 1, 1)
+            feature_plane.draw_plane(axes, feature_plane.read_features(self.folder), figure_case.GreyDecoder(""))
+            self.assertEqual(figure_case.drawn_points(axes, "training frames"), [(-1.0, 0.0), (1.0, 0.5)])
+            self.assertEqual(figure_case.drawn_points(axes, "held-out frames"), [(0.0, 0.25)])
+            self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("feature $z_1$ [-]", "feature $z_2$ [-]"))
+        markers, colours = {row[1] for row in feature_plane.SETS}, {row[2] for row in feature_plane.SETS}
+        self.assertEqual((len(markers), len(colours)), (2, 2))
+
+    def test_the_grid_covers_all_features_of_both_sets(self):
+        left, right, bottom, top = feature_plane.grid_around([(-1.0, 0.0), (1.0, 0.5), (0.0, 2.0)]).extent
+        self.assertLess(left, -1.0)
+        self.assertGreater(right, 1.0)
+        self.assertLess(bottom, 0.0)
+        self.assertGreater(top, 2.0)
+        self.assertLess(right - left, 3.0)  # and not much more than that
+
+    def test_one_folder_fills_a_column_and_two_stand_side_by_side(self):
+        joint, sequential = self.makeFolder("a", "joint"), self.makeFolder("b", "sequential")
+        self.assertDrawn(feature_plane.main, [joint], COLUMN_WIDTH)
+        self.assertDrawn(feature_plane.main, [joint, sequential], PAGE_WIDTH)
+
+    def test_features_that_lie_on_a_line_are_refused(self):
+        with self.assertRaisesRegex(RunFolderError, r"\[-1, 1\] x \[0.5, 0.5\], which is no plane"):
+            feature_plane.grid_around([(-1.0, 0.5), (1.0, 0.5)])
+
+    def test_an_unknown_set_and_features_of_three_numbers_are_refused(self):
+        self.write("features.csv", HEADER, "0,validation,1,1,0,0")
+        with self.assertRaisesRegex(RunFolderError, "must be training or held_out, got 'validation'"):
+            feature_plane.read_features(self.folder)
+        self.write("features.csv", HEADER + ",z_3", "0,training,1,1,0,0,0")
+        with self.assertRaisesRegex(RunFolderError, "more than two numbers"):
+            feature_plane.read_features(self.folder)
+
+    def test_a_configuration_without_schedule_is_refused(self):
+        self.write("features.csv", HEADER, *ROWS)
+        self.write("config.yaml", "training: {}")
+        self.assertRefused(feature_plane.main, [self.folder], "config.yaml", "training/schedule")
+
+    def test_a_folder_without_features_is_named_with_the_remedy(self):
+        self.write("config.yaml", "training: {schedule: joint}")
+        self.assertRefused(feature_plane.main, [self.folder], "features.csv", "prediction_experiment")
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "feature_plane_test", FeaturePlaneTest)

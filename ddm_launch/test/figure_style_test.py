@@ -1,0 +1,61 @@
+#!/usr/bin/python3
+# What all figures for print share: their letters, their files, and means with standard errors.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import sys
+
+from PIL import Image
+import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from ddm_launch import figure_style  # noqa: E402
+from ddm_launch.averages import mean_and_error  # noqa: E402
+from ddm_launch.run_folder import RunFolderError  # noqa: E402
+from figure_case import FigureCase  # noqa: E402
+
+
+class FigureStyleTest(FigureCase):
+    def draw(self, name, height=1.0):
+        path = os.path.join(self.folder, name)
+        with figure_style.new_figure(2.0, height) as figure:
+            figure.add_subplot(1, 1, 1).plot([0, 1], [0, height])
+            figure_style.save(figure, path)
+        with open(path, "rb") as stream:
+            return stream.read()
+
+    def test_the_same_figure_gives_the_same_bytes_and_another_one_others(self):
+        self.assertEqual(self.draw("a.png"), self.draw("b.png"))
+        self.assertNotEqual(self.draw("a.png"), self.draw("b.png", height=1.5))
+
+    def test_nothing_but_the_size_in_print_is_told_about_the_picture(self):
+        self.draw("a.png")
+        with Image.open(os.path.join(self.folder, "a.png")) as picture:
+            self.assertEqual(picture.size, (2 * figure_style.DPI, figure_style.DPI))
+            self.assertEqual(set(picture.info), {"dpi"})
+
+    def test_no_letter_is_smaller_than_seven_points(self):
+        sizes = [value for key, value in figure_style.SETTINGS.items() if key.endswith("size") and "marker" not in key]
+        self.assertGreater(len(sizes), 4)
+        self.assertGreaterEqual(min(sizes), 7)
+
+    def test_a_picture_that_is_no_png_is_refused(self):
+        with self.assertRaisesRegex(RunFolderError, r"must be a \.png, got '.*a\.pdf'"):
+            self.draw("a.pdf")
+
+    def test_a_folder_that_does_not_exist_ends_with_code_1_and_its_name(self):
+        self.out = os.path.join(self.folder, "missing", "a.png")
+        code, output = self.callMain(lambda arguments: figure_style.write(
+            "program", arguments[-1], lambda out: self.draw(out)))
+        self.assertEqual(code, 1)
+        self.assertTrue(output.startswith("program: "), output)
+        self.assertIn(self.out, output)
+
+    def test_the_standard_error_is_that_of_a_sample(self):
+        mean, error = mean_and_error([1.0, 2.0, 6.0])
+        self.assertAlmostEqual(mean, 3.0)
+        self.assertAlmostEqual(error, (14.0 / 2.0 / 3.0) ** 0.5)
+        self.assertEqual(mean_and_error([4.0]), (4.0, 0.0))
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "figure_style_test", FigureStyleTest)

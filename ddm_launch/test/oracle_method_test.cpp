@@ -1,0 +1,122 @@
+// Tests of the oracle: its cost, its gradient, and that it steers the plant it knows.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "oracle_method.h"
+
+#include <ddm_model/solver_log.h>
+#include <ddm_model/testing/gradient_check.h>
+#include <ddm_model/testing/random_matrix.h>
+#include <ddm_model/testing/temp_folder.h>
+#include <ddm_sim/plant_factory.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "evaluation.h"
+#include "in_process_world.h"
+#include "toy_run.h"
+
+namespace ddm {
+namespace {
+
+using testing::randomMatrix;
+
+constexpr double kControlWeight = 0.01;
+
+std::unique_ptr<Plant> plantOf(const std::string& type, double gravity = 0.0) {
+  PlantOptions options;
+  options.type = type;
+  options.gravity = gravity;
+  return makePlant(options, CameraOptions());
+}
+
+/// J(U) as a function of a flat vector of torques.
+testing::DifferentiableFunction costFunction(PlanCost* cost) {
+  return [cost](const Eigen::VectorXd& u, Eigen::VectorXd* gradient) {
+    const Eigen::Map<const Eigen::MatrixXd> U(u.data(), cost->torqueDim(), cost->horizon());
+    Eigen::MatrixXd d_U;
+    const double value = cost->evaluate(U, gradient != nullptr ? &d_U : nullptr);
+    if (gradient != nullptr) *gradient = Eigen::Map<Eigen::VectorXd>(d_U.data(), d_U.size());
+    return value;
+  };
+}
+
+TEST(OraclePlanCost, AddsUpSquaredDistancesOfTheTipAndThePriceOfTorque) {
+  OraclePlanCost cost(plantOf("pendulum"), 5, kControlWeight);
+  const Eigen::Vector2d start(0.3, -0.2);
+  cost.setState(start);
+  const Eigen::MatrixXd U = 3.0 * randomMatrix(1, 5, 1);
+  const std::unique_ptr<Plant> plant = plantOf("pendulum");
+  plant->setState(start);
+  double expected = 0.0;
+  for (int k = 0; k < 5; ++k) {
+    plant->step(U.col(k));
+    const double angle = plant->state()[0];
+    expected += 2.0 + 2.0 * std::cos(angle) + kControlWeight * U(0, k) * U(0, k);
+  }
+  EXPECT_NEAR(cost.evaluate(U, nullptr), expected, 1e-12);
+  EXPECT_EQ(cost.predictedFeatures().cols(), 6);
+  EXPECT_EQ(cost.predictedFeatures().col(5), plant->visiblePosition(plant->state()));
+  EXPECT_NEAR((cost.goalFeature() - Eigen::Vector2d(0.0, 1.0)).norm(), 0.0, 1e-12);
+}
+
+TEST(OraclePlanCost, GradientMatchesDifferencesOnEveryPlant) {
+  for (const double gravity : {0.0, 9.82}) {
+    OraclePlanCost cost(plantOf("pendulum", gravity), 6, kControlWeight);
+    cost.setState(Eigen::Vector2d(0.4, 1.0));
+    EXPECT_TRUE(testing::gradientMatches(costFunction(&cost), 2.0 * randomMatrix(6, 1, 2)))
+        << gravity;
+  }
+  OraclePlanCost tile(plantOf("moving_tile"), 4, kControlWeight);
+  tile.setState(Eigen::Vector2d(20.0, 30.0));
+  EXPECT_TRUE(testing::gradientMatches(costFunction(&tile), randomMatrix(8, 1, 3)));
+}
+
+class OracleTest : public ::testing::Test {
+ protected:
+  OracleTest() {
+    silenceSolverLog();
+    configuration_.experiment.method = "oracle";
+    configuration_.trial.num_steps = 60;
+  }
+
+  TrialOutcome greedyRun(int trial) {
+    InProcessWorld world(configuration_);
+    TrialRequest request;
+    request.id = {7, static_cast<std::uint32_t>(trial), true};
+    request.num_steps = configuration_.trial.num_steps;
+    return world.runTrial(request, [](double) {});
+  }
+
+  testing::TempFolder scratch_;
+  Configuration configuration_ = testing::toyConfiguration(scratch_.file("run"));
+};
+
+TEST_F(OracleTest, StandsUpAndStaysWhereverItStarts) {
+  const std::unique_ptr<Plant> plant = plantOf("pendulum");
+  for (int trial = 0; trial < 10; ++trial) {
+    const Evaluation evaluation =
+        evaluate(*plant, greedyRun(trial).states, configuration_.evaluation);
+    EXPECT_TRUE(evaluation.success_strict) << "trial " << trial;
+    EXPECT_LT(evaluation.final_error_deg, 0.1) << "trial " << trial;
+  }
+}
+
+TEST_F(OracleTest, BringsTheTileToItsGoal) {
+  configuration_.plant.type = "moving_tile";
+  configuration_.plant.max_torque = 5.0;
+  configuration_.mpc.max_torque = 5.0;
+  const std::unique_ptr<Plant> plant = makePlant(configuration_.plant, configuration_.camera);
+  const TrialOutcome outcome = greedyRun(0);
+  EXPECT_GT(plant->goalError(outcome.states.front()), 10.0);
+  EXPECT_LT(plant->goalError(outcome.states.back()), 0.01);
+}
+
+TEST_F(OracleTest, LearnsNothingAndNeedsNoBag) {
+  InProcessWorld world(configuration_);
+  const TrainingOutcome outcome = world.train({"/nowhere/trial.bag"}, TrialId(), [](double) {});
+  EXPECT_EQ(outcome.frames, 0u);
+  EXPECT_TRUE(outcome.model.empty());
+}
+
+}  // namespace
+}  // namespace ddm

@@ -1,0 +1,68 @@
+#!/usr/bin/python3
+# The pendulum's feature space: experience, current frame, goal and plan over the decoded grid.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import sys
+
+import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from ddm_launch import pendulum_feature_space  # noqa: E402
+from ddm_launch.figure_style import COLUMN_WIDTH, new_figure  # noqa: E402
+from ddm_launch.run_folder import RunFolderError  # noqa: E402
+import figure_case  # noqa: E402
+
+HEADER = "kind,step,z_1,z_2"
+ROWS = ["experience,0,0.5,0.5", "experience,1,-0.5,0.5", "current,7,0.1,0.2", "goal,,0.9,0.8",
+        "plan,10,0.4,0.4", "plan,9,0.3,0.3", "plan,8,0.2,0.2"]
+
+
+class PendulumFeatureSpaceTest(figure_case.FigureCase):
+    def draw(self, rows):
+        """Draws and returns ({label: points}, limits of the axes, the line of the plan)."""
+        space = pendulum_feature_space.read_space(self.write("space.csv", HEADER, *rows))
+        with new_figure(COLUMN_WIDTH, 3.0) as figure:
+            axes = figure.add_subplot(1, 1, 1)
+            pendulum_feature_space.draw_space(axes, space, figure_case.GreyDecoder(""))
+            labels = axes.get_legend_handles_labels()[1]
+            points = {label: figure_case.drawn_points(axes, label) for label in labels}
+            return points, axes.get_xlim() + axes.get_ylim(), list(zip(*axes.lines[0].get_data()))
+
+    def test_each_kind_is_drawn_where_it_is(self):
+        points, _, _ = self.draw(ROWS)
+        self.assertEqual(points, {"experience": [(0.5, 0.5), (-0.5, 0.5)], "current": [(0.1, 0.2)],
+                                  "goal": [(0.9, 0.8)], "plan, 3 steps": [(0.2, 0.2), (0.3, 0.3), (0.4, 0.4)]})
+
+    def test_the_plan_is_a_line_from_the_current_frame_in_the_order_of_its_steps(self):
+        self.assertEqual(self.draw(ROWS)[2], [(0.1, 0.2), (0.2, 0.2), (0.3, 0.3), (0.4, 0.4)])
+
+    def test_the_axes_show_the_whole_grid_and_reach_further_only_for_features_outside(self):
+        self.assertEqual(self.draw(ROWS)[1], (-1.125, 1.125, -1.125, 1.125))
+        limits = self.draw(ROWS + ["experience,2,1.4,0.0"])[1]
+        self.assertGreater(limits[1], 1.4)
+        self.assertLess(limits[1], 1.6)
+
+    def test_all_kinds_differ_in_colour_and_in_shape(self):
+        for column in (0, 2):
+            self.assertEqual(len({kind[column] for kind in pendulum_feature_space.KINDS.values()}), 4)
+
+    def test_a_real_model_makes_a_picture(self):
+        model = figure_case.make_run(os.path.join(self.folder, "run"))
+        path = self.write("space.csv", HEADER, *ROWS)
+        self.assertDrawn(pendulum_feature_space.main, [path, "--model", model], COLUMN_WIDTH)
+
+    def test_a_kind_that_is_missing_or_unknown_is_named(self):
+        with self.assertRaisesRegex(RunFolderError, "no row of kind goal"):
+            self.draw([row for row in ROWS if not row.startswith("goal")])
+        with self.assertRaisesRegex(RunFolderError, "got 'dream'"):
+            self.draw(ROWS + ["dream,0,0,0"])
+
+    def test_a_file_or_model_that_is_missing_is_named(self):
+        self.assertRefused(pendulum_feature_space.main, ["missing.csv", "--model", "m.ddm"], "missing.csv",
+                           "feature_space writes it")
+        path = self.write("space.csv", HEADER, *ROWS)
+        self.assertRefused(pendulum_feature_space.main, [path, "--model", "no.ddm"], "no.ddm")
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "pendulum_feature_space_test", PendulumFeatureSpaceTest)

@@ -1,0 +1,116 @@
+# A Slurm cluster for a test: munged, slurmctld and slurmd on this machine, with all that is theirs in one folder.
+# SPDX-License-Identifier: BSD-3-Clause
+import getpass
+import os
+import subprocess
+
+from processes import Process, free_port
+from sweeps import wait_for
+
+# No root, cgroup or systemd is assumed. The plugin for cgroups v1 is the one that slurmd can load and leave alone.
+SLURM_CONF = """\
+ClusterName=test
+SlurmctldHost=localhost
+SlurmctldPort={controller_port}
+SlurmdPort={daemon_port}
+SlurmUser={user}
+SlurmdUser={user}
+AuthType=auth/munge
+AuthInfo=socket={folder}/munge.socket
+StateSaveLocation={folder}/state
+SlurmdSpoolDir={folder}/spool
+SlurmctldPidFile={folder}/slurmctld.pid
+SlurmdPidFile={folder}/slurmd.pid
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+JobAcctGatherType=jobacct_gather/none
+AccountingStorageType=accounting_storage/none
+MpiDefault=none
+SwitchType=switch/none
+SelectType=select/cons_res
+SelectTypeParameters=CR_CPU
+SchedulerType=sched/builtin
+SchedulerParameters=sched_interval=1,batch_sched_delay=0
+SlurmdParameters=config_overrides
+ReturnToService=2
+KillWait=5
+MaxArraySize=1001
+NodeName=localhost NodeAddr=127.0.0.1 CPUs=2
+PartitionName=all Nodes=localhost Default=YES
+"""
+CGROUP_CONF = """\
+CgroupPlugin=cgroup/v1
+CgroupAutomount=no
+CgroupMountpoint={folder}/no_cgroup
+"""
+
+
+class SlurmCluster:
+    """Two CPUs of this machine. Commands of Slurm find it by `environment`."""
+
+    def __init__(self, folder):
+        """folder: empty, absolute, without spaces."""
+        self.folder = folder
+        self.environment = {"SLURM_CONF": os.path.join(folder, "slurm.conf")}
+        self._daemons = []
+        values = {"folder": folder, "user": getpass.getuser(), "controller_port": free_port(),
+                  "daemon_port": free_port()}
+        for name, text in (("slurm.conf", SLURM_CONF), ("cgroup.conf", CGROUP_CONF)):
+            with open(os.path.join(folder, name), "w") as stream:
+                stream.write(text.format(**values))
+        for name in ("state", "spool"):
+            os.mkdir(os.path.join(folder, name))
+        try:
+            self._start()
+        except BaseException:
+            self.stop()
+            raise
+
+    def _start(self):
+        key = os.path.join(self.folder, "munge.key")
+        with open(os.open(key, os.O_WRONLY | os.O_CREAT, 0o600), "wb") as stream:
+            stream.write(os.urandom(1024))
+        socket = os.path.join(self.folder, "munge.socket")
+        # --force: the folder of a test may lie in one that others can write
+        self._daemon("munged", "--foreground", "--force", "--socket", socket, "--key-file", key, "--origin",
+                     "127.0.0.1", *("--%s-file=%s/munged.%s" % (name, self.folder, name)
+                                    for name in ("log", "pid", "seed")))
+        self._wait(lambda: os.path.exists(socket), "munged")
+        self._daemon("slurmctld", "-D", "-c", "-f", self.environment["SLURM_CONF"])
+        self._daemon("slurmd", "-D", "-N", "localhost", "-f", self.environment["SLURM_CONF"])
+        self._wait(lambda: self.call("sinfo", "--noheader", "--format", "%T").strip() == "idle", "an idle node")
+
+    def _daemon(self, name, *arguments):
+        # falls with this process even if it is killed
+        command = ["setpriv", "--pdeathsig", "KILL", "/usr/sbin/" + name] + list(arguments)
+        self._daemons.append(Process(command, dict(os.environ, **self.environment)))
+
+    def _wait(self, condition, what):
+        def ready():
+            for daemon in self._daemons:
+                if not daemon.isRunning():
+                    raise AssertionError("a daemon has ended:\n%s" % daemon.output)
+            return condition()
+
+        try:
+            wait_for(ready, what)
+        except AssertionError as error:
+            raise AssertionError("%s\n%s" % (error, "\n".join(daemon.output for daemon in self._daemons)))
+
+    def call(self, *command):
+        """Output of a command of Slurm, stdout and stderr together."""
+        done = subprocess.run(command, env=dict(os.environ, **self.environment), stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+        return done.stdout
+
+    def tasks(self):
+        """[state] of the tasks that have not ended."""
+        return self.call("squeue", "--noheader", "--array", "--format", "%T").split()
+
+    def stop(self):
+        """Ends all jobs, then the daemons."""
+        if len(self._daemons) == 3 and all(daemon.isRunning() for daemon in self._daemons):
+            self.call("scancel", "--user", getpass.getuser())
+            wait_for(lambda: not self.tasks(), "the end of all jobs")
+        for daemon in reversed(self._daemons):
+            daemon.stop()

@@ -1,0 +1,110 @@
+#!/usr/bin/python3
+# Success rates against the paper's: the numbers of each curve, the published data, and what is refused.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import sys
+
+import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from ddm_launch import success_rate  # noqa: E402
+from ddm_launch.figure_style import COLUMN_WIDTH, new_figure  # noqa: E402
+from ddm_launch.run_folder import RunFolderError  # noqa: E402
+import figure_case  # noqa: E402
+
+PUBLISHED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "results", "published", "success_rate.csv")
+HEADER = "seed,trial,frames,success,final_error_deg"
+
+
+class SuccessRateTest(figure_case.FigureCase):
+    def writeSweep(self, name="sweep.csv"):
+        return self.write(name, HEADER, "0,0,100,0,90", "0,1,200,1,2", "1,0,100,1,3", "1,1,200,1,1", "2,0,100,0,50",
+                          "3,0,100,1,4")
+
+    def test_a_curve_is_the_rate_over_all_seeds_of_a_file(self):
+        curve = success_rate.read_curve("mine", self.writeSweep())
+        self.assertEqual(curve.label, "mine (4 seeds)")
+        self.assertEqual((curve.frames, curve.rates), ([100, 200], [0.5, 1.0]))
+        self.assertAlmostEqual(curve.errors[0], (0.25 / 3.0) ** 0.5)
+
+    def test_the_published_curve_is_the_papers(self):
+        curves = success_rate.read_published(PUBLISHED)
+        paper = curves[0]
+        self.assertEqual(paper.label, "DDM + MPC (paper)")
+        self.assertEqual(paper.frames, [100.0 * k for k in range(16)])
+        self.assertEqual(paper.rates[1:4] + paper.rates[-1:], [0.08, 0.22, 0.5, 0.86])
+        for rate, error in zip(paper.rates, paper.errors):  # 50 seeds
+            self.assertAlmostEqual(error, (rate * (1.0 - rate) / 49.0) ** 0.5, places=5)
+        self.assertEqual([curve.rates[1] for curve in curves[1:]], [0.91, 0.0, 0.0])
+
+    def test_all_curves_are_drawn_with_their_error_bars(self):
+        ours = [success_rate.read_curve("mine", self.writeSweep())]
+        with new_figure(COLUMN_WIDTH, 3.0) as figure:
+            axes = figure.add_subplot(1, 1, 1)
+            success_rate.draw_curves(axes, ours, success_rate.read_published(PUBLISHED))
+            labels = axes.get_legend_handles_labels()[1]
+            points = figure_case.drawn_points(axes, "mine (4 seeds)")
+            bars = [container.lines[2][0].get_segments()[0] for container in axes.containers
+                    if container.get_label() == "mine (4 seeds)"][0]
+            axis_labels = (axes.get_xlabel(), axes.get_ylabel())
+        self.assertEqual(labels, ["mine (4 seeds)"] + [row[-1] for row in success_rate.PUBLISHED])
+        self.assertEqual(points, [(100, 0.5), (200, 1.0)])
+        self.assertAlmostEqual(bars[1][1] - bars[0][1], 2.0 * (0.25 / 3.0) ** 0.5)
+        self.assertEqual(axis_labels, ("frames learned from [image-torque pairs]", "success rate [-]"))
+
+    def test_a_method_that_learns_from_no_frames_is_a_level_line_to_the_end(self):
+        oracle = success_rate.read_curve("oracle", self.write("oracle.csv", HEADER, "0,0,0,1,1", "1,0,0,0,50"))
+        with new_figure(COLUMN_WIDTH, 3.0) as figure:
+            axes = figure.add_subplot(1, 1, 1)
+            success_rate.draw_curves(axes, [oracle], success_rate.read_published(PUBLISHED))
+            self.assertEqual(figure_case.drawn_points(axes, "oracle (2 seeds)"), [(0, 0.5), (1500, 0.5)])
+
+    def test_the_legend_fits_into_the_width_of_a_column(self):
+        path = self.writeSweep()
+        for label in ("mine", "a label of so many letters that only one fits"):
+            curves = [success_rate.read_curve(label, path)] + success_rate.read_published(PUBLISHED)
+            with new_figure(COLUMN_WIDTH, 4.0) as figure:
+                success_rate.draw_figure(figure, curves[:1], curves[1:])
+                figure.canvas.draw()
+                legend = figure.axes[-1].get_legend().get_window_extent()
+                self.assertGreaterEqual(legend.x0, 0.0)
+                self.assertLessEqual(legend.x1, figure.bbox.width)
+                self.assertGreaterEqual(legend.y0, 0.0)
+
+    def test_no_two_curves_share_marker_and_line(self):
+        styles = [row[1:3] for row in success_rate.OURS] + [row[3:5] for row in success_rate.PUBLISHED]
+        self.assertEqual(len(set(row[0] for row in success_rate.OURS)), len(success_rate.OURS))
+        self.assertEqual(len(set(styles)), len(styles))
+
+    def test_several_files_and_the_paper_make_a_picture_as_wide_as_a_column(self):
+        path = self.writeSweep()
+        self.assertDrawn(success_rate.main, ["joint=" + path, "oracle=" + path, "--published", PUBLISHED],
+                         COLUMN_WIDTH)
+
+    def test_a_curve_without_label_or_file_is_refused(self):
+        for word in ("sweep.csv", "=sweep.csv", "mine="):
+            code, output = self.callMain(success_rate.main, word)
+            self.assertEqual(code, 2)
+            self.assertIn("must be LABEL=FILE.csv, got '%s'" % word, output)
+
+    def test_more_curves_than_can_be_told_apart_are_refused(self):
+        curves = ["%d=%s" % (k, self.writeSweep()) for k in range(len(success_rate.OURS) + 1)]
+        self.assertRefused(success_rate.main, curves, "at most 6 curves")
+
+    def test_a_seed_that_is_there_twice_is_refused(self):
+        path = self.write("twice.csv", HEADER, "7,0,100,0,90", "7,0,100,1,2")
+        self.assertRefused(success_rate.main, ["mine=" + path], path, "trial 0 of seed 7 twice")
+
+    def test_runs_of_unknown_success_are_refused(self):
+        path = self.write("unknown.csv", HEADER, "7,0,100,,")
+        with self.assertRaisesRegex(RunFolderError, "success is not known in any row"):
+            success_rate.read_curve("mine", path)
+
+    def test_files_that_are_missing_are_named(self):
+        self.assertRefused(success_rate.main, ["mine=missing.csv"], "missing.csv", "give a trials.csv or sweep.csv")
+        self.assertRefused(success_rate.main, ["mine=" + self.writeSweep(), "--published", "no.csv"], "no.csv",
+                           "results/published/success_rate.csv")
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "success_rate_test", SuccessRateTest)
