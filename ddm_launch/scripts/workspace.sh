@@ -30,7 +30,7 @@ packages_to_run=(
   python3-roslaunch python3-rosbag python3-rostopic python3-rosnode python3-rosservice
   python3-rosparam python3-rosmsg rosbash rospack-tools
   # what one sees: rviz and figures
-  rviz python3-matplotlib python3-numpy python3-pil python3-yaml
+  rviz python3-matplotlib python3-numpy python3-pil python3-tqdm python3-yaml
   # sweeps
   parallel
 )
