@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ddm_model/schedule.h"
-
 namespace ddm {
 namespace {
 
@@ -41,7 +39,7 @@ Eigen::MatrixXd initialisePair(const Eigen::MatrixXd& inputs, double layer_std,
 }  // namespace
 
 Eigen::VectorXd initialTheta(const Networks<double>& networks, const Eigen::MatrixXd& scores,
-                             const TrainingOptions& options, std::mt19937_64* rng) {
+                             const TrainingOptions& options, bool pca_start, std::mt19937_64* rng) {
   const Mlp<double>& encoder = networks.encoder();
   const Mlp<double>& decoder = networks.decoder();
   Eigen::VectorXd theta(networks.numParams());
@@ -52,7 +50,7 @@ Eigen::VectorXd initialTheta(const Networks<double>& networks, const Eigen::Matr
   randomise(decoder, 1.0, rng, theta_d);
 
   const std::vector<int> mirrored(decoder.widths().rbegin(), decoder.widths().rend());
-  if (encoder.widths() != mirrored || !makeSchedule(options.schedule).pca_start) return theta;
+  if (encoder.widths() != mirrored || !pca_start) return theta;
   Eigen::MatrixXd inputs = scores;
   for (int layer = 0; layer < encoder.numLayers(); ++layer) {
     const int mirror = decoder.numLayers() - 1 - layer;

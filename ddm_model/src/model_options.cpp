@@ -57,6 +57,8 @@ std::vector<std::string> TrainingOptions::problems() const {
           "training/schedule must be one of: " + known, schedule, &out);
   require(solver == "lbfgs" || solver == "bfgs", "training/solver must be lbfgs or bfgs", solver,
           &out);
+  require(num_starts >= 1 && num_starts <= 1000, "training/num_starts must lie in [1, 1000]",
+          num_starts, &out);
   require(max_iterations >= 1, "training/max_iterations must be >= 1", max_iterations, &out);
   require(function_tolerance >= 0.0 && function_tolerance < 1.0,
           "training/function_tolerance must lie in [0, 1)", function_tolerance, &out);

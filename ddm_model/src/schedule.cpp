@@ -23,6 +23,15 @@ std::vector<Named> schedules() {
 
 }  // namespace
 
+Terms Schedule::terms() const {
+  Terms all{false, false};
+  for (const Stage& stage : stages) {
+    all.v_r = all.v_r || stage.terms.v_r;
+    all.v_p = all.v_p || stage.terms.v_p;
+  }
+  return all;
+}
+
 std::vector<std::string> scheduleNames() {
   std::vector<std::string> names;
   for (const Named& named : schedules()) names.push_back(named.first);

@@ -145,22 +145,32 @@ class Minimisation {
         objective_(*objective),
         squared_scale_(squaredScale(pca)),
         training_(training),
+        schedule_(makeSchedule(training.schedule)),
         callback_(callback) {}
 
-  /// @return w (V_R + V_P)
-  double cost(const Eigen::VectorXd& theta) {
-    const JointObjective<float>::Value value = objective_.evaluate(theta.cast<float>(), nullptr);
-    return objective_.weight() * (value.v_r + value.v_p);
+  /// Initial parameters, the auto-encoder's from PCA if this is the first start and the schedule
+  /// says so.
+  Eigen::VectorXd initial(int start, const Networks<double>& networks,
+                          const Eigen::MatrixXd& scores, std::mt19937_64* rng) const {
+    return initialTheta(networks, scores, training_, schedule_.pca_start && start == 0, rng);
   }
 
+  /// @return w times the sum of the terms that the schedule minimises
+  double cost(const Eigen::VectorXd& theta) {
+    const JointObjective<float>::Value value = objective_.evaluate(theta.cast<float>(), nullptr);
+    const Terms terms = schedule_.terms();
+    return objective_.weight() * ((terms.v_r ? value.v_r : 0.0) + (terms.v_p ? value.v_p : 0.0));
+  }
+
+  /// @param done    of the whole training, when this start began
   /// @param theta   in: initial parameters, out: the minimum
-  /// @param result  out: message, iterations and evaluations
+  /// @param result  out: message; iterations and evaluations are added
   /// @return false if there is no usable minimum; the message tells why
-  bool run(Eigen::VectorXd* theta, TrainingResult* result) {
-    const std::vector<Stage> stages = makeSchedule(training_.schedule).stages;
-    const double share = 1.0 / static_cast<double>(stages.size());
+  bool run(double done, Eigen::VectorXd* theta, TrainingResult* result) {
+    const double share = 1.0 / static_cast<double>(schedule_.stages.size() * training_.num_starts);
     TrainingProgress before;
-    for (const Stage& stage : stages) {
+    before.fraction_done = done;
+    for (const Stage& stage : schedule_.stages) {
       before.iteration = result->iterations;
       if (!runStage(stage, before, share / training_.max_iterations, theta, result)) return false;
       before.fraction_done += share;
@@ -185,6 +195,7 @@ class Minimisation {
     result->evaluations += function->evaluations();
     if (summary.termination_type == ceres::USER_FAILURE) {
       result->message = "training was cancelled";
+      result->cancelled = true;
       return false;
     }
     // The solver may call a start from which it cannot move a minimum.
@@ -197,6 +208,7 @@ class Minimisation {
   JointObjective<float>& objective_;
   double squared_scale_;
   const TrainingOptions& training_;
+  Schedule schedule_;
   const TrainingCallback& callback_;
 };
 
@@ -215,22 +227,33 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
   const Networks<float> networks(model, data.torqueDim());
   Pca pca = fitPca(data, model.pca_dim, training.score_std);
   TrainingData<float> training_data = trainingData(data, pca, model.max_torque);
+  const Eigen::MatrixXd scores = training_data.scores.cast<double>();
+  const Networks<double> initial_networks(model, data.torqueDim());
   std::mt19937_64 rng = initialisationStream(info.seed, info.trial);
-  Eigen::VectorXd theta = initialTheta(Networks<double>(model, data.torqueDim()),
-                                       training_data.scores.cast<double>(), training, &rng);
   JointObjective<float> objective(networks, std::move(training_data));
   Minimisation minimisation(networks, &objective, pca, training, callback);
 
   TrainingResult result;
-  result.initial_cost = minimisation.cost(theta);
-  if (minimisation.run(&theta, &result)) {
-    result.final_cost = minimisation.cost(theta);
-    const JointObjective<float>::Value value = objective.evaluate(theta.cast<float>(), nullptr);
+  Eigen::VectorXd best;
+  for (int number = 0; number < training.num_starts && !result.cancelled; ++number) {
+    Eigen::VectorXd theta = minimisation.initial(number, initial_networks, scores, &rng);
+    const double initial_cost = minimisation.cost(theta);
+    const double done = static_cast<double>(number) / training.num_starts;
+    if (!minimisation.run(done, &theta, &result)) continue;
+    const double cost = minimisation.cost(theta);
+    if (best.size() == 0 || cost < result.final_cost) {
+      best = theta;
+      result.initial_cost = initial_cost;
+      result.final_cost = cost;
+    }
+  }
+  if (best.size() > 0 && !result.cancelled) {
+    const JointObjective<float>::Value value = objective.evaluate(best.cast<float>(), nullptr);
     info.frames = static_cast<std::uint32_t>(data.numFrames());
     info.v_r = squaredScale(pca) * value.v_r;
     info.v_p = squaredScale(pca) * value.v_p;
-    result.model.emplace(model, data.imageSize(), data.torqueDim(), std::move(pca),
-                         std::move(theta), data.goal(), std::move(info));
+    result.model.emplace(model, data.imageSize(), data.torqueDim(), std::move(pca), std::move(best),
+                         data.goal(), std::move(info));
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -42,6 +42,11 @@ TEST(Schedule, VpOnlyLeavesTheReconstructionOut) {
   EXPECT_EQ(v_p_only.stages[0].free, Stage::Free::kAll);
 }
 
+TEST(Schedule, TellsTheTermsThatAnyStageMinimises) {
+  EXPECT_TRUE(makeSchedule("sequential").terms().v_r && makeSchedule("sequential").terms().v_p);
+  EXPECT_TRUE(!makeSchedule("v_p_only").terms().v_r && makeSchedule("v_p_only").terms().v_p);
+}
+
 TEST(Schedule, RefusesAnUnknownName) {
   EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
       [] { makeSchedule("jont"); }, {"jont", "joint, sequential, v_p_only, joint_random_init"}));

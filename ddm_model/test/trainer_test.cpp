@@ -167,6 +167,41 @@ TEST_F(Trainer, CountsIterationsAndProgressOverAllStages) {
   }
 }
 
+TEST_F(Trainer, KeepsTheBestOfSeveralStarts) {
+  const TrainingResult first = run();
+  training_.num_starts = 5;
+  const TrainingResult several = run();
+  ASSERT_TRUE(several.model);
+  EXPECT_LT(several.final_cost, first.final_cost);  // with these data the first is not the best
+  EXPECT_GT(several.evaluations, 4 * first.evaluations);
+  const auto weight = [](const TrainingResult& result) {
+    return result.final_cost / (result.model->info().v_r + result.model->info().v_p);
+  };
+  EXPECT_NEAR(weight(several) / weight(first), 1.0, 1e-5);  // the model is the one of that cost
+}
+
+TEST_F(Trainer, ChoosesAmongStartsByWhatTheScheduleMinimises) {
+  training_.schedule = "v_p_only";
+  const double first = run().model->info().v_p;
+  training_.num_starts = 5;
+  EXPECT_LE(run().model->info().v_p, first);
+}
+
+TEST_F(Trainer, TellsOneProgressOverAllStartsAndStopsThemAll) {
+  training_.num_starts = 3;
+  double last = -1.0;
+  int calls = 0;
+  const TrainingResult result = run([&](const TrainingProgress& progress) {
+    EXPECT_GE(progress.fraction_done, last);
+    last = progress.fraction_done;
+    return ++calls < 50;  // in the second start
+  });
+  EXPECT_GT(last, 1.0 / 3.0);
+  EXPECT_EQ(calls, 50);
+  EXPECT_TRUE(result.cancelled);
+  EXPECT_FALSE(result.model);
+}
+
 TEST_F(Trainer, SameSeedSameBytes) { EXPECT_EQ(trainedBytes(), trainedBytes()); }
 
 TEST_F(Trainer, AnotherSeedOrTrialGivesAnotherModel) {

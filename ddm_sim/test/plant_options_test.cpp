@@ -178,7 +178,7 @@ TEST(Config, MovingTileIsThatOfTheExperiments) {
   ASSERT_NO_THROW(reader.requireValid());
   EXPECT_EQ(plant.type, "moving_tile");
   EXPECT_EQ(plant.tile_width, 9.0);
-  EXPECT_EQ(plant.tile_softness, 8.0);
+  EXPECT_EQ(plant.tile_softness, 9.0);
   EXPECT_EQ(plant.max_torque, 5.0);
   EXPECT_EQ(plant.dt, 0.2);
   EXPECT_EQ(plant.start_std, 5.0);

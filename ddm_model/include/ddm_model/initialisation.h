@@ -19,11 +19,11 @@ namespace ddm {
 /// with basis B and mean m of the inputs. c gives the leading unit the spread layer_std, where the
 /// arctan is nearly linear; the arctan's output is the input of the next pair. A pair that is not
 /// mirrored (encoder_widths and decoder_widths differ), and units beyond the rank of the input,
-/// start at random, as does the whole auto-encoder where the schedule wants no PCA start. f starts
-/// at random with weights N(0, predictor_gain^2 / fan-in).
+/// start at random, as does the whole auto-encoder without a PCA start. f starts at random with
+/// weights N(0, predictor_gain^2 / fan-in).
 /// @param scores  PCA scores of all images  [pca_dim x M]
 /// @return        theta                     [P]
 Eigen::VectorXd initialTheta(const Networks<double>& networks, const Eigen::MatrixXd& scores,
-                             const TrainingOptions& options, std::mt19937_64* rng);
+                             const TrainingOptions& options, bool pca_start, std::mt19937_64* rng);
 
 }  // namespace ddm

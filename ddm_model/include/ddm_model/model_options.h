@@ -46,6 +46,7 @@ struct ModelOptions {
 struct TrainingOptions {
   std::string schedule = "joint";    ///< what is minimised over what, see scheduleNames()
   std::string solver = "lbfgs";      ///< "lbfgs" or "bfgs"
+  int num_starts = 1;                ///< trainings, of which the best is kept [-]
   int max_iterations = 500;          ///< cap on the iterations of the solver, each stage [-]
   double function_tolerance = 1e-6;  ///< stop when V changes by less than this fraction [-]
   int lbfgs_rank = 20;               ///< pairs that L-BFGS remembers [-]
@@ -57,6 +58,7 @@ struct TrainingOptions {
   void visit(Visitor& visitor) {
     visitor("schedule", schedule);
     visitor("solver", solver);
+    visitor("num_starts", num_starts);
     visitor("max_iterations", max_iterations);
     visitor("function_tolerance", function_tolerance);
     visitor("lbfgs_rank", lbfgs_rank);

@@ -25,6 +25,9 @@ struct Stage {
 struct Schedule {
   bool pca_start = true;      ///< auto-encoder starts from layer-wise PCA; false: at random
   std::vector<Stage> stages;  ///< at least one
+
+  /// The terms that any stage minimises.
+  Terms terms() const;
 };
 
 /// The values that `training/schedule` may have.

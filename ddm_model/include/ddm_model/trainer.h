@@ -29,18 +29,20 @@ using TrainingCallback = std::function<bool(const TrainingProgress&)>;
 /// What a training came to. Numerical trouble is told here, never thrown.
 struct TrainingResult {
   std::optional<Ddm> model;  ///< empty if the training failed or was cancelled
+  bool cancelled = false;    ///< the callback ended it
   std::string message;       ///< why there is no model, or how the solver ended
   int iterations = 0;
   int evaluations = 0;        ///< of the objective with its gradient
-  double initial_cost = 0.0;  ///< w (V_R + V_P) before, whatever the schedule minimises
-  double final_cost = 0.0;    ///< and after; 0 without a model
+  double initial_cost = 0.0;  ///< scaled sum of the terms that the schedule minimises, before
+  double final_cost = 0.0;    ///< and after, of the start that is kept; 0 without a model
   double seconds = 0.0;       ///< wall time [s]
 };
 
 /// Initial parameters are drawn from this stream. (Fixed for a given libstdc++.)
 std::mt19937_64 initialisationStream(std::uint64_t seed, std::uint32_t trial);
 
-/// Trains a model from scratch by the schedule of `training` on all data: a warm start from the
+/// Trains a model from scratch by the schedule of `training`, from num_starts starts, and keeps the
+/// best on all data: a warm start from the
 /// last optimum gets stuck.
 /// @param info  seed, trial and config are kept; frames, V_R and V_P are filled in
 /// @throws std::invalid_argument if the data are too few for the options, or all the same

@@ -15,7 +15,7 @@ struct PlantOptions {
   double mass = 1.0;              ///< pendulum: m, mass of the rod [kg]
   double friction = 1.0;          ///< pendulum: b, viscous friction [N m s/rad]
   double tile_width = 9.0;        ///< moving_tile: width and height of the tile [pixels]
-  double tile_softness = 8.0;     ///< moving_tile: grey falls from 1 to 0 over so much [pixels]
+  double tile_softness = 9.0;     ///< moving_tile: grey falls from 1 to 0 over so much [pixels]
   double max_torque = 6.0;        ///< bound on each |u| [N m]; moving_tile: [pixels]
   double dt = 0.2;                ///< time step, u is held constant over it [s]
   double start_std = 0.1;         ///< standard deviation of each component of the start state

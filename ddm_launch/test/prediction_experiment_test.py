@@ -1,0 +1,163 @@
+#!/usr/bin/python3
+# prediction_experiment and feature_space: their files, what a seed fixes, what they refuse.
+# SPDX-License-Identifier: BSD-3-Clause
+import csv
+import math
+import os
+import shutil
+import sys
+import tempfile
+import unittest
+
+import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from processes import call, find_program, run_experiment  # noqa: E402
+from run_files import files_in, read_bytes, read_rows, read_yaml  # noqa: E402
+
+FILES = [".lock", "config.yaml", "features.csv", "model.ddm", "predictions.csv", "strip.csv", "summary.yaml"]
+QUICK = "training: {max_iterations: 20, num_starts: 1}\nprediction: {training_frames: 60, held_out_frames: 30}\n"
+
+
+def read_dicts(*path):
+    with open(os.path.join(*path), newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+class PredictionExperimentTest(unittest.TestCase):
+    maxDiff = None
+
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.mkdtemp()
+        cls.quick = os.path.join(cls.scratch, "quick.yaml")
+        with open(cls.quick, "w") as stream:
+            stream.write(QUICK)
+        cls.reference = os.path.join(cls.scratch, "reference")
+        cls.code, cls.output = cls.predict("--out", cls.reference)
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.scratch)
+
+    @classmethod
+    def predict(cls, *arguments, plant="moving_tile", seed=3):
+        return call([find_program("ddm_launch", "prediction_experiment"), "--preset", "debug", "--plant", plant, "--seed",
+                     seed, "--config", cls.quick] + list(arguments))
+
+    def folder(self, name):
+        return os.path.join(self.scratch, name)
+
+    def test_leaves_these_files_and_says_how_it_went(self):
+        self.assertEqual(self.code, 0, self.output)
+        self.assertEqual(files_in(self.reference), FILES)
+        summary = read_yaml(self.reference, "summary.yaml")
+        self.assertIs(summary["finished"], True)
+        self.assertEqual((summary["seed"], summary["plant"], summary["schedule"]), (3, "moving_tile", "joint"))
+        self.assertIn("8 steps ahead", self.output)
+
+    def test_predictions_hold_a_row_for_each_number_of_steps(self):
+        rows = read_dicts(self.reference, "predictions.csv")
+        self.assertEqual(list(rows[0]), ["seed", "steps", "num_predictions", "rmse", "rmse_repeat", "position_r2", "v_r",
+                                         "v_p", "train_s"])
+        self.assertEqual([row["steps"] for row in rows], [str(k) for k in range(1, 9)])
+        self.assertEqual({row["num_predictions"] for row in rows}, {"21"})  # 30 frames, one before, eight after
+        repeat = [float(row["rmse_repeat"]) for row in rows]
+        self.assertEqual(repeat[:3], sorted(repeat[:3]))  # the tile moves away from where it was
+        self.assertTrue(all(0.0 < float(row["rmse"]) < 1.0 for row in rows))
+
+    def test_features_hold_every_frame_and_the_tile_moves_as_it_is_pushed(self):
+        rows = read_dicts(self.reference, "features.csv")
+        self.assertEqual(list(rows[0]), ["frame", "set", "x_px", "y_px", "z_1", "z_2"])
+        self.assertEqual([row["set"] for row in rows], ["training"] * 60 + ["held_out"] * 30)
+        for before, after in zip(rows, rows[1:]):
+            for name in ("x_px", "y_px"):
+                self.assertLessEqual(abs(float(after[name]) - float(before[name])), 5.0 + 1e-9)
+            self.assertLessEqual(abs(float(after["z_1"])), math.pi / 2)
+
+    def test_the_strip_begins_with_a_frame_and_its_feature(self):
+        strip = read_dicts(self.reference, "strip.csv")
+        self.assertEqual([row["steps"] for row in strip], [str(k) for k in range(9)])
+        frames = {(row["x_px"], row["y_px"]): row for row in read_dicts(self.reference, "features.csv")
+                  if row["set"] == "held_out"}
+        for row in strip:  # all true states are held-out frames
+            self.assertIn((row["x_px"], row["y_px"]), frames)
+        first = frames[strip[0]["x_px"], strip[0]["y_px"]]
+        self.assertEqual((strip[0]["z_1"], strip[0]["z_2"]), (first["z_1"], first["z_2"]))
+        last = frames[strip[8]["x_px"], strip[8]["y_px"]]
+        self.assertNotEqual((strip[8]["z_1"], strip[8]["z_2"]), (last["z_1"], last["z_2"]))  # predicted, not seen
+
+    def test_same_seed_same_bytes_and_another_seed_other_frames(self):
+        again, other = self.folder("again"), self.folder("other")
+        self.assertEqual(self.predict("--out", again)[0], 0)
+        self.assertEqual(self.predict("--out", other, seed=4)[0], 0)
+        for name in ("features.csv", "model.ddm", "strip.csv"):
+            self.assertEqual(read_bytes(again, name), read_bytes(self.reference, name), name)
+            self.assertNotEqual(read_bytes(other, name), read_bytes(self.reference, name), name)
+
+    def test_schedules_see_the_same_frames_and_learn_other_models(self):
+        config = self.folder("sequential.yaml")
+        with open(config, "w") as stream:
+            stream.write("training: {schedule: sequential}\n")
+        out = self.folder("sequential")
+        code, output = self.predict("--config", config, "--out", out)
+        self.assertEqual(code, 0, output)
+
+        def states(folder):
+            return [row[:4] for row in read_rows(folder, "features.csv")]
+
+        self.assertEqual(states(out), states(self.reference))
+        self.assertNotEqual(read_bytes(out, "model.ddm"), read_bytes(self.reference, "model.ddm"))
+        self.assertEqual(read_yaml(out, "summary.yaml")["schedule"], "sequential")
+
+    def test_predicts_the_pendulum_too(self):
+        out = self.folder("pendulum")
+        code, output = self.predict("--out", out, plant="pendulum")
+        self.assertEqual(code, 0, output)
+        self.assertEqual(read_rows(out, "features.csv")[0],
+                         ["frame", "set", "angle_rad", "rate_rad_per_s", "z_1", "z_2"])
+
+    def test_refuses_the_folder_of_another_experiment_and_leaves_it_as_it_is(self):
+        before = {name: read_bytes(self.reference, name) for name in FILES}
+        code, output = self.predict("--out", self.reference, seed=5)
+        self.assertEqual(code, 1)
+        self.assertIn("experiment/seed: 3 there, 5 here", output)
+        self.assertEqual({name: read_bytes(self.reference, name) for name in FILES}, before)
+
+    def test_refuses_wrong_options_with_code_2(self):
+        for words, arguments in ((("--out DIR is missing",), ()), (("trials",), ("--out", "x", "--trials", "3"))):
+            code, output = self.predict(*arguments)
+            self.assertEqual(code, 2, output)
+            for word in words:
+                self.assertIn(word, output)
+        config = self.folder("wrong.yaml")
+        with open(config, "w") as stream:
+            stream.write("prediction: {held_out_frames: 8, max_stps: 3}\ntraining: {schedule: both}\n")
+        code, output = self.predict("--config", config, "--out", self.folder("wrong"))
+        self.assertEqual(code, 2)
+        for word in ("prediction/held_out_frames", "max_stps", "did you mean max_steps", "training/schedule", "got both"):
+            self.assertIn(word, output)
+        self.assertFalse(os.path.exists(self.folder("wrong")))
+
+    def test_feature_space_tells_experience_current_goal_and_plan(self):
+        run, out = self.folder("run"), self.folder("feature_space.csv")
+        code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 1, "--out", run)
+        self.assertEqual(code, 0, output)
+        program = find_program("ddm_launch", "feature_space")
+        code, output = call([program, run, "--trial", 1, "--step", 2, "--out", out])
+        self.assertEqual(code, 0, output)
+        rows = read_rows(out)
+        self.assertEqual(rows[0], ["kind", "step", "z_1", "z_2"])
+        kinds = [row[0] for row in rows[1:]]
+        self.assertEqual(kinds, ["experience"] * 60 + ["current", "goal"] + ["plan"] * 5)  # two trials of 30, K = 5
+        self.assertEqual([row[1] for row in rows[-5:]], ["3", "4", "5", "6", "7"])
+        code, output = call([program, run, "--trial", 7, "--step", 2, "--out", out])
+        self.assertEqual(code, 1)
+        self.assertIn("trial_007/model.ddm", output)
+        code, output = call([program, run, "--trial", 1, "--out", out])
+        self.assertEqual(code, 2)
+        self.assertIn("--step", output)
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "prediction_experiment", PredictionExperimentTest)
