@@ -56,9 +56,8 @@ std::vector<std::string> PredictionOptions::problems() const {
   require(training_frames >= 1 && training_frames <= 1000000,
           "training_frames must lie in [1, 1000000]", training_frames);
   require(max_steps >= 1 && max_steps <= 1000, "max_steps must lie in [1, 1000]", max_steps);
-  require(held_out_frames > max_steps && held_out_frames <= 1000000,
-          "held_out_frames must be more than prediction/max_steps, and at most 1000000",
-          held_out_frames);
+  require(held_out_frames >= 1 && held_out_frames <= 1000000,
+          "held_out_frames must lie in [1, 1000000]", held_out_frames);
   return out;
 }
 

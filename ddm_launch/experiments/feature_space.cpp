@@ -6,12 +6,14 @@
 #include <ddm_model/solver_log.h>
 #include <ddm_mpc/epsilon_greedy.h>
 #include <ddm_mpc/mpc_policy.h>
-#include <ddm_msgs/image_codec.h>
 #include <ddm_msgs/param_value.h>
 #include <ddm_sim/plant_factory.h>
 #include <ros/time.h>
 
+#include <boost/algorithm/string.hpp>
+#include <boost/lexical_cast.hpp>
 #include <boost/program_options.hpp>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -20,6 +22,7 @@
 #include <string>
 #include <vector>
 
+#include "camera_view.h"
 #include "configuration.h"
 
 namespace ddm {
@@ -32,7 +35,7 @@ constexpr int kUsageError = 2;
 constexpr char kAbout[] =
     "Writes the features of a run: of all frames recorded up to a trial, and of one step of the\n"
     "greedy evaluation after it, with the plan made there. The evaluation is run again from its\n"
-    "seed, so use the machine and build that made the run.\n\n"
+    "seed and must give the torques that were recorded: use the machine and build of the run.\n\n"
     "usage: rosrun ddm_launch feature_space RUN_DIR --trial K --step S --out FILE.csv\n\n"
     "Output: kind,step,z_1,z_2,... with kind experience, current, goal or plan\n\noptions";
 
@@ -66,21 +69,37 @@ bool parse(int argc, char** argv, Arguments* arguments) {
   return true;
 }
 
-std::string trialFolder(const Arguments& arguments, int trial) {
-  char number[24];
-  std::snprintf(number, sizeof(number), "/trial_%03d", trial);
-  return arguments.run + number;
+std::string subfolder(const Arguments& arguments, const std::string& kind, int trial) {
+  char number[16];
+  std::snprintf(number, sizeof(number), "_%03d", trial);
+  return arguments.run + "/" + kind + number;
 }
 
 DataSet experience(const Arguments& arguments, const Configuration& all) {
   std::vector<std::string> bags;
   for (int k = 0; k <= arguments.trial; ++k)
-    bags.push_back(trialFolder(arguments, k) + "/trial.bag");
+    bags.push_back(subfolder(arguments, "trial", k) + "/trial.bag");
   BagCache cache(all.model.image.size, all.model.data_set);
   return cache.read(bags);
 }
 
+/// The first torque of each step of the greedy evaluation, as it was recorded.
+std::vector<double> recordedTorques(const std::string& file) {
+  const std::string text = readFile(file);
+  std::vector<std::string> lines;
+  boost::split(lines, text, boost::is_any_of("\n"));
+  std::vector<double> torques;
+  for (size_t i = 1; i < lines.size() && !lines[i].empty(); ++i) {
+    std::vector<std::string> cells;
+    boost::split(cells, lines[i], boost::is_any_of(","));
+    if (cells.size() < 3) throw std::runtime_error(file + ": line " + lines[i] + " makes no sense");
+    torques.push_back(boost::lexical_cast<double>(cells[1]));
+  }
+  return torques;
+}
+
 /// The plan at one step of the greedy evaluation, which is run again up to there.
+/// @throws std::runtime_error if there is no such step or plan, or the torques are not the recorded
 Plan planAt(const Arguments& arguments, const Configuration& all,
             std::shared_ptr<const Ddm> model) {
   TrialId id;
@@ -95,12 +114,26 @@ Plan planAt(const Arguments& arguments, const Configuration& all,
   EpsilonGreedy policy(std::make_shared<MpcPolicy>(std::move(model), all.mpc), options, id);
   std::mt19937_64 start = startStream(id.seed, id.trial, id.evaluation);
   plant->setState(plant->drawStart(start));
+  const std::string file = subfolder(arguments, "evaluation", arguments.trial) + "/torques.csv";
+  const std::vector<double> recorded = recordedTorques(file);
+  if (arguments.step >= static_cast<int>(recorded.size())) {
+    throw std::runtime_error("--step must be less than the " + std::to_string(recorded.size()) +
+                             " steps of " + file + ", got " + std::to_string(arguments.step));
+  }
   for (int step = 0;; ++step) {
-    const sensor_msgs::Image image =
-        encodeImage(plant->render(plant->state()), plant->imageSize(), ros::Time(1, 0), "camera");
-    const Decision decision = policy.decide(decodeImage(image, all.model.image.size));
-    if (step == arguments.step) return *decision.plan;
-    plant->step(decision.torque);
+    const Decision decision = policy.decide(cameraView(*plant, all.model.image.size));
+    if (std::abs(decision.torque[0] - recorded[step]) > 1e-9) {
+      throw std::runtime_error(file + ": the torque of step " + std::to_string(step) +
+                               " is another here: use the machine and build that made the run");
+    }
+    if (step < arguments.step) {
+      plant->step(decision.torque);
+    } else if (decision.plan->status == PlanStatus::kFailed) {
+      throw std::runtime_error("there is no plan at step " + std::to_string(step) + ": " +
+                               decision.plan->message);
+    } else {
+      return *decision.plan;
+    }
   }
 }
 
@@ -114,7 +147,7 @@ std::string row(const std::string& kind, Eigen::Index step,
 void run(const Arguments& arguments) {
   ParamReader reader = ParamReader::fromFiles({arguments.run + "/config.yaml"});
   const Configuration all = readConfiguration(&reader);
-  const std::string file = trialFolder(arguments, arguments.trial) + "/model.ddm";
+  const std::string file = subfolder(arguments, "trial", arguments.trial) + "/model.ddm";
   const auto model = std::make_shared<const Ddm>(deserialiseModel(readFile(file), file));
   const Eigen::MatrixXd Z = encodeAll(*model, experience(arguments, all));
   const Plan plan = planAt(arguments, all, model);

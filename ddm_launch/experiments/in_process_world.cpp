@@ -4,11 +4,12 @@
 
 #include <ddm_bag_io/bag_writer.h>
 #include <ddm_msgs/Torque.h>
-#include <ddm_msgs/image_codec.h>
 #include <ddm_sim/plant_factory.h>
 
 #include <cmath>
 #include <stdexcept>
+
+#include "camera_view.h"
 
 namespace ddm {
 namespace {
@@ -48,15 +49,13 @@ TrialOutcome InProcessWorld::runTrial(const TrialRequest& request, const PhaseCa
   std::unique_ptr<BagWriter> bag;
   if (!request.bag.empty()) {
     bag = std::make_unique<BagWriter>(request.bag, configuration_.model.data_set);
-    bag->writeGoal(encodeImage(plant_->render(plant_->goalState()), plant_->imageSize(),
-                               stampOf(0, plant_->dt()), "camera"),
-                   stampOf(0, plant_->dt()));
+    const ros::Time begin = stampOf(0, plant_->dt());
+    bag->writeGoal(photograph(*plant_, plant_->goalState(), begin), begin);
   }
   TrialOutcome outcome;
   for (int step = 0; step < request.num_steps; ++step) {
     const sensor_msgs::Image image =
-        encodeImage(plant_->render(plant_->state()), plant_->imageSize(),
-                    stampOf(step, plant_->dt()), "camera");
+        photograph(*plant_, plant_->state(), stampOf(step, plant_->dt()));
     outcome.times.push_back(step * plant_->dt());
     outcome.states.push_back(plant_->state());
     const Decision decision = policy.decide(decodeImage(image, configuration_.model.image.size));

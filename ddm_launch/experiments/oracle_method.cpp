@@ -89,15 +89,15 @@ void OraclePlanCost::backward(const Eigen::Ref<const Eigen::MatrixXd>& U,
   *d_U = 2.0 * control_weight_ * U;
   Eigen::VectorXd d_state = Eigen::VectorXd::Zero(states_.rows());
   for (int k = horizon_ - 1; k >= 0; --k) {
-    const Eigen::VectorXd x = states_.col(k);
+    const Eigen::VectorXd state = states_.col(k);
     const Eigen::VectorXd u = U.col(k);
     const auto position = [this](const Eigen::VectorXd& s) { return plant_->visiblePosition(s); };
     d_state +=
         2.0 * jacobian(position, states_.col(k + 1)).transpose() * (positions_.col(k + 1) - goal_);
-    const auto by_torque = [this, &x](const Eigen::VectorXd& v) { return next(x, v); };
+    const auto by_torque = [this, &state](const Eigen::VectorXd& v) { return next(state, v); };
     const auto by_state = [this, &u](const Eigen::VectorXd& s) { return next(s, u); };
     d_U->col(k) += jacobian(by_torque, u).transpose() * d_state;
-    d_state = jacobian(by_state, x).transpose() * d_state;
+    d_state = jacobian(by_state, state).transpose() * d_state;
   }
 }
 

@@ -14,9 +14,9 @@ namespace ddm {
 
 /// Cost of torques from a state of the plant on, with the plant itself as the model:
 ///
-///   J(U) = sum_{k=1}^{K} |p(x_k) - p(x_goal)|^2 + lambda |u_{k-1}|^2,   x_{k+1} = plant(x_k, u_k)
+///   J(U) = sum_{k=1}^{K} |p_k - p_goal|^2 + lambda |u_{k-1}|^2,   state_{k+1} = plant(state_k, u_k)
 ///
-/// p(x) is where the moving part is in the picture, Plant::visiblePosition(): for the pendulum a
+/// p is where the moving part is in the picture, Plant::visiblePosition(): for the pendulum a
 /// circle, as its features are after training, so that the planner meets the same problem with a
 /// perfect model. The gradient goes backwards through the steps, each with central differences.
 class OraclePlanCost : public PlanCost {
@@ -41,8 +41,8 @@ class OraclePlanCost : public PlanCost {
   double control_weight_;
   Eigen::VectorXd goal_;
   Eigen::VectorXd state_;
-  Eigen::MatrixXd states_;     // x_0 ... x_K
-  Eigen::MatrixXd positions_;  // p(x_0) ... p(x_K)
+  Eigen::MatrixXd states_;     // state_0 ... state_K
+  Eigen::MatrixXd positions_;  // p_0 ... p_K
 };
 
 /// Plans with the planner of the DDM; learns nothing, so that its rows in trials.csv have 0 frames.

@@ -9,11 +9,14 @@
 #include <ddm_sim/plant_factory.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "camera_view.h"
 #include "command_line.h"
 #include "progress.h"
 #include "quadratic_fit.h"
@@ -62,13 +65,13 @@ Recording record(const Experiment& experiment, Plant* plant) {
   std::mt19937_64 start = startStream(id.seed, id.trial, id.evaluation);
   plant->setState(plant->drawStart(start));
 
-  Recording out{DataSet(plant->imageSize(), plant->torqueDim()),
-                DataSet(plant->imageSize(), plant->torqueDim()),
+  const int image_size = all.model.image.size;
+  Recording out{DataSet(image_size, plant->torqueDim()), DataSet(image_size, plant->torqueDim()),
                 Eigen::MatrixXd(plant->stateDim(), num_frames), Eigen::MatrixXd()};
   for (int frame = 0; frame < num_frames; ++frame) {
     const bool learn = frame < experiment.prediction.training_frames;
     const bool first = frame == 0 || frame == experiment.prediction.training_frames;
-    const Grey grey = plant->render(plant->state());
+    const Grey grey = cameraView(*plant, image_size);
     const Eigen::VectorXd torque = random.decide(grey).torque;
     (learn ? out.training : out.held_out).append(grey, torque, first);
     const Eigen::VectorXd position = plant->visiblePosition(plant->state());
@@ -104,10 +107,12 @@ std::string featuresCsv(const Plant& plant, const Recording& recording, const Ei
   return text;
 }
 
-/// The prediction from the middle of the held-out frames.
+/// The prediction from the middle of the held-out frames, of those that have a full history.
 std::string stripCsv(const Plant& plant, const Recording& recording, const Ddm& model,
                      const Eigen::MatrixXd& Z, int max_steps) {
-  const Eigen::Index frame = (recording.held_out.numFrames() - max_steps) / 2;
+  const Eigen::Index order = model.options().order;
+  const Eigen::Index frame =
+      order - 1 + (recording.held_out.numFrames() - max_steps - order) / 2;
   const Eigen::Index begin = recording.training.numFrames();
   const Eigen::MatrixXd predicted = rollOut(model, Z.rightCols(recording.held_out.numFrames()),
                                             recording.held_out.torques(), frame, max_steps);
@@ -187,6 +192,27 @@ void run(const Experiment& experiment) {
             << " of the position. Results: " << folder.path() << "\n";
 }
 
+/// What no block can see by itself.
+void requireFit(const Experiment& experiment) {
+  const PredictionOptions& prediction = experiment.prediction;
+  const ModelOptions& model = experiment.configuration.model.model;
+  const std::string& method = experiment.configuration.experiment.method;
+  std::string problems;
+  if (prediction.held_out_frames < prediction.max_steps + model.order) {
+    problems += "\n - prediction/held_out_frames must be at least prediction/max_steps + "
+                "model/order = " +
+                std::to_string(prediction.max_steps + model.order) + ", got " +
+                std::to_string(prediction.held_out_frames);
+  }
+  if (prediction.training_frames <= std::max(model.pca_dim, model.order)) {
+    problems += "\n - prediction/training_frames must be more than model/pca_dim and model/order, "
+                "got " +
+                std::to_string(prediction.training_frames);
+  }
+  if (method != "ddm") problems += "\n - experiment/method must be ddm, got " + method;
+  if (!problems.empty()) throw std::invalid_argument("invalid configuration:" + problems);
+}
+
 /// @return false where --help was asked for and has been printed
 bool configure(int argc, char** argv, Experiment* experiment) {
   Arguments arguments;
@@ -195,6 +221,7 @@ bool configure(int argc, char** argv, Experiment* experiment) {
   experiment->prediction = reader.read<PredictionOptions>("prediction");
   experiment->configuration = readConfiguration(arguments, &reader);
   requireValid(experiment->configuration.experiment);
+  requireFit(*experiment);
   return true;
 }
 

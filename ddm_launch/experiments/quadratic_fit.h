@@ -17,6 +17,7 @@ class QuadraticFit {
 
   /// R^2 = 1 - sum |y - fit(x)|^2 / sum |y - mean(y)|^2 over all entries; 1 is perfect, may be
   /// negative on samples that were not fitted.
+  /// @throws std::invalid_argument if all y are equal
   double explained(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) const;
 
  private:

@@ -12,13 +12,14 @@ from ddm_launch import angle_trajectories  # noqa: E402
 from ddm_launch.figure_style import BLUE, PAGE_WIDTH, VERMILLION, new_figure  # noqa: E402
 import figure_case  # noqa: E402
 
-HEADER = "seed,trial,step,time_s,angle_rad"
+HEADER = "seed,frames,success,step,time_s,angle_rad"
 
 
-def rows(seed, trial, end_rad, num_steps=20, start_s=0.0):
-    """A trajectory that reaches end_rad half-way and stays there."""
-    return ["%d,%d,%d,%.17g,%.17g" % (seed, trial, k, start_s + 0.2 * k, end_rad * min(1.0, 2.0 * k / num_steps))
-            for k in range(num_steps)]
+def rows(seed, frames, end_rad, num_steps=20, start_s=0.0):
+    """A trajectory that reaches end_rad half-way and stays there; a success if that is pi or -pi."""
+    success = abs(end_rad) == math.pi
+    return ["%d,%d,%d,%d,%.17g,%.17g" % (seed, frames, success, k, start_s + 0.2 * k,
+                                         end_rad * min(1.0, 2.0 * k / num_steps)) for k in range(num_steps)]
 
 
 class AngleTrajectoriesTest(figure_case.FigureCase):
@@ -32,20 +33,13 @@ class AngleTrajectoriesTest(figure_case.FigureCase):
 
     def test_each_trial_has_a_panel_with_one_line_per_seed(self):
         panels = self.panels(rows(1, 2, math.pi), rows(1, 1, 0.5 * math.pi), rows(2, 2, -math.pi))
-        self.assertEqual([panel[0] for panel in panels], ["trial 1: 0 of 1", "trial 2: 2 of 2"])
+        self.assertEqual([panel[0] for panel in panels], ["1 frames: 0 of 1", "2 frames: 2 of 2"])
         self.assertEqual(panels[0][1], [(VERMILLION, 0.5)])
         self.assertEqual(sorted(panels[1][1]), [(BLUE, -1.0), (BLUE, 1.0)])
 
-    def test_upright_is_within_ten_degrees_for_the_last_ten_frames(self):
-        for end, upright in ((math.radians(170.5), True), (math.radians(169.5), False), (-math.pi, True),
-                             (3.0 * math.pi, True), (2.0 * math.pi, False)):
-            self.assertEqual(self.panels(rows(1, 1, end))[0][0], "trial 1: %d of 1" % upright, end)
-        passing = rows(1, 1, math.pi)
-        passing[-10] = "1,1,10,2.0,0.0"
-        self.assertEqual(self.panels(passing)[0][0], "trial 1: 0 of 1")
-        passing = rows(1, 1, math.pi)
-        passing[-11] = "1,1,9,1.8,0.0"
-        self.assertEqual(self.panels(passing)[0][0], "trial 1: 1 of 1")
+    def test_who_succeeds_is_what_the_file_says(self):
+        falls = [row.replace("1,100,0,", "1,100,1,", 1) for row in rows(1, 100, 0.3)]
+        self.assertEqual(self.panels(falls)[0][:2], ("100 frames: 1 of 1", [(BLUE, 0.3 / math.pi)]))
 
     def test_time_starts_at_zero_and_the_order_of_the_rows_does_not_matter(self):
         path = self.write("angles.csv", HEADER, *reversed(rows(1, 1, math.pi, start_s=37.0)))
@@ -78,13 +72,13 @@ class AngleTrajectoriesTest(figure_case.FigureCase):
         self.assertDrawn(angle_trajectories.main, [self.write("angles.csv", HEADER, *lines)], PAGE_WIDTH)
 
     def test_a_file_that_is_missing_or_lacks_a_column_is_named(self):
-        self.assertRefused(angle_trajectories.main, ["missing.csv"], "missing.csv", "collect the evaluations")
+        self.assertRefused(angle_trajectories.main, ["missing.csv"], "missing.csv", "reproduce_paper")
         path = self.write("angles.csv", "seed,step,time_s", "1,0,0")
-        self.assertRefused(angle_trajectories.main, [path], path, "no column trial, angle_rad")
+        self.assertRefused(angle_trajectories.main, [path], path, "no column frames, angle_rad, success")
 
     def test_a_step_that_is_there_twice_is_refused(self):
         path = self.write("angles.csv", HEADER, *(rows(1, 1, 1.0) + rows(1, 1, 2.0)))
-        self.assertRefused(angle_trajectories.main, [path], "step 0 of trial 1 of seed 1 twice")
+        self.assertRefused(angle_trajectories.main, [path], "step 0 of seed 1 after 1 frames twice")
 
 
 if __name__ == "__main__":

@@ -131,7 +131,7 @@ TEST(Configuration, WhatIsPredictedIsChecked) {
   PredictionOptions options;
   EXPECT_TRUE(options.problems().empty());
   options.training_frames = 0;
-  options.held_out_frames = 8;
+  options.held_out_frames = 0;
   EXPECT_EQ(options.problems().size(), 2u);
   options = PredictionOptions();
   options.max_steps = 0;

@@ -132,12 +132,36 @@ class PredictionExperimentTest(unittest.TestCase):
                 self.assertIn(word, output)
         config = self.folder("wrong.yaml")
         with open(config, "w") as stream:
-            stream.write("prediction: {held_out_frames: 8, max_stps: 3}\ntraining: {schedule: both}\n")
+            stream.write("prediction: {held_out_frames: 0, max_stps: 3}\ntraining: {schedule: both}\n")
         code, output = self.predict("--config", config, "--out", self.folder("wrong"))
         self.assertEqual(code, 2)
         for word in ("prediction/held_out_frames", "max_stps", "did you mean max_steps", "training/schedule", "got both"):
             self.assertIn(word, output)
+        with open(config, "w") as stream:
+            stream.write("prediction: {held_out_frames: 9, training_frames: 10}\nexperiment: {method: oracle}\n")
+        code, output = self.predict("--config", config, "--out", self.folder("wrong"))
+        self.assertEqual(code, 2)
+        for word in ("at least prediction/max_steps + model/order = 10, got 9", "prediction/training_frames", "got 10",
+                     "experiment/method must be ddm, got oracle"):
+            self.assertIn(word, output)
         self.assertFalse(os.path.exists(self.folder("wrong")))
+
+    def test_the_fewest_frames_that_can_be_predicted_are_predicted(self):
+        config, out = self.folder("few.yaml"), self.folder("few")
+        with open(config, "w") as stream:
+            stream.write("prediction: {held_out_frames: 10, training_frames: 11}\n")
+        code, output = self.predict("--config", config, "--out", out)
+        self.assertEqual(code, 0, output)
+        self.assertEqual({row["num_predictions"] for row in read_dicts(out, "predictions.csv")}, {"1"})
+
+    def test_images_of_another_size_than_the_cameras_are_learned_from(self):
+        config, out = self.folder("small.yaml"), self.folder("small")
+        with open(config, "w") as stream:
+            stream.write("image: {size: 25}\n")
+        code, output = self.predict("--config", config, "--out", out)
+        self.assertEqual(code, 0, output)
+        self.assertLess(os.path.getsize(os.path.join(out, "model.ddm")),
+                        0.5 * os.path.getsize(os.path.join(self.reference, "model.ddm")))
 
     def test_feature_space_tells_experience_current_goal_and_plan(self):
         run, out = self.folder("run"), self.folder("feature_space.csv")
@@ -151,6 +175,17 @@ class PredictionExperimentTest(unittest.TestCase):
         kinds = [row[0] for row in rows[1:]]
         self.assertEqual(kinds, ["experience"] * 60 + ["current", "goal"] + ["plan"] * 5)  # two trials of 30, K = 5
         self.assertEqual([row[1] for row in rows[-5:]], ["3", "4", "5", "6", "7"])
+        code, output = call([program, run, "--trial", 1, "--step", 30, "--out", out])
+        self.assertEqual(code, 1)
+        self.assertIn("less than the 30 steps", output)
+        torques = os.path.join(run, "evaluation_001", "torques.csv")
+        with open(torques) as stream:
+            lines = stream.read().splitlines()
+        with open(torques, "w") as stream:
+            stream.write("\n".join([lines[0], "0,1.25,0"] + lines[2:]) + "\n")
+        code, output = call([program, run, "--trial", 1, "--step", 2, "--out", out])
+        self.assertEqual(code, 1)
+        self.assertIn("the torque of step 0 is another here", output)
         code, output = call([program, run, "--trial", 7, "--step", 2, "--out", out])
         self.assertEqual(code, 1)
         self.assertIn("trial_007/model.ddm", output)

@@ -51,6 +51,12 @@ TEST(QuadraticFit, MeasuresWhatIsLeftAgainstTheSpreadOfTheSamplesAsked) {
   EXPECT_NEAR(fit.explained(x, y), 1.0 - 6.0 / 12.0, 1e-12);
 }
 
+TEST(QuadraticFit, RefusesToExplainWhatDoesNotVary) {
+  const Eigen::MatrixXd x = randomMatrix(2, 50, 1);
+  const QuadraticFit fit(x, bent(x));
+  EXPECT_THROW(fit.explained(x, Eigen::MatrixXd::Ones(2, 50)), std::invalid_argument);
+}
+
 TEST(QuadraticFit, RefusesSamplesThatDoNotPairUp) {
   EXPECT_THROW(QuadraticFit(randomMatrix(2, 5, 1), randomMatrix(2, 6, 1)), std::invalid_argument);
   EXPECT_THROW(QuadraticFit(Eigen::MatrixXd(2, 0), Eigen::MatrixXd(2, 0)), std::invalid_argument);

@@ -7,12 +7,12 @@ import sys
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch import schedules_compared  # noqa: E402
+from ddm_launch import schedules, schedules_compared  # noqa: E402
 from ddm_launch.figure_style import PAGE_WIDTH, new_figure  # noqa: E402
 from ddm_launch.run_folder import RunFolderError  # noqa: E402
 import figure_case  # noqa: E402
 
-NAMES = [row[0] for row in schedules_compared.SCHEDULES]
+NAMES = list(schedules.SCHEDULES)
 TRIALS = "seed,trial,frames,success,final_error_deg"
 PREDICTIONS = "seed,steps,num_predictions,rmse,rmse_repeat,position_r2,v_r,v_p,train_s"
 
@@ -27,7 +27,7 @@ class SchedulesComparedTest(figure_case.FigureCase):
         for k, name in enumerate(NAMES):
             self.write(os.path.join("" if name == "joint" else name, "trials.csv"), TRIALS,
                        "0,0,100,0,90", "0,1,200,1,2", "1,0,100,%d,9" % (k == 0), "1,1,200,%d,9" % (k == 0))
-            for plant in ("tile", "pendulum_predictions"):
+            for plant in ("tile_predictions", "pendulum_predictions"):
                 self.writePredictions(plant, name, range(2), 0.1 * (k + 1))
 
     def writePredictions(self, plant, name, seeds, rmse):
@@ -36,7 +36,7 @@ class SchedulesComparedTest(figure_case.FigureCase):
                      for steps in range(1, 9)))
 
     def test_prediction_errors_are_means_over_seeds_with_standard_errors(self):
-        results = schedules_compared.read_predictions(os.path.join(self.folder, "tile"))
+        results = schedules.read_predictions(os.path.join(self.folder, "tile_predictions"))
         with new_figure(PAGE_WIDTH, 3.0) as figure:
             axes = figure.add_subplot(1, 1, 1)
             schedules_compared.draw_predictions(axes, results)
@@ -52,36 +52,36 @@ class SchedulesComparedTest(figure_case.FigureCase):
         self.assertEqual(labels, ("steps ahead [-]", "RMSE over pixels [grey]"))
 
     def test_success_rates_of_all_schedules_are_drawn_each_a_little_aside(self):
-        results = schedules_compared.read_success(self.folder)
+        results = schedules.read_success(self.folder)
         with new_figure(PAGE_WIDTH, 3.0) as figure:
             axes = figure.add_subplot(1, 1, 1)
             schedules_compared.draw_success(axes, results)
-            drawn = [figure_case.drawn_points(axes, row[1]) for row in schedules_compared.SCHEDULES]
+            drawn = [figure_case.drawn_points(axes, row[0]) for row in schedules_compared.STYLES]
         self.assertEqual([[y for _, y in points] for points in drawn], [[0.5, 1.0]] + [[0.0, 0.5]] * 3)
         self.assertEqual(len({points[0][0] for points in drawn}), 4)
         for points in drawn:
             self.assertAlmostEqual(points[0][0], 100, delta=25)
 
     def test_only_seeds_that_all_schedules_have_are_compared(self):
-        self.writePredictions("tile", "joint", range(1, 5), 9.0)
-        results = schedules_compared.read_predictions(os.path.join(self.folder, "tile"))
+        self.writePredictions("tile_predictions", "joint", range(1, 5), 9.0)
+        results = schedules.read_predictions(os.path.join(self.folder, "tile_predictions"))
         self.assertEqual([sorted(results[name]) for name in NAMES], [[1]] * 4)
         self.assertEqual(schedules_compared.seeds_text(results), "1 seed")
 
     def test_schedules_without_a_common_seed_are_refused(self):
-        self.writePredictions("tile", "joint", [77], 9.0)
+        self.writePredictions("tile_predictions", "joint", [77], 9.0)
         with self.assertRaisesRegex(RunFolderError, "no seed has predictions of all schedules"):
-            schedules_compared.read_predictions(os.path.join(self.folder, "tile"))
+            schedules.read_predictions(os.path.join(self.folder, "tile_predictions"))
 
     def test_no_two_schedules_share_marker_line_or_colour(self):
-        for column in (2, 3, 4):
-            self.assertEqual(len({row[column] for row in schedules_compared.SCHEDULES}), 4)
+        for column in range(4):
+            self.assertEqual(len({row[column] for row in schedules_compared.STYLES}), 4)
 
     def test_a_results_folder_makes_a_picture_as_wide_as_a_page(self):
         self.assertDrawn(schedules_compared.main, [self.folder], PAGE_WIDTH)
 
     def test_each_missing_file_is_named_with_the_remedy(self):
-        for path in ("trials.csv", "v_p_only/trials.csv", "tile/joint/predictions.csv",
+        for path in ("trials.csv", "v_p_only/trials.csv", "tile_predictions/joint/predictions.csv",
                      "pendulum_predictions/joint_random_init/predictions.csv"):
             whole = os.path.join(self.folder, path)
             os.rename(whole, whole + ".away")
@@ -89,7 +89,7 @@ class SchedulesComparedTest(figure_case.FigureCase):
             os.rename(whole + ".away", whole)
 
     def test_a_seed_that_is_there_twice_is_refused(self):
-        self.write("tile/joint/predictions.csv", PREDICTIONS, prediction(3, 1, 0.1, 0.1), prediction(3, 1, 0.2, 0.1))
+        self.write("tile_predictions/joint/predictions.csv", PREDICTIONS, prediction(3, 1, 0.1, 0.1), prediction(3, 1, 0.2, 0.1))
         self.assertRefused(schedules_compared.main, [self.folder], "1 steps of seed 3 twice")
 
 

@@ -76,6 +76,24 @@ class ScriptsTest(unittest.TestCase):
         self.assertIn("to install packages needs root, and there is no sudo", output)
         self.assertIn("install -y --no-install-recommends cmake", output)
 
+    def test_packages_with_services_are_installed_without_starting_or_enabling_them(self):
+        code, output = self.callFunction('missing_packages() { echo cmake munge; }; as_root() { printf "%s|" "$@"; }; '
+                                         "install_packages cmake munge")
+        self.assertEqual(code, 0)
+        self.assertIn("policy-rc.d", output)
+        self.assertIn("systemctl disable", output)
+        self.assertIn("install -y --no-install-recommends cmake munge", output)
+        code, output = self.callFunction('missing_packages() { echo cmake; }; as_root() { printf "%s|" "$@"; }; '
+                                         "install_packages cmake")
+        self.assertNotIn("policy-rc.d", output)  # nothing to guard against
+
+    def test_the_guard_against_services_passes_on_the_verdict(self):
+        policy = os.path.join(self.folder, "policy-rc.d")
+        guarded = "export POLICY_RC_D=%s; sh -c \"$without_services\" sh " % policy
+        self.assertEqual(self.callFunction(guarded + 'sh -c "$POLICY_RC_D; exit 3"')[0], 3)
+        self.assertEqual(self.callFunction(guarded + 'sh -c "$POLICY_RC_D; echo policy says \\$?"'), (0, "policy says 101\n"))
+        self.assertFalse(os.path.exists(policy))
+
     def test_a_system_that_knows_localhost_is_left_alone(self):
         self.assertEqual(self.callFunction("as_root() { echo CALLED; }; getent() { true; }; ensure_localhost_resolves"),
                          (0, ""))

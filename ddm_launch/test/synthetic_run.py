@@ -19,7 +19,8 @@ def write_trials(folder, successes, errors_deg, seed=1):
 
 def write_config(folder, plant="pendulum"):
     with open(os.path.join(folder, "config.yaml"), "w") as stream:
-        stream.write("experiment:\n  plant: %s\n  seed: 1\n" % plant)
+        stream.write("experiment: {plant: %s, seed: 1}\nplant: {type: %s}\n" % (
+            plant, plant if plant == "moving_tile" else "pendulum"))
 
 
 def write_evaluation(folder, trial, num_steps=40, arrival=16, start_s=3.0):

@@ -5,6 +5,7 @@
 #include <ceres/gradient_problem.h>
 #include <ceres/gradient_problem_solver.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -191,7 +192,7 @@ class Minimisation {
     ceres::Solve(options, problem, theta->data() + free.begin, &summary);
 
     result->message = summary.message;
-    result->iterations += static_cast<int>(summary.iterations.size()) - 1;
+    result->iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
     result->evaluations += function->evaluations();
     if (summary.termination_type == ceres::USER_FAILURE) {
       result->message = "training was cancelled";
@@ -235,6 +236,7 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
 
   TrainingResult result;
   Eigen::VectorXd best;
+  std::string message;  // how the solver ended there
   for (int number = 0; number < training.num_starts && !result.cancelled; ++number) {
     Eigen::VectorXd theta = minimisation.initial(number, initial_networks, scores, &rng);
     const double initial_cost = minimisation.cost(theta);
@@ -243,11 +245,13 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
     const double cost = minimisation.cost(theta);
     if (best.size() == 0 || cost < result.final_cost) {
       best = theta;
+      message = result.message;
       result.initial_cost = initial_cost;
       result.final_cost = cost;
     }
   }
   if (best.size() > 0 && !result.cancelled) {
+    result.message = message;
     const JointObjective<float>::Value value = objective.evaluate(best.cast<float>(), nullptr);
     info.frames = static_cast<std::uint32_t>(data.numFrames());
     info.v_r = squaredScale(pca) * value.v_r;

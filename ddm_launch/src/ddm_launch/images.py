@@ -7,9 +7,9 @@ import tempfile
 from PIL import Image
 import roslib.packages
 
-from ddm_launch.run_folder import RunFolderError, read_plant
+from ddm_launch.run_folder import RunFolderError, read_plant, read_setting
 
-TORQUE_COLUMNS = {"moving_tile": "dx_px,dy_px"}  # of the plants that do not turn a motor
+TORQUE_COLUMNS = {"moving_tile": "dx_px,dy_px"}  # of the types of plants that do not turn a motor
 
 
 def find_program(package, name):
@@ -46,7 +46,7 @@ class Camera:
         plant = read_plant(folder)
         self.command = [find_program("ddm_sim", "simulate"), "--plant", plant,
                         "--config", os.path.join(folder, "config.yaml")]
-        self.header = TORQUE_COLUMNS.get(plant, "torque_nm")
+        self.header = TORQUE_COLUMNS.get(read_setting(folder, "plant", "type", "type of the plant"), "torque_nm")
 
     def shoot(self, *state):
         """The grey image of one state, e.g. angle [rad] and rate [rad/s] of the pendulum."""

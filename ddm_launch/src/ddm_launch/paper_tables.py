@@ -6,11 +6,15 @@ import statistics
 
 from ddm_launch.averages import mean_and_error, success_rates
 from ddm_launch.run_folder import number, read_csv, read_sweep
+from ddm_launch.schedules import SCHEDULES, read_predictions, read_predictions_csv, read_success
 
-SCHEDULES = ("joint", "sequential", "v_p_only", "joint_random_init")
 LATE_FRAMES = (900, 1500)  # the paper's curve is level over these
+NUM_POINTS = 15  # of the paper's curve that count: 100 to 1500 frames
 MOST_ERRORS_BELOW = 2.5  # [standard errors of the paper]
-TRIALS_OF_TIMES = (1, 5, 10, 15)
+LEAST_LATE_SUCCESS = 0.80
+MOST_ERROR_RATIO = 0.5
+LEAST_EXPLAINED = 0.9
+TRIALS_OF_TIMES = (0, 4, 9, 14)  # 100 to 1500 frames
 
 
 def write_csv(path, header, rows):
@@ -41,57 +45,43 @@ def success_table(trials, published):
     return rows
 
 
-def late_success(trials):
-    """{seed: mean success over LATE_FRAMES} of a trials.csv; seeds without such frames are left out."""
+def late_success(runs):
+    """{seed: mean success over LATE_FRAMES} of {seed: list of Trial}; seeds without such frames are left out."""
     means = {}
-    for seed, rows in read_sweep(trials).items():
-        late = [float(row.success) for row in rows
-                if row.success is not None and LATE_FRAMES[0] <= row.frames <= LATE_FRAMES[1]]
+    for seed, trials in runs.items():
+        late = [float(trial.success) for trial in trials
+                if trial.success is not None and LATE_FRAMES[0] <= trial.frames <= LATE_FRAMES[1]]
         if late:
             means[seed] = sum(late) / len(late)
     return means
 
 
-def predictions(path, column, steps=None):
-    """{seed: value} of a column of predictions.csv, at so many steps ahead (of the first row if None)."""
-    values = {}
-    for row in read_csv(path, ["seed", "steps", column]):
-        if steps is None or int(number(row, "steps", path)) == steps:
-            values.setdefault(int(number(row, "seed", path)), number(row, column, path))
-    return values
-
-
-def error_ratio(path, steps=8):
-    """{seed: RMSE so many steps ahead over that of repeating the last frame}."""
-    errors, repeats = predictions(path, "rmse", steps), predictions(path, "rmse_repeat", steps)
-    return {seed: errors[seed] / repeats[seed] for seed in errors}
-
-
-def measures(folder, schedule):
-    """{measure: {seed: value}} of one schedule in a results folder."""
-    trials = os.path.join(folder, "" if schedule == "joint" else schedule, "trials.csv")
-    out = {"pendulum_success_900_1500": late_success(trials)}
-    for plant, name in (("tile", "tile"), ("pendulum_predictions", "pendulum")):
-        path = os.path.join(folder, plant, schedule, "predictions.csv")
-        out["%s_rmse_ratio_8" % name] = error_ratio(path)
-        out["%s_rmse_ratio_1" % name] = error_ratio(path, 1)
-        out["%s_position_r2" % name] = predictions(path, "position_r2")
+def measures(folder):
+    """{measure: {schedule: {seed: value}}} over the seeds that all schedules have."""
+    out = {"pendulum_success_900_1500": {name: late_success(runs) for name, runs in read_success(folder).items()}}
+    for plant in ("tile", "pendulum"):
+        of_plant = read_predictions(os.path.join(folder, plant + "_predictions"))
+        for measure, value in (("error_ratio_1", lambda steps: steps[1].ratio),
+                               ("error_ratio_8", lambda steps: steps[8].ratio),
+                               ("position_r2", lambda steps: steps[1].position_r2)):
+            out["%s_%s" % (plant, measure)] = {
+                name: {seed: value(steps) for seed, steps in by_seed.items()} for name, by_seed in of_plant.items()}
     return out
 
 
 def schedule_table(folder):
-    """Rows (measure, schedule, seeds, mean, standard error, difference to joint on the same seeds, its standard error)."""
-    joint = measures(folder, "joint")
+    """Rows (measure, schedule, seeds, mean, standard error, mean difference to joint, its standard error).
+
+    Differences are paired by seed.
+    """
     rows = []
-    for schedule in SCHEDULES:
-        for measure, values in measures(folder, schedule).items():
-            seeds = sorted(set(values) & set(joint[measure]))
-            if not seeds:
-                continue
-            mean, error = mean_and_error([values[seed] for seed in seeds])
-            difference, difference_error = mean_and_error([values[seed] - joint[measure][seed] for seed in seeds])
-            rows.append((measure, schedule, len(seeds), mean, error, difference, difference_error))
-    return sorted(rows, key=lambda row: (row[0], SCHEDULES.index(row[1])))
+    for measure, by_schedule in measures(folder).items():
+        for schedule in SCHEDULES:
+            values, joint = by_schedule[schedule], by_schedule["joint"]
+            if values:
+                rows.append((measure, schedule, len(values)) + mean_and_error(list(values.values())) +
+                            mean_and_error([values[seed] - joint[seed] for seed in values]))
+    return rows
 
 
 def time_table(trials):
@@ -114,52 +104,71 @@ def time_table(trials):
 
 def tile_rows(folder):
     """Rows (seed, RMSE 8 steps ahead, of repeating, ratio, R^2 of the position) of joint training on the tile."""
-    path = os.path.join(folder, "tile", "joint", "predictions.csv")
-    errors, repeats = predictions(path, "rmse", 8), predictions(path, "rmse_repeat", 8)
-    explained = predictions(path, "position_r2")
-    return [(seed, errors[seed], repeats[seed], errors[seed] / repeats[seed], explained[seed])
-            for seed in sorted(errors)]
+    predictions = read_predictions_csv(os.path.join(folder, "tile", "predictions.csv"))
+    return [(seed, steps[8].rmse, steps[8].rmse_repeat, steps[8].ratio, steps[8].position_r2)
+            for seed, steps in sorted(predictions.items())]
+
+
+def verdict(holds):
+    return {True: "yes", False: "no", None: "n/a"}[holds]
+
+
+def curve_rows(folder, published):
+    """Rows of the agreement about the success curve and the oracle."""
+    curve = [row for row in success_table(os.path.join(folder, "trials.csv"), published) if row[0] <= LATE_FRAMES[1]]
+    complete = len(curve) == NUM_POINTS
+    below = sum(row[6] < -MOST_ERRORS_BELOW for row in curve)
+    rows = [("success: points of the curve more than %g of the paper's standard errors below it" % MOST_ERRORS_BELOW,
+             "<= 1 of %d" % NUM_POINTS, "%d of %d" % (below, len(curve)), below <= 1 if complete else None)]
+    if complete:
+        late = [row for row in curve if row[0] >= LATE_FRAMES[0]]
+        here, paper = (sum(row[k] for row in late) / len(late) for k in (2, 4))
+        rows.append(("success: mean over %d to %d frames" % LATE_FRAMES,
+                     ">= %.2f (paper: %.3f)" % (LEAST_LATE_SUCCESS, paper), "%.3f" % here, here >= LEAST_LATE_SUCCESS))
+        rows.append(("success after %d frames" % LATE_FRAMES[1], "paper: %.2f +- %.2f" % curve[-1][4:6],
+                     "%.2f +- %.2f" % curve[-1][2:4], abs(curve[-1][6]) <= MOST_ERRORS_BELOW))
+    oracle = [trial.success for trials in read_sweep(os.path.join(folder, "oracle", "trials.csv")).values()
+              for trial in trials if trial.success is not None]
+    rows.append(("oracle: success of the same planner with a perfect model", "1.00",
+                 "%.4f of %d runs" % (sum(oracle) / max(1, len(oracle)), len(oracle)),
+                 all(oracle) if oracle else None))
+    return rows
+
+
+def tile_agreement(folder):
+    tile = tile_rows(folder)
+    ratio, error = mean_and_error([row[3] for row in tile])
+    explained = statistics.median(row[4] for row in tile)
+    seeds = "%d seeds" % len(tile)
+    return [("tile: error 8 steps ahead over that of repeating the last frame, mean of " + seeds,
+             "< %g" % MOST_ERROR_RATIO, "%.3f +- %.3f" % (ratio, error), ratio < MOST_ERROR_RATIO),
+            ("tile: R^2 of the position, a quadratic map of the features on held-out frames, median of " + seeds,
+             ">= %g" % LEAST_EXPLAINED, "%.3f" % explained, explained >= LEAST_EXPLAINED)]
+
+
+def schedule_agreement(folder):
+    """Joint training against each other schedule; what the paper does not claim has no verdict."""
+    table = {(row[0], row[1]): row for row in schedule_table(folder)}
+    rows = []
+    for measure, sign in (("pendulum_success_900_1500", 1), ("pendulum_error_ratio_8", -1), ("tile_error_ratio_8", -1),
+                          ("tile_position_r2", 1)):
+        for schedule in SCHEDULES[1:]:
+            row = table.get((measure, schedule))
+            if row is None:
+                continue
+            claimed = schedule != "joint_random_init"
+            gain, error = -sign * row[5], row[6]  # by how much joint is better
+            holds = gain > 2.0 * error if claimed and error > 0.0 else None
+            rows.append(("%s: joint against %s" % (measure, schedule), "better" if claimed else "not claimed",
+                         "%.3f against %.3f, better by %.3f +- %.3f" % (
+                             table[measure, "joint"][3], row[3], gain, error), holds))
+    return rows
 
 
 def agreement_table(folder, published):
-    """Rows (point, paper or bar, here, holds) for each claim that can be checked by numbers."""
-    curve = success_table(os.path.join(folder, "trials.csv"), published)
-    below = [row[0] for row in curve if row[6] < -MOST_ERRORS_BELOW]
-    late = [row for row in curve if LATE_FRAMES[0] <= row[0] <= LATE_FRAMES[1]]
-    rows = [("points of the success curve more than %g of the paper's standard errors below it" % MOST_ERRORS_BELOW,
-             "at most 1 of 15", "%d of %d" % (len(below), len(curve)), len(below) <= 1)]
-    if late:
-        here, paper = (sum(row[k] for row in late) / len(late) for k in (2, 4))
-        rows.append(("mean success, %d to %d frames" % LATE_FRAMES, "%.3f" % paper, "%.3f" % here, here >= 0.80))
-        rows.append(("success at %d frames" % LATE_FRAMES[1], "%.2f" % late[-1][4], "%.2f" % late[-1][2],
-                     late[-1][2] >= late[-1][4] - MOST_ERRORS_BELOW * late[-1][5]))
-    oracle = [trial.success for trials in read_sweep(os.path.join(folder, "oracle", "trials.csv")).values()
-              for trial in trials if trial.success is not None]
-    if oracle:
-        rows.append(("oracle: success of the planner with a perfect model", "1.00",
-                     "%.4f (%d runs)" % (sum(oracle) / len(oracle), len(oracle)), all(oracle)))
-    tile = tile_rows(folder)
-    ratio, _ = mean_and_error([row[3] for row in tile])
-    explained = statistics.median(row[4] for row in tile)
-    rows.append(("tile, joint: 8-step error over that of repeating the last frame, mean of %d seeds" % len(tile),
-                 "< 0.5", "%.3f" % ratio, ratio < 0.5))
-    rows.append(("tile, joint: held-out position explained by a quadratic map of the features, median R^2",
-                 ">= 0.9", "%.3f" % explained, explained >= 0.9))
-    by_schedule = {(row[0], row[1]): row for row in schedule_table(folder)}
-    for measure, sign, words in (("pendulum_success_900_1500", 1, "pendulum, mean success, 900 to 1500 frames"),
-                                 ("pendulum_rmse_ratio_8", -1, "pendulum, 8-step error ratio"),
-                                 ("tile_rmse_ratio_8", -1, "tile, 8-step error ratio"),
-                                 ("tile_position_r2", 1, "tile, position explained by the features")):
-        for schedule in SCHEDULES[1:]:
-            row = by_schedule.get((measure, schedule))
-            if row is None:
-                continue
-            joint = by_schedule[measure, "joint"]
-            rows.append(("%s: joint better than %s" % (words, schedule), "yes",
-                         "joint %.3f, %s %.3f, difference %.3f +- %.3f" % (joint[3], schedule, row[3],
-                                                                           -row[5], row[6]),
-                         -sign * row[5] > 2.0 * row[6]))
-    return [(point, paper, here, "yes" if holds else "no") for point, paper, here, holds in rows]
+    """Rows (point, claim of the paper or bar, here, yes | no | n/a) of all that numbers can tell."""
+    rows = curve_rows(folder, published) + tile_agreement(folder) + schedule_agreement(folder)
+    return [(point, claim, here, verdict(holds)) for point, claim, here, holds in rows]
 
 
 def write_tables(folder, published):
@@ -176,5 +185,5 @@ def write_tables(folder, published):
     write_csv(os.path.join(folder, "tile.csv"), ["seed", "rmse_8", "rmse_repeat_8", "ratio", "position_r2"],
               tile_rows(folder))
     agreement = agreement_table(folder, published)
-    write_csv(os.path.join(folder, "agreement.csv"), ["point", "paper", "here", "holds"], agreement)
+    write_csv(os.path.join(folder, "agreement.csv"), ["point", "claim_or_bar", "here", "holds"], agreement)
     return agreement

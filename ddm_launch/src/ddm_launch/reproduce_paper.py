@@ -15,8 +15,10 @@ import roslib.packages
 from tqdm import tqdm
 import yaml
 
-from ddm_launch.paper_tables import SCHEDULES, write_csv, write_tables
-from ddm_launch.run_folder import Evaluation, RunFolderError
+from ddm_launch.interruption import Interrupted, raised_as_exception
+from ddm_launch.paper_tables import write_csv, write_tables
+from ddm_launch.run_folder import Evaluation, RunFolderError, read_trials
+from ddm_launch.schedules import SCHEDULES
 from ddm_launch.sweep_folder import read_yaml
 
 NUM_ANGLE_SEEDS = 16  # as in the paper's Fig. 7
@@ -24,6 +26,7 @@ NUM_PREDICTION_SEEDS = 20
 FIGURE_SEED = 0  # which seed the figures of a single model show
 FIGURE_STEP = 1
 TRIALS = 15
+PAPER_TRIALS = range(15)  # ours that have the 100 to 1500 frames of the paper's figures
 
 ABOUT = """\
 Reproduces the paper's experiments: success on the pendulum (Fig. 7 and 8) with the oracle and the other training
@@ -35,9 +38,10 @@ in DIR:
   trials.csv, *.csv    rows of all seeds, and tables made from them; agreement.csv: what holds of the paper's claims
   *.png                figures
   SCHEDULE/, oracle/   trials.csv of the other schedules and of the oracle
-  tile/, pendulum_predictions/
-                       predictions.csv of each schedule
-  machine.yaml         version of the code, processor, time and peak memory of each step
+  tile/                predictions.csv, features and model of joint training on the moving tile
+  tile_predictions/, pendulum_predictions/
+                       predictions.csv of each schedule, each with a single start
+  machine.yaml         of each step: version of the code, processor, time, peak memory of a process
   runs/, logs/         everything that the programs left behind; not needed for the figures"""
 
 
@@ -85,13 +89,17 @@ def sweep_steps(preset, num_seeds):
              SweepStep("oracle", "oracle/trials.csv", num_seeds, pendulum, ["--method", "oracle"])]
     for schedule in SCHEDULES[1:]:
         steps.append(SweepStep(schedule, schedule + "/trials.csv", num_seeds, pendulum, schedule_options(schedule)))
-    for plant, folder in (("moving_tile", "tile"), ("pendulum", "pendulum_predictions")):
+    def predictions(name, table, plant, more=()):
+        words = ["--program", "prediction_experiment", "--preset", preset, "--plant", plant]
+        steps.append(SweepStep(name, table, min(num_seeds, NUM_PREDICTION_SEEDS), words, more))
+
+    predictions("tile", "tile/predictions.csv", "moving_tile")
+    # One start each: the best of several would be a random one of most schedules.
+    single_start = ["--config", package_path("config", "single_start.yaml")]
+    for plant, folder in (("moving_tile", "tile_predictions"), ("pendulum", "pendulum_predictions")):
         for schedule in SCHEDULES:
-            steps.append(SweepStep(
-                "%s_%s" % (folder, schedule), "%s/%s/predictions.csv" % (folder, schedule),
-                min(num_seeds, NUM_PREDICTION_SEEDS),
-                ["--program", "prediction_experiment", "--preset", preset, "--plant", plant],
-                schedule_options(schedule)))
+            predictions("%s_%s" % (folder, schedule), "%s/%s/predictions.csv" % (folder, schedule), plant,
+                        single_start + schedule_options(schedule))
     return steps
 
 
@@ -100,7 +108,7 @@ class Reproduction:
         self.out, self.preset, self.jobs = os.path.abspath(options.out), options.preset, options.jobs
         self.steps = sweep_steps(options.preset, options.seeds)
         self.by_name = {step.name: step for step in self.steps}
-        self.measured = {}  # step: {wall_s, peak_memory_mb}
+        self.measured = {}  # step: what write_machine() keeps of it
 
     def path(self, *names):
         return os.path.join(self.out, *names)
@@ -114,7 +122,6 @@ class Reproduction:
                 bar.set_description(step.name)
                 self.run_sweep(step, bar)
                 self.keep(os.path.join(step.folder(self.out), "sweep.csv"), step.table)
-                self.write_machine()
             bar.set_description("tables")
             self.collect()
             agreement = write_tables(self.out, package_path("results", "published", "success_rate.csv"))
@@ -134,7 +141,7 @@ class Reproduction:
     def run_sweep(self, step, bar):
         """Runs the seeds that are not finished, and moves the bar by each that is."""
         log = self.path("logs", step.name + ".log")
-        start, finished = time.monotonic(), 0
+        start, num_finished, num_run, peak_kb = time.monotonic(), 0, 0, 0
         with open(log, "w") as stream:
             process = subprocess.Popen(step.command(self.out, self.jobs), stdin=subprocess.DEVNULL,
                                        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
@@ -143,28 +150,33 @@ class Reproduction:
                     stream.write(line)
                     stream.flush()
                     to_run = re.search(r": (\d+) of \d+ seeds to run$", line.strip())
-                    finished = step.num_seeds - int(to_run.group(1)) if to_run else finished
                     if to_run:
-                        bar.update(finished)
+                        num_finished = step.num_seeds - int(to_run.group(1))
+                        bar.update(num_finished)
                     elif re.match(r"seed \d+ finished", line):
-                        finished += 1
+                        num_run += 1
                         bar.update(1)
             except BaseException:
                 process.send_signal(signal.SIGINT)
-                process.wait()
                 raise
-            _, status, usage = os.wait4(process.pid, 0)
-            process.returncode = status
-        if status != 0:
+            finally:
+                peak_kb = reap(process)
+                if num_run:
+                    self.add_measurement(step, num_run, time.monotonic() - start, peak_kb / 1024.0)
+        if process.returncode != 0:
             raise Failure("%s: not all seeds are finished, see %s; the same command goes on" % (step.name, log))
-        bar.update(step.num_seeds - finished)
+        bar.update(step.num_seeds - num_finished - num_run)
         tqdm.write("%-36s %4d seeds  %6.1f s" % (step.name, step.num_seeds, time.monotonic() - start))
-        if to_run_any(log):
-            before = self.measured.get(step.name, {})
-            self.measured[step.name] = {
-                "seeds": step.num_seeds,
-                "wall_s": round(before.get("wall_s", 0.0) + time.monotonic() - start, 1),
-                "peak_memory_mb": round(max(before.get("peak_memory_mb", 0.0), usage.ru_maxrss / 1024.0), 1)}
+
+    def add_measurement(self, step, num_run, wall_s, peak_memory_mb):
+        """Keeps what a call took. Calls add up; seeds that an interruption cut short count with their time alone."""
+        version = read_yaml(os.path.join(step.seed_folder(self.out, 0), "config.yaml")).get("version", "?")
+        before = self.measured.get(step.name, {})
+        self.measured[step.name] = {
+            "seeds_run": before.get("seeds_run", 0) + num_run, "version": version, "cpu": processor(),
+            "cores": os.cpu_count(), "wall_s": round(before.get("wall_s", 0.0) + wall_s, 1),
+            "peak_memory_mb": round(max(before.get("peak_memory_mb", 0.0), peak_memory_mb), 1)}
+        self.write_machine()
 
     def call(self, name, command):
         log = self.path("logs", name + ".log")
@@ -179,22 +191,27 @@ class Reproduction:
         self.write_angles(joint)
         folder = joint.seed_folder(self.out, FIGURE_SEED)
         self.keep(os.path.join(folder, "config.yaml"), "config.yaml")
-        self.keep(os.path.join(folder, "trial_%03d" % TRIALS, "model.ddm"), "pendulum/model.ddm")
-        self.call("feature_space", [program("feature_space"), folder, "--trial", str(TRIALS), "--step",
+        trial = PAPER_TRIALS[-1]
+        self.keep(os.path.join(folder, "trial_%03d" % trial, "model.ddm"), "pendulum/model.ddm")
+        self.call("feature_space", [program("feature_space"), folder, "--trial", str(trial), "--step",
                                     str(FIGURE_STEP), "--out", self.path("pendulum", "feature_space.csv")])
-        for schedule in SCHEDULES[:2]:
-            folder = self.by_name["tile_" + schedule].seed_folder(self.out, FIGURE_SEED)
+        for step, kept in (("tile", "tile"), ("tile_predictions_sequential", "tile_predictions/sequential")):
+            folder = self.by_name[step].seed_folder(self.out, FIGURE_SEED)
             for name in ("config.yaml", "features.csv", "model.ddm", "strip.csv"):
-                self.keep(os.path.join(folder, name), "tile/%s/%s" % (schedule, name))
+                self.keep(os.path.join(folder, name), "%s/%s" % (kept, name))
 
     def write_angles(self, step):
         rows = []
         for seed in range(min(NUM_ANGLE_SEEDS, step.num_seeds)):
-            for trial in range(1, TRIALS + 1):
-                run = Evaluation(step.seed_folder(self.out, seed), trial)
+            folder = step.seed_folder(self.out, seed)
+            trials = read_trials(folder)
+            for trial in PAPER_TRIALS:
+                run = Evaluation(folder, trial)
                 for k, (time_s, angle_rad) in enumerate(zip(run.time_s, run.angle_rad)):
-                    rows.append((seed, trial, k, "%.3f" % time_s, "%.4f" % angle_rad))
-        write_csv(self.path("angle_trajectories.csv"), ["seed", "trial", "step", "time_s", "angle_rad"], rows)
+                    rows.append((seed, trials[trial].frames, int(trials[trial].success), k, "%.3f" % time_s,
+                                 "%.4f" % angle_rad))
+        write_csv(self.path("angle_trajectories.csv"), ["seed", "frames", "success", "step", "time_s", "angle_rad"],
+                  rows)
 
     def figure_commands(self):
         """(name, command) of each figure; all read nothing but what is kept."""
@@ -206,24 +223,29 @@ class Reproduction:
             figure("angle_trajectories", self.path("angle_trajectories.csv")),
             figure("pendulum_feature_space", self.path("pendulum", "feature_space.csv"), "--model",
                    self.path("pendulum", "model.ddm")),
-            figure("prediction_strip", self.path("tile", "joint")),
-            figure("feature_plane", self.path("tile", "joint"), self.path("tile", "sequential")),
+            figure("prediction_strip", self.path("tile")),
+            figure("feature_plane", self.path("tile"), self.path("tile_predictions", "sequential")),
             figure("schedules_compared", self.out)]
 
     def write_machine(self):
-        """Where and with what the figures were made."""
-        config = read_yaml(os.path.join(self.by_name["joint"].seed_folder(self.out, 0), "config.yaml"))
-        machine = {"version": config.get("version", "?"), "preset": self.preset, "cpu": processor(),
-                   "cores": os.cpu_count(), "system": platform.platform(), "steps": self.measured}
+        """With what the figures were made, step by step."""
+        machine = {"preset": self.preset, "system": platform.platform(), "steps": self.measured}
         with open(self.path("machine.yaml.part"), "w") as stream:
             yaml.safe_dump(machine, stream, sort_keys=False)
         os.replace(self.path("machine.yaml.part"), self.path("machine.yaml"))
 
+    def warn_of_versions(self):
+        versions = sorted({step["version"] for step in self.measured.values()})
+        if len(versions) > 1:
+            print("reproduce_paper: note: the steps come from %d versions of the code: %s" % (
+                len(versions), ", ".join(versions)), file=sys.stderr)
 
-def to_run_any(log):
-    """Whether a sweep had anything to run."""
-    with open(log) as stream:
-        return not re.search(r": 0 of \d+ seeds to run$", stream.read(), re.MULTILINE)
+
+def reap(process):
+    """Waits for a process. Returns the largest memory that it or one of its own has taken [kB]."""
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.WEXITSTATUS(status) if os.WIFEXITED(status) else -os.WTERMSIG(status)
+    return usage.ru_maxrss
 
 
 def processor():
@@ -248,16 +270,18 @@ def main(arguments=None):
     parser.add_argument("--preset", default="paper", help="default paper; debug is for a quick look at the path")
     parser.add_argument("--jobs", type=positive, metavar="N", help="seeds at a time; default one per core")
     options = parser.parse_args(arguments)
-    start = time.monotonic()
+    start, reproduction = time.monotonic(), Reproduction(options)
     try:
-        agreement = Reproduction(options).run()
-    except KeyboardInterrupt:
-        print("reproduce_paper: interrupted; the same command goes on", file=sys.stderr)
-        return 130
+        with raised_as_exception():
+            agreement = reproduction.run()
+    except Interrupted as error:
+        print("reproduce_paper: %s; the same command goes on" % error, file=sys.stderr)
+        return 128 + error.number
     except (Failure, RunFolderError, OSError, csv.Error) as error:
         print("reproduce_paper: %s" % error, file=sys.stderr)
         return 1
     for point, paper, here, holds in agreement:
-        print("%-3s  %s: paper or bar %s, here %s" % (holds, point, paper, here))
+        print("%-3s  %s: %s; here %s" % (holds, point, paper, here))
+    reproduction.warn_of_versions()
     print("results: %s (%.0f s)" % (os.path.abspath(options.out), time.monotonic() - start))
     return 0

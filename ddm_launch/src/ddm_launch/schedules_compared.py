@@ -6,50 +6,14 @@ import os
 from ddm_launch.averages import mean_and_error, success_rates
 from ddm_launch.figure_style import (BLUE, GREEN, GREY, PAGE_WIDTH, PURPLE, VERMILLION, new_figure, save,
                                      write)
-from ddm_launch.run_folder import RunFolderError, number, read_csv, read_sweep
+from ddm_launch.schedules import SCHEDULES, read_predictions, read_success
 
-# Value of training/schedule, its label, colour, marker, line.
-SCHEDULES = (("joint", "joint", BLUE, "o", "-"),
-             ("sequential", "sequential", VERMILLION, "s", "--"),
-             ("v_p_only", "$V_P$ only", GREEN, "^", "-."),
-             ("joint_random_init", "joint, random start", PURPLE, "D", ":"))
+# Label, colour, marker, line.
+STYLES = (("joint", BLUE, "o", "-"),
+          ("sequential", VERMILLION, "s", "--"),
+          ("$V_P$ only", GREEN, "^", "-."),
+          ("joint, random start", PURPLE, "D", ":"))  # in the order of SCHEDULES
 SHIFTS = (-21, -7, 7, 21)  # [frames], of a schedule's success
-REMEDY = "rosrun ddm_launch reproduce_paper writes it"
-
-
-def read_errors(path):
-    """The prediction errors of a predictions.csv, as {seed: {steps: (rmse, rmse_repeat)}}."""
-    errors = {}
-    for row in read_csv(path, ["seed", "steps", "rmse", "rmse_repeat"], REMEDY):
-        seed, steps = int(number(row, "seed", path)), int(number(row, "steps", path))
-        if steps in errors.setdefault(seed, {}):
-            raise RunFolderError("%s holds %d steps of seed %d twice: give each seed once" % (path, steps, seed))
-        errors[seed][steps] = (number(row, "rmse", path), number(row, "rmse_repeat", path))
-    return errors
-
-
-def paired(results, what):
-    """Only the seeds that all schedules have: the draws of a seed are the same for each schedule.
-
-    results: {schedule: {seed: anything}}. Raises RunFolderError if there is no such seed.
-    """
-    common = set.intersection(*(set(by_seed) for by_seed in results.values()))
-    if not common:
-        raise RunFolderError("no seed has %s of all schedules (%s): run the same seeds with each" % (
-            what, ", ".join(results)))
-    return {schedule: {seed: by_seed[seed] for seed in sorted(common)} for schedule, by_seed in results.items()}
-
-
-def read_success(folder):
-    """{schedule: {seed: list of Trial}} of the results folder."""
-    paths = {name: os.path.join(folder, "" if name == "joint" else name, "trials.csv") for name, *_ in SCHEDULES}
-    return paired({name: read_sweep(path, REMEDY) for name, path in paths.items()}, "trials")
-
-
-def read_predictions(folder):
-    """{schedule: {seed: {steps: (rmse, rmse_repeat)}}} of one plant's folder."""
-    return paired({name: read_errors(os.path.join(folder, name, "predictions.csv")) for name, *_ in SCHEDULES},
-                  "predictions")
 
 
 def seeds_text(results):
@@ -59,7 +23,7 @@ def seeds_text(results):
 
 def draw_success(axes, results):
     """Success rate over frames, one line per schedule, shifted so that no error bar covers another."""
-    for shift, (name, label, colour, marker, line) in zip(SHIFTS, SCHEDULES):
+    for shift, name, (label, colour, marker, line) in zip(SHIFTS, SCHEDULES, STYLES):
         rows = success_rates(results[name].values())
         axes.errorbar([row[0] + shift for row in rows], [row[1] for row in rows], yerr=[row[2] for row in rows],
                       color=colour, marker=marker, linestyle=line, capsize=1.5, elinewidth=0.7, markersize=3,
@@ -72,15 +36,15 @@ def draw_success(axes, results):
 
 def draw_predictions(axes, results):
     """Prediction error over steps ahead, one line per schedule, and that of repeating the last frame."""
-    def curve(by_seed, which):
+    def curve(by_seed, value):
         steps = sorted(set.intersection(*(set(errors) for errors in by_seed.values())))
-        return steps, list(zip(*(mean_and_error([errors[k][which] for errors in by_seed.values()]) for k in steps)))
+        return steps, list(zip(*(mean_and_error([value(errors[k]) for errors in by_seed.values()]) for k in steps)))
 
-    steps, (means, _) = curve(results["joint"], 1)
+    steps, (means, _) = curve(results["joint"], lambda prediction: prediction.rmse_repeat)
     axes.plot(steps, means, color=GREY, linewidth=1.0, linestyle=(0, (1, 1)), marker="x", markersize=3,
               label="repeat the last frame", zorder=1)
-    for name, label, colour, marker, line in SCHEDULES:
-        steps, (means, errors) = curve(results[name], 0)
+    for name, (label, colour, marker, line) in zip(SCHEDULES, STYLES):
+        steps, (means, errors) = curve(results[name], lambda prediction: prediction.rmse)
         axes.errorbar(steps, means, yerr=errors, color=colour, marker=marker, linestyle=line, capsize=1.5,
                       elinewidth=0.7, markersize=3, label=label)
     axes.set_xticks(steps)
@@ -93,7 +57,7 @@ def draw(folder, out):
     """Draws a results folder into a picture file."""
     success = read_success(folder)
     pendulum = read_predictions(os.path.join(folder, "pendulum_predictions"))
-    tile = read_predictions(os.path.join(folder, "tile"))
+    tile = read_predictions(os.path.join(folder, "tile_predictions"))
     with new_figure(PAGE_WIDTH, 2.5) as figure:
         grid = figure.add_gridspec(2, 3, height_ratios=[1.0, 0.001])
         panels = [figure.add_subplot(grid[0, column]) for column in range(3)]
@@ -116,10 +80,10 @@ def main(arguments=None):
     parser = argparse.ArgumentParser(
         prog="schedules_compared",
         description="Draws success by frames (RESULTS_DIR/trials.csv, RESULTS_DIR/SCHEDULE/trials.csv) and prediction "
-        "errors by steps (RESULTS_DIR/{pendulum_predictions,tile}/SCHEDULE/predictions.csv) of the training schedules "
+        "errors by steps (RESULTS_DIR/{pendulum,tile}_predictions/SCHEDULE/predictions.csv) of the training schedules "
         "%s: means and standard errors over the seeds that all four have. Success is drawn "
         "up to %d frames to the left or right of its place, so that no error bar covers another."
-        % (", ".join(row[0] for row in SCHEDULES), SHIFTS[-1]))
+        % (", ".join(SCHEDULES), SHIFTS[-1]))
     parser.add_argument("folder", metavar="RESULTS_DIR", help="results of reproduce_paper")
     parser.add_argument("--out", metavar="FILE.png", required=True, help="picture to write")
     options = parser.parse_args(arguments)

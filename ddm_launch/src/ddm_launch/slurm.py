@@ -1,6 +1,7 @@
 # Engine of a sweep: a job array of Slurm, one task for each seed.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
+import contextlib
 import os
 import re
 import shutil
@@ -71,7 +72,8 @@ class JobNumber:
         write_file(self.path, job + "\n")
 
     def forget(self):
-        os.remove(self.path)
+        with contextlib.suppress(FileNotFoundError):
+            os.remove(self.path)
 
 
 def end_left_over(folder):

@@ -35,8 +35,9 @@ in DIR:
 
 hosts (--hosts FILE):
   GNU parallel's --sshloginfile: one ssh host a line, ':' is this machine. Hosts that do not answer are left out. Each
-  needs GNU parallel, a login without password, and this workspace and DIR under the same paths (a shared file
-  system): the workspace's setup.bash is sourced there, files are not copied. The ssh command is $PARALLEL_SSH.
+  needs GNU parallel, a login without password, and this workspace, DIR and the folder that the sweep is called from
+  under the same paths (a shared file system): the workspace's setup.bash is sourced there, files are not copied. The
+  ssh command is $PARALLEL_SSH.
 
 Slurm (--slurm):
   One task of one core for each seed. What else sbatch shall know goes into the variables that it reads itself:
@@ -153,7 +154,7 @@ def run(engine, folder, seeds, terminal):
         folder.program.name, folder.program.preset, folder.program.plant, len(pending), len(seeds)), flush=True)
     if pending:
         folder.prepare(pending)
-        progress = Progress(folder, seeds, pending, terminal)
+        progress = Progress(folder, seeds, pending, terminal and sys.stdout.isatty())
         engine.run(folder, pending, progress.update)
         progress.update()
 
