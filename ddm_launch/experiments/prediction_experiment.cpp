@@ -111,8 +111,7 @@ std::string featuresCsv(const Plant& plant, const Recording& recording, const Ei
 std::string stripCsv(const Plant& plant, const Recording& recording, const Ddm& model,
                      const Eigen::MatrixXd& Z, int max_steps) {
   const Eigen::Index order = model.options().order;
-  const Eigen::Index frame =
-      order - 1 + (recording.held_out.numFrames() - max_steps - order) / 2;
+  const Eigen::Index frame = order - 1 + (recording.held_out.numFrames() - max_steps - order) / 2;
   const Eigen::Index begin = recording.training.numFrames();
   const Eigen::MatrixXd predicted = rollOut(model, Z.rightCols(recording.held_out.numFrames()),
                                             recording.held_out.torques(), frame, max_steps);
@@ -199,15 +198,17 @@ void requireFit(const Experiment& experiment) {
   const std::string& method = experiment.configuration.experiment.method;
   std::string problems;
   if (prediction.held_out_frames < prediction.max_steps + model.order) {
-    problems += "\n - prediction/held_out_frames must be at least prediction/max_steps + "
-                "model/order = " +
-                std::to_string(prediction.max_steps + model.order) + ", got " +
-                std::to_string(prediction.held_out_frames);
+    problems +=
+        "\n - prediction/held_out_frames must be at least prediction/max_steps + "
+        "model/order = " +
+        std::to_string(prediction.max_steps + model.order) + ", got " +
+        std::to_string(prediction.held_out_frames);
   }
   if (prediction.training_frames <= std::max(model.pca_dim, model.order)) {
-    problems += "\n - prediction/training_frames must be more than model/pca_dim and model/order, "
-                "got " +
-                std::to_string(prediction.training_frames);
+    problems +=
+        "\n - prediction/training_frames must be more than model/pca_dim and model/order, "
+        "got " +
+        std::to_string(prediction.training_frames);
   }
   if (method != "ddm") problems += "\n - experiment/method must be ddm, got " + method;
   if (!problems.empty()) throw std::invalid_argument("invalid configuration:" + problems);

@@ -35,7 +35,8 @@ QuadraticFit::QuadraticFit(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) {
 double QuadraticFit::explained(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) const {
   const Eigen::VectorXd mean = y.rowwise().mean();
   if ((y.colwise() - mean).isZero(0.0)) {
-    throw std::invalid_argument("quadratic fit: there is nothing to explain, all samples are equal");
+    throw std::invalid_argument(
+        "quadratic fit: there is nothing to explain, all samples are equal");
   }
   return 1.0 -
          (y - coefficients_ * monomials(x)).squaredNorm() / (y.colwise() - mean).squaredNorm();

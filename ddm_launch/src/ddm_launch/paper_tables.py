@@ -156,7 +156,7 @@ def schedule_agreement(folder):
             row = table.get((measure, schedule))
             if row is None:
                 continue
-            claimed = schedule != "joint_random_init"
+            claimed = schedule == "sequential" or (schedule == "v_p_only" and measure != "tile_position_r2")
             gain, error = -sign * row[5], row[6]  # by how much joint is better
             holds = gain > 2.0 * error if claimed and error > 0.0 else None
             rows.append(("%s: joint against %s" % (measure, schedule), "better" if claimed else "not claimed",
