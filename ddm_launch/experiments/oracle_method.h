@@ -14,8 +14,8 @@ namespace ddm {
 
 /// Cost of torques from a state of the plant on, with the plant itself as the model:
 ///
-///   J(U) = sum_{k=1}^{K} |p_k - p_goal|^2 + lambda |u_{k-1}|^2,   state_{k+1} = plant(state_k,
-///   u_k)
+///   J(U) = sum_{k=1}^{K} |p_k - p_goal|^2 + lambda |u_{k-1}|^2
+///   state_{k+1} = plant(state_k, u_k)
 ///
 /// p is where the moving part is in the picture, Plant::visiblePosition(): for the pendulum a
 /// circle, as its features are after training, so that the planner meets the same problem with a

@@ -42,8 +42,8 @@ class PredictionExperimentTest(unittest.TestCase):
 
     @classmethod
     def predict(cls, *arguments, plant="moving_tile", seed=3):
-        return call([find_program("ddm_launch", "prediction_experiment"), "--preset", "debug", "--plant", plant, "--seed",
-                     seed, "--config", cls.quick] + list(arguments))
+        return call([find_program("ddm_launch", "prediction_experiment"), "--preset", "debug", "--plant", plant,
+                     "--seed", seed, "--config", cls.quick] + list(arguments))
 
     def folder(self, name):
         return os.path.join(self.scratch, name)
@@ -58,8 +58,8 @@ class PredictionExperimentTest(unittest.TestCase):
 
     def test_predictions_hold_a_row_for_each_number_of_steps(self):
         rows = read_dicts(self.reference, "predictions.csv")
-        self.assertEqual(list(rows[0]), ["seed", "steps", "num_predictions", "rmse", "rmse_repeat", "position_r2", "v_r",
-                                         "v_p", "train_s"])
+        self.assertEqual(list(rows[0]), ["seed", "steps", "num_predictions", "rmse", "rmse_repeat", "position_r2",
+                                         "v_r", "v_p", "train_s"])
         self.assertEqual([row["steps"] for row in rows], [str(k) for k in range(1, 9)])
         self.assertEqual({row["num_predictions"] for row in rows}, {"21"})  # 30 frames, one before, eight after
         repeat = [float(row["rmse_repeat"]) for row in rows]
@@ -135,7 +135,8 @@ class PredictionExperimentTest(unittest.TestCase):
             stream.write("prediction: {held_out_frames: 0, max_stps: 3}\ntraining: {schedule: both}\n")
         code, output = self.predict("--config", config, "--out", self.folder("wrong"))
         self.assertEqual(code, 2)
-        for word in ("prediction/held_out_frames", "max_stps", "did you mean max_steps", "training/schedule", "got both"):
+        for word in ("prediction/held_out_frames", "max_stps", "did you mean max_steps", "training/schedule",
+                     "got both"):
             self.assertIn(word, output)
         with open(config, "w") as stream:
             stream.write("prediction: {held_out_frames: 9, training_frames: 10}\nexperiment: {method: oracle}\n")

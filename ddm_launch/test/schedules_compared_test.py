@@ -89,7 +89,8 @@ class SchedulesComparedTest(figure_case.FigureCase):
             os.rename(whole + ".away", whole)
 
     def test_a_seed_that_is_there_twice_is_refused(self):
-        self.write("tile_predictions/joint/predictions.csv", PREDICTIONS, prediction(3, 1, 0.1, 0.1), prediction(3, 1, 0.2, 0.1))
+        self.write("tile_predictions/joint/predictions.csv", PREDICTIONS, prediction(3, 1, 0.1, 0.1),
+                   prediction(3, 1, 0.2, 0.1))
         self.assertRefused(schedules_compared.main, [self.folder], "1 steps of seed 3 twice")
 
 

@@ -91,7 +91,8 @@ class ScriptsTest(unittest.TestCase):
         policy = os.path.join(self.folder, "policy-rc.d")
         guarded = "export POLICY_RC_D=%s; sh -c \"$without_services\" sh " % policy
         self.assertEqual(self.callFunction(guarded + 'sh -c "$POLICY_RC_D; exit 3"')[0], 3)
-        self.assertEqual(self.callFunction(guarded + 'sh -c "$POLICY_RC_D; echo policy says \\$?"'), (0, "policy says 101\n"))
+        self.assertEqual(self.callFunction(guarded + 'sh -c "$POLICY_RC_D; echo policy says \\$?"'),
+                         (0, "policy says 101\n"))
         self.assertFalse(os.path.exists(policy))
 
     def test_a_system_that_knows_localhost_is_left_alone(self):

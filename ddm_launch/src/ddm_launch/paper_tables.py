@@ -94,7 +94,8 @@ def time_table(trials):
             continue
         seconds = [number(row, "train_s", trials) for row in of_trial]
         rows.append(("training", of_trial[0]["frames"], statistics.median(seconds), max(seconds), "s", "trials.csv"))
-    for column, what in (("plan_ms_median", "plan, median of a greedy run"), ("plan_ms_p99", "plan, 99 % of a greedy run")):
+    for column, what in (("plan_ms_median", "plan, median of a greedy run"),
+                         ("plan_ms_p99", "plan, 99 % of a greedy run")):
         values = [number(row, column, trials) for row in table]
         rows.append((what, "all", statistics.median(values), max(values), "ms", "trials.csv"))
     rows.append(("PILCO on 2-D features, 10 trials", "1000", 10.0, "", "h", "paper, Sec. 4.2 (\"about 10 hours\")"))

@@ -22,6 +22,7 @@ from ddm_launch.schedules import SCHEDULES
 from ddm_launch.sweep_folder import read_yaml
 
 NUM_ANGLE_SEEDS = 16  # as in the paper's Fig. 7
+NUM_SCHEDULE_SEEDS = 25  # of each schedule but the paper's own
 NUM_PREDICTION_SEEDS = 20
 FIGURE_SEED = 0  # which seed the figures of a single model show
 FIGURE_STEP = 1
@@ -88,7 +89,8 @@ def sweep_steps(preset, num_seeds):
     steps = [SweepStep("joint", "trials.csv", num_seeds, pendulum),
              SweepStep("oracle", "oracle/trials.csv", num_seeds, pendulum, ["--method", "oracle"])]
     for schedule in SCHEDULES[1:]:
-        steps.append(SweepStep(schedule, schedule + "/trials.csv", num_seeds, pendulum, schedule_options(schedule)))
+        steps.append(SweepStep(schedule, schedule + "/trials.csv", min(num_seeds, NUM_SCHEDULE_SEEDS), pendulum,
+                               schedule_options(schedule)))
     def predictions(name, table, plant, more=()):
         words = ["--program", "prediction_experiment", "--preset", preset, "--plant", plant]
         steps.append(SweepStep(name, table, min(num_seeds, NUM_PREDICTION_SEEDS), words, more))
@@ -265,7 +267,9 @@ def positive(text):
 def main(arguments=None):
     parser = argparse.ArgumentParser(prog="reproduce_paper", description=ABOUT, epilog=EPILOG,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seeds", type=positive, default=50, metavar="N", help="seeds 0 ... N - 1; default 50")
+    parser.add_argument("--seeds", type=positive, default=50, metavar="N",
+                        help="seeds 0 ... N - 1 of the paper's experiment, default 50; at most %d of each other "
+                        "schedule and %d of each prediction experiment" % (NUM_SCHEDULE_SEEDS, NUM_PREDICTION_SEEDS))
     parser.add_argument("--out", default="paper_results", metavar="DIR", help="default paper_results")
     parser.add_argument("--preset", default="paper", help="default paper; debug is for a quick look at the path")
     parser.add_argument("--jobs", type=positive, metavar="N", help="seeds at a time; default one per core")

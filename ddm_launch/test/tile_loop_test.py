@@ -1,0 +1,60 @@
+#!/usr/bin/python3
+# Plant `moving_tile` in a closed loop: two torques, no angle; the nodes and run_experiment give the same.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import shutil
+import sys
+import tempfile
+import unittest
+
+import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from processes import roslaunch, run_experiment  # noqa: E402
+from run_files import differences, expected_files, read_rows, read_yaml  # noqa: E402
+
+TRIALS = 1
+QUICK = "training: {num_starts: 1, max_iterations: 20}\n"
+
+
+class TileLoopTest(unittest.TestCase):
+    maxDiff = None
+
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.mkdtemp()
+        config = os.path.join(cls.scratch, "quick.yaml")
+        with open(config, "w") as stream:
+            stream.write(QUICK)
+        cls.nodes, cls.process = os.path.join(cls.scratch, "nodes"), os.path.join(cls.scratch, "process")
+        _, cls.nodes_output = roslaunch(cls.scratch, "experiment.launch", "preset:=debug", "plant:=moving_tile",
+                                        "seed:=4", "trials:=%d" % TRIALS, "config:=" + config, "runs:=" + cls.nodes)
+        _, cls.process_output = run_experiment("--preset", "debug", "--plant", "moving_tile", "--seed", 4, "--trials",
+                                               TRIALS, "--config", config, "--out", cls.process)
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.scratch)
+
+    def test_both_finish_with_equal_files(self):
+        self.assertTrue(os.path.exists(os.path.join(self.nodes, "summary.yaml")), self.nodes_output)
+        self.assertTrue(os.path.exists(os.path.join(self.process, "summary.yaml")), self.process_output)
+        names = [name for name in expected_files(TRIALS) if not name.endswith((".lock", ".bag"))]
+        self.assertGreater(len(names), 8)
+        self.assertEqual(differences(self.nodes, self.process, names), [])
+
+    def test_torques_and_states_stand_under_the_plants_own_names(self):
+        torques = read_rows(self.nodes, "trial_001", "torques.csv")
+        self.assertEqual(torques[0], ["step", "dx_px", "dy_px", "exploratory"])
+        self.assertTrue(all(abs(float(cell)) <= 5.0 for row in torques[1:] for cell in row[1:3]))
+        self.assertEqual(read_rows(self.nodes, "evaluation_001", "trajectory.csv")[0],
+                         ["step", "time_s", "x_px", "y_px"])
+
+    def test_a_success_in_degrees_is_not_known(self):
+        for row in read_rows(self.nodes, "trials.csv")[1:]:
+            self.assertEqual(row[3:6], ["", "", ""])
+        self.assertNotIn("success", read_yaml(self.nodes, "summary.yaml"))
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "tile_loop", TileLoopTest)
