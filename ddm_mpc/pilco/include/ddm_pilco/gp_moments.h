@@ -1,0 +1,104 @@
+// Exact moment matching: mean, covariance and gain of a GP at a Gaussian input, with derivatives.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "ddm_pilco/exponential_sums.h"
+#include "ddm_pilco/gp_model.h"
+#include "ddm_pilco/moments.h"
+
+namespace ddm {
+namespace pilco {
+
+/// Derivatives of a scalar J in what a GP without model uncertainty consists of.
+struct GpGradient {
+  Eigen::MatrixXd inputs;             ///< [D x n]
+  Eigen::MatrixXd beta;               ///< [n x E]
+  Eigen::MatrixXd log_length_scales;  ///< [D x E]
+};
+
+/// Predictive distribution of E independent GPs at x ~ N(m, s) (Deisenroth and Rasmussen, 2011,
+/// eqs. 14 to 23; Deisenroth, 2010, Sec. 2.3). With z_i = X_i - m:
+///
+///   q_ai  = sf_a^2 |s Lambda_a^-1 + I|^-1/2 exp(-1/2 z_i^T (s + Lambda_a)^-1 z_i)
+///   M_a   = sum_i beta_ai q_ai
+///   V_a   = sum_i beta_ai q_ai (s + Lambda_a)^-1 z_i
+///   Q_ij  = k_a(X_i, m) k_b(X_j, m) |R|^-1/2 exp(1/2 w_ij^T R^-1 s w_ij)
+///           R = s (Lambda_a^-1 + Lambda_b^-1) + I,  w_ij = Lambda_a^-1 z_i + Lambda_b^-1 z_j
+///   S_ab  = beta_a^T Q beta_b - M_a M_b,  and for a = b:  + sf_a^2 - trace(A_a^-1 Q)
+///
+/// The last two terms are the model uncertainty; they are left out for a model without `inverse`.
+/// S does not contain the observation noise. s may be singular or zero.
+///
+/// Numbers that are not finite, in the model or in the input, and an s that is far from positive
+/// semi-definite make all results NaN. Not for use from two threads at once: the memory for the
+/// n x n terms is allocated once and belongs to the object.
+class GpMoments {
+ public:
+  /// What backward() needs from predict(). Its size does not depend on n^2: the derivatives of the
+  /// double sums are formed while Q passes by.
+  struct Tape {
+    Gaussian input;
+    Eigen::MatrixXd kernel_means;                   ///< q_ai                   [n x E]
+    std::vector<Eigen::MatrixXd> inverse_widths;    ///< (s + Lambda_a)^-1  E times [D x D]
+    std::vector<Eigen::VectorXd> d_sum_mean;        ///< by pairs a <= b            [D]
+    std::vector<Eigen::MatrixXd> d_sum_covariance;  ///< by pairs a <= b        [D x D]
+    Eigen::VectorXd mean;                           ///< M                          [E]
+  };
+
+  /// @throws std::invalid_argument if the shapes of the model do not fit each other
+  explicit GpMoments(GpModel model);
+
+  const GpModel& model() const { return model_; }
+
+  /// @param input  distribution of x                                  D entries
+  /// @param tape   (optional) out: record for backward()
+  /// @throws std::invalid_argument if the input has another dimension than the GP
+  Moments predict(const Gaussian& input, Tape* tape = nullptr);
+
+  /// Vector-Jacobian product of predict().
+  /// @param d_output  dJ/dM, dJ/dS, dJ/dV
+  /// @return          dJ/dm, dJ/ds. The latter is symmetric: a change of s(p,q) and s(q,p) by h
+  ///                  changes J by h (entry pq + entry qp)
+  /// @throws std::invalid_argument if d_output has other sizes than the output
+  Gaussian backward(const Tape& tape, const Moments& d_output) const;
+
+  /// Vector-Jacobian product in the model itself. Meant for policies: the matrix Q is formed.
+  /// @param d_model  dJ/d inputs, beta, log length-scales are ADDED to it
+  /// @throws std::invalid_argument if the model has model uncertainty, or for wrong sizes
+  void backwardToModel(const Tape& tape, const Moments& d_output, GpGradient* d_model) const;
+
+ private:
+  /// Terms of a pair of outputs that do not depend on the points.
+  struct Pair {
+    Eigen::VectorXd precision_sum;  // P = Lambda_a^-1 + Lambda_b^-1, a diagonal [D]
+    Eigen::MatrixXd inverse_R;      // R^-1 = (I + s P)^-1                   [D x D]
+    Eigen::MatrixXd inner;          // T = R^-1 s, symmetric                 [D x D]
+    double log_det_R = 0.0;
+    bool valid = false;
+  };
+
+  Pair pairTerms(int a, int b, const Eigen::MatrixXd& s) const;
+  bool predictMeans(const Gaussian& input, Moments* output, Tape* tape);
+  bool predictPair(int a, int b, const Gaussian& input, Moments* output, Tape* tape);
+  Eigen::VectorXd meanAdjoint(const Tape& tape, const Moments& d_output) const;
+  void meanToModel(const Tape& tape, const Moments& d_output, GpGradient* d_model) const;
+  void pairToModel(int a, int b, double d_sum, const Tape& tape, GpGradient* d_model) const;
+
+  GpModel model_;
+  Eigen::MatrixXd precisions_;            // 1 / l^2                             [D x E]
+  Eigen::VectorXd log_signal_variance_;   // log sf^2                                [E]
+  std::vector<Eigen::MatrixXd> weights_;  // half of beta beta^T - A^-1    E times [N x n]
+  Eigen::MatrixXd padded_beta_;           //                                     [N x E]
+  bool finite_ = false;
+
+  Eigen::MatrixXd z_;  // X_i - m in rows                                        [n x D]
+  Eigen::MatrixXd scaled_b_;
+  ExponentialMatrix matrix_;
+  ExponentialSums sums_;
+};
+
+}  // namespace pilco
+}  // namespace ddm

@@ -1,0 +1,50 @@
+// Policy search: the policy parameters that minimise the expected long-term cost.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "ddm_pilco/minimizer.h"
+
+namespace ddm {
+namespace pilco {
+
+/// Block `policy_search`. Defaults are those of the published PILCO code.
+struct PolicySearchOptions {
+  int max_iterations = 75;           ///< line searches of BFGS for each trial [-]
+  int max_evaluations = 1500;        ///< of the cost with its gradient, for each trial [-]
+  double function_tolerance = 1e-8;  ///< stop when the cost changes by less than this fraction [-]
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("max_iterations", max_iterations);
+    visitor("max_evaluations", max_evaluations);
+    visitor("function_tolerance", function_tolerance);
+  }
+  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  std::vector<std::string> problems() const;
+};
+
+struct PolicySearchResult {
+  bool ok = false;             ///< whether the cost could be evaluated at the start
+  bool improved = false;       ///< cost_after < cost_before
+  Eigen::VectorXd parameters;  ///< the best found; the start's if there are none better
+  double cost_before = 0.0;    ///< J at the start
+  double cost_after = 0.0;     ///< J of `parameters`
+  int iterations = 0;          ///< line searches
+  int evaluations = 0;         ///< of J with its gradient
+  std::string message;         ///< why the search ended, in words
+};
+
+/// Minimises J(parameters) by BFGS from `start`. A policy for which J is not finite (a predicted
+/// distribution that grows without bound) makes the line search take a shorter step.
+/// @param cost   J, with its gradient
+/// @param start  parameters of the last trial's policy                                     [P]
+/// @throws std::invalid_argument if the options are invalid, or the start is empty or not finite
+PolicySearchResult searchPolicy(const DifferentiableFunction& cost, const Eigen::VectorXd& start,
+                                const PolicySearchOptions& options);
+
+}  // namespace pilco
+}  // namespace ddm

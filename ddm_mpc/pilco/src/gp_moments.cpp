@@ -1,0 +1,242 @@
+// Exact moment matching: mean, covariance and gain of a GP at a Gaussian input, with derivatives.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_pilco/gp_moments.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace ddm {
+namespace pilco {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+void requireConsistent(const GpModel& model) {
+  const Eigen::Index dim = model.inputs.rows();
+  const Eigen::Index n = model.inputs.cols();
+  const Eigen::Index outputs = model.beta.cols();
+  const Hyperparameters& hyper = model.hyperparameters;
+  const auto require = [](bool ok, const char* rule) {
+    if (!ok) throw std::invalid_argument(std::string("gp moments: ") + rule);
+  };
+  require(dim >= 1 && n >= 1 && outputs >= 1, "the model must have inputs, points and outputs");
+  require(model.beta.rows() == n, "beta must have one row per point");
+  require(hyper.log_length_scales.rows() == dim && hyper.log_length_scales.cols() == outputs,
+          "log length-scales must be [inputs x outputs]");
+  require(hyper.log_signal_std.size() == outputs, "there must be one signal std per output");
+  require(model.inverse.empty() || static_cast<Eigen::Index>(model.inverse.size()) == outputs,
+          "there must be one inverse per output, or none at all");
+  for (const Eigen::MatrixXd& inverse : model.inverse) {
+    require(inverse.rows() == n && inverse.cols() == n, "an inverse must be [points x points]");
+  }
+}
+
+/// Position of the pair a <= b in a list of all pairs.
+std::size_t pairIndex(int a, int b) { return static_cast<std::size_t>(b * (b + 1) / 2 + a); }
+
+}  // namespace
+
+GpMoments::GpMoments(GpModel model) : model_(std::move(model)) {
+  requireConsistent(model_);
+  const int n = model_.numPoints();
+  const int outputs = model_.outputDim();
+  precisions_ = (-2.0 * model_.hyperparameters.log_length_scales.array()).exp();
+  log_signal_variance_ = 2.0 * model_.hyperparameters.log_signal_std;
+  padded_beta_ = Eigen::MatrixXd::Zero(paddedRows(n), outputs);
+  padded_beta_.topRows(n) = model_.beta;
+  finite_ = model_.inputs.allFinite() && model_.beta.allFinite() && precisions_.allFinite() &&
+            log_signal_variance_.allFinite() && (precisions_.array() > 0.0).all();
+
+  // The double sum for one output is symmetric in its points. Half of it is computed: twice the
+  // sum over the lower triangle with half the diagonal.
+  weights_.resize(outputs);
+  for (int a = 0; a < outputs; ++a) {
+    Eigen::MatrixXd full = model_.beta.col(a) * model_.beta.col(a).transpose();
+    if (!model_.inverse.empty()) full -= model_.inverse[a];
+    finite_ = finite_ && full.allFinite();
+    weights_[a] = Eigen::MatrixXd::Zero(paddedRows(n), n);
+    weights_[a].topRows(n).triangularView<Eigen::StrictlyLower>() = full;
+    weights_[a].topRows(n).diagonal() = 0.5 * full.diagonal();
+  }
+  matrix_.f = Eigen::VectorXd::Zero(paddedRows(n));
+  matrix_.u = Eigen::MatrixXd::Zero(paddedRows(n), model_.inputDim());
+}
+
+Moments GpMoments::predict(const Gaussian& input, Tape* tape) {
+  const int dim = model_.inputDim();
+  const int outputs = model_.outputDim();
+  requireSize(input, dim, "gp moments");
+  Moments output = constantMoments(dim, outputs, kNaN);
+  if (tape != nullptr) {
+    tape->input = input;
+    tape->kernel_means = Eigen::MatrixXd::Constant(model_.numPoints(), outputs, kNaN);
+    tape->mean = output.mean;
+    tape->inverse_widths.assign(outputs, Eigen::MatrixXd::Constant(dim, dim, kNaN));
+    tape->d_sum_mean.assign(outputs * (outputs + 1) / 2, Eigen::VectorXd::Constant(dim, kNaN));
+    tape->d_sum_covariance.assign(tape->d_sum_mean.size(), tape->inverse_widths.front());
+  }
+  // The exponential of NaN is not NaN in every instruction set: so it must not get that far.
+  if (!finite_ || !input.mean.allFinite() || !input.covariance.allFinite()) return output;
+
+  z_ = (model_.inputs.colwise() - input.mean).transpose();
+  bool valid = predictMeans(input, &output, tape);
+  for (int b = 0; valid && b < outputs; ++b) {
+    for (int a = 0; valid && a <= b; ++a) valid = predictPair(a, b, input, &output, tape);
+  }
+  if (!valid) output = constantMoments(dim, outputs, kNaN);
+  return output;
+}
+
+/// M and V. False if s + Lambda is not positive definite.
+bool GpMoments::predictMeans(const Gaussian& input, Moments* output, Tape* tape) {
+  const int dim = model_.inputDim();
+  for (int a = 0; a < model_.outputDim(); ++a) {
+    // (s + Lambda)^-1 = L (I + L s L)^-1 L with L = Lambda^-1/2: no eigenvalue below 1.
+    const Eigen::VectorXd root = precisions_.col(a).cwiseSqrt();
+    const Eigen::LLT<Eigen::MatrixXd> scaled(Eigen::MatrixXd::Identity(dim, dim) +
+                                             root.asDiagonal() * symmetricPart(input.covariance) *
+                                                 root.asDiagonal());
+    if (scaled.info() != Eigen::Success) return false;
+    const double half_log_det = scaled.matrixLLT().diagonal().array().log().sum();
+    const Eigen::MatrixXd inverse_width =
+        root.asDiagonal() * scaled.solve(Eigen::MatrixXd(root.asDiagonal()));
+    const Eigen::VectorXd distance = (z_ * inverse_width).cwiseProduct(z_).rowwise().sum();
+    const Eigen::VectorXd q =
+        (log_signal_variance_[a] - half_log_det - 0.5 * distance.array()).exp();
+    const Eigen::VectorXd terms = q.cwiseProduct(model_.beta.col(a));
+    output->mean[a] = terms.sum();
+    output->gain.col(a).noalias() = inverse_width * (z_.transpose() * terms);
+    if (tape != nullptr) {
+      tape->inverse_widths[a] = inverse_width;
+      tape->kernel_means.col(a) = q;
+      tape->mean[a] = output->mean[a];
+    }
+  }
+  return true;
+}
+
+GpMoments::Pair GpMoments::pairTerms(int a, int b, const Eigen::MatrixXd& s) const {
+  const int dim = model_.inputDim();
+  Pair pair;
+  pair.precision_sum = precisions_.col(a) + precisions_.col(b);
+  // With C = P^1/2: R^-1 = C^-1 (I + C s C)^-1 C and T = C^-1 (I + C s C)^-1 (C s C) C^-1.
+  const Eigen::VectorXd root = pair.precision_sum.cwiseSqrt();
+  const Eigen::VectorXd inverse_root = root.cwiseInverse();
+  const Eigen::MatrixXd scaled = root.asDiagonal() * symmetricPart(s) * root.asDiagonal();
+  const Eigen::LLT<Eigen::MatrixXd> llt(Eigen::MatrixXd::Identity(dim, dim) + scaled);
+  pair.valid = llt.info() == Eigen::Success;
+  if (!pair.valid) return pair;
+  pair.log_det_R = 2.0 * llt.matrixLLT().diagonal().array().log().sum();
+  pair.inverse_R = inverse_root.asDiagonal() * llt.solve(Eigen::MatrixXd(root.asDiagonal()));
+  pair.inner =
+      symmetricPart(inverse_root.asDiagonal() * llt.solve(scaled) * inverse_root.asDiagonal());
+  return pair;
+}
+
+/// S_ab. With u_i = Lambda_a^-1 z_i and v_j = Lambda_b^-1 z_j, so that w_ij = u_i + v_j:
+///
+///   log Q_ij = f_i + g_j + u_i^T T v_j,   f_i = log sf_a^2 - log|R| / 2 - (z_i^T u_i - u_i^T T
+///   u_i) / 2
+///
+/// and for the sum over P_ij = (weight)_ij Q_ij:
+///
+///   d/dm = R^-T sum P_ij w_ij,  d/ds = (R^-T (sum P_ij w_ij w_ij^T) R^-1 - P R^-1 sum P_ij) / 2
+///
+/// False if R has no positive eigenvalues.
+bool GpMoments::predictPair(int a, int b, const Gaussian& input, Moments* output, Tape* tape) {
+  const int n = model_.numPoints();
+  const Pair pair = pairTerms(a, b, input.covariance);
+  if (!pair.valid) return false;
+
+  const auto quadratic = [&](const Eigen::Ref<const Eigen::MatrixXd>& scaled) -> Eigen::VectorXd {
+    return (scaled * pair.inner - z_).cwiseProduct(scaled).rowwise().sum();
+  };
+  matrix_.u.topRows(n) = z_ * precisions_.col(a).asDiagonal();
+  scaled_b_ = z_ * precisions_.col(b).asDiagonal();
+  matrix_.v.noalias() = pair.inner * scaled_b_.transpose();
+  matrix_.f.head(n) = (log_signal_variance_[a] - 0.5 * pair.log_det_R) +
+                      0.5 * quadratic(matrix_.u.topRows(n)).array();
+  matrix_.g = log_signal_variance_[b] + 0.5 * quadratic(scaled_b_).array();
+  matrix_.lower_triangle = a == b;
+  if (a == b) {
+    matrix_.weights = weights_[a].data();
+    matrix_.weight_stride = weights_[a].rows();
+    matrix_.column_weights = Eigen::VectorXd::Ones(n);
+  } else {
+    matrix_.weights = padded_beta_.col(a).data();
+    matrix_.weight_stride = 0;
+    matrix_.column_weights = model_.beta.col(b);
+  }
+  exponentialSums(matrix_, &sums_);
+
+  const double factor = a == b ? 2.0 : 1.0;
+  const double total = factor * sums_.columns.sum();
+  double covariance = total;
+  if (a == b && !model_.inverse.empty()) covariance += std::exp(log_signal_variance_[a]);
+  covariance -= output->mean[a] * output->mean[b];
+  output->covariance(a, b) = covariance;
+  output->covariance(b, a) = covariance;
+  if (tape == nullptr) return true;
+
+  const auto u = matrix_.u.topRows(n);
+  const auto rows = sums_.rows.head(n);
+  const Eigen::VectorXd first = u.transpose() * rows + scaled_b_.transpose() * sums_.columns;
+  const Eigen::MatrixXd cross = sums_.moments * scaled_b_;
+  const Eigen::MatrixXd second = u.transpose() * rows.asDiagonal() * u +
+                                 scaled_b_.transpose() * sums_.columns.asDiagonal() * scaled_b_ +
+                                 cross + cross.transpose();
+  const Eigen::MatrixXd& K = pair.inverse_R;
+  tape->d_sum_mean[pairIndex(a, b)] = factor * (K.transpose() * first);
+  tape->d_sum_covariance[pairIndex(a, b)] =
+      symmetricPart(0.5 * (factor * (K.transpose() * second * K) -
+                           total * (pair.precision_sum.asDiagonal() * K)));
+  return true;
+}
+
+/// dJ/dM with what S = ... - M M^T adds to it.
+Eigen::VectorXd GpMoments::meanAdjoint(const Tape& tape, const Moments& d_output) const {
+  return d_output.mean - (d_output.covariance + d_output.covariance.transpose()) * tape.mean;
+}
+
+/// With B = (s + Lambda)^-1, p_i = beta_i q_i, mu = dJ/dM, nu = dJ/dV and
+/// g_i = p_i (mu + nu^T B z_i):
+///
+///   dJ/dm = B (sum g_i z_i - M nu)
+///   dJ/ds = (B (sum g_i z_i z_i^T) B - B sum g_i - B nu V^T - V nu^T B) / 2
+Gaussian GpMoments::backward(const Tape& tape, const Moments& d_output) const {
+  const int dim = model_.inputDim();
+  const int outputs = model_.outputDim();
+  requireSize(d_output, dim, outputs, "gp moments");
+  Gaussian d_input = constantGaussian(dim);
+  const Eigen::VectorXd d_mean = meanAdjoint(tape, d_output);
+  const Eigen::MatrixXd z = (model_.inputs.colwise() - tape.input.mean).transpose();
+  for (int a = 0; a < outputs; ++a) {
+    const Eigen::MatrixXd& B = tape.inverse_widths[a];
+    const Eigen::VectorXd nu = d_output.gain.col(a);
+    const Eigen::VectorXd B_nu = B * nu;
+    const Eigen::VectorXd terms = tape.kernel_means.col(a).cwiseProduct(model_.beta.col(a));
+    const Eigen::VectorXd gain = B * (z.transpose() * terms);
+    const Eigen::VectorXd g = terms.array() * (d_mean[a] + (z * B_nu).array());
+    const Eigen::MatrixXd second = z.transpose() * g.asDiagonal() * z;
+    d_input.mean += B * (z.transpose() * g - tape.mean[a] * nu);
+    d_input.covariance +=
+        0.5 * (B * second * B - g.sum() * B - B_nu * gain.transpose() - gain * B_nu.transpose());
+  }
+  for (int b = 0; b < outputs; ++b) {
+    for (int a = 0; a <= b; ++a) {
+      const double d_sum = a == b ? d_output.covariance(a, a)
+                                  : d_output.covariance(a, b) + d_output.covariance(b, a);
+      d_input.mean += d_sum * tape.d_sum_mean[pairIndex(a, b)];
+      d_input.covariance += d_sum * tape.d_sum_covariance[pairIndex(a, b)];
+    }
+  }
+  d_input.covariance = symmetricPart(d_input.covariance);
+  return d_input;
+}
+
+}  // namespace pilco
+}  // namespace ddm

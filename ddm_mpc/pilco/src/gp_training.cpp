@@ -1,0 +1,258 @@
+// Training of Gaussian processes: hyper-parameters that maximise the marginal likelihood.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_pilco/gp_training.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+#include "ddm_pilco/minimizer.h"
+#include "ddm_pilco/squared_exponential.h"
+#include "gp_data.h"
+
+namespace ddm {
+namespace pilco {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kLogTwoPi = 1.8378770664093453;
+
+template <class Value>
+void require(bool ok, const std::string& rule, const Value& value, std::vector<std::string>* out) {
+  if (ok) return;
+  std::ostringstream text;
+  text << "gp/" << rule << ", got " << value;
+  out->push_back(text.str());
+}
+
+/// A = K + sn^2 I and its factor, for one output.
+struct Covariance {
+  Covariance(const Eigen::MatrixXd& inputs, const Eigen::VectorXd& theta)
+      : k(squaredExponential(inputs, inputs, theta.head(inputs.rows()).array().exp().matrix(),
+                             std::exp(theta[inputs.rows()]))),
+        noise_variance(std::exp(2.0 * theta[inputs.rows() + 1])) {
+    Eigen::MatrixXd a = k;
+    a.diagonal().array() += noise_variance;
+    factor.compute(a);
+  }
+  bool positiveDefinite() const {
+    return factor.info() == Eigen::Success && factor.matrixLLT().diagonal().allFinite();
+  }
+  /// A^-1 = L^-T L^-1, exactly symmetric.
+  Eigen::MatrixXd inverse() const {
+    const Eigen::Index n = k.rows();
+    const Eigen::MatrixXd inverse_factor = factor.matrixL().solve(Eigen::MatrixXd::Identity(n, n));
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n, n);
+    out.selfadjointView<Eigen::Lower>().rankUpdate(inverse_factor.transpose());
+    out.triangularView<Eigen::StrictlyUpper>() = out.transpose();
+    return out;
+  }
+
+  Eigen::MatrixXd k;  ///< without noise                                               [n x n]
+  double noise_variance;
+  Eigen::LLT<Eigen::MatrixXd> factor;
+};
+
+/// 1/2 tr(W dA / d theta_j) for each j, with W = A^-1 - alpha alpha^T.
+Eigen::VectorXd likelihoodGradient(const Eigen::MatrixXd& inputs, const Eigen::VectorXd& theta,
+                                   const Covariance& covariance, const Eigen::VectorXd& alpha) {
+  const Eigen::Index dim = inputs.rows();
+  const Eigen::Index n = inputs.cols();
+  Eigen::MatrixXd w = covariance.inverse();
+  w.noalias() -= alpha * alpha.transpose();
+  const double trace = w.trace();
+  w.array() *= covariance.k.array();  // dK / d log sf = 2 K
+
+  const Eigen::VectorXd length_scales = theta.head(dim).array().exp();
+  const Eigen::MatrixXd scaled = (length_scales.cwiseInverse().asDiagonal() * inputs).transpose();
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(dim + 2);
+  for (Eigen::Index j = 0; j < n; ++j) {  // dK_ij / d log l_d = K_ij ((x_di - x_dj) / l_d)^2
+    for (Eigen::Index d = 0; d < dim; ++d) {
+      const auto difference = scaled.col(d).array() - scaled(j, d);
+      gradient[d] += 0.5 * (w.col(j).array() * difference.square()).sum();
+    }
+  }
+  gradient[dim] = w.sum();
+  gradient[dim + 1] = covariance.noise_variance * trace;
+  return gradient;
+}
+
+/// Where training starts, and what is minimised: one output.
+struct OutputProblem {
+  const Eigen::MatrixXd& inputs;
+  Eigen::VectorXd targets;
+  const Eigen::VectorXd& input_std;
+  const GpTrainingOptions& options;
+
+  double operator()(const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) const {
+    const double value = negativeLogLikelihood(inputs, targets, theta, gradient);
+    return value + curb(theta, input_std, options, gradient);
+  }
+};
+
+Minimum trainOutput(const OutputProblem& problem, const Eigen::VectorXd& start) {
+  MinimizerOptions solver;
+  solver.max_iterations = problem.options.max_iterations;
+  solver.function_tolerance = 1e-13;
+  solver.gradient_tolerance = 1e-6;
+  return minimize(problem, start, solver);
+}
+
+void setTheta(const Eigen::VectorXd& theta, Eigen::Index output, Hyperparameters* out) {
+  const Eigen::Index dim = out->log_length_scales.rows();
+  out->log_length_scales.col(output) = theta.head(dim);
+  out->log_signal_std[output] = theta[dim];
+  out->log_noise_std[output] = theta[dim + 1];
+}
+
+}  // namespace
+
+std::vector<std::string> GpTrainingOptions::problems() const {
+  std::vector<std::string> out;
+  require(max_iterations >= 0, "max_iterations must be >= 0", max_iterations, &out);
+  require(length_scale_limit > 1.0 && std::isfinite(length_scale_limit),
+          "length_scale_limit must be > 1", length_scale_limit, &out);
+  require(signal_to_noise_limit > 1.0 && std::isfinite(signal_to_noise_limit),
+          "signal_to_noise_limit must be > 1", signal_to_noise_limit, &out);
+  require(curb_power >= 2 && curb_power % 2 == 0, "curb_power must be even and >= 2", curb_power,
+          &out);
+  return out;
+}
+
+double negativeLogLikelihood(const Eigen::MatrixXd& inputs, const Eigen::VectorXd& targets,
+                             const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
+  eigen_assert(theta.size() == inputs.rows() + 2 && targets.size() == inputs.cols());
+  if (gradient != nullptr) gradient->setConstant(theta.size(), kNaN);
+  if (!theta.allFinite()) return kInfinity;
+  const Covariance covariance(inputs, theta);
+  if (!covariance.positiveDefinite()) return kInfinity;
+  const Eigen::VectorXd alpha = covariance.factor.solve(targets);
+  const double half_log_determinant = covariance.factor.matrixLLT().diagonal().array().log().sum();
+  if (gradient != nullptr) *gradient = likelihoodGradient(inputs, theta, covariance, alpha);
+  const double value = 0.5 * targets.dot(alpha) + half_log_determinant +
+                       0.5 * static_cast<double>(inputs.cols()) * kLogTwoPi;
+  return std::isfinite(value) ? value : kInfinity;
+}
+
+double curb(const Eigen::VectorXd& theta, const Eigen::VectorXd& input_std,
+            const GpTrainingOptions& options, Eigen::VectorXd* gradient) {
+  const Eigen::Index dim = input_std.size();
+  eigen_assert(theta.size() == dim + 2);
+  const double p = options.curb_power;
+  const double log_length_limit = std::log(options.length_scale_limit);
+  const double log_snr_limit = std::log(options.signal_to_noise_limit);
+  const Eigen::ArrayXd length =
+      (theta.head(dim).array() - input_std.array().log()) / log_length_limit;
+  const double snr = (theta[dim] - theta[dim + 1]) / log_snr_limit;
+  if (gradient != nullptr) {
+    gradient->head(dim).array() += p / log_length_limit * length.pow(options.curb_power - 1);
+    const double slope = p / log_snr_limit * std::pow(snr, options.curb_power - 1);
+    (*gradient)[dim] += slope;
+    (*gradient)[dim + 1] -= slope;
+  }
+  return length.pow(options.curb_power).sum() + std::pow(snr, options.curb_power);
+}
+
+Eigen::VectorXd sampleStd(const Eigen::MatrixXd& samples) {
+  if (samples.cols() < 2) {
+    throw std::invalid_argument("a standard deviation needs at least 2 samples, got " +
+                                std::to_string(samples.cols()));
+  }
+  const Eigen::MatrixXd centred = samples.colwise() - samples.rowwise().mean();
+  return (centred.rowwise().squaredNorm() / static_cast<double>(samples.cols() - 1)).cwiseSqrt();
+}
+
+Eigen::VectorXd thetaOf(const Hyperparameters& hyperparameters, int output) {
+  const Eigen::Index dim = hyperparameters.log_length_scales.rows();
+  Eigen::VectorXd theta(dim + 2);
+  theta << hyperparameters.log_length_scales.col(output), hyperparameters.log_signal_std[output],
+      hyperparameters.log_noise_std[output];
+  return theta;
+}
+
+Hyperparameters initialHyperparameters(const Eigen::MatrixXd& inputs,
+                                       const Eigen::MatrixXd& targets) {
+  requireVariedData(inputs, targets);
+  Hyperparameters out;
+  out.log_length_scales = sampleStd(inputs).array().log().matrix().replicate(1, targets.cols());
+  out.log_signal_std = sampleStd(targets.transpose()).array().log();
+  out.log_noise_std = out.log_signal_std.array() - std::log(10.0);
+  return out;
+}
+
+GpFit makeGpModel(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
+                  const Hyperparameters& hyperparameters) {
+  requireFiniteData(inputs, targets);
+  requireHyperparameters(hyperparameters, inputs.rows(), targets.cols());
+  GpFit fit;
+  fit.model.inputs = inputs;
+  fit.model.hyperparameters = hyperparameters;
+  fit.model.beta.resize(targets.rows(), targets.cols());
+  for (int a = 0; a < targets.cols(); ++a) {
+    const Covariance covariance(inputs, thetaOf(hyperparameters, a));
+    if (!covariance.positiveDefinite()) {
+      fit.model = GpModel();
+      fit.message = "the covariance of output " + std::to_string(a + 1) +
+                    " is not positive definite: its noise std must be larger";
+      return fit;
+    }
+    fit.model.beta.col(a) = covariance.factor.solve(targets.col(a));
+    fit.model.inverse.push_back(covariance.inverse());
+  }
+  fit.ok = true;
+  return fit;
+}
+
+GpFit trainGp(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
+              const GpTrainingOptions& options, const Hyperparameters* start) {
+  const std::vector<std::string> problems = options.problems();
+  if (!problems.empty()) throw std::invalid_argument(problems.front());
+  const Hyperparameters initial = initialHyperparameters(inputs, targets);
+  if (start != nullptr) requireHyperparameters(*start, inputs.rows(), targets.cols());
+  const Eigen::VectorXd input_std = sampleStd(inputs);
+
+  Hyperparameters trained = initial;
+  std::string message;
+  std::vector<OutputTraining> outputs;
+  const auto say = [&message](int output, const std::string& text) {
+    message +=
+        (message.empty() ? "" : "; ") + ("output " + std::to_string(output + 1) + ": ") + text;
+  };
+  for (int a = 0; a < targets.cols(); ++a) {
+    const OutputProblem problem{inputs, targets.col(a), input_std, options};
+    Minimum minimum = trainOutput(problem, thetaOf(start != nullptr ? *start : initial, a));
+    if (!minimum.start_ok && start != nullptr) {
+      say(a, "the previous hyper-parameters cannot be evaluated, trained anew");
+      minimum = trainOutput(problem, thetaOf(initial, a));
+    }
+    if (!minimum.start_ok) {
+      GpFit failed;
+      say(a, "the likelihood cannot be evaluated at the start of the training");
+      failed.message = message;
+      failed.outputs = outputs;
+      return failed;
+    }
+    OutputTraining training;
+    training.initial_cost = minimum.initial_cost;
+    training.final_cost = minimum.cost;
+    training.gradient_norm = minimum.gradient.norm();
+    training.iterations = minimum.iterations;
+    training.evaluations = minimum.evaluations;
+    outputs.push_back(training);
+    if (!minimum.improved && minimum.message != "converged") {
+      say(a, "kept at the start, " + minimum.message);
+    }
+    setTheta(minimum.x, a, &trained);
+  }
+  GpFit fit = makeGpModel(inputs, targets, trained);
+  fit.outputs = outputs;
+  if (!fit.message.empty()) message += (message.empty() ? "" : "; ") + fit.message;
+  fit.message = message;
+  return fit;
+}
+
+}  // namespace pilco
+}  // namespace ddm

@@ -1,0 +1,53 @@
+// Policy search: the policy parameters that minimise the expected long-term cost.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_pilco/policy_search.h"
+
+#include <sstream>
+#include <stdexcept>
+
+namespace ddm {
+namespace pilco {
+namespace {
+
+template <class Value>
+void require(bool ok, const std::string& rule, const Value& value, std::vector<std::string>* out) {
+  if (ok) return;
+  std::ostringstream text;
+  text << "policy_search/" << rule << ", got " << value;
+  out->push_back(text.str());
+}
+
+}  // namespace
+
+std::vector<std::string> PolicySearchOptions::problems() const {
+  std::vector<std::string> out;
+  require(max_iterations >= 0, "max_iterations must be >= 0", max_iterations, &out);
+  require(max_evaluations >= 1, "max_evaluations must be >= 1", max_evaluations, &out);
+  require(function_tolerance >= 0.0 && function_tolerance < 1.0,
+          "function_tolerance must lie in [0, 1)", function_tolerance, &out);
+  return out;
+}
+
+PolicySearchResult searchPolicy(const DifferentiableFunction& cost, const Eigen::VectorXd& start,
+                                const PolicySearchOptions& options) {
+  const std::vector<std::string> problems = options.problems();
+  if (!problems.empty()) throw std::invalid_argument(problems.front());
+  MinimizerOptions solver;
+  solver.max_iterations = options.max_iterations;
+  solver.max_evaluations = options.max_evaluations;
+  solver.function_tolerance = options.function_tolerance;
+  const Minimum minimum = minimize(cost, start, solver);
+  PolicySearchResult result;
+  result.ok = minimum.start_ok;
+  result.improved = minimum.improved;
+  result.parameters = minimum.x;
+  result.cost_before = minimum.initial_cost;
+  result.cost_after = minimum.cost;
+  result.iterations = minimum.iterations;
+  result.evaluations = minimum.evaluations;
+  result.message = minimum.message;
+  return result;
+}
+
+}  // namespace pilco
+}  // namespace ddm

@@ -1,0 +1,132 @@
+// One step of the state distribution under dynamics GP and policy, with derivatives.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_pilco/propagation.h"
+
+#include <stdexcept>
+#include <utility>
+
+namespace ddm {
+namespace pilco {
+namespace {
+
+Gaussian marginal(const Moments& moments) { return Gaussian{moments.mean, moments.covariance}; }
+
+/// N([f, u]) from the moments of f and those of u given f.
+Gaussian joint(const Moments& features, const Moments& control) {
+  const Eigen::Index num_features = features.mean.size();
+  const Eigen::Index num_controls = control.mean.size();
+  Gaussian both = constantGaussian(static_cast<int>(num_features + num_controls));
+  both.mean << features.mean, control.mean;
+  both.covariance.topLeftCorner(num_features, num_features) = features.covariance;
+  both.covariance.bottomRightCorner(num_controls, num_controls) = control.covariance;
+  const Eigen::MatrixXd cross = features.covariance * control.gain;
+  both.covariance.topRightCorner(num_features, num_controls) = cross;
+  both.covariance.bottomLeftCorner(num_controls, num_features) = cross.transpose();
+  return both;
+}
+
+}  // namespace
+
+Propagation::Propagation(GpModel dynamics, const PropagationOptions& options)
+    : state_dim_(dynamics.outputDim()),
+      features_(replaceAngles(state_dim_, options.angles)),
+      dynamics_(std::move(dynamics)),
+      noisy_policy_input_(options.noisy_policy_input) {
+  if (controlDim() < 1) {
+    throw std::invalid_argument(
+        "propagation: the dynamics GP must have the features of the state and the controls as "
+        "inputs");
+  }
+  const Eigen::VectorXd& log_noise_std = dynamics_.model().hyperparameters.log_noise_std;
+  if (noisy_policy_input_ && log_noise_std.size() != state_dim_) {
+    throw std::invalid_argument("propagation: there must be one noise std per output of the GP");
+  }
+  measurement_variance_ = noisy_policy_input_
+                              ? Eigen::VectorXd(0.5 * (2.0 * log_noise_std.array()).exp())
+                              : Eigen::VectorXd(Eigen::VectorXd::Zero(state_dim_));
+}
+
+/// The state as the policy sees it.
+Gaussian Propagation::policyState(const Gaussian& state) const {
+  Gaussian measured = state;
+  measured.covariance.diagonal() += measurement_variance_;
+  return measured;
+}
+
+Gaussian Propagation::step(Policy* policy, const Gaussian& state, Tape* tape) {
+  requireSize(state, state_dim_, "propagation");
+  if (policy->inputDim() != featureDim() || policy->outputDim() != controlDim()) {
+    throw std::invalid_argument("propagation: the policy does not fit features and controls");
+  }
+  const Moments features = features_.predict(state);
+  const Gaussian policy_input =
+      marginal(noisy_policy_input_ ? features_.predict(policyState(state)) : features);
+  const Moments control = policy->predict(policy_input);
+  const Moments delta =
+      dynamics_.predict(joint(features, control), tape != nullptr ? &tape->dynamics : nullptr);
+
+  const Eigen::MatrixXd gain =
+      delta.gain.topRows(featureDim()) + control.gain * delta.gain.bottomRows(controlDim());
+  const Eigen::MatrixXd cross = state.covariance * (features.gain * gain);
+  if (tape != nullptr) {
+    tape->state = state;
+    tape->features = features;
+    tape->policy_input = policy_input;
+    tape->control = control;
+    tape->delta = delta;
+  }
+  return Gaussian{state.mean + delta.mean,
+                  symmetricPart(state.covariance + cross + cross.transpose() + delta.covariance)};
+}
+
+Gaussian Propagation::backward(Policy* policy, const Tape& tape, const Gaussian& d_next,
+                               Eigen::VectorXd* d_parameters) const {
+  requireSize(d_next, state_dim_, "propagation");
+  const int num_features = featureDim();
+  const int num_controls = controlDim();
+  const Eigen::MatrixXd& s = tape.state.covariance;
+  const Eigen::MatrixXd& feature_gain = tape.features.gain;
+  const auto gain_u = tape.delta.gain.bottomRows(num_controls);
+  const Eigen::MatrixXd gain = tape.delta.gain.topRows(num_features) + tape.control.gain * gain_u;
+  const Eigen::MatrixXd d_covariance = symmetricPart(d_next.covariance);
+
+  // s' = s + X + X^T + S with X = s G_f (V_f + G_u V_u)
+  const Eigen::MatrixXd d_cross = 2.0 * d_covariance;
+  Gaussian d_state{d_next.mean, d_covariance + d_cross * (feature_gain * gain).transpose()};
+  Moments d_features = constantMoments(state_dim_, num_features);
+  d_features.gain = s * d_cross * gain.transpose();
+  const Eigen::MatrixXd d_gain = feature_gain.transpose() * s * d_cross;
+
+  Moments d_delta{d_next.mean, d_covariance, Eigen::MatrixXd(tape.delta.gain.rows(), state_dim_)};
+  d_delta.gain << d_gain, tape.control.gain.transpose() * d_gain;
+  const Gaussian d_joint = dynamics_.backward(tape.dynamics, d_delta);
+
+  // joint covariance: [F, F G_u; (F G_u)^T, S_u]
+  const Eigen::MatrixXd d_fu = 2.0 * d_joint.covariance.topRightCorner(num_features, num_controls);
+  const Moments d_control{d_joint.mean.tail(num_controls),
+                          d_joint.covariance.bottomRightCorner(num_controls, num_controls),
+                          d_gain * gain_u.transpose() + tape.features.covariance * d_fu};
+  d_features.mean = d_joint.mean.head(num_features);
+  d_features.covariance = d_joint.covariance.topLeftCorner(num_features, num_features) +
+                          d_fu * tape.control.gain.transpose();
+
+  const Gaussian d_policy_input = policy->backward(tape.policy_input, d_control, d_parameters);
+  const auto add = [&d_state](const Gaussian& part) {
+    d_state.mean += part.mean;
+    d_state.covariance += part.covariance;
+  };
+  if (noisy_policy_input_) {
+    add(features_.backward(policyState(tape.state),
+                           Moments{d_policy_input.mean, d_policy_input.covariance,
+                                   Eigen::MatrixXd::Zero(state_dim_, num_features)}));
+  } else {
+    d_features.mean += d_policy_input.mean;
+    d_features.covariance += d_policy_input.covariance;
+  }
+  add(features_.backward(tape.state, d_features));
+  d_state.covariance = symmetricPart(d_state.covariance);
+  return d_state;
+}
+
+}  // namespace pilco
+}  // namespace ddm

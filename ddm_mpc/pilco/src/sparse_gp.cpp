@@ -1,0 +1,261 @@
+// Sparse GP (FITC): a few inducing inputs instead of all training inputs.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_pilco/sparse_gp.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <sstream>
+#include <stdexcept>
+
+#include "ddm_pilco/minimizer.h"
+#include "ddm_pilco/squared_exponential.h"
+#include "gp_data.h"
+
+namespace ddm {
+namespace pilco {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kLogTwoPi = 1.8378770664093453;
+
+template <class Value>
+void require(bool ok, const std::string& rule, const Value& value, std::vector<std::string>* out) {
+  if (ok) return;
+  std::ostringstream text;
+  text << "sparse_gp/" << rule << ", got " << value;
+  out->push_back(text.str());
+}
+
+/// The matrices of one output. B = L M L^T with Kmm = L L^T, M = I + V diag(lambda)^-1 V^T and
+/// V = L^-1 Kmn: M is much better conditioned than B.
+struct Fitc {
+  Fitc(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& inputs, const Eigen::VectorXd& theta,
+       double ridge) {
+    const Eigen::Index dim = inputs.rows();
+    const Eigen::VectorXd length_scales = theta.head(dim).array().exp();
+    const double sf = std::exp(theta[dim]);
+    k_mm = squaredExponential(inducing, inducing, length_scales, sf);
+    k_mn = squaredExponential(inducing, inputs, length_scales, sf);
+    Eigen::MatrixXd ridged = k_mm;
+    ridged.diagonal().array() += ridge;
+    l.compute(ridged);
+    if (l.info() != Eigen::Success) return;
+    v = l.matrixL().solve(k_mn);
+    lambda = std::exp(2.0 * theta[dim + 1]) + sf * sf - v.colwise().squaredNorm().array();
+    if (!(lambda > 0.0).all()) return;
+    v_scaled = v * lambda.inverse().matrix().asDiagonal();
+    Eigen::MatrixXd m_matrix = v_scaled * v.transpose();
+    m_matrix.diagonal().array() += 1.0;
+    m.compute(m_matrix);
+    positive_definite = m.info() == Eigen::Success && m.matrixLLT().diagonal().allFinite() &&
+                        lambda.isFinite().all();
+  }
+
+  /// L^-T x
+  Eigen::MatrixXd backsolve(const Eigen::MatrixXd& x) const { return l.matrixU().solve(x); }
+  /// B^-1 Kmn diag(lambda)^-1 y
+  Eigen::VectorXd beta(const Eigen::VectorXd& y) const { return backsolve(m.solve(v_scaled * y)); }
+
+  Eigen::MatrixXd k_mm;           ///< without ridge                                     [m x m]
+  Eigen::MatrixXd k_mn;           ///<                                                   [m x n]
+  Eigen::LLT<Eigen::MatrixXd> l;  ///< factor of Kmm with ridge
+  Eigen::MatrixXd v;              ///<                                                   [m x n]
+  Eigen::ArrayXd lambda;          ///<                                                       [n]
+  Eigen::MatrixXd v_scaled;       ///< V diag(lambda)^-1                                 [m x n]
+  Eigen::LLT<Eigen::MatrixXd> m;
+  bool positive_definite = false;
+};
+
+/// Adds the gradient in Z of one output's likelihood. With T = Kmm^-1 Kmn, R = B^-1 Kmn
+/// diag(lambda)^-1, alpha = C^-1 y and w_i = [C^-1]_ii - alpha_i^2:
+///
+///   dL/dKmn = R - beta alpha^T - T diag(w),   dL/dKmm = -1/2 (dL/dKmn) T^T
+void addGradient(const Fitc& fitc, const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& inputs,
+                 const Eigen::VectorXd& theta, const Eigen::VectorXd& beta,
+                 const Eigen::VectorXd& alpha, Eigen::MatrixXd* d_inducing) {
+  const Eigen::MatrixXd t = fitc.backsolve(fitc.v);
+  const Eigen::MatrixXd r = fitc.backsolve(fitc.m.solve(fitc.v_scaled));
+  const Eigen::ArrayXd inverse_diagonal =
+      (1.0 - fitc.k_mn.cwiseProduct(r).colwise().sum().transpose().array()) / fitc.lambda;
+  const Eigen::ArrayXd w = inverse_diagonal - alpha.array().square();
+  Eigen::MatrixXd d_mn = r - beta * alpha.transpose() - t * w.matrix().asDiagonal();
+  Eigen::MatrixXd d_mm = -0.5 * d_mn * t.transpose();
+  d_mm += d_mm.transpose().eval();  // z_k is in row and column k
+  d_mn.array() *= fitc.k_mn.array();
+  d_mm.array() *= fitc.k_mm.array();
+
+  // dk(z, x) / dz = -k(z, x) (z - x) / l^2
+  const Eigen::VectorXd row_sums = d_mn.rowwise().sum() + d_mm.rowwise().sum();
+  const Eigen::MatrixXd pull = inputs * d_mn.transpose() + inducing * d_mm.transpose();
+  const Eigen::VectorXd weights = (-2.0 * theta.head(inputs.rows()).array()).exp();
+  *d_inducing += weights.asDiagonal() * (pull - inducing * row_sums.asDiagonal());
+}
+
+double outputLikelihood(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& inputs,
+                        const Eigen::VectorXd& y, const Eigen::VectorXd& theta, double ridge,
+                        Eigen::MatrixXd* d_inducing) {
+  const Fitc fitc(inducing, inputs, theta, ridge);
+  if (!fitc.positive_definite) return kInfinity;
+  const Eigen::VectorXd beta = fitc.beta(y);
+  const Eigen::VectorXd alpha = ((y - fitc.k_mn.transpose() * beta).array() / fitc.lambda).matrix();
+  if (d_inducing != nullptr) addGradient(fitc, inducing, inputs, theta, beta, alpha, d_inducing);
+  return 0.5 * y.dot(alpha) + fitc.m.matrixLLT().diagonal().array().log().sum() +
+         0.5 * fitc.lambda.log().sum() + 0.5 * static_cast<double>(y.size()) * kLogTwoPi;
+}
+
+void requireInducing(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& inputs,
+                     const Eigen::MatrixXd& targets, const Hyperparameters& hyperparameters) {
+  requireFiniteData(inputs, targets);
+  requireHyperparameters(hyperparameters, inputs.rows(), targets.cols());
+  if (inducing.rows() != inputs.rows() || inducing.cols() < 1) {
+    throw std::invalid_argument(
+        "inducing inputs must be points of " + std::to_string(inputs.rows()) + " entries, got " +
+        std::to_string(inducing.cols()) + " of " + std::to_string(inducing.rows()));
+  }
+  if (!inducing.allFinite()) throw std::invalid_argument("inducing inputs must be finite numbers");
+}
+
+}  // namespace
+
+std::vector<std::string> SparseGpOptions::problems() const {
+  std::vector<std::string> out;
+  require(max_points >= 1, "max_points must be >= 1", max_points, &out);
+  require(first_iterations >= 0, "first_iterations must be >= 0", first_iterations, &out);
+  require(max_iterations >= 0, "max_iterations must be >= 0", max_iterations, &out);
+  require(ridge > 0.0 && std::isfinite(ridge), "ridge must be > 0", ridge, &out);
+  return out;
+}
+
+double sparseNegativeLogLikelihood(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& inputs,
+                                   const Eigen::MatrixXd& targets,
+                                   const Hyperparameters& hyperparameters, double ridge,
+                                   Eigen::MatrixXd* d_inducing) {
+  eigen_assert(inducing.rows() == inputs.rows() && inputs.cols() == targets.rows());
+  if (d_inducing != nullptr) d_inducing->setZero(inducing.rows(), inducing.cols());
+  double sum = 0.0;
+  for (int a = 0; a < targets.cols(); ++a) {
+    sum += outputLikelihood(inducing, inputs, targets.col(a), thetaOf(hyperparameters, a), ridge,
+                            d_inducing);
+  }
+  if (std::isfinite(sum)) return sum;
+  if (d_inducing != nullptr) d_inducing->setConstant(kNaN);
+  return kInfinity;
+}
+
+GpFit makeSparseGpModel(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& inputs,
+                        const Eigen::MatrixXd& targets, const Hyperparameters& hyperparameters,
+                        double ridge) {
+  requireInducing(inducing, inputs, targets, hyperparameters);
+  const Eigen::Index m = inducing.cols();
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(m, m);
+  GpFit fit;
+  fit.model.inputs = inducing;
+  fit.model.hyperparameters = hyperparameters;
+  fit.model.beta.resize(m, targets.cols());
+  for (int a = 0; a < targets.cols(); ++a) {
+    const Fitc fitc(inducing, inputs, thetaOf(hyperparameters, a), ridge);
+    if (!fitc.positive_definite) {
+      fit.model = GpModel();
+      fit.message = "the sparse covariance of output " + std::to_string(a + 1) +
+                    " is not positive definite: its noise std or sparse_gp/ridge must be larger";
+      return fit;
+    }
+    fit.model.beta.col(a) = fitc.beta(targets.col(a));
+    // Kmm^-1 - B^-1 = L^-T (I - M^-1) L^-1
+    const Eigen::MatrixXd half = fitc.backsolve(identity - fitc.m.solve(identity));
+    const Eigen::MatrixXd inverse = fitc.backsolve(half.transpose());
+    fit.model.inverse.push_back(0.5 * (inverse + inverse.transpose()));
+  }
+  fit.ok = true;
+  return fit;
+}
+
+Eigen::MatrixXd randomSubset(const Eigen::MatrixXd& inputs, int count, std::mt19937_64* rng) {
+  if (count < 1 || count > inputs.cols()) {
+    throw std::invalid_argument("cannot draw " + std::to_string(count) + " of " +
+                                std::to_string(inputs.cols()) + " points");
+  }
+  std::vector<int> order(static_cast<std::size_t>(inputs.cols()));
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), *rng);  // results are fixed for libstdc++
+  Eigen::MatrixXd out(inputs.rows(), count);
+  for (int i = 0; i < count; ++i) out.col(i) = inputs.col(order[static_cast<std::size_t>(i)]);
+  return out;
+}
+
+GpFit trainSparseGp(const Eigen::MatrixXd& start, const Eigen::MatrixXd& inputs,
+                    const Eigen::MatrixXd& targets, const Hyperparameters& hyperparameters,
+                    int max_iterations, double ridge) {
+  requireInducing(start, inputs, targets, hyperparameters);
+  const auto cost = [&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+    const Eigen::MatrixXd inducing =
+        Eigen::Map<const Eigen::MatrixXd>(x.data(), start.rows(), start.cols());
+    Eigen::MatrixXd d_inducing;
+    const double value =
+        sparseNegativeLogLikelihood(inducing, inputs, targets, hyperparameters, ridge,
+                                    gradient != nullptr ? &d_inducing : nullptr);
+    if (gradient != nullptr) {
+      *gradient = Eigen::Map<const Eigen::VectorXd>(d_inducing.data(), d_inducing.size());
+    }
+    return value;
+  };
+  MinimizerOptions solver;
+  solver.limited_memory = true;
+  solver.max_iterations = max_iterations;
+  solver.function_tolerance = 1e-9;
+  solver.gradient_tolerance = 1e-5;
+  const Minimum minimum =
+      minimize(cost, Eigen::Map<const Eigen::VectorXd>(start.data(), start.size()), solver);
+  const Eigen::MatrixXd inducing =
+      Eigen::Map<const Eigen::MatrixXd>(minimum.x.data(), start.rows(), start.cols());
+  GpFit fit = makeSparseGpModel(inducing, inputs, targets, hyperparameters, ridge);
+  OutputTraining training;
+  training.initial_cost = minimum.initial_cost;
+  training.final_cost = minimum.cost;
+  training.gradient_norm = minimum.start_ok ? minimum.gradient.norm() : kNaN;
+  training.iterations = minimum.iterations;
+  training.evaluations = minimum.evaluations;
+  fit.outputs.push_back(training);
+  if (fit.ok && !minimum.improved && minimum.message != "converged") {
+    fit.message = "inducing inputs kept at the start, " + minimum.message;
+  }
+  return fit;
+}
+
+GpLearner::GpLearner(const GpTrainingOptions& training, const SparseGpOptions& sparse)
+    : training_(training), sparse_(sparse) {
+  std::vector<std::string> problems = training.problems();
+  const std::vector<std::string> more = sparse.problems();
+  problems.insert(problems.end(), more.begin(), more.end());
+  if (!problems.empty()) throw std::invalid_argument(problems.front());
+}
+
+GpFit GpLearner::learn(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
+                       std::mt19937_64* rng) {
+  const bool first = last_optimum_.log_signal_std.size() == 0;
+  GpFit full = trainGp(inputs, targets, training_, first ? nullptr : &last_optimum_);
+  if (!full.ok) return full;
+  last_optimum_ = full.model.hyperparameters;
+  if (inputs.cols() <= sparse_.max_points) return full;
+
+  const bool from_subset = last_inducing_.size() == 0;
+  const Eigen::MatrixXd start =
+      from_subset ? randomSubset(inputs, sparse_.max_points, rng) : last_inducing_;
+  GpFit fit =
+      trainSparseGp(start, inputs, targets, last_optimum_,
+                    from_subset ? sparse_.first_iterations : sparse_.max_iterations, sparse_.ridge);
+  if (fit.ok) last_inducing_ = fit.model.inputs;
+  full.outputs.insert(full.outputs.end(), fit.outputs.begin(), fit.outputs.end());
+  fit.outputs = full.outputs;
+  if (!full.message.empty()) {
+    fit.message = full.message + (fit.message.empty() ? "" : "; ") + fit.message;
+  }
+  return fit;
+}
+
+}  // namespace pilco
+}  // namespace ddm

@@ -1,0 +1,241 @@
+// Tests of moment matching through a GP: samples, derivatives, limits, refusals.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_pilco/gp_moments.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+#include <stdexcept>
+#include <tuple>
+
+#include "adjoint_check.h"
+#include "gp_sampler.h"
+#include "monte_carlo.h"
+#include "random_gp.h"
+
+namespace ddm {
+namespace pilco {
+namespace {
+
+::testing::AssertionResult inputAdjointMatches(const GpModel& model, const Gaussian& input,
+                                               std::mt19937_64& random) {
+  GpMoments moments(model);
+  return adjointMatches([&](const Gaussian& at) { return moments.predict(at); },
+                        [&](const Gaussian& at, const Moments& d_output) {
+                          GpMoments::Tape tape;
+                          moments.predict(at, &tape);
+                          return moments.backward(tape, d_output);
+                        },
+                        input, random);
+}
+
+TEST(GpMoments, AreThoseOfAMillionSamplesWithAndWithoutModelUncertainty) {
+  std::mt19937_64 random(1);
+  for (const bool uncertain : {true, false}) {
+    const GpModel model = randomGp(3, 2, 9, uncertain, random);
+    const Gaussian input = randomGaussian(3, 3, 0.6, random);
+    EXPECT_TRUE(momentsMatchSamples(GpMoments(model).predict(input), input,
+                                    GpSampler(model, &random), random))
+        << (uncertain ? "with" : "without") << " model uncertainty";
+  }
+}
+
+TEST(GpMoments, AreThoseOfAMillionSamplesForASingularInputCovariance) {
+  std::mt19937_64 random(2);
+  const GpModel model = randomGp(4, 2, 9, true, random);
+  const Gaussian input = randomGaussian(4, 2, 0.8, random);
+  EXPECT_TRUE(momentsMatchSamples(GpMoments(model).predict(input), input, GpSampler(model, &random),
+                                  random));
+}
+
+TEST(GpMoments, BecomeThePlainPredictionAtAKnownInput) {
+  std::mt19937_64 random(3);
+  const GpModel model = randomGp(3, 2, 12, true, random);
+  Gaussian input = randomGaussian(3, 3, 0.5, random);
+  input.covariance.setZero();
+  const Moments output = GpMoments(model).predict(input);
+  GpModel mean_only = model;
+  mean_only.inverse.clear();
+  EXPECT_LE((output.mean - GpSampler(mean_only, &random)(input.mean)).norm(), 1e-12);
+  for (int a = 0; a < 2; ++a) {
+    const Eigen::VectorXd scales = model.hyperparameters.log_length_scales.col(a).array().exp();
+    const double signal_std = std::exp(model.hyperparameters.log_signal_std[a]);
+    const Eigen::VectorXd k = squaredExponential(model.inputs, input.mean, scales, signal_std);
+    EXPECT_NEAR(output.covariance(a, a), signal_std * signal_std - k.dot(model.inverse[a] * k),
+                1e-11);
+  }
+  EXPECT_NEAR(output.covariance(0, 1), 0.0, 1e-11);
+}
+
+TEST(GpMoments, HaveTheJacobianOfTheMeanAsGainAtAKnownInput) {
+  std::mt19937_64 random(4);
+  const GpModel model = randomGp(3, 1, 12, false, random);
+  GpMoments moments(model);
+  const auto mean = [&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+    const Moments output = moments.predict(Gaussian{x, Eigen::MatrixXd::Zero(3, 3)});
+    if (gradient != nullptr) *gradient = output.gain.col(0);
+    return output.mean[0];
+  };
+  EXPECT_TRUE(ddm::testing::gradientMatches(mean, randomMatrix(3, 1, 0.5, random)));
+}
+
+TEST(GpMoments, AdjointMatchesDifferencesForModerateSingularAndZeroCovariance) {
+  std::mt19937_64 random(5);
+  for (const bool uncertain : {true, false}) {
+    for (const int rank : {3, 1, 0}) {
+      const GpModel model = randomGp(3, 2, 10, uncertain, random);
+      EXPECT_TRUE(inputAdjointMatches(model, randomGaussian(3, rank, 0.5, random), random))
+          << "rank " << rank << (uncertain ? "" : ", without model uncertainty");
+    }
+  }
+}
+
+TEST(GpMoments, AdjointMatchesDifferencesForOneInputAndForManyOutputs) {
+  std::mt19937_64 random(6);
+  EXPECT_TRUE(inputAdjointMatches(randomGp(1, 1, 5, true, random),
+                                  randomGaussian(1, 1, 0.7, random), random));
+  EXPECT_TRUE(inputAdjointMatches(randomGp(5, 3, 11, true, random),
+                                  randomGaussian(5, 5, 0.4, random), random));
+}
+
+TEST(GpMoments, AdjointInTheModelMatchesDifferences) {
+  std::mt19937_64 random(7);
+  constexpr int kDim = 3, kOutputs = 2, kPoints = 5;
+  GpModel model = randomGp(kDim, kOutputs, kPoints, false, random);
+  const Moments weights = randomMoments(kDim, kOutputs, random);
+  for (const int rank : {3, 1, 0}) {
+    const Gaussian input = randomGaussian(kDim, rank, 0.5, random);
+    // x: inputs, beta, log length-scales, each by columns
+    Eigen::VectorXd x(kDim * kPoints + kPoints * kOutputs + kDim * kOutputs);
+    const auto views = [&](double* data) {
+      return std::make_tuple(
+          Eigen::Map<Eigen::MatrixXd>(data, kDim, kPoints),
+          Eigen::Map<Eigen::MatrixXd>(data + kDim * kPoints, kPoints, kOutputs),
+          Eigen::Map<Eigen::MatrixXd>(data + kDim * kPoints + kPoints * kOutputs, kDim, kOutputs));
+    };
+    views(x.data()) = std::tie(model.inputs, model.beta, model.hyperparameters.log_length_scales);
+    const auto J = [&](const Eigen::VectorXd& at, Eigen::VectorXd* gradient) {
+      Eigen::VectorXd copy = at;
+      GpModel changed = model;
+      std::tie(changed.inputs, changed.beta, changed.hyperparameters.log_length_scales) =
+          views(copy.data());
+      GpMoments moments(changed);
+      GpMoments::Tape tape;
+      const double value = innerProduct(moments.predict(input, &tape), weights);
+      if (gradient != nullptr) {
+        GpGradient d_model{Eigen::MatrixXd::Zero(kDim, kPoints),
+                           Eigen::MatrixXd::Zero(kPoints, kOutputs),
+                           Eigen::MatrixXd::Zero(kDim, kOutputs)};
+        moments.backwardToModel(tape, weights, &d_model);
+        gradient->resize(at.size());
+        views(gradient->data()) = std::tie(d_model.inputs, d_model.beta, d_model.log_length_scales);
+      }
+      return value;
+    };
+    EXPECT_TRUE(ddm::testing::gradientMatches(J, x)) << "rank " << rank;
+  }
+}
+
+TEST(GpMoments, AdjointInTheModelIsRightForAPointOfWeightZero) {
+  std::mt19937_64 random(8);
+  GpModel model = randomGp(2, 1, 4, false, random);
+  model.beta(1, 0) = 0.0;
+  const Gaussian input = randomGaussian(2, 2, 0.5, random);
+  const Moments weights = randomMoments(2, 1, random);
+  const auto J = [&](const Eigen::VectorXd& weight, Eigen::VectorXd* gradient) {
+    GpModel changed = model;
+    changed.beta(1, 0) = weight[0];
+    GpMoments moments(changed);
+    GpMoments::Tape tape;
+    const double value = innerProduct(moments.predict(input, &tape), weights);
+    if (gradient != nullptr) {
+      GpGradient d_model{Eigen::MatrixXd::Zero(2, 4), Eigen::MatrixXd::Zero(4, 1),
+                         Eigen::MatrixXd::Zero(2, 1)};
+      moments.backwardToModel(tape, weights, &d_model);
+      *gradient = d_model.beta.row(1);
+    }
+    return value;
+  };
+  EXPECT_TRUE(ddm::testing::gradientMatches(J, Eigen::VectorXd::Zero(1)));
+}
+
+TEST(GpMoments, TendToThePriorFarFromTheData) {
+  std::mt19937_64 random(9);
+  const GpModel model = randomGp(2, 1, 8, true, random);
+  const Moments output = GpMoments(model).predict(
+      Gaussian{Eigen::VectorXd::Constant(2, 1e3), Eigen::MatrixXd::Identity(2, 2)});
+  EXPECT_NEAR(output.mean[0], 0.0, 1e-12);
+  EXPECT_NEAR(output.covariance(0, 0), std::exp(2.0 * model.hyperparameters.log_signal_std[0]),
+              1e-12);
+}
+
+TEST(GpMoments, AreNaNForNumbersThatAreNotFiniteAndForAnIndefiniteCovariance) {
+  std::mt19937_64 random(10);
+  const GpModel model = randomGp(2, 2, 6, true, random);
+  const Gaussian good = randomGaussian(2, 2, 0.5, random);
+  const auto isNaN = [&](const GpModel& gp, const Gaussian& input) {
+    GpMoments moments(gp);
+    GpMoments::Tape tape;
+    const Moments output = moments.predict(input, &tape);
+    const Gaussian d_input = moments.backward(tape, randomMoments(2, 2, random));
+    return output.mean.array().isNaN().all() && output.covariance.array().isNaN().all() &&
+           output.gain.array().isNaN().all() && !d_input.mean.allFinite();
+  };
+  EXPECT_FALSE(isNaN(model, good));
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    Gaussian input = good;
+    input.mean[0] = bad;
+    EXPECT_TRUE(isNaN(model, input));
+    input = good;
+    input.covariance(1, 1) = bad;
+    EXPECT_TRUE(isNaN(model, input));
+    GpModel broken = model;
+    broken.beta(0, 0) = bad;
+    EXPECT_TRUE(isNaN(broken, good));
+    broken = model;
+    broken.inverse[1](2, 3) = bad;
+    EXPECT_TRUE(isNaN(broken, good));
+  }
+  Gaussian indefinite = good;
+  indefinite.covariance = -1e3 * Eigen::MatrixXd::Identity(2, 2);
+  EXPECT_TRUE(isNaN(model, indefinite));
+}
+
+TEST(GpMoments, RefuseModelsAndInputsWhoseShapesDoNotFit) {
+  std::mt19937_64 random(11);
+  const GpModel good = randomGp(2, 2, 6, true, random);
+  GpMoments moments(good);
+  EXPECT_THROW(moments.predict(randomGaussian(3, 3, 0.5, random)), std::invalid_argument);
+  EXPECT_THROW(moments.predict(Gaussian{Eigen::VectorXd::Zero(2), Eigen::MatrixXd::Zero(3, 3)}),
+               std::invalid_argument);
+  GpMoments::Tape tape;
+  moments.predict(randomGaussian(2, 2, 0.5, random), &tape);
+  EXPECT_THROW(moments.backward(tape, constantMoments(2, 3)), std::invalid_argument);
+  GpGradient d_model{Eigen::MatrixXd::Zero(2, 6), Eigen::MatrixXd::Zero(6, 2),
+                     Eigen::MatrixXd::Zero(2, 2)};
+  EXPECT_THROW(moments.backwardToModel(tape, constantMoments(2, 2), &d_model),
+               std::invalid_argument);
+
+  GpModel bad = good;
+  bad.beta.resize(5, 2);
+  EXPECT_THROW(GpMoments{bad}, std::invalid_argument);
+  bad = good;
+  bad.hyperparameters.log_length_scales.resize(2, 1);
+  EXPECT_THROW(GpMoments{bad}, std::invalid_argument);
+  bad = good;
+  bad.hyperparameters.log_signal_std.resize(3);
+  EXPECT_THROW(GpMoments{bad}, std::invalid_argument);
+  bad = good;
+  bad.inverse.pop_back();
+  EXPECT_THROW(GpMoments{bad}, std::invalid_argument);
+  bad = good;
+  bad.inverse[0].resize(6, 5);
+  EXPECT_THROW(GpMoments{bad}, std::invalid_argument);
+  EXPECT_THROW(GpMoments{GpModel()}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace pilco
+}  // namespace ddm

@@ -1,0 +1,310 @@
+// Tests of the marginal likelihood and of training on it.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_pilco/gp_training.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+
+#include "ddm_model/testing/expect_error.h"
+#include "ddm_model/testing/gradient_check.h"
+#include "ddm_model/testing/random_matrix.h"
+#include "ddm_pilco/squared_exponential.h"
+
+namespace ddm {
+namespace pilco {
+namespace {
+
+using ::ddm::testing::gradientMatches;
+using ::ddm::testing::randomMatrix;
+using ::ddm::testing::throwsNaming;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// A smooth function of three inputs, the last of which does not matter, with noise of std 0.05.
+struct Toy {
+  explicit Toy(int n, unsigned seed = 1) : inputs(randomMatrix(3, n, seed)), targets(n, 2) {
+    const Eigen::ArrayXd x = inputs.row(0), y = inputs.row(1);
+    targets.col(0) = (1.5 * x).sin() + 0.5 * y;
+    targets.col(1) = (x + y).cos();
+    targets += 0.05 * randomMatrix(n, 2, seed + 1);
+  }
+  Eigen::MatrixXd inputs;
+  Eigen::MatrixXd targets;
+};
+
+Eigen::VectorXd someTheta() {
+  Eigen::VectorXd theta(5);
+  theta << 0.3, -0.2, 0.6, 0.4, -1.7;
+  return theta;
+}
+
+TEST(SquaredExponential, IsTheFormulaForEachPair) {
+  const Eigen::MatrixXd a = randomMatrix(2, 3, 1), b = randomMatrix(2, 4, 2);
+  const Eigen::VectorXd l = Eigen::Vector2d(0.5, 2.0);
+  const Eigen::MatrixXd k = squaredExponential(a, b, l, 1.5);
+  ASSERT_EQ(3, k.rows());
+  ASSERT_EQ(4, k.cols());
+  const double u = (a(0, 2) - b(0, 1)) / 0.5, v = (a(1, 2) - b(1, 1)) / 2.0;
+  EXPECT_NEAR(2.25 * std::exp(-0.5 * (u * u + v * v)), k(2, 1), 1e-14);
+}
+
+TEST(NegativeLogLikelihood, IsThatOfAMultivariateNormal) {
+  const Toy toy(6);
+  const Eigen::VectorXd theta = someTheta();
+  Eigen::MatrixXd a(6, 6);
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < 6; ++j) {
+      const Eigen::Array3d difference = toy.inputs.col(i) - toy.inputs.col(j);
+      const Eigen::Array3d l = theta.head(3).array().exp();
+      a(i, j) = std::exp(2.0 * theta[3] - 0.5 * (difference / l).square().sum());
+    }
+    a(i, i) += std::exp(2.0 * theta[4]);
+  }
+  const Eigen::VectorXd y = toy.targets.col(0);
+  const double density = std::exp(-0.5 * y.dot(a.inverse() * y)) /
+                         std::sqrt(std::pow(2.0 * M_PI, 6) * a.determinant());
+  EXPECT_NEAR(-std::log(density), negativeLogLikelihood(toy.inputs, y, theta), 1e-10);
+}
+
+TEST(NegativeLogLikelihood, GradientMatchesDifferences) {
+  const Toy toy(25);
+  for (int output = 0; output < 2; ++output) {
+    const auto f = [&](const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
+      return negativeLogLikelihood(toy.inputs, toy.targets.col(output), theta, gradient);
+    };
+    EXPECT_TRUE(gradientMatches(f, someTheta(), 1e-8)) << "output " << output;
+  }
+}
+
+TEST(NegativeLogLikelihood, IsInfiniteWherePositiveDefinitenessIsLost) {
+  Eigen::MatrixXd inputs = Eigen::MatrixXd::Zero(3, 4);  // four times the same point
+  Eigen::VectorXd theta = someTheta();
+  theta[4] = -30.0;  // and no noise to tell them apart
+  Eigen::VectorXd gradient;
+  EXPECT_EQ(std::numeric_limits<double>::infinity(),
+            negativeLogLikelihood(inputs, Eigen::Vector4d(1, 2, 3, 4), theta, &gradient));
+  EXPECT_EQ(5, gradient.size());
+  EXPECT_FALSE(gradient.allFinite());
+  theta[4] = kNaN;
+  EXPECT_EQ(std::numeric_limits<double>::infinity(),
+            negativeLogLikelihood(inputs, Eigen::Vector4d(1, 2, 3, 4), theta));
+}
+
+TEST(Curb, IsOneWhereALimitIsReachedAndNothingFarInside) {
+  const GpTrainingOptions options;
+  const Eigen::VectorXd input_std = Eigen::Vector2d(2.0, 0.1);
+  Eigen::VectorXd theta(4);
+  theta << std::log(2.0), std::log(0.1), 0.0, -1.0;
+  EXPECT_LT(curb(theta, input_std, options), 1e-20);
+  theta[0] = std::log(200.0);
+  EXPECT_NEAR(1.0, curb(theta, input_std, options), 1e-12);
+  theta[1] = std::log(0.001);
+  EXPECT_NEAR(2.0, curb(theta, input_std, options), 1e-12);
+  theta[2] = std::log(1000.0) - 1.0;
+  EXPECT_NEAR(3.0, curb(theta, input_std, options), 1e-12);
+}
+
+TEST(Curb, GradientIsAddedAndMatchesDifferences) {
+  GpTrainingOptions options;
+  options.curb_power = 4;  // the thirtieth power varies too fast for differences
+  const Eigen::VectorXd input_std = Eigen::Vector3d(1.5, 0.2, 0.7);
+  const auto f = [&](const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
+    if (gradient != nullptr) *gradient = theta;  // that of the first term
+    return 0.5 * theta.squaredNorm() + curb(theta, input_std, options, gradient);
+  };
+  EXPECT_TRUE(
+      gradientMatches(f, (Eigen::VectorXd(5) << 3.0, -4.0, 2.0, 2.5, -3.0).finished(), 1e-8));
+}
+
+TEST(SampleStd, HasDivisorOneLessThanTheCount) {
+  Eigen::MatrixXd samples(2, 3);
+  samples << 1, 2, 6, 5, 5, 5;
+  EXPECT_NEAR(std::sqrt(7.0), sampleStd(samples)[0], 1e-15);
+  EXPECT_EQ(0.0, sampleStd(samples)[1]);
+}
+
+TEST(InitialHyperparameters, AreTheSpreadOfTheData) {
+  const Toy toy(30);
+  const Hyperparameters initial = initialHyperparameters(toy.inputs, toy.targets);
+  const Eigen::VectorXd target_std = sampleStd(toy.targets.transpose());
+  EXPECT_NEAR(sampleStd(toy.inputs)[2], std::exp(initial.log_length_scales(2, 1)), 1e-14);
+  EXPECT_NEAR(target_std[1], std::exp(initial.log_signal_std[1]), 1e-14);
+  EXPECT_NEAR(target_std[1] / 10.0, std::exp(initial.log_noise_std[1]), 1e-14);
+}
+
+TEST(MakeGpModel, InvertsTheCovariance) {
+  const Toy toy(12);
+  const Hyperparameters hyperparameters = initialHyperparameters(toy.inputs, toy.targets);
+  const GpFit fit = makeGpModel(toy.inputs, toy.targets, hyperparameters);
+  ASSERT_TRUE(fit.ok) << fit.message;
+  for (int output = 0; output < 2; ++output) {
+    const Eigen::VectorXd theta = thetaOf(hyperparameters, output);
+    Eigen::MatrixXd a = squaredExponential(
+        toy.inputs, toy.inputs, theta.head(3).array().exp().matrix(), std::exp(theta[3]));
+    a.diagonal().array() += std::exp(2.0 * theta[4]);
+    const Eigen::MatrixXd& inverse = fit.model.inverse[output];
+    EXPECT_LT((a * inverse - Eigen::MatrixXd::Identity(12, 12)).cwiseAbs().maxCoeff(), 1e-10);
+    EXPECT_EQ(inverse, inverse.transpose());
+    EXPECT_LT((a * fit.model.beta.col(output) - toy.targets.col(output)).cwiseAbs().maxCoeff(),
+              1e-10);
+  }
+}
+
+TEST(MakeGpModel, NamesTheOutputThatIsNotPositiveDefinite) {
+  Toy toy(8);
+  toy.inputs.col(3) = toy.inputs.col(5);
+  Hyperparameters hyperparameters = initialHyperparameters(toy.inputs, toy.targets);
+  hyperparameters.log_length_scales.col(1).array() += 5.0;
+  hyperparameters.log_noise_std[1] = -40.0;
+  const GpFit fit = makeGpModel(toy.inputs, toy.targets, hyperparameters);
+  EXPECT_FALSE(fit.ok);
+  EXPECT_NE(std::string::npos, fit.message.find("output 2 is not positive definite"))
+      << fit.message;
+  EXPECT_EQ(0, fit.model.numPoints());
+}
+
+TEST(TrainGp, EndsAtAnOptimumThatKnowsNoiseAndRelevance) {
+  const Toy toy(80);
+  const GpFit fit = trainGp(toy.inputs, toy.targets, GpTrainingOptions());
+  ASSERT_TRUE(fit.ok) << fit.message;
+  EXPECT_EQ("", fit.message);
+  ASSERT_EQ(2u, fit.outputs.size());
+  for (int output = 0; output < 2; ++output) {
+    EXPECT_LT(fit.outputs[output].final_cost, fit.outputs[output].initial_cost - 1.0);
+    EXPECT_LT(fit.outputs[output].gradient_norm, 1e-4);
+    EXPECT_LE(fit.outputs[output].iterations, 300);
+    EXPECT_GE(fit.outputs[output].evaluations, fit.outputs[output].iterations);
+    EXPECT_NEAR(0.05, std::exp(fit.model.hyperparameters.log_noise_std[output]), 0.02);
+    EXPECT_GT(fit.model.hyperparameters.log_length_scales(2, output), std::log(5.0));
+  }
+  const Eigen::VectorXd theta = thetaOf(fit.model.hyperparameters, 1);
+  const double expected = negativeLogLikelihood(toy.inputs, toy.targets.col(1), theta) +
+                          curb(theta, sampleStd(toy.inputs), GpTrainingOptions());
+  EXPECT_NEAR(expected, fit.outputs[1].final_cost, 1e-9 * std::abs(expected));
+}
+
+TEST(TrainGp, GoesOnFromThePreviousOptimum) {
+  const Toy toy(60);
+  const GpFit first = trainGp(toy.inputs, toy.targets, GpTrainingOptions());
+  const Hyperparameters optimum = first.model.hyperparameters;
+  const GpFit again = trainGp(toy.inputs, toy.targets, GpTrainingOptions(), &optimum);
+  ASSERT_TRUE(again.ok) << again.message;
+  for (int output = 0; output < 2; ++output) {
+    EXPECT_EQ(first.outputs[output].final_cost, again.outputs[output].initial_cost);
+    EXPECT_LE(again.outputs[output].final_cost, again.outputs[output].initial_cost);
+    EXPECT_LT(again.outputs[output].iterations, first.outputs[output].iterations);
+  }
+}
+
+TEST(TrainGp, KeepsTheLimitOfIterations) {
+  const Toy toy(40);
+  GpTrainingOptions options;
+  options.max_iterations = 3;
+  const GpFit fit = trainGp(toy.inputs, toy.targets, options);
+  ASSERT_TRUE(fit.ok);
+  EXPECT_EQ(3, fit.outputs[0].iterations);
+  EXPECT_LT(fit.outputs[0].final_cost, fit.outputs[0].initial_cost);
+}
+
+TEST(TrainGp, KeepsTheNoiseOfNoiselessDataAtTheCurb) {
+  Toy toy(40);
+  toy.targets.col(0) = toy.inputs.row(0).transpose();
+  const GpFit fit = trainGp(toy.inputs, toy.targets, GpTrainingOptions());
+  ASSERT_TRUE(fit.ok) << fit.message;
+  const Hyperparameters& trained = fit.model.hyperparameters;
+  EXPECT_LT(trained.log_signal_std[0] - trained.log_noise_std[0], std::log(2000.0));
+}
+
+TEST(TrainGp, CopesWithRepeatedPoints) {
+  const Toy toy(30);
+  Eigen::MatrixXd inputs(3, 60), targets(60, 2);
+  inputs << toy.inputs, toy.inputs;
+  targets << toy.targets, toy.targets;
+  const GpFit fit = trainGp(inputs, targets, GpTrainingOptions());
+  ASSERT_TRUE(fit.ok) << fit.message;
+  EXPECT_TRUE(fit.model.beta.allFinite());
+  EXPECT_LT(fit.outputs[0].final_cost, fit.outputs[0].initial_cost);
+}
+
+TEST(TrainGp, TrainsAnewAndSaysSoWhereThePreviousOptimumCannotBeEvaluated) {
+  Toy toy(20);
+  toy.inputs.col(3) = toy.inputs.col(5);
+  Hyperparameters bad = initialHyperparameters(toy.inputs, toy.targets);
+  bad.log_noise_std[1] = -40.0;
+  const GpFit fit = trainGp(toy.inputs, toy.targets, GpTrainingOptions(), &bad);
+  ASSERT_TRUE(fit.ok) << fit.message;
+  EXPECT_EQ("output 2: the previous hyper-parameters cannot be evaluated, trained anew",
+            fit.message);
+}
+
+TEST(TrainGp, TellsThatTheLikelihoodCannotBeEvaluatedAtAll) {
+  Toy toy(20);
+  toy.targets.col(1) *= 1e-161;  // its noise variance is below what double can tell from 0
+  const GpFit fit = trainGp(toy.inputs, toy.targets, GpTrainingOptions());
+  EXPECT_FALSE(fit.ok);
+  EXPECT_EQ("output 2: the likelihood cannot be evaluated at the start of the training",
+            fit.message);
+  EXPECT_EQ(0, fit.model.numPoints());
+}
+
+TEST(TrainGp, RefusesDataItCannotLearnFromAndNamesThem) {
+  const GpTrainingOptions options;
+  const Toy toy(10);
+  const auto training = [&](const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets) {
+    return [&options, inputs, targets] { trainGp(inputs, targets, options); };
+  };
+  Eigen::MatrixXd changed = toy.inputs;
+  changed(1, 6) = kNaN;
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training(changed, toy.targets),
+                                                  {"input 2 of point 7", "finite", "nan"}));
+  changed = toy.targets;
+  changed(3, 1) = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training(toy.inputs, changed),
+                                                  {"target 2 of point 4", "finite", "inf"}));
+  changed = toy.inputs;
+  changed.row(2).setConstant(0.1);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training(changed, toy.targets),
+                                                  {"input 3 is 0.1", "all 10 points"}));
+  changed = toy.targets;
+  changed.col(0).setZero();
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training(toy.inputs, changed),
+                                                  {"target 1 is 0", "all 10 points"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training(toy.inputs, 1e200 * toy.targets),
+                                                  {"target 1", "too large"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      training(toy.inputs.leftCols(1), toy.targets.topRows(1)), {"at least 2 points, got 1"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      training(toy.inputs.leftCols(0), toy.targets.topRows(0)), {"needs data, got 0 points"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training(toy.inputs, toy.targets.topRows(9)),
+                                                  {"same points, got 10 and 9"}));
+}
+
+TEST(TrainGp, RefusesHyperparametersOfAnotherSizeOrNotFinite) {
+  const Toy toy(10);
+  Hyperparameters start = initialHyperparameters(toy.inputs, toy.targets);
+  start.log_signal_std[0] = kNaN;
+  const auto training = [&] { trainGp(toy.inputs, toy.targets, GpTrainingOptions(), &start); };
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training, {"finite"}));
+  start.log_signal_std.setZero(3);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training, {"for 3 inputs and 2 outputs"}));
+}
+
+TEST(GpTrainingOptions, AllProblemsAreReportedAndNaNIsOne) {
+  EXPECT_TRUE(GpTrainingOptions().problems().empty());
+  GpTrainingOptions options;
+  options.max_iterations = -1;
+  options.length_scale_limit = kNaN;
+  options.signal_to_noise_limit = 1.0;
+  options.curb_power = 3;
+  ASSERT_EQ(4u, options.problems().size());
+  EXPECT_EQ("gp/max_iterations must be >= 0, got -1", options.problems()[0]);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [&] { trainGp(Toy(9).inputs, Toy(9).targets, options); }, {"gp/max_iterations"}));
+}
+
+}  // namespace
+}  // namespace pilco
+}  // namespace ddm
