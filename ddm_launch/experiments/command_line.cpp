@@ -5,6 +5,8 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "method.h"
+
 namespace ddm {
 
 namespace po = boost::program_options;
@@ -24,6 +26,12 @@ po::options_description commonOptions(const std::string& about, Arguments* argum
   return options;
 }
 
+void addMethodOption(po::options_description* options, Arguments* arguments) {
+  std::string about = "who learns and acts:";
+  for (const MethodKind& kind : methodKinds()) about += "\n" + kind.name + ": " + kind.about;
+  options->add_options()("method", po::value(&arguments->method), about.c_str());
+}
+
 bool parseCommandLine(int argc, char** argv, const po::options_description& options) {
   po::variables_map values;
   const po::positional_options_description no_positional;
@@ -39,12 +47,22 @@ bool parseCommandLine(int argc, char** argv, const po::options_description& opti
 }
 
 ParamReader openConfiguration(const Arguments& arguments) {
-  return ParamReader::fromFiles(
-      configurationFiles(arguments.preset, arguments.plant, arguments.configs));
+  std::vector<std::string> configs = arguments.configs;
+  const std::string of_method = methodFile(arguments.method);
+  if (!of_method.empty()) configs.insert(configs.begin(), of_method);
+  return ParamReader::fromFiles(configurationFiles(arguments.preset, arguments.plant, configs));
 }
 
 Configuration readConfiguration(const Arguments& arguments, ParamReader* reader) {
+  const std::shared_ptr<const MethodSetup> method = methodKind(arguments.method).read(reader);
   Configuration configuration = readConfiguration(reader);
+  if (configuration.experiment.method != ExperimentOptions().method) {
+    throw std::invalid_argument("experiment/method must not stand in a file, got " +
+                                configuration.experiment.method +
+                                ": the option --method of run_experiment sets it");
+  }
+  configuration.method = method;
+  configuration.experiment.method = arguments.method;
   configuration.experiment.preset = arguments.preset;
   configuration.experiment.plant = arguments.plant;
   configuration.experiment.seed = arguments.seed;

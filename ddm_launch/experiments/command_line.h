@@ -16,6 +16,7 @@ namespace ddm {
 struct Arguments {
   std::string preset;
   std::string plant;
+  std::string method = "ddm";
   int seed = 0;
   std::string out;
   std::vector<std::string> configs;
@@ -31,10 +32,14 @@ boost::program_options::options_description commonOptions(const std::string& abo
 bool parseCommandLine(int argc, char** argv,
                       const boost::program_options::options_description& options);
 
-/// The files that the arguments name. Blocks beside those of a Configuration are read first.
+/// --method, for a program that lets all of them act.
+void addMethodOption(boost::program_options::options_description* options, Arguments* arguments);
+
+/// The files that the arguments name, that of the method (config/methods) after the plant's. Blocks
+/// beside those of a Configuration are read first.
 ParamReader openConfiguration(const Arguments& arguments);
 
-/// Reads all blocks and sets in `experiment` what the arguments say.
+/// Reads all blocks, those of the method too, and sets in `experiment` what the arguments say.
 /// @throws std::invalid_argument with all problems
 Configuration readConfiguration(const Arguments& arguments, ParamReader* reader);
 

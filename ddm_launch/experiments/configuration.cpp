@@ -9,6 +9,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "method.h"
+
 namespace ddm {
 namespace {
 
@@ -98,6 +100,9 @@ YAML::Node toYaml(const Configuration& configuration) {
   out["sim"] = toYaml(configuration.sim);
   for (const auto& block : toYaml(configuration.model)) out[block.first] = block.second;
   out["mpc"] = toYaml(configuration.mpc);
+  if (configuration.method != nullptr) {
+    for (const auto& block : configuration.method->blocks()) out[block.first] = block.second;
+  }
   return out;
 }
 
@@ -108,11 +113,18 @@ std::vector<std::string> configurationFiles(const std::string& preset, const std
   std::vector<std::string> files = {sim + "/sim.yaml",
                                     packageFolder("ddm_model") + "/config/model.yaml",
                                     packageFolder("ddm_mpc") + "/config/mpc.yaml",
+                                    packageFolder("ddm_mpc") + "/config/pilco.yaml",
                                     launch + "/experiment.yaml",
+                                    launch + "/pilco.yaml",
                                     chooseFile(launch + "/presets", preset, "preset", {}),
                                     chooseFile(sim, plant, "plant", {"sim"})};
   files.insert(files.end(), configs.begin(), configs.end());
   return files;
+}
+
+std::string methodFile(const std::string& method) {
+  const std::string file = packageFolder("ddm_launch") + "/config/methods/" + method + ".yaml";
+  return fs::exists(file) ? file : "";
 }
 
 }  // namespace ddm

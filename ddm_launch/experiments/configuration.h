@@ -8,12 +8,15 @@
 #include <ddm_sim/plant_options.h>
 #include <yaml-cpp/yaml.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "experiment_options.h"
 
 namespace ddm {
+
+class MethodSetup;
 
 struct Configuration {
   ExperimentOptions experiment;
@@ -24,13 +27,14 @@ struct Configuration {
   SimOptions sim;
   ModelConfig model;
   MpcOptions mpc;
+  std::shared_ptr<const MethodSetup> method;  ///< null: the nodes, whose method is ddm
 };
 
 /// Reads all blocks and checks each, and that they fit together.
 /// @throws std::invalid_argument with all problems, one per line
 Configuration readConfiguration(ParamReader* reader);
 
-/// All blocks by name, in the order above.
+/// All blocks by name, in the order above, those of the method last.
 YAML::Node toYaml(const Configuration& configuration);
 
 /// The files that make up a configuration, the manual first, what differs last: a plant knows
@@ -41,5 +45,9 @@ YAML::Node toYaml(const Configuration& configuration);
 /// @throws std::invalid_argument naming what there is, if there is no such preset or plant
 std::vector<std::string> configurationFiles(const std::string& preset, const std::string& plant,
                                             const std::vector<std::string>& configs);
+
+/// FILE.yaml in ddm_launch/config/methods: what a method wants other than the presets; empty if
+/// there is none.
+std::string methodFile(const std::string& method);
 
 }  // namespace ddm

@@ -10,7 +10,7 @@
 
 namespace ddm {
 
-DdmMethod::DdmMethod(const Configuration& configuration)
+DdmMethod::DdmMethod(const Configuration& configuration, const Plant& /*plant*/)
     : configuration_(configuration),
       bags_(configuration.model.image.size, configuration.model.data_set) {}
 
@@ -29,7 +29,7 @@ TrainingOutcome DdmMethod::train(const std::vector<std::string>& bags, const Tri
   if (!result.model) throw std::runtime_error(result.message);
   model_ = std::make_shared<const Ddm>(*result.model);
   TrainingOutcome outcome;
-  outcome.model = serialiseModel(*model_);
+  outcome.files["model.ddm"] = serialiseModel(*model_);
   outcome.frames = model_->info().frames;
   outcome.v_r = model_->info().v_r;
   outcome.v_p = model_->info().v_p;

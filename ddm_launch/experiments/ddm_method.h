@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "configuration.h"
 #include "method.h"
 
 namespace ddm {
@@ -16,7 +17,7 @@ namespace ddm {
 /// Does what model_node and mpc_node do.
 class DdmMethod : public Method {
  public:
-  explicit DdmMethod(const Configuration& configuration);
+  DdmMethod(const Configuration& configuration, const Plant& plant);
 
   /// @throws std::runtime_error if a bag cannot be read or the training comes to nothing
   TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,

@@ -95,7 +95,7 @@ void runExperiment(const Configuration& configuration, World* world, RunFolder* 
   for (int trial = num_finished; trial <= configuration.experiment.trials; ++trial) {
     loop.recordTrial(trial);
     const TrainingOutcome training = loop.train(trial);
-    if (!training.model.empty()) folder->writeModel(trial, training.model);
+    folder->writeTraining(trial, training);
     const TrialOutcome greedy = loop.evaluateGreedily(trial);
     folder->writeEvaluation(trial, greedy);
     folder->finishTrial(loop.rowOf(trial, training, greedy));

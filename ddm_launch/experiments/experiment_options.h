@@ -11,7 +11,7 @@ namespace ddm {
 struct ExperimentOptions {
   std::string preset = "paper";    ///< name of the preset
   std::string plant = "pendulum";  ///< name of the plant
-  std::string method = "ddm";      ///< who learns and acts, see methodNames()
+  std::string method = "ddm";      ///< who learns and acts, see method.h
   int seed = 0;                    ///< fixes every random draw
   int trials = 15;                 ///< epsilon-greedy trials after the random one [-]
   std::string runs;                ///< folder for everything that the experiment leaves behind
@@ -30,9 +30,6 @@ struct ExperimentOptions {
   /// Everything wrong with these values, in words a user can act on. Empty means valid.
   std::vector<std::string> problems() const;
 };
-
-/// The values that `experiment/method` may have.
-std::vector<std::string> methodNames();
 
 /// Block `trial`.
 struct TrialOptions {

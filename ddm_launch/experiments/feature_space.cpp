@@ -24,6 +24,7 @@
 
 #include "camera_view.h"
 #include "configuration.h"
+#include "csv_text.h"
 
 namespace ddm {
 namespace {
@@ -152,9 +153,7 @@ void run(const Arguments& arguments) {
   const Eigen::MatrixXd Z = encodeAll(*model, experience(arguments, all));
   const Plan plan = planAt(arguments, all, model);
 
-  std::string text = "kind,step";
-  for (int i = 1; i <= model->featureDim(); ++i) text += ",z_" + std::to_string(i);
-  text += "\n";
+  std::string text = csvHeader("kind,step", featureNames(model->featureDim())) + "\n";
   for (Eigen::Index i = 0; i < Z.cols(); ++i) text += row("experience", i, Z.col(i));
   text += row("current", arguments.step, plan.features.col(0));
   text += row("goal", 0, plan.goal_feature);

@@ -25,7 +25,7 @@ ros::Time stampOf(int step, double dt) {
 InProcessWorld::InProcessWorld(const Configuration& configuration)
     : configuration_(configuration),
       plant_(makePlant(configuration.plant, configuration.camera)),
-      method_(makeMethod(configuration, *plant_)) {
+      method_(configuration.method->make(configuration, *plant_)) {
   if (!configuration.sim.lockstep) {
     throw std::invalid_argument(
         "sim/lockstep must be true where everything runs in one process: use experiment.launch for "

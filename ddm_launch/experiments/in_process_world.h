@@ -17,7 +17,9 @@ namespace ddm {
 /// bags in between: the same configuration and seed give the same torques.
 class InProcessWorld : public World {
  public:
-  /// @throws std::invalid_argument if the configuration asks for real time
+  /// @param configuration  with a method; outlives the world
+  /// @throws std::invalid_argument if the configuration asks for real time, or does not fit the
+  /// method
   explicit InProcessWorld(const Configuration& configuration);
 
   TrialOutcome runTrial(const TrialRequest& request, const PhaseCallback& progress) override;

@@ -2,16 +2,48 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "method.h"
 
+#include <stdexcept>
+
 #include "ddm_method.h"
 #include "oracle_method.h"
+#include "pilco/pilco_methods.h"
 
 namespace ddm {
+namespace {
 
-std::unique_ptr<Method> makeMethod(const Configuration& configuration, const Plant& plant) {
-  if (configuration.experiment.method == "oracle") {
-    return std::make_unique<OracleMethod>(configuration, plant);
+/// A method that the common blocks suffice.
+template <class AnyMethod>
+class PlainSetup : public MethodSetup {
+ public:
+  YAML::Node blocks() const override { return YAML::Node(YAML::NodeType::Map); }
+  std::unique_ptr<Method> make(const Configuration& configuration,
+                               const Plant& plant) const override {
+    return std::make_unique<AnyMethod>(configuration, plant);
   }
-  return std::make_unique<DdmMethod>(configuration);
+};
+
+template <class AnyMethod>
+MethodKind plainKind(const std::string& name, const std::string& about) {
+  return {name, about, [](ParamReader*) { return std::make_shared<PlainSetup<AnyMethod>>(); }};
+}
+
+}  // namespace
+
+std::vector<MethodKind> methodKinds() {
+  std::vector<MethodKind> kinds = {
+      plainKind<DdmMethod>("ddm", "the paper's (default)"),
+      plainKind<OracleMethod>("oracle", "plans with the same planner on the true plant and state")};
+  for (MethodKind& kind : pilcoMethods()) kinds.push_back(std::move(kind));
+  return kinds;
+}
+
+MethodKind methodKind(const std::string& name) {
+  std::string known;
+  for (const MethodKind& kind : methodKinds()) {
+    if (kind.name == name) return kind;
+    known += (known.empty() ? "" : ", ") + kind.name;
+  }
+  throw std::invalid_argument("unknown method '" + name + "': there are " + known);
 }
 
 }  // namespace ddm

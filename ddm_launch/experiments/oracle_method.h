@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "configuration.h"
 #include "method.h"
 
 namespace ddm {

@@ -18,6 +18,7 @@
 
 #include "camera_view.h"
 #include "command_line.h"
+#include "csv_text.h"
 #include "progress.h"
 #include "quadratic_fit.h"
 #include "results_folder.h"
@@ -91,10 +92,7 @@ std::string cells(const Eigen::Ref<const Eigen::VectorXd>& values) {
 
 /// The columns of states and features.
 std::string columns(const Plant& plant, int feature_dim) {
-  std::string text;
-  for (const std::string& name : plant.stateNames()) text += "," + name;
-  for (int i = 1; i <= feature_dim; ++i) text += ",z_" + std::to_string(i);
-  return text + "\n";
+  return csvHeader(csvHeader("", plant.stateNames()), featureNames(feature_dim)) + "\n";
 }
 
 std::string featuresCsv(const Plant& plant, const Recording& recording, const Eigen::MatrixXd& Z) {
@@ -195,7 +193,6 @@ void run(const Experiment& experiment) {
 void requireFit(const Experiment& experiment) {
   const PredictionOptions& prediction = experiment.prediction;
   const ModelOptions& model = experiment.configuration.model.model;
-  const std::string& method = experiment.configuration.experiment.method;
   std::string problems;
   if (prediction.held_out_frames < prediction.max_steps + model.order) {
     problems +=
@@ -210,7 +207,6 @@ void requireFit(const Experiment& experiment) {
         "got " +
         std::to_string(prediction.training_frames);
   }
-  if (method != "ddm") problems += "\n - experiment/method must be ddm, got " + method;
   if (!problems.empty()) throw std::invalid_argument("invalid configuration:" + problems);
 }
 

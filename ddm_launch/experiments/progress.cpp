@@ -70,8 +70,11 @@ void Progress::finishTrial(const std::vector<TrialRow>& rows) {
         format("success %d of %d", countSuccesses(rows), static_cast<int>(rows.size()));
   }
   // No more than 80 columns: a line that wraps is hard to read, and cannot be wiped.
-  *out_ << format("trial %2d/%d  %5u frames  V_R %8.3g  V_P %8.3g  %s", row.trial, num_trials_,
-                  row.frames, row.v_r, row.v_p, verdict.c_str())
+  const std::string training = row.v_r && row.v_p
+                                   ? format("V_R %8.3g  V_P %8.3g", *row.v_r, *row.v_p)
+                                   : format("trained in %6.1f s", row.train_s);
+  *out_ << format("trial %2d/%d  %5u frames  %s  %s", row.trial, num_trials_, row.frames,
+                  training.c_str(), verdict.c_str())
         << std::endl;
 }
 

@@ -28,18 +28,14 @@ constexpr char kAbout[] =
 bool configure(int argc, char** argv, ddm::Configuration* configuration) {
   ddm::Arguments arguments;
   int trials = 15;
-  std::string method;
   po::options_description options = ddm::commonOptions(kAbout, &arguments);
   options.add_options()("trials", po::value(&trials)->default_value(trials),
                         "epsilon-greedy trials after the random one");
-  options.add_options()("method", po::value(&method),
-                        "who learns and acts: ddm (default), or oracle, which plans with the same "
-                        "planner on the true plant and state");
+  ddm::addMethodOption(&options, &arguments);
   if (!ddm::parseCommandLine(argc, argv, options)) return false;
   ddm::ParamReader reader = ddm::openConfiguration(arguments);
   *configuration = ddm::readConfiguration(arguments, &reader);
   configuration->experiment.trials = trials;
-  if (!method.empty()) configuration->experiment.method = method;
   ddm::requireValid(configuration->experiment);
   return true;
 }

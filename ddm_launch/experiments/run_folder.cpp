@@ -11,6 +11,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "csv_text.h"
+#include "trajectory_csv.h"
 #include "trials_csv.h"
 
 namespace ddm {
@@ -18,40 +20,11 @@ namespace {
 
 namespace fs = boost::filesystem;
 
-std::string exact(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.17g", value);
-  return text;
-}
-
-/// "step,NAME,NAME...": the part of a header that depends on the plant.
-std::string header(const std::string& first, const std::vector<std::string>& names) {
-  std::string text = first;
-  for (const std::string& name : names) text += "," + name;
-  return text;
-}
-
-std::string values(const Eigen::VectorXd& row) {
-  std::string text;
-  for (Eigen::Index i = 0; i < row.size(); ++i) text += "," + exact(row[i]);
-  return text;
-}
-
 std::string torquesCsv(const TrialOutcome& outcome, const std::vector<std::string>& names) {
-  std::string text = header("step", names) + ",exploratory\n";
+  std::string text = csvHeader("step", names) + ",exploratory\n";
   for (size_t step = 0; step < outcome.torques.size(); ++step) {
-    text += std::to_string(step) + values(outcome.torques[step]) +
+    text += std::to_string(step) + csvValues(outcome.torques[step]) +
             (outcome.exploratory[step] ? ",1\n" : ",0\n");
-  }
-  return text;
-}
-
-std::string trajectoryCsv(const TrialOutcome& outcome, const std::vector<std::string>& names) {
-  std::string text = header("step,time_s", names) + "\n";
-  for (size_t step = 0; step < outcome.states.size(); ++step) {
-    char time[32];
-    std::snprintf(time, sizeof(time), ",%.9g", outcome.times[step]);
-    text += std::to_string(step) + time + values(outcome.states[step]) + "\n";
   }
   return text;
 }
@@ -101,18 +74,24 @@ std::string RunFolder::beginTrial(int trial) const {
 }
 
 void RunFolder::writeTrial(int trial, const TrialOutcome& outcome) {
-  folder_.write(numbered("trial", trial) + "/torques.csv", torquesCsv(outcome, torque_names_));
+  writeRun(numbered("trial", trial), outcome);
 }
 
-void RunFolder::writeModel(int trial, const std::string& model) {
-  folder_.write(numbered("trial", trial) + "/model.ddm", model);
+void RunFolder::writeTraining(int trial, const TrainingOutcome& outcome) {
+  for (const auto& file : outcome.files) {
+    folder_.write(numbered("trial", trial) + "/" + file.first, file.second);
+  }
 }
 
 void RunFolder::writeEvaluation(int trial, const TrialOutcome& outcome) {
-  const std::string folder = numbered("evaluation", trial);
+  writeRun(numbered("evaluation", trial), outcome);
+}
+
+void RunFolder::writeRun(const std::string& folder, const TrialOutcome& outcome) {
   folder_.write(folder + "/torques.csv", torquesCsv(outcome, torque_names_));
   if (!outcome.states.empty()) {
-    folder_.write(folder + "/trajectory.csv", trajectoryCsv(outcome, state_names_));
+    folder_.write(folder + "/trajectory.csv",
+                  formatTrajectoryCsv(outcome.times, outcome.states, state_names_));
   }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,8 @@ struct TrialRow {
   int trial = 0;
   std::uint32_t frames = 0;
   Evaluation evaluation;
-  double v_r = 0.0;
-  double v_p = 0.0;
+  std::optional<double> v_r;  ///< empty: the method has none
+  std::optional<double> v_p;
   double train_s = 0.0;
   std::uint32_t train_evaluations = 0;
   double plan_ms_median = 0.0;
@@ -29,7 +30,7 @@ struct TrialRow {
 
 ///   config.yaml                          effective configuration and version of the code
 ///   trials.csv                           one row per finished trial
-///   trial_NNN/{trial.bag,torques.csv,model.ddm}
+///   trial_NNN/{trial.bag,torques.csv,trajectory.csv} and the files of the training, model.ddm
 ///   evaluation_NNN/{torques.csv,trajectory.csv}
 ///   summary.yaml                         written last: the verdict
 class RunFolder {
@@ -50,7 +51,7 @@ class RunFolder {
   /// @return bagPath(trial)
   std::string beginTrial(int trial) const;
   void writeTrial(int trial, const TrialOutcome& outcome);
-  void writeModel(int trial, const std::string& model);
+  void writeTraining(int trial, const TrainingOutcome& outcome);
   void writeEvaluation(int trial, const TrialOutcome& outcome);
   /// Ends a trial: from here on it is never run again.
   void finishTrial(const TrialRow& row);
@@ -58,6 +59,7 @@ class RunFolder {
 
  private:
   void readRows(const std::string& file);
+  void writeRun(const std::string& folder, const TrialOutcome& outcome);
 
   Configuration configuration_;
   ResultsFolder folder_;

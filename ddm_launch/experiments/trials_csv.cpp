@@ -42,6 +42,13 @@ bool flag(const std::string& text) {
   return text == "1";
 }
 
+std::optional<double> optionalNumber(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  return number(text);
+}
+
+std::string format(const std::optional<double>& value) { return value ? formatDouble(*value) : ""; }
+
 TrialRow parseRow(const std::string& line) {
   std::vector<std::string> columns;
   boost::split(columns, line, boost::is_any_of(","));
@@ -59,8 +66,8 @@ TrialRow parseRow(const std::string& line) {
     row.evaluation.success_strict = flag(columns[4]);
     row.evaluation.final_error_deg = number(columns[5]);
   }
-  row.v_r = number(columns[6]);
-  row.v_p = number(columns[7]);
+  row.v_r = optionalNumber(columns[6]);
+  row.v_p = optionalNumber(columns[7]);
   row.train_s = number(columns[8]);
   row.train_evaluations = count(columns[9]);
   row.plan_ms_median = number(columns[10]);
@@ -81,9 +88,9 @@ std::string formatTrialsCsv(const std::vector<TrialRow>& rows) {
     } else {
       out << ",,";
     }
-    out << "," << formatDouble(row.v_r) << "," << formatDouble(row.v_p) << ","
-        << milliseconds(row.train_s) << "," << row.train_evaluations << ","
-        << milliseconds(row.plan_ms_median) << "," << milliseconds(row.plan_ms_p99) << "\n";
+    out << "," << format(row.v_r) << "," << format(row.v_p) << "," << milliseconds(row.train_s)
+        << "," << row.train_evaluations << "," << milliseconds(row.plan_ms_median) << ","
+        << milliseconds(row.plan_ms_p99) << "\n";
   }
   return out.str();
 }

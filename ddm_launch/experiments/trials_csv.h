@@ -9,7 +9,8 @@
 
 namespace ddm {
 
-/// Header and rows. success, success_strict and final_error_deg are empty where they are not known.
+/// Header and rows. success, success_strict and final_error_deg are empty where they are not known,
+/// v_r and v_p where the method has no such errors.
 std::string formatTrialsCsv(const std::vector<TrialRow>& rows);
 
 /// The inverse.

@@ -7,6 +7,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,11 +34,11 @@ struct TrialOutcome {
 };
 
 struct TrainingOutcome {
-  std::string model;         ///< the model file, byte for byte; empty if the method has none
-  std::uint32_t frames = 0;  ///< learned from
-  double v_r = 0.0;          ///< [grey^2]
-  double v_p = 0.0;          ///< [grey^2]
-  double seconds = 0.0;      ///< wall time of the training [s]
+  std::map<std::string, std::string> files;  ///< what it leaves behind: content by name
+  std::uint32_t frames = 0;                  ///< learned from
+  std::optional<double> v_r;                 ///< [grey^2]; empty: the method has none
+  std::optional<double> v_p;                 ///< [grey^2]
+  double seconds = 0.0;                      ///< wall time of the training [s]
   std::uint32_t evaluations = 0;
 };
 

@@ -267,7 +267,7 @@ TrainingOutcome RosWorld::train(const std::vector<std::string>& bags, const Tria
       [&](const ddm_msgs::TrainFeedbackConstPtr& feedback) { progress(feedback->fraction_done); });
   model_id_ = result.model_id;
   TrainingOutcome outcome;
-  outcome.model = takeModel(result.model_id);
+  outcome.files["model.ddm"] = takeModel(result.model_id);
   outcome.frames = result.frames;
   outcome.v_r = result.v_r;
   outcome.v_p = result.v_p;

@@ -11,13 +11,16 @@ usage: bash test.sh
 Installs the Debian packages that are missing (as root, or through sudo), builds the workspace \$DDM_WS, and
 runs every test: gtest, rosunit, rostest, roslaunch-check and the linters on the Release build, the gtests once
 more on a Debug build with Eigen's assertions and with warnings as errors. A case that runs in both builds
-counts once. Returns 1 if any case fails, or if a test leaves no result.
+counts once; one that is skipped does not count and is named. Returns 1 if any case fails, or if a test leaves
+no result.
 
   --help   this text
 
   DDM_WS              catkin workspace to make or use, default ~/ddm_ws (Release in devel/, Debug in debug/devel/)
   ROS_PARALLEL_JOBS   compiler jobs, for example -j1; default one per core, two gigabytes for each
   CI                  if set, warnings are errors in the Release build too
+  DDM_PILCO_VECTORS   file of reference values for PILCO, which pilco_check then must accept; if not set, that case
+                      is skipped
 TEXT
 }
 
@@ -63,6 +66,8 @@ main() {
   # the verdict is the last line, also when no test could be run
   trap '[[ $? == 0 || -n ${reported:-} ]] || echo "0 passed, 1 failed"' EXIT
   use_system_environment
+  # tests run in folders of their own
+  [[ -z ${DDM_PILCO_VECTORS:-} ]] || DDM_PILCO_VECTORS=$(realpath -m -- "$DDM_PILCO_VECTORS")
   check_system
   ensure_localhost_resolves
   make_workspace

@@ -13,6 +13,7 @@
 #include <limits>
 #include <set>
 
+#include "method.h"
 #include "toy_run.h"
 
 namespace ddm {
@@ -109,6 +110,17 @@ TEST(Configuration, APlantKnowsBetterThanAPresetWhatItNeeds) {
   EXPECT_EQ(pendulum.model.training.max_iterations, 500);
 }
 
+TEST(Configuration, AMethodIsGivenItsFileIfItHasOne) {
+  EXPECT_EQ(methodFile("ddm"), "");
+  const std::vector<std::string> names = namesIn(DDM_LAUNCH_SOURCE_DIR "/config/methods");
+  ASSERT_FALSE(names.empty());
+  for (const std::string& name : names) {
+    const Configuration all = read(configurationFiles("paper", "pendulum", {methodFile(name)}));
+    EXPECT_EQ(all.trial.num_steps, 125) << name;
+    EXPECT_EQ(all.mpc.epsilon, 0.0) << name;
+  }
+}
+
 TEST(Configuration, EveryScheduleButTheJointHasAFileOfItsName) {
   const std::string folder = DDM_LAUNCH_SOURCE_DIR "/config/schedules";
   const std::vector<std::string> names = namesIn(folder);
@@ -123,8 +135,7 @@ TEST(Configuration, EveryScheduleButTheJointHasAFileOfItsName) {
 
 TEST(Configuration, AnUnknownMethodIsRefusedWithThoseThatThereAre) {
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [] { readText("experiment: {method: oracel}\n"); },
-      {"experiment/method must be one of: ddm, oracle", "got oracel"}));
+      [] { methodKind("oracel"); }, {"unknown method 'oracel'", "there are ddm, oracle"}));
 }
 
 TEST(Configuration, WhatIsPredictedIsChecked) {

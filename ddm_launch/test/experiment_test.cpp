@@ -112,7 +112,7 @@ TEST_F(ExperimentTest, ARowTellsFramesSuccessAndPlanTimesOfTheGreedyRun) {
   configuration_.experiment.trials = 0;
   run();
   EXPECT_EQ(textOf(file("trials.csv")).substr(textOf(file("trials.csv")).find('\n') + 1),
-            "7,0,30,1,1,0.0,0.0,0.0,2.000,0,15.000,30.000\n");
+            "7,0,30,1,1,0.0,0.5,0.25,2.000,0,15.000,30.000\n");
 }
 
 TEST_F(ExperimentTest, WithoutGroundTruthSuccessStaysEmpty) {

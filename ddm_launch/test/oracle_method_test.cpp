@@ -75,7 +75,8 @@ class OracleTest : public ::testing::Test {
  protected:
   OracleTest() {
     silenceSolverLog();
-    configuration_.experiment.method = "oracle";
+    ParamReader reader{YAML::Node()};
+    configuration_.method = methodKind("oracle").read(&reader);
     configuration_.trial.num_steps = 60;
   }
 
@@ -115,7 +116,8 @@ TEST_F(OracleTest, LearnsNothingAndNeedsNoBag) {
   InProcessWorld world(configuration_);
   const TrainingOutcome outcome = world.train({"/nowhere/trial.bag"}, TrialId(), [](double) {});
   EXPECT_EQ(outcome.frames, 0u);
-  EXPECT_TRUE(outcome.model.empty());
+  EXPECT_TRUE(outcome.files.empty());
+  EXPECT_FALSE(outcome.v_r.has_value());
 }
 
 }  // namespace

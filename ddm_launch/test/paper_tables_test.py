@@ -13,6 +13,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from run_files import COLUMNS  # noqa: E402
 from ddm_launch import paper_tables  # noqa: E402
 from ddm_launch.run_folder import read_sweep  # noqa: E402
+import synthetic_run  # noqa: E402
 
 PUBLISHED = [(100 * k, 0.5, 0.1) for k in range(0, 16)]
 
@@ -144,6 +145,22 @@ class PaperTablesTest(unittest.TestCase):
         for name in ("success_rate", "schedules", "times", "tile", "agreement"):
             with open(self.path(name + ".csv")) as stream:
                 self.assertGreater(len(list(csv.reader(stream))), 1, name)
+        self.assertFalse(os.path.exists(self.path("pilco.csv")))
+
+    def test_pilco_joins_the_tables_where_it_was_run(self):
+        rows = [synthetic_run.pilco_row(seed, k, 1, 5.0).split(",") for seed in range(12) for k in range(10)]
+        write(self.path("pilco_state", "trials.csv"), COLUMNS, rows)
+        write(self.path("pilco_state", "policy_search.csv"), ["seed", "trial", "frames", "gp_s", "policy_search_s"],
+              [row[:3] + ["1", "4"] for row in rows])
+        agreement = paper_tables.write_tables(self.folder, self.published, ["pilco_state"])
+        self.assertEqual([row[3] for row in agreement if row[0].startswith("PILCO")], ["yes", "yes", "yes"])
+        with open(self.path("pilco.csv")) as stream:
+            self.assertEqual([row[1] for row in csv.reader(stream)],
+                             ["policies"] + [str(k) for k in range(1, 11)] + ["2 to 6"])
+        with open(self.path("times.csv")) as stream:
+            text = stream.read()
+        self.assertIn("\n\"PILCO on 2-D features, 10 trials\",1000,10,", text)
+        self.assertIn("\n\"PILCO, state: of it policy search\",1250,4,4,s,", text)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,8 @@ from processes import Process, call, find_program  # noqa: E402
 from run_files import COLUMNS, read_bytes, read_rows, read_yaml  # noqa: E402
 
 FIGURES = ["angle_trajectories", "feature_plane", "pendulum_feature_space", "prediction_strip", "schedules_compared",
-           "success_rate"]
+           "success_rate", "trajectory_distributions"]
+PILCO = {"pilco_state": (2, 12), "pilco_state_sparse": (2, 12), "pilco_features": (2, 16), "pilco_pca": (1, 6)}
 SCHEDULES = ["sequential", "v_p_only", "joint_random_init"]
 
 
@@ -62,6 +63,15 @@ class ReproducePaperTest(unittest.TestCase):
                 self.assertEqual(len(read_rows(self.path(plant, name, "predictions.csv"))), 17, (plant, name))
         self.assertEqual({row[3] for row in read_rows(self.path("oracle", "trials.csv"))[1:]}, {"1"})
 
+        for name, (seeds, trials) in PILCO.items():
+            for table in ("trials.csv", "policy_search.csv"):
+                self.assertEqual([row[:2] for row in read_rows(self.path(name, table))[1:]],
+                                 [[str(s), str(t)] for s in range(seeds) for t in range(trials)], (name, table))
+        self.assertEqual([row[1] for row in read_rows(self.path("pilco.csv")) if row[0] == "pilco_pca"],
+                         ["1", "2", "3", "4", "5", "6", "2 to 6"])
+        kinds = [row[3] for row in read_rows(self.path("trajectory_distributions.csv"))[1:] if row[4] == "1"]
+        self.assertEqual(kinds, 2 * 6 * ["predicted", "evaluation", "trial"])
+
         for name in FIGURES:
             width, height = png_size(self.path(name + ".png"))
             self.assertTrue(600 <= width <= 1500 and 200 <= height <= 1500, (name, width, height))
@@ -73,8 +83,9 @@ class ReproducePaperTest(unittest.TestCase):
 
         machine = read_yaml(self.path("machine.yaml"))
         self.assertEqual(machine["preset"], "debug")
-        self.assertEqual(len(machine["steps"]), 14)
-        self.assertEqual({step["seeds_run"] for step in machine["steps"].values()}, {2})
+        self.assertEqual(len(machine["steps"]), 18)
+        self.assertEqual({name: step["seeds_run"] for name, step in machine["steps"].items() if step["seeds_run"] != 2},
+                         {"pilco_pca": 1})
         for name, step in machine["steps"].items():
             self.assertGreater(step["wall_s"], 0.0, name)
             self.assertTrue(20.0 < step["peak_memory_mb"] < 500.0, (name, step))

@@ -226,7 +226,9 @@ TEST_F(RunFolderTest, NothingButTheFilesOfTheContractIsLeft) {
     request.num_steps = 2;
     const TrialOutcome outcome = world.runTrial(request, [](double) {});
     folder.writeTrial(0, outcome);
-    folder.writeModel(0, "model");
+    TrainingOutcome training;
+    training.files["model.ddm"] = "model";
+    folder.writeTraining(0, training);
     folder.writeEvaluation(0, outcome);
     folder.finishTrial(toyRow(0));
     folder.writeSummary(1.0);
@@ -241,7 +243,7 @@ TEST_F(RunFolderTest, NothingButTheFilesOfTheContractIsLeft) {
   EXPECT_EQ(names, (std::vector<std::string>{".lock", "config.yaml", "evaluation_000/torques.csv",
                                              "evaluation_000/trajectory.csv", "summary.yaml",
                                              "trial_000/model.ddm", "trial_000/torques.csv",
-                                             "trials.csv"}));
+                                             "trial_000/trajectory.csv", "trials.csv"}));
 }
 
 TEST_F(RunFolderTest, TorquesAreWrittenWith17Digits) {

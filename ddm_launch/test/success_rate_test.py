@@ -4,6 +4,7 @@
 import os
 import sys
 
+from matplotlib.colors import to_rgb
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -47,7 +48,7 @@ class SuccessRateTest(figure_case.FigureCase):
             bars = [container.lines[2][0].get_segments()[0] for container in axes.containers
                     if container.get_label() == "mine (4 seeds)"][0]
             axis_labels = (axes.get_xlabel(), axes.get_ylabel())
-        self.assertEqual(labels, ["mine (4 seeds)"] + [row[-1] for row in success_rate.PUBLISHED])
+        self.assertEqual(labels, ["mine (4 seeds)"] + [row[0] + " (paper)" for row in success_rate.METHODS])
         self.assertEqual(points, [(100, 0.5), (200, 1.0)])
         self.assertAlmostEqual(bars[1][1] - bars[0][1], 2.0 * (0.25 / 3.0) ** 0.5)
         self.assertEqual(axis_labels, ("frames learned from [image-torque pairs]", "success rate [-]"))
@@ -61,20 +62,52 @@ class SuccessRateTest(figure_case.FigureCase):
 
     def test_the_legend_fits_into_the_width_of_a_column(self):
         path = self.writeSweep()
-        for label in ("mine", "a label of so many letters that only one fits"):
-            curves = [success_rate.read_curve(label, path)] + success_rate.read_published(PUBLISHED)
-            with new_figure(COLUMN_WIDTH, 4.0) as figure:
-                success_rate.draw_figure(figure, curves[:1], curves[1:])
-                figure.canvas.draw()
-                legend = figure.axes[-1].get_legend().get_window_extent()
-                self.assertGreaterEqual(legend.x0, 0.0)
-                self.assertLessEqual(legend.x1, figure.bbox.width)
-                self.assertGreaterEqual(legend.y0, 0.0)
+        methods = [row[0] for row in success_rate.METHODS] + ["oracle"]
+        for names in (["mine"], ["a label of so many letters that only one fits"], methods):
+            ours, published = [success_rate.read_curve(name, path) for name in names], []
+            for published in ([], success_rate.read_published(PUBLISHED)):
+                with new_figure(COLUMN_WIDTH, 4.0) as figure:
+                    success_rate.draw_figure(figure, ours, published)
+                    figure.canvas.draw()
+                    legend = figure.axes[-1].get_legend().get_window_extent()
+                    self.assertGreaterEqual(legend.x0, 0.0)
+                    self.assertLessEqual(legend.x1, figure.bbox.width)
+                    self.assertGreaterEqual(legend.y0, 0.0)
+                    if names is methods:  # two columns: no method's name is too long for its place beside the paper's
+                        self.assertEqual(success_rate.num_legend_columns(ours, published), 2)
 
-    def test_no_two_curves_share_marker_and_line(self):
-        styles = [row[1:3] for row in success_rate.OURS] + [row[3:5] for row in success_rate.PUBLISHED]
-        self.assertEqual(len(set(row[0] for row in success_rate.OURS)), len(success_rate.OURS))
-        self.assertEqual(len(set(styles)), len(styles))
+    def draw(self, names):
+        """Draws curves of these names over the paper's. Returns {label: (colour, marker, line)}."""
+        path = self.writeSweep()
+        with new_figure(COLUMN_WIDTH, 3.0) as figure:
+            axes = figure.add_subplot(1, 1, 1)
+            success_rate.draw_curves(axes, [success_rate.read_curve(name, path) for name in names],
+                                     success_rate.read_published(PUBLISHED))
+            lines = {container.get_label(): container.lines[0] for container in axes.containers}
+            return {label: (to_rgb(line.get_color()), line.get_marker(), line.get_linestyle())
+                    for label, line in lines.items()}
+
+    def test_a_method_of_the_paper_has_the_colour_and_marker_of_its_published_curve(self):
+        names = [row[0] for row in success_rate.METHODS]
+        drawn = self.draw(["oracle"] + names[::-1])
+        for name in names:
+            ours, paper = drawn[name + " (4 seeds)"], drawn[name + " (paper)"]
+            self.assertEqual(paper[0], success_rate.lighter(ours[0]))
+            self.assertEqual((ours[1], ours[2], paper[2]), (paper[1], "-", "--"))
+        self.assertEqual(len(set(style[:2] for style in drawn.values())), 9)
+
+    def test_no_two_curves_share_colour_or_marker(self):
+        styles = success_rate.styles([row[0] for row in success_rate.METHODS] + ["a", "b", "c", "d"])
+        for part in zip(*styles):
+            self.assertEqual(len(set(part)), 8)
+
+    def test_lighter_is_half_way_to_white(self):
+        self.assertEqual(success_rate.lighter("#000000"), (0.5, 0.5, 0.5))
+        self.assertEqual(success_rate.lighter((1.0, 0.2, 0.0)), (1.0, 0.6, 0.5))
+
+    def test_a_name_that_is_there_twice_is_refused(self):
+        curve = "DDM + MPC=" + self.writeSweep()
+        self.assertRefused(success_rate.main, [curve, curve], "got 'DDM + MPC' twice")
 
     def test_several_files_and_the_paper_make_a_picture_as_wide_as_a_column(self):
         path = self.writeSweep()
@@ -88,8 +121,8 @@ class SuccessRateTest(figure_case.FigureCase):
             self.assertIn("must be LABEL=FILE.csv, got '%s'" % word, output)
 
     def test_more_curves_than_can_be_told_apart_are_refused(self):
-        curves = ["%d=%s" % (k, self.writeSweep()) for k in range(len(success_rate.OURS) + 1)]
-        self.assertRefused(success_rate.main, curves, "at most 6 curves")
+        curves = ["%d=%s" % (k, self.writeSweep()) for k in range(5)] + ["DDM + MPC=" + self.writeSweep()]
+        self.assertRefused(success_rate.main, curves, "at most 4 curves", "PILCO, state", "got 5")
 
     def test_a_seed_that_is_there_twice_is_refused(self):
         path = self.write("twice.csv", HEADER, "7,0,100,0,90", "7,0,100,1,2")

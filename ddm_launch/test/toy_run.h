@@ -85,8 +85,10 @@ class ObedientWorld : public World {
     if (calls.size() == fails_at) throw std::runtime_error("the numbers ran away");
     progress(0.5);
     TrainingOutcome outcome;
-    outcome.model = "model " + std::to_string(id.trial);
+    outcome.files["model.ddm"] = "model " + std::to_string(id.trial);
     outcome.frames = static_cast<std::uint32_t>(kToySteps * bags.size());
+    outcome.v_r = 0.5;
+    outcome.v_p = 0.25;
     outcome.seconds = 2.0;
     return outcome;
   }

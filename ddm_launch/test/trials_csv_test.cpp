@@ -68,6 +68,18 @@ TEST(TrialsCsv, SuccessIsEmptyWhereItIsNotKnown) {
   EXPECT_EQ(formatTrialsCsv(parseTrialsCsv(text, "trials.csv")), text);
 }
 
+TEST(TrialsCsv, ErrorsThatAMethodDoesNotHaveAreEmpty) {
+  TrialRow row = toyRow(0);
+  row.v_r = std::nullopt;
+  row.v_p = std::nullopt;
+  const std::string text = formatTrialsCsv({row});
+  EXPECT_NE(text.find(",,,0.125,26,"), std::string::npos) << text;
+  const TrialRow read = parseTrialsCsv(text, "trials.csv")[0];
+  EXPECT_FALSE(read.v_r.has_value());
+  EXPECT_FALSE(read.v_p.has_value());
+  EXPECT_EQ(read.train_s, row.train_s);
+}
+
 TEST(TrialsCsv, AnotherHeaderIsRefused) {
   for (const std::string text : {"", "seed,trial\n", "\n", "7,0,30,1,1,0.1,1,1,1,26,1,1\n"}) {
     EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { parseTrialsCsv(text, "DIR/trials.csv"); },
@@ -79,7 +91,7 @@ TEST(TrialsCsv, AnotherHeaderIsRefused) {
 TEST(TrialsCsv, ADamagedValueIsRefusedWithItsLine) {
   const std::vector<std::pair<size_t, std::string>> faults = {
       {0, "x"},   {0, ""},   {1, "1.5"}, {2, "-1"},      {2, ""},    {3, "2"},
-      {3, "yes"}, {4, ""},   {5, "far"}, {5, ""},        {6, "nan"}, {6, ""},
+      {3, "yes"}, {4, ""},   {5, "far"}, {5, ""},        {6, "nan"}, {6, "-"},
       {7, "inf"}, {8, "1s"}, {9, "2.5"}, {10, "0.2 ms"}, {11, ""},   {11, "-inf"}};
   for (const auto& fault : faults) {
     EXPECT_TRUE(throwsNaming<std::runtime_error>(

@@ -18,6 +18,7 @@ std::vector<Named> schedules() {
   return {{"joint", {true, {joint}}},
           {"sequential", {true, {auto_encoder, predictor}}},
           {"v_p_only", {true, {v_p_only}}},
+          {"v_r_only", {true, {auto_encoder}}},
           {"joint_random_init", {false, {joint}}}};
 }
 

@@ -14,8 +14,10 @@ namespace {
 
 const std::set<std::string>& blocksOfThisRepository() {
   static const std::set<std::string> blocks = {
-      "plant", "camera",     "sim",        "image",    "model",      "training", "data_set",  "mpc",
-      "trial", "evaluation", "experiment", "recorder", "controller", "run",      "prediction"};
+      "plant",     "camera",        "sim",   "image",      "model",
+      "training",  "data_set",      "mpc",   "pilco",      "gp",
+      "sparse_gp", "policy_search", "trial", "evaluation", "experiment",
+      "recorder",  "controller",    "run",   "prediction"};
   return blocks;
 }
 

@@ -184,7 +184,8 @@ TEST(ParamReader, ReportsAnUnknownBlockWithTheNearest) {
 
 TEST(ParamReader, IgnoresTheBlocksOfOtherPrograms) {
   EXPECT_TRUE(mpcProblems("{plant: 1, camera: 1, sim: 1, image: 1, model: 1, training: 1, "
-                          "data_set: 1, trial: 1, evaluation: 1, experiment: 1, recorder: 1}")
+                          "data_set: 1, trial: 1, evaluation: 1, experiment: 1, recorder: 1, "
+                          "pilco: 1, gp: 1, sparse_gp: 1, policy_search: 1}")
                   .empty());
 }
 

@@ -56,6 +56,27 @@ def half_turns_text(count):
     return {0: "0", 1: "$\\pi$", -1: "$-\\pi$"}.get(count, "$%d\\pi$" % count)
 
 
+def angle_reach(angles):
+    """Up to how many half turns [pi rad] panels with these angles show: the target always, at most MOST_TURNS."""
+    return min(MOST_TURNS, max(1.3, 1.05 * max(abs(angle) for angle in angles) / math.pi))
+
+
+def set_angle_axis(axes, reach, labelled):
+    """The vertical axis of a panel in half turns, with all targets; its labels only where asked for."""
+    for target in range(-3, 4, 2):  # all of them upright
+        axes.axhspan(target - SUCCESS_LIMIT_RAD / math.pi, target + SUCCESS_LIMIT_RAD / math.pi, color=TARGET,
+                     linewidth=0, zorder=0)
+    axes.set_ylim(-reach, reach)
+    ticks = [count for count in range(-3, 4) if abs(count) < reach]
+    axes.set_yticks(ticks)
+    axes.set_yticklabels([half_turns_text(count) for count in ticks] if labelled else [])
+
+
+def target_handle():
+    """(handle, label) of the targets in a legend."""
+    return Patch(color=TARGET), "target: within %.0f° of $\\pm\\pi$" % math.degrees(SUCCESS_LIMIT_RAD)
+
+
 def draw_panel(axes, trajectories, frames):
     """All seeds after so many frames, those that succeed drawn last; how many do stands above."""
     for success, colour, style, width in ((False, VERMILLION, (0, (3, 1)), 0.7), (True, BLUE, "-", 0.7)):
@@ -69,8 +90,8 @@ def draw_panel(axes, trajectories, frames):
 
 def draw_all(figure, trials):
     """One panel per trial, all with the same axes, and a legend below."""
-    angles = [angle for panel in trials.values() for trajectory in panel.values() for angle in trajectory.angle_rad]
-    reach = min(MOST_TURNS, max(1.3, 1.05 * max(abs(angle) for angle in angles) / math.pi))
+    reach = angle_reach(angle for panel in trials.values() for trajectory in panel.values()
+                        for angle in trajectory.angle_rad)
     end = max(trajectory.end_s for panel in trials.values() for trajectory in panel.values())
     num_columns = min(COLUMNS, len(trials))
     num_rows = math.ceil(len(trials) / num_columns)
@@ -78,15 +99,9 @@ def draw_all(figure, trials):
     for k, (frames, trajectories) in enumerate(trials.items()):
         row, column = divmod(k, num_columns)
         axes = figure.add_subplot(grid[row, column])
-        for target in range(-3, 4, 2):  # all of them upright
-            axes.axhspan(target - SUCCESS_LIMIT_RAD / math.pi, target + SUCCESS_LIMIT_RAD / math.pi, color=TARGET,
-                         linewidth=0, zorder=0)
+        set_angle_axis(axes, reach, column == 0)
         draw_panel(axes, trajectories, frames)
         axes.set_xlim(0.0, round(end, 6))
-        axes.set_ylim(-reach, reach)
-        ticks = [count for count in range(-3, 4) if abs(count) < reach]
-        axes.set_yticks(ticks)
-        axes.set_yticklabels([half_turns_text(count) for count in ticks] if column == 0 else [])
         if column == 0:
             axes.set_ylabel("angle [rad]")
         if k + num_columns < len(trials):
@@ -95,10 +110,9 @@ def draw_all(figure, trials):
             axes.set_xlabel("time [s]")
     legend = figure.add_subplot(grid[num_rows, :])
     legend.axis("off")
-    legend.legend([Line2D([], [], color=BLUE), Line2D([], [], color=VERMILLION, linestyle=(0, (3, 1))),
-                   Patch(color=TARGET)],
-                  ["success (counted above)", "none", "target: within %.0f° of $\\pm\\pi$"
-                   % math.degrees(SUCCESS_LIMIT_RAD)], loc="center", ncol=3, frameon=False)
+    target, target_label = target_handle()
+    legend.legend([Line2D([], [], color=BLUE), Line2D([], [], color=VERMILLION, linestyle=(0, (3, 1))), target],
+                  ["success (counted above)", "none", target_label], loc="center", ncol=3, frameon=False)
 
 
 def draw(path, out):

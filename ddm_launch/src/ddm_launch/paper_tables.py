@@ -4,6 +4,7 @@ import csv
 import os
 import statistics
 
+from ddm_launch import pilco_tables
 from ddm_launch.averages import mean_and_error, success_rates
 from ddm_launch.run_folder import number, read_csv, read_sweep
 from ddm_launch.schedules import SCHEDULES, read_predictions, read_predictions_csv, read_success
@@ -85,7 +86,7 @@ def schedule_table(folder):
 
 
 def time_table(trials):
-    """Rows (what, frames, median, largest, unit, source) of a trials.csv, and PILCO's as the paper gives them."""
+    """Rows (what, frames, median, largest, unit, source) of DDM + MPC's trials.csv, and PILCO's as the paper says."""
     rows = []
     table = read_csv(trials, ["trial", "frames", "train_s", "plan_ms_median", "plan_ms_p99"])
     for trial in TRIALS_OF_TIMES:
@@ -166,14 +167,18 @@ def schedule_agreement(folder):
     return rows
 
 
-def agreement_table(folder, published):
-    """Rows (point, claim of the paper or bar, here, yes | no | n/a) of all that numbers can tell."""
-    rows = curve_rows(folder, published) + tile_agreement(folder) + schedule_agreement(folder)
+def agreement_table(folder, published, pilco=()):
+    """Rows (point, claim of the paper or bar, here, yes | no | n/a) of all that numbers can tell.
+
+    pilco: those of pilco_tables.LABELS that have results.
+    """
+    rows = (curve_rows(folder, published) + tile_agreement(folder) + schedule_agreement(folder) +
+            pilco_tables.agreement_rows(folder, pilco))
     return [(point, claim, here, verdict(holds)) for point, claim, here, holds in rows]
 
 
-def write_tables(folder, published):
-    """Writes all tables of a results folder; returns the rows of agreement.csv."""
+def write_tables(folder, published, pilco=()):
+    """Writes all tables of a results folder; returns the rows of agreement.csv. pilco: see agreement_table()."""
     trials = os.path.join(folder, "trials.csv")
     write_csv(os.path.join(folder, "success_rate.csv"),
               ["frames", "seeds", "success", "success_se", "paper", "paper_se", "difference_in_paper_se"],
@@ -182,9 +187,13 @@ def write_tables(folder, published):
               ["measure", "schedule", "seeds", "mean", "se", "difference_to_joint", "difference_se"],
               schedule_table(folder))
     write_csv(os.path.join(folder, "times.csv"), ["what", "frames", "median", "largest", "unit", "source"],
-              time_table(trials))
+              time_table(trials) + pilco_tables.time_rows(folder, pilco))
+    if pilco:
+        write_csv(os.path.join(folder, "pilco.csv"),
+                  ["method", "policies", "frames", "successes", "runs", "authors_successes", "authors_runs"],
+                  pilco_tables.success_rows(folder, pilco))
     write_csv(os.path.join(folder, "tile.csv"), ["seed", "rmse_8", "rmse_repeat_8", "ratio", "position_r2"],
               tile_rows(folder))
-    agreement = agreement_table(folder, published)
+    agreement = agreement_table(folder, published, pilco)
     write_csv(os.path.join(folder, "agreement.csv"), ["point", "claim_or_bar", "here", "holds"], agreement)
     return agreement

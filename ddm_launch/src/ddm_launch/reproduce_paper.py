@@ -15,6 +15,7 @@ import roslib.packages
 from tqdm import tqdm
 import yaml
 
+from ddm_launch import pilco_runs, pilco_tables
 from ddm_launch.interruption import Interrupted, raised_as_exception
 from ddm_launch.paper_tables import write_csv, write_tables
 from ddm_launch.run_folder import Evaluation, RunFolderError, read_trials
@@ -28,11 +29,20 @@ FIGURE_SEED = 0  # which seed the figures of a single model show
 FIGURE_STEP = 1
 TRIALS = 15
 PAPER_TRIALS = range(15)  # ours that have the 100 to 1500 frames of the paper's figures
+# Name of the step, --method, seeds, --trials, file of config/ for --config.
+PILCO = (("pilco_state", "pilco_state", 12, 11, None),
+         ("pilco_state_sparse", "pilco_state", 12, 11, "sparse_gp.yaml"),
+         ("pilco_features", "pilco_features", 5, 15, None),
+         ("pilco_pca", "pilco_pca", 1, 5, None))
+NUM_DISTRIBUTION_SEEDS = 3
+DISTRIBUTION_TRIALS = (0, 1, 2, 3, 5, 7)  # after 125 to 1000 frames
+DISTRIBUTION_SECONDS = 8  # the swing-up; what happens later shows in the success rate
 
 ABOUT = """\
-Reproduces the paper's experiments: success on the pendulum (Fig. 7 and 8) with the oracle and the other training
+Reproduces the paper's experiments: success on the pendulum (Fig. 7 and 8) with the oracle, PILCO and other training
 schedules beside it, predictions of the moving tile (Fig. 4 and 5) and of the pendulum, the feature space (Fig. 6),
-tables and figures. The same command resumes."""
+tables and figures. PILCO takes hours, all else minutes: --without-pilco leaves it out. The same command resumes;
+without that option it adds PILCO."""
 
 EPILOG = """\
 in DIR:
@@ -42,6 +52,10 @@ in DIR:
   tile/                predictions.csv, features and model of joint training on the moving tile
   tile_predictions/, pendulum_predictions/
                        predictions.csv of each schedule, each with a single start
+  pilco_*/             trials.csv, config.yaml and policy_search.csv (times and costs) of PILCO on the true state (with
+                       the full and with the sparse Gaussian process), on features, on principal components
+  trajectory_distributions.csv
+                       angles that PILCO on the state predicted, and actual ones
   machine.yaml         of each step: version of the code, processor, time, peak memory of a process
   runs/, logs/         everything that the programs left behind; not needed for the figures"""
 
@@ -78,13 +92,27 @@ class SweepStep:
     def seed_folder(self, out, seed):
         return os.path.join(self.folder(out), "seed_%04d" % seed)
 
+    def seed_folders(self, out, most_seeds=sys.maxsize):
+        """{seed: its run folder} of the first seeds."""
+        return {seed: self.seed_folder(out, seed) for seed in range(min(self.num_seeds, most_seeds))}
+
 
 def schedule_options(schedule):
     return [] if schedule == "joint" else ["--config", package_path("config", "schedules", schedule + ".yaml")]
 
 
+def pilco_steps(preset, num_seeds):
+    """The sweeps of PILCO."""
+    steps = []
+    for name, method, most_seeds, trials, config in PILCO:
+        words = ["--preset", preset, "--plant", "pendulum", "--trials", str(trials)]
+        more = ["--method", method] + (["--config", package_path("config", config)] if config else [])
+        steps.append(SweepStep(name, name + "/trials.csv", min(num_seeds, most_seeds), words, more))
+    return steps
+
+
 def sweep_steps(preset, num_seeds):
-    """All sweeps, the paper's own first."""
+    """All sweeps but PILCO's, the paper's own first."""
     pendulum = ["--preset", preset, "--plant", "pendulum", "--trials", str(TRIALS)]
     steps = [SweepStep("joint", "trials.csv", num_seeds, pendulum),
              SweepStep("oracle", "oracle/trials.csv", num_seeds, pendulum, ["--method", "oracle"])]
@@ -108,7 +136,8 @@ def sweep_steps(preset, num_seeds):
 class Reproduction:
     def __init__(self, options):
         self.out, self.preset, self.jobs = os.path.abspath(options.out), options.preset, options.jobs
-        self.steps = sweep_steps(options.preset, options.seeds)
+        self.pilco = [] if options.without_pilco else pilco_steps(options.preset, options.seeds)
+        self.steps = sweep_steps(options.preset, options.seeds) + self.pilco  # the long ones last
         self.by_name = {step.name: step for step in self.steps}
         self.measured = {}  # step: what write_machine() keeps of it
 
@@ -126,7 +155,8 @@ class Reproduction:
                 self.keep(os.path.join(step.folder(self.out), "sweep.csv"), step.table)
             bar.set_description("tables")
             self.collect()
-            agreement = write_tables(self.out, package_path("results", "published", "success_rate.csv"))
+            agreement = write_tables(self.out, package_path("results", "published", "success_rate.csv"),
+                                     [step.name for step in self.pilco])
             bar.update(1)
             for name, command in self.figure_commands():
                 bar.set_description(name)
@@ -201,11 +231,21 @@ class Reproduction:
             folder = self.by_name[step].seed_folder(self.out, FIGURE_SEED)
             for name in ("config.yaml", "features.csv", "model.ddm", "strip.csv"):
                 self.keep(os.path.join(folder, name), "%s/%s" % (kept, name))
+        if self.pilco:
+            self.collect_pilco()
+
+    def collect_pilco(self):
+        for step in self.pilco:
+            self.keep(os.path.join(step.seed_folder(self.out, FIGURE_SEED), "config.yaml"), step.name + "/config.yaml")
+            write_csv(self.path(step.name, "policy_search.csv"), ["seed", "trial", "frames"] + pilco_runs.SEARCH_KEYS,
+                      pilco_runs.search_rows(step.seed_folders(self.out)))
+        folders = self.by_name["pilco_state"].seed_folders(self.out, NUM_DISTRIBUTION_SEEDS)
+        write_csv(self.path("trajectory_distributions.csv"), pilco_runs.DISTRIBUTION_COLUMNS,
+                  pilco_runs.distribution_rows(folders, DISTRIBUTION_TRIALS))
 
     def write_angles(self, step):
         rows = []
-        for seed in range(min(NUM_ANGLE_SEEDS, step.num_seeds)):
-            folder = step.seed_folder(self.out, seed)
+        for seed, folder in step.seed_folders(self.out, NUM_ANGLE_SEEDS).items():
             trials = read_trials(folder)
             for trial in PAPER_TRIALS:
                 run = Evaluation(folder, trial)
@@ -219,15 +259,21 @@ class Reproduction:
         """(name, command) of each figure; all read nothing but what is kept."""
         def figure(name, *words):
             return name, [program(name)] + list(words) + ["--out", self.path(name + ".png")]
+        methods = [("DDM + MPC", "trials.csv")]
+        methods += [(pilco_tables.LABELS[step.name], step.table) for step in self.pilco
+                    if step.name != "pilco_state_sparse"]  # that one stands in the tables
+        methods.append(("oracle", "oracle/trials.csv"))
+        pilco = [figure("trajectory_distributions", self.path("trajectory_distributions.csv"), "--seconds",
+                        str(DISTRIBUTION_SECONDS))] if self.pilco else []
         return [
-            figure("success_rate", "DDM + MPC=" + self.path("trials.csv"), "oracle=" + self.path("oracle/trials.csv"),
+            figure("success_rate", *("%s=%s" % (label, self.path(table)) for label, table in methods),
                    "--published", package_path("results", "published", "success_rate.csv")),
             figure("angle_trajectories", self.path("angle_trajectories.csv")),
             figure("pendulum_feature_space", self.path("pendulum", "feature_space.csv"), "--model",
                    self.path("pendulum", "model.ddm")),
             figure("prediction_strip", self.path("tile")),
             figure("feature_plane", self.path("tile"), self.path("tile_predictions", "sequential")),
-            figure("schedules_compared", self.out)]
+            figure("schedules_compared", self.out)] + pilco
 
     def write_machine(self):
         """With what the figures were made, step by step."""
@@ -269,9 +315,11 @@ def main(arguments=None):
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", type=positive, default=50, metavar="N",
                         help="seeds 0 ... N - 1 of the paper's experiment, default 50; at most %d of each other "
-                        "schedule and %d of each prediction experiment" % (NUM_SCHEDULE_SEEDS, NUM_PREDICTION_SEEDS))
+                        "schedule, %d of each prediction experiment, and %s of PILCO" % (
+                            NUM_SCHEDULE_SEEDS, NUM_PREDICTION_SEEDS, ", ".join(str(row[2]) for row in PILCO)))
     parser.add_argument("--out", default="paper_results", metavar="DIR", help="default paper_results")
     parser.add_argument("--preset", default="paper", help="default paper; debug is for a quick look at the path")
+    parser.add_argument("--without-pilco", action="store_true", help="leave out PILCO, which takes hours")
     parser.add_argument("--jobs", type=positive, metavar="N", help="seeds at a time; default one per core")
     options = parser.parse_args(arguments)
     start, reproduction = time.monotonic(), Reproduction(options)

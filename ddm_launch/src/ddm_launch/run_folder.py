@@ -1,4 +1,4 @@
-# What a figure reads from a run folder: trials.csv, config.yaml and the greedy evaluation of each trial.
+# What figures and tables read from a run folder: trials.csv, config.yaml, and the plant's true state in each run.
 # SPDX-License-Identifier: BSD-3-Clause
 """A run folder is what experiment.launch and run_experiment write. Nothing here writes into it."""
 import csv
@@ -106,17 +106,24 @@ def read_plant(folder):
     return read_setting(folder, "experiment", "plant", "plant")
 
 
-class Evaluation:
-    """One greedy run. Lists of one entry per frame: frame k was shown at time_s[k], then torque_nm[k] acted."""
+class Trajectory:
+    """The pendulum's true state in one run, DIR/trajectory.csv: one entry per frame, time_s from the first one on."""
 
-    def __init__(self, folder, trial):
-        self.folder = os.path.join(folder, "evaluation_%03d" % trial)
-        path = os.path.join(self.folder, "trajectory.csv")
+    def __init__(self, folder):
+        path = os.path.join(folder, "trajectory.csv")
         rows = read_csv(path, ["time_s", "angle_rad", "rate_rad_per_s"])
         start = number(rows[0], "time_s", path)
         self.time_s = [number(row, "time_s", path) - start for row in rows]
         self.angle_rad = [number(row, "angle_rad", path) for row in rows]
         self.rate_rad_per_s = [number(row, "rate_rad_per_s", path) for row in rows]
+
+
+class Evaluation(Trajectory):
+    """One greedy run: frame k was shown at time_s[k], then torque_nm[k] acted."""
+
+    def __init__(self, folder, trial):
+        self.folder = os.path.join(folder, "evaluation_%03d" % trial)
+        super().__init__(self.folder)
         path = os.path.join(self.folder, "torques.csv")
         rows = read_csv(path, ["torque_nm"])
         self.torque_nm = [number(row, "torque_nm", path) for row in rows]

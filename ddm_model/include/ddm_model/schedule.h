@@ -36,6 +36,7 @@ struct Schedule {
 ///   sequential         V_R over theta_E and theta_D, then V_P over theta_P: the features are fixed
 ///                      before f is learned (the paper's counter-example, footnote in Sec. 2.3)
 ///   v_p_only           V_P over all parameters: without the term that the paper calls crucial
+///   v_r_only           V_R over theta_E and theta_D; f stays random: an auto-encoder alone
 ///   joint_random_init  as joint, without the PCA start
 std::vector<std::string> scheduleNames();
 

@@ -86,10 +86,13 @@ struct OutputProblem {
   Eigen::VectorXd targets;
   const Eigen::VectorXd& input_std;
   const GpTrainingOptions& options;
+  const std::function<void()>& on_evaluation;
 
   double operator()(const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) const {
-    const double value = negativeLogLikelihood(inputs, targets, theta, gradient);
-    return value + curb(theta, input_std, options, gradient);
+    const double value = negativeLogLikelihood(inputs, targets, theta, gradient) +
+                         curb(theta, input_std, options, gradient);
+    if (on_evaluation) on_evaluation();
+    return value;
   }
 };
 
@@ -207,7 +210,8 @@ GpFit makeGpModel(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
 }
 
 GpFit trainGp(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
-              const GpTrainingOptions& options, const Hyperparameters* start) {
+              const GpTrainingOptions& options, const Hyperparameters* start,
+              const std::function<void()>& on_evaluation) {
   const std::vector<std::string> problems = options.problems();
   if (!problems.empty()) throw std::invalid_argument(problems.front());
   const Hyperparameters initial = initialHyperparameters(inputs, targets);
@@ -222,7 +226,7 @@ GpFit trainGp(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
         (message.empty() ? "" : "; ") + ("output " + std::to_string(output + 1) + ": ") + text;
   };
   for (int a = 0; a < targets.cols(); ++a) {
-    const OutputProblem problem{inputs, targets.col(a), input_std, options};
+    const OutputProblem problem{inputs, targets.col(a), input_std, options, on_evaluation};
     Minimum minimum = trainOutput(problem, thetaOf(start != nullptr ? *start : initial, a));
     if (!minimum.start_ok && start != nullptr) {
       say(a, "the previous hyper-parameters cannot be evaluated, trained anew");

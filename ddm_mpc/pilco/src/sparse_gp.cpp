@@ -9,6 +9,7 @@
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "ddm_pilco/minimizer.h"
 #include "ddm_pilco/squared_exponential.h"
@@ -189,7 +190,7 @@ Eigen::MatrixXd randomSubset(const Eigen::MatrixXd& inputs, int count, std::mt19
 
 GpFit trainSparseGp(const Eigen::MatrixXd& start, const Eigen::MatrixXd& inputs,
                     const Eigen::MatrixXd& targets, const Hyperparameters& hyperparameters,
-                    int max_iterations, double ridge) {
+                    int max_iterations, double ridge, const std::function<void()>& on_evaluation) {
   requireInducing(start, inputs, targets, hyperparameters);
   const auto cost = [&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
     const Eigen::MatrixXd inducing =
@@ -201,6 +202,7 @@ GpFit trainSparseGp(const Eigen::MatrixXd& start, const Eigen::MatrixXd& inputs,
     if (gradient != nullptr) {
       *gradient = Eigen::Map<const Eigen::VectorXd>(d_inducing.data(), d_inducing.size());
     }
+    if (on_evaluation) on_evaluation();
     return value;
   };
   MinimizerOptions solver;
@@ -226,8 +228,9 @@ GpFit trainSparseGp(const Eigen::MatrixXd& start, const Eigen::MatrixXd& inputs,
   return fit;
 }
 
-GpLearner::GpLearner(const GpTrainingOptions& training, const SparseGpOptions& sparse)
-    : training_(training), sparse_(sparse) {
+GpLearner::GpLearner(const GpTrainingOptions& training, const SparseGpOptions& sparse,
+                     GpLearnerState state)
+    : training_(training), sparse_(sparse), state_(std::move(state)) {
   std::vector<std::string> problems = training.problems();
   const std::vector<std::string> more = sparse.problems();
   problems.insert(problems.end(), more.begin(), more.end());
@@ -235,20 +238,24 @@ GpLearner::GpLearner(const GpTrainingOptions& training, const SparseGpOptions& s
 }
 
 GpFit GpLearner::learn(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
-                       std::mt19937_64* rng) {
-  const bool first = last_optimum_.log_signal_std.size() == 0;
-  GpFit full = trainGp(inputs, targets, training_, first ? nullptr : &last_optimum_);
+                       std::mt19937_64* rng, const std::function<void()>& on_evaluation) {
+  const bool first = state_.hyperparameters.log_signal_std.size() == 0;
+  GpFit full =
+      trainGp(inputs, targets, training_, first ? nullptr : &state_.hyperparameters, on_evaluation);
   if (!full.ok) return full;
-  last_optimum_ = full.model.hyperparameters;
-  if (inputs.cols() <= sparse_.max_points) return full;
+  if (inputs.cols() <= sparse_.max_points) {
+    state_.hyperparameters = full.model.hyperparameters;
+    return full;
+  }
 
-  const bool from_subset = last_inducing_.size() == 0;
+  const bool from_subset = state_.inducing.size() == 0;
   const Eigen::MatrixXd start =
-      from_subset ? randomSubset(inputs, sparse_.max_points, rng) : last_inducing_;
-  GpFit fit =
-      trainSparseGp(start, inputs, targets, last_optimum_,
-                    from_subset ? sparse_.first_iterations : sparse_.max_iterations, sparse_.ridge);
-  if (fit.ok) last_inducing_ = fit.model.inputs;
+      from_subset ? randomSubset(inputs, sparse_.max_points, rng) : state_.inducing;
+  GpFit fit = trainSparseGp(start, inputs, targets, full.model.hyperparameters,
+                            from_subset ? sparse_.first_iterations : sparse_.max_iterations,
+                            sparse_.ridge, on_evaluation);
+  state_.hyperparameters = full.model.hyperparameters;
+  if (fit.ok) state_.inducing = fit.model.inputs;
   full.outputs.insert(full.outputs.end(), fit.outputs.begin(), fit.outputs.end());
   fit.outputs = full.outputs;
   if (!full.message.empty()) {

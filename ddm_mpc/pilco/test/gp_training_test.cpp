@@ -6,12 +6,14 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "ddm_model/testing/expect_error.h"
 #include "ddm_model/testing/gradient_check.h"
 #include "ddm_model/testing/random_matrix.h"
 #include "ddm_pilco/squared_exponential.h"
+#include "vector_of.h"
 
 namespace ddm {
 namespace pilco {
@@ -43,7 +45,7 @@ Eigen::VectorXd someTheta() {
 
 TEST(SquaredExponential, IsTheFormulaForEachPair) {
   const Eigen::MatrixXd a = randomMatrix(2, 3, 1), b = randomMatrix(2, 4, 2);
-  const Eigen::VectorXd l = Eigen::Vector2d(0.5, 2.0);
+  const Eigen::VectorXd l = vectorOf({0.5, 2.0});
   const Eigen::MatrixXd k = squaredExponential(a, b, l, 1.5);
   ASSERT_EQ(3, k.rows());
   ASSERT_EQ(4, k.cols());
@@ -85,17 +87,17 @@ TEST(NegativeLogLikelihood, IsInfiniteWherePositiveDefinitenessIsLost) {
   theta[4] = -30.0;  // and no noise to tell them apart
   Eigen::VectorXd gradient;
   EXPECT_EQ(std::numeric_limits<double>::infinity(),
-            negativeLogLikelihood(inputs, Eigen::Vector4d(1, 2, 3, 4), theta, &gradient));
+            negativeLogLikelihood(inputs, vectorOf({1, 2, 3, 4}), theta, &gradient));
   EXPECT_EQ(5, gradient.size());
   EXPECT_FALSE(gradient.allFinite());
   theta[4] = kNaN;
   EXPECT_EQ(std::numeric_limits<double>::infinity(),
-            negativeLogLikelihood(inputs, Eigen::Vector4d(1, 2, 3, 4), theta));
+            negativeLogLikelihood(inputs, vectorOf({1, 2, 3, 4}), theta));
 }
 
 TEST(Curb, IsOneWhereALimitIsReachedAndNothingFarInside) {
   const GpTrainingOptions options;
-  const Eigen::VectorXd input_std = Eigen::Vector2d(2.0, 0.1);
+  const Eigen::VectorXd input_std = vectorOf({2.0, 0.1});
   Eigen::VectorXd theta(4);
   theta << std::log(2.0), std::log(0.1), 0.0, -1.0;
   EXPECT_LT(curb(theta, input_std, options), 1e-20);
@@ -110,7 +112,7 @@ TEST(Curb, IsOneWhereALimitIsReachedAndNothingFarInside) {
 TEST(Curb, GradientIsAddedAndMatchesDifferences) {
   GpTrainingOptions options;
   options.curb_power = 4;  // the thirtieth power varies too fast for differences
-  const Eigen::VectorXd input_std = Eigen::Vector3d(1.5, 0.2, 0.7);
+  const Eigen::VectorXd input_std = vectorOf({1.5, 0.2, 0.7});
   const auto f = [&](const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
     if (gradient != nullptr) *gradient = theta;  // that of the first term
     return 0.5 * theta.squaredNorm() + curb(theta, input_std, options, gradient);
@@ -250,12 +252,12 @@ TEST(TrainGp, TellsThatTheLikelihoodCannotBeEvaluatedAtAll) {
   EXPECT_EQ(0, fit.model.numPoints());
 }
 
-TEST(TrainGp, RefusesDataItCannotLearnFromAndNamesThem) {
-  const GpTrainingOptions options;
+std::function<void()> training(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets) {
+  return [inputs, targets] { trainGp(inputs, targets, GpTrainingOptions()); };
+}
+
+TEST(TrainGp, RefusesNaNAndInfinityInTheDataAndNamesTheirPlace) {
   const Toy toy(10);
-  const auto training = [&](const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets) {
-    return [&options, inputs, targets] { trainGp(inputs, targets, options); };
-  };
   Eigen::MatrixXd changed = toy.inputs;
   changed(1, 6) = kNaN;
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(training(changed, toy.targets),
@@ -264,7 +266,11 @@ TEST(TrainGp, RefusesDataItCannotLearnFromAndNamesThem) {
   changed(3, 1) = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(training(toy.inputs, changed),
                                                   {"target 2 of point 4", "finite", "inf"}));
-  changed = toy.inputs;
+}
+
+TEST(TrainGp, RefusesDataItCannotLearnFromAndNamesThem) {
+  const Toy toy(10);
+  Eigen::MatrixXd changed = toy.inputs;
   changed.row(2).setConstant(0.1);
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(training(changed, toy.targets),
                                                   {"input 3 is 0.1", "all 10 points"}));

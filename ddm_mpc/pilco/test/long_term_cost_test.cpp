@@ -17,6 +17,7 @@
 #include "gp_sampler.h"
 #include "monte_carlo.h"
 #include "random_gp.h"
+#include "vector_of.h"
 
 namespace ddm {
 namespace pilco {
@@ -53,23 +54,22 @@ struct Pendulum {
 /// @param noisy  whether the policy sees a measurement with noise
 ::testing::AssertionResult stepMatchesSamples(bool noisy, std::mt19937_64& random) {
   GpModel model = randomGp(3, 2, 8, true, random);
-  model.hyperparameters.log_noise_std = Eigen::Vector2d(std::log(0.5), std::log(0.8));
+  model.hyperparameters.log_noise_std = vectorOf({std::log(0.5), std::log(0.8)});
   PropagationOptions options;
   options.noisy_policy_input = noisy;
   LinearPolicy policy(2, 1);
-  const Eigen::Vector3d w = randomMatrix(3, 1, 0.7, random);
+  const Eigen::VectorXd w = randomMatrix(3, 1, 0.7, random);
   policy.setParameters(w);
   const Gaussian state = randomGaussian(2, 2, 0.6, random);
   const Gaussian next = Propagation(model, options).step(&policy, state);
 
   GpSampler delta(model, &random);
   std::normal_distribution<double> normal;
-  const Eigen::Vector2d noise_std =
-      noisy ? Eigen::Vector2d(0.5, 0.8) / std::sqrt(2.0) : Eigen::Vector2d(0.0, 0.0);
+  const Eigen::VectorXd noise_std = (noisy ? std::sqrt(0.5) : 0.0) * vectorOf({0.5, 0.8});
   const auto sample = [&](const Eigen::VectorXd& x) {
     const double u = w[0] * (x[0] + noise_std[0] * normal(random)) +
                      w[1] * (x[1] + noise_std[1] * normal(random)) + w[2];
-    return Eigen::VectorXd(x + delta(Eigen::Vector3d(x[0], x[1], u)));
+    return Eigen::VectorXd(x + delta(vectorOf({x[0], x[1], u})));
   };
   return momentsMatchSamples(Moments{next.mean, next.covariance, Eigen::MatrixXd()}, state, sample,
                              random);
@@ -87,11 +87,11 @@ TEST(Propagation, HasTheMomentsOfAMillionSamplesWhereThePolicySeesNoise) {
 
 TEST(Propagation, AddsThePlainPredictionToAKnownState) {
   Pendulum pendulum(3);
-  const Eigen::Vector2d x(0.4, 2.0);
+  const Eigen::VectorXd x = vectorOf({0.4, 2.0});
   Propagation propagation(pendulum.model, pendulum.options);
   const Gaussian next =
       propagation.step(pendulum.policy.get(), Gaussian{x, Eigen::MatrixXd::Zero(2, 2)});
-  const Eigen::Vector3d features(0.4, std::sin(2.0), std::cos(2.0));
+  const Eigen::VectorXd features = vectorOf({0.4, std::sin(2.0), std::cos(2.0)});
   Eigen::VectorXd input(4);
   input << features, pendulum.policy->control(features);
   GpModel mean_only = pendulum.model;
@@ -192,16 +192,33 @@ TEST(LongTermCost, GradientMatchesDifferencesWithoutAnglesAndForTwoControls) {
   model.beta *= 0.3;
   auto rbf = std::make_unique<RbfPolicy>(3, 2, 4);
   rbf->setParameters(randomMatrix(rbf->numParameters(), 1, 0.4, random));
-  SquashedPolicy policy(std::move(rbf), Eigen::Vector2d(1.0, 2.0));
+  SquashedPolicy policy(std::move(rbf), vectorOf({1.0, 2.0}));
   const StateCost state_cost(
       Augmentation(3, {0, 1, 2}, {}),
-      SaturatingCost(Eigen::Vector3d(0.5, 0.0, -0.5), Eigen::MatrixXd::Identity(3, 3)));
+      SaturatingCost(vectorOf({0.5, 0.0, -0.5}), Eigen::MatrixXd::Identity(3, 3)));
   LongTermCost cost(Propagation(model, PropagationOptions()), state_cost, &policy,
                     randomGaussian(3, 3, 0.2, random), 6);
   const auto J = [&](const Eigen::VectorXd& parameters, Eigen::VectorXd* gradient) {
     return cost.evaluate(parameters, gradient);
   };
   EXPECT_TRUE(ddm::testing::gradientMatches(J, policy.parameters()));
+}
+
+TEST(LongTermCost, IsFiniteWithARightGradientForAPolicyAtItsBound) {
+  Pendulum pendulum(12);
+  pendulum.start.covariance *= 0.01;
+  Eigen::VectorXd saturated = pendulum.policy->parameters();
+  saturated.head(3).setConstant(1.0);  // log length-scales
+  saturated.tail(5).setConstant(9.0);  // beyond five turning points of the squashing
+  LongTermCost cost = pendulum.cost(6);
+  const auto J = [&](const Eigen::VectorXd& parameters, Eigen::VectorXd* gradient) {
+    return cost.evaluate(parameters, gradient);
+  };
+  Eigen::VectorXd gradient;
+  const double value = J(saturated, &gradient);
+  EXPECT_TRUE(value > 0.0 && value < 6.0) << value;
+  EXPECT_GT(gradient.lpNorm<Eigen::Infinity>(), 1e-3);
+  EXPECT_TRUE(ddm::testing::gradientMatches(J, saturated, 1e-6));
 }
 
 TEST(LongTermCost, IsNaNWithAGradientOfNaNWhereNothingCanBePredicted) {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "ddm_model/testing/expect_error.h"
+#include "vector_of.h"
 
 namespace ddm {
 namespace pilco {
@@ -21,7 +22,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 double valley(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
   const double bend = x[1] - x[0] * x[0];
   if (gradient != nullptr) {
-    *gradient = Eigen::Vector2d(-400.0 * x[0] * bend - 2.0 * (1.0 - x[0]), 200.0 * bend);
+    *gradient = vectorOf({-400.0 * x[0] * bend - 2.0 * (1.0 - x[0]), 200.0 * bend});
   }
   return 100.0 * bend * bend + (1.0 - x[0]) * (1.0 - x[0]);
 }
@@ -30,12 +31,12 @@ TEST(Minimizer, FindsTheMinimumWithFullAndWithLimitedMemory) {
   for (bool limited_memory : {false, true}) {
     MinimizerOptions options;
     options.limited_memory = limited_memory;
-    const Minimum minimum = minimize(valley, Eigen::Vector2d(-1.2, 1.0), options);
+    const Minimum minimum = minimize(valley, vectorOf({-1.2, 1.0}), options);
     EXPECT_TRUE(minimum.start_ok);
     EXPECT_TRUE(minimum.improved);
     EXPECT_EQ("converged", minimum.message);
     EXPECT_NEAR(24.2, minimum.initial_cost, 1e-10);
-    EXPECT_LT((minimum.x - Eigen::Vector2d(1.0, 1.0)).norm(), 1e-5);
+    EXPECT_LT((minimum.x - vectorOf({1.0, 1.0})).norm(), 1e-5);
     EXPECT_EQ(valley(minimum.x, nullptr), minimum.cost);
     EXPECT_LT(minimum.gradient.norm(), 1e-4);
     EXPECT_GE(minimum.evaluations, minimum.iterations);
@@ -45,7 +46,7 @@ TEST(Minimizer, FindsTheMinimumWithFullAndWithLimitedMemory) {
 TEST(Minimizer, KeepsItsLimitsAndReturnsTheBestSoFar) {
   MinimizerOptions options;
   options.max_iterations = 4;
-  const Minimum few = minimize(valley, Eigen::Vector2d(-1.2, 1.0), options);
+  const Minimum few = minimize(valley, vectorOf({-1.2, 1.0}), options);
   EXPECT_EQ(4, few.iterations);
   EXPECT_TRUE(few.improved);
   EXPECT_EQ("limit of iterations reached", few.message);
@@ -57,7 +58,7 @@ TEST(Minimizer, KeepsItsLimitsAndReturnsTheBestSoFar) {
   };
   options.max_iterations = 100;
   options.max_evaluations = 9;
-  const Minimum capped = minimize(counting, Eigen::Vector2d(-1.2, 1.0), options);
+  const Minimum capped = minimize(counting, vectorOf({-1.2, 1.0}), options);
   EXPECT_EQ(9, calls);
   EXPECT_EQ(9, capped.evaluations);
   EXPECT_TRUE(capped.improved);
@@ -71,10 +72,10 @@ TEST(Minimizer, NeverReturnsAWorsePointForOneMoreEvaluation) {
     return last_evaluated = valley(x, gradient);
   };
   MinimizerOptions options;
-  double best = valley(Eigen::Vector2d(-1.2, 1.0), nullptr);
+  double best = valley(vectorOf({-1.2, 1.0}), nullptr);
   int ended_uphill = 0;
   for (options.max_evaluations = 1; options.max_evaluations <= 30; ++options.max_evaluations) {
-    const Minimum minimum = minimize(watched, Eigen::Vector2d(-1.2, 1.0), options);
+    const Minimum minimum = minimize(watched, vectorOf({-1.2, 1.0}), options);
     EXPECT_LE(minimum.cost, best);
     EXPECT_EQ(valley(minimum.x, nullptr), minimum.cost);
     if (last_evaluated > minimum.cost) ++ended_uphill;
@@ -104,15 +105,15 @@ TEST(Minimizer, SurvivesPointsThatCannotBeEvaluated) {
 
 TEST(Minimizer, SaysThatTheStartCannotBeEvaluated) {
   const auto nowhere = [](const Eigen::VectorXd&, Eigen::VectorXd*) { return kNaN; };
-  const Minimum minimum = minimize(nowhere, Eigen::Vector2d(3.0, 4.0), MinimizerOptions());
+  const Minimum minimum = minimize(nowhere, vectorOf({3.0, 4.0}), MinimizerOptions());
   EXPECT_FALSE(minimum.start_ok);
   EXPECT_FALSE(minimum.improved);
-  EXPECT_EQ(Eigen::Vector2d(3.0, 4.0), minimum.x);
+  EXPECT_EQ(vectorOf({3.0, 4.0}), minimum.x);
   EXPECT_EQ("the function cannot be evaluated at the start", minimum.message);
 }
 
 TEST(Minimizer, ClaimsNoImprovementWhereThereIsNone) {
-  const Minimum at_optimum = minimize(valley, Eigen::Vector2d(1.0, 1.0), MinimizerOptions());
+  const Minimum at_optimum = minimize(valley, vectorOf({1.0, 1.0}), MinimizerOptions());
   EXPECT_FALSE(at_optimum.improved);
   EXPECT_EQ("converged", at_optimum.message);
   EXPECT_EQ(at_optimum.initial_cost, at_optimum.cost);
@@ -122,7 +123,7 @@ TEST(Minimizer, ClaimsNoImprovementWhereThereIsNone) {
     if (gradient != nullptr) *gradient = -*gradient;  // a gradient that lies
     return value;
   };
-  const Minimum misled = minimize(uphill, Eigen::Vector2d(-1.2, 1.0), MinimizerOptions());
+  const Minimum misled = minimize(uphill, vectorOf({-1.2, 1.0}), MinimizerOptions());
   EXPECT_LE(misled.cost, misled.initial_cost);
   EXPECT_EQ(misled.cost < misled.initial_cost, misled.improved);
 }
@@ -131,11 +132,17 @@ TEST(Minimizer, RefusesAStartThatIsEmptyOrNotFinite) {
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
       [] { minimize(valley, Eigen::VectorXd(), MinimizerOptions()); }, {"start", "none"}));
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [] { minimize(valley, Eigen::Vector2d(0.0, kNaN), MinimizerOptions()); }, {"finite"}));
+      [] {
+        minimize(valley, vectorOf({0.0, kNaN}), MinimizerOptions());
+      },
+      {"finite"}));
   MinimizerOptions options;
   options.max_iterations = -1;
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { minimize(valley, Eigen::Vector2d(0.0, 0.0), options); }, {">= 0"}));
+      [&] {
+        minimize(valley, vectorOf({0.0, 0.0}), options);
+      },
+      {">= 0"}));
 }
 
 }  // namespace

@@ -187,6 +187,16 @@ TEST(PilcoCheck, NamesAFileThatIsDamaged) {
   EXPECT_TRUE(fails("[1, 2]", "values.json: must be an object"));
 }
 
+TEST(PilcoCheck, AcceptsTheReferenceValuesOfTheEnvironment) {
+  const char* const file = std::getenv("DDM_PILCO_VECTORS");
+  if (file == nullptr || *file == '\0') {
+    GTEST_SKIP() << "DDM_PILCO_VECTORS names no file: nothing was compared";
+  }
+  const Outcome outcome = run("'" + std::string(file) + "'");
+  EXPECT_EQ(0, outcome.exit_code) << outcome.text;
+  EXPECT_NE(std::string::npos, outcome.text.find("All cases are within")) << outcome.text;
+}
+
 TEST(PilcoCheck, ExplainsItsUse) {
   for (const char* arguments : {"", "one two", "--nonsense"}) {
     const Outcome outcome = run(arguments);

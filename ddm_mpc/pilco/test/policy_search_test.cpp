@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "ddm_model/testing/expect_error.h"
+#include "vector_of.h"
 
 namespace ddm {
 namespace pilco {
@@ -26,7 +27,7 @@ double saturating(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
 }
 
 TEST(PolicySearch, FindsTheBestParametersAndReportsBothCosts) {
-  const Eigen::VectorXd start = Eigen::Vector3d(0.0, 4.0, 1.0);
+  const Eigen::VectorXd start = vectorOf({0.0, 4.0, 1.0});
   const PolicySearchResult result = searchPolicy(saturating, start, PolicySearchOptions());
   EXPECT_TRUE(result.ok);
   EXPECT_TRUE(result.improved);
@@ -41,7 +42,7 @@ TEST(PolicySearch, FindsTheBestParametersAndReportsBothCosts) {
 TEST(PolicySearch, KeepsItsLimits) {
   PolicySearchOptions options;
   options.max_iterations = 1;
-  const Eigen::VectorXd start = Eigen::Vector3d(0.0, 4.0, 1.0);
+  const Eigen::VectorXd start = vectorOf({0.0, 4.0, 1.0});
   EXPECT_EQ(1, searchPolicy(saturating, start, options).iterations);
   options.max_iterations = 75;
   options.max_evaluations = 2;
@@ -56,14 +57,14 @@ TEST(PolicySearch, SurvivesAPolicyWhosePredictionDiverges) {
     return x[0] > 2.0 ? kNaN : value;
   };
   const PolicySearchResult result =
-      searchPolicy(diverging, Eigen::Vector3d(0.0, 4.0, 1.0), PolicySearchOptions());
+      searchPolicy(diverging, vectorOf({0.0, 4.0, 1.0}), PolicySearchOptions());
   EXPECT_TRUE(result.improved);
   EXPECT_LT(result.cost_after, 0.1 * result.cost_before) << result.message;
 }
 
 TEST(PolicySearch, KeepsAPolicyThatCannotBeEvaluated) {
   const auto nowhere = [](const Eigen::VectorXd&, Eigen::VectorXd*) { return kNaN; };
-  const Eigen::VectorXd start = Eigen::Vector3d(1.0, 2.0, 3.0);
+  const Eigen::VectorXd start = vectorOf({1.0, 2.0, 3.0});
   const PolicySearchResult result = searchPolicy(nowhere, start, PolicySearchOptions());
   EXPECT_FALSE(result.ok);
   EXPECT_FALSE(result.improved);
@@ -80,7 +81,7 @@ TEST(PolicySearchOptions, AllProblemsAreReportedAndNaNIsOne) {
   ASSERT_EQ(3u, options.problems().size());
   EXPECT_EQ("policy_search/max_evaluations must be >= 1, got 0", options.problems()[1]);
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { searchPolicy(saturating, Eigen::Vector3d::Zero(), options); }, {"policy_search/"}));
+      [&] { searchPolicy(saturating, Eigen::VectorXd::Zero(3), options); }, {"policy_search/"}));
 }
 
 }  // namespace

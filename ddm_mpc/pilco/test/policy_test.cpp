@@ -17,6 +17,7 @@
 #include "ddm_pilco/squashed_policy.h"
 #include "monte_carlo.h"
 #include "random_gp.h"
+#include "vector_of.h"
 
 namespace ddm {
 namespace pilco {
@@ -68,9 +69,9 @@ TEST(RbfPolicy, IsTheSumOfItsBasisFunctions) {
   const auto k = [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
     return std::exp(-0.5 * ((a - b).array() / scales.col(0).array().exp()).square().sum());
   };
-  Eigen::Matrix4d A = 1e-4 * Eigen::Matrix4d::Identity();
-  Eigen::Vector4d k_x;
-  const Eigen::Vector2d x(0.3, -0.4);
+  Eigen::MatrixXd A = 1e-4 * Eigen::MatrixXd::Identity(4, 4);
+  Eigen::VectorXd k_x(4);
+  const Eigen::VectorXd x = vectorOf({0.3, -0.4});
   for (int i = 0; i < 4; ++i) {
     k_x[i] = k(centres.col(i), x);
     for (int j = 0; j < 4; ++j) A(i, j) += k(centres.col(i), centres.col(j));
@@ -87,7 +88,7 @@ TEST(RbfPolicy, HoldsItsParametersAsLengthScalesCentresByCoordinateAndTargets) {
       4, 5, 6;
   Eigen::VectorXd expected(11);
   expected << 0.1, 0.2, 1, 2, 3, 4, 5, 6, 7, 8, 9;
-  EXPECT_EQ(RbfPolicy::packParameters(Eigen::Vector2d(0.1, 0.2), centres, Eigen::Vector3d(7, 8, 9)),
+  EXPECT_EQ(RbfPolicy::packParameters(vectorOf({0.1, 0.2}), centres, vectorOf({7, 8, 9})),
             expected);
 }
 
@@ -108,7 +109,7 @@ TEST(RbfPolicy, AdjointMatchesDifferencesWhereTwoCentresCoincide) {
   centres.col(1) = centres.col(0);
   RbfPolicy policy(2, 1, 4);
   policy.setParameters(RbfPolicy::packParameters(randomMatrix(2, 1, 0.2, random), centres,
-                                                 Eigen::Vector4d(0.5, 0.5, -0.3, 0.2)));
+                                                 vectorOf({0.5, 0.5, -0.3, 0.2})));
   // K is nearly singular: differences with steps of 7e-4 would not resolve the ridge of 1e-4.
   const Gaussian input = randomGaussian(2, 2, 0.5, random);
   Moments weights = constantMoments(2, 1);
@@ -173,8 +174,48 @@ TEST(SquashedPolicy, HasTheMomentsOfAMillionSamplesAroundALinearPolicy) {
 TEST(SquashedPolicy, AdjointMatchesDifferences) {
   std::mt19937_64 random(8);
   for (const int rank : {3, 0}) {
-    SquashedPolicy policy(randomRbfPolicy(3, 2, 4, random), Eigen::Vector2d(6.0, 0.5));
+    SquashedPolicy policy(randomRbfPolicy(3, 2, 4, random), vectorOf({6.0, 0.5}));
     expectAdjointsMatch(&policy, randomGaussian(3, rank, 0.4, random), random);
+  }
+}
+
+/// Before squashing about 9 everywhere near its centres: beyond five turning points of the wave.
+std::unique_ptr<RbfPolicy> saturatedPolicy() {
+  std::mt19937_64 random(11);
+  auto rbf = std::make_unique<RbfPolicy>(2, 1, 6);
+  rbf->setParameters(RbfPolicy::packParameters(
+      vectorOf({0.5, 0.7}), randomMatrix(2, 6, 0.5, random), Eigen::MatrixXd::Constant(6, 1, 9.0)));
+  return rbf;
+}
+
+TEST(SquashedPolicy, AtItsBoundStaysWithinItWithRightDerivatives) {
+  std::mt19937_64 random(12);
+  for (const double scale : {0.0, 1e-3, 0.3, 1.0}) {
+    SCOPED_TRACE(scale);
+    const Gaussian input{vectorOf({0.1, -0.2}), scale * scale * Eigen::MatrixXd::Identity(2, 2)};
+    EXPECT_GT(saturatedPolicy()->predict(input).mean[0], scale < 1.0 ? 8.0 : 1.0);
+    SquashedPolicy policy(saturatedPolicy(), vectorOf({2.5}));
+    const Moments u = policy.predict(input);
+    ASSERT_TRUE(u.mean.allFinite() && u.covariance.allFinite() && u.gain.allFinite());
+    EXPECT_LE(u.mean[0] * u.mean[0] + u.covariance(0, 0), 2.5 * 2.5 * (1.0 + 1e-12));
+    EXPECT_GE(u.covariance(0, 0), 0.0);
+    expectAdjointsMatch(&policy, input, random);
+  }
+}
+
+TEST(SquashedPolicy, OnTopOfItsBoundIsFlat) {
+  for (const double sign : {1.0, -1.0}) {
+    auto linear = std::make_unique<LinearPolicy>(2, 1);
+    linear->setParameters(vectorOf({0.0, 0.0, sign * 1.5707963267948966}));
+    SquashedPolicy policy(std::move(linear), vectorOf({2.5}));
+    const Gaussian input{vectorOf({0.4, -3.0}), 0.2 * Eigen::MatrixXd::Identity(2, 2)};
+    EXPECT_LE(std::abs(policy.control(input.mean)[0]), 2.5);
+    EXPECT_NEAR(sign * 2.5, policy.predict(input).mean[0], 1e-14);
+    Moments seed = constantMoments(2, 1);
+    seed.mean[0] = 1.0;
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(3);
+    const Gaussian d_input = policy.backward(input, seed, &gradient);
+    EXPECT_LT(gradient.norm() + d_input.mean.norm() + d_input.covariance.norm(), 1e-13);
   }
 }
 

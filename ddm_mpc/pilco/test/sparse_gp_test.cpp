@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -13,6 +14,7 @@
 #include "ddm_model/testing/gradient_check.h"
 #include "ddm_model/testing/random_matrix.h"
 #include "ddm_pilco/squared_exponential.h"
+#include "vector_of.h"
 
 namespace ddm {
 namespace pilco {
@@ -33,8 +35,8 @@ struct Toy {
     targets += 0.05 * randomMatrix(n, 2, 2);
     hyperparameters.log_length_scales.resize(2, 2);
     hyperparameters.log_length_scales << 0.1, 0.3, 0.8, 0.2;
-    hyperparameters.log_signal_std = Eigen::Vector2d(0.3, 0.1);
-    hyperparameters.log_noise_std = Eigen::Vector2d(-2.0, -1.5);
+    hyperparameters.log_signal_std = vectorOf({0.3, 0.1});
+    hyperparameters.log_noise_std = vectorOf({-2.0, -1.5});
   }
   Eigen::MatrixXd inputs;
   Eigen::MatrixXd targets;
@@ -200,6 +202,41 @@ TEST(TrainSparseGp, RefusesInducingInputsThatDoNotFit) {
                                                   {"finite"}));
 }
 
+TEST(GpLearner, CopesWithRepeatedPointsInBothGps) {
+  const Toy toy(20);
+  SparseGpOptions sparse;
+  sparse.first_iterations = 20;
+  for (const int max_points : {100, 30}) {  // full GP; sparse, with repeated inducing inputs
+    sparse.max_points = max_points;
+    GpLearner learner(GpTrainingOptions(), sparse);
+    std::mt19937_64 rng(1);
+    const GpFit fit = learner.learn(toy.inputs.replicate(1, 2), toy.targets.replicate(2, 1), &rng);
+    ASSERT_TRUE(fit.ok) << fit.message;
+    EXPECT_EQ(std::min(max_points, 40), fit.model.numPoints());
+    EXPECT_TRUE(fit.model.beta.allFinite());
+    EXPECT_TRUE(fit.model.inverse[0].allFinite() && fit.model.inverse[1].allFinite());
+  }
+}
+
+TEST(GpLearner, RefusesNaNInTheDataAndStaysUsable) {
+  const Toy toy(30);
+  Eigen::MatrixXd inputs = toy.inputs, targets = toy.targets;
+  inputs(1, 4) = kNaN;
+  targets(28, 0) = kNaN;
+  GpLearner learner(GpTrainingOptions{}, SparseGpOptions{});
+  std::mt19937_64 rng(1);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { learner.learn(inputs, toy.targets, &rng); },
+                                                  {"input 2 of point 5 of 30", "nan"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { learner.learn(toy.inputs, targets, &rng); },
+                                                  {"target 1 of point 29 of 30", "nan"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [&] {
+        makeSparseGpModel(toy.inputs.leftCols(5), inputs, toy.targets, toy.hyperparameters, kRidge);
+      },
+      {"input 2 of point 5 of 30", "nan"}));
+  EXPECT_TRUE(learner.learn(toy.inputs, toy.targets, &rng).ok);
+}
+
 TEST(GpLearner, UsesInducingInputsOnlyBeyondTheSetSize) {
   const Toy toy(40);
   SparseGpOptions sparse;
@@ -240,6 +277,73 @@ TEST(GpLearner, StartsFromItsLastOptimum) {
     EXPECT_LT(first.outputs[output].final_cost, first.outputs[output].initial_cost);
     EXPECT_EQ(first.outputs[output].final_cost, again.outputs[output].initial_cost);
   }
+}
+
+void expectSameModel(const GpModel& expected, const GpModel& got) {
+  EXPECT_EQ(expected.inputs, got.inputs);
+  EXPECT_EQ(expected.beta, got.beta);
+  EXPECT_EQ(expected.inverse, got.inverse);
+  EXPECT_EQ(expected.hyperparameters.log_length_scales, got.hyperparameters.log_length_scales);
+  EXPECT_EQ(expected.hyperparameters.log_signal_std, got.hyperparameters.log_signal_std);
+  EXPECT_EQ(expected.hyperparameters.log_noise_std, got.hyperparameters.log_noise_std);
+}
+
+TEST(GpLearner, AnotherGoesOnFromItsStateToTheSameBytes) {
+  const Toy toy(40);
+  SparseGpOptions sparse;
+  sparse.first_iterations = 20;
+  sparse.max_iterations = 5;
+  for (const int max_points : {100, 10}) {  // full GP, sparse GP
+    sparse.max_points = max_points;
+    GpLearner a(GpTrainingOptions(), sparse);
+    EXPECT_EQ(0, a.state().hyperparameters.log_signal_std.size());
+    EXPECT_EQ(0, a.state().inducing.size());
+    std::mt19937_64 rng(1);
+    ASSERT_TRUE(a.learn(toy.inputs.leftCols(30), toy.targets.topRows(30), &rng).ok);
+    const GpLearnerState saved = a.state();
+    EXPECT_EQ(max_points == 10 ? 20 : 0, saved.inducing.size());
+
+    const GpFit expected = a.learn(toy.inputs, toy.targets, &rng);
+    GpLearner b(GpTrainingOptions(), sparse, saved);
+    const GpFit got = b.learn(toy.inputs, toy.targets, &rng);
+    ASSERT_TRUE(expected.ok && got.ok) << expected.message << got.message;
+    expectSameModel(expected.model, got.model);
+    EXPECT_EQ(a.state().inducing, b.state().inducing);
+
+    GpLearner anew(GpTrainingOptions(), sparse);
+    EXPECT_NE(expected.model.beta, anew.learn(toy.inputs, toy.targets, &rng).model.beta);
+  }
+}
+
+TEST(GpLearner, RefusesAStateOfOtherInputsAndKeepsItAsItWas) {
+  const Toy toy(30);
+  SparseGpOptions sparse;
+  sparse.max_points = 10;
+  GpLearnerState state;
+  state.inducing = Eigen::MatrixXd::Zero(3, 10);
+  GpLearner learner(GpTrainingOptions(), sparse, state);
+  std::mt19937_64 rng(1);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [&] { learner.learn(toy.inputs, toy.targets, &rng); }, {"2 entries, got 10 of 3"}));
+  EXPECT_EQ(0, learner.state().hyperparameters.log_signal_std.size());
+}
+
+TEST(GpLearner, CallsBackAfterEachEvaluationOfAnObjective) {
+  const Toy toy(20);
+  SparseGpOptions sparse;
+  sparse.max_points = 10;
+  sparse.first_iterations = 5;
+  GpLearner learner(GpTrainingOptions(), sparse);
+  std::mt19937_64 rng(1);
+  int calls = 0;
+  const GpFit fit = learner.learn(toy.inputs, toy.targets, &rng, [&calls] { ++calls; });
+  ASSERT_EQ(3u, fit.outputs.size()) << fit.message;
+  int evaluations = 0;
+  for (const OutputTraining& output : fit.outputs) {
+    EXPECT_GT(output.evaluations, 1);
+    evaluations += output.evaluations;
+  }
+  EXPECT_EQ(evaluations, calls);
 }
 
 TEST(SparseGpOptions, AllProblemsAreReportedAndNaNIsOne) {

@@ -12,13 +12,14 @@
 #include "adjoint_check.h"
 #include "monte_carlo.h"
 #include "random_gp.h"
+#include "vector_of.h"
 
 namespace ddm {
 namespace pilco {
 namespace {
 
 TEST(Squashing, NeverLeavesItsRangeAndReachesIt) {
-  const Squashing squashing(Eigen::Vector2d(6.0, 0.3));
+  const Squashing squashing(vectorOf({6.0, 0.3}));
   double largest = 0.0;
   for (int i = -2000; i <= 2000; ++i) {
     const Eigen::VectorXd u = squashing.value(Eigen::VectorXd::Constant(2, 0.005 * i));
@@ -31,7 +32,7 @@ TEST(Squashing, NeverLeavesItsRangeAndReachesIt) {
 
 TEST(Squashing, HasTheMomentsOfAMillionSamples) {
   std::mt19937_64 random(1);
-  const Squashing squashing(Eigen::Vector2d(6.0, 2.5));
+  const Squashing squashing(vectorOf({6.0, 2.5}));
   const Gaussian input = randomGaussian(2, 2, 0.9, random);
   const auto value = [](const Eigen::VectorXd& x) {
     return Eigen::VectorXd(
@@ -43,7 +44,7 @@ TEST(Squashing, HasTheMomentsOfAMillionSamples) {
 TEST(Squashing, AdjointMatchesDifferences) {
   std::mt19937_64 random(2);
   for (const int rank : {2, 1, 0}) {
-    const Squashing squashing(Eigen::Vector2d(6.0, 2.5));
+    const Squashing squashing(vectorOf({6.0, 2.5}));
     EXPECT_TRUE(adjointMatches([&](const Gaussian& at) { return squashing.predict(at); },
                                [&](const Gaussian& at, const Moments& d_output) {
                                  return squashing.backward(at, d_output);
@@ -55,9 +56,9 @@ TEST(Squashing, AdjointMatchesDifferences) {
 
 TEST(Squashing, RefusesBoundsThatAreNotPositiveAndInputsOfAnotherSize) {
   EXPECT_THROW(Squashing(Eigen::VectorXd()), std::invalid_argument);
-  EXPECT_THROW(Squashing(Eigen::Vector2d(1.0, 0.0)), std::invalid_argument);
+  EXPECT_THROW(Squashing(vectorOf({1.0, 0.0})), std::invalid_argument);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(Squashing(Eigen::Vector2d(nan, 1.0)), std::invalid_argument);
+  EXPECT_THROW(Squashing(vectorOf({nan, 1.0})), std::invalid_argument);
   std::mt19937_64 random(3);
   const Squashing squashing(Eigen::VectorXd::Ones(1));
   EXPECT_THROW(squashing.predict(randomGaussian(2, 2, 1.0, random)), std::invalid_argument);

@@ -12,6 +12,7 @@
 #include "adjoint_check.h"
 #include "monte_carlo.h"
 #include "random_gp.h"
+#include "vector_of.h"
 
 namespace ddm {
 namespace pilco {
@@ -72,19 +73,19 @@ TEST(SaturatingCost, GradientMatchesDifferencesAlsoForSingularWeightAndCovarianc
 }
 
 TEST(SaturatingCost, HasNoVarianceForAKnownInput) {
-  const SaturatingCost cost(Eigen::Vector2d(0.1, 0.2), Eigen::MatrixXd::Identity(2, 2));
-  EXPECT_EQ(cost.variance(Gaussian{Eigen::Vector2d(1.0, 0.0), Eigen::MatrixXd::Zero(2, 2)}), 0.0);
+  const SaturatingCost cost(vectorOf({0.1, 0.2}), Eigen::MatrixXd::Identity(2, 2));
+  EXPECT_EQ(cost.variance(Gaussian{vectorOf({1.0, 0.0}), Eigen::MatrixXd::Zero(2, 2)}), 0.0);
 }
 
 TEST(SaturatingCost, RefusesWeightsAndInputsThatDoNotFit) {
-  const Eigen::Vector2d z(0.0, 0.0);
+  const Eigen::VectorXd z = vectorOf({0.0, 0.0});
   Eigen::MatrixXd skew = Eigen::MatrixXd::Identity(2, 2);
   skew(0, 1) = 0.5;
   EXPECT_THROW(SaturatingCost(z, Eigen::MatrixXd::Identity(3, 3)), std::invalid_argument);
   EXPECT_THROW(SaturatingCost(z, skew), std::invalid_argument);
   EXPECT_THROW(SaturatingCost(Eigen::VectorXd(), Eigen::MatrixXd()), std::invalid_argument);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(SaturatingCost(Eigen::Vector2d(nan, 0.0), Eigen::MatrixXd::Identity(2, 2)),
+  EXPECT_THROW(SaturatingCost(vectorOf({nan, 0.0}), Eigen::MatrixXd::Identity(2, 2)),
                std::invalid_argument);
   std::mt19937_64 random(3);
   const SaturatingCost cost(z, Eigen::MatrixXd::Identity(2, 2));
@@ -94,10 +95,10 @@ TEST(SaturatingCost, RefusesWeightsAndInputsThatDoNotFit) {
 
 TEST(PendulumCost, MeasuresTheDistanceOfTheTipFromTheUprightTip) {
   const StateCost cost = pendulumCost(1.0, 0.5);
-  EXPECT_NEAR(cost.value(Eigen::Vector2d(3.0, kPi)), 0.0, 1e-15);
-  EXPECT_NEAR(cost.value(Eigen::Vector2d(0.0, 0.0)), 1.0 - std::exp(-8.0), 1e-15);
-  EXPECT_NEAR(cost.value(Eigen::Vector2d(0.0, kPi / 2.0)), 1.0 - std::exp(-4.0), 1e-15);
-  EXPECT_NEAR(cost.value(Eigen::Vector2d(0.0, -kPi)), 0.0, 1e-15);
+  EXPECT_NEAR(cost.value(vectorOf({3.0, kPi})), 0.0, 1e-15);
+  EXPECT_NEAR(cost.value(vectorOf({0.0, 0.0})), 1.0 - std::exp(-8.0), 1e-15);
+  EXPECT_NEAR(cost.value(vectorOf({0.0, kPi / 2.0})), 1.0 - std::exp(-4.0), 1e-15);
+  EXPECT_NEAR(cost.value(vectorOf({0.0, -kPi})), 0.0, 1e-15);
 }
 
 TEST(PendulumCost, GradientMatchesDifferences) {
@@ -113,7 +114,7 @@ TEST(PendulumCost, RefusesLengthsAndFeaturesThatDoNotFit) {
   EXPECT_THROW(pendulumCost(0.0, 0.5), std::invalid_argument);
   EXPECT_THROW(pendulumCost(1.0, std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
   EXPECT_THROW(StateCost(Augmentation(2, {}, {1}),
-                         SaturatingCost(Eigen::Vector3d::Zero(), Eigen::MatrixXd::Identity(3, 3))),
+                         SaturatingCost(Eigen::VectorXd::Zero(3), Eigen::MatrixXd::Identity(3, 3))),
                std::invalid_argument);
 }
 

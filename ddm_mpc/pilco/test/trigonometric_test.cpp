@@ -12,6 +12,7 @@
 #include "ddm_pilco/sine_covariance.h"
 #include "monte_carlo.h"
 #include "random_gp.h"
+#include "vector_of.h"
 
 namespace ddm {
 namespace pilco {
@@ -42,10 +43,10 @@ TEST(Augmentation, HasTheMomentsOfAMillionSamples) {
 
 TEST(Augmentation, GivesTheValueItselfForAKnownInput) {
   const Augmentation augmentation(2, {0, 1}, {1});
-  const Eigen::Vector4d expected(0.4, -1.3, std::sin(-1.3), std::cos(-1.3));
-  EXPECT_LE((augmentation.value(Eigen::Vector2d(0.4, -1.3)) - expected).norm(), 1e-15);
+  const Eigen::VectorXd expected = vectorOf({0.4, -1.3, std::sin(-1.3), std::cos(-1.3)});
+  EXPECT_LE((augmentation.value(vectorOf({0.4, -1.3})) - expected).norm(), 1e-15);
   const Moments output =
-      augmentation.predict(Gaussian{Eigen::Vector2d(0.4, -1.3), Eigen::MatrixXd::Zero(2, 2)});
+      augmentation.predict(Gaussian{vectorOf({0.4, -1.3}), Eigen::MatrixXd::Zero(2, 2)});
   EXPECT_EQ(output.covariance.norm(), 0.0);
 }
 
@@ -56,7 +57,7 @@ TEST(Augmentation, KeepsSineAndCosineOnTheCircleInTheMeanOfTheirSquares) {
 }
 
 TEST(Augmentation, StaysFiniteForAnAngleAboutWhichNothingIsKnown) {
-  const Gaussian input{Eigen::Vector2d(0.3, 1.0), 5e3 * Eigen::MatrixXd::Ones(2, 2)};
+  const Gaussian input{vectorOf({0.3, 1.0}), 5e3 * Eigen::MatrixXd::Ones(2, 2)};
   const Moments output = Augmentation(2, {0}, {0, 1}).predict(input);
   ASSERT_TRUE(output.allFinite());
   EXPECT_NEAR(output.covariance(1, 1), 0.5, 1e-12);
@@ -75,8 +76,8 @@ TEST(Augmentation, AdjointMatchesDifferences) {
 }
 
 TEST(Augmentation, ReplacesAnglesBehindTheOtherEntries) {
-  const Eigen::Vector3d x(0.1, 0.2, 0.3);
-  const Eigen::Vector4d expected(0.1, 0.3, std::sin(0.2), std::cos(0.2));
+  const Eigen::VectorXd x = vectorOf({0.1, 0.2, 0.3});
+  const Eigen::VectorXd expected = vectorOf({0.1, 0.3, std::sin(0.2), std::cos(0.2)});
   EXPECT_LE((replaceAngles(3, {1}).value(x) - expected).norm(), 1e-15);
   EXPECT_EQ(replaceAngles(3, {}).value(x), x);
 }

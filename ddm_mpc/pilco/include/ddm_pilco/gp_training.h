@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -103,10 +104,12 @@ GpFit makeGpModel(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
 /// @param inputs   one per column                                                      [D x n]
 /// @param targets  one per row                                                         [n x E]
 /// @param start    (optional) previous optimum; null: initialHyperparameters()
+/// @param on_evaluation  (optional) called after each evaluation of an objective: a sign of life
 /// @throws std::invalid_argument if the options are invalid, sizes do not fit, there are fewer than
 ///         two points, the data are not finite, or an input or a target is the same in all points
 GpFit trainGp(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
-              const GpTrainingOptions& options, const Hyperparameters* start = nullptr);
+              const GpTrainingOptions& options, const Hyperparameters* start = nullptr,
+              const std::function<void()>& on_evaluation = nullptr);
 
 }  // namespace pilco
 }  // namespace ddm

@@ -9,7 +9,7 @@
 namespace ddm {
 namespace pilco {
 
-/// M = W m + b,  S = W s W^T,  V = W^T (Deisenroth, 2010, Ch. 3).
+/// M = W m + b,  S = W s W^T,  V = W^T (Deisenroth, 2010).
 /// Parameters: W [U x D] by columns, then b [U].
 class LinearPolicy : public Policy {
  public:

@@ -13,7 +13,7 @@
 namespace ddm {
 namespace pilco {
 
-/// J(theta) = sum_{t=1..H} E[c(x_t)] (Deisenroth and Rasmussen, 2011, eq. 2). x_0 is given and not
+/// J(theta) = sum_{t=1..H} E[c(x_t)] (Deisenroth and Rasmussen, 2011). x_0 is given and not
 /// counted. The gradient goes backwards through the steps.
 class LongTermCost {
  public:

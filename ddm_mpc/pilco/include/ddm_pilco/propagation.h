@@ -21,7 +21,7 @@ struct PropagationOptions {
   bool noisy_policy_input = false;
 };
 
-/// p(x_t) = N(m, s)  ->  p(x_{t+1}) (Deisenroth and Rasmussen, 2011, Sec. 2.1):
+/// p(x_t) = N(m, s)  ->  p(x_{t+1}) (Deisenroth, Fox and Rasmussen, 2015, Sec. 3.2):
 ///
 ///   f = features of x (entries that are no angles, then sine and cosine of each angle)
 ///   u = policy(f), or policy(features of x + measurement noise)

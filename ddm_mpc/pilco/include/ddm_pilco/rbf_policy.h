@@ -14,7 +14,7 @@ namespace ddm {
 namespace pilco {
 
 /// pi(x) = sum_i beta_i k(c_i, x),  beta = (K + 0.01^2 I)^-1 targets, with the squared-exponential
-/// k of signal standard deviation 1 (Deisenroth, 2010, Ch. 3: an RBF network as the mean of a GP).
+/// k of signal standard deviation 1 (Deisenroth, 2010: an RBF network as the mean of a GP).
 ///
 /// The moments are those of a GP without model uncertainty; 1e-6 is added to the diagonal of S.
 /// Parameters: log length-scales [D x U], centres [nc x D], targets [nc x U], each by columns. The

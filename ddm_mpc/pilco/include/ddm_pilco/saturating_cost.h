@@ -9,8 +9,8 @@
 namespace ddm {
 namespace pilco {
 
-/// c(x) = 1 - exp(-1/2 (x - z)^T W (x - z)) (Deisenroth and Rasmussen, 2011, eq. 25; Deisenroth,
-/// 2010, Sec. 3.7.1). For x ~ N(m, s), with P_k = W (I + k s W)^-1:
+/// c(x) = 1 - exp(-1/2 (x - z)^T W (x - z)) (Deisenroth and Rasmussen, 2011). For x ~ N(m, s),
+/// with P_k = W (I + k s W)^-1:
 ///
 ///   E[c]         = 1 - |I + s W|^-1/2 exp(-1/2 (m - z)^T P_1 (m - z))
 ///   E[(1 - c)^2] = |I + 2 s W|^-1/2 exp(-(m - z)^T P_2 (m - z))

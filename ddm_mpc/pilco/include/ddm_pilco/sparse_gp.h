@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <random>
 #include <string>
 #include <vector>
@@ -32,8 +33,9 @@ struct SparseGpOptions {
 
 /// Negative log marginal likelihood of all outputs together under FITC:
 ///
-///   sum_a  1/2 y_a^T C_a^-1 y_a + 1/2 log|C_a| + n/2 log(2 pi),   C = Knm Kmm^-1 Kmn +
-///   diag(lambda) Kmm = k(Z, Z) + ridge I,   lambda_i = sn^2 + sf^2 - [Knm Kmm^-1 Kmn]_ii
+///   sum_a  1/2 y_a^T C_a^-1 y_a + 1/2 log|C_a| + n/2 log(2 pi)
+///   C = Knm Kmm^-1 Kmn + diag(lambda),   Kmm = k(Z, Z) + ridge I
+///   lambda_i = sn^2 + sf^2 - [Knm Kmm^-1 Kmn]_ii
 ///
 /// @param inducing         Z, one per column                                           [D x m]
 /// @param inputs           one per column                                              [D x n]
@@ -64,30 +66,43 @@ Eigen::MatrixXd randomSubset(const Eigen::MatrixXd& inputs, int count, std::mt19
 /// are; then makeSparseGpModel(). If the optimisation gets nowhere, the start is used and the
 /// message says so.
 /// @param start    inducing inputs to start from                                       [D x m]
+/// @param on_evaluation  (optional) called after each evaluation of the likelihood
 /// @return         `outputs` has one entry, for all outputs together
 /// @throws std::invalid_argument as makeSparseGpModel()
 GpFit trainSparseGp(const Eigen::MatrixXd& start, const Eigen::MatrixXd& inputs,
                     const Eigen::MatrixXd& targets, const Hyperparameters& hyperparameters,
-                    int max_iterations, double ridge);
+                    int max_iterations, double ridge,
+                    const std::function<void()>& on_evaluation = nullptr);
+
+/// What GpLearner carries from trial to trial. Saved and handed to another learner, this one goes
+/// on where the first stopped.
+struct GpLearnerState {
+  Hyperparameters hyperparameters;  ///< last optimum; empty before the first training
+  Eigen::MatrixXd inducing;         ///< last inducing inputs; empty before the first sparse GP
+};
 
 /// Learns the dynamics trial after trial: a full GP, from the last optimum onwards, and beyond
 /// `max_points` data the sparse one with the full GP's hyper-parameters.
 class GpLearner {
  public:
   /// @throws std::invalid_argument if the options are invalid
-  GpLearner(const GpTrainingOptions& training, const SparseGpOptions& sparse);
+  GpLearner(const GpTrainingOptions& training, const SparseGpOptions& sparse,
+            GpLearnerState state = {});
 
   /// @param inputs   of all trials so far, one per column                              [D x n]
   /// @param targets  one per row                                                       [n x E]
   /// @param rng      draws the inducing inputs to start from, the first time
-  /// @throws std::invalid_argument as trainGp()
-  GpFit learn(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets, std::mt19937_64* rng);
+  /// @param on_evaluation  (optional) called after each evaluation of an objective
+  /// @throws std::invalid_argument as trainGp() and trainSparseGp(); the state then stays as it was
+  GpFit learn(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets, std::mt19937_64* rng,
+              const std::function<void()>& on_evaluation = nullptr);
+
+  const GpLearnerState& state() const { return state_; }
 
  private:
   GpTrainingOptions training_;
   SparseGpOptions sparse_;
-  Hyperparameters last_optimum_;   ///< empty before the first training that succeeded
-  Eigen::MatrixXd last_inducing_;  ///< empty before the first sparse one
+  GpLearnerState state_;
 };
 
 }  // namespace pilco

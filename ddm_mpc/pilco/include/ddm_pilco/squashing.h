@@ -10,7 +10,8 @@ namespace ddm {
 namespace pilco {
 
 /// u = u_max (9 sin x + sin 3x) / 8 entry by entry: a wave with flat tops in [-u_max, u_max] and
-/// slope 3/2 u_max at 0 (Deisenroth, 2010, Ch. 3). For x ~ N(m, s), w_1 = 9/8, w_3 = 1/8:
+/// slope 3/2 u_max at 0 (Deisenroth, Fox and Rasmussen, 2015, Sec. 5; the squashing of Deisenroth,
+/// 2010, is a single sine). For x ~ N(m, s), w_1 = 9/8, w_3 = 1/8:
 ///
 ///   M_i  = u_max_i sum_k w_k exp(-k^2 s_ii / 2) sin(k m_i)
 ///   S_ij = u_max_i u_max_j sum_kl w_k w_l cov(sin k x_i, sin l x_j)

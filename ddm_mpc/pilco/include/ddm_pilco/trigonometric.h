@@ -24,8 +24,7 @@ class Augmentation {
   /// @param angles     indices i_1, i_2, ... [rad], may be empty
   /// @param scales     e_1, e_2, ...; empty: 1 each
   /// @throws std::invalid_argument for an index outside of 0 ... D - 1, no output at all, or
-  /// another
-  ///         number of scales than of angles
+  ///         another number of scales than of angles
   Augmentation(int input_dim, std::vector<int> kept, std::vector<int> angles,
                std::vector<double> scales = {});
 

@@ -1,0 +1,73 @@
+// What PILCO carries from trial to trial, as a file.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pilco_memory.h"
+
+#include <ddm_msgs/param_value.h>
+
+#include <stdexcept>
+
+namespace ddm {
+namespace {
+
+/// A matrix as a list of its columns.
+YAML::Node toYaml(const Eigen::MatrixXd& matrix) {
+  YAML::Node out(YAML::NodeType::Sequence);
+  for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
+    YAML::Node column(YAML::NodeType::Sequence);
+    column.SetStyle(YAML::EmitterStyle::Flow);
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i) column.push_back(valueToYaml(matrix(i, j)));
+    out.push_back(column);
+  }
+  return out;
+}
+
+Eigen::MatrixXd matrixOf(const YAML::Node& memory, const std::string& key) {
+  const YAML::Node columns = memory[key];
+  if (!columns.IsSequence()) throw std::runtime_error(key + " must be a list of columns");
+  const auto rows = columns.size() == 0 ? 0 : columns[0].size();
+  Eigen::MatrixXd out(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns.size()));
+  for (size_t j = 0; j < columns.size(); ++j) {
+    if (columns[j].size() != rows) throw std::runtime_error(key + " has columns of several sizes");
+    for (size_t i = 0; i < rows; ++i) {
+      out(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = columns[j][i].as<double>();
+    }
+  }
+  if (!out.allFinite()) throw std::runtime_error(key + " must be finite");
+  return out;
+}
+
+/// The single column that a vector is kept as.
+Eigen::VectorXd vectorOf(const YAML::Node& memory, const std::string& key) {
+  const Eigen::MatrixXd matrix = matrixOf(memory, key);
+  if (matrix.cols() != 1) throw std::runtime_error(key + " must be one column");
+  return matrix.col(0);
+}
+
+}  // namespace
+
+void writeMemory(const PilcoMemory& memory, YAML::Node* out) {
+  (*out)["policy"] = toYaml(memory.policy);
+  (*out)["log_length_scales"] = toYaml(memory.gps.hyperparameters.log_length_scales);
+  (*out)["log_signal_std"] = toYaml(memory.gps.hyperparameters.log_signal_std);
+  (*out)["log_noise_std"] = toYaml(memory.gps.hyperparameters.log_noise_std);
+  (*out)["inducing"] = toYaml(memory.gps.inducing);
+}
+
+PilcoMemory readMemory(const std::string& text, const std::string& source) {
+  try {
+    const YAML::Node root = YAML::Load(text);
+    if (!root.IsMap()) throw std::runtime_error("must be a map");
+    PilcoMemory memory;
+    memory.policy = vectorOf(root, "policy");
+    memory.gps.hyperparameters.log_length_scales = matrixOf(root, "log_length_scales");
+    memory.gps.hyperparameters.log_signal_std = vectorOf(root, "log_signal_std");
+    memory.gps.hyperparameters.log_noise_std = vectorOf(root, "log_noise_std");
+    memory.gps.inducing = matrixOf(root, "inducing");
+    return memory;
+  } catch (const std::exception& e) {
+    throw std::runtime_error(source + ": " + e.what() +
+                             ": PILCO goes on from this file, so use another run folder");
+  }
+}
+
+}  // namespace ddm

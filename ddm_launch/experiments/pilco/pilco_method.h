@@ -1,0 +1,54 @@
+// PILCO as a method: Gaussian processes and policy search on an observation.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ddm_bag_io/bag_cache.h>
+#include <ddm_pilco/long_term_cost.h>
+#include <ddm_pilco/squashed_policy.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "configuration.h"
+#include "method.h"
+#include "observation.h"
+#include "pilco_memory.h"
+#include "pilco_options.h"
+
+namespace ddm {
+
+/// After each trial: GPs of the dynamics from all data, then the policy that minimises the expected
+/// cost over the horizon (Deisenroth and Rasmussen, 2011, Alg. 1). Training k goes on from the
+/// policy and the hyper-parameters that training k - 1 left in its folder, unless the coordinates
+/// have changed: then both start afresh.
+///
+/// Leaves pilco.yaml (how the training went, and what the next one needs) and prediction.csv (the
+/// predicted distribution of states and costs).
+class PilcoMethod : public Method {
+ public:
+  /// @param configuration  outlives the method
+  PilcoMethod(const Configuration& configuration, const PilcoConfig& pilco,
+              std::unique_ptr<Observation> observation);
+
+  /// @throws std::runtime_error if a file cannot be read or the training comes to nothing
+  TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,
+                        const PhaseCallback& progress) override;
+  std::shared_ptr<Policy> policy() const override;
+
+ private:
+  struct Training;
+
+  PilcoMemory lastMemory(const std::vector<std::string>& bags) const;
+  pilco::Propagation learnDynamics(const DataSet& data, const Eigen::MatrixXd& X,
+                                   const PilcoTask& task, Training* training) const;
+  std::string predictionCsv(const pilco::LongTermCost& cost) const;
+
+  const Configuration& configuration_;
+  PilcoConfig pilco_;
+  std::shared_ptr<Observation> observation_;
+  BagCache bags_;
+  std::shared_ptr<pilco::SquashedPolicy> policy_;  // null before the first training
+};
+
+}  // namespace ddm

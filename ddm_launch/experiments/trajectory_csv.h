@@ -1,0 +1,26 @@
+// trajectory.csv: the plant's true state at each frame of a run.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace ddm {
+
+/// Header and one row per frame.
+/// @param times   since the first frame [s]
+/// @param states  as many
+/// @param names   of the components of a state, with units
+std::string formatTrajectoryCsv(const std::vector<double>& times,
+                                const std::vector<Eigen::VectorXd>& states,
+                                const std::vector<std::string>& names);
+
+/// The states, exactly as they were written.
+/// @param source  file, for messages
+/// @return        one state per column  [names.size() x frames]
+/// @throws std::runtime_error with source, line and fault
+Eigen::MatrixXd parseTrajectoryCsv(const std::string& text, const std::vector<std::string>& names,
+                                   const std::string& source);
+
+}  // namespace ddm

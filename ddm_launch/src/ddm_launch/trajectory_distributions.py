@@ -1,0 +1,140 @@
+# Draws the distribution of the angle that PILCO predicted for each policy, and what that policy did.
+# SPDX-License-Identifier: BSD-3-Clause
+import argparse
+import math
+
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from ddm_launch.angle_trajectories import MOST_TURNS, angle_reach, set_angle_axis, target_handle
+from ddm_launch.figure_style import BLUE, ORANGE, PAGE_WIDTH, SKY, VERMILLION, new_figure, save, write
+from ddm_launch.pilco_runs import DISTRIBUTION_COLUMNS, EVALUATION, PREDICTED, TRIAL
+from ddm_launch.run_folder import RunFolderError, number, read_csv
+
+NUM_DEVIATIONS = 2.0  # half the width of the band [standard deviations]
+KINDS = (PREDICTED, EVALUATION, TRIAL)
+# Kind of actual run, colour, line, label.
+ACTUAL = ((EVALUATION, VERMILLION, "-", "evaluation"), (TRIAL, ORANGE, (0, (3, 1)), "next recorded trial"))
+
+
+class Angles:
+    """One predicted or actual course of the angle; deviation_rad is 0 of an actual one."""
+
+    def __init__(self):
+        self.time_s, self.angle_rad, self.deviation_rad = [], [], []
+
+    def edge(self, sign):
+        """The upper (1) or lower (-1) edge of the band [rad]."""
+        return [angle + sign * NUM_DEVIATIONS * deviation for angle, deviation in zip(self.angle_rad,
+                                                                                      self.deviation_rad)]
+
+
+def read_row(row, path):
+    """(seed, frames, kind, step, time, angle, deviation) of one row."""
+    kind = row["kind"]
+    if kind not in KINDS:
+        raise RunFolderError("%s: column kind must hold one of %s, got '%s'" % (path, ", ".join(KINDS), kind))
+    deviation_rad = number(row, "angle_std_rad", path) if kind == PREDICTED else 0.0
+    if deviation_rad < 0.0:
+        raise RunFolderError("%s: column angle_std_rad must be >= 0, got %g" % (path, deviation_rad))
+    seed, frames, step, time_s, angle_rad = (number(row, key, path)
+                                             for key in ("seed", "frames", "step", "time_s", "angle_rad"))
+    return int(seed), int(frames), kind, step, time_s, angle_rad, deviation_rad
+
+
+def read_distributions(path):
+    """All of a file, as {seed: {frames learned from: {kind: Angles}}}, in ascending order."""
+    seeds, last = {}, None
+    rows = read_csv(path, DISTRIBUTION_COLUMNS, "rosrun ddm_launch reproduce_paper writes it")
+    for seed, frames, kind, step, time_s, angle_rad, deviation_rad in sorted(read_row(row, path) for row in rows):
+        if (seed, frames, kind, step) == last:
+            raise RunFolderError("%s holds step %d of seed %d after %d frames (%s) twice: give each run once" % (
+                path, step, seed, frames, kind))
+        last = seed, frames, kind, step
+        angles = seeds.setdefault(seed, {}).setdefault(frames, {}).setdefault(kind, Angles())
+        angles.time_s.append(time_s)
+        angles.angle_rad.append(angle_rad)
+        angles.deviation_rad.append(deviation_rad)
+    return seeds
+
+
+def half_turns(angles_rad):
+    return [angle / math.pi for angle in angles_rad]
+
+
+def draw_panel(axes, runs):
+    """Prediction and actual runs of one policy. runs: {kind: Angles}."""
+    if PREDICTED in runs:
+        predicted = runs[PREDICTED]
+        axes.fill_between(predicted.time_s, half_turns(predicted.edge(-1)), half_turns(predicted.edge(1)), color=SKY,
+                          alpha=0.5, linewidth=0)
+        axes.plot(predicted.time_s, half_turns(predicted.angle_rad), color=BLUE, linewidth=0.8)
+    for kind, colour, line, _ in ACTUAL:
+        if kind in runs:
+            axes.plot(runs[kind].time_s, half_turns(runs[kind].angle_rad), color=colour, linestyle=line, linewidth=0.7)
+
+
+def draw_all(figure, seeds, seconds):
+    """One row per seed, one column per number of frames, all with the same axes, and a legend below.
+
+    seconds: where the axes end; None: with the longest run.
+    """
+    columns = sorted({frames for panels in seeds.values() for frames in panels})
+    runs = [run for panels in seeds.values() for kinds in panels.values() for run in kinds.values()]
+    end = seconds or max(run.time_s[-1] for run in runs)
+    reach = angle_reach(edge for run in runs for sign in (-1, 1)
+                        for time_s, edge in zip(run.time_s, run.edge(sign)) if time_s <= end)
+    grid = figure.add_gridspec(len(seeds) + 1, len(columns), height_ratios=[1.0] * len(seeds) + [0.001])
+    for row, (seed, panels) in enumerate(seeds.items()):
+        for column, frames in enumerate(columns):
+            axes = figure.add_subplot(grid[row, column])
+            set_angle_axis(axes, reach, column == 0)
+            draw_panel(axes, panels.get(frames, {}))
+            axes.set_xlim(0.0, end)
+            if column == 0:
+                axes.set_ylabel("seed %d\nangle [rad]" % seed)
+            if row == 0:
+                axes.set_title("%d frames" % frames, pad=3)
+            if row + 1 < len(seeds):
+                axes.set_xticklabels([])
+            else:
+                axes.set_xlabel("time [s]")
+    legend = figure.add_subplot(grid[len(seeds), :])
+    legend.axis("off")
+    handles = [(Line2D([], [], color=BLUE), "predicted mean"),
+               (Patch(color=SKY, alpha=0.5), "$\\pm %g\\sigma$" % NUM_DEVIATIONS)]
+    handles += [(Line2D([], [], color=colour, linestyle=line), label) for _, colour, line, label in ACTUAL]
+    handles.append(target_handle())
+    legend.legend(*zip(*handles), loc="center", ncol=len(handles), columnspacing=1.2, frameon=False)
+
+
+def draw(path, seconds, out):
+    """Draws the distributions of a file into a picture file."""
+    seeds = read_distributions(path)
+    with new_figure(PAGE_WIDTH, 1.15 * len(seeds) + 0.6) as figure:
+        draw_all(figure, seeds, seconds)
+        save(figure, out)
+
+
+def positive_seconds(text):
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = math.nan
+    if not 0.0 < seconds < math.inf:
+        raise argparse.ArgumentTypeError("must be a time > 0 [s], got '%s'" % text)
+    return seconds
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(
+        prog="trajectory_distributions",
+        description="Draws the angle over time under each policy of PILCO: the distribution that was predicted when "
+        "the policy was learned (mean and +-%g standard deviations), and two actual runs, the greedy evaluation and "
+        "the next recorded trial. One row per seed, one column per number of frames learned from. Angles count full "
+        "turns; what lies beyond +-%.1f pi is cut off." % (NUM_DEVIATIONS, MOST_TURNS))
+    parser.add_argument("file", metavar="FILE.csv", help="columns " + ",".join(DISTRIBUTION_COLUMNS))
+    parser.add_argument("--seconds", metavar="S", type=positive_seconds, help="draw only the first S; default all")
+    parser.add_argument("--out", metavar="FILE.png", required=True, help="picture to write")
+    options = parser.parse_args(arguments)
+    return write("trajectory_distributions", options.out, lambda out: draw(options.file, options.seconds, out))

@@ -1,0 +1,330 @@
+// Tests of the baselines: what they observe, where they start, what they carry from trial to trial.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pilco/pilco_method.h"
+
+#include <ddm_model/model_file.h>
+#include <ddm_model/solver_log.h>
+#include <ddm_model/testing/expect_error.h>
+#include <ddm_model/testing/random_matrix.h>
+#include <ddm_model/testing/temp_folder.h>
+#include <ddm_sim/plant_factory.h>
+#include <gtest/gtest.h>
+
+#include <boost/filesystem.hpp>
+#include <cmath>
+#include <sstream>
+
+#include "experiment.h"
+#include "in_process_world.h"
+#include "pilco/image_task.h"
+#include "pilco/policy_start.h"
+#include "pilco/true_state_observation.h"
+#include "toy_run.h"
+#include "trajectory_csv.h"
+
+namespace ddm {
+namespace {
+
+namespace fs = boost::filesystem;
+using testing::randomMatrix;
+using testing::textOf;
+using testing::throwsNaming;
+using testing::writeText;
+
+constexpr char kSmall[] =
+    "pilco: {horizon: 8, num_centres: 4}\ngp: {max_iterations: 20}\n"
+    "policy_search: {max_iterations: 2}\nsparse_gp: {max_points: 40, first_iterations: 3}\n";
+
+Eigen::VectorXd pair(double first, double second) {
+  Eigen::VectorXd out(2);
+  out << first, second;
+  return out;
+}
+
+/// A small experiment with one of the baselines.
+Configuration smallConfiguration(const std::string& method, const std::string& runs) {
+  Configuration all = testing::toyConfiguration(runs);
+  all.experiment.method = method;
+  all.mpc.epsilon = 0.0;
+  all.model.model.pca_dim = 5;
+  all.model.training.max_iterations = 10;
+  all.model.training.schedule = method == "pilco_features" ? "v_r_only" : "joint";
+  ParamReader reader(YAML::Load(kSmall));
+  all.method = methodKind(method).read(&reader);
+  reader.requireValid();
+  return all;
+}
+
+void runSmall(const Configuration& configuration) {
+  InProcessWorld world(configuration);
+  RunFolder folder(configuration);
+  std::ostringstream out;
+  Progress progress(&out, false, configuration.experiment.trials);
+  runExperiment(configuration, &world, &folder, &progress);
+}
+
+std::vector<std::string> linesOf(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+class PilcoMethodTest : public ::testing::Test {
+ protected:
+  PilcoMethodTest() { silenceSolverLog(); }
+  std::string folder(const std::string& name) const { return scratch_.file(name); }
+
+  testing::TempFolder scratch_;
+};
+
+TEST_F(PilcoMethodTest, EveryBaselineRunsAndLeavesItsFiles) {
+  for (const std::string method : {"pilco_state", "pilco_features", "pilco_pca"}) {
+    const Configuration all = smallConfiguration(method, folder(method));
+    runSmall(all);
+    const std::vector<std::string> rows = linesOf(textOf(folder(method) + "/trials.csv"));
+    ASSERT_EQ(rows.size(), 4u) << method;  // header, random trial and two more
+    EXPECT_EQ(rows[3].substr(0, 6), "7,2,90") << method;
+    EXPECT_NE(rows[3].find(",,,"), std::string::npos) << method << ": no V_R, no V_P: " << rows[3];
+    const std::vector<std::string> prediction =
+        linesOf(textOf(folder(method) + "/trial_002/prediction.csv"));
+    EXPECT_EQ(prediction.size(), 10u) << method;  // header, steps 0 to 8
+    EXPECT_EQ(fs::exists(folder(method) + "/trial_002/model.ddm"), method == "pilco_features");
+    const YAML::Node report = YAML::LoadFile(folder(method) + "/trial_002/pilco.yaml");
+    EXPECT_EQ(report["points"].as<int>(), 3 * (testing::kToySteps - 1)) << method;
+    EXPECT_TRUE(report["sparse"].as<bool>()) << method;
+    EXPECT_LE(report["cost_after"].as<double>(), report["cost_before"].as<double>()) << method;
+  }
+}
+
+TEST_F(PilcoMethodTest, ARunThatIsResumedEndsLikeOneThatIsNot) {
+  Configuration whole = smallConfiguration("pilco_state", folder("whole"));
+  runSmall(whole);
+  Configuration resumed = smallConfiguration("pilco_state", folder("resumed"));
+  resumed.experiment.trials = 1;
+  runSmall(resumed);
+  resumed.experiment.trials = 2;
+  runSmall(resumed);
+  for (const std::string name : {"trial_002/torques.csv", "trial_002/prediction.csv",
+                                 "evaluation_002/torques.csv", "evaluation_002/trajectory.csv"}) {
+    EXPECT_EQ(textOf(folder("whole") + "/" + name), textOf(folder("resumed") + "/" + name)) << name;
+    EXPECT_FALSE(textOf(folder("whole") + "/" + name).empty()) << name;
+  }
+}
+
+TEST_F(PilcoMethodTest, APolicyGoesOnFromTheLastOneWhereTheCoordinatesStay) {
+  const Configuration all = smallConfiguration("pilco_state", folder("run"));
+  runSmall(all);
+  const auto report = [&](int trial) {
+    return YAML::LoadFile(folder("run") + "/trial_00" + std::to_string(trial) + "/pilco.yaml");
+  };
+  const std::string file = folder("run") + "/trial_001/pilco.yaml";
+  const PilcoMemory last = readMemory(readFile(file), file);
+  EXPECT_EQ(last.policy.size(), 3 + 4 * 3 + 4);
+  EXPECT_EQ(last.gps.inducing.cols(), 40);
+  // Another policy to go on from, and the training of trial 2 comes to another one.
+  PilcoMemory other = last;
+  other.policy *= 1.1;
+  YAML::Node changed(YAML::NodeType::Map);
+  writeMemory(other, &changed);
+  writeText(file, YAML::Dump(changed));
+  const InProcessWorld untouched(all);
+  InProcessWorld world(all);
+  std::vector<std::string> bags;
+  for (int k = 0; k < 3; ++k) {
+    bags.push_back(folder("run") + "/trial_00" + std::to_string(k) + "/trial.bag");
+  }
+  const TrainingOutcome outcome = world.train(bags, {7, 2, false}, [](double) {});
+  const YAML::Node now = YAML::Load(outcome.files.at("pilco.yaml"));
+  EXPECT_NE(now["cost_before"].as<double>(), report(2)["cost_before"].as<double>());
+  EXPECT_NE(YAML::Dump(now["policy"]), YAML::Dump(report(2)["policy"]));
+}
+
+TEST_F(PilcoMethodTest, AMissingOrDamagedMemoryIsNamed) {
+  const Configuration all = smallConfiguration("pilco_state", folder("run"));
+  runSmall(all);
+  const std::string file = folder("run") + "/trial_001/pilco.yaml";
+  std::vector<std::string> bags;
+  for (int k = 0; k < 3; ++k) {
+    bags.push_back(folder("run") + "/trial_00" + std::to_string(k) + "/trial.bag");
+  }
+  const auto train = [&] { InProcessWorld(all).train(bags, {7, 2, false}, [](double) {}); };
+  for (const std::string text : {"policy: [[1, 2]]\n", "[]\n", "policy: 3\n", "{"}) {
+    writeText(file, text);
+    EXPECT_TRUE(throwsNaming<std::runtime_error>(train, {file, "use another run folder"})) << text;
+  }
+  fs::remove(file);
+  EXPECT_TRUE(throwsNaming<std::runtime_error>(train, {file}));
+}
+
+TEST(PilcoMemory, IsReadBackDigitByDigit) {
+  PilcoMemory memory;
+  memory.policy = randomMatrix(7, 1, 1);
+  memory.gps.hyperparameters = {randomMatrix(3, 2, 2), randomMatrix(2, 1, 3),
+                                randomMatrix(2, 1, 4)};
+  YAML::Node node(YAML::NodeType::Map);
+  writeMemory(memory, &node);
+  const PilcoMemory read = readMemory(YAML::Dump(node), "pilco.yaml");
+  EXPECT_EQ(read.policy, memory.policy);
+  EXPECT_EQ(read.gps.hyperparameters.log_length_scales,
+            memory.gps.hyperparameters.log_length_scales);
+  EXPECT_EQ(read.gps.hyperparameters.log_signal_std, memory.gps.hyperparameters.log_signal_std);
+  EXPECT_EQ(read.gps.hyperparameters.log_noise_std, memory.gps.hyperparameters.log_noise_std);
+  EXPECT_EQ(read.gps.inducing.size(), 0);
+}
+
+class TrueStateTest : public ::testing::Test {
+ protected:
+  PlantOptions plant_options_;
+  std::unique_ptr<Plant> plant_ = makePlant(plant_options_, CameraOptions());
+  testing::TempFolder scratch_;
+};
+
+TEST_F(TrueStateTest, LearningMeetsTheMeasurementsThatThePolicyActedOn) {
+  TrueStateObservation acting(*plant_, plant_options_, PilcoOptions());
+  const TrialId id{5, 0, false};
+  std::vector<Eigen::VectorXd> states, measured;
+  std::vector<double> times;
+  DataSet data(2, 1);
+  acting.startTrial(id);
+  for (int t = 0; t < 20; ++t) {
+    states.push_back(plant_->state());
+    times.push_back(0.2 * t);
+    measured.push_back(acting.observe({}));
+    data.append(Grey(4, 0), Eigen::VectorXd::Zero(1), t == 0);
+    plant_->step(Eigen::VectorXd::Constant(1, 0.3 * t));
+  }
+  writeText(scratch_.file("trajectory.csv"),
+            formatTrajectoryCsv(times, states, plant_->stateNames()));
+  TrueStateObservation learning(*plant_, plant_options_, PilcoOptions());
+  const Eigen::MatrixXd X = learning.learn({scratch_.file("trial.bag")}, data, id);
+  ASSERT_EQ(X.cols(), 20);
+  for (int t = 0; t < 20; ++t) EXPECT_EQ(X.col(t), measured[static_cast<size_t>(t)]) << t;
+  EXPECT_NE(X(0, 19), states[19][1]);
+  EXPECT_NEAR(X(1, 19), states[19][0], 0.05);  // five standard deviations of the angle's noise
+}
+
+TEST_F(TrueStateTest, FramesThatDoNotFitTheBagsAreRefused) {
+  DataSet data(2, 1);
+  for (int t = 0; t < 3; ++t) data.append(Grey(4, 0), Eigen::VectorXd::Zero(1), t == 0);
+  TrueStateObservation observation(*plant_, plant_options_, PilcoOptions());
+  for (const size_t frames : {2u, 4u}) {
+    const std::vector<Eigen::VectorXd> states(frames, plant_->state());
+    writeText(scratch_.file("trajectory.csv"),
+              formatTrajectoryCsv(std::vector<double>(frames, 0.0), states, plant_->stateNames()));
+    EXPECT_TRUE(throwsNaming<std::runtime_error>(
+        [&] { observation.learn({scratch_.file("trial.bag")}, data, TrialId()); },
+        {"trajectory.csv", "the 3 frames"}))
+        << frames;
+  }
+}
+
+TEST_F(TrueStateTest, NoiseHasTheSpreadThatIsAskedFor) {
+  TrueStateObservation observation(*plant_, plant_options_, PilcoOptions());
+  observation.startTrial(TrialId());
+  Eigen::MatrixXd noise(2, 4000);
+  for (Eigen::Index t = 0; t < noise.cols(); ++t) noise.col(t) = observation.observe({});
+  const Eigen::VectorXd spread = noise.rowwise().norm() / std::sqrt(4000.0);
+  EXPECT_NEAR(spread[0], 0.1, 0.005);
+  EXPECT_NEAR(spread[1], 0.01, 0.0005);
+}
+
+TEST_F(TrueStateTest, TheTaskIsUprightWithinTheLengthOfTheRod) {
+  plant_options_.length = 2.0;
+  plant_options_.start_std = 0.3;
+  const TrueStateObservation observation(*plant_, plant_options_, PilcoOptions());
+  const PilcoTask task = observation.task();
+  EXPECT_EQ(task.angles, std::vector<int>{1});
+  EXPECT_NEAR(task.cost.value(pair(3.0, M_PI)), 0.0, 1e-12);
+  // Hanging, the tip is two lengths away: four widths of half a length each.
+  EXPECT_NEAR(task.cost.value(pair(0.0, 0.0)), 1.0 - std::exp(-8.0), 1e-12);
+  EXPECT_EQ(task.start.covariance, (0.3 * 0.3 * Eigen::MatrixXd::Identity(2, 2)).eval());
+}
+
+TEST_F(TrueStateTest, APlantThatDoesNotTurnIsRefused) {
+  plant_options_.type = "moving_tile";
+  plant_options_.max_torque = 5.0;
+  const std::unique_ptr<Plant> tile = makePlant(plant_options_, CameraOptions());
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [&] { TrueStateObservation(*tile, plant_options_, PilcoOptions()); },
+      {"pendulum", "got plant/type moving_tile"}));
+}
+
+TEST(ImageTask, TakesGoalStartAndScaleFromTheData) {
+  Eigen::MatrixXd X(2, 4);
+  X << 1, 0, 3, 0,  //
+      0, 1, 2, -1;
+  const std::vector<Piece> pieces = {{0, 2}, {2, 2}};
+  PilcoOptions options;
+  const Eigen::VectorXd goal = pair(-1.0, 0.0);
+  const PilcoTask task = imageTask(X, pieces, goal, options);
+  const double spread = std::sqrt(2.0 + 5.0 / 3.0);  // sample variances of the two rows
+  EXPECT_TRUE(task.angles.empty());
+  EXPECT_NEAR(task.cost.value(goal), 0.0, 1e-15);
+  EXPECT_NEAR(task.cost.value(goal + pair(0.5 * spread, 0.0)), 1.0 - std::exp(-0.5), 1e-12);
+  EXPECT_EQ(task.start.mean, pair(2.0, 1.0));
+  // Scatter of (1, 0) and (3, 2) about their mean is 2 everywhere, prior (0.1 spread)^2 / 2.
+  const double prior = 0.01 * spread * spread / 2.0;
+  EXPECT_NEAR(task.start.covariance(0, 0), (2.0 + prior) / 2.0, 1e-12);
+  EXPECT_NEAR(task.start.covariance(0, 1), 1.0, 1e-12);
+}
+
+TEST(ImageTask, FramesThatAreAllTheSameAreRefused) {
+  EXPECT_TRUE(throwsNaming<std::runtime_error>(
+      [] {
+        imageTask(Eigen::MatrixXd::Ones(2, 5), {{0, 5}}, Eigen::VectorXd::Ones(2), PilcoOptions());
+      },
+      {"the same state"}));
+}
+
+TEST(PolicyStart, CentresFollowTheFeaturesOfTheStart) {
+  PlantOptions plant_options;
+  const std::unique_ptr<Plant> plant = makePlant(plant_options, CameraOptions());
+  const PilcoTask task = TrueStateObservation(*plant, plant_options, PilcoOptions()).task();
+  const pilco::Augmentation features = pilco::replaceAngles(2, {1});
+  std::mt19937_64 rng(1);
+  const int count = 4000;
+  const Eigen::VectorXd parameters = drawPolicyStart(task, features, count, 1, &rng);
+  ASSERT_EQ(parameters.size(), 3 + 4 * count);
+  EXPECT_NEAR(parameters[0], 0.0, 1e-15);
+  EXPECT_NEAR(parameters[1], std::log(0.7), 1e-15);
+  const pilco::Moments start = features.predict(task.start);
+  for (int d = 0; d < 3; ++d) {
+    const Eigen::VectorXd centres = parameters.segment(3 + d * count, count);
+    EXPECT_NEAR(centres.mean(), start.mean[d], 0.01) << d;
+    const double variance = (centres.array() - centres.mean()).square().mean();
+    EXPECT_NEAR(variance, start.covariance(d, d), 0.1 * start.covariance(d, d) + 1e-6) << d;
+  }
+  const Eigen::VectorXd targets = parameters.tail(count);
+  EXPECT_NEAR(std::sqrt(targets.squaredNorm() / count), 0.1, 0.005);
+}
+
+TEST(PilcoOptions, TheManualHoldsTheDefaultsAndRulesAreChecked) {
+  const std::string manual = DDM_LAUNCH_SOURCE_DIR "/config/pilco.yaml";
+  EXPECT_EQ(YAML::Dump(YAML::LoadFile(manual)["pilco"]).empty(), false);
+  ParamReader reader = ParamReader::fromFiles({manual});
+  const auto options = reader.read<PilcoOptions>("pilco");
+  EXPECT_NO_THROW(reader.requireValid());
+  EXPECT_EQ(YAML::Dump(toYaml(options)), YAML::Dump(toYaml(PilcoOptions())));
+  const YAML::Node keys = YAML::LoadFile(manual)["pilco"];
+  EXPECT_EQ(keys.size(), toYaml(PilcoOptions()).size());
+  PilcoOptions wrong;
+  wrong.horizon = 0;
+  wrong.num_centres = 0;
+  wrong.cost_width = std::nan("");
+  wrong.start_std = -1.0;
+  wrong.rate_noise = -1.0;
+  wrong.angle_noise = -1.0;
+  EXPECT_EQ(wrong.problems().size(), 6u);
+}
+
+TEST(FeatureObservation, AScheduleThatTrainsThePredictorIsRefused) {
+  testing::TempFolder scratch;
+  Configuration all = smallConfiguration("pilco_features", scratch.file("run"));
+  all.model.training.schedule = "joint";
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [&] { InProcessWorld world(all); }, {"training/schedule must be v_r_only", "got joint"}));
+}
+
+}  // namespace
+}  // namespace ddm

@@ -1,0 +1,21 @@
+// Short vectors, written out.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <initializer_list>
+
+namespace ddm {
+namespace pilco {
+
+/// Of dynamic size from the start: where one of fixed size is made into such a vector, GCC 12 with
+/// AVX-512 warns of an access out of bounds that is none.
+inline Eigen::VectorXd vectorOf(std::initializer_list<double> entries) {
+  Eigen::VectorXd out(static_cast<Eigen::Index>(entries.size()));
+  std::copy(entries.begin(), entries.end(), out.data());
+  return out;
+}
+
+}  // namespace pilco
+}  // namespace ddm
