@@ -11,6 +11,18 @@ namespace ddm {
 
 namespace po = boost::program_options;
 
+namespace {
+
+/// What --method says, otherwise the files.
+std::string methodOf(const Arguments& arguments) {
+  if (!arguments.method.empty()) return arguments.method;
+  ParamReader reader = ParamReader::fromFiles(
+      configurationFiles(arguments.preset, arguments.plant, arguments.configs));
+  return reader.read<ExperimentOptions>("experiment").method;
+}
+
+}  // namespace
+
 po::options_description commonOptions(const std::string& about, Arguments* arguments) {
   po::options_description options(about + "\n\noptions");
   options.add_options()("help,h", "show this text");
@@ -48,21 +60,17 @@ bool parseCommandLine(int argc, char** argv, const po::options_description& opti
 
 ParamReader openConfiguration(const Arguments& arguments) {
   std::vector<std::string> configs = arguments.configs;
-  const std::string of_method = methodFile(arguments.method);
+  const std::string of_method = methodFile(methodOf(arguments));
   if (!of_method.empty()) configs.insert(configs.begin(), of_method);
   return ParamReader::fromFiles(configurationFiles(arguments.preset, arguments.plant, configs));
 }
 
 Configuration readConfiguration(const Arguments& arguments, ParamReader* reader) {
-  const std::shared_ptr<const MethodSetup> method = methodKind(arguments.method).read(reader);
+  const std::string name = methodOf(arguments);
+  const std::shared_ptr<const MethodSetup> method = methodKind(name).read(reader);
   Configuration configuration = readConfiguration(reader);
-  if (configuration.experiment.method != ExperimentOptions().method) {
-    throw std::invalid_argument("experiment/method must not stand in a file, got " +
-                                configuration.experiment.method +
-                                ": the option --method of run_experiment sets it");
-  }
   configuration.method = method;
-  configuration.experiment.method = arguments.method;
+  configuration.experiment.method = name;
   configuration.experiment.preset = arguments.preset;
   configuration.experiment.plant = arguments.plant;
   configuration.experiment.seed = arguments.seed;

@@ -16,7 +16,7 @@ namespace ddm {
 struct Arguments {
   std::string preset;
   std::string plant;
-  std::string method = "ddm";
+  std::string method;  ///< empty: what the files say
   int seed = 0;
   std::string out;
   std::vector<std::string> configs;

@@ -193,6 +193,7 @@ void run(const Experiment& experiment) {
 void requireFit(const Experiment& experiment) {
   const PredictionOptions& prediction = experiment.prediction;
   const ModelOptions& model = experiment.configuration.model.model;
+  const std::string& method = experiment.configuration.experiment.method;
   std::string problems;
   if (prediction.held_out_frames < prediction.max_steps + model.order) {
     problems +=
@@ -207,6 +208,7 @@ void requireFit(const Experiment& experiment) {
         "got " +
         std::to_string(prediction.training_frames);
   }
+  if (method != "ddm") problems += "\n - experiment/method must be ddm, got " + method;
   if (!problems.empty()) throw std::invalid_argument("invalid configuration:" + problems);
 }
 

@@ -13,7 +13,8 @@ namespace {
 
 TEST(Schedule, EveryNameHasOneWithAStage) {
   ASSERT_EQ(scheduleNames(),
-            (std::vector<std::string>{"joint", "sequential", "v_p_only", "joint_random_init"}));
+            (std::vector<std::string>{"joint", "sequential", "v_p_only", "v_r_only",
+                                      "joint_random_init"}));
   for (const std::string& name : scheduleNames()) EXPECT_FALSE(makeSchedule(name).stages.empty());
 }
 
@@ -42,6 +43,14 @@ TEST(Schedule, VpOnlyLeavesTheReconstructionOut) {
   EXPECT_EQ(v_p_only.stages[0].free, Stage::Free::kAll);
 }
 
+TEST(Schedule, VrOnlyLearnsTheAutoEncoderAlone) {
+  const Schedule v_r_only = makeSchedule("v_r_only");
+  EXPECT_TRUE(v_r_only.pca_start);
+  ASSERT_EQ(v_r_only.stages.size(), 1u);
+  EXPECT_TRUE(v_r_only.stages[0].terms.v_r && !v_r_only.stages[0].terms.v_p);
+  EXPECT_EQ(v_r_only.stages[0].free, Stage::Free::kAutoEncoder);
+}
+
 TEST(Schedule, TellsTheTermsThatAnyStageMinimises) {
   EXPECT_TRUE(makeSchedule("sequential").terms().v_r && makeSchedule("sequential").terms().v_p);
   EXPECT_TRUE(!makeSchedule("v_p_only").terms().v_r && makeSchedule("v_p_only").terms().v_p);
@@ -49,7 +58,7 @@ TEST(Schedule, TellsTheTermsThatAnyStageMinimises) {
 
 TEST(Schedule, RefusesAnUnknownName) {
   EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
-      [] { makeSchedule("jont"); }, {"jont", "joint, sequential, v_p_only, joint_random_init"}));
+      [] { makeSchedule("jont"); }, {"jont", "joint, sequential, v_p_only, v_r_only, joint_random_init"}));
 }
 
 }  // namespace

@@ -127,6 +127,8 @@ TEST_F(Trainer, LowersWhatItsScheduleMinimises) {
   EXPECT_GT(v_p_only.v_r, 10.0 * joint.v_r);
   EXPECT_GT(v_p_only.v_r, 10.0 * sequential.v_r);
   EXPECT_GT(sequential.v_p, joint.v_p);
+  training_.schedule = "v_r_only";
+  EXPECT_EQ(run().model->info().v_r, sequential.v_r);
 }
 
 TEST_F(Trainer, SequentialFixesTheFeaturesBeforeTheyArePredicted) {

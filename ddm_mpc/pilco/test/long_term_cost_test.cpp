@@ -208,8 +208,17 @@ TEST(LongTermCost, IsFiniteWithARightGradientForAPolicyAtItsBound) {
   Pendulum pendulum(12);
   pendulum.start.covariance *= 0.01;
   Eigen::VectorXd saturated = pendulum.policy->parameters();
-  saturated.head(3).setConstant(1.0);  // log length-scales
-  saturated.tail(5).setConstant(9.0);  // beyond five turning points of the squashing
+  saturated.head(3).setConstant(0.4);  // log length-scales
+  saturated.tail(5).setConstant(9.0);
+  RbfPolicy before_squashing(3, 1, 5);
+  before_squashing.setParameters(saturated);
+  const Eigen::VectorXd& x = pendulum.start.mean;
+  EXPECT_GT(before_squashing
+                .predict(Gaussian{vectorOf({x[0], std::sin(x[1]), std::cos(x[1])}),
+                                  Eigen::MatrixXd::Zero(3, 3)})
+                .mean[0],
+            4.0)
+      << "beyond the first maximum of the squashing, at 1.6";
   LongTermCost cost = pendulum.cost(6);
   const auto J = [&](const Eigen::VectorXd& parameters, Eigen::VectorXd* gradient) {
     return cost.evaluate(parameters, gradient);

@@ -179,12 +179,14 @@ TEST(SquashedPolicy, AdjointMatchesDifferences) {
   }
 }
 
-/// Before squashing about 9 everywhere near its centres: beyond five turning points of the wave.
+/// Before squashing about 9 between its centres: beyond five turning points of the wave.
 std::unique_ptr<RbfPolicy> saturatedPolicy() {
-  std::mt19937_64 random(11);
+  Eigen::MatrixXd centres(2, 6);
+  centres << -0.8, 0.8, -0.8, 0.8, -0.8, 0.8,  //
+      -1.6, -1.6, 0.0, 0.0, 1.6, 1.6;
   auto rbf = std::make_unique<RbfPolicy>(2, 1, 6);
-  rbf->setParameters(RbfPolicy::packParameters(
-      vectorOf({0.5, 0.7}), randomMatrix(2, 6, 0.5, random), Eigen::MatrixXd::Constant(6, 1, 9.0)));
+  rbf->setParameters(RbfPolicy::packParameters(vectorOf({0.1, -0.1}), centres,
+                                               Eigen::MatrixXd::Constant(6, 1, 9.0)));
   return rbf;
 }
 
@@ -204,13 +206,15 @@ TEST(SquashedPolicy, AtItsBoundStaysWithinItWithRightDerivatives) {
 }
 
 TEST(SquashedPolicy, OnTopOfItsBoundIsFlat) {
-  for (const double sign : {1.0, -1.0}) {
+  for (int tenths = -50; tenths <= 50; ++tenths) {
+    if (tenths == 0) continue;
+    const double bound = 0.1 * std::abs(tenths);
     auto linear = std::make_unique<LinearPolicy>(2, 1);
-    linear->setParameters(vectorOf({0.0, 0.0, sign * 1.5707963267948966}));
-    SquashedPolicy policy(std::move(linear), vectorOf({2.5}));
+    linear->setParameters(vectorOf({0.0, 0.0, std::copysign(1.5707963267948966, tenths)}));
+    SquashedPolicy policy(std::move(linear), vectorOf({bound}));
     const Gaussian input{vectorOf({0.4, -3.0}), 0.2 * Eigen::MatrixXd::Identity(2, 2)};
-    EXPECT_LE(std::abs(policy.control(input.mean)[0]), 2.5);
-    EXPECT_NEAR(sign * 2.5, policy.predict(input).mean[0], 1e-14);
+    EXPECT_LE(std::abs(policy.control(input.mean)[0]), bound) << "not even by a rounding error";
+    EXPECT_NEAR(std::copysign(bound, tenths), policy.predict(input).mean[0], 1e-14);
     Moments seed = constantMoments(2, 1);
     seed.mean[0] = 1.0;
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(3);

@@ -299,8 +299,11 @@ TEST(GpLearner, AnotherGoesOnFromItsStateToTheSameBytes) {
     EXPECT_EQ(0, a.state().hyperparameters.log_signal_std.size());
     EXPECT_EQ(0, a.state().inducing.size());
     std::mt19937_64 rng(1);
-    ASSERT_TRUE(a.learn(toy.inputs.leftCols(30), toy.targets.topRows(30), &rng).ok);
+    const GpFit first = a.learn(toy.inputs.leftCols(30), toy.targets.topRows(30), &rng);
+    ASSERT_TRUE(first.ok) << first.message;
     const GpLearnerState saved = a.state();
+    ASSERT_EQ(2, saved.hyperparameters.log_noise_std.size());
+    EXPECT_EQ(first.model.hyperparameters.log_noise_std, saved.hyperparameters.log_noise_std);
     EXPECT_EQ(max_points == 10 ? 20 : 0, saved.inducing.size());
 
     const GpFit expected = a.learn(toy.inputs, toy.targets, &rng);
