@@ -10,7 +10,12 @@
 namespace ddm {
 
 /// What a stream is for. The numbers are part of what a seed means: never change them.
-enum class StreamRole : std::uint32_t { kExploration = 3, kPlannerStarts = 4, kMeasurement = 5, kPolicySearch = 6 };
+enum class StreamRole : std::uint32_t {
+  kExploration = 3,
+  kPlannerStarts = 4,
+  kMeasurement = 5,
+  kPolicySearch = 6
+};
 
 /// @return an engine fixed by run and role
 inline std::mt19937_64 randomStream(const TrialId& id, StreamRole role) {
