@@ -23,9 +23,9 @@ class ReproductionTest(unittest.TestCase):
         self.addCleanup(scratch.cleanup)
         self.out = scratch.name
 
-    def reproduction(self, seeds=50, without_pilco=False):
+    def reproduction(self, seeds=50, without_pilco=False, config=()):
         return reproduce_paper.Reproduction(argparse.Namespace(out=self.out, preset="paper", seeds=seeds, jobs=None,
-                                                               without_pilco=without_pilco))
+                                                               without_pilco=without_pilco, config=list(config)))
 
     def words(self, reproduction, name):
         """The command of a step, from its options on."""
@@ -37,11 +37,11 @@ class ReproductionTest(unittest.TestCase):
         self.assertEqual([step.name for step in self.reproduction(without_pilco=True).steps], names[:-4])
 
     def test_each_step_of_pilco_has_its_method_seeds_and_trials(self):
-        for seeds, expected in ((50, ["0:12", "0:12", "0:5", "0:1"]), (3, ["0:3", "0:3", "0:3", "0:1"])):
+        for seeds, expected in ((50, ["0:12", "0:4", "0:5", "0:1"]), (3, ["0:3", "0:3", "0:3", "0:1"])):
             reproduction = self.reproduction(seeds)
             commands = [self.words(reproduction, name) for name in PILCO]
             self.assertEqual([words[words.index("--seeds") + 1] for words in commands], expected)
-            self.assertEqual([words[words.index("--trials") + 1] for words in commands], ["11", "11", "15", "5"])
+            self.assertEqual([words[words.index("--trials") + 1] for words in commands], ["11", "9", "15", "5"])
             self.assertEqual([words[words.index("--method") + 1] for words in commands],
                              ["pilco_state", "pilco_state", "pilco_features", "pilco_pca"])
             for words in commands:
@@ -54,6 +54,12 @@ class ReproductionTest(unittest.TestCase):
         path = self.words(self.reproduction(), "pilco_state_sparse")[-1]
         self.assertEqual(os.path.basename(path), "sparse_gp.yaml")
         self.assertTrue(os.path.isfile(path), path)
+
+    def test_a_configuration_of_the_user_comes_last_in_every_step(self):
+        reproduction = self.reproduction(config=["/a.yaml", "/b.yaml"])
+        for step in reproduction.steps:
+            self.assertEqual(self.words(reproduction, step.name)[-4:], ["--config", "/a.yaml", "--config", "/b.yaml"])
+            self.assertIn("--", self.words(reproduction, step.name))
 
     def test_figures_show_pilco_only_where_it_is_run(self):
         figures = dict(self.reproduction().figure_commands())

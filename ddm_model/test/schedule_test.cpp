@@ -12,9 +12,8 @@ namespace ddm {
 namespace {
 
 TEST(Schedule, EveryNameHasOneWithAStage) {
-  ASSERT_EQ(scheduleNames(),
-            (std::vector<std::string>{"joint", "sequential", "v_p_only", "v_r_only",
-                                      "joint_random_init"}));
+  ASSERT_EQ(scheduleNames(), (std::vector<std::string>{"joint", "sequential", "v_p_only",
+                                                       "v_r_only", "joint_random_init"}));
   for (const std::string& name : scheduleNames()) EXPECT_FALSE(makeSchedule(name).stages.empty());
 }
 
@@ -58,7 +57,8 @@ TEST(Schedule, TellsTheTermsThatAnyStageMinimises) {
 
 TEST(Schedule, RefusesAnUnknownName) {
   EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
-      [] { makeSchedule("jont"); }, {"jont", "joint, sequential, v_p_only, v_r_only, joint_random_init"}));
+      [] { makeSchedule("jont"); },
+      {"jont", "joint, sequential, v_p_only, v_r_only, joint_random_init"}));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@ import math
 
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
 
 from ddm_launch.angle_trajectories import MOST_TURNS, angle_reach, set_angle_axis, target_handle
 from ddm_launch.figure_style import BLUE, ORANGE, PAGE_WIDTH, SKY, VERMILLION, new_figure, save, write
@@ -91,6 +92,7 @@ def draw_all(figure, seeds, seconds):
             set_angle_axis(axes, reach, column == 0)
             draw_panel(axes, panels.get(frames, {}))
             axes.set_xlim(0.0, end)
+            axes.xaxis.set_major_locator(MaxNLocator(nbins=3, steps=[1, 2, 5, 10]))
             if column == 0:
                 axes.set_ylabel("seed %d\nangle [rad]" % seed)
             if row == 0:
