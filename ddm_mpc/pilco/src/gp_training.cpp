@@ -99,6 +99,7 @@ struct OutputProblem {
 Minimum trainOutput(const OutputProblem& problem, const Eigen::VectorXd& start) {
   MinimizerOptions solver;
   solver.max_iterations = problem.options.max_iterations;
+  solver.max_evaluations = kEvaluationsPerIteration * solver.max_iterations;
   solver.function_tolerance = 1e-13;
   solver.gradient_tolerance = 1e-6;
   return minimize(problem, start, solver);
@@ -116,6 +117,8 @@ void setTheta(const Eigen::VectorXd& theta, Eigen::Index output, Hyperparameters
 std::vector<std::string> GpTrainingOptions::problems() const {
   std::vector<std::string> out;
   require(max_iterations >= 0, "max_iterations must be >= 0", max_iterations, &out);
+  require(training_points == 0 || training_points >= 2, "training_points must be 0 or >= 2",
+          training_points, &out);
   require(length_scale_limit > 1.0 && std::isfinite(length_scale_limit),
           "length_scale_limit must be > 1", length_scale_limit, &out);
   require(signal_to_noise_limit > 1.0 && std::isfinite(signal_to_noise_limit),

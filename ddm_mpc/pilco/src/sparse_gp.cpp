@@ -120,6 +120,20 @@ void requireInducing(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& inp
   if (!inducing.allFinite()) throw std::invalid_argument("inducing inputs must be finite numbers");
 }
 
+/// `count` different numbers of 0 ... n - 1 in random order.
+/// @throws std::invalid_argument if there are fewer
+std::vector<int> randomIndices(Eigen::Index n, int count, std::mt19937_64* rng) {
+  if (count < 1 || count > n) {
+    throw std::invalid_argument("cannot draw " + std::to_string(count) + " of " +
+                                std::to_string(n) + " points");
+  }
+  std::vector<int> order(static_cast<std::size_t>(n));
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), *rng);  // results are fixed for libstdc++
+  order.resize(static_cast<std::size_t>(count));
+  return order;
+}
+
 }  // namespace
 
 std::vector<std::string> SparseGpOptions::problems() const {
@@ -176,15 +190,9 @@ GpFit makeSparseGpModel(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& 
 }
 
 Eigen::MatrixXd randomSubset(const Eigen::MatrixXd& inputs, int count, std::mt19937_64* rng) {
-  if (count < 1 || count > inputs.cols()) {
-    throw std::invalid_argument("cannot draw " + std::to_string(count) + " of " +
-                                std::to_string(inputs.cols()) + " points");
-  }
-  std::vector<int> order(static_cast<std::size_t>(inputs.cols()));
-  std::iota(order.begin(), order.end(), 0);
-  std::shuffle(order.begin(), order.end(), *rng);  // results are fixed for libstdc++
+  const std::vector<int> drawn = randomIndices(inputs.cols(), count, rng);
   Eigen::MatrixXd out(inputs.rows(), count);
-  for (int i = 0; i < count; ++i) out.col(i) = inputs.col(order[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < count; ++i) out.col(i) = inputs.col(drawn[static_cast<std::size_t>(i)]);
   return out;
 }
 
@@ -208,6 +216,7 @@ GpFit trainSparseGp(const Eigen::MatrixXd& start, const Eigen::MatrixXd& inputs,
   MinimizerOptions solver;
   solver.limited_memory = true;
   solver.max_iterations = max_iterations;
+  solver.max_evaluations = kEvaluationsPerIteration * max_iterations;
   solver.function_tolerance = 1e-9;
   solver.gradient_tolerance = 1e-5;
   const Minimum minimum =
@@ -237,11 +246,34 @@ GpLearner::GpLearner(const GpTrainingOptions& training, const SparseGpOptions& s
   if (!problems.empty()) throw std::invalid_argument(problems.front());
 }
 
+/// The full GP. Where it will be replaced by a sparse one, its hyper-parameters are all that
+/// counts.
+GpFit GpLearner::trainFull(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
+                           std::mt19937_64* rng, const std::function<void()>& on_evaluation) const {
+  const bool first = state_.hyperparameters.log_signal_std.size() == 0;
+  const Hyperparameters* const start = first ? nullptr : &state_.hyperparameters;
+  const int count = training_.training_points;
+  if (count == 0 || inputs.cols() <= count) {
+    return trainGp(inputs, targets, training_, start, on_evaluation);
+  }
+  const std::vector<int> drawn = randomIndices(inputs.cols(), count, rng);
+  Eigen::MatrixXd few_inputs(inputs.rows(), count);
+  Eigen::MatrixXd few_targets(count, targets.cols());
+  for (int i = 0; i < count; ++i) {
+    few_inputs.col(i) = inputs.col(drawn[static_cast<std::size_t>(i)]);
+    few_targets.row(i) = targets.row(drawn[static_cast<std::size_t>(i)]);
+  }
+  GpFit few = trainGp(few_inputs, few_targets, training_, start, on_evaluation);
+  if (!few.ok || inputs.cols() > sparse_.max_points) return few;
+  GpFit full = makeGpModel(inputs, targets, few.model.hyperparameters);
+  full.outputs = few.outputs;
+  if (full.ok) full.message = few.message;
+  return full;
+}
+
 GpFit GpLearner::learn(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
                        std::mt19937_64* rng, const std::function<void()>& on_evaluation) {
-  const bool first = state_.hyperparameters.log_signal_std.size() == 0;
-  GpFit full =
-      trainGp(inputs, targets, training_, first ? nullptr : &state_.hyperparameters, on_evaluation);
+  GpFit full = trainFull(inputs, targets, rng, on_evaluation);
   if (!full.ok) return full;
   if (inputs.cols() <= sparse_.max_points) {
     state_.hyperparameters = full.model.hyperparameters;

@@ -331,6 +331,33 @@ TEST(GpLearner, RefusesAStateOfOtherInputsAndKeepsItAsItWas) {
   EXPECT_EQ(0, learner.state().hyperparameters.log_signal_std.size());
 }
 
+TEST(GpLearner, LearnsHyperparametersFromSomePointsAndPredictsWithAll) {
+  const Toy toy(60);
+  GpTrainingOptions training;
+  training.training_points = 40;
+  SparseGpOptions sparse;
+  sparse.first_iterations = 5;
+  const auto learn = [&](int max_points) {
+    sparse.max_points = max_points;
+    GpLearner learner(training, sparse);
+    std::mt19937_64 rng(1);
+    return learner.learn(toy.inputs, toy.targets, &rng);
+  };
+  const GpFit full = learn(100);
+  ASSERT_TRUE(full.ok) << full.message;
+  EXPECT_EQ(60, full.model.numPoints());
+  const GpFit from_all = trainGp(toy.inputs, toy.targets, GpTrainingOptions());
+  const Eigen::MatrixXd difference = full.model.hyperparameters.log_length_scales -
+                                     from_all.model.hyperparameters.log_length_scales;
+  EXPECT_GT(difference.cwiseAbs().maxCoeff(), 1e-6);  // other points
+  EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1.0);   // of the same function
+  const GpFit few = learn(30);
+  ASSERT_TRUE(few.ok) << few.message;
+  EXPECT_EQ(30, few.model.numPoints());
+  EXPECT_EQ(full.model.hyperparameters.log_length_scales,
+            few.model.hyperparameters.log_length_scales);
+}
+
 TEST(GpLearner, CallsBackAfterEachEvaluationOfAnObjective) {
   const Toy toy(20);
   SparseGpOptions sparse;

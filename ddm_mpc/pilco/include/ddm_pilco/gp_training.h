@@ -15,6 +15,7 @@ namespace pilco {
 /// Block `gp`: training of one GP for each output. Defaults are those of the published PILCO code.
 struct GpTrainingOptions {
   int max_iterations = 300;               ///< of BFGS, for each output [-]
+  int training_points = 0;                ///< drawn at random to learn from; 0: all [-]
   double length_scale_limit = 100.0;      ///< curb: length-scales up to limit x spread of input [-]
   double signal_to_noise_limit = 1000.0;  ///< curb: signal std up to limit x noise std [-]
   int curb_power = 30;                    ///< steepness of the curb, even [-]
@@ -22,6 +23,7 @@ struct GpTrainingOptions {
   template <class Visitor>
   void visit(Visitor& visitor) {
     visitor("max_iterations", max_iterations);
+    visitor("training_points", training_points);
     visitor("length_scale_limit", length_scale_limit);
     visitor("signal_to_noise_limit", signal_to_noise_limit);
     visitor("curb_power", curb_power);

@@ -14,6 +14,10 @@ namespace pilco {
 using DifferentiableFunction =
     std::function<double(const Eigen::VectorXd& x, Eigen::VectorXd* gradient)>;
 
+/// A line search takes about two evaluations; one that takes many more has lost its way in rounding
+/// errors. Limit for searches whose evaluations are dear.
+constexpr int kEvaluationsPerIteration = 3;
+
 struct MinimizerOptions {
   bool limited_memory = false;        ///< L-BFGS instead of BFGS: for many parameters
   int max_iterations = 100;           ///< [-]

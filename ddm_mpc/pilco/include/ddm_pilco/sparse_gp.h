@@ -91,7 +91,7 @@ class GpLearner {
 
   /// @param inputs   of all trials so far, one per column                              [D x n]
   /// @param targets  one per row                                                       [n x E]
-  /// @param rng      draws the inducing inputs to start from, the first time
+  /// @param rng      draws gp/training_points, and the first time the inducing inputs to start from
   /// @param on_evaluation  (optional) called after each evaluation of an objective
   /// @throws std::invalid_argument as trainGp() and trainSparseGp(); the state then stays as it was
   GpFit learn(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets, std::mt19937_64* rng,
@@ -100,6 +100,9 @@ class GpLearner {
   const GpLearnerState& state() const { return state_; }
 
  private:
+  GpFit trainFull(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
+                  std::mt19937_64* rng, const std::function<void()>& on_evaluation) const;
+
   GpTrainingOptions training_;
   SparseGpOptions sparse_;
   GpLearnerState state_;
