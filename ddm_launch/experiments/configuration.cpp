@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "configuration.h"
 
+#include <ddm_model/schedule.h>
 #include <ros/package.h>
 
 #include <algorithm>
@@ -90,6 +91,13 @@ Configuration readConfiguration(ParamReader* reader) {
   return all;
 }
 
+void requireLearnedPrediction(const TrainingOptions& training) {
+  if (makeSchedule(training.schedule).terms().v_p) return;
+  throw std::invalid_argument(
+      "training/schedule must be one with V_P where a plan follows f, got " + training.schedule +
+      ": it is for run_experiment --method pilco_features");
+}
+
 YAML::Node toYaml(const Configuration& configuration) {
   YAML::Node out(YAML::NodeType::Map);
   out["experiment"] = toYaml(configuration.experiment);
@@ -124,7 +132,7 @@ std::vector<std::string> configurationFiles(const std::string& preset, const std
 
 std::string methodFile(const std::string& method) {
   const std::string file = packageFolder("ddm_launch") + "/config/methods/" + method + ".yaml";
-  return fs::exists(file) ? file : "";
+  return !method.empty() && fs::exists(file) ? file : "";
 }
 
 }  // namespace ddm

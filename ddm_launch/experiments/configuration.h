@@ -34,6 +34,9 @@ struct Configuration {
 /// @throws std::invalid_argument with all problems, one per line
 Configuration readConfiguration(ParamReader* reader);
 
+/// @throws std::invalid_argument if the schedule leaves f random, which no plan can follow
+void requireLearnedPrediction(const TrainingOptions& training);
+
 /// All blocks by name, in the order above, those of the method last.
 YAML::Node toYaml(const Configuration& configuration);
 

@@ -12,7 +12,9 @@ namespace ddm {
 
 DdmMethod::DdmMethod(const Configuration& configuration, const Plant& /*plant*/)
     : configuration_(configuration),
-      bags_(configuration.model.image.size, configuration.model.data_set) {}
+      bags_(configuration.model.image.size, configuration.model.data_set) {
+  requireLearnedPrediction(configuration.model.training);
+}
 
 TrainingOutcome DdmMethod::train(const std::vector<std::string>& bags, const TrialId& id,
                                  const PhaseCallback& progress) {

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "configuration.h"
 #include "ddm_method.h"
 #include "oracle_method.h"
 #include "pilco/pilco_methods.h"
@@ -42,6 +43,10 @@ MethodKind methodKind(const std::string& name) {
   for (const MethodKind& kind : methodKinds()) {
     if (kind.name == name) return kind;
     known += (known.empty() ? "" : ", ") + kind.name;
+  }
+  if (!methodFile(name).empty()) {
+    throw std::invalid_argument(
+        "method " + name + " is not in this build: build with -DDDM_PILCO=ON, there are " + known);
   }
   throw std::invalid_argument("unknown method '" + name + "': there are " + known);
 }

@@ -68,6 +68,9 @@ TrialRow parseRow(const std::string& line) {
   }
   row.v_r = optionalNumber(columns[6]);
   row.v_p = optionalNumber(columns[7]);
+  if (row.v_r.has_value() != row.v_p.has_value()) {
+    throw std::runtime_error("v_r and v_p must be both empty or both given");
+  }
   row.train_s = number(columns[8]);
   row.train_evaluations = count(columns[9]);
   row.plan_ms_median = number(columns[10]);

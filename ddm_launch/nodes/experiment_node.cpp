@@ -21,6 +21,7 @@ void run(const ros::NodeHandle& nh, const ros::NodeHandle& pnh) {
     throw std::invalid_argument("experiment/method must be ddm where the nodes act, got " +
                                 configuration.experiment.method + ": use run_experiment");
   }
+  ddm::requireLearnedPrediction(configuration.model.training);
   // roslaunch has loaded the files by name; this refuses a name that is no preset or plant.
   ddm::configurationFiles(configuration.experiment.preset, configuration.experiment.plant, {});
   ddm::RunFolder folder(configuration);

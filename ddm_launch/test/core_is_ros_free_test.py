@@ -13,6 +13,8 @@ import rosunit
 # library -> folder with its include/ and src/: a package, and where in it
 CORES = {"ddm_sim": ("ddm_sim", "."), "ddm_model": ("ddm_model", "."), "ddm_mpc": ("ddm_mpc", "."),
          "ddm_pilco": ("ddm_mpc", "pilco")}
+if "pilco:=OFF" in sys.argv:
+    del CORES["ddm_pilco"]
 ROS_INCLUDE = re.compile(
     r'^\s*#\s*include\s*[<"]((?:ros|xmlrpcpp|\w+_msgs|actionlib|cv_bridge|image_transport|dynamic_reconfigure'
     r'|diagnostic_updater|nodelet|pluginlib|class_loader|tf2?(?:_ros)?|ros\w+|ddm_bag_io)/[^>"]+)', re.MULTILINE)

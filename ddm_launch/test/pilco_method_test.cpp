@@ -149,7 +149,13 @@ TEST_F(PilcoMethodTest, AMissingOrDamagedMemoryIsNamed) {
     bags.push_back(folder("run") + "/trial_00" + std::to_string(k) + "/trial.bag");
   }
   const auto train = [&] { InProcessWorld(all).train(bags, {7, 2, false}, [](double) {}); };
-  for (const std::string text : {"policy: [[1, 2]]\n", "[]\n", "policy: 3\n", "{"}) {
+  PilcoMemory short_policy = readMemory(readFile(file), file);
+  short_policy.policy.conservativeResize(2);
+  YAML::Node changed(YAML::NodeType::Map);
+  writeMemory(short_policy, &changed);
+  for (const std::string& text :
+       {std::string("policy: [[1, 2]]\n"), std::string("[]\n"), std::string("policy: 3\n"),
+        std::string("{"), YAML::Dump(changed)}) {
     writeText(file, text);
     EXPECT_TRUE(throwsNaming<std::runtime_error>(train, {file, "use another run folder"})) << text;
   }
@@ -204,19 +210,31 @@ TEST_F(TrueStateTest, LearningMeetsTheMeasurementsThatThePolicyActedOn) {
   EXPECT_NEAR(X(1, 19), states[19][0], 0.05);  // five standard deviations of the angle's noise
 }
 
-TEST_F(TrueStateTest, FramesThatDoNotFitTheBagsAreRefused) {
-  DataSet data(2, 1);
-  for (int t = 0; t < 3; ++t) data.append(Grey(4, 0), Eigen::VectorXd::Zero(1), t == 0);
+TEST_F(TrueStateTest, FramesThatDoNotFitTheBagBesideThemAreRefusedWithTheFile) {
+  DataSet data(2, 1);  // two trials of 3 frames
+  for (int t = 0; t < 6; ++t) data.append(Grey(4, 0), Eigen::VectorXd::Zero(1), t % 3 == 0);
   TrueStateObservation observation(*plant_, plant_options_, PilcoOptions());
-  for (const size_t frames : {2u, 4u}) {
+  std::vector<std::string> bags;
+  const auto write = [&](const std::string& trial, size_t frames) {
+    fs::create_directories(scratch_.file(trial));
     const std::vector<Eigen::VectorXd> states(frames, plant_->state());
-    writeText(scratch_.file("trajectory.csv"),
+    writeText(scratch_.file(trial + "/trajectory.csv"),
               formatTrajectoryCsv(std::vector<double>(frames, 0.0), states, plant_->stateNames()));
-    EXPECT_TRUE(throwsNaming<std::runtime_error>(
-        [&] { observation.learn({scratch_.file("trial.bag")}, data, TrialId()); },
-        {"trajectory.csv", "the 3 frames"}))
-        << frames;
-  }
+    bags.push_back(scratch_.file(trial + "/trial.bag"));
+  };
+  const auto learn = [&] { observation.learn(bags, data, TrialId()); };
+  write("a", 2);
+  write("b", 4);  // as many in all
+  EXPECT_TRUE(throwsNaming<std::runtime_error>(
+      learn, {"a/trajectory.csv", "the 3 frames", "got 2", "use another"}));
+  bags.clear();
+  write("a", 3);
+  write("b", 4);
+  EXPECT_TRUE(throwsNaming<std::runtime_error>(learn, {"b/trajectory.csv", "got 4"}));
+  bags.clear();
+  write("a", 3);
+  write("b", 3);
+  EXPECT_NO_THROW(learn());
 }
 
 TEST_F(TrueStateTest, NoiseHasTheSpreadThatIsAskedFor) {
@@ -316,6 +334,18 @@ TEST(PilcoOptions, TheManualHoldsTheDefaultsAndRulesAreChecked) {
   wrong.rate_noise = -1.0;
   wrong.angle_noise = -1.0;
   EXPECT_EQ(wrong.problems().size(), 6u);
+}
+
+TEST(Schedules, OneThatLeavesTheMotionToChanceIsRefusedWherePlansFollowIt) {
+  TrainingOptions training;
+  EXPECT_NO_THROW(requireLearnedPrediction(training));
+  training.schedule = "v_r_only";
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { requireLearnedPrediction(training); },
+                                                  {"training/schedule", "got v_r_only"}));
+  testing::TempFolder scratch;
+  Configuration all = smallConfiguration("ddm", scratch.file("run"));
+  all.model.training.schedule = "v_r_only";
+  EXPECT_THROW(InProcessWorld world(all), std::invalid_argument);
 }
 
 TEST(FeatureObservation, AScheduleThatTrainsThePredictorIsRefused) {

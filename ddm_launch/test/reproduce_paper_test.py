@@ -104,6 +104,14 @@ class ReproducePaperTest(unittest.TestCase):
         self.assertIn("logs/joint.log", output)
         self.assertIn("preset: paper there, debug here", read_bytes(self.path("logs", "joint.log")).decode())
 
+    def test_results_of_pilco_are_not_mixed_with_tables_without_it(self):
+        os.makedirs(self.out)
+        open(self.path("pilco.csv"), "w").close()
+        code, output = call(self.command() + ["--without-pilco"])
+        self.assertEqual(code, 1)
+        self.assertIn("leave out --without-pilco", output)
+        self.assertEqual(os.listdir(self.path("runs")) if os.path.exists(self.path("runs")) else [], [])
+
     def test_wrong_options_end_with_code_2(self):
         for arguments in (["--seeds", "0"], ["--seeds", "0:5"], ["--figures"]):
             code, output = call([find_program("ddm_launch", "reproduce_paper"), "--out", self.out] + arguments)

@@ -160,7 +160,7 @@ class RunExperimentTest(unittest.TestCase):
         self.assertEqual(code, 0)
         for option in ("--preset", "--plant", "--seed", "--trials", "--out", "--config", "--method", "--help"):
             self.assertIn(option, output)
-        for method in ("ddm", "oracle", "pilco_state", "pilco_features", "pilco_pca"):
+        for method in ("ddm", "oracle"):
             self.assertIn(method + ": ", output)
 
     def test_bad_options_are_refused_by_name(self):
@@ -170,7 +170,7 @@ class RunExperimentTest(unittest.TestCase):
                 (["--out DIR is missing"], ["--preset", "debug"]),
                 (["unknown preset 'papier'", "debug, paper"], out + ["--preset", "papier"]),
                 (["unknown plant 'sim'", "pendulum, pendulum_gravity"], out + ["--plant", "sim"]),
-                (["unknown method 'pilko'", "ddm, oracle, pilco_state"], out + ["--method", "pilko"]),
+                (["unknown method 'pilko'", "ddm, oracle"], out + ["--method", "pilko"]),
                 (["experiment/seed", "-1"], out + ["--seed", "-1"]),
                 (["experiment/trials", "-2"], out + ["--trials", "-2"]),
                 (["experiment/trials", "1000"], out + ["--trials", "1000"]),
@@ -206,14 +206,6 @@ class RunExperimentTest(unittest.TestCase):
         self.assertIn("sim/lockstep", output)
         self.assertFalse(os.path.exists(self.out))
 
-    def test_a_method_that_does_not_fit_the_plant_is_refused(self):
-        self.assertRefused(1, ["a pendulum", "got plant/type moving_tile"], "--method", "pilco_state", "--plant",
-                           "moving_tile", "--out", self.out)
-        joint = self.write("joint.yaml", "training: {schedule: joint}\n")
-        self.assertRefused(1, ["training/schedule must be v_r_only", "got joint"], "--method", "pilco_features",
-                           "--config", joint, *self.debug())
-        self.assertFalse(os.path.exists(self.out))
-
     def test_the_folder_of_another_experiment_is_refused_and_left_as_it_is(self):
         shutil.copytree(self.reference, self.out)
         before = {name: read_bytes(self.out, name) for name in files_in(self.out)}
@@ -242,32 +234,6 @@ class RunExperimentTest(unittest.TestCase):
         os.truncate(bag, os.path.getsize(bag) // 2)
         self.assertRefused(1, [bag], *self.debug(trials=3))
         self.assertEqual(len(read_rows(self.out, "trials.csv")), 1 + TRIALS + 1)
-
-    def test_a_baseline_that_was_killed_goes_on_as_if_nothing_had_happened(self):
-        trials, names = 8, []
-        for k in range(trials + 1):
-            names += ["trial_%03d/%s" % (k, name) for name in ("prediction.csv", "torques.csv", "trajectory.csv")]
-            names += ["evaluation_%03d/%s" % (k, name) for name in ("torques.csv", "trajectory.csv")]
-        arguments = ["--method", "pilco_state"] + self.debug(trials)
-        process = Process([find_program("ddm_launch", "run_experiment")] + arguments)
-        process.waitForText("trial %2d/%d" % (2, trials), 60.0)
-        process.send(signal.SIGKILL)
-        process.waitForEnd(10.0)
-        self.assertNotIn("summary.yaml", files_in(self.out))
-        self.assertRuns(*arguments)
-        uninterrupted = os.path.join(self.scratch, "uninterrupted")
-        self.assertRuns("--method", "pilco_state", *self.debug(trials, out=uninterrupted))
-        self.assertEqual(differences(uninterrupted, self.out, names), [])
-        rows = read_rows(self.out, "trials.csv")
-        self.assertEqual([row[2] for row in rows[1:]], [str(125 * (k + 1)) for k in range(trials + 1)])
-        self.assertEqual({tuple(row[6:8]) for row in rows[1:]}, {("", "")})
-
-    def test_a_saved_configuration_of_a_baseline_can_be_given_again(self):
-        self.assertRuns("--method", "pilco_state", *self.debug(trials=0))
-        again = os.path.join(self.scratch, "again")
-        self.assertRuns("--config", os.path.join(self.out, "config.yaml"), "--seed", 1, "--trials", 0, "--out", again)
-        names = ["trial_000/prediction.csv", "evaluation_000/torques.csv"]
-        self.assertEqual(differences(self.out, again, names), [])
 
     def test_a_terminal_shows_a_bar_and_a_file_does_not(self):
         self.assertNotIn("\033", self.output)

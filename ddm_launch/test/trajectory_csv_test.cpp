@@ -15,10 +15,10 @@ using testing::throwsNaming;
 const std::vector<std::string> kNames = {"angle_rad", "rate_rad_per_s"};
 
 std::string example() {
-  Eigen::VectorXd first(2), second(2);
-  first << 1.0 / 3.0, -1e-17;
-  second << 9.0, 2.0;
-  return formatTrajectoryCsv({0.0, 0.2}, {first, second}, kNames);
+  std::vector<Eigen::VectorXd> states(2, Eigen::VectorXd(2));
+  states[0] << 1.0 / 3.0, -1e-17;
+  states[1] << 9.0, 2.0;
+  return formatTrajectoryCsv({0.0, 0.2}, states, kNames);
 }
 
 TEST(TrajectoryCsv, StatesAreReadBackDigitByDigit) {

@@ -17,7 +17,9 @@ Eigen::MatrixXd PcaObservation::learn(const std::vector<std::string>& /*bags*/, 
                                       const TrialId& /*id*/) {
   pca_ = fitPca(data, config_.model.pca_dim, config_.training.score_std);
   const Eigen::MatrixXd Z = pca_.project(data.pixels()).cast<double>();
-  if (!data.hasGoal()) throw std::runtime_error("the bags hold no goal image");
+  if (!data.hasGoal())
+    throw std::runtime_error(
+        "the bags hold no goal image, which tells the goal: record one on goal_image");
   task_ = imageTask(Z, data.pieces(), observe(data.goal()), options_);
   return Z;
 }

@@ -30,6 +30,12 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// What the training before left: beside the last bag but one.
+std::string memoryFile(const std::vector<std::string>& bags) {
+  const boost::filesystem::path last_bag = bags.at(bags.size() - 2);
+  return (last_bag.parent_path() / kMemoryFile).string();
+}
+
 /// What the GPs learn from.
 struct Transitions {
   Eigen::MatrixXd inputs;   ///< [features of x_t, u_t], one per column
@@ -75,9 +81,7 @@ PilcoMethod::PilcoMethod(const Configuration& configuration, const PilcoConfig& 
 
 PilcoMemory PilcoMethod::lastMemory(const std::vector<std::string>& bags) const {
   if (bags.size() < 2 || !observation_->keepsCoordinates()) return {};
-  const boost::filesystem::path last_bag = bags[bags.size() - 2];
-  const std::string file = (last_bag.parent_path() / kMemoryFile).string();
-  return readMemory(readFile(file), file);
+  return readMemory(readFile(memoryFile(bags)), memoryFile(bags));
 }
 
 TrainingOutcome PilcoMethod::train(const std::vector<std::string>& bags, const TrialId& id,
@@ -89,49 +93,15 @@ TrainingOutcome PilcoMethod::train(const std::vector<std::string>& bags, const T
   const PilcoTask task = observation_->task();
   pilco::Propagation dynamics = learnDynamics(data, X, task, &training);
 
-  const Clock::time_point search_start = Clock::now();
-  policy_ =
-      makePilcoPolicy(dynamics.featureDim(), pilco_.pilco.num_centres,
-                      Eigen::VectorXd::Constant(data.torqueDim(), configuration_.mpc.max_torque));
-  Eigen::VectorXd& parameters = training.memory.policy;
-  if (parameters.size() == 0) {
-    parameters = drawPolicyStart(task, dynamics.features(), pilco_.pilco.num_centres,
-                                 data.torqueDim(), &training.rng);
-  }
-  pilco::LongTermCost cost(std::move(dynamics), task.cost, policy_.get(), task.start,
-                           pilco_.pilco.horizon);
-  int evaluations = 0;
-  const pilco::PolicySearchResult result = pilco::searchPolicy(
-      [&](const Eigen::VectorXd& p, Eigen::VectorXd* gradient) {
-        // The line search takes about two evaluations an iteration.
-        const double done = ++evaluations / (2.0 * pilco_.policy_search.max_iterations + 1.0);
-        progress(kDynamicsShare + (1.0 - kDynamicsShare) * std::min(done, 1.0));
-        return cost.evaluate(p, gradient);
-      },
-      parameters, pilco_.policy_search);
-  if (!result.ok) {
-    throw std::runtime_error(
-        "PILCO: the long-term cost of the policy before its improvement is "
-        "not finite: pilco/horizon may be too long for these dynamics");
-  }
-  parameters = result.parameters;
-  cost.evaluate(parameters);  // sets the policy, and the prediction that is kept
-
-  YAML::Node& report = training.report;
-  report["policy_search_s"] = valueToYaml(secondsSince(search_start));
-  report["iterations"] = result.iterations;
-  report["evaluations"] = result.evaluations;
-  report["cost_before"] = valueToYaml(result.cost_before);
-  report["cost_after"] = valueToYaml(result.cost_after);
-  report["message"] = result.message;
-  writeMemory(training.memory, &report);
+  pilco::LongTermCost cost = improvePolicy(std::move(dynamics), task, bags, &training);
+  writeMemory(training.memory, &training.report);
 
   TrainingOutcome outcome;
   outcome.files = observation_->files();
-  outcome.files[kMemoryFile] = YAML::Dump(report) + "\n";
+  outcome.files[kMemoryFile] = YAML::Dump(training.report) + "\n";
   outcome.files["prediction.csv"] = predictionCsv(cost);
   outcome.frames = static_cast<std::uint32_t>(data.numFrames());
-  outcome.evaluations = static_cast<std::uint32_t>(result.evaluations);
+  outcome.evaluations = training.report["evaluations"].as<std::uint32_t>();
   outcome.seconds = secondsSince(start);
   return outcome;
 }
@@ -158,6 +128,66 @@ pilco::Propagation PilcoMethod::learnDynamics(const DataSet& data, const Eigen::
   options.angles = task.angles;
   options.noisy_policy_input = pilco_.pilco.noisy_policy_input;
   return pilco::Propagation(fit.model, options);
+}
+
+/// Sets policy_. Where the last policy's prediction leaves the finite numbers under the new GPs,
+/// the search starts afresh: an error would come again each time that the run is resumed.
+/// @return the cost, evaluated at the policy
+pilco::LongTermCost PilcoMethod::improvePolicy(pilco::Propagation dynamics, const PilcoTask& task,
+                                               const std::vector<std::string>& bags,
+                                               Training* training) {
+  const Clock::time_point start = Clock::now();
+  const pilco::Augmentation features = dynamics.features();
+  const int torque_dim = dynamics.controlDim();
+  policy_ = makePilcoPolicy(features.outputDim(), pilco_.pilco.num_centres,
+                            Eigen::VectorXd::Constant(torque_dim, configuration_.mpc.max_torque));
+  const auto drawStart = [&] {
+    return drawPolicyStart(task, features, pilco_.pilco.num_centres, torque_dim, &training->rng);
+  };
+  Eigen::VectorXd& parameters = training->memory.policy;
+  if (parameters.size() == 0) parameters = drawStart();
+  if (parameters.size() != policy_->numParameters()) {
+    throw std::runtime_error(memoryFile(bags) + ": policy must have " +
+                             std::to_string(policy_->numParameters()) + " parameters, got " +
+                             std::to_string(parameters.size()) + ": use another run folder");
+  }
+  pilco::LongTermCost cost(std::move(dynamics), task.cost, policy_.get(), task.start,
+                           pilco_.pilco.horizon);
+  int evaluations = 0;
+  const auto search = [&] {
+    return pilco::searchPolicy(
+        [&](const Eigen::VectorXd& p, Eigen::VectorXd* gradient) {
+          // The line search takes about two evaluations an iteration.
+          const double done = ++evaluations / (2.0 * pilco_.policy_search.max_iterations + 1.0);
+          training->progress(kDynamicsShare + (1.0 - kDynamicsShare) * std::min(done, 1.0));
+          return cost.evaluate(p, gradient);
+        },
+        parameters, pilco_.policy_search);
+  };
+  pilco::PolicySearchResult result = search();
+  const bool afresh = !result.ok;
+  if (afresh) {
+    parameters = drawStart();
+    result = search();
+  }
+  if (!result.ok) {
+    throw std::runtime_error(
+        "PILCO: the long-term cost is not finite, not even of a first policy: pilco/horizon, now " +
+        std::to_string(pilco_.pilco.horizon) +
+        ", is too long for these dynamics, use another run folder with a shorter one");
+  }
+  parameters = result.parameters;
+  cost.evaluate(parameters);  // sets the policy, and the prediction that is kept
+
+  YAML::Node& report = training->report;
+  report["policy_search_s"] = valueToYaml(secondsSince(start));
+  report["iterations"] = result.iterations;
+  report["evaluations"] = result.evaluations;
+  report["cost_before"] = valueToYaml(result.cost_before);
+  report["cost_after"] = valueToYaml(result.cost_after);
+  report["message"] =
+      (afresh ? "started afresh, the last policy's cost is not finite; " : "") + result.message;
+  return cost;
 }
 
 std::string PilcoMethod::predictionCsv(const pilco::LongTermCost& cost) const {

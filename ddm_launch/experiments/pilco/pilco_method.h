@@ -42,6 +42,8 @@ class PilcoMethod : public Method {
   PilcoMemory lastMemory(const std::vector<std::string>& bags) const;
   pilco::Propagation learnDynamics(const DataSet& data, const Eigen::MatrixXd& X,
                                    const PilcoTask& task, Training* training) const;
+  pilco::LongTermCost improvePolicy(pilco::Propagation dynamics, const PilcoTask& task,
+                                    const std::vector<std::string>& bags, Training* training);
   std::string predictionCsv(const pilco::LongTermCost& cost) const;
 
   const Configuration& configuration_;

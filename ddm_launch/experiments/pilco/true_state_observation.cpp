@@ -45,14 +45,14 @@ Eigen::MatrixXd TrueStateObservation::learn(const std::vector<std::string>& bags
     const std::string file =
         (boost::filesystem::path(bags[trial]).parent_path() / "trajectory.csv").string();
     const Eigen::MatrixXd states = parseTrajectoryCsv(readFile(file), plant_.stateNames(), file);
-    if (frame + states.cols() > X.cols()) break;
+    const Eigen::Index due = trial < data.pieces().size() ? data.pieces()[trial].size : 0;
+    if (states.cols() != due) {
+      throw std::runtime_error(
+          file + " must have the " + std::to_string(due) + " frames of the bag beside it, got " +
+          std::to_string(states.cols()) + ": the run folder is damaged, use another");
+    }
     startTrial({id.seed, static_cast<std::uint32_t>(trial), false});
     for (Eigen::Index i = 0; i < states.cols(); ++i) X.col(frame++) = measure(states.col(i));
-  }
-  if (frame != X.cols()) {
-    throw std::runtime_error("the files trajectory.csv beside the bags do not have the " +
-                             std::to_string(X.cols()) +
-                             " frames of the bags: the run folder is damaged, use another");
   }
   return X;
 }

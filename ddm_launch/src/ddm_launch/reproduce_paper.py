@@ -149,6 +149,7 @@ class Reproduction:
 
     def run(self):
         os.makedirs(self.path("logs"), exist_ok=True)
+        self.require_pilco()
         self.measured = read_yaml(self.path("machine.yaml")).get("steps") or {}
         total = sum(step.num_seeds for step in self.steps) + len(self.figure_commands()) + 1
         with tqdm(total=total, unit="step", dynamic_ncols=True, disable=None, smoothing=0.05) as bar:
@@ -167,6 +168,18 @@ class Reproduction:
                 bar.update(1)
             bar.set_description("done")
         return agreement
+
+    def require_pilco(self):
+        """Before hours have passed: PILCO must be there where it is wanted, and no results of it where it is not."""
+        if not self.pilco:
+            if os.path.exists(self.path("pilco.csv")):
+                raise Failure("%s holds results of PILCO, which tables without it would contradict: leave out "
+                              "--without-pilco, or use another folder" % self.out)
+            return
+        about = subprocess.run([program("run_experiment"), "--help"], stdout=subprocess.PIPE, universal_newlines=True)
+        if "pilco_state:" not in about.stdout:
+            raise Failure("PILCO is not in this build of run_experiment: build with -DDDM_PILCO=ON, or say "
+                          "--without-pilco")
 
     def keep(self, source, name):
         """Copies a result to where it is kept."""

@@ -5,12 +5,12 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 
 #include "ddm_pilco/minimizer.h"
 #include "ddm_pilco/squared_exponential.h"
 #include "gp_data.h"
+#include "option_rules.h"
 
 namespace ddm {
 namespace pilco {
@@ -19,14 +19,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLogTwoPi = 1.8378770664093453;
-
-template <class Value>
-void require(bool ok, const std::string& rule, const Value& value, std::vector<std::string>* out) {
-  if (ok) return;
-  std::ostringstream text;
-  text << "gp/" << rule << ", got " << value;
-  out->push_back(text.str());
-}
 
 /// A = K + sn^2 I and its factor, for one output.
 struct Covariance {
@@ -115,17 +107,16 @@ void setTheta(const Eigen::VectorXd& theta, Eigen::Index output, Hyperparameters
 }  // namespace
 
 std::vector<std::string> GpTrainingOptions::problems() const {
-  std::vector<std::string> out;
-  require(max_iterations >= 0, "max_iterations must be >= 0", max_iterations, &out);
-  require(training_points == 0 || training_points >= 2, "training_points must be 0 or >= 2",
-          training_points, &out);
-  require(length_scale_limit > 1.0 && std::isfinite(length_scale_limit),
-          "length_scale_limit must be > 1", length_scale_limit, &out);
-  require(signal_to_noise_limit > 1.0 && std::isfinite(signal_to_noise_limit),
-          "signal_to_noise_limit must be > 1", signal_to_noise_limit, &out);
-  require(curb_power >= 2 && curb_power % 2 == 0, "curb_power must be even and >= 2", curb_power,
-          &out);
-  return out;
+  OptionRules rules("gp");
+  rules.require(max_iterations >= 0, "max_iterations must be >= 0", max_iterations);
+  rules.require(training_points == 0 || training_points >= 2, "training_points must be 0 or >= 2",
+          training_points);
+  rules.require(length_scale_limit > 1.0 && std::isfinite(length_scale_limit),
+          "length_scale_limit must be > 1", length_scale_limit);
+  rules.require(signal_to_noise_limit > 1.0 && std::isfinite(signal_to_noise_limit),
+          "signal_to_noise_limit must be > 1", signal_to_noise_limit);
+  rules.require(curb_power >= 2 && curb_power % 2 == 0, "curb_power must be even and >= 2", curb_power);
+  return rules.problems();
 }
 
 double negativeLogLikelihood(const Eigen::MatrixXd& inputs, const Eigen::VectorXd& targets,
@@ -249,7 +240,7 @@ GpFit trainGp(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
     training.iterations = minimum.iterations;
     training.evaluations = minimum.evaluations;
     outputs.push_back(training);
-    if (!minimum.improved && minimum.message != "converged") {
+    if (!minimum.improved && !minimum.converged) {
       say(a, "kept at the start, " + minimum.message);
     }
     setTheta(minimum.x, a, &trained);

@@ -2,30 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_pilco/policy_search.h"
 
-#include <sstream>
 #include <stdexcept>
+
+#include "option_rules.h"
 
 namespace ddm {
 namespace pilco {
-namespace {
-
-template <class Value>
-void require(bool ok, const std::string& rule, const Value& value, std::vector<std::string>* out) {
-  if (ok) return;
-  std::ostringstream text;
-  text << "policy_search/" << rule << ", got " << value;
-  out->push_back(text.str());
-}
-
-}  // namespace
-
 std::vector<std::string> PolicySearchOptions::problems() const {
-  std::vector<std::string> out;
-  require(max_iterations >= 0, "max_iterations must be >= 0", max_iterations, &out);
-  require(max_evaluations >= 1, "max_evaluations must be >= 1", max_evaluations, &out);
-  require(function_tolerance >= 0.0 && function_tolerance < 1.0,
-          "function_tolerance must lie in [0, 1)", function_tolerance, &out);
-  return out;
+  OptionRules rules("policy_search");
+  rules.require(max_iterations >= 0, "max_iterations must be >= 0", max_iterations);
+  rules.require(max_evaluations >= 1, "max_evaluations must be >= 1", max_evaluations);
+  rules.require(function_tolerance >= 0.0 && function_tolerance < 1.0,
+          "function_tolerance must lie in [0, 1)", function_tolerance);
+  return rules.problems();
 }
 
 PolicySearchResult searchPolicy(const DifferentiableFunction& cost, const Eigen::VectorXd& start,

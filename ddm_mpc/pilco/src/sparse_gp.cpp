@@ -7,13 +7,13 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "ddm_pilco/minimizer.h"
 #include "ddm_pilco/squared_exponential.h"
 #include "gp_data.h"
+#include "option_rules.h"
 
 namespace ddm {
 namespace pilco {
@@ -22,14 +22,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLogTwoPi = 1.8378770664093453;
-
-template <class Value>
-void require(bool ok, const std::string& rule, const Value& value, std::vector<std::string>* out) {
-  if (ok) return;
-  std::ostringstream text;
-  text << "sparse_gp/" << rule << ", got " << value;
-  out->push_back(text.str());
-}
 
 /// The matrices of one output. B = L M L^T with Kmm = L L^T, M = I + V diag(lambda)^-1 V^T and
 /// V = L^-1 Kmn: M is much better conditioned than B.
@@ -137,12 +129,12 @@ std::vector<int> randomIndices(Eigen::Index n, int count, std::mt19937_64* rng) 
 }  // namespace
 
 std::vector<std::string> SparseGpOptions::problems() const {
-  std::vector<std::string> out;
-  require(max_points >= 1, "max_points must be >= 1", max_points, &out);
-  require(first_iterations >= 0, "first_iterations must be >= 0", first_iterations, &out);
-  require(max_iterations >= 0, "max_iterations must be >= 0", max_iterations, &out);
-  require(ridge > 0.0 && std::isfinite(ridge), "ridge must be > 0", ridge, &out);
-  return out;
+  OptionRules rules("sparse_gp");
+  rules.require(max_points >= 1, "max_points must be >= 1", max_points);
+  rules.require(first_iterations >= 0, "first_iterations must be >= 0", first_iterations);
+  rules.require(max_iterations >= 0, "max_iterations must be >= 0", max_iterations);
+  rules.require(ridge > 0.0 && std::isfinite(ridge), "ridge must be > 0", ridge);
+  return rules.problems();
 }
 
 double sparseNegativeLogLikelihood(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& inputs,
@@ -231,7 +223,7 @@ GpFit trainSparseGp(const Eigen::MatrixXd& start, const Eigen::MatrixXd& inputs,
   training.iterations = minimum.iterations;
   training.evaluations = minimum.evaluations;
   fit.outputs.push_back(training);
-  if (fit.ok && !minimum.improved && minimum.message != "converged") {
+  if (fit.ok && !minimum.improved && !minimum.converged) {
     fit.message = "inducing inputs kept at the start, " + minimum.message;
   }
   return fit;

@@ -35,11 +35,6 @@ Squashing::Squashing(Eigen::VectorXd max_control) : max_control_(std::move(max_c
   }
 }
 
-Eigen::VectorXd Squashing::value(const Eigen::VectorXd& x) const {
-  const Eigen::VectorXd u = predict(Gaussian{x, Eigen::MatrixXd::Zero(x.size(), x.size())}).mean;
-  return u.cwiseMin(max_control_).cwiseMax(-max_control_);  // rounding at the flat tops
-}
-
 Moments Squashing::predict(const Gaussian& input) const {
   requireSize(input, dim(), "squashing");
   const Eigen::VectorXd& m = input.mean;

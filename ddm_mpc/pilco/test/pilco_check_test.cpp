@@ -176,8 +176,14 @@ TEST(PilcoCheck, ComparesTheOtherCasesOfAKindWithAnUnreadableOne) {
 TEST(PilcoCheck, FailsWithUnknownKindsAndWithoutAnyCase) {
   EXPECT_TRUE(fails(replaced(goodFile(), "\"gsin\"", "\"gsine\""), "gsine: unknown kind"));
   EXPECT_TRUE(fails(replaced(goodFile(), "\"gsin\"", "\"gsine\""), "Failed: gsine"));
-  EXPECT_TRUE(fails(R"({"gsin": []})", "there are no cases"));
+  EXPECT_TRUE(fails(R"({"meta": {"source": "none"}})", "there are no cases"));
   EXPECT_TRUE(fails(R"({"gsin": 1})", "gsin: must be a list of cases"));
+}
+
+TEST(PilcoCheck, NamesAKindWhoseListIsEmpty) {
+  const std::string file = replaced(goodFile(), "\"gsin\"", "\"gp_predict\": [], \"gsin\"");
+  EXPECT_TRUE(fails(file, "gp_predict: the list of cases is empty, nothing was compared"));
+  EXPECT_TRUE(fails(file, "\nFailed: gp_predict\n"));
 }
 
 TEST(PilcoCheck, NamesAFileThatIsDamaged) {

@@ -17,8 +17,6 @@ struct Moments {
   Eigen::VectorXd mean;        ///< M                          [E]
   Eigen::MatrixXd covariance;  ///< S                      [E x E]
   Eigen::MatrixXd gain;        ///< V = s^-1 cov(x, y)     [D x E]
-
-  bool allFinite() const { return mean.allFinite() && covariance.allFinite() && gain.allFinite(); }
 };
 
 /// All entries equal to `value`.

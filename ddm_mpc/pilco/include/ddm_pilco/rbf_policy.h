@@ -30,7 +30,6 @@ class RbfPolicy : public Policy {
 
   int inputDim() const override { return input_dim_; }
   int outputDim() const override { return output_dim_; }
-  int numCentres() const { return num_centres_; }
 
   Eigen::VectorXd parameters() const override { return parameters_; }
 

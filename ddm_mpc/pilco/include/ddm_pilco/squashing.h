@@ -25,9 +25,6 @@ class Squashing {
   int dim() const { return static_cast<int>(max_control_.size()); }
   const Eigen::VectorXd& maxControl() const { return max_control_; }
 
-  /// Value for a known x. Never outside of [-u_max, u_max].
-  Eigen::VectorXd value(const Eigen::VectorXd& x) const;
-
   /// @throws std::invalid_argument if the input has another dimension than max_control
   Moments predict(const Gaussian& input) const;
 

@@ -26,6 +26,25 @@ std::string describe(double error, double limit, double from_file, double comput
   return text.str();
 }
 
+/// The largest error of all entries, and where it is. One that is not finite is the largest.
+double worstError(const Eigen::MatrixXd& from_file, const Eigen::MatrixXd& computed, bool relative,
+                  Eigen::Index* row, Eigen::Index* col) {
+  const double largest = from_file.cwiseAbs().maxCoeff();
+  const double scale = relative && largest > 0.0 ? largest : 1.0;
+  double worst = -1.0;
+  for (Eigen::Index j = 0; j < computed.cols(); ++j) {
+    for (Eigen::Index i = 0; i < computed.rows(); ++i) {
+      double error = std::abs(computed(i, j) - from_file(i, j)) / scale;
+      if (!std::isfinite(error)) error = std::numeric_limits<double>::infinity();
+      if (error <= worst) continue;
+      worst = error;
+      *row = i;
+      *col = j;
+    }
+  }
+  return worst;
+}
+
 }  // namespace
 
 Case::Case(const YAML::Node& node, const std::string& name, KindResult* result)
@@ -179,20 +198,8 @@ void Case::compare(const std::string& field, const Eigen::MatrixXd& from_file,
     fail(field, "is " + shapeText(from_file.rows(), from_file.cols()) + ", computed " +
                     shapeText(computed.rows(), computed.cols()));
   }
-  const double largest = from_file.cwiseAbs().maxCoeff();
-  const double scale = tolerance.relative && largest > 0.0 ? largest : 1.0;
-  double worst = -1.0;
   Eigen::Index row = 0, col = 0;
-  for (Eigen::Index j = 0; j < computed.cols(); ++j) {
-    for (Eigen::Index i = 0; i < computed.rows(); ++i) {
-      double error = std::abs(computed(i, j) - from_file(i, j)) / scale;
-      if (!std::isfinite(error)) error = std::numeric_limits<double>::infinity();
-      if (error <= worst) continue;
-      worst = error;
-      row = i;
-      col = j;
-    }
-  }
+  const double worst = worstError(from_file, computed, tolerance.relative, &row, &col);
   if (worst / tolerance.limit > result_->worst_share) {
     result_->worst_share = worst / tolerance.limit;
     result_->worst_error = worst;
@@ -204,6 +211,14 @@ void Case::compare(const std::string& field, const Eigen::MatrixXd& from_file,
       "case " + id_ + ", field " + field + ", entry (" + std::to_string(row + 1) + ", " +
       std::to_string(col + 1) +
       "): " + describe(worst, tolerance.limit, from_file(row, col), computed(row, col)));
+}
+
+void Case::report(const std::string& what, const Eigen::MatrixXd& from_file,
+                  const Eigen::MatrixXd& computed) {
+  Eigen::Index row = 0, col = 0;
+  const double error = worstError(from_file, computed, true, &row, &col);
+  double& worst = result_->reported[what];
+  worst = std::max(worst, error);
 }
 
 void Case::requireAllRead() const {

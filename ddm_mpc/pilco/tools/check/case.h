@@ -5,6 +5,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <Eigen/Core>
+#include <map>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -30,6 +31,8 @@ struct KindResult {
   double tolerance = 0.0;     ///< there
   std::string worst_place;    ///< there: case and field
   std::vector<std::string> problems;
+  /// Largest errors that are told and not judged, by what was compared.
+  std::map<std::string, double> reported;
 };
 
 /// A field that is missing, of another shape, or not a number where there must be one.
@@ -77,6 +80,11 @@ class Case {
   /// For what has been read already, or is not in the file as it is computed.
   void compare(const std::string& field, const Eigen::MatrixXd& from_file,
                const Eigen::MatrixXd& computed, const Tolerance& tolerance);
+
+  /// Tells the largest error, relative to the largest entry of the file, and judges nothing.
+  /// @param what  was compared with what; the largest error of all cases of the kind is told
+  void report(const std::string& what, const Eigen::MatrixXd& from_file,
+              const Eigen::MatrixXd& computed);
 
   /// Fields that nothing looked at are errors: they would pass unchecked.
   void requireAllRead() const;

@@ -40,9 +40,9 @@ void comparePrediction(Case* reference, const GpModel& model) {
   if (!reference->hasGroup({"dMdm", "dSdm", "dVdm", "dMds", "dSds", "dVds"})) return;
   const auto backward = [&](const Moments& seed) { return moments.backward(tape, seed); };
   Moments seed = constantMoments(dim, model.outputDim());
-  compareJacobian(reference, "M", jacobian(&seed, &seed.mean, dim, backward), 1e-9);
-  compareJacobian(reference, "S", jacobian(&seed, &seed.covariance, dim, backward), 1e-8);
-  compareJacobian(reference, "V", jacobian(&seed, &seed.gain, dim, backward), 1e-9);
+  compareJacobian(reference, "M", jacobian(&seed, &seed.mean, dim, backward), 1e-10);
+  compareJacobian(reference, "S", jacobian(&seed, &seed.covariance, dim, backward), 1e-9);
+  compareJacobian(reference, "V", jacobian(&seed, &seed.gain, dim, backward), 1e-10);
 }
 
 }  // namespace

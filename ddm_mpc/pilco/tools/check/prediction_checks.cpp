@@ -131,9 +131,9 @@ void checkPropagation(Case* reference) {
   Gaussian seed = constantGaussian(kStateDim);
   const auto compare = [&](const std::string& name, const Jacobian& computed) {
     const Eigen::MatrixXd in_covariance = reference->matrix("d" + name + "ds");
-    reference->compareMatrix("d" + name + "dm", computed.mean, relative(1e-8));
+    reference->compareMatrix("d" + name + "dm", computed.mean, relative(1e-9));
     reference->compare("d" + name + "ds", symmetrized(in_covariance, kStateDim),
-                       computed.covariance, relative(1e-8));
+                       computed.covariance, relative(1e-9));
   };
   compare("M", jacobian(&seed, &seed.mean, kStateDim, backward));
   compare("S", jacobian(&seed, &seed.covariance, kStateDim, backward));
@@ -149,7 +149,8 @@ void checkValue(Case* reference) {
   compareStates(reference, cost.states(), kState);
 
   // The differences of the file have truncation errors of their own, beyond the tolerance where J
-  // bends much. So like is compared with like, and the exact gradient with finer differences.
+  // bends much. So like is compared with like, and the exact gradient with finer differences; how
+  // far it is from those of the file is told only.
   const Eigen::Index num_centres = (exact.size() - kFeatureDim) / (kFeatureDim + 1);
   const auto compare = [&](const std::string& field, const Eigen::VectorXd& computed) {
     reference->compare(field, readGradient(reference, field, num_centres), computed, kGradient);
@@ -159,6 +160,8 @@ void checkValue(Case* reference) {
   reference->compare("finer differences than grad_finite_difference",
                      differenceGradient(&cost, setting.policy_parameters, kFineDifferenceStep),
                      exact, kGradient);
+  reference->report("exact gradient against the file's differences",
+                    readGradient(reference, "grad_finite_difference", num_centres), exact);
   setting.policy->setParameters(setting.policy_parameters);
   compare("grad_as_implemented", publishedGradient(rollout, setting.policy.get()));
 }

@@ -92,7 +92,9 @@ Report checkFile(const std::string& path) {
       report.kinds[name].problems.push_back("the file has this kind twice");
     } else if (!item.second.IsSequence()) {
       report.kinds[name].problems.push_back("must be a list of cases");
-    } else if (item.second.size() > 0) {
+    } else if (item.second.size() == 0) {
+      report.kinds[name].problems.push_back("the list of cases is empty, nothing was compared");
+    } else {
       report.kinds[name] = checkKind(item.second, known->second);
     }
   }
@@ -107,6 +109,14 @@ void print(const Report& report, std::ostream* out) {
   for (const auto& kind : report.kinds) printRow(kind.first, kind.second, out);
   for (const std::string& kind : report.without_cases) {
     *out << kind << ": no cases in this file, nothing compared\n";
+  }
+  for (const auto& kind : report.kinds) {
+    for (const auto& reported : kind.second.reported) {
+      std::ostringstream error;
+      error << std::scientific << std::setprecision(1) << reported.second;
+      *out << kind.first << ": " << reported.first << ": worst " << error.str()
+           << " (reported, not judged)\n";
+    }
   }
   for (const auto& kind : report.kinds) {
     for (const std::string& problem : kind.second.problems) {

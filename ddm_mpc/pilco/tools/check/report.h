@@ -14,8 +14,8 @@ namespace pilco {
 namespace check {
 
 struct Report {
-  std::map<std::string, KindResult> kinds;  ///< those that the file has cases of
-  std::vector<std::string> without_cases;   ///< known kinds that it has none of
+  std::map<std::string, KindResult> kinds;  ///< those that the file has
+  std::vector<std::string> without_cases;   ///< known kinds that it does not have
   std::vector<std::string> unknown;         ///< what it has and nobody knows
 
   /// Whether everything in the file was compared and is within its tolerance.
