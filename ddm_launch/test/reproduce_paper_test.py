@@ -15,7 +15,7 @@ from run_files import COLUMNS, read_bytes, read_rows, read_yaml  # noqa: E402
 
 FIGURES = ["angle_trajectories", "feature_plane", "pendulum_feature_space", "prediction_strip", "schedules_compared",
            "success_rate", "trajectory_distributions"]
-PILCO = {"pilco_state": (2, 12), "pilco_state_sparse": (2, 10), "pilco_features": (2, 16), "pilco_pca": (1, 6)}
+PILCO = {"pilco_state": (2, 10), "pilco_state_sparse": (2, 10), "pilco_features": (2, 16), "pilco_pca": (1, 6)}
 SCHEDULES = ["sequential", "v_p_only", "joint_random_init"]
 
 

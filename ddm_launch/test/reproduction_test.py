@@ -41,7 +41,7 @@ class ReproductionTest(unittest.TestCase):
             reproduction = self.reproduction(seeds)
             commands = [self.words(reproduction, name) for name in PILCO]
             self.assertEqual([words[words.index("--seeds") + 1] for words in commands], expected)
-            self.assertEqual([words[words.index("--trials") + 1] for words in commands], ["11", "9", "15", "5"])
+            self.assertEqual([words[words.index("--trials") + 1] for words in commands], ["9", "9", "15", "5"])
             self.assertEqual([words[words.index("--method") + 1] for words in commands],
                              ["pilco_state", "pilco_state", "pilco_features", "pilco_pca"])
             for words in commands:

@@ -30,7 +30,7 @@ FIGURE_STEP = 1
 TRIALS = 15
 PAPER_TRIALS = range(15)  # ours that have the 100 to 1500 frames of the paper's figures
 # Name of the step, --method, seeds, --trials, file of config/ for --config.
-PILCO = (("pilco_state", "pilco_state", 12, 11, None),
+PILCO = (("pilco_state", "pilco_state", 12, 9, None),
          ("pilco_state_sparse", "pilco_state", 2, 9, "sparse_gp.yaml"),
          ("pilco_features", "pilco_features", 5, 15, None),
          ("pilco_pca", "pilco_pca", 1, 5, None))

@@ -24,6 +24,13 @@ void requireFinite(const Eigen::MatrixXd& samples, const std::string& name) {
   }
 }
 
+void requireFiniteParameter(double value, const std::string& name, Eigen::Index output) {
+  if (std::isfinite(value)) return;
+  throw std::invalid_argument("the log of the " + name + " for output " +
+                              std::to_string(output + 1) + " must be a finite number, got " +
+                              std::to_string(value));
+}
+
 void requireVaried(const Eigen::MatrixXd& samples, const std::string& name) {
   const Eigen::VectorXd spread = sampleStd(samples);
   for (Eigen::Index d = 0; d < samples.rows(); ++d) {
@@ -35,7 +42,8 @@ void requireVaried(const Eigen::MatrixXd& samples, const std::string& name) {
     if (spread[d] > 0.0 && samples.row(d).minCoeff() < samples.row(d).maxCoeff()) continue;
     throw std::invalid_argument(which + " is " + std::to_string(samples(d, 0)) + " in all " +
                                 std::to_string(samples.cols()) +
-                                " points: nothing can be learnt from it, leave it out");
+                                " points: nothing can be learnt from it. Record data in which it "
+                                "changes; where it never can, leave it out of the data");
   }
 }
 
@@ -72,12 +80,21 @@ void requireHyperparameters(const Hyperparameters& hyperparameters, Eigen::Index
                          hyperparameters.log_signal_std.size() == output_dim &&
                          hyperparameters.log_noise_std.size() == output_dim;
   if (!sizes_fit) {
-    throw std::invalid_argument("the hyper-parameters must be for " + std::to_string(input_dim) +
-                                " inputs and " + std::to_string(output_dim) + " outputs");
+    throw std::invalid_argument(
+        "the hyper-parameters must be for " + std::to_string(input_dim) + " inputs and " +
+        std::to_string(output_dim) + " outputs, got length-scales for " +
+        std::to_string(hyperparameters.log_length_scales.rows()) + " and " +
+        std::to_string(hyperparameters.log_length_scales.cols()) + ", " +
+        std::to_string(hyperparameters.log_signal_std.size()) + " signal stds and " +
+        std::to_string(hyperparameters.log_noise_std.size()) + " noise stds");
   }
-  if (!hyperparameters.log_length_scales.allFinite() ||
-      !hyperparameters.log_signal_std.allFinite() || !hyperparameters.log_noise_std.allFinite()) {
-    throw std::invalid_argument("the hyper-parameters must be finite numbers");
+  for (Eigen::Index a = 0; a < output_dim; ++a) {
+    for (Eigen::Index d = 0; d < input_dim; ++d) {
+      requireFiniteParameter(hyperparameters.log_length_scales(d, a),
+                             "length-scale of input " + std::to_string(d + 1), a);
+    }
+    requireFiniteParameter(hyperparameters.log_signal_std[a], "signal std", a);
+    requireFiniteParameter(hyperparameters.log_noise_std[a], "noise std", a);
   }
 }
 

@@ -15,23 +15,39 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
+std::string shape(Eigen::Index rows, Eigen::Index cols) {
+  return "[" + std::to_string(rows) + " x " + std::to_string(cols) + "]";
+}
+
+void requireShape(const std::string& name, const Eigen::MatrixXd& matrix, Eigen::Index rows,
+                  Eigen::Index cols) {
+  if (matrix.rows() == rows && matrix.cols() == cols) return;
+  throw std::invalid_argument("gp moments: " + name + " must be " + shape(rows, cols) + ", got " +
+                              shape(matrix.rows(), matrix.cols()));
+}
+
 void requireConsistent(const GpModel& model) {
   const Eigen::Index dim = model.inputs.rows();
   const Eigen::Index n = model.inputs.cols();
   const Eigen::Index outputs = model.beta.cols();
-  const Hyperparameters& hyper = model.hyperparameters;
-  const auto require = [](bool ok, const char* rule) {
-    if (!ok) throw std::invalid_argument(std::string("gp moments: ") + rule);
-  };
-  require(dim >= 1 && n >= 1 && outputs >= 1, "the model must have inputs, points and outputs");
-  require(model.beta.rows() == n, "beta must have one row per point");
-  require(hyper.log_length_scales.rows() == dim && hyper.log_length_scales.cols() == outputs,
-          "log length-scales must be [inputs x outputs]");
-  require(hyper.log_signal_std.size() == outputs, "there must be one signal std per output");
-  require(model.inverse.empty() || static_cast<Eigen::Index>(model.inverse.size()) == outputs,
-          "there must be one inverse per output, or none at all");
-  for (const Eigen::MatrixXd& inverse : model.inverse) {
-    require(inverse.rows() == n && inverse.cols() == n, "an inverse must be [points x points]");
+  if (dim < 1 || n < 1 || outputs < 1) {
+    throw std::invalid_argument("gp moments: the model must have inputs, points and outputs, got " +
+                                std::to_string(dim) + ", " + std::to_string(n) + " and " +
+                                std::to_string(outputs));
+  }
+  requireShape("beta [points x outputs]", model.beta, n, outputs);
+  requireShape("log length-scales [inputs x outputs]", model.hyperparameters.log_length_scales, dim,
+               outputs);
+  requireShape("log signal std [outputs]", model.hyperparameters.log_signal_std, outputs, 1);
+  const Eigen::Index inverses = static_cast<Eigen::Index>(model.inverse.size());
+  if (inverses != 0 && inverses != outputs) {
+    throw std::invalid_argument("gp moments: there must be an inverse for each of the " +
+                                std::to_string(outputs) + " outputs or none, got " +
+                                std::to_string(inverses));
+  }
+  for (Eigen::Index a = 0; a < inverses; ++a) {
+    requireShape("the inverse of output " + std::to_string(a + 1) + " [points x points]",
+                 model.inverse[static_cast<std::size_t>(a)], n, n);
   }
 }
 

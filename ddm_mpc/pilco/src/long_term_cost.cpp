@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace ddm {
@@ -22,18 +24,24 @@ LongTermCost::LongTermCost(Propagation dynamics, StateCost cost, Policy* policy,
       policy_(policy),
       horizon_(horizon),
       states_{std::move(initial_state)} {
-  if (horizon < 1) throw std::invalid_argument("long-term cost: the horizon must be >= 1");
-  if (policy == nullptr) throw std::invalid_argument("long-term cost: a policy is missing");
-  if (policy->inputDim() != dynamics_.featureDim() ||
-      policy->outputDim() != dynamics_.controlDim()) {
-    throw std::invalid_argument("long-term cost: the policy does not fit features and controls");
+  if (horizon < 1) {
+    throw std::invalid_argument("long-term cost: the horizon must be >= 1, got " +
+                                std::to_string(horizon));
   }
+  if (policy == nullptr) throw std::invalid_argument("long-term cost: a policy is missing");
+  dynamics_.requireFit(*policy);
   if (cost_.inputDim() != dynamics_.stateDim()) {
-    throw std::invalid_argument("long-term cost: the cost is for another state");
+    throw std::invalid_argument("long-term cost: the cost must be for a state of " +
+                                std::to_string(dynamics_.stateDim()) + " entries, got one for " +
+                                std::to_string(cost_.inputDim()));
   }
   requireSize(states_.front(), dynamics_.stateDim(), "long-term cost");
-  if (!states_.front().mean.allFinite() || !states_.front().covariance.allFinite()) {
-    throw std::invalid_argument("long-term cost: the initial state must be finite");
+  const Gaussian& start = states_.front();
+  if (!start.mean.allFinite() || !start.covariance.allFinite()) {
+    std::ostringstream text;
+    text << "long-term cost: the initial state must be finite, got mean [" << start.mean.transpose()
+         << "] and variances [" << start.covariance.diagonal().transpose() << "]";
+    throw std::invalid_argument(text.str());
   }
 }
 

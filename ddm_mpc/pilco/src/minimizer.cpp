@@ -5,7 +5,9 @@
 #include <ceres/gradient_problem.h>
 #include <ceres/gradient_problem_solver.h>
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 
 namespace ddm {
@@ -50,24 +52,61 @@ class Recorder : public ceres::FirstOrderFunction {
   Minimum& out_;
 };
 
-ceres::GradientProblemSolver::Options solverOptions(const MinimizerOptions& options) {
+/// Ends a search whose iterations hardly change the cost. The solver's own test compares the change
+/// with the cost and not with its magnitude: it never ends a search with negative costs.
+class ChangeWatcher : public ceres::IterationCallback {
+ public:
+  explicit ChangeWatcher(double tolerance) : tolerance_(tolerance) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    const double last = last_cost_;
+    last_cost_ = summary.cost;
+    if (summary.iteration == 0) return ceres::SOLVER_CONTINUE;
+    const double magnitude = std::max(std::abs(last), std::abs(summary.cost));
+    return std::abs(summary.cost - last) <= tolerance_ * magnitude
+               ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+               : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  double tolerance_;
+  double last_cost_ = 0.0;
+};
+
+ceres::GradientProblemSolver::Options solverOptions(const MinimizerOptions& options,
+                                                    ChangeWatcher* watcher) {
   ceres::GradientProblemSolver::Options out;
   out.line_search_direction_type = options.limited_memory ? ceres::LBFGS : ceres::BFGS;
   out.max_num_iterations = options.max_iterations;
-  out.function_tolerance = options.function_tolerance;
+  out.function_tolerance = 0.0;  // see ChangeWatcher
+  out.callbacks.push_back(watcher);
   out.gradient_tolerance = options.gradient_tolerance;
   out.parameter_tolerance = 1e-14;
   out.logging_type = ceres::SILENT;
   return out;
 }
 
-std::string describe(const Minimum& result, const ceres::GradientProblemSolver::Summary& summary,
-                     bool evaluation_limit) {
-  if (evaluation_limit) return "limit of evaluations reached";
-  if (summary.termination_type == ceres::CONVERGENCE) return "converged";
-  if (summary.termination_type == ceres::NO_CONVERGENCE) return "limit of iterations reached";
-  return (result.improved ? "no further step lowers the cost: " : "no step lowers the cost: ") +
-         summary.message;
+/// Fills `converged` and `message`.
+void describe(const ceres::GradientProblemSolver::Summary& summary, bool evaluation_limit,
+              double gradient_tolerance, Minimum* result) {
+  const double slope = result->gradient.lpNorm<Eigen::Infinity>();
+  const bool stationary = slope <= gradient_tolerance;
+  const bool solver_content = summary.termination_type == ceres::CONVERGENCE ||
+                              summary.termination_type == ceres::USER_SUCCESS;
+  result->converged = stationary || (solver_content && result->improved);
+  std::ostringstream text;
+  if (result->converged) {
+    text << "converged";
+  } else if (evaluation_limit) {
+    text << "limit of evaluations reached";
+  } else if (summary.termination_type == ceres::NO_CONVERGENCE) {
+    text << "limit of iterations reached";
+  } else {
+    text << (result->improved ? "no further step" : "no step")
+         << " lowers the cost, though its gradient has an entry of magnitude " << slope;
+    if (!solver_content) text << ": " << summary.message;
+  }
+  result->message = text.str();
 }
 
 }  // namespace
@@ -89,7 +128,8 @@ Minimum minimize(const DifferentiableFunction& f, const Eigen::VectorXd& start,
   const ceres::GradientProblem problem(recorder);
   ceres::GradientProblemSolver::Summary summary;
   Eigen::VectorXd x = start;
-  ceres::Solve(solverOptions(options), problem, x.data(), &summary);
+  ChangeWatcher watcher(options.function_tolerance);
+  ceres::Solve(solverOptions(options, &watcher), problem, x.data(), &summary);
   result.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
   result.start_ok = result.gradient.size() > 0;
   if (!result.start_ok) {
@@ -97,7 +137,7 @@ Minimum minimize(const DifferentiableFunction& f, const Eigen::VectorXd& start,
     return result;
   }
   result.improved = result.cost < result.initial_cost;
-  result.message = describe(result, summary, recorder->limitReached());
+  describe(summary, recorder->limitReached(), options.gradient_tolerance, &result);
   return result;
 }
 

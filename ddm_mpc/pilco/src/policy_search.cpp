@@ -8,12 +8,13 @@
 
 namespace ddm {
 namespace pilco {
+
 std::vector<std::string> PolicySearchOptions::problems() const {
   OptionRules rules("policy_search");
   rules.require(max_iterations >= 0, "max_iterations must be >= 0", max_iterations);
   rules.require(max_evaluations >= 1, "max_evaluations must be >= 1", max_evaluations);
   rules.require(function_tolerance >= 0.0 && function_tolerance < 1.0,
-          "function_tolerance must lie in [0, 1)", function_tolerance);
+                "function_tolerance must lie in [0, 1)", function_tolerance);
   return rules.problems();
 }
 

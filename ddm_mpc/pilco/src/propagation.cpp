@@ -3,6 +3,7 @@
 #include "ddm_pilco/propagation.h"
 
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace ddm {
@@ -33,13 +34,16 @@ Propagation::Propagation(GpModel dynamics, const PropagationOptions& options)
       dynamics_(std::move(dynamics)),
       noisy_policy_input_(options.noisy_policy_input) {
   if (controlDim() < 1) {
-    throw std::invalid_argument(
-        "propagation: the dynamics GP must have the features of the state and the controls as "
-        "inputs");
+    throw std::invalid_argument("propagation: the dynamics GP must have the " +
+                                std::to_string(featureDim()) +
+                                " features of the state and at least one control as inputs, got " +
+                                std::to_string(dynamics_.model().inputDim()));
   }
   const Eigen::VectorXd& log_noise_std = dynamics_.model().hyperparameters.log_noise_std;
   if (noisy_policy_input_ && log_noise_std.size() != state_dim_) {
-    throw std::invalid_argument("propagation: there must be one noise std per output of the GP");
+    throw std::invalid_argument("propagation: there must be a noise std for each of the " +
+                                std::to_string(state_dim_) + " outputs of the GP, got " +
+                                std::to_string(log_noise_std.size()));
   }
   measurement_variance_ = noisy_policy_input_
                               ? Eigen::VectorXd(0.5 * (2.0 * log_noise_std.array()).exp())
@@ -53,11 +57,17 @@ Gaussian Propagation::policyState(const Gaussian& state) const {
   return measured;
 }
 
+void Propagation::requireFit(const Policy& policy) const {
+  if (policy.inputDim() == featureDim() && policy.outputDim() == controlDim()) return;
+  throw std::invalid_argument("propagation: the policy must have " + std::to_string(featureDim()) +
+                              " features and " + std::to_string(controlDim()) + " controls, got " +
+                              std::to_string(policy.inputDim()) + " and " +
+                              std::to_string(policy.outputDim()));
+}
+
 Gaussian Propagation::step(Policy* policy, const Gaussian& state, Tape* tape) {
   requireSize(state, state_dim_, "propagation");
-  if (policy->inputDim() != featureDim() || policy->outputDim() != controlDim()) {
-    throw std::invalid_argument("propagation: the policy does not fit features and controls");
-  }
+  requireFit(*policy);
   const Moments features = features_.predict(state);
   const Gaussian policy_input =
       marginal(noisy_policy_input_ ? features_.predict(policyState(state)) : features);

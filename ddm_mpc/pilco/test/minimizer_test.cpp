@@ -34,6 +34,7 @@ TEST(Minimizer, FindsTheMinimumWithFullAndWithLimitedMemory) {
     const Minimum minimum = minimize(valley, vectorOf({-1.2, 1.0}), options);
     EXPECT_TRUE(minimum.start_ok);
     EXPECT_TRUE(minimum.improved);
+    EXPECT_TRUE(minimum.converged);
     EXPECT_EQ("converged", minimum.message);
     EXPECT_NEAR(24.2, minimum.initial_cost, 1e-10);
     EXPECT_LT((minimum.x - vectorOf({1.0, 1.0})).norm(), 1e-5);
@@ -49,6 +50,7 @@ TEST(Minimizer, KeepsItsLimitsAndReturnsTheBestSoFar) {
   const Minimum few = minimize(valley, vectorOf({-1.2, 1.0}), options);
   EXPECT_EQ(4, few.iterations);
   EXPECT_TRUE(few.improved);
+  EXPECT_FALSE(few.converged);
   EXPECT_EQ("limit of iterations reached", few.message);
 
   int calls = 0;
@@ -62,6 +64,7 @@ TEST(Minimizer, KeepsItsLimitsAndReturnsTheBestSoFar) {
   EXPECT_EQ(9, calls);
   EXPECT_EQ(9, capped.evaluations);
   EXPECT_TRUE(capped.improved);
+  EXPECT_FALSE(capped.converged);
   EXPECT_EQ("limit of evaluations reached", capped.message);
   EXPECT_EQ(valley(capped.x, nullptr), capped.cost);
 }
@@ -115,6 +118,7 @@ TEST(Minimizer, SaysThatTheStartCannotBeEvaluated) {
 TEST(Minimizer, ClaimsNoImprovementWhereThereIsNone) {
   const Minimum at_optimum = minimize(valley, vectorOf({1.0, 1.0}), MinimizerOptions());
   EXPECT_FALSE(at_optimum.improved);
+  EXPECT_TRUE(at_optimum.converged);
   EXPECT_EQ("converged", at_optimum.message);
   EXPECT_EQ(at_optimum.initial_cost, at_optimum.cost);
 
@@ -126,6 +130,46 @@ TEST(Minimizer, ClaimsNoImprovementWhereThereIsNone) {
   const Minimum misled = minimize(uphill, vectorOf({-1.2, 1.0}), MinimizerOptions());
   EXPECT_LE(misled.cost, misled.initial_cost);
   EXPECT_EQ(misled.cost < misled.initial_cost, misled.improved);
+}
+
+TEST(Minimizer, DoesNotCallItConvergedWhereNoStepHelpsThoughThereIsASlope) {
+  const auto stuck = [](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+    if (gradient != nullptr) *gradient = vectorOf({-3.0});  // but it is flat
+    return 5.0 + std::abs(x[0]);
+  };
+  MinimizerOptions options;
+  for (options.function_tolerance = 1e-10; options.function_tolerance < 1.0;
+       options.function_tolerance *= 1e10) {
+    const Minimum minimum = minimize(stuck, vectorOf({0.0}), options);
+    EXPECT_FALSE(minimum.improved);
+    EXPECT_FALSE(minimum.converged);
+    EXPECT_NE(std::string::npos, minimum.message.find("no step lowers the cost"))
+        << minimum.message;
+    EXPECT_NE(std::string::npos, minimum.message.find("magnitude 3")) << minimum.message;
+  }
+}
+
+TEST(Minimizer, EndsByTheChangeOfTheCostWhateverItsSign) {
+  // x^4, nowhere steep: the search comes closer by a factor each time and ends by the cost only.
+  for (const double offset : {1.0, -1.0}) {
+    const auto quartic = [offset](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+      if (gradient != nullptr) *gradient = 4.0 * x.array().cube();
+      return offset + x.array().square().square().sum();
+    };
+    MinimizerOptions options;
+    options.gradient_tolerance = 0.0;
+    options.function_tolerance = 1e-4;
+    const Minimum loose = minimize(quartic, vectorOf({1.0, -0.8}), options);
+    options.function_tolerance = 1e-10;
+    const Minimum tight = minimize(quartic, vectorOf({1.0, -0.8}), options);
+    for (const Minimum* minimum : {&loose, &tight}) {
+      EXPECT_TRUE(minimum->improved && minimum->converged) << minimum->message;
+      EXPECT_LT(minimum->iterations, 60);
+    }
+    EXPECT_LT(loose.iterations, tight.iterations) << "offset " << offset;
+    EXPECT_NEAR(offset, loose.cost, 1e-3);
+    EXPECT_NEAR(offset, tight.cost, 1e-8);
+  }
 }
 
 TEST(Minimizer, RefusesAStartThatIsEmptyOrNotFinite) {

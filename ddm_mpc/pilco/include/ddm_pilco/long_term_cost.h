@@ -42,8 +42,6 @@ class LongTermCost {
   /// Standard deviation of c(x_1) ... c(x_H) of the last evaluate().
   std::vector<double> costStandardDeviations() const;
 
-  int horizon() const { return horizon_; }
-
  private:
   bool predict(bool record);
 

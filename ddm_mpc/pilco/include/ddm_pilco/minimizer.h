@@ -22,13 +22,17 @@ struct MinimizerOptions {
   bool limited_memory = false;        ///< L-BFGS instead of BFGS: for many parameters
   int max_iterations = 100;           ///< [-]
   int max_evaluations = 0;            ///< of the function; 0: no limit [-]
-  double function_tolerance = 1e-10;  ///< stop when the cost changes by less than this fraction [-]
+  double function_tolerance = 1e-10;  ///< stop when an iteration changes the cost, which may be
+                                      ///< negative, by no more than this fraction [-]
   double gradient_tolerance = 1e-7;   ///< stop when no entry of the gradient is larger
 };
 
 struct Minimum {
-  bool start_ok = false;      ///< whether the function could be evaluated at the start
-  bool improved = false;      ///< cost < initial_cost
+  bool start_ok = false;  ///< whether the function could be evaluated at the start
+  bool improved = false;  ///< cost < initial_cost
+  /// Whether no entry of the gradient is larger than the tolerance, or a search that improved the
+  /// cost ended as it hardly changed any more. Otherwise the message says what stopped it.
+  bool converged = false;
   Eigen::VectorXd x;          ///< the best point evaluated; the start if there is none better
   Eigen::VectorXd gradient;   ///< there
   double cost = 0.0;          ///< there

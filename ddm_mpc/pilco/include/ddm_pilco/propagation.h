@@ -50,6 +50,9 @@ class Propagation {
   int controlDim() const { return dynamics_.model().inputDim() - featureDim(); }
   const Augmentation& features() const { return features_; }
 
+  /// @throws std::invalid_argument unless features and controls are as many as those of the policy
+  void requireFit(const Policy& policy) const;
+
   /// @param policy  with bounded controls
   /// @param state   p(x_t)
   /// @param tape    (optional) out: record for backward()
