@@ -22,7 +22,7 @@ packages_to_run=(
   libroscpp-dev libactionlib-dev librosbag-dev libcv-bridge-dev libimage-transport-dev libroslib-dev
   # libraries
   libopencv-imgproc-dev libopencv-imgcodecs-dev libeigen3-dev libceres-dev libyaml-cpp-dev
-  libboost-dev libboost-program-options-dev libboost-filesystem-dev
+  libboost-dev libboost-program-options-dev libboost-filesystem-dev libbenchmark-dev
   # tests
   libgtest-dev librostest-dev python3-rostest python3-rosunit
   # ROS in Python and its command line tools

@@ -40,10 +40,11 @@ void requireVaried(const Eigen::MatrixXd& samples, const std::string& name) {
     }
     // The extremes, as the spread of equal numbers may be a rounding error.
     if (spread[d] > 0.0 && samples.row(d).minCoeff() < samples.row(d).maxCoeff()) continue;
-    throw std::invalid_argument(which + " is " + std::to_string(samples(d, 0)) + " in all " +
-                                std::to_string(samples.cols()) +
-                                " points: nothing can be learnt from it. Record data in which it "
-                                "changes; where it never can, leave it out of the data");
+    throw std::invalid_argument(
+        which + " is " + std::to_string(samples(d, 0)) + " in all " +
+        std::to_string(samples.cols()) +
+        " points: nothing can be learnt from it. Leave it out, or record data "
+        "in which it changes; a feature of images: learn fewer of them");
   }
 }
 
