@@ -15,7 +15,7 @@ using testing::throwsNaming;
 const std::vector<std::string> kNames = {"angle_rad", "rate_rad_per_s"};
 
 std::string example() {
-  std::vector<Eigen::VectorXd> states(2, Eigen::VectorXd(2));
+  std::vector<Eigen::VectorXd> states(2, Eigen::VectorXd::Zero(2));
   states[0] << 1.0 / 3.0, -1e-17;
   states[1] << 9.0, 2.0;
   return formatTrajectoryCsv({0.0, 0.2}, states, kNames);
