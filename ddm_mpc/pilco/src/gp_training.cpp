@@ -110,12 +110,13 @@ std::vector<std::string> GpTrainingOptions::problems() const {
   OptionRules rules("gp");
   rules.require(max_iterations >= 0, "max_iterations must be >= 0", max_iterations);
   rules.require(training_points == 0 || training_points >= 2, "training_points must be 0 or >= 2",
-          training_points);
+                training_points);
   rules.require(length_scale_limit > 1.0 && std::isfinite(length_scale_limit),
-          "length_scale_limit must be > 1", length_scale_limit);
+                "length_scale_limit must be > 1", length_scale_limit);
   rules.require(signal_to_noise_limit > 1.0 && std::isfinite(signal_to_noise_limit),
-          "signal_to_noise_limit must be > 1", signal_to_noise_limit);
-  rules.require(curb_power >= 2 && curb_power % 2 == 0, "curb_power must be even and >= 2", curb_power);
+                "signal_to_noise_limit must be > 1", signal_to_noise_limit);
+  rules.require(curb_power >= 2 && curb_power % 2 == 0, "curb_power must be even and >= 2",
+                curb_power);
   return rules.problems();
 }
 

@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "adjoint_check.h"
+#include "ddm_model/testing/expect_error.h"
 #include "gp_sampler.h"
 #include "monte_carlo.h"
 #include "random_gp.h"
@@ -17,6 +18,8 @@
 namespace ddm {
 namespace pilco {
 namespace {
+
+using ::ddm::testing::throwsNaming;
 
 ::testing::AssertionResult inputAdjointMatches(const GpModel& model, const Gaussian& input,
                                                std::mt19937_64& random) {
@@ -219,21 +222,28 @@ TEST(GpMoments, RefuseModelsAndInputsWhoseShapesDoNotFit) {
                std::invalid_argument);
 
   GpModel bad = good;
+  const auto construct = [&] { GpMoments refused(bad); };
   bad.beta.resize(5, 2);
-  EXPECT_THROW(GpMoments{bad}, std::invalid_argument);
+  EXPECT_TRUE(
+      throwsNaming<std::invalid_argument>(construct, {"beta", "must be [6 x 2], got [5 x 2]"}));
   bad = good;
   bad.hyperparameters.log_length_scales.resize(2, 1);
-  EXPECT_THROW(GpMoments{bad}, std::invalid_argument);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      construct, {"log length-scales", "must be [2 x 2], got [2 x 1]"}));
   bad = good;
   bad.hyperparameters.log_signal_std.resize(3);
-  EXPECT_THROW(GpMoments{bad}, std::invalid_argument);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      construct, {"log signal std", "must be [2 x 1], got [3 x 1]"}));
   bad = good;
   bad.inverse.pop_back();
-  EXPECT_THROW(GpMoments{bad}, std::invalid_argument);
+  EXPECT_TRUE(
+      throwsNaming<std::invalid_argument>(construct, {"each of the 2 outputs or none, got 1"}));
   bad = good;
   bad.inverse[0].resize(6, 5);
-  EXPECT_THROW(GpMoments{bad}, std::invalid_argument);
-  EXPECT_THROW(GpMoments{GpModel()}, std::invalid_argument);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      construct, {"inverse of output 1", "must be [6 x 6], got [6 x 5]"}));
+  bad = GpModel();
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(construct, {"got 0, 0 and 0"}));
 }
 
 }  // namespace

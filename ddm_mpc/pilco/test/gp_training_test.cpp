@@ -272,8 +272,9 @@ TEST(TrainGp, RefusesDataItCannotLearnFromAndNamesThem) {
   const Toy toy(10);
   Eigen::MatrixXd changed = toy.inputs;
   changed.row(2).setConstant(0.1);
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training(changed, toy.targets),
-                                                  {"input 3 is 0.1", "all 10 points"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      training(changed, toy.targets),
+      {"input 3 is 0.1", "all 10 points", "Leave it out", "feature of images"}));
   changed = toy.targets;
   changed.col(0).setZero();
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(training(toy.inputs, changed),
@@ -291,11 +292,20 @@ TEST(TrainGp, RefusesDataItCannotLearnFromAndNamesThem) {
 TEST(TrainGp, RefusesHyperparametersOfAnotherSizeOrNotFinite) {
   const Toy toy(10);
   Hyperparameters start = initialHyperparameters(toy.inputs, toy.targets);
-  start.log_signal_std[0] = kNaN;
+  start.log_signal_std[1] = kNaN;
   const auto training = [&] { trainGp(toy.inputs, toy.targets, GpTrainingOptions(), &start); };
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training, {"finite"}));
+  EXPECT_TRUE(
+      throwsNaming<std::invalid_argument>(training, {"signal std for output 2", "finite", "nan"}));
+  start = initialHyperparameters(toy.inputs, toy.targets);
+  start.log_noise_std[0] = kNaN;
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training, {"noise std for output 1"}));
+  start = initialHyperparameters(toy.inputs, toy.targets);
+  start.log_length_scales(2, 1) = kNaN;
+  EXPECT_TRUE(
+      throwsNaming<std::invalid_argument>(training, {"length-scale of input 3 for output 2"}));
   start.log_signal_std.setZero(3);
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training, {"for 3 inputs and 2 outputs"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      training, {"for 3 inputs and 2 outputs", "3 signal stds and 2 noise stds"}));
 }
 
 TEST(GpTrainingOptions, AllProblemsAreReportedAndNaNIsOne) {

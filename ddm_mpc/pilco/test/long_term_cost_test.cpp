@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "adjoint_check.h"
+#include "ddm_model/testing/expect_error.h"
 #include "ddm_pilco/linear_policy.h"
 #include "ddm_pilco/rbf_policy.h"
 #include "ddm_pilco/squashed_policy.h"
@@ -22,6 +23,8 @@
 namespace ddm {
 namespace pilco {
 namespace {
+
+using ::ddm::testing::throwsNaming;
 
 /// A pendulum that has been seen only a few times: state [dphi, phi], one torque.
 struct Pendulum {
@@ -129,7 +132,8 @@ TEST(Propagation, RefusesModelsPoliciesAndStatesThatDoNotFit) {
   options.angles = {2};
   EXPECT_THROW(Propagation(pendulum.model, options), std::invalid_argument);
   options.angles = {0, 1};  // four features: no input is left for a control
-  EXPECT_THROW(Propagation(pendulum.model, options), std::invalid_argument);
+  const auto construct = [&] { Propagation(pendulum.model, options); };
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(construct, {"4 features", "got 4"}));
   options.angles = {1};
   options.noisy_policy_input = true;
   GpModel without_noise = pendulum.model;
@@ -138,7 +142,8 @@ TEST(Propagation, RefusesModelsPoliciesAndStatesThatDoNotFit) {
 
   Propagation propagation(pendulum.model, pendulum.options);
   LinearPolicy other(2, 1);
-  EXPECT_THROW(propagation.step(&other, pendulum.start), std::invalid_argument);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { propagation.step(&other, pendulum.start); },
+                                                  {"3 features and 1 controls, got 2 and 1"}));
   EXPECT_THROW(propagation.step(pendulum.policy.get(), randomGaussian(3, 3, 0.1, pendulum.random)),
                std::invalid_argument);
 }
@@ -253,17 +258,20 @@ TEST(LongTermCost, RefusesProblemsThatDoNotFit) {
   };
   Policy* const policy = pendulum.policy.get();
   EXPECT_NO_THROW(make(policy, pendulumCost(), pendulum.start, 1));
-  EXPECT_THROW(make(policy, pendulumCost(), pendulum.start, 0), std::invalid_argument);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [&] { make(policy, pendulumCost(), pendulum.start, 0); }, {"horizon", ">= 1, got 0"}));
   EXPECT_THROW(make(nullptr, pendulumCost(), pendulum.start, 1), std::invalid_argument);
   LinearPolicy other(2, 1);
   EXPECT_THROW(make(&other, pendulumCost(), pendulum.start, 1), std::invalid_argument);
   const StateCost of_three(
       Augmentation(3, {0}, {}),
       SaturatingCost(Eigen::VectorXd::Zero(1), Eigen::MatrixXd::Identity(1, 1)));
-  EXPECT_THROW(make(policy, of_three, pendulum.start, 1), std::invalid_argument);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [&] { make(policy, of_three, pendulum.start, 1); }, {"2 entries, got one for 3"}));
   Gaussian start = pendulum.start;
   start.mean[0] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(make(policy, pendulumCost(), start, 1), std::invalid_argument);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { make(policy, pendulumCost(), start, 1); },
+                                                  {"initial state", "finite", "nan"}));
   LongTermCost cost = pendulum.cost(2);
   EXPECT_THROW(cost.evaluate(Eigen::VectorXd::Zero(3)), std::invalid_argument);
 }

@@ -80,6 +80,7 @@ TEST(Minimizer, NeverReturnsAWorsePointForOneMoreEvaluation) {
   for (options.max_evaluations = 1; options.max_evaluations <= 30; ++options.max_evaluations) {
     const Minimum minimum = minimize(watched, vectorOf({-1.2, 1.0}), options);
     EXPECT_LE(minimum.cost, best);
+    EXPECT_FALSE(minimum.converged) << "refused evaluations are no convergence";
     EXPECT_EQ(valley(minimum.x, nullptr), minimum.cost);
     if (last_evaluated > minimum.cost) ++ended_uphill;
     best = minimum.cost;
@@ -151,7 +152,9 @@ TEST(Minimizer, DoesNotCallItConvergedWhereNoStepHelpsThoughThereIsASlope) {
 
 TEST(Minimizer, EndsByTheChangeOfTheCostWhateverItsSign) {
   // x^4, nowhere steep: the search comes closer by a factor each time and ends by the cost only.
-  for (const double offset : {1.0, -1.0}) {
+  const Eigen::VectorXd start = vectorOf({1.0, -0.8});
+  const double at_start = start.array().square().square().sum();
+  for (const double offset : {1.0, -1.0, -at_start}) {  // the last one: the cost starts at 0
     const auto quartic = [offset](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
       if (gradient != nullptr) *gradient = 4.0 * x.array().cube();
       return offset + x.array().square().square().sum();
@@ -159,9 +162,9 @@ TEST(Minimizer, EndsByTheChangeOfTheCostWhateverItsSign) {
     MinimizerOptions options;
     options.gradient_tolerance = 0.0;
     options.function_tolerance = 1e-4;
-    const Minimum loose = minimize(quartic, vectorOf({1.0, -0.8}), options);
+    const Minimum loose = minimize(quartic, start, options);
     options.function_tolerance = 1e-10;
-    const Minimum tight = minimize(quartic, vectorOf({1.0, -0.8}), options);
+    const Minimum tight = minimize(quartic, start, options);
     for (const Minimum* minimum : {&loose, &tight}) {
       EXPECT_TRUE(minimum->improved && minimum->converged) << minimum->message;
       EXPECT_LT(minimum->iterations, 60);

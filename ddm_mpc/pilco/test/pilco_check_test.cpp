@@ -201,6 +201,10 @@ TEST(PilcoCheck, AcceptsTheReferenceValuesOfTheEnvironment) {
   const Outcome outcome = run("'" + std::string(file) + "'");
   EXPECT_EQ(0, outcome.exit_code) << outcome.text;
   EXPECT_NE(std::string::npos, outcome.text.find("All cases are within")) << outcome.text;
+  EXPECT_EQ(outcome.text.find("\nvalue  ") != std::string::npos,
+            outcome.text.find("\nvalue: exact gradient against the file's differences: worst ") !=
+                std::string::npos)
+      << outcome.text;
 }
 
 TEST(PilcoCheck, ExplainsItsUse) {

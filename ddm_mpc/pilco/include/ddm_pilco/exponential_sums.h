@@ -34,7 +34,9 @@ struct ExponentialSums {
 
 /// Computes the sums with the vector instructions of the machine that runs it: AVX2 is used where
 /// the processor has it, also in a build for any x86-64. The exponential is correct to 2 units in
-/// the last place in [-708, 709] and clamped outside of it. All entries must be finite.
+/// the last place in [-500, 709] and clamped outside of it: e^-500 is nothing, and less could make
+/// products denormal, for which a processor takes a hundred times as long. All entries must be
+/// finite.
 /// @pre sizes as above (checked by eigen_assert, i.e. in debug builds only)
 void exponentialSums(const ExponentialMatrix& matrix, ExponentialSums* sums);
 
