@@ -163,6 +163,46 @@ TEST_F(PilcoMethodTest, AMissingOrDamagedMemoryIsNamed) {
   EXPECT_TRUE(throwsNaming<std::runtime_error>(train, {file}));
 }
 
+/// Sees noise, and a goal that gives no state a finite cost.
+class PointlessObservation : public Observation {
+ public:
+  std::vector<std::string> names() const override { return {"z_1"}; }
+  Eigen::MatrixXd learn(const std::vector<std::string>& /*bags*/, const DataSet& data,
+                        const TrialId& /*id*/) override {
+    return randomMatrix(1, data.numFrames(), 1);
+  }
+  bool keepsCoordinates() const override { return true; }
+  PilcoTask task() const override {
+    const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
+    const Eigen::VectorXd nowhere = Eigen::VectorXd::Constant(1, std::nan(""));
+    return {{},
+            {Eigen::VectorXd::Zero(1), one},
+            pilco::StateCost(pilco::replaceAngles(1, {}), pilco::SaturatingCost(nowhere, one)),
+            Eigen::VectorXd::Ones(1)};
+  }
+  void startTrial(const TrialId& /*id*/) override {}
+  Eigen::VectorXd observe(const Grey& /*grey*/) override { return Eigen::VectorXd::Zero(1); }
+};
+
+TEST_F(PilcoMethodTest, GoesOnWithAFirstPolicyWhereNoCostIsFinite) {
+  const Configuration all = smallConfiguration("pilco_state", folder("run"));
+  runSmall(all);
+  PilcoConfig config;
+  config.pilco.horizon = 8;
+  config.pilco.num_centres = 4;
+  PilcoMethod method(all, config, std::make_unique<PointlessObservation>());
+  const TrainingOutcome outcome =
+      method.train({folder("run") + "/trial_000/trial.bag"}, {7, 0, false}, [](double) {});
+  const YAML::Node report = YAML::Load(outcome.files.at("pilco.yaml"));
+  EXPECT_NE(report["message"].as<std::string>().find("not finite"), std::string::npos);
+  EXPECT_TRUE(std::isnan(report["cost_after"].as<double>()));
+  const std::shared_ptr<Policy> policy = method.policy();
+  ASSERT_NE(policy, nullptr);
+  policy->startTrial({7, 0, true});
+  policy->observe({});
+  EXPECT_LE(std::abs(policy->plan().torques(0, 0)), all.mpc.max_torque);
+}
+
 TEST(PilcoMemory, IsReadBackDigitByDigit) {
   PilcoMemory memory;
   memory.policy = randomMatrix(7, 1, 1);

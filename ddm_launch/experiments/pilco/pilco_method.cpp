@@ -131,7 +131,8 @@ pilco::Propagation PilcoMethod::learnDynamics(const DataSet& data, const Eigen::
 }
 
 /// Sets policy_. Where the last policy's prediction leaves the finite numbers under the new GPs,
-/// the search starts afresh: an error would come again each time that the run is resumed.
+/// the search starts afresh, and where that is no better the run goes on with what there is: an
+/// error would come again each time that it is resumed.
 /// @return the cost, evaluated at the policy
 pilco::LongTermCost PilcoMethod::improvePolicy(pilco::Propagation dynamics, const PilcoTask& task,
                                                const std::vector<std::string>& bags,
@@ -170,11 +171,10 @@ pilco::LongTermCost PilcoMethod::improvePolicy(pilco::Propagation dynamics, cons
     parameters = drawStart();
     result = search();
   }
-  if (!result.ok) {
-    throw std::runtime_error(
-        "PILCO: the long-term cost is not finite, not even of a first policy: pilco/horizon, now " +
-        std::to_string(pilco_.pilco.horizon) +
-        ", is too long for these dynamics, use another run folder with a shorter one");
+  if (!result.ok) {  // more data may mend it
+    result.cost_before = std::nan("");
+    result.cost_after = std::nan("");
+    result.message = "a first policy is kept, since its cost is not finite either";
   }
   parameters = result.parameters;
   cost.evaluate(parameters);  // sets the policy, and the prediction that is kept

@@ -31,7 +31,7 @@ class PilcoMethod : public Method {
   PilcoMethod(const Configuration& configuration, const PilcoConfig& pilco,
               std::unique_ptr<Observation> observation);
 
-  /// @throws std::runtime_error if a file cannot be read or the training comes to nothing
+  /// @throws std::runtime_error if a file cannot be read or the GPs cannot be trained
   TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,
                         const PhaseCallback& progress) override;
   std::shared_ptr<Policy> policy() const override;

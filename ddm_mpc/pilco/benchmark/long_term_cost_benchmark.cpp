@@ -1,5 +1,4 @@
-// pilco_benchmark: computing time of one long-term cost with its gradient, which is what a policy
-// search consists of.
+// pilco_benchmark: computing time of one long-term cost with its gradient.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <benchmark/benchmark.h>
 
