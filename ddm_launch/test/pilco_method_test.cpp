@@ -163,7 +163,7 @@ TEST_F(PilcoMethodTest, AMissingOrDamagedMemoryIsNamed) {
   EXPECT_TRUE(throwsNaming<std::runtime_error>(train, {file}));
 }
 
-/// Sees noise, and a goal that gives no state a finite cost.
+/// Sees noise, and wants length-scales whose inverse squares are no numbers: no cost is finite.
 class PointlessObservation : public Observation {
  public:
   std::vector<std::string> names() const override { return {"z_1"}; }
@@ -174,11 +174,11 @@ class PointlessObservation : public Observation {
   bool keepsCoordinates() const override { return true; }
   PilcoTask task() const override {
     const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
-    const Eigen::VectorXd nowhere = Eigen::VectorXd::Constant(1, std::nan(""));
+    const pilco::SaturatingCost cost(Eigen::VectorXd::Zero(1), one);
     return {{},
             {Eigen::VectorXd::Zero(1), one},
-            pilco::StateCost(pilco::replaceAngles(1, {}), pilco::SaturatingCost(nowhere, one)),
-            Eigen::VectorXd::Ones(1)};
+            pilco::StateCost(pilco::replaceAngles(1, {}), cost),
+            Eigen::VectorXd::Constant(1, 1e-200)};
   }
   void startTrial(const TrialId& /*id*/) override {}
   Eigen::VectorXd observe(const Grey& /*grey*/) override { return Eigen::VectorXd::Zero(1); }
@@ -200,7 +200,9 @@ TEST_F(PilcoMethodTest, GoesOnWithAFirstPolicyWhereNoCostIsFinite) {
   ASSERT_NE(policy, nullptr);
   policy->startTrial({7, 0, true});
   policy->observe({});
-  EXPECT_LE(std::abs(policy->plan().torques(0, 0)), all.mpc.max_torque);
+  const Plan plan = policy->plan();  // of that policy no torque is finite: it fails, and says so
+  EXPECT_EQ(plan.status, PlanStatus::kFailed);
+  EXPECT_NE(plan.message.find("not finite"), std::string::npos);
 }
 
 TEST(PilcoMemory, IsReadBackDigitByDigit) {

@@ -18,7 +18,9 @@ Plan PilcoPolicy::plan() {
   const auto start = std::chrono::steady_clock::now();
   Plan plan;
   plan.torques = policy_->control(features_.value(x_));
-  plan.status = PlanStatus::kConverged;
+  const bool finite = plan.torques.allFinite();
+  plan.status = finite ? PlanStatus::kConverged : PlanStatus::kFailed;
+  if (!finite) plan.message = "the torque of PILCO's policy is not finite";
   plan.solve_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return plan;
 }
