@@ -202,6 +202,7 @@ TEST_F(PilcoMethodTest, GoesOnWithAFirstPolicyWhereNoCostIsFinite) {
   policy->observe({});
   const Plan plan = policy->plan();  // of that policy no torque is finite: it fails, and says so
   EXPECT_EQ(plan.status, PlanStatus::kFailed);
+  EXPECT_EQ(plan.torques(0, 0), 0.0);
   EXPECT_NE(plan.message.find("not finite"), std::string::npos);
 }
 

@@ -20,7 +20,10 @@ Plan PilcoPolicy::plan() {
   plan.torques = policy_->control(features_.value(x_));
   const bool finite = plan.torques.allFinite();
   plan.status = finite ? PlanStatus::kConverged : PlanStatus::kFailed;
-  if (!finite) plan.message = "the torque of PILCO's policy is not finite";
+  if (!finite) {
+    plan.message = "the torque of PILCO's policy is not finite";
+    plan.torques.setZero();
+  }
   plan.solve_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return plan;
 }
