@@ -1,4 +1,4 @@
-// Tests of the baselines: what they observe, where they start, what they carry from trial to trial.
+// Tests of the baselines: what they leave, what they carry from trial to trial, what they refuse.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco/pilco_method.h"
 
@@ -7,7 +7,6 @@
 #include <ddm_model/testing/expect_error.h>
 #include <ddm_model/testing/random_matrix.h>
 #include <ddm_model/testing/temp_folder.h>
-#include <ddm_sim/plant_factory.h>
 #include <gtest/gtest.h>
 
 #include <boost/filesystem.hpp>
@@ -16,11 +15,7 @@
 
 #include "experiment.h"
 #include "in_process_world.h"
-#include "pilco/image_task.h"
-#include "pilco/policy_start.h"
-#include "pilco/true_state_observation.h"
 #include "toy_run.h"
-#include "trajectory_csv.h"
 
 namespace ddm {
 namespace {
@@ -34,12 +29,6 @@ using testing::writeText;
 constexpr char kSmall[] =
     "pilco: {horizon: 8, num_centres: 4}\ngp: {max_iterations: 20}\n"
     "policy_search: {max_iterations: 2}\nsparse_gp: {max_points: 40, first_iterations: 3}\n";
-
-Eigen::VectorXd pair(double first, double second) {
-  Eigen::VectorXd out(2);
-  out << first, second;
-  return out;
-}
 
 /// A small experiment with one of the baselines.
 Configuration smallConfiguration(const std::string& method, const std::string& runs) {
@@ -220,144 +209,6 @@ TEST(PilcoMemory, IsReadBackDigitByDigit) {
   EXPECT_EQ(read.gps.hyperparameters.log_signal_std, memory.gps.hyperparameters.log_signal_std);
   EXPECT_EQ(read.gps.hyperparameters.log_noise_std, memory.gps.hyperparameters.log_noise_std);
   EXPECT_EQ(read.gps.inducing.size(), 0);
-}
-
-class TrueStateTest : public ::testing::Test {
- protected:
-  PlantOptions plant_options_;
-  std::unique_ptr<Plant> plant_ = makePlant(plant_options_, CameraOptions());
-  testing::TempFolder scratch_;
-};
-
-TEST_F(TrueStateTest, LearningMeetsTheMeasurementsThatThePolicyActedOn) {
-  TrueStateObservation acting(*plant_, plant_options_, PilcoOptions());
-  const TrialId id{5, 0, false};
-  std::vector<Eigen::VectorXd> states, measured;
-  std::vector<double> times;
-  DataSet data(2, 1);
-  acting.startTrial(id);
-  for (int t = 0; t < 20; ++t) {
-    states.push_back(plant_->state());
-    times.push_back(0.2 * t);
-    measured.push_back(acting.observe({}));
-    data.append(Grey(4, 0), Eigen::VectorXd::Zero(1), t == 0);
-    plant_->step(Eigen::VectorXd::Constant(1, 0.3 * t));
-  }
-  writeText(scratch_.file("trajectory.csv"),
-            formatTrajectoryCsv(times, states, plant_->stateNames()));
-  TrueStateObservation learning(*plant_, plant_options_, PilcoOptions());
-  const Eigen::MatrixXd X = learning.learn({scratch_.file("trial.bag")}, data, id);
-  ASSERT_EQ(X.cols(), 20);
-  for (int t = 0; t < 20; ++t) EXPECT_EQ(X.col(t), measured[static_cast<size_t>(t)]) << t;
-  EXPECT_NE(X(0, 19), states[19][1]);
-  EXPECT_NEAR(X(1, 19), states[19][0], 0.05);  // five standard deviations of the angle's noise
-}
-
-TEST_F(TrueStateTest, FramesThatDoNotFitTheBagBesideThemAreRefusedWithTheFile) {
-  DataSet data(2, 1);  // two trials of 3 frames
-  for (int t = 0; t < 6; ++t) data.append(Grey(4, 0), Eigen::VectorXd::Zero(1), t % 3 == 0);
-  TrueStateObservation observation(*plant_, plant_options_, PilcoOptions());
-  std::vector<std::string> bags;
-  const auto write = [&](const std::string& trial, size_t frames) {
-    fs::create_directories(scratch_.file(trial));
-    const std::vector<Eigen::VectorXd> states(frames, plant_->state());
-    writeText(scratch_.file(trial + "/trajectory.csv"),
-              formatTrajectoryCsv(std::vector<double>(frames, 0.0), states, plant_->stateNames()));
-    bags.push_back(scratch_.file(trial + "/trial.bag"));
-  };
-  const auto learn = [&] { observation.learn(bags, data, TrialId()); };
-  write("a", 2);
-  write("b", 4);  // as many in all
-  EXPECT_TRUE(throwsNaming<std::runtime_error>(
-      learn, {"a/trajectory.csv", "the 3 frames", "got 2", "use another"}));
-  bags.clear();
-  write("a", 3);
-  write("b", 4);
-  EXPECT_TRUE(throwsNaming<std::runtime_error>(learn, {"b/trajectory.csv", "got 4"}));
-  bags.clear();
-  write("a", 3);
-  write("b", 3);
-  EXPECT_NO_THROW(learn());
-}
-
-TEST_F(TrueStateTest, NoiseHasTheSpreadThatIsAskedFor) {
-  TrueStateObservation observation(*plant_, plant_options_, PilcoOptions());
-  observation.startTrial(TrialId());
-  Eigen::MatrixXd noise(2, 4000);
-  for (Eigen::Index t = 0; t < noise.cols(); ++t) noise.col(t) = observation.observe({});
-  const Eigen::VectorXd spread = noise.rowwise().norm() / std::sqrt(4000.0);
-  EXPECT_NEAR(spread[0], 0.1, 0.005);
-  EXPECT_NEAR(spread[1], 0.01, 0.0005);
-}
-
-TEST_F(TrueStateTest, TheTaskIsUprightWithinTheLengthOfTheRod) {
-  plant_options_.length = 2.0;
-  plant_options_.start_std = 0.3;
-  const TrueStateObservation observation(*plant_, plant_options_, PilcoOptions());
-  const PilcoTask task = observation.task();
-  EXPECT_EQ(task.angles, std::vector<int>{1});
-  EXPECT_NEAR(task.cost.value(pair(3.0, M_PI)), 0.0, 1e-12);
-  // Hanging, the tip is two lengths away: four widths of half a length each.
-  EXPECT_NEAR(task.cost.value(pair(0.0, 0.0)), 1.0 - std::exp(-8.0), 1e-12);
-  EXPECT_EQ(task.start.covariance, (0.3 * 0.3 * Eigen::MatrixXd::Identity(2, 2)).eval());
-}
-
-TEST_F(TrueStateTest, APlantThatDoesNotTurnIsRefused) {
-  plant_options_.type = "moving_tile";
-  plant_options_.max_torque = 5.0;
-  const std::unique_ptr<Plant> tile = makePlant(plant_options_, CameraOptions());
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { TrueStateObservation(*tile, plant_options_, PilcoOptions()); },
-      {"pendulum", "got plant/type moving_tile"}));
-}
-
-TEST(ImageTask, TakesGoalStartAndScaleFromTheData) {
-  Eigen::MatrixXd X(2, 4);
-  X << 1, 0, 3, 0,  //
-      0, 1, 2, -1;
-  const std::vector<Piece> pieces = {{0, 2}, {2, 2}};
-  PilcoOptions options;
-  const Eigen::VectorXd goal = pair(-1.0, 0.0);
-  const PilcoTask task = imageTask(X, pieces, goal, options);
-  const double spread = std::sqrt(2.0 + 5.0 / 3.0);  // sample variances of the two rows
-  EXPECT_TRUE(task.angles.empty());
-  EXPECT_NEAR(task.cost.value(goal), 0.0, 1e-15);
-  EXPECT_NEAR(task.cost.value(goal + pair(0.5 * spread, 0.0)), 1.0 - std::exp(-0.5), 1e-12);
-  EXPECT_EQ(task.start.mean, pair(2.0, 1.0));
-  // Scatter of (1, 0) and (3, 2) about their mean is 2 everywhere, prior (0.1 spread)^2 / 2.
-  const double prior = 0.01 * spread * spread / 2.0;
-  EXPECT_NEAR(task.start.covariance(0, 0), (2.0 + prior) / 2.0, 1e-12);
-  EXPECT_NEAR(task.start.covariance(0, 1), 1.0, 1e-12);
-}
-
-TEST(ImageTask, FramesThatAreAllTheSameAreRefused) {
-  EXPECT_TRUE(throwsNaming<std::runtime_error>(
-      [] {
-        imageTask(Eigen::MatrixXd::Ones(2, 5), {{0, 5}}, Eigen::VectorXd::Ones(2), PilcoOptions());
-      },
-      {"the same state"}));
-}
-
-TEST(PolicyStart, CentresFollowTheFeaturesOfTheStart) {
-  PlantOptions plant_options;
-  const std::unique_ptr<Plant> plant = makePlant(plant_options, CameraOptions());
-  const PilcoTask task = TrueStateObservation(*plant, plant_options, PilcoOptions()).task();
-  const pilco::Augmentation features = pilco::replaceAngles(2, {1});
-  std::mt19937_64 rng(1);
-  const int count = 4000;
-  const Eigen::VectorXd parameters = drawPolicyStart(task, features, count, 1, &rng);
-  ASSERT_EQ(parameters.size(), 3 + 4 * count);
-  EXPECT_NEAR(parameters[0], 0.0, 1e-15);
-  EXPECT_NEAR(parameters[1], std::log(0.7), 1e-15);
-  const pilco::Moments start = features.predict(task.start);
-  for (int d = 0; d < 3; ++d) {
-    const Eigen::VectorXd centres = parameters.segment(3 + d * count, count);
-    EXPECT_NEAR(centres.mean(), start.mean[d], 0.01) << d;
-    const double variance = (centres.array() - centres.mean()).square().mean();
-    EXPECT_NEAR(variance, start.covariance(d, d), 0.1 * start.covariance(d, d) + 1e-6) << d;
-  }
-  const Eigen::VectorXd targets = parameters.tail(count);
-  EXPECT_NEAR(std::sqrt(targets.squaredNorm() / count), 0.1, 0.005);
 }
 
 TEST(PilcoOptions, TheManualHoldsTheDefaultsAndRulesAreChecked) {
