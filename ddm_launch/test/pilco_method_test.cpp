@@ -9,6 +9,7 @@
 #include <ddm_model/testing/temp_folder.h>
 #include <gtest/gtest.h>
 
+#include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
 #include <cmath>
 #include <sstream>
@@ -57,6 +58,13 @@ std::vector<std::string> linesOf(const std::string& text) {
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) lines.push_back(line);
   return lines;
+}
+
+/// The number in a column of a row, counted from 0.
+double numberAt(const std::string& row, size_t column) {
+  std::vector<std::string> columns;
+  boost::split(columns, row, boost::is_any_of(","));
+  return std::stod(columns.at(column));
 }
 
 class PilcoMethodTest : public ::testing::Test {
@@ -117,7 +125,6 @@ TEST_F(PilcoMethodTest, APolicyGoesOnFromTheLastOneWhereTheCoordinatesStay) {
   YAML::Node changed(YAML::NodeType::Map);
   writeMemory(other, &changed);
   writeText(file, YAML::Dump(changed));
-  const InProcessWorld untouched(all);
   InProcessWorld world(all);
   std::vector<std::string> bags;
   for (int k = 0; k < 3; ++k) {
@@ -127,6 +134,14 @@ TEST_F(PilcoMethodTest, APolicyGoesOnFromTheLastOneWhereTheCoordinatesStay) {
   const YAML::Node now = YAML::Load(outcome.files.at("pilco.yaml"));
   EXPECT_NE(now["cost_before"].as<double>(), report(2)["cost_before"].as<double>());
   EXPECT_NE(YAML::Dump(now["policy"]), YAML::Dump(report(2)["policy"]));
+  // So do other hyper-parameters.
+  other = last;
+  other.gps.hyperparameters.log_noise_std.array() += 1.0;
+  writeMemory(other, &changed);
+  writeText(file, YAML::Dump(changed));
+  const YAML::Node noisier =
+      YAML::Load(world.train(bags, {7, 2, false}, [](double) {}).files.at("pilco.yaml"));
+  EXPECT_NE(YAML::Dump(noisier["log_noise_std"]), YAML::Dump(report(2)["log_noise_std"]));
 }
 
 TEST_F(PilcoMethodTest, AMissingOrDamagedMemoryIsNamed) {
@@ -150,6 +165,46 @@ TEST_F(PilcoMethodTest, AMissingOrDamagedMemoryIsNamed) {
   }
   fs::remove(file);
   EXPECT_TRUE(throwsNaming<std::runtime_error>(train, {file}));
+}
+
+TEST_F(PilcoMethodTest, WhatIsPredictedIsWhatHappensAndItIsBetterThanTheFirstPolicy) {
+  Configuration all = smallConfiguration("pilco_state", folder("run"));
+  all.experiment.trials = 0;
+  all.trial.num_steps = 60;
+  all.plant.start_std = 0.01;
+  ParamReader reader(
+      YAML::Load("pilco: {horizon: 12, num_centres: 8}\npolicy_search: {max_iterations: 30}\n"));
+  all.method = methodKind("pilco_state").read(&reader);
+  runSmall(all);
+  const YAML::Node report = YAML::LoadFile(folder("run") + "/trial_000/pilco.yaml");
+  EXPECT_LT(report["cost_after"].as<double>(), 0.9 * report["cost_before"].as<double>());
+  const std::vector<std::string> predicted =
+      linesOf(textOf(folder("run") + "/trial_000/prediction.csv"));
+  const std::vector<std::string> actual =
+      linesOf(textOf(folder("run") + "/evaluation_000/trajectory.csv"));
+  ASSERT_EQ(predicted.size(), 14u);
+  double cost = 0.0;
+  for (size_t row = 1; row < predicted.size(); ++row) {
+    const double angle = numberAt(predicted[row], 4);  // step,time_s,rate and its std, angle
+    EXPECT_NEAR(angle, numberAt(actual[row], 2), 0.35) << "step " << row - 1;
+    if (row > 1) cost += numberAt(predicted[row], 6);
+  }
+  EXPECT_NEAR(cost, report["cost_after"].as<double>(), 1e-6);
+  EXPECT_GT(std::abs(numberAt(predicted.back(), 4)), 1.5);  // it has moved towards the goal
+}
+
+TEST_F(PilcoMethodTest, PredictionsCountWithMeasurementNoiseWhereAsked) {
+  std::vector<std::string> predictions;
+  for (const std::string noisy : {"true", "false"}) {
+    Configuration all = smallConfiguration("pilco_state", folder(noisy));
+    all.experiment.trials = 0;
+    ParamReader reader(YAML::Load("pilco: {horizon: 8, num_centres: 4, noisy_policy_input: " +
+                                  noisy + "}\npolicy_search: {max_iterations: 0}\n"));
+    all.method = methodKind("pilco_state").read(&reader);
+    runSmall(all);
+    predictions.push_back(textOf(folder(noisy) + "/trial_000/prediction.csv"));
+  }
+  EXPECT_NE(predictions[0], predictions[1]);
 }
 
 /// Sees noise, and wants length-scales whose inverse squares are no numbers: no cost is finite.

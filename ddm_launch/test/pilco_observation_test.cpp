@@ -8,8 +8,10 @@
 #include <boost/filesystem.hpp>
 #include <cmath>
 
+#include "pilco/feature_observation.h"
 #include "pilco/image_task.h"
 #include "pilco/observation.h"
+#include "pilco/pca_observation.h"
 #include "pilco/policy_start.h"
 #include "pilco/true_state_observation.h"
 #include "toy_run.h"
@@ -115,6 +117,42 @@ TEST_F(TrueStateTest, APlantThatDoesNotTurnIsRefused) {
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
       [&] { TrueStateObservation(*tile, plant_options_, PilcoOptions()); },
       {"pendulum", "got plant/type moving_tile"}));
+}
+
+/// Images of a rod that turns round, and of its goal.
+DataSet imagesOf(const Plant& plant) {
+  DataSet data(plant.imageSize(), 1);
+  for (int t = 0; t < 40; ++t) {
+    data.append(plant.render(pair(0.15 * t, 0.0)), Eigen::VectorXd::Zero(1), t == 0);
+  }
+  data.setGoal(plant.render(plant.goalState()));
+  return data;
+}
+
+/// What is learned from is what is observed, and the goal image is the goal.
+void expectConsistent(Observation* observation, const DataSet& data) {
+  const Eigen::MatrixXd X = observation->learn({}, data, TrialId());
+  ASSERT_EQ(X.rows(), static_cast<Eigen::Index>(observation->names().size()));
+  ASSERT_EQ(X.cols(), data.numFrames());
+  const std::uint8_t* const pixels = data.pixels().col(7).data();
+  const Eigen::VectorXd x = observation->observe(Grey(pixels, pixels + data.numPixels()));
+  EXPECT_LT((x - X.col(7)).norm(), 1e-5 * X.norm());
+  const PilcoTask task = observation->task();
+  EXPECT_NEAR(task.cost.value(observation->observe(data.goal())), 0.0, 1e-9);
+  EXPECT_GT(task.cost.value(X.col(0)), 0.5);
+}
+
+TEST(ImageObservations, LearnFromWhatTheyObserveAndTakeTheGoalFromItsImage) {
+  const std::unique_ptr<Plant> plant = makePlant(PlantOptions(), CameraOptions());
+  const DataSet data = imagesOf(*plant);
+  ModelConfig config;
+  config.model.pca_dim = 5;
+  config.training.max_iterations = 30;
+  config.training.schedule = "v_r_only";
+  FeatureObservation features(config, PilcoOptions());
+  expectConsistent(&features, data);
+  PcaObservation pca(config, PilcoOptions());
+  expectConsistent(&pca, data);
 }
 
 TEST(ImageTask, TakesGoalStartAndScaleFromTheData) {
