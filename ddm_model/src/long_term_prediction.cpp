@@ -51,10 +51,27 @@ Eigen::MatrixXd rollOut(const Ddm& model, const Eigen::MatrixXd& Z,
       h.segment(f.torqueRow(lag), f.torqueDim()) =
           torques.col(frame + step - lag) / model.options().max_torque;
     }
-    f.network().forward(model.thetaP(), h, &tape);
-    path.col(n + step) = tape.output();
+    f.forward(model.thetaP(), h, &tape, path.col(n + step));
   }
   return path.rightCols(num_steps + 1);
+}
+
+Eigen::VectorXd predictNext(const Ddm& model, const History& x, const Eigen::VectorXd& u) {
+  const PredictionModel<double>& f = model.predictionModel();
+  Eigen::VectorXd h(f.regressorDim());
+  for (int lag = 0; lag < f.order(); ++lag) {
+    h.segment(f.featureRow(lag), f.featureDim()) = x.features().col(lag);
+    auto torque = h.segment(f.torqueRow(lag), f.torqueDim());
+    if (lag == 0) {
+      torque = u / model.options().max_torque;
+    } else {
+      torque = x.torques().col(lag - 1) / model.options().max_torque;
+    }
+  }
+  Mlp<double>::Tape tape;
+  Eigen::MatrixXd z(f.featureDim(), 1);
+  f.forward(model.thetaP(), h, &tape, z);
+  return z.col(0);
 }
 
 std::vector<PredictionError> predictionErrors(const Ddm& model, const DataSet& data,

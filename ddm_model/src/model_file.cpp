@@ -21,7 +21,7 @@ namespace {
 
 constexpr char kMagic[] = "DDMMODEL";
 constexpr size_t kMagicSize = sizeof(kMagic) - 1;
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr size_t kHeaderSize = kMagicSize + 4 + 8 + 4;
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "model files are little-endian");
@@ -99,10 +99,12 @@ void writeOptions(const ModelOptions& options, Writer* out) {
   widths(options.encoder_widths);
   widths(options.decoder_widths);
   widths(options.predictor_widths);
+  out->number<std::uint8_t>(options.residual ? 1 : 0);
+  out->number<std::uint8_t>(options.increments ? 1 : 0);
   out->number<double>(options.max_torque);
 }
 
-ModelOptions readOptions(Reader* in) {
+ModelOptions readOptions(std::uint32_t version, Reader* in) {
   const auto widths = [in] {
     const std::vector<std::int32_t> fixed = in->array<std::int32_t>();
     return std::vector<int>(fixed.begin(), fixed.end());
@@ -114,29 +116,32 @@ ModelOptions readOptions(Reader* in) {
   options.encoder_widths = widths();
   options.decoder_widths = widths();
   options.predictor_widths = widths();
+  options.residual = version > 1 && in->number<std::uint8_t>() != 0;
+  options.increments = version > 1 && in->number<std::uint8_t>() != 0;
   options.max_torque = in->number<double>();
   for (const std::string& problem : options.problems()) throw std::runtime_error(problem);
   return options;
 }
 
-ModelInfo readInfo(Reader* in) {
+ModelInfo readInfo(std::uint32_t version, Reader* in) {
   ModelInfo info;
   info.seed = in->number<std::uint64_t>();
   info.trial = in->number<std::uint32_t>();
   info.frames = in->number<std::uint32_t>();
   info.v_r = in->number<double>();
   info.v_p = in->number<double>();
+  if (version > 1) info.feature_spread = in->number<double>();
   info.config = in->text();
   return info;
 }
 
-Ddm readContent(Reader* in) {
-  const ModelOptions options = readOptions(in);
+Ddm readContent(std::uint32_t version, Reader* in) {
+  const ModelOptions options = readOptions(version, in);
   const int image_size = in->number<std::int32_t>();
   const int torque_dim = in->number<std::int32_t>();
   if (image_size < 1 || image_size > 16384) throw std::runtime_error("its image size is absurd");
   if (torque_dim < 1 || torque_dim > 1000) throw std::runtime_error("its torque size is absurd");
-  ModelInfo info = readInfo(in);
+  ModelInfo info = readInfo(version, in);
   Pca pca;
   pca.scale = in->number<float>();
   const std::vector<float> mean = in->array<float>();
@@ -144,7 +149,6 @@ Ddm readContent(Reader* in) {
   const std::vector<double> variance = in->array<double>();
   const std::vector<double> theta = in->array<double>();
   Grey goal = in->array<std::uint8_t>();
-  if (in->left() > 0) throw std::runtime_error("there are bytes after its content");
   const auto num_pixels = static_cast<size_t>(image_size) * image_size;
   const auto pca_dim = static_cast<size_t>(options.pca_dim);
   if (mean.size() != num_pixels || basis.size() != num_pixels * pca_dim ||
@@ -159,12 +163,19 @@ Ddm readContent(Reader* in) {
              std::move(info));
 }
 
-std::string reason() { return std::strerror(errno); }
+/// A model, then the rest of its ensemble.
+Ddm readEnsemble(std::uint32_t version, Reader* in) {
+  Ddm model = readContent(version, in);
+  const auto count = version > 1 ? in->number<std::uint32_t>() : 0U;
+  std::vector<Ddm> others;
+  for (std::uint32_t i = 0; i < count; ++i) others.push_back(readContent(version, in));
+  if (in->left() > 0) throw std::runtime_error("there are bytes after its content");
+  model.setOthers(std::move(others));
+  return model;
+}
 
-}  // namespace
-
-std::string serialiseModel(const Ddm& model) {
-  Writer content;
+void writeContent(const Ddm& model, Writer* out) {
+  Writer& content = *out;
   writeOptions(model.options(), &content);
   content.number<std::int32_t>(model.imageSize());
   content.number<std::int32_t>(model.torqueDim());
@@ -173,6 +184,7 @@ std::string serialiseModel(const Ddm& model) {
   content.number<std::uint32_t>(model.info().frames);
   content.number<double>(model.info().v_r);
   content.number<double>(model.info().v_p);
+  content.number<double>(model.info().feature_spread);
   content.array(model.info().config.data(), model.info().config.size());
   content.number<float>(model.pca().scale);
   content.array(model.pca().mean.data(), model.pca().mean.size());
@@ -180,6 +192,17 @@ std::string serialiseModel(const Ddm& model) {
   content.array(model.pca().variance.data(), model.pca().variance.size());
   content.array(model.theta().data(), model.theta().size());
   content.array(model.goal().data(), model.goal().size());
+}
+
+std::string reason() { return std::strerror(errno); }
+
+}  // namespace
+
+std::string serialiseModel(const Ddm& model) {
+  Writer content;
+  writeContent(model, &content);
+  content.number<std::uint32_t>(static_cast<std::uint32_t>(model.others().size()));
+  for (const Ddm& other : model.others()) writeContent(other, &content);
 
   Writer header;
   header.number<std::uint32_t>(kVersion);
@@ -198,9 +221,10 @@ Ddm deserialiseModel(const std::string& bytes, const std::string& source) {
   if (bytes.size() < kHeaderSize) throw fail("is cut short: copy or train it again");
   Reader header(bytes.data() + kMagicSize, kHeaderSize - kMagicSize);
   const auto version = header.number<std::uint32_t>();
-  if (version != kVersion) {
-    throw fail("has format version " + std::to_string(version) + ", this program reads version " +
-               std::to_string(kVersion) + ": train it again from its bags");
+  if (version < 1 || version > kVersion) {
+    throw fail("has format version " + std::to_string(version) +
+               ", this program reads versions 1 to " + std::to_string(kVersion) +
+               ": train it again from its bags");
   }
   const auto size = header.number<std::uint64_t>();
   if (size != bytes.size() - kHeaderSize) {
@@ -213,7 +237,7 @@ Ddm deserialiseModel(const std::string& bytes, const std::string& source) {
   }
   Reader content(bytes.data() + kHeaderSize, size);
   try {
-    return readContent(&content);
+    return readEnsemble(version, &content);
   } catch (const std::exception& e) {
     throw fail(std::string("makes no sense: ") + e.what());
   }

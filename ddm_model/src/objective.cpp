@@ -10,6 +10,24 @@ namespace {
 
 constexpr Eigen::Index kBlock = 128;  // samples whose activations stay in the first-level cache
 
+/// Sum of the squared weights of a network, its biases not among them.
+template <class Scalar>
+double squaredWeights(const Mlp<Scalar>& net, const Scalar* theta) {
+  double sum = 0.0;
+  for (int layer = 0; layer < net.numLayers(); ++layer) {
+    sum += static_cast<double>(net.weights(theta, layer).squaredNorm());
+  }
+  return sum;
+}
+
+/// Adds the derivative of price times that.
+template <class Scalar>
+void addDecay(const Mlp<Scalar>& net, const Scalar* theta, Scalar price, Scalar* d_theta) {
+  for (int layer = 0; layer < net.numLayers(); ++layer) {
+    net.weights(d_theta, layer) += 2 * price * net.weights(theta, layer);
+  }
+}
+
 }  // namespace
 
 template <class Scalar>
@@ -21,11 +39,16 @@ JointObjective<Scalar>::JointObjective(const Networks<Scalar>& networks, Trainin
       data_.torques.rows() != f.torqueDim() || data_.torques.cols() > num_images) {
     throw std::invalid_argument("objective: scores or torques do not fit the networks");
   }
+  std::sort(data_.pieces.begin(), data_.pieces.end(),
+            [](const Piece& a, const Piece& b) { return a.begin < b.begin; });
   for (const Piece& piece : data_.pieces) {
     if (piece.begin < 0 || piece.begin + piece.size > data_.torques.cols()) {
       throw std::invalid_argument("objective: a piece reaches beyond the frames");
     }
-    for (Eigen::Index i = f.order(); i < piece.size; ++i) targets_.push_back(piece.begin + i);
+    for (Eigen::Index i = f.order(); i < piece.size; ++i) {
+      targets_.push_back(piece.begin + i);
+      piece_end_.push_back(piece.begin + piece.size);
+    }
   }
   if (targets_.empty()) {
     throw std::invalid_argument(
@@ -33,7 +56,6 @@ JointObjective<Scalar>::JointObjective(const Networks<Scalar>& networks, Trainin
         "torque) needs more than model/order = " +
         std::to_string(f.order()) + " frames");
   }
-  std::sort(targets_.begin(), targets_.end());
   weight_ = 1.0 / std::max(1e-30, static_cast<double>(data_.scores.squaredNorm()));
 
   const Eigen::Index num_blocks = (num_images + kBlock - 1) / kBlock;
@@ -45,8 +67,18 @@ JointObjective<Scalar>::JointObjective(const Networks<Scalar>& networks, Trainin
   features_.resize(f.featureDim(), num_images);
   d_features_.resize(f.featureDim(), num_images);
   regressors_.resize(f.regressorDim(), kBlock);
-  decoder_input_.resize(f.featureDim(), 2 * kBlock);
-  residual_.resize(data_.scores.rows(), 2 * kBlock);
+}
+
+/// Memory for predictions so many steps ahead.
+template <class Scalar>
+void JointObjective<Scalar>::reserve(int num_steps) {
+  if (static_cast<int>(predicted_.size()) >= num_steps) return;
+  const Eigen::Index feature_dim = networks_.prediction_model.featureDim();
+  predictor_tapes_.resize(num_steps);
+  predicted_.resize(num_steps, Matrix(feature_dim, kBlock));
+  d_predicted_.resize(num_steps, Matrix(feature_dim, kBlock));
+  decoder_input_.resize(feature_dim, (1 + num_steps) * kBlock);
+  residual_.resize(data_.scores.rows(), (1 + num_steps) * kBlock);
 }
 
 template <class Scalar>
@@ -62,8 +94,9 @@ Eigen::Index JointObjective<Scalar>::blockSize(Eigen::Index block) const {
 template <class Scalar>
 typename JointObjective<Scalar>::Value JointObjective<Scalar>::evaluate(const Vector& theta,
                                                                         Vector* d_theta,
-                                                                        Terms terms) {
-  eigen_assert(theta.size() == networks_.numParams());
+                                                                        const Terms& terms) {
+  eigen_assert(theta.size() == networks_.numParams() && terms.prediction_steps >= 1);
+  reserve(terms.prediction_steps);
   Scalar* gradient = nullptr;
   if (d_theta != nullptr) {
     d_theta->setZero(theta.size());
@@ -77,14 +110,37 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::evaluate(const Ve
     const Value part = decodeBlock(theta.data(), block, terms, gradient);
     value.v_r += part.v_r;
     value.v_p += part.v_p;
+    value.v_z += part.v_z;
   }
+  value.v_w = squaredWeights(theta.data());
   if (gradient == nullptr) return value;
   for (Eigen::Index block = 0; block < num_blocks; ++block) {
     networks_.encoder().backward(networks_.encoderOf(theta.data()), &encoder_tapes_[block],
                                  d_features_.middleCols(blockBegin(block), blockSize(block)),
                                  networks_.encoderOf(gradient), nullptr);
   }
+  addDecay(theta.data(), terms.weight_decay, gradient);
   return value;
+}
+
+/// V_W
+template <class Scalar>
+double JointObjective<Scalar>::squaredWeights(const Scalar* theta) const {
+  return ddm::squaredWeights(networks_.encoder(), networks_.encoderOf(theta)) +
+         ddm::squaredWeights(networks_.decoder(), networks_.decoderOf(theta)) +
+         ddm::squaredWeights(networks_.f(), networks_.predictorOf(theta));
+}
+
+template <class Scalar>
+void JointObjective<Scalar>::addDecay(const Scalar* theta, double price, Scalar* d_theta) const {
+  if (price == 0.0) return;
+  const auto factor = static_cast<Scalar>(price);
+  ddm::addDecay(networks_.encoder(), networks_.encoderOf(theta), factor,
+                networks_.encoderOf(d_theta));
+  ddm::addDecay(networks_.decoder(), networks_.decoderOf(theta), factor,
+                networks_.decoderOf(d_theta));
+  ddm::addDecay(networks_.f(), networks_.predictorOf(theta), factor,
+                networks_.predictorOf(d_theta));
 }
 
 template <class Scalar>
@@ -98,69 +154,114 @@ void JointObjective<Scalar>::encode(const Scalar* theta) {
   }
 }
 
-/// Both terms for the images of one block: their reconstructions and the predictions of them go
+/// All terms for the images of one block: their reconstructions and the predictions of them go
 /// through the decoder together.
 template <class Scalar>
 typename JointObjective<Scalar>::Value JointObjective<Scalar>::decodeBlock(const Scalar* theta,
                                                                            Eigen::Index block,
-                                                                           Terms terms,
+                                                                           const Terms& terms,
                                                                            Scalar* d_theta) {
   const Eigen::Index begin = blockBegin(block);
   const Eigen::Index size = blockSize(block);
   const Eigen::Index first = block_target_[block];
   const Eigen::Index count = block_target_[block + 1] - first;
-  predict(theta, first, count);
+  const int steps = terms.prediction_steps;
+  const Eigen::Index columns = size + steps * count;
+  rollOut(theta, first, count, steps);
   decoder_input_.leftCols(size) = features_.middleCols(begin, size);
-  decoder_input_.middleCols(size, count) = predictor_tape_.output();
-  networks_.decoder().forward(networks_.decoderOf(theta), decoder_input_.leftCols(size + count),
+  for (int j = 0; j < steps; ++j) {
+    decoder_input_.middleCols(size + j * count, count) = predicted_[j].leftCols(count);
+  }
+  networks_.decoder().forward(networks_.decoderOf(theta), decoder_input_.leftCols(columns),
                               &decoder_tape_);
 
-  residual_.leftCols(size + count) = decoder_tape_.output();
-  residual_.leftCols(size) -= data_.scores.middleCols(begin, size);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    residual_.col(size + i) -= data_.scores.col(targets_[first + i]);
-  }
   Value value;
+  residual_.leftCols(columns) = decoder_tape_.output();
+  residual_.leftCols(size) -= data_.scores.middleCols(begin, size);
+  const Scalar step_weight = Scalar(1) / Scalar(steps);
+  for (int j = 0; j < steps; ++j) {
+    d_predicted_[j].leftCols(count) = predicted_[j].leftCols(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const Eigen::Index frame = targets_[first + i] + j;
+      if (frame < piece_end_[first + i]) {
+        residual_.col(size + j * count + i) -= data_.scores.col(frame);
+        d_predicted_[j].col(i) -= features_.col(frame);
+      } else {  // beyond the piece there is nothing to compare with
+        residual_.col(size + j * count + i).setZero();
+        d_predicted_[j].col(i).setZero();
+      }
+    }
+    value.v_z += static_cast<double>(step_weight * d_predicted_[j].leftCols(count).squaredNorm());
+  }
   value.v_r = static_cast<double>(residual_.leftCols(size).squaredNorm());
-  value.v_p = static_cast<double>(residual_.middleCols(size, count).squaredNorm());
+  value.v_p =
+      static_cast<double>(step_weight * residual_.middleCols(size, steps * count).squaredNorm());
   if (d_theta == nullptr) return value;
 
   residual_.leftCols(size) *= Scalar(terms.v_r ? 2 : 0);
-  residual_.middleCols(size, count) *= Scalar(terms.v_p ? 2 : 0);
+  residual_.middleCols(size, steps * count) *= Scalar(terms.v_p ? 2 : 0) * step_weight;
   networks_.decoder().backward(networks_.decoderOf(theta), &decoder_tape_,
-                               residual_.leftCols(size + count), networks_.decoderOf(d_theta),
+                               residual_.leftCols(columns), networks_.decoderOf(d_theta),
                                &d_decoder_input_);
   d_features_.middleCols(begin, size) += d_decoder_input_.leftCols(size);
-  backwardThroughPrediction(theta, first, count, d_decoder_input_.middleCols(size, count), d_theta);
+  const Scalar consistency = Scalar(terms.v_p ? 2.0 * terms.consistency_weight : 0.0) * step_weight;
+  for (int j = 0; j < steps; ++j) {
+    d_predicted_[j].leftCols(count) *= consistency;
+    if (consistency != Scalar(0)) {
+      for (Eigen::Index i = 0; i < count; ++i) {
+        const Eigen::Index frame = targets_[first + i] + j;
+        if (frame < piece_end_[first + i]) d_features_.col(frame) -= d_predicted_[j].col(i);
+      }
+    }
+    d_predicted_[j].leftCols(count) += d_decoder_input_.middleCols(size + j * count, count);
+  }
+  backwardThroughRollOut(theta, first, count, steps, d_theta);
   return value;
 }
 
+/// Predictions of the block's targets (j = 0) and of the frames after them, each from those before.
+/// Beyond its piece a prediction goes on with whatever torques come, and is not used.
 template <class Scalar>
-void JointObjective<Scalar>::predict(const Scalar* theta, Eigen::Index first, Eigen::Index count) {
+void JointObjective<Scalar>::rollOut(const Scalar* theta, Eigen::Index first, Eigen::Index count,
+                                     int num_steps) {
   const PredictionModel<Scalar>& f = networks_.prediction_model;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::Index target = targets_[first + i];
-    for (int lag = 0; lag < f.order(); ++lag) {
-      const Eigen::Index frame = target - 1 - lag;
-      regressors_.col(i).segment(f.featureRow(lag), f.featureDim()) = features_.col(frame);
-      regressors_.col(i).segment(f.torqueRow(lag), f.torqueDim()) = data_.torques.col(frame);
+  const Eigen::Index last_frame = data_.torques.cols() - 1;
+  for (int j = 0; j < num_steps; ++j) {
+    for (Eigen::Index i = 0; i < count; ++i) {
+      for (int lag = 0; lag < f.order(); ++lag) {
+        const Eigen::Index frame = std::min(targets_[first + i] + j - 1 - lag, last_frame);
+        auto feature = regressors_.col(i).segment(f.featureRow(lag), f.featureDim());
+        if (lag < j) {
+          feature = predicted_[j - 1 - lag].col(i);
+        } else {
+          feature = features_.col(frame);
+        }
+        regressors_.col(i).segment(f.torqueRow(lag), f.torqueDim()) = data_.torques.col(frame);
+      }
     }
+    f.forward(networks_.predictorOf(theta), regressors_.leftCols(count), &predictor_tapes_[j],
+              predicted_[j].leftCols(count));
   }
-  f.network().forward(networks_.predictorOf(theta), regressors_.leftCols(count), &predictor_tape_);
 }
 
+/// Takes dV/dz_{t+j|t} of each step back to the features that the roll-out began with.
 template <class Scalar>
-void JointObjective<Scalar>::backwardThroughPrediction(const Scalar* theta, Eigen::Index first,
-                                                       Eigen::Index count,
-                                                       const Eigen::Ref<const Matrix>& d_predicted,
-                                                       Scalar* d_theta) {
+void JointObjective<Scalar>::backwardThroughRollOut(const Scalar* theta, Eigen::Index first,
+                                                    Eigen::Index count, int num_steps,
+                                                    Scalar* d_theta) {
   const PredictionModel<Scalar>& f = networks_.prediction_model;
-  f.network().backward(networks_.predictorOf(theta), &predictor_tape_, d_predicted,
-                       networks_.predictorOf(d_theta), &d_regressors_);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    for (int lag = 0; lag < f.order(); ++lag) {
-      d_features_.col(targets_[first + i] - 1 - lag) +=
-          d_regressors_.col(i).segment(f.featureRow(lag), f.featureDim());
+  for (int j = num_steps - 1; j >= 0; --j) {
+    f.backward(networks_.predictorOf(theta), &predictor_tapes_[j], d_predicted_[j].leftCols(count),
+               networks_.predictorOf(d_theta), &d_regressors_);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      for (int lag = 0; lag < f.order(); ++lag) {
+        const auto d_feature = d_regressors_.col(i).segment(f.featureRow(lag), f.featureDim());
+        if (lag < j) {
+          d_predicted_[j - 1 - lag].col(i) += d_feature;
+        } else {
+          d_features_.col(targets_[first + i] + j - 1 - lag) += d_feature;
+        }
+      }
     }
   }
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/schedule.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -29,6 +30,9 @@ Terms Schedule::terms() const {
   for (const Stage& stage : stages) {
     all.v_r = all.v_r || stage.terms.v_r;
     all.v_p = all.v_p || stage.terms.v_p;
+    all.prediction_steps = std::max(all.prediction_steps, stage.terms.prediction_steps);
+    all.consistency_weight = stage.terms.consistency_weight;
+    all.weight_decay = stage.terms.weight_decay;
   }
   return all;
 }
@@ -37,6 +41,23 @@ std::vector<std::string> scheduleNames() {
   std::vector<std::string> names;
   for (const Named& named : schedules()) names.push_back(named.first);
   return names;
+}
+
+Schedule makeSchedule(const TrainingOptions& training) {
+  Schedule schedule = makeSchedule(training.schedule);
+  std::vector<Stage> stages;
+  for (Stage stage : schedule.stages) {
+    stage.terms.consistency_weight = training.consistency_weight;
+    stage.terms.weight_decay = training.weight_decay;
+    if (stage.terms.v_p && training.prediction_steps > 1 && training.warm_up_iterations > 0) {
+      stages.push_back(stage);
+      stages.back().warm_up = true;
+    }
+    if (stage.terms.v_p) stage.terms.prediction_steps = training.prediction_steps;
+    stages.push_back(stage);
+  }
+  schedule.stages = stages;
+  return schedule;
 }
 
 Schedule makeSchedule(const std::string& name) {

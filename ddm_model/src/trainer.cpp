@@ -54,7 +54,7 @@ class CeresObjective : public ceres::FirstOrderFunction {
     last_ = objective_->evaluate(theta_, gradient != nullptr ? &gradient_ : nullptr, terms_);
     ++evaluations_;
     const double weight = objective_->weight();
-    *cost = weight * ((terms_.v_r ? last_.v_r : 0.0) + (terms_.v_p ? last_.v_p : 0.0));
+    *cost = weight * last_.of(terms_);
     if (gradient != nullptr) {
       Eigen::Map<Eigen::VectorXd>(gradient, free_.size) =
           weight * gradient_.segment(free_.begin, free_.size).cast<double>();
@@ -146,21 +146,21 @@ class Minimisation {
         objective_(*objective),
         squared_scale_(squaredScale(pca)),
         training_(training),
-        schedule_(makeSchedule(training.schedule)),
+        schedule_(makeSchedule(training)),
         callback_(callback) {}
 
-  /// Initial parameters, the auto-encoder's from PCA if this is the first start and the schedule
-  /// says so.
+  /// Initial parameters, the auto-encoder's from PCA if this is one of the first starts and the
+  /// schedule says so.
   Eigen::VectorXd initial(int start, const Networks<double>& networks,
                           const Eigen::MatrixXd& scores, std::mt19937_64* rng) const {
-    return initialTheta(networks, scores, training_, schedule_.pca_start && start == 0, rng);
+    return initialTheta(networks, scores, training_,
+                        schedule_.pca_start && start < training_.pca_starts, rng);
   }
 
   /// @return w times the sum of the terms that the schedule minimises
   double cost(const Eigen::VectorXd& theta) {
-    const JointObjective<float>::Value value = objective_.evaluate(theta.cast<float>(), nullptr);
     const Terms terms = schedule_.terms();
-    return objective_.weight() * ((terms.v_r ? value.v_r : 0.0) + (terms.v_p ? value.v_p : 0.0));
+    return objective_.weight() * objective_.evaluate(theta.cast<float>(), nullptr, terms).of(terms);
   }
 
   /// @param done    of the whole training, when this start began
@@ -173,13 +173,17 @@ class Minimisation {
     before.fraction_done = done;
     for (const Stage& stage : schedule_.stages) {
       before.iteration = result->iterations;
-      if (!runStage(stage, before, share / training_.max_iterations, theta, result)) return false;
+      if (!runStage(stage, before, share / iterations(stage), theta, result)) return false;
       before.fraction_done += share;
     }
     return true;
   }
 
  private:
+  int iterations(const Stage& stage) const {
+    return stage.warm_up ? training_.warm_up_iterations : training_.max_iterations;
+  }
+
   bool runStage(const Stage& stage, const TrainingProgress& before, double share,
                 Eigen::VectorXd* theta, TrainingResult* result) {
     const Range free = freeParameters(networks_, stage.free);
@@ -187,6 +191,7 @@ class Minimisation {
     const ceres::GradientProblem problem(function);  // owns the function
     ProgressCallback progress(function, squared_scale_, before, share, callback_);
     ceres::GradientProblemSolver::Options options = solverOptions(training_);
+    options.max_num_iterations = iterations(stage);
     options.callbacks.push_back(&progress);
     ceres::GradientProblemSolver::Summary summary;
     ceres::Solve(options, problem, theta->data() + free.begin, &summary);
@@ -213,6 +218,51 @@ class Minimisation {
   const TrainingCallback& callback_;
 };
 
+/// What starts are chosen by, where training/selection_steps asks for it: how well they predict
+/// that many steps ahead the end of each piece, which none of them has been trained to predict.
+class Selection {
+ public:
+  /// @param data  in: all, out: without the frames that predictions are measured on
+  Selection(const Networks<float>& networks, TrainingData<float>* data, int order,
+            const TrainingOptions& training)
+      : objective_(networks, split(data, order, training)) {
+    terms_.prediction_steps = training.selection_steps;
+  }
+
+  double error(const Eigen::VectorXd& theta) {
+    return objective_.weight() * objective_.evaluate(theta.cast<float>(), nullptr, terms_).v_p;
+  }
+
+ private:
+  static TrainingData<float> split(TrainingData<float>* data, int order,
+                                   const TrainingOptions& training) {
+    TrainingData<float> held_out = *data;
+    if (training.held_out == 0.0) return held_out;
+    held_out.pieces.clear();
+    for (Piece& piece : data->pieces) {
+      const auto size = static_cast<Eigen::Index>(
+          std::lround(training.held_out * static_cast<double>(piece.size)));
+      if (size <= order || piece.size - size <= order) continue;  // too short to be divided
+      piece.size -= size;
+      held_out.pieces.push_back({piece.begin + piece.size, size});
+    }
+    if (held_out.pieces.empty()) held_out.pieces = data->pieces;
+    return held_out;
+  }
+
+  JointObjective<float> objective_;
+  Terms terms_;
+};
+
+/// What one start came to.
+struct Candidate {
+  Eigen::VectorXd theta;
+  double initial_cost = 0.0;
+  double final_cost = 0.0;
+  double chosen_by = 0.0;  ///< less is better
+  std::string message;     ///< how the solver ended
+};
+
 }  // namespace
 
 std::mt19937_64 initialisationStream(std::uint64_t seed, std::uint32_t trial) {
@@ -231,33 +281,49 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
   const Eigen::MatrixXd scores = training_data.scores.cast<double>();
   const Networks<double> initial_networks(model, data.torqueDim());
   std::mt19937_64 rng = initialisationStream(info.seed, info.trial);
+  std::optional<Selection> selection;
+  if (training.num_starts > 1 && training.selection_steps > 0) {
+    selection.emplace(networks, &training_data, model.order, training);
+  }
   JointObjective<float> objective(networks, std::move(training_data));
   Minimisation minimisation(networks, &objective, pca, training, callback);
 
   TrainingResult result;
-  Eigen::VectorXd best;
-  std::string message;  // how the solver ended there
+  std::vector<Candidate> candidates;
   for (int number = 0; number < training.num_starts && !result.cancelled; ++number) {
-    Eigen::VectorXd theta = minimisation.initial(number, initial_networks, scores, &rng);
-    const double initial_cost = minimisation.cost(theta);
+    Candidate candidate;
+    candidate.theta = minimisation.initial(number, initial_networks, scores, &rng);
+    candidate.initial_cost = minimisation.cost(candidate.theta);
     const double done = static_cast<double>(number) / training.num_starts;
-    if (!minimisation.run(done, &theta, &result)) continue;
-    const double cost = minimisation.cost(theta);
-    if (best.size() == 0 || cost < result.final_cost) {
-      best = theta;
-      message = result.message;
-      result.initial_cost = initial_cost;
-      result.final_cost = cost;
-    }
+    if (!minimisation.run(done, &candidate.theta, &result)) continue;
+    candidate.final_cost = minimisation.cost(candidate.theta);
+    candidate.chosen_by = selection ? selection->error(candidate.theta) : candidate.final_cost;
+    candidate.message = result.message;
+    candidates.push_back(std::move(candidate));
   }
-  if (best.size() > 0 && !result.cancelled) {
-    result.message = message;
-    const JointObjective<float>::Value value = objective.evaluate(best.cast<float>(), nullptr);
+  if (!candidates.empty() && !result.cancelled) {
+    std::stable_sort(
+        candidates.begin(), candidates.end(),
+        [](const Candidate& a, const Candidate& b) { return a.chosen_by < b.chosen_by; });
+    const auto most = static_cast<size_t>(training.ensemble_size);
+    if (candidates.size() > most) candidates.resize(most);
+    result.message = candidates.front().message;
+    result.initial_cost = candidates.front().initial_cost;
+    result.final_cost = candidates.front().final_cost;
     info.frames = static_cast<std::uint32_t>(data.numFrames());
-    info.v_r = squaredScale(pca) * value.v_r;
-    info.v_p = squaredScale(pca) * value.v_p;
-    result.model.emplace(model, data.imageSize(), data.torqueDim(), std::move(pca), std::move(best),
-                         data.goal(), std::move(info));
+    std::vector<Ddm> models;
+    for (const Candidate& candidate : candidates) {
+      const JointObjective<float>::Value value =
+          objective.evaluate(candidate.theta.cast<float>(), nullptr);
+      info.v_r = squaredScale(pca) * value.v_r;
+      info.v_p = squaredScale(pca) * value.v_p;
+      info.feature_spread = objective.featureSpread();
+      models.emplace_back(model, data.imageSize(), data.torqueDim(), pca, candidate.theta,
+                          data.goal(), info);
+    }
+    result.model = std::move(models.front());
+    models.erase(models.begin());
+    result.model->setOthers(std::move(models));
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -67,6 +67,21 @@ TEST(RollOut, FeedsPredictionsBackAndTakesTheTorquesThatFollowed) {
   }
 }
 
+TEST(PredictNext, IsTheFirstStepOfARollOut) {
+  const Ddm model = testing::toyModel();
+  const DataSet data = testing::toyTrial(6, 1);
+  const Eigen::MatrixXd Z = encodeAll(model, data);
+  History x(2, model.featureDim(), 1);
+  for (Eigen::Index t = 0; t < 4; ++t) {
+    if (t > 0) x.apply(data.torques().col(t - 1));
+    x.observe(Z.col(t));
+  }
+  EXPECT_TRUE(predictNext(model, x, data.torques().col(3))
+                  .isApprox(rollOut(model, Z, data.torques(), 3, 1).col(1), 1e-14));
+  EXPECT_FALSE(predictNext(model, x, data.torques().col(2))
+                   .isApprox(rollOut(model, Z, data.torques(), 3, 1).col(1), 1e-6));
+}
+
 TEST(RollOut, UsesNothingThatComesLaterThanItsFrame) {
   const Ddm model = testing::toyModel();
   const DataSet data = testing::toyTrial(12, 1);

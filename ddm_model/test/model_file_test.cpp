@@ -60,6 +60,22 @@ TEST(ModelFile, ComesBackBitForBit) {
   }
 }
 
+TEST(ModelFile, KeepsTheFormOfF) {
+  const Ddm model = toyModel();
+  for (const bool residual : {false, true}) {
+    for (const bool increments : {false, true}) {
+      ModelOptions options = model.options();
+      options.residual = residual;
+      options.increments = increments;
+      const Ddm other(options, model.imageSize(), model.torqueDim(), model.pca(), model.theta(),
+                      model.goal(), model.info());
+      const Ddm back = deserialiseModel(serialiseModel(other), "memory");
+      EXPECT_EQ(back.options().residual, residual);
+      EXPECT_EQ(back.options().increments, increments);
+    }
+  }
+}
+
 TEST(ModelFile, CutShortAnywhereIsRefused) {
   const std::string bytes = serialiseModel(toyModel());
   for (size_t size = 0; size < bytes.size(); ++size) {
@@ -85,8 +101,8 @@ TEST(ModelFile, BytesAfterTheEndAreRefused) {
 
 TEST(ModelFile, AnotherVersionIsRefusedWithBothVersionsAndTheRemedy) {
   std::string bytes = serialiseModel(toyModel());
-  bytes[kVersionAt] = 2;
-  EXPECT_TRUE(isRefused(bytes, {"format version 2", "reads version 1", "train it again"}));
+  bytes[kVersionAt] = 3;
+  EXPECT_TRUE(isRefused(bytes, {"format version 3", "reads versions 1 to 2", "train it again"}));
 }
 
 TEST(ModelFile, WhatIsNoModelIsRefused) {

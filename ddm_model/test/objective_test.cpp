@@ -40,10 +40,12 @@ Eigen::VectorXd applied(const Mlp<double>& net, const double* theta, const Eigen
   return tape.output();
 }
 
-/// V_R and V_P straight from the formula: one image at a time, piece by piece.
+/// V_R, V_P and V_Z straight from the formula: one image at a time, piece by piece.
+/// @param form  of f: only its flags count
 JointObjective<double>::Value slowValue(const Networks<double>& nets,
                                         const TrainingData<double>& data,
-                                        const Eigen::VectorXd& theta) {
+                                        const Eigen::VectorXd& theta, const Terms& terms = Terms(),
+                                        const ModelOptions& form = ModelOptions()) {
   const auto z = [&](Eigen::Index t) {
     return applied(nets.encoder(), nets.encoderOf(theta.data()), data.scores.col(t));
   };
@@ -56,16 +58,29 @@ JointObjective<double>::Value slowValue(const Networks<double>& nets,
   }
   const int n = nets.prediction_model.order();
   for (const Piece& piece : data.pieces) {
-    for (Eigen::Index t = piece.begin + n - 1; t + 1 < piece.begin + piece.size; ++t) {
-      Eigen::VectorXd h(0);
-      for (int lag = 0; lag < n; ++lag) {
-        const Eigen::VectorXd feature = z(t - lag), torque = data.torques.col(t - lag);
-        Eigen::VectorXd longer(h.size() + feature.size() + torque.size());
-        longer << h, feature, torque;
-        h = longer;
+    const Eigen::Index end = piece.begin + piece.size;
+    for (Eigen::Index t = piece.begin + n - 1; t + 1 < end; ++t) {
+      std::vector<Eigen::VectorXd> path;  // z_{t-n+1} ... z_t, then the predictions
+      for (Eigen::Index i = t - n + 1; i <= t; ++i) path.push_back(z(i));
+      for (int j = 1; j <= terms.prediction_steps && t + j < end; ++j) {
+        Eigen::VectorXd h(0);
+        for (int lag = 0; lag < n; ++lag) {
+          Eigen::VectorXd feature = path[path.size() - 1 - static_cast<size_t>(lag)];
+          if (form.increments && lag > 0) {
+            feature = path[path.size() - static_cast<size_t>(lag)] - feature;
+          }
+          const Eigen::VectorXd torque = data.torques.col(t + j - 1 - lag);
+          Eigen::VectorXd longer(h.size() + feature.size() + torque.size());
+          longer << h, feature, torque;
+          h = longer;
+        }
+        Eigen::VectorXd predicted = applied(nets.f(), nets.predictorOf(theta.data()), h);
+        if (form.residual) predicted += path.back();
+        value.v_p +=
+            (data.scores.col(t + j) - decoded(predicted)).squaredNorm() / terms.prediction_steps;
+        value.v_z += (z(t + j) - predicted).squaredNorm() / terms.prediction_steps;
+        path.push_back(predicted);
       }
-      const Eigen::VectorXd predicted = applied(nets.f(), nets.predictorOf(theta.data()), h);
-      value.v_p += (data.scores.col(t + 1) - decoded(predicted)).squaredNorm();
     }
   }
   return value;
@@ -76,6 +91,14 @@ testing::DifferentiableFunction jointFunction(JointObjective<double>* objective)
   return [objective](const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
     const auto value = objective->evaluate(theta, gradient);
     return value.v_r + value.v_p;
+  };
+}
+
+/// What some terms come to as a function of theta.
+testing::DifferentiableFunction singleTerm(JointObjective<double>* objective, Terms terms) {
+  return [objective, terms](const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
+    const auto value = objective->evaluate(theta, gradient, terms);
+    return value.of(terms);
   };
 }
 
@@ -123,19 +146,109 @@ TEST(JointObjective, GradientMatchesDifferencesForEveryParameter) {
   }
 }
 
+/// f without and with each of its flags.
+std::vector<ModelOptions> formsOfF(int order) {
+  std::vector<ModelOptions> forms;
+  for (const bool residual : {false, true}) {
+    for (const bool increments : {false, true}) {
+      forms.push_back(tinyOptions());
+      forms.back().order = order;
+      forms.back().residual = residual;
+      forms.back().increments = increments;
+    }
+  }
+  return forms;
+}
+
+TEST(JointObjective, PredictionsOfSeveralStepsEqualASlowComputationFromTheFormula) {
+  for (const int order : {1, 2, 3}) {
+    for (const ModelOptions& options : formsOfF(order)) {
+      for (const int steps : {1, 2, 5}) {
+        const Networks<double> nets(options, 2);
+        // The second piece is shorter than the longest prediction; the last one crosses a block.
+        const auto data = randomData(4, 2, 140, true, {{0, 7}, {7, 4}, {11, 1}, {12, 128}});
+        JointObjective<double> objective(nets, data);
+        const Eigen::VectorXd theta = 0.5 * randomMatrix(nets.numParams(), 1, 3);
+        Terms terms;
+        terms.prediction_steps = steps;
+        const auto value = objective.evaluate(theta, nullptr, terms);
+        const auto slow = slowValue(nets, data, theta, terms, options);
+        EXPECT_NEAR(value.v_r, slow.v_r, 1e-11 * slow.v_r) << order << ", " << steps << " steps";
+        EXPECT_NEAR(value.v_p, slow.v_p, 1e-11 * slow.v_p) << order << ", " << steps << " steps";
+        EXPECT_NEAR(value.v_z, slow.v_z, 1e-11 * slow.v_z) << order << ", " << steps << " steps";
+      }
+    }
+  }
+}
+
+TEST(JointObjective, GradientOfSeveralStepsAndConsistencyMatchesDifferences) {
+  for (const int order : {1, 3}) {
+    for (const ModelOptions& options : formsOfF(order)) {
+      for (const double consistency_weight : {0.0, 0.7}) {
+        const Networks<double> nets(options, 2);
+        JointObjective<double> objective(nets,
+                                         randomData(4, 2, 24, true, {{0, 9}, {9, 5}, {14, 10}}));
+        Terms terms;
+        terms.prediction_steps = 4;
+        terms.consistency_weight = consistency_weight;
+        EXPECT_TRUE(testing::gradientMatches(singleTerm(&objective, terms),
+                                             0.5 * randomMatrix(nets.numParams(), 1, 3)))
+            << "order " << order << ", residual " << options.residual << ", increments "
+            << options.increments << ", w_c " << consistency_weight;
+      }
+    }
+  }
+}
+
+TEST(JointObjective, WeightDecayCountsTheSquaredWeightsOfAllNetworksAndNoBias) {
+  const Networks<double> nets(tinyOptions(), 1);
+  JointObjective<double> objective(nets, randomData(4, 1, 20, true, {{0, 20}}));
+  Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
+  double expected = 0.0;
+  const auto square = [&expected](const Mlp<double>& net, double* part) {
+    for (int layer = 0; layer < net.numLayers(); ++layer) {
+      expected += net.weights(part, layer).array().square().sum();
+      net.biases(part, layer).setConstant(5.0);
+    }
+  };
+  square(nets.encoder(), nets.encoderOf(theta.data()));
+  square(nets.decoder(), nets.decoderOf(theta.data()));
+  square(nets.f(), nets.predictorOf(theta.data()));
+  Terms terms;
+  terms.weight_decay = 3.0;
+  const auto value = objective.evaluate(theta, nullptr, terms);
+  EXPECT_NEAR(value.v_w, expected, 1e-12 * expected);
+  EXPECT_NEAR(value.of(terms), value.v_r + value.v_p + 3.0 * expected, 1e-9 * expected);
+  EXPECT_EQ(value.of(Terms()), value.v_r + value.v_p);
+}
+
+TEST(JointObjective, GradientWithWeightDecayMatchesDifferencesForEveryParameter) {
+  const Networks<double> nets(tinyOptions(), 1);
+  JointObjective<double> objective(nets, randomData(4, 1, 20, true, {{0, 20}}));
+  for (const bool v_p : {false, true}) {
+    Terms terms;
+    terms.v_p = v_p;
+    terms.weight_decay = 0.3;
+    EXPECT_TRUE(testing::gradientMatches(singleTerm(&objective, terms),
+                                         0.5 * randomMatrix(nets.numParams(), 1, 3)));
+  }
+}
+
+TEST(JointObjective, GradientOfSeveralStepsMatchesDifferencesAcrossTheBordersOfItsBlocks) {
+  const Networks<double> nets(tinyOptions(), 1);
+  JointObjective<double> objective(nets, randomData(4, 1, 134, true, {{0, 131}, {131, 3}}));
+  Terms terms;
+  terms.prediction_steps = 3;
+  terms.consistency_weight = 0.5;
+  EXPECT_TRUE(testing::gradientMatches(singleTerm(&objective, terms),
+                                       0.5 * randomMatrix(nets.numParams(), 1, 3)));
+}
+
 TEST(JointObjective, GradientMatchesDifferencesAcrossTheBordersOfItsBlocks) {
   const Networks<double> nets(tinyOptions(), 1);
   JointObjective<double> objective(nets, randomData(4, 1, 131, true, {{0, 130}, {130, 1}}));
   EXPECT_TRUE(
       testing::gradientMatches(jointFunction(&objective), randomMatrix(nets.numParams(), 1, 3)));
-}
-
-/// One term alone as a function of theta.
-testing::DifferentiableFunction singleTerm(JointObjective<double>* objective, Terms terms) {
-  return [objective, terms](const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
-    const auto value = objective->evaluate(theta, gradient, terms);
-    return (terms.v_r ? value.v_r : 0.0) + (terms.v_p ? value.v_p : 0.0);
-  };
 }
 
 TEST(JointObjective, GradientOfEachTermAloneMatchesDifferences) {

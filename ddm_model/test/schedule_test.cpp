@@ -55,6 +55,30 @@ TEST(Schedule, TellsTheTermsThatAnyStageMinimises) {
   EXPECT_TRUE(!makeSchedule("v_p_only").terms().v_r && makeSchedule("v_p_only").terms().v_p);
 }
 
+TEST(Schedule, PredictionsOfSeveralStepsAreWarmedUpByOne) {
+  TrainingOptions training;
+  EXPECT_EQ(makeSchedule(training).stages.size(), 1u);
+  training.prediction_steps = 5;
+  training.consistency_weight = 0.5;
+  training.weight_decay = 2.0;
+  const Schedule joint = makeSchedule(training);
+  ASSERT_EQ(joint.stages.size(), 2u);
+  EXPECT_TRUE(joint.stages[0].warm_up && !joint.stages[1].warm_up);
+  EXPECT_EQ(joint.stages[0].terms.prediction_steps, 1);
+  EXPECT_EQ(joint.stages[1].terms.prediction_steps, 5);
+  EXPECT_EQ(joint.terms().prediction_steps, 5);
+  EXPECT_EQ(joint.terms().consistency_weight, 0.5);
+  for (const Stage& stage : joint.stages) EXPECT_EQ(stage.terms.weight_decay, 2.0);
+  EXPECT_EQ(joint.terms().weight_decay, 2.0);
+  training.schedule = "sequential";
+  const Schedule sequential = makeSchedule(training);
+  ASSERT_EQ(sequential.stages.size(), 3u);  // the auto-encoder predicts nothing
+  EXPECT_FALSE(sequential.stages[0].warm_up);
+  EXPECT_TRUE(sequential.stages[1].warm_up);
+  training.warm_up_iterations = 0;
+  EXPECT_EQ(makeSchedule(training).stages.size(), 2u);
+}
+
 TEST(Schedule, RefusesAnUnknownName) {
   EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
       [] { makeSchedule("jont"); },

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "ddm_model/long_term_prediction.h"
 #include "ddm_model/model_file.h"
 #include "ddm_model/objective.h"
 #include "ddm_model/solver_log.h"
@@ -187,6 +188,66 @@ TEST_F(Trainer, ChoosesAmongStartsByWhatTheScheduleMinimises) {
   const double first = run().model->info().v_p;
   training_.num_starts = 5;
   EXPECT_LE(run().model->info().v_p, first);
+}
+
+TEST_F(Trainer, ChoosesAmongStartsByWhatIsAskedFor) {
+  training_.num_starts = 8;
+  training_.pca_starts = 8;
+  training_.max_iterations = 8;  // far from done, starts differ more
+  const Ddm by_cost = run().model.value();
+  training_.selection_steps = 1;
+  const Ddm by_prediction = run().model.value();
+  EXPECT_LT(by_prediction.info().v_p, by_cost.info().v_p);
+  EXPECT_GT(by_prediction.info().v_p + by_prediction.info().v_r,
+            by_cost.info().v_p + by_cost.info().v_r);
+  training_.selection_steps = 8;
+  EXPECT_NE(run().model->theta(), by_prediction.theta());
+}
+
+TEST_F(Trainer, WhatIsHeldOutIsNoTargetOfTraining) {
+  training_.num_starts = 2;
+  training_.selection_steps = 2;
+  const Eigen::VectorXd from_all = run().model->theta();
+  training_.held_out = 0.3;
+  const Eigen::VectorXd from_most = run().model->theta();
+  EXPECT_NE(from_all, from_most);
+  // Torques of held-out frames change which start is chosen at most, not what it learns.
+  training_.held_out = 0.05;  // two frames: too few to be held out
+  EXPECT_EQ(run().model->theta(), from_all);
+}
+
+TEST_F(Trainer, KeepsAnEnsembleOfTheBestInTheirOrder) {
+  training_.num_starts = 4;
+  training_.pca_starts = 4;
+  const Ddm best = run().model.value();
+  EXPECT_TRUE(best.others().empty());
+  training_.ensemble_size = 3;
+  const Ddm ensemble = run().model.value();
+  EXPECT_EQ(ensemble.theta(), best.theta());
+  ASSERT_EQ(ensemble.others().size(), 2u);
+  const auto cost = [](const Ddm& model) { return model.info().v_r + model.info().v_p; };
+  EXPECT_LT(cost(ensemble), cost(ensemble.others()[0]));
+  EXPECT_LT(cost(ensemble.others()[0]), cost(ensemble.others()[1]));
+  const Ddm back = deserialiseModel(serialiseModel(ensemble), "memory");
+  ASSERT_EQ(back.others().size(), 2u);
+  EXPECT_EQ(back.others()[1].theta(), ensemble.others()[1].theta());
+  EXPECT_EQ(serialiseModel(back), serialiseModel(ensemble));
+}
+
+TEST_F(Trainer, PredictionsOfSeveralStepsGetBetterWhereTheyAreMinimised) {
+  training_.max_iterations = 200;
+  const double one = predictionErrors(run().model.value(), data_, 6).back().rmse;
+  training_.prediction_steps = 6;
+  const TrainingResult result = run();
+  EXPECT_LT(predictionErrors(result.model.value(), data_, 6).back().rmse, one);
+}
+
+TEST_F(Trainer, KnowsTheSpreadOfItsFeatures) {
+  const Ddm model = run().model.value();
+  const Eigen::MatrixXd Z = encodeAll(model, data_);
+  const double spread =
+      std::sqrt((Z.colwise() - Z.rowwise().mean()).squaredNorm() / static_cast<double>(Z.cols()));
+  EXPECT_NEAR(model.info().feature_spread, spread, 0.1 * spread);  // the goal counts there, too
 }
 
 TEST_F(Trainer, TellsOneProgressOverAllStartsAndStopsThemAll) {

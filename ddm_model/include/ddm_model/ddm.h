@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "ddm_model/data_set.h"
 #include "ddm_model/model_options.h"
@@ -20,7 +21,9 @@ struct ModelInfo {
   std::uint32_t frames = 0;  ///< frames learned from
   double v_r = 0.0;          ///< V_R [grey^2]
   double v_p = 0.0;          ///< V_P [grey^2]
-  std::string config;        ///< YAML text of the configuration it was trained with
+  /// Root of the mean squared distance of the features learned from to their mean; 0: not known.
+  double feature_spread = 0.0;
+  std::string config;  ///< YAML text of the configuration it was trained with
 };
 
 /// The trained model of eq. (3) of the paper. Computes in double, one image or feature at a time.
@@ -53,6 +56,12 @@ class Ddm {
   /// Parameters theta_P of predictionModel().
   const double* thetaP() const { return networks_.predictorOf(theta_.data()); }
 
+  /// The rest of an ensemble, trained on the same data from other starts; empty for a single model.
+  const std::vector<Ddm>& others() const { return others_; }
+  /// @throws std::invalid_argument if one has another image size or number of motors, or others
+  /// itself
+  void setOthers(std::vector<Ddm> others);
+
   const ModelOptions& options() const { return options_; }
   const ModelInfo& info() const { return info_; }
   const Pca& pca() const { return pca_; }
@@ -71,6 +80,7 @@ class Ddm {
   Grey goal_;
   ModelInfo info_;
   Eigen::VectorXd goal_feature_;
+  std::vector<Ddm> others_;
 };
 
 }  // namespace ddm

@@ -7,6 +7,7 @@
 
 #include "ddm_model/data_set.h"
 #include "ddm_model/ddm.h"
+#include "ddm_model/history.h"
 
 namespace ddm {
 
@@ -28,6 +29,12 @@ Eigen::MatrixXd encodeAll(const Ddm& model, const DataSet& data);
 Eigen::MatrixXd rollOut(const Ddm& model, const Eigen::MatrixXd& Z,
                         const Eigen::Ref<const Eigen::MatrixXd>& torques, Eigen::Index frame,
                         int num_steps);
+
+/// z_{t+1} = f(h), one step from the state that a policy keeps.
+/// @param x  features and torques until t, not empty
+/// @param u  u_t [N m]                                                 [torque_dim]
+/// @return   [feature_dim]
+Eigen::VectorXd predictNext(const Ddm& model, const History& x, const Eigen::VectorXd& u);
 
 /// Error of all predictions that many steps ahead.
 struct PredictionError {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <vector>
 
 #include "ddm_model/data_set.h"
@@ -25,7 +26,16 @@ struct TrainingData {
 ///   V_R = sum_t |s_t - g(g^-1(s_t))|^2          over all images, the goal included
 ///   V_P = sum_t |s_{t+1} - g(f(h_t))|^2         over all frames with n predecessors in their piece
 ///
-/// on PCA scores s: the pixels outside the basis add a constant that no parameter changes. The
+/// With Terms::prediction_steps k > 1, V_P is the mean over predictions 1 ... k steps ahead, each
+/// from the one before it; with Terms::consistency_weight w_c > 0, w_c V_Z is added, in features:
+///
+///   V_P = 1/k sum_t sum_{j=1..k} |s_{t+j} - g(z_{t+j|t})|^2,  V_Z the same of |z_{t+j} -
+///   z_{t+j|t}|^2
+///
+/// With Terms::weight_decay w_d > 0, w_d V_W is added, V_W the sum of all squared weights (biases
+/// are free): networks that fit few data in many ways are held to the smoothest.
+///
+/// All on PCA scores s: the pixels outside the basis add a constant that no parameter changes. The
 /// weight w = 1 / sum_t |s_t|^2 makes V about 1 for a useless model, whatever the data.
 /// The encoder runs once for both terms. Samples are walked in blocks that stay in cache; memory is
 /// taken once, at construction.
@@ -38,6 +48,14 @@ class JointObjective {
   struct Value {
     double v_r = 0.0;  ///< V_R [score^2]
     double v_p = 0.0;  ///< V_P [score^2]
+    double v_z = 0.0;  ///< V_Z [feature^2]
+    double v_w = 0.0;  ///< V_W, sum of all squared weights [-]
+
+    /// What `terms` minimise, without the weight w.
+    double of(const Terms& terms) const {
+      return (terms.v_r ? v_r : 0.0) + (terms.v_p ? v_p + terms.consistency_weight * v_z : 0.0) +
+             terms.weight_decay * v_w;
+    }
   };
 
   /// @param networks  shapes; outlives the objective
@@ -46,21 +64,29 @@ class JointObjective {
 
   /// @param theta    parameters                                            [P]
   /// @param d_theta  out: derivative of the sum of `terms`; null: not wanted   [P]
-  /// @param terms    which of the two the derivative is of
-  /// @return both values, whatever `terms` says
-  Value evaluate(const Vector& theta, Vector* d_theta, Terms terms = Terms());
+  /// @param terms    what the derivative is of
+  /// @return all values, whatever `terms` leaves out
+  Value evaluate(const Vector& theta, Vector* d_theta, const Terms& terms = Terms());
 
+  /// @return root of the mean squared distance of the last evaluate()'s features to their mean
+  double featureSpread() const {
+    return std::sqrt(static_cast<double>(
+        (features_.colwise() - features_.rowwise().mean()).squaredNorm() / features_.cols()));
+  }
   /// @return w
   double weight() const { return weight_; }
-  /// @return number of one-step predictions in V_P
+  /// @return number of one-step predictions
   Eigen::Index numPredictions() const { return static_cast<Eigen::Index>(targets_.size()); }
 
  private:
+  double squaredWeights(const Scalar* theta) const;
+  void addDecay(const Scalar* theta, double price, Scalar* d_theta) const;
   void encode(const Scalar* theta);
-  Value decodeBlock(const Scalar* theta, Eigen::Index block, Terms terms, Scalar* d_theta);
-  void predict(const Scalar* theta, Eigen::Index first, Eigen::Index count);
-  void backwardThroughPrediction(const Scalar* theta, Eigen::Index first, Eigen::Index count,
-                                 const Eigen::Ref<const Matrix>& d_predicted, Scalar* d_theta);
+  Value decodeBlock(const Scalar* theta, Eigen::Index block, const Terms& terms, Scalar* d_theta);
+  void rollOut(const Scalar* theta, Eigen::Index first, Eigen::Index count, int num_steps);
+  void backwardThroughRollOut(const Scalar* theta, Eigen::Index first, Eigen::Index count,
+                              int num_steps, Scalar* d_theta);
+  void reserve(int num_steps);
 
   Eigen::Index blockBegin(Eigen::Index block) const;
   Eigen::Index blockSize(Eigen::Index block) const;
@@ -68,16 +94,20 @@ class JointObjective {
   const Networks<Scalar>& networks_;
   TrainingData<Scalar> data_;
   double weight_ = 1.0;
-  std::vector<Eigen::Index> targets_;       // frames that are predicted, ascending
+  std::vector<Eigen::Index> targets_;       // frames that are predicted one step ahead, ascending
+  std::vector<Eigen::Index> piece_end_;     // of each target: first frame that is not in its piece
   std::vector<Eigen::Index> block_target_;  // first target of each block, and the end
   Matrix features_;                         // z of all images         [feature_dim x M]
   Matrix d_features_;                       // dV/dz                   [feature_dim x M]
   std::vector<typename Mlp<Scalar>::Tape> encoder_tapes_;  // one per block
   typename Mlp<Scalar>::Tape decoder_tape_;
-  typename Mlp<Scalar>::Tape predictor_tape_;
-  Matrix regressors_;  // h of the block's targets
+  std::vector<typename Mlp<Scalar>::Tape> predictor_tapes_;  // one per step ahead
+  std::vector<Matrix>
+      predicted_;  // z_{t+j|t} of the block's targets   j times [feature_dim x kBlock]
+  std::vector<Matrix> d_predicted_;  // dV/dz_{t+j|t}
+  Matrix regressors_;                // h of the block's targets
   Matrix d_regressors_;
-  Matrix decoder_input_;  // z of the block, then the predicted z of its targets
+  Matrix decoder_input_;  // z of the block, then the predicted z of its targets, step by step
   Matrix d_decoder_input_;
   Matrix residual_;
 };

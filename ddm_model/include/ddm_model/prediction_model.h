@@ -13,15 +13,22 @@ namespace ddm {
 ///
 ///   z_{t+1} = f(h; theta_P),   h = [z_t, u_t, z_{t-1}, u_{t-1}, ..., z_{t-n+1}, u_{t-n+1}]
 ///
-/// with u in units of max_torque. The output layer is linear.
+/// with u in units of max_torque. f is a network with a linear output layer, or, with
+/// model/residual, z_t plus such a network: what does not move is then predicted without learning.
+/// With model/increments the network is told of the past as z_t, z_t - z_{t-1}, z_{t-1} - z_{t-2},
+/// ...: features of successive images are almost equal, and the motion lies in what is left.
 template <class Scalar>
 class PredictionModel {
  public:
+  using Matrix = typename Mlp<Scalar>::Matrix;
+
   /// @throws std::invalid_argument if a width is < 1
   PredictionModel(const ModelOptions& options, int torque_dim)
       : feature_dim_(options.feature_dim),
         torque_dim_(torque_dim),
         order_(options.order),
+        residual_(options.residual),
+        increments_(options.increments),
         network_(layers(options, torque_dim), Mlp<Scalar>::Output::kLinear) {}
 
   int featureDim() const { return feature_dim_; }
@@ -35,9 +42,44 @@ class PredictionModel {
   /// Where the torque of `lag` steps ago starts in h.
   int torqueRow(int lag) const { return featureRow(lag) + feature_dim_; }
 
+  /// The network within f.
   const Mlp<Scalar>& network() const { return network_; }
 
+  /// @param theta_p     parameters of f                                                      [P_f]
+  /// @param regressors  one h per column; afterwards what the network saw      [regressorDim() x N]
+  /// @param tape        out: record for backward()
+  /// @param predicted   out: z_{t+1}, of this size already                      [feature_dim x N]
+  void forward(const Scalar* theta_p, Eigen::Ref<Matrix> regressors,
+               typename Mlp<Scalar>::Tape* tape, Eigen::Ref<Matrix> predicted) const {
+    for (int lag = increments_ ? order_ - 1 : 0; lag > 0; --lag) {
+      features(lag, regressors) = features(lag - 1, regressors) - features(lag, regressors);
+    }
+    network_.forward(theta_p, regressors, tape);
+    predicted = tape->output();
+    if (residual_) predicted += features(0, regressors);
+  }
+
+  /// Vector-Jacobian product of forward(). Uses the tape up.
+  /// @param d_theta_p     dV/d theta_P is ADDED to this; null: not wanted                    [P_f]
+  /// @param d_regressors  out: dV/dh                                          [regressorDim() x N]
+  void backward(const Scalar* theta_p, typename Mlp<Scalar>::Tape* tape,
+                const Eigen::Ref<const Matrix>& d_predicted, Scalar* d_theta_p,
+                Matrix* d_regressors) const {
+    network_.backward(theta_p, tape, d_predicted, d_theta_p, d_regressors);
+    for (int lag = 1; lag < (increments_ ? order_ : 1); ++lag) {
+      features(lag - 1, *d_regressors) += features(lag, *d_regressors);
+      features(lag, *d_regressors) *= Scalar(-1);
+    }
+    if (residual_) features(0, *d_regressors) += d_predicted;
+  }
+
  private:
+  /// Rows of the feature of `lag` steps ago.
+  template <class Regressors>
+  auto features(int lag, Regressors& regressors) const {
+    return regressors.middleRows(featureRow(lag), feature_dim_);
+  }
+
   static std::vector<int> layers(const ModelOptions& options, int torque_dim) {
     std::vector<int> widths = {options.order * (options.feature_dim + torque_dim)};
     widths.insert(widths.end(), options.predictor_widths.begin(), options.predictor_widths.end());
@@ -48,6 +90,8 @@ class PredictionModel {
   int feature_dim_;
   int torque_dim_;
   int order_;
+  bool residual_;
+  bool increments_;
   Mlp<Scalar> network_;
 };
 

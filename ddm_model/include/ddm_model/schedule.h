@@ -5,12 +5,17 @@
 #include <string>
 #include <vector>
 
+#include "ddm_model/model_options.h"
+
 namespace ddm {
 
 /// The terms of the objective that count.
 struct Terms {
-  bool v_r = true;  ///< V_R, reconstruction error
-  bool v_p = true;  ///< V_P, prediction error
+  bool v_r = true;                  ///< V_R, reconstruction error
+  bool v_p = true;                  ///< V_P, prediction error
+  int prediction_steps = 1;         ///< k of V_P
+  double consistency_weight = 0.0;  ///< price of V_Z, with V_P
+  double weight_decay = 0.0;        ///< price of V_W
 };
 
 /// One minimisation: `terms` over the parameters that are free, the others held fixed.
@@ -19,6 +24,7 @@ struct Stage {
 
   Terms terms;
   Free free = Free::kAll;
+  bool warm_up = false;  ///< prepares the next stage: training/warm_up_iterations is its cap
 };
 
 /// How theta is found.
@@ -39,6 +45,11 @@ struct Schedule {
 ///   v_r_only           V_R over theta_E and theta_D; f stays random: an auto-encoder alone
 ///   joint_random_init  as joint, without the PCA start
 std::vector<std::string> scheduleNames();
+
+/// The schedule training/schedule with what else `training` says of V_P. Where predictions of more
+/// than one step are asked for, each stage with V_P is warmed up by one with a single step: long
+/// predictions of an untrained f have no useful gradient.
+Schedule makeSchedule(const TrainingOptions& training);
 
 /// @param name  one of scheduleNames()
 /// @throws std::invalid_argument naming the known ones
