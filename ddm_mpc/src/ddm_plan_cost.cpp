@@ -6,29 +6,35 @@
 
 namespace ddm {
 
-DdmPlanCost::DdmPlanCost(const Ddm& model, int horizon, double control_weight)
+DdmPlanCost::DdmPlanCost(const Ddm& model, int horizon, double control_weight,
+                         const DistanceCost& distance_cost)
     : f_(model.predictionModel()),
       theta_p_(model.thetaP()),
       horizon_(horizon),
       control_weight_(control_weight),
+      distance_cost_(distance_cost),
       max_torque_(model.options().max_torque),
       order_(f_.order()),
       past_torques_(Eigen::MatrixXd::Zero(f_.torqueDim(), order_ - 1)),
       features_(Eigen::MatrixXd::Zero(f_.featureDim(), order_ + horizon)),
       d_features_(features_),
+      slopes_(horizon),
       regressor_(f_.regressorDim()),
       tapes_(horizon) {
   if (horizon < 1) throw std::invalid_argument("plan cost: horizon must be >= 1");
 }
 
-void DdmPlanCost::setProblem(const History& x, const Eigen::VectorXd& goal_feature) {
+void DdmPlanCost::setProblem(const History& x, const Eigen::VectorXd& goal_feature,
+                             const Eigen::VectorXd& offset) {
   if (x.empty() || x.features().rows() != f_.featureDim() || x.features().cols() != order_ ||
-      x.torques().rows() != f_.torqueDim() || goal_feature.size() != f_.featureDim()) {
-    throw std::invalid_argument("plan cost: history or goal feature do not fit the model");
+      x.torques().rows() != f_.torqueDim() || goal_feature.size() != f_.featureDim() ||
+      offset.size() != f_.featureDim()) {
+    throw std::invalid_argument("plan cost: history, goal feature or offset do not fit the model");
   }
   features_.leftCols(order_) = x.features().rowwise().reverse();
   past_torques_ = x.torques() / max_torque_;
   goal_feature_ = goal_feature;
+  offset_ = offset;
 }
 
 /// h of the step from z_step to z_{step+1}.
@@ -45,23 +51,32 @@ void DdmPlanCost::fillRegressor(int step, const Eigen::Ref<const Eigen::MatrixXd
   }
 }
 
+/// Cost of z_{step+1}; notes its slope.
+double DdmPlanCost::distanceCost(int step) {
+  const double weight = step + 1 == horizon_ ? distance_cost_.terminal_weight : 1.0;
+  const double squared = (features_.col(order_ + step) - goal_feature_).squaredNorm();
+  const double cost = weight * distance_cost_.of(squared, &slopes_[step]);
+  slopes_[step] *= weight;
+  return cost;
+}
+
 double DdmPlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) {
   eigen_assert(U.rows() == f_.torqueDim() && U.cols() == horizon_);
   double cost = control_weight_ * U.squaredNorm();
   for (int step = 0; step < horizon_; ++step) {
     fillRegressor(step, U);
-    f_.network().forward(theta_p_, regressor_, &tapes_[step]);
-    features_.col(order_ + step) = tapes_[step].output();
-    cost += (features_.col(order_ + step) - goal_feature_).squaredNorm();
+    f_.forward(theta_p_, regressor_, &tapes_[step], features_.col(order_ + step));
+    features_.col(order_ + step) += offset_;
+    cost += distanceCost(step);
   }
   if (d_U == nullptr) return cost;
 
   *d_U = 2.0 * control_weight_ * U;
   d_features_.setZero();
   for (int step = horizon_ - 1; step >= 0; --step) {
-    d_features_.col(order_ + step) += 2.0 * (features_.col(order_ + step) - goal_feature_);
-    f_.network().backward(theta_p_, &tapes_[step], d_features_.col(order_ + step), nullptr,
-                          &d_regressor_);
+    d_features_.col(order_ + step) +=
+        2.0 * slopes_[step] * (features_.col(order_ + step) - goal_feature_);
+    f_.backward(theta_p_, &tapes_[step], d_features_.col(order_ + step), nullptr, &d_regressor_);
     for (int lag = 0; lag < order_; ++lag) {
       d_features_.col(order_ - 1 + step - lag) +=
           d_regressor_.col(0).segment(f_.featureRow(lag), f_.featureDim());

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/mpc_policy.h"
 
+#include <ddm_model/long_term_prediction.h>
+
 #include <sstream>
 #include <stdexcept>
 
@@ -9,36 +11,97 @@
 
 namespace ddm {
 
-MpcPolicy::MpcPolicy(std::shared_ptr<const Ddm> model, const MpcOptions& options)
-    : model_(std::move(model)),
-      x_(model_->options().order, model_->featureDim(), model_->torqueDim()),
-      cost_(*model_, options.horizon, options.control_weight),
-      planner_(&cost_, options) {
-  if (!model_->hasGoal()) {
+namespace {
+
+DistanceCost distanceCost(const Ddm& model, const MpcOptions& options) {
+  const double spread = model.info().feature_spread;
+  if (options.scale_distance && !(spread > 0.0)) {
+    throw std::invalid_argument(
+        "mpc/scale_distance needs a model that knows the spread of its features: train it again");
+  }
+  return {options.scale_distance ? spread : 1.0, options.saturation_width, options.terminal_weight};
+}
+
+}  // namespace
+
+MpcPolicy::Member::Member(const Ddm& of_model, const MpcOptions& options)
+    : model(of_model),
+      x(model.options().order, model.featureDim(), model.torqueDim()),
+      cost(model, options.horizon, options.control_weight, distanceCost(model, options)),
+      offset_gain(options.offset_gain),
+      offset(Eigen::VectorXd::Zero(model.featureDim())) {
+  if (!model.hasGoal()) {
     throw std::invalid_argument("the model has no goal image to plan to: train it with one");
   }
-  if (options.max_torque > model_->options().max_torque) {
+  if (options.max_torque > model.options().max_torque) {
     std::ostringstream text;
     text << "mpc/max_torque must be at most the model's model/max_torque "
-         << model_->options().max_torque << " N m, got " << options.max_torque
+         << model.options().max_torque << " N m, got " << options.max_torque
          << ": the model has seen no larger torque";
     throw std::invalid_argument(text.str());
   }
 }
 
+void MpcPolicy::Member::startTrial() {
+  x.clear();
+  offset.setZero();
+  predicted.resize(0);
+}
+
+void MpcPolicy::Member::observe(const Grey& grey) {
+  const Eigen::VectorXd z = model.encode(grey);
+  if (predicted.size() > 0) offset += offset_gain * (z - predicted - offset);
+  x.observe(z);
+}
+
+void MpcPolicy::Member::apply(const Eigen::VectorXd& u) {
+  predicted = predictNext(model, x, u);
+  x.apply(u);
+}
+
+MpcPolicy::MpcPolicy(std::shared_ptr<const Ddm> model, const MpcOptions& options)
+    : model_(std::move(model)),
+      disagreement_bonus_(options.disagreement_bonus),
+      members_(makeMembers(*model_, options)),
+      cost_(costsOf(members_)),
+      planner_(&cost_, options) {}
+
+std::vector<std::unique_ptr<MpcPolicy::Member>> MpcPolicy::makeMembers(const Ddm& model,
+                                                                       const MpcOptions& options) {
+  std::vector<std::unique_ptr<Member>> members;
+  members.push_back(std::make_unique<Member>(model, options));
+  for (const Ddm& other : model.others()) {
+    members.push_back(std::make_unique<Member>(other, options));
+  }
+  return members;
+}
+
+std::vector<PlanCost*> MpcPolicy::costsOf(const std::vector<std::unique_ptr<Member>>& members) {
+  std::vector<PlanCost*> costs;
+  for (const auto& member : members) costs.push_back(&member->cost);
+  return costs;
+}
+
 void MpcPolicy::startTrial(const TrialId& id) {
-  x_.clear();
+  for (const auto& member : members_) member->startTrial();
+  cost_.setBonus(id.evaluation ? 0.0 : disagreement_bonus_);
   planner_.clear();
   rng_ = randomStream(id, StreamRole::kPlannerStarts);
 }
 
-void MpcPolicy::observe(const Grey& grey) { x_.observe(model_->encode(grey)); }
+void MpcPolicy::observe(const Grey& grey) {
+  for (const auto& member : members_) member->observe(grey);
+}
 
 Plan MpcPolicy::plan() {
-  cost_.setProblem(x_, model_->goalFeature());
+  for (const auto& member : members_) {
+    member->cost.setProblem(member->x, member->model.goalFeature(), member->offset);
+  }
   return planner_.solve(&rng_);
 }
 
-void MpcPolicy::apply(const Eigen::VectorXd& u) { x_.apply(u); }
+void MpcPolicy::apply(const Eigen::VectorXd& u) {
+  for (const auto& member : members_) member->apply(u);
+}
 
 }  // namespace ddm

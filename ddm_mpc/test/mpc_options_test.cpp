@@ -53,7 +53,15 @@ TEST(MpcOptions, RefuseNumbersOutOfRangeNanIncluded) {
     expectProblem<MpcOptions>("mpc/epsilon", [bad](MpcOptions* o) { o->epsilon = bad; });
     expectProblem<MpcOptions>("mpc/function_tolerance",
                               [bad](MpcOptions* o) { o->function_tolerance = bad; });
+    expectProblem<MpcOptions>("mpc/saturation_width",
+                              [bad](MpcOptions* o) { o->saturation_width = bad; });
+    expectProblem<MpcOptions>("mpc/terminal_weight",
+                              [bad](MpcOptions* o) { o->terminal_weight = bad; });
+    expectProblem<MpcOptions>("mpc/disagreement_bonus",
+                              [bad](MpcOptions* o) { o->disagreement_bonus = bad; });
+    expectProblem<MpcOptions>("mpc/offset_gain", [bad](MpcOptions* o) { o->offset_gain = bad; });
   }
+  expectProblem<MpcOptions>("mpc/offset_gain", [](MpcOptions* o) { o->offset_gain = 1.01; });
   expectProblem<MpcOptions>("mpc/max_torque", [](MpcOptions* o) { o->max_torque = 0.0; });
   expectProblem<MpcOptions>("mpc/epsilon", [](MpcOptions* o) { o->epsilon = 1.01; });
   expectProblem<MpcOptions>("mpc/function_tolerance",

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/mpc_policy.h"
 
+#include <ddm_model/long_term_prediction.h>
 #include <ddm_model/testing/expect_error.h>
 #include <gtest/gtest.h>
 
@@ -46,6 +47,14 @@ TEST(MpcPolicy, RefusesMoreTorqueThanTheModelKnowsAndNamesBothKeys) {
   EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
       [&options] { MpcPolicy policy(sharedModel(), options); },
       {"mpc/max_torque", "model/max_torque", "6.5", "6 N m"}));
+}
+
+TEST(MpcPolicy, RefusesToScaleDistancesByASpreadThatTheModelDoesNotKnow) {
+  MpcOptions options;
+  options.scale_distance = true;
+  EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
+      [&options] { MpcPolicy policy(sharedModel(), options); },
+      {"mpc/scale_distance", "spread", "train it again"}));
 }
 
 TEST(MpcPolicy, AcceptsLessTorqueThanTheModelKnowsAndKeepsToIt) {
@@ -93,6 +102,60 @@ TEST(MpcPolicy, RemembersTheTorqueThatWasAppliedWhoeverDecidedIt) {
   std::mt19937_64 rng = randomStream(id, StreamRole::kPlannerStarts);
   EXPECT_EQ(secondPlan(5.0).torques, planner.solve(x, model->goalFeature(), &rng).torques);
   EXPECT_NE(secondPlan(5.0).torques, secondPlan(-5.0).torques);
+}
+
+TEST(MpcPolicy, PlansWithTheErrorOfItsLastPredictionAddedToAllOfThem) {
+  const auto model = sharedModel();
+  const Eigen::VectorXd u = Eigen::VectorXd::Constant(1, 2.0);
+  History x(2, 2, 1);
+  x.observe(model->encode(randomGrey(8, 3)));
+  const Eigen::VectorXd predicted = predictNext(*model, x, u);
+  x.apply(u);
+  x.observe(model->encode(randomGrey(8, 4)));
+  const Eigen::VectorXd error = model->encode(randomGrey(8, 4)) - predicted;
+  for (const double gain : {0.0, 0.4, 1.0}) {
+    MpcOptions options;
+    options.offset_gain = gain;
+    MpcPolicy policy(model, options);
+    policy.startTrial(TrialId());
+    policy.observe(randomGrey(8, 3));
+    policy.apply(u);
+    policy.observe(randomGrey(8, 4));
+    const Plan plan = policy.plan();
+    const Eigen::VectorXd first = predictNext(*model, x, plan.torques.col(0)) + gain * error;
+    EXPECT_TRUE(plan.features.col(1).isApprox(first, 1e-12)) << "gain " << gain;
+  }
+}
+
+TEST(MpcPolicy, AveragesTheErrorsOfItsPredictionsAndForgetsThemWithTheTrial) {
+  const auto model = sharedModel();
+  MpcOptions options;
+  options.offset_gain = 0.4;
+  MpcPolicy policy(model, options);
+  const Eigen::VectorXd u = Eigen::VectorXd::Constant(1, 2.0);
+  History x(2, 2, 1);
+  Eigen::VectorXd offset = Eigen::VectorXd::Zero(2);
+  policy.startTrial(TrialId());
+  for (int step = 0; step < 4; ++step) {
+    const Eigen::VectorXd z = model->encode(randomGrey(8, 50 + step));
+    if (step > 0) {
+      offset = 0.6 * offset + 0.4 * (z - predictNext(*model, x, u));
+      x.apply(u);
+    }
+    x.observe(z);
+    policy.observe(randomGrey(8, 50 + step));
+    if (step < 3) policy.apply(u);
+  }
+  const Plan plan = policy.plan();
+  EXPECT_TRUE(
+      plan.features.col(1).isApprox(predictNext(*model, x, plan.torques.col(0)) + offset, 1e-12));
+  policy.apply(u);
+  policy.startTrial(TrialId());
+  policy.observe(randomGrey(8, 3));
+  History rest(2, 2, 1);
+  rest.observe(model->encode(randomGrey(8, 3)));
+  const Plan next = policy.plan();
+  EXPECT_TRUE(next.features.col(1).isApprox(predictNext(*model, rest, next.torques.col(0)), 1e-12));
 }
 
 TEST(MpcPolicy, RefusesAnImageOfAnotherSize) {

@@ -8,23 +8,35 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "ddm_mpc/distance_cost.h"
 #include "ddm_mpc/plan_cost.h"
 
 namespace ddm {
 
 /// Features as f predicts them from the current state x_0 on (paper, Sec. 3.1):
 ///
-///   z_{k+1} = f(z_k, u_k, z_{k-1}, u_{k-1})
+///   z_{k+1} = f(z_k, u_k, z_{k-1}, u_{k-1}) + offset
+///
+/// The offset is what recent predictions were wrong by (0 in the paper): the same error in every
+/// step, as offset-free model predictive control assumes it (Pannocchia and Rawlings, AIChE J.
+/// 2003).
 class DdmPlanCost : public PlanCost {
  public:
   /// @param model           outlives the cost
   /// @param horizon         K, steps
   /// @param control_weight  lambda [(N m)^-2]
-  DdmPlanCost(const Ddm& model, int horizon, double control_weight);
+  /// @param distance_cost   of a feature's distance to the goal
+  DdmPlanCost(const Ddm& model, int horizon, double control_weight,
+              const DistanceCost& distance_cost = DistanceCost());
 
-  /// The state to plan from and the feature to plan to.
+  /// The state to plan from, the feature to plan to, and the offset.
   /// @throws std::invalid_argument for a wrong size or an empty history
-  void setProblem(const History& x, const Eigen::VectorXd& goal_feature);
+  void setProblem(const History& x, const Eigen::VectorXd& goal_feature,
+                  const Eigen::VectorXd& offset);
+  /// The same without an offset.
+  void setProblem(const History& x, const Eigen::VectorXd& goal_feature) {
+    setProblem(x, goal_feature, Eigen::VectorXd::Zero(f_.featureDim()));
+  }
 
   double evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) override;
   Eigen::MatrixXd predictedFeatures() const override;
@@ -33,18 +45,22 @@ class DdmPlanCost : public PlanCost {
   int torqueDim() const override { return f_.torqueDim(); }
 
  private:
+  double distanceCost(int step);
   void fillRegressor(int step, const Eigen::Ref<const Eigen::MatrixXd>& U);
 
   const PredictionModel<double>& f_;
   const double* theta_p_;
   int horizon_;
   double control_weight_;
+  DistanceCost distance_cost_;
   double max_torque_;
   int order_;
   Eigen::VectorXd goal_feature_;
+  Eigen::VectorXd offset_;
   Eigen::MatrixXd past_torques_;  // u_{-1}, u_{-2}, ... in units of max_torque
   Eigen::MatrixXd features_;      // z_{-n+1} ... z_K; z_0 stands in column n - 1
   Eigen::MatrixXd d_features_;
+  Eigen::VectorXd slopes_;  // of the distance cost at z_1 ... z_K
   Eigen::VectorXd regressor_;
   Eigen::MatrixXd d_regressor_;
   std::vector<Mlp<double>::Tape> tapes_;  // one per step

@@ -7,8 +7,10 @@
 
 #include <memory>
 #include <random>
+#include <vector>
 
 #include "ddm_mpc/ddm_plan_cost.h"
+#include "ddm_mpc/ensemble_plan_cost.h"
 #include "ddm_mpc/mpc_options.h"
 #include "ddm_mpc/planner.h"
 #include "ddm_mpc/policy.h"
@@ -16,7 +18,7 @@
 namespace ddm {
 
 /// Encodes each image, keeps the state x, and plans towards the model's goal feature (paper,
-/// Sec. 3.1).
+/// Sec. 3.1). With an ensemble each model does so, and the plan minimises the mean of their costs.
 class MpcPolicy : public Policy {
  public:
   /// @throws std::invalid_argument if the model has no goal image, or max_torque exceeds the
@@ -29,9 +31,35 @@ class MpcPolicy : public Policy {
   void apply(const Eigen::VectorXd& u) override;
 
  private:
+  /// A model of the ensemble and what it makes of the trial: the state x, and the offset of its
+  /// predictions, which follows their errors,
+  ///
+  ///   offset <- offset + offset_gain (z_{t+1} - z_{t+1|t} - offset)
+  ///
+  /// so that a model that is a little wrong about rest does not keep the plant off its goal.
+  struct Member {
+    Member(const Ddm& model, const MpcOptions& options);
+
+    void startTrial();
+    void observe(const Grey& grey);
+    void apply(const Eigen::VectorXd& u);
+
+    const Ddm& model;
+    History x;
+    DdmPlanCost cost;
+    double offset_gain;
+    Eigen::VectorXd offset;     ///< [feature_dim]
+    Eigen::VectorXd predicted;  ///< z_{t+1|t}, empty before the first torque  [feature_dim]
+  };
+
+  static std::vector<std::unique_ptr<Member>> makeMembers(const Ddm& model,
+                                                          const MpcOptions& options);
+  static std::vector<PlanCost*> costsOf(const std::vector<std::unique_ptr<Member>>& members);
+
   std::shared_ptr<const Ddm> model_;
-  History x_;
-  DdmPlanCost cost_;
+  double disagreement_bonus_;
+  std::vector<std::unique_ptr<Member>> members_;
+  EnsemblePlanCost cost_;
   Planner planner_;
   std::mt19937_64 rng_;
 };

@@ -9,7 +9,8 @@
 
 namespace ddm {
 
-/// What a stream is for. The numbers are part of what a seed means: never change them.
+/// What a stream is for. The numbers are part of what a seed means: never change them. 1 and those
+/// from 7 on are ddm_sim's, 2 is ddm_model's.
 enum class StreamRole : std::uint32_t {
   kExploration = 3,
   kPlannerStarts = 4,
