@@ -30,6 +30,9 @@ po::options_description commonOptions(const std::string& about, Arguments* argum
                         "name in ddm_launch/config/presets");
   options.add_options()("plant", po::value(&arguments->plant)->default_value("pendulum"),
                         "name in ddm_sim/config");
+  options.add_options()("nuisance", po::value(&arguments->nuisances)->composing(),
+                        "name in ddm_launch/config/nuisances, what is wrong with the camera's "
+                        "images: noise, brightness, clutter, thin_rod, delay or drops; repeatable");
   options.add_options()("seed", po::value(&arguments->seed)->default_value(0),
                         "fixes every random draw");
   options.add_options()("out", po::value(&arguments->out)->required(), "folder for the results");
@@ -59,9 +62,11 @@ bool parseCommandLine(int argc, char** argv, const po::options_description& opti
 }
 
 ParamReader openConfiguration(const Arguments& arguments) {
-  std::vector<std::string> configs = arguments.configs;
+  std::vector<std::string> configs;
   const std::string of_method = methodFile(methodOf(arguments));
-  if (!of_method.empty()) configs.insert(configs.begin(), of_method);
+  if (!of_method.empty()) configs.push_back(of_method);
+  for (const std::string& name : arguments.nuisances) configs.push_back(nuisanceFile(name));
+  configs.insert(configs.end(), arguments.configs.begin(), arguments.configs.end());
   return ParamReader::fromFiles(configurationFiles(arguments.preset, arguments.plant, configs));
 }
 

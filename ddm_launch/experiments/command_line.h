@@ -16,7 +16,8 @@ namespace ddm {
 struct Arguments {
   std::string preset;
   std::string plant;
-  std::string method;  ///< empty: what the files say
+  std::string method;                  ///< empty: what the files say
+  std::vector<std::string> nuisances;  ///< names
   int seed = 0;
   std::string out;
   std::vector<std::string> configs;
@@ -35,8 +36,8 @@ bool parseCommandLine(int argc, char** argv,
 /// --method, for a program that lets all of them act.
 void addMethodOption(boost::program_options::options_description* options, Arguments* arguments);
 
-/// The files that the arguments name, that of the method (config/methods) after the plant's. Blocks
-/// beside those of a Configuration are read first.
+/// The files that the arguments name: after the plant's that of the method (config/methods), then
+/// those of the nuisances. Blocks beside those of a Configuration are read first.
 ParamReader openConfiguration(const Arguments& arguments);
 
 /// Reads all blocks, those of the method too, and sets in `experiment` what the arguments say.

@@ -130,6 +130,10 @@ std::vector<std::string> configurationFiles(const std::string& preset, const std
   return files;
 }
 
+std::string nuisanceFile(const std::string& name) {
+  return chooseFile(packageFolder("ddm_launch") + "/config/nuisances", name, "nuisance", {});
+}
+
 std::string methodFile(const std::string& method) {
   const std::string file = packageFolder("ddm_launch") + "/config/methods/" + method + ".yaml";
   return !method.empty() && fs::exists(file) ? file : "";

@@ -49,6 +49,10 @@ YAML::Node toYaml(const Configuration& configuration);
 std::vector<std::string> configurationFiles(const std::string& preset, const std::string& plant,
                                             const std::vector<std::string>& configs);
 
+/// NAME.yaml in ddm_launch/config/nuisances: something that is wrong with the camera's images.
+/// @throws std::invalid_argument naming what there is, if there is no such nuisance
+std::string nuisanceFile(const std::string& name);
+
 /// FILE.yaml in ddm_launch/config/methods: what a method wants other than the presets; empty if
 /// there is none.
 std::string methodFile(const std::string& method);

@@ -7,6 +7,7 @@
 #include <ddm_mpc/epsilon_greedy.h>
 #include <ddm_mpc/mpc_policy.h>
 #include <ddm_msgs/param_value.h>
+#include <ddm_sim/camera.h>
 #include <ddm_sim/plant_factory.h>
 #include <ros/time.h>
 
@@ -115,20 +116,27 @@ Plan planAt(const Arguments& arguments, const Configuration& all,
   EpsilonGreedy policy(std::make_shared<MpcPolicy>(std::move(model), all.mpc), options, id);
   std::mt19937_64 start = startStream(id.seed, id.trial, id.evaluation);
   plant->setState(plant->drawStart(start));
+  Camera camera(all.camera);
+  camera.begin(id.seed, id.trial, id.evaluation);
   const std::string file = subfolder(arguments, "evaluation", arguments.trial) + "/torques.csv";
   const std::vector<double> recorded = recordedTorques(file);
   if (arguments.step >= static_cast<int>(recorded.size())) {
     throw std::runtime_error("--step must be less than the " + std::to_string(recorded.size()) +
                              " steps of " + file + ", got " + std::to_string(arguments.step));
   }
+  auto photograph = camera.photograph(*plant);  // the first is never lost
   for (int step = 0;; ++step) {
-    const Decision decision = policy.decide(cameraView(*plant, all.model.image.size));
+    const Decision decision =
+        policy.decide(cameraView(*photograph, all.camera.size, all.model.image.size));
     if (std::abs(decision.torque[0] - recorded[step]) > 1e-9) {
       throw std::runtime_error(file + ": the torque of step " + std::to_string(step) +
                                " is another here: use the machine and build that made the run");
     }
     if (step < arguments.step) {
-      plant->step(decision.torque);
+      do {
+        plant->step(decision.torque);
+        photograph = camera.photograph(*plant);
+      } while (!photograph);
     } else if (decision.plan->status == PlanStatus::kFailed) {
       throw std::runtime_error("there is no plan at step " + std::to_string(step) + ": " +
                                decision.plan->message);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "in_process_world.h"
 
-#include <ddm_bag_io/bag_writer.h>
 #include <ddm_msgs/Torque.h>
 #include <ddm_sim/plant_factory.h>
 
@@ -20,11 +19,22 @@ ros::Time stampOf(int step, double dt) {
   return ros::Time(1, 0) + ros::Duration().fromNSec(static_cast<std::int64_t>(step * step_ns));
 }
 
+/// An image and the torque that answers it.
+void write(const sensor_msgs::Image& image, const Decision& decision, BagWriter* bag) {
+  ddm_msgs::Torque torque;
+  torque.header.stamp = image.header.stamp;
+  torque.torque.assign(decision.torque.data(), decision.torque.data() + decision.torque.size());
+  torque.exploratory = decision.exploratory;
+  bag->write(image);
+  bag->write(torque);
+}
+
 }  // namespace
 
 InProcessWorld::InProcessWorld(const Configuration& configuration)
     : configuration_(configuration),
       plant_(makePlant(configuration.plant, configuration.camera)),
+      camera_(configuration.camera),
       method_(configuration.method->make(configuration, *plant_)) {
   if (!configuration.sim.lockstep) {
     throw std::invalid_argument(
@@ -42,36 +52,37 @@ EpsilonGreedy InProcessWorld::makePolicy(const TrialRequest& request) const {
   return EpsilonGreedy(request.epsilon < 1.0 ? method_->policy() : nullptr, options, request.id);
 }
 
+std::unique_ptr<BagWriter> InProcessWorld::openBag(const TrialRequest& request) const {
+  if (request.bag.empty()) return nullptr;
+  auto bag = std::make_unique<BagWriter>(request.bag, configuration_.model.data_set);
+  const ros::Time begin = stampOf(0, plant_->dt());
+  bag->writeGoal(imageMessage(camera_.photographGoal(*plant_), plant_->imageSize(), begin), begin);
+  return bag;
+}
+
 TrialOutcome InProcessWorld::runTrial(const TrialRequest& request, const PhaseCallback& progress) {
   std::mt19937_64 start = startStream(request.id.seed, request.id.trial, request.id.evaluation);
   plant_->setState(plant_->drawStart(start));
+  camera_.begin(request.id.seed, request.id.trial, request.id.evaluation);
   EpsilonGreedy policy = makePolicy(request);
-  std::unique_ptr<BagWriter> bag;
-  if (!request.bag.empty()) {
-    bag = std::make_unique<BagWriter>(request.bag, configuration_.model.data_set);
-    const ros::Time begin = stampOf(0, plant_->dt());
-    bag->writeGoal(photograph(*plant_, plant_->goalState(), begin), begin);
-  }
+  const std::unique_ptr<BagWriter> bag = openBag(request);
   TrialOutcome outcome;
-  for (int step = 0; step < request.num_steps; ++step) {
-    const sensor_msgs::Image image =
-        photograph(*plant_, plant_->state(), stampOf(step, plant_->dt()));
-    outcome.times.push_back(step * plant_->dt());
-    outcome.states.push_back(plant_->state());
-    const Decision decision = policy.decide(decodeImage(image, configuration_.model.image.size));
-    outcome.torques.push_back(decision.torque);
-    outcome.exploratory.push_back(decision.exploratory);
-    if (decision.plan) outcome.solve_times.push_back(decision.plan->solve_time);
-    if (bag != nullptr) {
-      ddm_msgs::Torque torque;
-      torque.header.stamp = image.header.stamp;
-      torque.torque.assign(decision.torque.data(), decision.torque.data() + decision.torque.size());
-      torque.exploratory = decision.exploratory;
-      bag->write(image);
-      bag->write(torque);
+  Eigen::VectorXd torque;  // goes on where a frame is lost; the first one never is
+  for (int step = 0, frame = 0; frame < request.num_steps; ++step) {
+    if (const auto photograph = camera_.photograph(*plant_)) {
+      const sensor_msgs::Image image =
+          imageMessage(*photograph, plant_->imageSize(), stampOf(step, plant_->dt()));
+      outcome.times.push_back(step * plant_->dt());
+      outcome.states.push_back(plant_->state());
+      const Decision decision = policy.decide(decodeImage(image, configuration_.model.image.size));
+      torque = decision.torque;
+      outcome.torques.push_back(torque);
+      outcome.exploratory.push_back(decision.exploratory);
+      if (decision.plan) outcome.solve_times.push_back(decision.plan->solve_time);
+      if (bag != nullptr) write(image, decision, bag.get());
+      progress(static_cast<double>(++frame) / request.num_steps);
     }
-    plant_->step(decision.torque);
-    progress(static_cast<double>(step + 1) / request.num_steps);
+    plant_->step(torque);
   }
   if (bag != nullptr) bag->close();
   return outcome;

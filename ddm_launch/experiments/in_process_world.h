@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_bag_io/bag_writer.h>
 #include <ddm_mpc/epsilon_greedy.h>
+#include <ddm_sim/camera.h>
 #include <ddm_sim/plant.h>
 
 #include <memory>
@@ -28,9 +30,11 @@ class InProcessWorld : public World {
 
  private:
   EpsilonGreedy makePolicy(const TrialRequest& request) const;
+  std::unique_ptr<BagWriter> openBag(const TrialRequest& request) const;
 
   const Configuration& configuration_;
   std::unique_ptr<Plant> plant_;
+  Camera camera_;
   std::unique_ptr<Method> method_;
 };
 

@@ -6,6 +6,7 @@
 #include <ddm_model/trainer.h>
 #include <ddm_mpc/epsilon_greedy.h>
 #include <ddm_msgs/param_value.h>
+#include <ddm_sim/camera.h>
 #include <ddm_sim/plant_factory.h>
 #include <unistd.h>
 
@@ -65,6 +66,8 @@ Recording record(const Experiment& experiment, Plant* plant) {
   EpsilonGreedy random(nullptr, options, id);
   std::mt19937_64 start = startStream(id.seed, id.trial, id.evaluation);
   plant->setState(plant->drawStart(start));
+  Camera camera(all.camera);
+  camera.begin(id.seed, id.trial, id.evaluation);
 
   const int image_size = all.model.image.size;
   Recording out{DataSet(image_size, plant->torqueDim()), DataSet(image_size, plant->torqueDim()),
@@ -72,7 +75,8 @@ Recording record(const Experiment& experiment, Plant* plant) {
   for (int frame = 0; frame < num_frames; ++frame) {
     const bool learn = frame < experiment.prediction.training_frames;
     const bool first = frame == 0 || frame == experiment.prediction.training_frames;
-    const Grey grey = cameraView(*plant, image_size);
+    const auto photograph = camera.photograph(*plant);  // requireFit(): none is lost
+    const Grey grey = cameraView(*photograph, all.camera.size, image_size);
     const Eigen::VectorXd torque = random.decide(grey).torque;
     (learn ? out.training : out.held_out).append(grey, torque, first);
     const Eigen::VectorXd position = plant->visiblePosition(plant->state());
@@ -207,6 +211,12 @@ void requireFit(const Experiment& experiment) {
         "\n - prediction/training_frames must be more than model/pca_dim and model/order, "
         "got " +
         std::to_string(prediction.training_frames);
+  }
+  const double drop_rate = experiment.configuration.camera.drop_rate;
+  if (drop_rate > 0.0) {
+    problems +=
+        "\n - camera/drop_rate must be 0, since predictions go on from frame to frame, got " +
+        formatDouble(drop_rate);
   }
   if (method != "ddm") problems += "\n - experiment/method must be ddm, got " + method;
   if (!problems.empty()) throw std::invalid_argument("invalid configuration:" + problems);

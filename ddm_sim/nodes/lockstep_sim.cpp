@@ -19,13 +19,13 @@ constexpr int kWatchdogTicks = 20;
 }  // namespace
 
 LockstepSim::LockstepSim(ros::NodeHandle nh, std::unique_ptr<Plant> plant,
-                         const SimOptions& options)
-    : SimNode(nh, std::move(plant), /*clock=*/true),
+                         const CameraOptions& camera, const SimOptions& options)
+    : SimNode(nh, std::move(plant), camera, /*clock=*/true),
       options_(options),
       step_ns_(static_cast<std::uint64_t>(std::llround(this->plant().dt() * kSecond))),
       now_ns_(kSecond) {  // not 0, which means "no time yet" to everybody else
-  publisher().publishClock(now());
-  publisher().publishGoal(now());
+  publishClock(now());
+  publishGoal(now());
   // Ticks instead of one long timer: they stop counting while this process itself is held up, so a
   // torque that waits in the queue meanwhile is not called missing.
   watchdog_ = nh.createWallTimer(ros::WallDuration(options_.watchdog / kWatchdogTicks),
@@ -60,13 +60,14 @@ void LockstepSim::takeTorque(const ros::Time& stamp, const Eigen::VectorXd& torq
     endTrial();
     return;
   }
-  if (!advance(torque)) {
-    endTrial();
-    return;
-  }
-  now_ns_ += step_ns_;
+  do {
+    if (!advance(torque)) {
+      endTrial();
+      return;
+    }
+    now_ns_ += step_ns_;
+  } while (!showFrame());
   ++frame_;
-  showFrame();
 }
 
 void LockstepSim::torqueRefused(const ros::Time& stamp, const std::string& reason) {
@@ -75,10 +76,11 @@ void LockstepSim::torqueRefused(const ros::Time& stamp, const std::string& reaso
   endTrial();
 }
 
-void LockstepSim::showFrame() {
+/// @return false if the camera has lost the frame
+bool LockstepSim::showFrame() {
   silent_ticks_ = 0;
-  publisher().publishClock(now());
-  publishFrame(now());
+  publishClock(now());
+  return publishFrame(now());
 }
 
 void LockstepSim::onWatchdogTick(const ros::WallTimerEvent& /*event*/) {

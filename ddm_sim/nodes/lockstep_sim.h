@@ -16,13 +16,16 @@ namespace ddm {
 ///   idle --reset--> image 0 --torque--> image 1 --torque--> ... image num_steps - 1 --torque-->
 ///   idle
 ///
-/// A torque with another stamp is counted and ignored. A torque that cannot be applied, or does not
-/// come within the watchdog's wall time, ends the trial: idle until the next reset. /clock never
-/// runs backwards: each trial starts later than the last one ended, with a gap that no reader can
-/// take for a step. Stamps are whole nanoseconds, so equality is exact.
+/// A frame that the camera loses is never shown: the plant goes on for another dt under the torque
+/// of the last one, and the stamps have a gap. A torque with another stamp is counted and ignored.
+/// A torque that cannot be applied, or does not come within the watchdog's wall time, ends the
+/// trial: idle until the next reset. /clock never runs backwards: each trial starts later than the
+/// last one ended, with a gap that no reader can take for a step. Stamps are whole nanoseconds, so
+/// equality is exact.
 class LockstepSim : public SimNode {
  public:
-  LockstepSim(ros::NodeHandle nh, std::unique_ptr<Plant> plant, const SimOptions& options);
+  LockstepSim(ros::NodeHandle nh, std::unique_ptr<Plant> plant, const CameraOptions& camera,
+              const SimOptions& options);
 
  private:
   ros::Time beginTrial(const ddm_msgs::Reset::Request& request) override;
@@ -30,7 +33,7 @@ class LockstepSim : public SimNode {
                   const std::string& publisher) override;
   void torqueRefused(const ros::Time& stamp, const std::string& reason) override;
 
-  void showFrame();
+  bool showFrame();
   void onWatchdogTick(const ros::WallTimerEvent& event);
   void endTrial();
   std::string frameName() const;
@@ -43,7 +46,7 @@ class LockstepSim : public SimNode {
   bool first_trial_ = true;  ///< nothing has been shown yet
   std::string trial_;        ///< "trial 3" or "evaluation 3"
   std::uint32_t num_steps_ = 0;
-  std::uint64_t frame_ = 0;    ///< index of the frame on show
+  std::uint64_t frame_ = 0;    ///< index of the frame on show, among those shown
   std::uint64_t ignored_ = 0;  ///< torques with another stamp, in this trial
   int silent_ticks_ = 0;       ///< watchdog ticks since the frame was shown
   ros::WallTimer watchdog_;

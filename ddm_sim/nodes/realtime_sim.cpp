@@ -16,10 +16,11 @@ ros::Time wallNow() {  // ros::Time::now() would follow /clock if somebody else 
 
 }  // namespace
 
-RealtimeSim::RealtimeSim(ros::NodeHandle nh, std::unique_ptr<Plant> plant)
-    : SimNode(nh, std::move(plant), /*clock=*/false) {
+RealtimeSim::RealtimeSim(ros::NodeHandle nh, std::unique_ptr<Plant> plant,
+                         const CameraOptions& camera)
+    : SimNode(nh, std::move(plant), camera, /*clock=*/false) {
   switchMotorOff();
-  publisher().publishGoal(wallNow());
+  publishGoal(wallNow());
   timer_ = nh.createWallTimer(ros::WallDuration(this->plant().dt()), &RealtimeSim::onTick, this);
 }
 

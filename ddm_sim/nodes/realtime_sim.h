@@ -9,14 +9,15 @@
 
 namespace ddm {
 
-/// Every dt of wall time: step under the newest torque (zero-order hold), show an image.
+/// Every dt of wall time: step under the newest torque (zero-order hold), show an image, unless the
+/// camera loses it.
 ///
 /// Stamps are wall time and no clock is published. A torque acts for two periods at most: without a
 /// newer one the motor is switched off, and a torque that cannot be applied switches it off at
 /// once. Starts at rest; a reset sets the state at any time, and its num_steps has no effect.
 class RealtimeSim : public SimNode {
  public:
-  RealtimeSim(ros::NodeHandle nh, std::unique_ptr<Plant> plant);
+  RealtimeSim(ros::NodeHandle nh, std::unique_ptr<Plant> plant, const CameraOptions& camera);
 
  private:
   ros::Time beginTrial(const ddm_msgs::Reset::Request& request) override;

@@ -20,8 +20,10 @@ Eigen::VectorXd toEigen(const std::vector<double>& values) {
 
 }  // namespace
 
-SimNode::SimNode(ros::NodeHandle nh, std::unique_ptr<Plant> plant, bool clock)
+SimNode::SimNode(ros::NodeHandle nh, std::unique_ptr<Plant> plant, const CameraOptions& camera,
+                 bool clock)
     : plant_(std::move(plant)),
+      camera_(camera),
       publisher_(nh, *plant_, clock),
       applied_(Eigen::VectorXd::Zero(plant_->torqueDim())) {
   torque_sub_ = nh.subscribe(topics::kTorque, kQueueSize, &SimNode::onTorque, this,
@@ -40,6 +42,16 @@ bool SimNode::advance(const Eigen::VectorXd& torque) {
   }
 }
 
+bool SimNode::publishFrame(const ros::Time& stamp) {
+  const auto photograph = camera_.photograph(*plant_);
+  if (photograph) publisher_.publishFrame(applied_, *photograph, stamp);
+  return photograph.has_value();
+}
+
+void SimNode::publishGoal(const ros::Time& stamp) const {
+  publisher_.publishGoal(camera_.photographGoal(*plant_), stamp);
+}
+
 bool SimNode::onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Response& response) {
   std::mt19937_64 engine = startStream(request.seed, request.trial, request.evaluation);
   try {
@@ -51,6 +63,7 @@ bool SimNode::onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Respon
     return true;
   }
   applied_.setZero();
+  camera_.begin(request.seed, request.trial, request.evaluation);
   response.start = beginTrial(request);
   response.success = true;
   return true;

@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 
+#include "ddm_sim/camera.h"
 #include "ddm_sim/plant.h"
 #include "sim_publisher.h"
 
@@ -24,16 +25,21 @@ class SimNode {
   SimNode& operator=(const SimNode&) = delete;
 
  protected:
-  SimNode(ros::NodeHandle nh, std::unique_ptr<Plant> plant, bool clock);
+  SimNode(ros::NodeHandle nh, std::unique_ptr<Plant> plant, const CameraOptions& camera,
+          bool clock);
 
   /// Steps the plant and remembers the applied torque.
   /// @return false if the plant has no next state; the reason has been logged
   bool advance(const Eigen::VectorXd& torque);
 
-  void publishFrame(const ros::Time& stamp) const { publisher_.publishFrame(applied_, stamp); }
+  /// Ground truth and image of this time step, to be called once in each.
+  /// @return false if the camera has lost the frame: nothing was published
+  bool publishFrame(const ros::Time& stamp);
+
+  void publishGoal(const ros::Time& stamp) const;
+  void publishClock(const ros::Time& stamp) const { publisher_.publishClock(stamp); }
 
   const Plant& plant() const { return *plant_; }
-  const SimPublisher& publisher() const { return publisher_; }
   std::string torqueTopic() const { return torque_sub_.getTopic(); }
 
  private:
@@ -52,6 +58,7 @@ class SimNode {
   virtual void torqueRefused(const ros::Time& stamp, const std::string& reason) = 0;
 
   std::unique_ptr<Plant> plant_;
+  Camera camera_;
   SimPublisher publisher_;
   Eigen::VectorXd applied_;  ///< torque of the last step, zero at a start
   ros::ServiceServer reset_server_;

@@ -32,9 +32,9 @@ int main(int argc, char** argv) {
 
     std::unique_ptr<ddm::SimNode> node;
     if (sim.lockstep) {
-      node = std::make_unique<ddm::LockstepSim>(nh, ddm::makePlant(plant, camera), sim);
+      node = std::make_unique<ddm::LockstepSim>(nh, ddm::makePlant(plant, camera), camera, sim);
     } else {
-      node = std::make_unique<ddm::RealtimeSim>(nh, ddm::makePlant(plant, camera));
+      node = std::make_unique<ddm::RealtimeSim>(nh, ddm::makePlant(plant, camera), camera);
     }
     ros::spin();
   } catch (const std::exception& e) {

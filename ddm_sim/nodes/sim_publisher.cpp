@@ -7,8 +7,6 @@
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/JointState.h>
 
-#include <vector>
-
 #include "ddm_msgs/image_codec.h"
 #include "ddm_msgs/topics.h"
 
@@ -31,9 +29,9 @@ SimPublisher::SimPublisher(ros::NodeHandle nh, const Plant& plant, bool clock) :
   image_ = image_transport::ImageTransport(nh).advertise(topics::kImage, kQueueSize);
 }
 
-void SimPublisher::publishGoal(const ros::Time& stamp) const {
-  goal_image_.publish(
-      encodeImage(plant_.render(plant_.goalState()), plant_.imageSize(), stamp, kFrameId));
+void SimPublisher::publishGoal(const std::vector<std::uint8_t>& photograph,
+                               const ros::Time& stamp) const {
+  goal_image_.publish(encodeImage(photograph, plant_.imageSize(), stamp, kFrameId));
 }
 
 void SimPublisher::publishClock(const ros::Time& stamp) const {
@@ -42,7 +40,9 @@ void SimPublisher::publishClock(const ros::Time& stamp) const {
   clock_.publish(clock);
 }
 
-void SimPublisher::publishFrame(const Eigen::VectorXd& applied, const ros::Time& stamp) const {
+void SimPublisher::publishFrame(const Eigen::VectorXd& applied,
+                                const std::vector<std::uint8_t>& photograph,
+                                const ros::Time& stamp) const {
   const Eigen::VectorXd& state = plant_.state();
   sensor_msgs::JointState joints;
   joints.header.stamp = stamp;
@@ -52,7 +52,7 @@ void SimPublisher::publishFrame(const Eigen::VectorXd& applied, const ros::Time&
   joints.velocity = toVector(state.tail(state.size() - num_joints));
   joints.effort = toVector(applied);
   ground_truth_.publish(joints);
-  image_.publish(encodeImage(plant_.render(state), plant_.imageSize(), stamp, kFrameId));
+  image_.publish(encodeImage(photograph, plant_.imageSize(), stamp, kFrameId));
 }
 
 }  // namespace ddm

@@ -6,12 +6,15 @@
 #include <ros/node_handle.h>
 
 #include <Eigen/Core>
+#include <cstdint>
+#include <vector>
 
 #include "ddm_sim/plant.h"
 
 namespace ddm {
 
-/// Turns states of a plant into messages. Advertises in its constructor; keeps no state of its own.
+/// Turns states of a plant and photographs into messages. Advertises in its constructor; keeps no
+/// state of its own.
 class SimPublisher {
  public:
   /// @param nh      its namespace holds the topics
@@ -20,14 +23,16 @@ class SimPublisher {
   SimPublisher(ros::NodeHandle nh, const Plant& plant, bool clock);
 
   /// The goal image, latched: also whoever comes later sees it.
-  void publishGoal(const ros::Time& stamp) const;
+  void publishGoal(const std::vector<std::uint8_t>& photograph, const ros::Time& stamp) const;
 
   /// Simulated time, latched. Must not run backwards.
   void publishClock(const ros::Time& stamp) const;
 
   /// The present state of the plant: ground truth, then the image, with the same stamp.
-  /// @param applied  torque of the step that led here
-  void publishFrame(const Eigen::VectorXd& applied, const ros::Time& stamp) const;
+  /// @param applied     torque of the step that led here
+  /// @param photograph  what the camera shows of it
+  void publishFrame(const Eigen::VectorXd& applied, const std::vector<std::uint8_t>& photograph,
+                    const ros::Time& stamp) const;
 
  private:
   const Plant& plant_;

@@ -6,10 +6,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "run_stream.h"
+
 namespace ddm {
 namespace {
-
-constexpr std::uint32_t kStartRole = 1;  // id of the role "start state" among the random streams
 
 void requireFinite(const char* name, const Eigen::VectorXd& value, Eigen::Index size) {
   if (value.size() == size && value.allFinite()) return;
@@ -72,9 +72,7 @@ Eigen::VectorXd Plant::visiblePosition(const Eigen::VectorXd& state) const {
 }
 
 std::mt19937_64 startStream(std::uint64_t seed, std::uint32_t trial, bool evaluation) {
-  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
-                         trial, evaluation ? 1U : 0U, kStartRole};
-  return std::mt19937_64(sequence);
+  return runStream(seed, trial, evaluation, SimRole::kStart);
 }
 
 }  // namespace ddm

@@ -71,6 +71,16 @@ std::vector<std::string> CameraOptions::problems() const {
   camera.require(positive(half_extent), "half_extent", "be > 0 and finite", half_extent);
   camera.require(positive(rod_half_width), "rod_half_width", "be > 0 and finite", rod_half_width);
   camera.require(positive(edge_softness), "edge_softness", "be > 0 and finite", edge_softness);
+  camera.require(noise_std >= 0.0 && noise_std <= 1.0, "noise_std", "lie in [0, 1]", noise_std);
+  camera.require(brightness_drift >= 0.0 && brightness_drift < 1.0, "brightness_drift",
+                 "lie in [0, 1)", brightness_drift);
+  camera.require(positive(brightness_period), "brightness_period", "be > 0 and finite",
+                 brightness_period);
+  camera.require(clutter >= 0.0 && clutter <= 1.0, "clutter", "lie in [0, 1]", clutter);
+  camera.require(clutter_seed >= 0, "clutter_seed", "be >= 0", clutter_seed);
+  camera.require(delay >= 0 && delay <= 1000, "delay", "lie in [0, 1000] frames", delay);
+  // A reader of bags takes the median interval for the time step: most frames must follow directly.
+  camera.require(drop_rate >= 0.0 && drop_rate <= 0.3, "drop_rate", "lie in [0, 0.3]", drop_rate);
   return camera.problems();
 }
 

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco_methods.h"
 
+#include <ddm_msgs/param_value.h>
+
 #include <memory>
+#include <stdexcept>
 #include <utility>
 
 #include "configuration.h"
@@ -33,6 +36,13 @@ class PilcoSetup : public MethodSetup {
 
   std::unique_ptr<Method> make(const Configuration& configuration,
                                const Plant& plant) const override {
+    const double drop_rate = configuration.camera.drop_rate;
+    if (drop_rate > 0.0) {
+      throw std::invalid_argument(
+          "camera/drop_rate must be 0 with PILCO, which takes a piece of its data without a gap "
+          "for a trial, got " +
+          formatDouble(drop_rate));
+    }
     return std::make_unique<PilcoMethod>(configuration, config_,
                                          make_observation_(configuration, config_.pilco, plant));
   }

@@ -25,7 +25,7 @@ namespace ddm {
 /// what happens at the border; these are ours.
 class MovingTile : public Plant {
  public:
-  /// Of the camera, `size` alone matters.
+  /// Of the keys of the camera that draw a plant, `size` alone matters.
   /// @throws std::invalid_argument with all problems of both blocks, a tile too large for the
   ///         picture among them
   MovingTile(const PlantOptions& plant, const CameraOptions& camera);

@@ -20,8 +20,8 @@ namespace ddm {
 ///
 /// The state is the vector of joint positions, followed by that of their rates if the plant has
 /// them: its first jointNames().size() entries are the positions. It serves evaluation alone; what
-/// a policy sees is render(). Checks of sizes and finiteness, and the saturation, stand here once,
-/// so that an implementation holds nothing but its physics and its picture.
+/// a policy sees is a Camera's photograph. Checks of sizes and finiteness, and the saturation,
+/// stand here once, so that an implementation holds nothing but its physics and its picture.
 class Plant {
  public:
   virtual ~Plant() = default;
@@ -62,7 +62,8 @@ class Plant {
   /// @throws std::invalid_argument as setState()
   double goalError(const Eigen::VectorXd& state) const;
 
-  /// The camera's picture of `state`: rows from top to bottom, k = round(255 grey), grey in [0, 1].
+  /// A perfect camera's picture of `state`: rows from top to bottom, k = round(255 grey), grey in
+  /// [0, 1].
   /// @return bytes                                                    [imageSize() * imageSize()]
   /// @throws std::invalid_argument as setState()
   std::vector<std::uint8_t> render(const Eigen::VectorXd& state) const;

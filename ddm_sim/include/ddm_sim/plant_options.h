@@ -48,12 +48,28 @@ struct CameraOptions {
   double rod_half_width = 0.1;  ///< half the width of the rod [m]
   double edge_softness = 0.2;   ///< width over which grey falls from 1 to 0 [m]
 
+  // Nuisances, see Camera. All 0: a perfect camera.
+  double noise_std = 0.0;           ///< standard deviation of each pixel in each frame [grey]
+  double brightness_drift = 0.0;    ///< amplitude of a slow change of brightness [-]
+  double brightness_period = 20.0;  ///< period of that change [s]
+  double clutter = 0.0;             ///< largest grey value of a static background [grey]
+  int clutter_seed = 0;             ///< which background
+  int delay = 0;                    ///< so many frames late [-]
+  double drop_rate = 0.0;           ///< probability that a frame is lost [-]
+
   template <class Visitor>
   void visit(Visitor& visitor) {
     visitor("size", size);
     visitor("half_extent", half_extent);
     visitor("rod_half_width", rod_half_width);
     visitor("edge_softness", edge_softness);
+    visitor("noise_std", noise_std);
+    visitor("brightness_drift", brightness_drift);
+    visitor("brightness_period", brightness_period);
+    visitor("clutter", clutter);
+    visitor("clutter_seed", clutter_seed);
+    visitor("delay", delay);
+    visitor("drop_rate", drop_rate);
   }
 
   /// Everything wrong with these values, in words a user can act on. Empty means valid.
