@@ -133,6 +133,31 @@ TEST(Configuration, EveryScheduleButTheJointHasAFileOfItsName) {
   }
 }
 
+TEST(Configuration, EveryNuisanceIsOneThatIsWrongWithTheCamera) {
+  const std::vector<std::string> names = namesIn(DDM_LAUNCH_SOURCE_DIR "/config/nuisances");
+  EXPECT_EQ(
+      std::set<std::string>(names.begin(), names.end()),
+      (std::set<std::string>{"noise", "brightness", "clutter", "thin_rod", "delay", "drops"}));
+  const auto camera = [](const std::string& name) {
+    EXPECT_EQ(keysOf(YAML::LoadFile(nuisanceFile(name))), (std::set<std::string>{"camera"}))
+        << name;
+    return read(configurationFiles("paper", "pendulum", {nuisanceFile(name)})).camera;
+  };
+  EXPECT_EQ(camera("noise").noise_std, 0.1);
+  EXPECT_EQ(camera("brightness").brightness_drift, 0.2);
+  EXPECT_GT(camera("clutter").clutter, 0.0);
+  EXPECT_EQ(camera("thin_rod").rod_half_width, CameraOptions().rod_half_width / 2);
+  EXPECT_EQ(camera("thin_rod").edge_softness, 0.05);
+  EXPECT_EQ(camera("delay").delay, 1);
+  EXPECT_EQ(camera("drops").drop_rate, 0.05);
+}
+
+TEST(Configuration, ANuisanceThatDoesNotExistIsRefusedWithThoseThatDo) {
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [] { nuisanceFile("fog"); },
+      {"unknown nuisance 'fog'", "brightness, clutter, delay, drops, noise, thin_rod"}));
+}
+
 TEST(Configuration, AnUnknownMethodIsRefusedWithThoseThatThereAre) {
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
       [] { methodKind("oracel"); }, {"unknown method 'oracel'", "there are ddm, oracle"}));

@@ -39,6 +39,9 @@ class LaunchFaultsTest(unittest.TestCase):
     def test_a_plant_that_does_not_exist_is_named(self):
         self.assertRefused(["file does not exist", "ddm_sim/config/windmill.yaml"], "plant:=windmill")
 
+    def test_a_nuisance_that_does_not_exist_is_named(self):
+        self.assertRefused(["file does not exist", "config/nuisances/fog.yaml"], "nuisance:=fog")
+
     def test_a_file_of_that_name_that_is_no_plant_is_refused(self):
         self.assertRefused(["unknown plant 'sim'", "pendulum_gravity"], "preset:=debug", "plant:=sim")
 

@@ -75,6 +75,16 @@ class PilcoMethodTest : public ::testing::Test {
   testing::TempFolder scratch_;
 };
 
+TEST_F(PilcoMethodTest, LostFramesAreRefused) {
+  for (const std::string method : {"pilco_state", "pilco_features", "pilco_pca"}) {
+    Configuration all = smallConfiguration(method, folder(method));
+    all.camera.drop_rate = 0.05;
+    EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+        [&] { InProcessWorld world(all); }, {"camera/drop_rate must be 0 with PILCO", "got 0.05"}))
+        << method;
+  }
+}
+
 TEST_F(PilcoMethodTest, EveryBaselineRunsAndLeavesItsFiles) {
   for (const std::string method : {"pilco_state", "pilco_features", "pilco_pca"}) {
     const Configuration all = smallConfiguration(method, folder(method));

@@ -117,6 +117,19 @@ class PredictionExperimentTest(unittest.TestCase):
         self.assertEqual(read_rows(out, "features.csv")[0],
                          ["frame", "set", "angle_rad", "rate_rad_per_s", "z_1", "z_2"])
 
+    def test_takes_nuisances_but_no_lost_frames(self):
+        out = self.folder("noise")
+        code, output = self.predict("--nuisance", "noise", "--out", out)
+        self.assertEqual(code, 0, output)
+        self.assertEqual(read_yaml(out, "config.yaml")["camera"]["noise_std"], 0.1)
+        self.assertEqual([row[:4] for row in read_rows(out, "features.csv")],  # the same states, seen otherwise
+                         [row[:4] for row in read_rows(self.reference, "features.csv")])
+        self.assertNotEqual(read_bytes(out, "model.ddm"), read_bytes(self.reference, "model.ddm"))
+        code, output = self.predict("--nuisance", "drops", "--out", self.folder("drops"))
+        self.assertEqual(code, 2)
+        self.assertIn("camera/drop_rate must be 0", output)
+        self.assertIn("got 0.05", output)
+
     def test_refuses_the_folder_of_another_experiment_and_leaves_it_as_it_is(self):
         before = {name: read_bytes(self.reference, name) for name in FILES}
         code, output = self.predict("--out", self.reference, seed=5)

@@ -158,7 +158,8 @@ class RunExperimentTest(unittest.TestCase):
     def test_help_names_every_option(self):
         code, output = run_experiment("--help")
         self.assertEqual(code, 0)
-        for option in ("--preset", "--plant", "--seed", "--trials", "--out", "--config", "--method", "--help"):
+        for option in ("--preset", "--plant", "--nuisance", "--seed", "--trials", "--out", "--config", "--method",
+                       "--help"):
             self.assertIn(option, output)
         for method in ("ddm", "oracle"):
             self.assertIn(method + ": ", output)
@@ -170,6 +171,7 @@ class RunExperimentTest(unittest.TestCase):
                 (["--out DIR is missing"], ["--preset", "debug"]),
                 (["unknown preset 'papier'", "debug, paper"], out + ["--preset", "papier"]),
                 (["unknown plant 'sim'", "pendulum, pendulum_gravity"], out + ["--plant", "sim"]),
+                (["unknown nuisance 'fog'", "drops, noise"], out + ["--nuisance", "noise", "--nuisance", "fog"]),
                 (["unknown method 'pilko'", "ddm, oracle"], out + ["--method", "pilko"]),
                 (["experiment/seed", "-1"], out + ["--seed", "-1"]),
                 (["experiment/trials", "-2"], out + ["--trials", "-2"]),
@@ -192,6 +194,22 @@ class RunExperimentTest(unittest.TestCase):
     def test_a_configuration_that_contradicts_itself_is_refused(self):
         bad = self.write("bad.yaml", "mpc: {max_torque: 7.0}\n")
         self.assertRefused(2, ["mpc/max_torque", "plant/max_torque"], "--config", bad, "--out", self.out)
+
+    def test_nuisances_add_up_and_a_configuration_knows_better(self):
+        mild = self.write("mild.yaml", "camera: {noise_std: 0.02}\n")
+        self.assertRuns("--nuisance", "noise", "--nuisance", "delay", "--config", mild, *self.debug(0))
+        camera = read_yaml(self.out, "config.yaml")["camera"]
+        self.assertEqual((camera["noise_std"], camera["delay"], camera["clutter"]), (0.02, 1, 0.0))
+
+    def test_a_trial_counts_the_frames_that_are_seen(self):
+        self.assertRuns("--nuisance", "drops", *self.debug(0))
+        self.assertEqual(read_rows(self.out, "trials.csv")[1][2], "30")
+        times = [float(row[1]) for row in read_rows(self.out, "trial_000", "trajectory.csv")[1:]]
+        stamps = read_bag(os.path.join(self.out, "trial_000", "trial.bag"))["camera/image_raw"]
+        self.assertEqual(len(times), 30)
+        self.assertGreater(times[-1], 29 * 0.2 + 0.1)
+        for time, stamp in zip(times, stamps):
+            self.assertAlmostEqual(time, (stamp - stamps[0]) * 1e-9, places=6)
 
     def test_a_configuration_file_that_cannot_be_read_is_named(self):
         missing = os.path.join(self.scratch, "missing.yaml")

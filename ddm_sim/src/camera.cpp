@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "run_stream.h"
 
@@ -115,6 +117,11 @@ std::vector<std::uint8_t> Camera::photographGoal(const Plant& plant) const {
 
 std::vector<std::uint8_t> Camera::expose(const std::vector<std::uint8_t>& plant, double brightness,
                                          std::mt19937_64* noise) const {
+  if (plant.size() != background_.size()) {
+    throw std::invalid_argument("camera: the plant's picture must have " +
+                                std::to_string(background_.size()) + " pixels, got " +
+                                std::to_string(plant.size()));
+  }
   std::normal_distribution<double> standard_normal;
   std::vector<std::uint8_t> bytes(plant.size());
   for (std::size_t i = 0; i < plant.size(); ++i) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <set>
 #include <stdexcept>
@@ -96,6 +97,37 @@ TEST(PlantOptions, ReportAnImageSizeOutOfRange) {
     EXPECT_EQ(options.problems()[0],
               "camera/size must lie in [4, 1024] pixels, got " + std::to_string(size));
   }
+}
+
+TEST(CameraOptions, AllowEachNuisanceUpToItsLimit) {
+  CameraOptions options;
+  options.noise_std = options.clutter = 1.0;
+  options.brightness_drift = std::nextafter(1.0, 0.0);
+  options.delay = 1000;
+  options.drop_rate = 0.3;
+  EXPECT_TRUE(options.problems().empty());
+}
+
+TEST(CameraOptions, ReportEachNuisanceOutOfRange) {
+  CameraOptions options;
+  options.noise_std = 1.5;
+  options.brightness_drift = 1.0;
+  options.brightness_period = 0.0;
+  options.clutter = 1.25;
+  options.clutter_seed = -1;
+  options.delay = 1001;
+  options.drop_rate = 0.5;
+  const std::vector<std::string> expected{"camera/noise_std must lie in [0, 1], got 1.5",
+                                          "camera/brightness_drift must lie in [0, 1), got 1",
+                                          "camera/brightness_period must be > 0 and finite, got 0",
+                                          "camera/clutter must lie in [0, 1], got 1.25",
+                                          "camera/clutter_seed must be >= 0, got -1",
+                                          "camera/delay must lie in [0, 1000] frames, got 1001",
+                                          "camera/drop_rate must lie in [0, 0.3], got 0.5"};
+  EXPECT_EQ(options.problems(), expected);
+  options = CameraOptions();
+  options.delay = -1;
+  EXPECT_EQ(options.problems().size(), 1U);
 }
 
 TEST(PlantFactory, RefusesAnUnknownTypeAndListsTheKnownOnes) {

@@ -41,12 +41,13 @@ class Camera {
 
   /// The frame of this time step; to be called once in each, for lost frames too. A frame that is
   /// late shows the state of `delay` calls ago, at the start of a run that of the first call.
-  /// @param plant  its size of picture is camera/size
   /// @return bytes as from Plant::render(), or nothing if the frame is lost; the first never is
+  /// @throws std::invalid_argument if the plant's picture is not of camera/size
   std::optional<std::vector<std::uint8_t>> photograph(const Plant& plant);
 
   /// The goal image: the goal state before the same background, in nominal brightness. Its noise is
   /// the same whenever it is taken, in all runs of all seeds.
+  /// @throws std::invalid_argument as photograph()
   std::vector<std::uint8_t> photographGoal(const Plant& plant) const;
 
  private:

@@ -1,0 +1,117 @@
+// Tests of the camera's nuisances over the wire, in lock-step and in real time.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <ros/ros.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "ddm_sim/camera.h"
+#include "ddm_sim/plant_factory.h"
+#include "sim_client.h"
+
+namespace ddm {
+namespace {
+
+constexpr std::uint64_t kSeed = 7;
+constexpr std::uint32_t kTrial = 3;
+const std::vector<double> kStart{0.3, 5.0};
+
+/// Plant and camera that the launch file describes.
+class CameraNode : public ::testing::Test {
+ protected:
+  CameraNode() {
+    const ros::NodeHandle sim("sim_node");
+    sim.getParam("plant/dt", plant_options_.dt);
+    sim.getParam("camera/noise_std", camera_options_.noise_std);
+    sim.getParam("camera/brightness_drift", camera_options_.brightness_drift);
+    sim.getParam("camera/clutter", camera_options_.clutter);
+    sim.getParam("camera/delay", camera_options_.delay);
+    sim.getParam("camera/drop_rate", camera_options_.drop_rate);
+    plant_ = makePlant(plant_options_, camera_options_);
+    plant_->setState(Eigen::Vector2d(kStart[0], kStart[1]));
+    camera_ = std::make_unique<Camera>(camera_options_);
+    camera_->begin(kSeed, kTrial, false);
+  }
+
+  void SetUp() override {
+    ASSERT_GT(camera_options_.drop_rate, 0.0);
+    ASSERT_TRUE(client_.connect());
+    client_.forget();
+  }
+
+  /// Ground truth and image `index` are what the library shows in this step.
+  void expectFrame(std::size_t index, const std::vector<std::uint8_t>& photograph) {
+    EXPECT_EQ(client_.images[index].data, photograph) << index;
+    EXPECT_EQ(client_.truths[index].header.stamp, client_.images[index].header.stamp) << index;
+    EXPECT_EQ(client_.truths[index].position, std::vector<double>{plant_->state()[0]}) << index;
+  }
+
+  PlantOptions plant_options_;
+  CameraOptions camera_options_;
+  std::unique_ptr<Plant> plant_;
+  std::unique_ptr<Camera> camera_;
+  SimClient client_;
+};
+
+using LockstepCamera = CameraNode;
+using RealtimeCamera = CameraNode;
+
+TEST_F(LockstepCamera, ShowsTheFramesOfTheLibraryAndGoesOnUnderTheLastTorqueWhereOneIsLost) {
+  constexpr std::size_t kFrames = 40;
+  ASSERT_TRUE(client_.waitUntil([this] { return !client_.goals.empty(); }));
+  EXPECT_EQ(client_.goals[0].data, camera_->photographGoal(*plant_));
+  const ros::Time start = client_.reset(kFrames, kStart, kSeed, kTrial).start;
+  std::uint64_t step = 0;
+  auto photograph = camera_->photograph(*plant_);
+  for (std::size_t t = 0; t < kFrames; ++t) {
+    ASSERT_TRUE(client_.waitForImages(t + 1));
+    const ros::Time stamp = client_.images[t].header.stamp;
+    EXPECT_EQ(stamp.toNSec(), start.toNSec() + step * 200000000ULL) << t;
+    expectFrame(t, *photograph);
+    const double torque = t % 2 == 0 ? 4.0 : -1.0;
+    client_.publish(stamp, {torque});
+    do {
+      plant_->step(Eigen::VectorXd::Constant(1, torque));
+      photograph = camera_->photograph(*plant_);
+      ++step;
+    } while (!photograph);
+  }
+  EXPECT_GT(step, kFrames);
+  ASSERT_TRUE(client_.waitForLog("40 frames answered"));  // those that were seen
+  EXPECT_EQ(client_.images.size(), kFrames);
+}
+
+TEST_F(RealtimeCamera, ShowsTheFramesOfTheLibraryAndNothingWhereOneIsLost) {
+  constexpr std::size_t kFrames = 20;
+  const ros::Time start = client_.reset(0, kStart, kSeed, kTrial).start;
+  const auto begins = [&start](const auto& message) { return message.header.stamp == start; };
+  std::size_t first = 0;
+  ASSERT_TRUE(client_.waitUntil([&] {
+    const auto begin = client_.images.begin();
+    const auto end = client_.images.end();
+    first = static_cast<std::size_t>(std::find_if(begin, end, begins) - begin);
+    return client_.images.size() >= first + kFrames && client_.truths.size() >= first + kFrames;
+  }));
+  client_.images.erase(client_.images.begin(), client_.images.begin() + first);
+  client_.truths.erase(client_.truths.begin(), client_.truths.begin() + first);
+  int num_lost = 0;
+  for (std::size_t t = 0; t < kFrames;) {
+    if (const auto photograph = camera_->photograph(*plant_)) {
+      expectFrame(t++, *photograph);
+    } else {
+      ++num_lost;
+    }
+    plant_->step(Eigen::VectorXd::Zero(1));  // nobody publishes a torque
+  }
+  EXPECT_GT(num_lost, 0);
+}
+
+}  // namespace
+}  // namespace ddm
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "camera_node_test");
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}

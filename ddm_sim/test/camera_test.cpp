@@ -1,0 +1,359 @@
+// Tests of the camera: what each nuisance does to a photograph, and what fixes it.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_sim/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "ddm_sim/plant_factory.h"
+
+namespace ddm {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr double kPi = 3.14159265358979323846;
+
+std::unique_ptr<Plant> pendulum() { return makePlant(PlantOptions(), CameraOptions()); }
+
+/// A plant that has left the picture, so that the background alone is seen.
+std::unique_ptr<Plant> tileOutside() {
+  PlantOptions options;
+  options.type = "moving_tile";
+  auto tile = makePlant(options, CameraOptions());
+  tile->setState(Eigen::Vector2d(-100.0, -100.0));
+  return tile;
+}
+
+CameraOptions allNuisances() {
+  CameraOptions options;
+  options.noise_std = 0.05;
+  options.brightness_drift = 0.2;
+  options.clutter = 0.6;
+  options.delay = 1;
+  options.drop_rate = 0.3;
+  return options;
+}
+
+/// Photographs of a pendulum that swings, one for each step, empty where the frame is lost.
+std::vector<Bytes> film(Camera* camera, int num_steps) {
+  const auto plant = pendulum();
+  std::vector<Bytes> out;
+  for (int step = 0; step < num_steps; ++step) {
+    out.push_back(camera->photograph(*plant).value_or(Bytes()));
+    plant->step(Eigen::VectorXd::Constant(1, 3.0));
+  }
+  return out;
+}
+
+/// The same of a perfect camera.
+std::vector<Bytes> perfectFilm(int num_steps) {
+  const auto plant = pendulum();
+  std::vector<Bytes> out;
+  for (int step = 0; step < num_steps; ++step) {
+    out.push_back(plant->render(plant->state()));
+    plant->step(Eigen::VectorXd::Constant(1, 3.0));
+  }
+  return out;
+}
+
+std::vector<bool> lost(const std::vector<Bytes>& frames) {
+  std::vector<bool> out;
+  for (const Bytes& frame : frames) out.push_back(frame.empty());
+  return out;
+}
+
+TEST(Camera, ShowsThePlantByteByByteWhereAllNuisancesAreOff) {
+  Camera camera{CameraOptions()};
+  const auto plant = pendulum();
+  std::set<std::uint8_t> seen;
+  for (int degree = 0; degree < 360; ++degree) {
+    plant->setState(Eigen::Vector2d(degree * kPi / 180, 0.0));
+    const Bytes expected = plant->render(plant->state());
+    ASSERT_EQ(camera.photograph(*plant), expected) << degree;
+    seen.insert(expected.begin(), expected.end());
+  }
+  EXPECT_EQ(seen.size(), 256U);  // no grey value is changed on its way
+  EXPECT_EQ(camera.photographGoal(*plant), plant->render(plant->goalState()));
+}
+
+TEST(Camera, AddsIndependentNoiseOfTheGivenSpreadToEachPixelOfEachFrame) {
+  CameraOptions options;
+  options.noise_std = 0.1;
+  Camera camera(options);
+  const auto plant = pendulum();
+  const Bytes clean = plant->render(plant->state());
+  std::vector<double> noise;  // of grey pixels, which are never clipped
+  std::vector<double> before;
+  double sum = 0.0, squares = 0.0, with_last_frame = 0.0, with_last_pixel = 0.0;
+  for (int frame = 0; frame < 400; ++frame) {
+    const Bytes image = *camera.photograph(*plant);
+    noise.clear();
+    for (std::size_t i = 0; i < clean.size(); ++i) {
+      if (clean[i] > 110 && clean[i] < 145) noise.push_back((image[i] - clean[i]) / 255.0);
+    }
+    for (std::size_t i = 0; i < noise.size(); ++i) {
+      sum += noise[i];
+      squares += noise[i] * noise[i];
+      if (i > 0) with_last_pixel += noise[i] * noise[i - 1];
+      if (!before.empty()) with_last_frame += noise[i] * before[i];
+    }
+    before = noise;
+  }
+  const double n = 400.0 * static_cast<double>(noise.size());
+  ASSERT_GT(n, 10000.0);
+  EXPECT_NEAR(sum / n, 0.0, 5 * 0.1 / std::sqrt(n));
+  EXPECT_NEAR(std::sqrt(squares / n), 0.1, 5 * 0.1 / std::sqrt(2 * n));
+  EXPECT_NEAR(with_last_frame / n / 0.01, 0.0, 5 / std::sqrt(n));
+  EXPECT_NEAR(with_last_pixel / n / 0.01, 0.0, 5 / std::sqrt(n));
+}
+
+TEST(Camera, ClipsNoiseAtBlackAndWhite) {
+  CameraOptions options;
+  options.noise_std = 0.5;
+  const auto plant = tileOutside();
+  const Bytes image = *Camera(options).photograph(*plant);
+  const auto black = std::count(image.begin(), image.end(), 0);
+  const auto white = std::count(image.begin(), image.end(), 255);
+  EXPECT_NEAR(static_cast<double>(black) / 2601.0, 0.5, 5 * 0.5 / std::sqrt(2601.0));
+  // A Gaussian exceeds two standard deviations with 0.0228.
+  EXPECT_NEAR(static_cast<double>(white) / 2601.0, 0.0228, 5 * std::sqrt(0.0228 / 2601.0));
+}
+
+TEST(Camera, ChangesTheBrightnessOfAllPixelsAlikeInASineOfTheGivenPeriod) {
+  CameraOptions options;
+  options.brightness_drift = 0.2;
+  options.brightness_period = 8.0;  // 40 steps of 0.2 s
+  Camera camera(options);
+  const auto plant = pendulum();
+  const Bytes clean = plant->render(plant->state());
+  std::vector<double> factor;
+  for (int t = 0; t < 80; ++t) {
+    const Bytes image = *camera.photograph(*plant);
+    const auto grey = std::find_if(clean.begin(), clean.end(), [](int k) { return k > 150; });
+    factor.push_back(static_cast<double>(image[grey - clean.begin()]) / *grey);
+    for (std::size_t i = 0; i < clean.size(); ++i) {
+      ASSERT_NEAR(image[i], std::min(255.0, clean[i] * factor.back()), 2.0) << t << ", " << i;
+    }
+  }
+  for (int t = 0; t < 40; ++t) {
+    EXPECT_EQ(factor[t], factor[t + 40]);
+    EXPECT_NEAR(factor[t] - 1.0, 1.0 - factor[(t + 20) % 40], 0.01);  // half a period later
+    const double quarter = factor[(t + 10) % 40] - 1.0;
+    EXPECT_NEAR(std::hypot(factor[t] - 1.0, quarter), 0.2, 0.01);  // sine and cosine
+  }
+}
+
+TEST(Camera, BeginsEachRunInAnotherPhaseOfTheBrightness) {
+  CameraOptions options;
+  options.brightness_drift = 0.2;
+  Camera camera(options);
+  const auto plant = pendulum();
+  int brighter = 0;
+  for (std::uint32_t trial = 0; trial < 100; ++trial) {
+    camera.begin(1, trial, false);
+    const Bytes image = *camera.photograph(*plant);
+    brighter += image[25 * 51 + 25] == 255 ? 1 : 0;  // the pivot is white, brighter is clipped
+  }
+  EXPECT_NEAR(brighter, 50, 25);  // five standard deviations of a fair coin
+}
+
+TEST(Camera, ShowsClutterAloneWhereThereIsNoPlant) {
+  CameraOptions options;
+  options.clutter = 0.6;
+  const Bytes background = *Camera(options).photograph(*tileOutside());
+  EXPECT_EQ(*std::max_element(background.begin(), background.end()), 153);  // 0.6 * 255
+  const std::set<std::uint8_t> greys(background.begin(), background.end());
+  EXPECT_GT(greys.size(), 50U);
+  int edges = 0, slopes = 0;
+  for (int i = 0; i < 51; ++i) {
+    for (int j = 1; j < 51; ++j) {
+      const int jump = std::abs(background[i * 51 + j] - background[i * 51 + j - 1]);
+      edges += jump > 25 ? 1 : 0;
+      slopes += jump > 2 && jump < 13 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(edges, 50);
+  EXPECT_GT(slopes, 50);
+}
+
+TEST(Camera, ShowsThePlantBeforeTheClutter) {
+  CameraOptions options;
+  options.clutter = 0.6;
+  Camera camera(options);
+  const Bytes background = *camera.photograph(*tileOutside());
+  const auto plant = pendulum();
+  camera.begin(0, 0, false);
+  const Bytes image = *camera.photograph(*plant);
+  const Bytes goal = camera.photographGoal(*plant);
+  const Bytes plant_alone = plant->render(plant->state());
+  const Bytes goal_alone = plant->render(plant->goalState());
+  const auto before = [](int plant_grey, int behind) {
+    return plant_grey + (255 - plant_grey) * behind / 255.0;
+  };
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    ASSERT_NEAR(image[i], before(plant_alone[i], background[i]), 1.0) << i;
+    ASSERT_NEAR(goal[i], before(goal_alone[i], background[i]), 1.0) << i;
+  }
+}
+
+TEST(Camera, HasOneBackgroundForAllRunsAndAnotherForEachClutterSeed) {
+  CameraOptions options;
+  options.clutter = 0.6;
+  Camera camera(options);
+  const auto plant = tileOutside();
+  const Bytes background = *camera.photograph(*plant);
+  camera.begin(7, 3, true);
+  EXPECT_EQ(*camera.photograph(*plant), background);
+  EXPECT_EQ(*Camera(options).photograph(*plant), background);
+  options.clutter_seed = 1;
+  EXPECT_NE(*Camera(options).photograph(*plant), background);
+}
+
+TEST(Camera, ShowsTheStateOfSoManyFramesAgoAndAtFirstThatOfTheFirstFrame) {
+  const std::vector<Bytes> clean = perfectFilm(20);
+  for (const int delay : {1, 3}) {
+    CameraOptions options;
+    options.delay = delay;
+    Camera camera(options);
+    for (int run = 0; run < 2; ++run) {  // a new run forgets what the last one has not shown yet
+      camera.begin(0, 0, false);
+      const std::vector<Bytes> late = film(&camera, 20);
+      for (int t = 0; t < 20; ++t) EXPECT_EQ(late[t], clean[std::max(0, t - delay)]) << t;
+    }
+  }
+}
+
+TEST(Camera, ShowsALateFrameInTheBrightnessInWhichItWasTaken) {
+  CameraOptions options;
+  options.brightness_drift = 0.2;
+  options.brightness_period = 3.0;
+  Camera punctual(options);
+  options.delay = 2;
+  Camera late(options);
+  const std::vector<Bytes> now = film(&punctual, 20);
+  const std::vector<Bytes> then = film(&late, 20);
+  for (int t = 0; t < 20; ++t) EXPECT_EQ(then[t], now[std::max(0, t - 2)]) << t;
+}
+
+TEST(Camera, LosesFramesAtTheGivenRateButNeverTheFirst) {
+  CameraOptions options;
+  options.drop_rate = 0.1;
+  Camera camera(options);
+  const auto plant = pendulum();
+  int num_lost = 0;
+  for (std::uint32_t trial = 0; trial < 200; ++trial) {
+    camera.begin(1, trial, false);
+    ASSERT_TRUE(camera.photograph(*plant)) << trial;
+    for (int t = 1; t < 100; ++t) num_lost += camera.photograph(*plant) ? 0 : 1;
+  }
+  const double n = 200 * 99;
+  EXPECT_NEAR(num_lost / n, 0.1, 5 * std::sqrt(0.1 * 0.9 / n));
+}
+
+TEST(Camera, CountsLostFramesInTheDelay) {
+  CameraOptions options;
+  options.drop_rate = 0.3;
+  options.delay = 1;
+  Camera camera(options);
+  const std::vector<Bytes> frames = film(&camera, 60);
+  const std::vector<Bytes> clean = perfectFilm(60);
+  int num_seen = 0;
+  for (int t = 1; t < 60; ++t) {
+    if (frames[t].empty()) continue;
+    EXPECT_EQ(frames[t], clean[t - 1]) << t;
+    ++num_seen;
+  }
+  EXPECT_GT(num_seen, 25);
+  EXPECT_LT(num_seen, 55);
+}
+
+TEST(Camera, NoiseChangesNeitherWhichFramesAreLostNorTheBrightness) {
+  CameraOptions options;
+  options.drop_rate = 0.3;
+  options.brightness_drift = 0.2;
+  Camera without(options);
+  options.noise_std = 1e-9;
+  Camera with(options);
+  without.begin(3, 2, true);
+  with.begin(3, 2, true);
+  EXPECT_EQ(film(&with, 100), film(&without, 100));
+}
+
+TEST(Camera, GivesTheSamePhotographsInTheSameRunAndOthersInAnother) {
+  Camera camera(allNuisances());
+  std::set<std::vector<Bytes>> films;
+  std::set<std::vector<bool>> losses;
+  for (const bool evaluation : {false, true}) {
+    for (const std::uint32_t trial : {0U, 1U}) {
+      for (const std::uint64_t seed : {0ULL, 1ULL, 1ULL << 32}) {
+        camera.begin(seed, trial, evaluation);
+        const std::vector<Bytes> first = film(&camera, 40);
+        Camera other(allNuisances());
+        other.begin(seed, trial, evaluation);
+        EXPECT_EQ(film(&other, 40), first);
+        films.insert(first);
+        losses.insert(lost(first));
+      }
+    }
+  }
+  EXPECT_EQ(films.size(), 12U);
+  EXPECT_EQ(losses.size(), 12U);
+}
+
+TEST(Camera, IsReadyForItsFirstRunWithoutABeginning) {
+  Camera at_once(allNuisances());
+  Camera begun(allNuisances());
+  begun.begin(0, 0, false);
+  EXPECT_EQ(film(&at_once, 40), film(&begun, 40));
+}
+
+TEST(Camera, TakesTheSameNoisyGoalImageWheneverItIsAsked) {
+  CameraOptions options = allNuisances();
+  Camera camera(options);
+  const auto plant = pendulum();
+  const Bytes goal = camera.photographGoal(*plant);
+  camera.begin(5, 4, true);
+  film(&camera, 10);
+  EXPECT_EQ(camera.photographGoal(*plant), goal);
+  options.noise_std = 0.0;
+  const Bytes quiet = Camera(options).photographGoal(*plant);
+  EXPECT_NE(quiet, goal);
+  options.brightness_drift = 0.0;
+  options.delay = 0;
+  options.drop_rate = 0.0;
+  EXPECT_EQ(Camera(options).photographGoal(*plant), quiet);  // neither dark, nor late, nor lost
+}
+
+TEST(Camera, TakingTheGoalImageChangesNoPhotograph) {
+  Camera camera(allNuisances());
+  const std::vector<Bytes> expected = film(&camera, 20);
+  camera.begin(0, 0, false);
+  camera.photographGoal(*pendulum());
+  EXPECT_EQ(film(&camera, 20), expected);
+}
+
+TEST(Camera, RefusesInvalidOptions) {
+  CameraOptions options;
+  options.noise_std = -0.1;
+  EXPECT_THROW(Camera{options}, std::invalid_argument);
+  options = CameraOptions();
+  options.size = 0;
+  options.clutter = 0.5;
+  EXPECT_THROW(Camera{options}, std::invalid_argument);
+}
+
+TEST(Camera, RefusesAPlantWhosePictureIsOfAnotherSize) {
+  CameraOptions options;
+  options.size = 20;
+  Camera camera(options);
+  EXPECT_THROW(camera.photograph(*pendulum()), std::invalid_argument);
+  EXPECT_THROW(camera.photographGoal(*pendulum()), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace ddm
