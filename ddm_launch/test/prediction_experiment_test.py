@@ -207,6 +207,16 @@ class PredictionExperimentTest(unittest.TestCase):
         self.assertEqual(code, 2)
         self.assertIn("--step", output)
 
+    def test_feature_space_sees_what_the_camera_of_the_run_saw(self):
+        config, run = self.folder("nuisances.yaml"), self.folder("nuisances")
+        with open(config, "w") as stream:
+            stream.write("camera: {noise_std: 0.1, brightness_drift: 0.2, clutter: 0.6, delay: 1, drop_rate: 0.2}\n")
+        code, output = run_experiment("--preset", "debug", "--trials", 0, "--config", config, "--out", run)
+        self.assertEqual(code, 0, output)
+        code, output = call([find_program("ddm_launch", "feature_space"), run, "--trial", 0, "--step", 29,
+                             "--out", self.folder("nuisances.csv")])
+        self.assertEqual(code, 0, output)  # each torque up to there was the recorded one
+
 
 if __name__ == "__main__":
     rosunit.unitrun("ddm_launch", "prediction_experiment", PredictionExperimentTest)

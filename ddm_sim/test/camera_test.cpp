@@ -173,12 +173,12 @@ TEST(Camera, ShowsClutterAloneWhereThereIsNoPlant) {
   for (int i = 0; i < 51; ++i) {
     for (int j = 1; j < 51; ++j) {
       const int jump = std::abs(background[i * 51 + j] - background[i * 51 + j - 1]);
-      edges += jump > 25 ? 1 : 0;
-      slopes += jump > 2 && jump < 13 ? 1 : 0;
+      edges += jump >= 40 ? 1 : 0;
+      slopes += jump >= 1 && jump < 8 ? 1 : 0;
     }
   }
-  EXPECT_GT(edges, 50);
-  EXPECT_GT(slopes, 50);
+  EXPECT_GT(edges, 40);    // sharp shapes: blurred ones alone have a few
+  EXPECT_GT(slopes, 400);  // blurred shapes: sharp ones alone have half of it
 }
 
 TEST(Camera, ShowsThePlantBeforeTheClutter) {

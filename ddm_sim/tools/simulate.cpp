@@ -80,8 +80,8 @@ po::options_description describedOptions() {
   add("rate", po::value<Text>()->value_name("RAD_PER_S")->default_value("0"),
       "pendulum: start rate [rad/s], taken exactly");
   add("frames", po::value<Text>()->value_name("DIR"),
-      "also write one picture a row: DIR/frame_0000.png, ... The folder is made if need be; "
-      "pictures of these names in it are replaced");
+      "also write one picture a row, without nuisances of the camera: DIR/frame_0000.png, ... The "
+      "folder is made if need be; pictures of these names in it are replaced");
   add("config", po::value<std::vector<Text>>()->value_name("FILE"),
       "YAML file whose blocks `plant` and `camera` differ from the plant's own; repeatable, later "
       "wins");
