@@ -1,26 +1,15 @@
 # Runs the paper's experiments and turns them into tables and figures, with one command.
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
-import csv
 import os
-import platform
-import re
-import shutil
-import signal
 import subprocess
-import sys
-import time
-
-import roslib.packages
-from tqdm import tqdm
-import yaml
 
 from ddm_launch import pilco_runs, pilco_tables
-from ddm_launch.interruption import Interrupted, raised_as_exception
 from ddm_launch.paper_tables import write_csv, write_tables
-from ddm_launch.run_folder import Evaluation, RunFolderError, read_trials
+from ddm_launch.run_folder import Evaluation, read_trials
 from ddm_launch.schedules import SCHEDULES
-from ddm_launch.sweep_folder import read_yaml
+from ddm_launch.step_runner import Failure, StepRunner, SweepStep, package_path, program, verdict_lines
+from ddm_launch.sweep import positive
 
 NUM_ANGLE_SEEDS = 16  # as in the paper's Fig. 7
 NUM_SCHEDULE_SEEDS = 25  # of each schedule but the paper's own
@@ -60,43 +49,6 @@ in DIR:
   runs/, logs/         everything that the programs left behind; not needed for the figures"""
 
 
-class Failure(Exception):
-    """A step failed; the message tells which and where to look."""
-
-
-def program(name, package="ddm_launch"):
-    found = roslib.packages.find_node(package, name)
-    if not found:
-        raise Failure("the program %s of %s is not there: build the workspace, then source its devel/setup.bash"
-                      % (name, package))
-    return found[0]
-
-
-def package_path(*names):
-    return os.path.join(roslib.packages.get_pkg_dir("ddm_launch"), *names)
-
-
-class SweepStep:
-    """Many seeds of one program; their rows end in TABLE."""
-
-    def __init__(self, name, table, num_seeds, words, more=()):
-        self.name, self.table, self.num_seeds, self.words, self.more = name, table, num_seeds, words, more
-
-    def command(self, out, jobs):
-        return ([program("sweep"), "--seeds", "0:%d" % self.num_seeds, "--out", self.folder(out)] + self.words +
-                (["--jobs", str(jobs)] if jobs else []) + (["--"] + list(self.more) if self.more else []))
-
-    def folder(self, out):
-        return os.path.join(out, "runs", self.name)
-
-    def seed_folder(self, out, seed):
-        return os.path.join(self.folder(out), "seed_%04d" % seed)
-
-    def seed_folders(self, out, most_seeds=sys.maxsize):
-        """{seed: its run folder} of the first seeds."""
-        return {seed: self.seed_folder(out, seed) for seed in range(min(self.num_seeds, most_seeds))}
-
-
 def schedule_options(schedule):
     return [] if schedule == "joint" else ["--config", package_path("config", "schedules", schedule + ".yaml")]
 
@@ -107,21 +59,21 @@ def pilco_steps(preset, num_seeds):
     for name, method, most_seeds, trials, config in PILCO:
         words = ["--preset", preset, "--plant", "pendulum", "--trials", str(trials)]
         more = ["--method", method] + (["--config", package_path("config", config)] if config else [])
-        steps.append(SweepStep(name, name + "/trials.csv", min(num_seeds, most_seeds), words, more))
+        steps.append(SweepStep(name, name + "/trials.csv", range(min(num_seeds, most_seeds)), words, more))
     return steps
 
 
 def sweep_steps(preset, num_seeds):
     """All sweeps but PILCO's, the paper's own first."""
     pendulum = ["--preset", preset, "--plant", "pendulum", "--trials", str(TRIALS)]
-    steps = [SweepStep("joint", "trials.csv", num_seeds, pendulum),
-             SweepStep("oracle", "oracle/trials.csv", num_seeds, pendulum, ["--method", "oracle"])]
+    steps = [SweepStep("joint", "trials.csv", range(num_seeds), pendulum),
+             SweepStep("oracle", "oracle/trials.csv", range(num_seeds), pendulum, ["--method", "oracle"])]
     for schedule in SCHEDULES[1:]:
-        steps.append(SweepStep(schedule, schedule + "/trials.csv", min(num_seeds, NUM_SCHEDULE_SEEDS), pendulum,
-                               schedule_options(schedule)))
+        steps.append(SweepStep(schedule, schedule + "/trials.csv", range(min(num_seeds, NUM_SCHEDULE_SEEDS)),
+                               pendulum, schedule_options(schedule)))
     def predictions(name, table, plant, more=()):
         words = ["--program", "prediction_experiment", "--preset", preset, "--plant", plant]
-        steps.append(SweepStep(name, table, min(num_seeds, NUM_PREDICTION_SEEDS), words, more))
+        steps.append(SweepStep(name, table, range(min(num_seeds, NUM_PREDICTION_SEEDS)), words, more))
 
     predictions("tile", "tile/predictions.csv", "moving_tile")
     # One start each: the best of several would be a random one of most schedules.
@@ -133,41 +85,28 @@ def sweep_steps(preset, num_seeds):
     return steps
 
 
-class Reproduction:
+class Reproduction(StepRunner):
     def __init__(self, options):
+        super().__init__("reproduce_paper", options.out, {"preset": options.preset}, options.jobs)
         configs = [word for path in options.config for word in ("--config", os.path.abspath(path))]
-        self.out, self.preset, self.jobs = os.path.abspath(options.out), options.preset, options.jobs
         self.pilco = [] if options.without_pilco else pilco_steps(options.preset, options.seeds)
         self.steps = sweep_steps(options.preset, options.seeds) + self.pilco  # the long ones last
         for step in self.steps:
             step.more = list(step.more) + configs
         self.by_name = {step.name: step for step in self.steps}
-        self.measured = {}  # step: what write_machine() keeps of it
 
-    def path(self, *names):
-        return os.path.join(self.out, *names)
-
-    def run(self):
-        os.makedirs(self.path("logs"), exist_ok=True)
+    def work(self):
         self.require_pilco()
-        self.measured = read_yaml(self.path("machine.yaml")).get("steps") or {}
-        total = sum(step.num_seeds for step in self.steps) + len(self.figure_commands()) + 1
-        with tqdm(total=total, unit="step", dynamic_ncols=True, disable=None, smoothing=0.05) as bar:
+        with self.progress(sum(len(step.seeds) for step in self.steps) + len(self.figure_commands()) + 1) as bar:
             for step in self.steps:
-                bar.set_description(step.name)
                 self.run_sweep(step, bar)
-                self.keep(os.path.join(step.folder(self.out), "sweep.csv"), step.table)
             bar.set_description("tables")
             self.collect()
             agreement = write_tables(self.out, package_path("results", "published", "success_rate.csv"),
                                      [step.name for step in self.pilco])
             bar.update(1)
-            for name, command in self.figure_commands():
-                bar.set_description(name)
-                self.call(name, command)
-                bar.update(1)
-            bar.set_description("done")
-        return agreement
+            self.draw(self.figure_commands(), bar)
+        return verdict_lines(agreement)
 
     def require_pilco(self):
         """Before hours have passed: PILCO must be there where it is wanted, and no results of it where it is not."""
@@ -180,58 +119,6 @@ class Reproduction:
         if "pilco_state:" not in about.stdout:
             raise Failure("PILCO is not in this build of run_experiment: build with -DDDM_PILCO=ON, or say "
                           "--without-pilco")
-
-    def keep(self, source, name):
-        """Copies a result to where it is kept."""
-        os.makedirs(os.path.dirname(self.path(name)), exist_ok=True)
-        shutil.copyfile(source, self.path(name))
-
-    def run_sweep(self, step, bar):
-        """Runs the seeds that are not finished, and moves the bar by each that is."""
-        log = self.path("logs", step.name + ".log")
-        start, num_finished, num_run, peak_kb = time.monotonic(), 0, 0, 0
-        with open(log, "w") as stream:
-            process = subprocess.Popen(step.command(self.out, self.jobs), stdin=subprocess.DEVNULL,
-                                       stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
-            try:
-                for line in process.stdout:
-                    stream.write(line)
-                    stream.flush()
-                    to_run = re.search(r": (\d+) of \d+ seeds to run$", line.strip())
-                    if to_run:
-                        num_finished = step.num_seeds - int(to_run.group(1))
-                        bar.update(num_finished)
-                    elif re.match(r"seed \d+ finished", line):
-                        num_run += 1
-                        bar.update(1)
-            except BaseException:
-                process.send_signal(signal.SIGINT)
-                raise
-            finally:
-                peak_kb = reap(process)
-                if num_run:
-                    self.add_measurement(step, num_run, time.monotonic() - start, peak_kb / 1024.0)
-        if process.returncode != 0:
-            raise Failure("%s: not all seeds are finished, see %s; the same command goes on" % (step.name, log))
-        bar.update(step.num_seeds - num_finished - num_run)
-        tqdm.write("%-36s %4d seeds  %6.1f s" % (step.name, step.num_seeds, time.monotonic() - start))
-
-    def add_measurement(self, step, num_run, wall_s, peak_memory_mb):
-        """Keeps what a call took. Calls add up; seeds that an interruption cut short count with their time alone."""
-        version = read_yaml(os.path.join(step.seed_folder(self.out, 0), "config.yaml")).get("version", "?")
-        before = self.measured.get(step.name, {})
-        self.measured[step.name] = {
-            "seeds_run": before.get("seeds_run", 0) + num_run, "version": version, "cpu": processor(),
-            "cores": os.cpu_count(), "wall_s": round(before.get("wall_s", 0.0) + wall_s, 1),
-            "peak_memory_mb": round(max(before.get("peak_memory_mb", 0.0), peak_memory_mb), 1)}
-        self.write_machine()
-
-    def call(self, name, command):
-        log = self.path("logs", name + ".log")
-        with open(log, "w") as stream:
-            code = subprocess.call(command, stdin=subprocess.DEVNULL, stdout=stream, stderr=subprocess.STDOUT)
-        if code != 0:
-            raise Failure("%s: '%s' failed with code %d, see %s" % (name, " ".join(command), code, log))
 
     def collect(self):
         """What the figures need of single runs."""
@@ -291,40 +178,6 @@ class Reproduction:
             figure("feature_plane", self.path("tile"), self.path("tile_predictions", "sequential")),
             figure("schedules_compared", self.out)] + pilco
 
-    def write_machine(self):
-        """With what the figures were made, step by step."""
-        machine = {"preset": self.preset, "system": platform.platform(), "steps": self.measured}
-        with open(self.path("machine.yaml.part"), "w") as stream:
-            yaml.safe_dump(machine, stream, sort_keys=False)
-        os.replace(self.path("machine.yaml.part"), self.path("machine.yaml"))
-
-    def warn_of_versions(self):
-        versions = sorted({step["version"] for step in self.measured.values()})
-        if len(versions) > 1:
-            print("reproduce_paper: note: the steps come from %d versions of the code: %s" % (
-                len(versions), ", ".join(versions)), file=sys.stderr)
-
-
-def reap(process):
-    """Waits for a process. Returns the largest memory that it or one of its own has taken [kB]."""
-    _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.WEXITSTATUS(status) if os.WIFEXITED(status) else -os.WTERMSIG(status)
-    return usage.ru_maxrss
-
-
-def processor():
-    try:
-        with open("/proc/cpuinfo") as stream:
-            return next(line.split(":", 1)[1].strip() for line in stream if line.startswith("model name"))
-    except (OSError, StopIteration):
-        return platform.processor() or "?"
-
-
-def positive(text):
-    if not re.match(r"[1-9]\d{0,4}$", text):
-        raise argparse.ArgumentTypeError("must be a whole number >= 1, got '%s'" % text)
-    return int(text)
-
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(prog="reproduce_paper", description=ABOUT, epilog=EPILOG,
@@ -339,19 +192,4 @@ def main(arguments=None):
     parser.add_argument("--config", action="append", default=[], metavar="FILE",
                         help="YAML file with what shall differ in all experiments; repeatable, later files win")
     parser.add_argument("--jobs", type=positive, metavar="N", help="seeds at a time; default one per core")
-    options = parser.parse_args(arguments)
-    start, reproduction = time.monotonic(), Reproduction(options)
-    try:
-        with raised_as_exception():
-            agreement = reproduction.run()
-    except Interrupted as error:
-        print("reproduce_paper: %s; the same command goes on" % error, file=sys.stderr)
-        return 128 + error.number
-    except (Failure, RunFolderError, OSError, csv.Error) as error:
-        print("reproduce_paper: %s" % error, file=sys.stderr)
-        return 1
-    for point, paper, here, holds in agreement:
-        print("%-3s  %s: %s; here %s" % (holds, point, paper, here))
-    reproduction.warn_of_versions()
-    print("results: %s (%.0f s)" % (os.path.abspath(options.out), time.monotonic() - start))
-    return 0
+    return Reproduction(parser.parse_args(arguments)).run()
