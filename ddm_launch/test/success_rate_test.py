@@ -28,6 +28,22 @@ class SuccessRateTest(figure_case.FigureCase):
         self.assertEqual((curve.frames, curve.rates), ([100, 200], [0.5, 1.0]))
         self.assertAlmostEqual(curve.errors[0], (0.25 / 3.0) ** 0.5)
 
+    def test_wilsons_intervals_are_a_band_in_the_place_of_error_bars(self):
+        curve = success_rate.read_curve("mine", self.writeSweep(), wilson=True)
+        self.assertIsNone(curve.errors)
+        self.assertAlmostEqual(curve.band[0][0] + curve.band[1][0], 1.0)  # of 2 of 4 seeds
+        self.assertAlmostEqual(curve.band[0][1], 1.0 / (1.0 + 1.959964 ** 2 / 2.0), places=6)  # of 2 of 2
+        self.assertEqual(curve.band[1][1], 1.0)
+        with new_figure(COLUMN_WIDTH, 3.0) as figure:
+            axes = figure.add_subplot(1, 1, 1)
+            success_rate.draw_curves(axes, [curve], [])
+            corners = axes.collections[-1].get_paths()[0].vertices
+            self.assertEqual((min(corners[:, 0]), max(corners[:, 0])), (100, 200))
+            self.assertAlmostEqual(min(corners[:, 1]), curve.band[0][0])
+            self.assertEqual(axes.containers[0].lines[2], ())  # no error bars
+        self.assertDrawn(success_rate.main, ["mine=" + self.writeSweep(), "--published", PUBLISHED, "--wilson"],
+                         COLUMN_WIDTH)
+
     def test_the_published_curve_is_the_papers(self):
         curves = success_rate.read_published(PUBLISHED)
         paper = curves[0]
@@ -59,6 +75,8 @@ class SuccessRateTest(figure_case.FigureCase):
             axes = figure.add_subplot(1, 1, 1)
             success_rate.draw_curves(axes, [oracle], success_rate.read_published(PUBLISHED))
             self.assertEqual(figure_case.drawn_points(axes, "oracle (2 seeds)"), [(0, 0.5), (1500, 0.5)])
+        band = success_rate.read_curve("oracle", os.path.join(self.folder, "oracle.csv"), wilson=True)
+        self.assertEqual([len(edge) for edge in band.spread_to(1500).band], [2, 2])
 
     def test_the_legend_fits_into_the_width_of_a_column(self):
         path = self.writeSweep()

@@ -1,26 +1,41 @@
-# Means over experiments, with their standard errors.
+# Means over experiments, with their standard errors and confidence intervals.
 # SPDX-License-Identifier: BSD-3-Clause
 import math
+import statistics
 
 
-def success_rates(runs):
+def success_rates(runs, measure="success"):
     """The rate of success over runs, for each number of frames that any run has.
 
-    runs: one list of Trial per run. Trials whose success is not known are left out.
+    runs: one list of Trial per run. measure: success or success_strict; trials where it is not known are left out.
     Returns rows (frames, rate, standard error, number of runs), ascending. The standard error of a rate p over
     n runs is sqrt(p (1 - p) / (n - 1)), as in the paper's Fig. 8; 0 for a single run.
     """
     by_frames = {}
     for trials in runs:
         for trial in trials:
-            if trial.success is not None:
-                by_frames.setdefault(trial.frames, []).append(trial.success)
+            if getattr(trial, measure) is not None:
+                by_frames.setdefault(trial.frames, []).append(getattr(trial, measure))
     rows = []
     for frames, successes in sorted(by_frames.items()):
         n = len(successes)
         rate = sum(successes) / n
         rows.append((frames, rate, math.sqrt(rate * (1.0 - rate) / (n - 1)) if n > 1 else 0.0, n))
     return rows
+
+
+def wilson_interval(rate, n, confidence=0.95):
+    """(low, high): the rates p that a rate p_hat over n independent runs does not speak against.
+
+      |p_hat - p| <= z sqrt(p (1 - p) / n),   solved for p; z: quantile of N(0, 1), 1.96 at 95 %
+
+    E. B. Wilson, "Probable inference, the law of succession, and statistical inference", J. Am. Stat. Assoc. 22
+    (1927). Other than the standard error it is no point where all runs succeed.
+    """
+    z = statistics.NormalDist().inv_cdf(0.5 + 0.5 * confidence)
+    centre = (rate + z * z / (2.0 * n)) / (1.0 + z * z / n)
+    half = z / (1.0 + z * z / n) * math.sqrt(rate * (1.0 - rate) / n + z * z / (4.0 * n * n))
+    return max(0.0, centre - half), min(1.0, centre + half)
 
 
 def mean_and_error(values):

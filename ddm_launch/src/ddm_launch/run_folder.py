@@ -59,12 +59,16 @@ class Trial:
     def __init__(self, row, path):
         self.trial = int(number(row, "trial", path))
         self.frames = int(number(row, "frames", path))  # image-torque pairs learned from
-        self.success = None  # True, False, or None where it cannot be known
-        if (row["success"] or "").strip():
-            self.success = number(row, "success", path) > 0.5
+        self.success = self.flag(row, "success", path)
+        self.success_strict = self.flag(row, "success_strict", path)
         self.final_error_deg = None
         if (row["final_error_deg"] or "").strip():
             self.final_error_deg = abs(number(row, "final_error_deg", path))
+
+    @staticmethod
+    def flag(row, column, path):
+        """True, False, or None where it cannot be known."""
+        return number(row, column, path) > 0.5 if (row.get(column) or "").strip() else None
 
 
 def read_trials(folder):

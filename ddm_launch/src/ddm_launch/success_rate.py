@@ -6,7 +6,7 @@ import math
 from matplotlib.colors import to_rgb
 from matplotlib.ticker import MaxNLocator
 
-from ddm_launch.averages import success_rates
+from ddm_launch.averages import success_rates, wilson_interval
 from ddm_launch.figure_style import (BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION,
                                      new_figure, save, write)
 from ddm_launch.run_folder import RunFolderError, number, read_csv, read_sweep
@@ -24,10 +24,12 @@ LONGEST_PAIR = 54  # [characters] that fit beside each other into the width of a
 
 
 class Curve:
-    """Success rates and their standard errors (None: not known) over frames, of what a name says."""
+    """Success rates over frames, of what a name says, with their standard errors or a band (lows, highs); both may be
+    None: not known."""
 
-    def __init__(self, name, remark, frames, rates, errors):
+    def __init__(self, name, remark, frames, rates, errors, band=None):
         self.name, self.remark, self.frames, self.rates, self.errors = name, remark, frames, rates, errors
+        self.band = band
 
     @property
     def label(self):
@@ -37,17 +39,25 @@ class Curve:
         """This curve; one that learns from no frames (the oracle) as a level line up to last_frames."""
         if self.frames != [0]:
             return self
-        return Curve(self.name, self.remark, [0, last_frames], 2 * self.rates, 2 * self.errors)
+        return Curve(self.name, self.remark, [0, last_frames], 2 * self.rates, self.errors and 2 * self.errors,
+                     self.band and [2 * edge for edge in self.band])
 
 
-def read_curve(name, path):
-    """The curve of a trials.csv or sweep.csv; the number of its seeds stands in the label."""
+def read_curve(name, path, wilson=False):
+    """The curve of a trials.csv or sweep.csv; the number of its seeds stands in the label.
+
+    wilson: with 95 % intervals as a band in the place of standard errors.
+    """
     runs = read_sweep(path)
     rows = success_rates(runs.values())
     if not rows:
         raise RunFolderError("%s: the success is not known in any row: there is nothing to draw" % path)
-    return Curve(name, "%d seed%s" % (len(runs), "" if len(runs) == 1 else "s"), [row[0] for row in rows],
-                 [row[1] for row in rows], [row[2] for row in rows])
+    remark = "%d seed%s" % (len(runs), "" if len(runs) == 1 else "s")
+    frames, rates, errors, counts = (list(column) for column in zip(*rows))
+    if not wilson:
+        return Curve(name, remark, frames, rates, errors)
+    lows, highs = zip(*map(wilson_interval, rates, counts))
+    return Curve(name, remark, frames, rates, None, [list(lows), list(highs)])
 
 
 def read_published(path):
@@ -88,6 +98,8 @@ def draw_curves(axes, ours, published):
         level = curve.spread_to(last_frames)
         axes.errorbar(level.frames, level.rates, yerr=level.errors, color=colour, marker=marker, linestyle=OURS_LINE,
                       capsize=2, elinewidth=0.8, label=curve.label, zorder=3 if level is curve else 1)
+        if level.band:
+            axes.fill_between(level.frames, *level.band, color=colour, alpha=0.2, linewidth=0.0, zorder=1)
     for curve, (_, colour, marker, _, _) in zip(published, METHODS):
         axes.errorbar(curve.frames, curve.rates, yerr=curve.errors, color=lighter(colour), marker=marker,
                       linestyle=PUBLISHED_LINE, markerfacecolor="white", linewidth=0.9, capsize=2, elinewidth=0.7,
@@ -117,9 +129,9 @@ def draw_figure(figure, ours, published):
                   columnspacing=0.8, frameon=False, handlelength=2.2, handletextpad=0.5)
 
 
-def draw(sources, published, out):
-    """sources: (label, path) of each of our curves; published: path of the paper's, or None."""
-    ours = [read_curve(label, path) for label, path in sources]
+def draw(sources, published, wilson, out):
+    """sources: (label, path) of each of our curves; published: path of the paper's, or None; wilson: of ours."""
+    ours = [read_curve(label, path, wilson) for label, path in sources]
     paper = read_published(published) if published else []
     legend_rows = math.ceil(len(ours + paper) / num_legend_columns(ours, paper))
     with new_figure(COLUMN_WIDTH, 2.45 + 0.15 * legend_rows) as figure:
@@ -145,6 +157,10 @@ def main(arguments=None):
                         help="a label, and a trials.csv or sweep.csv")
     parser.add_argument("--published", metavar="FILE.csv",
                         help="draw the paper's curves too: results/published/success_rate.csv of ddm_launch")
+    parser.add_argument("--wilson", action="store_true",
+                        help="draw Wilson's 95 %% intervals as bands in the place of our standard errors, which are 0 "
+                        "where all seeds succeed")
     parser.add_argument("--out", metavar="FILE.png", required=True, help="picture to write")
     options = parser.parse_args(arguments)
-    return write("success_rate", options.out, lambda out: draw(options.curves, options.published, out))
+    return write("success_rate", options.out,
+                 lambda out: draw(options.curves, options.published, options.wilson, out))

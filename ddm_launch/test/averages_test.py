@@ -1,0 +1,49 @@
+#!/usr/bin/python3
+# Means over experiments: standard errors, and Wilson's intervals against published ones.
+# SPDX-License-Identifier: BSD-3-Clause
+import unittest
+
+import rosunit
+
+from ddm_launch.averages import mean_and_error, success_rates, wilson_interval
+from ddm_launch.run_folder import Trial
+
+
+def trial(frames, success, strict):
+    return Trial({"trial": "0", "frames": frames, "success": success, "success_strict": strict,
+                  "final_error_deg": ""}, "made up")
+
+
+class AveragesTest(unittest.TestCase):
+    def test_wilsons_intervals_are_those_of_newcombes_table(self):
+        # R. G. Newcombe, "Two-sided confidence intervals for the single proportion", Stat. Med. 17 (1998), Table I.
+        for successes, n, low, high in ((81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611),
+                                        (1, 29, 0.0061, 0.1718)):
+            interval = wilson_interval(successes / n, n)
+            self.assertAlmostEqual(interval[0], low, delta=5e-5)
+            self.assertAlmostEqual(interval[1], high, delta=5e-5)
+
+    def test_an_interval_mirrors_that_of_the_failures_and_stays_within_0_and_1(self):
+        low, high = wilson_interval(1.0, 20)
+        self.assertAlmostEqual(low, 1.0 - 0.1611, delta=5e-5)
+        self.assertEqual(high, 1.0)
+        self.assertEqual(wilson_interval(0.0, 3)[0], 0.0)
+
+    def test_more_confidence_is_a_wider_interval(self):
+        narrow, wide = wilson_interval(0.9, 50), wilson_interval(0.9, 50, confidence=0.99)
+        self.assertLess(wide[0], narrow[0])
+        self.assertGreater(wide[1], narrow[1])
+
+    def test_both_measures_of_success_have_a_rate_of_their_own(self):
+        runs = [[trial("100", "1", "0"), trial("200", "1", "1")], [trial("100", "1", "1"), trial("200", "", "")]]
+        self.assertEqual(success_rates(runs), [(100, 1.0, 0.0, 2), (200, 1.0, 0.0, 1)])
+        self.assertEqual(success_rates(runs, "success_strict"), [(100, 0.5, 0.5, 2), (200, 1.0, 0.0, 1)])
+
+    def test_the_error_of_a_mean_of_zeros_and_ones_is_that_of_a_rate(self):
+        mean, error = mean_and_error([1.0, 0.0, 1.0, 1.0])
+        self.assertEqual(mean, 0.75)
+        self.assertAlmostEqual(error, (0.75 * 0.25 / 3.0) ** 0.5)
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "averages", AveragesTest)
