@@ -1,0 +1,143 @@
+# Tables of reproduce_efficient: success with intervals, what each ingredient is worth, times, and what the bars say.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import statistics
+
+from ddm_launch.averages import mean_and_error, success_rates, wilson_interval
+from ddm_launch.paper_tables import write_csv
+from ddm_launch.run_folder import RunFolderError, number, read_csv, read_sweep
+from ddm_launch.sweep_folder import read_yaml
+
+REMEDY = "rosrun ddm_launch reproduce_efficient writes it"
+INTERVALS = ["success", "low", "high", "success_strict", "strict_low", "strict_high"]
+PRESET = "preset"  # folder of the ablation's reference
+GRAVITY = (("ddm", "gravity/trials.csv"), ("pilco_state", "gravity/pilco_state/trials.csv"),
+           ("oracle", "gravity/oracle/trials.csv"))  # method, table
+RESUMED = "resuming after trial"  # run_experiment says so; its wall time is that of its last call alone
+
+
+def interval_cells(row):
+    """Rate and 95 % interval of a row of success_rates(), or empty cells."""
+    return (row[1],) + wilson_interval(row[1], row[3]) if row else ("", "", "")
+
+
+def success_rows(runs):
+    """Rows (frames, runs, success, its 95 % interval, success_strict, its interval) of {seed: list of Trial}."""
+    strict = {row[0]: row for row in success_rates(runs.values(), "success_strict")}
+    return [(row[0], row[3]) + interval_cells(row) + interval_cells(strict.get(row[0]))
+            for row in success_rates(runs.values())]
+
+
+def read_runs(folder, *names):
+    return read_sweep(os.path.join(folder, *names), REMEDY)
+
+
+def time_rows(trials, sweep_folder):
+    """Rows (seed, training in all [s], wall time of the experiment [s], slowest run's 99 % of plans [ms]).
+
+    Two last rows hold median and largest. The wall time is in the seed's folder of the sweep, and not known (empty) of
+    an experiment that was interrupted.
+    """
+    seeds = {}
+    for row in read_csv(trials, ["seed", "train_s", "plan_ms_p99"], REMEDY):
+        seeds.setdefault(int(number(row, "seed", trials)), []).append(
+            (number(row, "train_s", trials), number(row, "plan_ms_p99", trials)))
+    rows = [(seed, sum(row[0] for row in of_seed), wall_time(sweep_folder, seed), max(row[1] for row in of_seed))
+            for seed, of_seed in seeds.items()]
+    columns = [[value for value in column if value != ""] for column in zip(*(row[1:] for row in rows))]
+    return rows + [(name,) + tuple(of(column) if column else "" for column in columns)
+                   for name, of in (("median", statistics.median), ("largest", max))]
+
+
+def wall_time(sweep_folder, seed):
+    """What an experiment took from its first frame to its last [s]; empty if it was made in more than one call."""
+    name = "seed_%04d" % seed
+    try:
+        with open(os.path.join(sweep_folder, "logs", name + ".log"), errors="replace") as stream:
+            resumed = any(line.startswith(RESUMED) for line in stream)
+    except OSError:
+        resumed = True
+    return "" if resumed else read_yaml(os.path.join(sweep_folder, name, "summary.yaml")).get("wall_s", "")
+
+
+def mean_success(runs, frames):
+    """{seed: mean success over these frames} of the seeds that know it at all of them."""
+    means = {}
+    for seed, trials in runs.items():
+        values = {trial.frames: float(trial.success) for trial in trials if trial.success is not None}
+        if all(count in values for count in frames):
+            means[seed] = sum(values[count] for count in frames) / len(frames)
+    return means
+
+
+def ablation_rows(folder, labels):
+    """Rows (variant, label, frames, seeds, success, its standard error, difference to the preset, its standard error).
+
+    labels: {variant: label}; the results of each lie in FOLDER/ablation/VARIANT, those of the preset itself in PRESET.
+    Differences are paired by seed. Single frames come first, then the mean over all, and over all but the first.
+    """
+    preset, rows = read_runs(folder, "ablation", PRESET, "trials.csv"), []
+    frames = [row[0] for row in success_rates(preset.values())]
+    groups = [[count] for count in frames] + [part for part in (frames, frames[1:]) if len(part) > 1]
+    for variant, label in labels.items():
+        runs = read_runs(folder, "ablation", variant, "trials.csv")
+        for group in groups:
+            values, reference = mean_success(runs, group), mean_success(preset, group)
+            seeds = sorted(set(values) & set(reference))
+            if not seeds:
+                raise RunFolderError("no seed has %s frames of both %s and the preset itself: run the same seeds with "
+                                     "each" % (frames_text(group), variant))
+            rows.append((variant, label, frames_text(group), len(seeds)) +
+                        mean_and_error([values[seed] for seed in seeds]) +
+                        mean_and_error([values[seed] - reference[seed] for seed in seeds]))
+    return rows
+
+
+def frames_text(frames):
+    return "%d" % frames[0] if len(frames) == 1 else "%d to %d" % (frames[0], frames[-1])
+
+
+def nuisance_rows(folder, names):
+    """Rows (nuisance, frames, runs, success, interval, success_strict, interval) after the last trial.
+
+    The first row is the same seeds without any, where the headline has them.
+    """
+    rows, frames, seeds = [], None, set()
+    for name in names:
+        runs = read_runs(folder, "nuisances", name, "trials.csv")
+        last = success_rows(runs)[-1]
+        frames, seeds = last[0], seeds | set(runs)
+        rows.append((name,) + last)
+    if os.path.exists(os.path.join(folder, "trials.csv")):
+        runs = {seed: trials for seed, trials in read_runs(folder, "trials.csv").items() if seed in seeds}
+        rows[:0] = [("none",) + row for row in success_rows(runs) if row[0] == frames]
+    return rows
+
+
+def gravity_rows(folder):
+    """Rows (method, frames, runs, success, interval, success_strict, interval) of the methods that were run."""
+    return [(method,) + row for method, table in GRAVITY if os.path.exists(os.path.join(folder, table))
+            for row in success_rows(read_runs(folder, table))]
+
+
+def write_success(folder, sweep_folder):
+    trials = os.path.join(folder, "trials.csv")
+    write_csv(os.path.join(folder, "success_rate.csv"), ["frames", "runs"] + INTERVALS,
+              success_rows(read_sweep(trials, REMEDY)))
+    write_csv(os.path.join(folder, "times.csv"), ["seed", "train_s", "wall_s", "plan_ms_p99"],
+              time_rows(trials, sweep_folder))
+
+
+def write_ablation(folder, labels):
+    write_csv(os.path.join(folder, "ablation.csv"),
+              ["variant", "label", "frames", "seeds", "success", "success_se", "difference", "difference_se"],
+              ablation_rows(folder, labels))
+
+
+def write_gravity(folder):
+    write_csv(os.path.join(folder, "gravity.csv"), ["method", "frames", "runs"] + INTERVALS, gravity_rows(folder))
+
+
+def write_nuisances(folder, names):
+    write_csv(os.path.join(folder, "nuisances.csv"), ["nuisance", "frames", "runs"] + INTERVALS,
+              nuisance_rows(folder, names))

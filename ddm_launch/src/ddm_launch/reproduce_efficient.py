@@ -1,0 +1,197 @@
+# Runs the experiments about data-efficiency and turns them into tables and figures, with one command.
+# SPDX-License-Identifier: BSD-3-Clause
+import argparse
+import os
+
+from ddm_launch.efficient_bars import write_bars
+from ddm_launch.efficient_tables import PRESET, write_ablation, write_gravity, write_nuisances, write_success
+from ddm_launch.step_runner import Failure, StepRunner, SweepStep, package_path, program, verdict_lines
+from ddm_launch.sweep import positive, seed_range
+from ddm_launch.sweep_folder import flat, read_yaml
+
+PARTS = ("efficient", "ablation", "gravity", "nuisances")
+TRIALS, ABLATION_TRIALS, GRAVITY_TRIALS, NUISANCE_TRIALS = 15, 5, 19, 4
+PILCO_TRIALS = 15  # of 125 frames: 2000 as the others
+NUM_FEW_SEEDS = 20  # with gravity, and of each nuisance
+FULL_LABEL = "Full preset"
+
+ABOUT = """\
+Makes the results about data-efficiency: the preset `efficient` on the pendulum beside the paper's curves, what each of
+its ingredients is worth, the swing-up with gravity, and nuisances of the camera, with tables and figures. All of it
+takes hours; the same command resumes, and --only chooses parts."""
+
+EPILOG = """\
+parts (--only), in this order, and what they leave in DIR:
+  efficient    trials.csv, config.yaml; success_rate.csv: success, success_strict and Wilson's 95 % intervals;
+               success_rate.png; times.csv: of each seed's experiment training and wall time in all [s] (empty if it
+               was interrupted) and the time that 99 % of the plans of its slowest greedy run keep [ms]
+  ablation     ablation/NAME/trials.csv without what each file of ddm_launch/config/ablations takes away, and of the
+               preset itself; ablation.csv: success and differences paired by seed; ablation.png
+  gravity      gravity/trials.csv of the preset `efficient_gravity`; gravity/oracle/, gravity/pilco_state/: trials.csv
+               of the same planner on the true plant, and of PILCO on the true state; gravity.csv, gravity.png
+  nuisances    nuisances/NAME/trials.csv for each file of ddm_launch/config/nuisances; nuisances.csv,
+               nuisances.png
+
+beside them:
+  bars.csv             what the results must reach, and whether they do
+  machine.yaml         of each step: version of the code, processor, time, peak memory of a process
+  runs/, logs/         everything that the programs left behind; runs/*/settings.yaml: preset and files that a step was
+                       made with. A step whose files have changed since is refused"""
+
+
+def yaml_names(folder):
+    """{name: path} of the files NAME.yaml in a folder of config/."""
+    path = package_path("config", folder)
+    names = sorted(os.listdir(path)) if os.path.isdir(path) else []
+    found = {name[:-len(".yaml")]: os.path.join(path, name) for name in names if name.endswith(".yaml")}
+    if not found:
+        raise Failure("%s must hold a file NAME.yaml, got none: leave this part out with --only" % path)
+    return found
+
+
+def label_of(path):
+    """What a file takes away: its first line, a comment."""
+    with open(path) as stream:
+        line = stream.readline().strip()
+    label = line.lstrip("#").strip().rstrip(".")
+    if not (line.startswith("#") and label):
+        raise Failure("%s must begin with a comment that says what it is, got '%s': tables and figures show it" % (
+            path, line))
+    return label
+
+
+class EfficientReproduction(StepRunner):
+    """Each of PARTS is three methods: PART_steps, the sweeps; PART_tables; PART_figure, the command that draws it from
+    nothing but what is kept."""
+
+    def __init__(self, options):
+        self.preset = options.preset
+        self.gravity_preset = "efficient_gravity" if options.preset == "efficient" else options.preset
+        super().__init__("reproduce_efficient", options.out,
+                         {"preset": self.preset, "gravity_preset": self.gravity_preset}, options.jobs)
+        self.options, self.few_seeds = options, options.seeds[:NUM_FEW_SEEDS]
+        self.parts = [part for part in PARTS if part in options.only]
+        self.ablations, self.nuisances = {}, {}  # {name: path}
+        self.labels = {PRESET: FULL_LABEL}  # of ablations
+
+    def work(self):
+        if "ablation" in self.parts:
+            self.ablations = yaml_names("ablations")
+            if PRESET in self.ablations:
+                raise Failure("%s: the name is that of the reference, the preset itself: rename the file"
+                              % self.ablations[PRESET])
+        if "nuisances" in self.parts:
+            self.nuisances = yaml_names("nuisances")
+        self.labels.update((name, label_of(path)) for name, path in self.ablations.items())
+        steps = {part: getattr(self, part + "_steps")() for part in self.parts}
+        with self.progress(sum(len(step.seeds) for of_part in steps.values() for step in of_part) +
+                           2 * len(self.parts)) as bar:
+            for part in self.parts:
+                for step in steps[part]:
+                    self.run_sweep(step, bar)
+                bar.set_description(part + ": tables")
+                getattr(self, part + "_tables")(steps[part][0])
+                bar.update(1)
+                self.draw([("figure_of_" + part, getattr(self, part + "_figure")())], bar)
+            bar.set_description("done")
+        return self.idle_ablations() + verdict_lines(write_bars(self.out))
+
+    def sweep_step(self, name, folder, seeds, trials, more=(), preset=None, plant="pendulum", limit_s=None):
+        words = ["--preset", preset or self.preset, "--plant", plant, "--trials", str(trials)]
+        return SweepStep(name, os.path.join(folder, "trials.csv"), seeds, words, list(more), limit_s)
+
+    def efficient_steps(self):
+        return [self.sweep_step("efficient", "", self.options.seeds, TRIALS)]
+
+    def ablation_steps(self):
+        """The preset itself first."""
+        more = {PRESET: []}
+        more.update((name, ["--config", path]) for name, path in self.ablations.items())
+        return [self.sweep_step("ablation_" + name, os.path.join("ablation", name), self.options.ablation_seeds,
+                                ABLATION_TRIALS, words) for name, words in more.items()]
+
+    def gravity_steps(self):
+        def step(name, folder, seeds, trials, method, limit_s=None):
+            more = [] if method is None else ["--method", method]
+            return self.sweep_step(name, folder, seeds, trials, more, self.gravity_preset, "pendulum_gravity", limit_s)
+
+        return [step("gravity", "gravity", self.few_seeds, GRAVITY_TRIALS, None),
+                step("gravity_oracle", "gravity/oracle", self.few_seeds, GRAVITY_TRIALS, "oracle"),
+                step("gravity_pilco_state", "gravity/pilco_state", self.few_seeds[:self.options.pilco_seeds],
+                     PILCO_TRIALS, "pilco_state", 60.0 * self.options.pilco_minutes)]
+
+    def nuisances_steps(self):
+        return [self.sweep_step("nuisance_" + name, os.path.join("nuisances", name), self.few_seeds, NUISANCE_TRIALS,
+                                ["--nuisance", name]) for name in self.nuisances]
+
+    def efficient_tables(self, step):
+        self.keep_config(step, "config.yaml")
+        write_success(self.out, step.folder(self.out))
+
+    def ablation_tables(self, _):
+        write_ablation(self.out, self.labels)
+
+    def gravity_tables(self, step):
+        self.keep_config(step, "gravity/config.yaml")
+        write_gravity(self.out)
+
+    def nuisances_tables(self, _):
+        write_nuisances(self.out, list(self.nuisances))
+
+    def keep_config(self, step, name):
+        self.keep(os.path.join(step.seed_folder(self.out, step.seeds[0]), "config.yaml"), name)
+
+    def efficient_figure(self):
+        curves = [(self.preset, self.path("trials.csv")), ("DDM + MPC", package_path("results", "paper", "trials.csv"))]
+        return self.success_figure("success_rate", curves) + ["--published", package_path("results", "published",
+                                                                                          "success_rate.csv")]
+
+    def ablation_figure(self):
+        return [program("ablation_compared"), self.path("ablation.csv"), "--out", self.path("ablation.png")]
+
+    def gravity_figure(self):
+        return self.success_figure("gravity", [(self.gravity_preset, self.path("gravity", "trials.csv")),
+                                               ("PILCO, state", self.path("gravity", "pilco_state", "trials.csv")),
+                                               ("oracle", self.path("gravity", "oracle", "trials.csv"))])
+
+    def nuisances_figure(self):
+        return [program("nuisances_compared"), self.path("nuisances.csv"), "--out", self.path("nuisances.png")]
+
+    def success_figure(self, name, curves):
+        """The command that draws those of the curves (label, path) that are there."""
+        return ([program("success_rate")] + ["%s=%s" % curve for curve in curves if os.path.exists(curve[1])] +
+                ["--wilson", "--out", self.path(name + ".png")])
+
+    def idle_ablations(self):
+        """Lines about those that change nothing of the preset: its ingredient is not there to be taken away."""
+        if not self.ablations:
+            return []
+        step = self.ablation_steps()[0]
+        config = flat(read_yaml(os.path.join(step.seed_folder(self.out, step.seeds[0]), "config.yaml")))
+        idle = [name for name, path in self.ablations.items()
+                if all(config.get(key) == value for key, value in flat(read_yaml(path)).items())]
+        return ["note: config/ablations/%s.yaml changes nothing of the preset %s: its differences are no result" % (
+            name, self.preset) for name in idle]
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(prog="reproduce_efficient", description=ABOUT, epilog=EPILOG,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seeds", type=seed_range, default=range(100, 150), metavar="A:B",
+                        help="seeds A ... B - 1, default 100:150; the first %d of them with gravity and under each "
+                        "nuisance" % NUM_FEW_SEEDS)
+    parser.add_argument("--ablation-seeds", type=seed_range, default=range(0, 50), metavar="A:B",
+                        help="of the ablation, default 0:50: those that the preset was chosen on")
+    parser.add_argument("--out", default="efficient_results", metavar="DIR", help="default efficient_results")
+    parser.add_argument("--only", nargs="+", choices=PARTS, default=PARTS, metavar="PART",
+                        help="make only these parts: %s" % ", ".join(PARTS))
+    parser.add_argument("--preset", default="efficient",
+                        help="default efficient, and efficient_gravity with gravity; debug is for a quick look at the "
+                        "path")
+    parser.add_argument("--pilco-seeds", type=positive, default=4, metavar="N",
+                        help="PILCO with gravity has the first N seeds, default 4")
+    parser.add_argument("--pilco-minutes", type=positive, default=240, metavar="M",
+                        help="end PILCO after M minutes in all, default 240: then it has the rows of the trials that "
+                        "are finished, and fewer seeds at more frames")
+    parser.add_argument("--jobs", type=positive, metavar="N", help="seeds at a time; default one per core")
+    return EfficientReproduction(parser.parse_args(arguments)).run()

@@ -1,0 +1,266 @@
+#!/usr/bin/python3
+# reproduce_efficient with a stand-in for sweep: what it runs, keeps, resumes and refuses, and what it makes of it.
+# SPDX-License-Identifier: BSD-3-Clause
+import argparse
+import contextlib
+import io
+import os
+import shutil
+import sys
+import tempfile
+import unittest
+from unittest import mock
+
+import rosunit
+
+TEST = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, TEST)
+from ddm_launch import reproduce_efficient, step_runner  # noqa: E402
+from run_files import read_bytes, read_rows, read_yaml  # noqa: E402
+
+PACKAGE = os.path.dirname(TEST)
+WIDTHS = "encoder_widths: [25, 12, 6]"  # those of the stand-in's config.yaml
+SEEDS = ["--seeds", "100:125", "--ablation-seeds", "0:4"]
+
+
+def program(name):
+    return os.path.join(TEST, "stand_in_sweep.py") if name == "sweep" else os.path.join(PACKAGE, "scripts", name)
+
+
+class EfficientReproductionTest(unittest.TestCase):
+    maxDiff = None
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = scratch.name
+        self.out = os.path.join(self.folder, "results")
+        for name, text in (("presets/efficient", "model: {residual: true}\n"),
+                           ("presets/efficient_gravity", "model: {residual: true}\n"),
+                           ("methods/pilco_state", "trial: {num_steps: 125}\n"),
+                           ("ablations/widths", "# Narrow.\n\nmodel: {%s}\n" % WIDTHS),
+                           ("ablations/residual", "# Without residual.\n\nmodel: {residual: false, %s}\n" % WIDTHS),
+                           ("nuisances/thin_rod", "# A rod half as wide.\n"), ("nuisances/noise", "# Noise.\n")):
+            self.writeConfig(name, text)
+
+        def package_path(*names):
+            return os.path.join(self.folder if names[0] == "config" else PACKAGE, *names)
+
+        for module in (step_runner, reproduce_efficient):
+            for name, stand_in in (("program", program), ("package_path", package_path)):
+                patch = mock.patch.object(module, name, stand_in)
+                patch.start()
+                self.addCleanup(patch.stop)
+
+    def writeConfig(self, name, text):
+        path = os.path.join(self.folder, "config", name + ".yaml")
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, "w") as stream:
+            stream.write(text)
+
+    def call(self, *arguments, stops=None):
+        """Returns (exit code, output) of reproduce_efficient."""
+        environment = {} if stops is None else {"STAND_IN_STOPS": stops}
+        with io.StringIO() as output, contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
+            with mock.patch.dict(os.environ, environment):
+                try:
+                    code = reproduce_efficient.main(SEEDS + ["--out", self.out] + list(arguments))
+                except SystemExit as stop:
+                    code = stop.code
+            return code, output.getvalue()
+
+    def assertWorks(self, *arguments, **kwargs):
+        code, output = self.call(*arguments, **kwargs)
+        self.assertEqual(code, 0, output)
+        return output
+
+    def assertFails(self, words, *arguments, **kwargs):
+        code, output = self.call(*arguments, **kwargs)
+        self.assertEqual(code, 1, output)
+        for word in words:
+            self.assertIn(word, output)
+
+    def rows(self, *names):
+        return read_rows(self.out, *names)[1:]
+
+    def steps(self, part, *arguments):
+        """{step: (table, time limit, options of the sweep)} of a part."""
+        found = {}
+
+        def run_sweep(runner, step, _):
+            words = step.command(runner.out, None)[1:]
+            del words[words.index("--out"):words.index("--out") + 2]
+            found[step.name] = (step.table, step.limit_s, " ".join(words).replace(self.folder, ""))
+
+        with mock.patch.object(step_runner.StepRunner, "run_sweep", run_sweep):
+            self.call("--only", part, *arguments)
+        return found
+
+    def test_the_headline_is_the_preset_on_the_seeds_given(self):
+        self.assertEqual(self.steps("efficient"), {"efficient": (
+            "trials.csv", None, "--seeds 100:125 --preset efficient --plant pendulum --trials 15")})
+
+    def test_each_ablation_runs_the_seeds_that_the_preset_was_chosen_on(self):
+        words = "--seeds 0:4 --preset efficient --plant pendulum --trials 5"
+        self.assertEqual(self.steps("ablation"), {
+            "ablation_preset": ("ablation/preset/trials.csv", None, words),
+            "ablation_residual": ("ablation/residual/trials.csv", None,
+                                  words + " -- --config /config/ablations/residual.yaml"),
+            "ablation_widths": ("ablation/widths/trials.csv", None,
+                                words + " -- --config /config/ablations/widths.yaml")})
+
+    def test_gravity_has_the_oracle_and_pilco_beside_it(self):
+        words = " --preset efficient_gravity --plant pendulum_gravity --trials "
+        self.assertEqual(self.steps("gravity", "--pilco-seeds", "3", "--pilco-minutes", "30"), {
+            "gravity": ("gravity/trials.csv", None, "--seeds 100:120" + words + "19"),
+            "gravity_oracle": ("gravity/oracle/trials.csv", None,
+                               "--seeds 100:120" + words + "19 -- --method oracle"),
+            "gravity_pilco_state": ("gravity/pilco_state/trials.csv", 1800.0,
+                                    "--seeds 100:103" + words + "15 -- --method pilco_state")})
+
+    def test_each_nuisance_has_twenty_seeds_and_500_frames(self):
+        words = "--seeds 100:120 --preset efficient --plant pendulum --trials 4 -- --nuisance "
+        self.assertEqual(self.steps("nuisances"), {
+            "nuisance_noise": ("nuisances/noise/trials.csv", None, words + "noise"),
+            "nuisance_thin_rod": ("nuisances/thin_rod/trials.csv", None, words + "thin_rod")})
+
+    def test_all_parts_leave_their_tables_and_figures(self):
+        output = self.assertWorks()
+        self.assertEqual(len(self.rows("trials.csv")), 25 * 16)
+        self.assertEqual(self.rows("success_rate.csv")[0][:3], ["100", "25", "0.52"])  # 13 even seeds
+        self.assertEqual(self.rows("times.csv")[-2:], [["median", "32", "212", "4"], ["largest", "32", "224", "4"]])
+        differences = {(row[0], row[2]): row[4:] for row in self.rows("ablation.csv")}
+        self.assertEqual(differences["residual", "100"][:3], ["0", "0", "-0.5"])
+        self.assertEqual(differences["widths", "200 to 600"], ["0", "0", "-1", "0"])
+        self.assertEqual({row[0]: row[1] for row in self.rows("ablation.csv")},
+                         {"preset": "Full preset", "residual": "Without residual", "widths": "Narrow"})
+        self.assertEqual([row[0] for row in self.rows("gravity.csv")],
+                         20 * ["ddm"] + 16 * ["pilco_state"] + 20 * ["oracle"])
+        self.assertEqual([row[:4] for row in self.rows("nuisances.csv")], [
+            ["none", "500", "20", "1"], ["noise", "500", "20", "0"], ["thin_rod", "500", "20", "0"]])
+        for name in ("success_rate", "ablation", "gravity", "nuisances"):
+            self.assertEqual(read_bytes(self.out, name + ".png")[:4], b"\x89PNG", name)
+        for folder in ("", "gravity"):
+            self.assertEqual(read_yaml(self.out, folder, "config.yaml")["version"], "made up")
+        machine = read_yaml(self.out, "machine.yaml")
+        self.assertEqual((machine["preset"], machine["gravity_preset"]), ("efficient", "efficient_gravity"))
+        self.assertEqual({name: step["seeds_run"] for name, step in machine["steps"].items()}, {
+            "efficient": 25, "ablation_preset": 4, "ablation_residual": 4, "ablation_widths": 4, "gravity": 20,
+            "gravity_oracle": 20, "gravity_pilco_state": 4, "nuisance_noise": 20, "nuisance_thin_rod": 20})
+        self.assertIn("no   nuisance noise: success, 500 frames: >= 0.90; here 0.00 [0.00, 0.16] of 20\n", output)
+
+    def test_an_ablation_that_changes_nothing_is_told(self):
+        output = self.assertWorks("--only", "ablation")
+        self.assertIn("note: config/ablations/widths.yaml changes nothing of the preset efficient", output)
+        self.assertNotIn("config/ablations/residual.yaml", output)
+
+    def test_only_the_parts_that_are_named_are_made(self):
+        self.assertWorks("--only", "nuisances", "ablation")
+        self.assertEqual(sorted(name for name in os.listdir(self.out) if name.endswith(".png")),
+                         ["ablation.png", "nuisances.png"])
+        self.assertEqual([row[0] for row in self.rows("nuisances.csv")], ["noise", "thin_rod"])
+
+    def test_a_step_that_fails_names_its_log_and_the_same_command_goes_on(self):
+        self.assertFails(["efficient: not all seeds are finished", "logs/efficient.log", "the same command goes on"],
+                         "--only", "efficient", stops="fail:10")
+        self.assertFalse(os.path.exists(os.path.join(self.out, "trials.csv")))
+        self.assertEqual(read_yaml(self.out, "machine.yaml")["steps"]["efficient"]["seeds_run"], 10)
+        self.assertWorks("--only", "efficient")
+        self.assertIn(b"15 of 25 seeds to run", read_bytes(self.out, "logs", "efficient.log"))
+        self.assertEqual(read_yaml(self.out, "machine.yaml")["steps"]["efficient"]["seeds_run"], 25)
+
+    def test_finished_results_of_changed_settings_are_refused(self):
+        self.assertWorks("--only", "ablation")
+        self.writeConfig("ablations/residual", "# Another label.\n\nmodel: {residual: false, %s}\n" % WIDTHS)
+        self.assertWorks("--only", "ablation")  # a comment is no setting
+        self.assertIn("Another label", {row[1] for row in self.rows("ablation.csv")})
+        self.writeConfig("ablations/residual",
+                         "# Without residual.\n\nmodel: {residual: false, order: 3, %s}\n" % WIDTHS)
+        self.assertFails(["runs/ablation_residual holds results of other settings",
+                          "config residual.yaml/model/order: nothing there, 3 here"], "--only", "ablation")
+        shutil.rmtree(os.path.join(self.out, "runs", "ablation_residual"))
+        self.assertWorks("--only", "ablation")
+        self.writeConfig("presets/efficient", "model: {residual: false}\n")
+        self.assertFails(["runs/ablation_preset", "preset efficient/model/residual: True there, False here"],
+                         "--only", "ablation")
+
+    def test_seeds_that_did_not_run_are_bound_to_no_settings(self):
+        with mock.patch.object(step_runner, "program", lambda name: "/bin/false"):
+            self.assertFails(["not all seeds are finished"], "--only", "ablation")
+        self.writeConfig("presets/efficient", "model: {residual: true, order: 3}\n")
+        self.assertWorks("--only", "ablation")
+
+    def runSweep(self, runner, step, stops=""):
+        """Returns by how much the bar has moved."""
+        bar = mock.Mock()
+        with mock.patch.dict(os.environ, {"STAND_IN_STOPS": stops or ":-1"}), \
+                contextlib.redirect_stdout(io.StringIO()):
+            runner.run_sweep(step, bar)
+        return sum(call[0][0] for call in bar.update.call_args_list)
+
+    def test_a_sweep_ends_when_its_time_is_up_and_keeps_the_trials_that_are_finished(self):
+        step = step_runner.SweepStep("limited", "limited/trials.csv", range(5, 8), ["--trials", "2"], limit_s=3.0)
+        runner = step_runner.StepRunner("test", self.out, {}, None)
+        os.makedirs(runner.path("logs"))
+        expected = [["5", "0"], ["5", "1"], ["5", "2"], ["6", "0"]]
+        self.assertEqual(self.runSweep(runner, step, stops="wait:1"), 3)
+        self.assertEqual([row[:2] for row in self.rows("limited", "trials.csv")], expected)
+        self.assertGreater(runner.measured["limited"]["wall_s"], 2.5)
+
+        os.remove(runner.path("limited", "trials.csv"))
+        self.assertEqual(self.runSweep(runner, step), 3)  # no time is left: it only keeps what there is
+        self.assertEqual([row[:2] for row in self.rows("limited", "trials.csv")], expected)
+
+        step.limit_s = 60.0
+        self.assertEqual(self.runSweep(runner, step), 3)
+        self.assertEqual(len(self.rows("limited", "trials.csv")), 9)
+
+    def test_time_counts_even_if_no_seed_is_finished_in_it(self):
+        step = step_runner.SweepStep("limited", "limited/trials.csv", range(5, 8), ["--trials", "2"], limit_s=2.0)
+        runner = step_runner.StepRunner("test", self.out, {}, None)
+        os.makedirs(runner.path("logs"))
+        self.assertEqual(self.runSweep(runner, step, stops="wait:0"), 3)
+        self.assertEqual(runner.measured["limited"]["seeds_run"], 0)
+        self.assertGreater(runner.measured["limited"]["wall_s"], 1.5)
+
+    def test_a_sweep_whose_time_is_up_before_the_first_trial_has_no_table(self):
+        step = step_runner.SweepStep("limited", "limited/trials.csv", range(5, 8), ["--trials", "2"], limit_s=0.5)
+        runner = step_runner.StepRunner("test", self.out, {}, None)
+        self.assertEqual(self.runSweep(runner, step), 3)
+        self.assertFalse(os.path.exists(runner.path("limited")))
+
+    def test_a_method_without_a_table_has_no_curve(self):
+        for folder in ("gravity", "gravity/oracle"):
+            os.makedirs(os.path.join(self.out, folder), exist_ok=True)
+            open(os.path.join(self.out, folder, "trials.csv"), "w").close()
+        reproduction = reproduce_efficient.EfficientReproduction(argparse.Namespace(
+            preset="efficient", out=self.out, jobs=None, seeds=range(2), only=["gravity"]))
+        self.assertEqual([word.split("=")[0] for word in reproduction.gravity_figure()[1:3]],
+                         ["efficient_gravity", "oracle"])
+
+    def test_an_ablation_without_a_label_is_refused_before_anything_runs(self):
+        self.writeConfig("ablations/residual", "model: {residual: false}\n")
+        self.assertFails(["ablations/residual.yaml must begin with a comment", "got 'model: {residual: false}'"])
+        self.assertFalse(os.path.exists(os.path.join(self.out, "runs")))
+
+    def test_an_ablation_with_the_name_of_the_reference_is_refused(self):
+        self.writeConfig("ablations/preset", "# Preset.\n")
+        self.assertFails(["ablations/preset.yaml", "rename the file"], "--only", "ablation")
+
+    def test_a_part_without_files_is_refused_before_anything_runs(self):
+        shutil.rmtree(os.path.join(self.folder, "config", "nuisances"))
+        self.assertFails(["config/nuisances must hold a file NAME.yaml", "leave this part out with --only"])
+        self.assertFalse(os.path.exists(os.path.join(self.out, "runs")))
+
+    def test_another_preset_takes_the_place_of_both(self):
+        _, _, words = self.steps("gravity", "--preset", "debug")["gravity"]
+        self.assertIn("--preset debug --plant pendulum_gravity", words)
+
+    def test_wrong_options_end_with_code_2(self):
+        for arguments in (["--only", "figures"], ["--seeds", "100"], ["--pilco-minutes", "0"]):
+            self.assertEqual(self.call(*arguments)[0], 2)
+        self.assertFalse(os.path.exists(self.out))
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "efficient_reproduction", EfficientReproductionTest)

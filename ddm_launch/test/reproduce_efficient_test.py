@@ -1,0 +1,54 @@
+#!/usr/bin/python3
+# reproduce_efficient with the programs themselves, in the debug preset; and whether they accept each ablation.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import sys
+import tempfile
+import unittest
+
+import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from ddm_launch.reproduce_efficient import yaml_names  # noqa: E402
+from processes import call, find_program, run_experiment  # noqa: E402
+from run_files import COLUMNS, read_rows, read_yaml  # noqa: E402
+
+
+class ReproduceEfficientTest(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.out = os.path.join(scratch.name, "results")
+
+    def test_run_experiment_accepts_each_ablation_of_the_preset(self):
+        for name, path in yaml_names("ablations").items():
+            code, output = run_experiment("--preset", "efficient", "--config", path, "--out", os.devnull)
+            self.assertEqual(code, 1, "%s: %s" % (name, output))  # 2: it refuses its options
+            self.assertIn(os.devnull, output)
+
+    def test_headline_and_ablation_come_to_tables_and_figures(self):
+        code, output = call([find_program("ddm_launch", "reproduce_efficient"), "--preset", "debug", "--seeds",
+                             "100:102", "--ablation-seeds", "0:2", "--only", "efficient", "ablation", "--out",
+                             self.out], 200.0)
+        self.assertEqual(code, 0, output)
+        rows = read_rows(self.out, "trials.csv")
+        self.assertEqual(rows[0], COLUMNS)
+        self.assertEqual([row[:2] for row in rows[1:]], [[str(s), str(t)] for s in (100, 101) for t in range(16)])
+        self.assertEqual(len(read_rows(self.out, "success_rate.csv")), 17)
+        for row in read_rows(self.out, "times.csv")[1:]:
+            self.assertGreater(float(row[2]), float(row[1]) * 0.99, row)  # wall time: training and more
+        variants = ["preset"] + list(yaml_names("ablations"))
+        for name in variants:
+            self.assertEqual(len(read_rows(self.out, "ablation", name, "trials.csv")), 1 + 2 * 6, name)
+        self.assertEqual([row[0] for row in read_rows(self.out, "ablation.csv")[1:]],
+                         [name for name in variants for _ in range(8)])
+        self.assertEqual(sorted(read_yaml(self.out, "machine.yaml")["steps"]),
+                         sorted(["efficient"] + ["ablation_" + name for name in variants]))
+        for name in ("success_rate", "ablation"):
+            self.assertGreater(os.path.getsize(os.path.join(self.out, name + ".png")), 1000)
+        self.assertIn("config/ablations/residual.yaml changes nothing of the preset debug", output)
+        self.assertNotIn("config/ablations/widths.yaml", output)
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "reproduce_efficient", ReproduceEfficientTest)
