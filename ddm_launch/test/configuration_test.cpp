@@ -90,7 +90,7 @@ TEST(Configuration, ThePaperPresetHoldsTheNumbersOfThePaper) {
 TEST(Configuration, APresetThatDoesNotExistIsRefusedWithThoseThatDo) {
   EXPECT_TRUE(
       throwsNaming<std::invalid_argument>([] { configurationFiles("papier", "pendulum", {}); },
-                                          {"unknown preset 'papier'", "debug, paper"}));
+                                          {"unknown preset 'papier'", "debug, efficient, paper"}));
 }
 
 TEST(Configuration, APlantThatDoesNotExistIsRefusedWithThoseThatDo) {
