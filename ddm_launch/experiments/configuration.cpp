@@ -60,6 +60,11 @@ std::vector<std::string> contradictions(const Configuration& all) {
   require(all.mpc.max_torque <= all.model.model.max_torque,
           "mpc/max_torque must be at most model/max_torque, which scales what f sees",
           all.mpc.max_torque);
+  require(
+      all.mpc.disagreement_bonus == 0.0 || all.model.training.ensemble_size > 1,
+      "mpc/disagreement_bonus must be 0 where training/ensemble_size is 1: one model agrees with "
+      "itself",
+      all.mpc.disagreement_bonus);
   require(all.evaluation.settled_steps_strict <= all.trial.num_steps,
           "evaluation/settled_steps_strict must be at most trial/num_steps",
           all.evaluation.settled_steps_strict);

@@ -58,6 +58,7 @@ Eigen::MatrixXd rollOut(const Ddm& model, const Eigen::MatrixXd& Z,
 
 Eigen::VectorXd predictNext(const Ddm& model, const History& x, const Eigen::VectorXd& u) {
   const PredictionModel<double>& f = model.predictionModel();
+  if (x.empty()) throw std::invalid_argument("prediction: there is no feature to predict from");
   Eigen::VectorXd h(f.regressorDim());
   for (int lag = 0; lag < f.order(); ++lag) {
     h.segment(f.featureRow(lag), f.featureDim()) = x.features().col(lag);

@@ -175,23 +175,22 @@ Ddm readEnsemble(std::uint32_t version, Reader* in) {
 }
 
 void writeContent(const Ddm& model, Writer* out) {
-  Writer& content = *out;
-  writeOptions(model.options(), &content);
-  content.number<std::int32_t>(model.imageSize());
-  content.number<std::int32_t>(model.torqueDim());
-  content.number<std::uint64_t>(model.info().seed);
-  content.number<std::uint32_t>(model.info().trial);
-  content.number<std::uint32_t>(model.info().frames);
-  content.number<double>(model.info().v_r);
-  content.number<double>(model.info().v_p);
-  content.number<double>(model.info().feature_spread);
-  content.array(model.info().config.data(), model.info().config.size());
-  content.number<float>(model.pca().scale);
-  content.array(model.pca().mean.data(), model.pca().mean.size());
-  content.array(model.pca().basis.data(), model.pca().basis.size());
-  content.array(model.pca().variance.data(), model.pca().variance.size());
-  content.array(model.theta().data(), model.theta().size());
-  content.array(model.goal().data(), model.goal().size());
+  writeOptions(model.options(), out);
+  out->number<std::int32_t>(model.imageSize());
+  out->number<std::int32_t>(model.torqueDim());
+  out->number<std::uint64_t>(model.info().seed);
+  out->number<std::uint32_t>(model.info().trial);
+  out->number<std::uint32_t>(model.info().frames);
+  out->number<double>(model.info().v_r);
+  out->number<double>(model.info().v_p);
+  out->number<double>(model.info().feature_spread);
+  out->array(model.info().config.data(), model.info().config.size());
+  out->number<float>(model.pca().scale);
+  out->array(model.pca().mean.data(), model.pca().mean.size());
+  out->array(model.pca().basis.data(), model.pca().basis.size());
+  out->array(model.pca().variance.data(), model.pca().variance.size());
+  out->array(model.theta().data(), model.theta().size());
+  out->array(model.goal().data(), model.goal().size());
 }
 
 std::string reason() { return std::strerror(errno); }

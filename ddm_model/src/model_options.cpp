@@ -75,6 +75,20 @@ std::vector<std::string> TrainingOptions::problems() const {
           "training/consistency_weight must be >= 0", consistency_weight, &out);
   require(weight_decay >= 0.0 && std::isfinite(weight_decay), "training/weight_decay must be >= 0",
           weight_decay, &out);
+  require(selection_steps <= 0 || num_starts > 1,
+          "training/selection_steps must be 0 where training/num_starts is 1: there is no choice",
+          selection_steps, &out);
+  require(selection_steps > 0 || !(held_out > 0.0 && held_out < 1.0),
+          "training/held_out must be 0 where training/selection_steps is 0: what is held out is "
+          "what predictions are measured on",
+          held_out, &out);
+  if (schedule == "v_r_only") {
+    require(selection_steps == 0 && prediction_steps == 1 && consistency_weight == 0.0 &&
+                ensemble_size == 1,
+            "training/selection_steps, consistency_weight must be 0 and prediction_steps, "
+            "ensemble_size 1 where nothing is predicted: training/schedule",
+            schedule, &out);
+  }
   require(max_iterations >= 1, "training/max_iterations must be >= 1", max_iterations, &out);
   require(function_tolerance >= 0.0 && function_tolerance < 1.0,
           "training/function_tolerance must lie in [0, 1)", function_tolerance, &out);

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <string>
 
 #include "ddm_model/initialisation.h"
 #include "ddm_model/objective.h"
@@ -219,7 +221,8 @@ class Minimisation {
 };
 
 /// What starts are chosen by, where training/selection_steps asks for it: how well they predict
-/// that many steps ahead the end of each piece, which none of them has been trained to predict.
+/// that many steps ahead; with training/held_out the end of each piece that is long enough, which
+/// none of them has been trained to predict then, without it all frames.
 class Selection {
  public:
   /// @param data  in: all, out: without the frames that predictions are measured on
@@ -246,7 +249,12 @@ class Selection {
       piece.size -= size;
       held_out.pieces.push_back({piece.begin + piece.size, size});
     }
-    if (held_out.pieces.empty()) held_out.pieces = data->pieces;
+    if (held_out.pieces.empty()) {
+      throw std::invalid_argument(
+          "training/held_out holds nothing out: a share of no piece of the data (frames without a "
+          "gap) and what is left are both more than model/order = " +
+          std::to_string(order) + " frames. Record longer trials or set it to 0");
+    }
     return held_out;
   }
 
@@ -298,6 +306,9 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
     if (!minimisation.run(done, &candidate.theta, &result)) continue;
     candidate.final_cost = minimisation.cost(candidate.theta);
     candidate.chosen_by = selection ? selection->error(candidate.theta) : candidate.final_cost;
+    if (!std::isfinite(candidate.chosen_by)) {  // a roll-out that grows without bound
+      candidate.chosen_by = std::numeric_limits<double>::infinity();
+    }
     candidate.message = result.message;
     candidates.push_back(std::move(candidate));
   }

@@ -72,6 +72,7 @@ TEST(PredictNext, IsTheFirstStepOfARollOut) {
   const DataSet data = testing::toyTrial(6, 1);
   const Eigen::MatrixXd Z = encodeAll(model, data);
   History x(2, model.featureDim(), 1);
+  EXPECT_THROW(predictNext(model, x, data.torques().col(0)), std::invalid_argument);
   for (Eigen::Index t = 0; t < 4; ++t) {
     if (t > 0) x.apply(data.torques().col(t - 1));
     x.observe(Z.col(t));

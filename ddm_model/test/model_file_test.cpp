@@ -76,6 +76,43 @@ TEST(ModelFile, KeepsTheFormOfF) {
   }
 }
 
+/// Where two texts of equal size differ first.
+size_t firstDifference(const std::string& a, const std::string& b, size_t from) {
+  while (a[from] == b[from]) ++from;
+  return from;
+}
+
+TEST(ModelFile, ReadsVersionOne) {
+  const Ddm model = toyModel();
+  const auto variant = [&model](bool residual, double spread) {
+    ModelOptions options = model.options();
+    options.residual = residual;
+    ModelInfo info = model.info();
+    info.feature_spread = spread;
+    return serialiseModel(Ddm(options, model.imageSize(), model.torqueDim(), model.pca(),
+                              model.theta(), model.goal(), info));
+  };
+  double no_byte_zero;
+  const std::uint64_t pattern = 0x3f01020304050607;
+  std::memcpy(&no_byte_zero, &pattern, sizeof(pattern));
+  std::string bytes = variant(false, 0.0);
+  const size_t flags = firstDifference(bytes, variant(true, 0.0), kContentAt);
+  const size_t spread = firstDifference(bytes, variant(false, no_byte_zero), kContentAt);
+  bytes.erase(bytes.size() - 4);  // the size of the ensemble
+  bytes.erase(spread, 8);
+  bytes.erase(flags, 2);
+  const std::uint64_t size = bytes.size() - kContentAt;
+  std::memcpy(&bytes[kVersionAt + 4], &size, sizeof(size));
+  bytes[kVersionAt] = 1;
+  const Ddm back = deserialiseModel(sealed(bytes), "memory");
+  EXPECT_EQ(back.theta(), model.theta());
+  EXPECT_EQ(back.goal(), model.goal());
+  EXPECT_EQ(back.info().config, model.info().config);
+  EXPECT_FALSE(back.options().residual || back.options().increments);
+  EXPECT_EQ(back.info().feature_spread, 0.0);
+  EXPECT_TRUE(back.others().empty());
+}
+
 TEST(ModelFile, CutShortAnywhereIsRefused) {
   const std::string bytes = serialiseModel(toyModel());
   for (size_t size = 0; size < bytes.size(); ++size) {

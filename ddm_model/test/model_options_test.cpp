@@ -84,6 +84,8 @@ TEST(TrainingOptions, RefusesEachKeyOutOfRangeWithItsNameAndValue) {
       refuses(with(&Training::consistency_weight, -1.0), "training/consistency_weight", "-1"));
   EXPECT_TRUE(
       refuses(with(&Training::consistency_weight, kInf), "training/consistency_weight", "inf"));
+  EXPECT_TRUE(refuses(with(&Training::selection_steps, 4), "training/selection_steps", "4"));
+  EXPECT_TRUE(refuses(with(&Training::held_out, 0.2), "training/held_out", "0.2"));
   EXPECT_TRUE(refuses(with(&Training::weight_decay, -0.5), "training/weight_decay", "-0.5"));
   EXPECT_TRUE(refuses(with(&Training::weight_decay, kInf), "training/weight_decay", "inf"));
   EXPECT_TRUE(refuses(with(&Training::lbfgs_rank, 0), "training/lbfgs_rank", "0"));

@@ -207,13 +207,31 @@ TEST_F(Trainer, ChoosesAmongStartsByWhatIsAskedFor) {
 TEST_F(Trainer, WhatIsHeldOutIsNoTargetOfTraining) {
   training_.num_starts = 2;
   training_.selection_steps = 2;
-  const Eigen::VectorXd from_all = run().model->theta();
   training_.held_out = 0.3;
-  const Eigen::VectorXd from_most = run().model->theta();
-  EXPECT_NE(from_all, from_most);
-  // Torques of held-out frames change which start is chosen at most, not what it learns.
-  training_.held_out = 0.05;  // two frames: too few to be held out
-  EXPECT_EQ(run().model->theta(), from_all);
+  training_.ensemble_size = 2;  // both, so that the choice does not matter
+  const auto learned = [this](double torque) {
+    DataSet data(testing::kToySize, 1);
+    for (Eigen::Index t = 0; t < data_.numFrames(); ++t) {
+      const std::uint8_t* const first = data_.pixels().col(t).data();
+      Eigen::VectorXd u = data_.torques().col(t);
+      if (t >= 21 && t < 30) u.setConstant(torque);  // the end of the first piece
+      data.append(Grey(first, first + data_.numPixels()), u, t == 0 || t == 30);
+    }
+    data.setGoal(data_.goal());
+    const Ddm model = train(data, model_, training_, info_, nullptr).model.value();
+    return model.theta().norm() + model.others()[0].theta().norm();
+  };
+  EXPECT_NEAR(learned(2.0), learned(-2.0), 1e-12);
+  training_.held_out = 0.0;
+  EXPECT_GT(std::abs(learned(2.0) - learned(-2.0)), 1e-6);
+}
+
+TEST_F(Trainer, RefusesToHoldOutLessThanCanBePredicted) {
+  training_.num_starts = 2;
+  training_.selection_steps = 2;
+  training_.held_out = 0.05;  // two frames
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { run(); },
+                                                  {"training/held_out", "model/order = 2"}));
 }
 
 TEST_F(Trainer, KeepsAnEnsembleOfTheBestInTheirOrder) {

@@ -4,6 +4,7 @@
 
 #include <ddm_model/long_term_prediction.h>
 
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
@@ -15,11 +16,15 @@ namespace {
 
 DistanceCost distanceCost(const Ddm& model, const MpcOptions& options) {
   const double spread = model.info().feature_spread;
-  if (options.scale_distance && !(spread > 0.0)) {
+  if (options.scale_distance && !(spread > 0.0 && std::isfinite(spread))) {
     throw std::invalid_argument(
         "mpc/scale_distance needs a model that knows the spread of its features: train it again");
   }
-  return {options.scale_distance ? spread : 1.0, options.saturation_width, options.terminal_weight};
+  DistanceCost cost;
+  if (options.scale_distance) cost.scale = spread;
+  cost.width = options.saturation_width;
+  cost.terminal_weight = options.terminal_weight;
+  return cost;
 }
 
 }  // namespace
@@ -55,7 +60,7 @@ void MpcPolicy::Member::observe(const Grey& grey) {
 }
 
 void MpcPolicy::Member::apply(const Eigen::VectorXd& u) {
-  predicted = predictNext(model, x, u);
+  if (offset_gain > 0.0) predicted = predictNext(model, x, u);
   x.apply(u);
 }
 

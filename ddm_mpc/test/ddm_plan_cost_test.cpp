@@ -91,12 +91,14 @@ TEST_P(DdmPlanCostShapes, ValueAndPredictedFeaturesEqualASlowComputation) {
   }
 }
 
-TEST(DdmPlanCost, GradientMatchesDifferencesWithEveryDistanceCostAndResidualPrediction) {
+TEST(DdmPlanCost, GradientMatchesDifferencesWithEveryDistanceCostAndFormOfF) {
   for (const bool residual : {false, true}) {
     for (const DistanceCost& distance :
          {DistanceCost{2.0, 0.0, 1.0}, DistanceCost{0.5, 0.8, 1.0}, DistanceCost{1.5, 0.7, 10.0}}) {
       RandomModelOptions options;
       options.model.residual = residual;
+      options.model.increments = residual;
+      options.model.order = residual ? 3 : 2;
       options.gain = 0.7;
       const Ddm model = randomModel(options);
       DdmPlanCost cost(model, 6, kControlWeight, distance);

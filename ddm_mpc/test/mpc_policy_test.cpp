@@ -158,6 +158,28 @@ TEST(MpcPolicy, AveragesTheErrorsOfItsPredictionsAndForgetsThemWithTheTrial) {
   EXPECT_TRUE(next.features.col(1).isApprox(predictNext(*model, rest, next.torques.col(0)), 1e-12));
 }
 
+TEST(MpcPolicy, PlansOnTheMeanCostOfAnEnsembleWithABonusInTrialsAlone) {
+  RandomModelOptions other;
+  other.seed = 9;
+  Ddm both = randomModel({});
+  both.setOthers({randomModel(other)});
+  const auto ensemble = std::make_shared<const Ddm>(std::move(both));
+  MpcOptions options;
+  const auto costOfFirstPlan = [&options](const std::shared_ptr<const Ddm>& model,
+                                          bool evaluation) {
+    MpcPolicy policy(model, options);
+    policy.startTrial(TrialId{0, 0, evaluation});
+    policy.observe(randomGrey(8, 3));
+    return policy.plan().cost;
+  };
+  const double in_trial = costOfFirstPlan(ensemble, false);
+  const double in_evaluation = costOfFirstPlan(ensemble, true);
+  EXPECT_NE(in_trial, costOfFirstPlan(sharedModel(), false));
+  options.disagreement_bonus = 0.5;
+  EXPECT_LT(costOfFirstPlan(ensemble, false), in_trial);
+  EXPECT_EQ(costOfFirstPlan(ensemble, true), in_evaluation);
+}
+
 TEST(MpcPolicy, RefusesAnImageOfAnotherSize) {
   MpcPolicy policy(sharedModel(), MpcOptions());
   policy.startTrial(TrialId());

@@ -34,6 +34,7 @@ Eigen::MatrixXd rollOut(const Ddm& model, const Eigen::MatrixXd& Z,
 /// @param x  features and torques until t, not empty
 /// @param u  u_t [N m]                                                 [torque_dim]
 /// @return   [feature_dim]
+/// @throws std::invalid_argument if x is empty
 Eigen::VectorXd predictNext(const Ddm& model, const History& x, const Eigen::VectorXd& u);
 
 /// Error of all predictions that many steps ahead.

@@ -12,14 +12,16 @@ namespace ddm {
 ///
 ///   "DDMMODEL" | format version, uint32 | size of the content, uint64 | CRC-32 of the content |
 ///   content
+///
+/// The content of version 2 is a model and the rest of its ensemble, one after the other; version
+/// 1, which is still read, knows neither ensembles nor the flags of f and the spread of features.
 std::string serialiseModel(const Ddm& model);
 
 /// The inverse. Sizes are checked against what is there before memory is taken.
 /// @param bytes   what serialiseModel() made
 /// @param source  file or topic, for messages
-/// @throws std::runtime_error naming source and fault: not a model, another version, cut short,
-/// wrong
-///         checksum, content that makes no sense
+/// @throws std::runtime_error naming source and fault: not a model, an unknown version, cut
+///         short, wrong checksum, content that makes no sense
 Ddm deserialiseModel(const std::string& bytes, const std::string& source);
 
 /// Identity of a model: CRC-32 of its bytes, 8 hexadecimal digits. Equal ids are equal models.

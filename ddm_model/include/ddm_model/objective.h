@@ -37,8 +37,9 @@ struct TrainingData {
 ///
 /// All on PCA scores s: the pixels outside the basis add a constant that no parameter changes. The
 /// weight w = 1 / sum_t |s_t|^2 makes V about 1 for a useless model, whatever the data.
-/// The encoder runs once for both terms. Samples are walked in blocks that stay in cache; memory is
-/// taken once, at construction.
+/// Targets beyond the end of a piece count 0. The encoder runs once for both terms. Samples are
+/// walked in blocks that stay in cache; memory is taken once, for more steps ahead when they are
+/// first asked for.
 template <class Scalar>
 class JointObjective {
  public:

@@ -46,9 +46,9 @@ struct Schedule {
 ///   joint_random_init  as joint, without the PCA start
 std::vector<std::string> scheduleNames();
 
-/// The schedule training/schedule with what else `training` says of V_P. Where predictions of more
-/// than one step are asked for, each stage with V_P is warmed up by one with a single step: long
-/// predictions of an untrained f have no useful gradient.
+/// The schedule training/schedule with what else `training` says of V_P and V_W. Where predictions
+/// of more than one step are asked for, each stage with V_P is warmed up by one with a single step:
+/// long predictions of an untrained f have no useful gradient.
 Schedule makeSchedule(const TrainingOptions& training);
 
 /// @param name  one of scheduleNames()
