@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 # The ablation's figure and that of the nuisances: their dots and bars, the order of rows, and what is refused.
 # SPDX-License-Identifier: BSD-3-Clause
+import contextlib
+import io
 import os
 import sys
 
@@ -108,6 +110,12 @@ class DotPlotsTest(figure_case.FigureCase):
         self.assertDrawn(ablation_compared.main, [self.writeAblation()], COLUMN_WIDTH)
         os.remove(self.out)
         self.assertDrawn(nuisances_compared.main, [self.writeNuisances()], COLUMN_WIDTH)
+
+    def test_help_tells_of_a_per_cent_sign_only_once(self):
+        for main in (ablation_compared.main, nuisances_compared.main):
+            with contextlib.redirect_stdout(io.StringIO()) as output:
+                self.assertRaises(SystemExit, main, ["--help"])
+            self.assertNotIn("%%", output.getvalue())
 
     def test_a_variant_that_lacks_a_row_is_named(self):
         path = self.writeAblation("preset,Full preset,100,50,0.9,0.01,0,0", "preset,Full preset,200,50,0.9,0.01,0,0",

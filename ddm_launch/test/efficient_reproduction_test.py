@@ -23,10 +23,6 @@ WIDTHS = "encoder_widths: [25, 12, 6]"  # those of the stand-in's config.yaml
 SEEDS = ["--seeds", "100:125", "--ablation-seeds", "0:4"]
 
 
-def program(name):
-    return os.path.join(TEST, "stand_in_sweep.py") if name == "sweep" else os.path.join(PACKAGE, "scripts", name)
-
-
 class EfficientReproductionTest(unittest.TestCase):
     maxDiff = None
 
@@ -38,12 +34,20 @@ class EfficientReproductionTest(unittest.TestCase):
         for name, text in (("presets/efficient", "model: {residual: true}\n"),
                            ("presets/efficient_gravity", "model: {residual: true}\n"),
                            ("methods/pilco_state", "trial: {num_steps: 125}\n"),
+                           ("pendulum", "plant: {length: 1.0}\n"), ("pendulum_gravity", "plant: {gravity: 9.82}\n"),
                            ("ablations/widths", "# Narrow.\n\nmodel: {%s}\n" % WIDTHS),
                            ("ablations/residual", "# Without residual.\n\nmodel: {residual: false, %s}\n" % WIDTHS),
                            ("nuisances/thin_rod", "# A rod half as wide.\n"), ("nuisances/noise", "# Noise.\n")):
             self.writeConfig(name, text)
 
-        def package_path(*names):
+        self.writeRunExperiment("pilco_state: PILCO on the true state")
+
+        def program(name):
+            return {"sweep": os.path.join(TEST, "stand_in_sweep.py"), "run_experiment": self.run_experiment}.get(
+                name, os.path.join(PACKAGE, "scripts", name))
+
+        def package_path(*names, package="ddm_launch"):
+            self.assertEqual(package == "ddm_sim", names[-1].startswith("pendulum"), names)
             return os.path.join(self.folder if names[0] == "config" else PACKAGE, *names)
 
         for module in (step_runner, reproduce_efficient):
@@ -57,6 +61,13 @@ class EfficientReproductionTest(unittest.TestCase):
         os.makedirs(os.path.dirname(path), exist_ok=True)
         with open(path, "w") as stream:
             stream.write(text)
+
+    def writeRunExperiment(self, methods):
+        """A stand-in that tells its methods."""
+        self.run_experiment = os.path.join(self.folder, "run_experiment")
+        with open(self.run_experiment, "w") as stream:
+            stream.write("#!/bin/sh\necho '%s'\n" % methods)
+        os.chmod(self.run_experiment, 0o755)
 
     def call(self, *arguments, stops=None):
         """Returns (exit code, output) of reproduce_efficient."""
@@ -177,12 +188,36 @@ class EfficientReproductionTest(unittest.TestCase):
         self.writeConfig("ablations/residual",
                          "# Without residual.\n\nmodel: {residual: false, order: 3, %s}\n" % WIDTHS)
         self.assertFails(["runs/ablation_residual holds results of other settings",
-                          "config residual.yaml/model/order: nothing there, 3 here"], "--only", "ablation")
+                          "config 1 residual.yaml/model/order: nothing there, 3 here"], "--only", "ablation")
         shutil.rmtree(os.path.join(self.out, "runs", "ablation_residual"))
         self.assertWorks("--only", "ablation")
         self.writeConfig("presets/efficient", "model: {residual: false}\n")
         self.assertFails(["runs/ablation_preset", "preset efficient/model/residual: True there, False here"],
                          "--only", "ablation")
+
+    def test_finished_results_of_a_changed_plant_are_refused(self):
+        self.assertWorks("--only", "nuisances")
+        self.writeConfig("pendulum", "plant: {length: 1.5}\n")
+        self.assertFails(["runs/nuisance_noise", "plant pendulum/plant/length: 1.0 there, 1.5 here"],
+                         "--only", "nuisances")
+
+    def test_finished_seeds_of_unknown_settings_are_refused(self):
+        self.assertWorks("--only", "nuisances")
+        folder = os.path.join(self.out, "runs", "nuisance_noise")
+        os.remove(os.path.join(folder, "settings.yaml"))
+        self.assertFails([folder + " holds finished seeds but no settings.yaml", "remove that folder"],
+                         "--only", "nuisances")
+        for seed in range(100, 120):
+            os.remove(os.path.join(folder, "seed_%04d" % seed, "summary.yaml"))
+        self.assertWorks("--only", "nuisances")
+
+    def test_configurations_of_the_same_name_are_both_settings(self):
+        self.writeConfig("a/more", "model: {order: 2}\n")
+        self.writeConfig("b/more", "model: {order: 3}\n")
+        paths = [os.path.join(self.folder, "config", name, "more.yaml") for name in "ab"]
+        step = step_runner.SweepStep("step", "trials.csv", range(1), [], ["--config", paths[0], "--config", paths[1]])
+        self.assertEqual(step.settings(), {"config 1 more.yaml": {"model": {"order": 2}},
+                                           "config 2 more.yaml": {"model": {"order": 3}}})
 
     def test_seeds_that_did_not_run_are_bound_to_no_settings(self):
         with mock.patch.object(step_runner, "program", lambda name: "/bin/false"):
@@ -215,6 +250,41 @@ class EfficientReproductionTest(unittest.TestCase):
         self.assertEqual(self.runSweep(runner, step), 3)
         self.assertEqual(len(self.rows("limited", "trials.csv")), 9)
 
+    def test_a_sweep_whose_folder_was_removed_has_all_its_time_again(self):
+        step = step_runner.SweepStep("limited", "limited/trials.csv", range(5, 8), ["--trials", "2"], limit_s=30.0)
+        runner = step_runner.StepRunner("test", self.out, {}, None)
+        os.makedirs(runner.path("logs"))
+        self.runSweep(runner, step)
+        runner.measured["limited"].update(wall_s=30.0, seeds_run=7)
+        shutil.rmtree(step.folder(self.out))
+        self.runSweep(runner, step)
+        self.assertEqual(len(self.rows("limited", "trials.csv")), 9)
+        self.assertEqual(runner.measured["limited"]["seeds_run"], 3)
+        self.assertLess(runner.measured["limited"]["wall_s"], 30.0)
+
+    def test_time_that_a_removed_folder_had_used_is_gone_from_the_file_before_the_sweep_runs(self):
+        step = step_runner.SweepStep("limited", "limited/trials.csv", range(5, 8), ["--trials", "2"], limit_s=30.0)
+        runner = step_runner.StepRunner("test", self.out, {}, None)
+        os.makedirs(runner.path("logs"))
+        runner.measured = {"limited": {"wall_s": 30.0}, "other": {"wall_s": 1.0}}
+
+        def call_sweep(*_):
+            self.assertEqual(read_yaml(self.out, "machine.yaml")["steps"], {"other": {"wall_s": 1.0}})
+            raise KeyboardInterrupt
+
+        with mock.patch.object(runner, "call_sweep", call_sweep):
+            self.assertRaises(KeyboardInterrupt, self.runSweep, runner, step)
+
+    def test_a_sweep_whose_time_is_up_keeps_no_table_of_removed_seeds(self):
+        step = step_runner.SweepStep("limited", "limited/trials.csv", range(5, 8), ["--trials", "2"], limit_s=30.0)
+        runner = step_runner.StepRunner("test", self.out, {}, None)
+        os.makedirs(runner.path("logs"))
+        self.runSweep(runner, step)
+        shutil.rmtree(step.folder(self.out))
+        step.limit_s = 0.5  # too little to begin
+        self.runSweep(runner, step)
+        self.assertFalse(os.path.exists(runner.path("limited", "trials.csv")))
+
     def test_time_counts_even_if_no_seed_is_finished_in_it(self):
         step = step_runner.SweepStep("limited", "limited/trials.csv", range(5, 8), ["--trials", "2"], limit_s=2.0)
         runner = step_runner.StepRunner("test", self.out, {}, None)
@@ -238,6 +308,43 @@ class EfficientReproductionTest(unittest.TestCase):
         self.assertEqual([word.split("=")[0] for word in reproduction.gravity_figure()[1:3]],
                          ["efficient_gravity", "oracle"])
 
+    def test_a_preset_that_is_not_there_is_told_before_anything_runs(self):
+        path = os.path.join(self.folder, "config", "presets", "efficient_gravity.yaml")
+        os.remove(path)
+        self.assertFails(["the part gravity needs %s, which is not there: leave it out with "
+                          "--only efficient ablation nuisances" % path])
+        self.assertFalse(os.path.exists(os.path.join(self.out, "runs")))
+        self.assertWorks("--only", "efficient")
+
+    def test_a_method_a_plant_or_a_nuisance_that_is_not_there_is_told_before_anything_runs(self):
+        for name, part in (("methods/pilco_state", "gravity"), ("pendulum_gravity", "gravity"),
+                           ("pendulum", "nuisances")):
+            path = os.path.join(self.folder, "config", name + ".yaml")
+            os.rename(path, path + ".away")
+            self.assertFails(["the part %s needs %s" % (part, path)], "--only", "gravity", "nuisances")
+            os.rename(path + ".away", path)
+        path = os.path.join(self.folder, "config", "nuisances", "noise.yaml")
+        os.remove(path)
+        with mock.patch.object(reproduce_efficient, "yaml_names", lambda _: {"noise": path}):
+            self.assertFails(["the part nuisances needs " + path], "--only", "nuisances")
+        self.assertFalse(os.path.exists(os.path.join(self.out, "runs")))
+
+    def test_a_preset_that_no_part_can_do_without_must_be_another(self):
+        self.assertFails(["presets/nowhere.yaml, which is not there", "name another --preset"], "--preset", "nowhere")
+
+    def test_a_build_without_pilco_is_told_before_anything_runs_unless_pilco_is_left_out(self):
+        self.writeRunExperiment("ddm: the only one")
+        self.assertFails(["PILCO is not in this build", "--pilco-seeds 0"])
+        self.assertFalse(os.path.exists(os.path.join(self.out, "runs")))
+        self.assertWorks("--only", "nuisances")
+        self.assertWorks("--only", "gravity", "--pilco-seeds", "0")
+        self.assertEqual({row[0] for row in self.rows("gravity.csv")}, {"ddm", "oracle"})
+
+    def test_results_of_pilco_that_would_be_left_out_are_refused(self):
+        self.assertWorks("--only", "gravity")
+        self.assertFails(["gravity/pilco_state/trials.csv holds results of PILCO, which --pilco-seeds 0 leaves out"],
+                         "--only", "gravity", "--pilco-seeds", "0")
+
     def test_an_ablation_without_a_label_is_refused_before_anything_runs(self):
         self.writeConfig("ablations/residual", "model: {residual: false}\n")
         self.assertFails(["ablations/residual.yaml must begin with a comment", "got 'model: {residual: false}'"])
@@ -253,11 +360,12 @@ class EfficientReproductionTest(unittest.TestCase):
         self.assertFalse(os.path.exists(os.path.join(self.out, "runs")))
 
     def test_another_preset_takes_the_place_of_both(self):
+        self.writeConfig("presets/debug", "model: {residual: true}\n")
         _, _, words = self.steps("gravity", "--preset", "debug")["gravity"]
         self.assertIn("--preset debug --plant pendulum_gravity", words)
 
     def test_wrong_options_end_with_code_2(self):
-        for arguments in (["--only", "figures"], ["--seeds", "100"], ["--pilco-minutes", "0"]):
+        for arguments in (["--only", "figures"], ["--seeds", "100"], ["--pilco-minutes", "0"], ["--pilco-seeds", "-1"]):
             self.assertEqual(self.call(*arguments)[0], 2)
         self.assertFalse(os.path.exists(self.out))
 

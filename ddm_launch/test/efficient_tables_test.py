@@ -117,6 +117,18 @@ class EfficientTablesTest(figure_case.FigureCase):
         self.assertEqual([row[:4] for row in rows], [("none", 300, 4, 0.5), ("noise", 300, 4, 0.75)])
         self.assertEqual(rows[1][6], 0.0)
 
+    def test_nuisances_of_differing_frames_are_refused(self):
+        self.writeTrials("nuisances/delay/trials.csv", range(4), 3, lambda seed, trial: True)
+        self.writeTrials("nuisances/noise/trials.csv", range(4), 2, lambda seed, trial: True)
+        with self.assertRaisesRegex(RunFolderError, "nuisances/noise/trials.csv must end at 300 frames as that of "
+                                                    "delay, got 200"):
+            efficient_tables.nuisance_rows(self.folder, ["delay", "noise"])
+
+    def test_a_nuisance_without_known_success_is_refused(self):
+        self.write("nuisances/noise/trials.csv", "seed,trial,frames,success,final_error_deg", "0,0,100,,")
+        with self.assertRaisesRegex(RunFolderError, "nuisances/noise/trials.csv must say of some trial"):
+            efficient_tables.nuisance_rows(self.folder, ["noise"])
+
     def test_gravity_has_the_rows_of_the_methods_that_were_run(self):
         self.writeTrials("gravity/trials.csv", range(2), 2, lambda seed, trial: trial == 1)
         self.writeTrials("gravity/oracle/trials.csv", range(2), 3, lambda seed, trial: True, frames=lambda trial: 0)

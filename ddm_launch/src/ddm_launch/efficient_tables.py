@@ -97,17 +97,30 @@ def frames_text(frames):
     return "%d" % frames[0] if len(frames) == 1 else "%d to %d" % (frames[0], frames[-1])
 
 
+def nuisance_table(folder, name):
+    return os.path.join(folder, "nuisances", name, "trials.csv")
+
+
 def nuisance_rows(folder, names):
     """Rows (nuisance, frames, runs, success, interval, success_strict, interval) after the last trial.
 
-    The first row is the same seeds without any, where the headline has them.
+    The first row is the same seeds without any, where the headline has them. Raises RunFolderError if a nuisance has
+    no known success, or other frames than the first one.
     """
-    rows, frames, seeds = [], None, set()
+    rows, seeds = [], set()
     for name in names:
-        runs = read_runs(folder, "nuisances", name, "trials.csv")
-        last = success_rows(runs)[-1]
-        frames, seeds = last[0], seeds | set(runs)
-        rows.append((name,) + last)
+        runs = read_sweep(nuisance_table(folder, name), REMEDY)
+        known = success_rows(runs)
+        if not known:
+            raise RunFolderError("%s must say of some trial whether it was a success, column success is empty: use a "
+                                 "plant with an angle" % nuisance_table(folder, name))
+        rows.append((name,) + known[-1])
+        seeds |= set(runs)
+    frames = rows[0][1]
+    for name, last, *_ in rows:
+        if last != frames:
+            raise RunFolderError("%s must end at %d frames as that of %s, got %d: make it again with as many trials"
+                                 % (nuisance_table(folder, name), frames, rows[0][0], last))
     if os.path.exists(os.path.join(folder, "trials.csv")):
         runs = {seed: trials for seed, trials in read_runs(folder, "trials.csv").items() if seed in seeds}
         rows[:0] = [("none",) + row for row in success_rows(runs) if row[0] == frames]

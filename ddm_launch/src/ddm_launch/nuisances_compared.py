@@ -35,7 +35,7 @@ def draw(path, out):
 def main(arguments=None):
     parser = argparse.ArgumentParser(
         prog="nuisances_compared",
-        description="Draws the success rate under each nuisance, strict and not, with Wilson's 95 %% intervals.")
+        description="Draws the success rate under each nuisance, strict and not, with Wilson's 95 % intervals.")
     parser.add_argument("table", metavar="FILE.csv", help="nuisances.csv of reproduce_efficient")
     parser.add_argument("--out", metavar="FILE.png", required=True, help="picture to write")
     options = parser.parse_args(arguments)

@@ -2,15 +2,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
 import os
+import re
 
 from ddm_launch.efficient_bars import write_bars
 from ddm_launch.efficient_tables import PRESET, write_ablation, write_gravity, write_nuisances, write_success
-from ddm_launch.step_runner import Failure, StepRunner, SweepStep, package_path, program, verdict_lines
+from ddm_launch.step_runner import (Failure, StepRunner, SweepStep, package_path, program, require_pilco_in_build,
+                                    verdict_lines)
 from ddm_launch.sweep import positive, seed_range
 from ddm_launch.sweep_folder import flat, read_yaml
 
 PARTS = ("efficient", "ablation", "gravity", "nuisances")
 TRIALS, ABLATION_TRIALS, GRAVITY_TRIALS, NUISANCE_TRIALS = 15, 5, 19, 4
+PILCO_TABLE = "gravity/pilco_state/trials.csv"
 PILCO_TRIALS = 15  # of 125 frames: 2000 as the others
 NUM_FEW_SEEDS = 20  # with gravity, and of each nuisance
 FULL_LABEL = "Full preset"
@@ -35,8 +38,14 @@ parts (--only), in this order, and what they leave in DIR:
 beside them:
   bars.csv             what the results must reach, and whether they do
   machine.yaml         of each step: version of the code, processor, time, peak memory of a process
-  runs/, logs/         everything that the programs left behind; runs/*/settings.yaml: preset and files that a step was
-                       made with. A step whose files have changed since is refused"""
+  runs/, logs/         everything that the programs left behind; runs/*/settings.yaml: what the preset, the plant's and the
+                       other files of a step said. A step whose files have changed since is refused"""
+
+
+def count(text):
+    if not re.match(r"\d{1,6}$", text):
+        raise argparse.ArgumentTypeError("must be a whole number >= 0, got '%s'" % text)
+    return int(text)
 
 
 def yaml_names(folder):
@@ -84,6 +93,9 @@ class EfficientReproduction(StepRunner):
             self.nuisances = yaml_names("nuisances")
         self.labels.update((name, label_of(path)) for name, path in self.ablations.items())
         steps = {part: getattr(self, part + "_steps")() for part in self.parts}
+        self.require_files(steps)
+        if "gravity" in self.parts:
+            self.require_pilco()
         with self.progress(sum(len(step.seeds) for of_part in steps.values() for step in of_part) +
                            2 * len(self.parts)) as bar:
             for part in self.parts:
@@ -95,6 +107,28 @@ class EfficientReproduction(StepRunner):
                 self.draw([("figure_of_" + part, getattr(self, part + "_figure")())], bar)
             bar.set_description("done")
         return self.idle_ablations() + verdict_lines(write_bars(self.out))
+
+    def require_files(self, steps):
+        """Before hours have passed: all parts must have their presets and other files."""
+        missing = {}  # part: paths
+        for part, of_part in steps.items():
+            paths = [path for step in of_part for path in step.files().values() if not os.path.isfile(path)]
+            if paths:
+                missing[part] = sorted(set(paths))
+        if missing:
+            rest = [part for part in self.parts if part not in missing]
+            raise Failure("%s: %s" % (
+                "; ".join("the part %s needs %s, which is not there" % (part, " and ".join(paths))
+                          for part, paths in missing.items()),
+                "leave it out with --only %s" % " ".join(rest) if rest else "name another --preset"))
+
+    def require_pilco(self):
+        """Before hours have passed: PILCO must be there where it is wanted, and no results of it where it is not."""
+        if self.options.pilco_seeds:
+            require_pilco_in_build("--pilco-seeds 0")
+        elif os.path.exists(self.path(PILCO_TABLE)):
+            raise Failure("%s holds results of PILCO, which --pilco-seeds 0 leaves out: remove it, leave out that "
+                          "option, or use another --out" % self.path(PILCO_TABLE))
 
     def sweep_step(self, name, folder, seeds, trials, more=(), preset=None, plant="pendulum", limit_s=None):
         words = ["--preset", preset or self.preset, "--plant", plant, "--trials", str(trials)]
@@ -115,10 +149,13 @@ class EfficientReproduction(StepRunner):
             more = [] if method is None else ["--method", method]
             return self.sweep_step(name, folder, seeds, trials, more, self.gravity_preset, "pendulum_gravity", limit_s)
 
-        return [step("gravity", "gravity", self.few_seeds, GRAVITY_TRIALS, None),
-                step("gravity_oracle", "gravity/oracle", self.few_seeds, GRAVITY_TRIALS, "oracle"),
-                step("gravity_pilco_state", "gravity/pilco_state", self.few_seeds[:self.options.pilco_seeds],
-                     PILCO_TRIALS, "pilco_state", 60.0 * self.options.pilco_minutes)]
+        steps = [step("gravity", "gravity", self.few_seeds, GRAVITY_TRIALS, None),
+                 step("gravity_oracle", "gravity/oracle", self.few_seeds, GRAVITY_TRIALS, "oracle")]
+        pilco_seeds = self.few_seeds[:self.options.pilco_seeds]
+        if pilco_seeds:
+            steps.append(step("gravity_pilco_state", os.path.dirname(PILCO_TABLE), pilco_seeds, PILCO_TRIALS,
+                              "pilco_state", 60.0 * self.options.pilco_minutes))
+        return steps
 
     def nuisances_steps(self):
         return [self.sweep_step("nuisance_" + name, os.path.join("nuisances", name), self.few_seeds, NUISANCE_TRIALS,
@@ -151,7 +188,7 @@ class EfficientReproduction(StepRunner):
 
     def gravity_figure(self):
         return self.success_figure("gravity", [(self.gravity_preset, self.path("gravity", "trials.csv")),
-                                               ("PILCO, state", self.path("gravity", "pilco_state", "trials.csv")),
+                                               ("PILCO, state", self.path(PILCO_TABLE)),
                                                ("oracle", self.path("gravity", "oracle", "trials.csv"))])
 
     def nuisances_figure(self):
@@ -188,8 +225,8 @@ def main(arguments=None):
     parser.add_argument("--preset", default="efficient",
                         help="default efficient, and efficient_gravity with gravity; debug is for a quick look at the "
                         "path")
-    parser.add_argument("--pilco-seeds", type=positive, default=4, metavar="N",
-                        help="PILCO with gravity has the first N seeds, default 4")
+    parser.add_argument("--pilco-seeds", type=count, default=4, metavar="N",
+                        help="PILCO with gravity has the first N seeds, default 4; 0: without PILCO")
     parser.add_argument("--pilco-minutes", type=positive, default=240, metavar="M",
                         help="end PILCO after M minutes in all, default 240: then it has the rows of the trials that "
                         "are finished, and fewer seeds at more frames")

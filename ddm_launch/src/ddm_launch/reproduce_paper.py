@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
 import os
-import subprocess
 
 from ddm_launch import pilco_runs, pilco_tables
 from ddm_launch.paper_tables import write_csv, write_tables
 from ddm_launch.run_folder import Evaluation, read_trials
 from ddm_launch.schedules import SCHEDULES
-from ddm_launch.step_runner import Failure, StepRunner, SweepStep, package_path, program, verdict_lines
+from ddm_launch.step_runner import (Failure, StepRunner, SweepStep, package_path, program, require_pilco_in_build,
+                                    verdict_lines)
 from ddm_launch.sweep import positive
 
 NUM_ANGLE_SEEDS = 16  # as in the paper's Fig. 7
@@ -115,10 +115,7 @@ class Reproduction(StepRunner):
                 raise Failure("%s holds results of PILCO, which tables without it would contradict: leave out "
                               "--without-pilco, or use another folder" % self.out)
             return
-        about = subprocess.run([program("run_experiment"), "--help"], stdout=subprocess.PIPE, universal_newlines=True)
-        if "pilco_state:" not in about.stdout:
-            raise Failure("PILCO is not in this build of run_experiment: build with -DDDM_PILCO=ON, or say "
-                          "--without-pilco")
+        require_pilco_in_build("--without-pilco")
 
     def collect(self):
         """What the figures need of single runs."""

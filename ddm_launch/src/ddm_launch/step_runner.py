@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What reproduce_paper and reproduce_efficient share. Each is a StepRunner that says what to run (work())."""
 import csv
+import glob
 import os
 import platform
 import re
@@ -19,7 +20,10 @@ from ddm_launch.interruption import Interrupted, raised_as_exception
 from ddm_launch.run_folder import RunFolderError
 from ddm_launch.sweep_folder import differences, read_yaml, write_file
 
-FOLDERS = {"--preset": "presets", "--method": "methods", "--nuisance": "nuisances"}  # of config/, by option
+# Where the file NAME.yaml lies that an option names: package, folder of its config/.
+FOLDERS = {"--preset": ("ddm_launch", "presets"), "--method": ("ddm_launch", "methods"),
+           "--nuisance": ("ddm_launch", "nuisances"), "--plant": ("ddm_sim", "")}
+METHODS_WITHOUT_FILE = ("ddm", "oracle")
 TIME_IS_UP = 124  # exit code of timeout(1)
 
 
@@ -35,8 +39,15 @@ def program(name, package="ddm_launch"):
     return found[0]
 
 
-def package_path(*names):
-    return os.path.join(roslib.packages.get_pkg_dir("ddm_launch"), *names)
+def package_path(*names, package="ddm_launch"):
+    return os.path.join(roslib.packages.get_pkg_dir(package), *names)
+
+
+def require_pilco_in_build(without):
+    """without: the option that leaves PILCO out."""
+    about = subprocess.run([program("run_experiment"), "--help"], stdout=subprocess.PIPE, universal_newlines=True)
+    if "pilco_state:" not in about.stdout:
+        raise Failure("PILCO is not in this build of run_experiment: build with -DDDM_PILCO=ON, or say %s" % without)
 
 
 class SweepStep:
@@ -68,16 +79,22 @@ class SweepStep:
         """{seed: its run folder} of the first seeds."""
         return {seed: self.seed_folder(out, seed) for seed in self.seeds[:most_seeds]}
 
-    def settings(self):
-        """What the files that this step names say, by the kind and name of each."""
-        words, files = list(self.words) + list(self.more), {}
+    def files(self):
+        """{kind and name: path} of the files that this step names. Those of --config are counted: a later one has the
+        last word, and two may have the same name."""
+        words, files, num_configs = list(self.words) + list(self.more), {}, 0
         for option, value in zip(words, words[1:]):
             if option == "--config":
-                files["config " + os.path.basename(value)] = read_yaml(value)
-            elif option in FOLDERS:
-                files["%s %s" % (option[2:], value)] = read_yaml(
-                    package_path("config", FOLDERS[option], value + ".yaml"))
+                num_configs += 1
+                files["config %d %s" % (num_configs, os.path.basename(value))] = value
+            elif option in FOLDERS and not (option == "--method" and value in METHODS_WITHOUT_FILE):
+                package, folder = FOLDERS[option]
+                files["%s %s" % (option[2:], value)] = package_path("config", folder, value + ".yaml", package=package)
         return files
+
+    def settings(self):
+        """What these files say."""
+        return {name: read_yaml(path) for name, path in self.files().items()}
 
 
 class StepRunner:
@@ -132,6 +149,7 @@ class StepRunner:
     def run_sweep(self, step, bar):
         """Runs the seeds that are not finished, moves the bar by each that is, and keeps the table."""
         bar.set_description(step.name)
+        self.forget_removed(step)
         self.require_settings(step)
         start, code, num_seen = time.monotonic(), TIME_IS_UP, 0
         left_s = self.time_left(step)
@@ -147,6 +165,12 @@ class StepRunner:
             self.keep(os.path.join(step.folder(self.out), "sweep.csv"), step.table)
         else:
             self.keep_finished_trials(step)
+
+    def forget_removed(self, step):
+        """A step whose folder was removed begins anew: its measurements, and the time that it has used, are gone."""
+        if step.name in self.measured and not os.path.isdir(step.folder(self.out)):
+            del self.measured[step.name]
+            self.write_machine()
 
     def time_left(self, step):
         """Of a step's limit [s], after all calls so far; None: it has no limit."""
@@ -184,8 +208,14 @@ class StepRunner:
     def require_settings(self, step):
         """A sweep does not look at finished seeds again: they must not come from files that have changed since."""
         folder = step.folder(self.out)
-        there = read_yaml(os.path.join(folder, "settings.yaml"))
-        found = differences(there, step.settings()) if there else []
+        path = os.path.join(folder, "settings.yaml")
+        if not os.path.exists(path):
+            summaries = glob.glob(os.path.join(glob.escape(folder), "seed_*", "summary.yaml"))
+            if any(read_yaml(summary).get("finished") is True for summary in summaries):
+                raise Failure("%s holds finished seeds but no settings.yaml, which says what they were made with: "
+                              "remove that folder, or use another --out" % folder)
+            return
+        found = differences(read_yaml(path), step.settings())
         if found:
             raise Failure("%s holds results of other settings: remove that folder, or use another --out:\n - %s" % (
                 folder, "\n - ".join(found)))
@@ -195,7 +225,8 @@ class StepRunner:
                    yaml.safe_dump(step.settings(), sort_keys=False))
 
     def keep_finished_trials(self, step):
-        """The table of a sweep whose time was up: of each seed as many trials as it has. None: no table."""
+        """The table of a sweep whose time was up: of each seed as many trials as it has. Without any there is no
+        table, nor one of seeds that have been removed."""
         lines = []
         for folder in step.seed_folders(self.out).values():
             path = os.path.join(folder, "trials.csv")
@@ -206,6 +237,8 @@ class StepRunner:
         if lines:
             os.makedirs(os.path.dirname(self.path(step.table)), exist_ok=True)
             write_file(self.path(step.table), "\n".join(lines) + "\n")
+        elif os.path.exists(self.path(step.table)):
+            os.remove(self.path(step.table))
 
     def add_measurement(self, step, num_run, wall_s, peak_memory_mb):
         """Keeps what a call took. Calls add up; seeds that an interruption cut short count with their time alone."""
