@@ -47,7 +47,7 @@ class ReproduceEfficientTest(unittest.TestCase):
         for name in ("success_rate", "ablation"):
             self.assertGreater(os.path.getsize(os.path.join(self.out, name + ".png")), 1000)
         self.assertIn("config/ablations/residual.yaml changes nothing of the preset debug", output)
-        self.assertNotIn("config/ablations/widths.yaml", output)
+        self.assertNotIn("config/ablations/auto_encoder_widths.yaml", output)
 
 
 if __name__ == "__main__":
