@@ -104,6 +104,22 @@ def run_experiment(*arguments, limit_s=60.0, **kwargs):
     return call([find_program("ddm_launch", "run_experiment")] + list(arguments), limit_s, **kwargs)
 
 
+def run_both_drivers(scratch, seed, trials, arguments, config=None):
+    """One experiment by the nodes and by run_experiment: preset, plant or nuisance by name in `arguments`, and the
+    text of a further file. Returns their folders and their outputs, the nodes' first."""
+    arguments = dict(arguments, seed=seed, trials=trials)
+    if config:
+        arguments["config"] = os.path.join(scratch, "config.yaml")
+        with open(arguments["config"], "w") as stream:
+            stream.write(config)
+    nodes, process = os.path.join(scratch, "nodes"), os.path.join(scratch, "process")
+    _, nodes_output = roslaunch(scratch, "experiment.launch", "runs:=" + nodes,
+                                *["%s:=%s" % item for item in arguments.items()])
+    _, process_output = run_experiment("--out", process,
+                                       *[word for key, value in arguments.items() for word in ("--" + key, value)])
+    return (nodes, process), (nodes_output, process_output)
+
+
 def start_roslaunch(log_folder, *arguments, port=None, folder=None):
     """Starts `roslaunch ddm_launch ...` with a master of its own; port 0 joins the master that runs already."""
     environment = dict(line_by_line(), ROS_HOME=log_folder, ROS_HOSTNAME="localhost")

@@ -10,7 +10,7 @@ import unittest
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import roslaunch, run_experiment  # noqa: E402
+from processes import run_both_drivers  # noqa: E402
 from run_files import differences, expected_files, read_rows, torque_files  # noqa: E402
 
 TRIALS = 3
@@ -22,11 +22,8 @@ class RosEqualsProcessTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.scratch = tempfile.mkdtemp()
-        cls.nodes, cls.process = os.path.join(cls.scratch, "nodes"), os.path.join(cls.scratch, "process")
-        _, cls.nodes_output = roslaunch(cls.scratch, "experiment.launch", "preset:=paper", "plant:=pendulum", "seed:=4",
-                                        "trials:=%d" % TRIALS, "runs:=" + cls.nodes)
-        _, cls.process_output = run_experiment("--preset", "paper", "--plant", "pendulum", "--seed", 4,
-                                               "--trials", TRIALS, "--out", cls.process)
+        folders, outputs = run_both_drivers(cls.scratch, 4, TRIALS, {"preset": "paper", "plant": "pendulum"})
+        (cls.nodes, cls.process), (cls.nodes_output, cls.process_output) = folders, outputs
 
     @classmethod
     def tearDownClass(cls):

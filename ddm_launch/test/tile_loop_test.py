@@ -10,7 +10,7 @@ import unittest
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import roslaunch, run_experiment  # noqa: E402
+from processes import run_both_drivers  # noqa: E402
 from run_files import differences, expected_files, read_rows, read_yaml  # noqa: E402
 
 TRIALS = 1
@@ -23,14 +23,8 @@ class TileLoopTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.scratch = tempfile.mkdtemp()
-        config = os.path.join(cls.scratch, "quick.yaml")
-        with open(config, "w") as stream:
-            stream.write(QUICK)
-        cls.nodes, cls.process = os.path.join(cls.scratch, "nodes"), os.path.join(cls.scratch, "process")
-        _, cls.nodes_output = roslaunch(cls.scratch, "experiment.launch", "preset:=debug", "plant:=moving_tile",
-                                        "seed:=4", "trials:=%d" % TRIALS, "config:=" + config, "runs:=" + cls.nodes)
-        _, cls.process_output = run_experiment("--preset", "debug", "--plant", "moving_tile", "--seed", 4, "--trials",
-                                               TRIALS, "--config", config, "--out", cls.process)
+        folders, outputs = run_both_drivers(cls.scratch, 4, TRIALS, {"preset": "debug", "plant": "moving_tile"}, QUICK)
+        (cls.nodes, cls.process), (cls.nodes_output, cls.process_output) = folders, outputs
 
     @classmethod
     def tearDownClass(cls):

@@ -180,6 +180,31 @@ TEST(MpcPolicy, PlansOnTheMeanCostOfAnEnsembleWithABonusInTrialsAlone) {
   EXPECT_EQ(costOfFirstPlan(ensemble, true), in_evaluation);
 }
 
+TEST(MpcPolicy, TheCostOfAPlanIsThatOfEachKeyForIt) {
+  const auto costOfFirstPlan = [](const MpcOptions& options) {
+    Ddm model = randomModel({});
+    ModelInfo info = model.info();
+    info.feature_spread = 2.0;
+    const auto known =
+        std::make_shared<const Ddm>(model.options(), model.imageSize(), model.torqueDim(),
+                                    model.pca(), model.theta(), model.goal(), info);
+    MpcPolicy policy(known, options);
+    policy.startTrial(TrialId());
+    policy.observe(randomGrey(8, 3));
+    return policy.plan().cost;
+  };
+  const double plain = costOfFirstPlan(MpcOptions());
+  MpcOptions options;
+  options.scale_distance = true;
+  EXPECT_LT(costOfFirstPlan(options), plain);
+  options = MpcOptions();
+  options.saturation_width = 0.1;
+  EXPECT_LT(costOfFirstPlan(options), plain);
+  options = MpcOptions();
+  options.terminal_weight = 100.0;
+  EXPECT_GT(costOfFirstPlan(options), plain);
+}
+
 TEST(MpcPolicy, RefusesAnImageOfAnotherSize) {
   MpcPolicy policy(sharedModel(), MpcOptions());
   policy.startTrial(TrialId());

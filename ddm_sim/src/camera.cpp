@@ -125,8 +125,8 @@ std::vector<std::uint8_t> Camera::expose(const std::vector<std::uint8_t>& plant,
   std::normal_distribution<double> standard_normal;
   std::vector<std::uint8_t> bytes(plant.size());
   for (std::size_t i = 0; i < plant.size(); ++i) {
-    const double rod = plant[i] / 255.0;
-    double grey = brightness * (rod + (1.0 - rod) * background_[i]);
+    const double bright = plant[i] / 255.0;
+    double grey = brightness * (bright + (1.0 - bright) * background_[i]);
     if (options_.noise_std > 0.0) grey += options_.noise_std * standard_normal(*noise);
     bytes[i] = static_cast<std::uint8_t>(255.0 * std::clamp(grey, 0.0, 1.0) + 0.5);
   }
