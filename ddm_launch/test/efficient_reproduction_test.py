@@ -37,6 +37,8 @@ class EfficientReproductionTest(unittest.TestCase):
                            ("pendulum", "plant: {length: 1.0}\n"), ("pendulum_gravity", "plant: {gravity: 9.82}\n"),
                            ("ablations/widths", "# Narrow.\n\nmodel: {%s}\n" % WIDTHS),
                            ("ablations/residual", "# Without residual.\n\nmodel: {residual: false, %s}\n" % WIDTHS),
+                           ("tried/starts", "# 8 starts.\n\ntraining: {num_starts: 8}\n"),
+                           ("sparse_gp", "sparse_gp: {max_points: 300}\n"),
                            ("nuisances/thin_rod", "# A rod half as wide.\n"), ("nuisances/noise", "# Noise.\n")):
             self.writeConfig(name, text)
 
@@ -120,6 +122,12 @@ class EfficientReproductionTest(unittest.TestCase):
             "ablation_widths": ("ablation/widths/trials.csv", None,
                                 words + " -- --config /config/ablations/widths.yaml")})
 
+    def test_what_was_tried_stands_beside_the_reference_of_the_ablation(self):
+        words = "--seeds 0:4 --preset efficient --plant pendulum --trials "
+        self.assertEqual(self.steps("tried"), {
+            "ablation_preset": ("ablation/preset/trials.csv", None, words + "5"),
+            "tried_starts": ("tried/starts/trials.csv", None, words + "1 -- --config /config/tried/starts.yaml")})
+
     def test_gravity_has_the_oracle_and_pilco_beside_it(self):
         words = " --preset efficient_gravity --plant pendulum_gravity --trials "
         self.assertEqual(self.steps("gravity", "--pilco-seeds", "3", "--pilco-minutes", "30"), {
@@ -127,7 +135,7 @@ class EfficientReproductionTest(unittest.TestCase):
             "gravity_oracle": ("gravity/oracle/trials.csv", None,
                                "--seeds 100:120" + words + "19 -- --method oracle"),
             "gravity_pilco_state": ("gravity/pilco_state/trials.csv", 1800.0,
-                                    "--seeds 100:103" + words + "15 -- --method pilco_state")})
+                                    "--seeds 100:103" + words + "15 -- --method pilco_state --config /config/sparse_gp.yaml")})
 
     def test_each_nuisance_has_twenty_seeds_and_500_frames(self):
         words = "--seeds 100:120 --preset efficient --plant pendulum --trials 4 -- --nuisance "
@@ -149,14 +157,17 @@ class EfficientReproductionTest(unittest.TestCase):
                          20 * ["ddm"] + 16 * ["pilco_state"] + 20 * ["oracle"])
         self.assertEqual([row[:4] for row in self.rows("nuisances.csv")], [
             ["none", "500", "20", "1"], ["noise", "500", "20", "0"], ["thin_rod", "500", "20", "0"]])
-        for name in ("success_rate", "ablation", "gravity", "nuisances"):
+        self.assertEqual([row[:3] for row in self.rows("tried.csv")], [
+            [name, label, frames] for name, label in (("preset", "Full preset"), ("starts", "8 starts"))
+            for frames in ("100", "200", "100 to 200")])
+        for name in ("success_rate", "ablation", "tried", "gravity", "nuisances"):
             self.assertEqual(read_bytes(self.out, name + ".png")[:4], b"\x89PNG", name)
         for folder in ("", "gravity"):
             self.assertEqual(read_yaml(self.out, folder, "config.yaml")["version"], "made up")
         machine = read_yaml(self.out, "machine.yaml")
         self.assertEqual((machine["preset"], machine["gravity_preset"]), ("efficient", "efficient_gravity"))
         self.assertEqual({name: step["seeds_run"] for name, step in machine["steps"].items()}, {
-            "efficient": 25, "ablation_preset": 4, "ablation_residual": 4, "ablation_widths": 4, "gravity": 20,
+            "efficient": 25, "ablation_preset": 4, "ablation_residual": 4, "ablation_widths": 4, "tried_starts": 4, "gravity": 20,
             "gravity_oracle": 20, "gravity_pilco_state": 4, "nuisance_noise": 20, "nuisance_thin_rod": 20})
         self.assertIn("no   nuisance noise: success, 500 frames: >= 0.90; here 0.00 [0.00, 0.16] of 20\n", output)
 
@@ -312,7 +323,7 @@ class EfficientReproductionTest(unittest.TestCase):
         path = os.path.join(self.folder, "config", "presets", "efficient_gravity.yaml")
         os.remove(path)
         self.assertFails(["the part gravity needs %s, which is not there: leave it out with "
-                          "--only efficient ablation nuisances" % path])
+                          "--only efficient ablation tried nuisances" % path])
         self.assertFalse(os.path.exists(os.path.join(self.out, "runs")))
         self.assertWorks("--only", "efficient")
 

@@ -81,7 +81,7 @@ class EfficientTablesTest(figure_case.FigureCase):
         return {"preset": "Full preset", "steps": "Without steps"}
 
     def test_an_ablation_is_the_difference_paired_by_seed(self):
-        rows = efficient_tables.ablation_rows(self.folder, self.writeAblation())
+        rows = efficient_tables.variant_rows(self.folder, "ablation", self.writeAblation())
         self.assertEqual([row[:4] for row in rows], [(variant, label, frames, 4) for variant, label in (
             ("preset", "Full preset"), ("steps", "Without steps")) for frames in (
                 "100", "200", "300", "100 to 300", "200 to 300")])
@@ -100,14 +100,35 @@ class EfficientTablesTest(figure_case.FigureCase):
     def test_only_seeds_of_both_count_in_an_ablation(self):
         labels = self.writeAblation()
         self.writeTrials("ablation/steps/trials.csv", range(1, 6), 3, lambda seed, trial: False)
-        rows = [row for row in efficient_tables.ablation_rows(self.folder, labels) if row[0] == "steps"]
+        rows = [row for row in efficient_tables.variant_rows(self.folder, "ablation", labels) if row[0] == "steps"]
         self.assertEqual([(row[3], row[4], row[6], row[7]) for row in rows], [(3, 0.0, -1.0, 0.0)] * 5)
 
     def test_an_ablation_without_a_common_seed_is_refused(self):
         labels = self.writeAblation()
         self.writeTrials("ablation/steps/trials.csv", range(7, 9), 3, lambda seed, trial: True)
         with self.assertRaisesRegex(RunFolderError, "no seed has 100 frames of both steps and the preset itself"):
-            efficient_tables.ablation_rows(self.folder, labels)
+            efficient_tables.variant_rows(self.folder, "ablation", labels)
+
+    def test_other_variants_are_compared_with_the_same_reference_at_frames_that_each_has(self):
+        self.writeAblation()
+        self.writeTrials("tried/ensemble/trials.csv", range(4), 2, lambda seed, trial: seed != 3)
+        self.writeTrials("tried/starts/trials.csv", range(4), 3, lambda seed, trial: True)
+        rows = efficient_tables.variant_rows(self.folder, "tried", {"preset": "Full preset", "ensemble": "Ensemble",
+                                                                    "starts": "Starts"})
+        self.assertEqual([row[:3] for row in rows], [
+            (variant, label, frames) for variant, label in (
+                ("preset", "Full preset"), ("ensemble", "Ensemble"), ("starts", "Starts"))
+            for frames in ("100", "200", "100 to 200")])
+        differences = {(row[0], row[2]): row[6] for row in rows}
+        self.assertEqual((differences["ensemble", "100"], differences["ensemble", "200"]), (0.0, -0.25))
+        self.assertEqual(differences["starts", "100"], 0.25)
+
+    def test_variants_without_a_common_number_of_frames_are_refused(self):
+        self.writeAblation()
+        self.writeTrials("tried/ensemble/trials.csv", range(4), 2, lambda seed, trial: True,
+                         frames=lambda trial: 30 * (trial + 1))
+        with self.assertRaisesRegex(RunFolderError, "tried: no number of frames is known of ensemble and the preset"):
+            efficient_tables.variant_rows(self.folder, "tried", {"preset": "Full preset", "ensemble": "Ensemble"})
 
     def test_nuisances_are_told_after_the_last_trial_beside_the_same_seeds_without_any(self):
         self.writeTrials("trials.csv", range(6), 4, lambda seed, trial: seed < 2)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# reproduce_efficient with the programs themselves, in the debug preset; and whether they accept each ablation.
+# reproduce_efficient with the programs themselves, in the debug preset; and whether they accept each variant.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import sys
@@ -9,7 +9,7 @@ import unittest
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch.reproduce_efficient import yaml_names  # noqa: E402
+from ddm_launch.reproduce_efficient import VARIANTS, yaml_names  # noqa: E402
 from processes import call, find_program, run_experiment  # noqa: E402
 from run_files import COLUMNS, read_rows, read_yaml  # noqa: E402
 
@@ -20,11 +20,18 @@ class ReproduceEfficientTest(unittest.TestCase):
         self.addCleanup(scratch.cleanup)
         self.out = os.path.join(scratch.name, "results")
 
-    def test_run_experiment_accepts_each_ablation_of_the_preset(self):
-        for name, path in yaml_names("ablations").items():
-            code, output = run_experiment("--preset", "efficient", "--config", path, "--out", os.devnull)
-            self.assertEqual(code, 1, "%s: %s" % (name, output))  # 2: it refuses its options
-            self.assertIn(os.devnull, output)
+    def assertAccepts(self, *arguments):
+        code, output = run_experiment(*arguments, "--out", os.devnull)
+        self.assertEqual(code, 1, "%s: %s" % (arguments, output))  # 2: it refuses its options
+        self.assertIn(os.devnull, output)
+
+    def test_run_experiment_accepts_each_variant_of_the_preset(self):
+        for path in [path for part in VARIANTS.values() for path in yaml_names(part).values()]:
+            self.assertAccepts("--preset", "efficient", "--config", path)
+
+    def test_run_experiment_accepts_the_preset_for_gravity_with_each_method(self):
+        for method in ("ddm", "oracle"):
+            self.assertAccepts("--preset", "efficient_gravity", "--plant", "pendulum_gravity", "--method", method)
 
     def test_headline_and_ablation_come_to_tables_and_figures(self):
         code, output = call([find_program("ddm_launch", "reproduce_efficient"), "--preset", "debug", "--seeds",

@@ -70,17 +70,25 @@ def mean_success(runs, frames):
     return means
 
 
-def ablation_rows(folder, labels):
+def variant_rows(folder, part, labels):
     """Rows (variant, label, frames, seeds, success, its standard error, difference to the preset, its standard error).
 
-    labels: {variant: label}; the results of each lie in FOLDER/ablation/VARIANT, those of the preset itself in PRESET.
-    Differences are paired by seed. Single frames come first, then the mean over all, and over all but the first.
+    labels: {variant: label}; the results of each lie in FOLDER/PART/VARIANT, those of the preset itself, PRESET, in
+    FOLDER/ablation. Differences are paired by seed. Single frames come first, those that each variant has; then the
+    mean over all, and over all but the first.
     """
-    preset, rows = read_runs(folder, "ablation", PRESET, "trials.csv"), []
-    frames = [row[0] for row in success_rates(preset.values())]
-    groups = [[count] for count in frames] + [part for part in (frames, frames[1:]) if len(part) > 1]
+    rows, variants = [], {name: read_runs(folder, "ablation" if name == PRESET else part, name, "trials.csv")
+                          for name in labels}
+    preset = variants[PRESET]
+    frames = sorted(set.intersection(*({row[0] for row in success_rates(runs.values())}
+                                       for runs in variants.values())))
+    if not frames:
+        raise RunFolderError("%s: no number of frames is known of %s and the preset itself: run each with as many "
+                             "frames a trial" % (os.path.join(folder, part), ", ".join(
+                                 name for name in labels if name != PRESET)))
+    groups = [[count] for count in frames] + [some for some in (frames, frames[1:]) if len(some) > 1]
     for variant, label in labels.items():
-        runs = read_runs(folder, "ablation", variant, "trials.csv")
+        runs = variants[variant]
         for group in groups:
             values, reference = mean_success(runs, group), mean_success(preset, group)
             seeds = sorted(set(values) & set(reference))
@@ -141,10 +149,10 @@ def write_success(folder, sweep_folder):
               time_rows(trials, sweep_folder))
 
 
-def write_ablation(folder, labels):
-    write_csv(os.path.join(folder, "ablation.csv"),
+def write_variants(folder, part, labels):
+    write_csv(os.path.join(folder, part + ".csv"),
               ["variant", "label", "frames", "seeds", "success", "success_se", "difference", "difference_se"],
-              ablation_rows(folder, labels))
+              variant_rows(folder, part, labels))
 
 
 def write_gravity(folder):

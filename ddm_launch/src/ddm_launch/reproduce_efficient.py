@@ -5,14 +5,15 @@ import os
 import re
 
 from ddm_launch.efficient_bars import write_bars
-from ddm_launch.efficient_tables import PRESET, write_ablation, write_gravity, write_nuisances, write_success
+from ddm_launch.efficient_tables import PRESET, write_gravity, write_nuisances, write_success, write_variants
 from ddm_launch.step_runner import (Failure, StepRunner, SweepStep, package_path, program, require_pilco_in_build,
                                     verdict_lines)
 from ddm_launch.sweep import positive, seed_range
 from ddm_launch.sweep_folder import flat, read_yaml
 
-PARTS = ("efficient", "ablation", "gravity", "nuisances")
-TRIALS, ABLATION_TRIALS, GRAVITY_TRIALS, NUISANCE_TRIALS = 15, 5, 19, 4
+PARTS = ("efficient", "ablation", "tried", "gravity", "nuisances")
+VARIANTS = {"ablation": "ablations", "tried": "tried"}  # part: folder of config/ with variants of the preset
+TRIALS, ABLATION_TRIALS, TRIED_TRIALS, GRAVITY_TRIALS, NUISANCE_TRIALS = 15, 5, 1, 19, 4
 PILCO_TABLE = "gravity/pilco_state/trials.csv"
 PILCO_TRIALS = 15  # of 125 frames: 2000 as the others
 NUM_FEW_SEEDS = 20  # with gravity, and of each nuisance
@@ -20,8 +21,8 @@ FULL_LABEL = "Full preset"
 
 ABOUT = """\
 Makes the results about data-efficiency: the preset `efficient` on the pendulum beside the paper's curves, what each of
-its ingredients is worth, the swing-up with gravity, and nuisances of the camera, with tables and figures. All of it
-takes hours; the same command resumes, and --only chooses parts."""
+its ingredients is worth, what else was tried, the swing-up with gravity, and nuisances of the camera, with tables and
+figures. All of it takes hours; the same command resumes, and --only chooses parts."""
 
 EPILOG = """\
 parts (--only), in this order, and what they leave in DIR:
@@ -30,8 +31,11 @@ parts (--only), in this order, and what they leave in DIR:
                was interrupted) and the time that 99 % of the plans of its slowest greedy run keep [ms]
   ablation     ablation/NAME/trials.csv without what each file of ddm_launch/config/ablations takes away, and of the
                preset itself; ablation.csv: success and differences paired by seed; ablation.png
+  tried        tried/NAME/trials.csv with what each file of ddm_launch/config/tried changes, to 200 frames; tried.csv
+               and tried.png: as those of the ablation, and compared with the same runs of the preset
   gravity      gravity/trials.csv of the preset `efficient_gravity`; gravity/oracle/, gravity/pilco_state/: trials.csv
-               of the same planner on the true plant, and of PILCO on the true state; gravity.csv, gravity.png
+               of the same planner on the true plant, and of PILCO on the true state with sparse GPs; gravity.csv,
+               gravity.png
   nuisances    nuisances/NAME/trials.csv for each file of ddm_launch/config/nuisances; nuisances.csv,
                nuisances.png
 
@@ -80,18 +84,15 @@ class EfficientReproduction(StepRunner):
                          {"preset": self.preset, "gravity_preset": self.gravity_preset}, options.jobs)
         self.options, self.few_seeds = options, options.seeds[:NUM_FEW_SEEDS]
         self.parts = [part for part in PARTS if part in options.only]
-        self.ablations, self.nuisances = {}, {}  # {name: path}
-        self.labels = {PRESET: FULL_LABEL}  # of ablations
+        self.variants, self.labels = {}, {}  # {part: {name: path}}, {part: {name: label}}
+        self.nuisances = {}  # {name: path}
 
     def work(self):
-        if "ablation" in self.parts:
-            self.ablations = yaml_names("ablations")
-            if PRESET in self.ablations:
-                raise Failure("%s: the name is that of the reference, the preset itself: rename the file"
-                              % self.ablations[PRESET])
+        for part in VARIANTS:
+            if part in self.parts:
+                self.find_variants(part)
         if "nuisances" in self.parts:
             self.nuisances = yaml_names("nuisances")
-        self.labels.update((name, label_of(path)) for name, path in self.ablations.items())
         steps = {part: getattr(self, part + "_steps")() for part in self.parts}
         self.require_files(steps)
         if "gravity" in self.parts:
@@ -106,7 +107,15 @@ class EfficientReproduction(StepRunner):
                 bar.update(1)
                 self.draw([("figure_of_" + part, getattr(self, part + "_figure")())], bar)
             bar.set_description("done")
-        return self.idle_ablations() + verdict_lines(write_bars(self.out))
+        return self.idle_variants() + verdict_lines(write_bars(self.out))
+
+    def find_variants(self, part):
+        """Files that change the preset, and what tables and figures call each."""
+        paths = yaml_names(VARIANTS[part])
+        if PRESET in paths:
+            raise Failure("%s: the name is that of the reference, the preset itself: rename the file" % paths[PRESET])
+        self.variants[part] = paths
+        self.labels[part] = dict({PRESET: FULL_LABEL}, **{name: label_of(path) for name, path in paths.items()})
 
     def require_files(self, steps):
         """Before hours have passed: all parts must have their presets and other files."""
@@ -137,24 +146,32 @@ class EfficientReproduction(StepRunner):
     def efficient_steps(self):
         return [self.sweep_step("efficient", "", self.options.seeds, TRIALS)]
 
-    def ablation_steps(self):
-        """The preset itself first."""
-        more = {PRESET: []}
-        more.update((name, ["--config", path]) for name, path in self.ablations.items())
-        return [self.sweep_step("ablation_" + name, os.path.join("ablation", name), self.options.ablation_seeds,
-                                ABLATION_TRIALS, words) for name, words in more.items()]
+    def variant_step(self, part, name, trials, more):
+        return self.sweep_step("%s_%s" % (part, name), os.path.join(part, name), self.options.ablation_seeds, trials,
+                               more)
+
+    def reference_step(self):
+        """The preset itself, which variants are compared with."""
+        return self.variant_step("ablation", PRESET, ABLATION_TRIALS, [])
+
+    def ablation_steps(self, part="ablation", trials=ABLATION_TRIALS):
+        return [self.reference_step()] + [self.variant_step(part, name, trials, ["--config", path])
+                                          for name, path in self.variants[part].items()]
+
+    def tried_steps(self):
+        return self.ablation_steps("tried", TRIED_TRIALS)
 
     def gravity_steps(self):
-        def step(name, folder, seeds, trials, method, limit_s=None):
-            more = [] if method is None else ["--method", method]
+        def step(name, folder, seeds, trials, more, limit_s=None):
             return self.sweep_step(name, folder, seeds, trials, more, self.gravity_preset, "pendulum_gravity", limit_s)
 
-        steps = [step("gravity", "gravity", self.few_seeds, GRAVITY_TRIALS, None),
-                 step("gravity_oracle", "gravity/oracle", self.few_seeds, GRAVITY_TRIALS, "oracle")]
+        steps = [step("gravity", "gravity", self.few_seeds, GRAVITY_TRIALS, []),
+                 step("gravity_oracle", "gravity/oracle", self.few_seeds, GRAVITY_TRIALS, ["--method", "oracle"])]
         pilco_seeds = self.few_seeds[:self.options.pilco_seeds]
         if pilco_seeds:
             steps.append(step("gravity_pilco_state", os.path.dirname(PILCO_TABLE), pilco_seeds, PILCO_TRIALS,
-                              "pilco_state", 60.0 * self.options.pilco_minutes))
+                              ["--method", "pilco_state", "--config", package_path("config", "sparse_gp.yaml")],
+                              60.0 * self.options.pilco_minutes))
         return steps
 
     def nuisances_steps(self):
@@ -165,8 +182,11 @@ class EfficientReproduction(StepRunner):
         self.keep_config(step, "config.yaml")
         write_success(self.out, step.folder(self.out))
 
-    def ablation_tables(self, _):
-        write_ablation(self.out, self.labels)
+    def ablation_tables(self, _, part="ablation"):
+        write_variants(self.out, part, self.labels[part])
+
+    def tried_tables(self, step):
+        self.ablation_tables(step, "tried")
 
     def gravity_tables(self, step):
         self.keep_config(step, "gravity/config.yaml")
@@ -183,12 +203,15 @@ class EfficientReproduction(StepRunner):
         return self.success_figure("success_rate", curves) + ["--published", package_path("results", "published",
                                                                                           "success_rate.csv")]
 
-    def ablation_figure(self):
-        return [program("ablation_compared"), self.path("ablation.csv"), "--out", self.path("ablation.png")]
+    def ablation_figure(self, part="ablation"):
+        return [program("ablation_compared"), self.path(part + ".csv"), "--out", self.path(part + ".png")]
+
+    def tried_figure(self):
+        return self.ablation_figure("tried")
 
     def gravity_figure(self):
         return self.success_figure("gravity", [(self.gravity_preset, self.path("gravity", "trials.csv")),
-                                               ("PILCO, state", self.path(PILCO_TABLE)),
+                                               ("PILCO, state, sparse GP", self.path(PILCO_TABLE)),
                                                ("oracle", self.path("gravity", "oracle", "trials.csv"))])
 
     def nuisances_figure(self):
@@ -199,16 +222,16 @@ class EfficientReproduction(StepRunner):
         return ([program("success_rate")] + ["%s=%s" % curve for curve in curves if os.path.exists(curve[1])] +
                 ["--wilson", "--out", self.path(name + ".png")])
 
-    def idle_ablations(self):
-        """Lines about those that change nothing of the preset: its ingredient is not there to be taken away."""
-        if not self.ablations:
+    def idle_variants(self):
+        """Lines about those that change nothing of the preset: there is nothing to compare."""
+        if not self.variants:
             return []
-        step = self.ablation_steps()[0]
+        step = self.reference_step()
         config = flat(read_yaml(os.path.join(step.seed_folder(self.out, step.seeds[0]), "config.yaml")))
-        idle = [name for name, path in self.ablations.items()
+        return ["note: config/%s/%s.yaml changes nothing of the preset %s: its differences are no result" % (
+            VARIANTS[part], name, self.preset) for part, variants in self.variants.items()
+                for name, path in variants.items()
                 if all(config.get(key) == value for key, value in flat(read_yaml(path)).items())]
-        return ["note: config/ablations/%s.yaml changes nothing of the preset %s: its differences are no result" % (
-            name, self.preset) for name in idle]
 
 
 def main(arguments=None):
@@ -218,7 +241,7 @@ def main(arguments=None):
                         help="seeds A ... B - 1, default 100:150; the first %d of them with gravity and under each "
                         "nuisance" % NUM_FEW_SEEDS)
     parser.add_argument("--ablation-seeds", type=seed_range, default=range(0, 50), metavar="A:B",
-                        help="of the ablation, default 0:50: those that the preset was chosen on")
+                        help="of the ablation and of what was tried, default 0:50: those that the preset was chosen on")
     parser.add_argument("--out", default="efficient_results", metavar="DIR", help="default efficient_results")
     parser.add_argument("--only", nargs="+", choices=PARTS, default=PARTS, metavar="PART",
                         help="make only these parts: %s" % ", ".join(PARTS))
