@@ -98,9 +98,9 @@ TEST(Configuration, ThePaperPresetHoldsTheNumbersOfThePaper) {
 }
 
 TEST(Configuration, APresetThatDoesNotExistIsRefusedWithThoseThatDo) {
-  EXPECT_TRUE(
-      throwsNaming<std::invalid_argument>([] { configurationFiles("papier", "pendulum", {}); },
-                                          {"unknown preset 'papier'", "debug, efficient, paper"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [] { configurationFiles("papier", "pendulum", {}); },
+      {"unknown preset 'papier'", "debug, efficient, efficient_gravity, paper"}));
 }
 
 TEST(Configuration, APlantThatDoesNotExistIsRefusedWithThoseThatDo) {

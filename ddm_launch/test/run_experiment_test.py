@@ -169,7 +169,7 @@ class RunExperimentTest(unittest.TestCase):
         for words, arguments in (
                 (["--nonsense"], out + ["--nonsense"]),
                 (["--out DIR is missing"], ["--preset", "debug"]),
-                (["unknown preset 'papier'", "debug, efficient, paper"], out + ["--preset", "papier"]),
+                (["unknown preset 'papier'", "debug, efficient, efficient_gravity, paper"], out + ["--preset", "papier"]),
                 (["unknown plant 'sim'", "pendulum, pendulum_gravity"], out + ["--plant", "sim"]),
                 (["unknown nuisance 'fog'", "drops, noise"], out + ["--nuisance", "noise", "--nuisance", "fog"]),
                 (["unknown method 'pilko'", "ddm, oracle"], out + ["--method", "pilko"]),
