@@ -134,8 +134,7 @@ void expectConsistent(Observation* observation, const DataSet& data) {
   const Eigen::MatrixXd X = observation->learn({}, data, TrialId());
   ASSERT_EQ(X.rows(), static_cast<Eigen::Index>(observation->names().size()));
   ASSERT_EQ(X.cols(), data.numFrames());
-  const std::uint8_t* const pixels = data.pixels().col(7).data();
-  const Eigen::VectorXd x = observation->observe(Grey(pixels, pixels + data.numPixels()));
+  const Eigen::VectorXd x = observation->observe(data.image(7));
   EXPECT_LT((x - X.col(7)).norm(), 1e-5 * X.norm());
   const PilcoTask task = observation->task();
   EXPECT_NEAR(task.cost.value(observation->observe(data.goal())), 0.0, 1e-9);

@@ -25,7 +25,7 @@ void DataSet::append(const Grey& grey, const Eigen::VectorXd& torque, bool new_p
   }
   if (!torque.allFinite()) throw std::invalid_argument("data set: a torque must be finite");
   if (new_piece || pieces_.empty()) pieces_.push_back({num_frames_, 0});
-  pixels_.insert(pixels_.end(), grey.begin(), grey.end());
+  images_.push_back(std::make_shared<const Grey>(grey));
   torques_.insert(torques_.end(), torque.data(), torque.data() + torque.size());
   ++pieces_.back().size;
   ++num_frames_;
@@ -38,7 +38,7 @@ void DataSet::append(const DataSet& other) {
   for (const Piece& piece : other.pieces_) {
     pieces_.push_back({piece.begin + num_frames_, piece.size});
   }
-  pixels_.insert(pixels_.end(), other.pixels_.begin(), other.pixels_.end());
+  images_.insert(images_.end(), other.images_.begin(), other.images_.end());
   torques_.insert(torques_.end(), other.torques_.begin(), other.torques_.end());
   num_frames_ += other.num_frames_;
   if (goal_.empty()) goal_ = other.goal_;
@@ -52,9 +52,13 @@ void DataSet::setGoal(const Grey& grey) {
   goal_ = grey;
 }
 
-Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>> DataSet::pixels()
-    const {
-  return {pixels_.data(), numPixels(), num_frames_};
+GreyMatrix DataSet::pixels(Eigen::Index begin, Eigen::Index size) const {
+  GreyMatrix out(numPixels(), size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    out.col(i) = Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>>(
+        image(begin + i).data(), numPixels());
+  }
+  return out;
 }
 
 Eigen::Map<const Eigen::MatrixXd> DataSet::torques() const {

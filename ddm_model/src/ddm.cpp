@@ -45,11 +45,9 @@ Eigen::VectorXd Ddm::encode(const Grey& grey) const {
     throw std::invalid_argument("model: an image must have " + std::to_string(pca_.mean.size()) +
                                 " pixels, got " + std::to_string(grey.size()));
   }
-  const Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>> pixels(
-      grey.data(), pca_.mean.size(), 1);
   Mlp<double>::Tape tape;
-  networks_.encoder().forward(networks_.encoderOf(theta_.data()),
-                              pca_.project(pixels).cast<double>(), &tape);
+  networks_.encoder().forward(networks_.encoderOf(theta_.data()), pca_.project(grey).cast<double>(),
+                              &tape);
   return tape.output();
 }
 

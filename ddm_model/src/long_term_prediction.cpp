@@ -12,8 +12,12 @@ namespace {
 using Pixels = Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>;
 
 /// Sum over all pixels of the squared difference [grey^2].
-double squaredDistance(const Eigen::Ref<const Pixels>& a, const Eigen::Ref<const Pixels>& b) {
-  return (a.cast<double>() - b.cast<double>()).squaredNorm() / (255.0 * 255.0);
+double squaredDistance(const Grey& a, const Grey& b) {
+  const auto size = static_cast<Eigen::Index>(a.size());
+  return (Eigen::Map<const Pixels>(a.data(), size).cast<double>() -
+          Eigen::Map<const Pixels>(b.data(), size).cast<double>())
+             .squaredNorm() /
+         (255.0 * 255.0);
 }
 
 }  // namespace
@@ -21,8 +25,7 @@ double squaredDistance(const Eigen::Ref<const Pixels>& a, const Eigen::Ref<const
 Eigen::MatrixXd encodeAll(const Ddm& model, const DataSet& data) {
   Eigen::MatrixXd Z(model.featureDim(), data.numFrames());
   for (Eigen::Index i = 0; i < data.numFrames(); ++i) {
-    const std::uint8_t* const first = data.pixels().col(i).data();
-    Z.col(i) = model.encode(Grey(first, first + data.numPixels()));
+    Z.col(i) = model.encode(data.image(i));
   }
   return Z;
 }
@@ -87,13 +90,10 @@ std::vector<PredictionError> predictionErrors(const Ddm& model, const DataSet& d
       const Eigen::MatrixXd predicted = rollOut(model, Z, data.torques(), frame, max_steps);
       for (int k = 1; k <= max_steps; ++k) {
         const Grey y_hat = model.decode(predicted.col(k));
-        const Eigen::Map<const Pixels> y_hat_pixels(y_hat.data(),
-                                                    static_cast<Eigen::Index>(y_hat.size()));
         PredictionError& error = errors[k - 1];
         ++error.num_predictions;
-        error.rmse += squaredDistance(y_hat_pixels, data.pixels().col(frame + k));
-        error.rmse_repeat +=
-            squaredDistance(data.pixels().col(frame), data.pixels().col(frame + k));
+        error.rmse += squaredDistance(y_hat, data.image(frame + k));
+        error.rmse_repeat += squaredDistance(data.image(frame), data.image(frame + k));
       }
     }
   }

@@ -58,22 +58,33 @@ Eigen::Map<const typename Mlp<Scalar>::Vector> Mlp<Scalar>::biases(const Scalar*
 }
 
 template <class Scalar>
+typename Mlp<Scalar>::Matrix::ColsBlockXpr Mlp<Scalar>::inputs(Eigen::Index num_samples,
+                                                               Tape* tape) const {
+  tape->num_samples = num_samples;
+  tape->activations.resize(widths_.size());
+  tape->slopes.resize(widths_.size() - 1);
+  reserve(inputDim(), num_samples, &tape->activations[0]);
+  return tape->activations[0].leftCols(num_samples);
+}
+
+template <class Scalar>
 void Mlp<Scalar>::forward(const Scalar* theta, const Eigen::Ref<const Matrix>& inputs,
                           Tape* tape) const {
   eigen_assert(inputs.rows() == inputDim());
-  const Eigen::Index n = inputs.cols();
-  tape->num_samples = n;
-  tape->activations.resize(widths_.size());
-  tape->slopes.resize(widths_.size() - 1);
-  reserve(inputDim(), n, &tape->activations[0]);
-  tape->activations[0].leftCols(n) = inputs;
+  this->inputs(inputs.cols(), tape) = inputs;
+  forward(theta, tape);
+}
+
+template <class Scalar>
+void Mlp<Scalar>::forward(const Scalar* theta, Tape* tape) const {
+  const Eigen::Index n = tape->num_samples;
   for (int layer = 0; layer < numLayers(); ++layer) {
     Matrix& a = tape->activations[layer + 1];
     Matrix& slope = tape->slopes[layer];
     reserve(widths_[layer + 1], n, &a);
     reserve(widths_[layer + 1], n, &slope);
-    a.leftCols(n).noalias() = weights(theta, layer) * tape->activations[layer].leftCols(n);
-    a.leftCols(n).colwise() += biases(theta, layer);
+    a.leftCols(n).colwise() = biases(theta, layer);
+    a.leftCols(n).noalias() += weights(theta, layer) * tape->activations[layer].leftCols(n);
     const bool linear = layer + 1 == numLayers() && output_ == Output::kLinear;
     if (!linear) arctan(a.data(), a.data(), slope.data(), a.rows() * n);
   }
@@ -90,11 +101,12 @@ void Mlp<Scalar>::backward(const Scalar* theta, Tape* tape,
   } else {
     tape->slopes.back().leftCols(n).array() *= d_outputs.array();
   }
+  if (tape->ones.size() < n) tape->ones.setOnes(n);
   for (int layer = numLayers() - 1; layer >= 0; --layer) {
     const auto delta = tape->slopes[layer].leftCols(n);
     if (d_theta != nullptr) {
       weights(d_theta, layer).noalias() += delta * tape->activations[layer].leftCols(n).transpose();
-      biases(d_theta, layer) += delta.rowwise().sum();
+      biases(d_theta, layer).noalias() += delta * tape->ones.head(n);
     }
     if (layer > 0) {
       // a_layer has served its purpose: its memory takes the error that arrives there.
@@ -102,8 +114,8 @@ void Mlp<Scalar>::backward(const Scalar* theta, Tape* tape,
       arriving.noalias() = weights(theta, layer).transpose() * delta;
       tape->slopes[layer - 1].leftCols(n).array() *= arriving.array();
     } else if (d_inputs != nullptr) {
-      d_inputs->resize(inputDim(), n);
-      d_inputs->noalias() = weights(theta, layer).transpose() * delta;
+      reserve(inputDim(), n, d_inputs);
+      d_inputs->leftCols(n).noalias() = weights(theta, layer).transpose() * delta;
     }
   }
 }

@@ -64,6 +64,10 @@ JointObjective<Scalar>::JointObjective(const Networks<Scalar>& networks, Trainin
     block_target_.push_back(first - targets_.begin());
   }
   encoder_tapes_.resize(num_blocks);
+  for (Eigen::Index block = 0; block < num_blocks; ++block) {  // inputs are the same in each pass
+    networks_.encoder().inputs(blockSize(block), &encoder_tapes_[block]) =
+        data_.scores.middleCols(blockBegin(block), blockSize(block));
+  }
   features_.resize(f.featureDim(), num_images);
   d_features_.resize(f.featureDim(), num_images);
   regressors_.resize(f.regressorDim(), kBlock);
@@ -77,7 +81,6 @@ void JointObjective<Scalar>::reserve(int num_steps) {
   predictor_tapes_.resize(num_steps);
   predicted_.resize(num_steps, Matrix(feature_dim, kBlock));
   d_predicted_.resize(num_steps, Matrix(feature_dim, kBlock));
-  decoder_input_.resize(feature_dim, (1 + num_steps) * kBlock);
   residual_.resize(data_.scores.rows(), (1 + num_steps) * kBlock);
 }
 
@@ -119,6 +122,7 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::evaluate(const Ve
                                  d_features_.middleCols(blockBegin(block), blockSize(block)),
                                  networks_.encoderOf(gradient), nullptr);
   }
+  *d_theta *= Scalar(2);
   addDecay(theta.data(), terms.weight_decay, gradient);
   return value;
 }
@@ -148,8 +152,7 @@ void JointObjective<Scalar>::encode(const Scalar* theta) {
   for (size_t block = 0; block < encoder_tapes_.size(); ++block) {
     const Eigen::Index begin = blockBegin(block);
     const Eigen::Index size = blockSize(block);
-    networks_.encoder().forward(networks_.encoderOf(theta), data_.scores.middleCols(begin, size),
-                                &encoder_tapes_[block]);
+    networks_.encoder().forward(networks_.encoderOf(theta), &encoder_tapes_[block]);
     features_.middleCols(begin, size) = encoder_tapes_[block].output();
   }
 }
@@ -168,23 +171,24 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::decodeBlock(const
   const int steps = terms.prediction_steps;
   const Eigen::Index columns = size + steps * count;
   rollOut(theta, first, count, steps);
-  decoder_input_.leftCols(size) = features_.middleCols(begin, size);
+  auto codes = networks_.decoder().inputs(columns, &decoder_tape_);
+  codes.leftCols(size) = features_.middleCols(begin, size);
   for (int j = 0; j < steps; ++j) {
-    decoder_input_.middleCols(size + j * count, count) = predicted_[j].leftCols(count);
+    codes.middleCols(size + j * count, count) = predicted_[j].leftCols(count);
   }
-  networks_.decoder().forward(networks_.decoderOf(theta), decoder_input_.leftCols(columns),
-                              &decoder_tape_);
+  networks_.decoder().forward(networks_.decoderOf(theta), &decoder_tape_);
 
   Value value;
-  residual_.leftCols(columns) = decoder_tape_.output();
-  residual_.leftCols(size) -= data_.scores.middleCols(begin, size);
+  const auto decoded = decoder_tape_.output();
+  residual_.leftCols(size) = decoded.leftCols(size) - data_.scores.middleCols(begin, size);
   const Scalar step_weight = Scalar(1) / Scalar(steps);
   for (int j = 0; j < steps; ++j) {
     d_predicted_[j].leftCols(count) = predicted_[j].leftCols(count);
     for (Eigen::Index i = 0; i < count; ++i) {
       const Eigen::Index frame = targets_[first + i] + j;
       if (frame < piece_end_[first + i]) {
-        residual_.col(size + j * count + i) -= data_.scores.col(frame);
+        residual_.col(size + j * count + i) =
+            decoded.col(size + j * count + i) - data_.scores.col(frame);
         d_predicted_[j].col(i) -= features_.col(frame);
       } else {  // beyond the piece there is nothing to compare with
         residual_.col(size + j * count + i).setZero();
@@ -198,13 +202,18 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::decodeBlock(const
       static_cast<double>(step_weight * residual_.middleCols(size, steps * count).squaredNorm());
   if (d_theta == nullptr) return value;
 
-  residual_.leftCols(size) *= Scalar(terms.v_r ? 2 : 0);
-  residual_.middleCols(size, steps * count) *= Scalar(terms.v_p ? 2 : 0) * step_weight;
+  // From here on derivatives are those of V / 2: evaluate() doubles them.
+  if (!terms.v_r) residual_.leftCols(size).setZero();
+  if (!terms.v_p) {
+    residual_.middleCols(size, steps * count).setZero();
+  } else if (steps > 1) {
+    residual_.middleCols(size, steps * count) *= step_weight;
+  }
   networks_.decoder().backward(networks_.decoderOf(theta), &decoder_tape_,
                                residual_.leftCols(columns), networks_.decoderOf(d_theta),
-                               &d_decoder_input_);
-  d_features_.middleCols(begin, size) += d_decoder_input_.leftCols(size);
-  const Scalar consistency = Scalar(terms.v_p ? 2.0 * terms.consistency_weight : 0.0) * step_weight;
+                               &d_codes_);
+  d_features_.middleCols(begin, size) += d_codes_.leftCols(size);
+  const Scalar consistency = Scalar(terms.v_p ? terms.consistency_weight : 0.0) * step_weight;
   for (int j = 0; j < steps; ++j) {
     d_predicted_[j].leftCols(count) *= consistency;
     if (consistency != Scalar(0)) {
@@ -213,7 +222,7 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::decodeBlock(const
         if (frame < piece_end_[first + i]) d_features_.col(frame) -= d_predicted_[j].col(i);
       }
     }
-    d_predicted_[j].leftCols(count) += d_decoder_input_.middleCols(size + j * count, count);
+    d_predicted_[j].leftCols(count) += d_codes_.middleCols(size + j * count, count);
   }
   backwardThroughRollOut(theta, first, count, steps, d_theta);
   return value;

@@ -16,32 +16,83 @@ namespace {
 constexpr int kOversampling = 10;
 constexpr int kMaxSweeps = 30;
 constexpr double kVarianceTolerance = 1e-6;
+constexpr Eigen::Index kBlock = 256;  // images that are floats at a time
 
 Eigen::MatrixXf orthonormalised(const Eigen::MatrixXf& columns) {
   const Eigen::HouseholderQR<Eigen::MatrixXf> qr(columns);
   return qr.householderQ() * Eigen::MatrixXf::Identity(columns.rows(), columns.cols());
 }
 
-/// All images of the data set, the goal last, as grey values in [0, 1].  [D x M]
-Eigen::MatrixXf imagesOf(const DataSet& data) {
-  const Eigen::Index n = data.numFrames();
-  Eigen::MatrixXf images(data.numPixels(), n + (data.hasGoal() ? 1 : 0));
-  images.leftCols(n) = data.pixels().cast<float>() / 255.0F;
-  if (data.hasGoal()) {
-    const Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>> goal(data.goal().data(),
-                                                                                data.numPixels());
-    images.col(n) = goal.cast<float>() / 255.0F;
-  }
-  return images;
+Eigen::MatrixXf centred(const Eigen::Ref<const GreyMatrix>& pixels, const Eigen::VectorXf& mean) {
+  return (pixels.cast<float>() / 255.0F).colwise() - mean;
 }
+
+/// All images of a data set, the goal last, as grey values in [0, 1] less their mean: a matrix Y of
+/// floats [D x M] that is never there as a whole, only a block of columns at a time.
+class CentredImages {
+ public:
+  explicit CentredImages(const DataSet& data)
+      : data_(data), mean_(Eigen::VectorXf::Zero(data.numPixels())) {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(data.numPixels());
+    forEachBlock([&sum](Eigen::Index, const Eigen::MatrixXf& block) {
+      sum += block.rowwise().sum().cast<double>();
+    });
+    mean_ = (sum / static_cast<double>(data.numImages())).cast<float>();
+  }
+
+  const Eigen::VectorXf& mean() const { return mean_; }
+
+  /// @param q  [M x k]
+  /// @return   Y q  [D x k]
+  Eigen::MatrixXf times(const Eigen::MatrixXf& q) const {
+    Eigen::MatrixXf product = Eigen::MatrixXf::Zero(data_.numPixels(), q.cols());
+    forEachBlock([&](Eigen::Index begin, const Eigen::MatrixXf& block) {
+      product.noalias() += block * q.middleRows(begin, block.cols());
+    });
+    return product;
+  }
+
+  /// @param columns  [D x k]
+  /// @return         Y^T columns  [M x k]
+  Eigen::MatrixXf transposeTimes(const Eigen::MatrixXf& columns) const {
+    Eigen::MatrixXf product(data_.numImages(), columns.cols());
+    forEachBlock([&](Eigen::Index begin, const Eigen::MatrixXf& block) {
+      product.middleRows(begin, block.cols()).noalias() = block.transpose() * columns;
+    });
+    return product;
+  }
+
+ private:
+  template <class Function>
+  void forEachBlock(const Function& function) const {
+    for (Eigen::Index begin = 0; begin < data_.numImages(); begin += kBlock) {
+      const Eigen::Index size = std::min(kBlock, data_.numImages() - begin);
+      function(begin, centred(data_.pixels(begin, size), mean_));
+    }
+  }
+
+  const DataSet& data_;
+  Eigen::VectorXf mean_;
+};
 
 }  // namespace
 
-Eigen::MatrixXf Pca::project(
-    const Eigen::Ref<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>>& pixels)
-    const {
-  const Eigen::MatrixXf centred = (pixels.cast<float>() / 255.0F).colwise() - mean;
-  return scale * (basis.transpose() * centred);
+Eigen::MatrixXf Pca::project(const Eigen::Ref<const GreyMatrix>& pixels) const {
+  return scale * (basis.transpose() * centred(pixels, mean));
+}
+
+Eigen::VectorXf Pca::project(const Grey& grey) const {
+  return project(
+      Eigen::Map<const GreyMatrix>(grey.data(), static_cast<Eigen::Index>(grey.size()), 1));
+}
+
+Eigen::MatrixXf Pca::project(const DataSet& data) const {
+  Eigen::MatrixXf scores(basis.cols(), data.numImages());
+  for (Eigen::Index begin = 0; begin < data.numImages(); begin += kBlock) {
+    const Eigen::Index size = std::min(kBlock, data.numImages() - begin);
+    scores.middleCols(begin, size) = project(data.pixels(begin, size));
+  }
+  return scores;
 }
 
 Eigen::MatrixXf Pca::reconstruct(const Eigen::Ref<const Eigen::MatrixXf>& scores) const {
@@ -49,11 +100,10 @@ Eigen::MatrixXf Pca::reconstruct(const Eigen::Ref<const Eigen::MatrixXf>& scores
 }
 
 Pca fitPca(const DataSet& data, int dim, double score_std) {
-  Eigen::MatrixXf images = imagesOf(data);
-  const Eigen::Index num_images = images.cols();
-  if (images.rows() < dim) {
+  const Eigen::Index num_images = data.numImages();
+  if (data.numPixels() < dim) {
     throw std::invalid_argument("PCA to model/pca_dim = " + std::to_string(dim) + " of images of " +
-                                std::to_string(images.rows()) + " pixels: lower model/pca_dim");
+                                std::to_string(data.numPixels()) + " pixels: lower model/pca_dim");
   }
   if (num_images < dim + 1) {
     throw std::invalid_argument("PCA to model/pca_dim = " + std::to_string(dim) +
@@ -61,12 +111,12 @@ Pca fitPca(const DataSet& data, int dim, double score_std) {
                                 std::to_string(num_images) +
                                 ": record more frames or lower model/pca_dim");
   }
+  const CentredImages images(data);
   Pca pca;
-  pca.mean = images.rowwise().mean();
-  images.colwise() -= pca.mean;
+  pca.mean = images.mean();
 
   const Eigen::Index subspace = std::min<Eigen::Index>(
-      {static_cast<Eigen::Index>(dim) + kOversampling, num_images, images.rows()});
+      {static_cast<Eigen::Index>(dim) + kOversampling, num_images, data.numPixels()});
   std::mt19937_64 rng(1);  // any fixed start will do: the result does not depend on it
   std::normal_distribution<float> normal;
   Eigen::MatrixXf q(num_images, subspace);
@@ -76,8 +126,8 @@ Pca fitPca(const DataSet& data, int dim, double score_std) {
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz;
   double captured = -1.0;
   for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
-    basis = orthonormalised(images * q);
-    q.noalias() = images.transpose() * basis;
+    basis = orthonormalised(images.times(q));
+    q = images.transposeTimes(basis);
     const Eigen::MatrixXd q_double = q.cast<double>();
     ritz.compute(q_double.transpose() * q_double / static_cast<double>(num_images));
     const double captured_now = ritz.eigenvalues().tail(dim).sum();

@@ -17,6 +17,7 @@
 #include "ddm_model/objective.h"
 #include "ddm_model/pca.h"
 #include "ddm_model/schedule.h"
+#include "ddm_model/training_data.h"
 
 namespace ddm {
 namespace {
@@ -121,21 +122,6 @@ ceres::GradientProblemSolver::Options solverOptions(const TrainingOptions& train
   options.gradient_tolerance = 1e-9;
   options.logging_type = ceres::SILENT;
   return options;
-}
-
-TrainingData<float> trainingData(const DataSet& data, const Pca& pca, double max_torque) {
-  TrainingData<float> out;
-  const Eigen::Index n = data.numFrames();
-  out.scores.resize(pca.basis.cols(), n + (data.hasGoal() ? 1 : 0));
-  out.scores.leftCols(n) = pca.project(data.pixels());
-  if (data.hasGoal()) {
-    out.scores.col(n) =
-        pca.project(Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>>(
-            data.goal().data(), data.numPixels(), 1));
-  }
-  out.torques = (data.torques() / max_torque).cast<float>();
-  out.pieces = data.pieces();
-  return out;
 }
 
 /// @return what turns [score^2] into [grey^2]
@@ -287,7 +273,7 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
   const auto start = std::chrono::steady_clock::now();
   const Networks<float> networks(model, data.torqueDim());
   Pca pca = fitPca(data, model.pca_dim, training.score_std);
-  TrainingData<float> training_data = trainingData(data, pca, model.max_torque);
+  TrainingData<float> training_data = makeTrainingData(data, pca, model.max_torque);
   const Eigen::MatrixXd scores = training_data.scores.cast<double>();
   const Networks<double> initial_networks(model, data.torqueDim());
   std::mt19937_64 rng = initialisationStream(info.seed, info.trial);

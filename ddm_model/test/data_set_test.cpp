@@ -31,9 +31,32 @@ TEST(DataSet, KeepsPixelsAndTorquesInTheOrderTheyCame) {
   data.append({5, 6, 7, 8}, Eigen::Vector2d(1.5, -1.5), false);
   ASSERT_EQ(data.numFrames(), 2);
   EXPECT_EQ(data.numPixels(), 4);
-  EXPECT_EQ(data.pixels()(0, 1), 5);
-  EXPECT_EQ(data.pixels()(3, 0), 4);
+  EXPECT_EQ(data.image(0), Grey({1, 2, 3, 4}));
+  EXPECT_EQ(data.image(1), Grey({5, 6, 7, 8}));
   EXPECT_EQ(data.torques().col(1), Eigen::Vector2d(1.5, -1.5));
+}
+
+TEST(DataSet, GivesImagesSideBySideTheGoalLast) {
+  DataSet data = numbered(0, 3);
+  EXPECT_EQ(data.numImages(), 3);
+  data.setGoal({9, 8, 7, 6});
+  ASSERT_EQ(data.numImages(), 4);
+  EXPECT_EQ(data.image(3), data.goal());
+  const GreyMatrix pixels = data.pixels(2, 2);
+  ASSERT_EQ(pixels.cols(), 2);
+  for (Eigen::Index k = 0; k < 4; ++k) {
+    EXPECT_EQ(pixels(k, 0), data.image(2)[static_cast<size_t>(k)]);
+    EXPECT_EQ(pixels(k, 1), 9 - k);
+  }
+}
+
+TEST(DataSet, SharesItsImagesWithThoseItIsAppendedTo) {
+  const DataSet trial = numbered(0, 3);
+  DataSet all = numbered(10, 2);
+  all.append(trial);
+  EXPECT_EQ(&all.image(3), &trial.image(1));
+  const DataSet copy = all;
+  EXPECT_EQ(&copy.image(0), &all.image(0));
 }
 
 TEST(DataSet, BeginsAPieceWhereItIsToldTo) {
@@ -57,7 +80,7 @@ TEST(DataSet, KeepsASeamBetweenTwoTrials) {
   ASSERT_EQ(data.pieces().size(), 2U);
   EXPECT_EQ(data.pieces()[1].begin, 3);
   EXPECT_EQ(data.pieces()[1].size, 2);
-  EXPECT_EQ(data.pixels()(0, 3), 10);
+  EXPECT_EQ(data.image(3)[0], 10);
   EXPECT_EQ(data.torques()(0, 4), 11.0);
 }
 

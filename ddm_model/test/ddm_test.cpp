@@ -34,11 +34,9 @@ struct Parts {
 TEST(Ddm, EncodesThroughPcaAndEncoder) {
   const Ddm model = toyModel();
   const Grey image = toyImage(0.5);
-  const Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>> pixels(
-      image.data(), static_cast<Eigen::Index>(image.size()), 1);
   const Networks<double> nets(model.options(), 1);
   Mlp<double>::Tape tape;
-  nets.encoder().forward(model.theta().data(), model.pca().project(pixels).cast<double>(), &tape);
+  nets.encoder().forward(model.theta().data(), model.pca().project(image).cast<double>(), &tape);
   ASSERT_EQ(model.encode(image).size(), 2);
   EXPECT_EQ(model.encode(image), tape.output());
 }

@@ -29,7 +29,7 @@ class Initialisation : public ::testing::Test {
   }
 
   const DataSet data_ = testing::toyTrial(80, 1);
-  const Eigen::MatrixXd scores_ = fitPca(data_, 6, 1.0).project(data_.pixels()).cast<double>();
+  const Eigen::MatrixXd scores_ = fitPca(data_, 6, 1.0).project(data_).cast<double>();
   TrainingOptions training_;
   bool pca_start_ = true;
 };

@@ -30,11 +30,7 @@ DataSet noise(int num_frames, int size, unsigned seed) {
 
 /// All images with the goal last, minus their mean, in grey values.  [D x M]
 Eigen::MatrixXd centredImages(const DataSet& data) {
-  Eigen::MatrixXd images(data.numPixels(), data.numFrames() + (data.hasGoal() ? 1 : 0));
-  images.leftCols(data.numFrames()) = data.pixels().cast<double>() / 255.0;
-  for (Eigen::Index i = 0; data.hasGoal() && i < data.numPixels(); ++i) {
-    images(i, data.numFrames()) = data.goal()[i] / 255.0;
-  }
+  const Eigen::MatrixXd images = data.pixels(0, data.numImages()).cast<double>() / 255.0;
   return images.colwise() - Eigen::VectorXd(images.rowwise().mean());
 }
 
@@ -83,7 +79,7 @@ TEST(Pca, CapturesNearlyAllThatCanBeCapturedEvenOfNoise) {
 TEST(Pca, ItsVariancesAreThoseOfTheScores) {
   const DataSet data = testing::toyTrial(60, 1);
   const Pca pca = fitPca(data, 6, 1.0);
-  const Eigen::MatrixXd scores = pca.project(data.pixels()).cast<double>() / pca.scale;
+  const Eigen::MatrixXd scores = pca.project(data).cast<double>() / pca.scale;
   const Eigen::VectorXd variance = scores.array().square().rowwise().mean();
   EXPECT_TRUE(variance.isApprox(pca.variance, 1e-4));
   EXPECT_LT(scores.rowwise().mean().norm(), 1e-5);
@@ -105,8 +101,7 @@ TEST(Pca, ItsBasisIsOrthonormalEvenIfTheImagesSpanLess) {
 TEST(Pca, GivesTheLeadingScoreTheSpreadAskedFor) {
   const DataSet data = testing::toyTrial(60, 1);
   for (double score_std : {0.3, 1.0, 4.0}) {
-    const Eigen::VectorXf leading =
-        fitPca(data, 6, score_std).project(data.pixels()).row(0).transpose();
+    const Eigen::VectorXf leading = fitPca(data, 6, score_std).project(data).row(0).transpose();
     EXPECT_NEAR(std::sqrt(leading.array().square().mean()), score_std, 1e-4 * score_std);
   }
 }
@@ -114,8 +109,8 @@ TEST(Pca, GivesTheLeadingScoreTheSpreadAskedFor) {
 TEST(Pca, ReconstructsAllImagesFromAsManyComponentsAsTheySpan) {
   const DataSet data = noise(12, 8, 1);
   const Pca pca = fitPca(data, 11, 2.0);
-  const Eigen::MatrixXf restored = pca.reconstruct(pca.project(data.pixels()));
-  const Eigen::MatrixXf images = data.pixels().cast<float>() / 255.0F;
+  const Eigen::MatrixXf restored = pca.reconstruct(pca.project(data));
+  const Eigen::MatrixXf images = data.pixels(0, data.numFrames()).cast<float>() / 255.0F;
   EXPECT_LT((restored - images).cwiseAbs().maxCoeff(), 1e-4F);
 }
 
@@ -125,9 +120,7 @@ TEST(Pca, TheGoalImageIsPartOfTheData) {
   data.setGoal(Grey(data.numPixels(), 255));
   const Pca with = fitPca(data, 6, 1.0);
   const auto error = [&data](const Pca& pca) {
-    const Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>> goal(
-        data.goal().data(), data.numPixels(), 1);
-    return (pca.reconstruct(pca.project(goal)).array() - 1.0F).matrix().norm();
+    return (pca.reconstruct(pca.project(data.goal())).array() - 1.0F).matrix().norm();
   };
   EXPECT_LT(error(with), 0.2F * error(without));
 }

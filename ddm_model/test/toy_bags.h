@@ -69,8 +69,7 @@ inline void writeTrial(const std::string& path, const DataSet& trial, bool with_
   if (with_goal) bag.goal(10.0, imageMessage(10.0, toyImage(3.0, size), size));
   for (Eigen::Index t = 0; t < trial.numFrames(); ++t) {
     const double stamp = 10.0 + 0.2 * static_cast<double>(t);
-    const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1> y = trial.pixels().col(t);
-    bag.image(stamp, imageMessage(stamp, Grey(y.data(), y.data() + y.size()), size));
+    bag.image(stamp, imageMessage(stamp, trial.image(t), size));
     bag.torque(stamp, {trial.torques()(0, t)});
   }
 }

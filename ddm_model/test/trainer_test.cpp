@@ -77,13 +77,8 @@ TEST_F(Trainer, TellsTheModelWhereItComesFrom) {
 TEST_F(Trainer, ReportsTheErrorsOfTheModelItReturns) {
   const Ddm model = run().model.value();
   TrainingData<double> data;
-  data.scores.resize(6, 61);
-  data.scores.leftCols(60) = model.pca().project(data_.pixels()).cast<double>();
-  data.scores.col(60) =
-      model.pca()
-          .project(Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>>(
-              data_.goal().data(), data_.numPixels(), 1))
-          .cast<double>();
+  data.scores = model.pca().project(data_).cast<double>();
+  ASSERT_EQ(data.scores.cols(), 61);  // the goal is the last
   data.torques = data_.torques() / model_.max_torque;
   data.pieces = data_.pieces();
   const Networks<double> nets(model_, 1);
@@ -100,10 +95,7 @@ TEST_F(Trainer, PredictsBetterThanStandingStill) {
   double predicted_error = 0.0, still_error = 0.0;
   const DataSet fresh = testing::toyTrial(20, 3);
   for (int t = 1; t + 1 < 20; ++t) {
-    const auto feature = [&](int at) {
-      const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1> y = fresh.pixels().col(at);
-      return model.encode(Grey(y.data(), y.data() + y.size()));
-    };
+    const auto feature = [&](int at) { return model.encode(fresh.image(at)); };
     Eigen::VectorXd h(f.regressorDim());
     for (int lag = 0; lag < 2; ++lag) {
       h.segment(f.featureRow(lag), 2) = feature(t - lag);
@@ -212,10 +204,9 @@ TEST_F(Trainer, WhatIsHeldOutIsNoTargetOfTraining) {
   const auto learned = [this](double torque) {
     DataSet data(testing::kToySize, 1);
     for (Eigen::Index t = 0; t < data_.numFrames(); ++t) {
-      const std::uint8_t* const first = data_.pixels().col(t).data();
       Eigen::VectorXd u = data_.torques().col(t);
       if (t >= 21 && t < 30) u.setConstant(torque);  // the end of the first piece
-      data.append(Grey(first, first + data_.numPixels()), u, t == 0 || t == 30);
+      data.append(data_.image(t), u, t == 0 || t == 30);
     }
     data.setGoal(data_.goal());
     const Ddm model = train(data, model_, training_, info_, nullptr).model.value();

@@ -16,7 +16,7 @@ std::vector<std::string> PcaObservation::names() const {
 Eigen::MatrixXd PcaObservation::learn(const std::vector<std::string>& /*bags*/, const DataSet& data,
                                       const TrialId& /*id*/) {
   pca_ = fitPca(data, config_.model.pca_dim, config_.training.score_std);
-  const Eigen::MatrixXd Z = pca_.project(data.pixels()).cast<double>();
+  const Eigen::MatrixXd Z = pca_.project(data).leftCols(data.numFrames()).cast<double>();
   if (!data.hasGoal())
     throw std::runtime_error(
         "the bags hold no goal image, which tells the goal: record one on goal_image");
@@ -25,9 +25,7 @@ Eigen::MatrixXd PcaObservation::learn(const std::vector<std::string>& /*bags*/, 
 }
 
 Eigen::VectorXd PcaObservation::observe(const Grey& grey) {
-  using Bytes = Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>;
-  const Eigen::Map<const Bytes> column(grey.data(), static_cast<Eigen::Index>(grey.size()), 1);
-  return pca_.project(column).col(0).cast<double>();
+  return pca_.project(grey).cast<double>();
 }
 
 }  // namespace ddm

@@ -4,12 +4,15 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace ddm {
 
 /// Grey values k of one image, row by row from the top left; the paper's y is k / 255.  [D]
 using Grey = std::vector<std::uint8_t>;
+/// The same of several images, one per column.  [D x N]
+using GreyMatrix = Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// Frames without a gap between them: frame i+1 follows frame i by one sampling time.
 struct Piece {
@@ -18,7 +21,8 @@ struct Piece {
 };
 
 /// Images and torques of any number of trials. A frame is a pair (y_t, u_t): the torque that was
-/// applied after the image was seen. Pixels are kept once, as bytes.
+/// applied after the image was seen. Pixels are kept once, as bytes: copies of a data set, and
+/// others that it was appended to, share them.
 class DataSet {
  public:
   /// @param image_size  images have image_size x image_size pixels
@@ -51,8 +55,15 @@ class DataSet {
   Eigen::Index numFrames() const { return num_frames_; }
   const std::vector<Piece>& pieces() const { return pieces_; }
 
-  /// @return grey values of all frames  [D x numFrames()]
-  Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>> pixels() const;
+  /// Number of frames, and one for the goal if there is one.
+  Eigen::Index numImages() const { return num_frames_ + (hasGoal() ? 1 : 0); }
+  /// The image of a frame; numFrames() is the goal's number.
+  const Grey& image(Eigen::Index number) const {
+    return number < num_frames_ ? *images_[number] : goal_;
+  }
+  /// Images side by side, copied: for a block of them at a time.
+  /// @return [D x size]
+  GreyMatrix pixels(Eigen::Index begin, Eigen::Index size) const;
   /// @return torques of all frames [N m]  [torque_dim x numFrames()]
   Eigen::Map<const Eigen::MatrixXd> torques() const;
 
@@ -60,7 +71,7 @@ class DataSet {
   int image_size_;
   int torque_dim_;
   Eigen::Index num_frames_ = 0;
-  std::vector<std::uint8_t> pixels_;
+  std::vector<std::shared_ptr<const Grey>> images_;
   std::vector<double> torques_;
   std::vector<Piece> pieces_;
   Grey goal_;

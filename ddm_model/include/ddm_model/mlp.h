@@ -31,7 +31,8 @@ class Mlp {
     Eigen::Index num_samples = 0;     ///< N of the last forward pass
     std::vector<Matrix> activations;  ///< a_0 ... a_L, each [width_l x >= N]
     std::vector<Matrix>
-        slopes;  ///< da_l/d(W_l a_{l-1} + b_l) for l = 1 ... L, each [width_l x >= N]
+        slopes;   ///< da_l/d(W_l a_{l-1} + b_l) for l = 1 ... L, each [width_l x >= N]
+    Vector ones;  ///< [>= N], whose product with errors sums them over samples
 
     /// @return a_L  [width_L x N]
     typename Matrix::ColsBlockXpr output() { return activations.back().leftCols(num_samples); }
@@ -55,6 +56,15 @@ class Mlp {
   Eigen::Map<const Matrix> weights(const Scalar* theta, int layer) const;
   Eigen::Map<const Vector> biases(const Scalar* theta, int layer) const;
 
+  /// Room in a tape for the inputs of its next forward pass, one sample per column.
+  /// @return a_0, to be filled  [width_0 x num_samples]
+  typename Matrix::ColsBlockXpr inputs(Eigen::Index num_samples, Tape* tape) const;
+
+  /// @param theta  parameters                                                             [P]
+  /// @param tape   in: inputs(); out: activations and slopes; tape->output() is the result
+  void forward(const Scalar* theta, Tape* tape) const;
+
+  /// The same for inputs that are elsewhere.
   /// @param theta   parameters                                                            [P]
   /// @param inputs  one sample per column                                       [width_0 x N]
   /// @param tape    out: activations and slopes; tape->output() is the result
@@ -66,7 +76,8 @@ class Mlp {
   /// @param tape       tape of the forward pass
   /// @param d_outputs  dV/d output                                              [width_L x N]
   /// @param d_theta    dV/d theta is ADDED to this (see V_R + V_P); null: not wanted      [P]
-  /// @param d_inputs   out: dV/d input; null: not wanted                        [width_0 x N]
+  /// @param d_inputs   out: dV/d input in its first N columns, grows to have them; null: not wanted
+  ///                                                                           [width_0 x >= N]
   void backward(const Scalar* theta, Tape* tape, const Eigen::Ref<const Matrix>& d_outputs,
                 Scalar* d_theta, Matrix* d_inputs) const;
 

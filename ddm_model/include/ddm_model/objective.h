@@ -6,20 +6,11 @@
 #include <cmath>
 #include <vector>
 
-#include "ddm_model/data_set.h"
 #include "ddm_model/networks.h"
 #include "ddm_model/schedule.h"
+#include "ddm_model/training_data.h"
 
 namespace ddm {
-
-/// What the objective is computed from: scores and scaled torques of a data set.
-template <class Scalar>
-struct TrainingData {
-  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
-  Matrix scores;   ///< PCA scores: all frames, then the goal if there is one  [pca_dim x M]
-  Matrix torques;  ///< torques in units of max_torque                  [torque_dim x N]
-  std::vector<Piece> pieces;  ///< no prediction straddles two of them
-};
 
 /// V = w (V_R + V_P) with (paper, eqs. 1, 4 and 5)
 ///
@@ -108,9 +99,8 @@ class JointObjective {
   std::vector<Matrix> d_predicted_;  // dV/dz_{t+j|t}
   Matrix regressors_;                // h of the block's targets
   Matrix d_regressors_;
-  Matrix decoder_input_;  // z of the block, then the predicted z of its targets, step by step
-  Matrix d_decoder_input_;
-  Matrix residual_;
+  Matrix d_codes_;   // dV/dz: of the block, then of the predicted z of its targets, step by step
+  Matrix residual_;  // of their decoded scores
 };
 
 extern template class JointObjective<float>;

@@ -22,9 +22,14 @@ struct Pca {
 
   /// @param pixels  grey values k of N images      [D x N]
   /// @return        scores [-]                     [pca_dim x N]
-  Eigen::MatrixXf project(
-      const Eigen::Ref<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>>& pixels)
-      const;
+  Eigen::MatrixXf project(const Eigen::Ref<const GreyMatrix>& pixels) const;
+
+  /// The same of a single image.
+  Eigen::VectorXf project(const Grey& grey) const;
+
+  /// The same of all images of a data set, the goal last; a few at a time are floats.
+  /// @return        scores [-]                     [pca_dim x data.numImages()]
+  Eigen::MatrixXf project(const DataSet& data) const;
 
   /// @param scores  [pca_dim x N]
   /// @return        images, not clamped to [0, 1]  [D x N]

@@ -61,16 +61,17 @@ class PredictionModel {
 
   /// Vector-Jacobian product of forward(). Uses the tape up.
   /// @param d_theta_p     dV/d theta_P is ADDED to this; null: not wanted                    [P_f]
-  /// @param d_regressors  out: dV/dh                                          [regressorDim() x N]
+  /// @param d_regressors  out: dV/dh in its first N columns                [regressorDim() x >= N]
   void backward(const Scalar* theta_p, typename Mlp<Scalar>::Tape* tape,
                 const Eigen::Ref<const Matrix>& d_predicted, Scalar* d_theta_p,
                 Matrix* d_regressors) const {
     network_.backward(theta_p, tape, d_predicted, d_theta_p, d_regressors);
+    auto d_h = d_regressors->leftCols(d_predicted.cols());
     for (int lag = 1; lag < (increments_ ? order_ : 1); ++lag) {
-      features(lag - 1, *d_regressors) += features(lag, *d_regressors);
-      features(lag, *d_regressors) *= Scalar(-1);
+      features(lag - 1, d_h) += features(lag, d_h);
+      features(lag, d_h) *= Scalar(-1);
     }
-    if (residual_) features(0, *d_regressors) += d_predicted;
+    if (residual_) features(0, d_h) += d_predicted;
   }
 
  private:

@@ -1,0 +1,24 @@
+// What the objective is computed from: PCA scores and scaled torques of a data set.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "ddm_model/data_set.h"
+#include "ddm_model/pca.h"
+
+namespace ddm {
+
+template <class Scalar>
+struct TrainingData {
+  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+  Matrix scores;   ///< PCA scores: all frames, then the goal if there is one  [pca_dim x M]
+  Matrix torques;  ///< torques in units of max_torque                  [torque_dim x N]
+  std::vector<Piece> pieces;  ///< no prediction straddles two of them
+};
+
+/// @param max_torque  unit of the torques [N m]
+TrainingData<float> makeTrainingData(const DataSet& data, const Pca& pca, double max_torque);
+
+}  // namespace ddm

@@ -1,0 +1,49 @@
+// The objective takes its memory once: an evaluation asks the heap for nothing.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "ddm_model/objective.h"
+#include "ddm_model/testing/allocation_counter.h"
+#include "ddm_model/testing/random_matrix.h"
+
+namespace ddm {
+namespace {
+
+using testing::allocationsOf;
+
+TEST(AllocationCounter, SeesWhatIsTaken) {
+  EXPECT_EQ(allocationsOf([] {}), 0);
+  EXPECT_GT(allocationsOf([] { std::vector<double>(1000).at(3) = 1.0; }), 0);
+  EXPECT_GT(allocationsOf([] { Eigen::MatrixXf::Random(40, 40).eval(); }), 0);
+}
+
+class Allocation : public ::testing::TestWithParam<bool> {};
+
+TEST_P(Allocation, AnEvaluationTakesNoMemory) {
+  ModelOptions options;
+  options.residual = options.increments = GetParam();
+  const Networks<float> networks(options, 1);
+  TrainingData<float> data;
+  data.scores = testing::randomMatrix(options.pca_dim, 301, 1).cast<float>();
+  data.torques = testing::randomMatrix(1, 300, 2).cast<float>();
+  data.pieces = {{0, 200}, {200, 100}};
+  JointObjective<float> objective(networks, data);
+  const Eigen::VectorXf theta =
+      0.1F * testing::randomMatrix(networks.numParams(), 1, 3).cast<float>();
+  Eigen::VectorXf d_theta;
+  Terms terms;
+  for (const int steps : {1, 4}) {
+    terms.prediction_steps = steps;
+    terms.weight_decay = terms.consistency_weight = 0.1;
+    objective.evaluate(theta, &d_theta, terms);  // takes it
+    EXPECT_EQ(allocationsOf([&] { objective.evaluate(theta, &d_theta, terms); }), 0) << steps;
+    EXPECT_EQ(allocationsOf([&] { objective.evaluate(theta, nullptr, terms); }), 0) << steps;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(WithAndWithoutResidualAndIncrements, Allocation, ::testing::Bool());
+
+}  // namespace
+}  // namespace ddm
