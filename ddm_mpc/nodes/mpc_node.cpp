@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kQueue = 10;
 const ros::WallDuration kTick(0.1);
+const ros::WallDuration kFeedbackPeriod(0.1);  // for people; for each frame it would be a load
 
 std::vector<double> flat(const Eigen::MatrixXd& values) {
   return std::vector<double>(values.data(), values.data() + values.size());
@@ -103,9 +104,12 @@ void MpcNode::answer(const sensor_msgs::Image& image) {
     abort(std::string("image refused: ") + e.what());
     return;
   }
-  ddm_msgs::RunTrialFeedback feedback;
-  feedback.step = trial_->result().num_steps;
-  server_.publishFeedback(feedback);
+  if (last_progress_ - last_feedback_ > kFeedbackPeriod) {
+    last_feedback_ = last_progress_;
+    ddm_msgs::RunTrialFeedback feedback;
+    feedback.step = trial_->result().num_steps;
+    server_.publishFeedback(feedback);
+  }
   if (!trial_->done()) return;
   const ddm_msgs::RunTrialResult& so_far = trial_->result();
   ROS_INFO("trial %u%s: %u torques, %u exploratory, %u failed plans", goal_->trial,

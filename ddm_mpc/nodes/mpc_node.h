@@ -49,6 +49,7 @@ class MpcNode {
   std::unique_ptr<TrialRun> trial_;        // null: still waiting for the model
   sensor_msgs::ImageConstPtr last_image_;  // may be the first of a trial whose goal is on its way
   ros::WallTime last_progress_;
+  ros::WallTime last_feedback_;
 
   image_transport::ImageTransport transport_;
   ros::Publisher torque_pub_;

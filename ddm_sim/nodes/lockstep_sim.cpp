@@ -79,8 +79,9 @@ void LockstepSim::torqueRefused(const ros::Time& stamp, const std::string& reaso
 /// @return false if the camera has lost the frame
 bool LockstepSim::showFrame() {
   silent_ticks_ = 0;
+  const bool seen = publishFrame(now());  // first: what waits for it need not wait for the clock
   publishClock(now());
-  return publishFrame(now());
+  return seen;
 }
 
 void LockstepSim::onWatchdogTick(const ros::WallTimerEvent& /*event*/) {

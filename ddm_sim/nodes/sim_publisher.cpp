@@ -43,6 +43,7 @@ void SimPublisher::publishClock(const ros::Time& stamp) const {
 void SimPublisher::publishFrame(const Eigen::VectorXd& applied,
                                 const std::vector<std::uint8_t>& photograph,
                                 const ros::Time& stamp) const {
+  image_.publish(encodeImage(photograph, plant_.imageSize(), stamp, kFrameId));
   const Eigen::VectorXd& state = plant_.state();
   sensor_msgs::JointState joints;
   joints.header.stamp = stamp;
@@ -52,7 +53,6 @@ void SimPublisher::publishFrame(const Eigen::VectorXd& applied,
   joints.velocity = toVector(state.tail(state.size() - num_joints));
   joints.effort = toVector(applied);
   ground_truth_.publish(joints);
-  image_.publish(encodeImage(photograph, plant_.imageSize(), stamp, kFrameId));
 }
 
 }  // namespace ddm
