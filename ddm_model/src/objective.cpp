@@ -63,11 +63,6 @@ JointObjective<Scalar>::JointObjective(const Networks<Scalar>& networks, Trainin
     const auto first = std::lower_bound(targets_.begin(), targets_.end(), blockBegin(block));
     block_target_.push_back(first - targets_.begin());
   }
-  encoder_tapes_.resize(num_blocks);
-  for (Eigen::Index block = 0; block < num_blocks; ++block) {  // inputs are the same in each pass
-    networks_.encoder().inputs(blockSize(block), &encoder_tapes_[block]) =
-        data_.scores.middleCols(blockBegin(block), blockSize(block));
-  }
   features_.resize(f.featureDim(), num_images);
   d_features_.resize(f.featureDim(), num_images);
   regressors_.resize(f.regressorDim(), kBlock);
@@ -79,9 +74,16 @@ void JointObjective<Scalar>::reserve(int num_steps) {
   if (static_cast<int>(predicted_.size()) >= num_steps) return;
   const Eigen::Index feature_dim = networks_.prediction_model.featureDim();
   predictor_tapes_.resize(num_steps);
+  encoder_tapes_.resize(1 + blocksOf(num_steps - 1) + blocksOf(networks_.prediction_model.order()));
   predicted_.resize(num_steps, Matrix(feature_dim, kBlock));
   d_predicted_.resize(num_steps, Matrix(feature_dim, kBlock));
   residual_.resize(data_.scores.rows(), (1 + num_steps) * kBlock);
+}
+
+/// How many blocks away from its own a frame may lie that is so many frames away.
+template <class Scalar>
+Eigen::Index JointObjective<Scalar>::blocksOf(Eigen::Index frames) const {
+  return (frames + kBlock - 1) / kBlock;
 }
 
 template <class Scalar>
@@ -105,23 +107,24 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::evaluate(const Ve
     d_theta->setZero(theta.size());
     gradient = d_theta->data();
   }
-  const Eigen::Index num_blocks = static_cast<Eigen::Index>(encoder_tapes_.size());
-  encode(theta.data());
+  const auto num_blocks = static_cast<Eigen::Index>(block_target_.size()) - 1;
+  const Eigen::Index ahead = blocksOf(terms.prediction_steps - 1);
+  const Eigen::Index behind = blocksOf(networks_.prediction_model.order());
+  Eigen::Index encoded = 0, finished = 0;
   d_features_.setZero();
   Value value;
   for (Eigen::Index block = 0; block < num_blocks; ++block) {
+    while (encoded < std::min(block + ahead + 1, num_blocks)) encode(theta.data(), encoded++);
     const Value part = decodeBlock(theta.data(), block, terms, gradient);
     value.v_r += part.v_r;
     value.v_p += part.v_p;
     value.v_z += part.v_z;
+    if (gradient == nullptr) continue;
+    const Eigen::Index last = block + 1 == num_blocks ? block : block - behind;
+    while (finished <= last) backwardThroughEncoder(theta.data(), finished++, gradient);
   }
   value.v_w = squaredWeights(theta.data());
   if (gradient == nullptr) return value;
-  for (Eigen::Index block = 0; block < num_blocks; ++block) {
-    networks_.encoder().backward(networks_.encoderOf(theta.data()), &encoder_tapes_[block],
-                                 d_features_.middleCols(blockBegin(block), blockSize(block)),
-                                 networks_.encoderOf(gradient), nullptr);
-  }
   *d_theta *= Scalar(2);
   addDecay(theta.data(), terms.weight_decay, gradient);
   return value;
@@ -148,13 +151,21 @@ void JointObjective<Scalar>::addDecay(const Scalar* theta, double price, Scalar*
 }
 
 template <class Scalar>
-void JointObjective<Scalar>::encode(const Scalar* theta) {
-  for (size_t block = 0; block < encoder_tapes_.size(); ++block) {
-    const Eigen::Index begin = blockBegin(block);
-    const Eigen::Index size = blockSize(block);
-    networks_.encoder().forward(networks_.encoderOf(theta), &encoder_tapes_[block]);
-    features_.middleCols(begin, size) = encoder_tapes_[block].output();
-  }
+void JointObjective<Scalar>::encode(const Scalar* theta, Eigen::Index block) {
+  typename Mlp<Scalar>::Tape& tape = encoder_tapes_[block % encoder_tapes_.size()];
+  networks_.encoder().forward(networks_.encoderOf(theta),
+                              data_.scores.middleCols(blockBegin(block), blockSize(block)), &tape);
+  features_.middleCols(blockBegin(block), blockSize(block)) = tape.output();
+}
+
+/// Once nothing is added to the dV/dz of the block any more.
+template <class Scalar>
+void JointObjective<Scalar>::backwardThroughEncoder(const Scalar* theta, Eigen::Index block,
+                                                    Scalar* d_theta) {
+  networks_.encoder().backward(networks_.encoderOf(theta),
+                               &encoder_tapes_[block % encoder_tapes_.size()],
+                               d_features_.middleCols(blockBegin(block), blockSize(block)),
+                               networks_.encoderOf(d_theta), nullptr);
 }
 
 /// All terms for the images of one block: their reconstructions and the predictions of them go

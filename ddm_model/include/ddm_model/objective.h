@@ -73,13 +73,15 @@ class JointObjective {
  private:
   double squaredWeights(const Scalar* theta) const;
   void addDecay(const Scalar* theta, double price, Scalar* d_theta) const;
-  void encode(const Scalar* theta);
+  void encode(const Scalar* theta, Eigen::Index block);
+  void backwardThroughEncoder(const Scalar* theta, Eigen::Index block, Scalar* d_theta);
   Value decodeBlock(const Scalar* theta, Eigen::Index block, const Terms& terms, Scalar* d_theta);
   void rollOut(const Scalar* theta, Eigen::Index first, Eigen::Index count, int num_steps);
   void backwardThroughRollOut(const Scalar* theta, Eigen::Index first, Eigen::Index count,
                               int num_steps, Scalar* d_theta);
   void reserve(int num_steps);
 
+  Eigen::Index blocksOf(Eigen::Index frames) const;
   Eigen::Index blockBegin(Eigen::Index block) const;
   Eigen::Index blockSize(Eigen::Index block) const;
 
@@ -91,7 +93,9 @@ class JointObjective {
   std::vector<Eigen::Index> block_target_;  // first target of each block, and the end
   Matrix features_;                         // z of all images         [feature_dim x M]
   Matrix d_features_;                       // dV/dz                   [feature_dim x M]
-  std::vector<typename Mlp<Scalar>::Tape> encoder_tapes_;  // one per block
+  // Of the blocks between the last one encoded and the first one whose dV/dz is not complete, in
+  // turn: they stay in cache, however many frames there are.
+  std::vector<typename Mlp<Scalar>::Tape> encoder_tapes_;
   typename Mlp<Scalar>::Tape decoder_tape_;
   std::vector<typename Mlp<Scalar>::Tape> predictor_tapes_;  // one per step ahead
   std::vector<Matrix>
