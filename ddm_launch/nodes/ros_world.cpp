@@ -38,7 +38,7 @@ RosWorld::RosWorld(ros::NodeHandle nh, double timeout, Peers peers)
       topics::kGroundTruth, kQueue, [this](const sensor_msgs::JointStateConstPtr& state) {
         const std::lock_guard<std::mutex> lock(mutex_);
         ground_truth_.push_back(*state);
-        changed_.notify_all();
+        if (awaits_ground_truth_) changed_.notify_all();  // else a wake-up for each frame
       });
   model_sub_ = nh.subscribe<ddm_msgs::Model>(topics::kModel, 1,
                                              [this](const ddm_msgs::ModelConstPtr& model) {
@@ -239,11 +239,13 @@ void RosWorld::takeGroundTruth(const ros::Time& start, int num_steps, TrialOutco
   waitFor(
       [&] {
         const std::lock_guard<std::mutex> lock(mutex_);
+        awaits_ground_truth_ = true;
         return std::count_if(ground_truth_.begin(), ground_truth_.end(), belongs) >= num_steps;
       },
       "ground truth of the trial is incomplete, " +
           describePublishers(ground_truth_sub_.getTopic()));
   const std::lock_guard<std::mutex> lock(mutex_);
+  awaits_ground_truth_ = false;
   for (const sensor_msgs::JointState& joints : ground_truth_) {
     if (!belongs(joints) || static_cast<int>(outcome->states.size()) == num_steps) continue;
     const auto dim = static_cast<Eigen::Index>(joints.position.size());

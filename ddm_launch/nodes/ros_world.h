@@ -69,6 +69,7 @@ class RosWorld : public World {
   std::condition_variable changed_;
   ros::WallTime last_sign_of_life_;
   std::vector<sensor_msgs::JointState> ground_truth_;
+  bool awaits_ground_truth_ = false;
   ddm_msgs::ModelConstPtr model_;
 
   actionlib::SimpleActionClient<ddm_msgs::RunTrialAction> trial_client_;

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::uint64_t kSecond = 1000000000;  // [ns]
 constexpr int kWatchdogTicks = 20;
+const ros::WallDuration kClockPeriod(0.001);
 
 }  // namespace
 
@@ -24,7 +25,7 @@ LockstepSim::LockstepSim(ros::NodeHandle nh, std::unique_ptr<Plant> plant,
       options_(options),
       step_ns_(static_cast<std::uint64_t>(std::llround(this->plant().dt() * kSecond))),
       now_ns_(kSecond) {  // not 0, which means "no time yet" to everybody else
-  publishClock(now());
+  tellTime();
   publishGoal(now());
   // Ticks instead of one long timer: they stop counting while this process itself is held up, so a
   // torque that waits in the queue meanwhile is not called missing.
@@ -41,6 +42,7 @@ ros::Time LockstepSim::beginTrial(const ddm_msgs::Reset::Request& request) {
   frame_ = 0;
   ignored_ = 0;
   running_ = true;
+  tellTime();
   showFrame();
   return now();
 }
@@ -80,11 +82,19 @@ void LockstepSim::torqueRefused(const ros::Time& stamp, const std::string& reaso
 bool LockstepSim::showFrame() {
   silent_ticks_ = 0;
   const bool seen = publishFrame(now());  // first: what waits for it need not wait for the clock
-  publishClock(now());
+  if (ros::SteadyTime::now() - last_told_ >= kClockPeriod) tellTime();
   return seen;
 }
 
+/// Each node of the system wakes up for the clock: more often than kClockPeriod would be a load.
+void LockstepSim::tellTime() {
+  publishClock(now());
+  told_ns_ = now_ns_;
+  last_told_ = ros::SteadyTime::now();
+}
+
 void LockstepSim::onWatchdogTick(const ros::WallTimerEvent& /*event*/) {
+  if (told_ns_ != now_ns_) tellTime();
   // The first tick after a frame may come at once, so it does not count as time passed.
   if (!running_ || ++silent_ticks_ <= kWatchdogTicks) return;
   ROS_ERROR_STREAM("no torque for " << frameName() << " within " << formatDouble(options_.watchdog)
@@ -94,7 +104,10 @@ void LockstepSim::onWatchdogTick(const ros::WallTimerEvent& /*event*/) {
   endTrial();
 }
 
-void LockstepSim::endTrial() { running_ = false; }
+void LockstepSim::endTrial() {
+  running_ = false;
+  if (told_ns_ != now_ns_) tellTime();
+}
 
 std::string LockstepSim::frameName() const {
   std::ostringstream name;

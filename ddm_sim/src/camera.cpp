@@ -122,6 +122,7 @@ std::vector<std::uint8_t> Camera::expose(const std::vector<std::uint8_t>& plant,
                                 std::to_string(background_.size()) + " pixels, got " +
                                 std::to_string(plant.size()));
   }
+  if (brightness == 1.0 && options_.clutter == 0.0 && options_.noise_std == 0.0) return plant;
   std::normal_distribution<double> standard_normal;
   std::vector<std::uint8_t> bytes(plant.size());
   for (std::size_t i = 0; i < plant.size(); ++i) {
