@@ -37,7 +37,7 @@ packages_to_run=(
 
 # What only the tests need: linters, the check of .rosinstall, and the other machines of sweeps, played by this one.
 packages_to_test=(
-  catkin-lint clang-format python3-wstool git
+  catkin-lint clang-format python3-wstool git valgrind
   openssh-client openssh-server
   slurmctld slurmd slurm-client munge
 )

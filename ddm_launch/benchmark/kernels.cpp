@@ -1,0 +1,213 @@
+// speed_kernels: computing time of what users wait for, by Google Benchmark, on a finished
+// experiment. SPDX-License-Identifier: BSD-3-Clause
+#include <benchmark/benchmark.h>
+#include <ddm_bag_io/bag_cache.h>
+#include <ddm_model/initialisation.h>
+#include <ddm_model/model_file.h>
+#include <ddm_model/objective.h>
+#include <ddm_model/solver_log.h>
+#include <ddm_model/trainer.h>
+#include <ddm_mpc/ddm_plan_cost.h>
+#include <ddm_mpc/mpc_policy.h>
+#include <ddm_sim/plant_factory.h>
+#include <ros/time.h>
+
+#include <cstdlib>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "configuration.h"
+#include "evaluation.h"
+#include "matrix_products.h"
+#include "run_folder.h"
+
+namespace ddm {
+namespace {
+
+constexpr int kUsageError = 2;
+constexpr int kRetrainIterations = 200;
+constexpr int kProductBlocks[] = {32, 64, 128, 256, 512, 1600};
+constexpr int kTrialSteps = 100;
+
+constexpr char kAbout[] =
+    "Times objective, training, plans, renderer and bag reading on the bags and the last model of "
+    "a finished experiment.\n\n"
+    "usage: rosrun ddm_launch speed_kernels RUN_FOLDER [options of Google Benchmark]\n\n"
+    "`rosrun ddm_launch benchmark` runs it, with more beside it.";
+
+/// What a finished experiment has left behind.
+struct Experience {
+  Configuration configuration;
+  std::vector<std::string> bags;
+  DataSet data;
+  std::shared_ptr<const Ddm> model;
+};
+
+Experience readExperience(const std::string& run) {
+  ParamReader reader = ParamReader::fromFiles({run + "/config.yaml"});
+  Configuration configuration = readConfiguration(&reader);
+  configuration.experiment.runs = run;
+  const RunFolder folder(configuration);
+  if (folder.rows().empty()) throw std::runtime_error(run + " holds no finished trial");
+  std::vector<std::string> bags;
+  for (const TrialRow& row : folder.rows()) bags.push_back(folder.bagPath(row.trial));
+  const std::string model = bags.back().substr(0, bags.back().rfind('/')) + "/model.ddm";
+  DataSet data = BagCache(configuration.model.image.size, configuration.model.data_set).read(bags);
+  return {configuration, bags, std::move(data),
+          std::make_shared<const Ddm>(deserialiseModel(readFile(model), model))};
+}
+
+double percentile99(const std::vector<double>& values) { return quantile(values, 0.99); }
+
+/// Each repetition is one call: their quantiles are those of single calls.
+void measure(const std::string& name, int num_calls, const std::function<void()>& call) {
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [call](benchmark::State& state) {
+                                 for (auto _ : state) call();
+                               })
+      ->Iterations(1)
+      ->Repetitions(num_calls)
+      ->ReportAggregatesOnly(true)
+      ->ComputeStatistics("p99", percentile99)
+      ->Unit(benchmark::kMicrosecond);
+}
+
+void measureObjective(const Experience& experience) {
+  const auto networks = std::make_shared<const Networks<float>>(experience.model->options(),
+                                                                experience.data.torqueDim());
+  const auto objective = std::make_shared<JointObjective<float>>(
+      *networks, makeTrainingData(experience.data, experience.model->pca(),
+                                  experience.model->options().max_torque));
+  const Eigen::VectorXf theta = experience.model->theta().cast<float>();
+  const auto d_theta = std::make_shared<Eigen::VectorXf>();
+  measure("objective_gradient", 1000, [networks, objective, theta, d_theta]() {
+    benchmark::DoNotOptimize(objective->evaluate(theta, d_theta.get()));
+  });
+  for (const int block : kProductBlocks) {
+    const auto products =
+        std::make_shared<MatrixProducts>(*networks, objective->numPredictions(), block);
+    measure("matrix_products/" + std::to_string(block), 1000, [products]() { products->run(); });
+  }
+}
+
+void measureTraining(const Experience& experience) {
+  const ModelConfig& config = experience.configuration.model;
+  measure("pca", 30, [&experience, &config]() {
+    benchmark::DoNotOptimize(
+        fitPca(experience.data, config.model.pca_dim, config.training.score_std).scale);
+  });
+  TrainingOptions training = config.training;
+  training.max_iterations = kRetrainIterations;
+  training.function_tolerance = 1e-30;  // so many iterations, whatever they are good for
+  measure("retrain", 10, [&experience, &config, training]() {
+    const TrainingResult result = train(experience.data, config.model, training, ModelInfo());
+    if (result.iterations < kRetrainIterations * training.num_starts) {
+      throw std::runtime_error("training ended after " + std::to_string(result.iterations) +
+                               " iterations: " + result.message);
+    }
+  });
+}
+
+/// Greedy trials on the true plant, one plan after the other.
+class PlanSequence {
+ public:
+  explicit PlanSequence(const Experience& experience)
+      : plant_(makePlant(experience.configuration.plant, experience.configuration.camera)),
+        policy_(experience.model, experience.configuration.mpc) {}
+
+  Plan next() {
+    if (step_++ % kTrialSteps == 0) {
+      id_.evaluation = true;
+      ++id_.trial;
+      std::mt19937_64 start = startStream(id_.seed, id_.trial, id_.evaluation);
+      plant_->setState(plant_->drawStart(start));
+      policy_.startTrial(id_);
+    }
+    policy_.observe(plant_->render(plant_->state()));
+    const Plan plan = policy_.plan();
+    const Eigen::VectorXd torque = plan.torques.col(0);
+    policy_.apply(torque);
+    plant_->step(torque);
+    return plan;
+  }
+
+ private:
+  std::unique_ptr<Plant> plant_;
+  MpcPolicy policy_;
+  TrialId id_;
+  int step_ = 0;
+};
+
+void measurePlans(const Experience& experience) {
+  const auto sequence = std::make_shared<PlanSequence>(experience);
+  benchmark::RegisterBenchmark("plan",
+                               [sequence](benchmark::State& state) {
+                                 for (auto _ : state) {
+                                   const Plan plan = sequence->next();
+                                   state.SetIterationTime(plan.solve_time);
+                                   state.counters["plan_iterations"] = plan.iterations;
+                                 }
+                               })
+      ->Iterations(1)
+      ->Repetitions(2000)
+      ->UseManualTime()
+      ->ReportAggregatesOnly(true)
+      ->ComputeStatistics("p99", percentile99)
+      ->Unit(benchmark::kMicrosecond);
+
+  const Ddm& model = *experience.model;
+  const MpcOptions& mpc = experience.configuration.mpc;
+  const auto cost = std::make_shared<DdmPlanCost>(model, mpc.horizon, mpc.control_weight);
+  History x(model.options().order, model.featureDim(), model.torqueDim());
+  x.observe(model.encode(experience.data.image(0)));
+  cost->setProblem(x, model.goalFeature());
+  const Eigen::MatrixXd U = Eigen::MatrixXd::Constant(model.torqueDim(), mpc.horizon, 0.5);
+  const auto d_U = std::make_shared<Eigen::MatrixXd>();
+  measure("plan_cost_gradient", 1000,
+          [cost, U, d_U]() { benchmark::DoNotOptimize(cost->evaluate(U, d_U.get())); });
+}
+
+void measureImages(const Experience& experience) {
+  const Configuration& all = experience.configuration;
+  measure("encode", 1000, [&experience]() {
+    benchmark::DoNotOptimize(experience.model->encode(experience.data.image(0)));
+  });
+  const std::shared_ptr<Plant> plant = makePlant(all.plant, all.camera);
+  measure("render", 1000, [plant]() { benchmark::DoNotOptimize(plant->render(plant->state())); });
+  measure("read_bag", 50, [&experience, &all]() {
+    benchmark::DoNotOptimize(
+        readBag(experience.bags.front(), all.model.image.size, all.model.data_set)
+            .data.numFrames());
+  });
+}
+
+}  // namespace
+}  // namespace ddm
+
+int main(int argc, char** argv) {
+  ros::Time::init();
+  ddm::silenceSolverLog();
+  if (argc < 2 || argv[1][0] == '-') {
+    std::cout << ddm::kAbout << "\n";
+    return argc < 2 ? ddm::kUsageError : EXIT_SUCCESS;
+  }
+  try {
+    const ddm::Experience experience = ddm::readExperience(argv[1]);
+    ddm::measureObjective(experience);
+    ddm::measureTraining(experience);
+    ddm::measurePlans(experience);
+    ddm::measureImages(experience);
+    argv[1] = argv[0];
+    int num_options = argc - 1;
+    benchmark::Initialize(&num_options, argv + 1);
+    if (benchmark::ReportUnrecognizedArguments(num_options, argv + 1)) return ddm::kUsageError;
+    benchmark::RunSpecifiedBenchmarks();
+  } catch (const std::exception& error) {
+    std::cerr << "speed_kernels: " << error.what() << "\n";
+    return EXIT_FAILURE;
+  }
+  return EXIT_SUCCESS;
+}

@@ -1,0 +1,176 @@
+# Times what users wait for, beside what they would pick instead, and makes one table of it.
+# SPDX-License-Identifier: BSD-3-Clause
+import argparse
+import csv
+import importlib.util
+import json
+import os
+import statistics
+import sys
+import tempfile
+
+from tqdm import tqdm
+import yaml
+
+from ddm_launch.programs import Programs
+from ddm_launch.step_runner import Failure, package_path, processor, program
+from ddm_launch.sweep_folder import read_yaml, write_file
+
+COLUMNS = ["name", "median_us", "p99_us", "peer_median_us"]
+TRIALS, ITERATIONS, RESTARTS, NUM_FRAMES = 15, 200, 9, 3000
+
+ABOUT = """\
+Times objective and gradient, one retraining, PCA, encoding, plans, renderer and bag reading on the 1600 frames of an
+experiment that it runs first; the experiment itself, in one process and with the nodes; and the lock-step loop beside two
+nodes that only send the same messages to and fro. Starts what it needs, a master too. Everything runs on one core where
+it can; the machine should have nothing else to do."""
+
+EPILOG = """\
+DIR/speed.csv, one row a name; times in microseconds, of single calls unless said otherwise:
+  objective_gradient   V_R + V_P and its gradient, float32, 1600 frames
+  matrix_products      the matrix products of the same and nothing else, in their best blocking
+  retrain              a retraining of 200 iterations on 1600 frames, PCA included
+  pca, encode          PCA of 1601 images; the features of one image
+  plan                 a whole plan along greedy trials; plan_cost_gradient: one evaluation of its cost
+  render, read_bag     an image of the simulator; a bag of 100 frames
+  lockstep_round_trip  image to torque to next image with sim_node and mpc_node, random policy, recorder off; median of
+                       the medians, and of the 99 % quantiles, of 9 restarts
+  bare_round_trip      the same messages between two nodes that do nothing with them, restarts taking turns
+  experiment           15 trials after the random one in one process, the whole; once
+  ros_experiment       the same by roslaunch, from the first frame to the last; once
+With --peers, peer_median_us is the time of the same mathematics in PyTorch, one thread, its own L-BFGS.
+DIR/machine.yaml       processor, versions, iterations of a plan"""
+
+
+class Benchmark:
+    def __init__(self, out, peers, scratch):
+        self.out, self.peers, self.scratch = os.path.abspath(out), peers, scratch
+        self.programs = Programs(scratch)
+        self.run = os.path.join(scratch, "experiment")
+        self.rows = {}  # name: [median, 99 % quantile, peer's median] [us]
+        self.plan_iterations = None
+
+    def experiment(self):
+        self.programs.call("experiment", [program("run_experiment"), "--preset", "paper", "--plant", "pendulum", "--seed", "0",
+                                 "--trials", str(TRIALS), "--out", self.run])
+        self.rows["experiment"] = [1e6 * read_yaml(os.path.join(self.run, "summary.yaml"))["wall_s"], "", ""]
+
+    def kernels(self):
+        report = os.path.join(self.scratch, "kernels.json")
+        self.programs.call("kernels", [program("speed_kernels"), self.run, "--benchmark_out_format=json",
+                              "--benchmark_out=" + report])
+        with open(report) as stream:
+            found = json.load(stream)["benchmarks"]
+        times = {}  # name: {median, p99}
+        for row in found:
+            if row.get("error_occurred"):
+                raise Failure("kernels: %s: %s" % (row["name"], row.get("error_message", "failed")))
+            name = row["run_name"].split("/iterations")[0]
+            if row.get("aggregate_name") in ("median", "p99"):
+                times.setdefault(name, {})[row["aggregate_name"]] = row["real_time"]
+            if name == "plan" and row.get("aggregate_name") == "mean":
+                self.plan_iterations = row["plan_iterations"]
+        blocks = [name for name in times if name.startswith("matrix_products/")]
+        best = min(blocks, key=lambda name: times[name]["median"])
+        times["matrix_products"] = times[best]
+        for name in [name for name in times if name not in blocks]:
+            self.rows[name] = [times[name]["median"], times[name]["p99"], ""]
+
+    def peer(self):
+        text = self.programs.call("peers", [sys.executable, "-m", "ddm_launch.torch_peers", self.run, "--iterations",
+                                   str(ITERATIONS), "--plan-iterations", "%.1f" % self.plan_iterations])
+        for name, times in json.loads(text.splitlines()[-1]).items():
+            self.rows[name][2] = times["median_us"]
+
+    def round_trips(self, progress):
+        """Restarts of both loops, taking turns."""
+        times = {"lockstep": [], "bare": []}
+        for restart in range(RESTARTS):
+            for name, found in times.items():
+                path = os.path.join(self.scratch, "%s_%d.yaml" % (name, restart))
+                self.programs.roslaunch(name, package_path("benchmark", name + ".launch"), "out:=" + path,
+                               "num_frames:=%d" % NUM_FRAMES)
+                measured = read_yaml(path)
+                if not measured:
+                    raise Failure("%s: the nodes ended without a result: look for their errors above and in %s"
+                                  % (name, os.path.join(self.scratch, "ros")))
+                found.append((measured["median_us"], measured["p99_us"]))
+                progress.update(1)
+        for name, found in times.items():
+            self.rows[name + "_round_trip"] = [statistics.median(column) for column in zip(*found)] + [""]
+
+    def ros_experiment(self):
+        run = os.path.join(self.scratch, "ros_experiment")
+        self.programs.roslaunch("ros_experiment", "ddm_launch", "experiment.launch", "preset:=paper", "plant:=pendulum",
+                       "seed:=0", "trials:=%d" % TRIALS, "runs:=" + run)
+        summary = read_yaml(os.path.join(run, "summary.yaml"))
+        if summary.get("finished") is not True:
+            raise Failure("ros_experiment: the experiment of the nodes did not finish")
+        self.rows["ros_experiment"] = [1e6 * summary["wall_s"], "", ""]
+
+    def work(self):
+        steps = [("experiment", self.experiment), ("kernels", self.kernels)]
+        steps += [("PyTorch", self.peer)] if self.peers else []
+        steps += [("roslaunch experiment", self.ros_experiment)]
+        with tqdm(total=len(steps) + 2 * RESTARTS, unit="step", dynamic_ncols=True, disable=None) as progress:
+            for name, step in steps:
+                progress.set_description(name)
+                step()
+                progress.update(1)
+            progress.set_description("lock-step and bare loop")
+            self.round_trips(progress)
+        self.write()
+
+    def write(self):
+        os.makedirs(self.out, exist_ok=True)
+        path = os.path.join(self.out, "speed.csv")
+        with open(path + ".part", "w", newline="") as stream:
+            writer = csv.writer(stream, lineterminator="\n")
+            writer.writerow(COLUMNS)
+            writer.writerows([name] + ["" if value == "" else "%.6g" % value for value in row]
+                             for name, row in self.rows.items())
+        os.replace(path + ".part", path)
+        machine = {"cpu": processor(), "cores": os.cpu_count(), "plan_iterations": self.plan_iterations,
+                   "version": read_yaml(os.path.join(self.run, "config.yaml")).get("version", "?")}
+        if self.peers:
+            machine["torch"] = self.programs.call("peers", [sys.executable, "-c", "import torch; print(torch.__version__)"]).strip()
+        write_file(os.path.join(self.out, "machine.yaml"), yaml.safe_dump(machine, sort_keys=False))
+
+    def table(self):
+        """Lines for people."""
+        lines = ["%-20s %14s %14s %14s %9s" % ("", "median", "99 %", "PyTorch", "ratio")]
+        for name, (median, p99, peer) in self.rows.items():
+            lines.append("%-20s %14s %14s %14s %9s" % (name, readable(median), readable(p99), readable(peer),
+                                                       "" if peer == "" else "%.1f" % (peer / median)))
+        return lines
+
+
+def readable(time_us):
+    if time_us == "":
+        return ""
+    for limit, factor, unit in ((1e3, 1.0, "us"), (1e6, 1e-3, "ms")):
+        if time_us < limit:
+            return "%.3g %s" % (time_us * factor, unit)
+    return "%.3g s" % (time_us * 1e-6)
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(prog="benchmark", description=ABOUT, epilog=EPILOG,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--peers", action="store_true", help="beside it PyTorch, which must be installed")
+    parser.add_argument("--out", default="speed", metavar="DIR", help="default speed")
+    options = parser.parse_args(arguments)
+    try:
+        if options.peers and importlib.util.find_spec("torch") is None:
+            raise Failure("--peers needs PyTorch for %s: sudo apt install python3-torch, or leave the option out"
+                          % sys.executable)
+        with tempfile.TemporaryDirectory() as scratch:
+            benchmark = Benchmark(options.out, options.peers, scratch)
+            benchmark.work()
+    except (Failure, OSError) as error:
+        print("benchmark: %s" % error, file=sys.stderr)
+        return 1
+    for line in benchmark.table():
+        print(line)
+    print("results: %s" % benchmark.out)
+    return 0

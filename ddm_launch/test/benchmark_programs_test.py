@@ -1,0 +1,54 @@
+#!/usr/bin/python3
+# What benchmark runs, for a short time: nodes, kernels and growth give what its table needs.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import sys
+import tempfile
+import unittest
+from unittest import mock
+
+import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from ddm_launch import benchmark  # noqa: E402
+from processes import call, find_program, run_experiment  # noqa: E402
+
+
+class BenchmarkProgramsTest(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = scratch.name
+
+    def test_both_loops_give_their_round_trips(self):
+        bench = benchmark.Benchmark(self.folder, False, self.folder)
+        with mock.patch.object(benchmark, "RESTARTS", 1), mock.patch.object(benchmark, "NUM_FRAMES", 200):
+            bench.round_trips(mock.Mock())
+        for name in ("lockstep_round_trip", "bare_round_trip"):
+            median, p99, _ = bench.rows[name]
+            self.assertGreater(median, 0.0, name)
+            self.assertGreaterEqual(p99, median, name)
+
+    def test_kernels_tell_the_quantiles_of_single_calls(self):
+        run = os.path.join(self.folder, "experiment")
+        code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 1, "--out", run)
+        self.assertEqual(code, 0, output)
+        bench = benchmark.Benchmark(self.folder, False, self.folder)
+        bench.kernels()
+        for name in ("objective_gradient", "matrix_products", "retrain", "pca", "encode", "plan", "plan_cost_gradient",
+                     "render", "read_bag"):
+            median, p99, _ = bench.rows[name]
+            self.assertTrue(0.0 < median <= p99, (name, median, p99))
+        self.assertGreater(bench.plan_iterations, 0.0)
+
+    def test_growth_gives_a_row(self):
+        code, output = call([find_program("ddm_launch", "speed_growth"), "--frames", "200", "--size", "21"], 60.0)
+        self.assertEqual(code, 0, output)
+        frames, size, pca_us, objective_us, memory_mb = output.strip().split(",")
+        self.assertEqual((frames, size), ("200", "21"))
+        for value in (pca_us, objective_us, memory_mb):
+            self.assertGreater(float(value), 0.0)
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "benchmark_programs", BenchmarkProgramsTest)
