@@ -68,7 +68,7 @@ def draw(path, out):
         left.set_xlabel("frames of 51 x 51 pixels")
         right.set_xlabel("pixels, %d frames" % NUM_FRAMES)
         left.set_ylabel("time [s]")
-        right.legend(loc="center")
+        right.legend(loc="center", bbox_to_anchor=(0.5, 0.28))  # between the curves
         save(figure, out)
 
 
