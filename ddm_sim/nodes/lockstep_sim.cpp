@@ -104,10 +104,7 @@ void LockstepSim::onWatchdogTick(const ros::WallTimerEvent& /*event*/) {
   endTrial();
 }
 
-void LockstepSim::endTrial() {
-  running_ = false;
-  if (told_ns_ != now_ns_) tellTime();
-}
+void LockstepSim::endTrial() { running_ = false; }
 
 std::string LockstepSim::frameName() const {
   std::ostringstream name;

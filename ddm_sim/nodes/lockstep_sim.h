@@ -20,9 +20,9 @@ namespace ddm {
 /// of the last one, and the stamps have a gap. A torque with another stamp is counted and ignored.
 /// A torque that cannot be applied, or does not come within the watchdog's wall time, ends the
 /// trial: idle until the next reset. /clock never runs backwards: each trial starts later than the
-/// last one ended, with a gap that no reader can take for a step. It is at most a millisecond of
-/// wall time behind the frames while these come faster than that, and right when they rest. Stamps
-/// are whole nanoseconds, so equality is exact.
+/// last one ended, with a gap that no reader can take for a step. Frames that come faster than one
+/// a millisecond of wall time are not told one by one; when they rest, the next tick of the
+/// watchdog tells the time of the last. Stamps are whole nanoseconds, so equality is exact.
 class LockstepSim : public SimNode {
  public:
   LockstepSim(ros::NodeHandle nh, std::unique_ptr<Plant> plant, const CameraOptions& camera,
