@@ -31,9 +31,11 @@ RosWorld::RosWorld(ros::NodeHandle nh, double timeout, Peers peers)
       peers_(peers),
       trial_client_(nh, topics::kRunTrial, /*spin_thread=*/false),
       train_client_(nh, topics::kTrain, /*spin_thread=*/false),
-      reset_client_(nh.serviceClient<ddm_msgs::Reset>(topics::kReset)),
-      start_client_(nh.serviceClient<ddm_msgs::StartRecording>(topics::kStartRecording)),
-      stop_client_(nh.serviceClient<ddm_msgs::StopRecording>(topics::kStopRecording)) {
+      reset_client_(nh.serviceClient<ddm_msgs::Reset>(topics::kReset, /*persistent=*/true)),
+      start_client_(
+          nh.serviceClient<ddm_msgs::StartRecording>(topics::kStartRecording, /*persistent=*/true)),
+      stop_client_(
+          nh.serviceClient<ddm_msgs::StopRecording>(topics::kStopRecording, /*persistent=*/true)) {
   ground_truth_sub_ = nh.subscribe<sensor_msgs::JointState>(
       topics::kGroundTruth, kQueue, [this](const sensor_msgs::JointStateConstPtr& state) {
         const std::lock_guard<std::mutex> lock(mutex_);
@@ -105,6 +107,11 @@ void RosWorld::waitFor(const std::function<bool()>& condition, const std::string
 
 template <class Service>
 void RosWorld::call(ros::ServiceClient* client, Service* service) {
+  // One connection for all calls. With one for each the server hangs up after its answer, and a
+  // busy client may hear that first and lose the answer (github.com/ros/ros_comm/issues/1976).
+  if (!client->isValid()) {
+    *client = nh_.serviceClient<Service>(client->getService(), /*persistent=*/true);
+  }
   if (!client->call(*service)) {
     throw std::runtime_error("service " + client->getService() + " does not answer");
   }
