@@ -16,7 +16,6 @@
 namespace {
 
 constexpr int kImageSize = 51;
-constexpr int kIgnored = 100;
 constexpr int kQueue = 10;
 
 }  // namespace
@@ -29,7 +28,7 @@ int main(int argc, char** argv) {
   const std::string out = private_nh.param<std::string>("out", "");
   const std::vector<std::uint8_t> grey(kImageSize * kImageSize, 100);
   const ros::Publisher images = nh.advertise<sensor_msgs::Image>(ddm::topics::kImage, kQueue);
-  ddm::IntervalLog log(kIgnored);
+  ddm::IntervalLog log;
   ros::Time stamp(1, 0);
   const auto show = [&] {
     stamp += ros::Duration(0.2);
@@ -40,7 +39,7 @@ int main(int argc, char** argv) {
       [&](const ddm_msgs::TorqueConstPtr& torque) {
         if (torque->header.stamp != stamp) return;
         log.tick();
-        if (log.size() >= num_frames) {
+        if (log.numEvents() >= num_frames + ddm::IntervalLog::kEvents) {
           ros::shutdown();
         } else {
           show();

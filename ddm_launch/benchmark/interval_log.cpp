@@ -12,11 +12,12 @@
 namespace ddm {
 
 void IntervalLog::tick() {
+  if (++num_events_ % kEvents != 0) return;
   const auto now = std::chrono::steady_clock::now();
-  if (!first_ && num_ignored_-- <= 0) {
-    intervals_us_.push_back(std::chrono::duration<double, std::micro>(now - last_).count());
+  if (num_events_ > kEvents) {
+    intervals_us_.push_back(std::chrono::duration<double, std::micro>(now - last_).count() /
+                            kEvents);
   }
-  first_ = false;
   last_ = now;
 }
 

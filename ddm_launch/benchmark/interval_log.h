@@ -8,22 +8,21 @@
 
 namespace ddm {
 
+/// Events may be heard of several at a time, so an interval is the mean over kEvents of them.
 class IntervalLog {
  public:
-  /// @param num_ignored  first intervals that do not count: connections and caches are new
-  explicit IntervalLog(int num_ignored) : num_ignored_(num_ignored) {}
+  static constexpr int kEvents = 100;
 
-  /// An event is now.
+  /// An event is now. The first kEvents do not count: connections and caches are new.
   void tick();
-  int size() const { return static_cast<int>(intervals_us_.size()); }
+  int numEvents() const { return num_events_; }
   /// `{median_us: ..., p99_us: ..., count: ...}`, which appears at once and whole.
   /// @throws std::runtime_error if there is nothing to tell, or the file cannot be written
   void write(const std::string& path) const;
 
  private:
-  int num_ignored_;
+  int num_events_ = 0;
   std::chrono::steady_clock::time_point last_;
-  bool first_ = true;
   std::vector<double> intervals_us_;
 };
 

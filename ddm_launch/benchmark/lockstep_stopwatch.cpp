@@ -14,12 +14,11 @@
 
 namespace {
 
-constexpr int kIgnored = 100;
 constexpr int kQueue = 1000;
 constexpr double kTimeout = 30.0;  // [s]
 
 void run(const ros::NodeHandle& nh, int num_frames, const std::string& out) {
-  ddm::IntervalLog log(kIgnored);
+  ddm::IntervalLog log;
   std::mutex mutex;
   // RosWorld hears the ground truth anyway: one more callback, but no message that others lack.
   const ros::Subscriber frames = ros::NodeHandle(nh).subscribe<sensor_msgs::JointState>(
@@ -31,7 +30,7 @@ void run(const ros::NodeHandle& nh, int num_frames, const std::string& out) {
   peers.recorder = peers.trainer = false;
   ddm::RosWorld world(nh, kTimeout, peers);
   ddm::TrialRequest request;
-  request.num_steps = num_frames + kIgnored + 1;
+  request.num_steps = num_frames + ddm::IntervalLog::kEvents;
   request.epsilon = 1.0;
   world.runTrial(request, [](double) {});
   const std::lock_guard<std::mutex> lock(mutex);

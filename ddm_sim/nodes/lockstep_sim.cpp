@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kSecond = 1000000000;  // [ns]
 constexpr int kWatchdogTicks = 20;
-const ros::WallDuration kClockPeriod(0.001);
+const ros::WallDuration kTellPeriod(0.001);
 
 }  // namespace
 
@@ -25,7 +25,10 @@ LockstepSim::LockstepSim(ros::NodeHandle nh, std::unique_ptr<Plant> plant,
       options_(options),
       step_ns_(static_cast<std::uint64_t>(std::llround(this->plant().dt() * kSecond))),
       now_ns_(kSecond) {  // not 0, which means "no time yet" to everybody else
-  tellTime();
+  tell_timer_ = nh.createWallTimer(
+      kTellPeriod, [this](const ros::WallTimerEvent&) { tell(); }, /*oneshot=*/true,
+      /*autostart=*/false);
+  tell();
   publishGoal(now());
   // Ticks instead of one long timer: they stop counting while this process itself is held up, so a
   // torque that waits in the queue meanwhile is not called missing.
@@ -42,7 +45,7 @@ ros::Time LockstepSim::beginTrial(const ddm_msgs::Reset::Request& request) {
   frame_ = 0;
   ignored_ = 0;
   running_ = true;
-  tellTime();
+  tell();
   showFrame();
   return now();
 }
@@ -81,20 +84,19 @@ void LockstepSim::torqueRefused(const ros::Time& stamp, const std::string& reaso
 /// @return false if the camera has lost the frame
 bool LockstepSim::showFrame() {
   silent_ticks_ = 0;
-  const bool seen = publishFrame(now());  // first: what waits for it need not wait for the clock
-  if (ros::SteadyTime::now() - last_told_ >= kClockPeriod) tellTime();
-  return seen;
+  tell_timer_.start();  // does nothing if it runs
+  return publishFrame(now());
 }
 
-/// Each node of the system wakes up for the clock: more often than kClockPeriod would be a load.
-void LockstepSim::tellTime() {
+/// Ground truth and time. No node waits for them, but several wake up for each message: soon is
+/// soon enough, and cheaper for all frames of a kTellPeriod together.
+void LockstepSim::tell() {
+  tell_timer_.stop();
+  publishGroundTruth();
   publishClock(now());
-  told_ns_ = now_ns_;
-  last_told_ = ros::SteadyTime::now();
 }
 
 void LockstepSim::onWatchdogTick(const ros::WallTimerEvent& /*event*/) {
-  if (told_ns_ != now_ns_) tellTime();
   // The first tick after a frame may come at once, so it does not count as time passed.
   if (!running_ || ++silent_ticks_ <= kWatchdogTicks) return;
   ROS_ERROR_STREAM("no torque for " << frameName() << " within " << formatDouble(options_.watchdog)
@@ -104,7 +106,10 @@ void LockstepSim::onWatchdogTick(const ros::WallTimerEvent& /*event*/) {
   endTrial();
 }
 
-void LockstepSim::endTrial() { running_ = false; }
+void LockstepSim::endTrial() {
+  running_ = false;
+  tell();
+}
 
 std::string LockstepSim::frameName() const {
   std::ostringstream name;

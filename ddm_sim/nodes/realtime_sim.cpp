@@ -30,6 +30,7 @@ ros::Time RealtimeSim::beginTrial(const ddm_msgs::Reset::Request& request) {
   timer_.start();
   const ros::Time stamp = wallNow();
   publishFrame(stamp);
+  publishGroundTruth();
   ROS_INFO("%s %u starts in real time", request.evaluation ? "evaluation" : "trial", request.trial);
   return stamp;
 }
@@ -53,6 +54,7 @@ void RealtimeSim::onTick(const ros::WallTimerEvent& /*event*/) {
     return;
   }
   publishFrame(wallNow());
+  publishGroundTruth();
 }
 
 }  // namespace ddm

@@ -32,9 +32,12 @@ class SimNode {
   /// @return false if the plant has no next state; the reason has been logged
   bool advance(const Eigen::VectorXd& torque);
 
-  /// Ground truth and image of this time step, to be called once in each.
-  /// @return false if the camera has lost the frame: nothing was published
+  /// The image of this time step, to be called once in each. publishGroundTruth tells the rest.
+  /// @return false if the camera has lost the frame: there will be nothing of it
   bool publishFrame(const ros::Time& stamp);
+
+  /// Ground truth of the frames since the last call.
+  void publishGroundTruth() { publisher_.publishGroundTruth(); }
 
   void publishGoal(const ros::Time& stamp) const;
   void publishClock(const ros::Time& stamp) const { publisher_.publishClock(stamp); }

@@ -5,7 +5,8 @@
 #include <image_transport/image_transport.h>
 #include <rosgraph_msgs/Clock.h>
 #include <sensor_msgs/Image.h>
-#include <sensor_msgs/JointState.h>
+
+#include <utility>
 
 #include "ddm_msgs/image_codec.h"
 #include "ddm_msgs/topics.h"
@@ -15,6 +16,7 @@ namespace {
 
 constexpr char kFrameId[] = "camera";
 constexpr int kQueueSize = 10;
+constexpr int kGroundTruthQueueSize = 1000;  // several frames are told at a time
 
 std::vector<double> toVector(const Eigen::VectorXd& values) {
   return std::vector<double>(values.data(), values.data() + values.size());
@@ -25,7 +27,8 @@ std::vector<double> toVector(const Eigen::VectorXd& values) {
 SimPublisher::SimPublisher(ros::NodeHandle nh, const Plant& plant, bool clock) : plant_(plant) {
   if (clock) clock_ = nh.advertise<rosgraph_msgs::Clock>("/clock", 1, /*latch=*/true);
   goal_image_ = nh.advertise<sensor_msgs::Image>(topics::kGoalImage, 1, /*latch=*/true);
-  ground_truth_ = nh.advertise<sensor_msgs::JointState>(topics::kGroundTruth, kQueueSize);
+  ground_truth_ =
+      nh.advertise<sensor_msgs::JointState>(topics::kGroundTruth, kGroundTruthQueueSize);
   image_ = image_transport::ImageTransport(nh).advertise(topics::kImage, kQueueSize);
 }
 
@@ -42,7 +45,7 @@ void SimPublisher::publishClock(const ros::Time& stamp) const {
 
 void SimPublisher::publishFrame(const Eigen::VectorXd& applied,
                                 const std::vector<std::uint8_t>& photograph,
-                                const ros::Time& stamp) const {
+                                const ros::Time& stamp) {
   image_.publish(encodeImage(photograph, plant_.imageSize(), stamp, kFrameId));
   const Eigen::VectorXd& state = plant_.state();
   sensor_msgs::JointState joints;
@@ -52,7 +55,12 @@ void SimPublisher::publishFrame(const Eigen::VectorXd& applied,
   joints.position = toVector(state.head(num_joints));
   joints.velocity = toVector(state.tail(state.size() - num_joints));
   joints.effort = toVector(applied);
-  ground_truth_.publish(joints);
+  kept_.push_back(std::move(joints));
+}
+
+void SimPublisher::publishGroundTruth() {
+  for (const sensor_msgs::JointState& joints : kept_) ground_truth_.publish(joints);
+  kept_.clear();
 }
 
 }  // namespace ddm

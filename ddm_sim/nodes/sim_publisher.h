@@ -4,6 +4,7 @@
 
 #include <image_transport/publisher.h>
 #include <ros/node_handle.h>
+#include <sensor_msgs/JointState.h>
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -13,8 +14,7 @@
 
 namespace ddm {
 
-/// Turns states of a plant and photographs into messages. Advertises in its constructor; keeps no
-/// state of its own.
+/// Turns states of a plant and photographs into messages. Advertises in its constructor.
 class SimPublisher {
  public:
   /// @param nh      its namespace holds the topics
@@ -28,14 +28,19 @@ class SimPublisher {
   /// Simulated time, latched. Must not run backwards.
   void publishClock(const ros::Time& stamp) const;
 
-  /// The present state of the plant: ground truth, then the image, with the same stamp.
+  /// The image of the present state of the plant. Its ground truth, of the same stamp, is kept for
+  /// publishGroundTruth.
   /// @param applied     torque of the step that led here
   /// @param photograph  what the camera shows of it
   void publishFrame(const Eigen::VectorXd& applied, const std::vector<std::uint8_t>& photograph,
-                    const ros::Time& stamp) const;
+                    const ros::Time& stamp);
+
+  /// What was kept, one message a frame. Not much later than the frames: each is kept in memory.
+  void publishGroundTruth();
 
  private:
   const Plant& plant_;
+  std::vector<sensor_msgs::JointState> kept_;  ///< of frames since the last publishGroundTruth
   ros::Publisher clock_;
   ros::Publisher goal_image_;
   ros::Publisher ground_truth_;

@@ -17,7 +17,7 @@ from ddm_launch.step_runner import Failure, package_path, processor, program
 from ddm_launch.sweep_folder import read_yaml, write_file
 
 COLUMNS = ["name", "median_us", "p99_us", "peer_median_us"]
-TRIALS, ITERATIONS, RESTARTS, NUM_FRAMES = 15, 200, 9, 3000
+TRIALS, ITERATIONS, RESTARTS, NUM_FRAMES = 15, 200, 9, 10000
 
 ABOUT = """\
 Times objective and gradient, one retraining, PCA, encoding, plans, renderer and bag reading on the 1600 frames of an
@@ -33,8 +33,8 @@ DIR/speed.csv, one row a name; times in microseconds, of single calls unless sai
   pca, encode          PCA of 1601 images; the features of one image
   plan                 a whole plan along greedy trials; plan_cost_gradient: one evaluation of its cost
   render, read_bag     an image of the simulator; a bag of 100 frames
-  lockstep_round_trip  image to torque to next image with sim_node and mpc_node, random policy, recorder off; median of
-                       the medians, and of the 99 % quantiles, of 9 restarts
+  lockstep_round_trip  image to torque to next image with sim_node and mpc_node, random policy, recorder off: means of
+                       100 in a row; median of the medians, and of the 99 % quantiles, of 9 restarts
   bare_round_trip      the same messages between two nodes that do nothing with them, restarts taking turns
   experiment           15 trials after the random one in one process, the whole; once
   ros_experiment       the same by roslaunch, from the first frame to the last; once
