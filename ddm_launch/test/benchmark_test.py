@@ -73,6 +73,7 @@ class BenchmarkTest(unittest.TestCase):
         by_name = {row[0]: row[1:] for row in rows[1:]}
         self.assertEqual(by_name, {
             "experiment": ["9.5e+06", "", ""], "objective_gradient": ["1000", "1500", ""],
+            "matrix_products/64": ["800", "900", ""], "matrix_products/128": ["700", "950", ""],
             "matrix_products": ["700", "950", ""], "plan": ["300", "600", "60000"],
             "ros_experiment": ["9.5e+06", "", ""], "lockstep_round_trip": ["80", "160", ""],
             "bare_round_trip": ["40", "80", ""]})

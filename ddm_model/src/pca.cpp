@@ -9,14 +9,16 @@
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace ddm {
 namespace {
 
 constexpr int kOversampling = 10;
 constexpr int kMaxSweeps = 30;
-constexpr double kVarianceTolerance = 1e-6;
+constexpr double kVarianceTolerance = 1e-5;
 constexpr Eigen::Index kBlock = 256;  // images that are floats at a time
+constexpr float kWhite = 255.0F;
 
 Eigen::MatrixXf orthonormalised(const Eigen::MatrixXf& columns) {
   const Eigen::HouseholderQR<Eigen::MatrixXf> qr(columns);
@@ -24,51 +26,42 @@ Eigen::MatrixXf orthonormalised(const Eigen::MatrixXf& columns) {
 }
 
 Eigen::MatrixXf centred(const Eigen::Ref<const GreyMatrix>& pixels, const Eigen::VectorXf& mean) {
-  return (pixels.cast<float>() / 255.0F).colwise() - mean;
+  return (pixels.cast<float>() / kWhite).colwise() - mean;
 }
 
-/// All images of a data set, the goal last, as grey values in [0, 1] less their mean: a matrix Y of
-/// floats [D x M] that is never there as a whole, only a block of columns at a time.
+/// All images of a data set, the goal last, as bytes k less their mean: a matrix K of floats [D x
+/// M] that is never there as a whole, only a block of columns at a time.
 class CentredImages {
  public:
-  explicit CentredImages(const DataSet& data)
-      : data_(data), mean_(Eigen::VectorXf::Zero(data.numPixels())) {
+  explicit CentredImages(const DataSet& data) : data_(data) {
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(data.numPixels());
-    forEachBlock([&sum](Eigen::Index, const Eigen::MatrixXf& block) {
-      sum += block.rowwise().sum().cast<double>();
-    });
+    for (Eigen::Index i = 0; i < data.numImages(); ++i) sum += bytes(i).cast<double>();
     mean_ = (sum / static_cast<double>(data.numImages())).cast<float>();
   }
 
+  /// [D]
   const Eigen::VectorXf& mean() const { return mean_; }
 
-  /// @param q  [M x k]
-  /// @return   Y q  [D x k]
-  Eigen::MatrixXf times(const Eigen::MatrixXf& q) const {
-    Eigen::MatrixXf product = Eigen::MatrixXf::Zero(data_.numPixels(), q.cols());
-    forEachBlock([&](Eigen::Index begin, const Eigen::MatrixXf& block) {
-      product.noalias() += block * q.middleRows(begin, block.cols());
-    });
-    return product;
-  }
-
   /// @param columns  [D x k]
-  /// @return         Y^T columns  [M x k]
-  Eigen::MatrixXf transposeTimes(const Eigen::MatrixXf& columns) const {
-    Eigen::MatrixXf product(data_.numImages(), columns.cols());
-    forEachBlock([&](Eigen::Index begin, const Eigen::MatrixXf& block) {
-      product.middleRows(begin, block.cols()).noalias() = block.transpose() * columns;
-    });
-    return product;
+  /// @return         K K^T columns / M  [D x k]
+  Eigen::MatrixXf covarianceTimes(const Eigen::MatrixXf& columns) const {
+    Eigen::MatrixXf product = Eigen::MatrixXf::Zero(data_.numPixels(), columns.cols());
+    Eigen::MatrixXf block(data_.numPixels(), std::min(kBlock, data_.numImages()));
+    Eigen::MatrixXf scores(block.cols(), columns.cols());
+    for (Eigen::Index begin = 0; begin < data_.numImages(); begin += kBlock) {
+      const Eigen::Index size = std::min(kBlock, data_.numImages() - begin);
+      for (Eigen::Index i = 0; i < size; ++i) {
+        block.col(i) = bytes(begin + i).cast<float>() - mean_;
+      }
+      scores.topRows(size).noalias() = block.leftCols(size).transpose() * columns;
+      product.noalias() += block.leftCols(size) * scores.topRows(size);
+    }
+    return product / static_cast<float>(data_.numImages());
   }
 
  private:
-  template <class Function>
-  void forEachBlock(const Function& function) const {
-    for (Eigen::Index begin = 0; begin < data_.numImages(); begin += kBlock) {
-      const Eigen::Index size = std::min(kBlock, data_.numImages() - begin);
-      function(begin, centred(data_.pixels(begin, size), mean_));
-    }
+  Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>> bytes(Eigen::Index i) const {
+    return {data_.image(i).data(), data_.numPixels()};
   }
 
   const DataSet& data_;
@@ -113,31 +106,29 @@ Pca fitPca(const DataSet& data, int dim, double score_std) {
   }
   const CentredImages images(data);
   Pca pca;
-  pca.mean = images.mean();
+  pca.mean = images.mean() / kWhite;
 
   const Eigen::Index subspace = std::min<Eigen::Index>(
       {static_cast<Eigen::Index>(dim) + kOversampling, num_images, data.numPixels()});
   std::mt19937_64 rng(1);  // any fixed start will do: the result does not depend on it
   std::normal_distribution<float> normal;
-  Eigen::MatrixXf q(num_images, subspace);
-  for (Eigen::Index i = 0; i < q.size(); ++i) q.data()[i] = normal(rng);
+  Eigen::MatrixXf basis(data.numPixels(), subspace);
+  for (Eigen::Index i = 0; i < basis.size(); ++i) basis.data()[i] = normal(rng);
 
-  Eigen::MatrixXf basis;
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz;
-  double captured = -1.0;
+  double captured = 0.0;  // variance within the first `dim` directions of the subspace
   for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
-    basis = orthonormalised(images.times(q));
-    q = images.transposeTimes(basis);
-    const Eigen::MatrixXd q_double = q.cast<double>();
-    ritz.compute(q_double.transpose() * q_double / static_cast<double>(num_images));
+    basis = orthonormalised(basis);
+    Eigen::MatrixXf next = images.covarianceTimes(basis);
+    ritz.compute(basis.cast<double>().transpose() * next.cast<double>());
     const double captured_now = ritz.eigenvalues().tail(dim).sum();
     const bool settled = std::abs(captured_now - captured) <= kVarianceTolerance * captured_now;
     captured = captured_now;
     if (settled) break;
-    q = orthonormalised(q);
+    basis = std::move(next);
   }
   pca.basis = basis * ritz.eigenvectors().rightCols(dim).rowwise().reverse().cast<float>();
-  pca.variance = ritz.eigenvalues().tail(dim).reverse().cwiseMax(0.0);
+  pca.variance = ritz.eigenvalues().tail(dim).reverse().cwiseMax(0.0) / (kWhite * kWhite);
   if (!(pca.variance[0] > 1e-12)) {
     throw std::invalid_argument("all " + std::to_string(num_images) +
                                 " images are the same: there is nothing to learn from them");

@@ -28,7 +28,8 @@ it can; the machine should have nothing else to do."""
 EPILOG = """\
 DIR/speed.csv, one row a name; times in microseconds, of single calls unless said otherwise:
   objective_gradient   V_R + V_P and its gradient, float32, 1600 frames
-  matrix_products      the matrix products of the same and nothing else, in their best blocking
+  matrix_products/N    the matrix products of the same and nothing else, N samples at a time
+  matrix_products      the same in their best blocking
   retrain              a retraining of 200 iterations on 1600 frames, PCA included
   pca, encode          PCA of 1601 images; the features of one image
   plan                 a whole plan along greedy trials; plan_cost_gradient: one evaluation of its cost
@@ -51,14 +52,14 @@ class Benchmark:
         self.plan_iterations = None
 
     def experiment(self):
-        self.programs.call("experiment", [program("run_experiment"), "--preset", "paper", "--plant", "pendulum", "--seed", "0",
-                                 "--trials", str(TRIALS), "--out", self.run])
+        self.programs.call("experiment", [program("run_experiment"), "--preset", "paper", "--plant", "pendulum",
+                                          "--seed", "0", "--trials", str(TRIALS), "--out", self.run])
         self.rows["experiment"] = [1e6 * read_yaml(os.path.join(self.run, "summary.yaml"))["wall_s"], "", ""]
 
     def kernels(self):
         report = os.path.join(self.scratch, "kernels.json")
         self.programs.call("kernels", [program("speed_kernels"), self.run, "--benchmark_out_format=json",
-                              "--benchmark_out=" + report])
+                                       "--benchmark_out=" + report])
         with open(report) as stream:
             found = json.load(stream)["benchmarks"]
         times = {}  # name: {median, p99}
@@ -70,15 +71,14 @@ class Benchmark:
                 times.setdefault(name, {})[row["aggregate_name"]] = row["real_time"]
             if name == "plan" and row.get("aggregate_name") == "mean":
                 self.plan_iterations = row["plan_iterations"]
-        blocks = [name for name in times if name.startswith("matrix_products/")]
-        best = min(blocks, key=lambda name: times[name]["median"])
-        times["matrix_products"] = times[best]
-        for name in [name for name in times if name not in blocks]:
+        times["matrix_products"] = min((found for name, found in times.items() if name.startswith("matrix_products/")),
+                                       key=lambda found: found["median"])
+        for name in times:
             self.rows[name] = [times[name]["median"], times[name]["p99"], ""]
 
     def peer(self):
         text = self.programs.call("peers", [sys.executable, "-m", "ddm_launch.torch_peers", self.run, "--iterations",
-                                   str(ITERATIONS), "--plan-iterations", "%.1f" % self.plan_iterations])
+                                            str(ITERATIONS), "--plan-iterations", "%.1f" % self.plan_iterations])
         for name, times in json.loads(text.splitlines()[-1]).items():
             self.rows[name][2] = times["median_us"]
 
@@ -89,7 +89,7 @@ class Benchmark:
             for name, found in times.items():
                 path = os.path.join(self.scratch, "%s_%d.yaml" % (name, restart))
                 self.programs.roslaunch(name, package_path("benchmark", name + ".launch"), "out:=" + path,
-                               "num_frames:=%d" % NUM_FRAMES)
+                                        "num_frames:=%d" % NUM_FRAMES)
                 measured = read_yaml(path)
                 if not measured:
                     raise Failure("%s: the nodes ended without a result: look for their errors above and in %s"
@@ -101,8 +101,8 @@ class Benchmark:
 
     def ros_experiment(self):
         run = os.path.join(self.scratch, "ros_experiment")
-        self.programs.roslaunch("ros_experiment", "ddm_launch", "experiment.launch", "preset:=paper", "plant:=pendulum",
-                       "seed:=0", "trials:=%d" % TRIALS, "runs:=" + run)
+        self.programs.roslaunch("ros_experiment", "ddm_launch", "experiment.launch", "preset:=paper",
+                                "plant:=pendulum", "seed:=0", "trials:=%d" % TRIALS, "runs:=" + run)
         summary = read_yaml(os.path.join(run, "summary.yaml"))
         if summary.get("finished") is not True:
             raise Failure("ros_experiment: the experiment of the nodes did not finish")
@@ -133,7 +133,8 @@ class Benchmark:
         machine = {"cpu": processor(), "cores": os.cpu_count(), "plan_iterations": self.plan_iterations,
                    "version": read_yaml(os.path.join(self.run, "config.yaml")).get("version", "?")}
         if self.peers:
-            machine["torch"] = self.programs.call("peers", [sys.executable, "-c", "import torch; print(torch.__version__)"]).strip()
+            version = [sys.executable, "-c", "import torch; print(torch.__version__)"]
+            machine["torch"] = self.programs.call("peers", version).strip()
         write_file(os.path.join(self.out, "machine.yaml"), yaml.safe_dump(machine, sort_keys=False))
 
     def table(self):

@@ -40,7 +40,9 @@ struct Pca {
 /// iteration from a fixed start (Halko, Martinsson, Tropp 2011, Alg. 4.4 and Sec. 4.5). Exact where
 /// there are at most as many images as the iterated subspace has dimensions.
 ///
-/// Tolerance: the iteration ends when the variance captured changes by less than 1e-6 of itself.
+/// Tolerance: the iteration ends when the variance captured changes by less than 1e-5 of itself. It
+/// then lacks less than 1e-6 where the spectrum falls as that of a few moving things does, and less
+/// than 1e-3 for images that are noise.
 /// @param data       at least dim + 1 images
 /// @param dim        number of components
 /// @param score_std  standard deviation that the leading score shall have; fixes the scale
