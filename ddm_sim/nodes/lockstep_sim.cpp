@@ -20,11 +20,13 @@ const ros::WallDuration kTellPeriod(0.001);
 }  // namespace
 
 LockstepSim::LockstepSim(ros::NodeHandle nh, std::unique_ptr<Plant> plant,
-                         const CameraOptions& camera, const SimOptions& options)
+                         const CameraOptions& camera, const SimOptions& options,
+                         const ShowOptions& show)
     : SimNode(nh, std::move(plant), camera, /*clock=*/true),
       options_(options),
       step_ns_(static_cast<std::uint64_t>(std::llround(this->plant().dt() * kSecond))),
       now_ns_(kSecond) {  // not 0, which means "no time yet" to everybody else
+  if (show.frame_rate > 0.0) pace_.emplace(show.frame_rate);
   tell_timer_ = nh.createWallTimer(
       kTellPeriod, [this](const ros::WallTimerEvent&) { tell(); }, /*oneshot=*/true,
       /*autostart=*/false);
@@ -83,6 +85,7 @@ void LockstepSim::torqueRefused(const ros::Time& stamp, const std::string& reaso
 
 /// @return false if the camera has lost the frame
 bool LockstepSim::showFrame() {
+  if (pace_) pace_->sleep();  // nothing else is to be done: whoever has answered is waiting, too
   silent_ticks_ = 0;
   tell_timer_.start();  // does nothing if it runs
   return publishFrame(now());

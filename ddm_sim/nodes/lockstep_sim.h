@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "ddm_sim/plant_options.h"
+#include "show_options.h"
 #include "sim_node.h"
 
 namespace ddm {
@@ -26,7 +28,7 @@ namespace ddm {
 class LockstepSim : public SimNode {
  public:
   LockstepSim(ros::NodeHandle nh, std::unique_ptr<Plant> plant, const CameraOptions& camera,
-              const SimOptions& options);
+              const SimOptions& options, const ShowOptions& show);
 
  private:
   ros::Time beginTrial(const ddm_msgs::Reset::Request& request) override;
@@ -42,11 +44,12 @@ class LockstepSim : public SimNode {
   ros::Time now() const { return ros::Time().fromNSec(now_ns_); }
 
   SimOptions options_;
-  std::uint64_t step_ns_;    ///< dt [ns]
-  std::uint64_t now_ns_;     ///< simulated time = stamp of the frame on show [ns]
-  bool running_ = false;     ///< a frame is on show and waits for its torque
-  bool first_trial_ = true;  ///< nothing has been shown yet
-  std::string trial_;        ///< "trial 3" or "evaluation 3"
+  std::optional<ros::WallRate> pace_;  ///< empty: as fast as torques come
+  std::uint64_t step_ns_;              ///< dt [ns]
+  std::uint64_t now_ns_;               ///< simulated time = stamp of the frame on show [ns]
+  bool running_ = false;               ///< a frame is on show and waits for its torque
+  bool first_trial_ = true;            ///< nothing has been shown yet
+  std::string trial_;                  ///< "trial 3" or "evaluation 3"
   std::uint32_t num_steps_ = 0;
   std::uint64_t frame_ = 0;    ///< index of the frame on show, among those shown
   std::uint64_t ignored_ = 0;  ///< torques with another stamp, in this trial

@@ -22,17 +22,20 @@ int main(int argc, char** argv) {
     const auto plant = params.read<ddm::PlantOptions>("plant");
     const auto camera = params.read<ddm::CameraOptions>("camera");
     const auto sim = params.read<ddm::SimOptions>("sim");
+    const auto show = params.read<ddm::ShowOptions>("show");
     params.requireValid();
 
     YAML::Node effective;
     effective["plant"] = ddm::toYaml(plant);
     effective["camera"] = ddm::toYaml(camera);
     effective["sim"] = ddm::toYaml(sim);
+    effective["show"] = ddm::toYaml(show);
     ROS_INFO_STREAM("sim_node: effective configuration\n" << effective);
 
     std::unique_ptr<ddm::SimNode> node;
     if (sim.lockstep) {
-      node = std::make_unique<ddm::LockstepSim>(nh, ddm::makePlant(plant, camera), camera, sim);
+      node =
+          std::make_unique<ddm::LockstepSim>(nh, ddm::makePlant(plant, camera), camera, sim, show);
     } else {
       node = std::make_unique<ddm::RealtimeSim>(nh, ddm::makePlant(plant, camera), camera);
     }

@@ -66,6 +66,18 @@ TEST_F(LockstepTile, MovesTheTileAsTheLibraryDoesAndTellsTheTruthOfEachImage) {
   EXPECT_EQ(plant->state(), Eigen::Vector2d(40.75, 7.5));
 }
 
+/// The launch file asks for 100 frames a second.
+TEST_F(LockstepTile, ShowsNoMoreFramesInASecondThanItsRate) {
+  ASSERT_TRUE(client_->reset(21).success);
+  ASSERT_TRUE(client_->waitForImages(1));
+  const ros::WallTime first = ros::WallTime::now();
+  for (std::size_t t = 0; t < 20; ++t) {
+    client_->publish(client_->images[t].header.stamp, {0.0, 0.0});
+    ASSERT_TRUE(client_->waitForImages(t + 2));
+  }
+  EXPECT_GT((ros::WallTime::now() - first).toSec(), 0.17);  // two of 20 periods for the test itself
+}
+
 TEST_F(LockstepTile, DrawsTheStartThatTheLibraryDraws) {
   const auto plant = tile();
   std::mt19937_64 engine = startStream(7, 3, false);

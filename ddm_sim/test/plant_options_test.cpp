@@ -11,6 +11,7 @@
 
 #include "ddm_msgs/param_reader.h"
 #include "ddm_sim/plant_factory.h"
+#include "show_options.h"
 
 namespace ddm {
 namespace {
@@ -70,6 +71,16 @@ TEST(PlantOptions, RefuseNaNInfinityAndNegativeNumbersInEveryKey) {
     EXPECT_EQ(numAccepted<PlantOptions>(bad), 0) << bad;
     EXPECT_EQ(numAccepted<CameraOptions>(bad), 0) << bad;
     EXPECT_EQ(numAccepted<SimOptions>(bad), 0) << bad;
+  }
+}
+
+TEST(ShowOptions, RefuseAFrameRateThatWouldNeverShowAFrame) {
+  EXPECT_TRUE(ShowOptions().problems().empty());
+  for (const double rate : {0.5, 1e-9, 2e6, -25.0, kNaN}) {
+    EXPECT_EQ(ShowOptions{rate}.problems().size(), 1U) << rate;
+  }
+  for (const double rate : {0.0, 1.0, 25.0}) {
+    EXPECT_TRUE(ShowOptions{rate}.problems().empty()) << rate;
   }
 }
 
@@ -176,10 +187,12 @@ TEST(Config, ManualSaysWhatTheStructsSay) {
   const auto plant = reader.read<PlantOptions>("plant");
   const auto camera = reader.read<CameraOptions>("camera");
   const auto sim = reader.read<SimOptions>("sim");
+  const auto show = reader.read<ShowOptions>("show");
   ASSERT_NO_THROW(reader.requireValid());
   EXPECT_EQ(yaml(plant), yaml(PlantOptions()));
   EXPECT_EQ(yaml(camera), yaml(CameraOptions()));
   EXPECT_EQ(yaml(sim), yaml(SimOptions()));
+  EXPECT_EQ(yaml(show), yaml(ShowOptions()));
 }
 
 TEST(Config, ManualNamesEveryKeyOnce) {
@@ -192,6 +205,7 @@ TEST(Config, ManualNamesEveryKeyOnce) {
   EXPECT_EQ(keys(YAML::LoadFile(kConfig + "moving_tile.yaml")["plant"]).count("tile_width"), 1U);
   EXPECT_EQ(keys(sim["camera"]), keys(CameraOptions()));
   EXPECT_EQ(keys(sim["sim"]), keys(SimOptions()));
+  EXPECT_EQ(keys(sim["show"]), keys(ShowOptions()));
 }
 
 TEST(Config, PendulumGravityIsTheClassicalHardOne) {
