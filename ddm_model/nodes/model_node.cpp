@@ -12,9 +12,10 @@ const ros::WallDuration kFeedbackPeriod(0.05);
 
 }  // namespace
 
-ModelNode::ModelNode(ros::NodeHandle nh, const ModelConfig& config)
+ModelNode::ModelNode(ros::NodeHandle nh, ros::NodeHandle pnh, const ModelConfig& config)
     : config_(config),
       bags_(config.image.size, config.data_set),
+      health_(nh, pnh),
       model_pub_(nh.advertise<ddm_msgs::Model>(topics::kModel, 1, /*latch=*/true)),
       server_(
           nh, topics::kTrain, [this](const ddm_msgs::TrainGoalConstPtr& goal) { train(goal); },
@@ -24,6 +25,7 @@ ModelNode::ModelNode(ros::NodeHandle nh, const ModelConfig& config)
 
 void ModelNode::train(const ddm_msgs::TrainGoalConstPtr& goal) {
   ddm_msgs::TrainResult result;
+  health_.begin(goal->trial);
   try {
     const DataSet data = bags_.read(goal->bags);
     if (!data.hasGoal()) {
@@ -33,18 +35,22 @@ void ModelNode::train(const ddm_msgs::TrainGoalConstPtr& goal) {
     result.train_time = training.seconds;
     result.evaluations = training.evaluations;
     if (!training.model && server_.isPreemptRequested()) {
+      health_.cancel();
       server_.setPreempted(result, training.message);
     } else if (!training.model) {
       ROS_ERROR_STREAM("trial " << goal->trial << ": " << training.message);
+      health_.fail(training.message);
       server_.setAborted(result, training.message);
     } else {
       publish(*training.model, &result);
       ROS_INFO("trial %u: learned from %u frames in %.2f s, V_R %.4g, V_P %.4g", goal->trial,
                result.frames, result.train_time, result.v_r, result.v_p);
+      health_.succeed(result);
       server_.setSucceeded(result);
     }
   } catch (const std::exception& e) {
     ROS_ERROR_STREAM("trial " << goal->trial << ": cannot train: " << e.what());
+    health_.fail(e.what());
     server_.setAborted(result, e.what());
   }
 }
@@ -59,6 +65,7 @@ TrainingResult ModelNode::trainOn(const DataSet& data, const ddm_msgs::TrainGoal
 }
 
 bool ModelNode::reportProgress(const TrainingProgress& progress) {
+  health_.progress(progress);
   const ros::WallTime now = ros::WallTime::now();
   if (now - last_feedback_ >= kFeedbackPeriod) {
     last_feedback_ = now;

@@ -9,12 +9,16 @@
 #include <ddm_msgs/TrainAction.h>
 #include <ros/ros.h>
 
+#include "training_health.h"
+
 namespace ddm {
 
 /// Action `train` -> topic `model`, latched.
 class ModelNode {
  public:
-  ModelNode(ros::NodeHandle nh, const ModelConfig& config);
+  /// @param nh   topics and action
+  /// @param pnh  parameters
+  ModelNode(ros::NodeHandle nh, ros::NodeHandle pnh, const ModelConfig& config);
 
  private:
   void train(const ddm_msgs::TrainGoalConstPtr& goal);
@@ -24,6 +28,7 @@ class ModelNode {
 
   ModelConfig config_;
   BagCache bags_;
+  TrainingHealth health_;
   ros::Publisher model_pub_;
   ros::WallTime last_feedback_;
   actionlib::SimpleActionServer<ddm_msgs::TrainAction> server_;

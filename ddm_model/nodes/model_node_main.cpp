@@ -15,10 +15,11 @@ int main(int argc, char** argv) {
   ddm::silenceSolverLog();
   try {
     ddm::ParamReader params(ddm::nodeParams(pnh), pnh.getNamespace());
+    params.ignore("diagnostic_period");  // read by diagnostic_updater itself
     const ddm::ModelConfig config = ddm::readModelConfig(&params);
     params.requireValid();
     ROS_INFO_STREAM("model_node runs with\n" << ddm::toText(config));
-    ddm::ModelNode node(nh, config);
+    ddm::ModelNode node(nh, pnh, config);
     ros::spin();
   } catch (const std::exception& e) {
     ROS_FATAL_STREAM("model_node: " << e.what());

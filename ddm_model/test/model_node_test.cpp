@@ -4,6 +4,7 @@
 #include <ddm_msgs/Model.h>
 #include <ddm_msgs/TrainAction.h>
 #include <ddm_msgs/topics.h>
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <gtest/gtest.h>
 #include <ros/ros.h>
 #include <ros/topic.h>
@@ -23,6 +24,7 @@ namespace {
 
 using Client = actionlib::SimpleActionClient<ddm_msgs::TrainAction>;
 using State = actionlib::SimpleClientGoalState;
+using diagnostic_msgs::DiagnosticStatus;
 using testing::contains;
 
 const ros::Duration kLimit(20.0);
@@ -41,6 +43,24 @@ class ModelNodeTest : public ::testing::Test {
     goal.seed = seed;
     goal.trial = 4;
     return goal;
+  }
+
+  /// A model_node reports a status of this level with these words.
+  static ::testing::AssertionResult reports(const std::string& node, std::uint8_t level,
+                                            const std::string& words) {
+    std::string text = "nothing";
+    const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(kLimit.toSec());
+    while (ros::WallTime::now() < end) {
+      const auto array =
+          ros::topic::waitForMessage<diagnostic_msgs::DiagnosticArray>("/diagnostics", kLimit);
+      if (!array) break;
+      for (const DiagnosticStatus& status : array->status) {
+        if (status.name != node + ": training") continue;
+        text = status.message;
+        if (status.level == level && contains(text, words)) return ::testing::AssertionSuccess();
+      }
+    }
+    return ::testing::AssertionFailure() << "it is: " << text;
   }
 
   const testing::TempFolder folder_;
@@ -72,6 +92,7 @@ TEST_F(ModelNodeTest, TrainsAndPublishesTheWholeModelLatched) {
   EXPECT_EQ(result->v_p, model.info().v_p);
   EXPECT_GT(result->evaluations, 0U);
   EXPECT_GT(result->train_time, 0.0);
+  EXPECT_TRUE(reports("model_node", DiagnosticStatus::OK, "trial 4: trained in "));
 }
 
 TEST_F(ModelNodeTest, TheSameSeedGivesTheSameModel) {
@@ -91,6 +112,7 @@ TEST_F(ModelNodeTest, AbortsNamingABadBagAndGoesOn) {
     EXPECT_TRUE(contains(client_.getState().getText(), folder_.file(bad)))
         << client_.getState().getText();
   }
+  EXPECT_TRUE(reports("model_node", DiagnosticStatus::ERROR, folder_.file("b.bag.active")));
   EXPECT_EQ(client_.sendGoalAndWait(goal({"a.bag"}), kLimit), State::SUCCEEDED);
 }
 
@@ -126,10 +148,12 @@ TEST_F(ModelNodeTest, TellsItsProgressAndCanBePreempted) {
     EXPECT_GE(latest.fraction_done, 0.0);
     EXPECT_LE(latest.fraction_done, 1.0);
   }
+  EXPECT_TRUE(reports("slow/model_node", DiagnosticStatus::OK, "trial 4: training, 0 %"));
   slow.cancelGoal();
   ASSERT_TRUE(slow.waitForResult(kLimit));
   EXPECT_EQ(slow.getState(), State::PREEMPTED);
   EXPECT_EQ(slow.getResult()->model_id, "");
+  EXPECT_TRUE(reports("slow/model_node", DiagnosticStatus::WARN, "trial 4: training cancelled"));
 }
 
 TEST_F(ModelNodeTest, RefusesToStartWithParametersThatAreWrong) {

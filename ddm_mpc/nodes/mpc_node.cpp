@@ -24,7 +24,7 @@ std::vector<double> flat(const Eigen::MatrixXd& values) {
 
 }  // namespace
 
-MpcNode::MpcNode(ros::NodeHandle nh, int image_size, const MpcOptions& mpc,
+MpcNode::MpcNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size, const MpcOptions& mpc,
                  const ControllerOptions& controller)
     : image_size_(image_size),
       mpc_(mpc),
@@ -33,6 +33,9 @@ MpcNode::MpcNode(ros::NodeHandle nh, int image_size, const MpcOptions& mpc,
       torque_pub_(nh.advertise<ddm_msgs::Torque>(topics::kTorque, kQueue)),
       effort_pub_(nh.advertise<std_msgs::Float64>(topics::kEffortCommand, kQueue)),
       plan_pub_(nh.advertise<ddm_msgs::Plan>(topics::kPlan, kQueue)),
+      scalars_pub_(nh.advertise<ddm_msgs::PlanScalars>(topics::kPlanScalars, kQueue)),
+      live_(ros::NodeHandle(pnh, "mpc"), mpc, [this](const MpcOptions& turned) { onTurn(turned); }),
+      health_(nh, pnh),
       server_(nh, topics::kRunTrial, /*auto_start=*/false) {
   server_.registerGoalCallback([this] { onGoal(); });
   server_.registerPreemptCallback([this] { onPreempt(); });
@@ -47,6 +50,7 @@ MpcNode::MpcNode(ros::NodeHandle nh, int image_size, const MpcOptions& mpc,
 void MpcNode::onGoal() {
   goal_ = server_.acceptNewGoal();
   trial_.reset();
+  health_.expect(ControlHealth::Expected::kModel);
   last_progress_ = ros::WallTime::now();
   beginIfReady();
 }
@@ -64,6 +68,7 @@ void MpcNode::onModel(const ddm_msgs::ModelConstPtr& message) {
     model_ =
         std::make_shared<const Ddm>(deserialiseModel(bytes, "on topic " + model_sub_.getTopic()));
     model_id_ = modelId(bytes);
+    health_.takeModel(*message);
     ROS_INFO("model %s of trial %u received", model_id_.c_str(), message->trial);
   } catch (const std::exception& e) {
     ROS_ERROR_STREAM("model refused: " << e.what());
@@ -79,17 +84,26 @@ void MpcNode::beginIfReady() {
   try {
     trial_ = std::make_unique<TrialRun>(*goal_, goal_->model_id.empty() ? nullptr : model_,
                                         image_size_, mpc_, controller_);
+    trial_->turn(mpc_, turned_epsilon_);
   } catch (const std::exception& e) {
     abort(std::string("trial refused: ") + e.what());
     return;
   }
   last_progress_ = ros::WallTime::now();
+  health_.expect(ControlHealth::Expected::kImage);
   // In lock-step the first image may have come before the goal; there will be no second one.
   if (last_image_ != nullptr && !goal_->start.isZero()) answer(*last_image_);
 }
 
+void MpcNode::onTurn(const MpcOptions& mpc) {
+  if (mpc.epsilon != mpc_.epsilon) turned_epsilon_ = mpc.epsilon;
+  mpc_ = mpc;
+  if (trial_ != nullptr) trial_->turn(mpc_, turned_epsilon_);
+}
+
 void MpcNode::onImage(const sensor_msgs::ImageConstPtr& image) {
   last_image_ = image;
+  health_.countImage();
   if (trial_ != nullptr) answer(*image);
 }
 
@@ -121,6 +135,11 @@ void MpcNode::answer(const sensor_msgs::Image& image) {
 void MpcNode::publish(const std_msgs::Header& header, const Decision& decision) {
   publishTorque(header.stamp, decision.torque, decision.exploratory);
   if (decision.plan) publishPlan(header.stamp, *decision.plan);
+  if (decision.plan && scalars_pub_.getNumSubscribers() > 0) {
+    scalars_pub_.publish(scalars_.of(header.stamp, *decision.plan));
+  } else {
+    scalars_.forget();
+  }
 }
 
 void MpcNode::publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torque,
@@ -130,6 +149,7 @@ void MpcNode::publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torqu
   message.torque = flat(torque);
   message.exploratory = exploratory;
   torque_pub_.publish(message);
+  health_.countTorque();
   if (torque.size() != 1) return;  // an effort controller drives one joint
   std_msgs::Float64 effort;
   effort.data = torque[0];
@@ -137,6 +157,7 @@ void MpcNode::publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torqu
 }
 
 void MpcNode::publishPlan(const ros::Time& stamp, const Plan& plan) {
+  health_.countPlan(plan);
   if (plan.status == PlanStatus::kFailed) {
     ROS_WARN_STREAM_THROTTLE(5.0, "plan failed, the torque is 0: " << plan.message);
   }
@@ -178,6 +199,8 @@ ddm_msgs::RunTrialResult MpcNode::endTrial() {
       trial_ != nullptr ? trial_->result() : ddm_msgs::RunTrialResult();
   goal_.reset();
   trial_.reset();
+  scalars_.forget();
+  health_.expect(ControlHealth::Expected::kNothing);
   effort_pub_.publish(std_msgs::Float64());
   return result;
 }

@@ -10,10 +10,14 @@
 #include <ros/ros.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "control_health.h"
 #include "controller_options.h"
 #include "ddm_mpc/mpc_options.h"
+#include "live_options.h"
+#include "plan_scalars.h"
 #include "trial_run.h"
 
 namespace ddm {
@@ -22,7 +26,9 @@ namespace ddm {
 /// a single-threaded spinner: all callbacks run one after the other.
 class MpcNode {
  public:
-  MpcNode(ros::NodeHandle nh, int image_size, const MpcOptions& mpc,
+  /// @param nh   topics and action
+  /// @param pnh  parameters
+  MpcNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size, const MpcOptions& mpc,
           const ControllerOptions& controller);
 
  private:
@@ -31,6 +37,7 @@ class MpcNode {
   void onModel(const ddm_msgs::ModelConstPtr& message);
   void onImage(const sensor_msgs::ImageConstPtr& image);
   void onTick();
+  void onTurn(const MpcOptions& mpc);
 
   void beginIfReady();
   void answer(const sensor_msgs::Image& image);
@@ -43,6 +50,7 @@ class MpcNode {
   int image_size_;
   MpcOptions mpc_;
   ControllerOptions controller_;
+  std::optional<double> turned_epsilon_;  // empty: nobody has turned it, that of the goal counts
   std::shared_ptr<const Ddm> model_;
   std::string model_id_;
   ddm_msgs::RunTrialGoalConstPtr goal_;    // null: no trial
@@ -50,14 +58,18 @@ class MpcNode {
   sensor_msgs::ImageConstPtr last_image_;  // may be the first of a trial whose goal is on its way
   ros::WallTime last_progress_;
   ros::WallTime last_feedback_;
+  PlanScalars scalars_;
 
   image_transport::ImageTransport transport_;
   ros::Publisher torque_pub_;
   ros::Publisher effort_pub_;
   ros::Publisher plan_pub_;
+  ros::Publisher scalars_pub_;
   image_transport::Subscriber image_sub_;
   ros::Subscriber model_sub_;
   ros::WallTimer timer_;
+  LiveOptions live_;
+  ControlHealth health_;
   actionlib::SimpleActionServer<ddm_msgs::RunTrialAction> server_;
 };
 

@@ -16,13 +16,14 @@ int main(int argc, char** argv) {
   ddm::silenceSolverLog();
   try {
     ddm::ParamReader params(ddm::nodeParams(pnh), pnh.getNamespace());
-    params.ignore("image_transport");  // read by image_transport itself
+    params.ignore("image_transport");    // read by image_transport itself
+    params.ignore("diagnostic_period");  // and by diagnostic_updater
     const auto image = params.read<ddm::ImageOptions>("image");
     const auto mpc = params.read<ddm::MpcOptions>("mpc");
     const auto controller = params.read<ddm::ControllerOptions>("controller");
     params.requireValid();
     ROS_INFO_STREAM("mpc_node runs with\n" << ddm::toYaml(mpc) << "\n" << ddm::toYaml(controller));
-    ddm::MpcNode node(nh, image.size, mpc, controller);
+    ddm::MpcNode node(nh, pnh, image.size, mpc, controller);
     ros::spin();
   } catch (const std::exception& e) {
     ROS_FATAL_STREAM("mpc_node: " << e.what());

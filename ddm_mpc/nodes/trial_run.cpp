@@ -6,13 +6,11 @@
 
 #include <stdexcept>
 
-#include "ddm_mpc/mpc_policy.h"
-
 namespace ddm {
 namespace {
 
-std::shared_ptr<Policy> makePolicy(std::shared_ptr<const Ddm> model, int image_size,
-                                   const MpcOptions& mpc, const ControllerOptions& controller) {
+std::shared_ptr<MpcPolicy> makePolicy(std::shared_ptr<const Ddm> model, int image_size,
+                                      const MpcOptions& mpc, const ControllerOptions& controller) {
   if (model == nullptr) return nullptr;
   if (model->imageSize() != image_size || model->torqueDim() != controller.torque_dim) {
     throw std::invalid_argument(
@@ -40,11 +38,19 @@ TrialRun::TrialRun(const ddm_msgs::RunTrialGoal& goal, std::shared_ptr<const Ddm
                    int image_size, const MpcOptions& mpc, const ControllerOptions& controller)
     : num_steps_(goal.num_steps),
       image_size_(image_size),
-      policy_(makePolicy(std::move(model), image_size, mpc, controller),
-              explorationOf(goal, mpc, controller),
-              TrialId{goal.seed, goal.trial, goal.evaluation != 0}) {
+      evaluation_(goal.evaluation != 0),
+      greedy_(makePolicy(std::move(model), image_size, mpc, controller)),
+      policy_(greedy_, explorationOf(goal, mpc, controller),
+              TrialId{goal.seed, goal.trial, evaluation_}) {
   if (num_steps_ < 1) throw std::invalid_argument("num_steps must be >= 1, got 0");
   if (!goal.start.isZero()) last_stamp_ = goal.start - ros::Duration(0, 1);
+}
+
+void TrialRun::turn(const MpcOptions& mpc, const std::optional<double>& epsilon) {
+  if (greedy_ == nullptr) return;
+  greedy_->setHorizon(mpc.horizon);
+  greedy_->setControlWeight(mpc.control_weight);
+  if (epsilon && !evaluation_) policy_.setEpsilon(*epsilon);
 }
 
 std::optional<Decision> TrialRun::answer(const sensor_msgs::Image& image) {

@@ -13,6 +13,7 @@
 #include "controller_options.h"
 #include "ddm_mpc/epsilon_greedy.h"
 #include "ddm_mpc/mpc_options.h"
+#include "ddm_mpc/mpc_policy.h"
 
 namespace ddm {
 
@@ -32,6 +33,10 @@ class TrialRun {
   ///         size or encoding than the ones before
   std::optional<Decision> answer(const sensor_msgs::Image& image);
 
+  /// From the next image on, plans with these, and explores with this epsilon in the place of the
+  /// goal's. A random trial plans nothing, and an evaluation does not explore.
+  void turn(const MpcOptions& mpc, const std::optional<double>& epsilon);
+
   bool done() const { return result_.num_steps == num_steps_; }
   const ddm_msgs::RunTrialResult& result() const { return result_; }
 
@@ -40,8 +45,10 @@ class TrialRun {
 
   std::uint32_t num_steps_;
   int image_size_;
-  ros::Time last_stamp_;  // images up to this one do not count
-  std::string camera_;    // size and encoding of the images
+  bool evaluation_;
+  ros::Time last_stamp_;               // images up to this one do not count
+  std::string camera_;                 // size and encoding of the images
+  std::shared_ptr<MpcPolicy> greedy_;  // null: a random trial
   EpsilonGreedy policy_;
   ddm_msgs::RunTrialResult result_;
 };

@@ -10,18 +10,22 @@ DdmPlanCost::DdmPlanCost(const Ddm& model, int horizon, double control_weight,
                          const DistanceCost& distance_cost)
     : f_(model.predictionModel()),
       theta_p_(model.thetaP()),
-      horizon_(horizon),
       control_weight_(control_weight),
       distance_cost_(distance_cost),
       max_torque_(model.options().max_torque),
       order_(f_.order()),
       past_torques_(Eigen::MatrixXd::Zero(f_.torqueDim(), order_ - 1)),
-      features_(Eigen::MatrixXd::Zero(f_.featureDim(), order_ + horizon)),
-      d_features_(features_),
-      slopes_(horizon),
-      regressor_(f_.regressorDim()),
-      tapes_(horizon) {
+      regressor_(f_.regressorDim()) {
+  setHorizon(horizon);
+}
+
+void DdmPlanCost::setHorizon(int horizon) {
   if (horizon < 1) throw std::invalid_argument("plan cost: horizon must be >= 1");
+  horizon_ = horizon;
+  features_.setZero(f_.featureDim(), order_ + horizon);
+  d_features_ = features_;
+  slopes_.resize(horizon);
+  tapes_.resize(horizon);
 }
 
 void DdmPlanCost::setProblem(const History& x, const Eigen::VectorXd& goal_feature,

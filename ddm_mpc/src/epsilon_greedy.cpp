@@ -15,10 +15,7 @@ EpsilonGreedy::EpsilonGreedy(std::shared_ptr<Policy> policy, const Options& opti
     : policy_(std::move(policy)),
       options_(options),
       rng_(randomStream(id, StreamRole::kExploration)) {
-  if (!(options_.epsilon >= 0.0 && options_.epsilon <= 1.0)) {
-    throw std::invalid_argument("epsilon must lie in [0, 1], got " +
-                                std::to_string(options_.epsilon));
-  }
+  setEpsilon(options_.epsilon);
   if (options_.hold_steps < 1) {
     throw std::invalid_argument("hold_steps must be >= 1, got " +
                                 std::to_string(options_.hold_steps));
@@ -26,10 +23,17 @@ EpsilonGreedy::EpsilonGreedy(std::shared_ptr<Policy> policy, const Options& opti
   if (!(options_.max_torque > 0.0) || options_.torque_dim < 1) {
     throw std::invalid_argument("max_torque must be > 0 and torque_dim >= 1");
   }
-  if (policy_ == nullptr && options_.epsilon < 1.0) {
+  if (policy_ != nullptr) policy_->startTrial(id);
+}
+
+void EpsilonGreedy::setEpsilon(double epsilon) {
+  if (!(epsilon >= 0.0 && epsilon <= 1.0)) {
+    throw std::invalid_argument("epsilon must lie in [0, 1], got " + std::to_string(epsilon));
+  }
+  if (policy_ == nullptr && epsilon < 1.0) {
     throw std::invalid_argument("a trial with epsilon < 1 needs a model");
   }
-  if (policy_ != nullptr) policy_->startTrial(id);
+  options_.epsilon = epsilon;
 }
 
 Decision EpsilonGreedy::decide(const Grey& grey) {

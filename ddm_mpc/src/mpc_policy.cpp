@@ -87,6 +87,14 @@ std::vector<PlanCost*> MpcPolicy::costsOf(const std::vector<std::unique_ptr<Memb
   return costs;
 }
 
+void MpcPolicy::setHorizon(int horizon) {
+  for (const auto& member : members_) member->cost.setHorizon(horizon);
+}
+
+void MpcPolicy::setControlWeight(double control_weight) {
+  for (const auto& member : members_) member->cost.setControlWeight(control_weight);
+}
+
 void MpcPolicy::startTrial(const TrialId& id) {
   for (const auto& member : members_) member->startTrial();
   cost_.setBonus(id.evaluation ? 0.0 : disagreement_bonus_);

@@ -167,9 +167,31 @@ TEST(DdmPlanCost, ForgetsTheLastProblem) {
   EXPECT_EQ(d_used, d_fresh);
 }
 
+TEST(DdmPlanCost, IsThatOfANewOneAfterAnotherHorizonAndPriceOfTorque) {
+  const Ddm model = randomModel({});
+  const History x = randomHistory(model, 5);
+  const Eigen::VectorXd goal = testing::randomMatrix(2, 1, 6);
+  DdmPlanCost used(model, 4, kControlWeight);
+  Eigen::MatrixXd d_used;
+  for (const int horizon : {7, 2, 4}) {
+    const Eigen::MatrixXd U = testing::randomMatrix(1, horizon, 1);
+    used.setHorizon(horizon);
+    used.setControlWeight(0.1 * horizon);
+    used.setProblem(x, goal);
+    DdmPlanCost fresh(model, horizon, 0.1 * horizon);
+    fresh.setProblem(x, goal);
+    Eigen::MatrixXd d_fresh;
+    EXPECT_EQ(used.evaluate(U, &d_used), fresh.evaluate(U, &d_fresh));
+    EXPECT_EQ(d_used, d_fresh);
+    EXPECT_EQ(used.predictedFeatures(), fresh.predictedFeatures());
+    EXPECT_EQ(used.horizon(), horizon);
+  }
+}
+
 TEST(DdmPlanCost, RefusesAHorizonOfZero) {
   const Ddm model = randomModel({});
   EXPECT_THROW(DdmPlanCost(model, 0, kControlWeight), std::invalid_argument);
+  EXPECT_THROW(DdmPlanCost(model, 1, kControlWeight).setHorizon(0), std::invalid_argument);
 }
 
 TEST(DdmPlanCost, RefusesAHistoryWithoutAnImage) {

@@ -188,8 +188,22 @@ TEST(EpsilonGreedy, DrawsOtherTorquesInAnotherTrialSeedOrEvaluation) {
   EXPECT_EQ(distinct.size(), 5U);
 }
 
+TEST(EpsilonGreedy, TakesAnotherEpsilonFromTheNextImageOn) {
+  const auto policy = std::make_shared<ConstantPolicy>();
+  EpsilonGreedy turned(policy, explore(0.0), TrialId());
+  for (const double epsilon : {0.0, 1.0, 0.0}) {
+    turned.setEpsilon(epsilon);
+    for (const Decision& decision : decide(&turned, 10)) {
+      EXPECT_EQ(decision.exploratory, epsilon == 1.0);
+    }
+  }
+  EXPECT_THROW(turned.setEpsilon(1.1), std::invalid_argument);
+}
+
 TEST(EpsilonGreedy, RefusesToPlanWithoutAModel) {
   EXPECT_THROW(EpsilonGreedy(nullptr, explore(0.99), TrialId()), std::invalid_argument);
+  EpsilonGreedy random(nullptr, explore(1.0), TrialId());
+  EXPECT_THROW(random.setEpsilon(0.99), std::invalid_argument);
 }
 
 TEST(EpsilonGreedy, RefusesOptionsOutOfRange) {

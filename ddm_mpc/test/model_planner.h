@@ -17,6 +17,7 @@ class ModelPlanner {
     cost_.setProblem(x, goal_feature);
     return planner_.solve(rng);
   }
+  void setHorizon(int horizon) { cost_.setHorizon(horizon); }
   void clear() { planner_.clear(); }
 
  private:

@@ -72,6 +72,44 @@ TEST(MpcPolicy, GivesTheSameTorquesWhenATrialIsRunAgain) {
   EXPECT_EQ(torquesOfATrial(&policy, id), first) << "startTrial() must forget the trial before";
 }
 
+TEST(MpcPolicy, TakesAnotherHorizonAndPriceOfTorqueInTheMiddleOfATrial) {
+  RandomModelOptions random;
+  random.model.order = 3;
+  const auto model = sharedModel(random);
+  MpcOptions other;
+  other.horizon = 4;
+  other.control_weight = 0.5;
+  MpcPolicy turned(model, MpcOptions()), from_the_start(model, other);
+  for (MpcPolicy* policy : {&turned, &from_the_start}) {
+    policy->startTrial(TrialId());
+    for (int step = 0; step < 3; ++step) {
+      policy->observe(randomGrey(8, 50 + step));
+      policy->apply(Eigen::VectorXd::Constant(1, step));
+    }
+    policy->setHorizon(4);
+    policy->setControlWeight(0.5);
+    policy->observe(randomGrey(8, 60));
+  }
+  EXPECT_EQ(turned.plan().torques, from_the_start.plan().torques);
+}
+
+TEST(MpcPolicy, PlansTheSameWhenItIsTurnedToWhatItHasAlready) {
+  const auto model = sharedModel();
+  MpcPolicy plain(model, MpcOptions()), turned(model, MpcOptions());
+  for (int step = 0; step < kNumSteps; ++step) {
+    std::vector<Plan> plans;
+    for (MpcPolicy* policy : {&plain, &turned}) {
+      if (step == 0) policy->startTrial(TrialId());
+      policy->observe(randomGrey(8, 50 + step));
+      plans.push_back(policy->plan());
+      policy->apply(plans.back().torques.col(0));
+    }
+    turned.setHorizon(MpcOptions().horizon);
+    turned.setControlWeight(MpcOptions().control_weight);
+    EXPECT_EQ(plans[0].torques, plans[1].torques) << "step " << step;
+  }
+}
+
 TEST(MpcPolicy, PlansFromTheEncodedImageToTheGoalOfTheModel) {
   const auto model = sharedModel();
   MpcPolicy policy(model, MpcOptions());

@@ -223,6 +223,26 @@ TEST(Planner, StartsFromTheLastPlanMovedOnByOneStep) {
   EXPECT_GT(cold.iterations, second.iterations + 3) << "after clear() it starts from no torque";
 }
 
+TEST(Planner, StartsFromTheLastPlanAfterAChangeOfHorizonToo) {
+  // The goal is reached with the first torque, and kept with -drift from then on, for any horizon.
+  const double drift = -0.2;
+  const Ddm model = driftingIntegrator(drift);
+  MpcOptions options = exactOptions();
+  options.control_weight = 0.0;
+  options.num_starts = 1;
+  const Eigen::VectorXd goal = Eigen::VectorXd::Constant(1, 0.5);
+  ModelPlanner planner(model, options);
+  std::mt19937_64 rng(1);
+  Plan plan = planner.solve(stateAt(model, Eigen::VectorXd::Zero(1)), goal, &rng);
+  for (const int horizon : {20, 3, 5}) {
+    planner.setHorizon(horizon);
+    plan = planner.solve(stateAt(model, plan.features.col(1)), goal, &rng);
+    ASSERT_EQ(plan.torques.cols(), horizon);
+    EXPECT_NEAR(plan.torques(0, horizon - 1), -6.0 * drift, 1e-3);
+    EXPECT_LE(plan.iterations, 3);
+  }
+}
+
 TEST(Planner, FindsABetterPlanFromAWarmStartOnTheSameBudget) {
   MpcOptions options;
   options.num_starts = 1;

@@ -29,6 +29,11 @@ class DdmPlanCost : public PlanCost {
   DdmPlanCost(const Ddm& model, int horizon, double control_weight,
               const DistanceCost& distance_cost = DistanceCost());
 
+  /// Other values for the plans to come; setProblem comes first.
+  /// @throws std::invalid_argument if the horizon is < 1
+  void setHorizon(int horizon);
+  void setControlWeight(double control_weight) { control_weight_ = control_weight; }
+
   /// The state to plan from, the feature to plan to, and the offset.
   /// @throws std::invalid_argument for a wrong size or an empty history
   void setProblem(const History& x, const Eigen::VectorXd& goal_feature,
@@ -50,7 +55,7 @@ class DdmPlanCost : public PlanCost {
 
   const PredictionModel<double>& f_;
   const double* theta_p_;
-  int horizon_;
+  int horizon_ = 0;
   double control_weight_;
   DistanceCost distance_cost_;
   double max_torque_;

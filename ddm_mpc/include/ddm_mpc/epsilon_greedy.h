@@ -33,6 +33,10 @@ class EpsilonGreedy {
   /// @throws std::invalid_argument if options are out of range or the policy is missing
   EpsilonGreedy(std::shared_ptr<Policy> policy, const Options& options, const TrialId& id);
 
+  /// Another probability from the next image on; a torque that is being held is held to its end.
+  /// @throws std::invalid_argument if it is out of range, or < 1 where there is no policy
+  void setEpsilon(double epsilon);
+
   /// @param grey  the image just seen
   /// @throws std::invalid_argument for a wrong number of pixels
   Decision decide(const Grey& grey);

@@ -25,6 +25,11 @@ class MpcPolicy : public Policy {
   /// model's
   MpcPolicy(std::shared_ptr<const Ddm> model, const MpcOptions& options);
 
+  /// Other values for the plans to come, also in the middle of a trial.
+  /// @throws std::invalid_argument if the horizon is < 1
+  void setHorizon(int horizon);
+  void setControlWeight(double control_weight);
+
   void startTrial(const TrialId& id) override;
   void observe(const Grey& grey) override;
   Plan plan() override;

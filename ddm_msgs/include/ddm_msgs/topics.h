@@ -10,9 +10,10 @@ constexpr char kGoalImage[] = "goal_image";          ///< sensor_msgs/Image, lat
 constexpr char kTorque[] = "torque";                 ///< ddm_msgs/Torque
 constexpr char kEffortCommand[] = "effort_command";  ///< std_msgs/Float64 [N m]
 constexpr char kGroundTruth[] =
-    "ground_truth/joint_states";    ///< sensor_msgs/JointState, evaluation only
-constexpr char kModel[] = "model";  ///< ddm_msgs/Model, latched
-constexpr char kPlan[] = "plan";    ///< ddm_msgs/Plan
+    "ground_truth/joint_states";                 ///< sensor_msgs/JointState, evaluation only
+constexpr char kModel[] = "model";               ///< ddm_msgs/Model, latched
+constexpr char kPlan[] = "plan";                 ///< ddm_msgs/Plan
+constexpr char kPlanScalars[] = "plan_scalars";  ///< ddm_msgs/PlanScalars
 constexpr char kPredictionImage[] =
     "prediction_image";  ///< sensor_msgs/Image: camera, reconstruction, prediction
 constexpr char kFeatureSpaceImage[] =

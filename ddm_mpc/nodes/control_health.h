@@ -1,0 +1,70 @@
+// How mpc_node is doing, for /diagnostics: camera, torque, plans, model.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ddm_msgs/Model.h>
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/ros.h>
+
+#include <cstdint>
+#include <string>
+
+#include "ddm_mpc/planner.h"
+
+namespace ddm {
+
+/// Counts what the node tells it, and publishes four statuses once in `~diagnostic_period` (1 s).
+/// All times are wall times: in lock-step simulated time runs as fast as it can.
+class ControlHealth {
+ public:
+  /// What the node is waiting for.
+  enum class Expected { kNothing, kModel, kImage };
+
+  ControlHealth(const ros::NodeHandle& nh, const ros::NodeHandle& pnh);
+
+  void expect(Expected expected);
+  void countImage();
+  void countTorque();
+  void countPlan(const Plan& plan);
+  void takeModel(const ddm_msgs::Model& model);
+
+ private:
+  using Status = diagnostic_updater::DiagnosticStatusWrapper;
+
+  /// Something that comes again and again.
+  struct Stream {
+    std::uint64_t total = 0;
+    std::uint64_t told = 0;  ///< of which in earlier reports
+    ros::WallTime last;
+
+    void count();
+  };
+  struct Plans {
+    int count = 0;
+    int failed = 0;
+    double sum_s = 0.0;
+    double max_s = 0.0;
+  };
+
+  void onTick();
+  void reportStream(const char* name, Stream* stream, Status* status) const;
+  void reportPlans(Status* status) const;
+  void reportModel(Status* status) const;
+
+  Expected expected_ = Expected::kNothing;
+  ros::WallTime expected_since_;
+  ros::WallTime reported_;
+  double period_ = 0.0;  ///< since the last report [s]
+  Stream images_;
+  Stream torques_;
+  Plans plans_;  ///< since the last report
+  std::uint64_t num_plans_ = 0;
+  std::uint64_t num_failed_plans_ = 0;
+  ddm_msgs::Model model_;  ///< without its data
+  ros::WallTime model_came_;
+
+  diagnostic_updater::Updater updater_;
+  ros::WallTimer timer_;
+};
+
+}  // namespace ddm
