@@ -17,7 +17,9 @@ packages_to_run=(
   # messages: the .msg files, then their C++ headers
   ros-message-generation ros-message-runtime
   ros-std-msgs ros-sensor-msgs ros-geometry-msgs ros-actionlib-msgs ros-rosgraph-msgs ros-diagnostic-msgs
+  ros-visualization-msgs
   libstd-msgs-dev libsensor-msgs-dev libactionlib-msgs-dev libros-rosgraph-msgs-dev libdiagnostic-msgs-dev
+  libvisualization-msgs-dev
   # ROS in C++
   libroscpp-dev libactionlib-dev librosbag-dev libcv-bridge-dev libimage-transport-dev libroslib-dev
   libdiagnostic-updater-dev libdynamic-reconfigure-config-init-mutex-dev
@@ -29,7 +31,7 @@ packages_to_run=(
   # ROS in Python and its command line tools
   python3-rospy python3-std-msgs python3-sensor-msgs python3-actionlib python3-cv-bridge
   python3-roslaunch python3-rosbag python3-rostopic python3-rosnode python3-rosservice
-  python3-rosparam python3-rosmsg python3-dynamic-reconfigure python3-diagnostic-msgs
+  python3-rosparam python3-rosmsg python3-dynamic-reconfigure python3-diagnostic-msgs python3-visualization-msgs
   rosbash rospack-tools
   # what one sees: rviz and figures
   rviz python3-matplotlib python3-numpy python3-pil python3-tqdm python3-yaml

@@ -13,10 +13,10 @@ namespace {
 const cv::Scalar kMargin(64, 64, 64);
 const cv::Scalar kText(220, 220, 220);
 const cv::Scalar kOutline(0, 0, 0);
-const cv::Scalar kGreen(0, 200, 0);
-const cv::Scalar kYellow(255, 255, 0);
-const cv::Scalar kRed(255, 0, 0);
-const cv::Scalar kCyan(0, 255, 255);
+using feature_colours::kCurrent;
+using feature_colours::kExperience;
+using feature_colours::kGoal;
+using feature_colours::kPlan;
 
 constexpr int kSmallDot = 2;
 constexpr int kPlanDot = 3;
@@ -37,19 +37,20 @@ void drawText(const std::string& text, const cv::Point& at, const cv::Scalar& co
 /// What the colours mean, in the margin below the grid; names of the axes.
 void drawLegend(cv::Mat* picture) {
   const int baseline = FeaturePlane::kWidth - 20;
-  drawText("experience", {86, baseline}, kGreen, picture);
-  drawText("current", {216, baseline}, kCyan, picture);
-  drawText("plan", {320, baseline}, kYellow, picture);
-  drawText("goal", {404, baseline}, kRed, picture);
+  drawText("experience", {86, baseline}, kExperience, picture);
+  drawText("current", {216, baseline}, kCurrent, picture);
+  drawText("plan", {320, baseline}, kPlan, picture);
+  drawText("goal", {404, baseline}, kGoal, picture);
   drawText("z1", {FeaturePlane::kWidth - 40, FeaturePlane::kWidth / 2 + 5}, kText, picture);
   drawText("z2", {FeaturePlane::kWidth / 2 - 8, 30}, kText, picture);
 }
 
 }  // namespace
 
-FeaturePlane::FeaturePlane(const Ddm& model) : grid_(kWidth, kWidth, CV_8UC3, kMargin) {
-  Eigen::VectorXd z =
-      model.hasGoal() ? model.goalFeature() : Eigen::VectorXd::Zero(model.featureDim());
+FeaturePlane::FeaturePlane(const Ddm& model)
+    : slice_(model.hasGoal() ? model.goalFeature() : Eigen::VectorXd::Zero(model.featureDim())),
+      grid_(kWidth, kWidth, CV_8UC3, kMargin) {
+  Eigen::VectorXd z = slice_;
   const int rows = z.size() == 1 ? 1 : kGrid;
   const double step = 2.0 / (kGrid - 1);
   for (int row = 0; row < rows; ++row) {
@@ -61,7 +62,9 @@ FeaturePlane::FeaturePlane(const Ddm& model) : grid_(kWidth, kWidth, CV_8UC3, kM
       cv::Mat resized;
       cv::resize(image, resized, cv::Size(kPitch, kPitch), 0.0, 0.0, cv::INTER_AREA);
       const cv::Point corner = pixelOf(z) - cv::Point(kPitch / 2, kPitch / 2);
-      cv::cvtColor(resized, grid_(cv::Rect(corner, resized.size())), cv::COLOR_GRAY2RGB);
+      const cv::Rect place(corner, resized.size());
+      cv::cvtColor(resized, grid_(place), cv::COLOR_GRAY2RGB);
+      images_ |= place;
     }
   }
   drawLegend(&grid_);
@@ -77,20 +80,20 @@ cv::Point FeaturePlane::pixelOf(const Eigen::Ref<const Eigen::VectorXd>& z) {
 cv::Mat FeaturePlane::draw(const FeatureOverlay& overlay) const {
   cv::Mat picture = grid_.clone();
   for (Eigen::Index i = 0; i < overlay.experience.cols(); ++i) {
-    cv::circle(picture, pixelOf(overlay.experience.col(i)), kSmallDot, kGreen, cv::FILLED);
+    cv::circle(picture, pixelOf(overlay.experience.col(i)), kSmallDot, kExperience, cv::FILLED);
   }
   for (Eigen::Index k = 1; k < overlay.plan.cols(); ++k) {
-    cv::line(picture, pixelOf(overlay.plan.col(k - 1)), pixelOf(overlay.plan.col(k)), kYellow, 2,
+    cv::line(picture, pixelOf(overlay.plan.col(k - 1)), pixelOf(overlay.plan.col(k)), kPlan, 2,
              cv::LINE_AA);
   }
   for (Eigen::Index k = 0; k < overlay.plan.cols(); ++k) {
-    drawDot(pixelOf(overlay.plan.col(k)), kPlanDot, kYellow, &picture);
+    drawDot(pixelOf(overlay.plan.col(k)), kPlanDot, kPlan, &picture);
   }
   for (Eigen::Index i = 0; i < overlay.goal.cols(); ++i) {
-    drawDot(pixelOf(overlay.goal.col(i)), kLargeDot, kRed, &picture);
+    drawDot(pixelOf(overlay.goal.col(i)), kLargeDot, kGoal, &picture);
   }
   for (Eigen::Index i = 0; i < overlay.current.cols(); ++i) {
-    drawDot(pixelOf(overlay.current.col(i)), kLargeDot, kCyan, &picture);
+    drawDot(pixelOf(overlay.current.col(i)), kLargeDot, kCurrent, &picture);
   }
   return picture;
 }

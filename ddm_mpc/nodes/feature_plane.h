@@ -9,6 +9,14 @@
 
 namespace ddm {
 
+/// Colours of what is drawn over the grid: red, green, blue.
+namespace feature_colours {
+inline const cv::Scalar kExperience(0, 200, 0);
+inline const cv::Scalar kPlan(255, 255, 0);
+inline const cv::Scalar kGoal(255, 0, 0);
+inline const cv::Scalar kCurrent(0, 255, 255);
+}  // namespace feature_colours
+
 /// What is drawn over the decoded grid; features are columns, and an empty matrix draws nothing.
 struct FeatureOverlay {
   Eigen::MatrixXd experience;  ///< green dots: images seen so far          [feature_dim x N]
@@ -38,13 +46,21 @@ class FeaturePlane {
   /// @return picture, 8 bit red, green, blue  [kWidth x kWidth]
   cv::Mat draw(const FeatureOverlay& overlay) const;
 
+  /// The decoded images alone, one to each kPitch pixels.
+  cv::Mat images() const { return grid_(images_); }
+
+  /// What all images have in common from the third feature on.  [feature_dim]
+  const Eigen::VectorXd& slice() const { return slice_; }
+
   /// Where a feature is drawn. Beyond the picture it is brought near, so that any finite feature
   /// will do.
   /// @param z  [feature_dim]
   static cv::Point pixelOf(const Eigen::Ref<const Eigen::VectorXd>& z);
 
  private:
+  Eigen::VectorXd slice_;
   cv::Mat grid_;
+  cv::Rect images_;  // where they are in the grid's picture
 };
 
 }  // namespace ddm

@@ -9,8 +9,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 #include <stdexcept>
+
+#include "feature_markers.h"
+#include "panels.h"
 
 namespace ddm {
 namespace {
@@ -19,9 +21,6 @@ constexpr int kQueue = 10;
 constexpr double kWarnPeriod = 5.0;        // [s]
 constexpr std::size_t kMaxSeen = 2000;     // images of experience
 constexpr std::uint32_t kMaxSteps = 1000;  // of a plan, as in the rules of mpc/horizon
-constexpr int kMinPanel = 255;             // width of a panel [pixels]
-constexpr int kSeparator = 3;              // between two panels [pixels]
-constexpr std::uint8_t kSeparatorGrey = 128;
 const ros::WallDuration kTick(0.1);
 
 sensor_msgs::ImagePtr toMessage(const cv::Mat& picture, const char* encoding,
@@ -53,13 +52,16 @@ void requireDrawable(const ddm_msgs::Plan& plan) {
 ViewNode::ViewNode(ros::NodeHandle nh, int image_size) : image_size_(image_size), transport_(nh) {
   advertise(topics::kPredictionImage, &prediction_);
   advertise(topics::kFeatureSpaceImage, &feature_space_);
+  markers_.publisher = nh.advertise<visualization_msgs::MarkerArray>(
+      topics::kFeatureSpaceMarkers, 1,
+      [this](const ros::SingleSubscriberPublisher&) { markers_.outdated = grid_outdated_ = true; });
   model_sub_ = nh.subscribe(topics::kModel, 1, &ViewNode::onModel, this);
   plan_sub_ = nh.subscribe(topics::kPlan, kQueue, &ViewNode::onPlan, this);
   image_sub_ = transport_.subscribe(topics::kImage, kQueue, &ViewNode::onImage, this);
   timer_ = nh.createWallTimer(kTick, [this](const ros::WallTimerEvent&) { onTick(); });
 }
 
-void ViewNode::advertise(const char* topic, Output* output) {
+void ViewNode::advertise(const char* topic, ImageOutput* output) {
   // Somebody who comes when nothing changes any more wants to see the last state too.
   output->publisher = transport_.advertise(
       topic, 1,
@@ -69,6 +71,7 @@ void ViewNode::advertise(const char* topic, Output* output) {
 void ViewNode::markOutdated() {
   prediction_.outdated = true;
   feature_space_.outdated = true;
+  markers_.outdated = true;
 }
 
 void ViewNode::onImage(const sensor_msgs::ImageConstPtr& message) {
@@ -103,6 +106,7 @@ void ViewNode::onModel(const ddm_msgs::ModelConstPtr& message) {
   }
   model_id_ = id;
   plane_.reset();
+  grid_outdated_ = true;
   for (SeenImage& seen : seen_) seen.feature.resize(0);
   markOutdated();
 }
@@ -132,33 +136,30 @@ Eigen::MatrixXd ViewNode::planFeatures() const {
   return Eigen::Map<const Eigen::MatrixXd>(plan_->feature.data(), dim, count);
 }
 
-/// Three panels: the image just seen, its reconstruction, the last image of the plan. A panel whose
-/// image is not known stays black.
+/// The image just seen, its reconstruction, the last image of the plan. A panel whose image is not
+/// known stays black.
 sensor_msgs::ImagePtr ViewNode::drawPrediction() const {
   if (seen_.empty()) return nullptr;
-  std::vector<Grey> images = {seen_.back().grey};
+  std::vector<Panel> panels = {
+      {seen_.back().grey, "camera"}, {{}, "reconstruction"}, {{}, "prediction"}};
   if (model_) {
-    images.push_back(model_->decode(model_->encode(seen_.back().grey)));
+    panels[1].grey = model_->decode(model_->encode(seen_.back().grey));
     const Eigen::MatrixXd features = planFeatures();
-    if (features.cols() > 0) images.push_back(model_->decode(features.rightCols(1)));
+    if (features.cols() > 0) {
+      panels[2].grey = model_->decode(features.rightCols(1));
+      panels[2].caption += ", " + std::to_string(features.cols() - 1) + " steps ahead";
+    }
   }
-  const int scale = (kMinPanel + image_size_ - 1) / image_size_;
-  const int panel = scale * image_size_;
-  cv::Mat picture(panel, 3 * panel + 2 * kSeparator, CV_8UC1, cv::Scalar(0));
-  for (int i = 0; i < 3; ++i) {
-    const int left = i * (panel + kSeparator);
-    if (i > 0) picture.colRange(left - kSeparator, left).setTo(kSeparatorGrey);
-    if (i >= static_cast<int>(images.size())) continue;
-    const cv::Mat image(image_size_, image_size_, CV_8UC1, images[i].data());
-    cv::resize(image, picture.colRange(left, left + panel), cv::Size(panel, panel), 0.0, 0.0,
-               cv::INTER_NEAREST);
-  }
-  return toMessage(picture, sensor_msgs::image_encodings::MONO8.c_str(), header_);
+  return toMessage(drawPanels(panels, image_size_), sensor_msgs::image_encodings::MONO8.c_str(),
+                   header_);
 }
 
-sensor_msgs::ImagePtr ViewNode::drawFeatureSpace() {
-  if (!model_) return nullptr;
+const FeaturePlane& ViewNode::plane() {
   if (!plane_) plane_.emplace(*model_);
+  return *plane_;
+}
+
+FeatureOverlay ViewNode::overlay() {
   FeatureOverlay overlay;
   overlay.experience.resize(model_->featureDim(), static_cast<Eigen::Index>(seen_.size()));
   for (std::size_t i = 0; i < seen_.size(); ++i) {
@@ -168,18 +169,36 @@ sensor_msgs::ImagePtr ViewNode::drawFeatureSpace() {
   if (!seen_.empty()) overlay.current = seen_.back().feature;
   if (model_->hasGoal()) overlay.goal = model_->goalFeature();
   overlay.plan = planFeatures();
-  return toMessage(plane_->draw(overlay), sensor_msgs::image_encodings::RGB8.c_str(), header_);
+  return overlay;
+}
+
+sensor_msgs::ImagePtr ViewNode::drawFeatureSpace() {
+  if (!model_) return nullptr;
+  return toMessage(plane().draw(overlay()), sensor_msgs::image_encodings::RGB8.c_str(), header_);
+}
+
+visualization_msgs::MarkerArrayPtr ViewNode::drawMarkers() {
+  if (!model_) return nullptr;
+  auto out =
+      boost::make_shared<visualization_msgs::MarkerArray>(overlayMarkers(overlay(), header_.stamp));
+  if (grid_outdated_) {
+    grid_outdated_ = false;
+    const visualization_msgs::MarkerArray grid = gridMarkers(plane(), header_.stamp);
+    out->markers.insert(out->markers.end(), grid.markers.begin(), grid.markers.end());
+  }
+  return out;
 }
 
 void ViewNode::onTick() {
-  const auto show = [](Output* output, const auto& draw) {
+  const auto show = [](auto* output, const auto& draw) {
     if (!output->outdated || output->publisher.getNumSubscribers() == 0) return;
     output->outdated = false;
-    const sensor_msgs::ImagePtr picture = draw();
+    const auto picture = draw();
     if (picture != nullptr) output->publisher.publish(picture);
   };
   show(&prediction_, [this] { return drawPrediction(); });
   show(&feature_space_, [this] { return drawFeatureSpace(); });
+  show(&markers_, [this] { return drawMarkers(); });
 }
 
 }  // namespace ddm

@@ -7,6 +7,7 @@
 #include <ddm_msgs/Plan.h>
 #include <image_transport/image_transport.h>
 #include <ros/ros.h>
+#include <visualization_msgs/MarkerArray.h>
 
 #include <deque>
 #include <memory>
@@ -17,9 +18,9 @@
 
 namespace ddm {
 
-/// Publishes `prediction_image` and `feature_space_image`, at most ten times a second each and only
-/// while somebody looks. Whatever cannot be shown is left out with a warning: a picture is no
-/// reason to end.
+/// Publishes `prediction_image`, `feature_space_image` and `feature_space_markers`, at most ten
+/// times a second each and only while somebody looks. Whatever cannot be shown is left out with a
+/// warning: a picture is no reason to end.
 class ViewNode {
  public:
   /// @param image_size  size that images are brought to, the model's
@@ -32,22 +33,27 @@ class ViewNode {
     Grey grey;
     Eigen::VectorXd feature;  // empty: not yet encoded by the current model
   };
+  template <class Publisher>
   struct Output {
-    image_transport::Publisher publisher;
+    Publisher publisher;
     bool outdated = false;
   };
+  using ImageOutput = Output<image_transport::Publisher>;
 
   void onImage(const sensor_msgs::ImageConstPtr& message);
   void onModel(const ddm_msgs::ModelConstPtr& message);
   void onPlan(const ddm_msgs::PlanConstPtr& message);
   void onTick();
 
-  void advertise(const char* topic, Output* output);
+  void advertise(const char* topic, ImageOutput* output);
   void markOutdated();
   /// Predicted features of the latest plan, empty if there is none that the model can show.
   Eigen::MatrixXd planFeatures() const;
   sensor_msgs::ImagePtr drawPrediction() const;
+  const FeaturePlane& plane();
+  FeatureOverlay overlay();
   sensor_msgs::ImagePtr drawFeatureSpace();
+  visualization_msgs::MarkerArrayPtr drawMarkers();
 
   int image_size_;
   std::optional<Ddm> model_;
@@ -58,8 +64,10 @@ class ViewNode {
   std_msgs::Header header_;     // of the newest image
 
   image_transport::ImageTransport transport_;
-  Output prediction_;
-  Output feature_space_;
+  ImageOutput prediction_;
+  ImageOutput feature_space_;
+  Output<ros::Publisher> markers_;
+  bool grid_outdated_ = false;  // markers that change with the model alone; they are large
   ros::Subscriber model_sub_;
   ros::Subscriber plan_sub_;
   image_transport::Subscriber image_sub_;

@@ -18,6 +18,10 @@ constexpr char kPredictionImage[] =
     "prediction_image";  ///< sensor_msgs/Image: camera, reconstruction, prediction
 constexpr char kFeatureSpaceImage[] =
     "feature_space_image";  ///< sensor_msgs/Image: what the model thinks
+constexpr char kFeatureSpaceMarkers[] =
+    "feature_space_markers";  ///< visualization_msgs/MarkerArray: the same
+constexpr char kLearningCurveImage[] =
+    "learning_curve_image";  ///< sensor_msgs/Image, latched: what each model could do
 
 constexpr char kReset[] = "reset";                     ///< ddm_msgs/Reset
 constexpr char kStartRecording[] = "start_recording";  ///< ddm_msgs/StartRecording
