@@ -79,7 +79,8 @@ class Loop {
 }  // namespace
 
 void runExperiment(const Configuration& configuration, World* world, RunFolder* folder,
-                   Progress* progress) {
+                   Progress* progress,
+                   const std::function<void(const std::vector<TrialRow>&)>& show) {
   const auto start = std::chrono::steady_clock::now();
   Loop loop(configuration, world, folder, progress);
   const ExperimentOptions& options = configuration.experiment;
@@ -87,6 +88,7 @@ void runExperiment(const Configuration& configuration, World* world, RunFolder* 
                  std::to_string(options.seed) + ", " + std::to_string(options.trials) +
                  " trials after a random one");
   const int num_finished = static_cast<int>(folder->rows().size());
+  show(folder->rows());
   const bool all_done = num_finished > configuration.experiment.trials;
   if (num_finished > 0) {
     progress->note("resuming after trial " + std::to_string(num_finished - 1));
@@ -100,6 +102,7 @@ void runExperiment(const Configuration& configuration, World* world, RunFolder* 
     folder->writeEvaluation(trial, greedy);
     folder->finishTrial(loop.rowOf(trial, training, greedy));
     progress->finishTrial(folder->rows());
+    show(folder->rows());
   }
   const double wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

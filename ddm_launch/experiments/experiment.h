@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
+#include <vector>
+
 #include "configuration.h"
 #include "progress.h"
 #include "run_folder.h"
@@ -14,8 +17,10 @@ namespace ddm {
 ///
 /// Takes up after the last trial that the folder says is finished. Its model is trained once more,
 /// which gives the same model: nothing but bags has to survive an interruption.
+/// @param show  called with the rows of all finished trials, at the start and after each trial
 /// @throws std::runtime_error with what failed; all finished trials are kept
-void runExperiment(const Configuration& configuration, World* world, RunFolder* folder,
-                   Progress* progress);
+void runExperiment(
+    const Configuration& configuration, World* world, RunFolder* folder, Progress* progress,
+    const std::function<void(const std::vector<TrialRow>&)>& show = [](const auto&) {});
 
 }  // namespace ddm

@@ -1,7 +1,11 @@
 // experiment_node: Algorithm 1 with the real nodes.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cv_bridge/cv_bridge.h>
 #include <ddm_msgs/node_params.h>
 #include <ddm_msgs/param_reader.h>
+#include <ddm_msgs/topics.h>
+#include <sensor_msgs/Image.h>
+#include <sensor_msgs/image_encodings.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -10,11 +14,24 @@
 
 #include "configuration.h"
 #include "experiment.h"
+#include "learning_curve_image.h"
 #include "ros_world.h"
 
 namespace {
 
-void run(const ros::NodeHandle& nh, const ros::NodeHandle& pnh) {
+/// Shows the learning curve as it is now, to whoever looks and to whoever comes.
+void publishCurve(const ros::Publisher& publisher, const std::vector<ddm::TrialRow>& rows,
+                  const ddm::Configuration& configuration) {
+  const int frames = (configuration.experiment.trials + 1) * configuration.trial.num_steps;
+  cv_bridge::CvImage image;
+  image.header.stamp = ros::Time::now();
+  image.encoding = sensor_msgs::image_encodings::RGB8;
+  image.image = ddm::drawLearningCurve(rows, static_cast<std::uint32_t>(frames),
+                                       configuration.evaluation.tolerance_deg);
+  publisher.publish(image.toImageMsg());
+}
+
+void run(ros::NodeHandle nh, const ros::NodeHandle& pnh) {
   ddm::ParamReader params(ddm::nodeParams(pnh), pnh.getNamespace());
   const ddm::Configuration configuration = ddm::readConfiguration(&params);
   if (configuration.experiment.method != "ddm") {
@@ -27,8 +44,13 @@ void run(const ros::NodeHandle& nh, const ros::NodeHandle& pnh) {
   ddm::RunFolder folder(configuration);
   ddm::Progress progress(&std::cout, ::isatty(STDOUT_FILENO) != 0, configuration.experiment.trials);
   for (const std::string& warning : folder.warnings()) progress.note("warning: " + warning);
+  const ros::Publisher curve_pub =
+      nh.advertise<sensor_msgs::Image>(ddm::topics::kLearningCurveImage, 1, /*latch=*/true);
   ddm::RosWorld world(nh, configuration.experiment.timeout, ddm::RosWorld::Peers());
-  ddm::runExperiment(configuration, &world, &folder, &progress);
+  ddm::runExperiment(configuration, &world, &folder, &progress,
+                     [&](const std::vector<ddm::TrialRow>& rows) {
+                       publishCurve(curve_pub, rows, configuration);
+                     });
   progress.note("The experiment is finished. roslaunch ends the nodes, and says so in red.");
 }
 

@@ -39,9 +39,11 @@ packages_to_run=(
   parallel
 )
 
-# What only the tests need: linters, the check of .rosinstall, and the other machines of sweeps, played by this one.
+# What only the tests need: linters, the check of .rosinstall, a screen for rviz, and the other machines of sweeps,
+# played by this one.
 packages_to_test=(
   catkin-lint clang-format python3-wstool git valgrind
+  xvfb imagemagick
   openssh-client openssh-server
   slurmctld slurmd slurm-client munge
 )

@@ -32,7 +32,9 @@ class ExperimentTest : public ::testing::Test {
     RunFolder folder(configuration_);
     std::ostringstream out;
     Progress progress(&out, /*live=*/false, configuration_.experiment.trials);
-    runExperiment(configuration_, &world_, &folder, &progress);
+    shown_.clear();
+    runExperiment(configuration_, &world_, &folder, &progress,
+                  [this](const std::vector<TrialRow>& rows) { shown_.push_back(rows.size()); });
     terminal_ = out.str();
   }
 
@@ -46,12 +48,21 @@ class ExperimentTest : public ::testing::Test {
   Configuration configuration_ = toyConfiguration(scratch_.file("run"));
   ObedientWorld world_;
   std::string terminal_;
+  std::vector<size_t> shown_;  ///< numbers of rows
 };
 
 TEST_F(ExperimentTest, EachTrialIsRunThenLearnedFromThenEvaluated) {
   run();
   EXPECT_EQ(world_.calls, (Calls{"run 0", "train 0", "evaluate 0", "run 1", "train 1", "evaluate 1",
                                  "run 2", "train 2", "evaluate 2"}));
+}
+
+TEST_F(ExperimentTest, ShowsTheRowsAtTheStartAndAfterEachTrial) {
+  run();
+  EXPECT_EQ(shown_, (std::vector<size_t>{0, 1, 2, 3}));
+  configuration_.experiment.trials = 3;
+  run();
+  EXPECT_EQ(shown_, (std::vector<size_t>{3, 4}));
 }
 
 TEST_F(ExperimentTest, TrialsGiveOneModelAndRowMoreThanTheirNumber) {

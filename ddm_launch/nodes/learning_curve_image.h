@@ -1,0 +1,23 @@
+// The learning curve as a picture: what the model after each trial could do.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "run_folder.h"
+
+namespace ddm {
+
+/// Above: distance from the goal at the end of each greedy run, blue dots where it is a success,
+/// red crosses where not. Below: V_R (grey) and V_P (orange) per frame, on a logarithmic axis. Both
+/// over the frames learned from. Where the true state is not known, the upper part says so.
+/// @param rows        of trials.csv; none is fine
+/// @param all_frames  of the whole experiment: the picture grows to the right up to there
+/// @param goal_deg    a run that ends nearer to the goal has reached it [deg]
+/// @return            8 bit red, green, blue  [480 x 640]
+cv::Mat drawLearningCurve(const std::vector<TrialRow>& rows, std::uint32_t all_frames,
+                          double goal_deg);
+
+}  // namespace ddm

@@ -1,0 +1,55 @@
+#!/usr/bin/python3
+# What rviz shows of an experiment: pictures of the real one, on a screen in memory.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+from PIL import Image
+import rosunit
+
+from ddm_launch.rviz_screenshot import DISPLAYS, HEIGHT, WIDTH, missing_displays
+from ddm_launch.virtual_screen import missing_tools
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from processes import call, find_program  # noqa: E402
+
+
+class RvizTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        missing = missing_tools()
+        if missing:
+            raise unittest.SkipTest("NOBODY HAS LOOKED AT RVIZ, these programs are missing: " + ", ".join(missing))
+        with tempfile.TemporaryDirectory() as scratch:
+            out = os.path.join(scratch, "rviz.png")
+            cls.code, cls.output = call(
+                [find_program("ddm_launch", "rviz_screenshot"), "--out", out, "--after-trial", 2, "--seconds", 0, "--",
+                 "preset:=debug", "trials:=999", "seed:=1"], limit_s=200.0)
+            cls.pixels = np.array(Image.open(out).convert("RGB")) if cls.code == 0 else None
+
+    def test_each_display_shows_what_it_should(self):
+        self.assertEqual(self.code, 0, self.output)
+        self.assertEqual(self.pixels.shape, (HEIGHT, WIDTH, 3))
+        self.assertEqual(missing_displays(self.pixels), [])
+
+    def test_a_display_that_stays_black_or_shows_another_ones_picture_is_noticed(self):
+        self.assertEqual(self.code, 0, self.output)
+        for name, ((left, top, right, bottom), _) in DISPLAYS.items():
+            for spoilt in (0, 48, 255):
+                pixels = self.pixels.copy()
+                pixels[top:bottom, left:right] = spoilt
+                self.assertEqual(missing_displays(pixels), [name])
+
+    def test_what_the_launch_file_does_not_accept_is_told(self):
+        code, output = call([find_program("ddm_launch", "rviz_screenshot"), "--out", "/nowhere/rviz.png", "--",
+                             "preset:=no_such_preset"])
+        self.assertEqual(code, 1)
+        self.assertIn("the experiment ended too early", output)
+        self.assertIn("no_such_preset", output)
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "rviz_test", RvizTest)

@@ -1,0 +1,100 @@
+#!/usr/bin/python3
+# What can be watched of an experiment without rviz, and that watching changes nothing.
+# SPDX-License-Identifier: BSD-3-Clause
+import collections
+import math
+import os
+import shutil
+import sys
+import tempfile
+import time
+import unittest
+
+from ddm_msgs.msg import PlanScalars
+from diagnostic_msgs.msg import DiagnosticArray
+import numpy as np
+import rospy
+import rosunit
+from sensor_msgs.msg import Image
+from visualization_msgs.msg import MarkerArray
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from processes import roslaunch, run_experiment  # noqa: E402
+from run_files import differences, expected_files  # noqa: E402
+
+TRIALS = 3
+FRAMES = 2 * 30 * (TRIALS + 1)
+RATE = 60.0
+TOPICS = {"learning_curve_image": Image, "prediction_image": Image, "feature_space_image": Image,
+          "feature_space_markers": MarkerArray, "plan_scalars": PlanScalars, "diagnostics": DiagnosticArray}
+STATUSES = ["model_node: training"] + ["mpc_node: " + name for name in ("camera", "model", "plan", "torque")]
+
+
+def pixels(image):
+    return np.frombuffer(image.data, np.uint8).reshape(image.height, image.width, -1)
+
+
+class ViewTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.mkdtemp()
+        cls.run_folder = os.path.join(cls.scratch, "run")
+        cls.heard = collections.defaultdict(list)
+        rospy.init_node("view_test", disable_signals=True)
+        for topic, message in TOPICS.items():
+            rospy.Subscriber(topic, message, cls.heard[topic].append)
+        start = time.monotonic()
+        _, cls.output = roslaunch(cls.scratch, "experiment.launch", "preset:=debug", "seed:=1", "trials:=%d" % TRIALS,
+                                  "view:=true", "frame_rate:=%g" % RATE, "runs:=" + cls.run_folder, port=0,
+                                  limit_s=90.0)
+        cls.wall_s = time.monotonic() - start
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.scratch)
+
+    def test_an_experiment_that_is_watched_and_slowed_down_is_the_same(self):
+        unwatched = os.path.join(self.scratch, "unwatched")
+        code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", TRIALS, "--out", unwatched)
+        self.assertEqual(code, 0, output)
+        names = [name for name in expected_files(TRIALS) if not name.endswith((".bag", "config.yaml"))]
+        self.assertEqual(differences(unwatched, self.run_folder, names), [], self.output)
+
+    def test_no_more_frames_are_shown_in_a_second_than_asked_for(self):
+        self.assertGreater(self.wall_s, FRAMES / RATE)
+
+    def test_the_learning_curve_grows_trial_by_trial(self):
+        images = self.heard["learning_curve_image"]
+        self.assertEqual(len(images), TRIALS + 2, self.output)  # an empty one at the start
+        self.assertEqual({(image.width, image.height, image.encoding) for image in images}, {(640, 480, "rgb8")})
+        inked = [np.mean(pixels(image) < 200) for image in images]
+        self.assertEqual(inked, sorted(set(inked)))
+
+    def test_prediction_and_feature_space_are_topics(self):
+        prediction, plane = self.heard["prediction_image"], self.heard["feature_space_image"]
+        self.assertTrue(prediction and plane)
+        self.assertEqual((prediction[-1].width, prediction[-1].encoding), (3 * 255 + 6, "mono8"))
+        self.assertEqual((plane[-1].width, plane[-1].height, plane[-1].encoding), (605, 605, "rgb8"))
+        markers = [marker for array in self.heard["feature_space_markers"] for marker in array.markers]
+        self.assertEqual({marker.header.frame_id for marker in markers}, {"feature_space"})
+        self.assertEqual({marker.ns for marker in markers if marker.action == marker.ADD},
+                         {"experience", "current", "goal", "plan", "images", "axes"})
+
+    def test_numbers_of_each_plan_can_be_plotted(self):
+        scalars = self.heard["plan_scalars"]
+        self.assertGreater(len(scalars), 30 * (TRIALS + 1))  # all of the evaluations, and some
+        self.assertTrue(all(number.goal_distance >= 0.0 and number.solve_time > 0.0 for number in scalars))
+        self.assertTrue(any(math.isnan(number.prediction_error) for number in scalars))
+        self.assertTrue(any(number.prediction_error > 0.0 for number in scalars))
+
+    def test_health_is_reported_once_a_second_of_wall_time_however_fast_simulated_time_runs(self):
+        times = collections.Counter(status.name for array in self.heard["diagnostics"] for status in array.status)
+        self.assertEqual(sorted(times), STATUSES)
+        self.assertGreater(0.2 * FRAMES, self.wall_s + 10)  # simulated time: or this test would tell nothing
+        for name in STATUSES:
+            self.assertGreaterEqual(times[name], 2, name)
+            self.assertLessEqual(times[name], self.wall_s + 2, name)  # and one at the start
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "view_test", ViewTest)
