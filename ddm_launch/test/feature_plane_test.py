@@ -9,9 +9,9 @@ import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from ddm_launch import feature_plane  # noqa: E402
-from ddm_launch.feature_grid import BRIGHTEST, DARKEST, FeatureGrid  # noqa: E402
 from ddm_launch.figure_style import COLUMN_WIDTH, PAGE_WIDTH, new_figure  # noqa: E402
 from ddm_launch.run_folder import RunFolderError  # noqa: E402
+from ddm_model.feature_grid import BRIGHTEST, DARKEST, FeatureGrid  # noqa: E402
 import figure_case  # noqa: E402
 
 HEADER = "frame,set,x_px,y_px,z_1,z_2"

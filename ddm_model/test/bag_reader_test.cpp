@@ -54,6 +54,10 @@ TEST_F(BagReader, GivesBackTheTrialThatWasWritten) {
   EXPECT_EQ(content.camera, "8x8 mono8");
   EXPECT_EQ(content.num_images_without_torque, 0);
   EXPECT_EQ(content.num_torques_without_image, 0);
+  ASSERT_EQ(content.times.size(), 20U);
+  EXPECT_EQ(content.times[0], 0.0);
+  EXPECT_NEAR(content.times[19], 19 * 0.2, 1e-6);
+  EXPECT_NEAR(content.interval, 0.2, 1e-6);
 }
 
 TEST_F(BagReader, PairsByHeaderStampWhateverTheOrderOfRecording) {

@@ -3,11 +3,11 @@
 import argparse
 import os
 
-from ddm_launch.feature_grid import GRID, FeatureGrid
 from ddm_launch.figure_style import COLUMN_WIDTH, PAGE_WIDTH, VERMILLION, YELLOW, new_figure, save, write
 from ddm_launch.images import Decoder
 from ddm_launch.prediction_strip import REMEDY
 from ddm_launch.run_folder import RunFolderError, number, read_csv, read_setting
+from ddm_model.feature_grid import GRID, FeatureGrid
 
 SETS = (("training", "o", VERMILLION, "training frames"), ("held_out", "^", YELLOW, "held-out frames"))
 

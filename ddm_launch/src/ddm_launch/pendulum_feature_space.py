@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
 
-from ddm_launch.feature_grid import GRID, FeatureGrid
 from ddm_launch.figure_style import COLUMN_WIDTH, GREEN, SKY, VERMILLION, YELLOW, new_figure, save, write
 from ddm_launch.images import Decoder
 from ddm_launch.run_folder import RunFolderError, number, read_csv
+from ddm_model.feature_grid import GRID, FeatureGrid
 
 # kind: marker, size [pt^2], colour, label, in the order of drawing. The colours are those of the paper's figure.
 KINDS = {"experience": ("o", 6, GREEN, "experience"),

@@ -180,12 +180,16 @@ double medianInterval(const std::vector<ros::Time>& stamps) {
 BagContent pairFrames(const Messages& messages, int image_size) {
   if (messages.torques.empty()) throw std::runtime_error("there is no torque in it");
   const int torque_dim = static_cast<int>(messages.torques.begin()->second.size());
-  BagContent content{DataSet(image_size, torque_dim), messages.camera, 0, 0};
+  BagContent content{DataSet(image_size, torque_dim), messages.camera};
   std::vector<ros::Time> stamps;
   for (const auto& image : messages.images) {
     if (messages.torques.count(image.first) > 0) stamps.push_back(image.first);
   }
-  const double gap = kGap * medianInterval(stamps);
+  for (const ros::Time& stamp : stamps) {
+    content.times.push_back((stamp - stamps.front()).toSec());
+  }
+  content.interval = medianInterval(stamps);
+  const double gap = kGap * content.interval;
   bool new_piece = true;
   ros::Time last;
   for (const auto& image : messages.images) {

@@ -5,6 +5,7 @@
 #include <ddm_model/data_set.h>
 
 #include <string>
+#include <vector>
 
 #include "ddm_bag_io/bag_options.h"
 
@@ -12,8 +13,10 @@ namespace ddm {
 
 /// A bag and what was found in it.
 struct BagContent {
-  DataSet data;        ///< frames: images with their torques
-  std::string camera;  ///< size and encoding of the images, "51x51 mono8"
+  DataSet data;                 ///< frames: images with their torques
+  std::string camera;           ///< size and encoding of the images, "51x51 mono8"
+  std::vector<double> times{};  ///< of each frame, since the first one [s]
+  double interval = 0.0;        ///< median of those between frames [s]; 0 if there is only one
   int num_images_without_torque = 0;
   int num_torques_without_image = 0;
 };

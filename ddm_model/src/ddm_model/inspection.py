@@ -1,0 +1,139 @@
+# Is the model any good, and if not, what to do? A report of a model and of what it makes of bags.
+# SPDX-License-Identifier: BSD-3-Clause
+import argparse
+import os
+import shutil
+import sys
+import tempfile
+
+import yaml
+
+from ddm_model import report, report_figures
+from ddm_model.model_data import ModelData, ModelDataError, write_model_data
+from ddm_model.verdict import summary, verdict
+
+# In DIR beside the report; without bags there are fewer.
+KEPT = ("model.yaml", "bags.csv", "features.csv", "spectrum.csv", "prediction_errors.csv", "predicted_features.csv")
+
+
+def facts_table(data, model):
+    """What is written in the model itself."""
+    facts, options = data.facts, data.options
+    frames = max(int(facts["frames"]), 1)
+    pixels = int(facts["image_size"]) ** 2
+    rms = [(float(facts[name]) / (frames * pixels)) ** 0.5 for name in ("v_r", "v_p")]
+    widths = ["%s: %s" % (name, ", ".join(options[name + "_widths"]) or "none")
+              for name in ("encoder", "decoder", "predictor")]
+    return report.table(["the model", ""], [
+        ("file", model), ("id", facts["id"]),
+        ("images", "%s x %s pixels, %s principal components" % (
+            facts["image_size"], facts["image_size"], options["pca_dim"])),
+        ("features, torques", "%s, %s; the last %s of each predict the next" % (
+            options["feature_dim"], facts["torque_dim"], options["order"])),
+        ("hidden layers", "; ".join(widths)),
+        ("f", "residual: %s, increments: %s, torques in units of %s N m" % (
+            options["residual"], options["increments"], options["max_torque"])),
+        ("ensemble", "%s model(s); all but the arrays of the export is of the first" % facts["num_models"]),
+        ("trained on", "%s frames, the last trial was %s, seed %s" % (
+            facts["frames"], facts["trial"], facts["seed"])),
+        ("V_R, V_P", "%.4g, %.4g grey²: %.3g and %.3g grey a pixel, within the principal components" % (
+            float(facts["v_r"]), float(facts["v_p"]), rms[0], rms[1])),
+        ("goal image", "yes" if facts["goal"] == "true" else "none")])
+
+
+def bags_table(data):
+    names = ["bag", "camera", "frames", "pieces", "images_without_torque", "torques_without_image", "interval_s"]
+    columns = [data.bags[name] for name in names]
+    rows = [[cell if isinstance(cell, str) else "%g" % cell for cell in row] for row in zip(*columns)]
+    return report.table([name.replace("_", " ") for name in names], rows)
+
+
+def figures_of(data):
+    """(title, function that draws, caption), in the order of the report."""
+    out = [("Principal components", lambda: report_figures.draw_spectrum(data),
+            "How much each component matters. A curve that has not come down at its right end asks for more of them.")]
+    if data.bags is not None:
+        out.append(("Reconstructions", lambda: report_figures.draw_reconstructions(data),
+                    "Images, what the principal components keep of them, and what the features do."))
+        for kind, words in (("typical", "in the middle"), ("worst", "at the end")):
+            if kind + "_prediction" in data.pictures:
+                out.append(("A prediction: %s" % kind, lambda kind=kind: report_figures.draw_prediction(data, kind),
+                            "Steps ahead above each picture. Of all predictions this one is %s of the order by error; "
+                            "only the first picture was seen, and the torques." % words))
+        if len(data.errors["steps"]) > 0:
+            out.append(("Error by step", lambda: report_figures.draw_errors(data),
+                        "Over %d predictions of each length. Predictions must stay below the grey curve to be of use."
+                        % data.errors["num_predictions"][0]))
+    out.append(("Feature plane", lambda: report_figures.draw_plane(data),
+                "Images that the model decodes at 9 x 9 features, and where the frames lie. Neighbouring images must "
+                "look alike, and motions be paths without jumps."))
+    if data.bags is not None:
+        out.append(("Coverage", lambda: report_figures.draw_coverage(data),
+                    "How often each feature and torque occurs; dashed: model/max_torque."))
+    return out
+
+
+def build_page(data, model, say):
+    checks = verdict(data)
+    sections = ["<h2>Verdict</h2>", report.verdict_table(checks)]
+    if data.bags is None:
+        sections.append("<p>No bag was given: give some that the model has not learned from to have its predictions "
+                        "judged.</p>")
+    else:
+        sections.append("<p>If the model was trained on these bags, its errors flatter: judge by others.</p>")
+    sections += ["<h2>Facts</h2>", facts_table(data, model)]
+    if data.bags is not None:
+        sections += ["<p></p>", bags_table(data)]
+    drawn = figures_of(data)
+    for i, (title, draw, caption) in enumerate(drawn):
+        say("drawing %d of %d: %s" % (i + 1, len(drawn), title))
+        sections.append(report.figure(title, report_figures.as_data_uri(draw()), caption))
+    sections += ["<h2>Configuration that it was trained with</h2>",
+                 "<pre>%s</pre>" % report.escaped(data.facts["config"])]
+    failed = any(check.ok is False for check in checks)
+    return report.page("Model %s" % data.facts["id"], summary(checks), failed, sections), checks
+
+
+def inspect(model, bags, out, options):
+    """Writes the report and the numbers behind it into a folder. Returns the checks."""
+    with tempfile.TemporaryDirectory() as folder:
+        write_model_data(model, bags, folder, options)
+        data = ModelData(folder)
+        page, checks = build_page(data, model, lambda text: print(text, file=sys.stderr))
+        os.makedirs(out, exist_ok=True)
+        for name in KEPT:
+            if os.path.exists(os.path.join(folder, name)):
+                shutil.copy(os.path.join(folder, name), os.path.join(out, name))
+    with open(os.path.join(out, "verdict.yaml"), "w") as stream:
+        yaml.safe_dump([dict(check._asdict()) for check in checks], stream, sort_keys=False)
+    with open(os.path.join(out, "report.html"), "w", encoding="utf-8") as stream:
+        stream.write(page)
+    return checks
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(
+        prog="inspect",
+        description="Tells what a model is and, given bags, how well it describes and predicts them: DIR/report.html, "
+        "one file without links, and the numbers behind it as CSV and YAML. The verdict names what fails, the "
+        "figure, the rule and what to do.")
+    parser.add_argument("--model", metavar="FILE", required=True, help="model file")
+    parser.add_argument("--out", metavar="DIR", required=True, help="folder of the report; made if need be")
+    parser.add_argument("--steps", type=int, default=15, help="longest prediction (%(default)s, as plans are)")
+    parser.add_argument("--config", metavar="FILE", action="append", default=[],
+                        help="YAML file whose block data_set names the topics in the bags; repeatable")
+    parser.add_argument("bags", metavar="BAG", nargs="*", help="bags with images and torques, best such that the "
+                        "model has not learned from. Images are brought to the model's size")
+    options = parser.parse_args(arguments)
+    if not 1 <= options.steps <= 1000:
+        parser.error("--steps must lie in [1, 1000], got %d" % options.steps)
+    tool_options = ["--steps", str(options.steps)] + [word for file in options.config for word in ("--config", file)]
+    try:
+        checks = inspect(options.model, options.bags, options.out, tool_options)
+    except (ModelDataError, OSError) as error:
+        print("inspect: %s" % error, file=sys.stderr)
+        return 1
+    for check in checks:
+        print("%-9s  %s: %s" % (report.MARKS[check.ok], check.name, check.figure))
+    print("\n%s\nwrote %s" % (summary(checks), os.path.join(options.out, "report.html")))
+    return 0

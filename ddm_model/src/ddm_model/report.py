@@ -1,0 +1,41 @@
+# A report as one HTML file: verdict, facts and figures, with nothing that is not in it.
+# SPDX-License-Identifier: BSD-3-Clause
+import html
+
+STYLE = """body { font: 15px/1.45 sans-serif; color: #222; max-width: 62em; margin: 2em auto; padding: 0 1em; }
+h1 { font-size: 1.5em; } h2 { font-size: 1.15em; margin-top: 2em; }
+table { border-collapse: collapse; } td, th { border: 1px solid #ccc; padding: .3em .6em; text-align: left;
+vertical-align: top; } th { background: #f3f3f3; }
+img { max-width: 100%; height: auto; } pre { background: #f6f6f6; padding: .8em; overflow-x: auto; }
+.summary { border-left: .4em solid #0072B2; background: #f3f7fb; padding: .8em 1em; }
+.failed { border-left-color: #D55E00; background: #fcf3ee; } .mark { white-space: nowrap; font-weight: bold; }"""
+MARKS = {True: "passed", False: "FAILED", None: "not known"}
+
+
+def escaped(value):
+    return html.escape(str(value), quote=True)
+
+
+def table(head, rows):
+    """Everything in it is escaped."""
+    lines = ["<table>", "<tr>%s</tr>" % "".join("<th>%s</th>" % escaped(cell) for cell in head)]
+    lines += ["<tr>%s</tr>" % "".join("<td>%s</td>" % escaped(cell) for cell in row) for row in rows]
+    return "\n".join(lines + ["</table>"])
+
+
+def figure(title, uri, caption):
+    return '<h2>%s</h2>\n<p>%s</p>\n<img alt="%s" src="%s">' % (escaped(title), escaped(caption), escaped(title), uri)
+
+
+def verdict_table(checks):
+    head = ["", "what", "found", "should be", "what to do if not"]
+    return table(head, [(MARKS[check.ok], check.name, check.figure, check.rule, check.remedy) for check in checks])
+
+
+def page(title, summary, failed, sections):
+    """sections: pieces of HTML, escaped already."""
+    return "\n".join(
+        ["<!DOCTYPE html>", '<html lang="en"><head><meta charset="utf-8"><title>%s</title>' % escaped(title),
+         "<style>%s</style></head><body>" % STYLE, "<h1>%s</h1>" % escaped(title),
+         '<p class="summary%s">%s</p>' % (" failed" if failed else "", escaped(summary))]
+        + sections + ["</body></html>", ""])

@@ -1,0 +1,155 @@
+# The figures of a report: what a model makes of bags.
+# SPDX-License-Identifier: BSD-3-Clause
+import base64
+import io
+
+import matplotlib
+matplotlib.use("Agg")  # no display needed
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+
+from ddm_model.feature_grid import FeatureGrid  # noqa: E402
+
+# From the Okabe-Ito set: told apart by colour-blind readers, and dashes and shapes differ too.
+BLUE, VERMILLION, YELLOW, GREY, LIGHT = "#0072B2", "#D55E00", "#F0E442", "#666666", "#dddddd"
+WIDTH = 9.0  # [in]
+MAX_COLUMNS = 16  # pictures side by side
+
+
+def as_data_uri(figure):
+    """A figure as text that an <img> can show; closes it."""
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=110)
+    plt.close(figure)
+    return "data:image/png;base64," + base64.b64encode(stream.getvalue()).decode("ascii")
+
+
+def new_axes(height, columns=1):
+    figure, axes = plt.subplots(1, columns, figsize=(WIDTH, height), constrained_layout=True, squeeze=False)
+    for one in axes[0]:
+        one.grid(True, color=LIGHT, linewidth=0.6)
+        one.set_axisbelow(True)
+    return figure, axes[0]
+
+
+def draw_spectrum(data):
+    """Variance along each principal component; with bags what share of their images it keeps."""
+    figure, axes = new_axes(3.0, columns=1 if data.spectrum is None else 2)
+    variance = data.model["pca_variance"]
+    axes[0].semilogy(np.arange(1, len(variance) + 1), variance, color=BLUE, marker="o", markersize=3)
+    axes[0].set_xlabel("principal component")
+    axes[0].set_ylabel("variance [grey²]")
+    axes[0].set_title("images learned from")
+    if data.spectrum is not None:
+        share = 100.0 * np.cumsum(data.spectrum["share"])
+        axes[1].plot(data.spectrum["component"], share, color=VERMILLION, marker="o", markersize=3)
+        axes[1].set_ylim(0.0, 103.0)
+        axes[1].set_xlabel("principal components kept")
+        axes[1].set_ylabel("of these bags' images [%]")
+        axes[1].set_title("images of these bags")
+    return figure
+
+
+def draw_rows(rows, labels, columns):
+    """Grey pictures in rows; labels of rows at the left, of columns above."""
+    shape = (len(rows), len(columns))
+    figure, axes = plt.subplots(*shape, figsize=(WIDTH, WIDTH / max(len(columns), 6) * len(rows) * 1.12),
+                                squeeze=False, constrained_layout=True)
+    for i, (row, label) in enumerate(zip(rows, labels)):
+        for j, picture in enumerate(row):
+            axes[i, j].imshow(picture, cmap="gray", vmin=0, vmax=255, interpolation="nearest")
+            axes[i, j].set_xticks([])
+            axes[i, j].set_yticks([])
+            if i == 0:
+                axes[i, j].set_title(columns[j], fontsize=9)
+        axes[i, 0].set_ylabel(label, fontsize=9, rotation=0, ha="right", va="center")
+    return figure
+
+
+def draw_reconstructions(data):
+    pictures = data.pictures["reconstructions"]
+    rows = [pictures[k::3] for k in range(3)]
+    names = ["%d" % (i * len(data.features) // len(rows[0])) for i in range(len(rows[0]))]
+    return draw_rows(rows, ["image", "PCA", "features"], ["frame " + name for name in names])
+
+
+def draw_prediction(data, kind):
+    """What came, what was predicted, and the last frame repeated, from 0 steps ahead on."""
+    pictures = data.pictures[kind + "_prediction"]
+    truth, predicted = pictures[0::2], pictures[1::2]
+    shown = np.unique(np.linspace(0, len(truth) - 1, min(len(truth), MAX_COLUMNS)).round().astype(int))
+    return draw_rows([truth[shown], predicted[shown], truth[np.zeros_like(shown)]],
+                     ["truth", "predicted", "repeated"], ["%d" % k for k in shown])
+
+
+def draw_errors(data):
+    figure, (axes,) = new_axes(3.4)
+    steps = data.errors["steps"]
+    for column, colour, style, label in (
+            ("rmse", BLUE, "o-", "predicted"), ("rmse_repeat", GREY, "s--", "last frame repeated"),
+            ("rmse_mean_torque", VERMILLION, "^:", "predicted without knowing the torques")):
+        axes.plot(steps, data.errors[column], style, color=colour, markersize=4, label=label)
+    axes.set_ylim(bottom=0.0)
+    axes.set_xlabel("steps ahead")
+    axes.set_ylabel("error of a pixel, rms [grey]")
+    axes.legend()
+    return figure
+
+
+class DrawnImages:
+    """Stands for a decoder where the images are there already."""
+
+    def __init__(self, images):
+        self.images = images
+
+    def decode(self, _features):
+        return self.images
+
+
+def draw_plane(data):
+    """Decoded images over the range of the features, and the features of all frames."""
+    images = data.pictures["plane"]
+    if len(data.plane_low) < 2:
+        return draw_line(data)
+    figure, axes = plt.subplots(figsize=(6.2, 6.2), constrained_layout=True)
+    FeatureGrid(data.plane_low, data.plane_high).draw(axes, DrawnImages(images))
+    if data.features is not None:
+        axes.scatter(data.features[:, 0], data.features[:, 1], s=9, color=YELLOW, edgecolors="black",
+                     linewidths=0.25, label="frames of these bags", zorder=2)
+    if data.goal_feature is not None:
+        axes.scatter(*data.goal_feature[:2], marker="*", s=190, color=VERMILLION, edgecolors="black", linewidths=0.6,
+                     label="goal", zorder=3)
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc="upper right")
+    return figure
+
+
+def draw_line(data):
+    """A model with one feature: decoded images along it, and how often the frames have it."""
+    figure, axes = plt.subplots(2, 1, figsize=(WIDTH, 2.6), constrained_layout=True, sharex=True)
+    step = (data.plane_high[0] - data.plane_low[0]) / (len(data.pictures["plane"]) - 1)
+    extent = (data.plane_low[0] - step / 2, data.plane_high[0] + step / 2, 0.0, step)
+    axes[0].imshow(np.hstack(list(data.pictures["plane"])), cmap="gray", vmin=0, vmax=255, extent=extent,
+                   aspect="auto")
+    axes[0].set_yticks([])
+    if data.features is not None:
+        axes[1].hist(data.features[:, 0], bins=40, color=BLUE)
+    axes[1].set_ylabel("frames")
+    axes[1].set_xlabel("feature $z_1$ [-]")
+    return figure
+
+
+def draw_coverage(data):
+    """How often each feature and each torque occurs."""
+    series = [("feature z_%d [-]" % (i + 1), column) for i, column in enumerate(data.features.T)]
+    series += [("torque u_%d [N m]" % (i + 1), column) for i, column in enumerate(data.torques.T)]
+    series = series[:6]
+    figure, axes = new_axes(2.6, columns=len(series))
+    for one, (label, values) in zip(axes, series):
+        one.hist(values, bins=30, color=BLUE)
+        one.set_xlabel(label)
+        if label.startswith("torque"):
+            one.axvline(-data.max_torque, color=GREY, linestyle="--")
+            one.axvline(data.max_torque, color=GREY, linestyle="--")
+    axes[0].set_ylabel("frames")
+    return figure

@@ -1,0 +1,107 @@
+#!/usr/bin/python3
+# export: the README's lines of NumPy compute what the C++ model does.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import re
+import sys
+import tempfile
+import unittest
+
+import matplotlib.image
+import numpy as np
+import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from ddm_model.model_data import read_columns, stacked  # noqa: E402
+import toy_robot  # noqa: E402
+
+README = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "README.md")
+
+
+def readme_functions(npz):
+    """The names that the README's Python block defines, for this file."""
+    with open(README) as stream:
+        block = re.search(r"```python\n(.*?)```", stream.read(), re.DOTALL).group(1)
+    names = {}
+    exec(block.replace('"model.npz"', repr(npz)), names)  # pylint: disable=exec-used
+    return names
+
+
+class ExportTest(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.scratch = scratch.name
+        self.bag, self.npz = self.file("trial.bag"), self.file("model.npz")
+        self.images, self.torques = toy_robot.write_bag(self.bag, num_frames=40)
+
+    def file(self, name):
+        return os.path.join(self.scratch, name)
+
+    def export(self, model):
+        code, output = toy_robot.call("export", "--model", model, "--out", self.npz)
+        self.assertEqual(code, 0, output)
+        return readme_functions(self.npz)
+
+    def assertComputesTheSame(self, model_options, training_options=""):
+        model = toy_robot.train(self.scratch, [self.bag], model_options, training_options)
+        ours = self.export(model)
+        code, output = toy_robot.call("model_data", "--model", model, "--out", self.scratch, "--steps", 4, self.bag)
+        self.assertEqual(code, 0, output)
+        truth = stacked(read_columns(self.file("features.csv")), "z").T
+        features = ours["encode"](self.images.reshape(len(self.images), -1).T)
+        np.testing.assert_allclose(features, truth, rtol=0.0, atol=1e-5)
+        self.assertGreater(np.ptp(truth), 0.05)  # or anything would do
+        self.assertPredicts(ours, truth)
+        self.assertDecodes(ours, truth, model)
+
+    def assertPredicts(self, ours, truth):
+        rows = read_columns(self.file("predicted_features.csv"))
+        self.assertEqual(len(rows["frame"]), 2 * 5)
+        n = int(ours["model"]["order"])
+        for kind in ("typical", "worst"):
+            of_kind = np.array(rows["kind"]) == kind
+            frame = int(rows["frame"][of_kind][0])
+            Z = [truth[:, [frame - lag]] for lag in range(n)]
+            for k in range(4):
+                U = [self.torques[frame + k - lag].reshape(1, 1) for lag in range(n)]
+                Z = [ours["predict"](Z, U)] + Z[:-1]
+                np.testing.assert_allclose(Z[0][:, 0], stacked(rows, "z")[of_kind][k + 1], rtol=0.0, atol=1e-5)
+
+    def assertDecodes(self, ours, truth, model):
+        with open(self.file("features.txt"), "w") as stream:
+            stream.write("z_1,z_2\n" + "".join("%.17g,%.17g\n" % tuple(z) for z in truth[:, :5].T))
+        command = "%s %s --frames %s < %s" % (
+            toy_robot.find_program("decode_features"), model, self.scratch, self.file("features.txt"))
+        self.assertEqual(os.system(command), 0)
+        decoded = 255.0 * np.clip(ours["decode"](truth[:, :5]), 0.0, 1.0)
+        for i in range(5):
+            picture = 255.0 * matplotlib.image.imread(self.file("frame_%04d.png" % i)).reshape(-1)
+            # The program rounds to a grey value: half of one, and what single precision does to 255.
+            np.testing.assert_allclose(decoded[:, i], picture, rtol=0.0, atol=0.5 + 255e-5)
+            self.assertGreater(np.ptp(picture), 20)
+
+    def test_the_readme_encodes_decodes_and_predicts_as_the_model_does(self):
+        self.assertComputesTheSame("")
+
+    def test_so_it_does_with_changes_increments_and_a_longer_past(self):
+        self.assertComputesTheSame(", residual: true, increments: true, order: 3, predictor_widths: [5, 3]")
+
+    def test_an_ensemble_has_all_its_models_and_the_goal(self):
+        model = toy_robot.train(self.scratch, [self.bag], "", ", num_starts: 3, pca_starts: 1, ensemble_size: 2")
+        arrays = self.export(model)["model"]
+        self.assertFalse(np.array_equal(arrays["f_W1"], arrays["other1_f_W1"]))
+        self.assertNotIn("other2_f_W1", arrays)
+        np.testing.assert_array_equal(arrays["goal"], toy_robot.picture(3.0).reshape(-1))
+        ours = readme_functions(self.npz)
+        np.testing.assert_allclose(ours["encode"](arrays["goal"][:, None])[:, 0], arrays["goal_feature"], atol=1e-5)
+
+    def test_a_file_that_is_no_model_is_named_and_nothing_is_written(self):
+        code, output = toy_robot.call("export", "--model", self.bag, "--out", self.npz)
+        self.assertEqual(code, 1)
+        self.assertIn("model %s: is not a DDM model" % self.bag, output)
+        self.assertFalse(os.path.exists(self.npz))
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_model", "export_test", ExportTest)

@@ -1,0 +1,163 @@
+#!/usr/bin/python3
+# inspect as a user calls it: model and bags in, a report and its numbers out.
+# SPDX-License-Identifier: BSD-3-Clause
+import base64
+import html.parser
+import io
+import os
+import shutil
+import sys
+import tempfile
+import unittest
+
+import matplotlib.image
+import numpy as np
+import rosunit
+import yaml
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from ddm_model.model_data import read_columns  # noqa: E402
+import toy_robot  # noqa: E402
+
+WITH_BAGS = ["Principal components", "Reconstructions", "A prediction: typical", "A prediction: worst", "Error by step",
+             "Feature plane", "Coverage"]
+
+
+class Page(html.parser.HTMLParser):
+    """What a browser makes of a report."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.tags, self.images, self.links, self.text = [], {}, [], ""
+        with open(path, encoding="utf-8") as stream:
+            self.feed(stream.read())
+
+    def handle_starttag(self, tag, attrs):
+        attrs = dict(attrs)
+        self.tags.append(tag)
+        if tag == "img":
+            self.images[attrs["alt"]] = attrs["src"]
+        self.links += [attrs[name] for name in ("href", "src") if name in attrs]
+
+    def handle_data(self, data):
+        self.text += data
+
+    def picture(self, title):
+        data = self.images[title].split("base64,")[1]
+        return matplotlib.image.imread(io.BytesIO(base64.b64decode(data)), format="png")
+
+
+class InspectionTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        """A model of two bags, and the report of what it makes of a third."""
+        cls.class_scratch = tempfile.mkdtemp()
+        bags = [os.path.join(cls.class_scratch, name) for name in ("first.bag", "second.bag", "unseen.bag")]
+        for seed, bag in enumerate(bags):
+            toy_robot.write_bag(bag, num_frames=200, seed=seed + 1)
+        cls.unseen, cls.report = bags[2], os.path.join(cls.class_scratch, "report")
+        cls.model = toy_robot.train(cls.class_scratch, bags[:2], ", residual: true, increments: true",
+                                    ", num_starts: 4, pca_starts: 4, selection_steps: 4, prediction_steps: 4")
+        cls.code, cls.words = toy_robot.call("inspect", "--model", cls.model, "--out", cls.report, "--steps", 6,
+                                             cls.unseen)
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.class_scratch)
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.scratch = scratch.name
+        self.out = self.file("report")
+
+    def file(self, name):
+        return os.path.join(self.scratch, name)
+
+    def inspect(self, *arguments):
+        code, self.output = toy_robot.call("inspect", "--model", self.model, "--out", self.out, *arguments)
+        self.assertEqual(code, 0, self.output)
+        return Page(os.path.join(self.out, "report.html"))
+
+    @staticmethod
+    def verdict(report):
+        with open(os.path.join(report, "verdict.yaml")) as stream:
+            return {check["name"]: check["ok"] for check in yaml.safe_load(stream)}
+
+    def assertRefused(self, words, *arguments, code=1):
+        done, output = toy_robot.call("inspect", "--out", self.out, *arguments)
+        self.assertEqual(done, code, output)
+        for word in words:
+            self.assertIn(word, output)
+        self.assertFalse(os.path.exists(os.path.join(self.out, "report.html")))
+
+    def test_a_good_model_passes_on_a_bag_that_it_has_not_seen(self):
+        self.assertEqual(self.code, 0, self.words)
+        self.assertEqual([name for name, ok in self.verdict(self.report).items() if not ok], [], self.words)
+        page = Page(os.path.join(self.report, "report.html"))
+        self.assertIn("All 14 checks passed.", page.text)
+        self.assertEqual(list(page.images), WITH_BAGS)
+        for title in WITH_BAGS:
+            self.assertGreater(np.ptp(page.picture(title)[..., :3]), 0.5, title)
+
+    def test_the_report_needs_nothing_but_itself(self):
+        page = Page(os.path.join(self.report, "report.html"))
+        self.assertEqual(len(page.links), len(WITH_BAGS))
+        self.assertTrue(all(link.startswith("data:image/png;base64,") for link in page.links))
+        self.assertNotIn("script", page.tags)
+
+    def test_the_numbers_behind_it_are_there(self):
+        errors = read_columns(os.path.join(self.report, "prediction_errors.csv"))
+        self.assertEqual(list(errors["steps"]), [1, 2, 3, 4, 5, 6])
+        self.assertEqual(errors["num_predictions"][0], 200 - 1 - 6)
+        self.assertTrue(np.all(errors["rmse"] < errors["rmse_repeat"]))
+        self.assertTrue(np.all(errors["rmse"] < errors["rmse_mean_torque"]))
+        frames = read_columns(os.path.join(self.report, "features.csv"))
+        self.assertEqual(len(frames["z_1"]), 200)
+        self.assertTrue(np.all(frames["pca_rms"] <= frames["mean_rms"]))
+        share = read_columns(os.path.join(self.report, "spectrum.csv"))["share"]
+        kept = 1.0 - np.sum(frames["pca_rms"] ** 2) / np.sum(frames["mean_rms"] ** 2)
+        self.assertAlmostEqual(np.sum(share), kept, places=4)
+
+    def test_names_cannot_break_the_page_and_another_camera_is_brought_to_the_size_of_the_model(self):
+        bag = self.file("<script>alert('\"&'),.bag")
+        toy_robot.write_bag(bag, num_frames=80, seed=3, size=48, channels=3)
+        page = self.inspect(bag)
+        self.assertIn(bag, page.text)
+        self.assertNotIn("script", page.tags)
+        self.assertIn("48x48 rgb8", page.text)
+        self.assertTrue(self.verdict(self.out)["Enough components, for such images"], self.output)
+
+    def test_a_motor_that_hardly_moves_is_found_under_whatever_name_of_its_topics(self):
+        toy_robot.write_bag(self.file("lazy.bag"), num_frames=80, image_topic="eye", torque=lambda u: 0.05 * u)
+        self.assertRefused(["no topic camera/image_raw", "eye"], "--model", self.model, self.file("lazy.bag"))
+        with open(self.file("names.yaml"), "w") as stream:
+            stream.write("data_set: {image_topic: eye}\n")
+        self.inspect("--config", self.file("names.yaml"), self.file("lazy.bag"))
+        self.assertFalse(self.verdict(self.out)["Torques are excited"])
+        self.assertRegex(self.output, r"FAILED +Torques are excited")
+
+    def test_a_model_alone_tells_what_it_is(self):
+        page = self.inspect()
+        self.assertEqual(list(page.images), ["Principal components", "Feature plane"])
+        self.assertIn("400 frames", page.text)
+        self.assertIn("No bag was given", page.text)
+        self.assertFalse(os.path.exists(os.path.join(self.out, "bags.csv")))
+
+    def test_a_single_feature_and_a_bag_too_short_to_predict_are_drawn_as_far_as_they_go(self):
+        toy_robot.write_bag(self.file("short.bag"), num_frames=2)
+        model = toy_robot.train(self.scratch, [self.unseen], ", feature_dim: 1")
+        code, output = toy_robot.call("inspect", "--model", model, "--out", self.out, self.file("short.bag"))
+        self.assertEqual(code, 0, output)
+        self.assertEqual(list(Page(os.path.join(self.out, "report.html")).images),
+                         ["Principal components", "Reconstructions", "Feature plane", "Coverage"])
+        self.assertIsNone(self.verdict(self.out)["Predictions beat repeating the last frame"])
+
+    def test_what_cannot_be_read_is_named(self):
+        self.assertRefused(["missing.bag"], "--model", self.model, self.unseen, self.file("missing.bag"))
+        self.assertRefused(["is not a DDM model"], "--model", self.unseen)
+        self.assertRefused(["--steps must lie in [1, 1000], got 0"], "--model", self.model, "--steps", 0, code=2)
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_model", "inspection_test", InspectionTest)

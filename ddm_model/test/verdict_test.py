@@ -1,0 +1,159 @@
+#!/usr/bin/python3
+# The verdict: each rule is broken by the fault that it is for, and by no other.
+# SPDX-License-Identifier: BSD-3-Clause
+import unittest
+
+import numpy as np
+import rosunit
+
+from ddm_model import verdict
+
+
+class GoodData:
+    """A model that is good at good bags; what the rules look at, as ModelData has it."""
+
+    def __init__(self, num_frames=400):
+        random = np.random.RandomState(1)
+        half = num_frames // 2
+        self.facts = {"frames": "500"}
+        self.options = {"pca_dim": "50", "feature_dim": "2"}
+        self.max_torque = 6.0
+        self.variation = 0.1
+        angle = np.linspace(0.0, 6.3, num_frames)
+        self.features = np.column_stack([np.sin(angle), np.cos(angle)])
+        self.goal_feature = np.array([0.0, 1.0])
+        self.torques = random.uniform(-6.0, 6.0, (num_frames, 1))
+        self.bags = {"camera": ["51x51 mono8"] * 2, "images_without_torque": np.zeros(2), "interval_s": np.full(2, 0.2)}
+        self.frames = {"bag": np.repeat([0.0, 1.0], half), "time_s": np.tile(0.2 * np.arange(half), 2),
+                       "mean_rms": np.full(num_frames, 0.1), "pca_rms": np.full(num_frames, 0.02),
+                       "reconstruction_rms": np.full(num_frames, 0.04)}
+        steps = np.arange(1.0, 16.0)
+        self.errors = {"steps": steps, "rmse": 0.03 + 0.005 * steps, "rmse_repeat": np.full(15, 0.1),
+                       "rmse_mean_torque": 0.03 + 0.008 * steps}
+
+
+def loses_torques(data):
+    data.bags["images_without_torque"] = np.array([20.0, 0.0])
+
+
+def stumbles(data):
+    data.frames["time_s"] = data.frames["time_s"] + 0.1 * (np.arange(len(data.features)) % 4 == 0)
+
+
+def has_two_rates(data):
+    data.bags["interval_s"] = np.array([0.2, 0.1])
+
+
+def changes_camera(data):
+    data.bags["camera"] = ["51x51 mono8", "640x480 rgb8"]
+
+
+def sees_nothing(data):
+    data.variation = 0.004
+
+
+def hardly_moves(data):
+    data.torques *= 0.1
+
+
+def pushes_too_hard(data):
+    data.torques[3] = 8.0
+
+
+def learned_little(data):
+    data.facts["frames"] = "90"
+
+
+def shows_other_images(data):
+    data.frames["pca_rms"] = data.frames["pca_rms"] + 0.02
+
+
+def blurs(data):
+    data.frames["reconstruction_rms"] = data.frames["reconstruction_rms"] + 0.02
+
+
+def guesses(data):
+    data.errors["rmse"] = 0.95 * data.errors["rmse_repeat"]
+    data.errors["rmse_mean_torque"] = 2.0 * data.errors["rmse"]
+
+
+def is_deaf_to_torque(data):
+    data.errors["rmse_mean_torque"] = 1.001 * data.errors["rmse"]
+
+
+def never_saw_the_goal(data):
+    data.goal_feature = np.array([0.0, 1.56])
+
+
+def has_no_goal(data):
+    data.goal_feature = None
+
+
+FAULTS = {
+    loses_torques: "Images have their torques", stumbles: "Frames come at one rate",
+    has_two_rates: "Frames come at one rate", changes_camera: "One camera setting", sees_nothing: "Images differ",
+    hardly_moves: "Torques are excited", pushes_too_hard: "Torques are within the model's range",
+    learned_little: "Enough frames to learn from", shows_other_images: "Enough components, for such images",
+    blurs: "Features hold the image", guesses: "Predictions beat repeating the last frame",
+    is_deaf_to_torque: "The model heeds the torque", never_saw_the_goal: "The goal has been seen",
+    has_no_goal: "There is a goal"}
+
+
+class VerdictTest(unittest.TestCase):
+    @staticmethod
+    def failed(data):
+        return [check.name for check in verdict.verdict(data) if check.ok is False]
+
+    def test_good_bags_and_a_good_model_pass(self):
+        self.assertEqual(self.failed(GoodData()), [])
+        self.assertEqual(verdict.summary(verdict.verdict(GoodData())), "All 14 checks passed.")
+
+    def test_each_fault_breaks_its_rule_and_no_other(self):
+        for spoil, name in FAULTS.items():
+            data = GoodData()
+            spoil(data)
+            self.assertEqual(self.failed(data), [name], spoil.__name__)
+
+    def test_features_on_one_spot_tell_nothing_apart(self):
+        data = GoodData()
+        data.features = data.features * 1e-3
+        data.goal_feature = data.features[0]
+        self.assertEqual(self.failed(data), ["Features tell images apart"])
+
+    def test_short_bags_are_too_few_to_judge_by(self):
+        self.assertEqual(self.failed(GoodData(num_frames=40)), ["Enough frames to judge by"])
+
+    def test_figures_are_those_of_the_data(self):
+        data = GoodData()
+        loses_torques(data)
+        figures = {check.name: check.figure for check in verdict.verdict(data)}
+        self.assertIn("20 of 420 images (4.76 %)", figures["Images have their torques"])
+        self.assertIn("0.35 of it at best in the first 5 step(s); 1 step ahead 0.035 grey, repeating 0.1; predictions "
+                      "are the better ones up to 13 of 15", figures["Predictions beat repeating the last frame"])
+        self.assertIn("1.27 times as much 5 step(s) ahead", figures["The model heeds the torque"])
+        self.assertIn("keep 96 %", figures["Enough components, for such images"])
+
+    def test_the_summary_says_what_to_do_first(self):
+        data = GoodData()
+        guesses(data)
+        hardly_moves(data)
+        text = verdict.summary(verdict.verdict(data))
+        self.assertTrue(text.startswith("2 of 14 checks failed. Do first: Torques are excited: Record trials"), text)
+
+    def test_what_could_not_be_predicted_is_not_known(self):
+        data = GoodData()
+        data.errors = {name: np.zeros(0) for name in data.errors}
+        unknown = [check.name for check in verdict.verdict(data) if check.ok is None]
+        self.assertEqual(unknown, ["Predictions beat repeating the last frame", "The model heeds the torque"])
+        self.assertIn("2 of 14 checks could not be made", verdict.summary(verdict.verdict(data)))
+
+    def test_a_model_alone_is_judged_by_what_it_says_of_itself(self):
+        data = GoodData()
+        data.bags = data.features = None
+        self.assertEqual(len(verdict.verdict(data)), 2)
+        learned_little(data)
+        self.assertEqual(self.failed(data), ["Enough frames to learn from"])
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_model", "verdict_test", VerdictTest)

@@ -1,0 +1,67 @@
+// Everything that a model computes with, as arrays by name.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "model_arrays.h"
+
+#include <ddm_model/networks.h>
+
+#include <cstdint>
+
+#include "npy_file.h"
+
+namespace ddm {
+namespace {
+
+using Arrays = std::map<std::string, std::string>;
+
+void addNetwork(const Mlp<double>& network, const double* theta, const std::string& name,
+                Arrays* out) {
+  for (int layer = 0; layer < network.numLayers(); ++layer) {
+    const std::string number = std::to_string(layer + 1);
+    (*out)[name + "_W" + number] = npyOf(Eigen::MatrixXd(network.weights(theta, layer)));
+    (*out)[name + "_b" + number] = npyOf(Eigen::VectorXd(network.biases(theta, layer)));
+  }
+}
+
+void addModel(const Ddm& model, const std::string& prefix, Arrays* out) {
+  const auto add = [&](const std::string& name, const auto& matrix) {
+    (*out)[prefix + name] = npyOf(matrix);
+  };
+  const auto addNumber = [&](const std::string& name, auto value) {
+    (*out)[prefix + name] = npyOfNumber(value);
+  };
+  const ModelOptions& options = model.options();
+  addNumber("image_size", std::int64_t{model.imageSize()});
+  addNumber("feature_dim", std::int64_t{options.feature_dim});
+  addNumber("torque_dim", std::int64_t{model.torqueDim()});
+  addNumber("order", std::int64_t{options.order});
+  addNumber("max_torque", options.max_torque);
+  addNumber("residual", std::int64_t{options.residual ? 1 : 0});
+  addNumber("increments", std::int64_t{options.increments ? 1 : 0});
+  add("pca_mean", model.pca().mean);
+  add("pca_basis", model.pca().basis);
+  add("pca_variance", model.pca().variance);
+  addNumber("pca_scale", static_cast<double>(model.pca().scale));
+  const Networks<double> networks(options, model.torqueDim());
+  const double* theta = model.theta().data();
+  addNetwork(networks.encoder(), networks.encoderOf(theta), prefix + "encoder", out);
+  addNetwork(networks.decoder(), networks.decoderOf(theta), prefix + "decoder", out);
+  addNetwork(networks.f(), networks.predictorOf(theta), prefix + "f", out);
+  if (!model.hasGoal()) return;
+  using Bytes = Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>;
+  add("goal", Bytes(Eigen::Map<const Bytes>(model.goal().data(),
+                                            static_cast<Eigen::Index>(model.goal().size()))));
+  add("goal_feature", model.goalFeature());
+}
+
+}  // namespace
+
+std::map<std::string, std::string> modelArrays(const Ddm& model) {
+  Arrays arrays;
+  addModel(model, "", &arrays);
+  for (std::size_t i = 0; i < model.others().size(); ++i) {
+    addModel(model.others()[i], "other" + std::to_string(i + 1) + "_", &arrays);
+  }
+  return arrays;
+}
+
+}  // namespace ddm
