@@ -23,7 +23,7 @@ std::string methodOf(const Arguments& arguments) {
 
 }  // namespace
 
-po::options_description commonOptions(const std::string& about, Arguments* arguments) {
+po::options_description configurationOptions(const std::string& about, Arguments* arguments) {
   po::options_description options(about + "\n\noptions");
   options.add_options()("help,h", "show this text");
   options.add_options()("preset", po::value(&arguments->preset)->default_value("paper"),
@@ -33,11 +33,16 @@ po::options_description commonOptions(const std::string& about, Arguments* argum
   options.add_options()("nuisance", po::value(&arguments->nuisances)->composing(),
                         "name in ddm_launch/config/nuisances, what is wrong with the camera's "
                         "images: noise, brightness, clutter, thin_rod, delay or drops; repeatable");
+  options.add_options()("config", po::value(&arguments->configs)->composing(),
+                        "YAML file with what shall differ; repeatable, later files win");
+  return options;
+}
+
+po::options_description commonOptions(const std::string& about, Arguments* arguments) {
+  po::options_description options = configurationOptions(about, arguments);
   options.add_options()("seed", po::value(&arguments->seed)->default_value(0),
                         "fixes every random draw");
   options.add_options()("out", po::value(&arguments->out)->required(), "folder for the results");
-  options.add_options()("config", po::value(&arguments->configs)->composing(),
-                        "YAML file with what shall differ; repeatable, later files win");
   return options;
 }
 

@@ -23,8 +23,12 @@ struct Arguments {
   std::vector<std::string> configs;
 };
 
-/// --help and the options that fill `arguments`.
+/// --help and the options that name the files of a configuration.
 /// @param about  text above the list of options
+boost::program_options::options_description configurationOptions(const std::string& about,
+                                                                 Arguments* arguments);
+
+/// The same, --seed and --out.
 boost::program_options::options_description commonOptions(const std::string& about,
                                                           Arguments* arguments);
 

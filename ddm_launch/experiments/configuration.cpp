@@ -82,6 +82,7 @@ std::vector<std::string> contradictions(const Configuration& all) {
 Configuration readConfiguration(ParamReader* reader) {
   Configuration all;
   all.experiment = reader->read<ExperimentOptions>("experiment");
+  all.start = reader->read<StartOptions>("start");
   all.trial = reader->read<TrialOptions>("trial");
   all.evaluation = reader->read<EvaluationOptions>("evaluation");
   all.plant = reader->read<PlantOptions>("plant");
@@ -106,6 +107,7 @@ void requireLearnedPrediction(const TrainingOptions& training) {
 YAML::Node toYaml(const Configuration& configuration) {
   YAML::Node out(YAML::NodeType::Map);
   out["experiment"] = toYaml(configuration.experiment);
+  if (!configuration.start.empty()) out["start"] = toYaml(configuration.start);
   out["trial"] = toYaml(configuration.trial);
   out["evaluation"] = toYaml(configuration.evaluation);
   out["plant"] = toYaml(configuration.plant);

@@ -20,6 +20,7 @@ class MethodSetup;
 
 struct Configuration {
   ExperimentOptions experiment;
+  StartOptions start;
   TrialOptions trial;
   EvaluationOptions evaluation;
   PlantOptions plant;
@@ -37,7 +38,8 @@ Configuration readConfiguration(ParamReader* reader);
 /// @throws std::invalid_argument if the schedule leaves f random, which no plan can follow
 void requireLearnedPrediction(const TrainingOptions& training);
 
-/// All blocks by name, in the order above, those of the method last.
+/// All blocks by name, in the order above, `start` only where it says something, those of the
+/// method last.
 YAML::Node toYaml(const Configuration& configuration);
 
 /// The files that make up a configuration, the manual first, what differs last: a plant knows

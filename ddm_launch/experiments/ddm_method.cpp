@@ -8,6 +8,8 @@
 
 #include <stdexcept>
 
+#include "saved_model.h"
+
 namespace ddm {
 
 DdmMethod::DdmMethod(const Configuration& configuration, const Plant& /*plant*/)
@@ -44,5 +46,7 @@ std::shared_ptr<Policy> DdmMethod::policy() const {
   if (model_ == nullptr) return nullptr;
   return std::make_shared<MpcPolicy>(model_, configuration_.mpc);
 }
+
+void DdmMethod::useModel(const std::string& path) { model_ = readModel(path); }
 
 }  // namespace ddm

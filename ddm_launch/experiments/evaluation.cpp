@@ -33,6 +33,16 @@ Evaluation evaluate(const Plant& plant, const std::vector<Eigen::VectorXd>& stat
   return evaluation;
 }
 
+std::pair<double, double> wilsonInterval(int successes, int n) {
+  constexpr double kZ = 1.959963984540054;  // 97.5 % of N(0, 1) lie below
+  const double rate = static_cast<double>(successes) / n;
+  const double shrink = 1.0 / (1.0 + kZ * kZ / n);
+  const double centre = shrink * (rate + kZ * kZ / (2.0 * n));
+  const double half = shrink * kZ * std::sqrt(rate * (1.0 - rate) / n + kZ * kZ / (4.0 * n * n));
+  // Exactly 0 and 1 at the ends, where rounding would leave a little.
+  return {successes == 0 ? 0.0 : centre - half, successes == n ? 1.0 : centre + half};
+}
+
 double quantile(std::vector<double> values, double q) {
   if (values.empty()) return 0.0;
   std::sort(values.begin(), values.end());

@@ -5,6 +5,7 @@
 #include <ddm_sim/plant.h>
 
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
 #include "experiment_options.h"
@@ -23,6 +24,13 @@ struct Evaluation {
 /// @throws std::invalid_argument if there are fewer frames than settled_steps_strict
 Evaluation evaluate(const Plant& plant, const std::vector<Eigen::VectorXd>& states,
                     const EvaluationOptions& options);
+
+/// Wilson's 95 % interval: the rates p that so many successes in n runs do not speak against.
+///
+///   |successes / n - p| <= 1.96 sqrt(p (1 - p) / n),   solved for p
+///
+/// @return low and high, within [0, 1]
+std::pair<double, double> wilsonInterval(int successes, int n);
 
 /// The value that a fraction q of all values does not exceed, by nearest rank; 0 if there are none.
 double quantile(std::vector<double> values, double q);

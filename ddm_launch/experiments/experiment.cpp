@@ -22,17 +22,29 @@ class Loop {
         plant_(makePlant(configuration.plant, configuration.camera)),
         update_([progress](double fraction) { progress->update(fraction); }) {}
 
+  /// What trial 0 explores with.
+  void start() {
+    const StartOptions& start = configuration_.start;
+    if (!start.model.empty()) {
+      world_.useModel(start.model);
+    } else if (!start.bags.empty()) {
+      progress_.beginPhase(0, "train");
+      world_.train(start.bags, requestFor(0, /*evaluation=*/false).id, update_);
+    }
+  }
+
   void recordTrial(int trial) {
-    progress_.beginPhase(trial, trial == 0 ? "random" : "explore");
+    const bool random = trial == 0 && configuration_.start.empty();
+    progress_.beginPhase(trial, random ? "random" : "explore");
     TrialRequest request = requestFor(trial, /*evaluation=*/false);
-    request.epsilon = trial == 0 ? 1.0 : configuration_.mpc.epsilon;
+    request.epsilon = random ? 1.0 : configuration_.mpc.epsilon;
     request.bag = folder_.beginTrial(trial);
     folder_.writeTrial(trial, world_.runTrial(request, update_));
   }
 
   TrainingOutcome train(int trial) {
     progress_.beginPhase(trial, "train");
-    std::vector<std::string> bags;
+    std::vector<std::string> bags = configuration_.start.bags;
     for (int k = 0; k <= trial; ++k) bags.push_back(folder_.bagPath(k));
     return world_.train(bags, requestFor(trial, /*evaluation=*/false).id, update_);
   }
@@ -76,6 +88,12 @@ class Loop {
   PhaseCallback update_;
 };
 
+std::string firstTrial(const StartOptions& start) {
+  if (start.empty()) return "a random one";
+  return "one that starts from " + std::to_string(start.bags.size()) + " bag(s) and " +
+         (start.model.empty() ? "the model trained on them" : "model " + start.model);
+}
+
 }  // namespace
 
 void runExperiment(const Configuration& configuration, World* world, RunFolder* folder,
@@ -86,13 +104,15 @@ void runExperiment(const Configuration& configuration, World* world, RunFolder* 
   const ExperimentOptions& options = configuration.experiment;
   progress->note("preset " + options.preset + ", plant " + options.plant + ", seed " +
                  std::to_string(options.seed) + ", " + std::to_string(options.trials) +
-                 " trials after a random one");
+                 " trials after " + firstTrial(configuration.start));
   const int num_finished = static_cast<int>(folder->rows().size());
   show(folder->rows());
   const bool all_done = num_finished > configuration.experiment.trials;
   if (num_finished > 0) {
     progress->note("resuming after trial " + std::to_string(num_finished - 1));
     if (!all_done) loop.train(num_finished - 1);
+  } else {
+    loop.start();
   }
   for (int trial = num_finished; trial <= configuration.experiment.trials; ++trial) {
     loop.recordTrial(trial);

@@ -15,6 +15,9 @@ namespace ddm {
 /// Follow a random control strategy and record; then, trial by trial: train on everything recorded,
 /// evaluate greedily, run an epsilon-greedy trial and record (paper, Alg. 1).
 ///
+/// Where the configuration has a start, its bags are trials before the first one, and that one is
+/// epsilon-greedy, not random: with the model of the start, else with one trained on its bags.
+///
 /// Takes up after the last trial that the folder says is finished. Its model is trained once more,
 /// which gives the same model: nothing but bags has to survive an interruption.
 /// @param show  called with the rows of all finished trials, at the start and after each trial

@@ -31,6 +31,25 @@ struct ExperimentOptions {
   std::vector<std::string> problems() const;
 };
 
+/// Block `start`: what an experiment begins with instead of nothing. Completed by prepareStart().
+struct StartOptions {
+  std::string model;                 ///< model file that trial 0 explores with; empty: none
+  std::vector<std::string> bags;     ///< trials before trial 0
+  std::string model_id;              ///< checksum of the model file
+  std::vector<std::string> bag_ids;  ///< checksums of the bags
+
+  bool empty() const { return model.empty() && bags.empty(); }
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("model", model);
+    visitor("bags", bags);
+    visitor("model_id", model_id);
+    visitor("bag_ids", bag_ids);
+  }
+  std::vector<std::string> problems() const { return {}; }
+};
+
 /// Block `trial`.
 struct TrialOptions {
   int num_steps = 100;  ///< frames, and so torques, of one trial [-]

@@ -9,6 +9,7 @@
 
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,12 @@ class Method {
 
   /// The policy of the last training; null before the first.
   virtual std::shared_ptr<Policy> policy() const = 0;
+
+  /// Acts by a saved model until the next training.
+  /// @throws std::logic_error for a method that has no such models
+  virtual void useModel(const std::string& path) {
+    throw std::logic_error("method cannot use the model " + path);
+  }
 };
 
 /// A method with those blocks of the configuration that it alone reads.

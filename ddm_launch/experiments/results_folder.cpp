@@ -7,10 +7,10 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <boost/filesystem.hpp>
 #include <cerrno>
 #include <cstring>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -87,17 +87,15 @@ void ResultsFolder::compareWith(const std::string& file) {
   } catch (const std::exception& e) {
     throw std::runtime_error(file + " cannot be read (" + e.what() + "): use another folder");
   }
-  const auto known = flat(there);
+  std::map<std::string, std::pair<std::string, std::string>> values;  // there and here
+  for (const auto& entry : flat(there)) values[entry.first].first = entry.second;
+  for (const auto& entry : flat(configuration_)) values[entry.first].second = entry.second;
+  const auto words = [](const std::string& value) { return value.empty() ? "nothing" : value; };
   std::string differences;
-  for (const auto& entry : flat(configuration_)) {
-    if (mayDiffer(entry.first)) continue;
-    const auto same_key = std::find_if(known.begin(), known.end(), [&entry](const auto& other) {
-      return other.first == entry.first;
-    });
-    const std::string value = same_key == known.end() ? "nothing" : same_key->second;
-    if (value != entry.second) {
-      differences += "\n - " + entry.first + ": " + value + " there, " + entry.second + " here";
-    }
+  for (const auto& entry : values) {
+    if (mayDiffer(entry.first) || entry.second.first == entry.second.second) continue;
+    differences += "\n - " + entry.first + ": " + words(entry.second.first) + " there, " +
+                   words(entry.second.second) + " here";
   }
   if (!differences.empty()) {
     throw std::runtime_error("the folder " + path_ +

@@ -11,6 +11,7 @@
 #include "command_line.h"
 #include "experiment.h"
 #include "in_process_world.h"
+#include "start.h"
 
 namespace po = boost::program_options;
 
@@ -22,25 +23,35 @@ constexpr char kAbout[] =
     "Runs an experiment in one process: a random trial, then training, greedy evaluation and an\n"
     "epsilon-greedy trial in turn. The same command on the same folder resumes.\n\n"
     "usage: rosrun ddm_launch run_experiment --preset paper --plant pendulum --seed 1\n"
-    "                                        --trials 15 --out DIR";
+    "                                        --trials 15 --out DIR [--model FILE] [--bags BAG...]";
 
 /// @return false where --help was asked for and has been printed
 bool configure(int argc, char** argv, ddm::Configuration* configuration) {
   ddm::Arguments arguments;
   int trials = 15;
+  ddm::StartOptions start;
   po::options_description options = ddm::commonOptions(kAbout, &arguments);
   options.add_options()("trials", po::value(&trials)->default_value(trials),
                         "epsilon-greedy trials after the random one");
   ddm::addMethodOption(&options, &arguments);
+  options.add_options()("model", po::value(&start.model),
+                        "saved model that trial 0 explores with, instead of random torques");
+  options.add_options()(
+      "bags", po::value(&start.bags)->multitoken(),
+      "bags that count as trials before trial 0: every training learns from them; "
+      "without --model trial 0 explores with the model trained on them");
   if (!ddm::parseCommandLine(argc, argv, options)) return false;
   ddm::ParamReader reader = ddm::openConfiguration(arguments);
   *configuration = ddm::readConfiguration(arguments, &reader);
   configuration->experiment.trials = trials;
   ddm::requireValid(configuration->experiment);
+  if (!start.model.empty()) configuration->start.model = start.model;
+  if (!start.bags.empty()) configuration->start.bags = start.bags;
   return true;
 }
 
-void run(const ddm::Configuration& configuration) {
+void run(ddm::Configuration configuration) {
+  ddm::prepareStart(&configuration);
   ddm::InProcessWorld world(configuration);  // first: what it refuses must not leave a folder
   ddm::RunFolder folder(configuration);
   ddm::Progress progress(&std::cout, ::isatty(STDOUT_FILENO) != 0, configuration.experiment.trials);

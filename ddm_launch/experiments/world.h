@@ -53,6 +53,9 @@ class World {
   /// Trains on all bags and keeps the model for the trials to come.
   virtual TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,
                                 const PhaseCallback& progress) = 0;
+
+  /// Acts by a saved model in the trials to come, until one is trained.
+  virtual void useModel(const std::string& path) = 0;
 };
 
 }  // namespace ddm

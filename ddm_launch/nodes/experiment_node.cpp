@@ -16,6 +16,7 @@
 #include "experiment.h"
 #include "learning_curve_image.h"
 #include "ros_world.h"
+#include "start.h"
 
 namespace {
 
@@ -33,7 +34,7 @@ void publishCurve(const ros::Publisher& publisher, const std::vector<ddm::TrialR
 
 void run(ros::NodeHandle nh, const ros::NodeHandle& pnh) {
   ddm::ParamReader params(ddm::nodeParams(pnh), pnh.getNamespace());
-  const ddm::Configuration configuration = ddm::readConfiguration(&params);
+  ddm::Configuration configuration = ddm::readConfiguration(&params);
   if (configuration.experiment.method != "ddm") {
     throw std::invalid_argument("experiment/method must be ddm where the nodes act, got " +
                                 configuration.experiment.method + ": use run_experiment");
@@ -41,6 +42,7 @@ void run(ros::NodeHandle nh, const ros::NodeHandle& pnh) {
   ddm::requireLearnedPrediction(configuration.model.training);
   // roslaunch has loaded the files by name; this refuses a name that is no preset or plant.
   ddm::configurationFiles(configuration.experiment.preset, configuration.experiment.plant, {});
+  ddm::prepareStart(&configuration);
   ddm::RunFolder folder(configuration);
   ddm::Progress progress(&std::cout, ::isatty(STDOUT_FILENO) != 0, configuration.experiment.trials);
   for (const std::string& warning : folder.warnings()) progress.note("warning: " + warning);

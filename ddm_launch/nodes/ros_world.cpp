@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros_world.h"
 
+#include <ddm_bag_io/model_message.h>
+#include <ddm_model/model_file.h>
 #include <ddm_msgs/Reset.h>
 #include <ddm_msgs/StartRecording.h>
 #include <ddm_msgs/StopRecording.h>
@@ -275,6 +277,7 @@ TrainingOutcome RosWorld::train(const std::vector<std::string>& bags, const Tria
       &train_client_, nh_.resolveName(topics::kTrain), goal,
       [&](const ddm_msgs::TrainFeedbackConstPtr& feedback) { progress(feedback->fraction_done); });
   model_id_ = result.model_id;
+  model_pub_.shutdown();  // nobody who comes later shall get the saved model
   TrainingOutcome outcome;
   outcome.files["model.ddm"] = takeModel(result.model_id);
   outcome.frames = result.frames;
@@ -283,6 +286,13 @@ TrainingOutcome RosWorld::train(const std::vector<std::string>& bags, const Tria
   outcome.seconds = result.train_time;
   outcome.evaluations = result.evaluations;
   return outcome;
+}
+
+void RosWorld::useModel(const std::string& path) {
+  const ddm_msgs::Model model = toMessage(deserialiseModel(readFile(path), path), ros::Time::now());
+  model_pub_ = nh_.advertise<ddm_msgs::Model>(topics::kModel, 1, /*latch=*/true);
+  model_pub_.publish(model);
+  model_id_ = model.id;
 }
 
 std::string RosWorld::takeModel(const std::string& model_id) {

@@ -38,8 +38,8 @@ class RosWorld : public World {
   TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,
                         const PhaseCallback& progress) override;
 
-  /// Plans with this model, which somebody else publishes, in the trials to come.
-  void useModel(const std::string& model_id) { model_id_ = model_id; }
+  /// Publishes it, until the trainer publishes its own.
+  void useModel(const std::string& path) override;
 
  private:
   void connect();
@@ -79,6 +79,7 @@ class RosWorld : public World {
   ros::ServiceClient stop_client_;
   ros::Subscriber ground_truth_sub_;
   ros::Subscriber model_sub_;
+  ros::Publisher model_pub_;  // of a saved model
 };
 
 }  // namespace ddm

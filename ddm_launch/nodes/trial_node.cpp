@@ -1,11 +1,8 @@
 // trial_node: one trial with the real nodes, random or with a saved model, recorded or not.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_bag_io/model_message.h>
-#include <ddm_model/model_file.h>
 #include <ddm_mpc/mpc_options.h>
 #include <ddm_msgs/node_params.h>
 #include <ddm_msgs/param_reader.h>
-#include <ddm_msgs/topics.h>
 #include <ddm_sim/plant_factory.h>
 #include <unistd.h>
 
@@ -71,23 +68,14 @@ void run(ros::NodeHandle nh, const ros::NodeHandle& pnh) {
   const auto mpc = params.read<ddm::MpcOptions>("mpc");
   params.requireValid();
 
-  ros::Publisher model_pub;
   ddm::TrialRequest request;
   request.id.seed = static_cast<std::uint64_t>(options.seed);
   request.num_steps = options.num_steps;
   request.epsilon = options.model.empty() ? 1.0 : options.epsilon;
   request.hold_steps = mpc.hold_steps;
   request.bag = options.bag;
-  std::string model_id;
-  if (!options.model.empty()) {
-    const ddm_msgs::Model model = ddm::toMessage(
-        ddm::deserialiseModel(ddm::readFile(options.model), options.model), ros::Time::now());
-    model_pub = nh.advertise<ddm_msgs::Model>(ddm::topics::kModel, 1, /*latch=*/true);
-    model_pub.publish(model);
-    model_id = model.id;
-  }
   ddm::RosWorld world(nh, options.timeout, {!options.bag.empty(), /*trainer=*/false});
-  world.useModel(model_id);
+  if (!options.model.empty()) world.useModel(options.model);
   ddm::Progress progress(&std::cout, ::isatty(STDOUT_FILENO) != 0, 0);
   progress.beginPhase(0, options.model.empty() ? "random" : "control");
   const ddm::TrialOutcome outcome =

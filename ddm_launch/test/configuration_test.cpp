@@ -240,6 +240,8 @@ TEST(Configuration, WhatIsSavedIsReadBackAsTheSameConfiguration) {
   const TempFolder folder;
   Configuration all = readText("mpc: {epsilon: 0.123456789012345678}\n", "debug");
   all.experiment.runs = "/some/where";
+  all.start.bags = {"/a.bag", "/b c.bag"};
+  all.start.bag_ids = {"crc32-00000001", "crc32-1e234567"};
   writeText(folder.file("config.yaml"), YAML::Dump(toYaml(all)));
   EXPECT_EQ(YAML::Dump(toYaml(read({folder.file("config.yaml")}))), YAML::Dump(toYaml(all)));
 }
@@ -250,10 +252,12 @@ TEST(ExperimentManual, HasTheKeysAndDefaultsOfEachBlock) {
   const Configuration defaults;
   YAML::Node expected = toYaml(defaults);
   expected["prediction"] = toYaml(PredictionOptions());
+  expected["start"] = toYaml(StartOptions());
   YAML::Node there = toYaml(read({manual}));
   ParamReader reader = ParamReader::fromFiles({manual});
   there["prediction"] = toYaml(reader.read<PredictionOptions>("prediction"));
-  const std::set<std::string> names = {"experiment", "trial", "evaluation", "prediction"};
+  there["start"] = toYaml(reader.read<StartOptions>("start"));
+  const std::set<std::string> names = {"experiment", "trial", "evaluation", "prediction", "start"};
   EXPECT_EQ(keysOf(blocks), names);
   for (const std::string& block : names) {
     EXPECT_EQ(keysOf(blocks[block]), keysOf(expected[block])) << block;

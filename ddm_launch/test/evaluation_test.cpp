@@ -98,5 +98,21 @@ TEST(Quantile, IsTheValueThatAFractionDoesNotExceed) {
   EXPECT_EQ(quantile({}, 0.5), 0.0);
 }
 
+TEST(WilsonInterval, HoldsTheRatesThatTheRunsDoNotSpeakAgainst) {
+  // The ends are where a rate p is 1.96 standard errors of p away from what was seen.
+  for (const int successes : {1, 7, 19}) {
+    const auto interval = wilsonInterval(successes, 20);
+    for (const double p : {interval.first, interval.second}) {
+      EXPECT_NEAR(std::abs(successes / 20.0 - p), 1.959963984540054 * std::sqrt(p * (1 - p) / 20.0),
+                  1e-12);
+    }
+    EXPECT_LT(interval.first, successes / 20.0);
+    EXPECT_GT(interval.second, successes / 20.0);
+  }
+  EXPECT_EQ(wilsonInterval(0, 20).first, 0.0);
+  EXPECT_EQ(wilsonInterval(20, 20).second, 1.0);
+  EXPECT_NEAR(wilsonInterval(20, 20).first, 0.838876, 1e-6);
+}
+
 }  // namespace
 }  // namespace ddm

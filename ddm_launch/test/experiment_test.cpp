@@ -98,6 +98,30 @@ TEST_F(ExperimentTest, TheFirstTrialIsRandomTheOthersExploreAndEvaluationsAreGre
   }
 }
 
+TEST_F(ExperimentTest, WithAModelToStartFromTheFirstTrialExploresWithIt) {
+  configuration_.start.model = "/saved.ddm";
+  configuration_.mpc.epsilon = 0.3;
+  configuration_.experiment.trials = 0;
+  run();
+  EXPECT_EQ(world_.calls, (Calls{"use /saved.ddm", "run 0", "train 0", "evaluate 0"}));
+  EXPECT_EQ(world_.requests[0].epsilon, 0.3);
+  EXPECT_EQ(world_.bags_of_training[0], (Calls{file("trial_000/trial.bag")}));
+}
+
+TEST_F(ExperimentTest, BagsToStartFromCountAsTrialsBeforeTheFirst) {
+  configuration_.start.bags = {"/a.bag", "/b.bag"};
+  configuration_.experiment.trials = 0;
+  run();
+  EXPECT_EQ(world_.calls, (Calls{"train 0", "run 0", "train 0", "evaluate 0"}));
+  EXPECT_LT(world_.requests[0].epsilon, 1.0);
+  EXPECT_EQ(world_.bags_of_training[0], (Calls{"/a.bag", "/b.bag"}));
+  EXPECT_EQ(world_.bags_of_training[1], (Calls{"/a.bag", "/b.bag", file("trial_000/trial.bag")}));
+  world_.calls.clear();
+  configuration_.experiment.trials = 1;  // taken up: nothing is started once more
+  run();
+  EXPECT_EQ(world_.calls, (Calls{"train 0", "run 1", "train 1", "evaluate 1"}));
+}
+
 TEST_F(ExperimentTest, EachRunHasItsOwnIdentity) {
   run();
   for (size_t i = 0; i < world_.requests.size(); ++i) {

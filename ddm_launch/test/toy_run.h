@@ -93,6 +93,8 @@ class ObedientWorld : public World {
     return outcome;
   }
 
+  void useModel(const std::string& path) override { calls.push_back("use " + path); }
+
   size_t fails_at = 0;    ///< number of the call that fails, from 1; 0: none
   Eigen::VectorXd state;  ///< empty: no ground truth
   std::vector<std::string> calls;

@@ -14,10 +14,10 @@ namespace {
 
 const std::set<std::string>& blocksOfThisRepository() {
   static const std::set<std::string> blocks = {
-      "plant",     "camera",        "sim",   "image",      "model",
-      "training",  "data_set",      "mpc",   "pilco",      "gp",
-      "sparse_gp", "policy_search", "trial", "evaluation", "experiment",
-      "recorder",  "controller",    "run",   "prediction", "show"};
+      "plant",      "camera",     "sim",        "image",    "model",      "training",
+      "data_set",   "mpc",        "pilco",      "gp",       "sparse_gp",  "policy_search",
+      "trial",      "evaluation", "experiment", "recorder", "controller", "run",
+      "prediction", "show",       "replay",     "start"};
   return blocks;
 }
 

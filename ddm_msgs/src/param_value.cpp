@@ -74,7 +74,7 @@ bool parseList(const YAML::Node& node, std::vector<Value>* value) {
 template <class Value>
 YAML::Node listToYaml(const std::vector<Value>& values) {
   YAML::Node out(YAML::NodeType::Sequence);
-  for (const Value value : values) out.push_back(valueToYaml(value));
+  for (const Value& value : values) out.push_back(valueToYaml(value));
   out.SetStyle(YAML::EmitterStyle::Flow);
   return out;
 }
@@ -120,12 +120,17 @@ bool parseValue(const YAML::Node& node, std::vector<double>* value) {
   return parseList(node, value);
 }
 
+bool parseValue(const YAML::Node& node, std::vector<std::string>* value) {
+  return parseList(node, value);
+}
+
 const char* expectedType(const int*) { return "an integer (32 bit)"; }
 const char* expectedType(const double*) { return "a number"; }
 const char* expectedType(const bool*) { return "true or false"; }
 const char* expectedType(const std::string*) { return "a text"; }
 const char* expectedType(const std::vector<int>*) { return "a list of integers (32 bit)"; }
 const char* expectedType(const std::vector<double>*) { return "a list of numbers"; }
+const char* expectedType(const std::vector<std::string>*) { return "a list of texts"; }
 
 YAML::Node valueToYaml(int value) { return YAML::Node(std::to_string(value)); }
 YAML::Node valueToYaml(double value) { return YAML::Node(formatDouble(value)); }
@@ -133,5 +138,6 @@ YAML::Node valueToYaml(bool value) { return YAML::Node(value ? "true" : "false")
 YAML::Node valueToYaml(const std::string& value) { return YAML::Node(value); }
 YAML::Node valueToYaml(const std::vector<int>& value) { return listToYaml(value); }
 YAML::Node valueToYaml(const std::vector<double>& value) { return listToYaml(value); }
+YAML::Node valueToYaml(const std::vector<std::string>& value) { return listToYaml(value); }
 
 }  // namespace ddm

@@ -166,5 +166,19 @@ TEST(ParamValue, WritesListsInFlowStyle) {
   EXPECT_EQ(YAML::Dump(valueToYaml(std::vector<int>{})), "[]");
 }
 
+TEST(ParamValue, ReadsAndPrintsListsOfTexts) {
+  std::vector<std::string> value = {"before"};
+  EXPECT_FALSE(parses("a.bag", &value));
+  EXPECT_FALSE(parses("[a.bag, [b.bag]]", &value));
+  EXPECT_EQ(value, (std::vector<std::string>{"before"}));
+  EXPECT_TRUE(parses("[a.bag, 'b, c.bag', 7]", &value));
+  EXPECT_EQ(value, (std::vector<std::string>{"a.bag", "b, c.bag", "7"}));
+  std::vector<std::string> again;
+  EXPECT_TRUE(parses(YAML::Dump(valueToYaml(value)), &again));
+  EXPECT_EQ(again, value);
+  EXPECT_TRUE(parses("[]", &again));
+  EXPECT_TRUE(again.empty());
+}
+
 }  // namespace
 }  // namespace ddm

@@ -12,9 +12,9 @@ LOST = 0.02  # share of images without a torque
 JITTER, OFF_BEAT = 0.2, 0.05  # an interval so far off the median is irregular; share of such intervals
 VARIATION = 0.01  # [grey]: about the noise of a camera
 EXCITATION = 0.2  # of max_torque; uniform torques over the whole range have 0.58
-# Over the first third of the steps. Set on 18 pendulum models after one to five trials (presets paper and efficient, and
-# the worse schedules v_p_only and sequential), judged by the next two bags: all rules together pass the 9 whose greedy
-# run succeeded and fail the 9 others. Of 14 models of other seeds they pass 9 of 11 and fail 1 of 3.
+# Over the first third of the steps. Set on 18 pendulum models after one to five trials (presets paper and efficient,
+# and the worse schedules v_p_only and sequential), judged by the next two bags: all rules together pass the 9 whose
+# greedy run succeeded and fail the 9 others. Of 14 models of other seeds they pass 9 of 11 and fail 1 of 3.
 BEATS_REPEAT = 0.75  # error of predictions over that of the last frame repeated
 TORQUE_EFFECT = 1.04  # error without knowing the torque, over the error with it
 FRAMES_PER_COMPONENT = 2.0

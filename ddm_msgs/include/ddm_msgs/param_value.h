@@ -22,6 +22,7 @@ bool parseValue(const YAML::Node& node, bool* value);
 bool parseValue(const YAML::Node& node, std::string* value);
 bool parseValue(const YAML::Node& node, std::vector<int>* value);
 bool parseValue(const YAML::Node& node, std::vector<double>* value);
+bool parseValue(const YAML::Node& node, std::vector<std::string>* value);
 
 /// What a value of this type must be, to end the sentence "key must be ...".
 const char* expectedType(const int*);
@@ -30,6 +31,7 @@ const char* expectedType(const bool*);
 const char* expectedType(const std::string*);
 const char* expectedType(const std::vector<int>*);
 const char* expectedType(const std::vector<double>*);
+const char* expectedType(const std::vector<std::string>*);
 
 /// One value as YAML; lists in flow style. parseValue() reads back exactly the same.
 YAML::Node valueToYaml(int value);
@@ -38,5 +40,6 @@ YAML::Node valueToYaml(bool value);
 YAML::Node valueToYaml(const std::string& value);
 YAML::Node valueToYaml(const std::vector<int>& value);
 YAML::Node valueToYaml(const std::vector<double>& value);
+YAML::Node valueToYaml(const std::vector<std::string>& value);
 
 }  // namespace ddm

@@ -1,0 +1,83 @@
+// What an experiment starts from instead of nothing: a saved model, and bags.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "start.h"
+
+#include <ddm_bag_io/bag_reader.h>
+#include <ddm_model/model_file.h>
+#include <ddm_sim/plant_factory.h>
+
+#include <boost/filesystem.hpp>
+#include <cmath>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include "saved_model.h"
+
+namespace ddm {
+namespace {
+
+constexpr double kRateTolerance = 0.1;  // of dt
+
+/// Makes a path absolute and fills its id in, or compares it with the one that is there.
+void identify(std::string* path, std::string* id) {
+  *path = boost::filesystem::absolute(*path).lexically_normal().string();
+  const std::string here = "crc32-" + checksum(readFile(*path));  // no YAML takes it for a number
+  if (!id->empty() && *id != here) {
+    throw std::invalid_argument(*path + " has changed: its id was " + *id + ", it is " + here +
+                                " now; put it back, or start another experiment");
+  }
+  *id = here;
+}
+
+void requireFits(const std::string& path, const Configuration& configuration, const Plant& plant) {
+  const BagContent bag =
+      readBag(path, configuration.model.image.size, configuration.model.data_set);
+  const auto require = [&path](bool ok, const auto& has, const std::string& of, const auto& wants) {
+    if (ok) return;
+    std::ostringstream text;
+    text << "bag " << path << " does not fit the plant: it has " << has << ", the plant " << wants
+         << " " << of << ": leave the bag out, or choose the plant that it was recorded on";
+    throw std::invalid_argument(text.str());
+  };
+  require(bag.data.torqueDim() == plant.torqueDim(), bag.data.torqueDim(), "torque(s)",
+          plant.torqueDim());
+  const std::string size = std::to_string(plant.imageSize());
+  const std::string camera = size + "x" + size + " mono8";
+  require(bag.camera == camera, "images of " + bag.camera, "as its camera's images", camera);
+  const bool same_rate =
+      bag.interval == 0.0 || std::abs(bag.interval - plant.dt()) <= kRateTolerance * plant.dt();
+  require(same_rate, std::to_string(bag.interval) + " s between frames", "s (plant/dt)",
+          plant.dt());
+}
+
+}  // namespace
+
+void prepareStart(Configuration* configuration) {
+  StartOptions& start = configuration->start;
+  if (start.empty()) return;
+  if (configuration->experiment.method != "ddm") {
+    throw std::invalid_argument("an experiment with method " + configuration->experiment.method +
+                                " cannot start from a model or bags: only ddm can");
+  }
+  const std::unique_ptr<Plant> plant = makePlant(configuration->plant, configuration->camera);
+  if (!start.model.empty()) {
+    identify(&start.model, &start.model_id);
+    makeModelPolicy(readModel(start.model), start.model, *configuration, *plant);
+  }
+  if (start.bag_ids.empty()) start.bag_ids.resize(start.bags.size());
+  if (start.bag_ids.size() != start.bags.size()) {
+    throw std::invalid_argument(
+        "start/bag_ids must have one entry for each of start/bags, or none");
+  }
+  std::set<std::string> seen;
+  for (size_t i = 0; i < start.bags.size(); ++i) {
+    identify(&start.bags[i], &start.bag_ids[i]);
+    if (!seen.insert(start.bags[i]).second) {
+      throw std::invalid_argument("bag " + start.bags[i] + " is given twice: it would count twice");
+    }
+    requireFits(start.bags[i], *configuration, *plant);
+  }
+}
+
+}  // namespace ddm
