@@ -1,0 +1,102 @@
+#!/usr/bin/python3
+# replay.launch: a bag goes through mpc_node, and no motor can move.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import shutil
+import sys
+import tempfile
+import threading
+import unittest
+
+from ddm_msgs.msg import Torque
+import rosgraph
+import rospy
+import rosunit
+from std_msgs.msg import Float64
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from processes import call, find_program, run_experiment, start_roslaunch  # noqa: E402
+from run_files import read_rows  # noqa: E402
+
+DEBUG = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "config", "presets", "debug.yaml")
+STEPS = 30
+
+
+class ReplayTest(unittest.TestCase):
+    maxDiff = None
+
+    @classmethod
+    def setUpClass(cls):
+        """A trial of an experiment and its model; ears on every topic on which a motor might listen."""
+        cls.scratch = tempfile.mkdtemp()
+        run = os.path.join(cls.scratch, "run")
+        code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 0, "--out", run)
+        assert code == 0, output
+        cls.bag, cls.model = (os.path.join(run, "trial_000", name) for name in ("trial.bag", "model.ddm"))
+        rospy.init_node("replay_test", disable_signals=True)
+        cls.heard, cls.lock = {}, threading.Lock()
+        for topic, kind in (("torque", Torque), ("effort_command", Float64), ("replay/torque", Torque),
+                            ("replay/proposed_torque", Torque)):
+            rospy.Subscriber(topic, kind, cls.hear, topic)
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.scratch)
+
+    @classmethod
+    def hear(cls, message, topic):
+        with cls.lock:
+            cls.heard.setdefault(topic, []).append(message)
+
+    def replay(self, *arguments):
+        """Output of replay.launch, and the publishers of all topics while its nodes answered."""
+        launch = start_roslaunch(self.scratch, "replay.launch", "preset:=debug", *arguments, port=0)
+        self.addCleanup(launch.stop)
+        publishers = {}
+        while launch.isRunning() and not any("mpc_node" in nodes for nodes in publishers.get("/plan", [])):
+            publishers = dict(rosgraph.Master("/replay_test").getSystemState()[0])
+        launch.waitForEnd(60.0)
+        return launch.output, publishers
+
+    def test_proposals_come_for_each_frame_and_nothing_where_motors_listen(self):
+        out = os.path.join(self.scratch, "torques.csv")
+        output, publishers = self.replay("bag:=" + self.bag, "model:=" + self.model, "out:=" + out, "rate:=20")
+        self.assertIn("%d frames replayed" % STEPS, output)
+        self.assertIn("/mpc_node", publishers["/replay/proposed_torque"])
+        self.assertNotIn("/torque", publishers)
+        self.assertNotIn("/effort_command", publishers)
+        with self.lock:
+            heard = dict(self.heard)
+        self.assertEqual(sorted(heard), ["replay/proposed_torque", "replay/torque"])
+        rows = read_rows(out)
+        self.assertEqual(rows[0], ["frame", "piece", "time_s", "recorded_1", "proposed_1"])
+        self.assertEqual([row[3] for row in rows[1:]],
+                         [row[1] for row in read_rows(os.path.dirname(self.bag), "torques.csv")[1:]])
+        proposed = {message.header.stamp: message.torque[0] for message in heard["replay/proposed_torque"]}
+        recorded = {message.header.stamp: message.torque[0] for message in heard["replay/torque"]}
+        self.assertGreater(len(set(recorded) & set(proposed)), 0)
+        told = [float(row[4]) for row in rows[1:]]
+        self.assertTrue(set(proposed.values()) <= set(told))
+        self.assertGreater(len(set(told)), STEPS // 2)
+
+    def test_a_bag_that_is_missing_is_named(self):
+        output, _ = self.replay("bag:=/nowhere/x.bag", "model:=" + self.model)
+        self.assertRegex(output, r"FATAL.*/nowhere/x.bag")
+
+    def test_a_bag_of_another_robot_is_refused(self):
+        code, output = call([find_program("ddm_model", "train_from_bags"), "--config", DEBUG, "--config",
+                             self.write("small.yaml", "image: {size: 20}\n"), "--out", self.scratch + "/small.ddm",
+                             self.bag])
+        self.assertEqual(code, 0, output)
+        output, _ = self.replay("bag:=" + self.bag, "model:=" + self.scratch + "/small.ddm")
+        self.assertRegex(output, r"(?s)FATAL.*image/size 51")
+
+    def write(self, name, text):
+        path = os.path.join(self.scratch, name)
+        with open(path, "w") as stream:
+            stream.write(text)
+        return path
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "replay_test", ReplayTest)
