@@ -29,7 +29,7 @@ po::options_description configurationOptions(const std::string& about, Arguments
   options.add_options()("preset", po::value(&arguments->preset)->default_value("paper"),
                         "name in ddm_launch/config/presets");
   options.add_options()("plant", po::value(&arguments->plant)->default_value("pendulum"),
-                        "name in ddm_sim/config");
+                        "name in ddm_sim/config; PACKAGE/NAME: in config of another package");
   options.add_options()("nuisance", po::value(&arguments->nuisances)->composing(),
                         "name in ddm_launch/config/nuisances, what is wrong with the camera's "
                         "images: noise, brightness, clutter, thin_rod, delay or drops; repeatable");

@@ -3,6 +3,7 @@
 #include "configuration.h"
 
 #include <ddm_model/schedule.h>
+#include <ddm_plant_plugin/plant_config.h>
 #include <ros/package.h>
 
 #include <algorithm>
@@ -28,13 +29,11 @@ std::string packageFolder(const std::string& package) {
 
 /// FOLDER/NAME.yaml
 /// @throws std::invalid_argument naming what there is, if there is no such file
-std::string chooseFile(const std::string& folder, const std::string& name, const std::string& kind,
-                       const std::vector<std::string>& not_one) {
+std::string chooseFile(const std::string& folder, const std::string& name,
+                       const std::string& kind) {
   std::vector<std::string> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const std::string stem = entry.path().stem().string();
-    const bool other = std::find(not_one.begin(), not_one.end(), stem) != not_one.end();
-    if (entry.path().extension() == ".yaml" && !other) names.push_back(stem);
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
   }
   std::sort(names.begin(), names.end());
   if (std::find(names.begin(), names.end(), name) != names.end()) {
@@ -85,7 +84,7 @@ Configuration readConfiguration(ParamReader* reader) {
   all.start = reader->read<StartOptions>("start");
   all.trial = reader->read<TrialOptions>("trial");
   all.evaluation = reader->read<EvaluationOptions>("evaluation");
-  all.plant = reader->read<PlantOptions>("plant");
+  all.plant = readPlant(reader);
   all.camera = reader->read<CameraOptions>("camera");
   all.sim = reader->read<SimOptions>("sim");
   all.model = readModelConfig(reader);
@@ -110,7 +109,7 @@ YAML::Node toYaml(const Configuration& configuration) {
   if (!configuration.start.empty()) out["start"] = toYaml(configuration.start);
   out["trial"] = toYaml(configuration.trial);
   out["evaluation"] = toYaml(configuration.evaluation);
-  out["plant"] = toYaml(configuration.plant);
+  out["plant"] = plantBlock(configuration.plant);
   out["camera"] = toYaml(configuration.camera);
   out["sim"] = toYaml(configuration.sim);
   for (const auto& block : toYaml(configuration.model)) out[block.first] = block.second;
@@ -123,22 +122,21 @@ YAML::Node toYaml(const Configuration& configuration) {
 
 std::vector<std::string> configurationFiles(const std::string& preset, const std::string& plant,
                                             const std::vector<std::string>& configs) {
-  const std::string sim = packageFolder("ddm_sim") + "/config";
   const std::string launch = packageFolder("ddm_launch") + "/config";
-  std::vector<std::string> files = {sim + "/sim.yaml",
+  std::vector<std::string> files = {packageFolder("ddm_sim") + "/config/sim.yaml",
                                     packageFolder("ddm_model") + "/config/model.yaml",
                                     packageFolder("ddm_mpc") + "/config/mpc.yaml",
                                     packageFolder("ddm_mpc") + "/config/pilco.yaml",
                                     launch + "/experiment.yaml",
                                     launch + "/pilco.yaml",
-                                    chooseFile(launch + "/presets", preset, "preset", {}),
-                                    chooseFile(sim, plant, "plant", {"sim"})};
+                                    chooseFile(launch + "/presets", preset, "preset"),
+                                    plantFile(plant)};
   files.insert(files.end(), configs.begin(), configs.end());
   return files;
 }
 
 std::string nuisanceFile(const std::string& name) {
-  return chooseFile(packageFolder("ddm_launch") + "/config/nuisances", name, "nuisance", {});
+  return chooseFile(packageFolder("ddm_launch") + "/config/nuisances", name, "nuisance");
 }
 
 std::string methodFile(const std::string& method) {

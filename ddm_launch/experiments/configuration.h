@@ -45,7 +45,7 @@ YAML::Node toYaml(const Configuration& configuration);
 /// The files that make up a configuration, the manual first, what differs last: a plant knows
 /// better than a preset what it needs.
 /// @param preset   name in ddm_launch/config/presets
-/// @param plant    name in ddm_sim/config
+/// @param plant    name in ddm_sim/config, or PACKAGE/NAME in the folder config of that package
 /// @param configs  further files, later ones win
 /// @throws std::invalid_argument naming what there is, if there is no such preset or plant
 std::vector<std::string> configurationFiles(const std::string& preset, const std::string& plant,

@@ -3,6 +3,7 @@
 #include <ddm_mpc/mpc_options.h>
 #include <ddm_msgs/node_params.h>
 #include <ddm_msgs/param_reader.h>
+#include <ddm_plant_plugin/plant_config.h>
 #include <ddm_sim/plant_factory.h>
 #include <unistd.h>
 
@@ -62,7 +63,7 @@ void report(const ddm::Plant& plant, const ddm::TrialOutcome& outcome,
 void run(ros::NodeHandle nh, const ros::NodeHandle& pnh) {
   ddm::ParamReader params(ddm::nodeParams(pnh), pnh.getNamespace());
   const auto options = params.read<RunOptions>("run");
-  const auto plant = params.read<ddm::PlantOptions>("plant");
+  const auto plant = ddm::readPlant(&params);
   const auto camera = params.read<ddm::CameraOptions>("camera");
   const auto evaluation = params.read<ddm::EvaluationOptions>("evaluation");
   const auto mpc = params.read<ddm::MpcOptions>("mpc");

@@ -22,7 +22,7 @@ packages_to_run=(
   libvisualization-msgs-dev
   # ROS in C++
   libroscpp-dev libactionlib-dev librosbag-dev libcv-bridge-dev libimage-transport-dev libroslib-dev
-  libdiagnostic-updater-dev libdynamic-reconfigure-config-init-mutex-dev
+  libdiagnostic-updater-dev libdynamic-reconfigure-config-init-mutex-dev pluginlib-dev
   # libraries
   libopencv-imgproc-dev libopencv-imgcodecs-dev libeigen3-dev libceres-dev libyaml-cpp-dev
   libboost-dev libboost-program-options-dev libboost-filesystem-dev libbenchmark-dev
@@ -39,8 +39,7 @@ packages_to_run=(
   parallel
 )
 
-# What only the tests need: linters, the check of .rosinstall, a screen for rviz, and the other machines of sweeps,
-# played by this one.
+# What only the tests need: linters, the check of .rosinstall, a screen for rviz, and other machines, played by this one.
 packages_to_test=(
   catkin-lint clang-format python3-wstool git valgrind
   xvfb imagemagick

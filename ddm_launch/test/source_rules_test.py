@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # Rules that every source file keeps: formatting, package manifests, script syntax, licence line.
 # SPDX-License-Identifier: BSD-3-Clause
+import glob
 import os
 import subprocess
 import tempfile
@@ -9,8 +10,8 @@ import unittest
 import rosunit
 
 CHECKOUT = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
-PACKAGES = [os.path.join(CHECKOUT, name) for name in sorted(os.listdir(CHECKOUT))
-            if os.path.isfile(os.path.join(CHECKOUT, name, "package.xml"))]
+PACKAGES = sorted(os.path.dirname(path) for pattern in ("*", "examples/*")
+                  for path in glob.glob(os.path.join(CHECKOUT, pattern, "package.xml")))
 
 
 def first_lines(path, count):
@@ -49,7 +50,7 @@ class SourceRulesTest(unittest.TestCase):
 
     def test_all_packages_and_kinds_of_files_are_seen(self):
         names = [os.path.basename(package) for package in PACKAGES]
-        self.assertTrue({"ddm_msgs", "ddm_sim", "ddm_launch"} <= set(names), names)
+        self.assertTrue({"ddm_msgs", "ddm_sim", "ddm_launch", "ddm_cart"} <= set(names), names)
         self.assertGreater(len(CPP_FILES), 10)
         self.assertIn(os.path.realpath(__file__), scripts("python3"))
         self.assertIn(os.path.join(CHECKOUT, ".ci", "run"), scripts("bash"))

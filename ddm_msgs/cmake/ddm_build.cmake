@@ -5,7 +5,7 @@ if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release)  # unoptimised Eigen is painfully slow
 endif()
 
-option(DDM_NATIVE "Build for the instruction set of this machine" OFF)
+option(DDM_NATIVE "Build for the instruction set of this machine" ${DDM_NATIVE_DEFAULT})  # see ddm_native.cmake.in
 option(DDM_WERROR "Treat warnings as errors" OFF)
 
 set(CMAKE_CXX_STANDARD 17)

@@ -1,5 +1,6 @@
 // sim_node: a simulated plant with a camera and a motor.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_plant_plugin/plant_config.h>
 #include <ros/ros.h>
 #include <yaml-cpp/yaml.h>
 
@@ -19,14 +20,14 @@ int main(int argc, char** argv) {
   ros::NodeHandle pnh("~");  // outside the try: its destructor shuts the log down
   try {
     ddm::ParamReader params(ddm::nodeParams(pnh), pnh.getNamespace());
-    const auto plant = params.read<ddm::PlantOptions>("plant");
+    const auto plant = ddm::readPlant(&params);
     const auto camera = params.read<ddm::CameraOptions>("camera");
     const auto sim = params.read<ddm::SimOptions>("sim");
     const auto show = params.read<ddm::ShowOptions>("show");
     params.requireValid();
 
     YAML::Node effective;
-    effective["plant"] = ddm::toYaml(plant);
+    effective["plant"] = ddm::plantBlock(plant);
     effective["camera"] = ddm::toYaml(camera);
     effective["sim"] = ddm::toYaml(sim);
     effective["show"] = ddm::toYaml(show);

@@ -8,6 +8,7 @@
 namespace ddm {
 
 std::unique_ptr<Plant> makePlant(const PlantOptions& plant, const CameraOptions& camera) {
+  if (plant.maker != nullptr) return plant.maker->make(camera);
   if (plant.type == "moving_tile") return std::make_unique<MovingTile>(plant, camera);
   // An unknown type is one of the problems that the constructor reports together with the others.
   return std::make_unique<Pendulum>(plant, camera);

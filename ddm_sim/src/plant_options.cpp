@@ -46,11 +46,21 @@ std::string joined(const std::vector<std::string>& words) {
 
 std::vector<std::string> plantTypes() { return {"pendulum", "moving_tile"}; }
 
+std::vector<std::string> PlantBasics::problems() const {
+  Checker plant("plant");
+  plant.require(positive(max_torque), "max_torque", "be > 0 and finite", max_torque);
+  // Stamps count whole nanoseconds, and one below a millisecond is none that a camera can keep.
+  plant.require(dt >= 1e-3 && dt <= 10.0, "dt", "lie in [0.001, 10] s", dt);
+  plant.require(notNegative(start_std), "start_std", "be >= 0 and finite", start_std);
+  return plant.problems();
+}
+
 std::vector<std::string> PlantOptions::problems() const {
   const std::vector<std::string> types = plantTypes();
   const bool known = std::find(types.begin(), types.end(), type) != types.end();
   Checker plant("plant");
-  plant.require(known, "type", "be one of: " + joined(types), "\"" + type + "\"");
+  plant.require(known, "type", "be one of: " + joined(types) + ", or PACKAGE/CLASS of a plugin",
+                "\"" + type + "\"");
   plant.require(notNegative(gravity), "gravity", "be >= 0 and finite", gravity);
   plant.require(positive(length), "length", "be > 0 and finite", length);
   plant.require(positive(mass), "mass", "be > 0 and finite", mass);
@@ -58,11 +68,9 @@ std::vector<std::string> PlantOptions::problems() const {
   plant.require(positive(tile_width), "tile_width", "be > 0 and finite", tile_width);
   plant.require(tile_softness >= 1.0 && positive(tile_softness), "tile_softness",
                 "be >= 1 and finite", tile_softness);
-  plant.require(positive(max_torque), "max_torque", "be > 0 and finite", max_torque);
-  // Stamps count whole nanoseconds, and one below a millisecond is none that a camera can keep.
-  plant.require(dt >= 1e-3 && dt <= 10.0, "dt", "lie in [0.001, 10] s", dt);
-  plant.require(notNegative(start_std), "start_std", "be >= 0 and finite", start_std);
-  return plant.problems();
+  std::vector<std::string> problems = plant.problems();
+  for (const std::string& problem : PlantBasics::problems()) problems.push_back(problem);
+  return problems;
 }
 
 std::vector<std::string> CameraOptions::problems() const {

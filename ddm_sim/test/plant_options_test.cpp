@@ -95,7 +95,8 @@ TEST(PlantOptions, ReportEachProblemWithKeyRuleAndValue) {
   options.length = -2.5;
   options.type = "cart";
   const std::vector<std::string> expected{
-      "plant/type must be one of: pendulum, moving_tile, got \"cart\"",
+      "plant/type must be one of: pendulum, moving_tile, or PACKAGE/CLASS of a plugin, got "
+      "\"cart\"",
       "plant/length must be > 0 and finite, got -2.5"};
   EXPECT_EQ(options.problems(), expected);
 }
@@ -178,6 +179,24 @@ TEST(PlantFactory, MakesEveryTypeItKnows) {
   const std::set<std::vector<std::string>> expected{{"angle_rad", "rate_rad_per_s"},
                                                     {"x_px", "y_px"}};
   EXPECT_EQ(states, expected);
+}
+
+TEST(PlantFactory, LeavesThePlantOfAnotherPackageToItsMaker) {
+  struct TileMaker : PlantMaker {
+    std::unique_ptr<Plant> make(const CameraOptions& camera) const override {
+      PlantOptions tile;
+      tile.type = "moving_tile";
+      return makePlant(tile, camera);
+    }
+  };
+  PlantOptions options;
+  options.type = "their_package/Tile";
+  options.maker = std::make_shared<TileMaker>();
+  CameraOptions camera;
+  camera.size = 20;
+  const auto plant = makePlant(options, camera);
+  EXPECT_EQ(plant->stateNames(), (std::vector<std::string>{"x_px", "y_px"}));
+  EXPECT_EQ(plant->imageSize(), 20);
 }
 
 TEST(Config, ManualSaysWhatTheStructsSay) {

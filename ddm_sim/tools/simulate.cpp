@@ -1,5 +1,6 @@
 // simulate: moves a plant under given torques, without a master. Torques in, trajectory out.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_plant_plugin/plant_config.h>
 #include <ros/package.h>
 
 #include <algorithm>
@@ -71,7 +72,8 @@ po::options_description describedOptions() {
   po::options_description options(kAbout);
   auto add = options.add_options();
   add("help", "print this and exit");
-  add("plant", po::value<Text>()->value_name("NAME"), "a file config/NAME.yaml of this package");
+  add("plant", po::value<Text>()->value_name("NAME"),
+      "a file config/NAME.yaml of this package; PACKAGE/NAME: of another one");
   add("start", po::value<Text>()->value_name("V1,V2,..."),
       "start state, taken exactly: the columns of the output after time_s; without it a pendulum "
       "hangs at rest and a tile is in the middle");
@@ -128,37 +130,22 @@ bool parseArguments(int argc, char** argv, Arguments* arguments) {
   return true;
 }
 
-/// The package's files for this plant, then the user's own.
+/// The files that describe camera and plant, then the user's own.
 /// @throws UsageError with the known plants if there is none of this name
 std::vector<std::string> configFiles(const Arguments& arguments) {
-  const std::string package = ros::package::getPath("ddm_sim");
-  if (package.empty()) {
-    throw std::runtime_error(
-        "package ddm_sim not found; source the setup.bash of the workspace that holds it");
+  std::vector<std::string> files{ros::package::getPath("ddm_sim") + "/config/sim.yaml"};
+  try {
+    files.push_back(plantFile(arguments.plant));
+  } catch (const std::invalid_argument& e) {
+    throw UsageError(std::string("option --plant: ") + e.what());
   }
-  const std::string camera_file = "sim";
-  std::vector<std::string> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(package) / "config")) {
-    const fs::path name = entry.path().filename();
-    if (name.extension() == ".yaml" && name.stem() != camera_file) names.push_back(name.stem());
-  }
-  std::sort(names.begin(), names.end());
-  if (std::find(names.begin(), names.end(), arguments.plant) == names.end()) {
-    std::string known;
-    for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
-    throw UsageError("option --plant must be one of: " + known + "; got \"" + arguments.plant +
-                     "\"");
-  }
-  const std::string folder = package + "/config/";
-  std::vector<std::string> files{folder + camera_file + ".yaml",
-                                 folder + arguments.plant + ".yaml"};
   files.insert(files.end(), arguments.configs.begin(), arguments.configs.end());
   return files;
 }
 
 std::unique_ptr<Plant> configuredPlant(const Arguments& arguments) {
   ParamReader params = ParamReader::fromFiles(configFiles(arguments));
-  const auto plant = params.read<PlantOptions>("plant");
+  const auto plant = readPlant(&params);
   const auto camera = params.read<CameraOptions>("camera");
   params.requireValid();
   return makePlant(plant, camera);

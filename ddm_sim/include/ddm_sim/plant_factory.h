@@ -9,7 +9,17 @@
 
 namespace ddm {
 
-/// The plant `plant.type`, at rest in the middle of its start states.
+/// Makes plants of one kind, which another package brings: all of their options but the camera.
+class PlantMaker {
+ public:
+  virtual ~PlantMaker() = default;
+
+  /// @throws std::invalid_argument if plant and camera do not fit together
+  virtual std::unique_ptr<Plant> make(const CameraOptions& camera) const = 0;
+};
+
+/// The plant `plant.type`, at rest in the middle of its start states; that of `plant.maker` if
+/// there is one.
 /// @throws std::invalid_argument with all problems of both blocks, an unknown type among them
 std::unique_ptr<Plant> makePlant(const PlantOptions& plant, const CameraOptions& camera);
 

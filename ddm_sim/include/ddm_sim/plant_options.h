@@ -2,23 +2,44 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace ddm {
 
-/// Parameters of the plant. YAML block `plant:`.
-struct PlantOptions {
-  std::string type = "pendulum";  ///< which plant, see plantTypes()
-  double gravity = 0.0;           ///< pendulum: g [m/s^2]. The paper's published runs fit 0
-  double length = 1.0;            ///< pendulum: l, length of the rod [m]
-  double mass = 1.0;              ///< pendulum: m, mass of the rod [kg]
-  double friction = 1.0;          ///< pendulum: b, viscous friction [N m s/rad]
-  double tile_width = 9.0;        ///< moving_tile: width and height of the tile [pixels]
-  double tile_softness = 9.0;     ///< moving_tile: grey falls from 1 to 0 over so much [pixels]
+class PlantMaker;
+
+/// The keys of the block `plant:` that every plant has.
+struct PlantBasics {
+  std::string type = "pendulum";  ///< which plant, see plantTypes(); PACKAGE/CLASS is a plugin
   double max_torque = 6.0;        ///< bound on each |u| [N m]; moving_tile: [pixels]
   double dt = 0.2;                ///< time step, u is held constant over it [s]
   double start_std = 0.1;         ///< standard deviation of each component of the start state
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("type", type);
+    visitor("max_torque", max_torque);
+    visitor("dt", dt);
+    visitor("start_std", start_std);
+  }
+
+  /// Everything wrong with these values, in words a user can act on, but for `type`.
+  std::vector<std::string> problems() const;
+};
+
+/// Parameters of the plant. YAML block `plant:`.
+struct PlantOptions : PlantBasics {
+  double gravity = 0.0;        ///< pendulum: g [m/s^2]. The paper's published runs fit 0
+  double length = 1.0;         ///< pendulum: l, length of the rod [m]
+  double mass = 1.0;           ///< pendulum: m, mass of the rod [kg]
+  double friction = 1.0;       ///< pendulum: b, viscous friction [N m s/rad]
+  double tile_width = 9.0;     ///< moving_tile: width and height of the tile [pixels]
+  double tile_softness = 9.0;  ///< moving_tile: grey falls from 1 to 0 over so much [pixels]
+
+  /// Makes the plant of another package, whose own keys it holds; null for those of plantTypes().
+  std::shared_ptr<const PlantMaker> maker;
 
   template <class Visitor>
   void visit(Visitor& visitor) {
