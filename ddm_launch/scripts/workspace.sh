@@ -43,7 +43,7 @@ packages_to_run=(
 packages_to_test=(
   catkin-lint clang-format python3-wstool git valgrind
   xvfb imagemagick
-  openssh-client openssh-server
+  openssh-client openssh-server iproute2
   slurmctld slurmd slurm-client munge
 )
 

@@ -1,0 +1,62 @@
+# Folders that are not there and machines that are not there, by Linux namespaces: nothing outlives the program.
+# SPDX-License-Identifier: BSD-3-Clause
+import subprocess
+
+HIDE = 'while [ "$1" != -- ]; do mount -t tmpfs none "$1" || exit; shift; done; shift; exec "$@"'
+
+
+def hiding(folders):
+    """Words before a command for which these folders are empty."""
+    return ["unshare", "--mount", "sh", "-c", HIDE, "sh"] + list(folders) + ["--"]
+
+
+def why_not(*kinds):
+    """Why this process cannot make namespaces of these kinds (mount, net), or an empty text."""
+    done = subprocess.run(["unshare"] + ["--" + kind for kind in kinds] + ["ip", "link"], stdin=subprocess.DEVNULL,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+    return "" if done.returncode == 0 else "no namespaces (%s): run it as root" % done.stdout.strip()
+
+
+class Network:
+    """Machines with an address of their own on one wire, and with some folders that no other machine sees."""
+
+    def __init__(self):
+        self._holders = []
+        self._hub = self._hold(["unshare", "--net"])
+        self._run(self._hub, "ip", "link", "add", "wire", "type", "bridge")
+        self._run(self._hub, "ip", "link", "set", "wire", "up")
+
+    def addMachine(self, own_folders):
+        """Returns (its address, words before a command that runs there)."""
+        holder = self._hold(["unshare", "--net"] + hiding(own_folders))
+        number = len(self._holders)
+        address, plug = "10.99.0.%d" % number, "plug%d" % number
+        self._run(self._hub, "ip", "link", "add", plug, "type", "veth", "peer", "name", "eth0", "netns",
+                  str(holder.pid))
+        self._run(self._hub, "ip", "link", "set", plug, "master", "wire", "up")
+        self._run(holder, "ip", "address", "add", address + "/24", "dev", "eth0")
+        for link in ("lo", "eth0"):
+            self._run(holder, "ip", "link", "set", link, "up")
+        return address, self._enter(holder)
+
+    def close(self):
+        for holder in self._holders:
+            holder.stdin.close()
+            holder.wait()
+            holder.stdout.close()
+
+    def _hold(self, words):
+        """A process whose namespaces live until it ends, which it does with this one."""
+        holder = subprocess.Popen(words + ["sh", "-c", "echo ready; exec cat"], stdin=subprocess.PIPE,
+                                  stdout=subprocess.PIPE)
+        self._holders.append(holder)
+        if holder.stdout.readline() != b"ready\n":
+            raise RuntimeError("no namespaces by: %s" % " ".join(words))
+        return holder
+
+    @staticmethod
+    def _enter(holder):
+        return ["nsenter", "--net", "--mount", "--target", str(holder.pid)]
+
+    def _run(self, holder, *command):
+        subprocess.run(self._enter(holder) + list(command), check=True, stdin=subprocess.DEVNULL)

@@ -1,0 +1,68 @@
+#!/usr/bin/python3
+# Plant, controller and trainer on three machines without a shared disk: the experiment is that of one process.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import signal
+import sys
+import tempfile
+import unittest
+
+import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from namespaces import Network, why_not  # noqa: E402
+from processes import Process, line_by_line, run_experiment  # noqa: E402
+from run_files import differences, expected_files, files_in  # noqa: E402
+
+TRIALS = 1
+HINDRANCE = why_not("net", "mount")
+
+
+@unittest.skipIf(HINDRANCE, "SEVERAL MACHINES ARE NOT TESTED: %s" % HINDRANCE)
+class SeveralMachinesTest(unittest.TestCase):
+    maxDiff = None
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.disk, self.reference = os.path.join(scratch.name, "disk"), os.path.join(scratch.name, "reference")
+        os.mkdir(self.disk)
+        self.network = Network()
+        self.addCleanup(self.network.close)
+
+    def startOn(self, machine, master, *words):
+        """roslaunch on a machine, with what the README says to set there."""
+        address, enter = machine
+        environment = dict(line_by_line(), ROS_MASTER_URI="http://%s:11311" % master, ROS_IP=address,
+                           ROS_HOME=os.path.join(self.disk, "ros"))
+        environment.pop("ROS_HOSTNAME", None)
+        launch = Process(enter + ["roslaunch"] + list(words), environment)
+        self.addCleanup(launch.stop)
+        return launch
+
+    def test_three_machines_give_the_torques_and_models_of_one_process(self):
+        trainer = self.network.addMachine([])
+        plant, controller = self.network.addMachine([self.disk]), self.network.addMachine([self.disk])
+        runs = os.path.join(self.disk, "runs")
+        same = ["preset:=debug"]
+        parts = [self.startOn(machine, trainer[0], "--wait", "ddm_launch", "part.launch", part + ":=true", *same)
+                 for machine, part in ((plant, "simulator"), (controller, "controller"))]
+        experiment = self.startOn(trainer, trainer[0], "ddm_launch", "experiment.launch", "simulator_here:=false",
+                                  "controller_here:=false", "seed:=1", "trials:=%d" % TRIALS, "runs:=" + runs, *same)
+        experiment.waitForEnd(90.0)
+        for part in parts:
+            part.send(signal.SIGINT)
+            part.waitForEnd(20.0)
+        output = "\n".join(launch.output for launch in [experiment] + parts)
+        self.assertEqual(files_in(runs), expected_files(TRIALS), output)
+        for started, launch in zip((["sim_node"], ["mpc_node"]), parts):
+            self.assertEqual([name for name in ("sim_node", "mpc_node", "model_node", "trial_recorder")
+                              if "process[%s-" % name in launch.output], started)
+        code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", TRIALS, "--out", self.reference)
+        self.assertEqual(code, 0, output)
+        names = [name for name in expected_files(TRIALS) if not name.endswith((".bag", "config.yaml"))]
+        self.assertEqual(differences(self.reference, runs, names), [])
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "several_machines_test", SeveralMachinesTest)
