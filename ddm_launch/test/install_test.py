@@ -1,0 +1,158 @@
+#!/usr/bin/python3
+# The install space has everything and needs nothing else: it runs where sources, build and devel space are gone.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import re
+import shutil
+import sys
+import tempfile
+import unittest
+from concurrent.futures import ThreadPoolExecutor
+
+import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from namespaces import hiding, why_not  # noqa: E402
+from processes import call, free_port  # noqa: E402
+from run_files import differences, expected_files, files_in, read_rows, torque_files  # noqa: E402
+
+PACKAGES = ["ddm_launch", "ddm_model", "ddm_mpc", "ddm_msgs", "ddm_sim"]
+CHECKOUT = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+BUILD = next(word.split(":=")[1] for word in sys.argv if word.startswith("build:="))
+SHARED_FOLDERS = ["config", "launch", "rviz", "benchmark"]  # those in a package's share folder, benchmark: launch files
+TRIALS = 1
+
+
+def cached(name):
+    """A value of the build's CMakeCache.txt."""
+    with open(os.path.join(BUILD, "CMakeCache.txt")) as stream:
+        return re.search(r"^%s:\w+=(.*)$" % name, stream.read(), re.MULTILINE).group(1)
+
+
+ALONE = "" if os.path.isdir(os.path.join(BUILD, "ddm_msgs")) else "each package has a build folder of its own"
+HINDRANCE = ALONE or why_not("mount")
+
+
+def programs_in(folder):
+    """Names of the programs in lib/PACKAGE of a space, but for tests."""
+    names = os.listdir(folder) if os.path.isdir(folder) else []
+    return sorted(name for name in names if os.access(os.path.join(folder, name), os.X_OK)
+                  and not re.search("_test$|_test_|^instruction_probe$", name))
+
+
+@unittest.skipIf(HINDRANCE, "THE INSTALL SPACE IS NOT TESTED: %s" % HINDRANCE)
+class InstallTest(unittest.TestCase):
+    maxDiff = None
+
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.mkdtemp()
+        cls.devel = cached("CATKIN_DEVEL_PREFIX")
+        cls.gone = sorted({CHECKOUT, os.path.realpath(cached("CMAKE_HOME_DIRECTORY")), BUILD, cls.devel})
+        cls.prefix = os.path.join(cls.scratch, cached("CMAKE_INSTALL_PREFIX").lstrip("/"))
+        code, output = call(["cmake", "--install", BUILD], environment=dict(os.environ, DESTDIR=cls.scratch))
+        if code != 0:
+            raise AssertionError(output)
+        cls.run_folder = os.path.join(cls.scratch, "process")
+        cls.code, cls.output = cls.runInstalled("rosrun", "ddm_launch", "run_experiment", "--preset", "debug",
+                                                "--seed", 1, "--trials", TRIALS, "--out", cls.run_folder)
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.scratch)
+
+    @classmethod
+    def runInstalled(cls, *command):
+        """A command after sourcing install/setup.bash in a new terminal. Returns (exit code, output)."""
+        terminal = {"PATH": "/usr/bin:/bin:/usr/sbin:/sbin", "HOME": cls.scratch, "ROS_HOME": cls.scratch + "/ros",
+                    "ROS_HOSTNAME": "localhost", "PYTHONUNBUFFERED": "1"}
+        # a function, or setup.bash would take the command's words for its own
+        source = "open_terminal() { . %s/setup.bash; }; open_terminal && exec \"$@\"" % cls.prefix
+        return call(hiding(cls.gone) + ["bash", "-c", source, "bash"] + [str(word) for word in command],
+                    environment=terminal, folder=cls.scratch)
+
+    def assertRuns(self, *command):
+        code, output = self.runInstalled(*command)
+        self.assertEqual(code, 0, "%s\n%s" % (command, output))
+        return output
+
+    def test_sources_build_and_devel_space_are_gone(self):
+        for folder in self.gone:
+            self.assertGreater(len(os.listdir(folder)), 0)
+            self.assertEqual(self.assertRuns("ls", "-A", folder), "", folder)
+
+    def test_nothing_that_is_installed_names_sources_build_or_devel_space(self):
+        for path in files_in(self.prefix):
+            if path.endswith(("Config.cmake", "_setup_util.py")):
+                continue  # catkin's own: they name all workspaces that were sourced when this one was configured
+            with open(os.path.join(self.prefix, path), "rb") as stream:
+                content = stream.read()
+            if b"\0" in content[:4096]:
+                continue  # a program may tell where its sources were, in a message
+            for folder in self.gone:
+                self.assertIsNone(re.search(re.escape(folder).encode() + rb"(?![\w.-])", content), (path, folder))
+
+    def test_all_programs_are_installed(self):
+        for package in PACKAGES:
+            built = programs_in(os.path.join(self.devel, "lib", package))
+            self.assertEqual(programs_in(os.path.join(self.prefix, "lib", package)), built, package)
+        self.assertIn("sweep", programs_in(os.path.join(self.prefix, "lib", "ddm_launch")))
+
+    def test_all_configurations_launch_files_and_headers_are_installed(self):
+        for package in PACKAGES:
+            share = os.path.join(self.prefix, "share", package)
+            for name in SHARED_FOLDERS:
+                kinds = (".launch",) if name == "benchmark" else (".launch", ".yaml", ".rviz")
+                wanted = [path for path in files_in(os.path.join(CHECKOUT, package, name)) if path.endswith(kinds)]
+                self.assertEqual([path for path in files_in(os.path.join(share, name)) if path.endswith(kinds)], wanted,
+                                 (package, name))
+            for path in files_in(os.path.join(CHECKOUT, package)):
+                header = re.match(r"(?:\w+/)?include/(.*\.h)$", path)
+                if header:
+                    self.assertTrue(os.path.isfile(os.path.join(self.prefix, "include", header.group(1))), path)
+
+    def test_an_experiment_runs_in_one_process(self):
+        self.assertEqual(self.code, 0, self.output)
+        self.assertEqual(files_in(self.run_folder), expected_files(TRIALS))
+
+    def test_an_experiment_runs_with_the_nodes(self):
+        out = os.path.join(self.scratch, "nodes")
+        output = self.assertRuns("roslaunch", "-p", free_port(), "ddm_launch", "experiment.launch", "preset:=debug",
+                                 "seed:=1", "trials:=%d" % TRIALS, "runs:=" + out)
+        self.assertEqual(files_in(out), expected_files(TRIALS), output)
+        self.assertEqual(differences(out, self.run_folder, torque_files(TRIALS)), [])
+
+    def test_launch_files_find_what_they_name(self):
+        for words in (["experiment.launch", "runs:=/nowhere", "rviz:=true", "nuisance:=drops"],
+                      ["part.launch", "simulator:=true", "plant:=moving_tile"]):
+            output = self.assertRuns("roslaunch", "--files", "ddm_launch", *words)
+            self.assertIn(self.prefix, output)
+        output = self.assertRuns("roslaunch", "--args", "rviz", "ddm_launch", "experiment.launch", "runs:=/nowhere",
+                                 "rviz:=true")
+        config = re.search(r"-d (\S+)", output).group(1)
+        self.assertTrue(config.startswith(self.prefix) and os.path.isfile(config), config)
+
+    def test_every_script_shows_its_help(self):
+        names = sorted(os.listdir(os.path.join(CHECKOUT, "ddm_launch", "scripts")))
+        scripts = [name for name in names if "." not in name]
+        self.assertGreater(len(scripts), 10)
+        with ThreadPoolExecutor(2) as pool:
+            done = list(pool.map(lambda name: self.runInstalled("rosrun", "ddm_launch", name, "--help"), scripts))
+        self.assertEqual([(name, output) for name, (code, output) in zip(scripts, done)
+                          if code != 0 or "usage: " not in output], [])
+
+    def test_figures_are_drawn(self):
+        for name in ("learning_curve", "film_strip"):
+            path = os.path.join(self.scratch, name + ".png")
+            self.assertRuns("rosrun", "ddm_launch", name, self.run_folder, "--out", path)
+            self.assertGreater(os.path.getsize(path), 1000)
+
+    def test_a_sweep_runs(self):
+        out = os.path.join(self.scratch, "sweep")
+        output = self.assertRuns("rosrun", "ddm_launch", "sweep", "--preset", "debug", "--seeds", "0:2", "--trials", 0,
+                                 "--out", out)
+        self.assertEqual(len(read_rows(out, "sweep.csv")), 3, output)
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "install_test", InstallTest)
