@@ -118,6 +118,20 @@ cv::Mat greyImage(const sensor_msgs::Image& image, const std::string& encoding) 
   return cv_bridge::cvtColor(view, grey)->image;
 }
 
+cv::Mat cropped(const cv::Mat& grey, const ImageCrop& crop) {
+  const int width = crop.width == 0 ? grey.cols - crop.x : crop.width;
+  const int height = crop.height == 0 ? grey.rows - crop.y : crop.height;
+  const cv::Rect rectangle(crop.x, crop.y, width, height);
+  if (crop.x < 0 || crop.y < 0 || width < 1 || height < 1 ||
+      (rectangle & cv::Rect(0, 0, grey.cols, grey.rows)) != rectangle) {
+    refuse("the crop of " + std::to_string(width) + " x " + std::to_string(height) +
+           " pixels from column " + std::to_string(crop.x) + ", row " + std::to_string(crop.y) +
+           " on must lie within the image's " + std::to_string(grey.cols) + " x " +
+           std::to_string(grey.rows));
+  }
+  return grey(rectangle);
+}
+
 cv::Mat centralSquare(const cv::Mat& grey) {
   const int side = std::min(grey.cols, grey.rows);
   return grey(cv::Rect((grey.cols - side) / 2, (grey.rows - side) / 2, side, side));
@@ -131,16 +145,19 @@ double greyScale(int depth) {
 
 }  // namespace
 
-std::vector<std::uint8_t> decodeImage(const sensor_msgs::Image& image, int size) {
+std::vector<std::uint8_t> decodeImage(const sensor_msgs::Image& image, int size,
+                                      const ImageCrop& crop) {
   requireSize(size);
   const std::string encoding = checkedEncoding(image);
   const auto side = static_cast<std::uint32_t>(size);
-  if (encoding == "mono8" && image.width == side && image.height == side && image.step == side) {
+  const bool whole = crop.x == 0 && crop.y == 0 && crop.width == 0 && crop.height == 0;
+  if (whole && encoding == "mono8" && image.width == side && image.height == side &&
+      image.step == side) {
     return image.data;
   }
   cv::Mat grey;
   try {
-    grey = centralSquare(greyImage(image, encoding));
+    grey = centralSquare(cropped(greyImage(image, encoding), crop));
     if (grey.rows != size) cv::resize(grey, grey, cv::Size(size, size), 0, 0, cv::INTER_AREA);
   } catch (const cv_bridge::Exception& e) {
     refuse("cannot convert " + extent(image) + " to grey: " + e.what());

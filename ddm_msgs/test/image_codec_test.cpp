@@ -317,5 +317,32 @@ TEST(ImageCodec, RefusesASizeOutOfRange) {
   }
 }
 
+TEST(ImageCodec, LooksAtTheCropAlone) {
+  const sensor_msgs::Image image = makeRamp(6, 5);
+  EXPECT_EQ(decodeImage(image, 2, {3, 1, 2, 2}), (Bytes{9, 10, 15, 16}));
+  EXPECT_EQ(decodeImage(image, 3, {3, 2, 0, 0}), (Bytes{15, 16, 17, 21, 22, 23, 27, 28, 29}));
+  EXPECT_EQ(decodeImage(image, 1, {0, 0, 2, 2}), (Bytes{4}));  // the mean of 0, 1, 6 and 7
+}
+
+TEST(ImageCodec, CropsAMosaicAfterItsColours) {
+  const sensor_msgs::Image image = makeUniform<std::uint8_t>("bayer_rggb8", 6, 6, {77});
+  EXPECT_EQ(decodeImage(image, 3, {1, 1, 3, 3}), Bytes(9, 77));
+}
+
+TEST(ImageCodec, RefusesACropThatReachesBeyondTheImage) {
+  const sensor_msgs::Image image = makeRamp(6, 5);
+  for (const ImageCrop& crop :
+       {ImageCrop{4, 0, 3, 2}, ImageCrop{0, 4, 2, 2}, ImageCrop{-1, 0, 2, 2}, ImageCrop{6, 0, 0, 0},
+        ImageCrop{0, 0, 2, -1}}) {
+    try {
+      decodeImage(image, 2, crop);
+      ADD_FAILURE() << crop.x << ", " << crop.y << " was accepted";
+    } catch (const std::invalid_argument& e) {
+      EXPECT_NE(std::string(e.what()).find("must lie within the image's 6 x 5"), std::string::npos)
+          << e.what();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ddm

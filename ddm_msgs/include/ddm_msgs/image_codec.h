@@ -11,13 +11,22 @@
 
 namespace ddm {
 
+/// The pixels of an image that count; a width or height of 0 reaches to its edge.
+struct ImageCrop {
+  int x = 0;       ///< first column
+  int y = 0;       ///< first row
+  int width = 0;   ///< columns
+  int height = 0;  ///< rows
+};
+
 /// Grey values of a camera image at the size that the model works with.
 ///
 ///   y_i = k_i / 255,   k = decodeImage(image, size),   i row by row from the top left corner
 ///
 /// A mono8 (or 8UC1) image of size x size without padding is returned byte for byte. Any other is
-/// turned into grey first, then cut to its central square if it is not square (an odd column or row
-/// is left out on the right or at the bottom), then resized by area averaging (cv::INTER_AREA).
+/// turned into grey first, then cropped, then cut to its central square if it is not square (an odd
+/// column or row is left out on the right or at the bottom), then resized by area averaging
+/// (cv::INTER_AREA).
 ///
 /// Encodings: mono8, mono16, rgb8, bgr8, rgba8, bgra8 and their 16 bit forms; bayer_*8, bayer_*16;
 /// yuv422 (luma as it is sent); 8UC1/3/4 and 16UC1/3/4 (three channels in OpenCV's
@@ -26,11 +35,14 @@ namespace ddm {
 ///
 /// @param image  as it came over the wire; nothing in it is trusted
 /// @param size   width and height of the result                                 [1 ... 16384]
+/// @param crop   what of it is looked at                                        [all of it]
 /// @return       grey values k                                                  [size * size]
 /// @throws std::invalid_argument if the size is out of range, the image is empty or larger than
 ///         16384 x 16384, its encoding is not one of the above, its step or data do not fit its
-///         size, its 16 bit or float pixels are big-endian, or a float is outside [0, 1] or NaN
-std::vector<std::uint8_t> decodeImage(const sensor_msgs::Image& image, int size);
+///         size, its 16 bit or float pixels are big-endian, a float is outside [0, 1] or NaN, or
+///         the crop reaches beyond the image
+std::vector<std::uint8_t> decodeImage(const sensor_msgs::Image& image, int size,
+                                      const ImageCrop& crop = ImageCrop());
 
 /// The inverse: a mono8 image without padding. decodeImage(encodeImage(k, size, ...), size) == k.
 ///
