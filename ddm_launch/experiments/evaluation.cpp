@@ -1,4 +1,4 @@
-// Evaluator: ground truth of a greedy run -> success and error. The same for every driver.
+// Evaluator: ground truth of a greedy run, or its features -> success and error, for every driver.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation.h"
 
@@ -8,29 +8,46 @@
 #include <string>
 
 namespace ddm {
+namespace {
+
+/// Whether the last frames are all within the tolerance.
+/// @param errors  distance to the goal of each frame, in whatever unit
+Evaluation settled(const std::vector<double>& errors, double tolerance,
+                   const EvaluationOptions& options) {
+  if (static_cast<int>(errors.size()) < options.settled_steps_strict) {
+    throw std::invalid_argument("an evaluation needs at least " +
+                                std::to_string(options.settled_steps_strict) + " frames, got " +
+                                std::to_string(errors.size()));
+  }
+  int num_settled = 0;
+  for (auto error = errors.rbegin(); error != errors.rend() && *error <= tolerance; ++error) {
+    ++num_settled;
+  }
+  Evaluation evaluation;
+  evaluation.known = true;
+  evaluation.success = num_settled >= options.settled_steps;
+  evaluation.success_strict = num_settled >= options.settled_steps_strict;
+  return evaluation;
+}
+
+}  // namespace
 
 Evaluation evaluate(const Plant& plant, const std::vector<Eigen::VectorXd>& states,
                     const EvaluationOptions& options) {
-  Evaluation evaluation;
-  if (states.empty() || !plant.turns()) return evaluation;
-  if (static_cast<int>(states.size()) < options.settled_steps_strict) {
-    throw std::invalid_argument("an evaluation needs at least " +
-                                std::to_string(options.settled_steps_strict) + " frames, got " +
-                                std::to_string(states.size()));
+  if (states.empty() || !plant.turns()) return Evaluation();
+  std::vector<double> errors_deg;
+  for (const Eigen::VectorXd& state : states) {
+    errors_deg.push_back(plant.goalError(state) * 180.0 / 3.14159265358979323846);
   }
-  const auto error_deg = [&plant](const Eigen::VectorXd& state) {
-    return plant.goalError(state) * 180.0 / 3.14159265358979323846;
-  };
-  int settled = 0;
-  for (auto state = states.rbegin();
-       state != states.rend() && error_deg(*state) <= options.tolerance_deg; ++state) {
-    ++settled;
-  }
-  evaluation.known = true;
-  evaluation.success = settled >= options.settled_steps;
-  evaluation.success_strict = settled >= options.settled_steps_strict;
-  evaluation.final_error_deg = error_deg(states.back());
+  Evaluation evaluation = settled(errors_deg, options.tolerance_deg, options);
+  evaluation.final_error_deg = errors_deg.back();
   return evaluation;
+}
+
+Evaluation evaluateFeatures(const std::vector<double>& goal_distances,
+                            const EvaluationOptions& options) {
+  if (goal_distances.empty() || options.goal_distance == 0.0) return Evaluation();
+  return settled(goal_distances, options.goal_distance, options);
 }
 
 std::pair<double, double> wilsonInterval(int successes, int n) {

@@ -1,10 +1,11 @@
-// Evaluator: ground truth of a greedy run -> success and error. The same for every driver.
+// Evaluator: ground truth of a greedy run, or its features -> success and error, for every driver.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <ddm_sim/plant.h>
 
 #include <Eigen/Core>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -14,16 +15,23 @@ namespace ddm {
 
 /// What a greedy run came to.
 struct Evaluation {
-  bool known = false;            ///< false: no ground truth, or no angle to measure in degrees
-  bool success = false;          ///< the last settled_steps frames within the tolerance
-  bool success_strict = false;   ///< the last settled_steps_strict frames within it
-  double final_error_deg = 0.0;  ///< distance to the goal at the last frame [deg]
+  bool known = false;                     ///< false: nothing to judge by
+  bool success = false;                   ///< the last settled_steps frames within the tolerance
+  bool success_strict = false;            ///< the last settled_steps_strict frames within it
+  std::optional<double> final_error_deg;  ///< distance to the goal at the last frame [deg]; empty
+                                          ///< without ground truth or an angle
 };
 
 /// @param states  the plant's state at each frame, see Plant::state(); empty: no ground truth
 /// @throws std::invalid_argument if there are fewer frames than settled_steps_strict
 Evaluation evaluate(const Plant& plant, const std::vector<Eigen::VectorXd>& states,
                     const EvaluationOptions& options);
+
+/// The same by the features that the policy saw, where nobody tells the true state.
+/// @param goal_distances  of each frame, see Policy::goalDistance(); empty: nothing is known
+/// @throws std::invalid_argument as above
+Evaluation evaluateFeatures(const std::vector<double>& goal_distances,
+                            const EvaluationOptions& options);
 
 /// Wilson's 95 % interval: the rates p that so many successes in n runs do not speak against.
 ///

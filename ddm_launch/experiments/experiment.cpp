@@ -59,7 +59,9 @@ class Loop {
     row.seed = configuration_.experiment.seed;
     row.trial = trial;
     row.frames = training.frames;
-    row.evaluation = evaluate(*plant_, greedy.states, configuration_.evaluation);
+    row.evaluation = greedy.states.empty()
+                         ? evaluateFeatures(greedy.goal_distances, configuration_.evaluation)
+                         : evaluate(*plant_, greedy.states, configuration_.evaluation);
     row.v_r = training.v_r;
     row.v_p = training.v_p;
     row.train_s = training.seconds;

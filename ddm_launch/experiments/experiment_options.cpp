@@ -36,6 +36,9 @@ std::vector<std::string> EvaluationOptions::problems() const {
     out.push_back("evaluation/settled_steps_strict must be >= evaluation/settled_steps, got " +
                   std::to_string(settled_steps_strict));
   }
+  if (!(goal_distance >= 0.0 && std::isfinite(goal_distance))) {
+    out.push_back("evaluation/goal_distance must be >= 0, got " + std::to_string(goal_distance));
+  }
   return out;
 }
 

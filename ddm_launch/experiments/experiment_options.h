@@ -66,12 +66,14 @@ struct EvaluationOptions {
   double tolerance_deg = 10.0;    ///< largest distance to the goal [deg]
   int settled_steps = 10;         ///< last frames that must be within it: `success` [-]
   int settled_steps_strict = 25;  ///< the same for `success_strict` [-]
+  double goal_distance = 0.0;     ///< tolerance without ground truth [spread of features]; 0: none
 
   template <class Visitor>
   void visit(Visitor& visitor) {
     visitor("tolerance_deg", tolerance_deg);
     visitor("settled_steps", settled_steps);
     visitor("settled_steps_strict", settled_steps_strict);
+    visitor("goal_distance", goal_distance);
   }
   std::vector<std::string> problems() const;
 };

@@ -23,6 +23,12 @@ std::string format(const char* pattern, Values... values) {
   return text;
 }
 
+std::string verdictOf(const Evaluation& evaluation) {
+  if (!evaluation.final_error_deg) return evaluation.success ? "success" : "no success";
+  return format("error %5.1f deg%s", *evaluation.final_error_deg,
+                evaluation.success ? "  success" : "");
+}
+
 }  // namespace
 
 Progress::Progress(std::ostream* out, bool live, int num_trials)
@@ -64,8 +70,7 @@ void Progress::finishTrial(const std::vector<TrialRow>& rows) {
   const TrialRow& row = rows.back();
   std::string verdict = "no ground truth";
   if (row.evaluation.known) {
-    verdict = format("error %5.1f deg%s", row.evaluation.final_error_deg,
-                     row.evaluation.success ? "  success" : "");
+    verdict = verdictOf(row.evaluation);
     success_so_far_ =
         format("success %d of %d", countSuccesses(rows), static_cast<int>(rows.size()));
   }

@@ -92,7 +92,19 @@ void RunFolder::writeRun(const std::string& folder, const TrialOutcome& outcome)
   if (!outcome.states.empty()) {
     folder_.write(folder + "/trajectory.csv",
                   formatTrajectoryCsv(outcome.times, outcome.states, state_names_));
+  } else if (!outcome.goal_distances.empty()) {
+    writeGoalDistances(folder, outcome.goal_distances);
   }
+}
+
+/// What a run without ground truth is judged by.
+void RunFolder::writeGoalDistances(const std::string& folder,
+                                   const std::vector<double>& distances) {
+  std::string text = "step,goal_distance\n";
+  for (size_t step = 0; step < distances.size(); ++step) {
+    text += std::to_string(step) + "," + formatDouble(distances[step]) + "\n";
+  }
+  folder_.write(folder + "/goal_distance.csv", text);
 }
 
 void RunFolder::finishTrial(const TrialRow& row) {

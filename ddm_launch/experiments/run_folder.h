@@ -31,7 +31,9 @@ struct TrialRow {
 ///   config.yaml                          effective configuration and version of the code
 ///   trials.csv                           one row per finished trial
 ///   trial_NNN/{trial.bag,torques.csv,trajectory.csv} and the files of the training, model.ddm
-///   evaluation_NNN/{torques.csv,trajectory.csv}
+///   evaluation_NNN/{torques.csv,trajectory.csv}, goal_distance.csv instead of the last where
+///   nobody
+///                                        tells the true state
 ///   summary.yaml                         written last: the verdict
 class RunFolder {
  public:
@@ -60,6 +62,7 @@ class RunFolder {
  private:
   void readRows(const std::string& file);
   void writeRun(const std::string& folder, const TrialOutcome& outcome);
+  void writeGoalDistances(const std::string& folder, const std::vector<double>& distances);
 
   Configuration configuration_;
   ResultsFolder folder_;

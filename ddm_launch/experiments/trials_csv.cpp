@@ -64,7 +64,7 @@ TrialRow parseRow(const std::string& line) {
   if (row.evaluation.known) {
     row.evaluation.success = flag(columns[3]);
     row.evaluation.success_strict = flag(columns[4]);
-    row.evaluation.final_error_deg = number(columns[5]);
+    row.evaluation.final_error_deg = optionalNumber(columns[5]);
   }
   row.v_r = optionalNumber(columns[6]);
   row.v_p = optionalNumber(columns[7]);
@@ -87,7 +87,7 @@ std::string formatTrialsCsv(const std::vector<TrialRow>& rows) {
     out << row.seed << "," << row.trial << "," << row.frames << ",";
     if (row.evaluation.known) {
       out << row.evaluation.success << "," << row.evaluation.success_strict << ","
-          << formatDouble(row.evaluation.final_error_deg);
+          << format(row.evaluation.final_error_deg);
     } else {
       out << ",,";
     }

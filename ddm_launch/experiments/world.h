@@ -29,6 +29,7 @@ struct TrialOutcome {
   std::vector<Eigen::VectorXd> torques;  ///< one per frame [N m]
   std::vector<bool> exploratory;         ///< one per frame
   std::vector<double> solve_times;       ///< one per plan [s]
+  std::vector<double> goal_distances;    ///< one per frame, see Policy::goalDistance(), or none
   std::vector<double> times;             ///< ground truth: time since the first frame [s]
   std::vector<Eigen::VectorXd> states;   ///< ground truth: state at each frame; empty if unknown
 };

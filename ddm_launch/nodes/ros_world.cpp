@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -163,6 +164,11 @@ auto RosWorld::execute(Client* client, const std::string& name, const Goal& goal
   }
   close();
   const actionlib::SimpleClientGoalState state = client->getState();
+  if (state == actionlib::SimpleClientGoalState::PREEMPTED) {
+    throw std::runtime_error("action " + name +
+                             " was cancelled, as it is when the motors of a robot are stopped in a "
+                             "trial: the same command resumes");
+  }
   if (state != actionlib::SimpleClientGoalState::SUCCEEDED) {
     throw std::runtime_error("action " + name + ": " + state.toString() + ", " + state.getText());
   }
@@ -188,7 +194,8 @@ TrialOutcome RosWorld::runTrial(const TrialRequest& request, const PhaseCallback
     outcome.exploratory.push_back(result.exploratory[step] != 0);
   }
   outcome.solve_times = result.solve_time;
-  takeGroundTruth(start, request.num_steps, &outcome);
+  outcome.goal_distances = result.goal_distance;
+  takeGroundTruth(result.stamp, &outcome);
   return outcome;
 }
 
@@ -232,37 +239,38 @@ ddm_msgs::RunTrialResult RosWorld::runPolicy(const TrialRequest& request, const 
                 progress(static_cast<double>(feedback->step) / request.num_steps);
               });
   if (result.num_steps != goal.num_steps || result.exploratory.size() != result.num_steps ||
-      result.torque.size() % result.num_steps != 0) {
+      result.stamp.size() != result.num_steps || result.torque.size() % result.num_steps != 0) {
     throw std::runtime_error("action " + nh_.resolveName(topics::kRunTrial) +
                              ": its result is not that of the trial");
   }
   return result;
 }
 
-/// State at each frame, if anybody publishes it.
-void RosWorld::takeGroundTruth(const ros::Time& start, int num_steps, TrialOutcome* outcome) {
+/// State at each frame that was answered, if anybody publishes it. In real time there are others.
+void RosWorld::takeGroundTruth(const std::vector<ros::Time>& stamps, TrialOutcome* outcome) {
   if (ground_truth_sub_.getNumPublishers() == 0) return;
-  const auto belongs = [&start](const sensor_msgs::JointState& state) {
-    return state.header.stamp >= start;
-  };
+  std::map<ros::Time, sensor_msgs::JointState> truth;
   waitFor(
       [&] {
         const std::lock_guard<std::mutex> lock(mutex_);
         awaits_ground_truth_ = true;
-        return std::count_if(ground_truth_.begin(), ground_truth_.end(), belongs) >= num_steps;
+        for (sensor_msgs::JointState& state : ground_truth_) truth[state.header.stamp] = state;
+        ground_truth_.clear();
+        return std::all_of(stamps.begin(), stamps.end(),
+                           [&](const ros::Time& stamp) { return truth.count(stamp) > 0; });
       },
       "ground truth of the trial is incomplete, " +
           describePublishers(ground_truth_sub_.getTopic()));
   const std::lock_guard<std::mutex> lock(mutex_);
   awaits_ground_truth_ = false;
-  for (const sensor_msgs::JointState& joints : ground_truth_) {
-    if (!belongs(joints) || static_cast<int>(outcome->states.size()) == num_steps) continue;
+  for (const ros::Time& stamp : stamps) {
+    const sensor_msgs::JointState& joints = truth[stamp];
     const auto dim = static_cast<Eigen::Index>(joints.position.size());
     const auto rate_dim = static_cast<Eigen::Index>(joints.velocity.size());
     Eigen::VectorXd state(dim + rate_dim);
     state.head(dim) = Eigen::Map<const Eigen::VectorXd>(joints.position.data(), dim);
     state.tail(rate_dim) = Eigen::Map<const Eigen::VectorXd>(joints.velocity.data(), rate_dim);
-    outcome->times.push_back((joints.header.stamp - start).toSec());
+    outcome->times.push_back((stamp - stamps.front()).toSec());
     outcome->states.push_back(state);
   }
 }

@@ -48,7 +48,7 @@ class RosWorld : public World {
   ros::Time reset(const TrialRequest& request);
   ddm_msgs::RunTrialResult runPolicy(const TrialRequest& request, const ros::Time& start,
                                      const PhaseCallback& progress);
-  void takeGroundTruth(const ros::Time& start, int num_steps, TrialOutcome* outcome);
+  void takeGroundTruth(const std::vector<ros::Time>& stamps, TrialOutcome* outcome);
   std::string takeModel(const std::string& model_id);
 
   template <class Client, class Goal, class FeedbackCallback>

@@ -56,7 +56,8 @@ void report(const ddm::Plant& plant, const ddm::TrialOutcome& outcome,
   progress->note(std::to_string(outcome.torques.size()) + " torques");
   if (!enough) return;
   const ddm::Evaluation evaluation = ddm::evaluate(plant, outcome.states, options);
-  progress->note("final error " + std::to_string(evaluation.final_error_deg) + " deg: " +
+  if (!evaluation.known) return;
+  progress->note("final error " + std::to_string(*evaluation.final_error_deg) + " deg: " +
                  (evaluation.success ? "the goal was reached" : "the goal was not reached"));
 }
 

@@ -6,7 +6,9 @@
 #include <ddm_sim/plant_factory.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 namespace ddm {
@@ -50,7 +52,7 @@ TEST_F(EvaluationTest, LeavingTheGoalAtTheVeryEndIsNoSuccess) {
   States states(40, at(kPi));
   states.back() = at(kPi - 11.0 * kDegree);
   EXPECT_FALSE(evaluated(states).success);
-  EXPECT_NEAR(evaluated(states).final_error_deg, 11.0, 1e-12);
+  EXPECT_NEAR(evaluated(states).final_error_deg.value(), 11.0, 1e-12);
 }
 
 TEST_F(EvaluationTest, AFrameAtExactlyTheToleranceCounts) {
@@ -65,7 +67,7 @@ TEST_F(EvaluationTest, AnglesCountModuloAWholeTurn) {
   for (const double goal : {kPi, -kPi, 5.0 * kPi, -7.0 * kPi}) {
     const Evaluation evaluation = evaluated(States(40, at(goal + 9.0 * kDegree)));
     EXPECT_TRUE(evaluation.success) << goal;
-    EXPECT_NEAR(evaluation.final_error_deg, 9.0, 1e-9) << goal;
+    EXPECT_NEAR(evaluation.final_error_deg.value(), 9.0, 1e-9) << goal;
     EXPECT_FALSE(evaluated(States(40, at(goal - 10.1 * kDegree))).success) << goal;
   }
 }
@@ -81,6 +83,30 @@ TEST_F(EvaluationTest, OfAPlantWithoutAnAngleNothingIsKnown) {
   options.type = "moving_tile";
   const std::unique_ptr<Plant> tile = makePlant(options, CameraOptions());
   EXPECT_FALSE(evaluate(*tile, States(40, tile->goalState()), options_).known);
+}
+
+TEST_F(EvaluationTest, WithoutGroundTruthTheLastFramesMustBeNearInFeatures) {
+  options_.goal_distance = 0.5;
+  std::vector<double> distances(40, 0.6);
+  std::fill(distances.end() - 24, distances.end(), 0.5);
+  EXPECT_TRUE(evaluateFeatures(distances, options_).success);
+  EXPECT_FALSE(evaluateFeatures(distances, options_).success_strict);
+  EXPECT_FALSE(evaluateFeatures(distances, options_).final_error_deg.has_value());
+  distances[30] = 0.51;
+  EXPECT_TRUE(evaluateFeatures(distances, options_).known);
+  EXPECT_FALSE(evaluateFeatures(distances, options_).success);
+}
+
+TEST_F(EvaluationTest, WithoutAToleranceOrFeaturesNothingIsKnown) {
+  EXPECT_FALSE(evaluateFeatures(std::vector<double>(40, 0.0), options_).known);
+  options_.goal_distance = 0.5;
+  EXPECT_FALSE(evaluateFeatures({}, options_).known);
+}
+
+TEST_F(EvaluationTest, ADistanceThatIsNoNumberIsNoSuccess) {
+  options_.goal_distance = 0.5;
+  const std::vector<double> distances(40, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_FALSE(evaluateFeatures(distances, options_).success);
 }
 
 TEST_F(EvaluationTest, FewerFramesThanTheStrictCriterionNeedsAreRefused) {

@@ -158,6 +158,21 @@ TEST_F(ExperimentTest, WithoutGroundTruthSuccessStaysEmpty) {
   EXPECT_FALSE(fs::exists(file("evaluation_000/trajectory.csv")));
 }
 
+TEST_F(ExperimentTest, WithoutGroundTruthSuccessIsThatInFeatures) {
+  world_.goal_distance = 0.2;
+  configuration_.evaluation.goal_distance = 0.3;
+  world_.state = Eigen::Vector2d(0.0, 0.0);  // what is known to be wrong stays wrong
+  configuration_.experiment.trials = 0;
+  run();
+  EXPECT_NE(textOf(file("trials.csv")).find("\n7,0,30,0,0,180.0,"), std::string::npos)
+      << textOf(file("trials.csv"));
+  world_.state.resize(0);
+  configuration_.experiment.runs = scratch_.file("robot");
+  run();
+  const std::string rows = textOf(scratch_.file("robot/trials.csv"));
+  EXPECT_NE(rows.find("\n7,0,30,1,1,,"), std::string::npos) << rows;
+}
+
 TEST_F(ExperimentTest, AnExperimentThatIsTakenUpTrainsOnceAndGoesOn) {
   configuration_.experiment.trials = 1;
   run();

@@ -98,7 +98,7 @@ TEST_F(OracleTest, StandsUpAndStaysWhereverItStarts) {
     const Evaluation evaluation =
         evaluate(*plant, greedyRun(trial).states, configuration_.evaluation);
     EXPECT_TRUE(evaluation.success_strict) << "trial " << trial;
-    EXPECT_LT(evaluation.final_error_deg, 0.1) << "trial " << trial;
+    EXPECT_LT(evaluation.final_error_deg.value(), 0.1) << "trial " << trial;
   }
 }
 

@@ -95,6 +95,20 @@ TEST_F(ProgressTest, TheSummaryCountsAndSaysWhereTheResultsAre) {
   }
 }
 
+TEST_F(ProgressTest, WithoutGroundTruthSuccessInFeaturesIsToldWithoutDegrees) {
+  for (const bool success : {true, false}) {
+    std::ostringstream out;
+    Progress progress(&out, /*live=*/false, /*num_trials=*/0);
+    TrialRow row = toyRow(0);
+    row.evaluation = Evaluation();
+    row.evaluation.known = true;
+    row.evaluation.success = success;
+    progress.finishTrial({row});
+    EXPECT_TRUE(has(out.str(), success ? "  success\n" : "  no success\n")) << out.str();
+    EXPECT_FALSE(has(out.str(), "deg")) << out.str();
+  }
+}
+
 TEST_F(ProgressTest, WithoutGroundTruthNoSuccessIsClaimed) {
   std::ostringstream out;
   Progress progress(&out, /*live=*/false, /*num_trials=*/0);

@@ -246,6 +246,20 @@ TEST_F(RunFolderTest, NothingButTheFilesOfTheContractIsLeft) {
                                              "trial_000/trajectory.csv", "trials.csv"}));
 }
 
+TEST_F(RunFolderTest, DistancesInFeaturesAreWrittenWhereTheTrueStateIsNotKnown) {
+  RunFolder folder(configuration_);
+  TrialOutcome outcome;
+  outcome.torques = {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Zero(1)};
+  outcome.exploratory = {false, false};
+  outcome.goal_distances = {1.5, 0.1};
+  folder.writeEvaluation(0, outcome);
+  EXPECT_EQ(textOf(file("evaluation_000/goal_distance.csv")), "step,goal_distance\n0,1.5\n1,0.1\n");
+  outcome.states = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+  outcome.times = {0.0, 0.2};
+  folder.writeEvaluation(1, outcome);
+  EXPECT_FALSE(fs::exists(file("evaluation_001/goal_distance.csv")));
+}
+
 TEST_F(RunFolderTest, TorquesAreWrittenWith17Digits) {
   RunFolder folder(configuration_);
   TrialOutcome outcome;

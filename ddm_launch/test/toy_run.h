@@ -3,6 +3,7 @@
 #pragma once
 
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -71,6 +72,7 @@ class ObedientWorld : public World {
       outcome.torques.push_back(Eigen::VectorXd::Constant(1, 0.1 * step));
       outcome.exploratory.push_back(request.epsilon > 0.0);
       outcome.solve_times.push_back(1e-3 * (step + 1));
+      if (goal_distance) outcome.goal_distances.push_back(*goal_distance);
       if (state.size() == 0) continue;
       outcome.times.push_back(0.2 * step);
       outcome.states.push_back(state);
@@ -95,8 +97,9 @@ class ObedientWorld : public World {
 
   void useModel(const std::string& path) override { calls.push_back("use " + path); }
 
-  size_t fails_at = 0;    ///< number of the call that fails, from 1; 0: none
-  Eigen::VectorXd state;  ///< empty: no ground truth
+  size_t fails_at = 0;                  ///< number of the call that fails, from 1; 0: none
+  Eigen::VectorXd state;                ///< empty: no ground truth
+  std::optional<double> goal_distance;  ///< of each frame
   std::vector<std::string> calls;
   std::vector<TrialRequest> requests;
   std::vector<std::vector<std::string>> bags_of_training;

@@ -68,6 +68,16 @@ TEST(TrialsCsv, SuccessIsEmptyWhereItIsNotKnown) {
   EXPECT_EQ(formatTrialsCsv(parseTrialsCsv(text, "trials.csv")), text);
 }
 
+TEST(TrialsCsv, SuccessWithoutGroundTruthHasNoErrorInDegrees) {
+  TrialRow row = toyRow(1);
+  row.evaluation.final_error_deg = std::nullopt;
+  const std::string text = formatTrialsCsv({row});
+  EXPECT_NE(text.find("7,1,60,1,0,,0.333"), std::string::npos) << text;
+  const TrialRow read = parseTrialsCsv(text, "trials.csv")[0];
+  EXPECT_TRUE(read.evaluation.known && read.evaluation.success);
+  EXPECT_FALSE(read.evaluation.final_error_deg.has_value());
+}
+
 TEST(TrialsCsv, ErrorsThatAMethodDoesNotHaveAreEmpty) {
   TrialRow row = toyRow(0);
   row.v_r = std::nullopt;
@@ -90,9 +100,9 @@ TEST(TrialsCsv, AnotherHeaderIsRefused) {
 
 TEST(TrialsCsv, ADamagedValueIsRefusedWithItsLine) {
   const std::vector<std::pair<size_t, std::string>> faults = {
-      {0, "x"},   {0, ""},   {1, "1.5"}, {2, "-1"},      {2, ""},    {3, "2"},
-      {3, "yes"}, {4, ""},   {5, "far"}, {5, ""},        {6, "nan"}, {6, ""},
-      {7, "inf"}, {8, "1s"}, {9, "2.5"}, {10, "0.2 ms"}, {11, ""},   {11, "-inf"}};
+      {0, "x"},   {0, ""},    {1, "1.5"},     {2, "-1"},  {2, ""},     {3, "2"},
+      {3, "yes"}, {4, ""},    {5, "far"},     {6, "nan"}, {6, ""},     {7, "inf"},
+      {8, "1s"},  {9, "2.5"}, {10, "0.2 ms"}, {11, ""},   {11, "-inf"}};
   for (const auto& fault : faults) {
     EXPECT_TRUE(throwsNaming<std::runtime_error>(
         [&] { parseTrialsCsv(withColumn(fault.first, fault.second), "DIR/trials.csv"); },

@@ -68,6 +68,7 @@ std::optional<Decision> TrialRun::answer(const sensor_msgs::Image& image) {
   const Decision decision = policy_.decide(decodeImage(image, image_size_));
   last_stamp_ = image.header.stamp;
   result_.last = last_stamp_;
+  result_.stamp.push_back(last_stamp_);
   collect(decision);
   return decision;
 }
@@ -78,6 +79,7 @@ void TrialRun::collect(const Decision& decision) {
     result_.torque.push_back(decision.torque[i]);
   }
   result_.exploratory.push_back(decision.exploratory);
+  if (decision.goal_distance) result_.goal_distance.push_back(*decision.goal_distance);
   if (decision.exploratory) ++result_.num_exploratory;
   if (!decision.plan) return;
   result_.solve_time.push_back(decision.plan->solve_time);

@@ -39,6 +39,7 @@ void EpsilonGreedy::setEpsilon(double epsilon) {
 Decision EpsilonGreedy::decide(const Grey& grey) {
   if (policy_ != nullptr) policy_->observe(grey);
   Decision decision;
+  if (policy_ != nullptr) decision.goal_distance = policy_->goalDistance();
   if (held_steps_left_ == 0) {
     std::uniform_real_distribution<double> probability(0.0, 1.0);
     if (probability(rng_) < options_.epsilon) {

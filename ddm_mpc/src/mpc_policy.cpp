@@ -14,14 +14,17 @@ namespace ddm {
 
 namespace {
 
+bool knowsSpread(const Ddm& model) {
+  return model.info().feature_spread > 0.0 && std::isfinite(model.info().feature_spread);
+}
+
 DistanceCost distanceCost(const Ddm& model, const MpcOptions& options) {
-  const double spread = model.info().feature_spread;
-  if (options.scale_distance && !(spread > 0.0 && std::isfinite(spread))) {
+  if (options.scale_distance && !knowsSpread(model)) {
     throw std::invalid_argument(
         "mpc/scale_distance needs a model that knows the spread of its features: train it again");
   }
   DistanceCost cost;
-  if (options.scale_distance) cost.scale = spread;
+  if (options.scale_distance) cost.scale = model.info().feature_spread;
   cost.width = options.saturation_width;
   cost.terminal_weight = options.terminal_weight;
   return cost;
@@ -104,6 +107,12 @@ void MpcPolicy::startTrial(const TrialId& id) {
 
 void MpcPolicy::observe(const Grey& grey) {
   for (const auto& member : members_) member->observe(grey);
+}
+
+std::optional<double> MpcPolicy::goalDistance() const {
+  if (!knowsSpread(*model_)) return std::nullopt;
+  const Eigen::VectorXd z = members_.front()->x.features().col(0);
+  return (z - model_->goalFeature()).norm() / model_->info().feature_spread;
 }
 
 Plan MpcPolicy::plan() {

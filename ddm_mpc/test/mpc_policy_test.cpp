@@ -121,6 +121,30 @@ TEST(MpcPolicy, PlansFromTheEncodedImageToTheGoalOfTheModel) {
   EXPECT_EQ(plan.goal_feature, model->goalFeature());
 }
 
+TEST(MpcPolicy, TellsTheDistanceToTheGoalInUnitsOfTheSpread) {
+  const Ddm random = randomModel({});
+  ModelInfo info;
+  info.feature_spread = 0.25;
+  const auto model =
+      std::make_shared<const Ddm>(random.options(), random.imageSize(), random.torqueDim(),
+                                  random.pca(), random.theta(), random.goal(), info);
+  MpcPolicy policy(model, MpcOptions());
+  policy.startTrial({});
+  policy.observe(random.goal());
+  EXPECT_NEAR(policy.goalDistance().value(), 0.0, 1e-12);
+  policy.observe(randomGrey(8, 50));
+  const double distance = (model->encode(randomGrey(8, 50)) - model->goalFeature()).norm();
+  EXPECT_GT(distance, 0.01);
+  EXPECT_NEAR(policy.goalDistance().value(), 4.0 * distance, 1e-12);
+}
+
+TEST(MpcPolicy, TellsNoDistanceInUnitsThatTheModelDoesNotKnow) {
+  MpcPolicy policy(sharedModel(), MpcOptions());
+  policy.startTrial({});
+  policy.observe(randomGrey(8, 50));
+  EXPECT_FALSE(policy.goalDistance().has_value());
+}
+
 TEST(MpcPolicy, RemembersTheTorqueThatWasAppliedWhoeverDecidedIt) {
   const auto model = sharedModel();
   const TrialId id;

@@ -12,9 +12,10 @@ namespace ddm {
 
 /// What was decided for one image.
 struct Decision {
-  Eigen::VectorXd torque;    ///< u_t [N m]; 0 where the plan failed  [torque_dim]
-  bool exploratory = false;  ///< a random torque
-  std::optional<Plan> plan;  ///< empty where exploratory
+  Eigen::VectorXd torque;               ///< u_t [N m]; 0 where the plan failed  [torque_dim]
+  bool exploratory = false;             ///< a random torque
+  std::optional<Plan> plan;             ///< empty where exploratory
+  std::optional<double> goal_distance;  ///< see Policy::goalDistance()
 };
 
 /// With probability epsilon a torque uniform in +-max_torque, held for hold_steps steps; otherwise

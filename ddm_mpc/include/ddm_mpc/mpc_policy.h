@@ -32,6 +32,9 @@ class MpcPolicy : public Policy {
 
   void startTrial(const TrialId& id) override;
   void observe(const Grey& grey) override;
+  /// |z - z_ref| in units of the features' spread, by the first model of an ensemble; nothing if
+  /// the model does not know the spread.
+  std::optional<double> goalDistance() const override;
   Plan plan() override;
   void apply(const Eigen::VectorXd& u) override;
 

@@ -31,6 +31,10 @@ class Policy {
   /// @throws std::invalid_argument for a wrong number of pixels
   virtual void observe(const Grey& grey) = 0;
 
+  /// Distance of the image just seen to the goal, in units that mean the same for every model;
+  /// nothing where the policy knows none.
+  virtual std::optional<double> goalDistance() const { return std::nullopt; }
+
   /// @return a plan; its first torque answers the image just seen
   virtual Plan plan() = 0;
 
