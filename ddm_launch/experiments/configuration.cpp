@@ -53,8 +53,9 @@ std::vector<std::string> contradictions(const Configuration& all) {
     text << rule << ", got " << value;
     out.push_back(text.str());
   };
-  require(all.mpc.max_torque <= all.plant.max_torque,
-          "mpc/max_torque must be at most plant/max_torque, beyond which the motor saturates",
+  const std::string motor = all.robot ? "robot/max_torque" : "plant/max_torque";
+  require(all.mpc.max_torque <= (all.robot ? all.robot->max_torque : all.plant.max_torque),
+          "mpc/max_torque must be at most " + motor + ", beyond which the motor saturates",
           all.mpc.max_torque);
   require(all.mpc.max_torque <= all.model.model.max_torque,
           "mpc/max_torque must be at most model/max_torque, which scales what f sees",
@@ -89,6 +90,7 @@ Configuration readConfiguration(ParamReader* reader) {
   all.sim = reader->read<SimOptions>("sim");
   all.model = readModelConfig(reader);
   all.mpc = reader->read<MpcOptions>("mpc");
+  if (reader->has("robot")) all.robot = reader->read<RobotOptions>("robot");
   reader->requireValid();
   std::string problems;
   for (const std::string& problem : contradictions(all)) problems += "\n - " + problem;
@@ -114,6 +116,7 @@ YAML::Node toYaml(const Configuration& configuration) {
   out["sim"] = toYaml(configuration.sim);
   for (const auto& block : toYaml(configuration.model)) out[block.first] = block.second;
   out["mpc"] = toYaml(configuration.mpc);
+  if (configuration.robot) out["robot"] = toYaml(*configuration.robot);
   if (configuration.method != nullptr) {
     for (const auto& block : configuration.method->blocks()) out[block.first] = block.second;
   }

@@ -9,10 +9,12 @@
 #include <yaml-cpp/yaml.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "experiment_options.h"
+#include "robot_options.h"
 
 namespace ddm {
 
@@ -28,6 +30,7 @@ struct Configuration {
   SimOptions sim;
   ModelConfig model;
   MpcOptions mpc;
+  std::optional<RobotOptions> robot;          ///< empty: a simulated plant
   std::shared_ptr<const MethodSetup> method;  ///< null: the nodes, whose method is ddm
 };
 

@@ -225,6 +225,17 @@ TEST(Configuration, WhatContradictsIsRefused) {
   }
 }
 
+TEST(Configuration, ARobotIsOneWhereItsBlockIsGiven) {
+  EXPECT_FALSE(readText("mpc: {horizon: 3}\n").robot.has_value());
+  const Configuration robot = readText(
+      "robot: {dt: 0.1, max_torque: 8.0}\nmpc: {max_torque: 7.0}\n"
+      "model: {max_torque: 7.0}\n");
+  ASSERT_TRUE(robot.robot.has_value());
+  EXPECT_EQ(toYaml(robot)["robot"]["dt"].as<double>(), 0.1);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([] { readText("robot: {max_torque: 3.0}\n"); },
+                                                  {"mpc/max_torque", "robot/max_torque"}));
+}
+
 TEST(Configuration, WhatJustFitsIsAccepted) {
   EXPECT_NO_THROW(readText("trial: {num_steps: 51}\nevaluation: {settled_steps_strict: 51}\n"));
   EXPECT_NO_THROW(readText("trial: {num_steps: 30}\nmodel: {pca_dim: 10, order: 29}\n"));
@@ -300,6 +311,11 @@ TEST(ExperimentOptions, EachKeyOutOfRangeIsNamed) {
   for (const double tolerance : {0.0, -1.0, 180.1, nan}) {
     EXPECT_NE(
         evaluation([&](auto* o) { o->tolerance_deg = tolerance; }).find("evaluation/tolerance_deg"),
+        std::string::npos);
+  }
+  for (const double distance : {-0.1, nan, inf}) {
+    EXPECT_NE(
+        evaluation([&](auto* o) { o->goal_distance = distance; }).find("evaluation/goal_distance"),
         std::string::npos);
   }
   EXPECT_NE(evaluation([](auto* o) { o->settled_steps = 0; }).find("evaluation/settled_steps must"),

@@ -10,9 +10,10 @@ import unittest
 import rospkg
 import rosunit
 
-# library -> folder with its include/ and src/: a package, and where in it
-CORES = {"ddm_sim": ("ddm_sim", "."), "ddm_model": ("ddm_model", "."), "ddm_mpc": ("ddm_mpc", "."),
-         "ddm_pilco": ("ddm_mpc", "pilco")}
+# library -> folders with its sources and headers: a package, and where in it
+CORES = {"ddm_sim": ("ddm_sim", "include", "src"), "ddm_model": ("ddm_model", "include", "src"),
+         "ddm_mpc": ("ddm_mpc", "include", "src"), "ddm_pilco": ("ddm_mpc", "pilco/include", "pilco/src"),
+         "ddm_launch_robot": ("ddm_launch", "robot")}
 if "pilco:=OFF" in sys.argv:
     del CORES["ddm_pilco"]
 ROS_INCLUDE = re.compile(
@@ -25,11 +26,10 @@ ROS_LIBRARY = re.compile(
 
 def sourceFiles(library):
     """Sources and headers of a core library."""
-    package, folder = CORES[library]
-    root = os.path.join(rospkg.RosPack().get_path(package), folder)
+    package = rospkg.RosPack().get_path(CORES[library][0])
     files = []
-    for part in ("include", "src"):
-        for folder, _, names in os.walk(os.path.join(root, part)):
+    for part in CORES[library][1:]:
+        for folder, _, names in os.walk(os.path.join(package, part)):
             files += [os.path.join(folder, name) for name in names if name.endswith((".h", ".cpp"))]
     return sorted(files)
 

@@ -31,12 +31,12 @@ def line_by_line():
 class Process:
     """A program whose output, stdout and stderr together, is read while it runs."""
 
-    def __init__(self, command, environment=None, folder=None, output=subprocess.PIPE):
+    def __init__(self, command, environment=None, folder=None, output=subprocess.PIPE, terminal=subprocess.DEVNULL):
         self._changed = threading.Condition()
         self._text = ""
         self._ended = False
         self._process = subprocess.Popen(
-            [str(word) for word in command], env=environment or line_by_line(), cwd=folder, stdin=subprocess.DEVNULL,
+            [str(word) for word in command], env=environment or line_by_line(), cwd=folder, stdin=terminal,
             stdout=output, stderr=subprocess.STDOUT)
         if output == subprocess.PIPE:
             self._reader = threading.Thread(target=self._read, args=(self._process.stdout,), daemon=True)

@@ -17,7 +17,7 @@ const std::set<std::string>& blocksOfThisRepository() {
       "plant",      "camera",     "sim",        "image",    "model",      "training",
       "data_set",   "mpc",        "pilco",      "gp",       "sparse_gp",  "policy_search",
       "trial",      "evaluation", "experiment", "recorder", "controller", "run",
-      "prediction", "show",       "replay",     "start"};
+      "prediction", "show",       "replay",     "start",    "robot"};
   return blocks;
 }
 
@@ -151,6 +151,11 @@ ParamReader ParamReader::fromFiles(const std::vector<std::string>& paths) {
     source += (source.empty() ? "" : ", ") + path;
   }
   return ParamReader(merged, source);
+}
+
+bool ParamReader::has(const std::string& block) const {
+  const YAML::Node& root = root_;
+  return root[block].IsDefined();
 }
 
 YAML::Node ParamReader::openBlock(const std::string& block) {

@@ -176,6 +176,12 @@ TEST(ParamReader, ReportsABlockThatIsNoMap) {
             std::vector<std::string>({"mpc must be a block of keys, got [1]"}));
 }
 
+TEST(ParamReader, TellsWhichBlocksAreGiven) {
+  const ParamReader reader(YAML::Load("robot: {}"));
+  EXPECT_TRUE(reader.has("robot"));
+  EXPECT_FALSE(reader.has("mpc"));
+}
+
 TEST(ParamReader, ReportsAnUnknownBlockWithTheNearest) {
   const auto problems = mpcProblems("mpcc: {horizon: 3}");
   ASSERT_EQ(problems.size(), 1u);

@@ -51,6 +51,9 @@ class ParamReader {
   /// Accept a top-level name that belongs to others, like `image_transport`.
   void ignore(const std::string& block) { ignored_.insert(block); }
 
+  /// Whether a block is given at all.
+  bool has(const std::string& block) const;
+
   /// The values of a block, defaults where it is silent or wrong. Never throws for a bad value:
   /// unknown keys, wrong types and options.problems() are kept for requireValid().
   template <class Options>

@@ -23,9 +23,18 @@ constexpr char kFeatureSpaceMarkers[] =
 constexpr char kLearningCurveImage[] =
     "learning_curve_image";  ///< sensor_msgs/Image, latched: what each model could do
 
+constexpr char kCamera[] = "camera/source";  ///< sensor_msgs/Image: a robot's camera, as it comes
+constexpr char kLatency[] = "latency";       ///< std_msgs/Float64: from an image to its torque [s]
+constexpr char kDeadlineMisses[] =
+    "deadline_misses";  ///< std_msgs/UInt32, latched: images of trials without a timely torque
+
 constexpr char kReset[] = "reset";                     ///< ddm_msgs/Reset
 constexpr char kStartRecording[] = "start_recording";  ///< ddm_msgs/StartRecording
 constexpr char kStopRecording[] = "stop_recording";    ///< ddm_msgs/StopRecording
+
+constexpr char kEnable[] = "enable";         ///< std_srvs/SetBool: motors of a robot
+constexpr char kTakeGoal[] = "take_goal";    ///< std_srvs/Trigger: the robot is at its goal
+constexpr char kResetDone[] = "reset_done";  ///< std_srvs/Trigger: the robot is at its start
 
 constexpr char kTrain[] = "train";         ///< ddm_msgs/Train.action
 constexpr char kRunTrial[] = "run_trial";  ///< ddm_msgs/RunTrial.action

@@ -1,0 +1,88 @@
+// How a robot gets to the start of a trial: a service of the user does it, or a person.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "reset_routine.h"
+
+#include <ddm_msgs/topics.h>
+#include <poll.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <future>
+
+namespace ddm {
+namespace {
+
+const ros::WallDuration kLook(0.05);
+constexpr int kLook_ms = 50;
+
+bool timeIsLeft(const ros::WallTime& deadline) {
+  return ros::ok() && ros::WallTime::now() < deadline;
+}
+
+/// Waits a moment for a line on the terminal.
+/// @return whether there is one
+bool enterWasPressed() {
+  pollfd terminal{STDIN_FILENO, POLLIN, 0};
+  char line[256];
+  if (::isatty(STDIN_FILENO) != 0 && ::poll(&terminal, 1, kLook_ms) == 0) return false;
+  if ((terminal.revents & POLLIN) != 0 && ::read(STDIN_FILENO, line, sizeof(line)) > 0) return true;
+  kLook.sleep();  // no terminal, or one that has gone: it would not make us wait
+  return false;
+}
+
+}  // namespace
+
+ResetRoutine::ResetRoutine(ros::NodeHandle nh, const std::string& service)
+    : nh_(nh),
+      service_(service.empty() ? "" : nh.resolveName(service)),
+      done_server_(nh_.advertiseService(topics::kResetDone, &ResetRoutine::onDone, this)) {}
+
+std::string ResetRoutine::run(const ros::WallTime& deadline) {
+  return byService() ? callService(deadline) : askPerson(deadline);
+}
+
+std::string ResetRoutine::callService(const ros::WallTime& deadline) {
+  // Persistent, because only then does shutdown() below end a call.
+  ros::ServiceClient client = nh_.serviceClient<std_srvs::Trigger>(service_, /*persistent=*/true);
+  while (!client.exists()) {
+    if (!timeIsLeft(deadline)) return "service " + service_ + " is not offered";
+    kLook.sleep();
+    client = nh_.serviceClient<std_srvs::Trigger>(service_, /*persistent=*/true);
+  }
+  std_srvs::Trigger trigger;
+  std::future<bool> answer =
+      std::async(std::launch::async, [&client, &trigger] { return client.call(trigger); });
+  while (answer.wait_for(std::chrono::milliseconds(kLook_ms)) != std::future_status::ready) {
+    if (timeIsLeft(deadline)) continue;
+    client.shutdown();
+    answer.wait();
+    return "service " + service_ + " does not answer";
+  }
+  if (!answer.get()) return "service " + service_ + " failed";
+  if (!trigger.response.success) return "service " + service_ + ": " + trigger.response.message;
+  return "";
+}
+
+std::string ResetRoutine::askPerson(const ros::WallTime& deadline) {
+  done_ = false;
+  asking_ = true;
+  ::tcflush(STDIN_FILENO, TCIFLUSH);  // what was typed before is no answer
+  ROS_WARN_STREAM("Bring the robot to its start. Then press Enter here, or: rosservice call "
+                  << done_server_.getService());
+  while (timeIsLeft(deadline) && !done_) {
+    if (enterWasPressed()) done_ = true;
+  }
+  asking_ = false;
+  return done_ ? "" : "nobody said that the robot is at its start";
+}
+
+bool ResetRoutine::onDone(std_srvs::Trigger::Request& /*request*/,
+                          std_srvs::Trigger::Response& response) {
+  response.success = asking_;
+  response.message = asking_ ? "the trial may begin" : "nobody waits for it";
+  done_ = true;
+  return true;
+}
+
+}  // namespace ddm

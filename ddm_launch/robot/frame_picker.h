@@ -1,0 +1,42 @@
+// Which frames of a camera are acted on: it has a rate of its own, the loop has its time step.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <deque>
+
+namespace ddm {
+
+/// Of all frames the one that comes nearest to dt after the last one picked.
+///
+/// A frame is judged when it comes, so the one picked is the newest there is and not a moment old.
+/// With dt a whole multiple of the camera's period T all steps are equally long, whatever the
+/// jitter of stamps below T / 2; otherwise they are round(dt / T) T, still equally long.
+class FramePicker {
+ public:
+  using Time = std::chrono::nanoseconds;  ///< since the epoch of the camera's clock
+
+  /// @param dt  time step, > 0 [s]
+  explicit FramePicker(double dt) : dt_(dt) {}
+
+  /// To be called for each frame.
+  /// @param stamp  its time
+  /// @return       whether to act on it; never for one that is not newer than all before
+  bool pick(Time stamp);
+
+  /// The next frame will be picked.
+  void restart() { started_ = false; }
+
+  /// Time between frames that are picked, as far as it is known [s]; 0: not yet.
+  double step() const;
+
+ private:
+  double dt_;
+  bool started_ = false;
+  Time last_frame_{0};
+  Time last_pick_{0};
+  std::deque<double> intervals_;  // between the latest frames [s]
+  double period_ = 0.0;           // T, their median: a lost frame or a pause must not count [s]
+};
+
+}  // namespace ddm

@@ -1,0 +1,42 @@
+// Parameters of a robot: camera, motor, start and goal. One struct = one YAML block.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace ddm {
+
+/// Block `robot`.
+struct RobotOptions {
+  double dt = 0.2;               ///< time step: one image and one torque each [s]
+  int crop_x = 0;                ///< what counts of the camera's image: first column [pixels]
+  int crop_y = 0;                ///< first row [pixels]
+  int crop_width = 0;            ///< columns; 0: to the right edge [pixels]
+  int crop_height = 0;           ///< rows; 0: to the bottom [pixels]
+  double max_torque = 6.0;       ///< bound on what the motor gets [N m]
+  double slew_rate = 0.0;        ///< bound on its change; 0: none [N m/s]
+  double effort_rate = 100.0;    ///< how often the motor gets its torque [Hz]
+  std::string goal_file;         ///< picture of the goal; take_goal writes it
+  std::string reset_service;     ///< std_srvs/Trigger that brings it to its start; empty: a person
+  double reset_timeout = 300.0;  ///< time that all of a reset may take [s]
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("dt", dt);
+    visitor("crop_x", crop_x);
+    visitor("crop_y", crop_y);
+    visitor("crop_width", crop_width);
+    visitor("crop_height", crop_height);
+    visitor("max_torque", max_torque);
+    visitor("slew_rate", slew_rate);
+    visitor("effort_rate", effort_rate);
+    visitor("goal_file", goal_file);
+    visitor("reset_service", reset_service);
+    visitor("reset_timeout", reset_timeout);
+  }
+  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  std::vector<std::string> problems() const;
+};
+
+}  // namespace ddm

@@ -1,0 +1,137 @@
+// The gate between a controller and a motor: what the motor gets, and when it gets nothing.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "torque_gate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace ddm {
+namespace {
+
+std::string textOf(const std::vector<double>& torque) {
+  std::ostringstream out;
+  out << "[";
+  for (const double value : torque) out << (out.tellp() > 1 ? ", " : "") << value;
+  out << "]";
+  return out.str();
+}
+
+}  // namespace
+
+TorqueGate::TorqueGate(const RobotOptions& options)
+    : options_(options),
+      dt_(std::chrono::duration_cast<Time>(std::chrono::duration<double>(options.dt))) {}
+
+std::string TorqueGate::arm() {
+  if (num_publishers_ > 1) {
+    return std::to_string(num_publishers_) + " nodes publish torques: end all but one";
+  }
+  if (state_ == State::kStopped) wait();
+  return "";
+}
+
+void TorqueGate::stop(const std::string& reason) {
+  wait();
+  state_ = State::kStopped;
+  stop_reason_ = reason;
+}
+
+void TorqueGate::beginReset() {
+  resetting_ = true;
+  if (armed()) wait();
+}
+
+void TorqueGate::endReset() {
+  resetting_ = false;
+  if (armed()) wait();
+}
+
+void TorqueGate::endTrial() {
+  if (inTrial()) wait();
+}
+
+/// Zero torque, and no image that an answer is due to.
+void TorqueGate::wait() {
+  state_ = resetting_ ? State::kResetting : State::kWaiting;
+  unanswered_.clear();
+  target_ = 0.0;
+  effort_ = 0.0;
+}
+
+void TorqueGate::showImage(Time stamp) {
+  unanswered_.push_back(stamp);
+  last_image_ = stamp;
+}
+
+bool TorqueGate::takeTorque(Time now, Time stamp, const std::vector<double>& torque) {
+  expire(now);
+  if (!armed()) return false;
+  if (torque.size() != 1 || !std::isfinite(torque[0])) {
+    stop("a torque was " + textOf(torque) + " where one finite number is due [N m]");
+    return false;
+  }
+  if (state_ == State::kResetting) return false;
+  const auto image = std::find(unanswered_.begin(), unanswered_.end(), stamp);
+  if (image == unanswered_.end()) return false;
+  if (inTrial()) num_misses_ += static_cast<int>(image - unanswered_.begin());
+  unanswered_.erase(unanswered_.begin(), image + 1);
+  ++num_answers_;
+  state_ = State::kFollowing;
+  target_ = std::max(-options_.max_torque, std::min(options_.max_torque, torque[0]));
+  return true;
+}
+
+void TorqueGate::setPublishers(int num_publishers) {
+  num_publishers_ = num_publishers;
+  if (num_publishers > 1 && armed()) {
+    stop(std::to_string(num_publishers) + " nodes publish torques, one must");
+  }
+}
+
+/// Notices what has not come.
+void TorqueGate::expire(Time now) {
+  while (!unanswered_.empty() && now - unanswered_.front() > dt_) {
+    unanswered_.pop_front();
+    if (!inTrial()) continue;
+    ++num_misses_;
+    state_ = State::kLate;
+  }
+  if (state_ == State::kFollowing && now - last_image_ > 2 * dt_) state_ = State::kImagesStopped;
+}
+
+double TorqueGate::effort(Time now) {
+  expire(now);
+  const double passed = std::chrono::duration<double>(now - last_effort_).count();
+  last_effort_ = now;
+  if (state_ != State::kFollowing) {
+    target_ = 0.0;
+    effort_ = 0.0;
+  } else if (options_.slew_rate == 0.0) {
+    effort_ = target_;
+  } else {
+    const double step = options_.slew_rate * std::max(0.0, passed);  // clocks may be set back
+    effort_ += std::max(-step, std::min(step, target_ - effort_));
+  }
+  return effort_;
+}
+
+std::string TorqueGate::describe() const {
+  switch (state_) {
+    case State::kStopped:
+      return "the motors are off: " + stop_reason_;
+    case State::kResetting:
+      return "zero torque while the robot goes to its start";
+    case State::kWaiting:
+      return "zero torque, no trial is under way";
+    case State::kFollowing:
+      return "the motors follow the controller";
+    case State::kImagesStopped:
+      return "zero torque: no image came for two dt";
+    case State::kLate:
+      return "zero torque: an image had no torque within dt";
+  }
+  return "";
+}
+
+}  // namespace ddm

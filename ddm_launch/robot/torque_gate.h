@@ -1,0 +1,96 @@
+// The gate between a controller and a motor: what the motor gets, and when it gets nothing.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "robot_options.h"
+
+namespace ddm {
+
+/// Lets through torques that answer the last images in time, within the limits of the motor.
+///
+/// Zero torque, at once and not at the slew rate, in each of these cases:
+///
+///   kStopped        the motors are off: at the start, after stop(), after a fault that latches
+///   kResetting      the robot is on its way to its start
+///   kWaiting        no trial is under way
+///   kImagesStopped  a trial is under way, and no image came for two dt
+///   kLate           an image had no answer within dt. A torque that comes later does not act
+///
+/// The last two end by themselves with the next torque in time. Two faults latch, because they mean
+/// that something is wired wrongly: a torque that is not one finite number, and a second publisher
+/// of torques. They switch the motors off until arm(), which is refused while the fault is there.
+///
+/// A trial begins with the first torque in time after arm() and endReset(), and ends with
+/// endTrial(). In kFollowing a torque acts until the next.
+class TorqueGate {
+ public:
+  using Time = std::chrono::nanoseconds;  ///< since the epoch of the clock that stamps images
+
+  enum class State { kStopped, kResetting, kWaiting, kFollowing, kImagesStopped, kLate };
+
+  explicit TorqueGate(const RobotOptions& options);
+
+  /// Lets torques through from now on.
+  /// @return what is in the way; empty: armed
+  std::string arm();
+  /// Switches the motors off.
+  void stop(const std::string& reason);
+
+  void beginReset();
+  void endReset();
+  void endTrial();
+
+  /// An image was shown to the controller.
+  void showImage(Time stamp);
+
+  /// A torque has come.
+  /// @param now     when, by the clock that stamps images
+  /// @param stamp   of the image that it answers
+  /// @param torque  [N m]
+  /// @return        whether it acts
+  bool takeTorque(Time now, Time stamp, const std::vector<double>& torque);
+
+  /// How many publish torques at present; more than one is a fault.
+  void setPublishers(int num_publishers);
+
+  /// What the motor shall get at this time [N m].
+  double effort(Time now);
+
+  State state() const { return state_; }
+  bool armed() const { return state_ != State::kStopped; }
+  bool inTrial() const {
+    return state_ == State::kFollowing || state_ == State::kImagesStopped || state_ == State::kLate;
+  }
+  /// The state in words, with what brought it about.
+  std::string describe() const;
+
+  /// Images of trials that had no torque in time, since the start.
+  int numMisses() const { return num_misses_; }
+  /// Torques in time, since the start.
+  int numAnswers() const { return num_answers_; }
+
+ private:
+  void expire(Time now);
+  void wait();
+
+  RobotOptions options_;
+  Time dt_;
+  State state_ = State::kStopped;
+  bool resetting_ = false;
+  std::string stop_reason_ = "service enable arms them";
+  int num_publishers_ = 0;
+  std::deque<Time> unanswered_;  // images whose torque may still come
+  Time last_image_{0};
+  double target_ = 0.0;  // [N m]
+  double effort_ = 0.0;  // what the motor got last [N m]
+  Time last_effort_{0};
+  int num_misses_ = 0;
+  int num_answers_ = 0;
+};
+
+}  // namespace ddm

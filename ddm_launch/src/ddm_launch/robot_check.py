@@ -1,0 +1,160 @@
+# Plays the user of robot.launch on a stand-in robot, and measures whether torques came in time and it reached its goal.
+# SPDX-License-Identifier: BSD-3-Clause
+import glob
+import math
+import os
+import subprocess
+import tempfile
+import threading
+
+from ddm_msgs.msg import RunTrialActionGoal, RunTrialActionResult
+from ddm_msgs.srv import Reset
+import rospy
+from sensor_msgs.msg import Image, JointState
+from std_msgs.msg import Float64, UInt32
+from std_srvs.srv import SetBool, Trigger
+import yaml
+
+from ddm_launch.step_runner import program
+from ddm_launch.sweep_folder import write_file
+
+LIMIT_S = 60.0
+SETTLED_STEPS = 10        # as `success` of an experiment has it ...
+TOLERANCE_DEG = 10.0      # ... by ground truth, which robot.launch never sees
+DEADLINE_MISSES = 0       # the bars
+LATENCY_P99_MS = 50.0
+
+
+def quantile(values, q):
+    """By nearest rank; None if there are no values."""
+    ordered = sorted(values)
+    return ordered[max(0, math.ceil(q * len(ordered)) - 1)] if ordered else None
+
+
+def goal_error_deg(angle):
+    """Distance of an angle [rad] to upright."""
+    return abs(math.degrees(math.remainder(angle - math.pi, 2.0 * math.pi)))
+
+
+class Load:
+    """Trains on the bags so far again and again, in a process of its own."""
+
+    def __init__(self, runs, preset_file):
+        self._runs, self._preset_file = runs, preset_file
+        self._process = None
+        self.num_trainings = 0
+        self._thread = threading.Thread(target=self._work, daemon=True)
+        self._thread.start()
+
+    def _work(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            while not rospy.is_shutdown():
+                bags = sorted(glob.glob(os.path.join(self._runs, "trial_*", "trial.bag")))
+                if not bags:
+                    rospy.sleep(0.5)
+                    continue
+                self._process = subprocess.Popen(
+                    [program("train_from_bags", "ddm_model"), "--config", self._preset_file,
+                     "--out", os.path.join(scratch, "model.ddm")] + bags,
+                    stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, env=dict(os.environ, OMP_NUM_THREADS="1"))
+                self.num_trainings += self._process.wait() == 0
+
+    def end(self):
+        if self._process is not None:
+            self._process.kill()
+        self._thread.join(5.0)
+
+
+class RobotCheck:
+    def __init__(self):
+        self._runs = rospy.get_param("~runs")
+        self._lock = threading.Lock()
+        self._goal = None          # of the trial under way
+        self._truth = {}           # stamp [ns]: error [deg]
+        self._latencies_ms = []
+        self._misses = 0
+        self._control_s = 0.0
+        self._evaluations = []
+        self._load = Load(self._runs, rospy.get_param("~preset_file")) if rospy.get_param("~load") else None
+        for name, kind, callback in (("plant/ground_truth/joint_states", JointState, self._on_truth),
+                                     ("latency", Float64, self._on_latency),
+                                     ("deadline_misses", UInt32, self._on_misses),
+                                     ("run_trial/goal", RunTrialActionGoal, self._on_goal),
+                                     ("run_trial/result", RunTrialActionResult, self._on_result)):
+            rospy.Subscriber(name, kind, callback, queue_size=1000)
+
+    def act(self):
+        """What a user does: shows the robot its goal, then switches the motors on."""
+        self._call("plant/reset", Reset, start=[math.pi, 0.0])
+        for _ in range(3):  # the camera is a frame late
+            rospy.wait_for_message("stand_in/image_raw", Image, LIMIT_S)
+        self._call("take_goal", Trigger)
+        self._call("enable", SetBool, True)
+
+    @staticmethod
+    def _call(name, kind, *values, **fields):
+        rospy.wait_for_service(name, LIMIT_S)
+        answer = rospy.ServiceProxy(name, kind)(*values, **fields)
+        if not answer.success:
+            raise rospy.ServiceException("%s: %s" % (name, answer.message))
+
+    def _on_truth(self, joints):
+        with self._lock:
+            if self._goal is not None:
+                self._truth[joints.header.stamp.to_nsec()] = goal_error_deg(joints.position[0])
+
+    def _on_latency(self, latency):
+        with self._lock:
+            self._latencies_ms.append(1e3 * latency.data)
+
+    def _on_misses(self, misses):
+        with self._lock:
+            self._misses = misses.data
+
+    def _on_goal(self, message):
+        with self._lock:
+            self._goal = message.goal
+            self._truth.clear()
+
+    def _on_result(self, message):
+        with self._lock:
+            goal, self._goal = self._goal, None
+            stamps = [stamp.to_nsec() for stamp in message.result.stamp]
+            if goal is None or len(stamps) < SETTLED_STEPS:
+                return
+            self._control_s += 1e-9 * (stamps[-1] - stamps[0])
+            if goal.evaluation:
+                since = stamps[-SETTLED_STEPS]
+                error = max(error for stamp, error in self._truth.items() if since <= stamp <= stamps[-1])
+                self._evaluations.append({"trial": goal.trial, "largest_error_deg": round(error, 2),
+                                          "reached": error <= TOLERANCE_DEG})
+            write_file(os.path.join(self._runs, "robot_check.yaml"),
+                       yaml.safe_dump(self._result(), sort_keys=False))
+
+    def _result(self):
+        p99 = quantile(self._latencies_ms, 0.99)
+        return {"frames": len(self._latencies_ms), "control_minutes": round(self._control_s / 60.0, 2),
+                "deadline_misses": self._misses,
+                "latency_ms": {name: round(quantile(self._latencies_ms, q), 2)
+                               for name, q in (("median", 0.5), ("p99", 0.99), ("max", 1.0))},
+                "other_trainings": self._load.num_trainings if self._load else 0,
+                "evaluations": self._evaluations,
+                "in_time": self._misses <= DEADLINE_MISSES and p99 < LATENCY_P99_MS,
+                "reached": bool(self._evaluations) and self._evaluations[-1]["reached"]}
+
+    def end(self):
+        if self._load is not None:
+            self._load.end()
+
+
+def main():
+    rospy.init_node("robot_check")
+    check = RobotCheck()
+    rospy.on_shutdown(check.end)
+    try:
+        check.act()
+    except (rospy.ROSException, rospy.ServiceException) as error:
+        rospy.logfatal("robot_check: %s", error)
+        return 1
+    rospy.spin()
+    return 0

@@ -1,0 +1,53 @@
+// Tests of the parameters of a robot: what is refused, and that the manual tells the defaults.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot_options.h"
+
+#include <ddm_msgs/param_reader.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace ddm {
+namespace {
+
+TEST(RobotOptions, TheManualTellsTheDefaults) {
+  const std::string file = std::string(DDM_LAUNCH_SOURCE_DIR) + "/config/robot.yaml";
+  ParamReader reader = ParamReader::fromFiles({file});
+  const auto manual = reader.read<RobotOptions>("robot");
+  EXPECT_NO_THROW(reader.requireValid());
+  EXPECT_EQ(YAML::Dump(toYaml(manual)), YAML::Dump(toYaml(RobotOptions())));
+  const YAML::Node block = YAML::LoadFile(file)["robot"];
+  EXPECT_EQ(block.size(), toYaml(RobotOptions()).size()) << "a key is missing in the manual";
+}
+
+TEST(RobotOptions, EachKeyHasItsRule) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto problem = [](const auto& change) {
+    RobotOptions options;
+    change(&options);
+    const std::vector<std::string> problems = options.problems();
+    return problems.size() == 1 ? problems[0] : std::to_string(problems.size()) + " problems";
+  };
+  EXPECT_EQ(problem([](RobotOptions*) {}), "0 problems");
+  EXPECT_EQ(problem([](auto* o) { o->dt = 0.0; }), "robot/dt must lie in [0.001, 10], got 0");
+  for (const double bad : {-1.0, nan}) {
+    EXPECT_NE(problem([&](auto* o) { o->dt = bad; }).find("robot/dt"), std::string::npos);
+    EXPECT_NE(problem([&](auto* o) { o->max_torque = bad; }).find("robot/max_torque"),
+              std::string::npos);
+    EXPECT_NE(problem([&](auto* o) { o->slew_rate = bad; }).find("robot/slew_rate"),
+              std::string::npos);
+    EXPECT_NE(problem([&](auto* o) { o->effort_rate = bad; }).find("robot/effort_rate"),
+              std::string::npos);
+    EXPECT_NE(problem([&](auto* o) { o->reset_timeout = bad; }).find("robot/reset_timeout"),
+              std::string::npos);
+  }
+  EXPECT_NE(problem([](auto* o) { o->crop_x = -1; }).find("robot/crop_x"), std::string::npos);
+  EXPECT_NE(problem([](auto* o) { o->crop_y = 16384; }).find("robot/crop_y"), std::string::npos);
+  EXPECT_NE(problem([](auto* o) { o->crop_width = -1; }).find("robot/crop_width"),
+            std::string::npos);
+  EXPECT_NE(problem([](auto* o) { o->crop_height = 20000; }).find("robot/crop_height"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace ddm

@@ -1,0 +1,163 @@
+# What robot_node has around it: a camera, a controller, a motor and a user, played in one process.
+# SPDX-License-Identifier: BSD-3-Clause
+import threading
+import time
+import unittest
+
+from actionlib_msgs.msg import GoalID
+from ddm_msgs.msg import RunTrialActionResult, Torque
+from ddm_msgs.srv import Reset
+import rospy
+from sensor_msgs.msg import Image
+from std_msgs.msg import Float64, UInt32
+from std_srvs.srv import SetBool, Trigger
+
+from processes import Process, find_program
+
+LIMIT_S = 15.0
+DT = 0.4
+WIDTH, HEIGHT = 48, 40
+OPTIONS = ["_image/size:=4", "_robot/dt:=%g" % DT, "_robot/max_torque:=4.0",
+           "_robot/crop_x:=8", "_robot/crop_width:=32", "_robot/crop_height:=32"]
+
+
+def wait_until(condition, what="the condition"):
+    """Returns what the condition gives as soon as that is true."""
+    end = time.time() + LIMIT_S
+    while time.time() < end:
+        value = condition()
+        if value:
+            return value
+        time.sleep(0.005)
+    raise AssertionError("%s did not come about within %g s" % (what, LIMIT_S))
+
+
+def in_background(function, *arguments):
+    """Calls it at once. Returns a function that waits for its end and gives what it returned."""
+    box = []
+    thread = threading.Thread(target=lambda: box.append(function(*arguments)), daemon=True)
+    thread.start()
+
+    def result():
+        thread.join(LIMIT_S)
+        if not box:
+            raise AssertionError("no answer within %g s" % LIMIT_S)
+        return box[0]
+
+    return result
+
+
+class Camera:
+    """30 images a second; left half `left`, right half black."""
+
+    def __init__(self, topic):
+        self.left = 255
+        self.showing = True
+        self.age_s = 0.0
+        self._ended = False
+        self._publisher = rospy.Publisher(topic, Image, queue_size=2)
+        self._thread = threading.Thread(target=self._show, daemon=True)
+        self._thread.start()
+
+    def end(self):
+        self._ended = True
+        self._thread.join()
+        self._publisher.unregister()
+
+    def _show(self):
+        while not self._ended:
+            if self.showing:
+                image = Image(width=WIDTH, height=HEIGHT, step=3 * WIDTH, encoding="rgb8")
+                image.header.stamp = rospy.Time.now() - rospy.Duration(self.age_s)
+                image.data = bytes([self.left] * 3 * (WIDTH // 2) + [0] * 3 * (WIDTH - WIDTH // 2)) * HEIGHT
+                self._publisher.publish(image)
+            time.sleep(1.0 / 30.0)
+
+
+class Listener:
+    def __init__(self, topic, kind):
+        self.messages = []
+        self._subscriber = rospy.Subscriber(topic, kind, self.messages.append, queue_size=1000, tcp_nodelay=True)
+
+    def end(self):
+        self._subscriber.unregister()
+
+    def next(self):
+        """The next message from now on."""
+        seen = len(self.messages)
+        wait_until(lambda: len(self.messages) > seen, "a message on " + self._subscriber.name)
+        return self.messages[seen]
+
+
+class Robot:
+    """robot_node and its surroundings."""
+
+    def __init__(self, *arguments, **kwargs):
+        self.camera = Camera("camera/source")
+        self.images = Listener("camera/image_raw", Image)
+        self.goals = Listener("goal_image", Image)
+        self.efforts = Listener("effort_command", Float64)
+        self.latencies = Listener("latency", Float64)
+        self.misses = Listener("deadline_misses", UInt32)
+        self.cancels = Listener("run_trial/cancel", GoalID)
+        self.torques = rospy.Publisher("torque", Torque, queue_size=10, tcp_nodelay=True)
+        self.trial_ends = rospy.Publisher("run_trial/result", RunTrialActionResult, queue_size=1)
+        self.process = Process([find_program("ddm_launch", "robot_node")] + list(arguments), **kwargs)
+        rospy.wait_for_service("reset", LIMIT_S)
+        wait_until(lambda: self.torques.get_num_connections() and self.trial_ends.get_num_connections(), "robot_node")
+
+    def end(self):
+        """Leaves the topics to the next one."""
+        self.process.stop()
+        self.camera.end()
+        self.torques.unregister()
+        self.trial_ends.unregister()
+        for listener in (self.images, self.goals, self.efforts, self.latencies, self.misses, self.cancels):
+            listener.end()
+
+    def enable(self, on):
+        return rospy.ServiceProxy("enable", SetBool)(on)
+
+    @staticmethod
+    def takeGoal():
+        return rospy.ServiceProxy("take_goal", Trigger)()
+
+    @staticmethod
+    def resetDone():
+        return rospy.ServiceProxy("reset_done", Trigger)()
+
+    @staticmethod
+    def reset():
+        """The answer, which may take a while."""
+        return in_background(rospy.ServiceProxy("reset", Reset))
+
+    def answer(self, *torque, delay_s=0.0):
+        """Answers the next image."""
+        stamp = self.images.next().header.stamp
+        time.sleep(delay_s)
+        message = Torque(torque=list(torque))
+        message.header.stamp = stamp
+        self.torques.publish(message)
+
+    def waitForEffort(self, effort):
+        """From now on."""
+        seen = len(self.efforts.messages)
+        wait_until(lambda: any(message.data == effort for message in self.efforts.messages[seen:]),
+                   "effort %g" % effort)
+
+    def effort(self):
+        """What the motor gets now."""
+        return self.efforts.next().data
+
+    def numMisses(self):
+        return self.misses.messages[-1].data
+
+
+class RobotCase(unittest.TestCase):
+    def start(self, *arguments, **kwargs):
+        """A robot_node of which nothing stays after the test."""
+        if rospy.has_param("/robot_node"):
+            rospy.delete_param("/robot_node")
+        robot = Robot(*(OPTIONS + list(arguments)), **kwargs)
+        self.addCleanup(robot.end)
+        return robot
