@@ -149,7 +149,7 @@ std::string csvOf(const std::vector<Row>& rows) {
     out << row.seed << ",";
     if (row.evaluation.known) {
       out << row.evaluation.success << "," << row.evaluation.success_strict << ","
-          << ddm::formatDouble(row.evaluation.final_error_deg);
+          << ddm::formatDouble(row.evaluation.final_error_deg.value());
     } else {
       out << ",,";
     }
@@ -192,7 +192,7 @@ void run(const Request& request, ddm::Configuration configuration) {
     addRate(rows, "success", &ddm::Evaluation::success, &summary);
     addRate(rows, "success_strict", &ddm::Evaluation::success_strict, &summary);
     std::vector<double> errors;
-    for (const Row& row : rows) errors.push_back(row.evaluation.final_error_deg);
+    for (const Row& row : rows) errors.push_back(row.evaluation.final_error_deg.value());
     summary["final_error_deg_median"] = ddm::valueToYaml(ddm::quantile(errors, 0.5));
   } else {
     summary["success"] = "not known: the plant has no angle to measure";

@@ -88,12 +88,14 @@ void drawErrors(const std::vector<TrialRow>& rows, double max_x, double goal_deg
   cv::line(*picture, axes.at(0.0, goal_deg), axes.at(max_x, goal_deg), kGrey);
   std::vector<cv::Point2d> points;
   for (const TrialRow& row : rows) {
-    if (row.evaluation.known) points.emplace_back(row.frames, row.evaluation.final_error_deg);
+    if (row.evaluation.final_error_deg) {
+      points.emplace_back(row.frames, *row.evaluation.final_error_deg);
+    }
   }
   drawCurve(axes, points, kGrey, picture);
   for (const TrialRow& row : rows) {
-    if (!row.evaluation.known) continue;
-    const cv::Point at = axes.at(row.frames, row.evaluation.final_error_deg);
+    if (!row.evaluation.final_error_deg) continue;
+    const cv::Point at = axes.at(row.frames, *row.evaluation.final_error_deg);
     if (row.evaluation.success) {
       cv::circle(*picture, at, 6, kBlue, cv::FILLED, cv::LINE_AA);
     } else {
@@ -103,10 +105,10 @@ void drawErrors(const std::vector<TrialRow>& rows, double max_x, double goal_deg
   std::string title = "distance from the goal at the end [deg]";
   if (!rows.empty()) {
     const TrialRow& last = rows.back();
-    title += !last.evaluation.known
-                 ? ": not known, no ground truth"
-                 : format(", after trial %d: %.1f, ", last.trial, last.evaluation.final_error_deg) +
-                       (last.evaluation.success ? "success" : "no success");
+    const std::optional<double>& error_deg = last.evaluation.final_error_deg;
+    title += error_deg ? format(", after trial %d: %.1f", last.trial, *error_deg)
+                       : std::string(": not known, no ground truth");
+    if (last.evaluation.known) title += last.evaluation.success ? ", success" : ", no success";
   }
   write(title, {kUpper.x, kUpper.y - 12}, kBlack, picture);
 }
