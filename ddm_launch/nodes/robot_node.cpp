@@ -20,7 +20,8 @@ namespace ddm {
 namespace {
 
 constexpr int kQueue = 10;
-constexpr double kFreshCamera = 1.0;  // a camera that is silent for longer is not there [s]
+constexpr double kFreshCamera = 1.0;    // a camera that is silent for longer is not there [s]
+constexpr double kStepTolerance = 0.1;  // of dt
 const ros::WallDuration kLook(0.1);
 const ros::WallDuration kRemindPeriod(10.0);
 const ros::WallDuration kDiagnosisPeriod(1.0);
@@ -246,6 +247,10 @@ bool RobotNode::onReset(ddm_msgs::Reset::Request& /*request*/,
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     gate_.endReset();
+    if (std::abs(picker_.step() - options_.dt) > kStepTolerance * options_.dt) {
+      ROS_WARN("the camera's frames do not fit: images are %g s apart where dt is %g s",
+               picker_.step(), options_.dt);
+    }
     picker_.restart();
     publishEffort();
   }
