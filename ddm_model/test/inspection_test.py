@@ -133,7 +133,8 @@ class InspectionTest(unittest.TestCase):
         self.assertRefused(["no topic camera/image_raw", "eye"], "--model", self.model, self.file("lazy.bag"))
         with open(self.file("names.yaml"), "w") as stream:
             stream.write("data_set: {image_topic: eye}\n")
-        self.inspect("--config", self.file("names.yaml"), self.file("lazy.bag"))
+        page = self.inspect("--config", self.file("names.yaml"), self.file("lazy.bag"))
+        self.assertIn("Record trials with random torques over the motor's whole range", page.text)
         self.assertFalse(self.verdict(self.out)["Torques are excited"])
         self.assertRegex(self.output, r"FAILED +Torques are excited")
 

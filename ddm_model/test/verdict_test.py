@@ -128,8 +128,9 @@ class VerdictTest(unittest.TestCase):
         loses_torques(data)
         figures = {check.name: check.figure for check in verdict.verdict(data)}
         self.assertIn("20 of 420 images (4.76 %)", figures["Images have their torques"])
-        self.assertIn("0.35 of it at best in the first 5 step(s); 1 step ahead 0.035 grey, repeating 0.1; predictions "
-                      "are the better ones up to 13 of 15", figures["Predictions beat repeating the last frame"])
+        self.assertIn("at best 0.35 times the error of repeating, in the first 5 step(s); 1 step ahead 0.035 grey, "
+                      "repeating 0.1; predictions are the better ones up to 13 of 15",
+                      figures["Predictions beat repeating the last frame"])
         self.assertIn("1.27 times as much 5 step(s) ahead", figures["The model heeds the torque"])
         self.assertIn("keep 96 %", figures["Enough components, for such images"])
 

@@ -8,7 +8,7 @@ table { border-collapse: collapse; } td, th { border: 1px solid #ccc; padding: .
 vertical-align: top; } th { background: #f3f3f3; }
 img { max-width: 100%; height: auto; } pre { background: #f6f6f6; padding: .8em; overflow-x: auto; }
 .summary { border-left: .4em solid #0072B2; background: #f3f7fb; padding: .8em 1em; }
-.failed { border-left-color: #D55E00; background: #fcf3ee; } .mark { white-space: nowrap; font-weight: bold; }"""
+.failed { border-left-color: #D55E00; background: #fcf3ee; } td:first-child { white-space: nowrap; }"""
 MARKS = {True: "passed", False: "FAILED", None: "not known"}
 
 
@@ -16,10 +16,12 @@ def escaped(value):
     return html.escape(str(value), quote=True)
 
 
-def table(head, rows):
-    """Everything in it is escaped."""
+def table(head, rows, marked=()):
+    """Everything in it is escaped. marked: numbers of the rows that stand out."""
     lines = ["<table>", "<tr>%s</tr>" % "".join("<th>%s</th>" % escaped(cell) for cell in head)]
-    lines += ["<tr>%s</tr>" % "".join("<td>%s</td>" % escaped(cell) for cell in row) for row in rows]
+    for i, row in enumerate(rows):
+        lines.append("<tr%s>%s</tr>" % (' class="failed"' if i in marked else "",
+                                        "".join("<td>%s</td>" % escaped(cell) for cell in row)))
     return "\n".join(lines + ["</table>"])
 
 
@@ -28,8 +30,10 @@ def figure(title, uri, caption):
 
 
 def verdict_table(checks):
-    head = ["", "what", "found", "should be", "what to do if not"]
-    return table(head, [(MARKS[check.ok], check.name, check.figure, check.rule, check.remedy) for check in checks])
+    rows = [(MARKS[check.ok], check.name, check.figure, check.rule, "" if check.ok else check.remedy)
+            for check in checks]
+    marked = [i for i, check in enumerate(checks) if check.ok is False]
+    return table(["", "what", "found", "should be", "what to do"], rows, marked)
 
 
 def page(title, summary, failed, sections):

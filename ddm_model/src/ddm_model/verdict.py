@@ -167,8 +167,8 @@ def check_prediction(data):
     ratios = data.errors["rmse"] / np.maximum(data.errors["rmse_repeat"], 1e-12)
     ahead = int(np.argmax(np.append(ratios, np.inf) >= 1.0))
     return Check(name, np.min(ratios[:near]) <= BEATS_REPEAT,
-                 "%.2f of it at best in the first %d step(s); 1 step ahead %.3g grey, repeating %.3g; predictions are "
-                 "the better ones up to %d of %d step(s)" % (
+                 "at best %.2f times the error of repeating, in the first %d step(s); 1 step ahead %.3g grey, repeating "
+                 "%.3g; predictions are the better ones up to %d of %d step(s)" % (
                      np.min(ratios[:near]), near, data.errors["rmse"][0], data.errors["rmse_repeat"][0], ahead,
                      len(ratios)), rule,
                  "More and better excited data first. Then training/prediction_steps 4 with residual and increments "
