@@ -42,7 +42,7 @@ TEST(ImageErrors, SharesOfComponentsAndWhatTheyLoseMakeUpTheWhole) {
   const ImageErrors errors = imageErrors(modelWithPcaOf(data), data);
   const double lost = errors.pca.squaredNorm() / errors.mean.squaredNorm();
   EXPECT_NEAR(errors.component_share.sum() + lost, 1.0, 1e-5);
-  EXPECT_GT(lost, 1e-3);
+  EXPECT_GT(lost, 1e-4);  // or the sum above says little
   for (Eigen::Index i = 1; i < errors.component_share.size(); ++i) {
     EXPECT_LE(errors.component_share[i], errors.component_share[i - 1] + 1e-9) << i;
   }
