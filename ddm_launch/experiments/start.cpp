@@ -30,25 +30,40 @@ void identify(std::string* path, std::string* id) {
   *id = here;
 }
 
-void requireFits(const std::string& path, const Configuration& configuration, const Plant& plant) {
+/// What the trials to come will be like.
+struct Trials {
+  int torque_dim;
+  int image_size;
+  double dt;
+  std::string whose;  ///< "the plant", "the robot"
+};
+
+/// A robot's images come from robot_node, at the model's size.
+Trials trialsOf(const Configuration& configuration, const Plant& plant) {
+  if (!configuration.robot) return {plant.torqueDim(), plant.imageSize(), plant.dt(), "the plant"};
+  return {1, configuration.model.image.size, configuration.robot->dt, "the robot"};
+}
+
+void requireFits(const std::string& path, const Configuration& configuration,
+                 const Trials& trials) {
   const BagContent bag =
       readBag(path, configuration.model.image.size, configuration.model.data_set);
-  const auto require = [&path](bool ok, const auto& has, const std::string& of, const auto& wants) {
+  const auto require = [&](bool ok, const std::string& what, const auto& has, const auto& wants) {
     if (ok) return;
     std::ostringstream text;
-    text << "bag " << path << " does not fit the plant: it has " << has << ", the plant " << wants
-         << " " << of << ": leave the bag out, or choose the plant that it was recorded on";
+    text << "bag " << path << " does not fit " << trials.whose << ": " << what << ": " << has
+         << " in the bag, " << wants << " in the trials to come; leave the bag out, or choose what "
+         << "it was recorded on";
     throw std::invalid_argument(text.str());
   };
-  require(bag.data.torqueDim() == plant.torqueDim(), bag.data.torqueDim(), "torque(s)",
-          plant.torqueDim());
-  const std::string size = std::to_string(plant.imageSize());
+  require(bag.data.torqueDim() == trials.torque_dim, "torques a frame", bag.data.torqueDim(),
+          trials.torque_dim);
+  const std::string size = std::to_string(trials.image_size);
   const std::string camera = size + "x" + size + " mono8";
-  require(bag.camera == camera, "images of " + bag.camera, "as its camera's images", camera);
+  require(bag.camera == camera, "images", bag.camera, camera);
   const bool same_rate =
-      bag.interval == 0.0 || std::abs(bag.interval - plant.dt()) <= kRateTolerance * plant.dt();
-  require(same_rate, std::to_string(bag.interval) + " s between frames", "s (plant/dt)",
-          plant.dt());
+      bag.interval == 0.0 || std::abs(bag.interval - trials.dt) <= kRateTolerance * trials.dt;
+  require(same_rate, "seconds between frames (dt)", bag.interval, trials.dt);
 }
 
 }  // namespace
@@ -76,7 +91,7 @@ void prepareStart(Configuration* configuration) {
     if (!seen.insert(start.bags[i]).second) {
       throw std::invalid_argument("bag " + start.bags[i] + " is given twice: it would count twice");
     }
-    requireFits(start.bags[i], *configuration, *plant);
+    requireFits(start.bags[i], *configuration, trialsOf(*configuration, *plant));
   }
 }
 

@@ -128,11 +128,11 @@ class StartTest(unittest.TestCase):
     def test_bags_and_models_of_another_plant_are_refused(self):
         bag = self.bags[0]
         fast = self.write("fast.yaml", "plant: {dt: 0.1}\n")
-        self.assertRefused(["bag " + bag, "0.2", "0.1 s (plant/dt)"], "--config", fast, "--bags", bag)
+        self.assertRefused(["bag " + bag, "does not fit the plant", "(dt): 0.2 in the bag, 0.1 in"], "--config", fast, "--bags", bag)
         small = self.write("small.yaml", "camera: {size: 40}\n")
-        self.assertRefused(["bag " + bag, "51x51 mono8", "40x40 mono8"], "--config", small, "--bags", bag)
+        self.assertRefused(["bag " + bag, "images: 51x51 mono8 in the bag, 40x40 mono8 in"], "--config", small, "--bags", bag)
         tile = ["--plant", "moving_tile"]
-        self.assertRefused(["bag " + bag, "1", "2 torque(s)"], "--bags", bag, *tile)
+        self.assertRefused(["bag " + bag, "torques a frame: 1 in the bag, 2 in"], "--bags", bag, *tile)
         self.assertRefused(["model " + self.model, "torques of 1, the plant 2"], "--model", self.model, *tile)
         coarse = self.write("coarse.yaml", "image: {size: 40}\n")
         self.assertRefused(["images of size 51, image/size is 40"], "--config", coarse, "--model", self.model)

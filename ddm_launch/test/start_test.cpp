@@ -1,0 +1,76 @@
+// Tests of what an experiment starts from: bags and who shall act after them fit together, or are
+// refused. SPDX-License-Identifier: BSD-3-Clause
+#include "start.h"
+
+#include <ddm_bag_io/bag_writer.h>
+#include <ddm_model/testing/expect_error.h>
+#include <ddm_model/testing/temp_folder.h>
+#include <ddm_msgs/image_codec.h>
+#include <gtest/gtest.h>
+
+#include "toy_run.h"
+
+namespace ddm {
+namespace {
+
+using testing::throwsNaming;
+using testing::toyConfiguration;
+
+class StartTest : public ::testing::Test {
+ protected:
+  /// A bag of three frames, 0.2 s between them.
+  std::string bag(int image_size) {
+    const std::string path = scratch_.file(std::to_string(image_size) + ".bag");
+    BagWriter writer(path, BagOptions());
+    for (int frame = 0; frame < 3; ++frame) {
+      const ros::Time stamp(1.0 + 0.2 * frame);
+      const std::vector<std::uint8_t> grey(image_size * image_size, 10 * frame);
+      ddm_msgs::Torque torque;
+      torque.header.stamp = stamp;
+      torque.torque = {0.5};
+      writer.write(encodeImage(grey, image_size, stamp, "camera"));
+      writer.write(torque);
+    }
+    writer.close();
+    return path;
+  }
+
+  testing::TempFolder scratch_;
+  Configuration configuration_ = toyConfiguration(scratch_.file("run"));
+};
+
+TEST_F(StartTest, NothingToStartFromStaysNothing) {
+  prepareStart(&configuration_);
+  EXPECT_TRUE(configuration_.start.empty());
+  EXPECT_FALSE(toYaml(configuration_)["start"]);
+}
+
+TEST_F(StartTest, BagsOfThePlantGetTheirIds) {
+  configuration_.start.bags = {bag(51)};
+  prepareStart(&configuration_);
+  ASSERT_EQ(configuration_.start.bag_ids.size(), 1U);
+  EXPECT_EQ(configuration_.start.bag_ids[0].substr(0, 6), "crc32-");
+  EXPECT_NO_THROW(prepareStart(&configuration_));  // an experiment that is taken up
+  configuration_.start.bag_ids[0] = "crc32-00000000";
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { prepareStart(&configuration_); },
+                                                  {"51.bag has changed", "crc32-00000000"}));
+}
+
+TEST_F(StartTest, WhereARobotActsBagsMustFitItAndNotThePlant) {
+  configuration_.robot = RobotOptions();
+  configuration_.model.image.size = 20;
+  configuration_.start.bags = {bag(20)};
+  EXPECT_NO_THROW(prepareStart(&configuration_));
+  configuration_.robot->dt = 0.4;
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [this] { prepareStart(&configuration_); },
+      {"20.bag does not fit the robot", "(dt): 0.2 in the bag, 0.4 in"}));
+  configuration_.robot->dt = 0.2;
+  configuration_.start = StartOptions();
+  configuration_.start.bags = {bag(51)};
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { prepareStart(&configuration_); },
+                                                  {"51x51 mono8 in the bag, 20x20 mono8 in"}));
+}
+
+}  // namespace
+}  // namespace ddm
