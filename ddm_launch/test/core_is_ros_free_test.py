@@ -18,10 +18,11 @@ if "pilco:=OFF" in sys.argv:
     del CORES["ddm_pilco"]
 ROS_INCLUDE = re.compile(
     r'^\s*#\s*include\s*[<"]((?:ros|xmlrpcpp|\w+_msgs|actionlib|cv_bridge|image_transport|dynamic_reconfigure'
-    r'|diagnostic_updater|nodelet|pluginlib|class_loader|tf2?(?:_ros)?|ros\w+|ddm_bag_io)/[^>"]+)', re.MULTILINE)
+    r'|diagnostic_updater|nodelet|pluginlib|class_loader|tf2?(?:_ros)?|ros\w+|ddm_bag_io'
+    r'|ddm_plant_plugin)/[^>"]+)', re.MULTILINE)
 ROS_LIBRARY = re.compile(
     r"^\s*(lib(?:ros\w*|xmlrpcpp|cpp_common|message_filters|actionlib|cv_bridge|image_transport|ddm_msgs"
-    r"|ddm_bag_io)\.so\S*)", re.MULTILINE)
+    r"|ddm_bag_io|ddm_plant_plugin|class_loader)\.so\S*)", re.MULTILINE)
 
 
 def sourceFiles(library):

@@ -110,7 +110,7 @@ class OwnPlantTest(unittest.TestCase):
     def test_from_one_random_trial_the_model_learns_to_stop_the_cart_at_its_goal(self):
         out, config = os.path.join(self.scratch, "learned"), os.path.join(self.scratch, "quick.yaml")
         with open(config, "w") as stream:
-            stream.write("training: {num_starts: 1, pca_starts: 1, max_iterations: 150}\n")
+            stream.write("training: {num_starts: 2, pca_starts: 2, max_iterations: 150}\n")
         code, output = run_experiment("--preset", "efficient", "--plant", "ddm_cart/cart", "--trials", 0, "--config",
                                       config, "--out", out)
         self.assertEqual(code, 0, output)

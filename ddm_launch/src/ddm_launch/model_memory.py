@@ -1,6 +1,5 @@
 # Has model_node learn from a folder of bags and tells its peak memory.
 # SPDX-License-Identifier: BSD-3-Clause
-import argparse
 import glob
 import os
 import re
@@ -26,9 +25,6 @@ def peak_memory_mb(node):
 
 
 def main():
-    argparse.ArgumentParser(
-        prog="model_memory", usage="for benchmark/model_memory.launch, which rosrun ddm_launch growth starts",
-        description="Has model_node learn from all bags of a folder and tells its peak memory.").parse_known_args()
     rospy.init_node("model_memory")
     client = actionlib.SimpleActionClient("train", TrainAction)
     if not client.wait_for_server(rospy.Duration(LIMIT_S)):
