@@ -81,36 +81,43 @@ void drawCurve(const Axes& axes, const std::vector<cv::Point2d>& points, const c
   }
 }
 
+std::string titleOf(const std::vector<TrialRow>& rows) {
+  const std::string title = "distance from the goal at the end [deg]";
+  if (rows.empty()) return title;
+  const TrialRow& last = rows.back();
+  if (!last.evaluation.known) return title + ": not known, no ground truth";
+  const std::string end = format(", after trial %d: ", last.trial) +
+                          (last.evaluation.success ? "success" : "no success");
+  if (!last.evaluation.final_error_deg) return "judged by the distance in features" + end;
+  return title + end + format(", %.1f", *last.evaluation.final_error_deg);
+}
+
 void drawErrors(const std::vector<TrialRow>& rows, double max_x, double goal_deg,
                 cv::Mat* picture) {
   const Axes axes{kUpper, max_x, 0.0, 180.0};
-  drawFrame(axes, {0.0, 45.0, 90.0, 135.0, 180.0}, "%5.0f", picture);
-  cv::line(*picture, axes.at(0.0, goal_deg), axes.at(max_x, goal_deg), kGrey);
+  const bool angles = rows.empty() || rows.back().evaluation.final_error_deg.has_value();
+  drawFrame(axes,
+            angles ? std::vector<double>{0.0, 45.0, 90.0, 135.0, 180.0} : std::vector<double>(),
+            "%5.0f", picture);
+  if (angles) cv::line(*picture, axes.at(0.0, goal_deg), axes.at(max_x, goal_deg), kGrey);
   std::vector<cv::Point2d> points;
   for (const TrialRow& row : rows) {
-    if (row.evaluation.final_error_deg) {
-      points.emplace_back(row.frames, *row.evaluation.final_error_deg);
-    }
+    const Evaluation& evaluation = row.evaluation;
+    if (evaluation.final_error_deg) points.emplace_back(row.frames, *evaluation.final_error_deg);
   }
   drawCurve(axes, points, kGrey, picture);
   for (const TrialRow& row : rows) {
-    if (!row.evaluation.final_error_deg) continue;
-    const cv::Point at = axes.at(row.frames, *row.evaluation.final_error_deg);
+    if (!row.evaluation.known) continue;
+    const double without_angle = row.evaluation.success ? 45.0 : 135.0;  // two rows of marks
+    const cv::Point at =
+        axes.at(row.frames, row.evaluation.final_error_deg.value_or(without_angle));
     if (row.evaluation.success) {
       cv::circle(*picture, at, 6, kBlue, cv::FILLED, cv::LINE_AA);
     } else {
       cv::drawMarker(*picture, at, kRed, cv::MARKER_TILTED_CROSS, 12, 3, cv::LINE_AA);
     }
   }
-  std::string title = "distance from the goal at the end [deg]";
-  if (!rows.empty()) {
-    const TrialRow& last = rows.back();
-    const std::optional<double>& error_deg = last.evaluation.final_error_deg;
-    title += error_deg ? format(", after trial %d: %.1f", last.trial, *error_deg)
-                       : std::string(": not known, no ground truth");
-    if (last.evaluation.known) title += last.evaluation.success ? ", success" : ", no success";
-  }
-  write(title, {kUpper.x, kUpper.y - 12}, kBlack, picture);
+  write(titleOf(rows), {kUpper.x, kUpper.y - 12}, kBlack, picture);
 }
 
 using Value = std::optional<double> TrialRow::*;

@@ -11,8 +11,9 @@
 namespace ddm {
 
 /// Above: distance from the goal at the end of each greedy run, blue dots where it is a success,
-/// red crosses where not. Below: V_R (grey) and V_P (orange) per frame, on a logarithmic axis. Both
-/// over the frames learned from. Where the true state is not known, the upper part says so.
+/// red crosses where not; where the true state is not known, a row of dots and a row of crosses.
+/// Below: V_R (grey) and V_P (orange) per frame, on a logarithmic axis. Both over the frames that
+/// were learned from.
 /// @param rows        of trials.csv; none is fine
 /// @param all_frames  of the whole experiment: the picture grows to the right up to there
 /// @param goal_deg    a run that ends nearer to the goal has reached it [deg]

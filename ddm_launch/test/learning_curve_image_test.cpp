@@ -74,6 +74,14 @@ TEST(LearningCurveImage, GrowsTrialByTrialAndLeavesWhatWasThere) {
   }
 }
 
+TEST(LearningCurveImage, HasARowOfDotsAndARowOfCrossesWhereFeaturesAreTheJudge) {
+  std::vector<TrialRow> rows = {rowWith(0, 0.0, false), rowWith(4, 0.0, true)};
+  for (TrialRow& row : rows) row.evaluation.final_error_deg = std::nullopt;
+  const cv::Mat picture = drawLearningCurve(rows, 10 * kToySteps, kGoalDeg);
+  EXPECT_GT(middle(picture, kBlue).y, middle(picture, kRed).y + 100.0);
+  EXPECT_GT(middle(picture, kBlue).x, middle(picture, kRed).x + 100.0);
+}
+
 TEST(LearningCurveImage, ShowsTheErrorsOfTheModelWhereNobodyKnowsTheTruth) {
   TrialRow row = toyRow(1);
   row.evaluation = Evaluation();

@@ -11,7 +11,6 @@ from PIL import Image
 import rosunit
 
 from ddm_launch.rviz_screenshot import DISPLAYS, HEIGHT, WIDTH, missing_displays
-from ddm_launch.virtual_screen import missing_tools
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import call, find_program  # noqa: E402
@@ -20,9 +19,6 @@ from processes import call, find_program  # noqa: E402
 class RvizTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        missing = missing_tools()
-        if missing:
-            raise unittest.SkipTest("NOBODY HAS LOOKED AT RVIZ, these programs are missing: " + ", ".join(missing))
         with tempfile.TemporaryDirectory() as scratch:
             out = os.path.join(scratch, "rviz.png")
             cls.code, cls.output = call(

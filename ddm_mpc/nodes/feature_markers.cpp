@@ -14,7 +14,7 @@ using visualization_msgs::Marker;
 constexpr int kPointsPerImage = 12;  // along each side
 constexpr double kSmallDot = 0.025;  // diameters, in features
 constexpr double kPlanDot = 0.04;
-constexpr double kLargeDot = 0.09;
+constexpr double kLargeDot = 0.12;
 constexpr double kLine = 0.015;
 constexpr double kLetter = 0.14;
 constexpr double kBehind = 0.01;    // images are drawn below their plane, so that dots stay visible

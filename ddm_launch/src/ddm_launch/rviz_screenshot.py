@@ -42,17 +42,21 @@ def bright(pixels):
     return np.mean(pixels.min(axis=2) > 180)
 
 
+def marks(pixels):
+    """Of the learning curve: blue dots and red crosses."""
+    return like(0, 114, 178)(pixels) + like(213, 94, 0)(pixels)
+
+
 GREEN, CYAN, RED, YELLOW = like(0, 200, 0), like(0, 255, 255), like(255, 0, 0), like(255, 255, 0)
-BLUE_DOT, RED_CROSS = like(0, 114, 178), like(213, 94, 0)
 
 # Display: the middle of its place in the window (left, top, right, bottom), and the least share of its pixels that must
 # be so.
 DISPLAYS = {
     "Camera": ((60, 110, 410, 440), [(dark, 0.5), (bright, 0.005)]),
-    "Learning curve": ((20, 530, 450, 870), [(bright, 0.5), (lambda pixels: BLUE_DOT(pixels) + RED_CROSS(pixels), 1e-3)]),
+    "Learning curve": ((20, 530, 450, 870), [(bright, 0.5), (marks, 2e-4)]),
     "Feature space": ((1040, 90, 1580, 630), [(GREEN, 1e-3), (CYAN, 1e-4), (RED, 1e-4), (YELLOW, 1e-4)]),
     "Prediction": ((1040, 690, 1580, 870), [(dark, 0.3), (bright, 0.005)]),
-    "Feature space in 3-D": ((500, 90, 1000, 860), [(GREEN, 1e-3), (CYAN, 1e-4), (RED, 1e-4), (YELLOW, 1e-4)]),
+    "Feature space in 3-D": ((500, 90, 1000, 860), [(GREEN, 1e-3), (CYAN, 5e-5), (RED, 5e-5), (YELLOW, 5e-5)]),
 }
 
 
@@ -129,7 +133,8 @@ def main(arguments=None):
         description="Runs an experiment with rviz on a screen in memory (no monitor needed) and keeps a picture of the "
                     "window, as soon as each of its displays shows what it should.")
     parser.add_argument("--out", required=True, metavar="FILE.png", help="picture to write")
-    parser.add_argument("--after-trial", type=int, default=5, metavar="K", help="wait for the end of trial K, default 5")
+    parser.add_argument("--after-trial", type=int, default=5, metavar="K",
+                        help="wait for the end of trial K, default 5")
     parser.add_argument("--seconds", type=float, default=2.0, metavar="S", help="and for S seconds more, default 2")
     parser.add_argument("launch", nargs="*", metavar="NAME:=VALUE", help="arguments of experiment.launch, after --")
     options = parser.parse_args(arguments)
