@@ -1,5 +1,4 @@
-# Runs an experiment with the real rviz on a screen in memory, checks that each display shows what it should, and keeps
-# the picture.
+# Runs an experiment with the real rviz on a screen in memory, checks its displays, and keeps the picture.
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
 import os
