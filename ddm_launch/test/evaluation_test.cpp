@@ -137,7 +137,7 @@ TEST(WilsonInterval, HoldsTheRatesThatTheRunsDoNotSpeakAgainst) {
   }
   EXPECT_EQ(wilsonInterval(0, 20).first, 0.0);
   EXPECT_EQ(wilsonInterval(20, 20).second, 1.0);
-  EXPECT_NEAR(wilsonInterval(20, 20).first, 0.838876, 1e-6);
+  EXPECT_NEAR(wilsonInterval(20, 20).first, 20.0 / (20.0 + 1.96 * 1.96), 1e-5);
 }
 
 }  // namespace
