@@ -136,6 +136,8 @@ TEST_F(TorqueGateTest, StopIsZeroAtOnceAndNothingActsUntilArmedAgain) {
   follow();
   gate_.stop("service enable");
   EXPECT_EQ(effort(21), 0.0);
+  gate_.endTrial();  // as the trial does when it is cancelled
+  EXPECT_FALSE(gate_.armed());
   gate_.showImage(at(200));
   EXPECT_FALSE(answer(210, 200, 3.0));
   ASSERT_EQ(gate_.arm(), "");
