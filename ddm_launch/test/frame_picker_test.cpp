@@ -60,6 +60,14 @@ TEST(FramePicker, TakesEachFrameOfACameraThatIsSlowerThanDt) {
   EXPECT_NEAR(picker.step(), 0.1, 1e-6);
 }
 
+TEST(FramePicker, FollowsACameraThatBecomesSlower) {
+  FramePicker picker(0.25);
+  for (int i = 0; i < 200; ++i) picker.pick(at(i / 30.0));
+  EXPECT_NEAR(picker.step(), 8.0 / 30.0, 1e-6);
+  for (int i = 1; i < 20; ++i) picker.pick(at(7.0 + i / 10.0));
+  EXPECT_NEAR(picker.step(), 0.3, 1e-6);
+}
+
 TEST(FramePicker, NeverTakesAFrameTwiceOrAnOlderOne) {
   FramePicker picker(0.2);
   EXPECT_TRUE(picker.pick(at(1.0)));
