@@ -56,8 +56,12 @@ class Load:
                 self._process = subprocess.Popen(
                     [program("train_from_bags", "ddm_model"), "--config", self._preset_file,
                      "--out", os.path.join(scratch, "model.ddm")] + bags,
-                    stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, env=dict(os.environ, OMP_NUM_THREADS="1"))
-                self.num_trainings += self._process.wait() == 0
+                    stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                    env=dict(os.environ, OMP_NUM_THREADS="1"))
+                code = self._process.wait()
+                self.num_trainings += code == 0
+                if code != 0 and not rospy.is_shutdown():
+                    rospy.logwarn_throttle(60.0, "robot_check: the other training ended with code %d", code)
 
     def end(self):
         if self._process is not None:
