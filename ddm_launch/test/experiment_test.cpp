@@ -161,7 +161,7 @@ TEST_F(ExperimentTest, WithoutGroundTruthSuccessStaysEmpty) {
 TEST_F(ExperimentTest, WithoutGroundTruthSuccessIsThatInFeatures) {
   world_.goal_distance = 0.2;
   configuration_.evaluation.goal_distance = 0.3;
-  world_.state = Eigen::Vector2d(0.0, 0.0);  // what is known to be wrong stays wrong
+  world_.state = Eigen::VectorXd::Zero(2);  // what is known to be wrong stays wrong
   configuration_.experiment.trials = 0;
   run();
   EXPECT_NE(textOf(file("trials.csv")).find("\n7,0,30,0,0,180.0,"), std::string::npos)
