@@ -6,12 +6,14 @@
 #include <ddm_msgs/topics.h>
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <gtest/gtest.h>
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <ros/topic.h>
 
 #include <chrono>
 #include <condition_variable>
 #include <fstream>
+#include <map>
 #include <mutex>
 
 #include "ddm_model/model_file.h"
@@ -45,24 +47,30 @@ class ModelNodeTest : public ::testing::Test {
     return goal;
   }
 
-  /// A model_node reports a status of this level with these words.
-  static ::testing::AssertionResult reports(const std::string& node, std::uint8_t level,
-                                            const std::string& words) {
-    std::string text = "nothing";
-    const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(kLimit.toSec());
-    while (ros::WallTime::now() < end) {
-      const auto array =
-          ros::topic::waitForMessage<diagnostic_msgs::DiagnosticArray>("/diagnostics", kLimit);
-      if (!array) break;
-      for (const DiagnosticStatus& status : array->status) {
-        if (status.name != node + ": training") continue;
-        text = status.message;
-        if (status.level == level && contains(text, words)) return ::testing::AssertionSuccess();
-      }
-    }
-    return ::testing::AssertionFailure() << "it is: " << text;
+  ModelNodeTest() {
+    diagnostics_ = nh_.subscribe<diagnostic_msgs::DiagnosticArray>(
+        "/diagnostics", 100, [this](const diagnostic_msgs::DiagnosticArrayConstPtr& array) {
+          for (const DiagnosticStatus& status : array->status) statuses_[status.name] = status;
+        });
   }
 
+  /// A model_node reports a status of this level with these words.
+  ::testing::AssertionResult reports(const std::string& node, std::uint8_t level,
+                                     const std::string& words) {
+    const DiagnosticStatus& status = statuses_[node + ": training"];
+    const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(kLimit.toSec());
+    while (ros::WallTime::now() < end) {
+      if (status.level == level && contains(status.message, words)) {
+        return ::testing::AssertionSuccess();
+      }
+      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.02));
+    }
+    return ::testing::AssertionFailure() << "it is: " << status.message;
+  }
+
+  ros::NodeHandle nh_;
+  ros::Subscriber diagnostics_;
+  std::map<std::string, DiagnosticStatus> statuses_;  ///< the latest of each name
   const testing::TempFolder folder_;
   Client client_{topics::kTrain, /*spin_thread=*/true};
 };

@@ -221,6 +221,7 @@ TEST_F(MpcNodeLiveTest, TellsHowFarTheGoalIsAndHowWrongTheLastPredictionWas) {
 }
 
 TEST_F(MpcNodeLiveTest, ReportsCameraTorqueAndPlansOfATrial) {
+  ASSERT_TRUE(waitUntil([&] { return !diagnostics_.messages.empty(); }));
   beginPlanning(20, 0.0);
   while (torque_.messages.size() < 20U) show(torque_.messages.size() + 1);
   expectEnd(State::SUCCEEDED);
