@@ -143,7 +143,7 @@ def main(arguments=None):
             raise Failure("these programs are missing: " + ", ".join(missing))
         with raised_as_exception():
             pixels = screenshot(options.after_trial, options.seconds, options.launch)
-        Image.fromarray(pixels).quantize(255, method=Image.MEDIANCUT).save(options.out, optimize=True)
+        Image.fromarray(pixels).quantize(255, method=Image.MAXCOVERAGE).save(options.out, optimize=True)
     except Interrupted as interruption:
         print("rviz_screenshot: %s" % interruption, file=sys.stderr)
         return 128 + interruption.number
