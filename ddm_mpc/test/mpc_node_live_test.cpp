@@ -238,14 +238,16 @@ TEST_F(MpcNodeLiveTest, ReportsCameraTorqueAndPlansOfATrial) {
   }
   EXPECT_NE(valueOf(status("torque"), "age of the newest [s]"), "");
   // A report with plans in it tells how long they took, one without does not.
-  EXPECT_TRUE(std::any_of(diagnostics_.messages.begin(), diagnostics_.messages.end(),
-                          [](const diagnostic_msgs::DiagnosticArray& array) {
-                            for (const DiagnosticStatus& status : array.status) {
-                              const std::string time = valueOf(status, "longest solve time [ms]");
-                              if (!time.empty() && std::stod(time) > 0.0) return true;
-                            }
-                            return false;
-                          }));
+  EXPECT_TRUE(waitUntil([&] {
+    return std::any_of(diagnostics_.messages.begin(), diagnostics_.messages.end(),
+                       [](const diagnostic_msgs::DiagnosticArray& array) {
+                         for (const DiagnosticStatus& status : array.status) {
+                           const std::string time = valueOf(status, "longest solve time [ms]");
+                           if (!time.empty() && std::stod(time) > 0.0) return true;
+                         }
+                         return false;
+                       });
+  }));
 }
 
 TEST_F(MpcNodeLiveTest, WarnsWhileATrialWaitsForAnImageOrItsModel) {
