@@ -8,6 +8,7 @@
 #include <ros/xmlrpc_manager.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <map>
 #include <set>
 
@@ -41,8 +42,9 @@ std::set<std::pair<std::string, std::string>> outgoingConnections(const std::str
 
   XmlRpc::XmlRpcValue caller;
   caller[0] = ros::this_node::getName();
+  // The path alone: a node in Python does not know the page "http://...".
   XmlRpc::XmlRpcClient* const client =
-      ros::XMLRPCManager::instance()->getXMLRPCClient(host, static_cast<int>(port), uri);
+      ros::XMLRPCManager::instance()->getXMLRPCClient(host, static_cast<int>(port), "/");
   if (client == nullptr) return out;
   if (client->execute("getBusInfo", caller, response) && response.size() == 3) {
     XmlRpc::XmlRpcValue& connections = response[2];
@@ -77,6 +79,22 @@ std::vector<std::string> missingConnections(const std::vector<std::string>& topi
     }
   }
   return missing;
+}
+
+std::vector<std::string> sharedTopics(const std::vector<std::string>& topics) {
+  XmlRpc::XmlRpcValue response, state;
+  if (!ros::master::execute("getSystemState", ros::this_node::getName(), response, state, false)) {
+    return {};  // nobody new can have come either
+  }
+  std::map<std::string, Names> publishers = nodesByTopic(&state[0]);
+  std::vector<std::string> shared;
+  for (const std::string& topic : topics) {
+    Names& names = publishers[topic];
+    if (names.size() < 2) continue;
+    std::sort(names.begin(), names.end());
+    shared.push_back(topic + ": " + boost::algorithm::join(names, ", "));
+  }
+  return shared;
 }
 
 }  // namespace ddm

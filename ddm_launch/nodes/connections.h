@@ -13,4 +13,8 @@ namespace ddm {
 /// @return "/sim_node -> /mpc_node on /camera/image_raw" for each connection that is still missing
 std::vector<std::string> missingConnections(const std::vector<std::string>& topics);
 
+/// @param topics  resolved names
+/// @return "/torque: /intruder, /mpc_node" for each topic that more than one node publishes
+std::vector<std::string> sharedTopics(const std::vector<std::string>& topics);
+
 }  // namespace ddm

@@ -62,8 +62,6 @@ int main(int argc, char** argv) {
   ros::init(argc, argv, "experiment_node");
   const ros::NodeHandle nh;
   const ros::NodeHandle pnh("~");  // outside the try: its destructor shuts the log down
-  ros::AsyncSpinner spinner(2);
-  spinner.start();
   try {
     run(nh, pnh);
   } catch (const std::exception& e) {

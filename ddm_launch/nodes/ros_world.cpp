@@ -14,8 +14,10 @@
 #include <chrono>
 #include <map>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
 
 #include "connections.h"
 
@@ -23,34 +25,55 @@ namespace ddm {
 namespace {
 
 constexpr int kQueue = 1000;
+constexpr std::uint32_t kThreads = 2;
+constexpr double kResetLimit = 600.0;  // wall time [s]: people may have to put a robot back
 constexpr std::chrono::milliseconds kLook(
     20);  // how often conditions without a callback are looked at
 
+ros::NodeHandle withQueue(ros::NodeHandle nh, ros::CallbackQueue* queue) {
+  nh.setCallbackQueue(queue);
+  return nh;
+}
+
+/// Resolved names of what the nodes of the loop tell each other.
+std::vector<std::string> loopTopics(const ros::NodeHandle& nh) {
+  std::vector<std::string> names;
+  for (const char* topic : {topics::kImage, topics::kTorque, topics::kGoalImage, topics::kModel,
+                            topics::kGroundTruth}) {
+    names.push_back(nh.resolveName(topic));
+  }
+  return names;
+}
+
 }  // namespace
 
-RosWorld::RosWorld(ros::NodeHandle nh, double timeout, Peers peers)
-    : nh_(nh),
+RosWorld::RosWorld(const ros::NodeHandle& nh, double timeout, Peers peers)
+    : nh_(withQueue(nh, &callbacks_)),
       timeout_(timeout),
       peers_(peers),
-      trial_client_(nh, topics::kRunTrial, /*spin_thread=*/false),
-      train_client_(nh, topics::kTrain, /*spin_thread=*/false),
-      reset_client_(nh.serviceClient<ddm_msgs::Reset>(topics::kReset, /*persistent=*/true)),
-      start_client_(
-          nh.serviceClient<ddm_msgs::StartRecording>(topics::kStartRecording, /*persistent=*/true)),
+      trial_client_(nh_, topics::kRunTrial, /*spin_thread=*/false),
+      train_client_(nh_, topics::kTrain, /*spin_thread=*/false),
+      reset_client_(nh_.serviceClient<ddm_msgs::Reset>(topics::kReset, /*persistent=*/true)),
+      start_client_(nh_.serviceClient<ddm_msgs::StartRecording>(topics::kStartRecording,
+                                                                /*persistent=*/true)),
       stop_client_(
-          nh.serviceClient<ddm_msgs::StopRecording>(topics::kStopRecording, /*persistent=*/true)) {
-  ground_truth_sub_ = nh.subscribe<sensor_msgs::JointState>(
+          nh_.serviceClient<ddm_msgs::StopRecording>(topics::kStopRecording, /*persistent=*/true)),
+      spinner_(kThreads, &callbacks_) {
+  ground_truth_sub_ = nh_.subscribe<sensor_msgs::JointState>(
       topics::kGroundTruth, kQueue, [this](const sensor_msgs::JointStateConstPtr& state) {
         const std::lock_guard<std::mutex> lock(mutex_);
         ground_truth_.push_back(*state);
         if (awaits_ground_truth_) changed_.notify_all();  // else a wake-up for each frame
       });
-  model_sub_ = nh.subscribe<ddm_msgs::Model>(topics::kModel, 1,
-                                             [this](const ddm_msgs::ModelConstPtr& model) {
-                                               const std::lock_guard<std::mutex> lock(mutex_);
-                                               model_ = model;
-                                               changed_.notify_all();
-                                             });
+  model_sub_ = nh_.subscribe<ddm_msgs::Model>(topics::kModel, 1,
+                                              [this](const ddm_msgs::ModelConstPtr& model) {
+                                                const std::lock_guard<std::mutex> lock(mutex_);
+                                                model_ = model;
+                                                changed_.notify_all();
+                                              });
+  // Not before: an action client that is still being made drops the server's first status, and in
+  // simulated time that stands still there is no second one.
+  spinner_.start();
   connect();
 }
 
@@ -68,14 +91,9 @@ void RosWorld::connect() {
     waitFor([this] { return train_client_.isServerConnected(); },
             "action " + nh_.resolveName(topics::kTrain) + " is not offered");
   }
-  std::vector<std::string> topics;
-  for (const char* topic : {topics::kImage, topics::kTorque, topics::kGoalImage, topics::kModel,
-                            topics::kGroundTruth}) {
-    topics.push_back(nh_.resolveName(topic));
-  }
   std::vector<std::string> missing;
   const auto connected = [&] {
-    missing = missingConnections(topics);
+    missing = missingConnections(loopTopics(nh_));
     return missing.empty();
   };
   try {
@@ -95,13 +113,18 @@ void RosWorld::signOfLife() {
 /// Waits for a condition, which is looked at whenever a callback has changed something.
 /// @throws std::runtime_error if nobody gave a sign of life within the timeout, or on shutdown
 void RosWorld::waitFor(const std::function<bool()>& condition, const std::string& what) {
+  waitFor(condition, what, timeout_);
+}
+
+void RosWorld::waitFor(const std::function<bool()>& condition, const std::string& what,
+                       double limit) {
   for (;;) {
     if (condition()) return;
     if (!ros::ok()) throw std::runtime_error("interrupted; the same command resumes");
     std::unique_lock<std::mutex> lock(mutex_);
-    if ((ros::WallTime::now() - last_sign_of_life_).toSec() > timeout_) {
+    if ((ros::WallTime::now() - last_sign_of_life_).toSec() > limit) {
       std::ostringstream text;
-      text << what << " (waited " << timeout_ << " s)";
+      text << what << " (waited " << limit << " s)";
       throw std::runtime_error(text.str());
     }
     changed_.wait_for(lock, kLook);
@@ -109,15 +132,35 @@ void RosWorld::waitFor(const std::function<bool()>& condition, const std::string
 }
 
 template <class Service>
-void RosWorld::call(ros::ServiceClient* client, Service* service) {
+void RosWorld::call(ros::ServiceClient* client, Service* service, double limit) {
   // One connection for all calls. With one for each the server hangs up after its answer, and a
   // busy client may hear that first and lose the answer (github.com/ros/ros_comm/issues/1976).
   if (!client->isValid()) {
     *client = nh_.serviceClient<Service>(client->getService(), /*persistent=*/true);
   }
-  if (!client->call(*service)) {
-    throw std::runtime_error("service " + client->getService() + " does not answer");
+  // A node that was stopped keeps its connections: only a limit ends the wait for its answer.
+  std::optional<bool> answered;
+  signOfLife();
+  std::thread caller([&] {
+    const bool success = client->call(*service);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    answered = success;
+    changed_.notify_all();
+  });
+  const auto is_answered = [&] {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return answered.has_value();
+  };
+  const std::string silence = "service " + client->getService() + " does not answer";
+  try {
+    waitFor(is_answered, silence, limit);
+  } catch (const std::exception&) {
+    client->shutdown();  // ends the call
+    caller.join();
+    throw;
   }
+  caller.join();
+  if (!*answered) throw std::runtime_error(silence);
   if (!service->response.success) {
     throw std::runtime_error("service " + client->getService() + ": " + service->response.message);
   }
@@ -175,6 +218,17 @@ auto RosWorld::execute(Client* client, const std::string& name, const Goal& goal
   return *client->getResult();
 }
 
+/// A bag does not say who published what is in it: a trial counts only if one node could have.
+void RosWorld::refuseIntruders() const {
+  std::vector<std::string> names = loopTopics(nh_);
+  names.emplace_back("/clock");
+  const std::vector<std::string> shared = sharedTopics(names);
+  if (shared.empty()) return;
+  std::string text = "the trial is not used, since more than one node may have had a part in it:";
+  for (const std::string& topic : shared) text += "\n - " + topic;
+  throw std::runtime_error(text + "\nStop all publishers but one; the same command resumes");
+}
+
 TrialOutcome RosWorld::runTrial(const TrialRequest& request, const PhaseCallback& progress) {
   if (!request.bag.empty()) startRecording(request.bag);
   {
@@ -184,6 +238,7 @@ TrialOutcome RosWorld::runTrial(const TrialRequest& request, const PhaseCallback
   const ros::Time start = reset(request);
   const ddm_msgs::RunTrialResult result = runPolicy(request, start, progress);
   last_image_ = result.last;
+  refuseIntruders();
   if (!request.bag.empty()) stopRecording(request.num_steps);
 
   TrialOutcome outcome;
@@ -203,13 +258,13 @@ void RosWorld::startRecording(const std::string& bag) {
   ddm_msgs::StartRecording service;
   service.request.path = bag;
   service.request.after = last_image_;
-  call(&start_client_, &service);
+  call(&start_client_, &service, timeout_);
 }
 
 void RosWorld::stopRecording(int num_steps) {
   ddm_msgs::StopRecording service;
   service.request.num_steps = static_cast<std::uint32_t>(num_steps);
-  call(&stop_client_, &service);
+  call(&stop_client_, &service, timeout_);
 }
 
 ros::Time RosWorld::reset(const TrialRequest& request) {
@@ -218,7 +273,7 @@ ros::Time RosWorld::reset(const TrialRequest& request) {
   service.request.trial = request.id.trial;
   service.request.evaluation = request.id.evaluation;
   service.request.num_steps = static_cast<std::uint32_t>(request.num_steps);
-  call(&reset_client_, &service);
+  call(&reset_client_, &service, std::max(timeout_, kResetLimit));
   return service.response.start;
 }
 

@@ -6,6 +6,7 @@
 #include <ddm_msgs/Model.h>
 #include <ddm_msgs/RunTrialAction.h>
 #include <ddm_msgs/TrainAction.h>
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 
@@ -21,7 +22,7 @@ namespace ddm {
 
 /// Orders the nodes about; computes nothing. All waits are in wall time, because simulated time
 /// stands still while a model is trained, and all end with an error that names who is silent.
-/// Needs a running ros::AsyncSpinner.
+/// Handles its callbacks in threads of its own.
 class RosWorld : public World {
  public:
   struct Peers {
@@ -32,7 +33,7 @@ class RosWorld : public World {
   /// Waits until the nodes are there and connected to each other.
   /// @param timeout  wall time without a sign of life [s]
   /// @throws std::runtime_error naming what is missing
-  RosWorld(ros::NodeHandle nh, double timeout, Peers peers);
+  RosWorld(const ros::NodeHandle& nh, double timeout, Peers peers);
 
   TrialOutcome runTrial(const TrialRequest& request, const PhaseCallback& progress) override;
   TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,
@@ -55,11 +56,14 @@ class RosWorld : public World {
   auto execute(Client* client, const std::string& name, const Goal& goal,
                const FeedbackCallback& on_feedback);
   template <class Service>
-  void call(ros::ServiceClient* client, Service* service);
+  void call(ros::ServiceClient* client, Service* service, double limit);
+  void refuseIntruders() const;
   void signOfLife();
   void waitFor(const std::function<bool()>& condition, const std::string& what);
+  void waitFor(const std::function<bool()>& condition, const std::string& what, double limit);
 
-  ros::NodeHandle nh_;
+  ros::CallbackQueue callbacks_;
+  ros::NodeHandle nh_;  // with that queue
   double timeout_;
   Peers peers_;
   std::string model_id_;
@@ -79,7 +83,8 @@ class RosWorld : public World {
   ros::ServiceClient stop_client_;
   ros::Subscriber ground_truth_sub_;
   ros::Subscriber model_sub_;
-  ros::Publisher model_pub_;  // of a saved model
+  ros::Publisher model_pub_;   // of a saved model
+  ros::AsyncSpinner spinner_;  // last: begins when all of the above is there, and ends first
 };
 
 }  // namespace ddm
