@@ -10,6 +10,7 @@
 #include <std_msgs/Float64.h>
 
 #include <sstream>
+#include <stdexcept>
 
 namespace ddm {
 namespace {
@@ -109,6 +110,10 @@ void MpcNode::onImage(const sensor_msgs::ImageConstPtr& image) {
 
 void MpcNode::answer(const sensor_msgs::Image& image) {
   try {
+    if (image_sub_.getNumPublishers() > 1) {
+      throw std::runtime_error("only one camera may be looked through: stop the others, " +
+                               describePublishers(image_sub_.getTopic()));
+    }
     const std::optional<Decision> decision = trial_->answer(image);
     if (!decision) return;
     last_progress_ = ros::WallTime::now();

@@ -7,12 +7,14 @@
 #include <stdexcept>
 #include <utility>
 
+#include "ddm_msgs/topic_peers.h"
 #include "ddm_msgs/topics.h"
 
 namespace ddm {
 namespace {
 
 constexpr int kQueueSize = 10;
+constexpr double kRubbish = 1000.0;  // times max_torque: no command, but an error
 
 Eigen::VectorXd toEigen(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
@@ -72,17 +74,34 @@ bool SimNode::onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Respon
 void SimNode::onTorque(const ros::MessageEvent<ddm_msgs::Torque const>& event) {
   const ddm_msgs::Torque& message = *event.getMessage();
   const Eigen::VectorXd torque = toEigen(message.torque);
-  if (torque.size() == plant_->torqueDim() && torque.allFinite()) {
+  const std::string rule = brokenRule(torque);
+  if (rule.empty()) {
     takeTorque(message.header.stamp, torque, event.getPublisherName());
     return;
   }
   std::ostringstream reason;
   reason << "torque refused: " << event.getPublisherName() << " published [" << torque.transpose()
-         << "] on " << torqueTopic() << ", it must be " << plant_->torqueDim()
-         << " finite number(s):";
-  for (const std::string& name : plant_->torqueNames()) reason << ' ' << name;
+         << "] on " << torqueTopic() << ", " << rule;
   ROS_ERROR_STREAM(reason.str());
   torqueRefused(message.header.stamp, reason.str());
+}
+
+/// @return empty if the motor may follow the torque
+std::string SimNode::brokenRule(const Eigen::VectorXd& torque) const {
+  if (torque_sub_.getNumPublishers() > 1) {
+    return "only one node may drive the motor: stop the others, " +
+           describePublishers(torqueTopic());
+  }
+  std::ostringstream rule;
+  const double limit = kRubbish * plant_->maxTorque();
+  if (torque.size() != plant_->torqueDim() || !torque.allFinite()) {
+    rule << "it must be " << plant_->torqueDim() << " finite number(s):";
+    for (const std::string& name : plant_->torqueNames()) rule << ' ' << name;
+  } else if (torque.cwiseAbs().maxCoeff() > limit) {
+    rule << "it must lie within +-" << limit << ", which is " << kRubbish
+         << " times what the motor can do: check the units";
+  }
+  return rule.str();
 }
 
 }  // namespace ddm

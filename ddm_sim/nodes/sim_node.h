@@ -48,6 +48,7 @@ class SimNode {
  private:
   bool onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Response& response);
   void onTorque(const ros::MessageEvent<ddm_msgs::Torque const>& event);
+  std::string brokenRule(const Eigen::VectorXd& torque) const;
 
   /// The plant has been set to its start: show the first image.
   /// @return stamp of that image

@@ -138,6 +138,17 @@ TEST_F(Lockstep, RefusesATorqueOfAnotherSizeAndEndsTheTrial) {
   }
 }
 
+TEST_F(Lockstep, RefusesATorqueFarBeyondWhatTheMotorCanDo) {
+  const double limit = 1000.0 * PlantOptions().max_torque;
+  const ros::Time start = begin(0);
+  client_->publish(start, {limit});  // saturates
+  ASSERT_TRUE(client_->waitForImages(2));
+  const ros::Time stamp = client_->images[1].header.stamp;
+  client_->publish(stamp, {-1.001 * limit});
+  ASSERT_TRUE(client_->waitForLog("it must lie within +-6000"));
+  expectIdle(stamp);
+}
+
 TEST_F(Lockstep, GoesOnAfterABadTorqueThatAnswersAnotherFrame) {
   const ros::Time start = begin(0);
   client_->publish(start + ros::Duration(7.0), {kNaN});
