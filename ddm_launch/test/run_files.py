@@ -1,67 +1,9 @@
 # What the tests look at in the folder of an experiment.
 # SPDX-License-Identifier: BSD-3-Clause
-import csv
-import os
-
 import rosbag
-import yaml
 
-COLUMNS = ["seed", "trial", "frames", "success", "success_strict", "final_error_deg", "v_r", "v_p", "train_s",
-           "train_evaluations", "plan_ms_median", "plan_ms_p99"]
-TIME_COLUMNS = ["train_s", "plan_ms_median", "plan_ms_p99"]
-
-
-def expected_files(num_trials):
-    """Every file of a finished experiment with this many epsilon-greedy trials."""
-    files = [".lock", "config.yaml", "summary.yaml", "trials.csv"]
-    for k in range(num_trials + 1):
-        files += ["trial_%03d/%s" % (k, name) for name in ("model.ddm", "torques.csv", "trajectory.csv", "trial.bag")]
-        files += ["evaluation_%03d/%s" % (k, name) for name in ("torques.csv", "trajectory.csv")]
-    return sorted(files)
-
-
-def files_in(folder):
-    """Paths of all files, relative to the folder."""
-    found = []
-    for parent, _, names in os.walk(folder):
-        found += [os.path.relpath(os.path.join(parent, name), folder) for name in names]
-    return sorted(found)
-
-
-def read_bytes(*path):
-    with open(os.path.join(*path), "rb") as stream:
-        return stream.read()
-
-
-def read_yaml(*path):
-    with open(os.path.join(*path)) as stream:
-        return yaml.safe_load(stream)
-
-
-def read_rows(*path):
-    """The rows of a CSV file as lists of texts, the header first."""
-    with open(os.path.join(*path), newline="") as stream:
-        return list(csv.reader(stream))
-
-
-def comparable(folder, name):
-    """What must be equal in two runs of one experiment: a file without what tells times and places."""
-    if name == "trials.csv":
-        keep = [k for k, column in enumerate(COLUMNS) if column not in TIME_COLUMNS]
-        return [[row[k] for k in keep] for row in read_rows(folder, name)]
-    content = read_bytes(folder, name)
-    if name.endswith(".yaml"):
-        tree = yaml.safe_load(content)
-        for key in ("wall_s", "train_s"):
-            tree.pop(key, None)
-        tree.get("experiment", {}).pop("runs", None)
-        return tree
-    return content
-
-
-def differences(first, second, names):
-    """Those of the files that are not equal in two runs."""
-    return [name for name in names if comparable(first, name) != comparable(second, name)]
+from ddm_launch.run_comparison import (COLUMNS, TIME_COLUMNS, comparable, differences, expected_files,  # noqa: F401
+                                       files_in, read_bytes, read_rows, read_yaml)
 
 
 def torque_files(num_trials):

@@ -1,0 +1,207 @@
+# fault_injector: relays between plant and controller, and does one thing wrong at one moment.
+# SPDX-License-Identifier: BSD-3-Clause
+"""The moment is exact: the injector sees each reset, image and torque before it arrives, and holds it until its fault
+is done. Only a training is hit wherever it is when its first progress is heard."""
+import copy
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+import xmlrpc.client
+
+from ddm_msgs.msg import Torque, TrainActionFeedback, TrainActionGoal
+from ddm_msgs.srv import Reset
+import rosgraph
+import rospy
+from sensor_msgs.msg import Image
+
+from ddm_launch.step_runner import program
+
+# (trial, whether it is the evaluation after it). `recording` is when the last torque has been sent: the bag is closed.
+RUN_OF_PHASE = {"random trial": (0, False), "exploring trial": (1, False), "recording": (1, False),
+                "evaluation": (1, True)}
+TRAINED_TRIAL = 1  # of the phase `training`
+FRAME = 7          # of a trial or evaluation
+PAUSE_S, LATE_S = 1.0, 1.0
+QUEUE = 100
+
+
+def altered(message, how):
+    """An image or a torque as it should not be."""
+    message = copy.deepcopy(message)
+    if how in ("nan", "inf", "1e300"):
+        message.torque = [float(how)]
+    elif how == "none":
+        message.torque = []
+    elif how == "twice":
+        message.torque = list(message.torque) * 2
+    elif how == "size":
+        message.width = message.height = message.step = message.width // 2
+        message.data = message.data[:message.width * message.height]
+    elif how == "encoding":
+        message.encoding, message.step, message.data = "rgb8", 3 * message.step, 3 * message.data
+    elif how == "unknown":
+        message.encoding = "smell"
+    elif how == "cut":
+        message.data = message.data[:len(message.data) // 2]
+    elif how == "unstamped":
+        message.header.stamp = rospy.Time()
+    else:
+        raise ValueError("no such alteration: " + how)
+    return message
+
+
+def late(message):
+    time.sleep(LATE_S)
+    return [message]
+
+
+# What is passed on in the place of a message, given the one before it.
+MESSAGE_FAULTS = {"drop": lambda message, before, how: [], "double": lambda message, before, how: [message, message],
+                  "late": lambda message, before, how: late(message),
+                  "reorder": lambda message, before, how: [before, message],  # that one comes once more, late
+                  "alter": lambda message, before, how: [altered(message, how)]}
+
+
+def pid_of(node):
+    """Process of a node, or of the master."""
+    master = rosgraph.Master(rospy.get_name())
+    if node == "master":
+        return master.getPid()
+    return xmlrpc.client.ServerProxy(master.lookupNode("/" + node)).getPid(rospy.get_name())[2]
+
+
+class Injector:
+    def __init__(self):
+        self.phase = rospy.get_param("~phase")
+        self.verb, self.what, self.how = (rospy.get_param("~fault").split() + ["", ""])[:3]
+        self.report, self.runs = rospy.get_param("~report"), rospy.get_param("~runs")
+        self.lock = threading.Lock()
+        self.run, self.frame, self.num_steps, self.stamp = None, -1, 0, None
+        self.last = {}  # topic: the message before
+        self.trained, self.pid, self.killed, self.done = -1, None, False, False
+        self.intruder = None
+        if self.verb == "publish":
+            self.intruder = subprocess.Popen(
+                [sys.executable, "-m", "ddm_launch.faults.intruder", self.what], stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE, universal_newlines=True, start_new_session=True)  # Ctrl-C is not for it
+            self.intruder.stdout.readline()
+        self.connect()
+
+    def connect(self):
+        """The service comes last: the experiment waits for it, and then finds everything else in place."""
+        self.images = rospy.Publisher("camera/image_raw", Image, queue_size=QUEUE)
+        self.torques = rospy.Publisher("plant/torque", Torque, queue_size=QUEUE)
+        from_plant = rospy.Subscriber("plant/image_raw", Image, self.on_image, queue_size=QUEUE, tcp_nodelay=True)
+        from_controller = rospy.Subscriber("torque", Torque, self.on_torque, queue_size=QUEUE, tcp_nodelay=True)
+        rospy.Subscriber("train/goal", TrainActionGoal, self.on_training, queue_size=QUEUE)
+        rospy.Subscriber("train/feedback", TrainActionFeedback, self.on_progress, queue_size=QUEUE)
+        ends = (from_plant, from_controller, self.torques, self.images)
+        while not rospy.is_shutdown() and not all(end.get_num_connections() for end in ends):
+            time.sleep(0.01)
+        rospy.wait_for_service("plant/reset")
+        self.reset = rospy.ServiceProxy("plant/reset", Reset)
+        rospy.Service("reset", Reset, self.on_reset)
+
+    def on_reset(self, request):
+        if self.pid is None and self.verb in ("kill", "pause", "hold"):
+            self.pid = pid_of(self.what)  # only now all nodes are sure to be there
+        with self.lock:
+            self.run, self.frame, self.num_steps = (request.trial, request.evaluation), -1, request.num_steps
+        self.wait_for_end()
+        return self.reset(request)
+
+    def wait_for_end(self):
+        """roslaunch takes a moment to notice that a process is dead: meanwhile nobody gets any further."""
+        while self.killed and not rospy.is_shutdown():
+            time.sleep(0.01)
+
+    def is_due(self):
+        """Whether the frame on show is the one of the phase."""
+        frame = self.num_steps - 1 if self.phase == "recording" else FRAME
+        return RUN_OF_PHASE.get(self.phase) == self.run and self.frame == frame
+
+    def on_image(self, image):
+        with self.lock:
+            self.frame, self.stamp = self.frame + 1, image.header.stamp
+            due = self.is_due()
+        if due and self.phase != "recording" and self.verb not in MESSAGE_FAULTS:
+            self.inject()
+        self.relay("image", image, self.images, due)
+
+    def on_torque(self, torque):
+        with self.lock:
+            due = self.is_due() and torque.header.stamp == self.stamp
+        if due and self.phase == "recording":
+            self.inject()
+        self.relay("torque", torque, self.torques, due)
+
+    def relay(self, topic, message, publisher, due):
+        self.wait_for_end()
+        before, self.last[topic] = self.last.get(topic), message
+        messages = [message]
+        if due and self.what == topic and self.verb in MESSAGE_FAULTS and not self.done:
+            messages = MESSAGE_FAULTS[self.verb](message, before, self.how)
+            self.tell()
+        for each in messages:
+            publisher.publish(each)
+
+    def on_training(self, goal):
+        self.trained = goal.goal.trial
+
+    def on_progress(self, _):
+        if self.phase == "training" and self.trained == TRAINED_TRIAL:
+            self.inject()
+
+    def inject(self):
+        """Faults that do not change a message. Once only."""
+        with self.lock:
+            if self.done:
+                return
+            self.done = True
+        said = ""
+        if self.verb == "kill":
+            self.tell()  # first: this node ends with the other
+            self.killed = True
+            os.kill(self.pid, signal.SIGKILL)
+            return
+        if self.verb in ("pause", "hold"):
+            os.kill(self.pid, signal.SIGSTOP)
+            if self.verb == "pause":
+                threading.Timer(PAUSE_S, os.kill, (self.pid, signal.SIGCONT)).start()
+        elif self.verb == "fill":
+            said = self.fill_disk()
+        elif self.verb == "publish":
+            self.intruder.stdin.write("now\n")
+            self.intruder.stdin.flush()
+            said = self.intruder.stdout.readline()
+        elif self.verb == "begin":  # a second experiment in the same folder
+            said = subprocess.run([program("run_experiment"), "--preset", "debug", "--out", self.runs],
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True).stdout
+        else:
+            raise ValueError("no such fault: " + self.verb)
+        self.tell(said)
+
+    def fill_disk(self):
+        with open(os.path.join(self.runs, "filler"), "wb", buffering=0) as stream:
+            try:
+                while True:
+                    stream.write(bytes(4096))
+            except OSError as error:
+                return str(error)
+
+    def tell(self, said=""):
+        self.done = True
+        with open(self.report, "w") as stream:
+            stream.write(said + "\n")
+
+
+def main():
+    rospy.init_node("fault_injector")
+    injector = Injector()
+    rospy.spin()
+    if injector.intruder:
+        injector.intruder.stdin.close()  # it ends, too
+    return 0

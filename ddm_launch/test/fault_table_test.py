@@ -1,0 +1,66 @@
+#!/usr/bin/python3
+# Faults of each class come to what is expected of them, and a case that does not fails.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import sys
+import tempfile
+import unittest
+
+import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from ddm_launch.faults import table  # noqa: E402
+from ddm_launch.faults.cases import CASES, ENDS, RECOVERS, Case  # noqa: E402
+from ddm_launch.faults.damage import damage, find_record  # noqa: E402
+from ddm_launch.faults.run import FaultBench  # noqa: E402
+from processes import call, find_program, run_experiment  # noqa: E402
+from run_files import read_rows  # noqa: E402
+
+
+class FaultTableTest(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.scratch = scratch.name
+
+    def test_there_are_eighty_cases_or_more_and_twenty_quick_ones(self):
+        self.assertEqual(len({case.name for case in CASES}), len(CASES))
+        self.assertGreaterEqual(len([case for case in CASES if not case.root]), 80)
+        self.assertGreaterEqual(len([case for case in CASES if case.quick and not case.root]), 20)
+
+    def test_all_quick_cases_pass(self):
+        code, output = call([find_program("ddm_launch", "fault_table"), "--subset", "quick", "--out", self.scratch],
+                            limit_s=270.0)
+        rows = read_rows(self.scratch, "faults.csv")
+        self.assertEqual(rows[0], table.COLUMNS)
+        self.assertEqual([row for row in rows[1:] if row[3] != row[4] or row[5] != "1"], [], output)
+        self.assertGreaterEqual(len(rows), 21)
+        self.assertIn("%d passed, 0 failed" % (len(rows) - 1), output)
+        self.assertEqual(code, 0, output)
+
+    def test_a_case_whose_phase_never_comes_or_whose_words_are_not_said_is_no_success(self):
+        bench = FaultBench(self.scratch)
+        bench.make_reference()
+        never = Case("never", "no such phase", "drop image", RECOVERS, (), False, False)
+        self.assertEqual(bench.run(never), "not injected")
+        silent = Case("silent", "at rest", "remove trial.bag", ENDS, ("nobody says this",), False, False)
+        self.assertEqual(bench.run(silent), ENDS.replace("named", "not named: nobody says this"))
+        rows = table.table([never, silent], {"never": "not injected", "silent": "ended"})
+        self.assertEqual([line[-2:] for line in rows.splitlines()[1:]], [",0", ",0"])
+
+    def test_each_kind_of_record_of_a_bag_is_cut_in_its_middle(self):
+        code, output = run_experiment("--preset", "debug", "--trials", 0, "--out", self.scratch)
+        self.assertEqual(code, 0, output)
+        sizes = set()
+        for record in ("version", "header", "chunk", "index", "connection", "chunk_info"):
+            path, content = damage("cut %s of trial.bag" % record, self.scratch)
+            begin, end = find_record(content, record)
+            self.assertTrue(begin < os.path.getsize(path) < end, record)
+            sizes.add(os.path.getsize(path))
+            with open(path, "wb") as stream:
+                stream.write(content)
+        self.assertEqual(len(sizes), 6)
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "fault_table_test", FaultTableTest)
