@@ -100,5 +100,17 @@ TEST_F(BagWriterTest, NamesABagThatCannotBeWrittenOrRenamed) {
   EXPECT_TRUE(fs::exists(path_ + ".active"));  // nothing is lost
 }
 
+TEST_F(BagWriterTest, SurvivesADiskThatIsFull) {
+  fs::create_symlink("/dev/full", path_ + ".active");
+  EXPECT_TRUE(throwsNaming<std::runtime_error>(
+      [this] {
+        BagWriter writer(path_, BagOptions());
+        writeFrames(&writer, 200);  // more than what is kept in memory
+        writer.close();
+      },
+      {path_}));
+  EXPECT_FALSE(fs::exists(path_));
+}
+
 }  // namespace
 }  // namespace ddm

@@ -16,27 +16,33 @@ constexpr std::uint32_t kChunkBytes = 32 * 1024;
 }  // namespace
 
 BagWriter::BagWriter(const std::string& path, const BagOptions& options)
-    : path_(path), options_(options) {
+    : path_(path), options_(options), bag_(std::make_unique<rosbag::Bag>()) {
   try {
-    bag_.open(path_ + ".active", rosbag::bagmode::Write);
-    bag_.setCompression(rosbag::compression::LZ4);
-    bag_.setChunkThreshold(kChunkBytes);
+    bag_->open(path_ + ".active", rosbag::bagmode::Write);
+    bag_->setCompression(rosbag::compression::LZ4);
+    bag_->setChunkThreshold(kChunkBytes);
   } catch (const std::exception& e) {
+    abandon();
     throw std::runtime_error("cannot write bag " + path_ + ".active: " + e.what());
   }
 }
 
 BagWriter::~BagWriter() {
   try {
-    if (bag_.isOpen()) bag_.close();  // stays PATH.active: nobody said that it is complete
-  } catch (const std::exception&) {   // a destructor has nobody to tell
+    if (bag_->isOpen()) bag_->close();  // stays PATH.active: nobody said that it is complete
+  } catch (const std::exception&) {     // a destructor has nobody to tell
+    abandon();
   }
 }
+
+/// The bag's own destructor closes it, throws where that cannot be written, on a full disk say, and
+/// so ends the process: it is left to the system.
+void BagWriter::abandon() { static_cast<void>(bag_.release()); }
 
 template <class Message>
 void BagWriter::writeAt(const std::string& topic, const ros::Time& stamp, const Message& message) {
   try {
-    bag_.write(topic, std::max(stamp, ros::TIME_MIN), message);
+    bag_->write(topic, std::max(stamp, ros::TIME_MIN), message);
   } catch (const std::exception& e) {
     throw std::runtime_error("cannot write bag " + path_ + ".active: " + e.what());
   }
@@ -64,7 +70,7 @@ int BagWriter::numFrames() const {
 
 void BagWriter::close() {
   try {
-    bag_.close();
+    bag_->close();
   } catch (const std::exception& e) {
     throw std::runtime_error("cannot complete bag " + path_ + ".active: " + e.what());
   }

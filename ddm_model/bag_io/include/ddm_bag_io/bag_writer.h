@@ -6,6 +6,7 @@
 #include <rosbag/bag.h>
 #include <sensor_msgs/Image.h>
 
+#include <memory>
 #include <set>
 #include <string>
 
@@ -41,10 +42,11 @@ class BagWriter {
  private:
   template <class Message>
   void writeAt(const std::string& topic, const ros::Time& stamp, const Message& message);
+  void abandon();
 
   std::string path_;
   BagOptions options_;
-  rosbag::Bag bag_;
+  std::unique_ptr<rosbag::Bag> bag_;  // null where it was abandoned
   std::set<ros::Time> images_;
   std::set<ros::Time> torques_;
 };
