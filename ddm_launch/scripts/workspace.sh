@@ -21,7 +21,7 @@ packages_to_run=(
   libstd-msgs-dev libsensor-msgs-dev libactionlib-msgs-dev libros-rosgraph-msgs-dev libdiagnostic-msgs-dev
   libvisualization-msgs-dev
   # ROS in C++
-  ros-std-srvs libstd-srvs-dev python3-std-srvs libdiagnostic-updater-dev
+  ros-std-srvs libstd-srvs-dev python3-std-srvs
   libroscpp-dev libactionlib-dev librosbag-dev libcv-bridge-dev libimage-transport-dev libroslib-dev
   libdiagnostic-updater-dev libdynamic-reconfigure-config-init-mutex-dev pluginlib-dev
   # libraries
