@@ -31,9 +31,8 @@ struct TrialRow {
 ///   config.yaml                          effective configuration and version of the code
 ///   trials.csv                           one row per finished trial
 ///   trial_NNN/{trial.bag,torques.csv,trajectory.csv} and the files of the training, model.ddm
-///   evaluation_NNN/{torques.csv,trajectory.csv}, goal_distance.csv instead of the last where
-///   nobody
-///                                        tells the true state
+///   evaluation_NNN/{torques.csv,trajectory.csv}
+///   evaluation_NNN/goal_distance.csv     instead of the trajectory, where nobody tells it
 ///   summary.yaml                         written last: the verdict
 class RunFolder {
  public:
