@@ -90,6 +90,7 @@ std::vector<std::string> sharedTopics(const std::vector<std::string>& topics) {
   std::vector<std::string> shared;
   for (const std::string& topic : topics) {
     Names& names = publishers[topic];
+    names.erase(std::remove(names.begin(), names.end(), ros::this_node::getName()), names.end());
     if (names.size() < 2) continue;
     std::sort(names.begin(), names.end());
     shared.push_back(topic + ": " + boost::algorithm::join(names, ", "));

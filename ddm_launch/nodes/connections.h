@@ -14,7 +14,8 @@ namespace ddm {
 std::vector<std::string> missingConnections(const std::vector<std::string>& topics);
 
 /// @param topics  resolved names
-/// @return "/torque: /intruder, /mpc_node" for each topic that more than one node publishes
+/// @return "/torque: /intruder, /mpc_node" for each topic that more than one node publishes, this
+/// one, which knows what it publishes, not counted
 std::vector<std::string> sharedTopics(const std::vector<std::string>& topics);
 
 }  // namespace ddm
