@@ -6,12 +6,13 @@ set -euo pipefail
 
 usage() {
   cat <<TEXT
-usage: bash demo.sh [--runs FOLDER] [--trials N]
+usage: bash demo.sh [--rviz] [--runs FOLDER] [--trials N]
 
 Learns to hold a pendulum at the target from its camera images alone: installs the Debian packages that are
 missing (as root, or through sudo), builds the workspace \$DDM_WS, runs one experiment with the real ROS nodes
 and draws a learning curve and a film strip. Called again on the same run folder it goes on where it ended.
 
+  --rviz          show camera, prediction and feature space in rviz while it learns: at 25 frames a second, two minutes
   --runs FOLDER   run folder, default \$DDM_WS/runs/demo
   --trials N      trials after the random one, default 15 (the paper's)
   --help          this text
@@ -28,10 +29,16 @@ refuse() {
 }
 
 parse_arguments() {
-  runs='' trials=15
+  runs='' trials=15 rviz=false
   while (($#)); do
     case $1 in
       --help | -h) usage && exit 0 ;;
+      --rviz)
+        [[ -n ${DISPLAY:-} ]] || refuse "--rviz needs a screen, and DISPLAY is not set: call it from a desktop, or without --rviz"
+        rviz=true
+        shift
+        continue
+        ;;
       --runs) [[ -n ${2:-} ]] || refuse "--runs needs a folder" ;;
       --trials) [[ ${2:-} =~ ^[1-9][0-9]*$ ]] || refuse "--trials must be a whole number >= 1, got '${2:-}'" ;;
       *) refuse "unknown argument '$1'" ;;
@@ -88,7 +95,7 @@ run_experiment() {
   ((port == 11311)) || echo "Another program has port 11311: use ROS_MASTER_URI=http://localhost:$port to look in."
   mkdir -p "$runs" || fail "cannot make the run folder $runs. Remedy: choose another with --runs FOLDER."
   roslaunch -p "$port" ddm_launch experiment.launch preset:=paper plant:=pendulum seed:=1 \
-    trials:="$trials" runs:="$runs" rviz:=false || fail "roslaunch failed: see its lines above."
+    trials:="$trials" runs:="$runs" rviz:="$rviz" || fail "roslaunch failed: see its lines above."
   check_summary "$runs" "$started"
 }
 

@@ -159,6 +159,12 @@ class ScriptsTest(unittest.TestCase):
             self.assertEqual(code, 2)
             self.assertIn("--trials must be a whole number >= 1, got '%s'" % value, output)
 
+    def test_rviz_without_a_screen_is_refused_before_anything_is_done(self):
+        code, output = self.call("/usr/bin/env", "-u", "DISPLAY", "/bin/bash", os.path.join(SCRIPTS, "demo.sh"), "--rviz")
+        self.assertEqual(code, 2)
+        self.assertIn("--rviz needs a screen, and DISPLAY is not set", output)
+        self.assertFalse(os.path.exists(self.workspace))
+
     def test_another_port_is_taken_when_the_masters_port_is_in_use(self):
         with socket.socket() as holder:
             try:
