@@ -7,13 +7,12 @@
 #include <ddm_mpc/epsilon_greedy.h>
 #include <ddm_msgs/image_codec.h>
 #include <ddm_msgs/param_value.h>
+#include <ddm_msgs/tool.h>
 #include <ddm_sim/plant_factory.h>
 #include <ros/time.h>
 #include <sys/resource.h>
 
-#include <boost/program_options.hpp>
 #include <chrono>
-#include <cstdlib>
 #include <functional>
 #include <iostream>
 #include <stdexcept>
@@ -25,7 +24,6 @@
 namespace ddm {
 namespace {
 
-constexpr int kUsageError = 2;
 constexpr int kTrialSteps = 1000;
 constexpr int kEvaluations = 20;
 
@@ -126,22 +124,13 @@ void run(const GrowthArguments& arguments) {
 bool parse(int argc, char** argv, GrowthArguments* arguments) {
   namespace po = boost::program_options;
   po::options_description options(std::string(kAbout) + "\n\noptions");
-  options.add_options()("help,h", "show this text");
   options.add_options()("frames", po::value<int>(&arguments->frames)->default_value(1600),
                         "frames to learn from");
   options.add_options()("size", po::value<int>(&arguments->size)->default_value(51),
                         "width and height of the image [pixels]");
   options.add_options()("bags", po::value<std::string>(&arguments->bags),
                         "existing folder to write the trials to, 1000 frames a bag");
-  po::variables_map values;
-  const po::positional_options_description no_positional;
-  po::store(po::command_line_parser(argc, argv).options(options).positional(no_positional).run(),
-            values);
-  if (values.count("help") > 0) {
-    std::cout << options << "\n";
-    return false;
-  }
-  po::notify(values);
+  if (!parseCommandLine(argc, argv, options)) return false;
   if (arguments->frames < 100 || arguments->size < 8) {
     throw std::invalid_argument("--frames must be >= 100 and --size >= 8");
   }
@@ -154,17 +143,7 @@ bool parse(int argc, char** argv, GrowthArguments* arguments) {
 int main(int argc, char** argv) {
   ros::Time::init();
   ddm::GrowthArguments arguments;
-  try {
-    if (!ddm::parse(argc, argv, &arguments)) return EXIT_SUCCESS;
-  } catch (const std::exception& error) {
-    std::cerr << "speed_growth: " << error.what() << " (see --help)\n";
-    return ddm::kUsageError;
-  }
-  try {
-    ddm::run(arguments);
-  } catch (const std::exception& error) {
-    std::cerr << "speed_growth: " << error.what() << "\n";
-    return EXIT_FAILURE;
-  }
-  return EXIT_SUCCESS;
+  return ddm::runTool(
+      "speed_growth", [&] { return ddm::parse(argc, argv, &arguments); },
+      [&] { ddm::run(arguments); });
 }

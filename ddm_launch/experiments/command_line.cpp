@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "command_line.h"
 
-#include <iostream>
 #include <stdexcept>
 
 #include "method.h"
@@ -25,7 +24,6 @@ std::string methodOf(const Arguments& arguments) {
 
 po::options_description configurationOptions(const std::string& about, Arguments* arguments) {
   po::options_description options(about + "\n\noptions");
-  options.add_options()("help,h", "show this text");
   options.add_options()("preset", po::value(&arguments->preset)->default_value("paper"),
                         "name in ddm_launch/config/presets");
   options.add_options()("plant", po::value(&arguments->plant)->default_value("pendulum"),
@@ -50,20 +48,6 @@ void addMethodOption(po::options_description* options, Arguments* arguments) {
   std::string about = "who learns and acts:";
   for (const MethodKind& kind : methodKinds()) about += "\n" + kind.name + ": " + kind.about;
   options->add_options()("method", po::value(&arguments->method), about.c_str());
-}
-
-bool parseCommandLine(int argc, char** argv, const po::options_description& options) {
-  po::variables_map values;
-  const po::positional_options_description no_positional;
-  po::store(po::command_line_parser(argc, argv).options(options).positional(no_positional).run(),
-            values);
-  if (values.count("help") > 0) {
-    std::cout << options << "\n";
-    return false;
-  }
-  if (values.count("out") == 0) throw po::error("--out DIR is missing: say where the results go");
-  po::notify(values);
-  return true;
 }
 
 ParamReader openConfiguration(const Arguments& arguments) {

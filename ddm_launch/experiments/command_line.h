@@ -3,8 +3,8 @@
 #pragma once
 
 #include <ddm_msgs/param_reader.h>
+#include <ddm_msgs/tool.h>
 
-#include <boost/program_options.hpp>
 #include <string>
 #include <vector>
 
@@ -23,7 +23,7 @@ struct Arguments {
   std::vector<std::string> configs;
 };
 
-/// --help and the options that name the files of a configuration.
+/// The options that name the files of a configuration.
 /// @param about  text above the list of options
 boost::program_options::options_description configurationOptions(const std::string& about,
                                                                  Arguments* arguments);
@@ -31,11 +31,6 @@ boost::program_options::options_description configurationOptions(const std::stri
 /// The same, --seed and --out.
 boost::program_options::options_description commonOptions(const std::string& about,
                                                           Arguments* arguments);
-
-/// @return false where --help was asked for and has been printed
-/// @throws boost::program_options::error for options that are unknown, wrong or missing
-bool parseCommandLine(int argc, char** argv,
-                      const boost::program_options::options_description& options);
 
 /// --method, for a program that lets all of them act.
 void addMethodOption(boost::program_options::options_description* options, Arguments* arguments);

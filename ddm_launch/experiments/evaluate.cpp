@@ -11,7 +11,6 @@
 #include <boost/filesystem.hpp>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <iostream>
 #include <mutex>
 #include <sstream>
@@ -27,8 +26,6 @@
 namespace po = boost::program_options;
 
 namespace {
-
-constexpr int kUsageError = 2;
 
 constexpr char kAbout[] =
     "Scores a saved model: a greedy run on the plant for each seed, judged as in an experiment.\n"
@@ -210,17 +207,7 @@ int main(int argc, char** argv) {
   ddm::silenceSolverLog();
   Request request;
   ddm::Configuration configuration;
-  try {
-    if (!configure(argc, argv, &request, &configuration)) return EXIT_SUCCESS;
-  } catch (const std::exception& e) {
-    std::cerr << "evaluate: " << e.what() << " (see --help)\n";
-    return kUsageError;
-  }
-  try {
-    run(request, std::move(configuration));
-  } catch (const std::exception& e) {
-    std::cerr << "evaluate: " << e.what() << "\n";
-    return EXIT_FAILURE;
-  }
-  return EXIT_SUCCESS;
+  return ddm::runTool(
+      "evaluate", [&] { return configure(argc, argv, &request, &configuration); },
+      [&] { run(request, configuration); });
 }

@@ -7,16 +7,15 @@
 #include <ddm_mpc/epsilon_greedy.h>
 #include <ddm_mpc/mpc_policy.h>
 #include <ddm_msgs/param_value.h>
+#include <ddm_msgs/tool.h>
 #include <ddm_sim/camera.h>
 #include <ddm_sim/plant_factory.h>
 #include <ros/time.h>
 
 #include <boost/algorithm/string.hpp>
 #include <boost/lexical_cast.hpp>
-#include <boost/program_options.hpp>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
@@ -31,8 +30,6 @@ namespace ddm {
 namespace {
 
 namespace po = boost::program_options;
-
-constexpr int kUsageError = 2;
 
 constexpr char kAbout[] =
     "Writes the features of a run: of all frames recorded up to a trial, and of one step of the\n"
@@ -51,23 +48,19 @@ struct Arguments {
 /// @return false where --help was asked for and has been printed
 bool parse(int argc, char** argv, Arguments* arguments) {
   po::options_description options(kAbout);
-  options.add_options()("help,h", "show this text");
   options.add_options()("trial", po::value(&arguments->trial)->required(),
                         "the model trained after this trial, and its greedy evaluation");
   options.add_options()("step", po::value(&arguments->step)->required(),
                         "step of the evaluation whose plan is wanted, from 0");
   options.add_options()("out", po::value(&arguments->out)->required(), "CSV file to write");
-  po::options_description all(options);
-  all.add_options()("run", po::value(&arguments->run)->required());
-  po::positional_options_description positional;
-  positional.add("run", 1);
-  po::variables_map values;
-  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
-  if (values.count("help") > 0) {
-    std::cout << options << "\n";
-    return false;
+  po::options_description unnamed;
+  unnamed.add_options()("run", po::value(&arguments->run)->required());
+  po::positional_options_description names;
+  names.add("run", 1);
+  if (!parseCommandLine(argc, argv, options, unnamed, names)) return false;
+  if (arguments->trial < 0 || arguments->trial > 999 || arguments->step < 0) {
+    throw po::error("--trial must lie in [0, 999] and --step be >= 0");
   }
-  po::notify(values);
   return true;
 }
 
@@ -179,20 +172,7 @@ int main(int argc, char** argv) {
   ros::Time::init();
   ddm::silenceSolverLog();
   ddm::Arguments arguments;
-  try {
-    if (!ddm::parse(argc, argv, &arguments)) return EXIT_SUCCESS;
-    if (arguments.trial < 0 || arguments.trial > 999 || arguments.step < 0) {
-      throw std::invalid_argument("--trial must lie in [0, 999] and --step be >= 0");
-    }
-  } catch (const std::exception& e) {
-    std::cerr << "feature_space: " << e.what() << " (see --help)\n";
-    return ddm::kUsageError;
-  }
-  try {
-    ddm::run(arguments);
-  } catch (const std::exception& e) {
-    std::cerr << "feature_space: " << e.what() << "\n";
-    return EXIT_FAILURE;
-  }
-  return EXIT_SUCCESS;
+  return ddm::runTool(
+      "feature_space", [&] { return ddm::parse(argc, argv, &arguments); },
+      [&] { ddm::run(arguments); });
 }

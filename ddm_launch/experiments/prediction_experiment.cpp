@@ -11,7 +11,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <iostream>
 #include <stdexcept>
 #include <string>
@@ -26,8 +25,6 @@
 
 namespace ddm {
 namespace {
-
-constexpr int kUsageError = 2;
 
 constexpr char kAbout[] =
     "Records one long random trial, trains on its first frames and predicts the rest, 1 step "
@@ -240,17 +237,7 @@ bool configure(int argc, char** argv, Experiment* experiment) {
 int main(int argc, char** argv) {
   ddm::silenceSolverLog();
   ddm::Experiment experiment;
-  try {
-    if (!ddm::configure(argc, argv, &experiment)) return EXIT_SUCCESS;
-  } catch (const std::exception& e) {
-    std::cerr << "prediction_experiment: " << e.what() << " (see --help)\n";
-    return ddm::kUsageError;
-  }
-  try {
-    ddm::run(experiment);
-  } catch (const std::exception& e) {
-    std::cerr << "\nprediction_experiment: " << e.what() << "\n";
-    return EXIT_FAILURE;
-  }
-  return EXIT_SUCCESS;
+  return ddm::runTool(
+      "prediction_experiment", [&] { return ddm::configure(argc, argv, &experiment); },
+      [&] { ddm::run(experiment); });
 }

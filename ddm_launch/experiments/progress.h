@@ -18,6 +18,7 @@ class Progress {
   /// @param live        out is a terminal: draw the moving line
   /// @param num_trials  epsilon-greedy trials of the whole experiment
   Progress(std::ostream* out, bool live, int num_trials);
+  ~Progress() { wipe(); }  // what comes next, an error perhaps, begins a line of its own
 
   void note(const std::string& text);
   void beginPhase(int trial, const std::string& phase);

@@ -4,7 +4,6 @@
 #include <ros/time.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <iostream>
 #include <string>
 
@@ -16,8 +15,6 @@
 namespace po = boost::program_options;
 
 namespace {
-
-constexpr int kUsageError = 2;
 
 constexpr char kAbout[] =
     "Runs an experiment in one process: a random trial, then training, greedy evaluation and an\n"
@@ -65,17 +62,7 @@ int main(int argc, char** argv) {
   ros::Time::init();
   ddm::silenceSolverLog();
   ddm::Configuration configuration;
-  try {
-    if (!configure(argc, argv, &configuration)) return EXIT_SUCCESS;
-  } catch (const std::exception& e) {
-    std::cerr << "run_experiment: " << e.what() << " (see --help)\n";
-    return kUsageError;
-  }
-  try {
-    run(configuration);
-  } catch (const std::exception& e) {
-    std::cerr << "\nrun_experiment: " << e.what() << "\n";
-    return EXIT_FAILURE;
-  }
-  return EXIT_SUCCESS;
+  return ddm::runTool(
+      "run_experiment", [&] { return configure(argc, argv, &configuration); },
+      [&] { run(configuration); });
 }

@@ -1,9 +1,9 @@
 // decode_features: the images y_hat = g(z) of given features. Features in, pictures out.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_model/model_file.h>
+#include <ddm_msgs/tool.h>
 
 #include <boost/algorithm/string.hpp>
-#include <boost/program_options.hpp>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -19,8 +19,6 @@ namespace po = boost::program_options;
 
 namespace {
 
-constexpr int kUsageError = 2;
-
 struct Arguments {
   std::string model;
   std::string frames;
@@ -28,7 +26,7 @@ struct Arguments {
 
 /// @return false where --help was asked for and has been printed
 bool parse(int argc, char** argv, Arguments* arguments) {
-  po::options_description visible(
+  po::options_description options(
       "Decodes features with a trained model, without a ROS master.\n\n"
       "usage: rosrun ddm_model decode_features MODEL.ddm --frames DIR < features.csv\n\n"
       "Input:  the header z_1,z_2,... (as many as the model has features), then one feature a\n"
@@ -37,22 +35,15 @@ bool parse(int argc, char** argv, Arguments* arguments) {
       "        of the input is wrong.\n"
       "Exit:   0 done, 1 bad model, bad features or a picture that cannot be written, 2 bad\n"
       "        options.\n\noptions");
-  visible.add_options()("help,h", "show this text");
-  visible.add_options()("frames", po::value(&arguments->frames)->value_name("DIR"),
+  options.add_options()("frames", po::value(&arguments->frames)->value_name("DIR"),
                         "folder of the pictures. It is made if need be; pictures of these names "
                         "in it are replaced");
-  po::options_description all = visible;
   std::vector<std::string> models;
-  all.add_options()("model", po::value(&models));
-  po::positional_options_description positional;
-  positional.add("model", -1);
-  po::variables_map values;
-  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
-  po::notify(values);
-  if (values.count("help") > 0) {
-    std::cout << visible << "\n";
-    return false;
-  }
+  po::options_description unnamed;
+  unnamed.add_options()("model", po::value(&models));
+  po::positional_options_description names;
+  names.add("model", -1);
+  if (!ddm::parseCommandLine(argc, argv, options, unnamed, names)) return false;
   if (models.size() != 1) {
     throw po::error("one MODEL.ddm must be given, got " + std::to_string(models.size()));
   }
@@ -135,17 +126,6 @@ void run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   Arguments arguments;
-  try {
-    if (!parse(argc, argv, &arguments)) return EXIT_SUCCESS;
-  } catch (const po::error& e) {
-    std::cerr << "decode_features: " << e.what() << " (see --help)\n";
-    return kUsageError;
-  }
-  try {
-    run(arguments);
-  } catch (const std::exception& e) {
-    std::cerr << "decode_features: " << e.what() << "\n";
-    return EXIT_FAILURE;
-  }
-  return EXIT_SUCCESS;
+  return ddm::runTool(
+      "decode_features", [&] { return parse(argc, argv, &arguments); }, [&] { run(arguments); });
 }

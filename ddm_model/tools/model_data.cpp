@@ -3,10 +3,9 @@
 #include <ddm_bag_io/model_config.h>
 #include <ddm_model/model_file.h>
 #include <ddm_msgs/param_value.h>
+#include <ddm_msgs/tool.h>
 #include <ros/time.h>
 
-#include <boost/program_options.hpp>
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <string>
@@ -21,7 +20,6 @@ namespace po = boost::program_options;
 
 namespace {
 
-constexpr int kUsageError = 2;
 constexpr int kGrid = 9;  // decoded images along each axis of the feature plane, as in the paper
 
 struct Arguments {
@@ -34,30 +32,23 @@ struct Arguments {
 
 /// @return false where --help was asked for and has been printed
 bool parse(int argc, char** argv, Arguments* arguments) {
-  po::options_description visible(
+  po::options_description options(
       "Writes a model, and what it makes of bags, as CSV, YAML and NumPy files: what\n"
       "`rosrun ddm_model inspect` and `rosrun ddm_model export` show to people.\n\n"
       "usage: rosrun ddm_model model_data --model FILE --out DIR [--steps K] [--config FILE]...\n"
       "                                   [BAG...]\n\noptions");
-  visible.add_options()("help,h", "show this text");
-  visible.add_options()("model", po::value(&arguments->model)->value_name("FILE"), "model file");
-  visible.add_options()("out", po::value(&arguments->out)->value_name("DIR"),
+  options.add_options()("model", po::value(&arguments->model)->value_name("FILE"), "model file");
+  options.add_options()("out", po::value(&arguments->out)->value_name("DIR"),
                         "folder of the files; made if need be");
-  visible.add_options()("steps", po::value(&arguments->steps)->default_value(arguments->steps),
+  options.add_options()("steps", po::value(&arguments->steps)->default_value(arguments->steps),
                         "longest prediction");
-  visible.add_options()("config", po::value(&arguments->configs)->composing()->value_name("FILE"),
+  options.add_options()("config", po::value(&arguments->configs)->composing()->value_name("FILE"),
                         "YAML file whose block data_set names the topics; repeatable");
-  po::options_description all = visible;
-  all.add_options()("bag", po::value(&arguments->bags));
-  po::positional_options_description positional;
-  positional.add("bag", -1);
-  po::variables_map values;
-  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
-  po::notify(values);
-  if (values.count("help") > 0) {
-    std::cout << visible << "\n";
-    return false;
-  }
+  po::options_description unnamed;
+  unnamed.add_options()("bag", po::value(&arguments->bags));
+  po::positional_options_description names;
+  names.add("bag", -1);
+  if (!ddm::parseCommandLine(argc, argv, options, unnamed, names)) return false;
   if (arguments->model.empty()) throw po::error("--model FILE is missing: say which model");
   if (arguments->out.empty()) throw po::error("--out DIR is missing: say where the files go");
   if (arguments->steps < 1 || arguments->steps > 1000) {
@@ -150,17 +141,6 @@ void run(const Arguments& arguments) {
 int main(int argc, char** argv) {
   ros::Time::init();
   Arguments arguments;
-  try {
-    if (!parse(argc, argv, &arguments)) return EXIT_SUCCESS;
-  } catch (const po::error& e) {
-    std::cerr << "model_data: " << e.what() << " (see --help)\n";
-    return kUsageError;
-  }
-  try {
-    run(arguments);
-  } catch (const std::exception& e) {
-    std::cerr << "model_data: " << e.what() << "\n";
-    return EXIT_FAILURE;
-  }
-  return EXIT_SUCCESS;
+  return ddm::runTool(
+      "model_data", [&] { return parse(argc, argv, &arguments); }, [&] { run(arguments); });
 }

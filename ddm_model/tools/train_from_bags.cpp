@@ -6,12 +6,11 @@
 #include <ddm_model/solver_log.h>
 #include <ddm_model/trainer.h>
 #include <ddm_msgs/image_codec.h>
+#include <ddm_msgs/tool.h>
 #include <ros/time.h>
 #include <sensor_msgs/Image.h>
 #include <unistd.h>
 
-#include <boost/program_options.hpp>
-#include <cstdlib>
 #include <iostream>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
@@ -20,8 +19,6 @@
 namespace po = boost::program_options;
 
 namespace {
-
-constexpr int kUsageError = 2;
 
 struct Arguments {
   std::vector<std::string> configs;
@@ -33,30 +30,23 @@ struct Arguments {
 
 /// @return false where --help was asked for and has been printed
 bool parse(int argc, char** argv, Arguments* arguments) {
-  po::options_description visible(
+  po::options_description options(
       "Trains a deep dynamical model from recorded bags, without a ROS master.\n\n"
       "usage: rosrun ddm_model train_from_bags [--config FILE]... [--goal IMAGE] [--seed N]\n"
       "                                        --out FILE BAG...\n\noptions");
-  visible.add_options()("help,h", "show this text");
-  visible.add_options()("config", po::value(&arguments->configs)->composing(),
+  options.add_options()("config", po::value(&arguments->configs)->composing(),
                         "YAML file with blocks image, model, training, data_set; repeatable, later "
                         "files win");
-  visible.add_options()("goal", po::value(&arguments->goal),
+  options.add_options()("goal", po::value(&arguments->goal),
                         "goal image; else the goal_image of the bags");
-  visible.add_options()("seed", po::value(&arguments->seed)->default_value(0),
+  options.add_options()("seed", po::value(&arguments->seed)->default_value(0),
                         "seed of the initial parameters");
-  visible.add_options()("out", po::value(&arguments->out), "model file to write");
-  po::options_description all = visible;
-  all.add_options()("bag", po::value(&arguments->bags));
-  po::positional_options_description positional;
-  positional.add("bag", -1);
-  po::variables_map values;
-  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
-  po::notify(values);
-  if (values.count("help") > 0) {
-    std::cout << visible << "\n";
-    return false;
-  }
+  options.add_options()("out", po::value(&arguments->out), "model file to write");
+  po::options_description unnamed;
+  unnamed.add_options()("bag", po::value(&arguments->bags));
+  po::positional_options_description names;
+  names.add("bag", -1);
+  if (!ddm::parseCommandLine(argc, argv, options, unnamed, names)) return false;
   if (arguments->out.empty()) throw po::error("--out FILE is missing: say where the model goes");
   if (arguments->seed < 0) {
     throw po::error("--seed must be >= 0, got " + std::to_string(arguments->seed));
@@ -87,7 +77,7 @@ bool showProgress(const ddm::TrainingProgress& progress) {
   return true;
 }
 
-int run(const Arguments& arguments) {
+void run(const Arguments& arguments) {
   ddm::ParamReader params = ddm::ParamReader::fromFiles(arguments.configs);
   const ddm::ModelConfig config = ddm::readModelConfig(&params);
   params.requireValid();
@@ -114,7 +104,6 @@ int run(const Arguments& arguments) {
             << "\ngoal: " << (data.hasGoal() ? "yes" : "none")
             << "\nv_r: " << result.model->info().v_r << "\nv_p: " << result.model->info().v_p
             << "\nevaluations: " << result.evaluations << "\ntrain_s: " << result.seconds << "\n";
-  return EXIT_SUCCESS;
 }
 
 }  // namespace
@@ -123,16 +112,6 @@ int main(int argc, char** argv) {
   ros::Time::init();
   ddm::silenceSolverLog();
   Arguments arguments;
-  try {
-    if (!parse(argc, argv, &arguments)) return EXIT_SUCCESS;
-  } catch (const po::error& e) {
-    std::cerr << "train_from_bags: " << e.what() << " (see --help)\n";
-    return kUsageError;
-  }
-  try {
-    return run(arguments);
-  } catch (const std::exception& e) {
-    std::cerr << "train_from_bags: " << e.what() << "\n";
-    return EXIT_FAILURE;
-  }
+  return ddm::runTool(
+      "train_from_bags", [&] { return parse(argc, argv, &arguments); }, [&] { run(arguments); });
 }

@@ -1,0 +1,58 @@
+// What all command line tools have in common: options, --help, exit codes.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <boost/program_options.hpp>
+#include <cstdlib>
+#include <iostream>
+#include <string>
+
+namespace ddm {
+
+constexpr int kUsageError = 2;  ///< exit code
+
+/// Reads the command line into the variables that the options were given.
+/// @param options     what --help shows; --help itself is added
+/// @param positional  arguments that belong to no option, if there are any
+/// @param names       their name, of one or of many
+/// @return false where --help was asked for and has been printed
+/// @throws boost::program_options::error for options that are unknown, wrong or missing
+inline bool parseCommandLine(
+    int argc, char** argv, boost::program_options::options_description options,
+    const boost::program_options::options_description& positional = {},
+    const boost::program_options::positional_options_description& names = {}) {
+  namespace po = boost::program_options;
+  options.add_options()("help,h", "show this text");
+  po::options_description all(options);
+  all.add(positional);
+  po::variables_map values;
+  po::store(po::command_line_parser(argc, argv).options(all).positional(names).run(), values);
+  if (values.count("help") > 0) {
+    std::cout << options << "\n";
+    return false;
+  }
+  po::notify(values);
+  return true;
+}
+
+/// Runs a tool. What goes wrong is told on stderr, behind its name.
+/// @param configure  reads the command line; false: there is nothing to do
+/// @return 0 done, 1 `run` threw an exception, 2 `configure` did
+template <class Configure, class Run>
+int runTool(const std::string& name, const Configure& configure, const Run& run) {
+  try {
+    if (!configure()) return EXIT_SUCCESS;
+  } catch (const std::exception& error) {
+    std::cerr << name << ": " << error.what() << " (see --help)\n";
+    return kUsageError;
+  }
+  try {
+    run();
+  } catch (const std::exception& error) {
+    std::cerr << name << ": " << error.what() << "\n";
+    return EXIT_FAILURE;
+  }
+  return EXIT_SUCCESS;
+}
+
+}  // namespace ddm
