@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
 import os
+import re
 import subprocess
 import tempfile
 import unittest
@@ -36,6 +37,11 @@ def scripts(interpreter):
         "." not in os.path.basename(path)
         and "".join(first_lines(path, 1)).startswith("#!") and interpreter in first_lines(path, 1)[0])]
 
+
+# What could execute something from a file or a message.
+UNSAFE_PYTHON = re.compile(r"\b(eval|exec)\(|\bpickle\b|\bos\.(system|popen)\b|shell=True|allow_pickle=True|"
+                           r"yaml\.(unsafe_|full_)?load(_all)?\((?!.*Loader=(LOADER|yaml\.BaseLoader)\))")
+UNSAFE_CPP = re.compile(r"\b(system|popen|dlopen|exec[lv]p?e?)\(")
 
 CPP_FILES = [path for path in source_files() if path.endswith((".h", ".cpp"))]
 
@@ -82,6 +88,18 @@ class SourceRulesTest(unittest.TestCase):
             lines = [line for line in first_lines(path, 3) if not line.startswith("#!")]
             if len(lines) < 2 or len(lines[0]) < 12 or "SPDX-License-Identifier: BSD-3-Clause" not in lines[1]:
                 wrong.append(os.path.relpath(path, CHECKOUT))
+        self.assertEqual(wrong, [])
+
+    def test_programs_execute_nothing_that_a_file_or_message_says(self):
+        self.assertTrue(UNSAFE_PYTHON.search("tree = yaml.load(stream)"))
+        self.assertTrue(UNSAFE_CPP.search("  std::system(command.c_str());"))
+        wrong = []
+        for files, unsafe in ((scripts("python3"), UNSAFE_PYTHON), (CPP_FILES, UNSAFE_CPP)):
+            for path in files:
+                if "/test/" not in path:
+                    with open(path) as stream:
+                        wrong += ["%s: %s" % (os.path.relpath(path, CHECKOUT), line.strip())
+                                  for line in stream if unsafe.search(line)]
         self.assertEqual(wrong, [])
 
     def test_wstool_accepts_the_rosinstall_file(self):

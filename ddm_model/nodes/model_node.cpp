@@ -12,8 +12,10 @@ const ros::WallDuration kFeedbackPeriod(0.05);
 
 }  // namespace
 
-ModelNode::ModelNode(ros::NodeHandle nh, ros::NodeHandle pnh, const ModelConfig& config)
+ModelNode::ModelNode(ros::NodeHandle nh, ros::NodeHandle pnh, const ModelConfig& config,
+                     const BagAccess& access)
     : config_(config),
+      access_(access),
       bags_(config.image.size, config.data_set),
       health_(nh, pnh),
       model_pub_(nh.advertise<ddm_msgs::Model>(topics::kModel, 1, /*latch=*/true)),
@@ -27,6 +29,7 @@ void ModelNode::train(const ddm_msgs::TrainGoalConstPtr& goal) {
   ddm_msgs::TrainResult result;
   health_.begin(goal->trial);
   try {
+    for (const std::string& bag : goal->bags) access_.require(bag);
     const DataSet data = bags_.read(goal->bags);
     if (!data.hasGoal()) {
       ROS_WARN("no bag holds a goal image: the model can predict, but not be planned with");

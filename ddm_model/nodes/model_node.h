@@ -3,6 +3,7 @@
 #pragma once
 
 #include <actionlib/server/simple_action_server.h>
+#include <ddm_bag_io/bag_access.h>
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_bag_io/model_config.h>
 #include <ddm_model/trainer.h>
@@ -18,7 +19,8 @@ class ModelNode {
  public:
   /// @param nh   topics and action
   /// @param pnh  parameters
-  ModelNode(ros::NodeHandle nh, ros::NodeHandle pnh, const ModelConfig& config);
+  ModelNode(ros::NodeHandle nh, ros::NodeHandle pnh, const ModelConfig& config,
+            const BagAccess& access);
 
  private:
   void train(const ddm_msgs::TrainGoalConstPtr& goal);
@@ -27,6 +29,7 @@ class ModelNode {
   void publish(const Ddm& model, ddm_msgs::TrainResult* result);
 
   ModelConfig config_;
+  BagAccess access_;
   BagCache bags_;
   TrainingHealth health_;
   ros::Publisher model_pub_;

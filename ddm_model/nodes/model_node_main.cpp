@@ -17,9 +17,10 @@ int main(int argc, char** argv) {
     ddm::ParamReader params(ddm::nodeParams(pnh), pnh.getNamespace());
     params.ignore("diagnostic_period");  // read by diagnostic_updater itself
     const ddm::ModelConfig config = ddm::readModelConfig(&params);
+    const auto access = params.read<ddm::BagAccess>("access");
     params.requireValid();
     ROS_INFO_STREAM("model_node runs with\n" << ddm::toText(config));
-    ddm::ModelNode node(nh, pnh, config);
+    ddm::ModelNode node(nh, pnh, config, access);
     ros::spin();
   } catch (const std::exception& e) {
     ROS_FATAL_STREAM("model_node: " << e.what());

@@ -19,9 +19,9 @@ std::vector<std::string> RecorderOptions::problems() const {
   return {"recorder/timeout must be > 0, got " + std::to_string(timeout)};
 }
 
-TrialRecorder::TrialRecorder(ros::NodeHandle nh, const BagOptions& bag,
+TrialRecorder::TrialRecorder(ros::NodeHandle nh, const BagOptions& bag, const BagAccess& access,
                              const RecorderOptions& options)
-    : bag_options_(bag), options_(options), transport_(nh) {
+    : bag_options_(bag), access_(access), options_(options), transport_(nh) {
   goal_sub_ = nh.subscribe<sensor_msgs::Image>(topics::kGoalImage, 1,
                                                [this](const sensor_msgs::ImageConstPtr& goal) {
                                                  const std::lock_guard<std::mutex> lock(mutex_);
@@ -69,6 +69,8 @@ bool TrialRecorder::start(ddm_msgs::StartRecording::Request& request,
   after_ = request.after;
   goal_written_ = false;
   try {
+    access_.require(request.path);
+    access_.require(request.path + ".active");  // what is opened, and may be a link too
     bag_ = std::make_unique<BagWriter>(request.path, bag_options_);
     response.success = true;
   } catch (const std::exception& e) {

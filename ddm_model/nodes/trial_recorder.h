@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_bag_io/bag_access.h>
 #include <ddm_bag_io/bag_writer.h>
 #include <ddm_msgs/StartRecording.h>
 #include <ddm_msgs/StopRecording.h>
@@ -29,7 +30,8 @@ struct RecorderOptions {
 /// Needs a spinner with two threads or more: stopping waits for messages on their way.
 class TrialRecorder {
  public:
-  TrialRecorder(ros::NodeHandle nh, const BagOptions& bag, const RecorderOptions& options);
+  TrialRecorder(ros::NodeHandle nh, const BagOptions& bag, const BagAccess& access,
+                const RecorderOptions& options);
 
  private:
   bool start(ddm_msgs::StartRecording::Request& request,
@@ -40,6 +42,7 @@ class TrialRecorder {
   void record(const Message& message);
 
   BagOptions bag_options_;
+  BagAccess access_;
   RecorderOptions options_;
   std::mutex mutex_;
   std::condition_variable frame_written_;

@@ -14,9 +14,10 @@ int main(int argc, char** argv) {
   try {
     ddm::ParamReader params(ddm::nodeParams(pnh), pnh.getNamespace());
     const auto bag = params.read<ddm::BagOptions>("data_set");
+    const auto access = params.read<ddm::BagAccess>("access");
     const auto options = params.read<ddm::RecorderOptions>("recorder");
     params.requireValid();
-    ddm::TrialRecorder recorder(nh, bag, options);
+    ddm::TrialRecorder recorder(nh, bag, access, options);
     ros::MultiThreadedSpinner(2).spin();
   } catch (const std::exception& e) {
     ROS_FATAL_STREAM("trial_recorder: " << e.what());

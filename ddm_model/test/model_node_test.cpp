@@ -124,6 +124,15 @@ TEST_F(ModelNodeTest, AbortsNamingABadBagAndGoesOn) {
   EXPECT_EQ(client_.sendGoalAndWait(goal({"a.bag"}), kLimit), State::SUCCEEDED);
 }
 
+TEST_F(ModelNodeTest, AbortsWhereABagIsOutsideOfItsFolder) {
+  for (const char* outside : {"../../dev/zero", "../../etc/../ddm_outside.bag"}) {
+    ASSERT_EQ(client_.sendGoalAndWait(goal({"a.bag", outside}), kLimit), State::ABORTED) << outside;
+    const std::string text = client_.getState().getText();
+    EXPECT_TRUE(contains(text, folder_.file(outside))) << text;
+    EXPECT_TRUE(contains(text, "access/bags")) << text;
+  }
+}
+
 TEST_F(ModelNodeTest, AbortsWhereThereIsTooLittleToLearnFrom) {
   EXPECT_EQ(client_.sendGoalAndWait(goal({}), kLimit), State::ABORTED);
   EXPECT_TRUE(contains(client_.getState().getText(), "no bag was given"));

@@ -182,6 +182,19 @@ TEST_F(TrialRecorderTest, AStartEndsAStopThatStillWaits) {
   EXPECT_FALSE(stop(0).success);  // the node is alive and not recording
 }
 
+TEST_F(TrialRecorderTest, RefusesToWriteOutsideOfItsFolder) {
+  const std::string outside = "/ddm_outside.bag";
+  for (const std::string& path : {outside, folder_.file("../.." + outside)}) {
+    EXPECT_FALSE(start(path));
+    EXPECT_TRUE(contains(message_, path)) << message_;
+    EXPECT_TRUE(contains(message_, "access/bags")) << message_;
+  }
+  fs::create_symlink(outside, path_ + ".active");
+  EXPECT_FALSE(start(path_));
+  EXPECT_TRUE(contains(message_, "access/bags")) << message_;
+  EXPECT_FALSE(fs::exists(outside));
+}
+
 TEST_F(TrialRecorderTest, RefusesToStartWithParametersThatAreWrong) {
   ros::param::set("/wrong_trial_recorder/recorder/timeot", 3.0);
   ros::param::set("/wrong_trial_recorder/data_set/image_topic", "");

@@ -17,7 +17,7 @@ const std::set<std::string>& blocksOfThisRepository() {
       "plant",      "camera",     "sim",        "image",    "model",      "training",
       "data_set",   "mpc",        "pilco",      "gp",       "sparse_gp",  "policy_search",
       "trial",      "evaluation", "experiment", "recorder", "controller", "run",
-      "prediction", "show",       "replay",     "start",    "robot"};
+      "prediction", "show",       "replay",     "start",    "robot",      "access"};
   return blocks;
 }
 

@@ -38,6 +38,10 @@ class Process:
             self._changed.notify_all()
 
     @property
+    def pid(self):
+        return self._process.pid
+
+    @property
     def output(self):
         with self._changed:
             return self._text
