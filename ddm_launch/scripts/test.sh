@@ -3,20 +3,24 @@
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/workspace.sh"
+. "$(dirname "${BASH_SOURCE[0]}")/sanitized.sh"
 
 usage() {
   cat <<TEXT
-usage: bash test.sh
+usage: bash test.sh [--thread-sanitizer]
 
 Installs the Debian packages that are missing (as root, or through sudo), builds the workspace \$DDM_WS, and
 runs every test: gtest, rosunit, rostest, roslaunch-check and the linters on the Release build, the gtests once
-more on a Debug build with Eigen's assertions and with warnings as errors. A case that runs in both builds
-counts once; one that is skipped does not count and is named. Returns 1 if any case fails, or if a test leaves
-no result.
+more on a Debug build with Eigen's assertions and with warnings as errors, and the gtests and a short experiment
+on a build by clang with AddressSanitizer and UndefinedBehaviorSanitizer. A case that runs in several builds
+counts once; one that is skipped does not count and is named. Returns 1 if any case fails, if a test leaves no
+result, or if a sanitizer reports anything.
 
-  --help   this text
+  --thread-sanitizer   instead of all that: what has several threads, on a build with ThreadSanitizer
+  --help               this text
 
-  DDM_WS              catkin workspace to make or use, default ~/ddm_ws (Release in devel/, Debug in debug/devel/)
+  DDM_WS              catkin workspace to make or use, default ~/ddm_ws (Release in devel/, Debug in debug/devel/,
+                      sanitizers in sanitized/devel/ and thread_sanitized/devel/)
   ROS_PARALLEL_JOBS   compiler jobs, for example -j1; default one per core, two gigabytes for each
   CI                  if set, warnings are errors in the Release build too
   DDM_PILCO_VECTORS   file of reference values for PILCO, which pilco_check then must accept; if not set, that case
@@ -27,6 +31,7 @@ TEXT
 parse_arguments() {
   (($# == 0)) && return
   [[ $1 == --help || $1 == -h ]] && usage && exit 0
+  [[ $1 == --thread-sanitizer && $# == 1 ]] && builds=(thread) && return
   printf 'test.sh: unknown argument %s\n\n' "'$1'" >&2
   usage >&2
   exit 2
@@ -51,6 +56,36 @@ run_tests() {  # BUILD_FOLDER PATTERN
   ctest -R "$2" --output-on-failure --timeout 600 --output-junit "$1/tests_run.xml" </dev/null || true
 }
 
+# What is built and run; each gives a build folder to the report.
+builds=(release debug address)
+run_build() {  # release|debug|address|thread
+  case $1 in
+    release)
+      phase "Release build into $DDM_WS/devel" build_release all tests
+      phase "Tests on the Release build" run_tests "$DDM_WS/build" .
+      results+=("$DDM_WS/build")
+      ;;
+    debug)
+      phase "Debug build into $DDM_WS/debug/devel" build_debug all tests
+      phase "gtests on the Debug build" run_tests "$DDM_WS/debug/build" "$gtests"
+      results+=("$DDM_WS/debug/build")
+      ;;
+    address)
+      phase "Build with AddressSanitizer into $DDM_WS/sanitized/devel" \
+        build_sanitized address "${loop_programs[@]}" "${gtest_programs[@]}"
+      phase "gtests and a short loop with AddressSanitizer" run_sanitized address "$gtests"
+      results+=("$DDM_WS/sanitized/build")
+      ;;
+    thread)
+      phase "Build with ThreadSanitizer into $DDM_WS/thread_sanitized/devel" \
+        build_sanitized thread "${loop_programs[@]}" "${threaded_programs[@]}"
+      phase "Tests of threads and a short loop with ThreadSanitizer" run_sanitized thread "$threaded_tests"
+      results+=("$DDM_WS/thread_sanitized/build")
+      ;;
+  esac
+}
+
+results=()
 durations=()
 phase() {  # TITLE COMMAND...
   local title=$1 start=$SECONDS code=0
@@ -72,15 +107,13 @@ main() {
   ensure_localhost_resolves
   make_workspace
   phase "Packages" install_packages "${packages_to_run[@]}" "${packages_to_test[@]}"
-  phase "Release build into $DDM_WS/devel" build_release all tests
-  phase "Debug build into $DDM_WS/debug/devel" build_debug all tests
-  phase "Tests on the Release build" run_tests "$DDM_WS/build" .
-  phase "gtests on the Debug build" run_tests "$DDM_WS/debug/build" '^_ctest_[a-z_]+_gtest_'
+  local build
+  for build in "${builds[@]}"; do run_build "$build"; done
   say "Time"
   printf '%s\n' "${durations[@]}"
   reported=yes
   say "Result"
-  /usr/bin/python3 "$checkout/ddm_launch/scripts/test_report.py" "$DDM_WS/build" "$DDM_WS/debug/build"
+  /usr/bin/python3 "$checkout/ddm_launch/scripts/test_report.py" "${results[@]}"
 }
 
 main "$@"

@@ -4,7 +4,8 @@
 """usage: test_report.py BUILD_FOLDER [BUILD_FOLDER ...]
 
 Each folder holds test_results/PACKAGE/*.xml (JUnit), tests_declared.json (ctest --show-only=json-v1) and
-tests_run.xml (ctest --output-junit). Prints each failure, then "N passed, N failed"; returns 1 if any failed.
+tests_run.xml (ctest --output-junit); one with sanitizers also sanitizer_reports/, where each file is a failure.
+Prints each failure, then "N passed, N failed"; returns 1 if any failed.
 A case that ran in several builds (same package, result file and name) counts once and must pass in all of them.
 """
 import glob
@@ -110,6 +111,18 @@ def build_name(build_folder):
         return build_folder
 
 
+def read_sanitizer_reports(report, build_folder, build):
+    """Adds one case, which fails where a sanitizer has left a file, of a build that has the folder for them."""
+    folder = os.path.join(build_folder, "sanitizer_reports")
+    case = (build, "sanitizer_reports", "no report")
+    if not os.path.isdir(folder):
+        return
+    report.passed.add(case)
+    for name in sorted(os.listdir(folder)):
+        with open(os.path.join(folder, name), errors="replace") as stream:
+            report.fail(case, "%s:\n%s" % (name, stream.read()))
+
+
 def read_build(report, build_folder):
     """Adds all results of one build folder, and a failure for each test that says nothing or too little."""
     build = build_name(build_folder)
@@ -117,6 +130,7 @@ def read_build(report, build_folder):
     for path in sorted(glob.glob(os.path.join(build_folder, "test_results", "*", "*.xml"))):
         if not os.path.basename(path).startswith("MISSING-"):  # told below, with the reason
             found[os.path.abspath(path)] = read_results(report, path, build)
+    read_sanitizer_reports(report, build_folder, build)
     ended_badly = failed_tests(build_folder)
     declared = declared_tests(build_folder)
     for test, path in sorted(declared.items()):

@@ -72,6 +72,20 @@ class TestReportTest(unittest.TestCase):
         self.assertIn("Mlp.Two", lines[0])
         self.assertIn("expected 1 & got 2", lines[1])
 
+    def test_a_report_of_a_sanitizer_fails_the_build_and_none_is_a_case_that_passed(self):
+        self.declare("gtest-a.xml")
+        self.write("gtest-a.xml", [PASS % "One"])
+        reports = os.path.join(self.folder, "build", "sanitizer_reports")
+        os.mkdir(reports)
+        self.assertEqual(self.report(), (0, ["2 passed, 0 failed"]))
+        with open(os.path.join(reports, "report.17"), "w") as stream:
+            stream.write("==17==ERROR: AddressSanitizer: heap-use-after-free")
+        code, lines = self.report()
+        self.assertEqual((code, lines[-1]), (1, "1 passed, 1 failed"))
+        self.assertIn("sanitizer_reports", lines[0])
+        self.assertIn("report.17", lines[1])
+        self.assertIn("heap-use-after-free", lines[2])
+
     def test_a_case_of_two_builds_counts_once_and_must_pass_in_both(self):
         for build, second in (("build", PASS), ("debug", FAIL)):
             self.declare("gtest-a.xml", "run" if second == PASS else "fail", build)

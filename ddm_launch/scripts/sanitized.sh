@@ -1,0 +1,79 @@
+# Builds with the sanitizers of clang, and what runs on them. Sourced by test.sh, after workspace.sh.
+# SPDX-License-Identifier: BSD-3-Clause
+
+loop_programs=(sim_node mpc_node view_node trial_recorder model_node experiment_node run_experiment evaluate)
+gtest_programs=(
+  allocation_test ddm_bag_io_test ddm_launch_test ddm_model_config_test ddm_model_test ddm_mpc_test ddm_msgs_test
+  ddm_pilco_test ddm_sim_simulate_test ddm_sim_test decode_features_test train_from_bags_test
+)
+threaded_programs=(
+  model_node_test mpc_node_test refused_params_test replay_node robot_node train_from_bags trial_recorder_test
+)
+gtests='^_ctest_[a-z_]+_gtest_'
+threaded_tests='^_ctest_ddm_[a-z]+_rostest_test_(model_node|mpc_node|replay|robot_node|trial_recorder)\.test$'
+
+# Where the build with a sanitizer is. Argument: address or thread, as for DDM_SANITIZE.
+sanitized_folder() {
+  case $1 in
+    address) echo "$DDM_WS/sanitized" ;;
+    thread) echo "$DDM_WS/thread_sanitized" ;;
+  esac
+}
+
+# Portable instruction set, because reports shall be the same on all machines; -O1, as the Debug build. The baseline
+# PILCO has no threads.
+build_sanitized() {  # address|thread TARGET...
+  local folder fuzz=OFF pilco=OFF jobs
+  folder=$(sanitized_folder "$1")
+  [[ $1 == thread ]] || fuzz=ON pilco=ON
+  read -ra jobs < <(job_flags)
+  mkdir -p "$folder"
+  local configure=(catkin_make -C "$DDM_WS" --build "$folder/build" "${jobs[@]}"
+    -DCATKIN_DEVEL_PREFIX="$folder/devel" -DCMAKE_INSTALL_PREFIX="$folder/install" -DCMAKE_CXX_COMPILER=clang++
+    -DCMAKE_BUILD_TYPE=Sanitized -DCMAKE_CXX_FLAGS_SANITIZED='-O1 -gline-tables-only' -DDDM_NATIVE=OFF -DDDM_WERROR=ON
+    -DDDM_SANITIZE="$1" -DDDM_FUZZ=$fuzz -DDDM_PILCO=$pilco)
+  "${configure[@]}" "${@:2}" || return
+  # as in build_release
+  if ! grep -q "PYTHONPATH=.*$folder/devel/lib" "$folder/build/catkin_generated/setup_cached.sh"; then
+    "${configure[@]}" --force-cmake "${@:2}"
+  fi
+}
+
+# A short experiment by each driver and evaluations side by side. What does not reach its end is a report, too.
+short_loop() {  # address|thread REPORTS
+  local folder out
+  folder=$(sanitized_folder "$1")
+  out=$folder/loop
+  rm -rf "$out"
+  mkdir -p "$out"
+  set +u  # catkin's setup file reads variables that need not exist
+  . "$folder/devel/setup.bash"
+  set -u
+  local port programs=$folder/devel/lib/ddm_launch
+  port=$(/usr/bin/python3 -c 'from ddm_launch.programs import free_port; print(free_port())')
+  "$programs/run_experiment" --preset debug --trials 1 --out "$out/process" </dev/null >"$out/process.log" 2>&1 &&
+    "$programs/evaluate" --preset debug --model "$out/process/trial_001/model.ddm" --seeds 0:8 --jobs 4 \
+      --out "$out/evaluate" </dev/null >"$out/evaluate.log" 2>&1 || cat "$out"/*.log >"$2/one_process"
+  timeout -s INT -k 30 300 roslaunch -p "$port" ddm_launch experiment.launch preset:=debug trials:=1 view:=true \
+    runs:="$out/nodes" </dev/null >"$out/nodes.log" 2>&1 || true
+  [[ -f $out/nodes/summary.yaml ]] || cp "$out/nodes.log" "$2/nodes"
+}
+
+# Runs tests and the loop; each file in build/sanitizer_reports is a report, which test_report.py takes for a failure.
+run_sanitized() {  # address|thread PATTERN
+  local reports
+  reports=$(sanitized_folder "$1")/build/sanitizer_reports
+  rm -rf "$reports"
+  mkdir -p "$reports"
+  export ASAN_OPTIONS=log_path=$reports/report:detect_stack_use_after_return=1:strict_string_checks=1
+  export UBSAN_OPTIONS=log_path=$reports/report:print_stacktrace=1
+  # ROS's own libraries are not instrumented: without the last word their locks look like none
+  export TSAN_OPTIONS=log_path=$reports/report:ignore_noninstrumented_modules=1
+  short_loop "$1" "$reports"
+  run_tests "$(sanitized_folder "$1")/build" "$2"
+  if compgen -G "$reports/*" >/dev/null; then
+    tail -n +1 "$reports"/*
+  else
+    echo "no report"
+  fi
+}
