@@ -50,6 +50,15 @@ STAYS = {"roscore &": ("roscore -p ${ROS_MASTER_URI##*:}", "rosparam list"),
          "rosrun ddm_sim sim_node": ("rosrun ddm_sim sim_node", "rosservice type /reset"),
          "rosrun ddm_mpc mpc_node": ("rosrun ddm_mpc mpc_node", "rosservice type /mpc_node/mpc/set_parameters")}
 
+# roslaunch returns 0 whatever happened: its main node must have ended well, and said so.
+PREAMBLE = """set -e
+trap 'kill $(jobs -p) 2>/dev/null || true; wait' EXIT
+roslaunch() {
+  command roslaunch "$@" 2>&1 | tee ~/launch.log
+  grep -q 'process has finished cleanly' ~/launch.log && ! grep -q 'exit code' ~/launch.log
+}
+"""
+
 COMMAND = re.compile(r"^(rosrun|roslaunch|bash|catkin_make|catkin|perf) \S")
 
 
@@ -61,7 +70,7 @@ def block_commands(text):
     """Commands in blocks of bash, and those behind a $ in blocks that show what a program says."""
     out = []
     for block in pages.blocks(text, "bash"):
-        out += [without_comment(line) for line in block.splitlines()]
+        out += [without_comment(line) for line in re.sub(r"\s*\\\n\s*", " ", block).splitlines()]
     for block in pages.blocks(text, ""):
         out += [line[2:] for line in block.splitlines() if line.startswith("$ ")]
     return [command for command in out if command]
@@ -101,7 +110,7 @@ def cheaper(command):
 
 def script_of(text):
     """All commands of a page that are run here, as a script of bash that ends at the first one that fails."""
-    lines = ["set -e", "trap 'kill $(jobs -p) 2>/dev/null || true; wait' EXIT"]
+    lines = []
     for command in block_commands(text):
         if test_elsewhere(command) or is_run_by_nobody(command):
             continue
@@ -111,7 +120,7 @@ def script_of(text):
             lines.append("%s &\nuntil %s >/dev/null 2>&1; do sleep 0.1; done" % STAYS[command])
         else:
             lines.append(cheaper(command))
-    return "\n".join(lines) + "\n"
+    return PREAMBLE + "\n".join(lines) + "\n"
 
 
 def test_path(test):

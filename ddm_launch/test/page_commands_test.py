@@ -8,6 +8,7 @@ import shutil
 import sys
 import tempfile
 import unittest
+import unittest.mock
 import xml.etree.ElementTree
 
 import rosunit
@@ -171,6 +172,13 @@ class PageCommandsTest(unittest.TestCase):
                     text += pages.read(os.path.join(folder, helper + ".py"))
                 return text
         raise AssertionError("no such test: " + test)
+
+    def test_a_command_that_fails_is_noticed_even_by_roslaunch(self):
+        for commands, code in (("true\nfalse\ntrue", 1), ("roscore &\nrosparam get /rosversion", 0),
+                               ("roslaunch ddm_launch control.launch model:=no.ddm\ntrue", 1)):
+            with unittest.mock.patch.object(pages, "read", return_value="```bash\n%s\n```\n" % commands):
+                _, actual, output = self.runPage("a page")
+            self.assertEqual(actual, code, output)
 
     def test_commands_become_cheap_and_keep_what_they_show(self):
         self.assertEqual(page_commands.cheaper("rosrun ddm_launch run_experiment --seed 1 --out a"),
