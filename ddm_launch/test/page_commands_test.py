@@ -96,7 +96,8 @@ class PageCommandsTest(unittest.TestCase):
         with_commands = [page for page in pages.page_paths() if page_commands.block_commands(pages.read(page))]
         self.assertGreater(len(with_commands), 10)
         with ThreadPoolExecutor(2) as pool:
-            failed = [(page, output[-3000:]) for page, code, output in pool.map(self.runPage, with_commands) if code != 0]
+            done = list(pool.map(self.runPage, with_commands))
+        failed = [(page, output[-3000:]) for page, code, output in done if code != 0]
         for page, output in failed:
             print("== %s\n%s" % (page, output))
         self.assertEqual([page for page, _ in failed], [])
