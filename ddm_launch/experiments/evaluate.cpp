@@ -194,7 +194,7 @@ void run(const Request& request, ddm::Configuration configuration) {
   } else {
     summary["success"] = "not known: the plant has no angle to measure";
   }
-  boost::filesystem::create_directories(folder);
+  boost::filesystem::create_directories(boost::filesystem::absolute(folder));  // refuses a mere "."
   ddm::writeFileAtomically(folder + "/evaluation.csv", csvOf(rows));
   ddm::writeFileAtomically(folder + "/evaluation.yaml", YAML::Dump(summary) + "\n");
   std::cout << YAML::Dump(summary) << "\nrows: " << folder << "/evaluation.csv\n";

@@ -94,7 +94,7 @@ run_experiment() {
   say "Running one random and $trials learning trials; a trial is learned from as soon as it ends"
   ((port == 11311)) || echo "Another program has port 11311: use ROS_MASTER_URI=http://localhost:$port to look in."
   mkdir -p "$runs" || fail "cannot make the run folder $runs. Remedy: choose another with --runs FOLDER."
-  roslaunch -p "$port" ddm_launch experiment.launch preset:=paper plant:=pendulum seed:=1 \
+  roslaunch -p "$port" ddm_launch experiment.launch preset:=paper plant:=pendulum seed:=3 \
     trials:="$trials" runs:="$runs" rviz:="$rviz" || fail "roslaunch failed: see its lines above."
   check_summary "$runs" "$started"
 }
@@ -112,7 +112,7 @@ print_result() {
 
 Pictures
   $runs/learning_curve.png   error and success of the greedy policy after each trial
-  $runs/film_strip.png       the last swing-up that succeeded, image by image
+  $runs/film_strip.png       the last greedy run that succeeded (if none did: the last one), image by image
 
 What to try next (in a new terminal, first: export PATH=/usr/bin:\$PATH; . $DDM_WS/devel/setup.bash)
   bash $checkout/ddm_launch/scripts/demo.sh --trials $((trials + 5))

@@ -28,9 +28,10 @@ def build(workspace):
         raise AssertionError(output)
 
 
-def environment_of(setup):
+def environment_of(setup, before=None):
     """The variables after sourcing a setup.bash."""
-    text = subprocess.check_output(["bash", "-c", '. "$1" && env -0', "bash", setup], universal_newlines=True)
+    text = subprocess.check_output(["bash", "-c", '. "$1" && env -0', "bash", setup], universal_newlines=True,
+                                   env=before)
     return dict(line.split("=", 1) for line in text.split("\0") if line)
 
 
@@ -42,6 +43,7 @@ class OwnPlantTest(unittest.TestCase):
         cls.scratch = tempfile.mkdtemp()
         workspace = os.path.join(cls.scratch, "ws")
         build(workspace)
+        cls.without_example = dict(os.environ)
         os.environ.update(environment_of(os.path.join(workspace, "devel", "setup.bash")))
         folders, outputs = run_both_drivers(cls.scratch, 1, TRIALS, {"preset": "debug", "plant": "ddm_cart/cart"})
         (cls.nodes, cls.process), cls.outputs = folders, "\n".join(outputs)
@@ -89,6 +91,21 @@ class OwnPlantTest(unittest.TestCase):
         self.assertTrue(text.startswith("step,time_s,x_m,rate_m_per_s\n0,0,0.1"), text)
         # a constant force of 2 N: x = 0.1 + t - (1 - exp(-2 t)) / 2
         self.assertAlmostEqual(float(text.splitlines()[3].split(",")[2]), 0.1 + 0.4 - (1.0 - 0.449328964) / 2.0)
+
+    def test_catkin_build_installs_it_on_top_of_our_workspace(self):
+        workspace = os.path.join(self.scratch, "catkin_tools")
+        os.makedirs(os.path.join(workspace, "src"))
+        os.symlink(EXAMPLE, os.path.join(workspace, "src", "ddm_cart"))
+        for command in (["config", "--workspace", workspace, "--init", "--install"],
+                        ["build", "--workspace", workspace, "-j1", "--no-status"]):
+            code, output = call(["catkin"] + command, 300.0, environment=dict(self.without_example, HOME=self.scratch))
+            self.assertEqual(code, 0, output)
+        installed = environment_of(os.path.join(workspace, "install", "setup.bash"), self.without_example)
+        done = subprocess.run([find_program("ddm_sim", "simulate"), "--plant", "ddm_cart/cart"], input="force_n\n2\n",
+                              env=installed, stdout=subprocess.PIPE, universal_newlines=True)
+        self.assertEqual(len(done.stdout.splitlines()), 3)
+        found = subprocess.check_output(["rospack", "find", "ddm_cart"], env=installed, universal_newlines=True)
+        self.assertEqual(found.strip(), os.path.join(workspace, "install", "share", "ddm_cart"))
 
     def test_its_keys_are_checked_as_strictly_as_ours(self):
         self.assertRefused(["unknown key plant/masss", "did you mean mass", "plant/goal must lie within",

@@ -7,6 +7,7 @@ import re
 import subprocess
 import tempfile
 import unittest
+import xml.etree.ElementTree
 
 import rosunit
 
@@ -101,6 +102,14 @@ class SourceRulesTest(unittest.TestCase):
                         wrong += ["%s: %s" % (os.path.relpath(path, CHECKOUT), line.strip())
                                   for line in stream if unsafe.search(line)]
         self.assertEqual(wrong, [])
+
+    def test_each_argument_of_a_launch_file_has_a_word_for_roslaunch_ros_args(self):
+        without = []
+        for path in glob.glob(os.path.join(CHECKOUT, "*", "launch", "*.launch")):
+            for argument in xml.etree.ElementTree.parse(path).getroot().findall("arg"):
+                if argument.get("value") is None and not argument.get("doc"):
+                    without.append((os.path.basename(path), argument.get("name")))
+        self.assertEqual(without, [])
 
     def test_wstool_accepts_the_rosinstall_file(self):
         self.assertRuns("wstool", "info", "-t", CHECKOUT)

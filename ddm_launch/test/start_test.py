@@ -155,6 +155,12 @@ class StartTest(unittest.TestCase):
         theirs = read_rows(self.before, "trials.csv")[2]
         self.assertEqual(rows[1][:4], [theirs[0]] + theirs[3:6])
 
+    def test_evaluate_writes_into_the_current_folder_unless_told_where(self):
+        code, output = call([find_program("ddm_launch", "evaluate"), "--preset", "debug", "--seeds", "1:2", "--model",
+                             self.model], folder=self.scratch)
+        self.assertEqual(code, 0, output)
+        self.assertEqual(len(read_rows(self.scratch, "evaluation.csv")), 2)
+
     def test_evaluate_gives_the_same_rows_however_many_run_at_a_time(self):
         self.assertEqual(self.evaluate("--seeds", "3:8", "--jobs", "1")[0], 0)
         one = read_rows(self.out, "evaluation.csv")

@@ -96,6 +96,7 @@ class InspectionTest(unittest.TestCase):
         self.assertEqual([name for name, ok in self.verdict(self.report).items() if not ok], [], self.words)
         page = Page(os.path.join(self.report, "report.html"))
         self.assertIn("All 14 checks passed.", page.text)
+        self.assertNotIn("what to do", page.text)
         self.assertEqual(list(page.images), WITH_BAGS)
         for title in WITH_BAGS:
             self.assertGreater(np.ptp(page.picture(title)[..., :3]), 0.5, title)
@@ -134,6 +135,7 @@ class InspectionTest(unittest.TestCase):
         with open(self.file("names.yaml"), "w") as stream:
             stream.write("data_set: {image_topic: eye}\n")
         page = self.inspect("--config", self.file("names.yaml"), self.file("lazy.bag"))
+        self.assertIn("what to do", page.text)
         self.assertIn("Record trials with random torques over the motor's whole range", page.text)
         self.assertFalse(self.verdict(self.out)["Torques are excited"])
         self.assertRegex(self.output, r"FAILED +Torques are excited")

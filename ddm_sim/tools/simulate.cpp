@@ -30,8 +30,8 @@ constexpr int kExitData = 1;
 constexpr int kExitUsage = 2;
 
 constexpr char kAbout[] =
-    "Moves a plant under given torques: rosrun ddm_sim simulate --plant NAME [options]\n"
-    "    < torques.csv > trajectory.csv\n\n"
+    "Moves a plant under given torques.\n\n"
+    "usage: rosrun ddm_sim simulate --plant NAME [options] < torques.csv > trajectory.csv\n\n"
     "Input:  a header, then one torque a line, N of them. The header is torque_nm for a pendulum\n"
     "        [N m] and dx_px,dy_px for a moving tile [pixels]. A torque beyond the plant's\n"
     "        max_torque saturates, as the motor does.\n"

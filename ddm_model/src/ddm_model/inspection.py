@@ -45,7 +45,7 @@ def bags_table(data):
     names = ["bag", "camera", "frames", "pieces", "images_without_torque", "torques_without_image", "interval_s"]
     columns = [data.bags[name] for name in names]
     rows = [[cell if isinstance(cell, str) else "%g" % cell for cell in row] for row in zip(*columns)]
-    return report.table([name.replace("_", " ") for name in names], rows)
+    return report.table([name.replace("_s", " [s]").replace("_", " ") for name in names], rows)
 
 
 def figures_of(data):

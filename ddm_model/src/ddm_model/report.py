@@ -8,7 +8,8 @@ table { border-collapse: collapse; } td, th { border: 1px solid #ccc; padding: .
 vertical-align: top; } th { background: #f3f3f3; }
 img { max-width: 100%; height: auto; } pre { background: #f6f6f6; padding: .8em; overflow-x: auto; }
 .summary { border-left: .4em solid #0072B2; background: #f3f7fb; padding: .8em 1em; }
-.failed { border-left-color: #D55E00; background: #fcf3ee; } td:first-child { white-space: nowrap; }"""
+.failed { border-left-color: #D55E00; background: #fcf3ee; } tr.failed td:first-child { font-weight: bold; }
+td:first-child { white-space: nowrap; } td:nth-child(2) { min-width: 10em; }"""
 MARKS = {True: "passed", False: "FAILED", None: "not known"}
 
 
@@ -33,7 +34,10 @@ def verdict_table(checks):
     rows = [(MARKS[check.ok], check.name, check.figure, check.rule, "" if check.ok else check.remedy)
             for check in checks]
     marked = [i for i, check in enumerate(checks) if check.ok is False]
-    return table(["", "what", "found", "should be", "what to do"], rows, marked)
+    head = ["", "what", "found", "should be", "what to do"]
+    if not any(row[-1] for row in rows):  # no empty column where there is nothing to do
+        head, rows = head[:-1], [row[:-1] for row in rows]
+    return table(head, rows, marked)
 
 
 def page(title, summary, failed, sections):

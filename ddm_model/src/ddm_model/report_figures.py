@@ -6,6 +6,7 @@ import io
 import matplotlib
 matplotlib.use("Agg")  # no display needed
 import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib.ticker import MaxNLocator  # noqa: E402
 import numpy as np  # noqa: E402
 
 from ddm_model.feature_grid import FeatureGrid  # noqa: E402
@@ -111,7 +112,7 @@ def draw_plane(data):
     images = data.pictures["plane"]
     if len(data.plane_low) < 2:
         return draw_line(data)
-    figure, axes = plt.subplots(figsize=(6.2, 6.2), constrained_layout=True)
+    figure, axes = plt.subplots(figsize=(WIDTH, 6.2), constrained_layout=True)
     FeatureGrid(data.plane_low, data.plane_high).draw(axes, DrawnImages(images))
     if data.features is not None:
         axes.scatter(data.features[:, 0], data.features[:, 1], s=9, color=YELLOW, edgecolors="black",
@@ -120,7 +121,7 @@ def draw_plane(data):
         axes.scatter(*data.goal_feature[:2], marker="*", s=190, color=VERMILLION, edgecolors="black", linewidths=0.6,
                      label="goal", zorder=3)
     if axes.get_legend_handles_labels()[0]:
-        axes.legend(loc="upper right")
+        axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0))  # beside the images, not over them
     return figure
 
 
@@ -141,12 +142,13 @@ def draw_line(data):
 
 def draw_coverage(data):
     """How often each feature and each torque occurs."""
-    series = [("feature z_%d [-]" % (i + 1), column) for i, column in enumerate(data.features.T)]
-    series += [("torque u_%d [N m]" % (i + 1), column) for i, column in enumerate(data.torques.T)]
+    series = [("feature $z_{%d}$ [-]" % (i + 1), column) for i, column in enumerate(data.features.T)]
+    series += [("torque $u_{%d}$ [N m]" % (i + 1), column) for i, column in enumerate(data.torques.T)]
     series = series[:6]
     figure, axes = new_axes(2.6, columns=len(series))
     for one, (label, values) in zip(axes, series):
         one.hist(values, bins=30, color=BLUE)
+        one.yaxis.set_major_locator(MaxNLocator(nbins=6, integer=True))
         one.set_xlabel(label)
         if label.startswith("torque"):
             one.axvline(-data.max_torque, color=GREY, linestyle="--")

@@ -1,0 +1,153 @@
+#!/usr/bin/python3
+# What tables of the pages say of nodes, messages and parameters is what these are.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import re
+import sys
+import time
+import unittest
+
+import ddm_msgs.msg
+import ddm_msgs.srv
+import rosgraph
+import rosunit
+import yaml
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pages  # noqa: E402
+
+LIMIT_S = 60.0  # until all nodes have made their topics
+NODES = [("ddm_sim/README.md", "sim_node", ""), ("ddm_mpc/README.md", "mpc_node", ""),
+         ("ddm_mpc/README.md", "view_node", ""), ("ddm_model/README.md", "model_node", ""),
+         ("ddm_model/README.md", "trial_recorder", ""), ("ddm_launch/README.md", "robot_node", "/robot")]
+ACTION_TOPICS = ("goal", "cancel", "status", "feedback", "result")
+# Blocks of parameters in a table, and the manuals whose values are the structs' (tests of each package say so).
+PARAMETERS = [("ddm_launch/README.md", "robot_node", ["robot"], ["ddm_launch/config/robot.yaml"]),
+              ("ddm_sim/README.md", "Parameters", ["plant", "camera", "sim", "show"],
+               ["ddm_sim/config/moving_tile.yaml", "ddm_sim/config/pendulum.yaml", "ddm_sim/config/sim.yaml"]),
+              ("ddm_mpc/README.md", "Turned while it runs", [], ["ddm_mpc/config/mpc.yaml"])]
+
+
+def documented(page, node):
+    """Names of topics, services and actions in the tables and the sentences of a node's section."""
+    text = pages.section(pages.read(page), node)
+    names, kind = set(), ""
+    for table in pages.tables(text):
+        if "default" in table[0] or "colour" in table[0] or "status" in table[0] or "state" in table[0]:
+            continue
+        for row in table[1:]:
+            kind = row[0] or kind
+            cell = row[0] if row[0].startswith("`") else row[1] if kind != "parameters" else ""
+            names.update(pages.code_spans(cell))
+    for sentence in re.findall(r"^(`[^|\n]*), as above\.$", text, re.MULTILINE):
+        names.update(pages.code_spans(sentence))
+    return names
+
+
+def offered(node, namespace):
+    """The same, as the master knows it; what libraries add to an image or an action is theirs."""
+    full = "%s/%s" % (namespace, node)
+    publishers, subscribers, services = rosgraph.Master("/page_facts").getSystemState()
+    subscribers = [entry for entry in subscribers if entry[0] != "/clock"]  # all nodes hear it in simulated time
+    names = {name for kind in (publishers, subscribers, services) for name, nodes in kind if full in nodes}
+    names = {re.sub("^" + re.escape(full) + "/", "~", name) for name in names}
+    names = {re.sub("^" + re.escape(namespace) + "/", "", name) if namespace else name for name in names}
+    names = {name if name in ("/clock", "/diagnostics") else name.lstrip("/") for name in names}
+    names -= {"rosout", "~get_loggers", "~set_logger_level"}
+    for action in {name[:-len("/goal")] for name in names if name.endswith("/goal")}:
+        names -= {"%s/%s" % (action, topic) for topic in ACTION_TOPICS}
+        names.add(action)
+    names = {name for name in names if not name.endswith("/set_parameters")}  # of dynamic_reconfigure
+    return {name for name in names if not re.match("(camera/image_raw|goal_image)/", name)}
+
+
+def parameter_rows(page, heading):
+    """(block, key, the rest of the row) of each parameter in the table of a section."""
+    for table in pages.tables(pages.section(pages.read(page), heading)):
+        if "default" in table[0]:
+            for row in table[1:]:
+                for block, key in re.findall(r"`~?(\w+)/(\w+)`", row[0]):
+                    yield block, key, dict(zip(table[0], row))
+
+
+def manual(files):
+    """({block: {key: value}}, {block/key: comment}) of YAML files, later ones first to be asked for comments."""
+    values, comments = {}, {}
+    for path in files:
+        text = pages.read(path)
+        for block, entries in yaml.safe_load(text).items():
+            values.setdefault(block, {}).update(entries)
+            body = re.search(r"^%s:.*?(?=^\w|\Z)" % block, text, re.MULTILINE | re.DOTALL).group(0)
+            for key in entries:
+                comment = re.search(r"^  %s:(.*?)(?=^  \w|\Z)" % key, body, re.MULTILINE | re.DOTALL).group(1)
+                comments["%s/%s" % (block, key)] = re.sub(r"\s*\n\s*#\s*", " ", comment)
+    return values, comments
+
+
+def value_in(cell):
+    """What a table says a default is; what stands behind : or ; explains it."""
+    word = re.split("[:;,]", cell)[0].strip().strip("`")
+    return "" if word == "none" else yaml.safe_load(word)
+
+
+class PageFactsTest(unittest.TestCase):
+    maxDiff = None
+
+    def test_topics_services_and_actions_of_each_node_are_those_of_its_readme(self):
+        deadline = time.monotonic() + LIMIT_S
+        for page, node, namespace in NODES:
+            wanted = documented(page, node)
+            self.assertGreater(len(wanted), 2, node)
+            while offered(node, namespace) != wanted and time.monotonic() < deadline:
+                time.sleep(0.1)
+            self.assertEqual(sorted(offered(node, namespace)), sorted(wanted), node)
+
+    def test_defaults_and_units_of_parameters_are_those_of_the_manuals(self):
+        for page, heading, blocks, files in PARAMETERS:
+            values, comments = manual(files)
+            seen = set()
+            for block, key, row in parameter_rows(page, heading):
+                if block == "image":
+                    continue  # the same in all nodes: ddm_model/config/model.yaml
+                seen.add((block, key))
+                self.assertEqual(value_in(row["default"]), values[block][key], (page, block, key))
+                unit = re.split(";| of wall time", row.get("unit", "–"))[0].replace("²", "^2")
+                if unit != "–" and "[" in comments["%s/%s" % (block, key)]:
+                    self.assertIn("[%s" % unit.split(",")[0], comments["%s/%s" % (block, key)], (page, block, key))
+            self.assertGreater(len(seen), 2, page)
+            for block in blocks:
+                self.assertEqual({key for name, key in seen if name == block}, set(values[block]), (page, block))
+
+    def test_topics_of_the_contract_are_those_of_its_header(self):
+        header = pages.read("ddm_msgs/include/ddm_msgs/topics.h")
+        names = {name for table in pages.tables(pages.read("ddm_msgs/README.md")) for row in table[1:]
+                 for name in pages.code_spans(row[0])}
+        constants = re.findall(r'constexpr char k\w+\[\] =\s+"([^"]+)"', header)
+        self.assertGreater(len(constants), 15)
+        self.assertEqual([name for name in constants if name not in names], [])
+
+    def test_fields_of_messages_are_those_of_their_readme(self):
+        rows, message = {}, ""
+        for row in pages.tables(pages.section(pages.read("ddm_msgs/README.md"), "Messages"))[0][1:]:
+            message = row[0] or message
+            rows.setdefault(message, []).extend(name.split(".")[0] for name in pages.code_spans(row[1]))
+        for name, fields in rows.items():
+            self.assertEqual(sorted(fields), sorted(getattr(ddm_msgs.msg, name).__slots__), name)
+        self.assertEqual(sorted(rows), ["Model", "Plan", "PlanScalars", "Torque"])
+
+    def test_fields_of_services_and_actions_are_those_of_their_readme(self):
+        text = pages.read("ddm_msgs/README.md")
+        for row in pages.tables(pages.section(text, "Services"))[0][1:]:
+            if "/" in row[1]:
+                continue  # of another package
+            service = getattr(ddm_msgs.srv, row[1])
+            for part, cell in ((service._request_class, row[2]), (service._response_class, row[3])):
+                self.assertEqual(set(part.__slots__) - set(pages.code_spans(cell)), set(), row[1])
+        for row in pages.tables(pages.section(text, "Actions"))[0][1:]:
+            for part, cell in (("Goal", row[2]), ("Feedback", row[3]), ("Result", row[4])):
+                fields = getattr(ddm_msgs.msg, row[1] + part).__slots__
+                self.assertEqual(set(fields), set(pages.code_spans(cell)), row[1] + part)
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "page_facts_test", PageFactsTest)
