@@ -9,7 +9,6 @@ import subprocess
 import sys
 import threading
 import time
-import xmlrpc.client
 
 from ddm_msgs.msg import Torque, TrainActionFeedback, TrainActionGoal
 from ddm_msgs.srv import Reset
@@ -17,6 +16,7 @@ import rosgraph
 import rospy
 from sensor_msgs.msg import Image
 
+from ddm_launch.node_processes import pid_of
 from ddm_launch.step_runner import program
 
 # (trial, whether it is the evaluation after it). `recording` is when the last torque has been sent: the bag is closed.
@@ -65,14 +65,6 @@ MESSAGE_FAULTS = {"drop": lambda message, before, how: [], "double": lambda mess
                   "alter": lambda message, before, how: [altered(message, how)]}
 
 
-def pid_of(node):
-    """Process of a node, or of the master."""
-    master = rosgraph.Master(rospy.get_name())
-    if node == "master":
-        return master.getPid()
-    return xmlrpc.client.ServerProxy(master.lookupNode("/" + node)).getPid(rospy.get_name())[2]
-
-
 class Injector:
     def __init__(self):
         self.phase = rospy.get_param("~phase")
@@ -107,7 +99,7 @@ class Injector:
 
     def on_reset(self, request):
         if self.pid is None and self.verb in ("kill", "pause", "hold"):
-            self.pid = pid_of(self.what)  # only now all nodes are sure to be there
+            self.pid = pid_of(rosgraph.Master(rospy.get_name()), self.what)  # only now all nodes are sure to be there
         with self.lock:
             self.run, self.frame, self.num_steps = (request.trial, request.evaluation), -1, request.num_steps
         self.wait_for_end()

@@ -9,8 +9,8 @@ import subprocess
 from ddm_launch.faults.damage import damage
 from ddm_launch.processes import start_roslaunch
 from ddm_launch.run_comparison import differences, expected_files, files_in, read_bytes
+from ddm_launch.run_folder import is_finished, num_finished
 from ddm_launch.step_runner import Failure
-from ddm_launch.sweep_folder import read_yaml
 
 SEED, TRIALS = 1, 1
 LIMIT_S = 120.0  # of a launch
@@ -26,16 +26,6 @@ NODE_S, EXPERIMENT_S = 5.0, 8.0  # without a sign of life
 CRASH = re.compile(r"exit code -(?!2\b|9\b|15\b)\d+|Traceback|terminate called|Segmentation fault")
 DISK_BYTES = 2 * 1024 * 1024
 COMPARED = [name for name in expected_files(TRIALS) if not name.endswith((".bag", "config.yaml", ".lock"))]
-
-
-def is_finished(folder):
-    return read_yaml(os.path.join(folder, "summary.yaml")).get("finished") is True
-
-
-def num_finished(folder):
-    """Rows of trials.csv."""
-    path = os.path.join(folder, "trials.csv")
-    return len(read_bytes(path).splitlines()) - 1 if os.path.exists(path) else 0
 
 
 def files_of_trials(folder, count):
