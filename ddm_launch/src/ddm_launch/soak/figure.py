@@ -16,19 +16,19 @@ def draw_run(samples, memory, files):
         color, dashes = LINES[number % len(LINES)]
         trials = [sample.trial for sample in of_node]
         base = after(of_node, reference).rss_kb
-        memory.plot(trials, [100.0 * (sample.rss_kb / base - 1.0) for sample in of_node], dashes, color=color,
-                    label="%s, %.0f MB" % (node.lstrip("/"), base / 1024.0))
-        files.plot(trials, [sample.open_files for sample in of_node], dashes, color=color)
+        memory.plot(trials, [100.0 * (sample.rss_kb / base - 1.0) for sample in of_node], dashes, color=color)
+        files.plot(trials, [sample.open_files for sample in of_node], dashes, color=color,
+                   label="%s, %.0f MB" % (node, base / 1024.0))
     memory.axhline(100.0 * GROWTH, color=GREY, linewidth=0.8)
     memory.axvline(reference, color=GREY, linewidth=0.8, linestyle=":")
     minutes = max(sample.time_s for sample in samples) / 60.0
-    memory.set_title("%s: %d trials in %.0f min" % (TITLES[samples[0].run], last, minutes))
+    memory.set_title("%s: %d trials in %.1f min" % (TITLES[samples[0].run], last, minutes))
     memory.set_ylabel("resident memory,\nchange since trial %d [%%]" % reference)
-    memory.set_ylim(-6.0, 6.0)
     files.set_ylabel("open files [-]")
     files.set_ylim(0.0, None)
     files.set_xlabel("trial [-]")
-    memory.legend(loc="lower right", ncol=2, handlelength=2.4, columnspacing=1.0)
+    files.legend(loc="upper center", bbox_to_anchor=(0.5, -0.35), ncol=2, handlelength=2.4, frameon=False,
+                 title="node, memory after trial %d" % reference, title_fontsize=7)
     for axes in (memory, files):
         axes.grid(True)
 
@@ -36,8 +36,8 @@ def draw_run(samples, memory, files):
 def draw(samples, out):
     """Raises RunFolderError if `out` is no .png."""
     runs = sorted({sample.run for sample in samples})
-    with new_figure(PAGE_WIDTH, 3.6) as figure:
-        panels = figure.subplots(2, len(runs), sharex="col", squeeze=False, gridspec_kw={"height_ratios": [2, 1]})
+    with new_figure(PAGE_WIDTH, 4.4) as figure:
+        panels = figure.subplots(2, len(runs), sharex="col", sharey="row", squeeze=False, gridspec_kw={"height_ratios": [2, 1]})
         for run, memory, files in zip(runs, *panels):
             draw_run([sample for sample in samples if sample.run == run], memory, files)
         save(figure, out)
