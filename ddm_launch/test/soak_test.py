@@ -25,7 +25,7 @@ class SoakTest(unittest.TestCase):
 
     def test_both_runs_leave_tables_and_a_figure_and_lockstep_loses_no_frame(self):
         code, output = call([find_program("ddm_launch", "soak"), "--trials", "5", "--minutes", "0.2", "--steps", "12",
-                             "--out", self.out], limit_s=100.0)
+                             "--out", self.out], limit_s=200.0)
         bars = read_rows(self.out, "bars.csv")[1:]
         self.assertEqual(code, 0 if all(row[3] == "1" for row in bars) else 1, output)
         for run in ("lockstep", "real_time"):
