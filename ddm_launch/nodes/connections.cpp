@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "connections.h"
 
-#include <ros/master.h>
+#include <ddm_msgs/call_within.h>
+#include <ddm_msgs/topic_peers.h>
+#include <ros/console.h>
 #include <ros/network.h>
 #include <ros/this_node.h>
 #include <ros/xmlrpc_manager.h>
@@ -16,6 +18,9 @@ namespace ddm {
 namespace {
 
 using Names = std::vector<std::string>;
+using Connections = std::set<std::pair<std::string, std::string>>;
+
+constexpr std::chrono::seconds kNodeLimit(5);  // one that was stopped never answers
 
 /// Nodes by topic, from one of the three lists of the master's system state.
 std::map<std::string, Names> nodesByTopic(XmlRpc::XmlRpcValue* list) {
@@ -28,19 +33,10 @@ std::map<std::string, Names> nodesByTopic(XmlRpc::XmlRpcValue* list) {
   return out;
 }
 
-/// (topic, subscriber) of all outgoing connections of a node; empty if it does not answer.
-std::set<std::pair<std::string, std::string>> outgoingConnections(const std::string& node) {
-  std::set<std::pair<std::string, std::string>> out;
-  XmlRpc::XmlRpcValue request, response, payload;
-  request[0] = ros::this_node::getName();
-  request[1] = node;
-  if (!ros::master::execute("lookupNode", request, response, payload, false)) return out;
-  std::string host;
-  std::uint32_t port = 0;
-  const std::string uri = payload;
-  if (!ros::network::splitURI(uri, host, port)) return out;
-
-  XmlRpc::XmlRpcValue caller;
+/// As outgoingConnections(), of the node at this address.
+Connections outgoingConnectionsAt(const std::string& host, std::uint32_t port) {
+  Connections out;
+  XmlRpc::XmlRpcValue caller, response;
   caller[0] = ros::this_node::getName();
   // The path alone: a node in Python does not know the page "http://...".
   XmlRpc::XmlRpcClient* const client =
@@ -59,15 +55,26 @@ std::set<std::pair<std::string, std::string>> outgoingConnections(const std::str
   return out;
 }
 
+/// (topic, subscriber) of all outgoing connections of a node; empty if it does not answer.
+Connections outgoingConnections(const std::string& node) {
+  XmlRpc::XmlRpcValue request;
+  request[0] = ros::this_node::getName();
+  request[1] = node;
+  std::optional<XmlRpc::XmlRpcValue> uri = askMaster("lookupNode", request);
+  std::string host;
+  std::uint32_t port = 0;
+  if (!uri || !ros::network::splitURI(static_cast<std::string>(*uri), host, port)) return {};
+  return callWithin(kNodeLimit, [host, port] { return outgoingConnectionsAt(host, port); })
+      .value_or(Connections());
+}
+
 }  // namespace
 
 std::vector<std::string> missingConnections(const std::vector<std::string>& topics) {
-  XmlRpc::XmlRpcValue response, state;
-  if (!ros::master::execute("getSystemState", ros::this_node::getName(), response, state, false)) {
-    return {"the ROS master does not answer"};
-  }
-  std::map<std::string, Names> publishers = nodesByTopic(&state[0]);
-  std::map<std::string, Names> subscribers = nodesByTopic(&state[1]);
+  std::optional<XmlRpc::XmlRpcValue> state = askMaster("getSystemState", ros::this_node::getName());
+  if (!state) return {"the ROS master does not answer"};
+  std::map<std::string, Names> publishers = nodesByTopic(&(*state)[0]);
+  std::map<std::string, Names> subscribers = nodesByTopic(&(*state)[1]);
   std::vector<std::string> missing;
   for (const std::string& topic : topics) {
     for (const std::string& publisher : publishers[topic]) {
@@ -82,11 +89,12 @@ std::vector<std::string> missingConnections(const std::vector<std::string>& topi
 }
 
 std::vector<std::string> sharedTopics(const std::vector<std::string>& topics) {
-  XmlRpc::XmlRpcValue response, state;
-  if (!ros::master::execute("getSystemState", ros::this_node::getName(), response, state, false)) {
-    return {};  // nobody new can have come either
+  std::optional<XmlRpc::XmlRpcValue> state = askMaster("getSystemState", ros::this_node::getName());
+  if (!state) {
+    ROS_WARN("the ROS master does not answer: nodes that know each other go on, nobody new comes");
+    return {};
   }
-  std::map<std::string, Names> publishers = nodesByTopic(&state[0]);
+  std::map<std::string, Names> publishers = nodesByTopic(&(*state)[0]);
   std::vector<std::string> shared;
   for (const std::string& topic : topics) {
     Names& names = publishers[topic];

@@ -10,11 +10,13 @@
 
 #include <cstdlib>
 #include <iostream>
+#include <optional>
 #include <stdexcept>
 
 #include "configuration.h"
 #include "experiment.h"
 #include "learning_curve_image.h"
+#include "leave.h"
 #include "ros_world.h"
 #include "start.h"
 
@@ -32,7 +34,16 @@ void publishCurve(const ros::Publisher& publisher, const std::vector<ddm::TrialR
   publisher.publish(image.toImageMsg());
 }
 
-void run(ros::NodeHandle nh, const ros::NodeHandle& pnh) {
+/// What it has of ROS: outlives the error that ends it.
+struct Node {
+  ros::NodeHandle nh;
+  ros::NodeHandle pnh{"~"};
+  ros::Publisher curve_pub;
+  std::optional<ddm::RosWorld> world;
+};
+
+void run(Node* node) {
+  const ros::NodeHandle& pnh = node->pnh;
   ddm::ParamReader params(ddm::nodeParams(pnh), pnh.getNamespace());
   ddm::Configuration configuration = ddm::readConfiguration(&params);
   if (configuration.experiment.method != "ddm") {
@@ -46,12 +57,12 @@ void run(ros::NodeHandle nh, const ros::NodeHandle& pnh) {
   ddm::RunFolder folder(configuration);
   ddm::Progress progress(&std::cout, ::isatty(STDOUT_FILENO) != 0, configuration.experiment.trials);
   for (const std::string& warning : folder.warnings()) progress.note("warning: " + warning);
-  const ros::Publisher curve_pub =
-      nh.advertise<sensor_msgs::Image>(ddm::topics::kLearningCurveImage, 1, /*latch=*/true);
-  ddm::RosWorld world(nh, configuration.experiment.timeout, ddm::RosWorld::Peers());
-  ddm::runExperiment(configuration, &world, &folder, &progress,
+  node->curve_pub =
+      node->nh.advertise<sensor_msgs::Image>(ddm::topics::kLearningCurveImage, 1, /*latch=*/true);
+  node->world.emplace(node->nh, configuration.experiment.timeout, ddm::RosWorld::Peers());
+  ddm::runExperiment(configuration, &*node->world, &folder, &progress,
                      [&](const std::vector<ddm::TrialRow>& rows) {
-                       publishCurve(curve_pub, rows, configuration);
+                       publishCurve(node->curve_pub, rows, configuration);
                      });
   progress.note("The experiment is finished. roslaunch ends the nodes, and says so in red.");
 }
@@ -60,13 +71,14 @@ void run(ros::NodeHandle nh, const ros::NodeHandle& pnh) {
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "experiment_node");
-  const ros::NodeHandle nh;
-  const ros::NodeHandle pnh("~");  // outside the try: its destructor shuts the log down
+  Node node;  // outside the try: its destructor shuts the log down
+  int code = EXIT_SUCCESS;
   try {
-    run(nh, pnh);
+    run(&node);
   } catch (const std::exception& e) {
     ROS_FATAL_STREAM("experiment: " << e.what());
-    return EXIT_FAILURE;
+    code = EXIT_FAILURE;
   }
-  return EXIT_SUCCESS;
+  ddm::leaveWithin10s(code);
+  return code;
 }

@@ -30,7 +30,14 @@ constexpr double kResetLimit = 600.0;  // wall time [s]: people may have to put 
 constexpr std::chrono::milliseconds kLook(
     20);  // how often conditions without a callback are looked at
 
-ros::NodeHandle withQueue(ros::NodeHandle nh, ros::CallbackQueue* queue) {
+/// For action clients, which would wait for the first time on /clock without a limit.
+ros::NodeHandle withQueue(ros::NodeHandle nh, ros::CallbackQueue* queue, double limit) {
+  if (!ros::Time::waitForValid(ros::WallDuration(limit)) && ros::ok()) {
+    std::ostringstream text;
+    text << "simulated time does not come (waited " << limit << " s), "
+         << describePublishers("/clock");
+    throw std::runtime_error(text.str());
+  }
   nh.setCallbackQueue(queue);
   return nh;
 }
@@ -48,7 +55,7 @@ std::vector<std::string> loopTopics(const ros::NodeHandle& nh) {
 }  // namespace
 
 RosWorld::RosWorld(const ros::NodeHandle& nh, double timeout, Peers peers)
-    : nh_(withQueue(nh, &callbacks_)),
+    : nh_(withQueue(nh, &callbacks_, timeout)),
       timeout_(timeout),
       peers_(peers),
       trial_client_(nh_, topics::kRunTrial, /*spin_thread=*/false),
@@ -103,6 +110,9 @@ void RosWorld::connect() {
     for (const std::string& connection : missing) text += "\n - " + connection;
     throw std::runtime_error(text + "\nCheck ROS_HOSTNAME or ROS_IP on each machine");
   }
+  // Before a process logs its first line roscpp asks the master for a parameter: one that is
+  // stopped later would keep the process from telling it.
+  ROS_INFO("all nodes are there and connected");
 }
 
 void RosWorld::signOfLife() {
@@ -128,6 +138,18 @@ void RosWorld::waitFor(const std::function<bool()>& condition, const std::string
       throw std::runtime_error(text.str());
     }
     changed_.wait_for(lock, kLook);
+  }
+}
+
+/// The same for messages: the error tells who publishes them, for which the master is asked.
+void RosWorld::waitForMessages(const std::function<bool()>& condition, const std::string& what,
+                               const ros::Subscriber& subscriber) {
+  try {
+    waitFor(condition, what);
+  } catch (const std::exception& e) {
+    if (!ros::ok()) throw;
+    throw std::runtime_error(std::string(e.what()) + ", " +
+                             describePublishers(subscriber.getTopic()));
   }
 }
 
@@ -305,7 +327,7 @@ ddm_msgs::RunTrialResult RosWorld::runPolicy(const TrialRequest& request, const 
 void RosWorld::takeGroundTruth(const std::vector<ros::Time>& stamps, TrialOutcome* outcome) {
   if (ground_truth_sub_.getNumPublishers() == 0) return;
   std::map<ros::Time, sensor_msgs::JointState> truth;
-  waitFor(
+  waitForMessages(
       [&] {
         const std::lock_guard<std::mutex> lock(mutex_);
         awaits_ground_truth_ = true;
@@ -314,8 +336,7 @@ void RosWorld::takeGroundTruth(const std::vector<ros::Time>& stamps, TrialOutcom
         return std::all_of(stamps.begin(), stamps.end(),
                            [&](const ros::Time& stamp) { return truth.count(stamp) > 0; });
       },
-      "ground truth of the trial is incomplete, " +
-          describePublishers(ground_truth_sub_.getTopic()));
+      "ground truth of the trial is incomplete", ground_truth_sub_);
   const std::lock_guard<std::mutex> lock(mutex_);
   awaits_ground_truth_ = false;
   for (const ros::Time& stamp : stamps) {
@@ -359,12 +380,12 @@ void RosWorld::useModel(const std::string& path) {
 }
 
 std::string RosWorld::takeModel(const std::string& model_id) {
-  waitFor(
+  waitForMessages(
       [&] {
         const std::lock_guard<std::mutex> lock(mutex_);
         return model_ != nullptr && model_->id == model_id;
       },
-      "model " + model_id + " did not come, " + describePublishers(model_sub_.getTopic()));
+      "model " + model_id + " did not come", model_sub_);
   const std::lock_guard<std::mutex> lock(mutex_);
   return std::string(model_->data.begin(), model_->data.end());
 }

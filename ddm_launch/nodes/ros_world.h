@@ -61,6 +61,8 @@ class RosWorld : public World {
   void signOfLife();
   void waitFor(const std::function<bool()>& condition, const std::string& what);
   void waitFor(const std::function<bool()>& condition, const std::string& what, double limit);
+  void waitForMessages(const std::function<bool()>& condition, const std::string& what,
+                       const ros::Subscriber& subscriber);
 
   ros::CallbackQueue callbacks_;
   ros::NodeHandle nh_;  // with that queue

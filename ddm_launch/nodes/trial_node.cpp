@@ -9,8 +9,10 @@
 
 #include <cstdlib>
 #include <iostream>
+#include <optional>
 
 #include "evaluation.h"
+#include "leave.h"
 #include "progress.h"
 #include "ros_world.h"
 
@@ -61,7 +63,15 @@ void report(const ddm::Plant& plant, const ddm::TrialOutcome& outcome,
                  (evaluation.success ? "the goal was reached" : "the goal was not reached"));
 }
 
-void run(ros::NodeHandle nh, const ros::NodeHandle& pnh) {
+/// What it has of ROS: outlives the error that ends it.
+struct Node {
+  ros::NodeHandle nh;
+  ros::NodeHandle pnh{"~"};
+  std::optional<ddm::RosWorld> world;
+};
+
+void run(Node* node) {
+  const ros::NodeHandle& pnh = node->pnh;
   ddm::ParamReader params(ddm::nodeParams(pnh), pnh.getNamespace());
   const auto options = params.read<RunOptions>("run");
   const auto plant = ddm::readPlant(&params);
@@ -76,12 +86,13 @@ void run(ros::NodeHandle nh, const ros::NodeHandle& pnh) {
   request.epsilon = options.model.empty() ? 1.0 : options.epsilon;
   request.hold_steps = mpc.hold_steps;
   request.bag = options.bag;
-  ddm::RosWorld world(nh, options.timeout, {!options.bag.empty(), /*trainer=*/false});
-  if (!options.model.empty()) world.useModel(options.model);
+  node->world.emplace(node->nh, options.timeout,
+                      ddm::RosWorld::Peers{!options.bag.empty(), /*trainer=*/false});
+  if (!options.model.empty()) node->world->useModel(options.model);
   ddm::Progress progress(&std::cout, ::isatty(STDOUT_FILENO) != 0, 0);
   progress.beginPhase(0, options.model.empty() ? "random" : "control");
   const ddm::TrialOutcome outcome =
-      world.runTrial(request, [&progress](double fraction) { progress.update(fraction); });
+      node->world->runTrial(request, [&progress](double fraction) { progress.update(fraction); });
   report(*ddm::makePlant(plant, camera), outcome, evaluation, &progress);
   if (!options.bag.empty()) progress.note("recorded: " + options.bag);
 }
@@ -90,13 +101,14 @@ void run(ros::NodeHandle nh, const ros::NodeHandle& pnh) {
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "trial_node");
-  ros::NodeHandle nh;
-  ros::NodeHandle pnh("~");  // outside the try: its destructor shuts the log down
+  Node node;  // outside the try: its destructor shuts the log down
+  int code = EXIT_SUCCESS;
   try {
-    run(nh, pnh);
+    run(&node);
   } catch (const std::exception& e) {
     ROS_FATAL_STREAM("trial: " << e.what());
-    return EXIT_FAILURE;
+    code = EXIT_FAILURE;
   }
-  return EXIT_SUCCESS;
+  ddm::leaveWithin10s(code);
+  return code;
 }

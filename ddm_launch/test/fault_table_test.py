@@ -12,6 +12,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from ddm_launch.faults import table  # noqa: E402
 from ddm_launch.faults.cases import CASES, ENDS, RECOVERS, Case  # noqa: E402
 from ddm_launch.faults.damage import damage, find_record  # noqa: E402
+from ddm_launch.faults.motor import MotorWatch  # noqa: E402
 from ddm_launch.faults.run import FaultBench  # noqa: E402
 from processes import call, find_program, run_experiment  # noqa: E402
 from run_files import read_rows  # noqa: E402
@@ -47,6 +48,32 @@ class FaultTableTest(unittest.TestCase):
         self.assertEqual(bench.run(silent), ENDS.replace("named", "not named: nobody says this"))
         rows = table.table([never, silent], {"never": "not injected", "silent": "ended"})
         self.assertEqual([line[-2:] for line in rows.splitlines()[1:]], [",0", ",0"])
+
+    @staticmethod
+    def motor(torques, passed=(), stays_off=False):
+        """The verdict on a motor with these torques in periods of a second, after a fault at 3.5 s, the first image being
+        that of 0 s. passed: (time, stamp) of torques other than those that answer images 0 to 3 at once."""
+        watch = MotorWatch(stays_off)
+        for now, stamp in [(k + 0.1, k) for k in range(3)] + list(passed):
+            watch.torque_passes(now, stamp)
+        watch.fault_begins(3.5, 3)
+        for k, torque in enumerate(torques):
+            watch.torque_has_acted(k + 1.0, torque)
+        return watch.verdict()
+
+    def test_a_motor_must_stop_two_periods_after_the_last_torque(self):
+        self.assertEqual(self.motor([1, 2, 3, 4, 4, 0, 0, 0]), "zero")
+        self.assertEqual(self.motor([1, 2, 3, 4, 4, 4, 0, 0]), "driven: 4 0 0")
+        self.assertEqual(self.motor([1, 2, 3, 4, 4, 0, 0]), "only 2 frames seen")
+        self.assertEqual(self.motor([0, 0, 0, 0, 0, 0, 0, 0]), "no torque had acted before")
+
+    def test_a_torque_that_answers_an_image_before_the_fault_may_still_act(self):
+        self.assertEqual(self.motor([1, 2, 3, 4, 5, 5, 0, 0, 0], [(4.2, 2)]), "zero")
+
+    def test_a_motor_may_run_again_with_the_next_torque_unless_one_was_refused(self):
+        again = [1, 2, 3, 4, 4, 0, 0, 0, 9]
+        self.assertEqual(self.motor(again, [(8.1, 8)]), "zero")
+        self.assertEqual(self.motor(again, [(8.1, 8)], stays_off=True), "driven: 0 0 0 9")
 
     def test_each_kind_of_record_of_a_bag_is_cut_in_its_middle(self):
         code, output = run_experiment("--preset", "debug", "--trials", 0, "--out", self.scratch)

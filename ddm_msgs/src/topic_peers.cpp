@@ -5,17 +5,34 @@
 #include <ros/master.h>
 #include <ros/this_node.h>
 
+#include "ddm_msgs/call_within.h"
+
 namespace ddm {
+namespace {
+
+constexpr std::chrono::seconds kMasterLimit(5);
+
+}  // namespace
+
+std::optional<XmlRpc::XmlRpcValue> askMaster(const std::string& method,
+                                             const XmlRpc::XmlRpcValue& request) {
+  const auto answer = callWithin(kMasterLimit, [method, request] {
+    XmlRpc::XmlRpcValue response;
+    std::optional<XmlRpc::XmlRpcValue> payload(std::in_place);
+    if (!ros::master::execute(method, request, response, *payload, /*wait_for_master=*/false)) {
+      payload.reset();
+    }
+    return payload;
+  });
+  return answer ? *answer : std::nullopt;
+}
 
 std::string describePublishers(const std::string& topic) {
-  XmlRpc::XmlRpcValue response;
-  XmlRpc::XmlRpcValue system_state;
-  if (!ros::master::execute("getSystemState", ros::this_node::getName(), response, system_state,
-                            /*wait_for_master=*/false)) {
-    return "the ROS master does not answer";
-  }
+  std::optional<XmlRpc::XmlRpcValue> system_state =
+      askMaster("getSystemState", ros::this_node::getName());
+  if (!system_state) return "the ROS master does not answer";
   std::string names;
-  XmlRpc::XmlRpcValue& published = system_state[0];
+  XmlRpc::XmlRpcValue& published = (*system_state)[0];
   for (int i = 0; i < published.size(); ++i) {
     if (static_cast<std::string>(published[i][0]) != topic) continue;
     for (int j = 0; j < published[i][1].size(); ++j) {

@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "realtime_sim.h"
 
+#include <actionlib_msgs/GoalID.h>
+
 #include <utility>
+
+#include "ddm_msgs/topics.h"
 
 namespace ddm {
 namespace {
@@ -18,13 +22,16 @@ ros::Time wallNow() {  // ros::Time::now() would follow /clock if somebody else 
 
 RealtimeSim::RealtimeSim(ros::NodeHandle nh, std::unique_ptr<Plant> plant,
                          const CameraOptions& camera)
-    : SimNode(nh, std::move(plant), camera, /*clock=*/false) {
+    : SimNode(nh, std::move(plant), camera, /*clock=*/false),
+      cancel_pub_(
+          nh.advertise<actionlib_msgs::GoalID>(std::string(topics::kRunTrial) + "/cancel", 1)) {
   switchMotorOff();
   publishGoal(wallNow());
   timer_ = nh.createWallTimer(ros::WallDuration(this->plant().dt()), &RealtimeSim::onTick, this);
 }
 
 ros::Time RealtimeSim::beginTrial(const ddm_msgs::Reset::Request& request) {
+  stopped_ = false;
   switchMotorOff();  // the torque on hold was meant for another state
   timer_.stop();     // stop and start, so that the first step is a whole one
   timer_.start();
@@ -37,12 +44,17 @@ ros::Time RealtimeSim::beginTrial(const ddm_msgs::Reset::Request& request) {
 
 void RealtimeSim::takeTorque(const ros::Time& /*stamp*/, const Eigen::VectorXd& torque,
                              const std::string& /*publisher*/) {
+  if (stopped_) return;
   held_ = torque;
   steps_held_ = 0;
 }
 
 void RealtimeSim::torqueRefused(const ros::Time& /*stamp*/, const std::string& /*reason*/) {
   switchMotorOff();
+  if (stopped_) return;
+  stopped_ = true;
+  ROS_ERROR("the motor is off until the next reset, and the trial is cancelled");
+  cancel_pub_.publish(actionlib_msgs::GoalID());  // without an id: all goals
 }
 
 void RealtimeSim::switchMotorOff() { held_ = Eigen::VectorXd::Zero(plant().torqueDim()); }

@@ -13,8 +13,9 @@ namespace ddm {
 /// camera loses it.
 ///
 /// Stamps are wall time and no clock is published. A torque acts for two periods at most: without a
-/// newer one the motor is switched off, and a torque that cannot be applied switches it off at
-/// once. Starts at rest; a reset sets the state at any time, and its num_steps has no effect.
+/// newer one the motor is switched off. A torque that is refused switches it off at once, until the
+/// next reset, and cancels the trial: as on a robot, something is wired wrongly. Starts at rest; a
+/// reset sets the state at any time, and its num_steps has no effect.
 class RealtimeSim : public SimNode {
  public:
   RealtimeSim(ros::NodeHandle nh, std::unique_ptr<Plant> plant, const CameraOptions& camera);
@@ -30,6 +31,8 @@ class RealtimeSim : public SimNode {
 
   Eigen::VectorXd held_;  ///< newest torque, zero when the motor is off
   int steps_held_ = 0;    ///< steps taken under held_
+  bool stopped_ = false;  ///< by a torque that was refused
+  ros::Publisher cancel_pub_;
   ros::WallTimer timer_;
 };
 

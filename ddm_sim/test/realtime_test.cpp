@@ -1,5 +1,6 @@
 // Tests of sim_node in real time, over the wire.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <actionlib_msgs/GoalID.h>
 #include <gtest/gtest.h>
 #include <ros/ros.h>
 
@@ -68,12 +69,36 @@ TEST_F(Realtime, HoldsATorqueForTwoPeriodsAndThenSwitchesTheMotorOff) {
   EXPECT_EQ(numFramesWithEffort(3.0), 2);
 }
 
-TEST_F(Realtime, SwitchesTheMotorOffAtATorqueThatIsNotFinite) {
+TEST_F(Realtime, SwitchesTheMotorOffUntilTheNextResetAtATorqueThatIsNotFinite) {
   client_->publish(ros::Time(5, 0), {4.0});
   client_->publish(ros::Time(5, 0), {std::numeric_limits<double>::quiet_NaN()});
+  client_->publish(ros::Time(5, 0), {4.0});
   ASSERT_TRUE(client_->waitForLog("torque refused: " + ros::this_node::getName()));
   ASSERT_TRUE(client_->waitForImages(client_->images.size() + 3));
-  EXPECT_LE(numFramesWithEffort(4.0), 1);  // one if a period ended between the two messages
+  EXPECT_LE(numFramesWithEffort(4.0), 1);  // one if a period ended between the first two messages
+  client_->reset(0, {0.0, 0.0});
+  client_->publish(ros::Time(5, 0), {3.0});
+  EXPECT_TRUE(waitForEffort(3.0));
+}
+
+TEST_F(Realtime, CancelsTheTrialAtATorqueThatIsRefusedOnce) {
+  int num_cancelled = 0;
+  ros::NodeHandle nh;
+  const ros::Subscriber cancel = nh.subscribe<actionlib_msgs::GoalID>(
+      "run_trial/cancel", 10, [&](const actionlib_msgs::GoalIDConstPtr&) { ++num_cancelled; });
+  ASSERT_TRUE(client_->waitUntil([&] { return cancel.getNumPublishers() == 1; }));
+  ASSERT_TRUE(client_->waitUntil([&] {  // until the publisher's side stands, too
+    client_->reset(0, {0.0, 0.0});
+    client_->publish(ros::Time(5, 0), {1e300});
+    return num_cancelled > 0;
+  }));
+  ASSERT_TRUE(client_->waitForImages(client_->images.size() + 3));
+  const int before = num_cancelled;
+  client_->reset(0, {0.0, 0.0});
+  client_->publish(ros::Time(5, 0), {1e300});
+  client_->publish(ros::Time(5, 0), {1e300});
+  ASSERT_TRUE(client_->waitForImages(client_->images.size() + 3));
+  EXPECT_EQ(num_cancelled, before + 1);
 }
 
 TEST_F(Realtime, ResetsAtAnyTimeAndDropsTheTorqueOnHold) {

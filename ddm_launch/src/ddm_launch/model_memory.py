@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
 import os
-import re
-import xmlrpc.client
 
 import actionlib
 from ddm_msgs.msg import TrainAction, TrainGoal
@@ -11,17 +9,10 @@ import rosgraph
 import rospy
 import yaml
 
+from ddm_launch.node_processes import memory_kb, pid_of
 from ddm_launch.sweep_folder import write_file
 
 LIMIT_S = 600.0
-
-
-def peak_memory_mb(node):
-    """Of the process of a node on this machine."""
-    uri = rosgraph.Master(rospy.get_name()).lookupNode(node)
-    _, message, pid = xmlrpc.client.ServerProxy(uri).getPid(rospy.get_name())
-    with open("/proc/%d/status" % pid) as stream:
-        return int(re.search(r"VmHWM:\s+(\d+) kB", stream.read()).group(1)) / 1024.0
 
 
 def main():
@@ -35,6 +26,7 @@ def main():
     if not client.wait_for_result(rospy.Duration(LIMIT_S)):
         rospy.logfatal("model_memory: no result within %g s" % LIMIT_S)
         return 1
-    result = {"frames": client.get_result().frames, "peak_memory_mb": peak_memory_mb(rospy.resolve_name("model_node"))}
+    pid = pid_of(rosgraph.Master(rospy.get_name()), rospy.resolve_name("model_node"))
+    result = {"frames": client.get_result().frames, "peak_memory_mb": memory_kb(pid, "VmHWM") / 1024.0}
     write_file(rospy.get_param("~out"), yaml.safe_dump(result))
     return 0

@@ -7,6 +7,7 @@ import os
 
 import yaml
 
+from ddm_launch.sweep_folder import read_yaml
 
 TRIAL_COLUMNS = ["trial", "frames", "success", "final_error_deg"]  # those of trials.csv that figures need
 
@@ -91,6 +92,20 @@ def read_sweep(path, remedy="give a trials.csv or sweep.csv"):
         seen.add((seed, trial.trial))
         runs.setdefault(seed, []).append(trial)
     return runs
+
+
+def is_finished(folder):
+    """Whether the run has its verdict."""
+    return read_yaml(os.path.join(folder, "summary.yaml")).get("finished") is True
+
+
+def num_finished(folder):
+    """Number of finished trials of a run that may be under way: rows of trials.csv."""
+    path = os.path.join(folder, "trials.csv")
+    if not os.path.exists(path):
+        return 0
+    with open(path) as stream:
+        return len(stream.read().splitlines()) - 1
 
 
 def read_setting(folder, block, key, meaning):

@@ -5,11 +5,13 @@ import collections
 # Outcomes. finished: summary.yaml says so. ended: the launch ended by itself, without a verdict. named: the output has
 # the case's words. undamaged: what was finished before is there, byte by byte, after the fault and after resuming.
 # resumes: the same command finishes the experiment. equal: then all files but bags are those of the undisturbed
-# experiment, apart from times.
+# experiment, apart from times. zero: in real time, from the third period after the last torque on, none acts.
 RECOVERS = "finished, equal"
 NOTICED = "finished, named, equal"
 ENDS = "ended, named, undamaged, resumes, equal"
 REFUSED = "ended, named"
+GOES_ON_AFTER_ZERO = "finished, zero"
+ENDS_WITH_ZERO = "ended, named, zero, undamaged, resumes"
 
 # name: unique. phase, fault: words for fault_injector, or for damage.py where phase is `at rest`. words: what the
 # output must have. quick: also in the small subset. root: needs root, to mount a small or a read-only file system.
@@ -27,6 +29,8 @@ publish torque in exploring trial|publish image in evaluation|publish model in e
 alter torque nan in exploring trial|alter image size in evaluation
 cut chunk of trial.bag at rest|flip model.ddm at rest|flip end of trials.csv at rest|fill disk in random trial
 begin experiment in exploring trial
+hold mpc_node in evaluation in real time|alter torque nan in exploring trial in real time
+mute image in exploring trial in real time
 """.replace("\n", "|").split("|")) - {""}
 
 
@@ -49,6 +53,9 @@ def held():
         yield case("hold mpc_node", phase, ENDS, "no torque for frame", "action /run_trial shows no sign of life")
     yield case("hold trial_recorder", "exploring trial", ENDS, "service /stop_recording does not answer")
     yield case("hold model_node", "training", ENDS, "action /train shows no sign of life")
+    # Nodes that know each other need no master: the experiment takes longer, since each of its questions has a limit.
+    for phase in RUNS + ("training",):
+        yield case("hold master", phase, NOTICED, "the ROS master does not answer")
 
 
 def transport():
@@ -66,6 +73,27 @@ def intruders():
         yield case("publish image", phase, ENDS, "/intruder")
         yield case("publish model", phase, ENDS, "/intruder")
         yield case("publish clock", phase, ENDS, "/intruder")
+
+
+def clocks():
+    """No node waits for time to pass."""
+    for phase in RUNS:
+        yield case("mute clock", phase, RECOVERS)
+
+
+def real_time():
+    """The plant does not wait: whatever happens, the motor must stop by itself."""
+    for phase in [run + " in real time" for run in RUNS]:
+        # As good as dead, to the plant; when it is killed roslaunch ends the plant, too, and there is nothing to see.
+        yield case("hold mpc_node", phase, ENDS_WITH_ZERO, "action /run_trial shows no sign of life")
+        yield case("pause mpc_node", phase, GOES_ON_AFTER_ZERO)
+        yield case("mute image", phase, ENDS_WITH_ZERO, "no image after step", "/fault_injector")
+        yield case("mute torque", phase, GOES_ON_AFTER_ZERO)  # a motor that hears nothing does not tell
+        for what in ("image", "torque"):
+            yield case("late " + what, phase, GOES_ON_AFTER_ZERO)
+        for how in ("nan", "inf", "none", "twice", "1e300"):
+            yield case("alter torque " + how, phase, ENDS_WITH_ZERO, "torque refused", "/fault_injector")
+        yield case("publish torque", phase, ENDS_WITH_ZERO, "torque refused", "/intruder")
 
 
 def values():
@@ -100,4 +128,5 @@ def folders():
     yield case("begin experiment", "random trial", NOTICED, "another experiment is running in the folder")
 
 
-CASES = [each for group in (processes, held, transport, intruders, values, files, folders) for each in group()]
+CASES = [each for group in (processes, held, transport, intruders, clocks, real_time, values, files,
+                                        folders) for each in group()]

@@ -1,7 +1,8 @@
 # fault_injector: relays between plant and controller, and does one thing wrong at one moment.
 # SPDX-License-Identifier: BSD-3-Clause
 """The moment is exact: the injector sees each reset, image and torque before it arrives, and holds it until its fault
-is done. Only a training is hit wherever it is when its first progress is heard."""
+is done. Only a training is hit wherever it is when its first progress is heard.
+In real time the report also tells what the motor has done since."""
 import copy
 import os
 import signal
@@ -9,19 +10,23 @@ import subprocess
 import sys
 import threading
 import time
-import xmlrpc.client
 
 from ddm_msgs.msg import Torque, TrainActionFeedback, TrainActionGoal
 from ddm_msgs.srv import Reset
 import rosgraph
 import rospy
-from sensor_msgs.msg import Image
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import Image, JointState
 
+from ddm_launch.faults.motor import MotorWatch
+from ddm_launch.node_processes import pid_of
 from ddm_launch.step_runner import program
 
 # (trial, whether it is the evaluation after it). `recording` is when the last torque has been sent: the bag is closed.
+# In real time they are those words and REAL_TIME.
 RUN_OF_PHASE = {"random trial": (0, False), "exploring trial": (1, False), "recording": (1, False),
                 "evaluation": (1, True)}
+REAL_TIME = " in real time"
 TRAINED_TRIAL = 1  # of the phase `training`
 FRAME = 7          # of a trial or evaluation
 PAUSE_S, LATE_S = 1.0, 1.0
@@ -65,22 +70,16 @@ MESSAGE_FAULTS = {"drop": lambda message, before, how: [], "double": lambda mess
                   "alter": lambda message, before, how: [altered(message, how)]}
 
 
-def pid_of(node):
-    """Process of a node, or of the master."""
-    master = rosgraph.Master(rospy.get_name())
-    if node == "master":
-        return master.getPid()
-    return xmlrpc.client.ServerProxy(master.lookupNode("/" + node)).getPid(rospy.get_name())[2]
-
-
 class Injector:
     def __init__(self):
-        self.phase = rospy.get_param("~phase")
+        phase = rospy.get_param("~phase")
+        self.real_time, self.phase = phase.endswith(REAL_TIME), phase.replace(REAL_TIME, "")
         self.verb, self.what, self.how = (rospy.get_param("~fault").split() + ["", ""])[:3]
         self.report, self.runs = rospy.get_param("~report"), rospy.get_param("~runs")
         self.lock = threading.Lock()
         self.run, self.frame, self.num_steps, self.stamp = None, -1, 0, None
-        self.last = {}  # topic: the message before
+        self.last, self.muted = {}, None  # topic: the message before; topic that is no longer passed on
+        self.motor = MotorWatch(stays_off=self.verb in ("alter", "publish"))
         self.trained, self.pid, self.killed, self.done = -1, None, False, False
         self.intruder = None
         if self.verb == "publish":
@@ -96,18 +95,21 @@ class Injector:
         self.torques = rospy.Publisher("plant/torque", Torque, queue_size=QUEUE)
         from_plant = rospy.Subscriber("plant/image_raw", Image, self.on_image, queue_size=QUEUE, tcp_nodelay=True)
         from_controller = rospy.Subscriber("torque", Torque, self.on_torque, queue_size=QUEUE, tcp_nodelay=True)
+        self.clocks = rospy.Publisher("/clock", Clock, queue_size=QUEUE, latch=True)
+        rospy.Subscriber("plant/clock", Clock, lambda clock: self.relay("clock", clock, self.clocks, False))
+        rospy.Subscriber("ground_truth/joint_states", JointState, self.on_ground_truth, queue_size=QUEUE)
         rospy.Subscriber("train/goal", TrainActionGoal, self.on_training, queue_size=QUEUE)
         rospy.Subscriber("train/feedback", TrainActionFeedback, self.on_progress, queue_size=QUEUE)
         ends = (from_plant, from_controller, self.torques, self.images)
         while not rospy.is_shutdown() and not all(end.get_num_connections() for end in ends):
             time.sleep(0.01)
         rospy.wait_for_service("plant/reset")
-        self.reset = rospy.ServiceProxy("plant/reset", Reset)
+        self.reset = rospy.ServiceProxy("plant/reset", Reset, persistent=True)  # needs no master
         rospy.Service("reset", Reset, self.on_reset)
 
     def on_reset(self, request):
         if self.pid is None and self.verb in ("kill", "pause", "hold"):
-            self.pid = pid_of(self.what)  # only now all nodes are sure to be there
+            self.pid = pid_of(rosgraph.Master(rospy.get_name()), self.what)  # only now all nodes are sure to be there
         with self.lock:
             self.run, self.frame, self.num_steps = (request.trial, request.evaluation), -1, request.num_steps
         self.wait_for_end()
@@ -121,7 +123,9 @@ class Injector:
     def is_due(self):
         """Whether the frame on show is the one of the phase."""
         frame = self.num_steps - 1 if self.phase == "recording" else FRAME
-        return RUN_OF_PHASE.get(self.phase) == self.run and self.frame == frame
+        if RUN_OF_PHASE.get(self.phase) != self.run:
+            return False
+        return self.frame >= frame if self.real_time else self.frame == frame  # whose torque may have been late
 
     def on_image(self, image):
         with self.lock:
@@ -138,15 +142,27 @@ class Injector:
             self.inject()
         self.relay("torque", torque, self.torques, due)
 
+    def on_ground_truth(self, state):
+        self.motor.torque_has_acted(state.header.stamp.to_sec(), state.effort[0])
+
     def relay(self, topic, message, publisher, due):
         self.wait_for_end()
         before, self.last[topic] = self.last.get(topic), message
         messages = [message]
         if due and self.what == topic and self.verb in MESSAGE_FAULTS and not self.done:
+            self.motor.fault_begins(time.time(), self.stamp.to_sec())
             messages = MESSAGE_FAULTS[self.verb](message, before, self.how)
             self.tell()
+        if topic == self.muted:
+            return
         for each in messages:
-            publisher.publish(each)
+            if topic == "torque":
+                self.motor.torque_passes(time.time(), each.header.stamp.to_sec())
+            try:
+                publisher.publish(each)
+            except rospy.ROSException:
+                if not rospy.is_shutdown():  # in real time the plant goes on while this node ends
+                    raise
 
     def on_training(self, goal):
         self.trained = goal.goal.trial
@@ -161,6 +177,7 @@ class Injector:
             if self.done:
                 return
             self.done = True
+            self.motor.fault_begins(time.time(), self.stamp.to_sec())
         said = ""
         if self.verb == "kill":
             self.tell()  # first: this node ends with the other
@@ -171,6 +188,8 @@ class Injector:
             os.kill(self.pid, signal.SIGSTOP)
             if self.verb == "pause":
                 threading.Timer(PAUSE_S, os.kill, (self.pid, signal.SIGCONT)).start()
+        elif self.verb == "mute":
+            self.muted = self.what
         elif self.verb == "fill":
             said = self.fill_disk()
         elif self.verb == "publish":
@@ -202,6 +221,9 @@ def main():
     rospy.init_node("fault_injector")
     injector = Injector()
     rospy.spin()
+    if injector.done and injector.real_time:
+        with open(injector.report, "a") as stream:
+            stream.write("motor: %s\n" % injector.motor.verdict())
     if injector.intruder:
         injector.intruder.stdin.close()  # it ends, too
     return 0

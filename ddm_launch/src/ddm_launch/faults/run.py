@@ -9,8 +9,8 @@ import subprocess
 from ddm_launch.faults.damage import damage
 from ddm_launch.processes import start_roslaunch
 from ddm_launch.run_comparison import differences, expected_files, files_in, read_bytes
+from ddm_launch.run_folder import is_finished, num_finished
 from ddm_launch.step_runner import Failure
-from ddm_launch.sweep_folder import read_yaml
 
 SEED, TRIALS = 1, 1
 LIMIT_S = 120.0  # of a launch
@@ -22,20 +22,15 @@ controller: {{timeout: {node_s}}}
 recorder: {{timeout: {node_s}}}
 experiment: {{timeout: {experiment_s}}}
 """
+REAL_TIME_CONFIG = "plant: {dt: 0.05}\n"  # shorter waits than with the paper's 0.2 s
 NODE_S, EXPERIMENT_S = 5.0, 8.0  # without a sign of life
 CRASH = re.compile(r"exit code -(?!2\b|9\b|15\b)\d+|Traceback|terminate called|Segmentation fault")
 DISK_BYTES = 2 * 1024 * 1024
 COMPARED = [name for name in expected_files(TRIALS) if not name.endswith((".bag", "config.yaml", ".lock"))]
 
 
-def is_finished(folder):
-    return read_yaml(os.path.join(folder, "summary.yaml")).get("finished") is True
-
-
-def num_finished(folder):
-    """Rows of trials.csv."""
-    path = os.path.join(folder, "trials.csv")
-    return len(read_bytes(path).splitlines()) - 1 if os.path.exists(path) else 0
+def is_real_time(case):
+    return case.phase.endswith("in real time")
 
 
 def files_of_trials(folder, count):
@@ -65,12 +60,15 @@ class FaultBench:
 
     def __init__(self, out, patience=1.0):
         """patience: what all time limits are multiplied by."""
-        self.out, self.config, self.limit_s = out, os.path.join(out, "config.yaml"), LIMIT_S * patience
+        self.out, self.limit_s = out, LIMIT_S * patience
+        self.config, self.real_time_config = (os.path.join(out, name) for name in ("config.yaml", "real_time.yaml"))
         self.reference, self.begun = os.path.join(out, "reference", "run"), os.path.join(out, "begun")
         self.launches = []
         os.makedirs(os.path.join(out, "logs"), exist_ok=True)
-        with open(self.config, "w") as stream:
-            stream.write(CONFIG.format(node_s=NODE_S * patience, experiment_s=EXPERIMENT_S * patience))
+        config = CONFIG.format(node_s=NODE_S * patience, experiment_s=EXPERIMENT_S * patience)
+        for path, text in ((self.config, config), (self.real_time_config, config + REAL_TIME_CONFIG)):
+            with open(path, "w") as stream:
+                stream.write(text)
 
     def make_reference(self):
         """Raises Failure if even the undisturbed experiment does not finish."""
@@ -87,8 +85,10 @@ class FaultBench:
         with open(os.path.join(self.begun, "trials.csv"), "wb") as stream:
             stream.writelines(rows[:2])
 
-    def experiment(self, folder):
-        return ["preset:=debug", "seed:=%d" % SEED, "trials:=%d" % TRIALS, "config:=" + self.config, "runs:=" + folder]
+    def experiment(self, folder, real_time=False):
+        return ["preset:=debug", "seed:=%d" % SEED, "trials:=%d" % TRIALS, "runs:=" + folder,
+                "config:=" + (self.real_time_config if real_time else self.config),
+                "real_time:=%s" % str(real_time).lower()]
 
     def launch(self, folder, launch_file, arguments):
         """Runs a launch to its end. Returns its output; raises TimeoutError if it does not end."""
@@ -135,6 +135,8 @@ class FaultBench:
         missing = [word for word in case.words if word not in output]
         if case.words:
             facts.append("not named: " + " | ".join(missing) if missing else "named")
+        if is_real_time(case):
+            facts += re.findall("^motor: (.*)$", output, re.MULTILINE) or ["the motor was not watched"]
         if "undamaged" in case.expected:
             facts += self.resume(case, folder, mend, log)
         if "equal" in case.expected:
@@ -147,7 +149,7 @@ class FaultBench:
         report = os.path.join(os.path.dirname(folder), "report.txt")
         if case.phase == "at rest":
             return self.disturb_at_rest(case, folder)
-        arguments = self.experiment(folder) + ["phase:=" + case.phase, "fault:=" + case.fault, "report:=" + report]
+        arguments = self.experiment(folder, is_real_time(case)) + ["phase:=" + case.phase, "fault:=" + case.fault, "report:=" + report]
         output = self.launch(folder, "fault.launch", arguments)
         if not os.path.exists(report):
             return "not injected: the phase did not come\n" + output, None
@@ -178,12 +180,14 @@ class FaultBench:
         before = files_of_trials(folder, count)
         log.write("\n--- the same command again ---\n")
         try:
-            log.write(self.launch(folder, "experiment.launch", self.experiment(folder)))
+            log.write(self.launch(folder, "experiment.launch", self.experiment(folder, is_real_time(case))))
         except TimeoutError as error:
             log.write(str(error))
         after = files_of_trials(folder, count)
         damaged = [name for name in before if before[name] != after.get(name)]
-        # A trial that had been finished before the fault is as the undisturbed experiment has it.
-        wrong = differences(self.reference, folder, [name for name in COMPARED if name in before])
+        # A trial that had been finished before the fault is as the undisturbed experiment has it. In real time no two
+        # experiments are equal.
+        wrong = [] if is_real_time(case) else differences(self.reference, folder,
+                                                          [name for name in COMPARED if name in before])
         return ["damaged: " + " ".join(sorted(set(damaged + wrong))) if damaged + wrong else "undamaged",
                 "resumes" if is_finished(folder) else "does not resume"]

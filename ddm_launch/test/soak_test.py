@@ -1,0 +1,57 @@
+#!/usr/bin/python3
+# A short soak of both runs finds nothing, and a frame that is taken out of one of its bags is lost.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import sys
+import tempfile
+import unittest
+
+import rosbag
+import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from ddm_launch.soak.frames import count_frames  # noqa: E402
+from processes import call, find_program  # noqa: E402
+from run_files import read_bytes, read_rows  # noqa: E402
+
+NODES = {"experiment_node", "master", "model_node", "mpc_node", "rosout", "sim_node", "trial_recorder"}
+
+
+class SoakTest(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.out = scratch.name
+
+    def test_both_runs_leave_tables_and_a_figure_and_lockstep_loses_no_frame(self):
+        code, output = call([find_program("ddm_launch", "soak"), "--trials", "5", "--minutes", "0.2", "--steps", "12",
+                             "--out", self.out], limit_s=200.0)
+        bars = read_rows(self.out, "bars.csv")[1:]
+        self.assertEqual(code, 0 if all(row[3] == "1" for row in bars) else 1, output)
+        for run in ("lockstep", "real_time"):
+            self.assertEqual({row[1] for row in bars if row[0] == run},
+                             {"lost frames"} | {bar + node for bar in ("resident memory of ", "open files of ")
+                                                for node in NODES}, output)
+        self.assertIn(["lockstep", "lost frames", "0 of 240", "1"], bars, output)
+        self.assertEqual({(row[1], row[2]) for row in read_rows(self.out, "soak.csv") if row[0] == "lockstep"},
+                         {(node, str(trial)) for node in NODES for trial in range(6)})
+        self.assertEqual(read_bytes(self.out, "soak.png")[:4], b"\x89PNG")
+        self.lose_a_frame()
+
+    def lose_a_frame(self):
+        """In a bag of the run, the ninth image."""
+        folder = os.path.join(self.out, "lockstep", "run")
+        path = os.path.join(folder, "trial_003", "trial.bag")
+        with rosbag.Bag(path) as bag:
+            messages = list(bag.read_messages())
+        images = [number for number, message in enumerate(messages) if message.topic == "camera/image_raw"]
+        del messages[images[8]]
+        with rosbag.Bag(path, "w") as bag:
+            for topic, message, stamp in messages:
+                bag.write(topic, message, stamp)
+        self.assertEqual([(row["trial"], row["part"]) for row in count_frames("lockstep", folder, 6) if row["lost"]],
+                         [(3, "trial")])
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "soak", SoakTest)

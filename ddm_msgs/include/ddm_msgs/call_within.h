@@ -1,0 +1,26 @@
+// Calls that may never return, with a limit.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <future>
+#include <optional>
+#include <thread>
+#include <utility>
+
+namespace ddm {
+
+/// Calls a function in a thread of its own. It must own what it uses: where it does not return
+/// within the limit, that thread is left behind.
+/// @return what it returned; empty if it did not. Exceptions are passed on
+template <class Function>
+auto callWithin(std::chrono::duration<double> limit, Function function)
+    -> std::optional<decltype(function())> {
+  std::packaged_task<decltype(function())()> task(std::move(function));
+  auto result = task.get_future();
+  std::thread(std::move(task)).detach();
+  if (result.wait_for(limit) != std::future_status::ready) return std::nullopt;
+  return result.get();
+}
+
+}  // namespace ddm

@@ -1,0 +1,31 @@
+// Tests of calls with a limit.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_msgs/call_within.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+namespace ddm {
+namespace {
+
+using std::chrono::milliseconds;
+
+TEST(CallWithin, ReturnsWhatTheFunctionReturns) {
+  EXPECT_EQ(callWithin(std::chrono::minutes(1), [] { return 7; }), 7);
+}
+
+TEST(CallWithin, LeavesBehindWhatDoesNotReturn) {
+  std::promise<int> never;
+  const std::shared_future<int> future = never.get_future().share();
+  EXPECT_EQ(callWithin(milliseconds(10), [future] { return future.get(); }), std::nullopt);
+  never.set_value(0);  // the thread ends
+}
+
+TEST(CallWithin, PassesExceptionsOn) {
+  const auto fail = []() -> int { throw std::runtime_error("as expected"); };
+  EXPECT_THROW(callWithin(std::chrono::minutes(1), fail), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace ddm
