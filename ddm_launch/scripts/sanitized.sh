@@ -61,14 +61,14 @@ short_loop() {  # address|thread REPORTS
 
 # Runs tests and the loop; each file in build/sanitizer_reports is a report, which test_report.py takes for a failure.
 run_sanitized() {  # address|thread PATTERN
-  local reports
+  local reports suppressions=$checkout/ddm_launch/scripts/thread_suppressions.txt
   reports=$(sanitized_folder "$1")/build/sanitizer_reports
   rm -rf "$reports"
   mkdir -p "$reports"
   export ASAN_OPTIONS=log_path=$reports/report:detect_stack_use_after_return=1:strict_string_checks=1
   export UBSAN_OPTIONS=log_path=$reports/report:print_stacktrace=1
-  # ROS's own libraries are not instrumented: without the last word their locks look like none
-  export TSAN_OPTIONS=log_path=$reports/report:ignore_noninstrumented_modules=1
+  # ROS's own libraries are not instrumented: without the last option their locks look like none
+  export TSAN_OPTIONS=log_path=$reports/report:suppressions=$suppressions:ignore_noninstrumented_modules=1
   short_loop "$1" "$reports"
   run_tests "$(sanitized_folder "$1")/build" "$2"
   if compgen -G "$reports/*" >/dev/null; then
