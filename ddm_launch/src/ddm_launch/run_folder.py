@@ -104,7 +104,7 @@ def num_finished(folder):
     path = os.path.join(folder, "trials.csv")
     if not os.path.exists(path):
         return 0
-    with open(path) as stream:
+    with open(path, "rb") as stream:  # whatever is in it
         return len(stream.read().splitlines()) - 1
 
 

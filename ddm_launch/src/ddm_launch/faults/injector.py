@@ -161,7 +161,7 @@ class Injector:
             try:
                 publisher.publish(each)
             except rospy.ROSException:
-                if not rospy.is_shutdown():  # in real time the plant goes on while this node ends
+                if not rospy.core.is_shutdown_requested():  # in real time the plant goes on while this node ends
                     raise
 
     def on_training(self, goal):
