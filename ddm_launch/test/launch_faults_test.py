@@ -48,7 +48,7 @@ class LaunchFaultsTest(unittest.TestCase):
     def test_a_missing_folder_argument_is_named(self):
         code, output = roslaunch(self.scratch, "experiment.launch", "preset:=debug", limit_s=40.0)
         self.assertEqual(code, 1)
-        self.assertIn("requires the 'runs' arg to be set", output)
+        self.assertIn("arg 'runs' is not defined", output)
 
     def test_a_negative_seed_is_refused(self):
         self.assertRefused(["experiment/seed must be >= 0, got -1"], "preset:=debug", "seed:=-1")
