@@ -44,6 +44,20 @@ TEST(YamlText, WhatContainsItselfIsRefused) {
   EXPECT_EQ(refusalOf("a: &x {b: [*x]}\n"), "FILE:1: a list or map contains itself");
 }
 
+TEST(YamlText, TextThatWouldNotBeWrittenAsItWasReadIsRefused) {
+  for (const std::string text : {"caf\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\xa4\x96", "\\u0005\\0"}) {
+    const YAML::Node node = parseYaml("a: \"" + text + "\"", "FILE");
+    EXPECT_EQ(parseYaml(YAML::Dump(node), "FILE")["a"].Scalar(), node["a"].Scalar()) << text;
+  }
+  EXPECT_EQ(refusalOf("# caf\xe9\na: 1\n"), "accepted");  // nobody reads a comment
+  for (const std::string text :
+       {"caf\xe9", "\xbf\xbf", "\xc3", "\xc0\x80", "\xe0\x80\x80", "\xed\xa0\x80", "\xef\xbf\xbe",
+        "\xf4\x90\x80\x80", "\xf8\x88\x80\x80\x80", "\\uFDD0"}) {
+    EXPECT_EQ(refusalOf("b: 1\na: \"" + text + "\""), "FILE:2: a name or value is not valid UTF-8");
+    EXPECT_EQ(refusalOf("b: 1\n\"" + text + "\": 1"), "FILE:2: a name or value is not valid UTF-8");
+  }
+}
+
 TEST(YamlText, WhatIsNoYamlIsRefusedWithItsLine) {
   EXPECT_NE(refusalOf("a: 1\nb: [\n").find("FILE:"), std::string::npos);
   EXPECT_EQ(refusalOf("a: 1\n---\nb: 2\n"), "FILE:2: only one YAML document is allowed in a file");

@@ -13,7 +13,8 @@ namespace ddm {
 ///
 /// @param source  file, for messages
 /// @throws std::invalid_argument with source and line if the text is not valid YAML, has more than
-///         one document or more than 20 levels, or a list or map that contains itself
+///         one document or more than 20 levels, a list or map that contains itself, or a name or
+///         value that is not UTF-8
 YAML::Node parseYaml(const std::string& text, const std::string& source);
 
 }  // namespace ddm
