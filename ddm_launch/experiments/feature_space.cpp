@@ -12,8 +12,6 @@
 #include <ddm_sim/plant_factory.h>
 #include <ros/time.h>
 
-#include <boost/algorithm/string.hpp>
-#include <boost/lexical_cast.hpp>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -25,6 +23,7 @@
 #include "camera_view.h"
 #include "configuration.h"
 #include "csv_text.h"
+#include "torques_csv.h"
 
 namespace ddm {
 namespace {
@@ -78,21 +77,6 @@ DataSet experience(const Arguments& arguments, const Configuration& all) {
   return cache.read(bags);
 }
 
-/// The first torque of each step of the greedy evaluation, as it was recorded.
-std::vector<double> recordedTorques(const std::string& file) {
-  const std::string text = readFile(file);
-  std::vector<std::string> lines;
-  boost::split(lines, text, boost::is_any_of("\n"));
-  std::vector<double> torques;
-  for (size_t i = 1; i < lines.size() && !lines[i].empty(); ++i) {
-    std::vector<std::string> cells;
-    boost::split(cells, lines[i], boost::is_any_of(","));
-    if (cells.size() < 3) throw std::runtime_error(file + ": line " + lines[i] + " makes no sense");
-    torques.push_back(boost::lexical_cast<double>(cells[1]));
-  }
-  return torques;
-}
-
 /// The plan at one step of the greedy evaluation, which is run again up to there.
 /// @throws std::runtime_error if there is no such step or plan, or the torques are not the recorded
 Plan planAt(const Arguments& arguments, const Configuration& all,
@@ -112,7 +96,8 @@ Plan planAt(const Arguments& arguments, const Configuration& all,
   Camera camera(all.camera);
   camera.begin(id.seed, id.trial, id.evaluation);
   const std::string file = subfolder(arguments, "evaluation", arguments.trial) + "/torques.csv";
-  const std::vector<double> recorded = recordedTorques(file);
+  const std::vector<Eigen::VectorXd> recorded =
+      parseTorquesCsv(readFile(file), plant->torqueNames(), file).torques;
   if (arguments.step >= static_cast<int>(recorded.size())) {
     throw std::runtime_error("--step must be less than the " + std::to_string(recorded.size()) +
                              " steps of " + file + ", got " + std::to_string(arguments.step));
@@ -121,7 +106,7 @@ Plan planAt(const Arguments& arguments, const Configuration& all,
   for (int step = 0;; ++step) {
     const Decision decision =
         policy.decide(cameraView(*photograph, all.camera.size, all.model.image.size));
-    if (std::abs(decision.torque[0] - recorded[step]) > 1e-9) {
+    if ((decision.torque - recorded[step]).cwiseAbs().maxCoeff() > 1e-9) {
       throw std::runtime_error(file + ": the torque of step " + std::to_string(step) +
                                " is another here: use the machine and build that made the run");
     }

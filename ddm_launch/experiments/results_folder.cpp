@@ -10,35 +10,16 @@
 #include <boost/filesystem.hpp>
 #include <cerrno>
 #include <cstring>
-#include <map>
 #include <stdexcept>
 #include <utility>
 
 #include "code_version.h"
+#include "saved_configuration.h"
 
 namespace ddm {
 namespace {
 
 namespace fs = boost::filesystem;
-
-/// Keys of a configuration and their values, as "block/key".
-std::vector<std::pair<std::string, std::string>> flat(const YAML::Node& configuration) {
-  std::vector<std::pair<std::string, std::string>> out;
-  for (const auto& block : configuration) {
-    if (!block.second.IsMap()) continue;
-    for (const auto& entry : block.second) {
-      out.emplace_back(block.first.as<std::string>() + "/" + entry.first.as<std::string>(),
-                       YAML::Dump(entry.second));
-    }
-  }
-  return out;
-}
-
-/// Keys in which two runs of one experiment may differ.
-bool mayDiffer(const std::string& key) {
-  return key == "experiment/trials" || key == "experiment/runs" || key == "experiment/timeout" ||
-         key == "sim/watchdog";
-}
 
 }  // namespace
 
@@ -81,30 +62,19 @@ void ResultsFolder::lock() {
 }
 
 void ResultsFolder::compareWith(const std::string& file) {
-  YAML::Node there;
+  SavedConfiguration there;
   try {
-    there = YAML::LoadFile(file);
+    there = readConfigurationText(readFile(file), file);
   } catch (const std::exception& e) {
     throw std::runtime_error(file + " cannot be read (" + e.what() + "): use another folder");
   }
-  std::map<std::string, std::pair<std::string, std::string>> values;  // there and here
-  for (const auto& entry : flat(there)) values[entry.first].first = entry.second;
-  for (const auto& entry : flat(configuration_)) values[entry.first].second = entry.second;
-  const auto words = [](const std::string& value) { return value.empty() ? "nothing" : value; };
-  std::string differences;
-  for (const auto& entry : values) {
-    if (mayDiffer(entry.first) || entry.second.first == entry.second.second) continue;
-    differences += "\n - " + entry.first + ": " + words(entry.second.first) + " there, " +
-                   words(entry.second.second) + " here";
-  }
+  const std::string differences = differencesOf(there.values, keysOf(configuration_));
   if (!differences.empty()) {
     throw std::runtime_error("the folder " + path_ +
                              " holds another experiment, use another folder:" + differences);
   }
-  const std::string version =
-      there["version"] && there["version"].IsScalar() ? there["version"].as<std::string>() : "?";
-  if (version != codeVersion()) {
-    warnings_.push_back("the folder " + path_ + " was begun by version " + version +
+  if (there.version != codeVersion()) {
+    warnings_.push_back("the folder " + path_ + " was begun by version " + there.version +
                         " of the code, this is " + codeVersion() +
                         ": its results may not be comparable");
   }

@@ -11,7 +11,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "csv_text.h"
+#include "torques_csv.h"
 #include "trajectory_csv.h"
 #include "trials_csv.h"
 
@@ -19,15 +19,6 @@ namespace ddm {
 namespace {
 
 namespace fs = boost::filesystem;
-
-std::string torquesCsv(const TrialOutcome& outcome, const std::vector<std::string>& names) {
-  std::string text = csvHeader("step", names) + ",exploratory\n";
-  for (size_t step = 0; step < outcome.torques.size(); ++step) {
-    text += std::to_string(step) + csvValues(outcome.torques[step]) +
-            (outcome.exploratory[step] ? ",1\n" : ",0\n");
-  }
-  return text;
-}
 
 std::string numbered(const std::string& name, int trial) {
   char number[16];
@@ -88,7 +79,8 @@ void RunFolder::writeEvaluation(int trial, const TrialOutcome& outcome) {
 }
 
 void RunFolder::writeRun(const std::string& folder, const TrialOutcome& outcome) {
-  folder_.write(folder + "/torques.csv", torquesCsv(outcome, torque_names_));
+  folder_.write(folder + "/torques.csv",
+                formatTorquesCsv({outcome.torques, outcome.exploratory}, torque_names_));
   if (!outcome.states.empty()) {
     folder_.write(folder + "/trajectory.csv",
                   formatTrajectoryCsv(outcome.times, outcome.states, state_names_));

@@ -2,11 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "trajectory_csv.h"
 
-#include <boost/algorithm/string.hpp>
-#include <boost/lexical_cast.hpp>
-#include <cmath>
 #include <cstdio>
-#include <sstream>
 #include <stdexcept>
 
 #include "csv_text.h"
@@ -16,21 +12,14 @@ namespace {
 
 constexpr char kFirst[] = "step,time_s";
 
-Eigen::VectorXd parseRow(const std::string& line, int step, size_t num_names) {
-  std::vector<std::string> columns;
-  boost::split(columns, line, boost::is_any_of(","));
-  if (columns.size() != num_names + 2) {
-    throw std::runtime_error("has " + std::to_string(columns.size()) + " columns, " +
-                             std::to_string(num_names + 2) + " are due");
+Eigen::VectorXd parseRow(const std::vector<std::string>& cells, size_t step) {
+  if (cells[0] != std::to_string(step)) {
+    throw std::runtime_error("must be step " + std::to_string(step) + ", got " + cells[0]);
   }
-  if (columns[0] != std::to_string(step)) {
-    throw std::runtime_error("must be step " + std::to_string(step) + ", got " + columns[0]);
-  }
-  Eigen::VectorXd state(static_cast<Eigen::Index>(num_names));
-  for (size_t i = 0; i < num_names; ++i) {
-    const auto value = boost::lexical_cast<double>(columns[i + 2]);
-    if (!std::isfinite(value)) throw std::runtime_error("'" + columns[i + 2] + "' is not finite");
-    state[static_cast<Eigen::Index>(i)] = value;
+  csvNumber(cells[1]);
+  Eigen::VectorXd state(static_cast<Eigen::Index>(cells.size()) - 2);
+  for (size_t i = 2; i < cells.size(); ++i) {
+    state[static_cast<Eigen::Index>(i) - 2] = csvNumber(cells[i]);
   }
   return state;
 }
@@ -51,21 +40,10 @@ std::string formatTrajectoryCsv(const std::vector<double>& times,
 
 Eigen::MatrixXd parseTrajectoryCsv(const std::string& text, const std::vector<std::string>& names,
                                    const std::string& source) {
-  const std::string header = csvHeader(kFirst, names);
-  std::istringstream in(text);
-  std::string line;
-  if (!std::getline(in, line) || line != header) {
-    throw std::runtime_error(source + ", line 1: must be " + header);
-  }
   std::vector<Eigen::VectorXd> rows;
-  while (std::getline(in, line)) {
-    const int step = static_cast<int>(rows.size());
-    try {
-      rows.push_back(parseRow(line, step, names.size()));
-    } catch (const std::exception& e) {
-      throw std::runtime_error(source + ", line " + std::to_string(step + 2) + ": " + e.what());
-    }
-  }
+  parseCsv(text, csvHeader(kFirst, names), source, [&rows](const std::vector<std::string>& cells) {
+    rows.push_back(parseRow(cells, rows.size()));
+  });
   Eigen::MatrixXd states(static_cast<Eigen::Index>(names.size()),
                          static_cast<Eigen::Index>(rows.size()));
   for (size_t step = 0; step < rows.size(); ++step) {

@@ -4,12 +4,12 @@
 
 #include <ddm_msgs/param_value.h>
 
-#include <boost/algorithm/string.hpp>
 #include <boost/lexical_cast.hpp>
-#include <cmath>
 #include <cstdio>
 #include <sstream>
 #include <stdexcept>
+
+#include "csv_text.h"
 
 namespace ddm {
 namespace {
@@ -17,7 +17,6 @@ namespace {
 constexpr char kHeader[] =
     "seed,trial,frames,success,success_strict,final_error_deg,v_r,v_p,train_s,train_evaluations,"
     "plan_ms_median,plan_ms_p99";
-constexpr size_t kNumColumns = 12;
 
 std::string milliseconds(double value) {
   char text[32];
@@ -25,16 +24,17 @@ std::string milliseconds(double value) {
   return text;
 }
 
-double number(const std::string& text) {
-  const auto value = boost::lexical_cast<double>(text);
-  if (!std::isfinite(value)) throw std::runtime_error("'" + text + "' is not finite");
-  return value;
-}
-
 /// lexical_cast alone would make a huge number of "-1".
 std::uint32_t count(const std::string& text) {
   if (text.empty() || text[0] == '-') throw std::runtime_error("'" + text + "' must be >= 0");
   return boost::lexical_cast<std::uint32_t>(text);
+}
+
+/// A time, which is written with three decimals.
+double duration(const std::string& text) {
+  const double value = csvNumber(text);
+  if (value < 0.0 || value > 1e12) throw std::runtime_error("'" + text + "' is no duration");
+  return value;
 }
 
 bool flag(const std::string& text) {
@@ -44,18 +44,12 @@ bool flag(const std::string& text) {
 
 std::optional<double> optionalNumber(const std::string& text) {
   if (text.empty()) return std::nullopt;
-  return number(text);
+  return csvNumber(text);
 }
 
 std::string format(const std::optional<double>& value) { return value ? formatDouble(*value) : ""; }
 
-TrialRow parseRow(const std::string& line) {
-  std::vector<std::string> columns;
-  boost::split(columns, line, boost::is_any_of(","));
-  if (columns.size() != kNumColumns) {
-    throw std::runtime_error("has " + std::to_string(columns.size()) + " columns, " +
-                             std::to_string(kNumColumns) + " are due");
-  }
+TrialRow parseRow(const std::vector<std::string>& columns) {
   TrialRow row;
   row.seed = boost::lexical_cast<int>(columns[0]);
   row.trial = boost::lexical_cast<int>(columns[1]);
@@ -65,16 +59,18 @@ TrialRow parseRow(const std::string& line) {
     row.evaluation.success = flag(columns[3]);
     row.evaluation.success_strict = flag(columns[4]);
     row.evaluation.final_error_deg = optionalNumber(columns[5]);
+  } else if (!columns[4].empty() || !columns[5].empty()) {
+    throw std::runtime_error("success_strict and final_error_deg must be empty where success is");
   }
   row.v_r = optionalNumber(columns[6]);
   row.v_p = optionalNumber(columns[7]);
   if (row.v_r.has_value() != row.v_p.has_value()) {
     throw std::runtime_error("v_r and v_p must be both empty or both given");
   }
-  row.train_s = number(columns[8]);
+  row.train_s = duration(columns[8]);
   row.train_evaluations = count(columns[9]);
-  row.plan_ms_median = number(columns[10]);
-  row.plan_ms_p99 = number(columns[11]);
+  row.plan_ms_median = duration(columns[10]);
+  row.plan_ms_p99 = duration(columns[11]);
   return row;
 }
 
@@ -99,19 +95,9 @@ std::string formatTrialsCsv(const std::vector<TrialRow>& rows) {
 }
 
 std::vector<TrialRow> parseTrialsCsv(const std::string& text, const std::string& source) {
-  std::istringstream in(text);
-  std::string line;
-  if (!std::getline(in, line) || line != kHeader) {
-    throw std::runtime_error(source + ", line 1: must be " + kHeader);
-  }
   std::vector<TrialRow> rows;
-  for (int number = 2; std::getline(in, line); ++number) {
-    try {
-      rows.push_back(parseRow(line));
-    } catch (const std::exception& e) {
-      throw std::runtime_error(source + ", line " + std::to_string(number) + ": " + e.what());
-    }
-  }
+  parseCsv(text, kHeader, source,
+           [&rows](const std::vector<std::string>& cells) { rows.push_back(parseRow(cells)); });
   return rows;
 }
 

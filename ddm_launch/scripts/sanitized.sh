@@ -77,3 +77,19 @@ run_sanitized() {  # address|thread PATTERN
     echo "no report"
   fi
 }
+
+# Runs the fuzz targets; arguments are those of fuzz.sh.
+run_fuzzing() {
+  PYTHONPATH=$checkout/ddm_launch/src /usr/bin/python3 -c \
+    'import sys; from ddm_launch.fuzzing import main; sys.exit(main())' \
+    --programs "$(sanitized_folder address)/devel/lib" "$@"
+}
+
+# From the committed seeds on, always the same draws. A finding is told by the result file.
+fuzz_shortly() {
+  local out result
+  out=$(sanitized_folder address)/fuzzing
+  result=$(sanitized_folder address)/build/test_results/ddm_launch/fuzzing.xml
+  rm -rf "$out" "$result"
+  run_fuzzing --runs 1000 --seed 1 --out "$out" --junit "$result" || [[ -f $result ]]
+}

@@ -11,8 +11,8 @@ usage: bash test.sh [--thread-sanitizer]
 
 Installs the Debian packages that are missing (as root, or through sudo), builds the workspace \$DDM_WS, and
 runs every test: gtest, rosunit, rostest, roslaunch-check and the linters on the Release build, the gtests once
-more on a Debug build with Eigen's assertions and with warnings as errors, and the gtests and a short experiment
-on a build by clang with AddressSanitizer and UndefinedBehaviorSanitizer. A case that runs in several builds
+more on a Debug build with Eigen's assertions and with warnings as errors, and the gtests, a short experiment and
+1000 runs of each fuzz target on a build by clang with AddressSanitizer and UndefinedBehaviorSanitizer. A case that runs in several builds
 counts once; one that is skipped does not count and is named. Returns 1 if any case fails, if a test leaves no
 result, or if a sanitizer reports anything.
 
@@ -72,8 +72,9 @@ run_build() {  # release|debug|address|thread
       ;;
     address)
       phase "Build with AddressSanitizer into $DDM_WS/sanitized/devel" \
-        build_sanitized address "${loop_programs[@]}" "${gtest_programs[@]}"
+        build_sanitized address fuzz_targets "${loop_programs[@]}" "${gtest_programs[@]}"
       phase "gtests and a short loop with AddressSanitizer" run_sanitized address "$gtests"
+      phase "Short fuzzing" fuzz_shortly
       results+=("$DDM_WS/sanitized/build")
       ;;
     thread)

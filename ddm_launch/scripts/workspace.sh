@@ -22,10 +22,10 @@ packages_to_run=(
   libvisualization-msgs-dev
   # ROS in C++
   ros-std-srvs libstd-srvs-dev python3-std-srvs
-  libroscpp-dev libactionlib-dev librosbag-dev libcv-bridge-dev libimage-transport-dev libroslib-dev
+  libroscpp-dev libactionlib-dev librosbag-dev libroslz4-dev libcv-bridge-dev libimage-transport-dev libroslib-dev
   libdiagnostic-updater-dev libdynamic-reconfigure-config-init-mutex-dev pluginlib-dev
   # libraries
-  libopencv-imgproc-dev libopencv-imgcodecs-dev libeigen3-dev libceres-dev libyaml-cpp-dev
+  libopencv-imgproc-dev libopencv-imgcodecs-dev libeigen3-dev libceres-dev libyaml-cpp-dev libbz2-dev
   libboost-dev libboost-program-options-dev libboost-filesystem-dev libbenchmark-dev
   # tests
   libgtest-dev librostest-dev python3-rostest python3-rosunit

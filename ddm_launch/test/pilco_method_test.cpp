@@ -154,6 +154,15 @@ TEST_F(PilcoMethodTest, APolicyGoesOnFromTheLastOneWhereTheCoordinatesStay) {
   EXPECT_NE(YAML::Dump(noisier["log_noise_std"]), YAML::Dump(report(2)["log_noise_std"]));
 }
 
+TEST(PilcoMemoryFile, AColumnThatIsNamedOverAndOverIsRefusedBeforeMemoryIsTaken) {
+  std::string text = "policy: [&c [";
+  for (int i = 0; i < 100; ++i) text += "0,";
+  text += "0]";
+  for (int i = 0; i < 100; ++i) text += ", *c";
+  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { readMemory(text + "]\n", "pilco.yaml"); },
+                                               {"pilco.yaml", "policy is longer than the file"}));
+}
+
 TEST_F(PilcoMethodTest, AMissingOrDamagedMemoryIsNamed) {
   const Configuration all = smallConfiguration("pilco_state", folder("run"));
   runSmall(all);

@@ -183,6 +183,10 @@ TEST_F(RunFolderTest, AConfigurationThatCannotBeReadIsRefused) {
   finish(1);
   writeText(file("config.yaml"), "experiment: [\n");
   expectRefused({"config.yaml", "cannot be read"});
+  for (const std::string text : {"7", "[1, 2]", "{[1]: {a: 2}}", "trial: {[1]: 2}", "a: &x [*x]"}) {
+    writeText(file("config.yaml"), text);
+    expectRefused({"config.yaml", "cannot be read", "use another folder"});
+  }
 }
 
 TEST_F(RunFolderTest, RowsWithoutAConfigurationAreRefused) {

@@ -41,7 +41,9 @@ TEST(TrajectoryCsv, WhatIsDamagedIsRefusedWithItsLine) {
       {header + "1,0,1,2\n", "line 2: must be step 0, got 1"},
       {header + "0,0,1,2\n0,0.2,1,2\n", "line 3: must be step 1"},
       {header + "0,0,1,nan\n", "line 2: 'nan' is not finite"},
-      {header + "0,0,1,far\n", "line 2"}};
+      {header + "0,soon,1,2\n", "line 2: 'soon' is no number"},
+      {header + "0,0,1,far\n", "line 2: 'far' is no number"},
+      {header + "0,0,1,2\n1,0.2,1,2", "line 3: has no end: the file is cut short"}};
   for (const auto& fault : faults) {
     EXPECT_TRUE(throwsNaming<std::runtime_error>(
         [&] { parseTrajectoryCsv(fault.first, kNames, "DIR/trajectory.csv"); },

@@ -100,9 +100,9 @@ TEST(TrialsCsv, AnotherHeaderIsRefused) {
 
 TEST(TrialsCsv, ADamagedValueIsRefusedWithItsLine) {
   const std::vector<std::pair<size_t, std::string>> faults = {
-      {0, "x"},   {0, ""},    {1, "1.5"},     {2, "-1"},  {2, ""},     {3, "2"},
-      {3, "yes"}, {4, ""},    {5, "far"},     {6, "nan"}, {6, ""},     {7, "inf"},
-      {8, "1s"},  {9, "2.5"}, {10, "0.2 ms"}, {11, ""},   {11, "-inf"}};
+      {0, "x"},  {0, ""},     {1, "1.5"}, {2, "-1"},      {2, ""},  {3, "2"},    {3, "yes"},
+      {3, ""},   {4, ""},     {5, "far"}, {6, "nan"},     {6, ""},  {7, "inf"},  {8, "1s"},
+      {8, "-1"}, {8, "1e13"}, {9, "2.5"}, {10, "0.2 ms"}, {11, ""}, {11, "-inf"}};
   for (const auto& fault : faults) {
     EXPECT_TRUE(throwsNaming<std::runtime_error>(
         [&] { parseTrialsCsv(withColumn(fault.first, fault.second), "DIR/trials.csv"); },
@@ -125,6 +125,9 @@ TEST(TrialsCsv, AFileThatIsCutShortIsRefused) {
   const std::string cut = text.substr(0, text.find("0.25", text.rfind("7,1,")));
   EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { parseTrialsCsv(cut, "trials.csv"); },
                                                {"trials.csv, line 3"}));
+  EXPECT_TRUE(throwsNaming<std::runtime_error>(
+      [&] { parseTrialsCsv(text.substr(0, text.size() - 1), "trials.csv"); },
+      {"trials.csv, line 3", "has no end"}));
 }
 
 }  // namespace

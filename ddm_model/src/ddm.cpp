@@ -24,10 +24,13 @@ Ddm::Ddm(ModelOptions options, int image_size, int torque_dim, Pca pca, Eigen::V
     throw std::invalid_argument("model: sizes of PCA, parameters or goal image do not fit");
   }
   if (!theta_.allFinite() || !pca_.basis.allFinite() || !pca_.mean.allFinite() ||
-      !(pca_.scale > 0.0F) || !std::isfinite(pca_.scale)) {
+      !pca_.variance.allFinite() || !(pca_.scale > 0.0F) || !std::isfinite(pca_.scale)) {
     throw std::invalid_argument("model: holds values that are not finite");
   }
   if (hasGoal()) goal_feature_ = encode(goal_);
+  if (!goal_feature_.allFinite()) {  // finite parameters may be too large to compute with
+    throw std::invalid_argument("model: the feature of its goal image is not finite");
+  }
 }
 
 void Ddm::setOthers(std::vector<Ddm> others) {

@@ -7,6 +7,7 @@
 
 #include <boost/crc.hpp>
 #include <cerrno>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -69,6 +70,11 @@ class Reader {
     if (count > 0) std::memcpy(values.data(), take(count * sizeof(Number)), count * sizeof(Number));
     return values;
   }
+  bool flag() {
+    const auto value = number<std::uint8_t>();
+    if (value > 1) throw std::runtime_error("a flag is neither 0 nor 1");
+    return value == 1;
+  }
   std::string text() {
     const std::vector<char> characters = array<char>();
     return std::string(characters.begin(), characters.end());
@@ -116,8 +122,8 @@ ModelOptions readOptions(std::uint32_t version, Reader* in) {
   options.encoder_widths = widths();
   options.decoder_widths = widths();
   options.predictor_widths = widths();
-  options.residual = version > 1 && in->number<std::uint8_t>() != 0;
-  options.increments = version > 1 && in->number<std::uint8_t>() != 0;
+  options.residual = version > 1 && in->flag();
+  options.increments = version > 1 && in->flag();
   options.max_torque = in->number<double>();
   for (const std::string& problem : options.problems()) throw std::runtime_error(problem);
   return options;
@@ -132,6 +138,9 @@ ModelInfo readInfo(std::uint32_t version, Reader* in) {
   info.v_p = in->number<double>();
   if (version > 1) info.feature_spread = in->number<double>();
   info.config = in->text();
+  if (!std::isfinite(info.v_r) || !std::isfinite(info.v_p) || !std::isfinite(info.feature_spread)) {
+    throw std::runtime_error("its errors and the spread of its features must be finite");
+  }
   return info;
 }
 

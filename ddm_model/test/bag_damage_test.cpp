@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <std_msgs/Float64.h>
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -61,6 +62,57 @@ TEST_F(BagDamage, ABrokenChunkIsRefused) {
     for (int i = 0; i < 4; ++i) damaged[at + i] ^= char(0x55);
     writeBytes(damaged);
     EXPECT_TRUE(isRefused({"copy it again"})) << "bytes " << at << " to " << at + 3;
+  }
+}
+
+TEST_F(BagDamage, SizesAreComparedWithWhatIsThereBeforeMemoryIsTaken) {
+  const std::string bytes = goodBytes();
+  const auto with = [&bytes](const std::string& field, std::uint32_t value) {
+    std::string damaged = bytes;
+    std::memcpy(&damaged[damaged.find(field) + field.size()], &value, sizeof(value));
+    return damaged;
+  };
+  writeBytes(with(std::string("\x09\0\0\0size=", 9), 0xffffffffU));
+  EXPECT_TRUE(isRefused({"more than 268435456 bytes"}));
+  writeBytes(with(std::string("\x09\0\0\0size=", 9), 0x0fffffffU));
+  EXPECT_TRUE(isRefused({"announces 268435455"}));
+  writeBytes(with("#ROSBAG V2.0\n", 0xffffffffU));
+  EXPECT_TRUE(isRefused({"4294967295 bytes are due at byte 17"}));
+  writeBytes(with("index_pos=", 0xffffffffU));
+  EXPECT_TRUE(isRefused({"its index is not in the file"}));
+  writeBytes(with("index_pos=", 0));
+  EXPECT_TRUE(isRefused({"was not closed", "rosbag reindex"}));
+  writeBytes(with("chunk_count=", 1000));
+  EXPECT_TRUE(isRefused({"its index is not complete"}));
+}
+
+TEST_F(BagDamage, EachCompressionIsReadAndItsDamageNoticed) {
+  for (const auto compression :
+       {rosbag::compression::Uncompressed, rosbag::compression::LZ4, rosbag::compression::BZ2}) {
+    {
+      rosbag::Bag bag(path_, rosbag::bagmode::Write);
+      bag.setCompression(compression);
+      bag.write("camera/image_raw", ros::Time(1.0), imageMessage(1.0, toyImage(0.5)));
+      bag.write("torque", ros::Time(1.0), torqueMessage(1.0, {2.0}));
+    }
+    const BagContent content = readBag(path_, testing::kToySize, BagOptions());
+    EXPECT_EQ(content.data.image(0), toyImage(0.5));
+    EXPECT_EQ(content.data.torques()(0, 0), 2.0);
+    if (compression == rosbag::compression::Uncompressed) continue;  // it has no checksum
+    const std::string bytes = readFile(path_);
+    const size_t chunk = bytes.find("compression=");
+    int noticed = 0;
+    for (size_t at = chunk + 60; at < chunk + 300; at += 20) {
+      std::string damaged = bytes;
+      damaged[at] ^= char(0x10);
+      writeBytes(damaged);
+      if (isRefused({"is damaged", "copy it again"})) {
+        ++noticed;
+      } else {  // BZ2 has bits that say nothing
+        EXPECT_EQ(readBag(path_, testing::kToySize, BagOptions()).data.image(0), toyImage(0.5));
+      }
+    }
+    EXPECT_GE(noticed, compression == rosbag::compression::LZ4 ? 12 : 9);
   }
 }
 

@@ -46,3 +46,19 @@ if(DDM_FUZZ)
 endif()
 add_compile_options(${DDM_INSTRUMENTATION})
 link_libraries(${DDM_INSTRUMENTATION})
+
+# The fuzz target NAME: program fuzz_NAME from NAME.cpp, with the libraries that it needs. `make fuzz_targets` builds all.
+function(ddm_add_fuzzer name)
+  if(NOT TARGET fuzz_targets)
+    add_custom_target(fuzz_targets)
+  endif()
+  add_executable(fuzz_${name} ${name}.cpp)
+  add_dependencies(fuzz_targets fuzz_${name})
+  target_link_libraries(fuzz_${name} -fsanitize=fuzzer ${ARGN})
+endfunction()
+
+# Program PACKAGE_fuzz_seeds from seeds.cpp: writes those seeds of the package that are not text.
+function(ddm_add_fuzz_seeds)
+  add_executable(${PROJECT_NAME}_fuzz_seeds seeds.cpp)
+  target_link_libraries(${PROJECT_NAME}_fuzz_seeds ${ARGN})
+endfunction()

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include "ddm_msgs/yaml_text.h"
+
 namespace ddm {
 namespace {
+
+constexpr std::size_t kMaxBytes = 1000000;  // of a configuration file
 
 const std::set<std::string>& blocksOfThisRepository() {
   static const std::set<std::string> blocks = {
@@ -91,36 +94,33 @@ std::string readText(const std::string& path) {
   // A folder opens like a file and then reads as an empty one.
   std::error_code ignored;
   std::ifstream in(path);
-  std::ostringstream text;
-  if (in && in.peek() != std::ifstream::traits_type::eof()) text << in.rdbuf();
-  if (std::filesystem::is_directory(path, ignored) || !in || !text) {
+  if (std::filesystem::is_directory(path, ignored) || !in) {
     throw std::runtime_error("cannot read the configuration file " + path);
   }
-  return text.str();
+  std::string text;
+  char piece[4096];
+  while (in.read(piece, sizeof(piece)) || in.gcount() > 0) {
+    text.append(piece, static_cast<std::size_t>(in.gcount()));
+    if (text.size() > kMaxBytes) {
+      throw std::runtime_error(path + " has more than " + std::to_string(kMaxBytes) +
+                               " bytes: it is no configuration file");
+    }
+  }
+  if (in.bad()) throw std::runtime_error("cannot read the configuration file " + path);
+  return text;
 }
 
 YAML::Node loadFile(const std::string& path) {
-  const std::string text = readText(path);
-  std::vector<YAML::Node> documents;
-  try {
-    documents = YAML::LoadAll(text);
-  } catch (const YAML::Exception& e) {
-    refuseAt(path, e.mark, "not valid YAML: " + e.msg);
+  const YAML::Node document = parseYaml(readText(path), path);
+  if (document.IsNull()) return YAML::Node(YAML::NodeType::Map);  // a preset may be all comments
+  if (!document.IsMap()) {
+    refuseAt(path, document.Mark(), "expected a map of blocks, got " + asText(document));
   }
-  if (documents.empty() || (documents.size() == 1 && documents[0].IsNull())) {
-    return YAML::Node(YAML::NodeType::Map);  // a preset may consist of comments
-  }
-  if (documents.size() > 1) {
-    refuseAt(path, documents[1].Mark(), "only one YAML document is allowed in a file");
-  }
-  if (!documents[0].IsMap()) {
-    refuseAt(path, documents[0].Mark(), "expected a map of blocks, got " + asText(documents[0]));
-  }
-  requireUniqueKeys(documents[0], path);
-  for (const auto& block : documents[0]) {
+  requireUniqueKeys(document, path);
+  for (const auto& block : document) {
     if (block.second.IsMap()) requireUniqueKeys(block.second, path);
   }
-  return documents[0];
+  return document;
 }
 
 }  // namespace

@@ -319,12 +319,18 @@ TEST(ParamReaderFiles, RefusesAMissingFileAndAFolder) {
   }
 }
 
+TEST(ParamReaderFiles, RefusesAFileThatIsTooLargeToBeAConfiguration) {
+  const ScratchFile file("large.yaml", "#" + std::string(1000000, 'x'));
+  EXPECT_EQ(messageOf<std::runtime_error>([&file] { ParamReader::fromFiles({file.path()}); }),
+            file.path() + " has more than 1000000 bytes: it is no configuration file");
+}
+
 TEST(ParamReaderFiles, RefusesBadFilesWithPathAndLine) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"mpc:\n  horizon: [1, 2\ntrial: {\n", ":3: not valid YAML"},
       {"\n- mpc\n- trial\n", ":2: expected a map of blocks, got"},
       {"just text", ":1: expected a map of blocks, got just text"},
-      {"mpc: {horizon: 1}\n---\nmpc: {horizon: 2}\n", ":3: only one YAML document"},
+      {"mpc: {horizon: 1}\n---\nmpc: {horizon: 2}\n", ":2: only one YAML document"},
       {"mpc: {horizon: 1}\ntrial:\nmpc: {horizon: 2}\n", ":3: 'mpc' is given twice"},
       {"mpc:\n  horizon: 1\n  epsilon: 0\n  horizon: 2\n", ":4: 'horizon' is given twice"},
       {"mpc: {[1, 2]: 3}\n", ":1: a key must be a plain name"}};

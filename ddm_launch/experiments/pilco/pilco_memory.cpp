@@ -3,6 +3,7 @@
 #include "pilco_memory.h"
 
 #include <ddm_msgs/param_value.h>
+#include <ddm_msgs/yaml_text.h>
 
 #include <stdexcept>
 
@@ -21,13 +22,20 @@ YAML::Node toYaml(const Eigen::MatrixXd& matrix) {
   return out;
 }
 
-Eigen::MatrixXd matrixOf(const YAML::Node& memory, const std::string& key) {
+/// @param max_numbers  that can be there at all: aliases would make much of little
+Eigen::MatrixXd matrixOf(const YAML::Node& memory, const std::string& key, size_t max_numbers) {
   const YAML::Node columns = memory[key];
-  if (!columns.IsSequence()) throw std::runtime_error(key + " must be a list of columns");
+  if (!columns.IsDefined() || !columns.IsSequence()) {
+    throw std::runtime_error(key + " must be a list of columns");
+  }
   const auto rows = columns.size() == 0 ? 0 : columns[0].size();
+  if (columns.size() > 0 && rows > max_numbers / columns.size()) {
+    throw std::runtime_error(key + " is longer than the file");
+  }
   Eigen::MatrixXd out(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns.size()));
   for (size_t j = 0; j < columns.size(); ++j) {
-    if (columns[j].size() != rows) throw std::runtime_error(key + " has columns of several sizes");
+    if (!columns[j].IsSequence() || columns[j].size() != rows)
+      throw std::runtime_error(key + " must have columns of one size");
     for (size_t i = 0; i < rows; ++i) {
       out(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = columns[j][i].as<double>();
     }
@@ -37,8 +45,8 @@ Eigen::MatrixXd matrixOf(const YAML::Node& memory, const std::string& key) {
 }
 
 /// The single column that a vector is kept as.
-Eigen::VectorXd vectorOf(const YAML::Node& memory, const std::string& key) {
-  const Eigen::MatrixXd matrix = matrixOf(memory, key);
+Eigen::VectorXd vectorOf(const YAML::Node& memory, const std::string& key, size_t max_numbers) {
+  const Eigen::MatrixXd matrix = matrixOf(memory, key, max_numbers);
   if (matrix.cols() != 1) throw std::runtime_error(key + " must be one column");
   return matrix.col(0);
 }
@@ -55,14 +63,14 @@ void writeMemory(const PilcoMemory& memory, YAML::Node* out) {
 
 PilcoMemory readMemory(const std::string& text, const std::string& source) {
   try {
-    const YAML::Node root = YAML::Load(text);
+    const YAML::Node root = parseYaml(text, source);
     if (!root.IsMap()) throw std::runtime_error("must be a map");
     PilcoMemory memory;
-    memory.policy = vectorOf(root, "policy");
-    memory.gps.hyperparameters.log_length_scales = matrixOf(root, "log_length_scales");
-    memory.gps.hyperparameters.log_signal_std = vectorOf(root, "log_signal_std");
-    memory.gps.hyperparameters.log_noise_std = vectorOf(root, "log_noise_std");
-    memory.gps.inducing = matrixOf(root, "inducing");
+    memory.policy = vectorOf(root, "policy", text.size());
+    memory.gps.hyperparameters.log_length_scales = matrixOf(root, "log_length_scales", text.size());
+    memory.gps.hyperparameters.log_signal_std = vectorOf(root, "log_signal_std", text.size());
+    memory.gps.hyperparameters.log_noise_std = vectorOf(root, "log_noise_std", text.size());
+    memory.gps.inducing = matrixOf(root, "inducing", text.size());
     return memory;
   } catch (const std::exception& e) {
     throw std::runtime_error(source + ": " + e.what() +

@@ -1,0 +1,77 @@
+// Fuzz target: what reaches robot_node, in any order and at any time: frames, torques, orders.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Input: for each event its kind (1 byte), a time (8 bytes), then what the kind needs.
+#include <ddm_msgs/testing/fuzzing.h>
+
+#include <cmath>
+
+#include "frame_picker.h"
+#include "torque_gate.h"
+
+using ddm::TorqueGate;
+using ddm::testing::FuzzBytes;
+using ddm::testing::require;
+
+namespace {
+
+TorqueGate::Time drawTime(FuzzBytes* bytes) {
+  const auto seconds = std::chrono::seconds(bytes->number<std::uint32_t>());
+  return seconds + TorqueGate::Time(bytes->number<std::uint32_t>());
+}
+
+void act(std::uint8_t kind, TorqueGate::Time time, FuzzBytes* bytes, TorqueGate* gate) {
+  switch (kind % 8) {
+    case 0:
+      gate->arm();
+      break;
+    case 1:
+      gate->stop("service enable stopped them");
+      break;
+    case 2:
+      gate->beginReset();
+      break;
+    case 3:
+      gate->endReset();
+      break;
+    case 4:
+      gate->endTrial();
+      break;
+    case 5:
+      gate->showImage(time);
+      break;
+    case 6:
+      gate->setPublishers(bytes->number<std::uint8_t>() % 3);
+      break;
+    default: {
+      const TorqueGate::Time stamp = drawTime(bytes);
+      std::vector<double> torque(bytes->number<std::uint8_t>() % 4);
+      for (double& value : torque) value = bytes->number<double>();
+      const bool acts = gate->takeTorque(time, stamp, torque);
+      require(!acts || (torque.size() == 1 && std::isfinite(torque[0])), "torques are checked");
+    }
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  FuzzBytes bytes(data, size);
+  ddm::RobotOptions options;
+  options.slew_rate = bytes.number<std::uint8_t>();
+  TorqueGate gate(options);
+  ddm::FramePicker picker(options.dt);
+  while (!bytes.empty()) {
+    const auto kind = bytes.number<std::uint8_t>();
+    const TorqueGate::Time time = drawTime(&bytes);
+    act(kind, time, &bytes, &gate);
+    const double effort = gate.effort(time);
+    require(std::abs(effort) <= options.max_torque, "the motor's bound holds");
+    require(effort == 0.0 || gate.state() == TorqueGate::State::kFollowing,
+            "no torque but in a trial");
+    picker.pick(time);
+    require(std::isfinite(picker.step()) && picker.step() >= 0.0, "a step is a time");
+  }
+  require(!gate.describe().empty(), "a state has words");
+  return 0;
+}

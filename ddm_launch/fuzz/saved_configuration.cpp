@@ -1,0 +1,19 @@
+// Fuzz target: config.yaml of a folder that shall be used again.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "saved_configuration.h"
+
+#include <ddm_msgs/testing/fuzzing.h>
+
+using ddm::testing::require;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  ddm::SavedConfiguration saved;
+  const auto read = [&] { saved = ddm::readConfigurationText(text, "config.yaml"); };
+  if (!ddm::testing::accepts<std::invalid_argument>(read)) return 0;
+  require(ddm::differencesOf(saved.values, saved.values).empty(), "nothing differs from itself");
+  ddm::ConfigurationValues other = saved.values;
+  other["mpc/horizon"] = "a value that no file has";
+  require(!ddm::differencesOf(saved.values, other).empty(), "another value is a difference");
+  return 0;
+}

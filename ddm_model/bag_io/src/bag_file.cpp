@@ -1,0 +1,206 @@
+// A bag as it lies on disk: its topics and messages.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bag_file.h"
+
+#include <cstring>
+#include <stdexcept>
+
+#include "bag_chunk.h"
+
+namespace ddm {
+namespace {
+
+constexpr char kMagic[] = "#ROSBAG V2.0\n";
+constexpr char kRemedy[] = ": it is cut short, damaged or no bag; copy it again or leave it out";
+
+enum class Kind : std::uint8_t {
+  kMessage = 2,
+  kBagHeader = 3,
+  kIndex = 4,
+  kChunk = 5,
+  kChunkInfo = 6,
+  kConnection = 7
+};
+
+[[noreturn]] void refuse(const std::string& what) { throw std::runtime_error(what + kRemedy); }
+
+/// The file from some position on.
+class FileBytes {
+ public:
+  FileBytes(std::istream* in, std::uint64_t position, std::uint64_t end)
+      : in_(in), at_(position), end_(end) {
+    in_->clear();
+    in_->seekg(static_cast<std::streamoff>(position));
+  }
+
+  std::uint64_t at() const { return at_; }
+  bool done() const { return at_ == end_; }
+  std::string take(std::uint32_t size) {
+    require(size);
+    std::string bytes(size, '\0');
+    if (!in_->read(&bytes[0], size)) refuse("cannot be read at byte " + std::to_string(at_));
+    at_ += size;
+    return bytes;
+  }
+  void skip(std::uint32_t size) {
+    require(size);
+    at_ += size;
+    in_->seekg(static_cast<std::streamoff>(at_));
+  }
+
+ private:
+  void require(std::uint32_t size) const {
+    if (size > end_ - at_) {
+      refuse(std::to_string(size) + " bytes are due at byte " + std::to_string(at_) + ", " +
+             std::to_string(end_ - at_) + " are there");
+    }
+  }
+
+  std::istream* in_;
+  std::uint64_t at_;
+  std::uint64_t end_;
+};
+
+/// Bytes in memory.
+class TextBytes {
+ public:
+  explicit TextBytes(const std::string& text) : text_(text) {}
+
+  bool done() const { return at_ == text_.size(); }
+  std::string take(std::uint32_t size) {
+    if (size > text_.size() - at_) refuse("a record is longer than what it lies in");
+    at_ += size;
+    return text_.substr(at_ - size, size);
+  }
+
+ private:
+  const std::string& text_;
+  std::size_t at_ = 0;
+};
+
+template <class Number>
+Number numberOf(const std::string& bytes) {
+  if (bytes.size() != sizeof(Number))
+    refuse("a number has " + std::to_string(bytes.size()) + " bytes");
+  Number value;
+  std::memcpy(&value, bytes.data(), sizeof(value));
+  return value;
+}
+
+template <class Bytes>
+std::uint32_t takeSize(Bytes* bytes) {
+  return numberOf<std::uint32_t>(bytes->take(4));
+}
+
+/// NAME=VALUE, each with its size before it.
+class Fields {
+ public:
+  explicit Fields(const std::string& text) {
+    TextBytes bytes(text);
+    while (!bytes.done()) {
+      const std::string field = bytes.take(takeSize(&bytes));
+      const std::size_t sign = field.find('=');
+      if (sign == std::string::npos) refuse("a field has no name");
+      fields_[field.substr(0, sign)] = field.substr(sign + 1);
+    }
+  }
+
+  const std::string& text(const std::string& name) const {
+    const auto found = fields_.find(name);
+    if (found == fields_.end()) refuse("a record has no field " + name);
+    return found->second;
+  }
+  template <class Number>
+  Number number(const std::string& name) const {
+    return numberOf<Number>(text(name));
+  }
+  Kind kind() const { return static_cast<Kind>(number<std::uint8_t>("op")); }
+
+ private:
+  std::map<std::string, std::string> fields_;
+};
+
+/// The topic is in the record's own fields, the rest in its data.
+BagConnection connectionOf(const Fields& record, const std::string& data) {
+  const Fields fields(data);
+  return {record.text("topic"), fields.text("type"), fields.text("md5sum")};
+}
+
+}  // namespace
+
+BagFile::BagFile(std::istream* in) : in_(in) {
+  in_->clear();
+  in_->seekg(0, std::ios::end);
+  const auto end = static_cast<std::streamoff>(in_->tellg());
+  if (end < 0) refuse("cannot be read");
+  size_ = static_cast<std::uint64_t>(end);
+  FileBytes front(in_, 0, size_);
+  if (front.take(sizeof(kMagic) - 1) != kMagic) refuse("does not begin as a bag of format 2.0");
+  const Fields header(front.take(takeSize(&front)));
+  if (header.kind() != Kind::kBagHeader) refuse("has no header");
+  front.skip(takeSize(&front));  // blanks, so that the header can be written again
+  first_ = front.at();
+  index_ = header.number<std::uint64_t>("index_pos");
+  num_chunks_ = header.number<std::uint32_t>("chunk_count");
+  if (index_ == 0) throw std::runtime_error("was not closed; run `rosbag reindex` on it");
+  if (index_ < first_ || index_ > size_) refuse("its index is not in the file");
+
+  std::uint32_t num_chunks = 0;
+  FileBytes bytes(in_, index_, size_);
+  while (!bytes.done()) {
+    const Fields fields(bytes.take(takeSize(&bytes)));
+    const std::uint32_t size = takeSize(&bytes);
+    if (fields.kind() == Kind::kConnection) {
+      connections_[fields.number<std::uint32_t>("conn")] = connectionOf(fields, bytes.take(size));
+    } else if (fields.kind() == Kind::kChunkInfo) {
+      bytes.skip(size);
+      ++num_chunks;
+    } else {
+      refuse("an unknown record is in its index");
+    }
+  }
+  if (connections_.size() != header.number<std::uint32_t>("conn_count") ||
+      num_chunks != num_chunks_) {
+    refuse("its index is not complete");
+  }
+}
+
+void BagFile::forEachMessage(const TakeMessage& take) {
+  const auto takeChunk = [&](const std::string& chunk) {
+    TextBytes bytes(chunk);
+    while (!bytes.done()) {
+      const Fields fields(bytes.take(takeSize(&bytes)));
+      const std::string data = bytes.take(takeSize(&bytes));
+      if (fields.kind() == Kind::kConnection) continue;  // they are in the index, too
+      if (fields.kind() != Kind::kMessage) refuse("an unknown record is in a chunk");
+      const auto connection = connections_.find(fields.number<std::uint32_t>("conn"));
+      if (connection == connections_.end()) refuse("a message is of an unknown topic");
+      take(connection->second, data);
+    }
+  };
+  std::uint32_t num_chunks = 0;
+  FileBytes bytes(in_, first_, index_);
+  while (!bytes.done()) {
+    const Fields fields(bytes.take(takeSize(&bytes)));
+    const std::uint32_t size = takeSize(&bytes);
+    if (fields.kind() == Kind::kChunk) {
+      const std::string data = bytes.take(size);
+      std::string chunk;
+      try {
+        chunk =
+            decompressChunk(fields.text("compression"), data, fields.number<std::uint32_t>("size"));
+      } catch (const std::exception& e) {
+        refuse(e.what());
+      }
+      takeChunk(chunk);
+      ++num_chunks;
+    } else if (fields.kind() == Kind::kIndex) {
+      bytes.skip(size);
+    } else {
+      refuse("an unknown record is among its chunks");
+    }
+  }
+  if (num_chunks != num_chunks_) refuse("its chunks are not complete");
+}
+
+}  // namespace ddm

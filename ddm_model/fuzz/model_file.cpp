@@ -1,0 +1,51 @@
+// Fuzz target: a model file, as it is and with its header repaired.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_model/model_file.h>
+#include <ddm_msgs/testing/fuzzing.h>
+
+#include <cmath>
+#include <optional>
+
+#include "repaired.h"
+
+namespace ddm {
+namespace {
+
+using testing::accepts;
+using testing::require;
+
+void checkModel(const Ddm& model) {
+  const auto num_pixels = static_cast<std::size_t>(model.imageSize()) * model.imageSize();
+  require(model.theta().allFinite() && model.pca().variance.allFinite(), "numbers are finite");
+  require(std::isfinite(model.info().v_r) && std::isfinite(model.info().v_p), "errors are finite");
+  require(model.options().problems().empty(), "options are valid");
+  require(model.encode(Grey(num_pixels, 255)).size() == model.featureDim(),
+          "an image has a feature");
+  require(model.decode(Eigen::VectorXd::Zero(model.featureDim())).size() == num_pixels,
+          "a feature has an image");
+  if (model.hasGoal()) require(model.goalFeature().allFinite(), "the goal's feature is finite");
+  for (const Ddm& other : model.others()) {
+    require(other.torqueDim() == model.torqueDim(), "an ensemble drives one robot");
+    checkModel(other);
+  }
+}
+
+void checkFile(const std::string& bytes) {
+  std::optional<Ddm> model;
+  const auto read = [&] { model.emplace(deserialiseModel(bytes, "fuzz")); };
+  if (!accepts<std::runtime_error>(read)) return;
+  checkModel(*model);
+  const std::string written = serialiseModel(*model);
+  if (testing::isOfThisVersion(bytes)) require(written == bytes, "a model comes back bit for bit");
+  require(serialiseModel(deserialiseModel(written, "fuzz")) == written, "what is written is read");
+}
+
+}  // namespace
+}  // namespace ddm
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string bytes(reinterpret_cast<const char*>(data), size);
+  ddm::checkFile(bytes);
+  ddm::checkFile(ddm::testing::repaired(bytes));
+  return 0;
+}

@@ -1,0 +1,106 @@
+// YAML from a file that nobody vouches for.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_msgs/yaml_text.h"
+
+#include <yaml-cpp/eventhandler.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+namespace ddm {
+namespace {
+
+constexpr std::size_t kMaxLevels = 20;
+
+[[noreturn]] void refuse(const std::string& source, const YAML::Mark& mark,
+                         const std::string& what) {
+  throw std::invalid_argument(source + ":" + std::to_string(mark.line + 1) + ": " + what);
+}
+
+/// Whether yaml-cpp writes a text as it has read it: it replaces what is not UTF-8, and codes that
+/// stand for no character.
+bool isText(const std::string& text) {
+  constexpr std::uint32_t kSmallest[] = {0, 0, 0x80, 0x800, 0x10000};
+  for (std::size_t at = 0; at < text.size();) {
+    const auto lead = static_cast<unsigned char>(text[at]);
+    std::size_t length = 1;
+    if (lead >= 0x80)
+      length = lead >> 5 == 0x06 ? 2 : lead >> 4 == 0x0e ? 3 : lead >> 3 == 0x1e ? 4 : 0;
+    if (length == 0 || length > text.size() - at) return false;
+    std::uint32_t code = length == 1 ? lead : lead & (0x7fU >> length);
+    for (std::size_t i = 1; i < length; ++i) {
+      const auto next = static_cast<unsigned char>(text[at + i]);
+      if (next >> 6 != 0x02) return false;
+      code = code << 6 | (next & 0x3fU);
+    }
+    const bool surrogate = code >= 0xd800 && code <= 0xdfff;
+    const bool no_character = (code >= 0xfdd0 && code <= 0xfdef) || (code & 0xfffe) == 0xfffe;
+    if (code < kSmallest[length] || code > 0x10ffff || surrogate || no_character) return false;
+    at += length;
+  }
+  return true;
+}
+
+/// Listens to the parser, which calls itself at each level, and stops it in time.
+class Inspection : public YAML::EventHandler {
+ public:
+  explicit Inspection(const std::string& source) : source_(source) {}
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (++num_documents_ > 1) refuse(source_, mark, "only one YAML document is allowed in a file");
+  }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    if (std::find(open_.begin(), open_.end(), anchor) != open_.end()) {
+      refuse(source_, mark, "a list or map contains itself");
+    }
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                const std::string& text) override {
+    if (!isText(text)) refuse(source_, mark, "a name or value is not valid UTF-8");
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    begin(mark, anchor);
+  }
+  void OnSequenceEnd() override { open_.pop_back(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    begin(mark, anchor);
+  }
+  void OnMapEnd() override { open_.pop_back(); }
+
+ private:
+  void begin(const YAML::Mark& mark, YAML::anchor_t anchor) {
+    if (open_.size() == kMaxLevels) {
+      refuse(source_, mark,
+             "at most " + std::to_string(kMaxLevels) + " lists and maps may lie in each other");
+    }
+    open_.push_back(anchor);
+  }
+
+  const std::string& source_;
+  int num_documents_ = 0;
+  std::vector<YAML::anchor_t> open_;  // of the lists and maps that have begun
+};
+
+}  // namespace
+
+YAML::Node parseYaml(const std::string& text, const std::string& source) {
+  try {
+    std::istringstream in(text);
+    YAML::Parser parser(in);
+    Inspection inspection(source);
+    while (parser.HandleNextDocument(inspection)) {
+    }
+    return YAML::Load(text);
+  } catch (const YAML::Exception& e) {
+    refuse(source, e.mark, "not valid YAML: " + e.msg);
+  }
+}
+
+}  // namespace ddm

@@ -1,0 +1,65 @@
+// Tests of messages from bytes: they come back, and what is announced but not there is refused.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_msgs/message_bytes.h"
+
+#include <ddm_msgs/Torque.h>
+#include <gtest/gtest.h>
+#include <sensor_msgs/Image.h>
+
+#include <cstring>
+
+#include "ddm_msgs/testing/seed_files.h"
+
+namespace ddm {
+namespace {
+
+ddm_msgs::Torque torque() {
+  ddm_msgs::Torque message;
+  message.header.seq = 7;
+  message.header.stamp = ros::Time(1.5);
+  message.header.frame_id = "camera";
+  message.torque = {0.5, -1e-300};
+  message.exploratory = 1;
+  return message;
+}
+
+std::string messageOf(const std::string& bytes) {
+  try {
+    messageFromBytes<ddm_msgs::Torque>(bytes.data(), bytes.size());
+  } catch (const std::runtime_error& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+TEST(MessageBytes, AMessageComesBack) {
+  const std::string bytes = testing::bytesOf(torque());
+  const auto back = messageFromBytes<ddm_msgs::Torque>(bytes.data(), bytes.size());
+  EXPECT_EQ(back, torque());
+  sensor_msgs::Image image;
+  image.encoding = "mono8";
+  image.data = {1, 2, 3};
+  const std::string image_bytes = testing::bytesOf(image);
+  EXPECT_EQ(messageFromBytes<sensor_msgs::Image>(image_bytes.data(), image_bytes.size()), image);
+}
+
+TEST(MessageBytes, AMessageCutShortAnywhereOrTooLongIsRefused) {
+  const std::string bytes = testing::bytesOf(torque());
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    EXPECT_NE(messageOf(bytes.substr(0, size)), "accepted") << size;
+  }
+  EXPECT_EQ(messageOf(bytes), "accepted");
+  EXPECT_EQ(messageOf(bytes + "xy"), "has 2 byte(s) after its end");
+}
+
+TEST(MessageBytes, AnArrayThatIsAnnouncedButNotThereIsRefusedWithBothSizes) {
+  std::string bytes = testing::bytesOf(torque());
+  const std::size_t count_at = bytes.size() - 1 - 2 * sizeof(double) - 4;
+  const std::uint32_t huge = 0xffffffffU;
+  std::memcpy(&bytes[count_at], &huge, sizeof(huge));
+  EXPECT_EQ(messageOf(bytes),
+            "announces 4294967295 elements of 8 byte(s), and 17 byte(s) are there");
+}
+
+}  // namespace
+}  // namespace ddm
