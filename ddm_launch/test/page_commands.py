@@ -15,7 +15,7 @@ ELSEWHERE = {"reproduce_paper": "reproduce_paper_test.py", "reproduce_efficient"
              "benchmark": "benchmark_test.py", "growth": "growth_test.py", "fault_table": "fault_table_test.py",
              "soak": "soak_test.py", "rviz_screenshot": "rviz_test.py",
              "robot.launch": "robot_loop_test.py", "robot_check.launch": "robot_loop_test.py",
-             "part.launch": "several_machines_test.py", "test.sh": "scripts_test.py",
+             "part.launch": "several_machines_test.py", "test.sh": "scripts_test.py", "fuzz.sh": "fuzzing_test.py",
              "decode_features": "../../ddm_model/test/decode_features_test.cpp",
              "pilco_check": "../../ddm_mpc/pilco/test/pilco_check_test.cpp"}
 
