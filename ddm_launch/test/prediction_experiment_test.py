@@ -138,7 +138,7 @@ class PredictionExperimentTest(unittest.TestCase):
         self.assertEqual({name: read_bytes(self.reference, name) for name in FILES}, before)
 
     def test_refuses_wrong_options_with_code_2(self):
-        for words, arguments in ((("--out DIR is missing",), ()), (("trials",), ("--out", "x", "--trials", "3"))):
+        for words, arguments in ((("'--out' is required but missing",), ()), (("trials",), ("--out", "x", "--trials", "3"))):
             code, output = self.predict(*arguments)
             self.assertEqual(code, 2, output)
             for word in words:

@@ -31,7 +31,7 @@ class RobotResetTest(RobotCase):
         self.assertFalse(robot.resetDone().success)  # nobody has asked
         answer = robot.reset()
         robot.process.waitForText("take_goal", LIMIT_S)
-        self.assertTrue(robot.takeGoal().success)
+        wait_until(lambda: robot.takeGoal().success, "a camera")
         wait_until(lambda: robot.goals.messages, "the goal")
         robot.camera.left = 0
         robot.process.waitForText("Bring the robot to its start", LIMIT_S)

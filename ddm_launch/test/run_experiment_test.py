@@ -168,7 +168,7 @@ class RunExperimentTest(unittest.TestCase):
         out = ["--out", self.out]
         for words, arguments in (
                 (["--nonsense"], out + ["--nonsense"]),
-                (["--out DIR is missing"], ["--preset", "debug"]),
+                (["'--out' is required but missing"], ["--preset", "debug"]),
                 (["unknown preset 'papier'", "debug, efficient, efficient_gravity, paper"], out + ["--preset", "papier"]),
                 (["unknown plant 'sim'", "pendulum, pendulum_gravity"], out + ["--plant", "sim"]),
                 (["unknown nuisance 'fog'", "drops, noise"], out + ["--nuisance", "noise", "--nuisance", "fog"]),
