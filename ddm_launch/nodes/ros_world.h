@@ -34,6 +34,8 @@ class RosWorld : public World {
   /// @param timeout  wall time without a sign of life [s]
   /// @throws std::runtime_error naming what is missing
   RosWorld(const ros::NodeHandle& nh, double timeout, Peers peers);
+  RosWorld(const RosWorld&) = delete;
+  RosWorld& operator=(const RosWorld&) = delete;
 
   TrialOutcome runTrial(const TrialRequest& request, const PhaseCallback& progress) override;
   TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,
