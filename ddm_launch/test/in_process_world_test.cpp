@@ -18,7 +18,7 @@ namespace {
 class InProcessWorldTest : public ::testing::Test {
  protected:
   InProcessWorldTest() : configuration_(testing::toyConfiguration("")) {
-    ParamReader reader(YAML::Node(YAML::NodeType::Map));
+    ParamReader reader{YAML::Node(YAML::NodeType::Map)};
     configuration_.method = methodKind("ddm").read(&reader);
     request_.id = {7, 2, false};
     request_.num_steps = 40;
