@@ -56,7 +56,7 @@ TEST(Squashing, AdjointMatchesDifferences) {
 }
 
 TEST(Squashing, RefusesBoundsThatAreNotPositiveAndInputsOfAnotherSize) {
-  EXPECT_THROW(Squashing(Eigen::VectorXd()), std::invalid_argument);
+  EXPECT_THROW(Squashing(Eigen::VectorXd(0)), std::invalid_argument);
   EXPECT_THROW(Squashing(vectorOf({1.0, 0.0})), std::invalid_argument);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(Squashing(vectorOf({nan, 1.0})), std::invalid_argument);
