@@ -3,7 +3,7 @@
 
 loop_programs=(sim_node mpc_node view_node trial_recorder model_node experiment_node run_experiment evaluate)
 gtest_programs=(
-  allocation_test ddm_bag_io_test ddm_launch_test ddm_model_config_test ddm_model_test ddm_mpc_test ddm_msgs_test
+  ddm_bag_io_test ddm_launch_test ddm_model_config_test ddm_model_test ddm_mpc_test ddm_msgs_test
   ddm_pilco_test ddm_sim_simulate_test ddm_sim_test decode_features_test train_from_bags_test
 )
 threaded_programs=(

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
+#include <vector>
 
 namespace ddm {
 namespace {
@@ -36,8 +37,11 @@ BagWriter::~BagWriter() {
 }
 
 /// The bag's own destructor closes it, throws where that cannot be written, on a full disk say, and
-/// so ends the process: it is left to the system.
-void BagWriter::abandon() { static_cast<void>(bag_.release()); }
+/// so ends the process: it is kept for good, and left to the system.
+void BagWriter::abandon() {
+  static auto* const abandoned = new std::vector<rosbag::Bag*>;
+  abandoned->push_back(bag_.release());
+}
 
 template <class Message>
 void BagWriter::writeAt(const std::string& topic, const ros::Time& stamp, const Message& message) {
