@@ -73,6 +73,19 @@ class DotPlotsTest(figure_case.FigureCase):
             self.assertAlmostEqual(left, expected[0])
             self.assertAlmostEqual(right, expected[1])
 
+    def test_a_long_label_leaves_room_for_the_axis_and_the_legend(self):
+        path = self.writeAblation("preset,Full preset,100,50,0.9,0.01,0,0", "preset,Full preset,200 to 300,50,1,0,0,0",
+                                  "bonus,Ensemble of 3 and a bonus for disagreement,100,50,0.9,0.01,-0.1,0.05",
+                                  "bonus,Ensemble of 3 and a bonus for disagreement,200 to 300,50,1,0,0,0")
+        with new_figure(COLUMN_WIDTH, 2.0) as figure:
+            ablation_compared.draw_figure(figure, *ablation_compared.read_differences(path))
+            figure.canvas.draw()
+            axes, legend = figure.axes
+            for drawn in (axes.xaxis.label, legend.get_legend(), axes.get_yticklabels()[0]):
+                extent = drawn.get_window_extent()
+                self.assertGreaterEqual(extent.x0, 0.0)
+                self.assertLessEqual(extent.x1, figure.bbox.x1)
+
     def test_a_single_number_of_frames_is_one_dot_in_a_row(self):
         path = self.writeAblation("preset,Full preset,100,50,0.9,0.01,0,0", "steps,Without steps,100,5,0.9,0.01,-1,0")
         self.assertEqual(ablation_compared.read_differences(path)[1], ["100"])
