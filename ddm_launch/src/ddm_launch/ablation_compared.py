@@ -11,7 +11,7 @@ from ddm_launch.run_folder import RunFolderError, number, read_csv
 NUM_ERRORS = 2.0  # half a bar [standard errors]
 STYLES = ((VERMILLION, "s"), (BLUE, "o"))  # of the first frames, of the mean over the later ones
 ROW_HEIGHT, REST_HEIGHT = 0.24, 0.95  # [in]
-LABEL_LETTERS = 26  # in a line; longer labels would leave no room for what they name
+LABEL_LETTERS = 30  # in a line; longer labels would leave no room for what they name
 
 
 class Difference:
@@ -54,7 +54,8 @@ def draw_differences(axes, variants, frames):
                              [row.mean - NUM_ERRORS * row.error for row in rows],
                              [row.mean + NUM_ERRORS * row.error for row in rows]))
     axes.axvline(0.0, color=GREY, linewidth=0.8, zorder=1)
-    labels = [textwrap.fill(by_frames[frames[0]].label, LABEL_LETTERS) for by_frames in variants.values()]
+    labels = [textwrap.fill(by_frames[frames[0]].label, LABEL_LETTERS, break_on_hyphens=False)
+              for by_frames in variants.values()]
     draw_dots(axes, labels, series)
     axes.set_xlabel("difference of success rates [-]")
 
