@@ -13,12 +13,16 @@
 
 #include "torques_csv.h"
 #include "trajectory_csv.h"
+#include "trials_checksums.h"
 #include "trials_csv.h"
 
 namespace ddm {
 namespace {
 
 namespace fs = boost::filesystem;
+
+constexpr char kRows[] = "trials.csv";
+constexpr char kChecksums[] = ".trials.crc32";
 
 std::string numbered(const std::string& name, int trial) {
   char number[16];
@@ -33,13 +37,14 @@ RunFolder::RunFolder(const Configuration& configuration)
   const std::unique_ptr<Plant> plant = makePlant(configuration.plant, configuration.camera);
   torque_names_ = plant->torqueNames();
   state_names_ = plant->stateNames();
-  readRows(path() + "/trials.csv");
+  readRows(path() + "/" + kRows);
   folder_.begin();
 }
 
 void RunFolder::readRows(const std::string& file) {
   if (!fs::exists(file)) return;
-  rows_ = parseTrialsCsv(readFile(file), file);
+  const std::string text = readFile(file);
+  rows_ = parseTrialsCsv(text, file);
   for (size_t i = 0; i < rows_.size(); ++i) {
     if (rows_[i].trial != static_cast<int>(i) || rows_[i].seed != configuration_.experiment.seed) {
       throw std::runtime_error(
@@ -53,6 +58,22 @@ void RunFolder::readRows(const std::string& file) {
           "it back, or use another folder");
     }
   }
+  const std::string checksums = path() + "/" + kChecksums;
+  if (!fs::exists(checksums)) {
+    warnings_.push_back(file + " has no checksums beside it (" + kChecksums +
+                        "): it is taken as it is");
+  } else if (!isUnchanged(text, rows_.size(), readFile(checksums))) {
+    throw std::runtime_error(
+        file + " is not as it was written: it does not match its checksum in " + checksums +
+        ". Put both back, or use another folder; if you have changed the "
+        "table yourself, remove the checksums");
+  }
+}
+
+std::vector<std::string> RunFolder::warnings() const {
+  std::vector<std::string> all = folder_.warnings();
+  all.insert(all.end(), warnings_.begin(), warnings_.end());
+  return all;
 }
 
 std::string RunFolder::bagPath(int trial) const {
@@ -101,7 +122,8 @@ void RunFolder::writeGoalDistances(const std::string& folder,
 
 void RunFolder::finishTrial(const TrialRow& row) {
   rows_.push_back(row);
-  folder_.write("trials.csv", formatTrialsCsv(rows_));
+  folder_.write(kChecksums, formatTrialsChecksums(rows_));  // first, see trials_checksums.h
+  folder_.write(kRows, formatTrialsCsv(rows_));
 }
 
 void RunFolder::writeSummary(double wall_s) {

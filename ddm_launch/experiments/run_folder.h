@@ -30,6 +30,7 @@ struct TrialRow {
 
 ///   config.yaml                          effective configuration and version of the code
 ///   trials.csv                           one row per finished trial
+///   .trials.crc32                        its checksums
 ///   trial_NNN/{trial.bag,torques.csv,trajectory.csv} and the files of the training, model.ddm
 ///   evaluation_NNN/{torques.csv,trajectory.csv}
 ///   evaluation_NNN/goal_distance.csv     instead of the trajectory, where nobody tells it
@@ -43,7 +44,7 @@ class RunFolder {
 
   const std::string& path() const { return folder_.path(); }
   /// Things a user should know about a folder that is used again.
-  const std::vector<std::string>& warnings() const { return folder_.warnings(); }
+  std::vector<std::string> warnings() const;
   /// Rows of the trials finished so far.
   const std::vector<TrialRow>& rows() const { return rows_; }
 
@@ -68,6 +69,7 @@ class RunFolder {
   std::vector<std::string> torque_names_;
   std::vector<std::string> state_names_;
   std::vector<TrialRow> rows_;
+  std::vector<std::string> warnings_;
 };
 
 }  // namespace ddm

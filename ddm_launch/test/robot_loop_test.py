@@ -57,7 +57,7 @@ class RobotLoopTest(unittest.TestCase):
 
     def checkRobotRun(self):
         self.assertEqual(files_in(self.runs), sorted(
-            [".lock", "config.yaml", "robot_check.yaml", "summary.yaml", "trials.csv",
+            [".lock", ".trials.crc32", "config.yaml", "robot_check.yaml", "summary.yaml", "trials.csv",
              "evaluation_000/goal_distance.csv", "evaluation_000/torques.csv",
              "trial_000/model.ddm", "trial_000/torques.csv", "trial_000/trial.bag"]))
         self.assertPaired(0, 0.2)

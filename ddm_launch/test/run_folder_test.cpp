@@ -179,6 +179,44 @@ TEST_F(RunFolderTest, RowsThatAreNotThoseOfTheExperimentAreRefused) {
   expectRefused({"trials.csv", "line 1"});
 }
 
+TEST_F(RunFolderTest, RowsOfWhichAnyByteHasChangedAreRefused) {
+  finish(2);
+  const std::string rows = textOf(file("trials.csv"));
+  for (size_t at = 0; at < rows.size(); ++at) {
+    std::string changed = rows;
+    changed[at] = static_cast<char>(changed[at] ^ 1);  // another digit, where there is one
+    writeText(file("trials.csv"), changed);
+    expectRefused({"trials.csv"});
+  }
+  writeText(file("trials.csv"), rows);
+  EXPECT_EQ(RunFolder(configuration_).rows().size(), 2u);
+}
+
+TEST_F(RunFolderTest, AnExperimentThatEndedBetweenTheChecksumAndItsRowIsTakenUp) {
+  finish(2);
+  writeText(file("trials.csv"), formatTrialsCsv({toyRow(0)}));
+  EXPECT_EQ(RunFolder(configuration_).rows().size(), 1u);
+}
+
+TEST_F(RunFolderTest, RowsThatTheChecksumsDoNotKnowAreRefused) {
+  finish(2);
+  writeText(file(".trials.crc32"), "");
+  expectRefused({"trials.csv is not as it was written", ".trials.crc32", "remove the checksums"});
+}
+
+TEST_F(RunFolderTest, RowsWithoutChecksumsAreTakenWithAWarning) {
+  finish(2);
+  fs::remove(file(".trials.crc32"));
+  {
+    RunFolder folder(configuration_);
+    ASSERT_EQ(folder.warnings().size(), 1u);
+    EXPECT_NE(folder.warnings()[0].find("trials.csv has no checksums"), std::string::npos);
+    writeText(folder.beginTrial(2), "a bag");
+    folder.finishTrial(toyRow(2));
+  }
+  EXPECT_TRUE(RunFolder(configuration_).warnings().empty());
+}
+
 TEST_F(RunFolderTest, AConfigurationThatCannotBeReadIsRefused) {
   finish(1);
   writeText(file("config.yaml"), "experiment: [\n");
@@ -244,10 +282,10 @@ TEST_F(RunFolderTest, NothingButTheFilesOfTheContractIsLeft) {
     }
   }
   std::sort(names.begin(), names.end());
-  EXPECT_EQ(names, (std::vector<std::string>{".lock", "config.yaml", "evaluation_000/torques.csv",
-                                             "evaluation_000/trajectory.csv", "summary.yaml",
-                                             "trial_000/model.ddm", "trial_000/torques.csv",
-                                             "trial_000/trajectory.csv", "trials.csv"}));
+  EXPECT_EQ(names, (std::vector<std::string>{
+                       ".lock", ".trials.crc32", "config.yaml", "evaluation_000/torques.csv",
+                       "evaluation_000/trajectory.csv", "summary.yaml", "trial_000/model.ddm",
+                       "trial_000/torques.csv", "trial_000/trajectory.csv", "trials.csv"}));
 }
 
 TEST_F(RunFolderTest, DistancesInFeaturesAreWrittenWhereTheTrueStateIsNotKnown) {

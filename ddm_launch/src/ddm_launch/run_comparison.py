@@ -8,11 +8,12 @@ import yaml
 COLUMNS = ["seed", "trial", "frames", "success", "success_strict", "final_error_deg", "v_r", "v_p", "train_s",
            "train_evaluations", "plan_ms_median", "plan_ms_p99"]
 TIME_COLUMNS = ["train_s", "plan_ms_median", "plan_ms_p99"]
+CHECKSUMS = ".trials.crc32"  # of trials.csv with its times
 
 
 def expected_files(num_trials):
     """Every file of a finished experiment with this many epsilon-greedy trials."""
-    files = [".lock", "config.yaml", "summary.yaml", "trials.csv"]
+    files = [".lock", CHECKSUMS, "config.yaml", "summary.yaml", "trials.csv"]
     for k in range(num_trials + 1):
         files += ["trial_%03d/%s" % (k, name) for name in ("model.ddm", "torques.csv", "trajectory.csv", "trial.bag")]
         files += ["evaluation_%03d/%s" % (k, name) for name in ("torques.csv", "trajectory.csv")]
@@ -49,6 +50,8 @@ def comparable(folder, name):
         keep = [k for k, column in enumerate(COLUMNS) if column not in TIME_COLUMNS]
         return [[row[k] for k in keep] for row in read_rows(folder, name)]
     content = read_bytes(folder, name)
+    if name == CHECKSUMS:
+        return len(content)
     if name.endswith(".yaml"):
         tree = yaml.safe_load(content)
         for key in ("wall_s", "train_s"):

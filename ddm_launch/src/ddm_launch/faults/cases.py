@@ -114,6 +114,7 @@ def files():
     yield case("remove trial.bag", "at rest", ENDS, "trial_000/trial.bag is missing", "put it back")
     yield case("flip end of trials.csv", "at rest", ENDS, "trials.csv, line 2")
     yield case("flip head of trials.csv", "at rest", ENDS, "trials.csv, line 1")
+    yield case("flip digit of trials.csv", "at rest", ENDS, "trials.csv is not as it was written")
     yield case("flip config.yaml", "at rest", ENDS, "use another folder")
     yield case("flip model.ddm", "at rest", REFUSED, "model.ddm", "is damaged (wrong checksum)")
     yield case("flip head of model.ddm", "at rest", REFUSED, "model.ddm")

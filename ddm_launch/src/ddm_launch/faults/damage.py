@@ -32,12 +32,14 @@ def damage(fault, folder):
         data = stream.read()
     begin, end = 0, len(data)
     if place:
-        begin, end = {"head": (0, 8), "end": (end - 16, end)}.get(place[0]) or find_record(data, place[0])
+        places = {"head": (0, 8), "end": (end - 16, end), "digit": (end - 3, end)}  # the last digit of a table
+        begin, end = places.get(place[0]) or find_record(data, place[0])
     middle = (begin + end) // 2
     if verb == "remove":
         os.remove(path)
         return path, data
-    after = data[:middle] if verb == "cut" else data[:middle] + bytes([data[middle] ^ 0x80]) + data[middle + 1:]
+    bit = 0x01 if place == ["digit", "of"] else 0x80  # which makes another digit of one
+    after = data[:middle] if verb == "cut" else data[:middle] + bytes([data[middle] ^ bit]) + data[middle + 1:]
     with open(path, "wb") as stream:
         stream.write(after)
     return path, data
