@@ -10,7 +10,7 @@ usage() {
 usage: bash fuzz.sh --out DIR [--runs N] [--only TARGET...] [--jobs N] [--seed S]
 
 Installs the Debian packages that are missing (as root, or through sudo), builds the fuzz targets with clang into
-\$DDM_WS/sanitized, and runs them. The same call again goes on where it ended.
+\$DDM_WS/debug, and runs them. The same call again goes on where it ended.
 
   DDM_WS              catkin workspace to make or use, default ~/ddm_ws
   ROS_PARALLEL_JOBS   compiler jobs, for example -j1; default one per core, two gigabytes for each

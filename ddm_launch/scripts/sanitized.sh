@@ -1,11 +1,7 @@
-# Builds with the sanitizers of clang, and what runs on them. Sourced by test.sh, after workspace.sh.
+# Debug builds with the sanitizers of clang, and what runs on them. Sourced by test.sh, after workspace.sh.
 # SPDX-License-Identifier: BSD-3-Clause
 
 loop_programs=(sim_node mpc_node view_node trial_recorder model_node experiment_node run_experiment evaluate)
-gtest_programs=(
-  ddm_bag_io_test ddm_launch_test ddm_model_config_test ddm_model_test ddm_mpc_test ddm_msgs_test
-  ddm_pilco_test ddm_sim_simulate_test ddm_sim_test decode_features_test train_from_bags_test
-)
 threaded_programs=(
   model_node_test mpc_node_test refused_params_test replay_node robot_node train_from_bags trial_recorder_test
 )
@@ -15,13 +11,13 @@ threaded_tests='^_ctest_ddm_[a-z]+_rostest_test_(model_node|mpc_node|replay|robo
 # Where the build with a sanitizer is. Argument: address or thread, as for DDM_SANITIZE.
 sanitized_folder() {
   case $1 in
-    address) echo "$DDM_WS/sanitized" ;;
-    thread) echo "$DDM_WS/thread_sanitized" ;;
+    address) echo "$DDM_WS/debug" ;;
+    thread) echo "$DDM_WS/thread" ;;
   esac
 }
 
-# Portable instruction set, because reports shall be the same on all machines; -O1, as the Debug build. The baseline
-# PILCO has no threads.
+# Portable instruction set, because reports shall be the same on all machines; -O1, because Eigen without any optimisation
+# takes minutes for what Release does in seconds. The baseline PILCO has no threads.
 build_sanitized() {  # address|thread TARGET...
   local folder fuzz=OFF pilco=OFF jobs
   folder=$(sanitized_folder "$1")
@@ -30,7 +26,7 @@ build_sanitized() {  # address|thread TARGET...
   mkdir -p "$folder"
   local configure=(catkin_make -C "$DDM_WS" --build "$folder/build" "${jobs[@]}"
     -DCATKIN_DEVEL_PREFIX="$folder/devel" -DCMAKE_INSTALL_PREFIX="$folder/install" -DCMAKE_CXX_COMPILER=clang++
-    -DCMAKE_BUILD_TYPE=Sanitized -DCMAKE_CXX_FLAGS_SANITIZED='-O1 -gline-tables-only' -DDDM_NATIVE=OFF -DDDM_WERROR=ON
+    -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-O1 -gline-tables-only' -DDDM_NATIVE=OFF -DDDM_WERROR=ON
     -DDDM_SANITIZE="$1" -DDDM_FUZZ=$fuzz -DDDM_PILCO=$pilco)
   "${configure[@]}" "${@:2}" || return
   # as in build_release

@@ -7,21 +7,21 @@ set -euo pipefail
 
 usage() {
   cat <<TEXT
-usage: bash test.sh [--address-sanitizer | --thread-sanitizer]
+usage: bash test.sh [--debug | --thread-sanitizer]
 
 Installs the Debian packages that are missing (as root, or through sudo), builds the workspace \$DDM_WS, and
-runs every test: gtest, rosunit, rostest, roslaunch-check and the linters on the Release build, and the gtests once
-more on a Debug build with Eigen's assertions and with warnings as errors. A case that runs in several builds
-counts once; one that is skipped does not count and is named. Returns 1 if any case fails, if a test leaves no
-result, or if a sanitizer reports anything.
+runs every test: gtest, rosunit, rostest, roslaunch-check and the linters on the Release build; the gtests once more, a
+short experiment and short fuzzing on a Debug build by clang, with Eigen's assertions, AddressSanitizer,
+UndefinedBehaviorSanitizer, and warnings as errors. A case that runs in several builds counts once; one that is
+skipped does not count and is named. Returns 1 if any case fails, if a test leaves no result, or if a sanitizer
+reports anything.
 
-  --address-sanitizer  instead of all that: the gtests, a short experiment and short fuzzing on a build by clang with
-                       AddressSanitizer and UndefinedBehaviorSanitizer
-  --thread-sanitizer   instead of all that: what has several threads, on a build with ThreadSanitizer
-  --help               this text
+  --debug             the Debug build only
+  --thread-sanitizer  instead of all that: what has several threads, on a Debug build with ThreadSanitizer
+  --help              this text
 
   DDM_WS              catkin workspace to make or use, default ~/ddm_ws (Release in devel/, Debug in debug/devel/,
-                      sanitizers in sanitized/devel/ and thread_sanitized/devel/)
+                      ThreadSanitizer in thread/devel/)
   ROS_PARALLEL_JOBS   compiler jobs, for example -j1; default one per core, two gigabytes for each
   CI                  if set, warnings are errors in the Release build too
   DDM_PILCO_VECTORS   file of reference values for PILCO, which pilco_check then must accept; if not set, that case
@@ -32,22 +32,11 @@ TEXT
 parse_arguments() {
   (($# == 0)) && return
   [[ $1 == --help || $1 == -h ]] && usage && exit 0
-  [[ $1 == --address-sanitizer && $# == 1 ]] && builds=(address) && return
+  [[ $1 == --debug && $# == 1 ]] && builds=(debug) && return
   [[ $1 == --thread-sanitizer && $# == 1 ]] && builds=(thread) && return
   printf 'test.sh: unknown argument %s\n\n' "'$1'" >&2
   usage >&2
   exit 2
-}
-
-# The Debug build beside the Release one: portable instruction set, assertions on, warnings are errors.
-# -O1, because Eigen without any optimisation takes minutes for what Release does in seconds.
-build_debug() {
-  local jobs
-  read -ra jobs < <(job_flags)
-  mkdir -p "$DDM_WS/debug"
-  catkin_make -C "$DDM_WS" --build "$DDM_WS/debug/build" "${jobs[@]}" \
-    -DCATKIN_DEVEL_PREFIX="$DDM_WS/debug/devel" -DCMAKE_INSTALL_PREFIX="$DDM_WS/debug/install" \
-    -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-O1 -g' -DDDM_NATIVE=OFF -DDDM_WERROR=ON "$@"
 }
 
 # Runs the tests of a build folder whose names match, one after the other. What failed is told by the results.
@@ -60,7 +49,7 @@ run_tests() {  # BUILD_FOLDER PATTERN
 
 # What is built and run; each gives a build folder to the report.
 builds=(release debug)
-run_build() {  # release|debug|address|thread
+run_build() {  # release|debug|thread
   case $1 in
     release)
       phase "Release build into $DDM_WS/devel" build_release all tests
@@ -68,22 +57,16 @@ run_build() {  # release|debug|address|thread
       results+=("$DDM_WS/build")
       ;;
     debug)
-      phase "Debug build into $DDM_WS/debug/devel" build_debug all tests
-      phase "gtests on the Debug build" run_tests "$DDM_WS/debug/build" "$gtests"
+      phase "Debug build with AddressSanitizer into $DDM_WS/debug/devel" build_sanitized address all tests
+      phase "gtests and a short loop on the Debug build" run_sanitized address "$gtests"
+      phase "Short fuzzing" fuzz_shortly
       results+=("$DDM_WS/debug/build")
       ;;
-    address)
-      phase "Build with AddressSanitizer into $DDM_WS/sanitized/devel" \
-        build_sanitized address fuzz_targets "${loop_programs[@]}" "${gtest_programs[@]}"
-      phase "gtests and a short loop with AddressSanitizer" run_sanitized address "$gtests"
-      phase "Short fuzzing" fuzz_shortly
-      results+=("$DDM_WS/sanitized/build")
-      ;;
     thread)
-      phase "Build with ThreadSanitizer into $DDM_WS/thread_sanitized/devel" \
+      phase "Build with ThreadSanitizer into $DDM_WS/thread/devel" \
         build_sanitized thread "${loop_programs[@]}" "${threaded_programs[@]}"
       phase "Tests of threads and a short loop with ThreadSanitizer" run_sanitized thread "$threaded_tests"
-      results+=("$DDM_WS/thread_sanitized/build")
+      results+=("$DDM_WS/thread/build")
       ;;
   esac
 }

@@ -213,7 +213,8 @@ TEST(LongTermCost, IsFiniteWithARightGradientForAPolicyAtItsBound) {
   Pendulum pendulum(12);
   pendulum.start.covariance *= 0.01;
   Eigen::VectorXd saturated = pendulum.policy->parameters();
-  saturated.head(3).setConstant(0.4);  // log length-scales
+  // log length-scales; with 0.4 rounding is a hundred times as large
+  saturated.head(3).setConstant(0.2);
   saturated.tail(5).setConstant(9.0);
   RbfPolicy before_squashing(3, 1, 5);
   before_squashing.setParameters(saturated);
