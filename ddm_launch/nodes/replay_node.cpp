@@ -28,6 +28,7 @@
 #include "connections.h"
 #include "csv_text.h"
 #include "progress.h"
+#include "simulated_time.h"
 
 namespace {
 
@@ -218,6 +219,7 @@ void run(const ros::NodeHandle& nh, const ros::NodeHandle& pnh) {
   params.requireValid();
   const ddm::Ddm model = ddm::deserialiseModel(ddm::readFile(options.model), options.model);
   const ddm::BagContent bag = ddm::readBag(options.bag, model.imageSize(), topics);
+  ddm::waitForSimulatedTime(options.timeout);
   Replay replay(nh, options, model);
   ddm::Progress progress(&std::cout, ::isatty(STDOUT_FILENO) != 0, 0);
   progress.beginPhase(0, "replay");

@@ -20,6 +20,7 @@
 #include <thread>
 
 #include "connections.h"
+#include "simulated_time.h"
 
 namespace ddm {
 namespace {
@@ -30,14 +31,9 @@ constexpr double kResetLimit = 600.0;  // wall time [s]: people may have to put 
 constexpr std::chrono::milliseconds kLook(
     20);  // how often conditions without a callback are looked at
 
-/// For action clients, which would wait for the first time on /clock without a limit.
+/// For action clients.
 ros::NodeHandle withQueue(ros::NodeHandle nh, ros::CallbackQueue* queue, double limit) {
-  if (!ros::Time::waitForValid(ros::WallDuration(limit)) && ros::ok()) {
-    std::ostringstream text;
-    text << "simulated time does not come (waited " << limit << " s), "
-         << describePublishers("/clock");
-    throw std::runtime_error(text.str());
-  }
+  waitForSimulatedTime(limit);
   nh.setCallbackQueue(queue);
   return nh;
 }

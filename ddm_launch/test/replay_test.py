@@ -83,6 +83,14 @@ class ReplayTest(unittest.TestCase):
         output, _ = self.replay("bag:=/nowhere/x.bag", "model:=" + self.model)
         self.assertRegex(output, r"FATAL.*/nowhere/x.bag")
 
+    def test_time_that_does_not_come_is_named(self):
+        rospy.set_param("/use_sim_time", True)
+        self.addCleanup(rospy.delete_param, "/use_sim_time")
+        code, output = call([find_program("ddm_launch", "replay_node"), "_replay/bag:=" + self.bag,
+                             "_replay/model:=" + self.model, "_replay/timeout:=0.5"])
+        self.assertEqual(code, 1, output)
+        self.assertIn("simulated time does not come (waited 0.5 s), nobody publishes /clock", output)
+
     def test_a_bag_of_another_robot_is_refused(self):
         code, output = call([find_program("ddm_model", "train_from_bags"), "--config", DEBUG, "--config",
                              self.write("small.yaml", "image: {size: 20}\n"), "--out", self.scratch + "/small.ddm",
