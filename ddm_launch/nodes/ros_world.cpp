@@ -215,7 +215,11 @@ auto RosWorld::execute(Client* client, const std::string& name, const Goal& goal
     return pending->done;
   };
   signOfLife();
+  // The client knows its goal only when sendGoal() returns: to an answer that is faster it says
+  // that it tracks no such goal, and of one that is done it would take the state for lost.
+  spinner_.stop();
   client->sendGoal(goal, on_done, typename Client::SimpleActiveCallback(), alive);
+  spinner_.start();
   try {
     waitFor(is_done, "action " + name + " shows no sign of life");
   } catch (const std::exception&) {
