@@ -25,7 +25,7 @@ def rows(seed, frames, end_rad, num_steps=20, start_s=0.0):
 class AngleTrajectoriesTest(figure_case.FigureCase):
     def panels(self, *trajectories):
         """Draws and returns one (title, [(colour, last angle / pi)], ylim) per trial."""
-        path = self.write("angles.csv", HEADER, *(row for trajectory in trajectories for row in trajectory))
+        path = self.writeLines("angles.csv", HEADER, *(row for trajectory in trajectories for row in trajectory))
         with new_figure(PAGE_WIDTH, 3.0) as figure:
             angle_trajectories.draw_all(figure, angle_trajectories.read_trajectories(path))
             return [(axes.get_title(), [(line.get_color(), line.get_ydata()[-1]) for line in axes.lines],
@@ -42,7 +42,7 @@ class AngleTrajectoriesTest(figure_case.FigureCase):
         self.assertEqual(self.panels(falls)[0][:2], ("100 frames: 1 of 1", [(BLUE, 0.3 / math.pi)]))
 
     def test_time_starts_at_zero_and_the_order_of_the_rows_does_not_matter(self):
-        path = self.write("angles.csv", HEADER, *reversed(rows(1, 1, math.pi, start_s=37.0)))
+        path = self.writeLines("angles.csv", HEADER, *reversed(rows(1, 1, math.pi, start_s=37.0)))
         trajectory = angle_trajectories.read_trajectories(path)[1][1]
         self.assertAlmostEqual(trajectory.time_s[0], 0.0)
         self.assertAlmostEqual(trajectory.time_s[-1], 3.8)
@@ -60,7 +60,7 @@ class AngleTrajectoriesTest(figure_case.FigureCase):
 
     def test_the_drawn_target_is_the_region_that_counts(self):
         with new_figure(PAGE_WIDTH, 3.0) as figure:
-            path = self.write("angles.csv", HEADER, *rows(1, 1, 1.0))
+            path = self.writeLines("angles.csv", HEADER, *rows(1, 1, 1.0))
             angle_trajectories.draw_all(figure, angle_trajectories.read_trajectories(path))
             spans = [patch.get_path().get_extents(patch.get_patch_transform()) for patch in figure.axes[0].patches]
         edges = sorted((round(span.y0 * 180.0), round(span.y1 * 180.0)) for span in spans)
@@ -69,15 +69,15 @@ class AngleTrajectoriesTest(figure_case.FigureCase):
 
     def test_fifteen_trials_of_sixteen_seeds_make_a_picture_as_wide_as_a_page(self):
         lines = [row for trial in range(1, 16) for seed in range(16) for row in rows(seed, trial, math.pi * seed / 15)]
-        self.assertDrawn(angle_trajectories.main, [self.write("angles.csv", HEADER, *lines)], PAGE_WIDTH)
+        self.assertDrawn(angle_trajectories.main, [self.writeLines("angles.csv", HEADER, *lines)], PAGE_WIDTH)
 
     def test_a_file_that_is_missing_or_lacks_a_column_is_named(self):
         self.assertRefused(angle_trajectories.main, ["missing.csv"], "missing.csv", "reproduce_paper")
-        path = self.write("angles.csv", "seed,step,time_s", "1,0,0")
+        path = self.writeLines("angles.csv", "seed,step,time_s", "1,0,0")
         self.assertRefused(angle_trajectories.main, [path], path, "no column frames, angle_rad, success")
 
     def test_a_step_that_is_there_twice_is_refused(self):
-        path = self.write("angles.csv", HEADER, *(rows(1, 1, 1.0) + rows(1, 1, 2.0)))
+        path = self.writeLines("angles.csv", HEADER, *(rows(1, 1, 1.0) + rows(1, 1, 2.0)))
         self.assertRefused(angle_trajectories.main, [path], "step 0 of seed 1 after 1 frames twice")
 
 

@@ -3,8 +3,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import sys
-import tempfile
-import unittest
 from unittest import mock
 
 import rosunit
@@ -12,16 +10,12 @@ import rosunit
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from ddm_launch import benchmark  # noqa: E402
 from processes import call, find_program, run_experiment  # noqa: E402
+from scratch_case import ScratchCase  # noqa: E402
 
 
-class BenchmarkProgramsTest(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = scratch.name
-
+class BenchmarkProgramsTest(ScratchCase):
     def test_both_loops_give_their_round_trips(self):
-        bench = benchmark.Benchmark(self.folder, False, self.folder)
+        bench = benchmark.Benchmark(self.scratch, False, self.scratch)
         with mock.patch.object(benchmark, "RESTARTS", 1), mock.patch.object(benchmark, "NUM_FRAMES", 200):
             bench.round_trips(mock.Mock())
         for name in ("lockstep_round_trip", "bare_round_trip"):
@@ -30,10 +24,10 @@ class BenchmarkProgramsTest(unittest.TestCase):
             self.assertGreaterEqual(p99, median, name)
 
     def test_kernels_tell_the_quantiles_of_single_calls(self):
-        run = os.path.join(self.folder, "experiment")
+        run = self.file("experiment")
         code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 1, "--out", run)
         self.assertEqual(code, 0, output)
-        bench = benchmark.Benchmark(self.folder, False, self.folder)
+        bench = benchmark.Benchmark(self.scratch, False, self.scratch)
         bench.kernels()
         for name in ("objective_gradient", "matrix_products", "retrain", "pca", "encode", "plan", "plan_cost_gradient",
                      "render", "read_bag"):

@@ -1,13 +1,9 @@
 #!/usr/bin/python3
 # benchmark: what it makes of what its programs leave, and what it says where one of them fails.
 # SPDX-License-Identifier: BSD-3-Clause
-import contextlib
-import io
 import json
 import os
 import sys
-import tempfile
-import unittest
 from unittest import mock
 
 import rosunit
@@ -16,45 +12,35 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from ddm_launch import benchmark  # noqa: E402
 from ddm_launch.programs import Programs  # noqa: E402
 from ddm_launch.step_runner import Failure  # noqa: E402
+from processes import call_main  # noqa: E402
 from run_files import read_rows, read_yaml  # noqa: E402
+from scratch_case import ScratchCase  # noqa: E402
 
 KERNELS = (("objective_gradient", 1000.0, 1500.0), ("matrix_products/64", 800.0, 900.0),
            ("matrix_products/128", 700.0, 950.0), ("plan", 300.0, 600.0))
 
 
-class BenchmarkTest(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = scratch.name
-        self.out = os.path.join(self.folder, "speed")
-
+class BenchmarkTest(ScratchCase):
     def call(self, *arguments):
         """Returns (exit code, output) of benchmark."""
-        with io.StringIO() as output, contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
-            return benchmark.main(["--out", self.out] + list(arguments)), output.getvalue()
+        return call_main(benchmark.main, ["--out", self.out] + list(arguments))
 
     def leave(self, programs, what, command, **_):
         """Leaves what the programs would; the lock-step loop is twice as slow as the bare one."""
-        def write(path, text):
-            os.makedirs(os.path.dirname(path), exist_ok=True)
-            with open(path, "w") as stream:
-                stream.write(text)
-
         run = os.path.join(programs.scratch, what)
         if what in ("experiment", "ros_experiment"):
-            write(os.path.join(run, "summary.yaml"), "finished: true\nwall_s: 9.5\n")
-            write(os.path.join(run, "config.yaml"), "version: made up\n")
+            self.write(os.path.join(run, "summary.yaml"), "finished: true\nwall_s: 9.5\n")
+            self.write(os.path.join(run, "config.yaml"), "version: made up\n")
         elif what == "kernels":
             rows = [{"name": name, "run_name": name + "/iterations:1", "aggregate_name": kind, "real_time": time,
                      "plan_iterations": 42.0}
                     for name, median, p99 in KERNELS
                     for kind, time in (("mean", 1.0), ("median", median), ("p99", p99))]
-            write(command[-1].split("=")[1], json.dumps({"benchmarks": rows}))
+            self.write(command[-1].split("=")[1], json.dumps({"benchmarks": rows}))
         elif what in ("lockstep", "bare"):
             path = next(word.split(":=")[1] for word in command if word.startswith("out:="))
             time_us = 40.0 if what == "bare" else 80.0
-            write(path, "{median_us: %g, p99_us: %g, count: 3000}\n" % (time_us, 2.0 * time_us))
+            self.write(path, "{median_us: %g, p99_us: %g, count: 3000}\n" % (time_us, 2.0 * time_us))
         elif "torch_peers" in " ".join(command):
             return json.dumps({"plan": {"median_us": 60000.0, "p99_us": 70000.0}})
         return "1.13\n"
@@ -93,12 +79,12 @@ class BenchmarkTest(unittest.TestCase):
         self.assertFalse(os.path.exists(self.out))
 
     def test_a_program_that_fails_is_named_with_its_last_words(self):
-        bench = benchmark.Benchmark(self.out, False, self.folder)
+        bench = benchmark.Benchmark(self.out, False, self.scratch)
         with self.assertRaisesRegex(Failure, "kernels: 'sh -c .*' failed with code 3:\nout of luck"):
             bench.programs.call("kernels", ["sh", "-c", "echo out of luck >&2; exit 3"])
 
     def test_nodes_that_leave_nothing_are_told(self):
-        bench = benchmark.Benchmark(self.out, False, self.folder)
+        bench = benchmark.Benchmark(self.out, False, self.scratch)
         with mock.patch.object(Programs, "roslaunch", lambda *_: None):
             with self.assertRaisesRegex(Failure, "lockstep: the nodes ended without a result"):
                 bench.round_trips(mock.Mock())

@@ -30,7 +30,7 @@ def bars(axes, label):
 
 class DotPlotsTest(figure_case.FigureCase):
     def writeAblation(self, *rows):
-        return self.write("ablation.csv", ABLATION, *(rows or (
+        return self.writeLines("ablation.csv", ABLATION, *(rows or (
             "preset,Full preset,100,50,0.9,0.01,0,0", "preset,Full preset,100 to 300,50,0.9,0.01,0,0",
             "preset,Full preset,200 to 300,50,0.9,0.01,0,0",
             "warm_up,Without warm-up,100,50,0.9,0.01,0.02,0.01", "warm_up,Without warm-up,100 to 300,50,0.9,0.01,5,5",
@@ -39,8 +39,8 @@ class DotPlotsTest(figure_case.FigureCase):
             "steps,Without steps,200 to 300,50,0.9,0.01,-0.2,0.05")))
 
     def writeNuisances(self):
-        return self.write("nuisances.csv", NUISANCES, "none,500,20,1,0.84,1,0.9,0.7,0.97",
-                          "thin_rod,500,20,0.5,0.3,0.7,0,0,0.16")
+        return self.writeLines("nuisances.csv", NUISANCES, "none,500,20,1,0.84,1,0.9,0.7,0.97",
+                               "thin_rod,500,20,0.5,0.3,0.7,0,0,0.16")
 
     def drawAblation(self):
         """Returns (names of the rows, {label: (values, bars)}, edges of the vertical axis)."""

@@ -7,8 +7,6 @@ import io
 import os
 import shutil
 import sys
-import tempfile
-import unittest
 from unittest import mock
 
 import rosunit
@@ -16,21 +14,18 @@ import rosunit
 TEST = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, TEST)
 from ddm_launch import reproduce_efficient, step_runner  # noqa: E402
+from processes import call_main  # noqa: E402
 from run_files import read_bytes, read_rows, read_yaml  # noqa: E402
+from scratch_case import ScratchCase  # noqa: E402
 
 PACKAGE = os.path.dirname(TEST)
 WIDTHS = "encoder_widths: [25, 12, 6]"  # those of the stand-in's config.yaml
 SEEDS = ["--seeds", "100:125", "--ablation-seeds", "0:4"]
 
 
-class EfficientReproductionTest(unittest.TestCase):
-    maxDiff = None
-
+class EfficientReproductionTest(ScratchCase):
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = scratch.name
-        self.out = os.path.join(self.folder, "results")
+        super().setUp()
         for name, text in (("presets/efficient", "model: {residual: true}\n"),
                            ("presets/efficient_gravity", "model: {residual: true}\n"),
                            ("methods/pilco_state", "trial: {num_steps: 125}\n"),
@@ -50,7 +45,7 @@ class EfficientReproductionTest(unittest.TestCase):
 
         def package_path(*names, package="ddm_launch"):
             self.assertEqual(package == "ddm_sim", names[-1].startswith("pendulum"), names)
-            return os.path.join(self.folder if names[0] == "config" else PACKAGE, *names)
+            return os.path.join(self.scratch if names[0] == "config" else PACKAGE, *names)
 
         for module in (step_runner, reproduce_efficient):
             for name, stand_in in (("program", program), ("package_path", package_path)):
@@ -59,28 +54,18 @@ class EfficientReproductionTest(unittest.TestCase):
                 self.addCleanup(patch.stop)
 
     def writeConfig(self, name, text):
-        path = os.path.join(self.folder, "config", name + ".yaml")
-        os.makedirs(os.path.dirname(path), exist_ok=True)
-        with open(path, "w") as stream:
-            stream.write(text)
+        self.write("config/%s.yaml" % name, text)
 
     def writeRunExperiment(self, methods):
         """A stand-in that tells its methods."""
-        self.run_experiment = os.path.join(self.folder, "run_experiment")
-        with open(self.run_experiment, "w") as stream:
-            stream.write("#!/bin/sh\necho '%s'\n" % methods)
+        self.run_experiment = self.write("run_experiment", "#!/bin/sh\necho '%s'\n" % methods)
         os.chmod(self.run_experiment, 0o755)
 
     def call(self, *arguments, stops=None):
         """Returns (exit code, output) of reproduce_efficient."""
         environment = {} if stops is None else {"STAND_IN_STOPS": stops}
-        with io.StringIO() as output, contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
-            with mock.patch.dict(os.environ, environment):
-                try:
-                    code = reproduce_efficient.main(SEEDS + ["--out", self.out] + list(arguments))
-                except SystemExit as stop:
-                    code = stop.code
-            return code, output.getvalue()
+        with mock.patch.dict(os.environ, environment):
+            return call_main(reproduce_efficient.main, SEEDS + ["--out", self.out] + list(arguments))
 
     def assertWorks(self, *arguments, **kwargs):
         code, output = self.call(*arguments, **kwargs)
@@ -103,7 +88,7 @@ class EfficientReproductionTest(unittest.TestCase):
         def run_sweep(runner, step, _):
             words = step.command(runner.out, None)[1:]
             del words[words.index("--out"):words.index("--out") + 2]
-            found[step.name] = (step.table, step.limit_s, " ".join(words).replace(self.folder, ""))
+            found[step.name] = (step.table, step.limit_s, " ".join(words).replace(self.scratch, ""))
 
         with mock.patch.object(step_runner.StepRunner, "run_sweep", run_sweep):
             self.call("--only", part, *arguments)
@@ -225,7 +210,7 @@ class EfficientReproductionTest(unittest.TestCase):
     def test_configurations_of_the_same_name_are_both_settings(self):
         self.writeConfig("a/more", "model: {order: 2}\n")
         self.writeConfig("b/more", "model: {order: 3}\n")
-        paths = [os.path.join(self.folder, "config", name, "more.yaml") for name in "ab"]
+        paths = [self.file("config", name, "more.yaml") for name in "ab"]
         step = step_runner.SweepStep("step", "trials.csv", range(1), [], ["--config", paths[0], "--config", paths[1]])
         self.assertEqual(step.settings(), {"config 1 more.yaml": {"model": {"order": 2}},
                                            "config 2 more.yaml": {"model": {"order": 3}}})
@@ -320,7 +305,7 @@ class EfficientReproductionTest(unittest.TestCase):
                          ["efficient_gravity", "oracle"])
 
     def test_a_preset_that_is_not_there_is_told_before_anything_runs(self):
-        path = os.path.join(self.folder, "config", "presets", "efficient_gravity.yaml")
+        path = self.file("config", "presets", "efficient_gravity.yaml")
         os.remove(path)
         self.assertFails(["the part gravity needs %s, which is not there: leave it out with "
                           "--only efficient ablation tried nuisances" % path])
@@ -330,11 +315,11 @@ class EfficientReproductionTest(unittest.TestCase):
     def test_a_method_a_plant_or_a_nuisance_that_is_not_there_is_told_before_anything_runs(self):
         for name, part in (("methods/pilco_state", "gravity"), ("pendulum_gravity", "gravity"),
                            ("pendulum", "nuisances")):
-            path = os.path.join(self.folder, "config", name + ".yaml")
+            path = self.file("config", name + ".yaml")
             os.rename(path, path + ".away")
             self.assertFails(["the part %s needs %s" % (part, path)], "--only", "gravity", "nuisances")
             os.rename(path + ".away", path)
-        path = os.path.join(self.folder, "config", "nuisances", "noise.yaml")
+        path = self.file("config", "nuisances", "noise.yaml")
         os.remove(path)
         with mock.patch.object(reproduce_efficient, "yaml_names", lambda _: {"noise": path}):
             self.assertFails(["the part nuisances needs " + path], "--only", "nuisances")
@@ -366,7 +351,7 @@ class EfficientReproductionTest(unittest.TestCase):
         self.assertFails(["ablations/preset.yaml", "rename the file"], "--only", "ablation")
 
     def test_a_part_without_files_is_refused_before_anything_runs(self):
-        shutil.rmtree(os.path.join(self.folder, "config", "nuisances"))
+        shutil.rmtree(self.file("config", "nuisances"))
         self.assertFails(["config/nuisances must hold a file NAME.yaml", "leave this part out with --only"])
         self.assertFalse(os.path.exists(os.path.join(self.out, "runs")))
 

@@ -15,8 +15,6 @@ from run_files import COLUMNS  # noqa: E402
 
 
 class EfficientTablesTest(figure_case.FigureCase):
-    maxDiff = None
-
     def writeTrials(self, name, seeds, trials, success, strict=None, frames=lambda trial: 100 * (trial + 1)):
         """success, strict: of (seed, trial). A training takes as many seconds as the seed's number and a tenth."""
         rows = []
@@ -27,15 +25,15 @@ class EfficientTablesTest(figure_case.FigureCase):
                            success_strict=int((strict or success)(seed, trial)), final_error_deg=1.0,
                            train_s=seed + 0.1, plan_ms_p99=2.0 + seed + 0.5 * trial)
                 rows.append(",".join(str(row[column]) for column in COLUMNS))
-        return self.write(name, ",".join(COLUMNS), *rows)
+        return self.writeLines(name, ",".join(COLUMNS), *rows)
 
     def writeSeed(self, seed, wall_s, *log):
         """What a sweep leaves of a seed."""
-        self.write("sweep/logs/seed_%04d.log" % seed, "seed %d on here" % seed, *log)
-        self.write("sweep/seed_%04d/summary.yaml" % seed, "finished: true", "wall_s: %g" % wall_s)
+        self.writeLines("sweep/logs/seed_%04d.log" % seed, "seed %d on here" % seed, *log)
+        self.writeLines("sweep/seed_%04d/summary.yaml" % seed, "finished: true", "wall_s: %g" % wall_s)
 
     def readTable(self, name):
-        with open(os.path.join(self.folder, name), newline="") as stream:
+        with open(self.file(name), newline="") as stream:
             return list(csv.DictReader(stream))
 
     def test_success_stands_beside_its_interval_strict_and_not(self):
@@ -49,14 +47,14 @@ class EfficientTablesTest(figure_case.FigureCase):
         self.assertAlmostEqual(second[6] + second[7], 1.0)
 
     def test_a_file_without_strict_success_leaves_its_cells_empty(self):
-        path = self.write("trials.csv", "seed,trial,frames,success,final_error_deg", "0,0,100,1,2")
+        path = self.writeLines("trials.csv", "seed,trial,frames,success,final_error_deg", "0,0,100,1,2")
         self.assertEqual(efficient_tables.success_rows(read_sweep(path))[0][5:], ("", "", ""))
 
     def test_times_are_those_of_whole_experiments_with_median_and_largest(self):
         path = self.writeTrials("trials.csv", (3, 4, 5), 2, lambda seed, trial: True)
         for seed, wall_s in ((3, 10.0), (4, 30.0), (5, 20.0)):
             self.writeSeed(seed, wall_s)
-        rows = efficient_tables.time_rows(path, os.path.join(self.folder, "sweep"))
+        rows = efficient_tables.time_rows(path, self.file("sweep"))
         self.assertEqual([row[0] for row in rows], [3, 4, 5, "median", "largest"])
         for row, expected in zip(rows, ((6.2, 10.0, 5.5), (8.2, 30.0, 6.5), (10.2, 20.0, 7.5), (8.2, 20.0, 6.5),
                                         (10.2, 30.0, 7.5))):
@@ -68,8 +66,8 @@ class EfficientTablesTest(figure_case.FigureCase):
         self.writeSeed(3, 10.0)
         self.writeSeed(4, 1.0, "resuming after trial 7")
         self.writeSeed(5, 1.0)
-        os.remove(os.path.join(self.folder, "sweep/logs/seed_0005.log"))  # nobody knows
-        rows = efficient_tables.time_rows(path, os.path.join(self.folder, "sweep"))
+        os.remove(self.file("sweep/logs/seed_0005.log"))  # nobody knows
+        rows = efficient_tables.time_rows(path, self.file("sweep"))
         self.assertEqual([row[2] for row in rows], [10.0, "", "", 10.0, 10.0])
 
     def writeAblation(self):
@@ -81,7 +79,7 @@ class EfficientTablesTest(figure_case.FigureCase):
         return {"preset": "Full preset", "steps": "Without steps"}
 
     def test_an_ablation_is_the_difference_paired_by_seed(self):
-        rows = efficient_tables.variant_rows(self.folder, "ablation", self.writeAblation())
+        rows = efficient_tables.variant_rows(self.scratch, "ablation", self.writeAblation())
         self.assertEqual([row[:4] for row in rows], [(variant, label, frames, 4) for variant, label in (
             ("preset", "Full preset"), ("steps", "Without steps")) for frames in (
                 "100", "200", "300", "100 to 300", "200 to 300")])
@@ -100,21 +98,21 @@ class EfficientTablesTest(figure_case.FigureCase):
     def test_only_seeds_of_both_count_in_an_ablation(self):
         labels = self.writeAblation()
         self.writeTrials("ablation/steps/trials.csv", range(1, 6), 3, lambda seed, trial: False)
-        rows = [row for row in efficient_tables.variant_rows(self.folder, "ablation", labels) if row[0] == "steps"]
+        rows = [row for row in efficient_tables.variant_rows(self.scratch, "ablation", labels) if row[0] == "steps"]
         self.assertEqual([(row[3], row[4], row[6], row[7]) for row in rows], [(3, 0.0, -1.0, 0.0)] * 5)
 
     def test_an_ablation_without_a_common_seed_is_refused(self):
         labels = self.writeAblation()
         self.writeTrials("ablation/steps/trials.csv", range(7, 9), 3, lambda seed, trial: True)
         with self.assertRaisesRegex(RunFolderError, "no seed has 100 frames of both steps and the preset itself"):
-            efficient_tables.variant_rows(self.folder, "ablation", labels)
+            efficient_tables.variant_rows(self.scratch, "ablation", labels)
 
     def test_other_variants_are_compared_with_the_same_reference_at_frames_that_each_has(self):
         self.writeAblation()
         self.writeTrials("tried/ensemble/trials.csv", range(4), 2, lambda seed, trial: seed != 3)
         self.writeTrials("tried/starts/trials.csv", range(4), 3, lambda seed, trial: True)
-        rows = efficient_tables.variant_rows(self.folder, "tried", {"preset": "Full preset", "ensemble": "Ensemble",
-                                                                    "starts": "Starts"})
+        rows = efficient_tables.variant_rows(self.scratch, "tried", {"preset": "Full preset", "ensemble": "Ensemble",
+                                                                     "starts": "Starts"})
         self.assertEqual([row[:3] for row in rows], [
             (variant, label, frames) for variant, label in (
                 ("preset", "Full preset"), ("ensemble", "Ensemble"), ("starts", "Starts"))
@@ -128,13 +126,13 @@ class EfficientTablesTest(figure_case.FigureCase):
         self.writeTrials("tried/ensemble/trials.csv", range(4), 2, lambda seed, trial: True,
                          frames=lambda trial: 30 * (trial + 1))
         with self.assertRaisesRegex(RunFolderError, "tried: no number of frames is known of ensemble and the preset"):
-            efficient_tables.variant_rows(self.folder, "tried", {"preset": "Full preset", "ensemble": "Ensemble"})
+            efficient_tables.variant_rows(self.scratch, "tried", {"preset": "Full preset", "ensemble": "Ensemble"})
 
     def test_nuisances_are_told_after_the_last_trial_beside_the_same_seeds_without_any(self):
         self.writeTrials("trials.csv", range(6), 4, lambda seed, trial: seed < 2)
         self.writeTrials("nuisances/noise/trials.csv", range(4), 3, lambda seed, trial: trial == 2 and seed < 3,
                          lambda seed, trial: False)
-        rows = efficient_tables.nuisance_rows(self.folder, ["noise"])
+        rows = efficient_tables.nuisance_rows(self.scratch, ["noise"])
         self.assertEqual([row[:4] for row in rows], [("none", 300, 4, 0.5), ("noise", 300, 4, 0.75)])
         self.assertEqual(rows[1][6], 0.0)
 
@@ -143,28 +141,28 @@ class EfficientTablesTest(figure_case.FigureCase):
         self.writeTrials("nuisances/noise/trials.csv", range(4), 2, lambda seed, trial: True)
         with self.assertRaisesRegex(RunFolderError, "nuisances/noise/trials.csv must end at 300 frames as that of "
                                                     "delay, got 200"):
-            efficient_tables.nuisance_rows(self.folder, ["delay", "noise"])
+            efficient_tables.nuisance_rows(self.scratch, ["delay", "noise"])
 
     def test_a_nuisance_without_known_success_is_refused(self):
-        self.write("nuisances/noise/trials.csv", "seed,trial,frames,success,final_error_deg", "0,0,100,,")
+        self.writeLines("nuisances/noise/trials.csv", "seed,trial,frames,success,final_error_deg", "0,0,100,,")
         with self.assertRaisesRegex(RunFolderError, "nuisances/noise/trials.csv must say of some trial"):
-            efficient_tables.nuisance_rows(self.folder, ["noise"])
+            efficient_tables.nuisance_rows(self.scratch, ["noise"])
 
     def test_gravity_has_the_rows_of_the_methods_that_were_run(self):
         self.writeTrials("gravity/trials.csv", range(2), 2, lambda seed, trial: trial == 1)
         self.writeTrials("gravity/oracle/trials.csv", range(2), 3, lambda seed, trial: True, frames=lambda trial: 0)
-        rows = efficient_tables.gravity_rows(self.folder)
+        rows = efficient_tables.gravity_rows(self.scratch)
         self.assertEqual([row[:4] for row in rows], [("ddm", 100, 2, 0.0), ("ddm", 200, 2, 1.0),
                                                      ("oracle", 0, 6, 1.0)])
 
     def bars(self):
-        return {row[0]: row[2:] for row in efficient_bars.write_bars(self.folder)}
+        return {row[0]: row[2:] for row in efficient_bars.write_bars(self.scratch)}
 
     def writeHeadline(self, success, seeds=50, trials=16, strict=None):
         path = self.writeTrials("trials.csv", range(seeds), trials, success, strict)
         for seed in range(seeds):
             self.writeSeed(seed, 100.0 + 0.4 * seed)
-        efficient_tables.write_success(self.folder, os.path.join(self.folder, "sweep"))
+        efficient_tables.write_success(self.scratch, self.file("sweep"))
         self.assertEqual(len(self.readTable("success_rate.csv")), trials)
         self.assertTrue(os.path.exists(path))
 
@@ -198,12 +196,12 @@ class EfficientTablesTest(figure_case.FigureCase):
     def test_gravity_is_judged_from_1500_to_2000_frames_by_what_learns_from_images(self):
         self.writeTrials("gravity/trials.csv", range(20), 20, lambda seed, trial: trial >= 14 and seed < 18)
         self.writeTrials("gravity/pilco_state/trials.csv", range(4), 20, lambda seed, trial: False)
-        efficient_tables.write_gravity(self.folder)
+        efficient_tables.write_gravity(self.scratch)
         bars = self.bars()
         self.assertEqual(bars["mean success with gravity, 1500 to 2000 frames"], ("0.900", "yes"))
         self.assertEqual(bars["lowest success with gravity, 1500 to 2000 frames"][1], "yes")
         self.writeTrials("gravity/trials.csv", range(20), 20, lambda seed, trial: trial >= 15 or seed < 15)
-        efficient_tables.write_gravity(self.folder)
+        efficient_tables.write_gravity(self.scratch)
         bars = self.bars()
         self.assertEqual(bars["mean success with gravity, 1500 to 2000 frames"], ("0.958", "yes"))
         self.assertEqual(bars["lowest success with gravity, 1500 to 2000 frames"],
@@ -213,7 +211,7 @@ class EfficientTablesTest(figure_case.FigureCase):
         self.writeTrials("trials.csv", range(20), 5, lambda seed, trial: False)
         self.writeTrials("nuisances/drops/trials.csv", range(20), 5, lambda seed, trial: seed < 18)
         self.writeTrials("nuisances/delay/trials.csv", range(20), 5, lambda seed, trial: seed < 17)
-        efficient_tables.write_nuisances(self.folder, ["delay", "drops"])
+        efficient_tables.write_nuisances(self.scratch, ["delay", "drops"])
         self.assertEqual({point: holds for point, (_, holds) in self.bars().items()}, {
             "nuisance delay: success, 500 frames": "no", "nuisance drops: success, 500 frames": "yes"})
         self.assertEqual([row["holds"] for row in self.readTable("bars.csv")], ["no", "yes"])

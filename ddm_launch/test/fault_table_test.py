@@ -3,8 +3,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import sys
-import tempfile
-import unittest
 
 import rosunit
 
@@ -16,14 +14,10 @@ from ddm_launch.faults.motor import MotorWatch  # noqa: E402
 from ddm_launch.faults.run import FaultBench  # noqa: E402
 from processes import call, find_program, run_experiment  # noqa: E402
 from run_files import read_rows  # noqa: E402
+from scratch_case import ScratchCase  # noqa: E402
 
 
-class FaultTableTest(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.scratch = scratch.name
-
+class FaultTableTest(ScratchCase):
     def test_there_are_eighty_cases_or_more_and_twenty_quick_ones(self):
         self.assertEqual(len({case.name for case in CASES}), len(CASES))
         self.assertGreaterEqual(len([case for case in CASES if not case.root]), 80)

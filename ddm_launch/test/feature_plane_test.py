@@ -21,10 +21,10 @@ ROWS = ("0,training,1,1,-1.0,0.0", "1,training,1,1,1.0,0.5", "2,held_out,1,1,0.0
 class FeaturePlaneTest(figure_case.FigureCase):
     def makeFolder(self, name, schedule):
         """A folder of prediction_experiment with a real model."""
-        self.write(os.path.join(name, "features.csv"), HEADER, *ROWS)
-        self.write(os.path.join(name, "config.yaml"), "training:", "  schedule: %s" % schedule)
-        folder = os.path.join(self.folder, name)
-        shutil.copy(figure_case.make_run(os.path.join(self.folder, "run_" + name)), os.path.join(folder, "model.ddm"))
+        self.writeLines(os.path.join(name, "features.csv"), HEADER, *ROWS)
+        self.writeLines(os.path.join(name, "config.yaml"), "training:", "  schedule: %s" % schedule)
+        folder = self.file(name)
+        shutil.copy(figure_case.make_run(self.file("run_" + name)), os.path.join(folder, "model.ddm"))
         return folder
 
     def test_the_grid_is_read_like_a_page_and_each_image_lies_around_its_feature(self):
@@ -48,10 +48,10 @@ class FeaturePlaneTest(figure_case.FigureCase):
             self.assertAlmostEqual(picture[8 * row + 4, 8 * column + 4], grey, delta=0.03)
 
     def test_training_and_held_out_features_are_drawn_with_shapes_and_colours_of_their_own(self):
-        self.write("features.csv", HEADER, *ROWS)
+        self.writeLines("features.csv", HEADER, *ROWS)
         with new_figure(COLUMN_WIDTH, 3.0) as figure:
             axes = figure.add_subplot(1, 1, 1)
-            feature_plane.draw_plane(axes, feature_plane.read_features(self.folder), figure_case.GreyDecoder(""))
+            feature_plane.draw_plane(axes, feature_plane.read_features(self.scratch), figure_case.GreyDecoder(""))
             self.assertEqual(figure_case.drawn_points(axes, "training frames"), [(-1.0, 0.0), (1.0, 0.5)])
             self.assertEqual(figure_case.drawn_points(axes, "held-out frames"), [(0.0, 0.25)])
             self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("feature $z_1$ [-]", "feature $z_2$ [-]"))
@@ -76,21 +76,21 @@ class FeaturePlaneTest(figure_case.FigureCase):
             feature_plane.grid_around([(-1.0, 0.5), (1.0, 0.5)])
 
     def test_an_unknown_set_and_features_of_three_numbers_are_refused(self):
-        self.write("features.csv", HEADER, "0,validation,1,1,0,0")
+        self.writeLines("features.csv", HEADER, "0,validation,1,1,0,0")
         with self.assertRaisesRegex(RunFolderError, "must be training or held_out, got 'validation'"):
-            feature_plane.read_features(self.folder)
-        self.write("features.csv", HEADER + ",z_3", "0,training,1,1,0,0,0")
+            feature_plane.read_features(self.scratch)
+        self.writeLines("features.csv", HEADER + ",z_3", "0,training,1,1,0,0,0")
         with self.assertRaisesRegex(RunFolderError, "more than two numbers"):
-            feature_plane.read_features(self.folder)
+            feature_plane.read_features(self.scratch)
 
     def test_a_configuration_without_schedule_is_refused(self):
-        self.write("features.csv", HEADER, *ROWS)
-        self.write("config.yaml", "training: {}")
-        self.assertRefused(feature_plane.main, [self.folder], "config.yaml", "training/schedule")
+        self.writeLines("features.csv", HEADER, *ROWS)
+        self.writeLines("config.yaml", "training: {}")
+        self.assertRefused(feature_plane.main, [self.scratch], "config.yaml", "training/schedule")
 
     def test_a_folder_without_features_is_named_with_the_remedy(self):
-        self.write("config.yaml", "training: {schedule: joint}")
-        self.assertRefused(feature_plane.main, [self.folder], "features.csv", "prediction_experiment")
+        self.writeLines("config.yaml", "training: {schedule: joint}")
+        self.assertRefused(feature_plane.main, [self.scratch], "features.csv", "prediction_experiment")
 
 
 if __name__ == "__main__":

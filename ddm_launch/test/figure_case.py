@@ -1,16 +1,14 @@
-# What the tests of the figures share: a folder, files in it, a figure's program, stand-ins for the image programs.
+# What the tests of the figures share: files in a folder, a figure's program, stand-ins for the image programs.
 # SPDX-License-Identifier: BSD-3-Clause
-import contextlib
-import io
 import os
 import subprocess
-import tempfile
-import unittest
 
 from PIL import Image
 import roslib.packages
 
 from ddm_launch import figure_style
+from processes import call_main
+from scratch_case import ScratchCase
 
 
 class GreyCamera:
@@ -43,29 +41,18 @@ def make_run(folder):
     return os.path.join(folder, "trial_000", "model.ddm")
 
 
-class FigureCase(unittest.TestCase):
+class FigureCase(ScratchCase):
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = scratch.name
-        self.out = os.path.join(self.folder, "figure.png")
+        super().setUp()
+        self.out = self.file("figure.png")
 
-    def write(self, name, *lines):
-        """Writes a text file into the folder of the test; returns its path."""
-        path = os.path.join(self.folder, name)
-        os.makedirs(os.path.dirname(path), exist_ok=True)
-        with open(path, "w") as stream:
-            stream.writelines(line + "\n" for line in lines)
-        return path
+    def writeLines(self, name, *lines):
+        """Writes a text file into the folder of this test. Returns its path."""
+        return self.write(name, "".join(line + "\n" for line in lines))
 
     def callMain(self, main, *arguments):
-        """Returns (exit code, what was written to stdout and stderr)."""
-        with io.StringIO() as output, contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
-            try:
-                code = main(list(arguments) + ["--out", self.out])
-            except SystemExit as stop:
-                code = stop.code
-            return code, output.getvalue()
+        """Returns (exit code, output) of a program that draws self.out."""
+        return call_main(main, list(arguments) + ["--out", self.out])
 
     def assertRefused(self, main, arguments, *parts):
         """The program ends with code 1, says all parts and draws nothing."""

@@ -16,7 +16,7 @@ from figure_case import FigureCase  # noqa: E402
 
 class FigureStyleTest(FigureCase):
     def draw(self, name, height=1.0):
-        path = os.path.join(self.folder, name)
+        path = self.file(name)
         with figure_style.new_figure(2.0, height) as figure:
             figure.add_subplot(1, 1, 1).plot([0, 1], [0, height])
             figure_style.save(figure, path)
@@ -29,7 +29,7 @@ class FigureStyleTest(FigureCase):
 
     def test_nothing_but_the_size_in_print_is_told_about_the_picture(self):
         self.draw("a.png")
-        with Image.open(os.path.join(self.folder, "a.png")) as picture:
+        with Image.open(self.file("a.png")) as picture:
             self.assertEqual(picture.size, (2 * figure_style.DPI, figure_style.DPI))
             self.assertEqual(set(picture.info), {"dpi"})
 
@@ -43,7 +43,7 @@ class FigureStyleTest(FigureCase):
             self.draw("a.pdf")
 
     def test_a_folder_that_does_not_exist_ends_with_code_1_and_its_name(self):
-        self.out = os.path.join(self.folder, "missing", "a.png")
+        self.out = self.file("missing", "a.png")
         code, output = self.callMain(lambda arguments: figure_style.write(
             "program", arguments[-1], lambda out: self.draw(out)))
         self.assertEqual(code, 1)

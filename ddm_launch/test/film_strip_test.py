@@ -1,13 +1,9 @@
 #!/usr/bin/python3
 # The film strip: which trial and steps it shows, its pictures, and what it refuses.
 # SPDX-License-Identifier: BSD-3-Clause
-import contextlib
-import io
 import math
 import os
 import sys
-import tempfile
-import unittest
 
 from PIL import Image
 import rosunit
@@ -15,6 +11,8 @@ import rosunit
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from ddm_launch import film_strip  # noqa: E402
 from ddm_launch.run_folder import read_trials  # noqa: E402
+from processes import call_main  # noqa: E402
+from scratch_case import ScratchCase  # noqa: E402
 import synthetic_run  # noqa: E402
 
 
@@ -28,22 +26,14 @@ class GreyCamera:
         return Image.new("L", (51, 51), round(80 * abs(angle_rad)) % 256)
 
 
-class FilmStripTest(unittest.TestCase):
+class FilmStripTest(ScratchCase):
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = os.path.join(scratch.name, "run")
-        self.gif = os.path.join(scratch.name, "swing_up.gif")
-        synthetic_run.write_run(self.folder)
+        super().setUp()
+        self.run_folder, self.gif = self.file("run"), self.file("swing_up.gif")
+        synthetic_run.write_run(self.run_folder)
 
     def callMain(self, *arguments, make_camera=GreyCamera):
-        """Returns (exit code, what was written to stdout and stderr)."""
-        with io.StringIO() as output, contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
-            try:
-                code = film_strip.main([self.folder] + list(arguments), make_camera)
-            except SystemExit as stop:
-                code = stop.code
-            return code, output.getvalue()
+        return call_main(film_strip.main, [self.run_folder] + list(arguments), make_camera)
 
     def test_the_last_success_is_shown_by_default(self):
         code, output = self.callMain()
@@ -51,8 +41,8 @@ class FilmStripTest(unittest.TestCase):
         self.assertIn("evaluation after trial 1", output)
 
     def test_the_last_trial_is_shown_when_none_succeeded(self):
-        synthetic_run.write_trials(self.folder, ["0", "", "0"], ["170", "20", "90"])
-        self.assertEqual(film_strip.default_trial(read_trials(self.folder)), 2)
+        synthetic_run.write_trials(self.run_folder, ["0", "", "0"], ["170", "20", "90"])
+        self.assertEqual(film_strip.default_trial(read_trials(self.run_folder)), 2)
 
     def test_a_trial_can_be_chosen(self):
         self.assertIn("evaluation after trial 2", self.callMain("--trial", "2")[1])
@@ -73,9 +63,9 @@ class FilmStripTest(unittest.TestCase):
         self.assertEqual(film_strip.steps_to_show(3, 4), [0, 1, 2, 3])
 
     def test_only_the_strip_is_written_into_the_run_folder(self):
-        before = set(os.listdir(self.folder))
+        before = set(os.listdir(self.run_folder))
         self.assertEqual(self.callMain("--gif", self.gif)[0], 0)
-        self.assertEqual(set(os.listdir(self.folder)) - before, {"film_strip.png"})
+        self.assertEqual(set(os.listdir(self.run_folder)) - before, {"film_strip.png"})
 
     def test_the_animation_runs_in_real_time(self):
         self.assertEqual(self.callMain("--gif", self.gif)[0], 0)
@@ -86,15 +76,15 @@ class FilmStripTest(unittest.TestCase):
     def test_the_simulator_draws_the_images(self):
         code, output = self.callMain(make_camera=film_strip.Camera)
         self.assertEqual(code, 0, output)
-        with Image.open(os.path.join(self.folder, "film_strip.png")) as picture:
+        with Image.open(os.path.join(self.run_folder, "film_strip.png")) as picture:
             self.assertGreater(picture.width, 3 * picture.height)
-        camera = film_strip.Camera(self.folder)
+        camera = film_strip.Camera(self.run_folder)
         hanging, upright = camera.shoot(0.0, 0.0), camera.shoot(-math.pi, 0.0)
         self.assertEqual(hanging.size, (51, 51))
         self.assertNotEqual(hanging.tobytes(), upright.tobytes())
 
     def test_a_plant_that_does_not_exist_is_named(self):
-        synthetic_run.write_config(self.folder, plant="no_such_plant")
+        synthetic_run.write_config(self.run_folder, plant="no_such_plant")
         code, output = self.callMain(make_camera=film_strip.Camera)
         self.assertEqual(code, 1)
         self.assertIn("no_such_plant", output)
@@ -105,7 +95,7 @@ class FilmStripTest(unittest.TestCase):
         self.assertIn("evaluation_007", output)
 
     def test_torques_that_do_not_match_the_trajectory_are_refused(self):
-        path = os.path.join(self.folder, "evaluation_001", "torques.csv")
+        path = os.path.join(self.run_folder, "evaluation_001", "torques.csv")
         with open(path) as stream:
             lines = stream.readlines()
         with open(path, "w") as stream:
@@ -115,7 +105,7 @@ class FilmStripTest(unittest.TestCase):
         self.assertIn("got 40 and 39", output)
 
     def test_a_configuration_without_plant_is_refused(self):
-        with open(os.path.join(self.folder, "config.yaml"), "w") as stream:
+        with open(os.path.join(self.run_folder, "config.yaml"), "w") as stream:
             stream.write("experiment: {}\n")
         code, output = self.callMain(make_camera=film_strip.Camera)
         self.assertEqual(code, 1)

@@ -4,13 +4,15 @@
 import contextlib
 import io
 import os
-import tempfile
-import unittest
+import sys
 import xml.etree.ElementTree as ElementTree
 
 import rosunit
 
-from ddm_launch import fuzzing
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from ddm_launch import fuzzing  # noqa: E402
+from processes import call_main  # noqa: E402
+from scratch_case import ScratchCase  # noqa: E402
 
 # Stands in for a program of libFuzzer: reads its options, says how many runs it did, and crashes if told to.
 PROGRAM = """#!/usr/bin/python3
@@ -30,36 +32,25 @@ sys.exit(%(code)d)
 """
 
 
-class FuzzingTest(unittest.TestCase):
+class FuzzingTest(ScratchCase):
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.scratch, self.crash = scratch.name, os.path.join(scratch.name, "crash")
+        super().setUp()
+        self.crash = self.file("crash")
         self.add("node_params")
         self.add("config_file")
 
     def add(self, name, code=0):
-        folder = os.path.join(self.scratch, "lib", "ddm_msgs")
-        os.makedirs(folder, exist_ok=True)
-        path = os.path.join(folder, "fuzz_" + name)
         crash = self.crash if name == "config_file" else "/no/such/file"
-        with open(path, "w") as stream:
-            stream.write(PROGRAM % {"crash": crash, "code": code})
+        path = self.write("lib/ddm_msgs/fuzz_" + name, PROGRAM % {"crash": crash, "code": code})
         os.chmod(path, 0o755)
 
     def call(self, *arguments):
-        """Returns (exit code, what was printed)."""
-        with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(out):
-            code = fuzzing.main(["--programs", os.path.join(self.scratch, "lib"), "--out", self.path("out")]
-                                + list(arguments))
-        return code, out.getvalue()
-
-    def path(self, *names):
-        return os.path.join(self.scratch, *names)
+        """Returns (exit code, output) of fuzzing."""
+        return call_main(fuzzing.main, ["--programs", self.file("lib"), "--out", self.out] + list(arguments))
 
     def rows(self):
         """{target: (runs, corpus files, findings)}."""
-        with open(self.path("out", "fuzzing.csv")) as stream:
+        with open(os.path.join(self.out, "fuzzing.csv")) as stream:
             lines = stream.read().splitlines()
         self.assertEqual(lines[0], "target,runs,seconds,corpus_files,findings")
         cells = [line.split(",") for line in lines[1:]]
@@ -76,12 +67,12 @@ class FuzzingTest(unittest.TestCase):
     def test_a_finding_is_kept_named_and_begins_the_count_anew(self):
         self.call("--runs", "50")
         open(self.crash, "w").close()
-        code, output = self.call("--runs", "50", "--junit", self.path("results", "fuzz.xml"))
+        code, output = self.call("--runs", "50", "--junit", self.file("results", "fuzz.xml"))
         self.assertEqual(code, 1)
-        self.assertIn("FOUND by config_file: " + self.path("out", "findings", "config_file-crash-0123"), output)
+        self.assertIn("FOUND by config_file: " + os.path.join(self.out, "findings", "config_file-crash-0123"), output)
         self.assertIn("broken promise: torques are finite", output)
         self.assertEqual(self.rows(), {"config_file": (0, 1, 1), "node_params": (100, 1, 0)})
-        results = ElementTree.parse(self.path("results", "fuzz.xml"))
+        results = ElementTree.parse(self.file("results", "fuzz.xml"))
         cases = {case.get("name"): case for case in results.iter("testcase")}
         self.assertIn("torques are finite", cases["config_file"].find("failure").text)
         self.assertIsNone(cases["node_params"].find("failure"))
@@ -102,7 +93,7 @@ class FuzzingTest(unittest.TestCase):
         self.add("nobody_planted")
         self.assertIn("has no seeds in", self.call()[1])
         with contextlib.redirect_stderr(io.StringIO()) as told:
-            self.assertEqual(fuzzing.main(["--programs", self.path("nowhere"), "--out", self.path("out")]), 1)
+            self.assertEqual(fuzzing.main(["--programs", self.file("nowhere"), "--out", self.out]), 1)
         self.assertIn("there is no fuzz target in", told.getvalue())
         self.assertIn("fuzz.sh", told.getvalue())
 

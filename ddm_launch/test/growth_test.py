@@ -31,18 +31,18 @@ class GrowthTest(figure_case.FigureCase):
         self.frames_learned = frames_learned
         with mock.patch.object(Programs, "call", lambda *words, **more: self.leave(*words, **more)), \
                 mock.patch.object(growth, "program", lambda name: name):
-            return growth.make(self.folder)
+            return growth.make(self.scratch)
 
     def test_table_figure_and_exponent_come_from_the_rows(self):
         found = self.make()
         self.assertEqual((found["exponent"], found["model_node_peak_memory_mb"]), (1.0, 640.0))
-        rows = read_rows(self.folder, "growth.csv")
+        rows = read_rows(self.scratch, "growth.csv")
         self.assertEqual(",".join(rows[0]), growth.COLUMNS)
         self.assertEqual([row[:2] for row in rows[1:]],
                          [[str(frames), "51"] for frames in (1000, 3000, 10000, 30000, 100000)] +
                          [["1600", str(size)] for size in (51, 71, 101, 142, 201)])
-        self.assertEqual(read_bytes(self.folder, "growth.png")[:4], b"\x89PNG")
-        self.assertEqual(read_yaml(self.folder, "growth.yaml")["exponent"], 1.0)
+        self.assertEqual(read_bytes(self.scratch, "growth.png")[:4], b"\x89PNG")
+        self.assertEqual(read_yaml(self.scratch, "growth.yaml")["exponent"], 1.0)
 
     def test_the_exponent_is_the_slope_of_logarithms(self):
         self.assertAlmostEqual(growth.exponent([1.0, 2.0, 4.0, 8.0], [3.0, 12.0, 48.0, 192.0]), 2.0)

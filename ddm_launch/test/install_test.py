@@ -4,9 +4,7 @@
 import glob
 import os
 import re
-import shutil
 import sys
-import tempfile
 import unittest
 from concurrent.futures import ThreadPoolExecutor
 
@@ -16,6 +14,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from namespaces import hiding, why_not  # noqa: E402
 from processes import call, free_port  # noqa: E402
 from run_files import differences, expected_files, files_in, read_rows, torque_files  # noqa: E402
+from scratch_case import SharedScratchCase  # noqa: E402
 
 PACKAGES = ["ddm_launch", "ddm_model", "ddm_mpc", "ddm_msgs", "ddm_sim"]
 CHECKOUT = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
@@ -42,35 +41,29 @@ def programs_in(folder):
 
 
 @unittest.skipIf(HINDRANCE, "THE INSTALL SPACE IS NOT TESTED: %s" % HINDRANCE)
-class InstallTest(unittest.TestCase):
-    maxDiff = None
-
+class InstallTest(SharedScratchCase):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.mkdtemp()
+        super().setUpClass()
         cls.devel = cached("CATKIN_DEVEL_PREFIX")
         cls.gone = sorted({CHECKOUT, os.path.realpath(cached("CMAKE_HOME_DIRECTORY")), BUILD, cls.devel})
-        cls.prefix = os.path.join(cls.scratch, cached("CMAKE_INSTALL_PREFIX").lstrip("/"))
-        code, output = call(["cmake", "--install", BUILD], environment=dict(os.environ, DESTDIR=cls.scratch))
+        cls.prefix = os.path.join(cls.class_scratch, cached("CMAKE_INSTALL_PREFIX").lstrip("/"))
+        code, output = call(["cmake", "--install", BUILD], environment=dict(os.environ, DESTDIR=cls.class_scratch))
         if code != 0:
             raise AssertionError(output)
-        cls.run_folder = os.path.join(cls.scratch, "process")
+        cls.run_folder = os.path.join(cls.class_scratch, "process")
         cls.code, cls.output = cls.runInstalled("rosrun", "ddm_launch", "run_experiment", "--preset", "debug",
                                                 "--seed", 1, "--trials", TRIALS, "--out", cls.run_folder)
 
     @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.scratch)
-
-    @classmethod
     def runInstalled(cls, *command):
         """A command after sourcing install/setup.bash in a new terminal. Returns (exit code, output)."""
-        terminal = {"PATH": "/usr/bin:/bin:/usr/sbin:/sbin", "HOME": cls.scratch, "ROS_HOME": cls.scratch + "/ros",
-                    "ROS_HOSTNAME": "localhost", "PYTHONUNBUFFERED": "1"}
+        terminal = {"PATH": "/usr/bin:/bin:/usr/sbin:/sbin", "HOME": cls.class_scratch,
+                    "ROS_HOME": cls.class_scratch + "/ros", "ROS_HOSTNAME": "localhost", "PYTHONUNBUFFERED": "1"}
         # a function, or setup.bash would take the command's words for its own
         source = "open_terminal() { . %s/setup.bash; }; open_terminal && exec \"$@\"" % cls.prefix
         return call(hiding(cls.gone) + ["bash", "-c", source, "bash"] + [str(word) for word in command],
-                    environment=terminal, folder=cls.scratch)
+                    environment=terminal, folder=cls.class_scratch)
 
     def assertRuns(self, *command):
         code, output = self.runInstalled(*command)
@@ -117,11 +110,10 @@ class InstallTest(unittest.TestCase):
         self.assertEqual(files_in(self.run_folder), expected_files(TRIALS))
 
     def test_an_experiment_runs_with_the_nodes(self):
-        out = os.path.join(self.scratch, "nodes")
         output = self.assertRuns("roslaunch", "-p", free_port(), "ddm_launch", "experiment.launch", "preset:=debug",
-                                 "seed:=1", "trials:=%d" % TRIALS, "runs:=" + out)
-        self.assertEqual(files_in(out), expected_files(TRIALS), output)
-        self.assertEqual(differences(out, self.run_folder, torque_files(TRIALS)), [])
+                                 "seed:=1", "trials:=%d" % TRIALS, "runs:=" + self.out)
+        self.assertEqual(files_in(self.out), expected_files(TRIALS), output)
+        self.assertEqual(differences(self.out, self.run_folder, torque_files(TRIALS)), [])
 
     def test_launch_files_find_what_they_name(self):
         for words in (["experiment.launch", "runs:=/nowhere", "rviz:=true", "nuisance:=drops"],
@@ -149,15 +141,14 @@ class InstallTest(unittest.TestCase):
 
     def test_figures_are_drawn(self):
         for name in ("learning_curve", "film_strip"):
-            path = os.path.join(self.scratch, name + ".png")
+            path = self.file(name + ".png")
             self.assertRuns("rosrun", "ddm_launch", name, self.run_folder, "--out", path)
             self.assertGreater(os.path.getsize(path), 1000)
 
     def test_a_sweep_runs(self):
-        out = os.path.join(self.scratch, "sweep")
         output = self.assertRuns("rosrun", "ddm_launch", "sweep", "--preset", "debug", "--seeds", "0:2", "--trials", 0,
-                                 "--out", out)
-        self.assertEqual(len(read_rows(out, "sweep.csv")), 3, output)
+                                 "--out", self.out)
+        self.assertEqual(len(read_rows(self.out, "sweep.csv")), 3, output)
 
 
 if __name__ == "__main__":

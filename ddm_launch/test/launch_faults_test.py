@@ -3,22 +3,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import sys
-import tempfile
-import unittest
 
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import roslaunch  # noqa: E402
+from scratch_case import ScratchCase  # noqa: E402
 
 
-class LaunchFaultsTest(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.scratch = scratch.name
-        self.out = os.path.join(scratch.name, "run")
-
+class LaunchFaultsTest(ScratchCase):
     def assertRefused(self, words, *arguments):
         """The launch ends by itself, its output has the words, and there is no summary."""
         _, output = roslaunch(self.scratch, "experiment.launch", "trials:=0", "runs:=" + self.out, *arguments,
@@ -28,9 +21,7 @@ class LaunchFaultsTest(unittest.TestCase):
         self.assertFalse(os.path.exists(os.path.join(self.out, "summary.yaml")))
 
     def assertConfigRefused(self, text, words):
-        path = os.path.join(self.scratch, "differs.yaml")
-        with open(path, "w") as stream:
-            stream.write(text)
+        path = self.write("differs.yaml", text)
         self.assertRefused(["REQUIRED process [", "exit code 1"] + words, "preset:=debug", "config:=" + path)
 
     def test_a_preset_that_does_not_exist_is_named(self):

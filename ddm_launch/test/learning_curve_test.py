@@ -6,8 +6,6 @@ import io
 import math
 import os
 import sys
-import tempfile
-import unittest
 
 from PIL import Image
 import rosunit
@@ -15,17 +13,13 @@ import rosunit
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from ddm_launch import learning_curve  # noqa: E402
 from ddm_launch.run_folder import read_trials  # noqa: E402
+from scratch_case import ScratchCase  # noqa: E402
 import synthetic_run  # noqa: E402
 
 
-class LearningCurveTest(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = scratch.name
-
+class LearningCurveTest(ScratchCase):
     def makeRun(self, name, successes, errors_deg=None):
-        folder = os.path.join(self.folder, name)
+        folder = self.file(name)
         synthetic_run.write_trials(folder, successes, errors_deg or ["12.5"] * len(successes))
         return folder
 
@@ -62,7 +56,7 @@ class LearningCurveTest(unittest.TestCase):
 
     def test_several_runs_are_drawn_into_the_file_that_is_named_and_nowhere_else(self):
         folders = [self.makeRun(name, ["0", "1"]) for name in "ab"]
-        out = os.path.join(self.folder, "curve.png")
+        out = self.file("curve.png")
         self.assertEqual(self.callMain(*folders, "--out", out), (0, ""))
         self.assertTrue(os.path.getsize(out) > 0)
         self.assertEqual([os.listdir(folder) for folder in folders], [["trials.csv"]] * 2)
@@ -73,9 +67,9 @@ class LearningCurveTest(unittest.TestCase):
         self.assertIn("--out", errors)
 
     def test_a_folder_that_is_no_run_folder_is_named(self):
-        code, errors = self.callMain(self.folder)
+        code, errors = self.callMain(self.scratch)
         self.assertEqual(code, 1)
-        self.assertIn(os.path.join(self.folder, "trials.csv"), errors)
+        self.assertIn(self.file("trials.csv"), errors)
 
     def test_a_cell_that_is_no_number_is_named(self):
         code, errors = self.callMain(self.makeRun("run", ["maybe"]))
@@ -96,7 +90,7 @@ class LearningCurveTest(unittest.TestCase):
         self.assertIn("no final error", errors)
 
     def test_a_picture_format_that_does_not_exist_is_refused(self):
-        code, errors = self.callMain(self.makeRun("run", ["1"]), "--out", os.path.join(self.folder, "curve.nonsense"))
+        code, errors = self.callMain(self.makeRun("run", ["1"]), "--out", self.file("curve.nonsense"))
         self.assertEqual(code, 1)
         self.assertIn("nonsense", errors)
 

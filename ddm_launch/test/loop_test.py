@@ -6,39 +6,26 @@ import re
 import shutil
 import signal
 import sys
-import tempfile
 import time
-import unittest
 
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import roslaunch, run_experiment, start_roslaunch  # noqa: E402
 from run_files import differences, expected_files, files_in, read_bag, read_bytes, read_rows, read_yaml  # noqa: E402
+from scratch_case import SharedScratchCase  # noqa: E402
 
 TRIALS = 2
 
 
-class LoopTest(unittest.TestCase):
-    maxDiff = None
-
+class LoopTest(SharedScratchCase):
     @classmethod
     def setUpClass(cls):
-        cls.class_scratch = tempfile.mkdtemp()
+        super().setUpClass()
         cls.reference = os.path.join(cls.class_scratch, "reference")
         start = time.monotonic()
         cls.code, cls.output = roslaunch(cls.class_scratch, *cls.experiment(cls.reference, TRIALS))
         cls.wall_s = time.monotonic() - start
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.class_scratch)
-
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.scratch = scratch.name
-        self.out = os.path.join(scratch.name, "run")
 
     @staticmethod
     def experiment(out, trials, seed=1):
@@ -47,7 +34,7 @@ class LoopTest(unittest.TestCase):
 
     def assertSameAsOneProcess(self, out, trials):
         """Everything but bags, whose stamps are another simulated time, and what tells wall times."""
-        one_process = os.path.join(self.scratch, "one_process")
+        one_process = self.file("one_process")
         code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", trials, "--out", one_process)
         self.assertEqual(code, 0, output)
         names = [name for name in expected_files(trials) if not name.endswith((".bag", "config.yaml"))]
@@ -92,7 +79,7 @@ class LoopTest(unittest.TestCase):
         code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 0, "--out", self.out)
         self.assertEqual(code, 0, output)  # its folder is the same, so that either driver can go on
         # relative: meant from where roslaunch was called, though nodes run elsewhere
-        _, output = roslaunch(self.scratch, *self.experiment("run", 1), folder=self.scratch)
+        _, output = roslaunch(self.scratch, *self.experiment("out", 1), folder=self.scratch)
         self.assertIn("resuming after trial 0", output)
         self.assertEqual(files_in(self.out), expected_files(1), output)
         self.assertSameAsOneProcess(self.out, 1)

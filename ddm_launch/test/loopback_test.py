@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import tempfile
 import unittest
 
 import rosunit
@@ -14,6 +13,7 @@ import rosunit
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from namespaces import Network, why_not  # noqa: E402
 from processes import Process, free_port, line_by_line  # noqa: E402
+from scratch_case import ScratchCase  # noqa: E402
 
 NODES = ["experiment_node", "model_node", "mpc_node", "sim_node", "trial_recorder", "view_node"]
 LAUNCHERS = ["roslaunch", "rosmaster"]
@@ -78,21 +78,14 @@ def addresses(process_id):
     return found
 
 
-class LoopbackTest(unittest.TestCase):
-    maxDiff = None
-
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.scratch = scratch.name
-
+class LoopbackTest(ScratchCase):
     def socketsOfALaunch(self, enter=(), **settings):
         """{program: its addresses} of an experiment that runs, started after sourcing the workspace. enter: words
         before a command that runs elsewhere."""
         source = '. "$0/setup.sh" && exec roslaunch "$@"'
         launch = Process(list(enter) + ["sh", "-c", source, prefix(), "-p", str(free_port()), "ddm_launch",
                                         "experiment.launch", "preset:=debug", "trials:=999", "view:=true",
-                                        "runs:=" + os.path.join(self.scratch, "runs")],
+                                        "runs:=" + self.file("runs")],
                          environment(ROS_HOME=self.scratch, **settings))
         self.addCleanup(launch.stop)
         launch.waitForText("trial  0/999", LIMIT_S)  # all have found each other

@@ -2,16 +2,13 @@
 # All nuisances and all that is not the paper's at once: nodes and run_experiment still agree, torque by torque.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import shutil
 import sys
-import tempfile
-import unittest
 
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import run_both_drivers  # noqa: E402
-from run_files import differences, expected_files, read_bag, read_rows, read_yaml  # noqa: E402
+from both_drivers_case import BothDriversCase  # noqa: E402
+from run_files import read_bag, read_rows, read_yaml  # noqa: E402
 
 TRIALS = 1
 STEP_NS = 200000000
@@ -22,25 +19,14 @@ mpc: {offset_gain: 0.3, scale_distance: true, saturation_width: 2.0, terminal_we
 """
 
 
-class NuisanceLoopTest(unittest.TestCase):
-    maxDiff = None
-
+class NuisanceLoopTest(BothDriversCase):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.mkdtemp()
-        folders, outputs = run_both_drivers(cls.scratch, 4, TRIALS, {"preset": "debug", "nuisance": "clutter"}, REST)
-        (cls.nodes, cls.process), (cls.nodes_output, cls.process_output) = folders, outputs
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.scratch)
+        super().setUpClass()
+        cls.runBothDrivers(4, TRIALS, {"preset": "debug", "nuisance": "clutter"}, REST)
 
     def test_both_finish_with_equal_files(self):
-        self.assertTrue(os.path.exists(os.path.join(self.nodes, "summary.yaml")), self.nodes_output)
-        self.assertTrue(os.path.exists(os.path.join(self.process, "summary.yaml")), self.process_output)
-        names = [name for name in expected_files(TRIALS) if not name.endswith((".lock", ".bag"))]
-        self.assertGreater(len(names), 8)
-        self.assertEqual(differences(self.nodes, self.process, names), [])
+        self.assertAllFilesAreEqual()
 
     def test_the_nuisance_of_the_argument_and_those_of_the_file_are_on(self):
         camera = read_yaml(self.nodes, "config.yaml")["camera"]

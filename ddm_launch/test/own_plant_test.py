@@ -2,17 +2,15 @@
 # The example of a plant from outside: built in a workspace of its own on top of ours, it works in both drivers.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import shutil
 import subprocess
 import sys
-import tempfile
-import unittest
 
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import call, find_program, run_both_drivers, run_experiment  # noqa: E402
-from run_files import differences, expected_files, read_rows, read_yaml  # noqa: E402
+from both_drivers_case import BothDriversCase  # noqa: E402
+from processes import call, find_program, run_experiment  # noqa: E402
+from run_files import read_rows, read_yaml  # noqa: E402
 
 EXAMPLE = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../examples/ddm_cart"))
 PLANT_KEYS = ["type", "max_torque", "dt", "start_std", "mass", "friction", "track", "goal", "half_width"]
@@ -35,38 +33,27 @@ def environment_of(setup, before=None):
     return dict(line.split("=", 1) for line in text.split("\0") if line)
 
 
-class OwnPlantTest(unittest.TestCase):
-    maxDiff = None
-
+class OwnPlantTest(BothDriversCase):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.mkdtemp()
-        workspace = os.path.join(cls.scratch, "ws")
+        super().setUpClass()
+        workspace = os.path.join(cls.class_scratch, "ws")
         build(workspace)
         cls.without_example = dict(os.environ)
         os.environ.update(environment_of(os.path.join(workspace, "devel", "setup.bash")))
-        folders, outputs = run_both_drivers(cls.scratch, 1, TRIALS, {"preset": "debug", "plant": "ddm_cart/cart"})
-        (cls.nodes, cls.process), cls.outputs = folders, "\n".join(outputs)
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.scratch)
+        cls.runBothDrivers(1, TRIALS, {"preset": "debug", "plant": "ddm_cart/cart"})
 
     def assertRefused(self, words, *arguments, config=""):
-        path = os.path.join(self.scratch, "refused.yaml")
-        with open(path, "w") as stream:
-            stream.write(config)
-        code, output = run_experiment("--preset", "debug", "--out", os.path.join(self.scratch, "refused"), "--config",
-                                      path, *(arguments or ["--plant", "ddm_cart/cart"]))
+        code, output = run_experiment("--preset", "debug", "--out", self.out, "--config",
+                                      self.write("refused.yaml", config),
+                                      *(arguments or ["--plant", "ddm_cart/cart"]))
         self.assertNotEqual(code, 0, output)
         for word in words:
             self.assertIn(word, output)
-        self.assertFalse(os.path.exists(os.path.join(self.scratch, "refused")))
+        self.assertFalse(os.path.exists(self.out))
 
     def test_nodes_and_one_process_give_the_same(self):
-        names = [name for name in expected_files(TRIALS) if not name.endswith(".bag")]
-        self.assertTrue(os.path.exists(os.path.join(self.nodes, "summary.yaml")), self.outputs)
-        self.assertEqual(differences(self.nodes, self.process, names), [], self.outputs)
+        self.assertAllFilesAreEqual()
 
     def test_files_have_the_columns_of_the_plant(self):
         rows = read_rows(self.process, "evaluation_000", "torques.csv")
@@ -82,10 +69,7 @@ class OwnPlantTest(unittest.TestCase):
         self.assertEqual((plant["type"], plant["friction"]), ("ddm_cart/Cart", 2.0))
 
     def test_simulate_knows_the_plant(self):
-        torques = os.path.join(self.scratch, "torques.csv")
-        with open(torques, "w") as stream:
-            stream.write("force_n\n2\n2\n")
-        with open(torques) as stream:
+        with open(self.write("torques.csv", "force_n\n2\n2\n")) as stream:
             text = subprocess.check_output([find_program("ddm_sim", "simulate"), "--plant", "ddm_cart/cart", "--start",
                                             "0.1,0"], stdin=stream, universal_newlines=True)
         self.assertTrue(text.startswith("step,time_s,x_m,rate_m_per_s\n0,0,0.1"), text)
@@ -93,7 +77,7 @@ class OwnPlantTest(unittest.TestCase):
         self.assertAlmostEqual(float(text.splitlines()[3].split(",")[2]), 0.1 + 0.4 - (1.0 - 0.449328964) / 2.0)
 
     def test_catkin_build_installs_it_on_top_of_our_workspace(self):
-        workspace = os.path.join(self.scratch, "catkin_tools")
+        workspace = self.file("catkin_tools")
         os.makedirs(os.path.join(workspace, "src"))
         os.symlink(EXAMPLE, os.path.join(workspace, "src", "ddm_cart"))
         for command in (["config", "--workspace", workspace, "--init", "--install"],
@@ -125,13 +109,11 @@ class OwnPlantTest(unittest.TestCase):
                            "--plant", "no_cart/cart")
 
     def test_from_one_random_trial_the_model_learns_to_stop_the_cart_at_its_goal(self):
-        out, config = os.path.join(self.scratch, "learned"), os.path.join(self.scratch, "quick.yaml")
-        with open(config, "w") as stream:
-            stream.write("training: {num_starts: 2, pca_starts: 2, max_iterations: 150}\n")
+        config = self.write("quick.yaml", "training: {num_starts: 2, pca_starts: 2, max_iterations: 150}\n")
         code, output = run_experiment("--preset", "efficient", "--plant", "ddm_cart/cart", "--trials", 0, "--config",
-                                      config, "--out", out)
+                                      config, "--out", self.out)
         self.assertEqual(code, 0, output)
-        x = [float(row[2]) for row in read_rows(out, "evaluation_000", "trajectory.csv")[1:]]
+        x = [float(row[2]) for row in read_rows(self.out, "evaluation_000", "trajectory.csv")[1:]]
         self.assertLess(abs(x[0]), 0.4)
         self.assertLess(max(abs(position - 0.6) for position in x[-25:]), 0.05)
 

@@ -7,7 +7,6 @@ import re
 import shutil
 import sys
 import tempfile
-import unittest
 import unittest.mock
 import xml.etree.ElementTree
 
@@ -17,6 +16,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import page_commands  # noqa: E402
 import pages  # noqa: E402
 from processes import call, find_program, free_port, line_by_line, run_experiment  # noqa: E402
+from scratch_case import SharedScratchCase  # noqa: E402
 
 LIMIT_S = 300.0  # for the commands of a page
 # What a reader has before: files that a page begins with.
@@ -40,19 +40,13 @@ def arguments_of(launch_file):
             if argument.get("value") is None}
 
 
-class PageCommandsTest(unittest.TestCase):
-    maxDiff = None
-
+class PageCommandsTest(SharedScratchCase):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.mkdtemp()
-        cls.given = os.path.join(cls.scratch, "given")
+        super().setUpClass()
+        cls.given = os.path.join(cls.class_scratch, "given")
         code, output = run_experiment("--preset", "debug", "--seed", 7, "--trials", 1, "--out", cls.given)
         assert code == 0, output
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.scratch)
 
     def give(self, folder, name):
         path = os.path.join(folder, name)
@@ -169,7 +163,8 @@ class PageCommandsTest(unittest.TestCase):
                 names = re.findall(r'type="(\w+)\.py"', text)
                 for name in names:
                     text += pages.read(os.path.join(folder, name + ".py"))
-                for helper in re.findall(r"^from (robot_stand_in|processes|toy_robot) import", text, re.MULTILINE):
+                for helper in re.findall(r"^from (both_drivers_case|processes|robot_stand_in|toy_robot) import", text,
+                                         re.MULTILINE):
                     text += pages.read(os.path.join(folder, helper + ".py"))
                 return text
         raise AssertionError("no such test: " + test)

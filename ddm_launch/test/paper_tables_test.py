@@ -4,8 +4,6 @@
 import csv
 import os
 import sys
-import tempfile
-import unittest
 
 import rosunit
 
@@ -13,6 +11,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from run_files import COLUMNS  # noqa: E402
 from ddm_launch import paper_tables  # noqa: E402
 from ddm_launch.run_folder import read_sweep  # noqa: E402
+from scratch_case import ScratchCase  # noqa: E402
 import synthetic_run  # noqa: E402
 
 PUBLISHED = [(100 * k, 0.5, 0.1) for k in range(0, 16)]
@@ -26,12 +25,10 @@ def write(path, header, rows):
         writer.writerows(rows)
 
 
-class PaperTablesTest(unittest.TestCase):
+class PaperTablesTest(ScratchCase):
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = scratch.name
-        self.published = self.path("published.csv")
+        super().setUp()
+        self.published = self.file("published.csv")
         write(self.published, ["trial", "frames", "ddm_mpc", "ddm_mpc_se"],
               [(frames // 100, frames, rate, error) for frames, rate, error in PUBLISHED])
         self.write_trials("trials.csv", lambda seed, trial: seed < 3)  # 3 of 4 seeds succeed, always
@@ -44,9 +41,6 @@ class PaperTablesTest(unittest.TestCase):
                                    ("joint_random_init", 0.04)):
                 self.write_predictions("%s/%s/predictions.csv" % (folder, schedule), rmse)
 
-    def path(self, *names):
-        return os.path.join(self.folder, *names)
-
     def write_trials(self, name, success, frames=None, trials=16):
         rows = []
         for seed in range(4):
@@ -56,21 +50,21 @@ class PaperTablesTest(unittest.TestCase):
                            success=int(success(seed, trial)), success_strict=0, final_error_deg=1.0,
                            train_s=0.1 * (seed + 1), plan_ms_median=0.5, plan_ms_p99=2.0 + seed)
                 rows.append([row[column] for column in COLUMNS])
-        write(self.path(name), COLUMNS, rows)
+        write(self.file(name), COLUMNS, rows)
 
     def write_predictions(self, name, rmse, seeds=4):
         rows = []
         for seed in range(seeds):
             for steps in range(1, 9):
                 rows.append((seed, steps, 91, rmse * (1 + 0.01 * seed), 0.1, 0.9 + 0.02 * seed, 1.0, 1.0, 2.0))
-        write(self.path(name), ["seed", "steps", "num_predictions", "rmse", "rmse_repeat", "position_r2", "v_r", "v_p",
+        write(self.file(name), ["seed", "steps", "num_predictions", "rmse", "rmse_repeat", "position_r2", "v_r", "v_p",
                                 "train_s"], rows)
 
     def holds(self):
-        return {row[0]: row[3] for row in paper_tables.agreement_table(self.folder, self.published)}
+        return {row[0]: row[3] for row in paper_tables.agreement_table(self.scratch, self.published)}
 
     def test_success_is_measured_in_the_papers_standard_errors(self):
-        rows = paper_tables.success_table(self.path("trials.csv"), self.published)
+        rows = paper_tables.success_table(self.file("trials.csv"), self.published)
         self.assertEqual([row[0] for row in rows], [100 * k for k in range(1, 16)])  # 1600 is not in the paper
         frames, seeds, rate, error, paper, paper_error, difference = rows[0]
         self.assertEqual((frames, seeds, rate, paper, paper_error), (100, 4, 0.75, 0.5, 0.1))
@@ -91,7 +85,7 @@ class PaperTablesTest(unittest.TestCase):
 
     def test_late_success_is_the_mean_of_each_seed_from_900_to_1500_frames(self):
         self.write_trials("trials.csv", lambda seed, trial: trial >= 8 if seed == 0 else trial in (7, 15, 14))
-        late = paper_tables.late_success(read_sweep(self.path("trials.csv")))
+        late = paper_tables.late_success(read_sweep(self.file("trials.csv")))
         self.assertEqual(late[0], 1.0)
         self.assertAlmostEqual(late[1], 1.0 / 7.0)  # of trials 8 to 14 only the last
 
@@ -102,7 +96,7 @@ class PaperTablesTest(unittest.TestCase):
         self.assertEqual(self.holds()[point], "no")
 
     def test_the_tile_is_judged_by_mean_ratio_and_median_of_the_explained_position(self):
-        rows = paper_tables.tile_rows(self.folder)
+        rows = paper_tables.tile_rows(self.scratch)
         self.assertEqual(len(rows), 4)
         self.assertAlmostEqual(rows[1][3], 0.404)
         ratio = "tile: error 8 steps ahead over that of repeating the last frame, mean of 4 seeds"
@@ -114,7 +108,7 @@ class PaperTablesTest(unittest.TestCase):
 
     def test_schedules_are_compared_on_the_same_seeds(self):
         self.write_predictions("tile_predictions/sequential/predictions.csv", 0.08, seeds=3)
-        rows = {(row[0], row[1]): row[2:] for row in paper_tables.schedule_table(self.folder)}
+        rows = {(row[0], row[1]): row[2:] for row in paper_tables.schedule_table(self.scratch)}
         seeds, mean, _, difference, error = rows["tile_error_ratio_8", "sequential"]
         self.assertEqual(seeds, 3)
         self.assertAlmostEqual(mean, 0.808)
@@ -132,7 +126,7 @@ class PaperTablesTest(unittest.TestCase):
         self.assertEqual(holds["pendulum_success_900_1500: joint against sequential"], "no")  # 0.5 +- 0.29
 
     def test_times_are_those_of_the_trials_and_pilcos_those_of_the_paper(self):
-        rows = paper_tables.time_table(self.path("trials.csv"))
+        rows = paper_tables.time_table(self.file("trials.csv"))
         training = [row for row in rows if row[0] == "training"]
         self.assertEqual([row[1] for row in training], ["100", "500", "1000", "1500"])
         self.assertAlmostEqual(training[0][2], 0.25)  # median of 0.1 ... 0.4 s
@@ -141,23 +135,23 @@ class PaperTablesTest(unittest.TestCase):
         self.assertTrue(any(row[0].startswith("PILCO") and row[2] == 10.0 and row[4] == "h" for row in rows))
 
     def test_all_tables_are_written(self):
-        paper_tables.write_tables(self.folder, self.published)
+        paper_tables.write_tables(self.scratch, self.published)
         for name in ("success_rate", "schedules", "times", "tile", "agreement"):
-            with open(self.path(name + ".csv")) as stream:
+            with open(self.file(name + ".csv")) as stream:
                 self.assertGreater(len(list(csv.reader(stream))), 1, name)
-        self.assertFalse(os.path.exists(self.path("pilco.csv")))
+        self.assertFalse(os.path.exists(self.file("pilco.csv")))
 
     def test_pilco_joins_the_tables_where_it_was_run(self):
         rows = [synthetic_run.pilco_row(seed, k, 1, 5.0).split(",") for seed in range(12) for k in range(10)]
-        write(self.path("pilco_state", "trials.csv"), COLUMNS, rows)
-        write(self.path("pilco_state", "policy_search.csv"), ["seed", "trial", "frames", "gp_s", "policy_search_s"],
+        write(self.file("pilco_state", "trials.csv"), COLUMNS, rows)
+        write(self.file("pilco_state", "policy_search.csv"), ["seed", "trial", "frames", "gp_s", "policy_search_s"],
               [row[:3] + ["1", "4"] for row in rows])
-        agreement = paper_tables.write_tables(self.folder, self.published, ["pilco_state"])
+        agreement = paper_tables.write_tables(self.scratch, self.published, ["pilco_state"])
         self.assertEqual([row[3] for row in agreement if row[0].startswith("PILCO")], ["yes", "yes", "yes"])
-        with open(self.path("pilco.csv")) as stream:
+        with open(self.file("pilco.csv")) as stream:
             self.assertEqual([row[1] for row in csv.reader(stream)],
                              ["policies"] + [str(k) for k in range(1, 11)] + ["2 to 6"])
-        with open(self.path("times.csv")) as stream:
+        with open(self.file("times.csv")) as stream:
             text = stream.read()
         self.assertIn("\n\"PILCO on 2-D features, 10 trials\",1000,10,", text)
         self.assertIn("\n\"PILCO, state: of it policy search\",1250,4,4,s,", text)

@@ -20,7 +20,7 @@ ROWS = ["experience,0,0.5,0.5", "experience,1,-0.5,0.5", "current,7,0.1,0.2", "g
 class PendulumFeatureSpaceTest(figure_case.FigureCase):
     def draw(self, rows):
         """Draws and returns ({label: points}, limits of the axes, the line of the plan)."""
-        space = pendulum_feature_space.read_space(self.write("space.csv", HEADER, *rows))
+        space = pendulum_feature_space.read_space(self.writeLines("space.csv", HEADER, *rows))
         with new_figure(COLUMN_WIDTH, 3.0) as figure:
             axes = figure.add_subplot(1, 1, 1)
             pendulum_feature_space.draw_space(axes, space, figure_case.GreyDecoder(""))
@@ -47,8 +47,8 @@ class PendulumFeatureSpaceTest(figure_case.FigureCase):
             self.assertEqual(len({kind[column] for kind in pendulum_feature_space.KINDS.values()}), 4)
 
     def test_a_real_model_makes_a_picture(self):
-        model = figure_case.make_run(os.path.join(self.folder, "run"))
-        path = self.write("space.csv", HEADER, *ROWS)
+        model = figure_case.make_run(self.file("run"))
+        path = self.writeLines("space.csv", HEADER, *ROWS)
         self.assertDrawn(pendulum_feature_space.main, [path, "--model", model], COLUMN_WIDTH)
 
     def test_a_kind_that_is_missing_or_unknown_is_named(self):
@@ -60,7 +60,7 @@ class PendulumFeatureSpaceTest(figure_case.FigureCase):
     def test_a_file_or_model_that_is_missing_is_named(self):
         self.assertRefused(pendulum_feature_space.main, ["missing.csv", "--model", "m.ddm"], "missing.csv",
                            "feature_space writes it")
-        path = self.write("space.csv", HEADER, *ROWS)
+        path = self.writeLines("space.csv", HEADER, *ROWS)
         self.assertRefused(pendulum_feature_space.main, [path, "--model", "no.ddm"], "no.ddm")
 
 

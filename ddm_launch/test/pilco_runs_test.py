@@ -16,7 +16,7 @@ import synthetic_run  # noqa: E402
 class PilcoRunsTest(figure_case.FigureCase):
     def setUp(self):
         super().setUp()
-        self.run_folder = os.path.join(self.folder, "seed_0007")
+        self.run_folder = self.file("seed_0007")
         synthetic_run.write_pilco_run(self.run_folder, seed=7)
 
     def path(self, *names):
@@ -42,9 +42,7 @@ class PilcoRunsTest(figure_case.FigureCase):
                           "message": "line searches used up"})
 
     def test_a_run_that_is_not_pilcos_is_named(self):
-        path = self.path("trial_001", "pilco.yaml")
-        with open(path, "w") as stream:
-            stream.write("gp_s: 1\npolicy_search_s: 2\n")
+        path = self.write(self.path("trial_001", "pilco.yaml"), "gp_s: 1\npolicy_search_s: 2\n")
         with self.assertRaisesRegex(RunFolderError, "trial_001/pilco.yaml has no sparse, points, .*PILCO"):
             pilco_runs.search_rows({7: self.run_folder})
         os.remove(path)

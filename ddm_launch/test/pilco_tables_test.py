@@ -3,14 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import sys
-import tempfile
-import unittest
 
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from ddm_launch import pilco_tables, success_rate  # noqa: E402
 from ddm_launch.run_folder import RunFolderError  # noqa: E402
+from scratch_case import ScratchCase  # noqa: E402
 import synthetic_run  # noqa: E402
 
 FIRST = "PILCO, state: successes of policy 1"
@@ -18,16 +17,15 @@ LATER = "PILCO, state: successes of policy 2 to 6"
 TIME = "PILCO, state: time to policy 10, largest of 12 seeds"
 
 
-class PilcoTablesTest(unittest.TestCase):
+class PilcoTablesTest(ScratchCase):
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = scratch.name
-        self.write("pilco_state")
+        super().setUp()
+        self.writeResults("pilco_state")
 
-    def write(self, name, seeds=12, trials=12, success=lambda seed, trial: True, train_s=lambda seed, trial: 60.0):
+    def writeResults(self, name, seeds=12, trials=12, success=lambda seed, trial: True,
+                     train_s=lambda seed, trial: 60.0):
         """Results of one method. The Gaussian process takes a quarter of the training."""
-        folder = os.path.join(self.folder, name)
+        folder = self.file(name)
         os.makedirs(folder, exist_ok=True)
         with open(os.path.join(folder, "trials.csv"), "w") as table, \
                 open(os.path.join(folder, "policy_search.csv"), "w") as searches:
@@ -40,16 +38,16 @@ class PilcoTablesTest(unittest.TestCase):
                     searches.write("%d,%d,%d,%g,%g\n" % (seed, k, 125 * (k + 1), 0.25 * seconds, 0.75 * seconds))
 
     def success(self, *names):
-        return {(row[0], row[1]): row[2:] for row in pilco_tables.success_rows(self.folder, names or ["pilco_state"])}
+        return {(row[0], row[1]): row[2:] for row in pilco_tables.success_rows(self.scratch, names or ["pilco_state"])}
 
     def times(self, name):
-        return {(row[0], row[1]): row[2:5] for row in pilco_tables.time_rows(self.folder, [name])}
+        return {(row[0], row[1]): row[2:5] for row in pilco_tables.time_rows(self.scratch, [name])}
 
     def agreement(self, *names):
-        return {row[0]: row[1:] for row in pilco_tables.agreement_rows(self.folder, names or ["pilco_state"])}
+        return {row[0]: row[1:] for row in pilco_tables.agreement_rows(self.scratch, names or ["pilco_state"])}
 
     def test_each_policy_is_counted_over_the_seeds_and_beside_the_authors(self):
-        self.write("pilco_state", success=lambda seed, trial: seed >= trial)
+        self.writeResults("pilco_state", success=lambda seed, trial: seed >= trial)
         rows = self.success()
         self.assertEqual(rows["pilco_state", "1"], ("125", 12, 12, 11, 12))
         self.assertEqual(rows["pilco_state", "4"], ("500", 9, 12, 12, 12))
@@ -58,21 +56,21 @@ class PilcoTablesTest(unittest.TestCase):
         self.assertEqual(len(rows), 13)
 
     def test_methods_that_do_not_see_the_state_stand_without_the_authors_runs(self):
-        self.write("pilco_features", seeds=5, trials=16, success=lambda seed, trial: trial == 15)
-        self.write("pilco_pca", seeds=1, trials=5)
+        self.writeResults("pilco_features", seeds=5, trials=16, success=lambda seed, trial: trial == 15)
+        self.writeResults("pilco_pca", seeds=1, trials=5)
         rows = self.success("pilco_features", "pilco_pca")
         self.assertEqual(rows["pilco_features", "16"], ("2000", 5, 5, "", ""))
         self.assertEqual(rows["pilco_pca", "5"], ("625", 1, 1, "", ""))
         self.assertNotIn(("pilco_pca", "2 to 6"), rows)  # it has five
 
     def test_more_policies_than_the_authors_had_stand_alone(self):
-        self.write("pilco_state", trials=17)
+        self.writeResults("pilco_state", trials=17)
         rows = self.success()
         self.assertEqual([rows["pilco_state", policy][3:] for policy in ("15", "16", "17")],
                          [(9, 12), (10, 12), ("", "")])
 
     def test_times_are_median_and_largest_over_the_seeds(self):
-        self.write("pilco_state", train_s=lambda seed, trial: (seed + 1.0) * (trial + 1.0))
+        self.writeResults("pilco_state", train_s=lambda seed, trial: (seed + 1.0) * (trial + 1.0))
         rows = self.times("pilco_state")
         self.assertEqual(rows["PILCO, state: training", 125], (6.5, 12.0, "s"))
         self.assertEqual(rows["PILCO, state: training", 1250], (65.0, 120.0, "s"))
@@ -86,30 +84,30 @@ class PilcoTablesTest(unittest.TestCase):
         self.assertEqual(rows["PILCO on the state, policies 2 to 10 of the authors", 1250], (3.75, 10.5, "h"))
 
     def test_fewer_than_ten_policies_are_added_up_as_they_are(self):
-        self.write("pilco_pca", seeds=1, trials=6, train_s=lambda seed, trial: 600.0 + trial)
+        self.writeResults("pilco_pca", seeds=1, trials=6, train_s=lambda seed, trial: 600.0 + trial)
         rows = self.times("pilco_pca")
         self.assertEqual(rows["PILCO, PCA: training of the first 6 policies", 750], (3615 / 60.0, 3615 / 60.0, "min"))
         self.assertEqual(rows["PILCO, PCA: training", 750], (605.0, 605.0, "s"))
 
     def test_a_seed_that_lacks_a_trial_is_named(self):
-        path = os.path.join(self.folder, "pilco_state", "trials.csv")
+        path = self.file("pilco_state", "trials.csv")
         with open(path) as stream:
             lines = [line for line in stream if not line.startswith("3,11,")]
         with open(path, "w") as stream:
             stream.writelines(lines)
         with self.assertRaisesRegex(RunFolderError, "pilco_state/trials.csv: seed 3 must have the trials 0 to 11"):
-            pilco_tables.time_rows(self.folder, ["pilco_state"])
+            pilco_tables.time_rows(self.scratch, ["pilco_state"])
 
     def test_ten_of_twelve_first_policies_are_enough(self):
         for failures, holds in ((2, True), (3, False)):
-            self.write("pilco_state", success=lambda seed, trial: trial > 0 or seed >= failures)
+            self.writeResults("pilco_state", success=lambda seed, trial: trial > 0 or seed >= failures)
             here = "%d of 12" % (12 - failures)
             self.assertEqual(self.agreement()[FIRST], (">= 10 of 12 (authors: 11)", here, holds))
             self.assertTrue(self.agreement()[LATER][2])
 
     def test_fifty_seven_of_sixty_later_policies_are_enough(self):
         for failures, holds in ((3, True), (4, False)):  # the seventh policy does not count
-            self.write("pilco_state", success=lambda seed, trial: trial in (0, 1, 2, 3, 4) or seed >= failures)
+            self.writeResults("pilco_state", success=lambda seed, trial: trial in (0, 1, 2, 3, 4) or seed >= failures)
             here = "%d of 60" % (60 - failures)
             self.assertEqual(self.agreement()[LATER], (">= 57 of 60 (authors: 60)", here, holds))
             self.assertTrue(self.agreement()[FIRST][2])
@@ -117,21 +115,21 @@ class PilcoTablesTest(unittest.TestCase):
     def test_the_slowest_seed_must_reach_the_tenth_policy_in_half_an_hour(self):
         # The eleventh and twelfth policy do not count.
         for slowest_s, text, holds in ((179.9, "30.0 min", True), (182.0, "30.3 min", False)):
-            self.write("pilco_state", train_s=lambda seed, trial: 60.0 if seed else slowest_s)
+            self.writeResults("pilco_state", train_s=lambda seed, trial: 60.0 if seed else slowest_s)
             self.assertEqual(self.agreement()[TIME], ("< 30 min (authors: 3 to 10 h)", text + " (median 10.0)", holds))
 
     def test_fewer_seeds_or_policies_than_the_bars_name_have_no_verdict(self):
-        self.write("pilco_state", seeds=11, trials=12)
+        self.writeResults("pilco_state", seeds=11, trials=12)
         self.assertEqual({row[2] for row in self.agreement().values()}, {None})
-        self.write("pilco_state", seeds=12, trials=3)
+        self.writeResults("pilco_state", seeds=12, trials=3)
         rows = self.agreement()
         self.assertEqual(rows[FIRST][2], True)
         self.assertEqual(rows[LATER][1:], ("24 of 24", None))
         self.assertEqual(rows["PILCO, state: time to policy 3, largest of 12 seeds"][2], None)
 
     def test_what_has_no_bar_is_reported_without_a_verdict(self):
-        self.write("pilco_state_sparse")
-        self.write("pilco_features", seeds=5, trials=16, success=lambda seed, trial: (seed, trial) == (1, 15))
+        self.writeResults("pilco_state_sparse")
+        self.writeResults("pilco_features", seeds=5, trials=16, success=lambda seed, trial: (seed, trial) == (1, 15))
         rows = self.agreement("pilco_state", "pilco_state_sparse", "pilco_features")
         self.assertEqual(rows["PILCO, features: successes of all policies"], ("reported (paper: 0)", "1 of 80", None))
         self.assertEqual(rows["PILCO, state, sparse GP: successes of all policies"], ("reported", "144 of 144", None))
@@ -141,7 +139,7 @@ class PilcoTablesTest(unittest.TestCase):
 
     def test_without_pilco_there_are_no_rows(self):
         for rows in (pilco_tables.success_rows, pilco_tables.time_rows, pilco_tables.agreement_rows):
-            self.assertEqual(rows(os.path.join(self.folder, "nowhere"), []), [])
+            self.assertEqual(rows(self.file("nowhere"), []), [])
 
     def test_names_are_those_that_the_figure_of_success_rates_knows(self):
         names = {row[0] for row in success_rate.METHODS}

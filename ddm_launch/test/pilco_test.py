@@ -4,33 +4,18 @@
 import os
 import signal
 import sys
-import tempfile
-import unittest
 
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import Process, find_program, run_experiment  # noqa: E402
 from run_files import differences, files_in, read_rows  # noqa: E402
+from scratch_case import ScratchCase  # noqa: E402
 
 
-class PilcoTest(unittest.TestCase):
-    maxDiff = None
-
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.scratch = scratch.name
-        self.out = os.path.join(scratch.name, "run")
-
+class PilcoTest(ScratchCase):
     def debug(self, trials, out=None):
         return ["--preset", "debug", "--seed", 1, "--trials", trials, "--out", out or self.out]
-
-    def write(self, name, text):
-        path = os.path.join(self.scratch, name)
-        with open(path, "w") as stream:
-            stream.write(text)
-        return path
 
     def assertRuns(self, *arguments):
         code, output = run_experiment(*arguments)
@@ -68,7 +53,7 @@ class PilcoTest(unittest.TestCase):
         process.waitForEnd(10.0)
         self.assertNotIn("summary.yaml", files_in(self.out))
         self.assertRuns(*arguments)
-        uninterrupted = os.path.join(self.scratch, "uninterrupted")
+        uninterrupted = self.file("uninterrupted")
         self.assertRuns("--method", "pilco_state", *self.debug(trials, out=uninterrupted))
         self.assertEqual(differences(uninterrupted, self.out, names), [])
         rows = read_rows(self.out, "trials.csv")
@@ -77,7 +62,7 @@ class PilcoTest(unittest.TestCase):
 
     def test_a_saved_configuration_of_a_baseline_can_be_given_again(self):
         self.assertRuns("--method", "pilco_state", *self.debug(trials=0))
-        again = os.path.join(self.scratch, "again")
+        again = self.file("again")
         self.assertRuns("--config", os.path.join(self.out, "config.yaml"), "--seed", 1, "--trials", 0, "--out", again)
         names = ["trial_000/prediction.csv", "evaluation_000/torques.csv"]
         self.assertEqual(differences(self.out, again, names), [])

@@ -4,16 +4,14 @@
 import csv
 import math
 import os
-import shutil
 import sys
-import tempfile
-import unittest
 
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import call, find_program, run_experiment  # noqa: E402
 from run_files import files_in, read_bytes, read_rows, read_yaml  # noqa: E402
+from scratch_case import SharedScratchCase  # noqa: E402
 
 FILES = [".lock", "config.yaml", "features.csv", "model.ddm", "predictions.csv", "strip.csv", "summary.yaml"]
 QUICK = "training: {max_iterations: 20, num_starts: 1}\nprediction: {training_frames: 60, held_out_frames: 30}\n"
@@ -24,29 +22,20 @@ def read_dicts(*path):
         return list(csv.DictReader(stream))
 
 
-class PredictionExperimentTest(unittest.TestCase):
-    maxDiff = None
-
+class PredictionExperimentTest(SharedScratchCase):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.mkdtemp()
-        cls.quick = os.path.join(cls.scratch, "quick.yaml")
+        super().setUpClass()
+        cls.quick = os.path.join(cls.class_scratch, "quick.yaml")
         with open(cls.quick, "w") as stream:
             stream.write(QUICK)
-        cls.reference = os.path.join(cls.scratch, "reference")
+        cls.reference = os.path.join(cls.class_scratch, "reference")
         cls.code, cls.output = cls.predict("--out", cls.reference)
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.scratch)
 
     @classmethod
     def predict(cls, *arguments, plant="moving_tile", seed=3):
         return call([find_program("ddm_launch", "prediction_experiment"), "--preset", "debug", "--plant", plant,
                      "--seed", seed, "--config", cls.quick] + list(arguments))
-
-    def folder(self, name):
-        return os.path.join(self.scratch, name)
 
     def test_leaves_these_files_and_says_how_it_went(self):
         self.assertEqual(self.code, 0, self.output)
@@ -88,7 +77,7 @@ class PredictionExperimentTest(unittest.TestCase):
         self.assertNotEqual((strip[8]["z_1"], strip[8]["z_2"]), (last["z_1"], last["z_2"]))  # predicted, not seen
 
     def test_same_seed_same_bytes_and_another_seed_other_frames(self):
-        again, other = self.folder("again"), self.folder("other")
+        again, other = self.file("again"), self.file("other")
         self.assertEqual(self.predict("--out", again)[0], 0)
         self.assertEqual(self.predict("--out", other, seed=4)[0], 0)
         for name in ("features.csv", "model.ddm", "strip.csv"):
@@ -96,36 +85,31 @@ class PredictionExperimentTest(unittest.TestCase):
             self.assertNotEqual(read_bytes(other, name), read_bytes(self.reference, name), name)
 
     def test_schedules_see_the_same_frames_and_learn_other_models(self):
-        config = self.folder("sequential.yaml")
-        with open(config, "w") as stream:
-            stream.write("training: {schedule: sequential}\n")
-        out = self.folder("sequential")
-        code, output = self.predict("--config", config, "--out", out)
+        config = self.write("sequential.yaml", "training: {schedule: sequential}\n")
+        code, output = self.predict("--config", config, "--out", self.out)
         self.assertEqual(code, 0, output)
 
         def states(folder):
             return [row[:4] for row in read_rows(folder, "features.csv")]
 
-        self.assertEqual(states(out), states(self.reference))
-        self.assertNotEqual(read_bytes(out, "model.ddm"), read_bytes(self.reference, "model.ddm"))
-        self.assertEqual(read_yaml(out, "summary.yaml")["schedule"], "sequential")
+        self.assertEqual(states(self.out), states(self.reference))
+        self.assertNotEqual(read_bytes(self.out, "model.ddm"), read_bytes(self.reference, "model.ddm"))
+        self.assertEqual(read_yaml(self.out, "summary.yaml")["schedule"], "sequential")
 
     def test_predicts_the_pendulum_too(self):
-        out = self.folder("pendulum")
-        code, output = self.predict("--out", out, plant="pendulum")
+        code, output = self.predict("--out", self.out, plant="pendulum")
         self.assertEqual(code, 0, output)
-        self.assertEqual(read_rows(out, "features.csv")[0],
+        self.assertEqual(read_rows(self.out, "features.csv")[0],
                          ["frame", "set", "angle_rad", "rate_rad_per_s", "z_1", "z_2"])
 
     def test_takes_nuisances_but_no_lost_frames(self):
-        out = self.folder("noise")
-        code, output = self.predict("--nuisance", "noise", "--out", out)
+        code, output = self.predict("--nuisance", "noise", "--out", self.out)
         self.assertEqual(code, 0, output)
-        self.assertEqual(read_yaml(out, "config.yaml")["camera"]["noise_std"], 0.1)
-        self.assertEqual([row[:4] for row in read_rows(out, "features.csv")],  # the same states, seen otherwise
+        self.assertEqual(read_yaml(self.out, "config.yaml")["camera"]["noise_std"], 0.1)
+        self.assertEqual([row[:4] for row in read_rows(self.out, "features.csv")],  # the same states, seen otherwise
                          [row[:4] for row in read_rows(self.reference, "features.csv")])
-        self.assertNotEqual(read_bytes(out, "model.ddm"), read_bytes(self.reference, "model.ddm"))
-        code, output = self.predict("--nuisance", "drops", "--out", self.folder("drops"))
+        self.assertNotEqual(read_bytes(self.out, "model.ddm"), read_bytes(self.reference, "model.ddm"))
+        code, output = self.predict("--nuisance", "drops", "--out", self.file("drops"))
         self.assertEqual(code, 2)
         self.assertIn("camera/drop_rate must be 0", output)
         self.assertIn("got 0.05", output)
@@ -143,42 +127,35 @@ class PredictionExperimentTest(unittest.TestCase):
             self.assertEqual(code, 2, output)
             for word in words:
                 self.assertIn(word, output)
-        config = self.folder("wrong.yaml")
-        with open(config, "w") as stream:
-            stream.write("prediction: {held_out_frames: 0, max_stps: 3}\ntraining: {schedule: both}\n")
-        code, output = self.predict("--config", config, "--out", self.folder("wrong"))
+        config = self.write("wrong.yaml", "prediction: {held_out_frames: 0, max_stps: 3}\ntraining: {schedule: both}\n")
+        code, output = self.predict("--config", config, "--out", self.out)
         self.assertEqual(code, 2)
         for word in ("prediction/held_out_frames", "max_stps", "did you mean max_steps", "training/schedule",
                      "got both"):
             self.assertIn(word, output)
-        with open(config, "w") as stream:
-            stream.write("prediction: {held_out_frames: 9, training_frames: 10}\nexperiment: {method: oracle}\n")
-        code, output = self.predict("--config", config, "--out", self.folder("wrong"))
+        self.write("wrong.yaml",
+                   "prediction: {held_out_frames: 9, training_frames: 10}\nexperiment: {method: oracle}\n")
+        code, output = self.predict("--config", config, "--out", self.out)
         self.assertEqual(code, 2)
         for word in ("at least prediction/max_steps + model/order = 10, got 9", "prediction/training_frames", "got 10",
                      "experiment/method must be ddm, got oracle"):
             self.assertIn(word, output)
-        self.assertFalse(os.path.exists(self.folder("wrong")))
+        self.assertFalse(os.path.exists(self.out))
 
     def test_the_fewest_frames_that_can_be_predicted_are_predicted(self):
-        config, out = self.folder("few.yaml"), self.folder("few")
-        with open(config, "w") as stream:
-            stream.write("prediction: {held_out_frames: 10, training_frames: 11}\n")
-        code, output = self.predict("--config", config, "--out", out)
+        config = self.write("few.yaml", "prediction: {held_out_frames: 10, training_frames: 11}\n")
+        code, output = self.predict("--config", config, "--out", self.out)
         self.assertEqual(code, 0, output)
-        self.assertEqual({row["num_predictions"] for row in read_dicts(out, "predictions.csv")}, {"1"})
+        self.assertEqual({row["num_predictions"] for row in read_dicts(self.out, "predictions.csv")}, {"1"})
 
     def test_images_of_another_size_than_the_cameras_are_learned_from(self):
-        config, out = self.folder("small.yaml"), self.folder("small")
-        with open(config, "w") as stream:
-            stream.write("image: {size: 25}\n")
-        code, output = self.predict("--config", config, "--out", out)
+        code, output = self.predict("--config", self.write("small.yaml", "image: {size: 25}\n"), "--out", self.out)
         self.assertEqual(code, 0, output)
-        self.assertLess(os.path.getsize(os.path.join(out, "model.ddm")),
+        self.assertLess(os.path.getsize(os.path.join(self.out, "model.ddm")),
                         0.5 * os.path.getsize(os.path.join(self.reference, "model.ddm")))
 
     def test_feature_space_tells_experience_current_goal_and_plan(self):
-        run, out = self.folder("run"), self.folder("feature_space.csv")
+        run, out = self.file("run"), self.file("feature_space.csv")
         code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 1, "--out", run)
         self.assertEqual(code, 0, output)
         program = find_program("ddm_launch", "feature_space")
@@ -208,13 +185,13 @@ class PredictionExperimentTest(unittest.TestCase):
         self.assertIn("--step", output)
 
     def test_feature_space_sees_what_the_camera_of_the_run_saw(self):
-        config, run = self.folder("nuisances.yaml"), self.folder("nuisances")
-        with open(config, "w") as stream:
-            stream.write("camera: {noise_std: 0.1, brightness_drift: 0.2, clutter: 0.6, delay: 1, drop_rate: 0.2}\n")
+        run = self.file("run")
+        config = self.write("nuisances.yaml", "camera: {noise_std: 0.1, brightness_drift: 0.2, clutter: 0.6, delay: 1, "
+                                              "drop_rate: 0.2}\n")
         code, output = run_experiment("--preset", "debug", "--trials", 0, "--config", config, "--out", run)
         self.assertEqual(code, 0, output)
         code, output = call([find_program("ddm_launch", "feature_space"), run, "--trial", 0, "--step", 29,
-                             "--out", self.folder("nuisances.csv")])
+                             "--out", self.out])
         self.assertEqual(code, 0, output)  # each torque up to there was the recorded one
 
 

@@ -18,7 +18,7 @@ import synthetic_run  # noqa: E402
 
 class PredictionStripTest(figure_case.FigureCase):
     def writeStrip(self, *lines):
-        return self.write("strip.csv", "steps,angle_rad,rate_rad_per_s,z_1,z_2", *lines)
+        return self.writeLines("strip.csv", "steps,angle_rad,rate_rad_per_s,z_1,z_2", *lines)
 
     def writeWholeStrip(self):
         return self.writeStrip(*("%d,%d,0,0.%d,-0.5" % (k, 10 * k, k) for k in range(9)))
@@ -27,7 +27,7 @@ class PredictionStripTest(figure_case.FigureCase):
         self.writeWholeStrip()
         decoder = figure_case.GreyDecoder("")
         with new_figure(PAGE_WIDTH, 2.0) as figure:
-            prediction_strip.draw_strip(figure, prediction_strip.Strip(self.folder), figure_case.GreyCamera(""),
+            prediction_strip.draw_strip(figure, prediction_strip.Strip(self.scratch), figure_case.GreyCamera(""),
                                         decoder)
             self.assertEqual(len(figure.axes), 18)
             shown = [axes.images[0].get_array()[0, 0] for axes in figure.axes]
@@ -42,21 +42,21 @@ class PredictionStripTest(figure_case.FigureCase):
 
     def test_the_images_of_simulator_and_model_make_a_picture(self):
         self.writeWholeStrip()
-        run = os.path.join(self.folder, "run")
-        shutil.copy(figure_case.make_run(run), os.path.join(self.folder, "model.ddm"))
-        shutil.copy(os.path.join(run, "config.yaml"), self.folder)
-        self.assertDrawn(prediction_strip.main, [self.folder], PAGE_WIDTH)
+        run = self.file("run")
+        shutil.copy(figure_case.make_run(run), self.file("model.ddm"))
+        shutil.copy(os.path.join(run, "config.yaml"), self.scratch)
+        self.assertDrawn(prediction_strip.main, [self.scratch], PAGE_WIDTH)
 
     def test_a_model_decodes_each_feature_of_a_list_in_order(self):
-        decoder = Decoder(figure_case.make_run(os.path.join(self.folder, "run")))
+        decoder = Decoder(figure_case.make_run(self.file("run")))
         images = decoder.decode([(-1.0, 0.5), (1.0, -0.5), (1.0, -0.5)])
         self.assertEqual([image.size for image in images], [(51, 51)] * 3)
         self.assertEqual(images[1].tobytes(), images[2].tobytes())
         self.assertNotEqual(images[0].tobytes(), images[1].tobytes())
 
     def test_the_camera_sees_the_tile_where_it_is(self):
-        synthetic_run.write_config(self.folder, plant="moving_tile")
-        camera = Camera(self.folder)
+        synthetic_run.write_config(self.scratch, plant="moving_tile")
+        camera = Camera(self.scratch)
         left, right = camera.shoot(12.0, 20.0), camera.shoot(38.0, 20.0)
         for image, x in ((left, 12), (right, 38)):
             box = image.point(lambda grey: 255 if grey > 127 else 0).getbbox()
@@ -64,26 +64,26 @@ class PredictionStripTest(figure_case.FigureCase):
 
     def test_a_model_that_is_none_is_named_in_the_programs_words(self):
         self.writeWholeStrip()
-        synthetic_run.write_config(self.folder)
-        self.assertRefused(prediction_strip.main, [self.folder], "decode_features", "model.ddm")
+        synthetic_run.write_config(self.scratch)
+        self.assertRefused(prediction_strip.main, [self.scratch], "decode_features", "model.ddm")
 
     def test_a_folder_without_strip_is_named_with_the_remedy(self):
-        self.assertRefused(prediction_strip.main, [self.folder], os.path.join(self.folder, "strip.csv"),
+        self.assertRefused(prediction_strip.main, [self.scratch], self.file("strip.csv"),
                            "prediction_experiment")
 
     def test_a_strip_without_true_state_or_features_is_refused(self):
-        self.write("strip.csv", "steps,z_1,z_2", "0,1,1")
+        self.writeLines("strip.csv", "steps,z_1,z_2", "0,1,1")
         with self.assertRaisesRegex(RunFolderError, "no column of the true state"):
-            prediction_strip.Strip(self.folder)
-        self.write("strip.csv", "steps,angle_rad", "0,1")
+            prediction_strip.Strip(self.scratch)
+        self.writeLines("strip.csv", "steps,angle_rad", "0,1")
         with self.assertRaisesRegex(RunFolderError, "no column z_1"):
-            prediction_strip.Strip(self.folder)
+            prediction_strip.Strip(self.scratch)
 
     def test_a_cell_that_is_no_number_is_named(self):
         for word in ("", "nan", "inf", "one"):
             self.writeStrip("0,0,0,0,%s" % word)
             with self.assertRaisesRegex(RunFolderError, "column z_2 must hold numbers, got '%s'" % word):
-                prediction_strip.Strip(self.folder)
+                prediction_strip.Strip(self.scratch)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 # Runs the programs of a workspace as a user would; every wait has a limit.
 # SPDX-License-Identifier: BSD-3-Clause
-import os
+import contextlib
+import io
 
 import roslib.packages
 
@@ -22,24 +23,18 @@ def call(command, limit_s=60.0, **kwargs):
     return process.waitForEnd(limit_s), process.output
 
 
+def call_main(main, *arguments):
+    """Calls the main function of a program in this process. Returns (exit code, output)."""
+    with io.StringIO() as output, contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
+        try:
+            code = main(*arguments)
+        except SystemExit as stop:
+            code = stop.code
+        return code, output.getvalue()
+
+
 def run_experiment(*arguments, limit_s=60.0, **kwargs):
     return call([find_program("ddm_launch", "run_experiment")] + list(arguments), limit_s, **kwargs)
-
-
-def run_both_drivers(scratch, seed, trials, arguments, config=None):
-    """One experiment by the nodes and by run_experiment: preset, plant or nuisance by name in `arguments`, and the
-    text of a further file. Returns their folders and their outputs, the nodes' first."""
-    arguments = dict(arguments, seed=seed, trials=trials)
-    if config:
-        arguments["config"] = os.path.join(scratch, "config.yaml")
-        with open(arguments["config"], "w") as stream:
-            stream.write(config)
-    nodes, process = os.path.join(scratch, "nodes"), os.path.join(scratch, "process")
-    _, nodes_output = roslaunch(scratch, "experiment.launch", "runs:=" + nodes,
-                                *["%s:=%s" % item for item in arguments.items()])
-    _, process_output = run_experiment("--out", process,
-                                       *[word for key, value in arguments.items() for word in ("--" + key, value)])
-    return (nodes, process), (nodes_output, process_output)
 
 
 def roslaunch(log_folder, *arguments, limit_s=60.0, **kwargs):

@@ -2,11 +2,8 @@
 # record.launch, train_from_bags and control.launch: from bags to a model that drives, without an experiment.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import shutil
 import signal
 import sys
-import tempfile
-import unittest
 
 import rosbag
 import rosunit
@@ -14,6 +11,7 @@ import rosunit
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import Process, call, find_program, roslaunch, run_experiment  # noqa: E402
 from run_files import files_in, read_bag, read_rows  # noqa: E402
+from scratch_case import SharedScratchCase  # noqa: E402
 
 DEBUG = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "config", "presets", "debug.yaml")
 STEPS = 30
@@ -24,13 +22,11 @@ def train(out, *bags):
     return call([find_program("ddm_model", "train_from_bags"), "--config", DEBUG, "--out", out] + list(bags))
 
 
-class RecordAndControlTest(unittest.TestCase):
-    maxDiff = None
-
+class RecordAndControlTest(SharedScratchCase):
     @classmethod
     def setUpClass(cls):
         """One random bag, recorded by trial_recorder and by plain `rosbag record` at once, and its model."""
-        cls.class_scratch = tempfile.mkdtemp()
+        super().setUpClass()
         cls.bag, cls.plain, cls.model = (os.path.join(cls.class_scratch, name)
                                          for name in ("random.bag", "plain.bag", "model.ddm"))
         # On the master of this test, which is there before the launch: so nothing is missed.
@@ -45,18 +41,6 @@ class RecordAndControlTest(unittest.TestCase):
         finally:
             recorder.stop()
         cls.trained = train(cls.model, cls.bag)
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.class_scratch)
-
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.scratch = scratch.name
-
-    def file(self, name):
-        return os.path.join(self.scratch, name)
 
     def assertIsTrial(self, bag):
         stamps = read_bag(bag)

@@ -2,11 +2,8 @@
 # replay.launch: a bag goes through mpc_node, and no motor can move.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import shutil
 import sys
-import tempfile
 import threading
-import unittest
 
 from ddm_msgs.msg import Torque
 import rosgraph
@@ -17,19 +14,18 @@ from std_msgs.msg import Float64
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import call, find_program, run_experiment, start_roslaunch  # noqa: E402
 from run_files import read_rows  # noqa: E402
+from scratch_case import SharedScratchCase  # noqa: E402
 
 DEBUG = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "config", "presets", "debug.yaml")
 STEPS = 30
 
 
-class ReplayTest(unittest.TestCase):
-    maxDiff = None
-
+class ReplayTest(SharedScratchCase):
     @classmethod
     def setUpClass(cls):
         """A trial of an experiment and its model; ears on every topic on which a motor might listen."""
-        cls.scratch = tempfile.mkdtemp()
-        run = os.path.join(cls.scratch, "run")
+        super().setUpClass()
+        run = os.path.join(cls.class_scratch, "run")
         code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 0, "--out", run)
         assert code == 0, output
         cls.bag, cls.model = (os.path.join(run, "trial_000", name) for name in ("trial.bag", "model.ddm"))
@@ -38,10 +34,6 @@ class ReplayTest(unittest.TestCase):
         for topic, kind in (("torque", Torque), ("effort_command", Float64), ("replay/torque", Torque),
                             ("replay/proposed_torque", Torque)):
             rospy.Subscriber(topic, kind, cls.hear, topic)
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.scratch)
 
     @classmethod
     def hear(cls, message, topic):
@@ -59,7 +51,7 @@ class ReplayTest(unittest.TestCase):
         return launch.output, publishers
 
     def test_proposals_come_for_each_frame_and_nothing_where_motors_listen(self):
-        out = os.path.join(self.scratch, "torques.csv")
+        out = self.file("torques.csv")
         output, publishers = self.replay("bag:=" + self.bag, "model:=" + self.model, "out:=" + out, "rate:=20")
         self.assertIn("%d frames replayed" % STEPS, output)
         self.assertIn("/mpc_node", publishers["/replay/proposed_torque"])
@@ -93,17 +85,11 @@ class ReplayTest(unittest.TestCase):
 
     def test_a_bag_of_another_robot_is_refused(self):
         code, output = call([find_program("ddm_model", "train_from_bags"), "--config", DEBUG, "--config",
-                             self.write("small.yaml", "image: {size: 20}\n"), "--out", self.scratch + "/small.ddm",
+                             self.write("small.yaml", "image: {size: 20}\n"), "--out", self.file("small.ddm"),
                              self.bag])
         self.assertEqual(code, 0, output)
-        output, _ = self.replay("bag:=" + self.bag, "model:=" + self.scratch + "/small.ddm")
+        output, _ = self.replay("bag:=" + self.bag, "model:=" + self.file("small.ddm"))
         self.assertRegex(output, r"(?s)FATAL.*image/size 51")
-
-    def write(self, name, text):
-        path = os.path.join(self.scratch, name)
-        with open(path, "w") as stream:
-            stream.write(text)
-        return path
 
 
 if __name__ == "__main__":

@@ -3,8 +3,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import sys
-import tempfile
-import unittest
 
 import rosunit
 
@@ -12,14 +10,10 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from ddm_launch.reproduce_efficient import VARIANTS, yaml_names  # noqa: E402
 from processes import call, find_program, run_experiment  # noqa: E402
 from run_files import COLUMNS, read_rows, read_yaml  # noqa: E402
+from scratch_case import ScratchCase  # noqa: E402
 
 
-class ReproduceEfficientTest(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.out = os.path.join(scratch.name, "results")
-
+class ReproduceEfficientTest(ScratchCase):
     def assertAccepts(self, *arguments):
         code, output = run_experiment(*arguments, "--out", os.devnull)
         self.assertEqual(code, 1, "%s: %s" % (arguments, output))  # 2: it refuses its options

@@ -4,14 +4,13 @@
 import os
 import signal
 import sys
-import tempfile
-import unittest
 
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import Process, call, find_program  # noqa: E402
 from run_files import COLUMNS, read_bytes, read_rows, read_yaml  # noqa: E402
+from scratch_case import ScratchCase  # noqa: E402
 
 FIGURES = ["angle_trajectories", "feature_plane", "pendulum_feature_space", "prediction_strip", "schedules_compared",
            "success_rate", "trajectory_distributions"]
@@ -26,17 +25,12 @@ def png_size(path):
     return int.from_bytes(head[16:20], "big"), int.from_bytes(head[20:24], "big")
 
 
-class ReproducePaperTest(unittest.TestCase):
-    maxDiff = None
-
+class ReproducePaperTest(ScratchCase):
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.out = os.path.join(scratch.name, "results")
-        self.small = os.path.join(scratch.name, "small.yaml")  # PILCO's time grows with the cube of the frames
-        with open(self.small, "w") as stream:
-            stream.write("trial: {num_steps: 30}\ngp: {max_iterations: 5}\n"
-                         "sparse_gp: {max_points: 50, first_iterations: 2, max_iterations: 2}\n")
+        super().setUp()
+        # PILCO's time grows with the cube of the frames
+        self.small = self.write("small.yaml", "trial: {num_steps: 30}\ngp: {max_iterations: 5}\n"
+                                "sparse_gp: {max_points: 50, first_iterations: 2, max_iterations: 2}\n")
 
     def path(self, *names):
         return os.path.join(self.out, *names)

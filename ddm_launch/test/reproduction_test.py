@@ -4,25 +4,19 @@
 import argparse
 import os
 import sys
-import tempfile
-import unittest
 
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from ddm_launch import reproduce_paper  # noqa: E402
 from run_files import read_bytes, read_rows  # noqa: E402
+from scratch_case import ScratchCase  # noqa: E402
 import synthetic_run  # noqa: E402
 
 PILCO = ["pilco_state", "pilco_state_sparse", "pilco_features", "pilco_pca"]
 
 
-class ReproductionTest(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.out = scratch.name
-
+class ReproductionTest(ScratchCase):
     def reproduction(self, seeds=50, without_pilco=False, config=()):
         return reproduce_paper.Reproduction(argparse.Namespace(out=self.out, preset="paper", seeds=seeds, jobs=None,
                                                                without_pilco=without_pilco, config=list(config)))

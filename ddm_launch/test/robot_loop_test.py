@@ -3,9 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import sys
-import tempfile
 import time
-import unittest
 
 import rosbag
 import rospy
@@ -15,23 +13,16 @@ from std_srvs.srv import SetBool
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import roslaunch, start_roslaunch  # noqa: E402
 from run_files import expected_files, files_in, read_bag, read_rows, read_yaml  # noqa: E402
+from scratch_case import ScratchCase  # noqa: E402
 
 STEPS = 30
 LIMIT_S = 120.0
 
 
-class RobotLoopTest(unittest.TestCase):
-    maxDiff = None
-
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.scratch = scratch.name
-        self.runs = os.path.join(scratch.name, "run")
-
+class RobotLoopTest(ScratchCase):
     def assertPaired(self, trial, dt):
         """Each torque of a trial answers an image, and they are as far apart as they should be."""
-        stamps = read_bag(os.path.join(self.runs, "trial_%03d" % trial, "trial.bag"))
+        stamps = read_bag(os.path.join(self.out, "trial_%03d" % trial, "trial.bag"))
         self.assertEqual(len(stamps["torque"]), STEPS)
         self.assertTrue(set(stamps["torque"]) <= set(stamps["camera/image_raw"]))
         self.assertEqual(len(stamps["goal_image"]), 1)
@@ -41,7 +32,7 @@ class RobotLoopTest(unittest.TestCase):
 
     def test_an_experiment_on_a_robot_is_stopped_and_resumed(self):
         arguments = ["robot_check.launch", "preset:=debug", "trials:=0", "dt:=0.2", "load:=false",
-                     "runs:=" + self.runs]
+                     "runs:=" + self.out]
         launch = start_roslaunch(self.scratch, *arguments, port=0)  # on the master of this test
         self.addCleanup(launch.stop)
         launch.waitForText("the motors follow the controller", LIMIT_S)
@@ -49,45 +40,43 @@ class RobotLoopTest(unittest.TestCase):
         launch.waitForEnd(LIMIT_S)
         self.assertIn("the motors were stopped in a trial: it is cancelled", launch.output)
         self.assertIn("the same command resumes", launch.output)
-        self.assertNotIn("summary.yaml", files_in(self.runs))
+        self.assertNotIn("summary.yaml", files_in(self.out))
 
         _, output = roslaunch(self.scratch, *arguments, limit_s=LIMIT_S)
-        self.assertTrue(os.path.exists(os.path.join(self.runs, "summary.yaml")), output)
+        self.assertTrue(os.path.exists(os.path.join(self.out, "summary.yaml")), output)
         self.checkRobotRun()
 
     def checkRobotRun(self):
-        self.assertEqual(files_in(self.runs), sorted(
+        self.assertEqual(files_in(self.out), sorted(
             [".lock", ".trials.crc32", "config.yaml", "robot_check.yaml", "summary.yaml", "trials.csv",
              "evaluation_000/goal_distance.csv", "evaluation_000/torques.csv",
              "trial_000/model.ddm", "trial_000/torques.csv", "trial_000/trial.bag"]))
         self.assertPaired(0, 0.2)
-        with rosbag.Bag(os.path.join(self.runs, "trial_000", "trial.bag")) as bag:
+        with rosbag.Bag(os.path.join(self.out, "trial_000", "trial.bag")) as bag:
             image = next(message for _, message, _ in bag.read_messages(["camera/image_raw"]))
         self.assertEqual((image.width, image.height, image.encoding), (51, 51, "mono8"))
-        self.assertEqual(read_yaml(self.runs, "config.yaml")["robot"]["crop_width"], 420)
-        self.assertEqual(len(read_rows(self.runs, "evaluation_000", "goal_distance.csv")), 1 + STEPS)
-        row = read_rows(self.runs, "trials.csv")[1]
+        self.assertEqual(read_yaml(self.out, "config.yaml")["robot"]["crop_width"], 420)
+        self.assertEqual(len(read_rows(self.out, "evaluation_000", "goal_distance.csv")), 1 + STEPS)
+        row = read_rows(self.out, "trials.csv")[1]
         self.assertEqual(row[2], str(STEPS))
         self.assertIn(row[3], ["0", "1"])  # judged ...
         self.assertEqual(row[5], "")  # ... without ground truth
-        check = read_yaml(self.runs, "robot_check.yaml")
+        check = read_yaml(self.out, "robot_check.yaml")
         self.assertEqual(check["frames"], 2 * STEPS)
         self.assertLess(check["latency_ms"]["median"], 200.0)
         self.assertLess(check["deadline_misses"], STEPS)  # none on a machine that has nothing else to do
         self.assertEqual([row["trial"] for row in check["evaluations"]], [0])
 
     def test_an_experiment_with_the_simulator_in_real_time(self):
-        config = os.path.join(self.scratch, "config.yaml")
-        with open(config, "w") as stream:
-            stream.write("plant: {dt: 0.1}\n")
+        config = self.write("config.yaml", "plant: {dt: 0.1}\n")
         _, output = roslaunch(self.scratch, "experiment.launch", "preset:=debug", "real_time:=true", "seed:=1",
-                              "trials:=1", "config:=" + config, "runs:=" + self.runs, limit_s=LIMIT_S)
-        self.assertIn("summary.yaml", files_in(self.runs), output)
-        self.assertEqual(files_in(self.runs), expected_files(1))
+                              "trials:=1", "config:=" + config, "runs:=" + self.out, limit_s=LIMIT_S)
+        self.assertIn("summary.yaml", files_in(self.out), output)
+        self.assertEqual(files_in(self.out), expected_files(1))
         for trial in (0, 1):
             self.assertPaired(trial, 0.1)
         for name in ("trial_000", "evaluation_001"):
-            rows = read_rows(self.runs, name, "trajectory.csv")[1:]
+            rows = read_rows(self.out, name, "trajectory.csv")[1:]
             self.assertEqual(len(rows), STEPS)
             times = [float(row[1]) for row in rows]
             self.assertAlmostEqual(times[-1], 0.1 * (STEPS - 1), delta=0.03 * STEPS)

@@ -4,7 +4,6 @@
 import os
 import pty
 import sys
-import tempfile
 import threading
 
 import rospy
@@ -18,9 +17,8 @@ from robot_stand_in import LIMIT_S, RobotCase, wait_until  # noqa: E402
 
 class RobotResetTest(RobotCase):
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.goal = os.path.join(scratch.name, "goal.png")
+        super().setUp()
+        self.goal = self.file("goal.png")
 
     def offer(self, name, function):
         service = rospy.Service(name, Trigger, function)

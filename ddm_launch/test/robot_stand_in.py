@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import threading
 import time
-import unittest
 
 from actionlib_msgs.msg import GoalID
 from ddm_msgs.msg import RunTrialActionResult, Torque
@@ -13,6 +12,7 @@ from std_msgs.msg import Float64, UInt32
 from std_srvs.srv import SetBool, Trigger
 
 from processes import Process, find_program
+from scratch_case import ScratchCase
 
 LIMIT_S = 15.0
 DT = 0.4
@@ -153,7 +153,7 @@ class Robot:
         return self.misses.messages[-1].data
 
 
-class RobotCase(unittest.TestCase):
+class RobotCase(ScratchCase):
     def start(self, *arguments, **kwargs):
         """A robot_node of which nothing stays after the test."""
         if rospy.has_param("/robot_node"):

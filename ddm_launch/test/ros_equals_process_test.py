@@ -2,37 +2,22 @@
 # Preset `paper`: the nodes and run_experiment give the same, torque by torque.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import shutil
 import sys
-import tempfile
-import unittest
 
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import run_both_drivers  # noqa: E402
-from run_files import differences, expected_files, read_rows, torque_files  # noqa: E402
+from both_drivers_case import BothDriversCase  # noqa: E402
+from run_files import expected_files, read_rows, torque_files  # noqa: E402
 
 TRIALS = 3
 
 
-class RosEqualsProcessTest(unittest.TestCase):
-    maxDiff = None
-
+class RosEqualsProcessTest(BothDriversCase):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.mkdtemp()
-        folders, outputs = run_both_drivers(cls.scratch, 4, TRIALS, {"preset": "paper", "plant": "pendulum"})
-        (cls.nodes, cls.process), (cls.nodes_output, cls.process_output) = folders, outputs
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.scratch)
-
-    def assertEqualFiles(self, names):
-        self.assertTrue(os.path.exists(os.path.join(self.nodes, "summary.yaml")), self.nodes_output)
-        self.assertTrue(os.path.exists(os.path.join(self.process, "summary.yaml")), self.process_output)
-        self.assertEqual(differences(self.nodes, self.process, names), [])
+        super().setUpClass()
+        cls.runBothDrivers(4, TRIALS, {"preset": "paper", "plant": "pendulum"})
 
     def test_torques_are_equal_byte_by_byte(self):
         names = torque_files(TRIALS)

@@ -6,8 +6,6 @@ import pty
 import shutil
 import signal
 import sys
-import tempfile
-import unittest
 
 import rosunit
 
@@ -15,39 +13,22 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import Process, call, find_program, run_experiment  # noqa: E402
 from run_files import (COLUMNS, differences, expected_files, files_in, read_bag, read_bytes, read_rows,  # noqa: E402
                        read_yaml)
+from scratch_case import SharedScratchCase  # noqa: E402
 
 TRIALS = 2
 
 
-class RunExperimentTest(unittest.TestCase):
-    maxDiff = None
-
+class RunExperimentTest(SharedScratchCase):
     @classmethod
     def setUpClass(cls):
-        cls.class_scratch = tempfile.mkdtemp()
+        super().setUpClass()
         cls.reference = os.path.join(cls.class_scratch, "reference")
         cls.code, cls.output = run_experiment("--preset", "debug", "--seed", 1, "--trials", TRIALS,
                                               "--out", cls.reference)
 
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.class_scratch)
-
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.scratch = scratch.name
-        self.out = os.path.join(scratch.name, "run")
-
     def debug(self, trials=TRIALS, seed=1, out=None):
         """Arguments of the reference run, into another folder."""
         return ["--preset", "debug", "--seed", seed, "--trials", trials, "--out", out or self.out]
-
-    def write(self, name, text):
-        path = os.path.join(self.scratch, name)
-        with open(path, "w") as stream:
-            stream.write(text)
-        return path
 
     def assertRuns(self, *arguments):
         code, output = run_experiment(*arguments)
@@ -133,7 +114,7 @@ class RunExperimentTest(unittest.TestCase):
             process.waitForEnd(10.0)
             self.assertNotIn("summary.yaml", files_in(self.out))
         self.assertRuns(*self.debug(trials))
-        uninterrupted = os.path.join(self.scratch, "uninterrupted")
+        uninterrupted = self.file("uninterrupted")
         self.assertRuns(*self.debug(trials, out=uninterrupted))
         self.assertEqual(differences(uninterrupted, self.out, expected_files(trials)), [])
 
@@ -153,7 +134,7 @@ class RunExperimentTest(unittest.TestCase):
     def test_the_folder_may_be_relative_and_new(self):
         code, output = run_experiment(*self.debug(0, out="some/new/folder"), folder=self.scratch)
         self.assertEqual(code, 0, output)
-        self.assertEqual(files_in(os.path.join(self.scratch, "some/new/folder")), expected_files(0))
+        self.assertEqual(files_in(self.file("some/new/folder")), expected_files(0))
 
     def test_help_names_every_option(self):
         code, output = run_experiment("--help")
@@ -212,7 +193,7 @@ class RunExperimentTest(unittest.TestCase):
             self.assertAlmostEqual(time, (stamp - stamps[0]) * 1e-9, places=6)
 
     def test_a_configuration_file_that_cannot_be_read_is_named(self):
-        missing = os.path.join(self.scratch, "missing.yaml")
+        missing = self.file("missing.yaml")
         self.assertRefused(2, [missing], "--config", missing, "--out", self.out)
         broken = self.write("broken.yaml", "mpc: [1\n")
         self.assertRefused(2, [broken], "--config", broken, "--out", self.out)

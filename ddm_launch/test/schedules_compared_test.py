@@ -25,18 +25,18 @@ class SchedulesComparedTest(figure_case.FigureCase):
     def setUp(self):
         super().setUp()
         for k, name in enumerate(NAMES):
-            self.write(os.path.join("" if name == "joint" else name, "trials.csv"), TRIALS,
-                       "0,0,100,0,90", "0,1,200,1,2", "1,0,100,%d,9" % (k == 0), "1,1,200,%d,9" % (k == 0))
+            self.writeLines(os.path.join("" if name == "joint" else name, "trials.csv"), TRIALS,
+                            "0,0,100,0,90", "0,1,200,1,2", "1,0,100,%d,9" % (k == 0), "1,1,200,%d,9" % (k == 0))
             for plant in ("tile_predictions", "pendulum_predictions"):
                 self.writePredictions(plant, name, range(2), 0.1 * (k + 1))
 
     def writePredictions(self, plant, name, seeds, rmse):
-        self.write(os.path.join(plant, name, "predictions.csv"), PREDICTIONS,
-                   *(prediction(seed, steps, rmse * steps + 0.02 * seed, 0.5 * steps) for seed in seeds
-                     for steps in range(1, 9)))
+        self.writeLines(os.path.join(plant, name, "predictions.csv"), PREDICTIONS,
+                        *(prediction(seed, steps, rmse * steps + 0.02 * seed, 0.5 * steps) for seed in seeds
+                          for steps in range(1, 9)))
 
     def test_prediction_errors_are_means_over_seeds_with_standard_errors(self):
-        results = schedules.read_predictions(os.path.join(self.folder, "tile_predictions"))
+        results = schedules.read_predictions(self.file("tile_predictions"))
         with new_figure(PAGE_WIDTH, 3.0) as figure:
             axes = figure.add_subplot(1, 1, 1)
             schedules_compared.draw_predictions(axes, results)
@@ -52,7 +52,7 @@ class SchedulesComparedTest(figure_case.FigureCase):
         self.assertEqual(labels, ("steps ahead [-]", "RMSE over pixels [grey]"))
 
     def test_success_rates_of_all_schedules_are_drawn_each_a_little_aside(self):
-        results = schedules.read_success(self.folder)
+        results = schedules.read_success(self.scratch)
         with new_figure(PAGE_WIDTH, 3.0) as figure:
             axes = figure.add_subplot(1, 1, 1)
             schedules_compared.draw_success(axes, results)
@@ -64,34 +64,34 @@ class SchedulesComparedTest(figure_case.FigureCase):
 
     def test_only_seeds_that_all_schedules_have_are_compared(self):
         self.writePredictions("tile_predictions", "joint", range(1, 5), 9.0)
-        results = schedules.read_predictions(os.path.join(self.folder, "tile_predictions"))
+        results = schedules.read_predictions(self.file("tile_predictions"))
         self.assertEqual([sorted(results[name]) for name in NAMES], [[1]] * 4)
         self.assertEqual(schedules_compared.seeds_text(results), "1 seed")
 
     def test_schedules_without_a_common_seed_are_refused(self):
         self.writePredictions("tile_predictions", "joint", [77], 9.0)
         with self.assertRaisesRegex(RunFolderError, "no seed has predictions of all schedules"):
-            schedules.read_predictions(os.path.join(self.folder, "tile_predictions"))
+            schedules.read_predictions(self.file("tile_predictions"))
 
     def test_no_two_schedules_share_marker_line_or_colour(self):
         for column in range(4):
             self.assertEqual(len({row[column] for row in schedules_compared.STYLES}), 4)
 
     def test_a_results_folder_makes_a_picture_as_wide_as_a_page(self):
-        self.assertDrawn(schedules_compared.main, [self.folder], PAGE_WIDTH)
+        self.assertDrawn(schedules_compared.main, [self.scratch], PAGE_WIDTH)
 
     def test_each_missing_file_is_named_with_the_remedy(self):
         for path in ("trials.csv", "v_p_only/trials.csv", "tile_predictions/joint/predictions.csv",
                      "pendulum_predictions/joint_random_init/predictions.csv"):
-            whole = os.path.join(self.folder, path)
+            whole = self.file(path)
             os.rename(whole, whole + ".away")
-            self.assertRefused(schedules_compared.main, [self.folder], whole, "reproduce_paper writes it")
+            self.assertRefused(schedules_compared.main, [self.scratch], whole, "reproduce_paper writes it")
             os.rename(whole + ".away", whole)
 
     def test_a_seed_that_is_there_twice_is_refused(self):
-        self.write("tile_predictions/joint/predictions.csv", PREDICTIONS, prediction(3, 1, 0.1, 0.1),
-                   prediction(3, 1, 0.2, 0.1))
-        self.assertRefused(schedules_compared.main, [self.folder], "1 steps of seed 3 twice")
+        self.writeLines("tile_predictions/joint/predictions.csv", PREDICTIONS, prediction(3, 1, 0.1, 0.1),
+                        prediction(3, 1, 0.2, 0.1))
+        self.assertRefused(schedules_compared.main, [self.scratch], "1 steps of seed 3 twice")
 
 
 if __name__ == "__main__":

@@ -5,21 +5,21 @@ import os
 import shlex
 import socket
 import subprocess
-import tempfile
-import unittest
+import sys
 
 import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from scratch_case import ScratchCase  # noqa: E402
 
 SCRIPTS = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "scripts"))
 CHECKOUT = os.path.dirname(os.path.dirname(SCRIPTS))
 
 
-class ScriptsTest(unittest.TestCase):
+class ScriptsTest(ScratchCase):
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = os.path.realpath(scratch.name)
-        self.workspace = os.path.join(self.folder, "ws")
+        super().setUp()
+        self.workspace = self.file("ws")
 
     def call(self, *command):
         """Returns (exit code, stdout and stderr)."""
@@ -32,12 +32,6 @@ class ScriptsTest(unittest.TestCase):
         """Runs bash code after sourcing a script, as strictly as the scripts run themselves."""
         path = shlex.quote(os.path.join(SCRIPTS, script))
         return self.call("/bin/bash", "-c", "set -euo pipefail; . %s; %s" % (path, code))
-
-    def write(self, name, text):
-        path = os.path.join(self.folder, name)
-        with open(path, "w") as stream:
-            stream.write(text)
-        return path
 
     def test_debian_12_is_accepted(self):
         release = self.write("os-release", 'ID=debian\nVERSION_ID="12"\nPRETTY_NAME="Debian 12"\n')
@@ -88,7 +82,7 @@ class ScriptsTest(unittest.TestCase):
         self.assertNotIn("policy-rc.d", output)  # nothing to guard against
 
     def test_the_guard_against_services_passes_on_the_verdict(self):
-        policy = os.path.join(self.folder, "policy-rc.d")
+        policy = self.file("policy-rc.d")
         guarded = "export POLICY_RC_D=%s; sh -c \"$without_services\" sh " % policy
         self.assertEqual(self.callFunction(guarded + 'sh -c "$POLICY_RC_D; exit 3"')[0], 3)
         self.assertEqual(self.callFunction(guarded + 'sh -c "$POLICY_RC_D; echo policy says \\$?"'),
@@ -183,7 +177,7 @@ class ScriptsTest(unittest.TestCase):
         os.utime(started, (1e9, 1e9))
         if text is not None:
             self.write("summary.yaml", text)
-        return self.callFunction("check_summary %s %s" % (self.folder, started), "demo.sh")
+        return self.callFunction("check_summary %s %s" % (self.scratch, started), "demo.sh")
 
     def test_a_finished_experiment_is_a_success(self):
         self.assertEqual(self.checkSummary("finished: true\ntrials: 15\nsuccess: [0, 1]\n"), (0, ""))
@@ -202,7 +196,7 @@ class ScriptsTest(unittest.TestCase):
     def test_the_summary_of_an_earlier_call_is_no_success(self):
         os.utime(self.write("summary.yaml", "finished: true\n"), (1e9, 1e9))
         started = self.write("started", "")
-        code, output = self.callFunction("check_summary %s %s" % (self.folder, started), "demo.sh")
+        code, output = self.callFunction("check_summary %s %s" % (self.scratch, started), "demo.sh")
         self.assertEqual(code, 1)
         self.assertIn("before it wrote a new", output)
 

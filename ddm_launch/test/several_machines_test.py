@@ -4,7 +4,6 @@
 import os
 import signal
 import sys
-import tempfile
 import unittest
 
 import rosunit
@@ -13,19 +12,17 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from namespaces import Network, why_not  # noqa: E402
 from processes import Process, line_by_line, run_experiment  # noqa: E402
 from run_files import differences, expected_files, files_in  # noqa: E402
+from scratch_case import ScratchCase  # noqa: E402
 
 TRIALS = 1
 HINDRANCE = why_not("net", "mount")
 
 
 @unittest.skipIf(HINDRANCE, "SEVERAL MACHINES ARE NOT TESTED: %s" % HINDRANCE)
-class SeveralMachinesTest(unittest.TestCase):
-    maxDiff = None
-
+class SeveralMachinesTest(ScratchCase):
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.disk, self.reference = os.path.join(scratch.name, "disk"), os.path.join(scratch.name, "reference")
+        super().setUp()
+        self.disk, self.reference = self.file("disk"), self.file("reference")
         os.mkdir(self.disk)
         self.network = Network()
         self.addCleanup(self.network.close)

@@ -3,11 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import re
-import shutil
 import signal
 import sys
-import tempfile
-import unittest
 
 import rosunit
 
@@ -15,31 +12,23 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from ddm_launch.slurm import index_ranges  # noqa: E402
 from processes import run_experiment  # noqa: E402
 from run_files import differences, expected_files, files_in, read_bytes, read_rows  # noqa: E402
+from scratch_case import SharedScratchCase  # noqa: E402
 from slurm_cluster import SlurmCluster  # noqa: E402
 from sweeps import (Sweep, is_finished, processes_with, programs_of, seed_folder, snapshot, sweep,  # noqa: E402
                     wait_for)
 
 
-class SlurmTest(unittest.TestCase):
-    maxDiff = None
-
+class SlurmTest(SharedScratchCase):
     @classmethod
     def setUpClass(cls):
-        cls.cluster_folder = os.path.realpath(tempfile.mkdtemp())
-        cls.addClassCleanup(shutil.rmtree, cls.cluster_folder)
-        cls.cluster = SlurmCluster(cls.cluster_folder)
+        super().setUpClass()
+        cls.cluster = SlurmCluster(cls.class_scratch)
         cls.addClassCleanup(cls.stopCluster)
 
     @classmethod
     def stopCluster(cls):
         cls.cluster.stop()
-        wait_for(lambda: not processes_with([cls.cluster_folder]), "the end of all daemons", 10.0)
-
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.scratch = os.path.realpath(scratch.name)
-        self.out = os.path.join(self.scratch, "sweep")
+        wait_for(lambda: not processes_with([cls.class_scratch]), "the end of all daemons", 10.0)
 
     def debug(self, seeds, trials):
         return ["--preset", "debug", "--seeds", seeds, "--trials", trials, "--out", self.out, "--slurm"]
@@ -84,7 +73,7 @@ class SlurmTest(unittest.TestCase):
         self.assertTableIsComplete(range(4), 1)
         own = [name for name in files_in(self.out) if not name.startswith(("seed_", "logs/"))]
         self.assertEqual(own, [".lock", "run_seed.sh", "sweep.csv", "sweep.yaml"])
-        single = os.path.join(self.scratch, "single")
+        single = self.file("single")
         run_experiment("--preset", "debug", "--seed", 3, "--trials", 1, "--out", single)
         self.assertEqual(differences(single, seed_folder(self.out, 3), expected_files(1)), [])
 

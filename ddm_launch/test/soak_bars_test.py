@@ -3,8 +3,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import sys
-import tempfile
-import unittest
 
 import rosunit
 
@@ -13,6 +11,7 @@ from ddm_launch.soak.bars import Sample, judge  # noqa: E402
 from ddm_launch.soak.frames import count_recorded, count_seen  # noqa: E402
 from ddm_launch.soak.program import write_results  # noqa: E402
 from run_files import read_rows  # noqa: E402
+from scratch_case import ScratchCase  # noqa: E402
 
 LAST = 300
 DT_NS = 200000000
@@ -34,13 +33,11 @@ def verdicts(samples, lost=0):
     return [bar.passed for bar in judge("lockstep", LAST, samples, [lost_frame(lost)])]
 
 
-class SoakBarsTest(unittest.TestCase):
+class SoakBarsTest(ScratchCase):
     """The made-up trial: twenty frames, dt apart, with two frames before and after it that nobody answers."""
 
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.out = scratch.name
+        super().setUp()
         self.images = [(100 + k, k * DT_NS) for k in range(24)]
         self.torques = {k * DT_NS for k in range(2, 22)}
 
@@ -104,10 +101,10 @@ class SoakBarsTest(unittest.TestCase):
         for run in ("real_time", "lockstep", "lockstep"):
             samples = [sample._replace(run=run) for sample in samples_of(lambda _: 60000, lambda _: 17)]
             frames = [dict(lost_frame(0), run=run)]
-            write_results(self.out, run, samples, frames, judge(run, LAST, samples, frames))
-        self.assertEqual([len(read_rows(self.out, name)) for name in ("soak.csv", "frames.csv", "bars.csv")],
+            write_results(self.scratch, run, samples, frames, judge(run, LAST, samples, frames))
+        self.assertEqual([len(read_rows(self.scratch, name)) for name in ("soak.csv", "frames.csv", "bars.csv")],
                          [2 * (LAST + 1) + 1, 3, 7])
-        self.assertEqual([row[0] for row in read_rows(self.out, "frames.csv")], ["run", "lockstep", "real_time"])
+        self.assertEqual([row[0] for row in read_rows(self.scratch, "frames.csv")], ["run", "lockstep", "real_time"])
 
 
 if __name__ == "__main__":

@@ -3,8 +3,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import sys
-import tempfile
-import unittest
 
 import rosbag
 import rosunit
@@ -13,16 +11,12 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from ddm_launch.soak.frames import count_frames  # noqa: E402
 from processes import call, find_program  # noqa: E402
 from run_files import read_bytes, read_rows  # noqa: E402
+from scratch_case import ScratchCase  # noqa: E402
 
 NODES = {"experiment_node", "master", "model_node", "mpc_node", "rosout", "sim_node", "trial_recorder"}
 
 
-class SoakTest(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.out = scratch.name
-
+class SoakTest(ScratchCase):
     def test_both_runs_leave_tables_and_a_figure_and_lockstep_loses_no_frame(self):
         code, output = call([find_program("ddm_launch", "soak"), "--trials", "5", "--minutes", "0.2", "--steps", "12",
                              "--out", self.out], limit_s=200.0)

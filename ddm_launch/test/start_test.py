@@ -4,48 +4,27 @@
 import os
 import shutil
 import sys
-import tempfile
-import unittest
 
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import call, find_program, roslaunch, run_experiment  # noqa: E402
 from run_files import differences, expected_files, files_in, read_rows, read_yaml  # noqa: E402
+from scratch_case import SharedScratchCase  # noqa: E402
 
 STEPS = 30
 
 
-class StartTest(unittest.TestCase):
-    maxDiff = None
-
+class StartTest(SharedScratchCase):
     @classmethod
     def setUpClass(cls):
         """An experiment, whose bags and last model others start from."""
-        cls.class_scratch = tempfile.mkdtemp()
+        super().setUpClass()
         cls.before = os.path.join(cls.class_scratch, "before")
         code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 1, "--out", cls.before)
         assert code == 0, output
         cls.model = os.path.join(cls.before, "trial_001", "model.ddm")
         cls.bags = [os.path.join(cls.before, "trial_%03d" % k, "trial.bag") for k in range(2)]
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.class_scratch)
-
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.scratch = scratch.name
-        self.out = self.file("run")
-
-    def file(self, name):
-        return os.path.join(self.scratch, name)
-
-    def write(self, name, text):
-        with open(self.file(name), "w") as stream:
-            stream.write(text)
-        return self.file(name)
 
     def run_from(self, *arguments, trials=1, out=None):
         """(exit code, output) of an experiment with seed 2."""

@@ -19,8 +19,8 @@ HEADER = "seed,trial,frames,success,final_error_deg"
 
 class SuccessRateTest(figure_case.FigureCase):
     def writeSweep(self, name="sweep.csv"):
-        return self.write(name, HEADER, "0,0,100,0,90", "0,1,200,1,2", "1,0,100,1,3", "1,1,200,1,1", "2,0,100,0,50",
-                          "3,0,100,1,4")
+        return self.writeLines(name, HEADER, "0,0,100,0,90", "0,1,200,1,2", "1,0,100,1,3", "1,1,200,1,1",
+                               "2,0,100,0,50", "3,0,100,1,4")
 
     def test_a_curve_is_the_rate_over_all_seeds_of_a_file(self):
         curve = success_rate.read_curve("mine", self.writeSweep())
@@ -70,12 +70,12 @@ class SuccessRateTest(figure_case.FigureCase):
         self.assertEqual(axis_labels, ("frames learned from [image-torque pairs]", "success rate [-]"))
 
     def test_a_method_that_learns_from_no_frames_is_a_level_line_to_the_end(self):
-        oracle = success_rate.read_curve("oracle", self.write("oracle.csv", HEADER, "0,0,0,1,1", "1,0,0,0,50"))
+        oracle = success_rate.read_curve("oracle", self.writeLines("oracle.csv", HEADER, "0,0,0,1,1", "1,0,0,0,50"))
         with new_figure(COLUMN_WIDTH, 3.0) as figure:
             axes = figure.add_subplot(1, 1, 1)
             success_rate.draw_curves(axes, [oracle], success_rate.read_published(PUBLISHED))
             self.assertEqual(figure_case.drawn_points(axes, "oracle (2 seeds)"), [(0, 0.5), (1500, 0.5)])
-        band = success_rate.read_curve("oracle", os.path.join(self.folder, "oracle.csv"), wilson=True)
+        band = success_rate.read_curve("oracle", self.file("oracle.csv"), wilson=True)
         self.assertEqual([len(edge) for edge in band.spread_to(1500).band], [2, 2])
 
     def test_the_legend_fits_into_the_width_of_a_column(self):
@@ -143,11 +143,11 @@ class SuccessRateTest(figure_case.FigureCase):
         self.assertRefused(success_rate.main, curves, "at most 4 curves", "PILCO, state", "got 5")
 
     def test_a_seed_that_is_there_twice_is_refused(self):
-        path = self.write("twice.csv", HEADER, "7,0,100,0,90", "7,0,100,1,2")
+        path = self.writeLines("twice.csv", HEADER, "7,0,100,0,90", "7,0,100,1,2")
         self.assertRefused(success_rate.main, ["mine=" + path], path, "trial 0 of seed 7 twice")
 
     def test_runs_of_unknown_success_are_refused(self):
-        path = self.write("unknown.csv", HEADER, "7,0,100,,")
+        path = self.writeLines("unknown.csv", HEADER, "7,0,100,,")
         with self.assertRaisesRegex(RunFolderError, "success is not known in any row"):
             success_rate.read_curve("mine", path)
 

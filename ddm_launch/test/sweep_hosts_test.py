@@ -3,31 +3,26 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import sys
-import tempfile
-import unittest
 
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from run_files import read_rows  # noqa: E402
+from scratch_case import ScratchCase  # noqa: E402
 from ssh_hosts import SshHosts  # noqa: E402
 from sweeps import Sweep, processes_with, programs_of, seed_folder, wait_for  # noqa: E402
 
 
-class SweepHostsTest(unittest.TestCase):
+class SweepHostsTest(ScratchCase):
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.out = os.path.join(os.path.realpath(scratch.name), "sweep")
-        self.hosts = SshHosts(os.path.realpath(scratch.name))
+        super().setUp()
+        self.hosts = SshHosts(self.scratch)
         self.addCleanup(self.hosts.stop)
-        self.file = os.path.join(scratch.name, "hosts")
 
     def start(self, hosts, seeds, trials):
-        with open(self.file, "w") as stream:
-            stream.write("\n".join(hosts) + "\n")
+        list_of_hosts = self.write("hosts", "\n".join(hosts) + "\n")
         # a shell on another machine knows nothing of this workspace: sshd hands no variable of ours on
-        return Sweep("--preset", "debug", "--seeds", seeds, "--trials", trials, "--jobs", 1, "--hosts", self.file,
+        return Sweep("--preset", "debug", "--seeds", seeds, "--trials", trials, "--jobs", 1, "--hosts", list_of_hosts,
                      "--out", self.out, environment={"PARALLEL_SSH": self.hosts.ssh_command})
 
     def test_seeds_are_spread_over_the_hosts_that_answer(self):

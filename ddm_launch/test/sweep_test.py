@@ -6,44 +6,28 @@ import pty
 import shutil
 import signal
 import sys
-import tempfile
-import unittest
 
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import call, find_program, run_experiment  # noqa: E402
 from run_files import differences, expected_files, files_in, read_bytes, read_rows, read_yaml  # noqa: E402
+from scratch_case import SharedScratchCase  # noqa: E402
 from sweeps import (Sweep, is_finished, processes_with, programs_of, seed_folder, snapshot, sweep,  # noqa: E402
                     wait_for)
 
 LONG = 12  # trials: enough to see a seed at its work
 
 
-class SweepTest(unittest.TestCase):
-    maxDiff = None
-
+class SweepTest(SharedScratchCase):
     @classmethod
     def setUpClass(cls):
-        cls.class_scratch = os.path.realpath(tempfile.mkdtemp())
-        cls.addClassCleanup(shutil.rmtree, cls.class_scratch)
+        super().setUpClass()
         cls.reference = os.path.join(cls.class_scratch, "reference")
         cls.code, cls.output = sweep("--preset", "debug", "--seeds", "0:4", "--trials", 1, "--out", cls.reference)
 
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.scratch = os.path.realpath(scratch.name)
-        self.out = os.path.join(self.scratch, "sweep")
-
     def debug(self, seeds="0:4", trials=1, out=None):
         return ["--preset", "debug", "--seeds", seeds, "--trials", trials, "--out", out or self.out]
-
-    def write(self, name, text):
-        path = os.path.join(self.scratch, name)
-        with open(path, "w") as stream:
-            stream.write(text)
-        return path
 
     def copyReference(self):
         """The reference sweep of seeds 0 ... 3 with one trial, in the folder of this test."""
@@ -79,7 +63,7 @@ class SweepTest(unittest.TestCase):
         self.assertEqual(own, [".lock", "joblog.tsv", "run_seed.sh", "sweep.csv", "sweep.yaml"])
 
     def test_a_seed_gives_the_same_files_as_run_experiment(self):
-        single = os.path.join(self.scratch, "single")
+        single = self.file("single")
         code, output = run_experiment("--preset", "debug", "--seed", 2, "--trials", 1, "--out", single)
         self.assertEqual(code, 0, output)
         self.assertEqual(files_in(seed_folder(self.reference, 2)), expected_files(1))
@@ -138,7 +122,7 @@ class SweepTest(unittest.TestCase):
         self.assertEnds(0, ["2 of 2 seeds to run"], *self.debug("0:2", 3))
         self.assertTableIsComplete([0, 1], 3)
         self.assertIn("resuming after trial 1", read_bytes(self.out, "logs", "seed_0000.log").decode())
-        single = os.path.join(self.scratch, "single")
+        single = self.file("single")
         run_experiment("--preset", "debug", "--seed", 1, "--trials", 3, "--out", single)
         self.assertEqual(differences(single, seed_folder(self.out, 1), expected_files(3)), [])
         self.assertEnds(0, ["0 of 4 seeds to run"], *self.debug("0:4", 1))
@@ -158,7 +142,7 @@ class SweepTest(unittest.TestCase):
         self.assertEqual(snapshot(seed_folder(self.out, 0)), before)
         self.assertIn("resuming after trial", read_bytes(self.out, "logs", "seed_0001.log").decode())
         self.assertTableIsComplete(range(3), LONG)
-        single = os.path.join(self.scratch, "single")
+        single = self.file("single")
         run_experiment("--preset", "debug", "--seed", 1, "--trials", LONG, "--out", single)
         self.assertEqual(differences(single, seed_folder(self.out, 1), expected_files(LONG)), [])
 
@@ -283,7 +267,7 @@ class SweepTest(unittest.TestCase):
             self.assertIn(words, output)
 
     def test_folders_with_odd_names_and_relative_ones_will_do(self):
-        self.out = os.path.join(self.scratch, "it's a \"sweep\" of 100%")
+        self.out = self.file("it's a \"sweep\" of 100%")
         self.assertEnds(0, [], *self.debug("7:8", 0, out=os.path.basename(self.out)), folder=self.scratch)
         self.assertTableIsComplete([7], 0)
 

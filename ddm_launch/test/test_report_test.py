@@ -6,10 +6,12 @@ import importlib.util
 import io
 import json
 import os
-import tempfile
-import unittest
+import sys
 
 import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from scratch_case import ScratchCase  # noqa: E402
 
 SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "scripts", "test_report.py")
 spec = importlib.util.spec_from_file_location("test_report", SCRIPT)
@@ -23,28 +25,24 @@ SKIP = '<testcase classname="Mlp" name="%s" status="run"><skipped message="no"/>
 WRAPPER = '<testcase classname="rostest.runner.RosTest" name="test%s"/>'
 
 
-class TestReportTest(unittest.TestCase):
+class TestReportTest(ScratchCase):
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = scratch.name
+        super().setUp()
         self.declared = {}
 
     def declare(self, file_name, end="run", build="build"):
         """A test that ctest ran, and how it ended ("run" or "fail")."""
         self.declared.setdefault(build, []).append((file_name, end))
 
-    def write(self, file_name, cases, failures=0, build="build"):
-        folder = os.path.join(self.folder, build, "test_results", "ddm_model")
-        os.makedirs(folder, exist_ok=True)
-        with open(os.path.join(folder, file_name), "w") as stream:
-            stream.write('<testsuite failures="%d" errors="0">%s</testsuite>' % (failures, "".join(cases)))
+    def writeCases(self, file_name, cases, failures=0, build="build"):
+        self.write(os.path.join(build, "test_results", "ddm_model", file_name),
+                   '<testsuite failures="%d" errors="0">%s</testsuite>' % (failures, "".join(cases)))
 
     def report(self):
         """Returns (exit code, lines printed)."""
         builds = []
         for build, tests in self.declared.items():
-            folder = os.path.join(self.folder, build)
+            folder = self.file(build)
             os.makedirs(folder, exist_ok=True)
             builds.append(folder)
             names = ["_ctest_" + file_name for file_name, _ in tests]
@@ -52,21 +50,20 @@ class TestReportTest(unittest.TestCase):
                 results = os.path.join(folder, "test_results", "ddm_model")
                 json.dump({"tests": [{"name": name, "command": ["env.sh", os.path.join(results, file_name)]}
                                      for name, (file_name, _) in zip(names, tests)]}, stream)
-            with open(os.path.join(folder, "tests_run.xml"), "w") as stream:
-                stream.write("<testsuite>%s</testsuite>" % "".join(
-                    '<testcase name="%s" status="%s"/>' % (name, end) for name, (_, end) in zip(names, tests)))
+            self.write(os.path.join(build, "tests_run.xml"), "<testsuite>%s</testsuite>" % "".join(
+                '<testcase name="%s" status="%s"/>' % (name, end) for name, (_, end) in zip(names, tests)))
         with contextlib.redirect_stdout(io.StringIO()) as output:
             code = test_report.main(builds)
         return code, output.getvalue().splitlines()
 
     def test_all_passed_returns_0_and_closes_with_the_count(self):
         self.declare("gtest-a.xml")
-        self.write("gtest-a.xml", [PASS % "One", PASS % "Two"])
+        self.writeCases("gtest-a.xml", [PASS % "One", PASS % "Two"])
         self.assertEqual(self.report(), (0, ["2 passed, 0 failed"]))
 
     def test_a_failure_is_named_with_its_message(self):
         self.declare("gtest-a.xml", "fail")
-        self.write("gtest-a.xml", [PASS % "One", FAIL % "Two"], failures=1)
+        self.writeCases("gtest-a.xml", [PASS % "One", FAIL % "Two"], failures=1)
         code, lines = self.report()
         self.assertEqual((code, lines[-1]), (1, "1 passed, 1 failed"))
         self.assertIn("Mlp.Two", lines[0])
@@ -74,12 +71,11 @@ class TestReportTest(unittest.TestCase):
 
     def test_a_report_of_a_sanitizer_fails_the_build_and_none_is_a_case_that_passed(self):
         self.declare("gtest-a.xml")
-        self.write("gtest-a.xml", [PASS % "One"])
-        reports = os.path.join(self.folder, "build", "sanitizer_reports")
+        self.writeCases("gtest-a.xml", [PASS % "One"])
+        reports = self.file("build", "sanitizer_reports")
         os.mkdir(reports)
         self.assertEqual(self.report(), (0, ["2 passed, 0 failed"]))
-        with open(os.path.join(reports, "report.17"), "w") as stream:
-            stream.write("==17==ERROR: AddressSanitizer: heap-use-after-free")
+        self.write("build/sanitizer_reports/report.17", "==17==ERROR: AddressSanitizer: heap-use-after-free")
         code, lines = self.report()
         self.assertEqual((code, lines[-1]), (1, "1 passed, 1 failed"))
         self.assertIn("sanitizer_reports", lines[0])
@@ -89,55 +85,55 @@ class TestReportTest(unittest.TestCase):
     def test_a_case_of_two_builds_counts_once_and_must_pass_in_both(self):
         for build, second in (("build", PASS), ("debug", FAIL)):
             self.declare("gtest-a.xml", "run" if second == PASS else "fail", build)
-            self.write("gtest-a.xml", [PASS % "One", second % "Two"], failures=int(second == FAIL), build=build)
+            self.writeCases("gtest-a.xml", [PASS % "One", second % "Two"], failures=int(second == FAIL), build=build)
         self.assertEqual(self.report()[1][-1], "1 passed, 1 failed")
 
     def test_the_runner_of_a_rostest_is_no_case_of_its_own(self):
         self.declare("rostest-loop.xml")
-        self.write("rostest-loop.xml", [WRAPPER % "loop"])
-        self.write("rosunit-loop.xml", [PASS % "One"])
+        self.writeCases("rostest-loop.xml", [WRAPPER % "loop"])
+        self.writeCases("rosunit-loop.xml", [PASS % "One"])
         self.assertEqual(self.report(), (0, ["1 passed, 0 failed"]))
 
     def test_a_failing_rostest_counts_only_its_failing_cases(self):
         self.declare("rostest-loop.xml", "fail")
-        self.write("rostest-loop.xml", [WRAPPER % "loop"])
-        self.write("rosunit-loop.xml", [PASS % "One", FAIL % "Two"], failures=1)
+        self.writeCases("rostest-loop.xml", [WRAPPER % "loop"])
+        self.writeCases("rosunit-loop.xml", [PASS % "One", FAIL % "Two"], failures=1)
         self.assertEqual(self.report()[1][-1], "1 passed, 1 failed")
 
     def test_a_program_that_leaves_no_result_fails(self):
         self.declare("gtest-a.xml")
         self.declare("gtest-crash.xml", "fail")
-        self.write("gtest-a.xml", [PASS % "One"])
-        self.write("MISSING-gtest-crash.xml", [FAIL % "test_ran"], failures=1)
+        self.writeCases("gtest-a.xml", [PASS % "One"])
+        self.writeCases("MISSING-gtest-crash.xml", [FAIL % "test_ran"], failures=1)
         code, lines = self.report()
         self.assertEqual((code, lines[-1]), (1, "1 passed, 1 failed"))
         self.assertIn("gtest-crash.xml", lines[0])
 
     def test_a_program_that_fails_after_its_cases_passed_fails(self):
         self.declare("gtest-a.xml", "fail")
-        self.write("gtest-a.xml", [PASS % "One"])
+        self.writeCases("gtest-a.xml", [PASS % "One"])
         code, lines = self.report()
         self.assertEqual((code, lines[-1]), (1, "1 passed, 1 failed"))
         self.assertIn("although no case did", lines[1])
 
     def test_failures_that_only_the_sum_knows_fail(self):
         self.declare("rosunit-a.xml", "fail")
-        self.write("rosunit-a.xml", [PASS % "One"], failures=3)
+        self.writeCases("rosunit-a.xml", [PASS % "One"], failures=3)
         self.assertEqual(self.report()[1][-1], "1 passed, 1 failed")
 
     def test_a_file_without_cases_fails(self):
         self.declare("gtest-a.xml")
-        self.write("gtest-a.xml", [])
+        self.writeCases("gtest-a.xml", [])
         self.assertEqual(self.report()[1][-1], "0 passed, 1 failed")
 
     def test_a_file_that_is_cut_short_fails(self):
         self.declare("gtest-a.xml")
-        self.write("gtest-a.xml", ["<testcase"])
+        self.writeCases("gtest-a.xml", ["<testcase"])
         self.assertEqual(self.report()[1][-1], "0 passed, 1 failed")
 
     def test_skipped_cases_are_named_and_count_neither_way(self):
         self.declare("gtest-a.xml")
-        self.write("gtest-a.xml", [PASS % "One", SKIP % "Two"])
+        self.writeCases("gtest-a.xml", [PASS % "One", SKIP % "Two"])
         code, lines = self.report()
         self.assertEqual((code, lines[-1]), (0, "1 passed, 0 failed"))
         self.assertIn("Mlp.Two", lines[0])

@@ -2,40 +2,26 @@
 # Plant `moving_tile` in a closed loop: two torques, no angle; the nodes and run_experiment give the same.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import shutil
 import sys
-import tempfile
-import unittest
 
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import run_both_drivers  # noqa: E402
-from run_files import differences, expected_files, read_rows, read_yaml  # noqa: E402
+from both_drivers_case import BothDriversCase  # noqa: E402
+from run_files import read_rows, read_yaml  # noqa: E402
 
 TRIALS = 1
 QUICK = "training: {num_starts: 1, max_iterations: 20}\n"
 
 
-class TileLoopTest(unittest.TestCase):
-    maxDiff = None
-
+class TileLoopTest(BothDriversCase):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.mkdtemp()
-        folders, outputs = run_both_drivers(cls.scratch, 4, TRIALS, {"preset": "debug", "plant": "moving_tile"}, QUICK)
-        (cls.nodes, cls.process), (cls.nodes_output, cls.process_output) = folders, outputs
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.scratch)
+        super().setUpClass()
+        cls.runBothDrivers(4, TRIALS, {"preset": "debug", "plant": "moving_tile"}, QUICK)
 
     def test_both_finish_with_equal_files(self):
-        self.assertTrue(os.path.exists(os.path.join(self.nodes, "summary.yaml")), self.nodes_output)
-        self.assertTrue(os.path.exists(os.path.join(self.process, "summary.yaml")), self.process_output)
-        names = [name for name in expected_files(TRIALS) if not name.endswith((".lock", ".bag"))]
-        self.assertGreater(len(names), 8)
-        self.assertEqual(differences(self.nodes, self.process, names), [])
+        self.assertAllFilesAreEqual()
 
     def test_torques_and_states_stand_under_the_plants_own_names(self):
         torques = read_rows(self.nodes, "trial_001", "torques.csv")

@@ -29,7 +29,7 @@ def policy(seed, trial, end_rad=math.pi, std_rad=0.3):
 class TrajectoryDistributionsTest(figure_case.FigureCase):
     def panels(self, lines, seconds=None):
         """Draws these rows; returns one dictionary per panel, row by row."""
-        seeds = trajectory_distributions.read_distributions(self.write("angles.csv", HEADER, *lines))
+        seeds = trajectory_distributions.read_distributions(self.writeLines("angles.csv", HEADER, *lines))
         with new_figure(PAGE_WIDTH, 3.0) as figure:
             trajectory_distributions.draw_all(figure, seeds, seconds)
             return [{"title": axes.get_title(), "label": axes.get_ylabel(), "ylim": axes.get_ylim(),
@@ -78,7 +78,7 @@ class TrajectoryDistributionsTest(figure_case.FigureCase):
 
     def test_three_seeds_of_six_policies_make_a_picture_as_wide_as_a_page(self):
         lines = [row for seed in range(3) for trial in (0, 1, 2, 3, 5, 7) for row in policy(seed, trial)]
-        path = self.write("angles.csv", HEADER, *lines)
+        path = self.writeLines("angles.csv", HEADER, *lines)
         self.assertDrawn(trajectory_distributions.main, [path], PAGE_WIDTH)
         self.assertDrawn(trajectory_distributions.main, [path, "--seconds", "2.5"], PAGE_WIDTH)
 
@@ -89,7 +89,7 @@ class TrajectoryDistributionsTest(figure_case.FigureCase):
                             (rows(0, 0, "predicted", 1.0), "angle_std_rad must hold numbers, got ''"),
                             (rows(0, 0, "predicted", 1.0, -0.1), "angle_std_rad must be >= 0, got -0.1"),
                             (policy(0, 0) + policy(0, 0), "step 0 of seed 0 after 125 frames (evaluation) twice")):
-            path = self.write("angles.csv", HEADER, *lines)
+            path = self.writeLines("angles.csv", HEADER, *lines)
             self.assertRefused(trajectory_distributions.main, [path], path, part)
 
     def test_a_time_that_is_none_ends_with_code_2(self):

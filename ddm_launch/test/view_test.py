@@ -4,11 +4,8 @@
 import collections
 import math
 import os
-import shutil
 import sys
-import tempfile
 import time
-import unittest
 
 from ddm_msgs.msg import PlanScalars
 from diagnostic_msgs.msg import DiagnosticArray
@@ -21,6 +18,7 @@ from visualization_msgs.msg import MarkerArray
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import roslaunch, run_experiment  # noqa: E402
 from run_files import differences, expected_files  # noqa: E402
+from scratch_case import SharedScratchCase  # noqa: E402
 
 TRIALS = 3
 FRAMES = 2 * 30 * (TRIALS + 1)
@@ -34,27 +32,23 @@ def pixels(image):
     return np.frombuffer(image.data, np.uint8).reshape(image.height, image.width, -1)
 
 
-class ViewTest(unittest.TestCase):
+class ViewTest(SharedScratchCase):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.mkdtemp()
-        cls.run_folder = os.path.join(cls.scratch, "run")
+        super().setUpClass()
+        cls.run_folder = os.path.join(cls.class_scratch, "run")
         cls.heard = collections.defaultdict(list)
         rospy.init_node("view_test", disable_signals=True)
         for topic, message in TOPICS.items():
             rospy.Subscriber(topic, message, cls.heard[topic].append)
         start = time.monotonic()
-        _, cls.output = roslaunch(cls.scratch, "experiment.launch", "preset:=debug", "seed:=1", "trials:=%d" % TRIALS,
-                                  "view:=true", "frame_rate:=%g" % RATE, "runs:=" + cls.run_folder, port=0,
-                                  limit_s=110.0)
+        _, cls.output = roslaunch(cls.class_scratch, "experiment.launch", "preset:=debug", "seed:=1",
+                                  "trials:=%d" % TRIALS, "view:=true", "frame_rate:=%g" % RATE,
+                                  "runs:=" + cls.run_folder, port=0, limit_s=110.0)
         cls.wall_s = time.monotonic() - start
 
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.scratch)
-
     def test_an_experiment_that_is_watched_and_slowed_down_is_the_same(self):
-        unwatched = os.path.join(self.scratch, "unwatched")
+        unwatched = self.file("unwatched")
         code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", TRIALS, "--out", unwatched)
         self.assertEqual(code, 0, output)
         names = [name for name in expected_files(TRIALS) if not name.endswith((".bag", "config.yaml"))]

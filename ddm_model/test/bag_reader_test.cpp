@@ -30,6 +30,18 @@ class BagReader : public ::testing::Test {
     for (const Piece& piece : content.data.pieces()) sizes.push_back(piece.size);
     return sizes;
   }
+  /// Five images, each answered by torque 1 on the first of the topics, 2 on the second, and so on.
+  void writeTorqueTopics(const std::vector<std::string>& topics) const {
+    ToyBag bag(path_);
+    for (int t = 0; t < 5; ++t) {
+      const double stamp = 1.0 + 0.2 * t;
+      bag.write("/camera/image_raw", stamp, imageMessage(stamp, toyImage(0.1 * t)));
+      double torque = 0.0;
+      for (const std::string& topic : topics) {
+        bag.write(topic, stamp, torqueMessage(stamp, {torque += 1.0}));
+      }
+    }
+  }
   ::testing::AssertionResult isRefused(const std::vector<std::string>& parts,
                                        const BagOptions& options = BagOptions()) const {
     std::vector<std::string> all = {"bag " + path_};
@@ -160,15 +172,7 @@ TEST_F(BagReader, DoesNotTakeHalfAWordForATopic) {
 }
 
 TEST_F(BagReader, AsksWhichOfTwoTopicsIsMeantAndTakesTheAnswer) {
-  {
-    ToyBag bag(path_);
-    for (int t = 0; t < 5; ++t) {
-      const double stamp = 1.0 + 0.2 * t;
-      bag.write("/camera/image_raw", stamp, imageMessage(stamp, toyImage(0.1 * t)));
-      bag.write("/left/torque", stamp, torqueMessage(stamp, {1.0}));
-      bag.write("/right/torque", stamp, torqueMessage(stamp, {2.0}));
-    }
-  }
+  writeTorqueTopics({"/left/torque", "/right/torque"});
   EXPECT_TRUE(isRefused({"/left/torque", "/right/torque", "data_set/torque_topic"}));
   BagOptions options;
   options.torque_topic = "/right/torque";
@@ -176,16 +180,7 @@ TEST_F(BagReader, AsksWhichOfTwoTopicsIsMeantAndTakesTheAnswer) {
 }
 
 TEST_F(BagReader, ATopicOfTheVeryNameWinsOverOneInANamespace) {
-  {
-    ToyBag bag(path_);
-    for (int t = 0; t < 5; ++t) {
-      const double stamp = 1.0 + 0.2 * t;
-      bag.write("/camera/image_raw", stamp, imageMessage(stamp, toyImage(0.1 * t)));
-      bag.write("/left/torque", stamp, torqueMessage(stamp, {1.0}));
-      bag.write("/torque", stamp, torqueMessage(stamp, {2.0}));
-      bag.write("/right/torque", stamp, torqueMessage(stamp, {3.0}));
-    }
-  }
+  writeTorqueTopics({"/left/torque", "/torque", "/right/torque"});
   EXPECT_EQ(read().data.torques()(0, 0), 2.0);
 }
 

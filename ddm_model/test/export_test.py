@@ -4,8 +4,6 @@
 import os
 import re
 import sys
-import tempfile
-import unittest
 
 import matplotlib.image
 import numpy as np
@@ -27,16 +25,11 @@ def readme_functions(npz):
     return names
 
 
-class ExportTest(unittest.TestCase):
+class ExportTest(toy_robot.ToyRobotCase):
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.scratch = scratch.name
+        super().setUp()
         self.bag, self.npz = self.file("trial.bag"), self.file("model.npz")
         self.images, self.torques = toy_robot.write_bag(self.bag, num_frames=40)
-
-    def file(self, name):
-        return os.path.join(self.scratch, name)
 
     def export(self, model):
         code, output = toy_robot.call("export", "--model", model, "--out", self.npz)

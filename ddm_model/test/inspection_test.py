@@ -5,10 +5,7 @@ import base64
 import html.parser
 import io
 import os
-import shutil
 import sys
-import tempfile
-import unittest
 
 import matplotlib.image
 import numpy as np
@@ -47,11 +44,11 @@ class Page(html.parser.HTMLParser):
         return matplotlib.image.imread(io.BytesIO(base64.b64decode(data)), format="png")
 
 
-class InspectionTest(unittest.TestCase):
+class InspectionTest(toy_robot.ToyRobotCase):
     @classmethod
     def setUpClass(cls):
         """A model of two bags, and the report of what it makes of a third."""
-        cls.class_scratch = tempfile.mkdtemp()
+        cls.class_scratch = toy_robot.new_folder(cls.addClassCleanup)
         bags = [os.path.join(cls.class_scratch, name) for name in ("first.bag", "second.bag", "unseen.bag")]
         for seed, bag in enumerate(bags):
             toy_robot.write_bag(bag, num_frames=200, seed=seed + 1)
@@ -61,18 +58,9 @@ class InspectionTest(unittest.TestCase):
         cls.code, cls.words = toy_robot.call("inspect", "--model", cls.model, "--out", cls.report, "--steps", 6,
                                              cls.unseen)
 
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.class_scratch)
-
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.scratch = scratch.name
+        super().setUp()
         self.out = self.file("report")
-
-    def file(self, name):
-        return os.path.join(self.scratch, name)
 
     def inspect(self, *arguments):
         code, self.output = toy_robot.call("inspect", "--model", self.model, "--out", self.out, *arguments)

@@ -1,7 +1,9 @@
-# A robot for tests of the Python side: a blob that a torque moves around a circle; its bags and models.
+# A robot for tests of the Python side: a blob that a torque moves around a circle; its bags and models, and a folder.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import subprocess
+import tempfile
+import unittest
 
 import numpy as np
 import rosbag
@@ -70,3 +72,20 @@ def train(folder, bags, model_options="", training_options=""):
     code, output = call("train_from_bags", "--config", config, "--out", out, *bags)
     assert code == 0, output
     return out
+
+
+def new_folder(add_cleanup):
+    """A new folder, which goes when the test or class of `add_cleanup` has ended."""
+    folder = tempfile.TemporaryDirectory()
+    add_cleanup(folder.cleanup)
+    return folder.name
+
+
+class ToyRobotCase(unittest.TestCase):
+    """scratch: a folder of each test."""
+
+    def setUp(self):
+        self.scratch = new_folder(self.addCleanup)
+
+    def file(self, name):
+        return os.path.join(self.scratch, name)

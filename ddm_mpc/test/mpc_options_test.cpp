@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "controller_options.h"
+#include "manual.h"
 
 namespace ddm {
 namespace {
@@ -99,25 +100,10 @@ TEST(ControllerOptions, RefuseValuesOutOfRangeNanIncluded) {
   }
 }
 
-std::vector<std::string> keysOf(const YAML::Node& block) {
-  std::vector<std::string> keys;
-  for (const auto& entry : block) keys.push_back(entry.first.as<std::string>());
-  return keys;
-}
-
-/// Each key of the block stands in the manual with its default, in the order of the struct.
-template <class Options>
-void expectManual(const std::string& block) {
-  ParamReader reader = ParamReader::fromFiles({kManual});
-  const YAML::Node defaults = toYaml(Options());
-  EXPECT_EQ(YAML::Dump(toYaml(reader.read<Options>(block))), YAML::Dump(defaults));
-  EXPECT_EQ(keysOf(YAML::LoadFile(kManual)[block]), keysOf(defaults));
-}
-
-TEST(Manual, GivesTheDefaultsOfTheBlockMpc) { expectManual<MpcOptions>("mpc"); }
+TEST(Manual, GivesTheDefaultsOfTheBlockMpc) { expectManual<MpcOptions>(kManual, "mpc"); }
 
 TEST(Manual, GivesTheDefaultsOfTheBlockController) {
-  expectManual<ControllerOptions>("controller");
+  expectManual<ControllerOptions>(kManual, "controller");
 }
 
 TEST(Manual, HoldsNothingElse) {

@@ -4,7 +4,6 @@
 #include <ros/ros.h>
 
 #include <limits>
-#include <memory>
 
 #include "ddm_sim/plant_factory.h"
 #include "sim_client.h"
@@ -15,15 +14,8 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-class Lockstep : public ::testing::Test {
+class Lockstep : public SimNodeTest {
  protected:
-  static void SetUpTestSuite() {
-    client_ = std::make_unique<SimClient>();
-    ASSERT_TRUE(client_->connect());
-  }
-  static void TearDownTestSuite() { client_.reset(); }
-  void SetUp() override { client_->forget(); }
-
   /// Starts a trial and waits for its first image.
   /// @return its stamp
   static ros::Time begin(std::uint32_t num_steps, const std::vector<double>& start = {0.0, 0.0}) {
@@ -43,11 +35,7 @@ class Lockstep : public ::testing::Test {
     ASSERT_TRUE(client_->waitForImages(shown + 1));
     EXPECT_EQ(client_->images[shown].header.stamp, response.start);
   }
-
-  static std::unique_ptr<SimClient> client_;
 };
-
-std::unique_ptr<SimClient> Lockstep::client_;
 
 // The first test, by its place in this file: nothing has been reset before it.
 TEST_F(Lockstep, ShowsClockAndGoalButNoImageBeforeTheFirstReset) {

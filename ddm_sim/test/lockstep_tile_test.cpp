@@ -23,19 +23,7 @@ std::vector<double> toVector(const Eigen::VectorXd& values) {
   return std::vector<double>(values.data(), values.data() + values.size());
 }
 
-class LockstepTile : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    client_ = std::make_unique<SimClient>();
-    ASSERT_TRUE(client_->connect());
-  }
-  static void TearDownTestSuite() { client_.reset(); }
-  void SetUp() override { client_->forget(); }
-
-  static std::unique_ptr<SimClient> client_;
-};
-
-std::unique_ptr<SimClient> LockstepTile::client_;
+using LockstepTile = SimNodeTest;
 
 TEST_F(LockstepTile, ShowsTheGoalStateOnTheGoalImage) {
   ASSERT_TRUE(client_->waitUntil([] { return !client_->goals.empty(); }));

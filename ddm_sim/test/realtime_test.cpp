@@ -6,20 +6,14 @@
 
 #include <algorithm>
 #include <limits>
-#include <memory>
 
 #include "sim_client.h"
 
 namespace ddm {
 namespace {
 
-class Realtime : public ::testing::Test {
+class Realtime : public SimNodeTest {
  protected:
-  static void SetUpTestSuite() {
-    client_ = std::make_unique<SimClient>();
-    ASSERT_TRUE(client_->connect());
-  }
-  static void TearDownTestSuite() { client_.reset(); }
   void SetUp() override {
     client_->reset(0, {0.0, 0.0});
     client_->forget();
@@ -40,11 +34,7 @@ class Realtime : public ::testing::Test {
     return std::count_if(client_->truths.begin(), client_->truths.end(),
                          [effort](const auto& truth) { return truth.effort[0] == effort; });
   }
-
-  static std::unique_ptr<SimClient> client_;
 };
-
-std::unique_ptr<SimClient> Realtime::client_;
 
 TEST_F(Realtime, ShowsImagesByItselfStampedWithWallTime) {
   const double before = ros::WallTime::now().toSec();

@@ -14,6 +14,7 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -118,6 +119,19 @@ class SimClient {
   ros::Subscriber image_, truth_, goal_, clock_, log_;
   ros::Publisher torque_;
   ros::ServiceClient reset_;
+};
+
+/// Tests of one sim_node: they share a client, which forgets before each of them.
+class SimNodeTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    client_ = std::make_unique<SimClient>();
+    ASSERT_TRUE(client_->connect());
+  }
+  static void TearDownTestSuite() { client_.reset(); }
+  void SetUp() override { client_->forget(); }
+
+  inline static std::unique_ptr<SimClient> client_;
 };
 
 }  // namespace ddm
