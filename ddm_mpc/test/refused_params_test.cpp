@@ -1,41 +1,13 @@
-// Tests of mpc_node and view_node with bad parameters: they say what is wrong and end with an
-// error. SPDX-License-Identifier: BSD-3-Clause
+// Tests of mpc_node and view_node with bad parameters: they end and say what is wrong.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_msgs/testing/refused_params.h>
 #include <gtest/gtest.h>
 #include <ros/ros.h>
-#include <sys/wait.h>
-
-#include <array>
-#include <cstdio>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace ddm {
 namespace {
 
-/// Runs a program to its end, as the node /bad_node.
-std::pair<int, std::string> run(const std::string& program) {
-  const std::string command = program + " __name:=bad_node 2>&1";
-  FILE* pipe = popen(command.c_str(), "r");
-  std::string output;
-  std::array<char, 256> part;
-  while (fgets(part.data(), part.size(), pipe) != nullptr) output += part.data();
-  const int status = pclose(pipe);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, output};
-}
-
-class NodeParams : public ::testing::Test {
- protected:
-  void TearDown() override { ros::param::del("/bad_node"); }
-
-  static void expectRefused(const std::string& program, const std::vector<std::string>& words) {
-    const auto [exit_code, output] = run(program);
-    EXPECT_EQ(exit_code, 1);
-    for (const std::string& word : words) {
-      EXPECT_NE(output.find(word), std::string::npos) << word << " is not in: " << output;
-    }
-  }
-};
+using NodeParams = testing::RefusedParams;
 
 TEST_F(NodeParams, MpcNodeReportsTheProblemsOfAllBlocksAtOnce) {
   ros::param::set("/bad_node/mpc/horizon", 0);
