@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "interval_log.h"
 
-#include <ddm_model/model_file.h>
+#include <ddm_model/plain_file.h>
 #include <ddm_msgs/param_value.h>
 
 #include <stdexcept>

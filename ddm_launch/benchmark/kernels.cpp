@@ -5,6 +5,7 @@
 #include <ddm_model/initialisation.h>
 #include <ddm_model/model_file.h>
 #include <ddm_model/objective.h>
+#include <ddm_model/plain_file.h>
 #include <ddm_model/solver_log.h>
 #include <ddm_model/trainer.h>
 #include <ddm_mpc/ddm_plan_cost.h>

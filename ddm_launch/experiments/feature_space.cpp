@@ -3,6 +3,7 @@
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_model/long_term_prediction.h>
 #include <ddm_model/model_file.h>
+#include <ddm_model/plain_file.h>
 #include <ddm_model/solver_log.h>
 #include <ddm_mpc/epsilon_greedy.h>
 #include <ddm_mpc/mpc_policy.h>

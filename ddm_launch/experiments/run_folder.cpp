@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run_folder.h"
 
-#include <ddm_model/model_file.h>
+#include <ddm_model/plain_file.h>
 #include <ddm_msgs/param_value.h>
 #include <ddm_sim/plant_factory.h>
 
@@ -82,6 +82,7 @@ std::string RunFolder::bagPath(int trial) const {
 
 std::string RunFolder::beginTrial(int trial) const {
   folder_.makeFolder(numbered("trial", trial));
+  fs::remove(bagPath(trial));  // of an earlier try: nobody records over a bag
   return bagPath(trial);
 }
 

@@ -49,7 +49,7 @@ class RunFolder {
   const std::vector<TrialRow>& rows() const { return rows_; }
 
   std::string bagPath(int trial) const;
-  /// Makes the folder of a trial.
+  /// Makes the folder of a trial that has not been finished, without a bag.
   /// @return bagPath(trial)
   std::string beginTrial(int trial) const;
   void writeTrial(int trial, const TrialOutcome& outcome);

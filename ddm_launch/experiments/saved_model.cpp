@@ -3,6 +3,7 @@
 #include "saved_model.h"
 
 #include <ddm_model/model_file.h>
+#include <ddm_model/plain_file.h>
 #include <ddm_mpc/mpc_policy.h>
 
 #include <stdexcept>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco/pilco_method.h"
 
-#include <ddm_model/model_file.h>
+#include <ddm_model/plain_file.h>
 #include <ddm_model/solver_log.h>
 #include <ddm_model/testing/expect_error.h>
 #include <ddm_model/testing/random_matrix.h>

@@ -169,6 +169,14 @@ TEST_F(RunFolderTest, AFinishedTrialWithoutItsBagIsRefused) {
   expectRefused({"trial_001/trial.bag", "missing"});
 }
 
+TEST_F(RunFolderTest, ATrialBeginsWithoutTheBagOfAnEarlierTry) {
+  finish(1);
+  RunFolder folder(configuration_);
+  writeText(folder.beginTrial(1), "a bag");
+  EXPECT_FALSE(fs::exists(folder.beginTrial(1)));
+  EXPECT_TRUE(fs::exists(file("trial_000/trial.bag")));
+}
+
 TEST_F(RunFolderTest, RowsThatAreNotThoseOfTheExperimentAreRefused) {
   finish(2);
   writeText(file("trials.csv"), formatTrialsCsv({toyRow(0), toyRow(2)}));

@@ -69,8 +69,7 @@ bool TrialRecorder::start(ddm_msgs::StartRecording::Request& request,
   after_ = request.after;
   goal_written_ = false;
   try {
-    access_.require(request.path);
-    access_.require(request.path + ".active");  // what is opened, and may be a link too
+    access_.requireNew(request.path);
     bag_ = std::make_unique<BagWriter>(request.path, bag_options_);
     response.success = true;
   } catch (const std::exception& e) {
@@ -87,7 +86,7 @@ bool TrialRecorder::stop(ddm_msgs::StopRecording::Request& request,
     response.message = "nothing is being recorded";
     return true;
   }
-  const int due = static_cast<int>(request.num_steps);
+  const std::int64_t due = request.num_steps;
   // Other services run while this one waits: afterwards the recording may be another one.
   const int recording = num_recordings_;
   const auto replaced = [&] { return bag_ == nullptr || num_recordings_ != recording; };

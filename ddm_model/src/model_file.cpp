@@ -202,8 +202,6 @@ void writeContent(const Ddm& model, Writer* out) {
   out->array(model.goal().data(), model.goal().size());
 }
 
-std::string reason() { return std::strerror(errno); }
-
 }  // namespace
 
 std::string serialiseModel(const Ddm& model) {
@@ -258,43 +256,5 @@ std::string checksum(const std::string& text) {
 }
 
 std::string modelId(const std::string& bytes) { return checksum(bytes); }
-
-void writeFileAtomically(const std::string& path, const std::string& bytes) {
-  const std::string unfinished = path + ".unfinished";
-  const int file = ::open(unfinished.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (file < 0) throw std::runtime_error("cannot write " + unfinished + ": " + reason());
-  size_t written = 0;
-  while (written < bytes.size()) {
-    const ssize_t count = ::write(file, bytes.data() + written, bytes.size() - written);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) {
-      const std::string why = reason();
-      ::close(file);
-      ::unlink(unfinished.c_str());
-      throw std::runtime_error("cannot write " + unfinished + ": " + why);
-    }
-    written += static_cast<size_t>(count);
-  }
-  const bool stored = ::fsync(file) == 0;
-  const bool closed = ::close(file) == 0;
-  if (!stored || !closed || ::rename(unfinished.c_str(), path.c_str()) != 0) {
-    const std::string why = reason();
-    ::unlink(unfinished.c_str());
-    throw std::runtime_error("cannot write " + path + ": " + why);
-  }
-}
-
-std::string readFile(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  file.peek();  // a folder can be opened; only reading from it fails
-  if (!file.is_open() || file.bad()) {
-    throw std::runtime_error("cannot read " + path + ": " + reason());
-  }
-  file.clear();  // an empty file is no failure
-  std::ostringstream bytes;
-  bytes << file.rdbuf();
-  if (file.bad()) throw std::runtime_error("cannot read " + path + ": " + reason());
-  return bytes.str();
-}
 
 }  // namespace ddm

@@ -50,6 +50,28 @@ TEST_F(BagAccessTest, TakesASingleBagAndNotItsNeighbour) {
   EXPECT_TRUE(refuses(outside_ + "/other.bag"));
 }
 
+TEST_F(BagAccessTest, RefusesWhatIsNoPath) {
+  for (const std::string& path : {std::string(), run_ + std::string("/a\0.bag", 7)}) {
+    EXPECT_TRUE(
+        throwsNaming<std::runtime_error>([&] { access_.require(path); }, {"this is no path"}));
+  }
+}
+
+TEST_F(BagAccessTest, ARecordingIsANewBag) {
+  EXPECT_NO_THROW(access_.requireNew(run_ + "/trial_000/trial.bag"));
+  for (const std::string name : {"/trials.csv", "/", "/trial_000/trial", "/.bag"}) {
+    EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { access_.requireNew(run_ + name); },
+                                                 {run_ + name, "must end in .bag"}));
+  }
+  std::ofstream(run_ + "/trial_000/trial.bag") << "a bag";
+  fs::create_symlink(run_ + "/nowhere", run_ + "/link.bag");
+  for (const std::string name : {"/trial_000/trial.bag", "/link.bag"}) {
+    EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { access_.requireNew(run_ + name); },
+                                                 {run_ + name, "exists already"}));
+  }
+  EXPECT_THROW(access_.requireNew(outside_ + "/new.bag"), std::runtime_error);
+}
+
 TEST_F(BagAccessTest, RefusesAbsolutePathsElsewhere) {
   EXPECT_TRUE(refuses("/etc/passwd"));
   EXPECT_TRUE(refuses("/dev/zero"));

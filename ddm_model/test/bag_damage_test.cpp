@@ -11,7 +11,7 @@
 
 #include "ddm_bag_io/bag_reader.h"
 #include "ddm_bag_io/bag_writer.h"
-#include "ddm_model/model_file.h"
+#include "ddm_model/plain_file.h"
 #include "ddm_model/testing/expect_error.h"
 #include "ddm_model/testing/temp_folder.h"
 #include "toy_bags.h"

@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "ddm_model/model_file.h"
+#include "ddm_model/plain_file.h"
 #include "ddm_model/testing/temp_folder.h"
 #include "subprocess.h"
 #include "toy_data.h"

@@ -5,17 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <filesystem>
 #include <stdexcept>
 
 #include "ddm_model/testing/expect_error.h"
-#include "ddm_model/testing/temp_folder.h"
 #include "toy_data.h"
 
 namespace ddm {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::throwsNaming;
 using testing::toyModel;
 
@@ -190,46 +187,6 @@ TEST(ModelFile, EqualModelsHaveEqualIdsAndOthersOtherIds) {
 TEST(ModelFile, ItsChecksumIsTheCommonCrc32) {
   EXPECT_EQ(checksum("123456789"), "cbf43926");  // the check value of CRC-32
   EXPECT_EQ(checksum(""), "00000000");
-}
-
-TEST(ModelFile, IsWrittenAndReadAgain) {
-  const testing::TempFolder folder;
-  const std::string path = folder.file("a.model"), bytes = serialiseModel(toyModel());
-  writeFileAtomically(path, "an older and much shorter file");
-  writeFileAtomically(path, bytes);
-  EXPECT_EQ(readFile(path), bytes);
-  EXPECT_FALSE(fs::exists(path + ".unfinished"));
-  writeFileAtomically(folder.file("empty"), "");
-  EXPECT_EQ(readFile(folder.file("empty")), "");
-}
-
-TEST(ModelFile, AWriteThatFailsLeavesTheOldFile) {
-  const testing::TempFolder folder;
-  const std::string path = folder.file("a.model");
-  writeFileAtomically(path, "old");
-  fs::create_directory(path + ".unfinished");  // cannot be opened for writing, not even by root
-  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { writeFileAtomically(path, "new"); },
-                                               {path, "directory"}));
-  EXPECT_EQ(readFile(path), "old");
-}
-
-TEST(ModelFile, ARenameThatFailsLeavesNothingBehind) {
-  const testing::TempFolder folder;
-  const std::string path = folder.file("a.model");
-  fs::create_directories(path + "/in_the_way");
-  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { writeFileAtomically(path, "new"); }, {path}));
-  EXPECT_FALSE(fs::exists(path + ".unfinished"));
-  EXPECT_TRUE(fs::exists(path + "/in_the_way"));
-}
-
-TEST(ModelFile, FilesThatCannotBeReadAreNamed) {
-  const testing::TempFolder folder;
-  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { readFile(folder.file("missing")); },
-                                               {folder.file("missing"), "No such file"}));
-  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { readFile(folder.file("")); },
-                                               {folder.file(""), "directory"}));
-  EXPECT_TRUE(throwsNaming<std::runtime_error>(
-      [&] { writeFileAtomically(folder.file("missing/a"), "new"); }, {folder.file("missing/a")}));
 }
 
 }  // namespace

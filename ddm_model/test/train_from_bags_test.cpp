@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "ddm_model/model_file.h"
+#include "ddm_model/plain_file.h"
 #include "ddm_model/testing/temp_folder.h"
 #include "subprocess.h"
 #include "toy_bags.h"

@@ -161,6 +161,15 @@ TEST_F(TrialRecorderTest, RefusesAPathThatCannotBeWritten) {
   EXPECT_FALSE(stop(0).success);  // and nothing is being recorded then
 }
 
+TEST_F(TrialRecorderTest, RefusesToRecordOverAFile) {
+  ASSERT_TRUE(start(path_)) << message_;
+  publishFrames(3);
+  ASSERT_TRUE(stop(3).success);
+  EXPECT_FALSE(start(path_));
+  EXPECT_TRUE(contains(message_, path_ + " exists already")) << message_;
+  EXPECT_EQ(readBag(path_, testing::kToySize, BagOptions()).data.numFrames(), 3);
+}
+
 TEST_F(TrialRecorderTest, ASecondStartLeavesTheFirstBagActive) {
   ASSERT_TRUE(start(path_)) << message_;
   const std::string second = folder_.file("second.bag");

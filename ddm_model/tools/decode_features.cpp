@@ -1,6 +1,7 @@
 // decode_features: the images y_hat = g(z) of given features. Features in, pictures out.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_model/model_file.h>
+#include <ddm_model/plain_file.h>
 #include <ddm_msgs/tool.h>
 
 #include <cstdio>

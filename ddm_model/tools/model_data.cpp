@@ -2,6 +2,7 @@
 // export. SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/model_config.h>
 #include <ddm_model/model_file.h>
+#include <ddm_model/plain_file.h>
 #include <ddm_msgs/param_value.h>
 #include <ddm_msgs/tool.h>
 #include <ros/time.h>

@@ -3,6 +3,7 @@
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_bag_io/model_config.h>
 #include <ddm_model/model_file.h>
+#include <ddm_model/plain_file.h>
 #include <ddm_model/solver_log.h>
 #include <ddm_model/trainer.h>
 #include <ddm_msgs/image_codec.h>

@@ -9,6 +9,7 @@
 
 #include "ddm_msgs/topic_peers.h"
 #include "ddm_msgs/topics.h"
+#include "ddm_sim/few_numbers.h"
 
 namespace ddm {
 namespace {
@@ -80,8 +81,8 @@ void SimNode::onTorque(const ros::MessageEvent<ddm_msgs::Torque const>& event) {
     return;
   }
   std::ostringstream reason;
-  reason << "torque refused: " << event.getPublisherName() << " published [" << torque.transpose()
-         << "] on " << torqueTopic() << ", " << rule;
+  reason << "torque refused: " << event.getPublisherName() << " published " << fewNumbers(torque)
+         << " on " << torqueTopic() << ", " << rule;
   ROS_ERROR_STREAM(reason.str());
   torqueRefused(message.header.stamp, reason.str());
 }

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "ddm_sim/few_numbers.h"
 #include "run_stream.h"
 
 namespace ddm {
@@ -14,8 +15,8 @@ namespace {
 void requireFinite(const char* name, const Eigen::VectorXd& value, Eigen::Index size) {
   if (value.size() == size && value.allFinite()) return;
   std::ostringstream message;
-  message << "plant: the " << name << " must be " << size << " finite number(s), got ["
-          << value.transpose() << "]";
+  message << "plant: the " << name << " must be " << size << " finite number(s), got "
+          << fewNumbers(value);
   throw std::invalid_argument(message.str());
 }
 

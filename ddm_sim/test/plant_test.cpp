@@ -42,6 +42,18 @@ TEST(Plant, RefusesAStateOfAnotherSizeOrNotFiniteAndKeepsTheOldOne) {
   EXPECT_EQ(plant->state(), Eigen::Vector2d(1.0, 2.0));
 }
 
+TEST(Plant, NamesTheFirstOfManyNumbers) {
+  const auto plant = pendulum();
+  try {
+    plant->setState(Eigen::VectorXd::LinSpaced(1000000, 1.0, 1000000.0));
+    FAIL() << "taken";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_STREQ(e.what(),
+                 "plant: the state must be 2 finite number(s), got "
+                 "[ 1  2  3  4  5  6  7  8  9 10 ..., 1000000 in all]");
+  }
+}
+
 TEST(Plant, RefusesATorqueOfAnotherSizeOrNotFiniteAndDoesNotMove) {
   const auto plant = pendulum();
   EXPECT_THROW(plant->step(Eigen::VectorXd::Zero(0)), std::invalid_argument);

@@ -31,6 +31,9 @@ bool isIn(const fs::path& path, const fs::path& place) {
 }  // namespace
 
 void BagAccess::require(const std::string& path) const {
+  if (path.empty() || path.find('\0') != std::string::npos) {
+    throw std::runtime_error("bag '" + std::string(path.c_str()) + "': this is no path");
+  }
   std::string known;
   const fs::path asked = target(path);
   for (const std::string& bag : bags) {
@@ -42,6 +45,18 @@ void BagAccess::require(const std::string& path) const {
   throw std::runtime_error("bag " + path + meant + " must lie in " +
                            (known.empty() ? "no folder at all" : known) +
                            ", for this node may touch no others: add its folder to access/bags");
+}
+
+void BagAccess::requireNew(const std::string& path) const {
+  require(path);
+  require(path + ".active");  // what is opened, and may be a link too
+  if (fs::path(path).extension() != ".bag") {
+    throw std::runtime_error("bag " + path + ": the name of a recording must end in .bag");
+  }
+  if (fs::exists(fs::symlink_status(path))) {
+    throw std::runtime_error("bag " + path +
+                             " exists already: remove it, or record under another name");
+  }
 }
 
 std::vector<std::string> BagAccess::problems() const {

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_bag_io/bag_reader.h"
 
+#include <ddm_model/plain_file.h>
 #include <ddm_msgs/message_bytes.h>
 
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
@@ -127,13 +127,10 @@ BagContent readBag(const std::string& path, int image_size, const BagOptions& op
         ": its recording was not completed; `rosbag reindex` recovers what was "
         "written, then rename it to *.bag");
   }
-  std::error_code ignored;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error("bag " + path + ": " + std::strerror(errno));
-  if (std::filesystem::is_directory(path, ignored)) {
-    throw std::runtime_error("bag " + path + ": is a folder");
-  }
   try {
+    requirePlainFile(path);
+    std::ifstream in(path, std::ios::binary);
+    if (!in) throw std::runtime_error(std::strerror(errno));
     return readBagBytes(&in, image_size, options);
   } catch (const std::exception& e) {
     throw std::runtime_error("bag " + path + ": " + e.what());

@@ -6,13 +6,25 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <stdexcept>
 #include <vector>
 
 namespace ddm {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr std::uint32_t kChunkBytes = 32 * 1024;
+
+/// rosbag says what it could not do, and not why.
+std::string reason(const std::string& path, const std::exception& e) {
+  std::error_code ignored;
+  const fs::space_info space = fs::space(fs::absolute(path).parent_path(), ignored);
+  return e.what() + std::string(!ignored && space.available < kChunkBytes
+                                    ? ". No space left on device: make room, then record again"
+                                    : "");
+}
 
 }  // namespace
 
@@ -24,7 +36,7 @@ BagWriter::BagWriter(const std::string& path, const BagOptions& options)
     bag_->setChunkThreshold(kChunkBytes);
   } catch (const std::exception& e) {
     abandon();
-    throw std::runtime_error("cannot write bag " + path_ + ".active: " + e.what());
+    throw std::runtime_error("cannot write bag " + path_ + ".active: " + reason(path_, e));
   }
 }
 
@@ -48,7 +60,7 @@ void BagWriter::writeAt(const std::string& topic, const ros::Time& stamp, const 
   try {
     bag_->write(topic, std::max(stamp, ros::TIME_MIN), message);
   } catch (const std::exception& e) {
-    throw std::runtime_error("cannot write bag " + path_ + ".active: " + e.what());
+    throw std::runtime_error("cannot write bag " + path_ + ".active: " + reason(path_, e));
   }
 }
 
@@ -76,7 +88,7 @@ void BagWriter::close() {
   try {
     bag_->close();
   } catch (const std::exception& e) {
-    throw std::runtime_error("cannot complete bag " + path_ + ".active: " + e.what());
+    throw std::runtime_error("cannot complete bag " + path_ + ".active: " + reason(path_, e));
   }
   if (std::rename((path_ + ".active").c_str(), path_.c_str()) != 0) {
     throw std::runtime_error("cannot rename " + path_ + ".active: " + std::strerror(errno));

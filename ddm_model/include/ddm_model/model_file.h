@@ -30,11 +30,4 @@ std::string modelId(const std::string& bytes);
 /// CRC-32 of any text, 8 hexadecimal digits.
 std::string checksum(const std::string& text);
 
-/// Writes bytes to a file beside `path` and renames it: there is never half a model under the name.
-/// @throws std::runtime_error with the path and the reason
-void writeFileAtomically(const std::string& path, const std::string& bytes);
-
-/// @throws std::runtime_error with the path and the reason
-std::string readFile(const std::string& path);
-
 }  // namespace ddm

@@ -17,6 +17,10 @@ struct BagAccess {
   /// @throws std::runtime_error if the path is none of these and lies in none of them
   void require(const std::string& path) const;
 
+  /// The same for a bag that is to be recorded: nobody's request may replace a file.
+  /// @throws std::runtime_error also if the path does not end in .bag, or something is there
+  void requireNew(const std::string& path) const;
+
   template <class Visitor>
   void visit(Visitor& visitor) {
     visitor("bags", bags);

@@ -1,0 +1,21 @@
+// Files that are read and written as a whole.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+namespace ddm {
+
+/// A pipe would be waited for without end, and a device read until there is no memory.
+/// @throws std::runtime_error unless the path is a file with an end
+void requirePlainFile(const std::string& path);
+
+/// @throws std::runtime_error with the path and the reason
+std::string readFile(const std::string& path);
+
+/// Writes bytes to a file beside `path` and renames it: there is never half a file under the name.
+/// @throws std::runtime_error with the path and the reason, also if there is something at the path
+///         that is no plain file
+void writeFileAtomically(const std::string& path, const std::string& bytes);
+
+}  // namespace ddm
