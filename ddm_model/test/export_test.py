@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import re
+import resource
 import sys
 
 import matplotlib.image
@@ -94,6 +95,25 @@ class ExportTest(toy_robot.ToyRobotCase):
         self.assertEqual(code, 1)
         self.assertIn("model %s: is not a DDM model" % self.bag, output)
         self.assertFalse(os.path.exists(self.npz))
+
+    def test_a_file_that_cannot_be_completed_is_named_and_nothing_of_it_is_left(self):
+        model = toy_robot.train(self.scratch, [self.bag])
+        self.export(model)
+        size = os.path.getsize(self.npz)
+        os.remove(self.npz)
+        before = os.listdir(self.scratch)
+        limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+        self.addCleanup(resource.setrlimit, resource.RLIMIT_FSIZE, limits)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size - 1, limits[1]))  # larger than each of the arrays in it
+        code, output = toy_robot.call("export", "--model", model, "--out", self.npz)
+        self.assertEqual((code, output), (1, "export: cannot write %s: File too large\n" % self.npz))
+        self.assertEqual(os.listdir(self.scratch), before)
+
+    def test_a_pipe_is_not_replaced(self):
+        model = toy_robot.train(self.scratch, [self.bag])
+        os.mkfifo(self.npz)
+        code, output = toy_robot.call("export", "--model", model, "--out", self.npz)
+        self.assertEqual((code, output), (1, "export: cannot write %s: it is no plain file\n" % self.npz))
 
 
 if __name__ == "__main__":

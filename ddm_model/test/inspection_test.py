@@ -5,6 +5,7 @@ import base64
 import html.parser
 import io
 import os
+import resource
 import sys
 
 import matplotlib.image
@@ -148,6 +149,18 @@ class InspectionTest(toy_robot.ToyRobotCase):
         self.assertRefused(["missing.bag"], "--model", self.model, self.unseen, self.file("missing.bag"))
         self.assertRefused(["is not a DDM model"], "--model", self.unseen)
         self.assertRefused(["--steps must lie in [1, 1000], got 0"], "--model", self.model, "--steps", 0, code=2)
+
+    def test_what_cannot_be_written_is_named_and_there_is_no_report(self):
+        os.makedirs(os.path.join(self.out, "verdict.yaml"))
+        self.assertRefused(["inspect: cannot write %s: it is no plain file\n" % os.path.join(self.out, "verdict.yaml")],
+                           "--model", self.model)
+        self.out = self.file("small")
+        limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+        self.addCleanup(resource.setrlimit, resource.RLIMIT_FSIZE, limits)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (50000, limits[1]))
+        self.assertRefused(["inspect: cannot write %s: File too large\n" % os.path.join(self.out, "report.html")],
+                           "--model", self.model)
+        self.assertEqual(sorted(os.listdir(self.out)), ["model.yaml", "verdict.yaml"])
 
 
 if __name__ == "__main__":

@@ -1,12 +1,14 @@
 # Writes a model as one file of NumPy arrays.
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
+import io
 import os
 import sys
 import tempfile
 
 import numpy as np
 
+from ddm_model.complete_file import write_file
 from ddm_model.model_data import ModelDataError, read_arrays, write_model_data
 
 
@@ -15,10 +17,9 @@ def export(model, out):
     with tempfile.TemporaryDirectory() as folder:
         write_model_data(model, [], folder)
         arrays = read_arrays(os.path.join(folder, "model"))
-    unfinished = out + ".unfinished"
-    with open(unfinished, "wb") as stream:  # an open file: savez would add a suffix to a name
-        np.savez(stream, **arrays)
-    os.replace(unfinished, out)
+    stream = io.BytesIO()
+    np.savez(stream, **arrays)
+    write_file(out, stream.getvalue())
     return arrays
 
 

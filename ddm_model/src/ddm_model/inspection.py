@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
 import os
-import shutil
 import sys
 import tempfile
 
 import yaml
 
 from ddm_model import report, report_figures
+from ddm_model.complete_file import write_file
 from ddm_model.model_data import ModelData, ModelDataError, write_model_data
 from ddm_model.verdict import summary, verdict
 
@@ -103,11 +103,11 @@ def inspect(model, bags, out, options):
         os.makedirs(out, exist_ok=True)
         for name in KEPT:
             if os.path.exists(os.path.join(folder, name)):
-                shutil.copy(os.path.join(folder, name), os.path.join(out, name))
-    with open(os.path.join(out, "verdict.yaml"), "w") as stream:
-        yaml.safe_dump([dict(check._asdict()) for check in checks], stream, sort_keys=False)
-    with open(os.path.join(out, "report.html"), "w", encoding="utf-8") as stream:
-        stream.write(page)
+                with open(os.path.join(folder, name), "rb") as stream:
+                    write_file(os.path.join(out, name), stream.read())
+    write_file(os.path.join(out, "verdict.yaml"),
+               yaml.safe_dump([dict(check._asdict()) for check in checks], sort_keys=False))
+    write_file(os.path.join(out, "report.html"), page)
     return checks
 
 
