@@ -50,6 +50,26 @@ class FigureStyleTest(FigureCase):
         self.assertTrue(output.startswith("program: "), output)
         self.assertIn(self.out, output)
 
+    def test_a_picture_that_cannot_be_completed_is_named_and_the_former_one_stays(self):
+        before = self.draw("a.png")
+        self.limitFiles(len(before) - 1)
+        with self.assertRaises(OSError) as caught:
+            self.draw("a.png", height=1.5)
+        self.assertEqual(str(caught.exception), "cannot write %s: File too large" % self.file("a.png"))
+        self.assertEqual(os.listdir(self.scratch), ["a.png"])
+        with open(self.file("a.png"), "rb") as stream:
+            self.assertEqual(stream.read(), before)
+
+    def test_a_pipe_is_not_replaced_by_a_picture_and_a_link_stays_one(self):
+        os.mkfifo(self.file("pipe.png"))
+        with self.assertRaisesRegex(OSError, "^cannot write .*/pipe.png: it is no plain file$"):
+            self.draw("pipe.png")
+        os.symlink("a.png", self.file("link.png"))
+        picture = self.draw("link.png")
+        self.assertTrue(os.path.islink(self.file("link.png")))
+        with open(self.file("a.png"), "rb") as stream:
+            self.assertEqual(stream.read(), picture)
+
     def test_the_standard_error_is_that_of_a_sample(self):
         mean, error = mean_and_error([1.0, 2.0, 6.0])
         self.assertAlmostEqual(mean, 3.0)

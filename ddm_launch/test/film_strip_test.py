@@ -83,6 +83,17 @@ class FilmStripTest(ScratchCase):
         self.assertEqual(hanging.size, (51, 51))
         self.assertNotEqual(hanging.tobytes(), upright.tobytes())
 
+    def test_an_animation_that_cannot_be_completed_is_named_and_nothing_of_it_is_left(self):
+        self.assertEqual(self.callMain("--gif", self.gif)[0], 0)
+        size = os.path.getsize(self.gif)
+        self.assertGreater(size, os.path.getsize(os.path.join(self.run_folder, "film_strip.png")))
+        os.remove(self.gif)
+        self.limitFiles(size - 1)
+        code, output = self.callMain("--gif", self.gif)
+        self.assertEqual(code, 1)
+        self.assertIn("film_strip: cannot write %s: File too large\n" % self.gif, output)
+        self.assertEqual(os.listdir(self.scratch), ["run"])
+
     def test_a_plant_that_does_not_exist_is_named(self):
         synthetic_run.write_config(self.run_folder, plant="no_such_plant")
         code, output = self.callMain(make_camera=film_strip.Camera)
@@ -110,6 +121,14 @@ class FilmStripTest(ScratchCase):
         code, output = self.callMain(make_camera=film_strip.Camera)
         self.assertEqual(code, 1)
         self.assertIn("experiment/plant", output)
+
+    def test_a_configuration_that_is_no_text_is_named(self):
+        path = os.path.join(self.run_folder, "config.yaml")
+        with open(path, "wb") as stream:
+            stream.write(b"experiment: {plant: pend\xfclum}\n")
+        code, output = self.callMain(make_camera=film_strip.Camera)
+        self.assertEqual(code, 1)
+        self.assertIn("film_strip: %s cannot be read ('utf-8' codec" % path, output)
 
 
 if __name__ == "__main__":

@@ -89,6 +89,13 @@ class LearningCurveTest(ScratchCase):
         self.assertEqual(code, 1)
         self.assertIn("no final error", errors)
 
+    def test_a_picture_that_cannot_be_completed_is_named_and_nothing_of_it_is_left(self):
+        folder = self.makeRun("run", ["1"])
+        self.limitFiles(1000)
+        self.assertEqual(self.callMain(folder), (1, "learning_curve: cannot write %s: File too large\n" % (
+            os.path.join(folder, "learning_curve.png"))))
+        self.assertEqual(os.listdir(folder), ["trials.csv"])
+
     def test_a_picture_format_that_does_not_exist_is_refused(self):
         code, errors = self.callMain(self.makeRun("run", ["1"]), "--out", self.file("curve.nonsense"))
         self.assertEqual(code, 1)

@@ -1,6 +1,7 @@
 # Base of the tests that write files: a folder for each test and, where asked for, one for all tests of a class.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
+import resource
 import tempfile
 import unittest
 
@@ -25,6 +26,13 @@ class ScratchCase(unittest.TestCase):
     def file(self, *names):
         """A path in the folder of this test."""
         return os.path.join(self.scratch, *names)
+
+    def limitFiles(self, size):
+        """Until the end of the test no file that this process writes may grow beyond this size [bytes]: as on a full
+        disk, but without root."""
+        limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+        self.addCleanup(resource.setrlimit, resource.RLIMIT_FSIZE, limits)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
 
     def write(self, name, text):
         """Writes a text file into the folder of this test. Returns its path."""

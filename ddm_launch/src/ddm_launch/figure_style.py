@@ -1,6 +1,8 @@
 # How the figures of the paper's experiments look in print: sizes, letters, colours, and how they are saved.
 # SPDX-License-Identifier: BSD-3-Clause
 import contextlib
+import io
+import os
 import sys
 
 import matplotlib
@@ -10,6 +12,7 @@ import numpy as np  # noqa: E402
 from PIL import Image  # noqa: E402
 
 from ddm_launch.run_folder import RunFolderError  # noqa: E402
+from ddm_model.complete_file import write_file  # noqa: E402
 
 COLUMN_WIDTH, PAGE_WIDTH = 3.4, 7.0  # [in], to be printed at this size, in one column or across two
 DPI = 200
@@ -37,17 +40,39 @@ def new_figure(width, height):
             plt.close(figure)
 
 
+def require_png(out):
+    """Raises RunFolderError if the name has another suffix."""
+    if not out.lower().endswith(".png"):
+        raise RunFolderError("the picture must be a .png, got '%s': give --out another name" % out)
+
+
 def save(figure, out):
     """Writes a PNG without time or program in it: the same figure gives the same bytes.
 
     Raises RunFolderError if the name has another suffix, OSError if it cannot be written.
     """
-    if not out.lower().endswith(".png"):
-        raise RunFolderError("the picture must be a .png, got '%s': give --out another name" % out)
+    require_png(out)
     figure.canvas.draw()
     picture = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB")
     picture = picture.quantize(256)  # about half as large; only the colours of smoothed edges move, and not visibly
-    picture.save(out, format="PNG", optimize=True, dpi=(DPI, DPI))
+    save_picture(picture, out, "PNG", optimize=True, dpi=(DPI, DPI))
+
+
+def save_picture(picture, out, file_format, **options):
+    """Writes a PIL image. Raises OSError if the file cannot be written."""
+    stream = io.BytesIO()
+    picture.save(stream, format=file_format, **options)
+    write_file(out, stream.getvalue())
+
+
+def save_for_screen(figure, out):
+    """Writes a figure as the suffix of the name says, PNG if it has none.
+
+    Raises ValueError for a suffix that matplotlib does not know, OSError if the file cannot be written.
+    """
+    stream = io.BytesIO()
+    figure.savefig(stream, dpi=150, format=os.path.splitext(out)[1][1:].lower() or "png")
+    write_file(out, stream.getvalue())
 
 
 def write(program, out, draw):

@@ -11,6 +11,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib import font_manager  # noqa: E402
 from PIL import Image, ImageDraw, ImageFont  # noqa: E402
 
+from ddm_launch.figure_style import save_for_screen, save_picture  # noqa: E402
 from ddm_launch.images import Camera  # noqa: E402
 from ddm_launch.run_folder import Evaluation, RunFolderError, read_trials  # noqa: E402
 
@@ -69,7 +70,7 @@ def draw_strip(evaluation, end, camera, out):
         axes.set_xlim(edges[0], edges[-1])
         axes.set_xlabel("time [s]")
         axes.set_ylabel("torque [N m]")
-        figure.savefig(out, dpi=150)
+        save_for_screen(figure, out)
     finally:
         plt.close(figure)
 
@@ -94,7 +95,7 @@ def draw_animation(evaluation, end, camera, out):
         pictures.append(picture)
     period = round(1000 * (evaluation.time_s[1] - evaluation.time_s[0]))  # [ms]
     durations = [period] * end + [1500]  # the last image stays, then it starts over
-    pictures[0].save(out, format="GIF", save_all=True, append_images=pictures[1:], duration=durations, loop=0)
+    save_picture(pictures[0], out, "GIF", save_all=True, append_images=pictures[1:], duration=durations, loop=0)
 
 
 def main(arguments=None, make_camera=Camera):

@@ -9,6 +9,7 @@ matplotlib.use("Agg")  # no display needed
 import matplotlib.pyplot as plt  # noqa: E402
 
 from ddm_launch.averages import success_rates  # noqa: E402
+from ddm_launch.figure_style import save_for_screen  # noqa: E402
 from ddm_launch.run_folder import RunFolderError, read_trials  # noqa: E402
 
 # From the Okabe-Ito set: told apart by colour-blind readers, and the shapes differ too.
@@ -62,7 +63,7 @@ def draw(folders, out):
         axes.grid(True, color="#dddddd", linewidth=0.6)
         axes.set_axisbelow(True)
         axes.legend(loc="best")
-        figure.savefig(out, dpi=150)
+        save_for_screen(figure, out)
     finally:
         plt.close(figure)
 

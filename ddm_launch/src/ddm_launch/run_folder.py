@@ -114,7 +114,7 @@ def read_setting(folder, block, key, meaning):
     try:
         with open(path) as stream:
             return str(yaml.safe_load(stream)[block][key])
-    except OSError as error:
+    except (OSError, UnicodeDecodeError) as error:
         raise unreadable(path, error)
     except (yaml.YAMLError, KeyError, TypeError):
         raise RunFolderError("%s does not name the %s (key %s/%s)" % (path, meaning, block, key))

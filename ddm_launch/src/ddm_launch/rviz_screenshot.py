@@ -13,8 +13,10 @@ import time
 import numpy as np
 from PIL import Image
 
+from ddm_launch.figure_style import require_png, save_picture
 from ddm_launch.interruption import Interrupted, raised_as_exception
 from ddm_launch.programs import free_port
+from ddm_launch.run_folder import RunFolderError
 from ddm_launch.step_runner import Failure
 from ddm_launch.virtual_screen import VirtualScreen, missing_tools
 
@@ -138,16 +140,17 @@ def main(arguments=None):
     parser.add_argument("launch", nargs="*", metavar="NAME:=VALUE", help="arguments of experiment.launch, after --")
     options = parser.parse_args(arguments)
     try:
+        require_png(options.out)
         missing = missing_tools()
         if missing:
             raise Failure("these programs are missing: " + ", ".join(missing))
         with raised_as_exception():
             pixels = screenshot(options.after_trial, options.seconds, options.launch)
-        Image.fromarray(pixels).quantize(255, method=Image.MAXCOVERAGE).save(options.out, optimize=True)
+        save_picture(Image.fromarray(pixels).quantize(255, method=Image.MAXCOVERAGE), options.out, "PNG", optimize=True)
     except Interrupted as interruption:
         print("rviz_screenshot: %s" % interruption, file=sys.stderr)
         return 128 + interruption.number
-    except (Failure, OSError, ValueError) as error:  # ValueError: a suffix that cannot be written
+    except (Failure, RunFolderError, OSError) as error:
         print("rviz_screenshot: %s" % error, file=sys.stderr)
         return 1
     print("wrote %s" % options.out)
