@@ -76,7 +76,7 @@ run_sanitized() {  # address|thread PATTERN
 
 # Runs the fuzz targets; arguments are those of fuzz.sh.
 run_fuzzing() {
-  PYTHONPATH=$checkout/ddm_launch/src /usr/bin/python3 -c \
+  PYTHONPATH=$checkout/ddm_launch/src:$checkout/ddm_model/src /usr/bin/python3 -c \
     'import sys; from ddm_launch.fuzzing import main; sys.exit(main())' \
     --programs "$(sanitized_folder address)/devel/lib" "$@"
 }

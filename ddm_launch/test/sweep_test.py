@@ -6,10 +6,13 @@ import pty
 import shutil
 import signal
 import sys
+import unittest.mock
 
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from ddm_launch.seed_script import SeedProgram  # noqa: E402
+from ddm_launch.sweep_folder import SweepFolder  # noqa: E402
 from processes import call, find_program, run_experiment  # noqa: E402
 from run_files import differences, expected_files, files_in, read_bytes, read_rows, read_yaml  # noqa: E402
 from scratch_case import SharedScratchCase  # noqa: E402
@@ -251,6 +254,25 @@ class SweepTest(SharedScratchCase):
     def test_a_folder_that_cannot_be_written_is_named(self):
         for out in (self.write("plain_file", ""), "/proc/ddm"):
             self.assertEnds(1, ["cannot write into the folder", out], *self.debug(out=out))
+
+    def test_a_file_of_the_sweep_that_cannot_be_completed_is_named(self):
+        self.limitFiles(10)
+        path = os.path.join(self.out, "sweep.yaml")
+        self.assertEnds(1, ["sweep: cannot write %s: File too large\n" % path], *self.debug())
+        self.assertEqual(files_in(self.out), [".lock"])
+
+    def test_of_a_seed_that_said_nothing_the_exit_code_is_told_and_whether_the_disk_is_full(self):
+        with SweepFolder(self.out, SeedProgram("run_experiment", "debug", "pendulum", 1, [])) as folder:
+            for seed in (1, 11):
+                self.write(folder.log(seed), "")
+            self.assertEqual(folder.last_words(1), "it said nothing (%s)" % folder.log(1))
+            self.write(folder.joblog, "Seq\tHost\tExitval\tSignal\tCommand\n1\t:\t7\t0\tbash \"s 11\n"
+                                      "2\t:\t5\t0\tbash run_seed.sh 1\n3\t:")
+            self.assertEqual(folder.last_words(1), "it said nothing, exit code 5 (%s)" % folder.log(1))
+            space = shutil.disk_usage(self.out)
+            with unittest.mock.patch("shutil.disk_usage", lambda _path: space._replace(free=4096)):
+                self.assertEqual(folder.last_words(11),
+                                 "it said nothing, exit code 7, is the disk full? (%s)" % folder.log(11))
 
     def test_a_missing_engine_is_named_with_its_package(self):
         self.assertEnds(1, ["parallel is not installed", "apt-get install parallel"], *self.debug(),

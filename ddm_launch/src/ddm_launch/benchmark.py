@@ -1,7 +1,6 @@
 # Times what users wait for, beside what they would pick instead, and makes one table of it.
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
-import csv
 import importlib.util
 import json
 import os
@@ -12,9 +11,11 @@ import tempfile
 from tqdm import tqdm
 import yaml
 
+from ddm_launch.paper_tables import write_csv
 from ddm_launch.programs import Programs
 from ddm_launch.step_runner import Failure, package_path, processor, program
-from ddm_launch.sweep_folder import read_yaml, write_file
+from ddm_launch.sweep_folder import read_yaml
+from ddm_model.complete_file import write_file
 
 COLUMNS = ["name", "median_us", "p99_us", "peer_median_us"]
 TRIALS, ITERATIONS, RESTARTS, NUM_FRAMES = 15, 200, 9, 10000
@@ -122,14 +123,8 @@ class Benchmark:
         self.write()
 
     def write(self):
-        os.makedirs(self.out, exist_ok=True)
-        path = os.path.join(self.out, "speed.csv")
-        with open(path + ".part", "w", newline="") as stream:
-            writer = csv.writer(stream, lineterminator="\n")
-            writer.writerow(COLUMNS)
-            writer.writerows([name] + ["" if value == "" else "%.6g" % value for value in row]
-                             for name, row in self.rows.items())
-        os.replace(path + ".part", path)
+        write_csv(os.path.join(self.out, "speed.csv"), COLUMNS,
+                  [[name] + ["" if value == "" else float(value) for value in row] for name, row in self.rows.items()])
         machine = {"cpu": processor(), "cores": os.cpu_count(), "plan_iterations": self.plan_iterations,
                    "version": read_yaml(os.path.join(self.run, "config.yaml")).get("version", "?")}
         if self.peers:

@@ -29,8 +29,7 @@ class GnuParallel:
             raise SweepError("%s is not GNU parallel: apt-get install parallel" % shutil.which("parallel"))
 
     def _command(self, folder):
-        words = DIE_WITH_PARENT + ["parallel", "--plain", "--will-cite", "--joblog",
-                                   os.path.join(folder.path, "joblog.tsv")]
+        words = DIE_WITH_PARENT + ["parallel", "--plain", "--will-cite", "--joblog", folder.joblog]
         if self.jobs is not None:
             words += ["--jobs", str(self.jobs)]
         if self.hosts is not None:
@@ -46,10 +45,15 @@ class GnuParallel:
         """
         environment = dict(os.environ, PARALLEL_SHELL="/bin/bash",
                            PARALLEL_SSH=" ".join(DIE_WITH_PARENT + [os.environ.get("PARALLEL_SSH", "ssh")]))
-        with tempfile.TemporaryFile("w+") as arguments:
-            arguments.write("".join("%d\n" % seed for seed in seeds))
-            arguments.seek(0)
-            process = subprocess.Popen(self._command(folder), stdin=arguments, env=environment)
+        try:
+            with tempfile.TemporaryFile("w+") as arguments:
+                arguments.write("".join("%d\n" % seed for seed in seeds))
+                arguments.seek(0)
+                process = subprocess.Popen(self._command(folder), stdin=arguments, env=environment)
+        except OSError as error:
+            if error.filename:
+                raise
+            raise SweepError("cannot write the list of seeds into %s: %s" % (tempfile.gettempdir(), error.strerror))
         try:
             while True:
                 try:

@@ -1,6 +1,7 @@
 # Tables of the reproduction: from trials.csv and predictions.csv to what the paper claims.
 # SPDX-License-Identifier: BSD-3-Clause
 import csv
+import io
 import os
 import statistics
 
@@ -8,6 +9,7 @@ from ddm_launch import pilco_tables
 from ddm_launch.averages import mean_and_error, success_rates
 from ddm_launch.run_folder import number, read_csv, read_sweep
 from ddm_launch.schedules import SCHEDULES, read_predictions, read_predictions_csv, read_success
+from ddm_model.complete_file import write_file
 
 LATE_FRAMES = (900, 1500)  # the paper's curve is level over these
 NUM_POINTS = 15  # of the paper's curve that count: 100 to 1500 frames
@@ -21,11 +23,11 @@ TRIALS_OF_TIMES = (0, 4, 9, 14)  # 100 to 1500 frames
 def write_csv(path, header, rows):
     """The file appears only when it is complete."""
     os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
-    with open(path + ".part", "w", newline="") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(header)
-        writer.writerows([["%.6g" % cell if isinstance(cell, float) else cell for cell in row] for row in rows])
-    os.replace(path + ".part", path)
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows([["%.6g" % cell if isinstance(cell, float) else cell for cell in row] for row in rows])
+    write_file(path, text.getvalue())
 
 
 def success_table(trials, published):

@@ -3,16 +3,20 @@
 import csv
 import fcntl
 import os
+import shutil
 
 import yaml
 
 from ddm_launch.seed_script import SweepError
+from ddm_model.complete_file import write_file
 
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the former is ten times as fast
 
 # Keys of config.yaml in which the seeds of one sweep may differ.
 MAY_DIFFER = {"version", "experiment/seed", "experiment/trials", "experiment/runs", "experiment/timeout",
               "sim/watchdog"}
+
+FULL_BYTES = 1 << 20  # free space below which a disk may be why nothing was said
 
 
 def read_yaml(path):
@@ -23,13 +27,6 @@ def read_yaml(path):
     except (OSError, UnicodeDecodeError, yaml.YAMLError):
         return {}
     return tree if isinstance(tree, dict) else {}
-
-
-def write_file(path, text):
-    """The file appears, or changes, only when it is complete."""
-    with open(path + ".part", "w", newline="") as stream:
-        stream.write(text)
-    os.replace(path + ".part", path)
 
 
 def flat(tree, prefix=""):
@@ -108,6 +105,10 @@ class SweepFolder:
     def table(self):
         return os.path.join(self.path, "sweep.csv")
 
+    @property
+    def joblog(self):
+        return os.path.join(self.path, "joblog.tsv")
+
     def seed_folder(self, seed):
         return os.path.join(self.path, "seed_%04d" % seed)
 
@@ -135,7 +136,23 @@ class SweepFolder:
                 lines = [line.strip() for line in stream if line.strip()]
         except OSError:
             return "it was not started"
-        return "%s (%s)" % (lines[-1] if lines else "it said nothing", self.log(seed))
+        return "%s (%s)" % (lines[-1] if lines else self._silence(seed), self.log(seed))
+
+    def _silence(self, seed):
+        """What is known of a seed whose log is empty."""
+        code = self._exit_code(seed)
+        words = "it said nothing" if code is None else "it said nothing, exit code %s" % code
+        return words + (", is the disk full?" if shutil.disk_usage(self.path).free < FULL_BYTES else "")
+
+    def _exit_code(self, seed):
+        """As GNU parallel's job log tells it; None where it does not, as with Slurm."""
+        try:
+            with open(self.joblog, errors="replace", newline="") as stream:
+                jobs = list(csv.DictReader(stream, delimiter="\t", quoting=csv.QUOTE_NONE))
+        except (OSError, csv.Error):
+            return None
+        codes = [job.get("Exitval") for job in jobs if (job.get("Command") or "").endswith(" %d" % seed)]
+        return codes[-1] if codes else None
 
     def collect(self, seeds):
         """Writes sweep.csv over the finished ones of these seeds; removes it if there are none.
