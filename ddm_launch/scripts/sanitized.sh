@@ -16,8 +16,8 @@ sanitized_folder() {
   esac
 }
 
-# Portable instruction set, because reports shall be the same on all machines; -O1, because Eigen without any optimisation
-# takes minutes for what Release does in seconds. The baseline PILCO has no threads.
+# Portable instruction set, because reports shall be the same on all machines; -O1, because Eigen without any
+# optimisation takes minutes for what Release does in seconds. The baseline PILCO has no threads.
 build_sanitized() {  # address|thread TARGET...
   local folder fuzz=OFF pilco=OFF jobs
   folder=$(sanitized_folder "$1")

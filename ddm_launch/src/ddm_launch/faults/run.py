@@ -149,7 +149,8 @@ class FaultBench:
         report = os.path.join(os.path.dirname(folder), "report.txt")
         if case.phase == "at rest":
             return self.disturb_at_rest(case, folder)
-        arguments = self.experiment(folder, is_real_time(case)) + ["phase:=" + case.phase, "fault:=" + case.fault, "report:=" + report]
+        arguments = self.experiment(folder, is_real_time(case)) + [
+            "phase:=" + case.phase, "fault:=" + case.fault, "report:=" + report]
         output = self.launch(folder, "fault.launch", arguments)
         if not os.path.exists(report):
             return "not injected: the phase did not come\n" + output, None
