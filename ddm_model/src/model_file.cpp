@@ -2,17 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/model_file.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <boost/crc.hpp>
-#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 #include <type_traits>
 #include <vector>

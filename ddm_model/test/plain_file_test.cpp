@@ -1,5 +1,5 @@
-// Tests of whole files: what is written is read, what goes wrong is named, and what was there
-// stays. SPDX-License-Identifier: BSD-3-Clause
+// Tests of whole files: what is written is read, faults are named, and what was there stays.
+// SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/plain_file.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// model_data: a model, and what it makes of bags, as files that Python reads. See inspect and
-// export. SPDX-License-Identifier: BSD-3-Clause
+// model_data: a model, and what it makes of bags, as files for inspect and export.
+// SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/model_config.h>
 #include <ddm_model/model_file.h>
 #include <ddm_model/plain_file.h>

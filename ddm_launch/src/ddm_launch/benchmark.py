@@ -15,7 +15,7 @@ from ddm_launch.paper_tables import write_csv
 from ddm_launch.programs import Programs
 from ddm_launch.step_runner import Failure, package_path, processor, program
 from ddm_launch.sweep_folder import read_yaml
-from ddm_model.complete_file import write_file
+from ddm_model.plain_file import write_file
 
 COLUMNS = ["name", "median_us", "p99_us", "peer_median_us"]
 TRIALS, ITERATIONS, RESTARTS, NUM_FRAMES = 15, 200, 9, 10000

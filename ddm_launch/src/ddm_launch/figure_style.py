@@ -12,7 +12,7 @@ import numpy as np  # noqa: E402
 from PIL import Image  # noqa: E402
 
 from ddm_launch.run_folder import RunFolderError  # noqa: E402
-from ddm_model.complete_file import write_file  # noqa: E402
+from ddm_model.plain_file import write_file  # noqa: E402
 
 COLUMN_WIDTH, PAGE_WIDTH = 3.4, 7.0  # [in], to be printed at this size, in one column or across two
 DPI = 200

@@ -15,7 +15,7 @@ from tqdm import tqdm
 from ddm_launch.interruption import Interrupted, raised_as_exception
 from ddm_launch.run_folder import RunFolderError, read_csv
 from ddm_launch.step_runner import Failure
-from ddm_model.complete_file import write_file
+from ddm_model.plain_file import write_file
 
 CHECKOUT = os.path.realpath(os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "..", ".."))
 COLUMNS = ["target", "runs", "seconds", "corpus_files", "findings"]

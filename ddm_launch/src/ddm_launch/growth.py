@@ -14,7 +14,7 @@ from ddm_launch.programs import Programs
 from ddm_launch.run_folder import RunFolderError, number, read_csv
 from ddm_launch.step_runner import Failure, package_path, processor, program
 from ddm_launch.sweep_folder import read_yaml
-from ddm_model.complete_file import write_file
+from ddm_model.plain_file import write_file
 
 COLUMNS = "frames,size_px,pca_us,objective_gradient_us,peak_memory_mb"
 FRAMES, SIZES = (1000, 3000, 10000, 30000, 100000), (51, 71, 101, 142, 201)

@@ -10,7 +10,7 @@ import rospy
 import yaml
 
 from ddm_launch.node_processes import memory_kb, pid_of
-from ddm_model.complete_file import write_file
+from ddm_model.plain_file import write_file
 
 LIMIT_S = 600.0
 

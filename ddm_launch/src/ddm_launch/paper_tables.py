@@ -9,7 +9,7 @@ from ddm_launch import pilco_tables
 from ddm_launch.averages import mean_and_error, success_rates
 from ddm_launch.run_folder import number, read_csv, read_sweep
 from ddm_launch.schedules import SCHEDULES, read_predictions, read_predictions_csv, read_success
-from ddm_model.complete_file import write_file
+from ddm_model.plain_file import write_file
 
 LATE_FRAMES = (900, 1500)  # the paper's curve is level over these
 NUM_POINTS = 15  # of the paper's curve that count: 100 to 1500 frames

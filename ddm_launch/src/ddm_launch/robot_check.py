@@ -16,7 +16,7 @@ from std_srvs.srv import SetBool, Trigger
 import yaml
 
 from ddm_launch.step_runner import program
-from ddm_model.complete_file import write_file
+from ddm_model.plain_file import write_file
 
 LIMIT_S = 60.0
 SETTLED_STEPS = 10        # as `success` of an experiment has it ...

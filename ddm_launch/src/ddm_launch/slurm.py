@@ -11,7 +11,7 @@ import time
 
 from ddm_launch.interruption import held_back
 from ddm_launch.seed_script import SweepError
-from ddm_model.complete_file import write_file
+from ddm_model.plain_file import write_file
 
 END_LIMIT_S = 120.0  # Slurm itself kills what does not end by KillWait, 30 s by default
 

@@ -19,7 +19,7 @@ import yaml
 from ddm_launch.interruption import Interrupted, raised_as_exception
 from ddm_launch.run_folder import RunFolderError
 from ddm_launch.sweep_folder import differences, read_yaml
-from ddm_model.complete_file import write_file
+from ddm_model.plain_file import write_file
 
 # Where the file NAME.yaml lies that an option names: package, folder of its config/.
 FOLDERS = {"--preset": ("ddm_launch", "presets"), "--method": ("ddm_launch", "methods"),

@@ -8,7 +8,7 @@ import shutil
 import yaml
 
 from ddm_launch.seed_script import SweepError
-from ddm_model.complete_file import write_file
+from ddm_model.plain_file import write_file
 
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the former is ten times as fast
 

@@ -8,7 +8,7 @@ import tempfile
 
 import numpy as np
 
-from ddm_model.complete_file import write_file
+from ddm_model.plain_file import write_file
 from ddm_model.model_data import ModelDataError, read_arrays, write_model_data
 
 

@@ -8,7 +8,7 @@ import tempfile
 import yaml
 
 from ddm_model import report, report_figures
-from ddm_model.complete_file import write_file
+from ddm_model.plain_file import write_file
 from ddm_model.model_data import ModelData, ModelDataError, write_model_data
 from ddm_model.verdict import summary, verdict
 

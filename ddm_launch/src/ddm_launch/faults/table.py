@@ -14,7 +14,7 @@ from ddm_launch.faults.cases import CASES
 from ddm_launch.faults.run import FaultBench
 from ddm_launch.interruption import Interrupted, raised_as_exception
 from ddm_launch.step_runner import Failure
-from ddm_model.complete_file import write_file
+from ddm_model.plain_file import write_file
 
 COLUMNS = ["case", "phase", "fault", "expected", "observed", "passed"]
 

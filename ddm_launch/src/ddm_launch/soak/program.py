@@ -16,7 +16,7 @@ from ddm_launch.soak.figure import draw
 from ddm_launch.soak.frames import COLUMNS
 from ddm_launch.soak.run import SoakRun, lockstep, real_time
 from ddm_launch.step_runner import Failure
-from ddm_model.complete_file import write_file
+from ddm_model.plain_file import write_file
 
 RUNS = ("lockstep", "real_time")
 CALL_LIMIT_S = 30.0  # of a question to a master or node
