@@ -46,7 +46,7 @@ packages_to_test=(
   catkin-lint catkin-tools clang-format python3-wstool git valgrind
   clang libclang-rt-dev llvm
   xvfb imagemagick
-  openssh-client openssh-server iproute2
+  openssh-client openssh-server iproute2 nftables
   slurmctld slurmd slurm-client munge
 )
 
@@ -54,10 +54,11 @@ packages_to_test=(
 use_system_environment() {
   export PATH=/usr/bin:/bin:/usr/sbin:/sbin:$PATH
   unset PYTHONPATH PYTHONHOME LD_LIBRARY_PATH CMAKE_PREFIX_PATH
-  unset ROS_PACKAGE_PATH ROS_ROOT ROS_DISTRO ROS_MASTER_URI ROS_IP
+  unset ROS_PACKAGE_PATH ROS_ROOT ROS_DISTRO ROS_MASTER_URI
   export PYTHONNOUSERSITE=1
   export PYTHONUNBUFFERED=1 ROSCONSOLE_STDOUT_LINE_BUFFERED=1  # progress shows at once, through pipes too
-  export ROS_HOSTNAME=localhost                                # works where the host name does not resolve
+  # only this machine reaches master and nodes, unless the caller names an address
+  [[ -n ${ROS_IP:-}${ROS_HOSTNAME:-} ]] || export ROS_IP=127.0.0.1
 }
 
 # Stops unless this is the system that everything is tested on. Argument: an os-release file.

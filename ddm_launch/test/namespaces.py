@@ -1,6 +1,9 @@
 # Folders that are not there and machines that are not there, by Linux namespaces: nothing outlives the program.
 # SPDX-License-Identifier: BSD-3-Clause
+import shutil
 import subprocess
+
+import pages
 
 HIDE = 'while [ "$1" != -- ]; do mount -t tmpfs none "$1" || exit; shift; done; shift; exec "$@"'
 
@@ -17,6 +20,17 @@ def why_not(*kinds):
     return "" if done.returncode == 0 else "no namespaces (%s): run it as root" % done.stdout.strip()
 
 
+def why_no_nft():
+    """Why this process cannot filter the packets of its namespaces, or an empty text."""
+    return why_not("net", "mount") or ("" if shutil.which("nft") else "no program nft: install nftables")
+
+
+def nft_rule(peers=False):
+    """The rule for nftables as ddm_launch's page prints it. peers: with the line for several machines."""
+    rule, = pages.blocks(pages.read("ddm_launch/README.md"), "nft")
+    return rule.replace("# ip saddr", "ip saddr") if peers else rule
+
+
 class Network:
     """Machines with an address of their own on one wire, and with some folders that no other machine sees."""
 
@@ -29,8 +43,8 @@ class Network:
     def addMachine(self, own_folders):
         """Returns (its address, words before a command that runs there)."""
         holder = self._hold(["unshare", "--net"] + hiding(own_folders))
-        number = len(self._holders)
-        address, plug = "10.99.0.%d" % number, "plug%d" % number
+        number = len(self._holders) - 1  # without the hub
+        address, plug = "10.0.0.%d" % number, "plug%d" % number
         self._run(self._hub, "ip", "link", "add", plug, "type", "veth", "peer", "name", "eth0", "netns",
                   str(holder.pid))
         self._run(self._hub, "ip", "link", "set", plug, "master", "wire", "up")
@@ -38,6 +52,10 @@ class Network:
         for link in ("lo", "eth0"):
             self._run(holder, "ip", "link", "set", link, "up")
         return address, self._enter(holder)
+
+    def load(self, enter, rules):
+        """enter: words before a command on that machine. rules: text for nft."""
+        subprocess.run(enter + ["nft", "-f", "-"], input=rules, universal_newlines=True, check=True)
 
     def close(self):
         for holder in self._holders:

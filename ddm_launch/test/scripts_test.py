@@ -89,6 +89,12 @@ class ScriptsTest(ScratchCase):
                          (0, "policy says 101\n"))
         self.assertFalse(os.path.exists(policy))
 
+    def test_nodes_keep_to_this_machine_unless_the_caller_names_an_address(self):
+        for told, address in (("ROS_IP= ROS_HOSTNAME=", "127.0.0.1"), ("ROS_IP=10.0.0.2 ROS_HOSTNAME=", "10.0.0.2"),
+                              ("ROS_IP= ROS_HOSTNAME=robot", "")):
+            self.assertEqual(self.callFunction("export %s; use_system_environment; printf %%s \"$ROS_IP\"" % told),
+                             (0, address))
+
     def test_a_system_that_knows_localhost_is_left_alone(self):
         self.assertEqual(self.callFunction("as_root() { echo CALLED; }; getent() { true; }; ensure_localhost_resolves"),
                          (0, ""))

@@ -9,13 +9,13 @@ import unittest
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from namespaces import Network, why_not  # noqa: E402
+from namespaces import Network, nft_rule, why_no_nft  # noqa: E402
 from processes import Process, line_by_line, run_experiment  # noqa: E402
 from run_files import differences, expected_files, files_in  # noqa: E402
 from scratch_case import ScratchCase  # noqa: E402
 
 TRIALS = 1
-HINDRANCE = why_not("net", "mount")
+HINDRANCE = why_no_nft()
 
 
 @unittest.skipIf(HINDRANCE, "SEVERAL MACHINES ARE NOT TESTED: %s" % HINDRANCE)
@@ -40,6 +40,8 @@ class SeveralMachinesTest(ScratchCase):
     def test_three_machines_give_the_torques_and_models_of_one_process(self):
         trainer = self.network.addMachine([])
         plant, controller = self.network.addMachine([self.disk]), self.network.addMachine([self.disk])
+        for _, enter in (trainer, plant, controller):
+            self.network.load(enter, nft_rule(peers=True))
         runs = os.path.join(self.disk, "runs")
         same = ["preset:=debug"]
         parts = [self.startOn(machine, trainer[0], "--wait", "ddm_launch", "part.launch", part + ":=true", *same)

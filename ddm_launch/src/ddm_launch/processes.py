@@ -5,7 +5,7 @@ import signal
 import subprocess
 import threading
 
-from ddm_launch.programs import free_port
+from ddm_launch.programs import free_port, on_this_machine
 
 
 def line_by_line():
@@ -86,10 +86,11 @@ class Process:
 def start_roslaunch(log_folder, *arguments, port=None, folder=None, options=()):
     """Starts `roslaunch ddm_launch ...` with a master of its own; port 0 joins the master that runs already.
     options: of roslaunch itself."""
-    environment = dict(line_by_line(), ROS_HOME=log_folder, ROS_HOSTNAME="localhost")
+    environment = dict(line_by_line(), ROS_HOME=log_folder)
     if folder:
         environment["PWD"] = folder  # as a shell would set it
     own_master = [] if port == 0 else ["-p", str(port or free_port())]
     if own_master:
         environment.pop("ROS_MASTER_URI", None)
-    return Process(["roslaunch", *options] + own_master + ["ddm_launch"] + list(arguments), environment, folder)
+    return Process(["roslaunch", *options] + own_master + ["ddm_launch"] + list(arguments),
+                   on_this_machine(environment), folder)

@@ -3,6 +3,7 @@
 import os
 import socket
 import subprocess
+import urllib.parse
 
 from ddm_launch.step_runner import Failure
 
@@ -15,6 +16,15 @@ def free_port():
         return sock.getsockname()[1]
 
 
+def on_this_machine(environment):
+    """The environment for a ROS master and nodes that only this machine can reach: ROS_IP=127.0.0.1. One that names an
+    address (ROS_IP, ROS_HOSTNAME) or a master on another machine is left as it is."""
+    host = urllib.parse.urlparse(environment.get("ROS_MASTER_URI", "http://localhost")).hostname
+    if environment.get("ROS_IP") or environment.get("ROS_HOSTNAME") or host not in ("localhost", "127.0.0.1"):
+        return environment
+    return dict(environment, ROS_IP="127.0.0.1")
+
+
 class Programs:
     def __init__(self, scratch):
         """scratch: folder for the logs of nodes."""
@@ -22,7 +32,7 @@ class Programs:
 
     def call(self, what, command, **variables):
         """Returns what a program printed. variables: of its environment. Raises Failure with its last words."""
-        environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", **variables)
+        environment = on_this_machine(dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", **variables))
         try:
             done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                   universal_newlines=True, timeout=LIMIT_S, env=environment)
@@ -37,4 +47,4 @@ class Programs:
         """roslaunch returns 0 whatever happens: what its nodes leave behind is the verdict."""
         port = free_port()
         self.call(what, ["roslaunch", "-p", str(port)] + list(arguments), ROS_HOME=os.path.join(self.scratch, "ros"),
-                  ROS_MASTER_URI="http://localhost:%d" % port, ROS_HOSTNAME="localhost")
+                  ROS_MASTER_URI="http://localhost:%d" % port)

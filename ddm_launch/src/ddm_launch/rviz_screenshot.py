@@ -15,7 +15,7 @@ from PIL import Image
 
 from ddm_launch.figure_style import require_png, save_picture
 from ddm_launch.interruption import Interrupted, raised_as_exception
-from ddm_launch.programs import free_port
+from ddm_launch.programs import free_port, on_this_machine
 from ddm_launch.run_folder import RunFolderError
 from ddm_launch.step_runner import Failure
 from ddm_launch.virtual_screen import VirtualScreen, missing_tools
@@ -75,12 +75,12 @@ class Experiment:
     """experiment.launch with rviz on a screen, under a master of its own; a context."""
 
     def __init__(self, screen, scratch, arguments):
-        environment = dict(os.environ, ROS_HOME=os.path.join(scratch, "ros"), ROS_HOSTNAME="localhost",
-                           PYTHONUNBUFFERED="1", ROSCONSOLE_STDOUT_LINE_BUFFERED="1", **screen.environment)
+        environment = dict(os.environ, ROS_HOME=os.path.join(scratch, "ros"), PYTHONUNBUFFERED="1",
+                           ROSCONSOLE_STDOUT_LINE_BUFFERED="1", **screen.environment)
         environment.pop("ROS_MASTER_URI", None)
         self._command = ["roslaunch", "-p", str(free_port()), "ddm_launch", "experiment.launch", "rviz:=true",
                          "runs:=" + os.path.join(scratch, "run")] + arguments
-        self._environment = environment
+        self._environment = on_this_machine(environment)
         self.lines = []
 
     def __enter__(self):
