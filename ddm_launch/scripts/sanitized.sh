@@ -3,7 +3,7 @@
 
 loop_programs=(sim_node mpc_node view_node trial_recorder model_node experiment_node run_experiment evaluate)
 threaded_programs=(
-  model_node_test mpc_node_test refused_params_test replay_node robot_node train_from_bags trial_recorder_test
+  model_node_test mpc_node_stop_test mpc_node_test refused_params_test replay_node robot_node train_from_bags trial_recorder_test
 )
 gtests='^_ctest_[a-z_]+_gtest_'
 threaded_tests='^_ctest_ddm_[a-z]+_rostest_test_(model_node|mpc_node|replay|robot_node|trial_recorder)\.test$'

@@ -7,7 +7,6 @@
 #include <ddm_msgs/Torque.h>
 #include <ddm_msgs/topic_peers.h>
 #include <ddm_msgs/topics.h>
-#include <std_msgs/Float64.h>
 
 #include <sstream>
 #include <stdexcept>
@@ -32,7 +31,7 @@ MpcNode::MpcNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size, const 
       controller_(controller),
       transport_(nh),
       torque_pub_(nh.advertise<ddm_msgs::Torque>(topics::kTorque, kQueue)),
-      effort_pub_(nh.advertise<std_msgs::Float64>(topics::kEffortCommand, kQueue)),
+      effort_(nh, controller.torque_dim),
       plan_pub_(nh.advertise<ddm_msgs::Plan>(topics::kPlan, kQueue)),
       scalars_pub_(nh.advertise<ddm_msgs::PlanScalars>(topics::kPlanScalars, kQueue)),
       live_(ros::NodeHandle(pnh, "mpc"), mpc, [this](const MpcOptions& turned) { onTurn(turned); }),
@@ -155,10 +154,7 @@ void MpcNode::publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torqu
   message.exploratory = exploratory;
   torque_pub_.publish(message);
   health_.countTorque();
-  if (torque.size() != 1) return;  // an effort controller drives one joint
-  std_msgs::Float64 effort;
-  effort.data = torque[0];
-  effort_pub_.publish(effort);
+  effort_.publish(torque);
 }
 
 void MpcNode::publishPlan(const ros::Time& stamp, const Plan& plan) {
@@ -206,7 +202,7 @@ ddm_msgs::RunTrialResult MpcNode::endTrial() {
   trial_.reset();
   scalars_.forget();
   health_.expect(ControlHealth::Expected::kNothing);
-  effort_pub_.publish(std_msgs::Float64());
+  effort_.publishZero();
   return result;
 }
 

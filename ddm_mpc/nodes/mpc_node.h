@@ -16,6 +16,7 @@
 #include "control_health.h"
 #include "controller_options.h"
 #include "ddm_mpc/mpc_options.h"
+#include "effort_publisher.h"
 #include "live_options.h"
 #include "plan_scalars.h"
 #include "trial_run.h"
@@ -62,7 +63,7 @@ class MpcNode {
 
   image_transport::ImageTransport transport_;
   ros::Publisher torque_pub_;
-  ros::Publisher effort_pub_;
+  EffortPublisher effort_;
   ros::Publisher plan_pub_;
   ros::Publisher scalars_pub_;
   image_transport::Subscriber image_sub_;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <sensor_msgs/image_encodings.h>
+#include <std_msgs/Float64.h>
 
 #include <limits>
 
@@ -41,6 +42,8 @@ TEST_F(MpcNodeTest, RunsTheSameRandomTrialForTheSameSeed) {
 }
 
 TEST_F(MpcNodeTest, WaitsForTheModelOfTheGoalAndThenPlans) {
+  const Listener<std_msgs::Float64> effort(client_.nh, topics::kEffortCommand);
+  ASSERT_TRUE(waitUntil([&] { return effort.connected(); }));
   const ddm_msgs::Model model = modelOfSeed(11);
   ddm_msgs::RunTrialGoal goal = trialGoal(4, /*epsilon=*/0.0, model.id);
   // The first image is there before goal and model are, as in lock-step; it is answered all the
@@ -54,8 +57,7 @@ TEST_F(MpcNodeTest, WaitsForTheModelOfTheGoalAndThenPlans) {
   ASSERT_TRUE(waitUntil([this] { return torque_.messages.size() == 1; }));
   show(4);
   expectEnd(State::SUCCEEDED);
-  ASSERT_TRUE(
-      waitUntil([this] { return plan_.messages.size() == 4 && effort_.messages.size() == 5; }));
+  ASSERT_TRUE(waitUntil([&] { return plan_.messages.size() == 4 && effort.messages.size() == 5; }));
   for (std::size_t step = 0; step < 4; ++step) {
     const ddm_msgs::Plan& plan = plan_.messages[step];
     EXPECT_EQ(torque_.messages[step].header.stamp, stamps_[step]);
@@ -67,10 +69,10 @@ TEST_F(MpcNodeTest, WaitsForTheModelOfTheGoalAndThenPlans) {
     EXPECT_EQ(plan.feature.size(), 32U);
     EXPECT_EQ(plan.goal_feature.size(), 2U);
     EXPECT_EQ(plan.torque[0], torque_.messages[step].torque[0]);
-    EXPECT_EQ(effort_.messages[step].data, torque_.messages[step].torque[0]);
+    EXPECT_EQ(effort.messages[step].data, torque_.messages[step].torque[0]);
     EXPECT_GT(plan.solve_time, 0.0);
   }
-  EXPECT_EQ(effort_.messages.back().data, 0.0);  // nobody drives the motor from here on
+  EXPECT_EQ(effort.messages.back().data, 0.0);  // nobody drives the motor from here on
   EXPECT_EQ(action_.getResult()->solve_time.size(), 4U);
 }
 

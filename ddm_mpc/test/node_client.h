@@ -68,8 +68,10 @@ inline bool waitUntil(const std::function<bool()>& condition, double limit = 10.
 /// Publishers of what the nodes take in. A stamp is never used twice.
 class NodeClient {
  public:
-  NodeClient()
-      : log(nh, "/rosout"),
+  /// @param ns  of the node's topics
+  explicit NodeClient(const std::string& ns = "")
+      : nh(ns),
+        log(nh, "/rosout"),
         image_(nh.advertise<sensor_msgs::Image>(topics::kImage, 10)),
         model_(nh.advertise<ddm_msgs::Model>(topics::kModel, 1, /*latch=*/true)) {}
 

@@ -8,7 +8,6 @@
 #include <ddm_msgs/RunTrialAction.h>
 #include <ddm_msgs/Torque.h>
 #include <gtest/gtest.h>
-#include <std_msgs/Float64.h>
 
 #include <string>
 #include <vector>
@@ -42,10 +41,11 @@ inline ddm_msgs::Model modelOfSeed(unsigned seed) {
 /// Runs trials of mpc_node.
 class MpcNodeTest : public ::testing::Test {
  protected:
+  explicit MpcNodeTest(const std::string& ns = "") : client_(ns) {}
+
   void SetUp() override {
     ASSERT_TRUE(waitUntil([this] {
-      return action_.isServerConnected() && torque_.connected() && effort_.connected() &&
-             plan_.connected();
+      return action_.isServerConnected() && torque_.connected() && plan_.connected();
     }));
     ASSERT_TRUE(client_.connect());
   }
@@ -76,7 +76,6 @@ class MpcNodeTest : public ::testing::Test {
 
   NodeClient client_;
   Listener<ddm_msgs::Torque> torque_{client_.nh, topics::kTorque};
-  Listener<std_msgs::Float64> effort_{client_.nh, topics::kEffortCommand};
   Listener<ddm_msgs::Plan> plan_{client_.nh, topics::kPlan};
   Client action_{client_.nh, topics::kRunTrial, /*spin_thread=*/false};
   std::vector<ros::Time> stamps_;

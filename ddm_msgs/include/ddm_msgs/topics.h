@@ -8,7 +8,9 @@ namespace topics {
 constexpr char kImage[] = "camera/image_raw";        ///< sensor_msgs/Image
 constexpr char kGoalImage[] = "goal_image";          ///< sensor_msgs/Image, latched
 constexpr char kTorque[] = "torque";                 ///< ddm_msgs/Torque
-constexpr char kEffortCommand[] = "effort_command";  ///< std_msgs/Float64 [N m]
+constexpr char kEffortCommand[] = "effort_command";  ///< std_msgs/Float64 [N m]: one motor
+constexpr char kGroupEffortCommand[] =
+    "group_effort_command";  ///< std_msgs/Float64MultiArray [N m]: several motors
 constexpr char kGroundTruth[] =
     "ground_truth/joint_states";                 ///< sensor_msgs/JointState, evaluation only
 constexpr char kModel[] = "model";               ///< ddm_msgs/Model, latched
