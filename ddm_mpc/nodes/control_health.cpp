@@ -11,37 +11,45 @@ using diagnostic_msgs::DiagnosticStatus;
 
 constexpr double kLate = 1.0;  // what is expected and does not come for so long is a warning [s]
 
-double ageOf(const ros::WallTime& time) { return (ros::WallTime::now() - time).toSec(); }
+double ageOf(const ros::SteadyTime& time) { return (ros::SteadyTime::now() - time).toSec(); }
 
 }  // namespace
 
 ControlHealth::ControlHealth(const ros::NodeHandle& nh, const ros::NodeHandle& pnh)
-    : reported_(ros::WallTime::now()), updater_(nh, pnh) {
+    : reported_(ros::SteadyTime::now()), updater_(nh, pnh) {
   updater_.setHardwareID("none");
   updater_.add("camera", [this](Status& status) { reportStream("image", &images_, &status); });
   updater_.add("torque", [this](Status& status) { reportStream("torque", &torques_, &status); });
   updater_.add("plan", [this](Status& status) { reportPlans(&status); });
   updater_.add("model", [this](Status& status) { reportModel(&status); });
   // Not Updater::update(), which goes by simulated time and would report a hundred times a second.
-  timer_ = nh.createWallTimer(ros::WallDuration(updater_.getPeriod()),
-                              [this](const ros::WallTimerEvent&) { onTick(); });
+  timer_ = nh.createSteadyTimer(ros::WallDuration(updater_.getPeriod()),
+                                [this](const ros::SteadyTimerEvent&) { onTick(); });
 }
 
 void ControlHealth::expect(Expected expected) {
+  const std::lock_guard<std::mutex> lock(mutex_);
   expected_ = expected;
-  expected_since_ = ros::WallTime::now();
+  expected_since_ = ros::SteadyTime::now();
 }
 
 void ControlHealth::Stream::count() {
   ++total;
-  last = ros::WallTime::now();
+  last = ros::SteadyTime::now();
 }
 
-void ControlHealth::countImage() { images_.count(); }
+void ControlHealth::countImage() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  images_.count();
+}
 
-void ControlHealth::countTorque() { torques_.count(); }
+void ControlHealth::countTorque() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  torques_.count();
+}
 
 void ControlHealth::countPlan(const Plan& plan) {
+  const std::lock_guard<std::mutex> lock(mutex_);
   ++plans_.count;
   if (plan.status == PlanStatus::kFailed) ++plans_.failed;
   plans_.sum_s += plan.solve_time;
@@ -49,14 +57,16 @@ void ControlHealth::countPlan(const Plan& plan) {
 }
 
 void ControlHealth::takeModel(const ddm_msgs::Model& model) {
+  const std::lock_guard<std::mutex> lock(mutex_);
   model_ = model;
   model_.data.clear();
-  model_came_ = ros::WallTime::now();
+  model_came_ = ros::SteadyTime::now();
 }
 
 void ControlHealth::onTick() {
+  const std::lock_guard<std::mutex> lock(mutex_);
   period_ = ageOf(reported_);
-  reported_ = ros::WallTime::now();
+  reported_ = ros::SteadyTime::now();
   num_plans_ += plans_.count;
   num_failed_plans_ += plans_.failed;
   updater_.force_update();

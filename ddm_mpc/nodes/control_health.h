@@ -7,14 +7,16 @@
 #include <ros/ros.h>
 
 #include <cstdint>
+#include <mutex>
 #include <string>
 
 #include "ddm_mpc/planner.h"
 
 namespace ddm {
 
-/// Counts what the node tells it, and publishes four statuses once in `~diagnostic_period` (1 s).
-/// All times are wall times: in lock-step simulated time runs as fast as it can.
+/// Counts what the node reports to it, from any thread, and publishes four statuses once in
+/// `~diagnostic_period` (1 s). All times are of a clock that nobody sets: in lock-step simulated
+/// time runs as fast as it can.
 class ControlHealth {
  public:
   /// What the node is waiting for.
@@ -35,7 +37,7 @@ class ControlHealth {
   struct Stream {
     std::uint64_t total = 0;
     std::uint64_t told = 0;  ///< of which in earlier reports
-    ros::WallTime last;
+    ros::SteadyTime last;
 
     void count();
   };
@@ -51,9 +53,10 @@ class ControlHealth {
   void reportPlans(Status* status) const;
   void reportModel(Status* status) const;
 
+  std::mutex mutex_;  // guards all of these
   Expected expected_ = Expected::kNothing;
-  ros::WallTime expected_since_;
-  ros::WallTime reported_;
+  ros::SteadyTime expected_since_;
+  ros::SteadyTime reported_;
   double period_ = 0.0;  ///< since the last report [s]
   Stream images_;
   Stream torques_;
@@ -61,10 +64,10 @@ class ControlHealth {
   std::uint64_t num_plans_ = 0;
   std::uint64_t num_failed_plans_ = 0;
   ddm_msgs::Model model_;  ///< without its data
-  ros::WallTime model_came_;
+  ros::SteadyTime model_came_;
 
   diagnostic_updater::Updater updater_;
-  ros::WallTimer timer_;
+  ros::SteadyTimer timer_;
 };
 
 }  // namespace ddm

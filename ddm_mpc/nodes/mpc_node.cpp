@@ -8,6 +8,7 @@
 #include <ddm_msgs/topic_peers.h>
 #include <ddm_msgs/topics.h>
 
+#include <algorithm>
 #include <sstream>
 #include <stdexcept>
 
@@ -15,8 +16,12 @@ namespace ddm {
 namespace {
 
 constexpr int kQueue = 10;
-const ros::WallDuration kTick(0.1);
-const ros::WallDuration kFeedbackPeriod(0.1);  // for people; for each frame it would be a load
+const ros::WallDuration kTick(0.1);  // of feedback too: for each frame it would be a load
+
+ros::NodeHandle withQueue(ros::NodeHandle nh, ros::CallbackQueue* queue) {
+  nh.setCallbackQueue(queue);
+  return nh;
+}
 
 std::vector<double> flat(const Eigen::MatrixXd& values) {
   return std::vector<double>(values.data(), values.data() + values.size());
@@ -27,31 +32,50 @@ std::vector<double> flat(const Eigen::MatrixXd& values) {
 MpcNode::MpcNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size, const MpcOptions& mpc,
                  const ControllerOptions& controller)
     : image_size_(image_size),
-      mpc_(mpc),
       controller_(controller),
-      transport_(nh),
+      mpc_(mpc),
+      transport_(withQueue(nh, &image_queue_)),
       torque_pub_(nh.advertise<ddm_msgs::Torque>(topics::kTorque, kQueue)),
       effort_(nh, controller.torque_dim),
       plan_pub_(nh.advertise<ddm_msgs::Plan>(topics::kPlan, kQueue)),
       scalars_pub_(nh.advertise<ddm_msgs::PlanScalars>(topics::kPlanScalars, kQueue)),
       live_(ros::NodeHandle(pnh, "mpc"), mpc, [this](const MpcOptions& turned) { onTurn(turned); }),
       health_(nh, pnh),
-      server_(nh, topics::kRunTrial, /*auto_start=*/false) {
+      server_(nh, topics::kRunTrial, /*auto_start=*/false),
+      answer_last_image_(boost::make_shared<Callback>([this] {
+        if (last_image_ != nullptr) answer(*last_image_);
+      })),
+      finish_(boost::make_shared<Callback>([this] { onFinish(); })),
+      image_spinner_(/*thread_count=*/1, &image_queue_) {
   server_.registerGoalCallback([this] { onGoal(); });
   server_.registerPreemptCallback([this] { onPreempt(); });
   model_sub_ = nh.subscribe(topics::kModel, 1, &MpcNode::onModel, this);
-  timer_ = nh.createWallTimer(kTick, [this](const ros::WallTimerEvent&) { onTick(); });
+  timer_ = nh.createSteadyTimer(kTick, [this](const ros::SteadyTimerEvent&) { onTick(); });
   image_sub_ = transport_.subscribe(
       topics::kImage, 1, &MpcNode::onImage, this,
       image_transport::TransportHints("raw", ros::TransportHints().tcpNoDelay()));
+  image_spinner_.start();
   server_.start();  // last: whoever sees the action finds everything else in place
+}
+
+MpcNode::~MpcNode() {
+  stop();                 // else the spinner would wait for a plan
+  image_spinner_.stop();  // no callback is running from here on
+}
+
+bool MpcNode::stop() {
+  if (goal_ == nullptr) return false;
+  endTrial();
+  return true;
 }
 
 void MpcNode::onGoal() {
   goal_ = server_.acceptNewGoal();
-  trial_.reset();
   health_.expect(ControlHealth::Expected::kModel);
-  last_progress_ = ros::WallTime::now();
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    last_progress_ = ros::SteadyTime::now();
+  }
   beginIfReady();
 }
 
@@ -82,58 +106,83 @@ void MpcNode::beginIfReady() {
   if (goal_ == nullptr || trial_ != nullptr) return;
   if (!goal_->model_id.empty() && goal_->model_id != model_id_) return;
   try {
-    trial_ = std::make_unique<TrialRun>(*goal_, goal_->model_id.empty() ? nullptr : model_,
-                                        image_size_, mpc_, controller_);
-    trial_->turn(mpc_, turned_epsilon_);
+    auto trial = std::make_shared<TrialRun>(*goal_, goal_->model_id.empty() ? nullptr : model_,
+                                            image_size_, mpc_, controller_);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    trial_ = std::move(trial);
+    turned_ = true;
+    last_progress_ = ros::SteadyTime::now();
   } catch (const std::exception& e) {
     abort(std::string("trial refused: ") + e.what());
     return;
   }
-  last_progress_ = ros::WallTime::now();
+  fed_back_ = 0;
   health_.expect(ControlHealth::Expected::kImage);
   // In lock-step the first image may have come before the goal; there will be no second one.
-  if (last_image_ != nullptr && !goal_->start.isZero()) answer(*last_image_);
+  if (!goal_->start.isZero()) image_queue_.addCallback(answer_last_image_);
 }
 
 void MpcNode::onTurn(const MpcOptions& mpc) {
+  const std::lock_guard<std::mutex> lock(mutex_);
   if (mpc.epsilon != mpc_.epsilon) turned_epsilon_ = mpc.epsilon;
   mpc_ = mpc;
-  if (trial_ != nullptr) trial_->turn(mpc_, turned_epsilon_);
+  turned_ = true;
 }
 
 void MpcNode::onImage(const sensor_msgs::ImageConstPtr& image) {
   last_image_ = image;
   health_.countImage();
-  if (trial_ != nullptr) answer(*image);
+  answer(*image);
 }
 
 void MpcNode::answer(const sensor_msgs::Image& image) {
+  const std::shared_ptr<TrialRun> trial = trialToAnswer();
+  if (trial == nullptr) return;
+  std::string problem;
+  const std::optional<Decision> decision = decide(trial.get(), image, &problem);
+
+  const std::lock_guard<std::mutex> lock(mutex_);
+  deciding_since_.reset();
+  if (trial->ended()) return;  // meanwhile: its motors have their zero
+  if (!problem.empty()) {
+    publishTorque(image.header.stamp, Eigen::VectorXd::Zero(controller_.torque_dim), false);
+  } else if (decision) {
+    last_progress_ = ros::SteadyTime::now();
+    if (trial->result().num_steps == 0) scalars_.forget();
+    trial->collect(image.header.stamp, *decision);
+    publish(image.header, *decision);
+    if (!trial->done()) return;
+  } else {
+    return;
+  }
+  trial->end();
+  finished_ = problem;
+  ros::getGlobalCallbackQueue()->addCallback(finish_);
+}
+
+/// The trial under way, with the options that somebody has turned meanwhile; null if there is none.
+std::shared_ptr<TrialRun> MpcNode::trialToAnswer() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (trial_ == nullptr || trial_->ended()) return nullptr;
+  if (turned_) trial_->turn(mpc_, turned_epsilon_);
+  turned_ = false;
+  deciding_since_ = ros::SteadyTime::now();
+  return trial_;
+}
+
+/// @param problem  out: why the image cannot be answered
+std::optional<Decision> MpcNode::decide(TrialRun* trial, const sensor_msgs::Image& image,
+                                        std::string* problem) const {
   try {
     if (image_sub_.getNumPublishers() > 1) {
       throw std::runtime_error("only one camera may be looked through: stop the others, " +
                                describePublishers(image_sub_.getTopic()));
     }
-    const std::optional<Decision> decision = trial_->answer(image);
-    if (!decision) return;
-    last_progress_ = ros::WallTime::now();
-    publish(image.header, *decision);
+    return trial->decide(image);
   } catch (const std::exception& e) {
-    publishTorque(image.header.stamp, Eigen::VectorXd::Zero(controller_.torque_dim), false);
-    abort(std::string("image refused: ") + e.what());
-    return;
+    *problem = std::string("image refused: ") + e.what();
+    return std::nullopt;
   }
-  if (last_progress_ - last_feedback_ > kFeedbackPeriod) {
-    last_feedback_ = last_progress_;
-    ddm_msgs::RunTrialFeedback feedback;
-    feedback.step = trial_->result().num_steps;
-    server_.publishFeedback(feedback);
-  }
-  if (!trial_->done()) return;
-  const ddm_msgs::RunTrialResult& so_far = trial_->result();
-  ROS_INFO("trial %u%s: %u torques, %u exploratory, %u failed plans", goal_->trial,
-           goal_->evaluation != 0 ? " (evaluation)" : "", so_far.num_steps, so_far.num_exploratory,
-           so_far.num_failed_plans);
-  server_.setSucceeded(endTrial());
 }
 
 void MpcNode::publish(const std_msgs::Header& header, const Decision& decision) {
@@ -179,29 +228,81 @@ void MpcNode::publishPlan(const ros::Time& stamp, const Plan& plan) {
   plan_pub_.publish(message);
 }
 
+/// The thread of the images has ended the trial.
+void MpcNode::onFinish() {
+  std::string problem;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!finished_) return;  // it was cancelled before this was called
+    problem = *finished_;
+  }
+  if (!problem.empty()) {
+    abort(problem);
+    return;
+  }
+  const ddm_msgs::RunTrialGoalConstPtr goal = goal_;
+  const ddm_msgs::RunTrialResult result = endTrial();
+  ROS_INFO("trial %u%s: %u torques, %u exploratory, %u failed plans", goal->trial,
+           goal->evaluation != 0 ? " (evaluation)" : "", result.num_steps, result.num_exploratory,
+           result.num_failed_plans);
+  server_.setSucceeded(result);
+}
+
 void MpcNode::onTick() {
   if (goal_ == nullptr) return;
-  const double silence = (ros::WallTime::now() - last_progress_).toSec();
-  if (silence <= controller_.timeout) return;
-  std::ostringstream reason;
-  if (trial_ == nullptr) {
-    reason << "model " << goal_->model_id << " did not come";
-  } else {
-    reason << "no image after step " << trial_->result().num_steps;
+  publishFeedback();
+  const std::string silence = describeSilence();
+  if (!silence.empty()) abort(silence);
+}
+
+void MpcNode::publishFeedback() {
+  ddm_msgs::RunTrialFeedback feedback;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (trial_ != nullptr) feedback.step = trial_->result().num_steps;
   }
-  reason << " within " << controller_.timeout << " s: "
-         << describePublishers(trial_ == nullptr ? model_sub_.getTopic() : image_sub_.getTopic());
-  abort(reason.str());
+  if (feedback.step == fed_back_) return;
+  fed_back_ = feedback.step;
+  server_.publishFeedback(feedback);
+}
+
+/// Who keeps the trial waiting for longer than its timeout; empty: nobody.
+std::string MpcNode::describeSilence() {
+  std::ostringstream reason;
+  std::string topic = model_sub_.getTopic();
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (finished_) return "";
+    const ros::SteadyTime since =
+        std::max(last_progress_, deciding_since_.value_or(last_progress_));
+    if ((ros::SteadyTime::now() - since).toSec() <= controller_.timeout) return "";
+    if (trial_ == nullptr) {
+      reason << "model " << goal_->model_id << " did not come";
+    } else if (deciding_since_) {
+      reason << "no plan for step " << trial_->result().num_steps + 1;
+      topic.clear();
+    } else {
+      reason << "no image after step " << trial_->result().num_steps;
+      topic = image_sub_.getTopic();
+    }
+  }
+  reason << " within " << controller_.timeout << " s";
+  reason << (topic.empty() ? ": set mpc/time_budget" : ": " + describePublishers(topic));
+  return reason.str();
 }
 
 /// However a trial ends, an effort controller must not go on with its last torque.
 ddm_msgs::RunTrialResult MpcNode::endTrial() {
-  const ddm_msgs::RunTrialResult result =
-      trial_ != nullptr ? trial_->result() : ddm_msgs::RunTrialResult();
   goal_.reset();
-  trial_.reset();
-  scalars_.forget();
   health_.expect(ControlHealth::Expected::kNothing);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ddm_msgs::RunTrialResult result;
+  if (trial_ != nullptr) {
+    result = trial_->result();
+    trial_->end();
+  }
+  trial_.reset();
+  finished_.reset();
   effort_.publishZero();
   return result;
 }

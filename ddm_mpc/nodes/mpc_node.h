@@ -7,11 +7,15 @@
 #include <ddm_msgs/Model.h>
 #include <ddm_msgs/RunTrialAction.h>
 #include <image_transport/image_transport.h>
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "control_health.h"
 #include "controller_options.h"
@@ -23,44 +27,82 @@
 
 namespace ddm {
 
-/// Action `run_trial`: each image of the trial is answered on `torque` with the image's stamp. For
-/// a single-threaded spinner: all callbacks run one after the other.
+/// Action `run_trial`: each image of the trial is answered on `torque` with the image's stamp.
+/// Images have a thread of their own, which plans. Everything else, such as a goal that is
+/// cancelled, a trial that times out or an option that is turned, is for the thread that spins the
+/// global queue, and does not wait for a plan.
 class MpcNode {
  public:
   /// @param nh   topics and action
   /// @param pnh  parameters
   MpcNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size, const MpcOptions& mpc,
           const ControllerOptions& controller);
+  ~MpcNode();
+
+  /// Ends a trial under way, with zero torque to every motor.
+  /// @return false if there is none
+  bool stop();
 
  private:
+  /// Runs a function on the thread of a callback queue.
+  class Callback : public ros::CallbackInterface {
+   public:
+    explicit Callback(std::function<void()> function) : function_(std::move(function)) {}
+    CallResult call() override {
+      function_();
+      return Success;
+    }
+
+   private:
+    std::function<void()> function_;
+  };
+
+  // In the thread of the global queue.
   void onGoal();
   void onPreempt();
   void onModel(const ddm_msgs::ModelConstPtr& message);
-  void onImage(const sensor_msgs::ImageConstPtr& image);
   void onTick();
   void onTurn(const MpcOptions& mpc);
-
+  void onFinish();
   void beginIfReady();
-  void answer(const sensor_msgs::Image& image);
-  void publish(const std_msgs::Header& header, const Decision& decision);
-  void publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torque, bool exploratory);
-  void publishPlan(const ros::Time& stamp, const Plan& plan);
+  void publishFeedback();
+  std::string describeSilence();
   ddm_msgs::RunTrialResult endTrial();
   void abort(const std::string& reason);
 
-  int image_size_;
-  MpcOptions mpc_;
-  ControllerOptions controller_;
-  std::optional<double> turned_epsilon_;  // empty: nobody has turned it, that of the goal counts
+  // In the thread of the images.
+  void onImage(const sensor_msgs::ImageConstPtr& image);
+  void answer(const sensor_msgs::Image& image);
+  std::shared_ptr<TrialRun> trialToAnswer();
+  std::optional<Decision> decide(TrialRun* trial, const sensor_msgs::Image& image,
+                                 std::string* problem) const;
+  void publish(const std_msgs::Header& header, const Decision& decision);
+  void publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torque, bool exploratory);
+  void publishPlan(const ros::Time& stamp, const Plan& plan);
+
+  const int image_size_;
+  const ControllerOptions controller_;
+
+  // Of the thread of the global queue.
   std::shared_ptr<const Ddm> model_;
   std::string model_id_;
-  ddm_msgs::RunTrialGoalConstPtr goal_;    // null: no trial
-  std::unique_ptr<TrialRun> trial_;        // null: still waiting for the model
+  ddm_msgs::RunTrialGoalConstPtr goal_;  // null: no trial
+  std::uint32_t fed_back_ = 0;           // steps in the last feedback
+
+  // Of the thread of the images.
   sensor_msgs::ImageConstPtr last_image_;  // may be the first of a trial whose goal is on its way
-  ros::WallTime last_progress_;
-  ros::WallTime last_feedback_;
   PlanScalars scalars_;
 
+  std::mutex mutex_;  // not held while a plan is computed; guards these and effort_
+  MpcOptions mpc_;
+  std::optional<double> turned_epsilon_;  // empty: nobody has turned it, that of the goal counts
+  bool turned_ = false;                   // the trial does not know yet
+  std::shared_ptr<TrialRun> trial_;       // null: no trial, or it is waiting for its model
+  std::optional<std::string> finished_;   // why the image thread ended the trial; "": all is done
+  ros::SteadyTime last_progress_;
+  std::optional<ros::SteadyTime> deciding_since_;
+
+  ros::CallbackQueue image_queue_;
   image_transport::ImageTransport transport_;
   ros::Publisher torque_pub_;
   EffortPublisher effort_;
@@ -68,10 +110,13 @@ class MpcNode {
   ros::Publisher scalars_pub_;
   image_transport::Subscriber image_sub_;
   ros::Subscriber model_sub_;
-  ros::WallTimer timer_;
+  ros::SteadyTimer timer_;
   LiveOptions live_;
   ControlHealth health_;
   actionlib::SimpleActionServer<ddm_msgs::RunTrialAction> server_;
+  const ros::CallbackInterfacePtr answer_last_image_;  // for image_queue_
+  const ros::CallbackInterfacePtr finish_;             // for the global queue
+  ros::AsyncSpinner image_spinner_;                    // last: ends before anything that it uses
 };
 
 }  // namespace ddm

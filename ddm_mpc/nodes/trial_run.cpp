@@ -53,7 +53,7 @@ void TrialRun::turn(const MpcOptions& mpc, const std::optional<double>& epsilon)
   if (epsilon && !evaluation_) policy_.setEpsilon(*epsilon);
 }
 
-std::optional<Decision> TrialRun::answer(const sensor_msgs::Image& image) {
+std::optional<Decision> TrialRun::decide(const sensor_msgs::Image& image) {
   if (image.header.stamp.isZero()) {
     throw std::invalid_argument(
         "it has no stamp, which pairs it with its torque: set it in the camera driver");
@@ -65,16 +65,15 @@ std::optional<Decision> TrialRun::answer(const sensor_msgs::Image& image) {
   if (camera != camera_) {
     throw std::invalid_argument("the images change from " + camera_ + " to " + camera);
   }
-  const Decision decision = policy_.decide(decodeImage(image, image_size_));
+  Decision decision = policy_.decide(decodeImage(image, image_size_));
   last_stamp_ = image.header.stamp;
-  result_.last = last_stamp_;
-  result_.stamp.push_back(last_stamp_);
-  collect(decision);
   return decision;
 }
 
-void TrialRun::collect(const Decision& decision) {
+void TrialRun::collect(const ros::Time& stamp, const Decision& decision) {
   ++result_.num_steps;
+  result_.last = stamp;
+  result_.stamp.push_back(stamp);
   for (Eigen::Index i = 0; i < decision.torque.size(); ++i) {
     result_.torque.push_back(decision.torque[i]);
   }

@@ -17,7 +17,9 @@
 
 namespace ddm {
 
-/// Turns the images of one `run_trial` goal into decisions and collects the result.
+/// Turns the images of one `run_trial` goal into decisions and collects the result. One thread at a
+/// time calls decide() and turn(); the caller guards the other functions by a mutex of its own,
+/// which it need not hold while decide() plans.
 class TrialRun {
  public:
   /// @param model  may be null where goal.epsilon = 1
@@ -25,24 +27,27 @@ class TrialRun {
   TrialRun(const ddm_msgs::RunTrialGoal& goal, std::shared_ptr<const Ddm> model, int image_size,
            const MpcOptions& mpc, const ControllerOptions& controller);
 
-  /// @return the decision, or nothing for an image that is not the next of this trial: one of
-  /// before
-  ///         its start, or one that was already answered
-  /// @throws std::invalid_argument for an image that cannot be used, that has no stamp, or that has
-  /// another
-  ///         size or encoding than the ones before
-  std::optional<Decision> answer(const sensor_msgs::Image& image);
+  /// @return the decision, or nothing for an image that is not the next of this trial: one from
+  ///         before its start, or one that was already answered
+  /// @throws std::invalid_argument for an image that cannot be used, that has no stamp, or whose
+  ///         size or encoding differs from those before
+  std::optional<Decision> decide(const sensor_msgs::Image& image);
 
-  /// From the next image on, plans with these, and explores with this epsilon in the place of the
+  /// From the next image on, plans with these, and explores with this epsilon instead of the
   /// goal's. A random trial plans nothing, and an evaluation does not explore.
   void turn(const MpcOptions& mpc, const std::optional<double>& epsilon);
+
+  /// Adds a decision that was published to the result.
+  void collect(const ros::Time& stamp, const Decision& decision);
+
+  /// No image is answered from here on, and what decide() is planning no longer counts.
+  void end() { ended_ = true; }
+  bool ended() const { return ended_; }
 
   bool done() const { return result_.num_steps == num_steps_; }
   const ddm_msgs::RunTrialResult& result() const { return result_; }
 
  private:
-  void collect(const Decision& decision);
-
   std::uint32_t num_steps_;
   int image_size_;
   bool evaluation_;
@@ -50,6 +55,7 @@ class TrialRun {
   std::string camera_;                 // size and encoding of the images
   std::shared_ptr<MpcPolicy> greedy_;  // null: a random trial
   EpsilonGreedy policy_;
+  bool ended_ = false;
   ddm_msgs::RunTrialResult result_;
 };
 

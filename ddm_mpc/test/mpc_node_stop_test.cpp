@@ -1,8 +1,15 @@
 // Tests of how mpc_node stops two motors, and that it does so while a plan is computed.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_msgs/call_within.h>
+#include <dynamic_reconfigure/Reconfigure.h>
 #include <gtest/gtest.h>
 #include <std_msgs/Float64MultiArray.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <chrono>
+#include <csignal>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -67,6 +74,98 @@ TEST_F(TwoMotors, GetZeroWhenAnImageIsRefused) {
   ASSERT_TRUE(waitUntil([this] { return effort_.messages.size() == 4; }));
   EXPECT_EQ(effort_.messages[2].data, kZeros);
   EXPECT_EQ(effort_.messages[3].data, kZeros);
+}
+
+class LongPlan : public TwoMotors {
+ protected:
+  /// Starts a trial with an image that takes minutes to answer.
+  void beginPlan(unsigned seed) {
+    RandomModelOptions options;
+    options.torque_dim = 2;
+    options.seed = seed;
+    const ddm_msgs::Model model = modelMessage(randomModel(options));
+    ddm_msgs::RunTrialGoal goal = trialGoal(2, 0.0, model.id);
+    goal.start = client_.publishImage(kSize, 0);
+    begin(goal);
+    client_.publish(model);
+    // Logged right before the plan.
+    ASSERT_TRUE(waitUntil([&] { return client_.logged("model " + model.id); }));
+  }
+
+  void expectZerosAndNothingElse() {
+    ASSERT_TRUE(waitUntil([this] { return !effort_.messages.empty(); }));
+    EXPECT_EQ(effort_.messages.back().data, kZeros);
+    EXPECT_EQ(effort_.messages.size(), 1U);
+    EXPECT_TRUE(torque_.messages.empty());
+  }
+};
+
+TEST_F(LongPlan, DoesNotDelayTheAnswerToACancelledGoal) {
+  beginPlan(21);
+  action_.cancelGoal();
+  expectEnd(State::PREEMPTED);
+  expectZerosAndNothingElse();
+}
+
+TEST_F(LongPlan, EndsWithTheTimeoutOfItsTrial) {
+  beginPlan(22);
+  expectEnd(State::ABORTED, {"no plan for step 1", "within 2 s", "mpc/time_budget"});
+  expectZerosAndNothingElse();
+}
+
+TEST_F(LongPlan, DoesNotDelayAChangeOfParameters) {
+  beginPlan(23);
+  const auto answered = callWithin(std::chrono::seconds(1), [] {
+    dynamic_reconfigure::Reconfigure service;
+    return ros::service::call("mpc_node/mpc/set_parameters", service);
+  });
+  EXPECT_TRUE(answered.value_or(false));
+  action_.cancelGoal();
+  expectEnd(State::PREEMPTED);
+}
+
+/// Starts a node of its own.
+class InterruptedNode : public TwoMotors {
+ protected:
+  InterruptedNode() : TwoMotors("/interrupted") {}
+
+  void SetUp() override {
+    ros::param::set("/interrupted/mpc_node/image/size", kSize);
+    ros::param::set("/interrupted/mpc_node/controller/torque_dim", 2);
+    node_ = fork();
+    ASSERT_GE(node_, 0);
+    if (node_ == 0) {
+      execl(DDM_MPC_NODE, DDM_MPC_NODE, "__ns:=/interrupted", static_cast<char*>(nullptr));
+      _exit(127);
+    }
+    TwoMotors::SetUp();
+  }
+
+  void TearDown() override {
+    if (node_ > 0 && !exit_status_) {
+      kill(node_, SIGKILL);
+      waitpid(node_, nullptr, 0);
+    }
+    ros::param::del("/interrupted");
+  }
+
+  bool hasEnded() {
+    int status = 0;
+    if (!exit_status_ && waitpid(node_, &status, WNOHANG) == node_) exit_status_ = status;
+    return exit_status_.has_value();
+  }
+
+  pid_t node_ = -1;
+  std::optional<int> exit_status_;
+};
+
+TEST_F(InterruptedNode, LeavesZeroTorque) {
+  begin(trialGoal(10, 1.0));
+  show(2);
+  ASSERT_EQ(kill(node_, SIGINT), 0);
+  ASSERT_TRUE(waitUntil([this] { return hasEnded(); }));
+  EXPECT_EQ(*exit_status_, 0);
+  expectEffortsOfTorquesAndThenZeros();
 }
 
 }  // namespace
