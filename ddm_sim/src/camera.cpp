@@ -93,41 +93,53 @@ void Camera::begin(std::uint64_t seed, std::uint32_t trial, bool evaluation) {
   rng_ = runStream(seed, trial, evaluation, SimRole::kCamera);
   noise_ = runStream(seed, trial, evaluation, SimRole::kNoise);
   phase_ = std::uniform_real_distribution<double>(0.0, kTwoPi)(rng_);
-  states_.clear();
+  taken_.clear();
   frame_ = 0;
 }
 
 std::optional<std::vector<std::uint8_t>> Camera::photograph(const Plant& plant) {
-  states_.push_back(plant.state());
-  if (static_cast<int>(states_.size()) > options_.delay + 1) states_.pop_front();
-  const int taken = std::max(0, frame_ - options_.delay);  // when the picture on show was
-  const bool first = frame_ == 0;
-  ++frame_;
+  taken_.push_back(take(plant));
+  if (static_cast<int>(taken_.size()) > options_.delay + 1) taken_.pop_front();
+  return taken_.front();
+}
+
+/// @return nothing if it is lost
+std::optional<Camera::Picture> Camera::take(const Plant& plant) {
+  const int frame = frame_++;
   const double draw = std::uniform_real_distribution<double>(0.0, 1.0)(rng_);
-  if (!first && draw < options_.drop_rate) return std::nullopt;
-  const double turns = taken * plant.dt() / options_.brightness_period;
+  if (frame > 0 && draw < options_.drop_rate) return std::nullopt;
+  const double turns = frame * plant.dt() / options_.brightness_period;
   const double brightness = 1.0 + options_.brightness_drift * std::sin(kTwoPi * turns + phase_);
-  return expose(plant.render(states_.front()), brightness, &noise_);
+  return expose(plant, plant.state(), brightness, &noise_);
 }
 
 std::vector<std::uint8_t> Camera::photographGoal(const Plant& plant) const {
   std::mt19937_64 noise = runStream(0, 0, false, SimRole::kGoalNoise);
-  return expose(plant.render(plant.goalState()), /*brightness=*/1.0, &noise);
+  return expose(plant, plant.goalState(), /*brightness=*/1.0, &noise);
 }
 
-std::vector<std::uint8_t> Camera::expose(const std::vector<std::uint8_t>& plant, double brightness,
-                                         std::mt19937_64* noise) const {
-  if (plant.size() != background_.size()) {
+Camera::Picture Camera::expose(const Plant& plant, const Eigen::VectorXd& state, double brightness,
+                               std::mt19937_64* noise) const {
+  const Picture picture = plant.render(state);
+  if (picture.size() != background_.size()) {
     throw std::invalid_argument("camera: the plant's picture must have " +
                                 std::to_string(background_.size()) + " pixels, got " +
-                                std::to_string(plant.size()));
+                                std::to_string(picture.size()));
   }
-  if (brightness == 1.0 && options_.clutter == 0.0 && options_.noise_std == 0.0) return plant;
+  const bool cluttered = options_.clutter > 0.0;
+  if (brightness == 1.0 && !cluttered && options_.noise_std == 0.0) return picture;
+  const Picture cover = cluttered ? plant.coverage(state) : Picture();
+  if (cluttered && cover.empty()) {
+    throw std::invalid_argument(
+        "camera/clutter must be 0 before a plant that does not say what it covers: implement its "
+        "cover()");
+  }
   std::normal_distribution<double> standard_normal;
-  std::vector<std::uint8_t> bytes(plant.size());
-  for (std::size_t i = 0; i < plant.size(); ++i) {
-    const double bright = plant[i] / 255.0;
-    double grey = brightness * (bright + (1.0 - bright) * background_[i]);
+  Picture bytes(picture.size());
+  for (std::size_t i = 0; i < picture.size(); ++i) {
+    double grey = picture[i] / 255.0;
+    if (cluttered) grey += (1.0 - cover[i] / 255.0) * background_[i];
+    grey *= brightness;
     if (options_.noise_std > 0.0) grey += options_.noise_std * standard_normal(*noise);
     bytes[i] = static_cast<std::uint8_t>(255.0 * std::clamp(grey, 0.0, 1.0) + 0.5);
   }

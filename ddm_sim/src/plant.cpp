@@ -20,6 +20,14 @@ void requireFinite(const char* name, const Eigen::VectorXd& value, Eigen::Index 
   throw std::invalid_argument(message.str());
 }
 
+/// @throws std::logic_error if the function of the derived class made `got` of something
+void requireCount(const char* function, std::size_t count, std::size_t got) {
+  if (got == count) return;
+  throw std::logic_error(std::string("plant: ") + function + " must return " +
+                         std::to_string(count) + " bytes, one for each pixel, got " +
+                         std::to_string(got));
+}
+
 }  // namespace
 
 Plant::Plant(Eigen::VectorXd start, int torque_dim, double dt, double max_torque, double start_std)
@@ -46,6 +54,10 @@ Eigen::VectorXd Plant::step(const Eigen::VectorXd& torque) {
   requireFinite("torque", torque, torque_dim_);
   const Eigen::VectorXd applied = torque.cwiseMax(-max_torque_).cwiseMin(max_torque_);
   const Eigen::VectorXd next = advance(state_, applied);
+  if (next.size() != state_.size()) {
+    throw std::logic_error("plant: advance() must return " + std::to_string(state_.size()) +
+                           " number(s), got " + fewNumbers(next));
+  }
   if (!next.allFinite()) {
     std::ostringstream message;
     message << "plant: the state [" << state_.transpose()
@@ -62,9 +74,23 @@ double Plant::goalError(const Eigen::VectorXd& state) const {
   return distanceToGoal(state);
 }
 
+std::size_t Plant::numPixels() const {
+  const auto size = static_cast<std::size_t>(imageSize());
+  return size * size;
+}
+
 std::vector<std::uint8_t> Plant::render(const Eigen::VectorXd& state) const {
   requireFinite("state", state, state_.size());
-  return draw(state);
+  std::vector<std::uint8_t> picture = draw(state);
+  requireCount("draw()", numPixels(), picture.size());
+  return picture;
+}
+
+std::vector<std::uint8_t> Plant::coverage(const Eigen::VectorXd& state) const {
+  requireFinite("state", state, state_.size());
+  std::vector<std::uint8_t> cover = this->cover(state);
+  if (!cover.empty()) requireCount("cover()", numPixels(), cover.size());
+  return cover;
 }
 
 Eigen::VectorXd Plant::visiblePosition(const Eigen::VectorXd& state) const {

@@ -42,6 +42,9 @@ class MovingTile : public Plant {
                           const Eigen::VectorXd& torque) const override;
   double distanceToGoal(const Eigen::VectorXd& state) const override;
   std::vector<std::uint8_t> draw(const Eigen::VectorXd& state) const override;
+  std::vector<std::uint8_t> cover(const Eigen::VectorXd& state) const override {
+    return draw(state);  // white on black
+  }
   Eigen::VectorXd locate(const Eigen::VectorXd& state) const override { return state; }
 
   double lowest_;   ///< w / 2, least coordinate of the centre [pixels]

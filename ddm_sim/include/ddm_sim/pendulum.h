@@ -40,6 +40,9 @@ class Pendulum : public Plant {
                           const Eigen::VectorXd& torque) const override;
   double distanceToGoal(const Eigen::VectorXd& state) const override;
   std::vector<std::uint8_t> draw(const Eigen::VectorXd& state) const override;
+  std::vector<std::uint8_t> cover(const Eigen::VectorXd& state) const override {
+    return draw(state);  // white on black
+  }
 
   /// Tip of the rod, l (sin phi, -cos phi): x to the right, y upwards from the pivot [m].
   Eigen::VectorXd locate(const Eigen::VectorXd& state) const override;

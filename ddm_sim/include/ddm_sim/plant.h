@@ -50,8 +50,9 @@ class Plant {
   /// @param torque  u, saturated at +-maxTorque() in each component             [torqueDim() x 1]
   /// @return the torque as it was applied, i.e. after the saturation            [torqueDim() x 1]
   /// @throws std::invalid_argument if it is not [torqueDim() x 1] or not finite
-  /// @throws std::range_error if the state would leave the range of double. In either case nothing
-  ///         has changed
+  /// @throws std::range_error if the state would leave the range of double
+  /// @throws std::logic_error if advance() returns another number of components. In each case
+  ///         nothing has changed
   Eigen::VectorXd step(const Eigen::VectorXd& torque);
 
   /// The state that a policy is to reach and hold                                [stateDim() x 1]
@@ -66,7 +67,14 @@ class Plant {
   /// [0, 1].
   /// @return bytes                                                    [imageSize() * imageSize()]
   /// @throws std::invalid_argument as setState()
+  /// @throws std::logic_error if draw() returns another number of bytes
   std::vector<std::uint8_t> render(const Eigen::VectorXd& state) const;
+
+  /// How much of each pixel of render() the plant covers, 255: all of it. There it hides what lies
+  /// behind it, however dark it is.
+  /// @return bytes; none if the plant does not say               [imageSize() * imageSize()] or [0]
+  /// @throws as render()
+  std::vector<std::uint8_t> coverage(const Eigen::VectorXd& state) const;
 
   /// Where the part that moves is in the picture: what a learner can know of `state` from one
   /// image. Origin, directions and unit are the plant's own: the pendulum gives the tip of its rod
@@ -102,7 +110,13 @@ class Plant {
                                   const Eigen::VectorXd& torque) const = 0;
   virtual double distanceToGoal(const Eigen::VectorXd& state) const = 0;
   virtual std::vector<std::uint8_t> draw(const Eigen::VectorXd& state) const = 0;
+
+  /// coverage(): at least draw() in each pixel, since what is not covered is black there. A plant
+  /// that is white on black returns draw(), one that fills its picture 255 everywhere.
+  virtual std::vector<std::uint8_t> cover(const Eigen::VectorXd& /*state*/) const { return {}; }
   virtual Eigen::VectorXd locate(const Eigen::VectorXd& state) const = 0;  ///< visiblePosition()
+
+  std::size_t numPixels() const;  ///< of a picture
 
   Eigen::VectorXd start_;
   Eigen::VectorXd state_;

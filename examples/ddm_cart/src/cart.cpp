@@ -109,6 +109,11 @@ class Cart : public ddm::Plant {
     return grey;
   }
 
+  /// White on black: as bright as it is, it hides a camera's clutter.
+  std::vector<std::uint8_t> cover(const Eigen::VectorXd& state) const override {
+    return draw(state);
+  }
+
   CartOptions options_;
   ddm::CameraOptions camera_;
 };
