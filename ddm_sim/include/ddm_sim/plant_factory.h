@@ -18,9 +18,11 @@ class PlantMaker {
   virtual std::unique_ptr<Plant> make(const CameraOptions& camera) const = 0;
 };
 
-/// The plant `plant.type`, at rest in the middle of its start states; that of `plant.maker` if
-/// there is one.
-/// @throws std::invalid_argument with all problems of both blocks, an unknown type among them
+/// The plant `plant.type`, in the middle of its start states; that of `plant.maker` if there is
+/// one. Each plant is moved for a few steps, so that one that breaks the rules of class Plant is
+/// refused here and not in the middle of a run.
+/// @throws std::invalid_argument with all problems of both blocks, an unknown type among them, or
+///         with the type and all rules that its plant breaks
 std::unique_ptr<Plant> makePlant(const PlantOptions& plant, const CameraOptions& camera);
 
 }  // namespace ddm
