@@ -10,6 +10,7 @@
 
 #include "ddm_msgs/image_codec.h"
 #include "ddm_msgs/topics.h"
+#include "joint_state.h"
 
 namespace ddm {
 namespace {
@@ -17,10 +18,6 @@ namespace {
 constexpr char kFrameId[] = "camera";
 constexpr int kQueueSize = 10;
 constexpr int kGroundTruthQueueSize = 1000;  // several frames are told at a time
-
-std::vector<double> toVector(const Eigen::VectorXd& values) {
-  return std::vector<double>(values.data(), values.data() + values.size());
-}
 
 }  // namespace
 
@@ -47,14 +44,8 @@ void SimPublisher::publishFrame(const Eigen::VectorXd& applied,
                                 const std::vector<std::uint8_t>& photograph,
                                 const ros::Time& stamp) {
   image_.publish(encodeImage(photograph, plant_.imageSize(), stamp, kFrameId));
-  const Eigen::VectorXd& state = plant_.state();
-  sensor_msgs::JointState joints;
+  sensor_msgs::JointState joints = jointStateOf(plant_, applied);
   joints.header.stamp = stamp;
-  joints.name = plant_.jointNames();
-  const auto num_joints = static_cast<Eigen::Index>(joints.name.size());
-  joints.position = toVector(state.head(num_joints));
-  joints.velocity = toVector(state.tail(state.size() - num_joints));
-  joints.effort = toVector(applied);
   kept_.push_back(std::move(joints));
 }
 

@@ -1,0 +1,82 @@
+// Tests of a plant's state as a JointState: each array is empty or as long as the names.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "joint_state.h"
+
+#include <gtest/gtest.h>
+
+#include "ddm_sim/plant_factory.h"
+#include "ddm_sim/testing/toy_plant.h"
+
+namespace ddm {
+namespace {
+
+using Names = std::vector<std::string>;
+using Numbers = std::vector<double>;
+using testing::ToyPlant;
+
+Eigen::VectorXd numbers(const Numbers& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+/// Of a plugin with these joints, names and motors, in the state 1, 2, 3, ...
+sensor_msgs::JointState toyState(const Names& joints, const Names& states, const Names& torques) {
+  ToyPlant::Traits traits;
+  const auto dim = static_cast<Eigen::Index>(states.size());
+  traits.start = Eigen::VectorXd::LinSpaced(dim, 1.0, static_cast<double>(dim));
+  traits.torque_dim = static_cast<int>(torques.size());
+  traits.joints = joints;
+  traits.states = states;
+  traits.torques = torques;
+  return jointStateOf(ToyPlant(traits), Eigen::VectorXd::Constant(traits.torque_dim, 0.5));
+}
+
+TEST(JointState, OfAPendulumHasAngleRateAndTorque) {
+  const auto plant = makePlant(PlantOptions(), CameraOptions());
+  plant->setState(Eigen::Vector2d(1.0, 2.0));
+  const sensor_msgs::JointState out = jointStateOf(*plant, numbers({3.0}));
+  EXPECT_EQ(out.name, plant->jointNames());
+  EXPECT_EQ(out.position, Numbers{1.0});
+  EXPECT_EQ(out.velocity, Numbers{2.0});
+  EXPECT_EQ(out.effort, Numbers{3.0});
+}
+
+TEST(JointState, OfATileHasTwoPositionsTwoEffortsAndNoVelocity) {
+  PlantOptions options;
+  options.type = "moving_tile";
+  const auto plant = makePlant(options, CameraOptions());
+  plant->setState(Eigen::Vector2d(10.0, 20.0));
+  const sensor_msgs::JointState out = jointStateOf(*plant, numbers({1.0, -1.0}));
+  EXPECT_EQ(out.name, (Names{"x", "y"}));
+  EXPECT_EQ(out.position, (Numbers{10.0, 20.0}));
+  EXPECT_TRUE(out.velocity.empty());
+  EXPECT_EQ(out.effort, (Numbers{1.0, -1.0}));
+}
+
+TEST(JointState, HasNoEffortWhereMotorsAreNotAsManyAsJoints) {
+  const auto out = toyState({"shoulder", "elbow"},
+                            {"shoulder_rad", "elbow_rad", "shoulder_rad_per_s", "elbow_rad_per_s"},
+                            {"elbow_nm"});
+  EXPECT_EQ(out.name, (Names{"shoulder", "elbow"}));
+  EXPECT_EQ(out.position, (Numbers{1.0, 2.0}));
+  EXPECT_EQ(out.velocity, (Numbers{3.0, 4.0}));
+  EXPECT_TRUE(out.effort.empty());
+}
+
+TEST(JointState, TakesNoFurtherComponentForARateThatIsNone) {
+  const auto out = toyState({"drum"}, {"angle_rad", "temperature_k"}, {"torque_nm"});
+  EXPECT_EQ(out.name, (Names{"drum", "temperature_k"}));
+  EXPECT_EQ(out.position, (Numbers{1.0, 2.0}));
+  EXPECT_TRUE(out.velocity.empty());
+  EXPECT_TRUE(out.effort.empty());  // one motor, two names
+}
+
+TEST(JointState, KeepsTheWholeStateWhereThereIsMoreThanPositionsAndRates) {
+  const auto out = toyState({"arm"}, {"angle_rad", "rate_rad_per_s", "current_a"}, {"voltage_v"});
+  EXPECT_EQ(out.name, (Names{"arm", "rate_rad_per_s", "current_a"}));
+  EXPECT_EQ(out.position, (Numbers{1.0, 2.0, 3.0}));
+  EXPECT_TRUE(out.velocity.empty());
+  EXPECT_TRUE(out.effort.empty());
+}
+
+}  // namespace
+}  // namespace ddm
