@@ -69,6 +69,7 @@ TrialOutcome InProcessWorld::runTrial(const TrialRequest& request, const PhaseCa
   TrialOutcome outcome;
   Eigen::VectorXd torque;  // goes on where a frame is lost; the first one never is
   for (int step = 0, frame = 0; frame < request.num_steps; ++step) {
+    if (step > 0) plant_->step(torque);
     if (const auto photograph = camera_.photograph(*plant_)) {
       const sensor_msgs::Image image =
           imageMessage(*photograph, plant_->imageSize(), stampOf(step, plant_->dt()));
@@ -83,7 +84,6 @@ TrialOutcome InProcessWorld::runTrial(const TrialRequest& request, const PhaseCa
       if (bag != nullptr) write(image, decision, bag.get());
       progress(static_cast<double>(++frame) / request.num_steps);
     }
-    plant_->step(torque);
   }
   if (bag != nullptr) bag->close();
   return outcome;

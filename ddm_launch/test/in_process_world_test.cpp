@@ -6,14 +6,30 @@
 #include <ddm_model/testing/temp_folder.h>
 #include <ddm_sim/camera.h>
 #include <ddm_sim/plant_factory.h>
+#include <ddm_sim/testing/toy_plant.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "toy_run.h"
 
 namespace ddm {
 namespace {
+
+/// A plant whose state is the number of its steps, and which has none beyond the last.
+testing::ToyPlant::Traits counter(int last) {
+  testing::ToyPlant::Traits traits;
+  traits.start = Eigen::VectorXd::Zero(1);
+  traits.start_std = 0.0;
+  traits.states = {"steps"};
+  traits.goal = Eigen::VectorXd::Zero(1);
+  traits.advance = [last](const Eigen::VectorXd& state, const Eigen::VectorXd& /*torque*/) {
+    const double next = state[0] < last ? state[0] + 1.0 : std::numeric_limits<double>::infinity();
+    return Eigen::VectorXd(Eigen::VectorXd::Constant(1, next));
+  };
+  return traits;
+}
 
 class InProcessWorldTest : public ::testing::Test {
  protected:
@@ -54,6 +70,13 @@ TEST_F(InProcessWorldTest, APerfectCameraGivesAFrameInEachStepAndOnePiece) {
   for (size_t t = 0; t + 1 < 40; ++t) EXPECT_EQ(stepsAfter(outcome, t), 1) << t;
   ASSERT_EQ(bag().data.pieces().size(), 1u);
   EXPECT_EQ(bag().data.numFrames(), 40);
+}
+
+TEST_F(InProcessWorldTest, ThePlantStaysWhereTheLastFrameShowsItAsInLockStep) {
+  configuration_.plant = testing::toyOptions(counter(39));
+  const TrialOutcome outcome = run();
+  ASSERT_EQ(outcome.states.size(), 40u);
+  EXPECT_EQ(outcome.states.back()[0], 39.0);
 }
 
 TEST_F(InProcessWorldTest, ThePlantGoesOnUnderTheLastTorqueWhereAFrameIsLost) {
