@@ -3,6 +3,7 @@
 #include <ddm_model/testing/expect_error.h>
 #include <ddm_model/testing/temp_folder.h>
 #include <ddm_sim/plant_factory.h>
+#include <ddm_sim/testing/toy_plant.h>
 #include <gtest/gtest.h>
 
 #include <boost/filesystem.hpp>
@@ -110,13 +111,44 @@ TEST_F(TrueStateTest, TheTaskIsUprightWithinTheLengthOfTheRod) {
   EXPECT_EQ(task.start.covariance, (0.3 * 0.3 * Eigen::MatrixXd::Identity(2, 2)).eval());
 }
 
+/// Of another package, whose rod is as long as it likes.
+TEST_F(TrueStateTest, APluginIsLearnedInLengthsOfItsRodIfItsGoalIsUpright) {
+  testing::ToyPlant::Traits traits;
+  traits.goal = pair(-M_PI, 0.0);
+  PlantOptions options = testing::toyOptions(traits);
+  const std::unique_ptr<Plant> plant = makePlant(options, CameraOptions());
+  const PilcoTask task = TrueStateObservation(*plant, options, PilcoOptions()).task();
+  for (const double angle : {0.0, 1.0, 3.0}) {
+    const double lengths = 2.0 * std::cos(angle / 2.0);  // of the tip from its goal
+    EXPECT_NEAR(task.cost.value(pair(0.0, angle)), 1.0 - std::exp(-2.0 * lengths * lengths), 1e-12);
+  }
+  traits.goal = pair(0.0, 0.0);
+  options = testing::toyOptions(traits);
+  const std::unique_ptr<Plant> hanging = makePlant(options, CameraOptions());
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [&] { TrueStateObservation(*hanging, options, PilcoOptions()); },
+      {"their_package/Toy", "[0 0]", "pilco_features"}));
+}
+
+TEST_F(TrueStateTest, TwoJointsWithoutRatesAreRefused) {
+  testing::ToyPlant::Traits traits;
+  traits.joints = {"shoulder", "elbow"};
+  traits.states = {"shoulder_rad", "elbow_rad"};
+  traits.goal = pair(M_PI, 0.0);
+  const PlantOptions options = testing::toyOptions(traits);
+  const std::unique_ptr<Plant> plant = makePlant(options, CameraOptions());
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [&] { TrueStateObservation(*plant, options, PilcoOptions()); },
+      {"their_package/Toy", "2 joint(s)"}));
+}
+
 TEST_F(TrueStateTest, APlantThatDoesNotTurnIsRefused) {
   plant_options_.type = "moving_tile";
   plant_options_.max_torque = 5.0;
   const std::unique_ptr<Plant> tile = makePlant(plant_options_, CameraOptions());
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
       [&] { TrueStateObservation(*tile, plant_options_, PilcoOptions()); },
-      {"pendulum", "got plant/type moving_tile"}));
+      {"plant/type moving_tile", "pilco_features"}));
 }
 
 /// Images of a rod that turns round, and of its goal.

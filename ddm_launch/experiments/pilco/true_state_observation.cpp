@@ -6,6 +6,8 @@
 #include <ddm_mpc/random_stream.h>
 
 #include <boost/filesystem.hpp>
+#include <cmath>
+#include <sstream>
 #include <stdexcept>
 
 #include "trajectory_csv.h"
@@ -15,21 +17,33 @@ namespace {
 
 constexpr int kRate = 0;  // places in x
 constexpr int kAngle = 1;
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kUprightWithin = 1e-9;  // [rad]
 
 /// (angle, rate) of the plant to x.
 Eigen::VectorXd reorder(const Eigen::VectorXd& state) { return state.reverse(); }
+
+/// One joint that turns, seen as angle and rate, whose goal is upright: what the cost is made for.
+bool isPendulum(const Plant& plant) {
+  if (!plant.turns() || plant.stateDim() != 2 || plant.jointNames().size() != 1) return false;
+  return std::abs(std::remainder(plant.goalState()[0] - kPi, 2.0 * kPi)) <= kUprightWithin;
+}
 
 }  // namespace
 
 TrueStateObservation::TrueStateObservation(const Plant& plant, const PlantOptions& plant_options,
                                            const PilcoOptions& options)
     : plant_(plant), plant_options_(plant_options), options_(options), start_(plant.state()) {
-  if (!plant.turns() || plant.stateDim() != 2) {
-    throw std::invalid_argument(
-        "PILCO on the true state knows a pendulum with angle and rate: use another plant or "
-        "method, got plant/type " +
-        plant_options.type);
-  }
+  if (isPendulum(plant)) return;
+  std::ostringstream text;
+  text
+      << "PILCO on the true state is for one joint with angle and rate whose goal is the angle pi; "
+         "plant/type "
+      << plant_options.type << " has " << plant.jointNames().size() << " joint(s), "
+      << plant.stateDim() << " state component(s)" << (plant.turns() ? "" : " that are no angles")
+      << " and the goal [" << plant.goalState().transpose()
+      << "]: use method pilco_features or pilco_pca";
+  throw std::invalid_argument(text.str());
 }
 
 std::vector<std::string> TrueStateObservation::names() const {
@@ -62,10 +76,8 @@ PilcoTask TrueStateObservation::task() const {
   const pilco::Gaussian start{reorder(start_), variance * Eigen::MatrixXd::Identity(2, 2)};
   Eigen::VectorXd length_scales(3);  // of rate, sine, cosine, as in the published runs
   length_scales << 1.0, 0.7, 0.7;
-  return {{kAngle},
-          start,
-          pilco::pendulumCost(plant_options_.length, options_.cost_width * plant_options_.length),
-          length_scales};
+  // Distance and width are in lengths of the rod, so no rod needs to be known.
+  return {{kAngle}, start, pilco::pendulumCost(/*length=*/1.0, options_.cost_width), length_scales};
 }
 
 void TrueStateObservation::startTrial(const TrialId& id) {

@@ -21,7 +21,9 @@ class TrueStateObservation : public Observation {
  public:
   /// @param plant          the one that is controlled, outlives the observation
   /// @param plant_options  of it
-  /// @throws std::invalid_argument if the plant is no pendulum
+  /// @throws std::invalid_argument if the plant is not one joint with angle and rate, or if its
+  /// goal
+  ///         is not upright, at pi
   TrueStateObservation(const Plant& plant, const PlantOptions& plant_options,
                        const PilcoOptions& options);
 
