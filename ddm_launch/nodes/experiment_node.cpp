@@ -59,7 +59,9 @@ void run(Node* node) {
   for (const std::string& warning : folder.warnings()) progress.note("warning: " + warning);
   node->curve_pub =
       node->nh.advertise<sensor_msgs::Image>(ddm::topics::kLearningCurveImage, 1, /*latch=*/true);
-  node->world.emplace(node->nh, configuration.experiment.timeout, ddm::RosWorld::Peers());
+  ddm::RosWorld::Peers peers;
+  if (configuration.robot) peers.reset_timeout = configuration.robot->reset_timeout;
+  node->world.emplace(node->nh, configuration.experiment.timeout, peers);
   ddm::runExperiment(configuration, &*node->world, &folder, &progress,
                      [&](const std::vector<ddm::TrialRow>& rows) {
                        publishCurve(node->curve_pub, rows, configuration);

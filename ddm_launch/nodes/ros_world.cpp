@@ -18,9 +18,10 @@
 #include <optional>
 #include <sstream>
 #include <stdexcept>
-#include <thread>
+#include <utility>
 
 #include "connections.h"
+#include "service_call.h"
 #include "simulated_time.h"
 
 namespace ddm {
@@ -28,9 +29,8 @@ namespace {
 
 constexpr int kQueue = 1000;
 constexpr std::uint32_t kThreads = 2;
-constexpr double kResetLimit = 600.0;  // wall time [s]: people may have to put a robot back
-constexpr std::chrono::milliseconds kLook(
-    20);  // how often conditions without a callback are looked at
+// How often conditions without a callback are checked.
+constexpr std::chrono::milliseconds kLook(20);
 
 /// For action clients.
 ros::NodeHandle withQueue(ros::NodeHandle nh, ros::CallbackQueue* queue, double limit) {
@@ -57,11 +57,6 @@ RosWorld::RosWorld(const ros::NodeHandle& nh, double timeout, Peers peers)
       peers_(peers),
       trial_client_(nh_, topics::kRunTrial, /*spin_thread=*/false),
       train_client_(nh_, topics::kTrain, /*spin_thread=*/false),
-      reset_client_(nh_.serviceClient<ddm_msgs::Reset>(topics::kReset, /*persistent=*/true)),
-      start_client_(nh_.serviceClient<ddm_msgs::StartRecording>(topics::kStartRecording,
-                                                                /*persistent=*/true)),
-      stop_client_(
-          nh_.serviceClient<ddm_msgs::StopRecording>(topics::kStopRecording, /*persistent=*/true)),
       spinner_(kThreads, &callbacks_) {
   ground_truth_sub_ = nh_.subscribe<sensor_msgs::JointState>(
       topics::kGroundTruth, kQueue, [this](const sensor_msgs::JointStateConstPtr& state) {
@@ -83,12 +78,14 @@ RosWorld::RosWorld(const ros::NodeHandle& nh, double timeout, Peers peers)
 
 void RosWorld::connect() {
   signOfLife();
-  const auto service = [this](ros::ServiceClient* client) {
-    waitFor([client] { return client->exists(); },
-            "service " + client->getService() + " is not offered");
+  const auto service = [this](const char* topic) {
+    const std::string name = nh_.resolveName(topic);
+    const auto exists = [name] { return ros::service::exists(name, /*print_failure=*/false); };
+    waitFor([&] { return answerWithin(timeout_, exists).value_or(false); },
+            "service " + name + " is not offered");
   };
-  service(&reset_client_);
-  if (peers_.recorder) service(&start_client_);
+  service(topics::kReset);
+  if (peers_.recorder) service(topics::kStartRecording);
   waitFor([this] { return trial_client_.isServerConnected(); },
           "action " + nh_.resolveName(topics::kRunTrial) + " is not offered");
   if (peers_.trainer) {
@@ -117,22 +114,15 @@ void RosWorld::signOfLife() {
   last_sign_of_life_ = ros::WallTime::now();
 }
 
-/// Waits for a condition, which is looked at whenever a callback has changed something.
+/// Waits for a condition, which is checked whenever a callback has changed something.
 /// @throws std::runtime_error if nobody gave a sign of life within the timeout, or on shutdown
 void RosWorld::waitFor(const std::function<bool()>& condition, const std::string& what) {
-  waitFor(condition, what, timeout_);
-}
-
-void RosWorld::waitFor(const std::function<bool()>& condition, const std::string& what,
-                       double limit) {
   for (;;) {
     if (condition()) return;
-    if (!ros::ok()) throw std::runtime_error("interrupted; the same command resumes");
+    if (!ros::ok()) throw std::runtime_error(kInterrupted);
     std::unique_lock<std::mutex> lock(mutex_);
-    if ((ros::WallTime::now() - last_sign_of_life_).toSec() > limit) {
-      std::ostringstream text;
-      text << what << " (waited " << limit << " s)";
-      throw std::runtime_error(text.str());
+    if ((ros::WallTime::now() - last_sign_of_life_).toSec() > timeout_) {
+      throw std::runtime_error(what + waited(timeout_));
     }
     changed_.wait_for(lock, kLook);
   }
@@ -151,49 +141,20 @@ void RosWorld::waitForMessages(const std::function<bool()>& condition, const std
 }
 
 template <class Service>
-void RosWorld::call(ros::ServiceClient* client, Service* service, double limit) {
-  // One connection for all calls. With one for each the server hangs up after its answer, and a
-  // busy client may hear that first and lose the answer (github.com/ros/ros_comm/issues/1976).
-  if (!client->isValid()) {
-    *client = nh_.serviceClient<Service>(client->getService(), /*persistent=*/true);
-  }
-  // A node that was stopped keeps its connections: only a limit ends the wait for its answer.
-  std::optional<bool> answered;
-  signOfLife();
-  std::thread caller([&] {
-    const bool success = client->call(*service);
-    const std::lock_guard<std::mutex> lock(mutex_);
-    answered = success;
-    changed_.notify_all();
-  });
-  const auto is_answered = [&] {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return answered.has_value();
-  };
-  const std::string silence = "service " + client->getService() + " does not answer";
-  try {
-    waitFor(is_answered, silence, limit);
-  } catch (const std::exception&) {
-    client->shutdown();  // ends the call
-    caller.join();
-    throw;
-  }
-  caller.join();
-  if (!*answered) throw std::runtime_error(silence);
-  if (!service->response.success) {
-    throw std::runtime_error("service " + client->getService() + ": " + service->response.message);
-  }
+void RosWorld::call(const char* topic, ros::ServiceClient* client, Service* service, double limit) {
+  callService(nh_.resolveName(topic), client, service, limit);
   signOfLife();
 }
 
 /// Sends a goal and waits for its result; feedback is a sign of life.
-template <class Client, class Goal, class FeedbackCallback>
+/// @param fraction_of  a feedback: the fraction that is done
+template <class Client, class Goal, class FractionOf>
 auto RosWorld::execute(Client* client, const std::string& name, const Goal& goal,
-                       const FeedbackCallback& on_feedback) {
-  // Feedback may still come when the result is there: it must find `open` false and nothing else.
+                       const FractionOf& fraction_of, const PhaseCallback& progress) {
+  // Callbacks may still come when this function has returned: they share what they write.
   struct Pending {
     bool done = false;
-    bool open = true;
+    std::optional<double> fraction;  // that nobody has been told yet
   };
   const auto pending = std::make_shared<Pending>();
   const auto on_done = [this, pending](const actionlib::SimpleClientGoalState&, const auto&) {
@@ -201,34 +162,32 @@ auto RosWorld::execute(Client* client, const std::string& name, const Goal& goal
     pending->done = true;
     changed_.notify_all();
   };
-  const auto alive = [this, pending, on_feedback](const auto& feedback) {
+  const auto on_feedback = [this, pending, fraction_of](const auto& feedback) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (!pending->open) return;
     last_sign_of_life_ = ros::WallTime::now();
-    on_feedback(feedback);
+    pending->fraction = fraction_of(*feedback);
   };
-  const auto close = [this, pending] {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    pending->open = false;
-  };
-  const auto is_done = [this, pending] {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return pending->done;
+  // Progress is told by this thread and without the lock: a terminal may hold up who writes to it.
+  const auto is_done = [&] {
+    std::unique_lock<std::mutex> lock(mutex_);
+    const bool done = pending->done;
+    const std::optional<double> fraction = std::exchange(pending->fraction, std::nullopt);
+    lock.unlock();
+    if (fraction) progress(*fraction);
+    return done;
   };
   signOfLife();
   // The client knows its goal only when sendGoal() returns: to an answer that is faster it says
   // that it tracks no such goal, and of one that is done it would take the state for lost.
   spinner_.stop();
-  client->sendGoal(goal, on_done, typename Client::SimpleActiveCallback(), alive);
+  client->sendGoal(goal, on_done, typename Client::SimpleActiveCallback(), on_feedback);
   spinner_.start();
   try {
     waitFor(is_done, "action " + name + " shows no sign of life");
   } catch (const std::exception&) {
-    close();
     client->cancelGoal();
     throw;
   }
-  close();
   const actionlib::SimpleClientGoalState state = client->getState();
   if (state == actionlib::SimpleClientGoalState::PREEMPTED) {
     throw std::runtime_error("action " + name +
@@ -281,13 +240,13 @@ void RosWorld::startRecording(const std::string& bag) {
   ddm_msgs::StartRecording service;
   service.request.path = bag;
   service.request.after = last_image_;
-  call(&start_client_, &service, timeout_);
+  call(topics::kStartRecording, &start_client_, &service, timeout_);
 }
 
 void RosWorld::stopRecording(int num_steps) {
   ddm_msgs::StopRecording service;
   service.request.num_steps = static_cast<std::uint32_t>(num_steps);
-  call(&stop_client_, &service, timeout_);
+  call(topics::kStopRecording, &stop_client_, &service, timeout_);
 }
 
 ros::Time RosWorld::reset(const TrialRequest& request) {
@@ -296,7 +255,7 @@ ros::Time RosWorld::reset(const TrialRequest& request) {
   service.request.trial = request.id.trial;
   service.request.evaluation = request.id.evaluation;
   service.request.num_steps = static_cast<std::uint32_t>(request.num_steps);
-  call(&reset_client_, &service, std::max(timeout_, kResetLimit));
+  call(topics::kReset, &reset_client_, &service, timeout_ + peers_.reset_timeout);
   return service.response.start;
 }
 
@@ -311,11 +270,12 @@ ddm_msgs::RunTrialResult RosWorld::runPolicy(const TrialRequest& request, const 
   goal.evaluation = request.id.evaluation;
   goal.model_id = request.epsilon < 1.0 ? model_id_ : "";
   goal.start = start;
-  const ddm_msgs::RunTrialResult result =
-      execute(&trial_client_, nh_.resolveName(topics::kRunTrial), goal,
-              [&](const ddm_msgs::RunTrialFeedbackConstPtr& feedback) {
-                progress(static_cast<double>(feedback->step) / request.num_steps);
-              });
+  const ddm_msgs::RunTrialResult result = execute(
+      &trial_client_, nh_.resolveName(topics::kRunTrial), goal,
+      [num_steps = request.num_steps](const ddm_msgs::RunTrialFeedback& feedback) {
+        return static_cast<double>(feedback.step) / num_steps;
+      },
+      progress);
   if (result.num_steps != goal.num_steps || result.exploratory.size() != result.num_steps ||
       result.stamp.size() != result.num_steps || result.torque.size() % result.num_steps != 0) {
     throw std::runtime_error("action " + nh_.resolveName(topics::kRunTrial) +
@@ -360,7 +320,7 @@ TrainingOutcome RosWorld::train(const std::vector<std::string>& bags, const Tria
   goal.trial = id.trial;
   const ddm_msgs::TrainResult result = execute(
       &train_client_, nh_.resolveName(topics::kTrain), goal,
-      [&](const ddm_msgs::TrainFeedbackConstPtr& feedback) { progress(feedback->fraction_done); });
+      [](const ddm_msgs::TrainFeedback& feedback) { return feedback.fraction_done; }, progress);
   model_id_ = result.model_id;
   model_pub_.shutdown();  // nobody who comes later shall get the saved model
   TrainingOutcome outcome;

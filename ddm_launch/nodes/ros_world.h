@@ -22,12 +22,14 @@ namespace ddm {
 
 /// Orders the nodes about; computes nothing. All waits are in wall time, because simulated time
 /// stands still while a model is trained, and all end with an error that names who is silent.
-/// Handles its callbacks in threads of its own.
+/// Handles its callbacks in threads of its own; progress is reported by the thread that waits.
 class RosWorld : public World {
  public:
   struct Peers {
     bool recorder = true;  ///< trials are recorded
     bool trainer = true;   ///< models are trained
+    /// Wall time that the robot itself allows for a reset [s]: a person may have to put it back.
+    double reset_timeout = 0.0;
   };
 
   /// Waits until the nodes are there and connected to each other.
@@ -54,15 +56,14 @@ class RosWorld : public World {
   void takeGroundTruth(const std::vector<ros::Time>& stamps, TrialOutcome* outcome);
   std::string takeModel(const std::string& model_id);
 
-  template <class Client, class Goal, class FeedbackCallback>
+  template <class Client, class Goal, class FractionOf>
   auto execute(Client* client, const std::string& name, const Goal& goal,
-               const FeedbackCallback& on_feedback);
+               const FractionOf& fraction_of, const PhaseCallback& progress);
   template <class Service>
-  void call(ros::ServiceClient* client, Service* service, double limit);
+  void call(const char* topic, ros::ServiceClient* client, Service* service, double limit);
   void refuseIntruders() const;
   void signOfLife();
   void waitFor(const std::function<bool()>& condition, const std::string& what);
-  void waitFor(const std::function<bool()>& condition, const std::string& what, double limit);
   void waitForMessages(const std::function<bool()>& condition, const std::string& what,
                        const ros::Subscriber& subscriber);
 
@@ -82,7 +83,7 @@ class RosWorld : public World {
 
   actionlib::SimpleActionClient<ddm_msgs::RunTrialAction> trial_client_;
   actionlib::SimpleActionClient<ddm_msgs::TrainAction> train_client_;
-  ros::ServiceClient reset_client_;
+  ros::ServiceClient reset_client_;  // connected by the first call
   ros::ServiceClient start_client_;
   ros::ServiceClient stop_client_;
   ros::Subscriber ground_truth_sub_;

@@ -12,10 +12,18 @@
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
 
+#include <atomic>
+#include <chrono>
 #include <future>
+#include <set>
+#include <thread>
+
+#include "service_call.h"
 
 namespace ddm {
 namespace {
+
+constexpr int kSteps = 2;
 
 /// Offers what a world without a trainer looks for. In simulated time that stands still, as here,
 /// an action tells once that it is there.
@@ -23,18 +31,28 @@ class Peers {
  public:
   Peers()
       : server_(
-            withQueue(), topics::kRunTrial, [](const ddm_msgs::RunTrialGoalConstPtr&) {},
-            /*auto_start=*/false) {
+            withQueue(), topics::kRunTrial,
+            [this](const ddm_msgs::RunTrialGoalConstPtr&) { runTrial(); }, /*auto_start=*/false) {
     ros::NodeHandle nh = withQueue();
     reset_ = nh.advertiseService(topics::kReset, &Peers::answer<ddm_msgs::Reset>, this);
-    start_ = nh.advertiseService(topics::kStartRecording, &Peers::answerLate, this);
+    start_ = nh.advertiseService(topics::kStartRecording, &Peers::answer<ddm_msgs::StartRecording>,
+                                 this);
     stop_ =
         nh.advertiseService(topics::kStopRecording, &Peers::answer<ddm_msgs::StopRecording>, this);
     server_.start();
     spinner_.start();
   }
+  ~Peers() { release(); }
 
-  void release() { release_.set_value(); }
+  /// Each service takes so long, or until release().
+  void answerAfter(double seconds) { answer_time_ = seconds; }
+
+  /// The trial goes on and tells its feedback until release().
+  void runUntilReleased() { endless_ = true; }
+
+  void release() {
+    if (!released_.exchange(true)) release_.set_value();
+  }
 
  private:
   ros::NodeHandle withQueue() {
@@ -44,22 +62,52 @@ class Peers {
   }
 
   template <class Service>
-  bool answer(typename Service::Request& /*request*/, typename Service::Response& /*response*/) {
-    return true;
-  }
-  bool answerLate(ddm_msgs::StartRecording::Request& /*request*/,
-                  ddm_msgs::StartRecording::Response& /*response*/) {
-    released_.wait();
+  bool answer(typename Service::Request& /*request*/, typename Service::Response& response) {
+    end_.wait_for(std::chrono::duration<double>(answer_time_));
+    response.success = true;
     return true;
   }
 
+  void runTrial() {
+    ddm_msgs::RunTrialFeedback feedback;
+    do {
+      feedback.step = 1;
+      server_.publishFeedback(feedback);
+    } while (endless_ && end_.wait_for(std::chrono::milliseconds(10)) != std::future_status::ready);
+    ddm_msgs::RunTrialResult result;
+    result.num_steps = kSteps;
+    result.exploratory.resize(kSteps);
+    result.stamp.resize(kSteps);
+    result.torque.resize(kSteps);
+    server_.setSucceeded(result);
+  }
+
   ros::CallbackQueue callbacks_;
+  std::atomic<double> answer_time_{0.0};
+  std::atomic<bool> endless_{false};
+  std::atomic<bool> released_{false};
   std::promise<void> release_;
-  std::shared_future<void> released_ = release_.get_future().share();
+  std::shared_future<void> end_ = release_.get_future().share();
   actionlib::SimpleActionServer<ddm_msgs::RunTrialAction> server_;
   ros::ServiceServer reset_, start_, stop_;
   ros::AsyncSpinner spinner_{2, &callbacks_};
 };
+
+TrialRequest trial() {
+  TrialRequest request;
+  request.num_steps = kSteps;
+  return request;
+}
+
+/// What a trial ends with.
+std::string errorOf(RosWorld* world, const TrialRequest& request) {
+  try {
+    world->runTrial(request, [](double) {});
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+  return "none";
+}
 
 TEST(RosWorldTest, DoesNotWaitForTheTimeWithoutEnd) {
   const ros::Time now = ros::Time::now();
@@ -81,17 +129,59 @@ TEST(RosWorldTest, HearsOfAnActionThatTellsOnceThatItIsThere) {
 
 TEST(RosWorldTest, NamesAServiceThatDoesNotAnswer) {
   Peers peers;
-  RosWorld world(ros::NodeHandle(), 2.0, {/*recorder=*/true, /*trainer=*/false});
-  TrialRequest request;
+  peers.answerAfter(60.0);
+  RosWorld world(ros::NodeHandle(), 1.0, {/*recorder=*/true, /*trainer=*/false});
+  TrialRequest request = trial();
   request.bag = "/nowhere/trial.bag";
-  std::string error = "none";
-  try {
-    world.runTrial(request, [](double) {});
-  } catch (const std::exception& e) {
-    error = e.what();
-  }
-  EXPECT_EQ(error, "service /start_recording does not answer (waited 2 s)");
-  peers.release();
+  EXPECT_EQ(errorOf(&world, request), "service /start_recording does not answer (waited 1 s)");
+}
+
+TEST(RosWorldTest, WaitsForAResetNoLongerThanForAnythingElse) {
+  Peers peers;
+  peers.answerAfter(60.0);
+  RosWorld world(ros::NodeHandle(), 1.0, {/*recorder=*/false, /*trainer=*/false});
+  EXPECT_EQ(errorOf(&world, trial()), "service /reset does not answer (waited 1 s)");
+}
+
+TEST(RosWorldTest, ConnectsAgainAfterAServiceThatDidNotAnswer) {
+  Peers peers;
+  peers.answerAfter(2.0);
+  RosWorld world(ros::NodeHandle(), 0.5, {/*recorder=*/false, /*trainer=*/false});
+  EXPECT_NE(errorOf(&world, trial()), "none");
+  peers.answerAfter(0.0);
+  EXPECT_EQ(errorOf(&world, trial()), "none");
+}
+
+TEST(RosWorldTest, LeavesARobotTheTimeThatItsResetMayTake) {
+  Peers peers;
+  peers.answerAfter(1.5);
+  RosWorld world(ros::NodeHandle(), 0.5, {/*recorder=*/false, /*trainer=*/false, 10.0});
+  EXPECT_EQ(errorOf(&world, trial()), "none");
+}
+
+/// A terminal that is stopped holds up who writes to it, and nobody else.
+TEST(RosWorldTest, HearsItsPeersWhileItsProgressIsHeldUp) {
+  Peers peers;
+  peers.runUntilReleased();
+  RosWorld world(ros::NodeHandle(), 0.5, {/*recorder=*/false, /*trainer=*/false});
+  std::set<std::thread::id> reporters;
+  world.runTrial(trial(), [&](double) {
+    if (reporters.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    reporters.insert(std::this_thread::get_id());
+    peers.release();
+  });
+  EXPECT_EQ(reporters, std::set<std::thread::id>{std::this_thread::get_id()});
+}
+
+TEST(ServiceCall, LeavesAConnectionBehindThatIsNeverMade) {
+  std::promise<void> never;
+  const auto connect = [made = never.get_future().share()] {
+    made.wait();
+    return true;
+  };
+  EXPECT_FALSE(answerWithin(0.1, connect));
+  never.set_value();
+  EXPECT_TRUE(answerWithin(10.0, connect).value());
 }
 
 }  // namespace
