@@ -62,7 +62,7 @@ class FigureStyleTest(FigureCase):
 
     def test_a_pipe_is_not_replaced_by_a_picture_and_a_link_stays_one(self):
         os.mkfifo(self.file("pipe.png"))
-        with self.assertRaisesRegex(OSError, "^cannot write .*/pipe.png: it is no plain file$"):
+        with self.assertRaisesRegex(OSError, "^cannot write .*/pipe.png: it is not a regular file$"):
             self.draw("pipe.png")
         os.symlink("a.png", self.file("link.png"))
         picture = self.draw("link.png")

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <random>
 #include <sstream>
 #include <stdexcept>
 
@@ -27,6 +28,32 @@ mode_t kindOf(const std::string& path) {
   throw std::runtime_error("cannot " + what + " " + path + ": " + reason());
 }
 
+/// Opens a new file next to `path`, under a name that no other process or thread has. Unlike
+/// mkstemp() it leaves the permissions to the umask.
+/// @return  its descriptor, or a negative number with errno set
+int openUnfinished(const std::string& path, std::string* unfinished) {
+  std::random_device random;
+  int file = -1;
+  do {
+    std::ostringstream name;
+    name << path << ".unfinished." << std::hex << random() << random();
+    *unfinished = name.str();
+    file = ::open(unfinished->c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+  } while (file < 0 && errno == EEXIST);
+  return file;
+}
+
+/// @return  false, with errno set, if not all bytes were written
+bool writeAll(int file, const std::string& bytes) {
+  size_t written = 0;
+  while (written < bytes.size()) {
+    const ssize_t count = ::write(file, bytes.data() + written, bytes.size() - written);
+    if (count < 0 && errno != EINTR) return false;
+    if (count > 0) written += static_cast<size_t>(count);
+  }
+  return true;
+}
+
 }  // namespace
 
 void requirePlainFile(const std::string& path) {
@@ -37,7 +64,8 @@ void requirePlainFile(const std::string& path) {
     errno = EISDIR;
     cannot("read", path);
   }
-  if (kind != S_IFREG) throw std::runtime_error("cannot read " + path + ": it is no plain file");
+  if (kind != S_IFREG)
+    throw std::runtime_error("cannot read " + path + ": it is not a regular file");
 }
 
 std::string readFile(const std::string& path) {
@@ -53,32 +81,18 @@ std::string readFile(const std::string& path) {
 void writeFileAtomically(const std::string& path, const std::string& bytes) {
   const mode_t kind = kindOf(path);
   if (kind != 0 && kind != S_IFREG) {
-    throw std::runtime_error("cannot write " + path + ": it is no plain file");
+    throw std::runtime_error("cannot write " + path + ": it is not a regular file");
   }
-  const std::string unfinished = path + ".unfinished";
-  ::unlink(unfinished.c_str());  // of a program that was killed
-  const int file =
-      ::open(unfinished.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644);
-  if (file < 0) cannot("write", unfinished);
-  size_t written = 0;
-  while (written < bytes.size()) {
-    const ssize_t count = ::write(file, bytes.data() + written, bytes.size() - written);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) {
-      const std::string why = reason();
-      ::close(file);
-      ::unlink(unfinished.c_str());
-      throw std::runtime_error("cannot write " + unfinished + ": " + why);
-    }
-    written += static_cast<size_t>(count);
-  }
-  const bool stored = ::fsync(file) == 0;
-  const bool closed = ::close(file) == 0;
-  if (!stored || !closed || ::rename(unfinished.c_str(), path.c_str()) != 0) {
-    const std::string why = reason();
-    ::unlink(unfinished.c_str());
-    throw std::runtime_error("cannot write " + path + ": " + why);
-  }
+  std::string unfinished;
+  const int file = openUnfinished(path, &unfinished);
+  if (file < 0) cannot("write", path);
+  int error = writeAll(file, bytes) && ::fsync(file) == 0 ? 0 : errno;
+  if (::close(file) != 0 && error == 0) error = errno;
+  if (error == 0 && ::rename(unfinished.c_str(), path.c_str()) != 0) error = errno;
+  if (error == 0) return;
+  ::unlink(unfinished.c_str());
+  errno = error;
+  cannot("write", path);
 }
 
 }  // namespace ddm

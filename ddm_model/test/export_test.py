@@ -113,7 +113,7 @@ class ExportTest(toy_robot.ToyRobotCase):
         model = toy_robot.train(self.scratch, [self.bag])
         os.mkfifo(self.npz)
         code, output = toy_robot.call("export", "--model", model, "--out", self.npz)
-        self.assertEqual((code, output), (1, "export: cannot write %s: it is no plain file\n" % self.npz))
+        self.assertEqual((code, output), (1, "export: cannot write %s: it is not a regular file\n" % self.npz))
 
 
 if __name__ == "__main__":

@@ -152,7 +152,7 @@ class InspectionTest(toy_robot.ToyRobotCase):
 
     def test_what_cannot_be_written_is_named_and_there_is_no_report(self):
         os.makedirs(os.path.join(self.out, "verdict.yaml"))
-        self.assertRefused(["inspect: cannot write %s: it is no plain file\n" % os.path.join(self.out, "verdict.yaml")],
+        self.assertRefused(["inspect: cannot write %s: it is not a regular file\n" % os.path.join(self.out, "verdict.yaml")],
                            "--model", self.model)
         self.out = self.file("small")
         limits = resource.getrlimit(resource.RLIMIT_FSIZE)

@@ -5,9 +5,14 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <atomic>
 #include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "ddm_model/testing/expect_error.h"
+#include "ddm_model/testing/file_size_limit.h"
 #include "ddm_model/testing/temp_folder.h"
 
 namespace ddm {
@@ -25,6 +30,15 @@ class PlainFile : public ::testing::Test {
                                                      {path, why});
   }
 
+  /// Names of all that is in the folder.
+  std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_.file(""))) {
+      names.push_back(entry.path().filename().string());
+    }
+    return names;
+  }
+
   const testing::TempFolder folder_;
   const std::string path_ = folder_.file("a.model");
 };
@@ -34,34 +48,72 @@ TEST_F(PlainFile, IsWrittenAndReadAgain) {
   writeFileAtomically(path_, "an older and much longer text");
   writeFileAtomically(path_, bytes);
   EXPECT_EQ(readFile(path_), bytes);
-  EXPECT_FALSE(fs::exists(path_ + ".unfinished"));
+  EXPECT_EQ(files(), std::vector<std::string>{"a.model"});
   writeFileAtomically(path_, "");
   EXPECT_EQ(readFile(path_), "");
 }
 
-TEST_F(PlainFile, AWriteThatFailsLeavesTheOldFile) {
+TEST_F(PlainFile, AWriteThatFailsLeavesTheOldFileAndNothingElse) {
   writeFileAtomically(path_, "old");
-  fs::create_directory(path_ + ".unfinished");  // in the way, even for root
-  EXPECT_TRUE(isNotWritten(path_, "File exists"));
+  {
+    const testing::FileSizeLimit limit(1);  // of three bytes
+    EXPECT_TRUE(isNotWritten(path_, "File too large"));
+  }
   EXPECT_EQ(readFile(path_), "old");
+  EXPECT_EQ(files(), std::vector<std::string>{"a.model"});
   EXPECT_TRUE(isNotWritten(folder_.file("missing/a"), "No such file"));
 }
 
-TEST_F(PlainFile, ALinkInTheWayIsNotFollowed) {
-  writeFileAtomically(folder_.file("other"), "of somebody else");
-  fs::create_symlink(folder_.file("other"), path_ + ".unfinished");
+TEST_F(PlainFile, FilesOfOtherWritersAreNotTouched) {
+  const std::string others = path_ + ".unfinished";
+  writeFileAtomically(others, "of another process");
   writeFileAtomically(path_, "new");
-  EXPECT_EQ(readFile(folder_.file("other")), "of somebody else");
+  EXPECT_EQ(readFile(others), "of another process");
   EXPECT_EQ(readFile(path_), "new");
 }
 
-TEST_F(PlainFile, WhatIsNoPlainFileIsNeitherReplacedNorWaitedFor) {
+TEST_F(PlainFile, PermissionsFollowTheUmask) {
+  const mode_t before = ::umask(0027);
+  writeFileAtomically(path_, "new");
+  ::umask(before);
+  EXPECT_EQ(fs::status(path_).permissions(), fs::perms(0640));
+}
+
+TEST_F(PlainFile, OfWritersAtTheSameTimeEachReaderSeesOneWhole) {
+  constexpr int kWrites = 200;
+  const std::vector<std::string> contents = {std::string(300000, 'a'), std::string(500000, 'b')};
+  writeFileAtomically(path_, contents[0]);
+  std::atomic<int> num_writing{2};
+  std::vector<std::string> errors(contents.size());
+  std::vector<std::thread> writers;
+  for (size_t i = 0; i < contents.size(); ++i) {
+    writers.emplace_back([&, i] {
+      try {
+        for (int k = 0; k < kWrites; ++k) writeFileAtomically(path_, contents[i]);
+      } catch (const std::exception& e) {
+        errors[i] = e.what();
+      }
+      --num_writing;
+    });
+  }
+  int num_torn = 0;
+  do {
+    const std::string seen = readFile(path_);
+    if (seen != contents[0] && seen != contents[1]) ++num_torn;
+  } while (num_writing > 0);
+  for (std::thread& writer : writers) writer.join();
+  EXPECT_EQ(num_torn, 0);
+  EXPECT_EQ(errors, std::vector<std::string>(2));
+  EXPECT_EQ(files(), std::vector<std::string>{"a.model"});
+}
+
+TEST_F(PlainFile, WhatIsNotARegularFileIsNeitherReplacedNorWaitedFor) {
   ASSERT_EQ(::mkfifo(path_.c_str(), 0600), 0);
-  EXPECT_TRUE(isNotRead(path_, "it is no plain file"));
-  EXPECT_TRUE(isNotWritten(path_, "it is no plain file"));
+  EXPECT_TRUE(isNotRead(path_, "it is not a regular file"));
+  EXPECT_TRUE(isNotWritten(path_, "it is not a regular file"));
   EXPECT_TRUE(fs::is_fifo(path_));
-  EXPECT_TRUE(isNotRead("/dev/zero", "it is no plain file"));
-  EXPECT_TRUE(isNotWritten("/proc/self", "it is no plain file"));
+  EXPECT_TRUE(isNotRead("/dev/zero", "it is not a regular file"));
+  EXPECT_TRUE(isNotWritten("/proc/self", "it is not a regular file"));
 }
 
 TEST_F(PlainFile, AFileThatCannotBeReadIsNamed) {

@@ -36,12 +36,13 @@ class TrainFromBags : public ::testing::Test {
   }
 
   /// Runs the tool in the folder of the test.
-  Outcome run(const std::string& arguments) const {
-    return testing::run("cd " + folder_.file("") + " && " + DDM_MODEL_TRAIN_FROM_BAGS + " " +
-                        arguments);
+  /// @param setup  commands of a shell, before the program starts
+  Outcome run(const std::string& arguments, const std::string& setup = "") const {
+    return testing::run("cd " + folder_.file("") + " && " + setup + DDM_MODEL_TRAIN_FROM_BAGS +
+                        " " + arguments);
   }
-  Outcome train(const std::string& arguments) const {
-    return run("--config toy.yaml --out new.model " + arguments);
+  Outcome train(const std::string& arguments, const std::string& setup = "") const {
+    return run("--config toy.yaml --out new.model " + arguments, setup);
   }
   Ddm model() const { return deserialiseModel(readFile(path("new.model")), "new.model"); }
 
@@ -155,8 +156,7 @@ TEST_F(TrainFromBags, SaysWhenThereIsTooLittleToLearnFrom) {
 
 TEST_F(TrainFromBags, LeavesTheOldModelWhereTheNewOneCannotBeWritten) {
   write("new.model", "old");
-  fs::create_directory(path("new.model.unfinished"));
-  const Outcome outcome = train("a.bag");
+  const Outcome outcome = train("a.bag", "trap '' XFSZ && ulimit -f 2 && ");  // like a full disk
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_TRUE(contains(outcome.err, "cannot write new.model")) << outcome.err;
   EXPECT_EQ(readFile(path("new.model")), "old");

@@ -13,9 +13,10 @@ void requirePlainFile(const std::string& path);
 /// @throws std::runtime_error with the path and the reason
 std::string readFile(const std::string& path);
 
-/// Writes bytes to a file beside `path` and renames it: there is never half a file under the name.
+/// Writes bytes to a new file next to `path` and renames it: there is never half a file under the
+/// name. If several processes or threads write at once, one of their files survives, whole.
 /// @throws std::runtime_error with the path and the reason, also if there is something at the path
-///         that is no plain file
+///         that is not a regular file; then nothing has changed
 void writeFileAtomically(const std::string& path, const std::string& bytes);
 
 }  // namespace ddm
