@@ -14,6 +14,7 @@
 #include "ddm_model/plain_file.h"
 #include "ddm_model/testing/expect_error.h"
 #include "ddm_model/testing/temp_folder.h"
+#include "subprocess.h"
 #include "toy_bags.h"
 
 namespace ddm {
@@ -21,6 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::imageMessage;
+using testing::throwsNaming;
 using testing::torqueMessage;
 using testing::ToyBag;
 using testing::toyImage;
@@ -138,6 +140,24 @@ TEST_F(BagDamage, ARecordingThatWasNotCompletedIsRefusedWithTheRemedy) {
   EXPECT_TRUE(isRefused({"not completed", "rosbag reindex"}));
   path_ = folder_.file("renamed.bag");  // a new name does not make it complete
   EXPECT_TRUE(isRefused());
+}
+
+TEST_F(BagDamage, ARecordingThatWasNotCompletedIsRecoveredByTheCommandThatTheErrorsQuote) {
+  const std::string left = folder_.file("killed.bag.active");
+  BagWriter writer(path_, BagOptions());
+  for (int t = 0; t < 400; ++t) {
+    writer.write(imageMessage(1.0 + 0.2 * t, toyImage(0.1 * t)));
+    writer.write(torqueMessage(1.0 + 0.2 * t, {1.0}));
+  }
+  fs::copy_file(path_ + ".active", left);  // what a killed recorder leaves
+  EXPECT_TRUE(throwsNaming<std::runtime_error>(
+      [&] { BagWriter(folder_.file("killed.bag"), BagOptions()); }, {"`rosbag reindex " + left}));
+  const testing::Outcome outcome = testing::run("rosbag reindex " + left);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  fs::rename(left, folder_.file("killed.bag"));
+  const int num_frames =
+      readBag(folder_.file("killed.bag"), testing::kToySize, BagOptions()).data.numFrames();
+  EXPECT_GT(num_frames, 200) << "all but the last chunk";
 }
 
 TEST_F(BagDamage, MissingTopicsAreRefusedWithThoseThatAreThere) {

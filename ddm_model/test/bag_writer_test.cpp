@@ -10,6 +10,7 @@
 #include "ddm_bag_io/bag_reader.h"
 #include "ddm_model/plain_file.h"
 #include "ddm_model/testing/expect_error.h"
+#include "ddm_model/testing/file_size_limit.h"
 #include "ddm_model/testing/temp_folder.h"
 #include "toy_bags.h"
 
@@ -100,16 +101,40 @@ TEST_F(BagWriterTest, NamesABagThatCannotBeWrittenOrRenamed) {
   EXPECT_TRUE(fs::exists(path_ + ".active"));  // nothing is lost
 }
 
+TEST_F(BagWriterTest, ARecordingThatWasNotCompletedIsNotReplaced) {
+  { BagWriter killed(path_, BagOptions()); }
+  writeFileAtomically(path_ + ".active", "all that is left of a trial");
+  EXPECT_TRUE(throwsNaming<std::runtime_error>(
+      [this] { BagWriter(path_, BagOptions()); },
+      {path_ + ".active exists already", "rosbag reindex " + path_ + ".active", "remove it"}));
+  EXPECT_EQ(readFile(path_ + ".active"), "all that is left of a trial");
+}
+
+TEST_F(BagWriterTest, OfTwoWritersOfOneBagTheSecondIsRefused) {
+  BagWriter first(path_, BagOptions());
+  EXPECT_THROW(BagWriter(path_, BagOptions()), std::runtime_error);
+  writeFrames(&first, 5);
+  first.close();
+  EXPECT_EQ(readBag(path_, testing::kToySize, BagOptions()).data.numFrames(), 5);
+}
+
 TEST_F(BagWriterTest, SurvivesADiskThatIsFull) {
-  fs::create_symlink("/dev/full", path_ + ".active");
   EXPECT_TRUE(throwsNaming<std::runtime_error>(
       [this] {
+        const testing::FileSizeLimit limit(20000);
         BagWriter writer(path_, BagOptions());
         writeFrames(&writer, 200);  // more than what is kept in memory
         writer.close();
       },
       {path_}));
   EXPECT_FALSE(fs::exists(path_));
+}
+
+TEST_F(BagWriterTest, ABagThatCannotEvenBeBegunLeavesNothing) {
+  const testing::FileSizeLimit limit(0);
+  EXPECT_TRUE(
+      throwsNaming<std::runtime_error>([this] { BagWriter(path_, BagOptions()); }, {path_}));
+  EXPECT_FALSE(fs::exists(path_ + ".active"));
 }
 
 }  // namespace

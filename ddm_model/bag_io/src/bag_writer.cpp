@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_bag_io/bag_writer.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -26,16 +29,34 @@ std::string reason(const std::string& path, const std::exception& e) {
                                     : "");
 }
 
+/// Makes an empty file; rosbag itself would replace one, which may be all that is left of a trial.
+void claim(const std::string& active) {
+  const int file = ::open(active.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (file >= 0) {
+    ::close(file);
+  } else if (errno == EEXIST) {
+    throw std::runtime_error(
+        "bag " + active +
+        " exists already, of a recording that was not completed: `rosbag reindex " + active +
+        "` recovers it, then rename it to *.bag; or remove it, or record under another name");
+  } else {
+    throw std::runtime_error("cannot write bag " + active + ": " + std::strerror(errno));
+  }
+}
+
 }  // namespace
 
 BagWriter::BagWriter(const std::string& path, const BagOptions& options)
-    : path_(path), options_(options), bag_(std::make_unique<rosbag::Bag>()) {
+    : path_(path), options_(options) {
+  claim(path_ + ".active");
+  bag_ = std::make_unique<rosbag::Bag>();
   try {
     bag_->open(path_ + ".active", rosbag::bagmode::Write);
     bag_->setCompression(rosbag::compression::LZ4);
     bag_->setChunkThreshold(kChunkBytes);
   } catch (const std::exception& e) {
     abandon();
+    ::unlink((path_ + ".active").c_str());  // nothing is in it yet
     throw std::runtime_error("cannot write bag " + path_ + ".active: " + reason(path_, e));
   }
 }

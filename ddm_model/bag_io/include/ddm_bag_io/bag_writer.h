@@ -19,6 +19,8 @@ namespace ddm {
 /// recorder.
 class BagWriter {
  public:
+  /// A PATH.active that is there already is not replaced: it may be all that is left of a trial,
+  /// and `rosbag reindex` can recover it.
   /// @throws std::runtime_error with the path and the reason
   BagWriter(const std::string& path, const BagOptions& options);
   ~BagWriter();
