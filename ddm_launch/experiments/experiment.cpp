@@ -38,7 +38,12 @@ class Loop {
     progress_.beginPhase(trial, random ? "random" : "explore");
     TrialRequest request = requestFor(trial, /*evaluation=*/false);
     request.epsilon = random ? 1.0 : configuration_.mpc.epsilon;
-    request.bag = folder_.beginTrial(trial);
+    std::vector<std::string> kept;
+    request.bag = folder_.beginTrial(trial, &kept);
+    for (const std::string& bag : kept) {
+      progress_.note("trial " + std::to_string(trial) + " was begun before, kept its bag as " +
+                     bag);
+    }
     folder_.writeTrial(trial, world_.runTrial(request, update_));
   }
 
@@ -110,6 +115,7 @@ void runExperiment(const Configuration& configuration, World* world, RunFolder* 
   const int num_finished = static_cast<int>(folder->rows().size());
   show(folder->rows());
   const bool all_done = num_finished > configuration.experiment.trials;
+  if (!all_done) folder->requireWritable();
   if (num_finished > 0) {
     progress->note("resuming after trial " + std::to_string(num_finished - 1));
     if (!all_done) loop.train(num_finished - 1);
@@ -128,7 +134,7 @@ void runExperiment(const Configuration& configuration, World* world, RunFolder* 
   }
   const double wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  folder->writeSummary(wall_s);
+  if (!all_done || !folder->isFinished()) folder->writeSummary(wall_s);
   progress->summary(folder->rows(), folder->path(), wall_s);
 }
 

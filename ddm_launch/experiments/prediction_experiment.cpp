@@ -139,12 +139,12 @@ void run(const Experiment& experiment) {
   const Configuration& all = experiment.configuration;
   YAML::Node saved = toYaml(all);
   saved["prediction"] = toYaml(experiment.prediction);
-  const ResultsFolder folder(all.experiment.runs, saved);
+  ResultsFolder folder(all.experiment.runs, saved);
   for (const std::string& warning : folder.warnings()) std::cout << "warning: " << warning << "\n";
-  folder.begin();
 
   const std::unique_ptr<Plant> plant = makePlant(all.plant, all.camera);
   const Recording recording = record(experiment, plant.get());
+  folder.begin();  // nothing is left that could refuse
   ModelInfo info;
   info.seed = static_cast<std::uint64_t>(all.experiment.seed);
   info.config = toText(all.model);

@@ -3,8 +3,6 @@
 #include "results_folder.h"
 
 #include <ddm_model/plain_file.h>
-#include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <boost/filesystem.hpp>
@@ -21,43 +19,25 @@ namespace {
 
 namespace fs = boost::filesystem;
 
+void makeFolders(const std::string& path) {
+  boost::system::error_code error;
+  fs::create_directories(path, error);
+  if (!fs::is_directory(path)) {
+    throw std::runtime_error("cannot make the folder " + path + ": " + error.message());
+  }
+}
+
 }  // namespace
 
 ResultsFolder::ResultsFolder(std::string path, YAML::Node configuration)
     : path_(std::move(path)), configuration_(std::move(configuration)) {
   if (path_.empty()) throw std::runtime_error("no folder was given for the results");
-  boost::system::error_code error;
-  fs::create_directories(path_, error);
-  if (!fs::is_directory(path_)) {
-    throw std::runtime_error("cannot make the folder " + path_ + ": " + error.message());
-  }
-  lock();
-  try {
-    if (fs::exists(path_ + "/config.yaml")) {
-      compareWith(path_ + "/config.yaml");
-    } else if (fs::exists(path_ + "/trials.csv")) {
-      throw std::runtime_error(path_ +
-                               " holds a trials.csv but no config.yaml: use another folder");
-    }
-  } catch (...) {
-    ::close(lock_file_);
-    throw;
-  }
-}
-
-ResultsFolder::~ResultsFolder() { ::close(lock_file_); }
-
-/// The kernel lets go of the lock when the process ends, however it ends.
-void ResultsFolder::lock() {
-  const std::string file = path_ + "/.lock";
-  lock_file_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (lock_file_ < 0) {
-    throw std::runtime_error("cannot write into the folder " + path_ + ": " + std::strerror(errno));
-  }
-  if (::flock(lock_file_, LOCK_EX | LOCK_NB) != 0) {
-    ::close(lock_file_);
-    throw std::runtime_error("another experiment is running in the folder " + path_ +
-                             ": wait for it, or use another folder");
+  if (!fs::exists(path_)) return;
+  lock_ = std::make_unique<FolderLock>(path_);
+  if (fs::exists(path_ + "/config.yaml")) {
+    compareWith(path_ + "/config.yaml");
+  } else if (fs::exists(path_ + "/trials.csv")) {
+    throw std::runtime_error(path_ + " holds a trials.csv but no config.yaml: use another folder");
   }
 }
 
@@ -73,6 +53,7 @@ void ResultsFolder::compareWith(const std::string& file) {
     throw std::runtime_error("the folder " + path_ +
                              " holds another experiment, use another folder:" + differences);
   }
+  version_ = there.version;
   if (there.version != codeVersion()) {
     warnings_.push_back("the folder " + path_ + " was begun by version " + there.version +
                         " of the code, this is " + codeVersion() +
@@ -80,30 +61,57 @@ void ResultsFolder::compareWith(const std::string& file) {
   }
 }
 
-void ResultsFolder::begin() const {
-  YAML::Node versioned(YAML::NodeType::Map);
-  versioned["version"] = codeVersion();
-  for (const auto& block : configuration_) versioned[block.first] = block.second;
-  write("config.yaml", YAML::Dump(versioned) + "\n");
-  boost::system::error_code error;
-  fs::remove(path_ + "/summary.yaml", error);
+void ResultsFolder::requireWritable() const {
+  fs::path folder = fs::absolute(path_);
+  while (!fs::exists(folder) && folder.has_parent_path()) folder = folder.parent_path();
+  const bool is_folder = fs::is_directory(folder);
+  if (is_folder && ::access(folder.c_str(), W_OK | X_OK) == 0) return;
+  const int error = is_folder ? errno : ENOTDIR;
+  throw std::runtime_error("cannot write into the folder " + path_ + ": " + folder.string() + ": " +
+                           std::strerror(error));
 }
 
-void ResultsFolder::makeFolder(const std::string& name) const {
-  const fs::path folder = fs::path(path_) / name;
-  boost::system::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    throw std::runtime_error("cannot make the folder " + folder.string() + ": " + error.message());
+void ResultsFolder::begin() {
+  if (begun_) return;
+  if (lock_ == nullptr) {
+    makeFolders(path_);
+    lock_ = std::make_unique<FolderLock>(path_);
+    if (fs::exists(path_ + "/config.yaml")) {
+      throw std::runtime_error("another experiment was begun in the folder " + path_ +
+                               " meanwhile: use another folder");
+    }
   }
+  YAML::Node versioned(YAML::NodeType::Map);
+  versioned["version"] = version_;
+  for (const auto& block : configuration_) versioned[block.first] = block.second;
+  const std::string file = path_ + "/config.yaml";
+  const std::string text = YAML::Dump(versioned) + "\n";
+  fs::remove(path_ + "/summary.yaml");
+  if (!fs::exists(file) || readFile(file) != text) writeFileAtomically(file, text);
+  begun_ = true;
 }
 
-void ResultsFolder::write(const std::string& name, const std::string& content) const {
+void ResultsFolder::makeFolder(const std::string& name) {
+  begin();
+  makeFolders(path_ + "/" + name);
+}
+
+void ResultsFolder::write(const std::string& name, const std::string& content) {
   makeFolder(fs::path(name).parent_path().string());
   writeFileAtomically(path_ + "/" + name, content);
 }
 
-void ResultsFolder::finish(const YAML::Node& summary) const {
+bool ResultsFolder::isFinished() const {
+  const std::string file = path_ + "/summary.yaml";
+  if (!fs::exists(file)) return false;
+  try {
+    return YAML::Load(readFile(file))["finished"].as<bool>(false);
+  } catch (const YAML::Exception&) {
+    return false;
+  }
+}
+
+void ResultsFolder::finish(const YAML::Node& summary) {
   YAML::Node all(YAML::NodeType::Map);
   all["finished"] = true;
   for (const auto& entry : summary) all[entry.first] = entry.second;

@@ -4,22 +4,26 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "code_version.h"
+#include "folder_lock.h"
+
 namespace ddm {
 
-/// Holds config.yaml, the effective configuration and version of the code, and in the end
-/// summary.yaml. All files appear under their names only when they are complete.
+/// Holds config.yaml, the effective configuration and the version of the code that began, and in
+/// the end summary.yaml. All files appear under their names only when they are complete.
 class ResultsFolder {
  public:
-  /// Makes the folder, or opens that of the same configuration; at most one process holds it.
+  /// Looks at the folder, which need not exist, and changes nothing. If it is there, no other
+  /// process gets it while this object lives.
   /// @param path           folder
   /// @param configuration  blocks by name
-  /// @throws std::runtime_error if it cannot be written, is held by another process, or holds
-  ///         results of another configuration (the keys that differ are named)
+  /// @throws std::runtime_error if it is held by another process, or holds results of another
+  ///         configuration (the keys that differ are named)
   ResultsFolder(std::string path, YAML::Node configuration);
-  ~ResultsFolder();
   ResultsFolder(const ResultsFolder&) = delete;
   ResultsFolder& operator=(const ResultsFolder&) = delete;
 
@@ -27,28 +31,38 @@ class ResultsFolder {
   /// Things a user should know about a folder that is used again.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
-  /// Before the first result: keeps the configuration, and takes back an earlier summary. Not
-  /// sooner: a command that is refused must leave all as it is.
-  void begin() const;
+  /// For programs that compute long before they write; changes nothing.
+  /// @throws std::runtime_error with path and reason if nothing can be written there
+  void requireWritable() const;
+
+  /// Makes the folder, keeps the configuration with the version that began, and takes back an
+  /// earlier summary. Called by all that writes: before the first result, and no sooner, since a
+  /// command that is refused must leave everything as it is.
+  /// @throws std::runtime_error with path and reason, also if another process has begun meanwhile
+  void begin();
 
   /// @param name  of a folder in this folder
   /// @throws std::runtime_error with path and reason
-  void makeFolder(const std::string& name) const;
+  void makeFolder(const std::string& name);
 
   /// @param name  of a file in this folder, may be in a folder within, which is made
   /// @throws std::runtime_error with path and reason
-  void write(const std::string& name, const std::string& content) const;
+  void write(const std::string& name, const std::string& content);
+
+  /// Whether there is a summary.yaml that says so.
+  bool isFinished() const;
 
   /// Writes summary.yaml, which begins with `finished: true` and ends with the version.
-  void finish(const YAML::Node& summary) const;
+  void finish(const YAML::Node& summary);
 
  private:
-  void lock();
   void compareWith(const std::string& file);
 
   std::string path_;
   YAML::Node configuration_;
-  int lock_file_ = -1;
+  std::string version_ = codeVersion();  // of the code that began
+  std::unique_ptr<FolderLock> lock_;     // null: the folder is not there yet
+  bool begun_ = false;
   std::vector<std::string> warnings_;
 };
 

@@ -30,6 +30,19 @@ std::string numbered(const std::string& name, int trial) {
   return name + number;
 }
 
+/// Gives a file of an earlier try another name: "trial.bag" is "trial.1.bag" then, or
+/// "trial.2.bag".
+/// @return the new name; empty if there is no such file
+std::string keep(const std::string& stem, const std::string& ending) {
+  if (!fs::exists(fs::symlink_status(stem + ending))) return "";
+  for (int number = 1;; ++number) {
+    const std::string name = stem + "." + std::to_string(number) + ending;
+    if (fs::exists(fs::symlink_status(name))) continue;
+    fs::rename(stem + ending, name);
+    return name;
+  }
+}
+
 }  // namespace
 
 RunFolder::RunFolder(const Configuration& configuration)
@@ -38,7 +51,6 @@ RunFolder::RunFolder(const Configuration& configuration)
   torque_names_ = plant->torqueNames();
   state_names_ = plant->stateNames();
   readRows(path() + "/" + kRows);
-  folder_.begin();
 }
 
 void RunFolder::readRows(const std::string& file) {
@@ -80,10 +92,14 @@ std::string RunFolder::bagPath(int trial) const {
   return path() + "/" + numbered("trial", trial) + "/trial.bag";
 }
 
-std::string RunFolder::beginTrial(int trial) const {
+std::string RunFolder::beginTrial(int trial, std::vector<std::string>* kept) {
   folder_.makeFolder(numbered("trial", trial));
-  fs::remove(bagPath(trial));  // of an earlier try: nobody records over a bag
-  return bagPath(trial);
+  const std::string bag = bagPath(trial);
+  for (const char* ending : {".bag", ".bag.active"}) {
+    const std::string kept_as = keep(bag.substr(0, bag.size() - 4), ending);
+    if (!kept_as.empty() && kept != nullptr) kept->push_back(kept_as);
+  }
+  return bag;
 }
 
 void RunFolder::writeTrial(int trial, const TrialOutcome& outcome) {

@@ -28,18 +28,20 @@ struct TrialRow {
   double plan_ms_p99 = 0.0;
 };
 
-///   config.yaml                          effective configuration and version of the code
+///   config.yaml                          effective configuration, version of the code that began
 ///   trials.csv                           one row per finished trial
 ///   .trials.crc32                        its checksums
 ///   trial_NNN/{trial.bag,torques.csv,trajectory.csv} and the files of the training, model.ddm
 ///   evaluation_NNN/{torques.csv,trajectory.csv}
 ///   evaluation_NNN/goal_distance.csv     instead of the trajectory, where nobody tells it
+///   trial_NNN/trial.K.bag[.active]       of the K-th try that was not finished
 ///   summary.yaml                         written last: the verdict
 class RunFolder {
  public:
-  /// Makes the folder, or opens that of the same experiment; at most one process holds it.
-  /// @throws std::runtime_error if it cannot be written, is held by another process, or holds
-  ///         another experiment (the keys that differ are named) or files that make no sense
+  /// Looks at the folder, which need not exist, and changes nothing: the first that is written
+  /// makes it. If it is there, no other process gets it while this object lives.
+  /// @throws std::runtime_error if it is held by another process, or holds another experiment (the
+  ///         keys that differ are named) or files that make no sense
   explicit RunFolder(const Configuration& configuration);
 
   const std::string& path() const { return folder_.path(); }
@@ -49,14 +51,20 @@ class RunFolder {
   const std::vector<TrialRow>& rows() const { return rows_; }
 
   std::string bagPath(int trial) const;
-  /// Makes the folder of a trial that has not been finished, without a bag.
-  /// @return bagPath(trial)
-  std::string beginTrial(int trial) const;
+  /// @throws std::runtime_error if nothing can be written there; changes nothing
+  void requireWritable() const { folder_.requireWritable(); }
+  /// Makes the folder of a trial that has not been finished. Bags of an earlier try, complete or
+  /// not, are kept under other names: they may be all that is left of it.
+  /// @param kept  (optional) out: their new names are added
+  /// @return      bagPath(trial), where nothing is
+  std::string beginTrial(int trial, std::vector<std::string>* kept = nullptr);
   void writeTrial(int trial, const TrialOutcome& outcome);
   void writeTraining(int trial, const TrainingOutcome& outcome);
   void writeEvaluation(int trial, const TrialOutcome& outcome);
   /// Ends a trial: from here on it is never run again.
   void finishTrial(const TrialRow& row);
+  /// Whether summary.yaml has the verdict on all rows.
+  bool isFinished() const { return folder_.isFinished(); }
   void writeSummary(double wall_s);
 
  private:

@@ -67,36 +67,34 @@ for port in (11311, 0):
 PYTHON
 }
 
-# Stops unless FOLDER/summary.yaml says that the experiment finished. roslaunch returns 0 whatever happened, so
-# this file is the verdict; it must be newer than the file STARTED, or it speaks of an earlier call.
-check_summary() {  # FOLDER STARTED
+# Stops unless FOLDER/summary.yaml says that the experiment finished, with at least TRIALS trials. roslaunch returns 0
+# whatever happened, so this file is the verdict. It may be of an earlier call: where all is done, nothing is written.
+check_summary() {  # FOLDER TRIALS
   local summary=$1/summary.yaml again="the same command goes on after the last finished trial."
   [[ -f $summary ]] || fail "the experiment wrote no $summary: it did not finish.
 Remedy: read the lines above; $again"
-  [[ $summary -nt $2 ]] || fail "the experiment stopped before it wrote a new $summary.
-Remedy: read the lines above; $again"
-  /usr/bin/python3 - "$summary" <<'PYTHON' || fail "$summary says that the experiment did not finish.
+  /usr/bin/python3 - "$summary" "$2" <<'PYTHON' || fail "$summary says that the experiment did not finish $2 trials.
 Remedy: read the lines above; $again"
 import sys
 import yaml
 
 with open(sys.argv[1]) as stream:
     summary = yaml.safe_load(stream)
-sys.exit(0 if isinstance(summary, dict) and summary.get("finished") is True else 1)
+if not isinstance(summary, dict) or summary.get("finished") is not True:
+    sys.exit(1)
+sys.exit(0 if summary.get("trials", -1) >= int(sys.argv[2]) else 1)
 PYTHON
 }
 
 run_experiment() {
-  local port started
+  local port
   port=$(free_master_port)
-  started=$(mktemp)
-  trap "rm -f '$started'" EXIT
   say "Running one random and $trials learning trials; a trial is learned from as soon as it ends"
   ((port == 11311)) || echo "Another program has port 11311: use ROS_MASTER_URI=http://localhost:$port to look in."
   mkdir -p "$runs" || fail "cannot make the run folder $runs. Remedy: choose another with --runs FOLDER."
   roslaunch -p "$port" ddm_launch experiment.launch preset:=paper plant:=pendulum seed:=3 \
     trials:="$trials" runs:="$runs" rviz:="$rviz" || fail "roslaunch failed: see its lines above."
-  check_summary "$runs" "$started"
+  check_summary "$runs" "$trials"
 }
 
 draw_pictures() {

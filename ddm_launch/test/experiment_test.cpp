@@ -184,13 +184,60 @@ TEST_F(ExperimentTest, AnExperimentThatIsTakenUpTrainsOnceAndGoesOn) {
   EXPECT_NE(terminal_.find("resuming after trial 1"), std::string::npos) << terminal_;
 }
 
-TEST_F(ExperimentTest, AFinishedExperimentIsNotRunAgainButGetsItsSummary) {
+TEST_F(ExperimentTest, AFinishedExperimentIsSummedUpAndNothingIsWritten) {
   run();
+  const auto before = testing::fingerprintOf(scratch_.file("run"));
+  world_.calls.clear();
+  for (const int trials : {2, 1}) {
+    configuration_.experiment.trials = trials;
+    run();
+    EXPECT_EQ(world_.calls, Calls());
+    EXPECT_NE(terminal_.find("3 models trained"), std::string::npos) << terminal_;
+    EXPECT_EQ(testing::fingerprintOf(scratch_.file("run")), before);
+  }
+}
+
+TEST_F(ExperimentTest, AnExperimentThatEndedBeforeItsVerdictGetsIt) {
+  run();
+  fs::remove(file("summary.yaml"));
   world_.calls.clear();
   run();
   EXPECT_EQ(world_.calls, Calls());
   EXPECT_EQ(numRows(), 3u);
   EXPECT_TRUE(fs::exists(file("summary.yaml")));
+}
+
+TEST_F(ExperimentTest, AWorldThatFailsBeforeTheFirstResultLeavesTheFolderAsItWas) {
+  configuration_.start.bags = {"/a.bag"};
+  world_.fails_at = 1;  // train 0
+  EXPECT_THROW(run(), std::runtime_error);
+  EXPECT_FALSE(fs::exists(scratch_.file("run")));
+  configuration_ = toyConfiguration(scratch_.file("run"));
+  world_ = ObedientWorld();
+  run();
+  const auto before = testing::fingerprintOf(scratch_.file("run"));
+  configuration_.experiment.trials = 3;
+  world_ = ObedientWorld();
+  world_.fails_at = 1;  // train 2
+  EXPECT_THROW(run(), std::runtime_error);
+  EXPECT_EQ(testing::fingerprintOf(scratch_.file("run")), before);
+}
+
+TEST_F(ExperimentTest, ATrialThatIsRunAgainSaysWhereItsBagIs) {
+  world_.fails_at = 2;  // train 0
+  EXPECT_THROW(run(), std::runtime_error);
+  world_ = ObedientWorld();
+  run();
+  EXPECT_NE(terminal_.find(file("trial_000/trial.1.bag")), std::string::npos) << terminal_;
+  EXPECT_TRUE(fs::exists(file("trial_000/trial.1.bag")));
+}
+
+TEST_F(ExperimentTest, AFolderThatCannotBeWrittenIsNamedBeforeAnythingRuns) {
+  testing::writeText(scratch_.file("plain_file"), "");
+  configuration_.experiment.runs = scratch_.file("plain_file/run");
+  EXPECT_TRUE(
+      throwsNaming<std::runtime_error>([this] { run(); }, {"cannot write into the folder"}));
+  EXPECT_EQ(world_.calls, Calls());
 }
 
 TEST_F(ExperimentTest, AWorldThatFailsLeavesTheFinishedTrialsAndNoVerdict) {

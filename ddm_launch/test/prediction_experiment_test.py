@@ -13,7 +13,7 @@ from processes import call, find_program, run_experiment  # noqa: E402
 from run_files import files_in, read_bytes, read_rows, read_yaml  # noqa: E402
 from scratch_case import SharedScratchCase  # noqa: E402
 
-FILES = [".lock", "config.yaml", "features.csv", "model.ddm", "predictions.csv", "strip.csv", "summary.yaml"]
+FILES = ["config.yaml", "features.csv", "model.ddm", "predictions.csv", "strip.csv", "summary.yaml"]
 QUICK = "training: {max_iterations: 20, num_starts: 1}\nprediction: {training_frames: 60, held_out_frames: 30}\n"
 
 

@@ -48,9 +48,10 @@ class RobotLoopTest(ScratchCase):
 
     def checkRobotRun(self):
         self.assertEqual(files_in(self.out), sorted(
-            [".lock", ".trials.crc32", "config.yaml", "robot_check.yaml", "summary.yaml", "trials.csv",
+            [".trials.crc32", "config.yaml", "robot_check.yaml", "summary.yaml", "trials.csv",
              "evaluation_000/goal_distance.csv", "evaluation_000/torques.csv",
-             "trial_000/model.ddm", "trial_000/torques.csv", "trial_000/trial.bag"]))
+             "trial_000/model.ddm", "trial_000/torques.csv", "trial_000/trial.bag",
+             "trial_000/trial.1.bag.active"]))  # of the trial that was stopped
         self.assertPaired(0, 0.2)
         with rosbag.Bag(os.path.join(self.out, "trial_000", "trial.bag")) as bag:
             image = next(message for _, message, _ in bag.read_messages(["camera/image_raw"]))

@@ -11,8 +11,8 @@ import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import Process, call, find_program, run_experiment  # noqa: E402
-from run_files import (COLUMNS, differences, expected_files, files_in, read_bag, read_bytes, read_rows,  # noqa: E402
-                       read_yaml)
+from run_files import (COLUMNS, changes, differences, expected_files, files_in, fingerprint, read_bag,  # noqa: E402
+                       read_bytes, read_rows, read_yaml)
 from scratch_case import SharedScratchCase  # noqa: E402
 
 TRIALS = 2
@@ -120,10 +120,10 @@ class RunExperimentTest(SharedScratchCase):
 
     def test_a_finished_run_is_not_changed_by_the_same_command(self):
         shutil.copytree(self.reference, self.out)
-        before = {name: read_bytes(self.out, name) for name in files_in(self.out) if "yaml" not in name}
-        self.assertRuns(*self.debug())
-        self.assertEqual({name: read_bytes(self.out, name) for name in before}, before)
-        self.assertEqual(differences(self.reference, self.out, expected_files(TRIALS)), [])
+        before = fingerprint(self.out)
+        output = self.assertRuns(*self.debug())
+        self.assertIn("%d models trained" % (TRIALS + 1), output)
+        self.assertEqual(changes(before, fingerprint(self.out)), [])
 
     def test_a_saved_configuration_can_be_given_again(self):
         self.assertRuns("--preset", "paper", "--config", os.path.join(self.reference, "config.yaml"), "--seed", 1,
@@ -207,18 +207,17 @@ class RunExperimentTest(SharedScratchCase):
 
     def test_the_folder_of_another_experiment_is_refused_and_left_as_it_is(self):
         shutil.copytree(self.reference, self.out)
-        before = {name: read_bytes(self.out, name) for name in files_in(self.out)}
-        self.assertIn("summary.yaml", before)
+        before = fingerprint(self.out)
         self.assertRefused(1, [self.out, "experiment/seed: 1 there, 5 here"], *self.debug(seed=5))
         self.assertRefused(1, ["experiment/preset: debug there, paper here", "trial/num_steps"],
                            "--seed", 1, "--out", self.out)
         self.assertRefused(1, ["experiment/plant: pendulum there, pendulum_gravity here"],
                            "--plant", "pendulum_gravity", *self.debug())
-        self.assertEqual({name: read_bytes(self.out, name) for name in files_in(self.out)}, before)
+        self.assertEqual(changes(before, fingerprint(self.out)), [])
 
     def test_a_folder_that_cannot_be_written_is_named(self):
         for out in (self.write("plain_file", ""), "/proc/ddm"):
-            self.assertRefused(1, ["cannot make the folder", out], *self.debug(out=out))
+            self.assertRefused(1, ["cannot", out], *self.debug(out=out))
 
     def test_a_second_process_in_the_same_folder_is_refused(self):
         first = Process([find_program("ddm_launch", "run_experiment")] + self.debug(999))

@@ -1,9 +1,28 @@
 # What the tests look at in the folder of an experiment.
 # SPDX-License-Identifier: BSD-3-Clause
+import os
+
 import rosbag
 
 from ddm_launch.run_comparison import (COLUMNS, TIME_COLUMNS, comparable, differences, expected_files,  # noqa: F401
                                        files_in, read_bytes, read_rows, read_yaml)
+
+
+def fingerprint(folder):
+    """{path: (size, time of the last change [ns], bytes)} of a folder and all in it. Two are equal if nothing was
+    written in between."""
+    paths = [folder] + [os.path.join(parent, name) for parent, folders, files in os.walk(folder)
+                        for name in folders + files]
+    found = {}
+    for path in paths:
+        status = os.lstat(path)
+        found[path] = (status.st_size, status.st_mtime_ns, read_bytes(path) if os.path.isfile(path) else None)
+    return found
+
+
+def changes(before, after):
+    """Paths that are not the same in two fingerprints."""
+    return sorted(path for path in set(before) | set(after) if before.get(path) != after.get(path))
 
 
 def torque_files(num_trials):

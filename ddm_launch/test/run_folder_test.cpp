@@ -10,6 +10,7 @@
 #include <boost/filesystem.hpp>
 #include <cmath>
 #include <functional>
+#include <memory>
 
 #include "code_version.h"
 #include "toy_run.h"
@@ -19,6 +20,7 @@ namespace ddm {
 namespace {
 
 namespace fs = boost::filesystem;
+using testing::fingerprintOf;
 using testing::textOf;
 using testing::throwsNaming;
 using testing::toyConfiguration;
@@ -49,7 +51,8 @@ class RunFolderTest : public ::testing::Test {
 
 TEST_F(RunFolderTest, ANewFolderIsMadeWithTheEffectiveConfigurationAndTheVersion) {
   configuration_.experiment.runs = file("with/parents");
-  const RunFolder folder(configuration_);
+  RunFolder folder(configuration_);
+  folder.beginTrial(0);
   const YAML::Node saved = YAML::LoadFile(file("with/parents/config.yaml"));
   EXPECT_EQ(saved["version"].as<std::string>(), codeVersion());
   EXPECT_EQ(saved["experiment"]["seed"].as<int>(), 7);
@@ -68,10 +71,33 @@ TEST_F(RunFolderTest, TheSameExperimentTakesUpWhereItWas) {
   EXPECT_TRUE(folder.warnings().empty());
 }
 
+TEST_F(RunFolderTest, AFolderIsOnlyMadeForTheFirstResult) {
+  { const RunFolder folder(configuration_); }
+  EXPECT_FALSE(fs::exists(scratch_.file("run")));
+  RunFolder folder(configuration_);
+  folder.requireWritable();
+  EXPECT_FALSE(fs::exists(scratch_.file("run")));
+  folder.beginTrial(0);
+  EXPECT_TRUE(fs::exists(file("config.yaml")));
+}
+
+TEST_F(RunFolderTest, OpeningAFolderChangesNothingInIt) {
+  finish(2);
+  RunFolder(configuration_).writeSummary(1.0);
+  const auto before = fingerprintOf(scratch_.file("run"));
+  configuration_.experiment.trials = 5;
+  const RunFolder folder(configuration_);
+  folder.requireWritable();
+  EXPECT_TRUE(folder.isFinished());
+  EXPECT_EQ(fingerprintOf(scratch_.file("run")), before);
+}
+
 TEST_F(RunFolderTest, TrialsMayGrow) {
   finish(2);
   configuration_.experiment.trials = 5;
-  EXPECT_EQ(RunFolder(configuration_).rows().size(), 2u);
+  RunFolder folder(configuration_);
+  EXPECT_EQ(folder.rows().size(), 2u);
+  folder.beginTrial(2);
   EXPECT_EQ(YAML::LoadFile(file("config.yaml"))["experiment"]["trials"].as<int>(), 5);
 }
 
@@ -153,13 +179,40 @@ TEST_F(RunFolderTest, AnotherVersionOfTheCodeWarns) {
   EXPECT_NE(folder.warnings()[0].find(codeVersion()), std::string::npos);
 }
 
+TEST_F(RunFolderTest, TheVersionThatBeganStaysInTheConfiguration) {
+  finish(1);
+  std::string config = textOf(file("config.yaml"));
+  config.replace(0, config.find('\n'), "version: 0.0.1 (abc)");
+  writeText(file("config.yaml"), config);
+  RunFolder folder(configuration_);
+  folder.beginTrial(1);
+  EXPECT_EQ(textOf(file("config.yaml")), config);
+}
+
 TEST_F(RunFolderTest, ASecondExperimentInTheSameFolderIsRefused) {
-  const RunFolder first(configuration_);
+  RunFolder first(configuration_);
+  first.beginTrial(0);
+  const auto before = fingerprintOf(scratch_.file("run"));
   expectRefused({scratch_.file("run"), "another experiment is running"});
+  EXPECT_EQ(fingerprintOf(scratch_.file("run")), before);
+}
+
+TEST_F(RunFolderTest, OfTwoExperimentsInOneNewFolderTheFirstThatWritesHasIt) {
+  RunFolder first(configuration_);
+  RunFolder second(configuration_);
+  first.beginTrial(0);
+  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { second.beginTrial(0); },
+                                               {scratch_.file("run"), "another experiment"}));
+  auto third = std::make_unique<RunFolder>(toyConfiguration(scratch_.file("new")));
+  RunFolder fourth(toyConfiguration(scratch_.file("new")));
+  third->beginTrial(0);
+  third.reset();  // the lock is free again
+  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { fourth.beginTrial(0); },
+                                               {scratch_.file("new"), "was begun", "meanwhile"}));
 }
 
 TEST_F(RunFolderTest, AFolderIsFreeAfterItsExperiment) {
-  { const RunFolder first(configuration_); }
+  finish(1);
   EXPECT_NO_THROW(RunFolder second(configuration_));
 }
 
@@ -169,12 +222,23 @@ TEST_F(RunFolderTest, AFinishedTrialWithoutItsBagIsRefused) {
   expectRefused({"trial_001/trial.bag", "missing"});
 }
 
-TEST_F(RunFolderTest, ATrialBeginsWithoutTheBagOfAnEarlierTry) {
+TEST_F(RunFolderTest, BagsOfAnEarlierTryAreKeptUnderOtherNames) {
   finish(1);
   RunFolder folder(configuration_);
-  writeText(folder.beginTrial(1), "a bag");
-  EXPECT_FALSE(fs::exists(folder.beginTrial(1)));
-  EXPECT_TRUE(fs::exists(file("trial_000/trial.bag")));
+  for (const std::string attempt : {"first", "second"}) {
+    std::vector<std::string> kept;
+    const std::string bag = folder.beginTrial(1, &kept);
+    EXPECT_FALSE(fs::exists(bag) || fs::exists(bag + ".active"));
+    EXPECT_EQ(kept.size(), attempt == "first" ? 0u : 2u);
+    writeText(bag, attempt);
+    writeText(bag + ".active", attempt + " active");
+  }
+  folder.beginTrial(1);
+  EXPECT_EQ(textOf(file("trial_001/trial.1.bag")), "first");
+  EXPECT_EQ(textOf(file("trial_001/trial.1.bag.active")), "first active");
+  EXPECT_EQ(textOf(file("trial_001/trial.2.bag")), "second");
+  EXPECT_EQ(textOf(file("trial_001/trial.2.bag.active")), "second active");
+  EXPECT_EQ(textOf(file("trial_000/trial.bag")), "a bag");
 }
 
 TEST_F(RunFolderTest, RowsThatAreNotThoseOfTheExperimentAreRefused) {
@@ -252,8 +316,13 @@ TEST_F(RunFolderTest, AFolderThatCannotBeMadeOrWrittenIsNamed) {
   for (const std::string& path : {scratch_.file("plain_file"), scratch_.file("plain_file/run"),
                                   std::string("/proc/ddm"), std::string("/proc/self")}) {
     configuration_.experiment.runs = path;
-    expectRefused({"cannot", path});
+    EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { RunFolder(configuration_).beginTrial(0); },
+                                                 {"cannot", path}));
   }
+  configuration_.experiment.runs = scratch_.file("plain_file/run");
+  EXPECT_TRUE(throwsNaming<std::runtime_error>(
+      [&] { RunFolder(configuration_).requireWritable(); },
+      {"cannot write", scratch_.file("plain_file/run"), "Not a directory"}));
 }
 
 TEST_F(RunFolderTest, FilesAreReplacedAsAWhole) {
@@ -291,7 +360,7 @@ TEST_F(RunFolderTest, NothingButTheFilesOfTheContractIsLeft) {
   }
   std::sort(names.begin(), names.end());
   EXPECT_EQ(names, (std::vector<std::string>{
-                       ".lock", ".trials.crc32", "config.yaml", "evaluation_000/torques.csv",
+                       ".trials.crc32", "config.yaml", "evaluation_000/torques.csv",
                        "evaluation_000/trajectory.csv", "summary.yaml", "trial_000/model.ddm",
                        "trial_000/torques.csv", "trial_000/trajectory.csv", "trials.csv"}));
 }
@@ -320,16 +389,26 @@ TEST_F(RunFolderTest, TorquesAreWrittenWith17Digits) {
             "step,torque_nm,exploratory\n0,0.10000000000000001,1\n1,-6,0\n");
 }
 
-TEST_F(RunFolderTest, TheVerdictOfAnEarlierCallIsRemovedAtTheStart) {
+TEST_F(RunFolderTest, TheVerdictOfAnEarlierCallIsRemovedBeforeTheNextTrial) {
   {
     RunFolder folder(configuration_);
     folder.finishTrial(toyRow(0));
     writeText(folder.beginTrial(0), "a bag");
     folder.writeSummary(1.0);
   }
-  ASSERT_TRUE(fs::exists(file("summary.yaml")));
-  { const RunFolder folder(configuration_); }
+  RunFolder folder(configuration_);
+  ASSERT_TRUE(folder.isFinished());
+  folder.beginTrial(1);
   EXPECT_FALSE(fs::exists(file("summary.yaml")));
+  EXPECT_FALSE(folder.isFinished());
+}
+
+TEST_F(RunFolderTest, ASummaryThatMakesNoSenseIsNoVerdict) {
+  finish(1);
+  for (const std::string text : {"", "[", "7\n", "[1]\n", "finished: false\n", "finished: [1]\n"}) {
+    writeText(file("summary.yaml"), text);
+    EXPECT_FALSE(RunFolder(configuration_).isFinished()) << text;
+  }
 }
 
 TEST_F(RunFolderTest, TheSummaryHoldsTheVerdict) {

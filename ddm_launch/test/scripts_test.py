@@ -179,17 +179,16 @@ class ScriptsTest(ScratchCase):
             probe.bind(("", int(output)))
 
     def checkSummary(self, text):
-        started = self.write("started", "")
-        os.utime(started, (1e9, 1e9))
         if text is not None:
             self.write("summary.yaml", text)
-        return self.callFunction("check_summary %s %s" % (self.scratch, started), "demo.sh")
+        return self.callFunction("check_summary %s 15" % self.scratch, "demo.sh")
 
     def test_a_finished_experiment_is_a_success(self):
-        self.assertEqual(self.checkSummary("finished: true\ntrials: 15\nsuccess: [0, 1]\n"), (0, ""))
+        for trials in (15, 20):
+            self.assertEqual(self.checkSummary("finished: true\ntrials: %d\nsuccess: [0, 1]\n" % trials), (0, ""))
 
     def test_an_experiment_that_did_not_finish_is_a_failure(self):
-        for text in ("finished: false\n", "trials: 3\n", "no map", ""):
+        for text in ("finished: false\ntrials: 15\n", "trials: 15\n", "no map", ""):
             code, output = self.checkSummary(text)
             self.assertEqual(code, 1)
             self.assertIn("says that the experiment did not finish", output)
@@ -199,12 +198,11 @@ class ScriptsTest(ScratchCase):
         self.assertEqual(code, 1)
         self.assertIn("wrote no", output)
 
-    def test_the_summary_of_an_earlier_call_is_no_success(self):
-        os.utime(self.write("summary.yaml", "finished: true\n"), (1e9, 1e9))
-        started = self.write("started", "")
-        code, output = self.callFunction("check_summary %s %s" % (self.scratch, started), "demo.sh")
-        self.assertEqual(code, 1)
-        self.assertIn("before it wrote a new", output)
+    def test_the_summary_of_fewer_trials_is_no_success(self):
+        for text in ("finished: true\ntrials: 14\n", "finished: true\n"):
+            code, output = self.checkSummary(text)
+            self.assertEqual(code, 1)
+            self.assertIn("did not finish 15 trials", output)
 
 
 if __name__ == "__main__":

@@ -74,14 +74,14 @@ class StartTest(SharedScratchCase):
                               "bags:=before/trial_000/trial.bag " + self.bags[1], folder=self.class_scratch)
         self.assertRuns(*self.from_both())
         self.assertTrue(os.path.exists(os.path.join(nodes, "summary.yaml")), output)
-        names = [name for name in expected_files(1) if not name.endswith(".bag") and name != ".lock"]
+        names = [name for name in expected_files(1) if not name.endswith(".bag")]
         self.assertEqual(differences(nodes, self.out, names), [])
 
     def test_an_interruption_changes_nothing(self):
         self.assertRuns(*self.from_both(), trials=0)
         self.assertRuns(*self.from_both(), trials=1)
         self.assertRuns(*self.from_both(), trials=1, out=self.file("whole"))
-        names = [name for name in expected_files(1) if not name.endswith(".bag") and name != ".lock"]
+        names = [name for name in expected_files(1) if not name.endswith(".bag")]
         self.assertEqual(differences(self.file("whole"), self.out, names), [])
 
     def test_the_saved_configuration_starts_the_same_and_notices_other_files(self):

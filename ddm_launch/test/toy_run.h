@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <sys/stat.h>
+
+#include <boost/filesystem.hpp>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -55,6 +59,21 @@ inline std::string textOf(const std::string& path) {
 
 inline void writeText(const std::string& path, const std::string& text) {
   std::ofstream(path) << text;
+}
+
+/// Name, time of the last change and bytes of all that is in a folder, and of the folder itself.
+inline std::map<std::string, std::string> fingerprintOf(const std::string& folder) {
+  namespace fs = boost::filesystem;
+  std::map<std::string, std::string> found;
+  const auto take = [&found](const fs::path& path) {
+    struct stat status {};
+    ::stat(path.c_str(), &status);
+    found[path.string()] = std::to_string(status.st_mtim.tv_sec) + "." +
+                           std::to_string(status.st_mtim.tv_nsec) + " " + textOf(path.string());
+  };
+  take(folder);
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) take(entry.path());
+  return found;
 }
 
 /// Notes what is asked of it. Every greedy run ends where `state` says.

@@ -13,7 +13,7 @@ CHECKSUMS = ".trials.crc32"  # of trials.csv with its times
 
 def expected_files(num_trials):
     """Every file of a finished experiment with this many epsilon-greedy trials."""
-    files = [".lock", CHECKSUMS, "config.yaml", "summary.yaml", "trials.csv"]
+    files = [CHECKSUMS, "config.yaml", "summary.yaml", "trials.csv"]
     for k in range(num_trials + 1):
         files += ["trial_%03d/%s" % (k, name) for name in ("model.ddm", "torques.csv", "trajectory.csv", "trial.bag")]
         files += ["evaluation_%03d/%s" % (k, name) for name in ("torques.csv", "trajectory.csv")]
