@@ -6,6 +6,7 @@
 
 #include <chrono>
 
+#include "code_version.h"
 #include "evaluation.h"
 
 namespace ddm {
@@ -73,6 +74,7 @@ class Loop {
     row.train_evaluations = training.evaluations;
     row.plan_ms_median = 1e3 * quantile(greedy.solve_times, 0.5);
     row.plan_ms_p99 = 1e3 * quantile(greedy.solve_times, 0.99);
+    row.version = codeVersion();
     return row;
   }
 

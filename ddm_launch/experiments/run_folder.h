@@ -26,6 +26,7 @@ struct TrialRow {
   std::uint32_t train_evaluations = 0;
   double plan_ms_median = 0.0;
   double plan_ms_p99 = 0.0;
+  std::string version = "?";  ///< of the code that produced the row; "?": not known
 };
 
 ///   config.yaml                          effective configuration, version of the code that began

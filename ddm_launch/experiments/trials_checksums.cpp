@@ -24,7 +24,8 @@ bool isUnchanged(const std::string& trials_csv, size_t num_rows, const std::stri
   for (size_t k = 0; k < num_rows; ++k) {
     if (!std::getline(lines, line)) return false;
   }
-  return num_rows == 0 || line == checksum(trials_csv);
+  return num_rows == 0 || line == checksum(trials_csv) ||
+         line == checksum(withVersions(trials_csv));
 }
 
 }  // namespace ddm

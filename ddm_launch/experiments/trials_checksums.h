@@ -14,7 +14,8 @@ namespace ddm {
 std::string formatTrialsChecksums(const std::vector<TrialRow>& rows);
 
 /// @param trials_csv  the table, with `num_rows` rows
-/// @return            whether it is the one that the checksums were made of
+/// @return            whether it is the one that the checksums were made of, be it before it got
+///                    its column `version`
 bool isUnchanged(const std::string& trials_csv, size_t num_rows, const std::string& checksums);
 
 }  // namespace ddm

@@ -14,9 +14,13 @@
 namespace ddm {
 namespace {
 
-constexpr char kHeader[] =
+/// Of tables that older versions wrote.
+constexpr char kHeaderWithoutVersion[] =
     "seed,trial,frames,success,success_strict,final_error_deg,v_r,v_p,train_s,train_evaluations,"
     "plan_ms_median,plan_ms_p99";
+constexpr char kVersion[] = ",version";
+
+std::string header() { return std::string(kHeaderWithoutVersion) + kVersion; }
 
 std::string milliseconds(double value) {
   char text[32];
@@ -71,6 +75,8 @@ TrialRow parseRow(const std::vector<std::string>& columns) {
   row.train_evaluations = count(columns[9]);
   row.plan_ms_median = duration(columns[10]);
   row.plan_ms_p99 = duration(columns[11]);
+  row.version = columns[12];
+  if (row.version.empty()) throw std::runtime_error("version must not be empty; unknown is ?");
   return row;
 }
 
@@ -78,7 +84,7 @@ TrialRow parseRow(const std::vector<std::string>& columns) {
 
 std::string formatTrialsCsv(const std::vector<TrialRow>& rows) {
   std::ostringstream out;
-  out << kHeader << "\n";
+  out << header() << "\n";
   for (const TrialRow& row : rows) {
     out << row.seed << "," << row.trial << "," << row.frames << ",";
     if (row.evaluation.known) {
@@ -89,14 +95,25 @@ std::string formatTrialsCsv(const std::vector<TrialRow>& rows) {
     }
     out << "," << format(row.v_r) << "," << format(row.v_p) << "," << milliseconds(row.train_s)
         << "," << row.train_evaluations << "," << milliseconds(row.plan_ms_median) << ","
-        << milliseconds(row.plan_ms_p99) << "\n";
+        << milliseconds(row.plan_ms_p99) << "," << row.version << "\n";
   }
   return out.str();
 }
 
+std::string withVersions(const std::string& text) {
+  const std::string old_header = std::string(kHeaderWithoutVersion) + "\n";
+  if (text.compare(0, old_header.size(), old_header) != 0) return text;
+  std::string out = header() + "\n";
+  for (size_t i = old_header.size(); i < text.size(); ++i) {
+    if (text[i] == '\n') out += ",?";
+    out += text[i];
+  }
+  return out;
+}
+
 std::vector<TrialRow> parseTrialsCsv(const std::string& text, const std::string& source) {
   std::vector<TrialRow> rows;
-  parseCsv(text, kHeader, source,
+  parseCsv(withVersions(text), header(), source,
            [&rows](const std::vector<std::string>& cells) { rows.push_back(parseRow(cells)); });
   return rows;
 }

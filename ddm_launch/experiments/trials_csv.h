@@ -13,7 +13,11 @@ namespace ddm {
 /// v_r and v_p where the method has no such errors.
 std::string formatTrialsCsv(const std::vector<TrialRow>& rows);
 
-/// The inverse.
+/// Tables that older versions wrote have no column `version`: adds it, with "?" in each row. Other
+/// texts stay as they are.
+std::string withVersions(const std::string& text);
+
+/// The inverse of formatTrialsCsv(); also reads tables without versions.
 /// @param source  file, for messages
 /// @throws std::runtime_error with source, line and fault
 std::vector<TrialRow> parseTrialsCsv(const std::string& text, const std::string& source);

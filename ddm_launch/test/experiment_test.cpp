@@ -10,6 +10,7 @@
 #include <boost/filesystem.hpp>
 #include <sstream>
 
+#include "code_version.h"
 #include "toy_run.h"
 
 namespace ddm {
@@ -147,7 +148,7 @@ TEST_F(ExperimentTest, ARowTellsFramesSuccessAndPlanTimesOfTheGreedyRun) {
   configuration_.experiment.trials = 0;
   run();
   EXPECT_EQ(textOf(file("trials.csv")).substr(textOf(file("trials.csv")).find('\n') + 1),
-            "7,0,30,1,1,0.0,0.5,0.25,2.000,0,15.000,30.000\n");
+            "7,0,30,1,1,0.0,0.5,0.25,2.000,0,15.000,30.000," + codeVersion() + "\n");
 }
 
 TEST_F(ExperimentTest, WithoutGroundTruthSuccessStaysEmpty) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run_folder.h"
 
+#include <ddm_model/model_file.h>
 #include <ddm_model/testing/expect_error.h>
 #include <ddm_model/testing/temp_folder.h>
 #include <gtest/gtest.h>
@@ -14,6 +15,7 @@
 
 #include "code_version.h"
 #include "toy_run.h"
+#include "trials_checksums.h"
 #include "trials_csv.h"
 
 namespace ddm {
@@ -25,6 +27,7 @@ using testing::textOf;
 using testing::throwsNaming;
 using testing::toyConfiguration;
 using testing::toyRow;
+using testing::withoutVersions;
 using testing::writeText;
 
 class RunFolderTest : public ::testing::Test {
@@ -261,6 +264,41 @@ TEST_F(RunFolderTest, RowsOfWhichAnyByteHasChangedAreRefused) {
     expectRefused({"trials.csv"});
   }
   writeText(file("trials.csv"), rows);
+  EXPECT_EQ(RunFolder(configuration_).rows().size(), 2u);
+}
+
+/// @param rows  texts of trials.csv with 1, 2, ... rows
+std::string checksumsOf(const std::vector<std::string>& rows) {
+  std::string lines;
+  for (const std::string& text : rows) lines += checksum(text) + "\n";
+  return lines;
+}
+
+TEST_F(RunFolderTest, AFolderOfAnOlderVersionGoesOnWithUnknownVersions) {
+  finish(2);
+  const std::vector<std::string> old = {withoutVersions(formatTrialsCsv({toyRow(0)})),
+                                        withoutVersions(textOf(file("trials.csv")))};
+  writeText(file("trials.csv"), old[1]);
+  writeText(file(".trials.crc32"), checksumsOf(old));
+  {
+    RunFolder folder(configuration_);
+    ASSERT_EQ(folder.rows().size(), 2u);
+    EXPECT_EQ(folder.rows()[1].version, "?");
+    EXPECT_TRUE(folder.warnings().empty());
+    writeText(folder.beginTrial(2), "a bag");
+    folder.finishTrial(toyRow(2));
+  }
+  const RunFolder folder(configuration_);
+  EXPECT_EQ(folder.rows()[0].version, "?");
+  EXPECT_EQ(folder.rows()[2].version, toyRow(2).version);
+}
+
+TEST_F(RunFolderTest, AFolderOfAnOlderVersionThatEndedBetweenTheChecksumAndItsRowIsTakenUp) {
+  finish(2);
+  writeText(file("trials.csv"), withoutVersions(textOf(file("trials.csv"))));
+  TrialRow rows[] = {toyRow(0), toyRow(1), toyRow(2)};
+  for (int i : {0, 1}) rows[i].version = "?";
+  writeText(file(".trials.crc32"), formatTrialsChecksums({rows[0], rows[1], rows[2]}));
   EXPECT_EQ(RunFolder(configuration_).rows().size(), 2u);
 }
 

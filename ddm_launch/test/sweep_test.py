@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import pty
+import re
 import shutil
 import signal
 import sys
@@ -14,7 +15,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from ddm_launch.seed_script import SeedProgram  # noqa: E402
 from ddm_launch.sweep_folder import SweepFolder  # noqa: E402
 from processes import call, find_program, run_experiment  # noqa: E402
-from run_files import differences, expected_files, files_in, read_bytes, read_rows, read_yaml  # noqa: E402
+from run_files import COLUMNS, differences, expected_files, files_in, read_bytes, read_rows, read_yaml  # noqa: E402
 from scratch_case import SharedScratchCase  # noqa: E402
 from sweeps import (Sweep, is_finished, processes_with, programs_of, seed_folder, snapshot, sweep,  # noqa: E402
                     wait_for)
@@ -112,6 +113,24 @@ class SweepTest(SharedScratchCase):
         after = snapshot(self.out)
         self.assertEqual(after.pop("sweep.csv")[1], before.pop("sweep.csv")[1])
         self.assertEqual(after, before)
+
+    def test_seeds_of_older_code_are_collected_with_unknown_versions(self):
+        self.copyReference()
+        table = os.path.join(seed_folder(self.out, 1), "trials.csv")
+        with open(table) as stream:
+            lines = [line.rsplit(",", 1)[0] + "\n" for line in stream]
+        with open(table, "w") as stream:
+            stream.writelines(lines)
+        config = os.path.join(seed_folder(self.out, 1), "config.yaml")
+        with open(config) as stream:
+            text = re.sub("^version: .*$", "version: 0.0.1 (old)", stream.read(), flags=re.MULTILINE)
+        with open(config, "w") as stream:
+            stream.write(text)
+        output = self.assertEnds(0, ["4 of 4 seeds finished", "come from 2 versions", "0.0.1 (old)"], *self.debug())
+        rows = read_rows(self.out, "sweep.csv")
+        self.assertEqual(rows[0], COLUMNS)
+        here = read_yaml(seed_folder(self.out, 0), "config.yaml")["version"]
+        self.assertEqual([row[-1] for row in rows[1:]], [here] * 2 + ["?"] * 2 + [here] * 4, output)
 
     def test_seeds_may_grow_and_any_range_of_them_be_collected(self):
         self.copyReference()

@@ -47,7 +47,16 @@ inline TrialRow toyRow(int trial, int seed = 7) {
   row.train_evaluations = 26;
   row.plan_ms_median = 0.25;
   row.plan_ms_p99 = 1.5;
+  row.version = "1.2.3 (abcdef0)";
   return row;
+}
+
+/// trials.csv as older versions wrote it, without the column `version`.
+inline std::string withoutVersions(const std::string& trials_csv) {
+  std::istringstream in(trials_csv);
+  std::string text;
+  for (std::string line; std::getline(in, line);) text += line.substr(0, line.rfind(',')) + "\n";
+  return text;
 }
 
 inline std::string textOf(const std::string& path) {

@@ -30,7 +30,7 @@ std::string withColumn(size_t index, const std::string& value) {
 TEST(TrialsCsv, HasTheColumnsOfTheContract) {
   EXPECT_EQ(header(),
             "seed,trial,frames,success,success_strict,final_error_deg,v_r,v_p,train_s,"
-            "train_evaluations,plan_ms_median,plan_ms_p99\n");
+            "train_evaluations,plan_ms_median,plan_ms_p99,version\n");
 }
 
 TEST(TrialsCsv, RowsAreReadBackAsTheyWere) {
@@ -51,12 +51,25 @@ TEST(TrialsCsv, RowsAreReadBackAsTheyWere) {
     EXPECT_EQ(read[i].train_evaluations, rows[i].train_evaluations);
     EXPECT_EQ(read[i].plan_ms_median, rows[i].plan_ms_median);
     EXPECT_EQ(read[i].plan_ms_p99, rows[i].plan_ms_p99);
+    EXPECT_EQ(read[i].version, rows[i].version);
   }
 }
 
 TEST(TrialsCsv, AFileThatIsReadAndWrittenStaysTheSame) {
   const std::string text = formatTrialsCsv({toyRow(0), toyRow(1)});
   EXPECT_EQ(formatTrialsCsv(parseTrialsCsv(text, "trials.csv")), text);
+}
+
+TEST(TrialsCsv, ATableWithoutVersionsIsReadWithUnknownOnes) {
+  const std::string text = formatTrialsCsv({toyRow(0), toyRow(1)});
+  const std::vector<TrialRow> read = parseTrialsCsv(testing::withoutVersions(text), "trials.csv");
+  ASSERT_EQ(read.size(), 2u);
+  for (const TrialRow& row : read) {
+    EXPECT_EQ(row.version, "?");
+    EXPECT_EQ(row.plan_ms_p99, 1.5);
+  }
+  EXPECT_EQ(formatTrialsCsv(read), withVersions(testing::withoutVersions(text)));
+  EXPECT_EQ(withVersions(text), text);
 }
 
 TEST(TrialsCsv, SuccessIsEmptyWhereItIsNotKnown) {
@@ -91,7 +104,7 @@ TEST(TrialsCsv, ErrorsThatAMethodDoesNotHaveAreEmpty) {
 }
 
 TEST(TrialsCsv, AnotherHeaderIsRefused) {
-  for (const std::string text : {"", "seed,trial\n", "\n", "7,0,30,1,1,0.1,1,1,1,26,1,1\n"}) {
+  for (const std::string text : {"", "seed,trial\n", "\n", "7,0,30,1,1,0.1,1,1,1,26,1,1,?\n"}) {
     EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { parseTrialsCsv(text, "DIR/trials.csv"); },
                                                  {"DIR/trials.csv, line 1", "seed,trial,frames"}))
         << text;
@@ -100,9 +113,9 @@ TEST(TrialsCsv, AnotherHeaderIsRefused) {
 
 TEST(TrialsCsv, ADamagedValueIsRefusedWithItsLine) {
   const std::vector<std::pair<size_t, std::string>> faults = {
-      {0, "x"},  {0, ""},     {1, "1.5"}, {2, "-1"},      {2, ""},  {3, "2"},    {3, "yes"},
-      {3, ""},   {4, ""},     {5, "far"}, {6, "nan"},     {6, ""},  {7, "inf"},  {8, "1s"},
-      {8, "-1"}, {8, "1e13"}, {9, "2.5"}, {10, "0.2 ms"}, {11, ""}, {11, "-inf"}};
+      {0, "x"},  {0, ""},     {1, "1.5"}, {2, "-1"},      {2, ""},  {3, "2"},     {3, "yes"},
+      {3, ""},   {4, ""},     {5, "far"}, {6, "nan"},     {6, ""},  {7, "inf"},   {8, "1s"},
+      {8, "-1"}, {8, "1e13"}, {9, "2.5"}, {10, "0.2 ms"}, {11, ""}, {11, "-inf"}, {12, ""}};
   for (const auto& fault : faults) {
     EXPECT_TRUE(throwsNaming<std::runtime_error>(
         [&] { parseTrialsCsv(withColumn(fault.first, fault.second), "DIR/trials.csv"); },
@@ -113,9 +126,9 @@ TEST(TrialsCsv, ADamagedValueIsRefusedWithItsLine) {
 
 TEST(TrialsCsv, ALineOfAnotherLengthIsRefusedWithItsNumber) {
   const std::string good = formatTrialsCsv({toyRow(0)});
-  for (const std::string line : {"7,1,60\n", "\n", "7,1,60,1,1,0.1,1,1,1,26,1,1,1\n"}) {
+  for (const std::string line : {"7,1,60\n", "\n", "7,1,60,1,1,0.1,1,1,1,26,1,1,1,1\n"}) {
     EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { parseTrialsCsv(good + line, "trials.csv"); },
-                                                 {"trials.csv, line 3", "12 are due"}))
+                                                 {"trials.csv, line 3", "13 are due"}))
         << line;
   }
 }
@@ -128,6 +141,10 @@ TEST(TrialsCsv, AFileThatIsCutShortIsRefused) {
   EXPECT_TRUE(throwsNaming<std::runtime_error>(
       [&] { parseTrialsCsv(text.substr(0, text.size() - 1), "trials.csv"); },
       {"trials.csv, line 3", "has no end"}));
+  const std::string old = testing::withoutVersions(text);
+  EXPECT_TRUE(throwsNaming<std::runtime_error>(
+      [&] { parseTrialsCsv(old.substr(0, old.size() - 1), "trials.csv"); },
+      {"trials.csv, line 3"}));
 }
 
 }  // namespace

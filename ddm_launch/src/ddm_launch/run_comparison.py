@@ -6,7 +6,7 @@ import os
 import yaml
 
 COLUMNS = ["seed", "trial", "frames", "success", "success_strict", "final_error_deg", "v_r", "v_p", "train_s",
-           "train_evaluations", "plan_ms_median", "plan_ms_p99"]
+           "train_evaluations", "plan_ms_median", "plan_ms_p99", "version"]
 TIME_COLUMNS = ["train_s", "plan_ms_median", "plan_ms_p99"]
 CHECKSUMS = ".trials.crc32"  # of trials.csv with its times
 
@@ -45,9 +45,9 @@ def read_rows(*path):
 
 
 def comparable(folder, name):
-    """What must be equal in two runs of one experiment: a file without what tells times and places."""
+    """What must be equal in two runs of one experiment: a file without times, places and versions of rows."""
     if name == "trials.csv":
-        keep = [k for k, column in enumerate(COLUMNS) if column not in TIME_COLUMNS]
+        keep = [k for k, column in enumerate(COLUMNS) if column not in TIME_COLUMNS + ["version"]]
         return [[row[k] for k in keep] for row in read_rows(folder, name)]
     content = read_bytes(folder, name)
     if name == CHECKSUMS:

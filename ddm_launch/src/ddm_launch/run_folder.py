@@ -65,6 +65,7 @@ class Trial:
         self.final_error_deg = None
         if (row["final_error_deg"] or "").strip():
             self.final_error_deg = abs(number(row, "final_error_deg", path))
+        self.version = row.get("version") or "?"  # of the code that produced the row; older tables do not name it
 
     @staticmethod
     def flag(row, column, path):

@@ -18,7 +18,7 @@ import yaml
 
 from ddm_launch.interruption import Interrupted, raised_as_exception
 from ddm_launch.run_folder import RunFolderError
-from ddm_launch.sweep_folder import differences, read_yaml
+from ddm_launch.sweep_folder import differences, read_yaml, with_versions
 from ddm_model.plain_file import write_file
 
 # Where the file NAME.yaml lies that an option names: package, folder of its config/.
@@ -233,7 +233,7 @@ class StepRunner:
             path = os.path.join(folder, "trials.csv")
             if os.path.exists(path):
                 with open(path) as stream:
-                    header, *rows = stream.read().splitlines()
+                    header, *rows = with_versions(stream.read().splitlines())
                 lines += rows if lines else [header] + rows
         if lines:
             os.makedirs(os.path.dirname(self.path(step.table)), exist_ok=True)

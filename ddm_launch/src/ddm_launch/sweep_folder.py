@@ -44,6 +44,15 @@ def differences(there, here, may_differ=()):
             for key in sorted(set(there) | set(here)) if key not in may_differ and there.get(key) != here.get(key)]
 
 
+def with_versions(lines):
+    """The lines of a trials.csv, the header first, with the column `version`: "?" in each row of a table that was written
+    before there was one. Other tables stay as they are."""
+    columns = lines[0].split(",") if lines else []
+    if "trial" not in columns or "version" in columns:
+        return lines
+    return [lines[0] + ",version"] + [line + ",?" for line in lines[1:]]
+
+
 class SweepFolder:
     """The folder that --out names:
 
@@ -184,7 +193,7 @@ class SweepFolder:
         path = os.path.join(self.seed_folder(seed), self.program.table)
         try:
             with open(path, newline="") as stream:
-                lines = stream.read().splitlines()
+                lines = with_versions(stream.read().splitlines())
         except (OSError, UnicodeDecodeError) as error:
             raise SweepError("%s cannot be read (%s): remove the folder, and the seed is run again" % (path, error))
         count = len(lines) - 1 if self.program.trials is None else self.program.trials + 1
@@ -205,6 +214,12 @@ class SweepFolder:
                              % (self.seed_folder(seed), first[0], ", ".join(found)))
 
     def versions(self, seeds):
-        """All versions of the code that these seeds name in their config.yaml."""
-        return sorted({str(read_yaml(os.path.join(self.seed_folder(seed), "config.yaml")).get("version"))
-                       for seed in seeds})
+        """All versions of the code that made the rows of these finished seeds. config.yaml names that of rows that do
+        not."""
+        found = set()
+        for seed in seeds:
+            begun = str(read_yaml(os.path.join(self.seed_folder(seed), "config.yaml")).get("version"))
+            header, lines, _ = self._read_table(seed)
+            rows = csv.DictReader([header] + lines)
+            found.update(begun if row.get("version", "?") == "?" else row["version"] for row in rows)
+        return sorted(found)
