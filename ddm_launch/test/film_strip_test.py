@@ -12,6 +12,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from ddm_launch import film_strip  # noqa: E402
 from ddm_launch.run_folder import read_trials  # noqa: E402
 from processes import call_main  # noqa: E402
+from run_files import changes, fingerprint  # noqa: E402
 from scratch_case import ScratchCase  # noqa: E402
 import synthetic_run  # noqa: E402
 
@@ -29,11 +30,11 @@ class GreyCamera:
 class FilmStripTest(ScratchCase):
     def setUp(self):
         super().setUp()
-        self.run_folder, self.gif = self.file("run"), self.file("swing_up.gif")
+        self.run_folder, self.strip, self.gif = (self.file(name) for name in ("run", "strip.png", "swing_up.gif"))
         synthetic_run.write_run(self.run_folder)
 
     def callMain(self, *arguments, make_camera=GreyCamera):
-        return call_main(film_strip.main, [self.run_folder] + list(arguments), make_camera)
+        return call_main(film_strip.main, [self.run_folder, "--out", self.strip] + list(arguments), make_camera)
 
     def test_the_last_success_is_shown_by_default(self):
         code, output = self.callMain()
@@ -62,10 +63,14 @@ class FilmStripTest(ScratchCase):
         self.assertEqual(film_strip.steps_to_show(99, 100), list(range(0, 100, 9)))
         self.assertEqual(film_strip.steps_to_show(3, 4), [0, 1, 2, 3])
 
-    def test_only_the_strip_is_written_into_the_run_folder(self):
-        before = set(os.listdir(self.run_folder))
-        self.assertEqual(self.callMain("--gif", self.gif)[0], 0)
-        self.assertEqual(set(os.listdir(self.run_folder)) - before, {"film_strip.png"})
+    def test_the_strip_is_drawn_where_one_is_by_default_and_not_into_the_run(self):
+        before = fingerprint(self.run_folder)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.scratch)
+        code, output = call_main(film_strip.main, [self.run_folder], GreyCamera)
+        self.assertEqual(code, 0, output)
+        self.assertEqual(sorted(os.listdir(self.scratch)), ["film_strip.png", "run"])
+        self.assertEqual(changes(before, fingerprint(self.run_folder)), [])
 
     def test_the_animation_runs_in_real_time(self):
         self.assertEqual(self.callMain("--gif", self.gif)[0], 0)
@@ -76,7 +81,7 @@ class FilmStripTest(ScratchCase):
     def test_the_simulator_draws_the_images(self):
         code, output = self.callMain(make_camera=film_strip.Camera)
         self.assertEqual(code, 0, output)
-        with Image.open(os.path.join(self.run_folder, "film_strip.png")) as picture:
+        with Image.open(self.strip) as picture:
             self.assertGreater(picture.width, 3 * picture.height)
         camera = film_strip.Camera(self.run_folder)
         hanging, upright = camera.shoot(0.0, 0.0), camera.shoot(-math.pi, 0.0)
@@ -86,13 +91,14 @@ class FilmStripTest(ScratchCase):
     def test_an_animation_that_cannot_be_completed_is_named_and_nothing_of_it_is_left(self):
         self.assertEqual(self.callMain("--gif", self.gif)[0], 0)
         size = os.path.getsize(self.gif)
-        self.assertGreater(size, os.path.getsize(os.path.join(self.run_folder, "film_strip.png")))
+        self.assertGreater(size, os.path.getsize(self.strip))
         os.remove(self.gif)
+        os.remove(self.strip)
         self.limitFiles(size - 1)
         code, output = self.callMain("--gif", self.gif)
         self.assertEqual(code, 1)
         self.assertIn("film_strip: cannot write %s: File too large\n" % self.gif, output)
-        self.assertEqual(os.listdir(self.scratch), ["run"])
+        self.assertEqual(sorted(os.listdir(self.scratch)), ["run", "strip.png"])
 
     def test_a_plant_that_does_not_exist_is_named(self):
         synthetic_run.write_config(self.run_folder, plant="no_such_plant")

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
 import math
-import os
 import sys
 
 import matplotlib
@@ -104,17 +103,17 @@ def main(arguments=None, make_camera=Camera):
         "until the rod is up, and the torque below." % NUM_IMAGES)
     parser.add_argument("folder", metavar="DIR", help="run folder (it holds trials.csv and evaluation_NNN)")
     parser.add_argument("--trial", type=int, metavar="N", help="default: the last that succeeded, else the last")
-    parser.add_argument("--out", metavar="FILE.png", help="picture to write; default DIR/film_strip.png")
+    parser.add_argument("--out", metavar="FILE.png", default="film_strip.png",
+                        help="picture to write; default film_strip.png, here")
     parser.add_argument("--gif", metavar="FILE.gif", help="write an animation in real time too")
     options = parser.parse_args(arguments)
-    out = options.out or os.path.join(options.folder, "film_strip.png")
     try:
         trial = options.trial if options.trial is not None else default_trial(read_trials(options.folder))
         evaluation = Evaluation(options.folder, trial)
         end = swing_up_end(evaluation.angle_rad)
         camera = make_camera(options.folder)
-        draw_strip(evaluation, end, camera, out)
-        print("wrote %s (evaluation after trial %d)" % (out, trial))
+        draw_strip(evaluation, end, camera, options.out)
+        print("wrote %s (evaluation after trial %d)" % (options.out, trial))
         if options.gif:
             draw_animation(evaluation, end, camera, options.gif)
             print("wrote %s" % options.gif)

@@ -1,7 +1,6 @@
 # Draws the learning curve of one run (final error) or of many (success rate with standard error).
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
-import os
 import sys
 
 import matplotlib
@@ -73,16 +72,13 @@ def main(arguments=None):
         prog="learning_curve",
         description="One run folder: final error after each trial. Several: success rate with standard error.")
     parser.add_argument("folders", metavar="DIR", nargs="+", help="run folder (it holds trials.csv)")
-    parser.add_argument("--out", metavar="FILE.png",
-                        help="picture to write; default DIR/learning_curve.png, needed for several folders")
+    parser.add_argument("--out", metavar="FILE.png", default="learning_curve.png",
+                        help="picture to write; default learning_curve.png, here")
     options = parser.parse_args(arguments)
-    if options.out is None and len(options.folders) > 1:
-        parser.error("--out FILE.png is needed when several run folders are given")
-    out = options.out or os.path.join(options.folders[0], "learning_curve.png")
     try:
-        draw(options.folders, out)
+        draw(options.folders, options.out)
     except (RunFolderError, OSError, ValueError) as error:  # ValueError: a suffix that matplotlib cannot write
         print("learning_curve: %s" % error, file=sys.stderr)
         return 1
-    print("wrote %s" % out)
+    print("wrote %s" % options.out)
     return 0
