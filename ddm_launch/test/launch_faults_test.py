@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# What is wrong in the arguments or files of a launch is named on the terminal, and leaves no verdict.
+# What is wrong in the arguments or files of a launch is named on the terminal, and leaves no folder.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import sys
@@ -13,12 +13,12 @@ from scratch_case import ScratchCase  # noqa: E402
 
 class LaunchFaultsTest(ScratchCase):
     def assertRefused(self, words, *arguments):
-        """The launch ends by itself, its output has the words, and there is no summary."""
+        """The launch ends by itself, its output has the words, and it leaves no folder."""
         _, output = roslaunch(self.scratch, "experiment.launch", "trials:=0", "runs:=" + self.out, *arguments,
                               limit_s=40.0)
         for word in words:
             self.assertIn(word, output)
-        self.assertFalse(os.path.exists(os.path.join(self.out, "summary.yaml")))
+        self.assertFalse(os.path.exists(self.out))
 
     def assertConfigRefused(self, text, words):
         path = self.write("differs.yaml", text)
