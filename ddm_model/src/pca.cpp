@@ -9,7 +9,6 @@
 #include <random>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 namespace ddm {
 namespace {
@@ -112,20 +111,20 @@ Pca fitPca(const DataSet& data, int dim, double score_std) {
       {static_cast<Eigen::Index>(dim) + kOversampling, num_images, data.numPixels()});
   std::mt19937_64 rng(1);  // any fixed start will do: the result does not depend on it
   std::normal_distribution<float> normal;
-  Eigen::MatrixXf basis(data.numPixels(), subspace);
-  for (Eigen::Index i = 0; i < basis.size(); ++i) basis.data()[i] = normal(rng);
+  Eigen::MatrixXf next(data.numPixels(), subspace);
+  for (Eigen::Index i = 0; i < next.size(); ++i) next.data()[i] = normal(rng);
 
+  Eigen::MatrixXf basis;  // orthonormal; `ritz` is the decomposition of the covariance within it
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz;
   double captured = 0.0;  // variance within the first `dim` directions of the subspace
-  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
-    basis = orthonormalised(basis);
-    Eigen::MatrixXf next = images.covarianceTimes(basis);
+  bool settled = false;
+  for (int sweep = 0; sweep < kMaxSweeps && !settled; ++sweep) {
+    basis = orthonormalised(next);
+    next = images.covarianceTimes(basis);
     ritz.compute(basis.cast<double>().transpose() * next.cast<double>());
     const double captured_now = ritz.eigenvalues().tail(dim).sum();
-    const bool settled = std::abs(captured_now - captured) <= kVarianceTolerance * captured_now;
+    settled = std::abs(captured_now - captured) <= kVarianceTolerance * captured_now;
     captured = captured_now;
-    if (settled) break;
-    basis = std::move(next);
   }
   pca.basis = basis * ritz.eigenvectors().rightCols(dim).rowwise().reverse().cast<float>();
   pca.variance = ritz.eigenvalues().tail(dim).reverse().cwiseMax(0.0) / (kWhite * kWhite);

@@ -40,12 +40,12 @@ struct Pca {
 /// iteration from a fixed start (Halko, Martinsson, Tropp 2011, Alg. 4.4 and Sec. 4.5). Exact where
 /// there are at most as many images as the iterated subspace has dimensions.
 ///
-/// Tolerance: the iteration ends when the variance captured changes by less than 1e-5 of itself. It
-/// then lacks less than 1e-6 where the spectrum falls as that of a few moving things does, and less
-/// than 1e-3 for images that are noise.
+/// It ends when a sweep changes the variance captured by less than 1e-5 of itself, or after 30. The
+/// variance missed is then less than 1e-6 of what there is where few things move, and less than
+/// 1e-3 where images are noise.
 /// @param data       at least dim + 1 images
 /// @param dim        number of components
-/// @param score_std  standard deviation that the leading score shall have; fixes the scale
+/// @param score_std  standard deviation of the leading score; fixes the scale
 /// @throws std::invalid_argument if there are too few images or they are all the same
 Pca fitPca(const DataSet& data, int dim, double score_std);
 
