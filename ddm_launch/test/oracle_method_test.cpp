@@ -30,7 +30,7 @@ std::unique_ptr<Plant> plantOf(const std::string& type, double gravity = 0.0) {
 }
 
 /// J(U) as a function of a flat vector of torques.
-testing::DifferentiableFunction costFunction(PlanCost* cost) {
+DifferentiableFunction costFunction(PlanCost* cost) {
   return [cost](const Eigen::VectorXd& u, Eigen::VectorXd* gradient) {
     const Eigen::Map<const Eigen::MatrixXd> U(u.data(), cost->torqueDim(), cost->horizon());
     Eigen::MatrixXd d_U;

@@ -2,18 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/trainer.h"
 
-#include <ceres/gradient_problem.h>
-#include <ceres/gradient_problem_solver.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "ddm_model/initialisation.h"
+#include "ddm_model/minimise.h"
 #include "ddm_model/objective.h"
 #include "ddm_model/pca.h"
 #include "ddm_model/schedule.h"
@@ -44,85 +43,43 @@ Range freeParameters(const Networks<float>& networks, Stage::Free free) {
   return {0, num_params};
 }
 
-/// The scaled objective of one stage in float32 as Ceres wants it: a function of the free
-/// parameters, in double.
-class CeresObjective : public ceres::FirstOrderFunction {
+/// The scaled objective of one stage in float32, as a function of the free parameters.
+class StageObjective {
  public:
+  using Value = JointObjective<float>::Value;
+
   /// @param theta  all parameters; gives the values of those that are not free
-  CeresObjective(JointObjective<float>* objective, Terms terms, Range free,
+  StageObjective(JointObjective<float>* objective, const Terms& terms, Range free,
                  const Eigen::VectorXd& theta)
-      : objective_(objective), terms_(terms), free_(free), theta_(theta.cast<float>()) {}
+      : objective_(*objective), terms_(terms), free_(free), theta_(theta.cast<float>()) {}
 
-  bool Evaluate(const double* free, double* cost, double* gradient) const override {
-    theta_.segment(free_.begin, free_.size) =
-        Eigen::Map<const Eigen::VectorXd>(free, free_.size).cast<float>();
-    last_ = objective_->evaluate(theta_, gradient != nullptr ? &gradient_ : nullptr, terms_);
-    ++evaluations_;
-    const double weight = objective_->weight();
-    *cost = weight * last_.of(terms_);
+  double operator()(const Eigen::VectorXd& free, Eigen::VectorXd* gradient) {
+    theta_.segment(free_.begin, free_.size) = free.cast<float>();
+    const Value value =
+        objective_.evaluate(theta_, gradient != nullptr ? &d_theta_ : nullptr, terms_);
+    const double cost = objective_.weight() * value.of(terms_);
     if (gradient != nullptr) {
-      Eigen::Map<Eigen::VectorXd>(gradient, free_.size) =
-          weight * gradient_.segment(free_.begin, free_.size).cast<double>();
+      *gradient = objective_.weight() * d_theta_.segment(free_.begin, free_.size).cast<double>();
     }
-    return std::isfinite(*cost) && (gradient == nullptr || gradient_.allFinite());
+    if (cost < lowest_) {
+      lowest_ = cost;
+      best_ = value;
+    }
+    return cost;
   }
-  int NumParameters() const override { return static_cast<int>(free_.size); }
 
-  JointObjective<float>::Value last() const { return last_; }
-  int evaluations() const { return evaluations_; }
+  /// V_R and V_P where the cost was lowest.
+  const Value& best() const { return best_; }
 
  private:
-  JointObjective<float>* objective_;
+  JointObjective<float>& objective_;
   Terms terms_;
   Range free_;
-  mutable Eigen::VectorXf theta_;
-  mutable Eigen::VectorXf gradient_;
-  mutable JointObjective<float>::Value last_;
-  mutable int evaluations_ = 0;
+  Eigen::VectorXf theta_;
+  Eigen::VectorXf d_theta_;
+  double lowest_ = std::numeric_limits<double>::infinity();
+  Value best_;
 };
-
-/// Tells progress and passes on the wish to stop.
-class ProgressCallback : public ceres::IterationCallback {
- public:
-  /// @param before  progress when the stage began
-  /// @param share   of the whole training that one iteration of the stage is, at most
-  ProgressCallback(const CeresObjective* objective, double squared_scale,
-                   const TrainingProgress& before, double share, const TrainingCallback& callback)
-      : objective_(objective),
-        squared_scale_(squared_scale),
-        before_(before),
-        share_(share),
-        callback_(callback) {}
-
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    if (!callback_) return ceres::SOLVER_CONTINUE;
-    TrainingProgress progress;
-    progress.iteration = before_.iteration + summary.iteration;
-    progress.v_r = squared_scale_ * objective_->last().v_r;
-    progress.v_p = squared_scale_ * objective_->last().v_p;
-    progress.gradient_norm = summary.gradient_max_norm;
-    progress.fraction_done = before_.fraction_done + share_ * summary.iteration;
-    return callback_(progress) ? ceres::SOLVER_CONTINUE : ceres::SOLVER_ABORT;
-  }
-
- private:
-  const CeresObjective* objective_;
-  double squared_scale_;
-  TrainingProgress before_;
-  double share_;
-  const TrainingCallback& callback_;
-};
-
-ceres::GradientProblemSolver::Options solverOptions(const TrainingOptions& training) {
-  ceres::GradientProblemSolver::Options options;
-  options.line_search_direction_type = training.solver == "bfgs" ? ceres::BFGS : ceres::LBFGS;
-  options.max_lbfgs_rank = training.lbfgs_rank;
-  options.max_num_iterations = training.max_iterations;
-  options.function_tolerance = training.function_tolerance;
-  options.gradient_tolerance = 1e-9;
-  options.logging_type = ceres::SILENT;
-  return options;
-}
 
 /// @return what turns [score^2] into [grey^2]
 double squaredScale(const Pca& pca) { return 1.0 / (static_cast<double>(pca.scale) * pca.scale); }
@@ -177,26 +134,36 @@ class Minimisation {
   bool runStage(const Stage& stage, const TrainingProgress& before, double share,
                 Eigen::VectorXd* theta, TrainingResult* result) {
     const Range free = freeParameters(networks_, stage.free);
-    auto* const function = new CeresObjective(&objective_, stage.terms, free, *theta);
-    const ceres::GradientProblem problem(function);  // owns the function
-    ProgressCallback progress(function, squared_scale_, before, share, callback_);
-    ceres::GradientProblemSolver::Options options = solverOptions(training_);
-    options.max_num_iterations = iterations(stage);
-    options.callbacks.push_back(&progress);
-    ceres::GradientProblemSolver::Summary summary;
-    ceres::Solve(options, problem, theta->data() + free.begin, &summary);
-
-    result->message = summary.message;
-    result->iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
-    result->evaluations += function->evaluations();
-    if (summary.termination_type == ceres::USER_FAILURE) {
+    StageObjective function(&objective_, stage.terms, free, *theta);
+    MinimiseOptions options;
+    options.lbfgs_rank = training_.solver == "bfgs" ? 0 : training_.lbfgs_rank;
+    options.max_iterations = iterations(stage);
+    options.function_tolerance = training_.function_tolerance;
+    options.gradient_tolerance = 1e-9;
+    if (callback_) {
+      options.on_iteration = [&](const Minimum& so_far) {
+        TrainingProgress progress = before;
+        progress.iteration += so_far.iterations;
+        progress.v_r = squared_scale_ * function.best().v_r;
+        progress.v_p = squared_scale_ * function.best().v_p;
+        progress.gradient_norm = so_far.gradient.lpNorm<Eigen::Infinity>();
+        progress.fraction_done += share * so_far.iterations;
+        return callback_(progress);
+      };
+    }
+    const Minimum minimum =
+        minimise(std::ref(function), theta->segment(free.begin, free.size), options);
+    theta->segment(free.begin, free.size) = minimum.x;
+    result->message = minimum.message;
+    result->iterations += minimum.iterations;
+    result->evaluations += minimum.evaluations;
+    if (minimum.reason == MinimumReason::kStopped) {
       result->message = "training was cancelled";
       result->cancelled = true;
       return false;
     }
-    // The solver may call a start from which it cannot move a minimum.
-    if (theta->allFinite() && summary.final_cost < summary.initial_cost) return true;
-    result->message = "training did not lower the objective: " + summary.message;
+    if (minimum.improved()) return true;
+    result->message = "training did not lower the objective: " + minimum.message;
     return false;
   }
 

@@ -11,7 +11,7 @@ namespace ddm {
 namespace {
 
 /// sum_i i sin(x_i), whose gradient can be spoilt in one entry by a factor.
-testing::DifferentiableFunction sines(Eigen::Index spoilt = -1, double factor = 1.0) {
+DifferentiableFunction sines(Eigen::Index spoilt = -1, double factor = 1.0) {
   return [spoilt, factor](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
     double value = 0.0;
     if (gradient != nullptr) gradient->resize(x.size());

@@ -87,7 +87,7 @@ JointObjective<double>::Value slowValue(const Networks<double>& nets,
 }
 
 /// V_R + V_P as a function of theta.
-testing::DifferentiableFunction jointFunction(JointObjective<double>* objective) {
+DifferentiableFunction jointFunction(JointObjective<double>* objective) {
   return [objective](const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
     const auto value = objective->evaluate(theta, gradient);
     return value.v_r + value.v_p;
@@ -95,7 +95,7 @@ testing::DifferentiableFunction jointFunction(JointObjective<double>* objective)
 }
 
 /// What some terms come to as a function of theta.
-testing::DifferentiableFunction singleTerm(JointObjective<double>* objective, Terms terms) {
+DifferentiableFunction singleTerm(JointObjective<double>* objective, Terms terms) {
   return [objective, terms](const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
     const auto value = objective->evaluate(theta, gradient, terms);
     return value.of(terms);

@@ -64,6 +64,28 @@ TEST_F(Trainer, StopsWhereTheCostHardlyFalls) {
   EXPECT_LT(run().iterations, 50);
 }
 
+TEST_F(Trainer, KeepsWhatItHasLearnedWhereTheLineSearchFails) {
+  training_.max_iterations = 5000;
+  training_.function_tolerance = 0.0;  // until float32 has no better point
+  for (const char* solver : {"lbfgs", "bfgs"}) {
+    training_.solver = solver;
+    const TrainingResult result = run();
+    ASSERT_TRUE(result.model) << solver << ": " << result.message;
+    EXPECT_LT(result.iterations, training_.max_iterations) << "the line search never failed";
+    EXPECT_LT(result.final_cost, 0.1 * result.initial_cost) << solver;
+  }
+}
+
+TEST_F(Trainer, FailsWhereNoStartCanBeEvaluated) {
+  training_.predictor_gain = 1e30;
+  training_.num_starts = 2;
+  const TrainingResult result = run();
+  EXPECT_FALSE(result.model);
+  EXPECT_FALSE(result.cancelled);
+  EXPECT_NE(result.message.find("cannot be evaluated at the start"), std::string::npos)
+      << result.message;
+}
+
 TEST_F(Trainer, TellsTheModelWhereItComesFrom) {
   const Ddm model = run().model.value();
   EXPECT_EQ(model.info().seed, 5U);
@@ -289,15 +311,20 @@ TEST_F(Trainer, AnotherSeedOrTrialGivesAnotherModel) {
 
 TEST_F(Trainer, TellsItsProgress) {
   std::vector<TrainingProgress> told;
-  run([&told](const TrainingProgress& progress) {
+  const TrainingResult result = run([&told](const TrainingProgress& progress) {
     told.push_back(progress);
     return true;
   });
   ASSERT_GE(told.size(), 10U);
-  for (size_t i = 1; i < told.size(); ++i) EXPECT_EQ(told[i].iteration, told[i - 1].iteration + 1);
+  const auto cost = [](const auto& at) { return at.v_r + at.v_p; };
+  for (size_t i = 1; i < told.size(); ++i) {
+    EXPECT_EQ(told[i].iteration, told[i - 1].iteration + 1);
+    EXPECT_LE(cost(told[i]), cost(told[i - 1])) << "not the accepted point, but one probed later";
+  }
   EXPECT_EQ(told.front().fraction_done, 0.0);
   EXPECT_LE(told.back().fraction_done, 1.0);
-  EXPECT_LT(told.back().v_r + told.back().v_p, told.front().v_r + told.front().v_p);
+  EXPECT_LT(cost(told.back()), cost(told.front()));
+  EXPECT_NEAR(cost(result.model->info()) / cost(told.back()), 1.0, 1e-6);
   EXPECT_GT(told.back().gradient_norm, 0.0);
 }
 

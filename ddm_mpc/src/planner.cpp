@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/planner.h"
 
-#include <ceres/gradient_problem.h>
-#include <ceres/gradient_problem_solver.h>
+#include <ddm_model/minimise.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
+#include <functional>
+#include <utility>
 
 namespace ddm {
 namespace {
@@ -16,42 +16,28 @@ namespace {
 constexpr double kMaxV = 3.0;  // tanh(3) = 0.995: a start beyond it would hardly feel a gradient
 
 /// J as a function of v, with u = max_torque tanh(v).
-class BoundedCost : public ceres::FirstOrderFunction {
+class BoundedCost {
  public:
   BoundedCost(PlanCost* cost, double max_torque)
-      : cost_(cost), max_torque_(max_torque), torques_(cost->torqueDim(), cost->horizon()) {}
+      : cost_(*cost), max_torque_(max_torque), torques_(cost->torqueDim(), cost->horizon()) {}
 
-  bool Evaluate(const double* v, double* value, double* gradient) const override {
-    const Eigen::Map<const Eigen::ArrayXXd> v_map(v, torques_.rows(), torques_.cols());
-    torques_ = max_torque_ * v_map.tanh();
-    *value = cost_->evaluate(torques_, gradient != nullptr ? &d_torques_ : nullptr);
-    ++evaluations_;
+  double operator()(const Eigen::VectorXd& v, Eigen::VectorXd* gradient) {
+    const Eigen::Index dim = torques_.rows(), K = torques_.cols();
+    torques_ = max_torque_ * Eigen::Map<const Eigen::ArrayXXd>(v.data(), dim, K).tanh();
+    const double value = cost_.evaluate(torques_, gradient != nullptr ? &d_torques_ : nullptr);
     if (gradient != nullptr) {
-      Eigen::Map<Eigen::ArrayXXd>(gradient, torques_.rows(), torques_.cols()) =
+      Eigen::Map<Eigen::ArrayXXd>(gradient->data(), dim, K) =
           d_torques_.array() * (max_torque_ - torques_.array().square() / max_torque_);
     }
-    return std::isfinite(*value) && (gradient == nullptr || d_torques_.allFinite());
+    return value;
   }
-  int NumParameters() const override { return static_cast<int>(torques_.size()); }
-  int evaluations() const { return evaluations_; }
 
  private:
-  PlanCost* cost_;
+  PlanCost& cost_;
   double max_torque_;
-  mutable Eigen::MatrixXd torques_;
-  mutable Eigen::MatrixXd d_torques_;
-  mutable int evaluations_ = 0;
+  Eigen::MatrixXd torques_;
+  Eigen::MatrixXd d_torques_;
 };
-
-ceres::GradientProblemSolver::Options solverOptions(const MpcOptions& mpc) {
-  ceres::GradientProblemSolver::Options options;
-  options.line_search_direction_type = ceres::BFGS;
-  options.max_num_iterations = mpc.max_iterations;
-  options.function_tolerance = mpc.function_tolerance;
-  options.gradient_tolerance = 1e-8;
-  options.logging_type = ceres::SILENT;
-  return options;
-}
 
 }  // namespace
 
@@ -76,41 +62,35 @@ Eigen::MatrixXd Planner::startOf(int start, std::mt19937_64* rng) const {
 
 Plan Planner::solve(std::mt19937_64* rng) {
   const auto begin = std::chrono::steady_clock::now();
+  BoundedCost cost(&cost_, options_.max_torque);
+  MinimiseOptions solver;
+  solver.max_iterations = options_.max_iterations;
+  solver.function_tolerance = options_.function_tolerance;
+  solver.gradient_tolerance = 1e-8;
+
   Plan plan;
   plan.goal_feature = cost_.goalFeature();
-  plan.message = "no start led to a finite cost";
-  auto* const function = new BoundedCost(&cost_, options_.max_torque);
-  const ceres::GradientProblem problem(function);  // owns the function
-  const ceres::GradientProblemSolver::Options options = solverOptions(options_);
-
-  Eigen::MatrixXd best_v;
+  Minimum best;
   for (int start = 0; start < options_.num_starts; ++start) {
-    Eigen::MatrixXd v = startOf(start, rng);
-    ceres::GradientProblemSolver::Summary summary;
-    ceres::Solve(options, problem, v.data(), &summary);
-    plan.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
-    // Not the solver's word: where a start is an optimum already, it reports no iteration and no
-    // cost.
-    const double cost =
-        v.allFinite() ? cost_.evaluate(options_.max_torque * v.array().tanh().matrix(), nullptr)
-                      : std::numeric_limits<double>::quiet_NaN();
-    if (std::isfinite(cost) && (best_v.size() == 0 || cost < plan.cost)) {
-      best_v = v;
-      plan.cost = cost;
-      plan.status = summary.termination_type == ceres::CONVERGENCE ? PlanStatus::kConverged
-                                                                   : PlanStatus::kIterationLimit;
-      plan.message.clear();
-    }
+    const Eigen::MatrixXd v = startOf(start, rng);
+    Minimum minimum =
+        minimise(std::ref(cost), Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()), solver);
+    plan.iterations += minimum.iterations;
+    plan.evaluations += minimum.evaluations;
+    if (minimum.cost < best.cost) best = std::move(minimum);
   }
-  plan.evaluations = function->evaluations();
-  if (best_v.size() > 0) {
-    plan.torques = options_.max_torque * best_v.array().tanh();
+  if (std::isfinite(best.cost)) {
+    plan.status = best.converged() ? PlanStatus::kConverged : PlanStatus::kIterationLimit;
+    plan.cost = best.cost;
+    last_v_ = Eigen::Map<const Eigen::MatrixXd>(best.x.data(), cost_.torqueDim(), cost_.horizon());
+    plan.torques = options_.max_torque * last_v_.array().tanh();
     cost_.evaluate(plan.torques, nullptr);
     plan.features = cost_.predictedFeatures();
   } else {
+    plan.message = "no start led to a finite cost";
+    last_v_.resize(0, 0);
     plan.torques = Eigen::MatrixXd::Zero(cost_.torqueDim(), cost_.horizon());
   }
-  last_v_ = best_v;
   plan.solve_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return plan;
 }

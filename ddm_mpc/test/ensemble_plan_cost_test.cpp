@@ -34,7 +34,7 @@ class Bowl : public PlanCost {
   int horizon_;
 };
 
-testing::DifferentiableFunction functionOf(PlanCost* cost) {
+DifferentiableFunction functionOf(PlanCost* cost) {
   return [cost](const Eigen::VectorXd& u, Eigen::VectorXd* gradient) {
     Eigen::MatrixXd d_U;
     const double value = cost->evaluate(u.transpose(), gradient != nullptr ? &d_U : nullptr);

@@ -14,7 +14,7 @@
 
 namespace ddm {
 
-/// State of a training under way.
+/// State of a training under way: at the best parameters so far of the present stage.
 struct TrainingProgress {
   int iteration = 0;
   double v_r = 0.0;            ///< [grey^2]
@@ -26,11 +26,11 @@ struct TrainingProgress {
 /// Called after each iteration; false ends the training without a model.
 using TrainingCallback = std::function<bool(const TrainingProgress&)>;
 
-/// What a training came to. Numerical trouble is told here, never thrown.
+/// What a training came to. Numerical trouble is reported here, never thrown.
 struct TrainingResult {
   std::optional<Ddm> model;  ///< empty if the training failed or was cancelled
   bool cancelled = false;    ///< the callback ended it
-  std::string message;       ///< why there is no model, or how the solver ended
+  std::string message;       ///< why there is no model, or why the search ended
   int iterations = 0;
   int evaluations = 0;        ///< of the objective with its gradient
   double initial_cost = 0.0;  ///< scaled sum of the terms that the schedule minimises, before

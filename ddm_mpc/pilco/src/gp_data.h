@@ -1,4 +1,4 @@
-// What data must be like before a GP is made of them.
+// Training of GPs, full or sparse: limits, and checks of the data.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,6 +8,10 @@
 
 namespace ddm {
 namespace pilco {
+
+/// A line search takes about two evaluations; one that takes many more is lost in rounding errors.
+/// Limit for minimisations whose evaluations are costly.
+constexpr int kEvaluationsPerIteration = 3;
 
 /// @param inputs   one per column                                                      [D x n]
 /// @param targets  one per row                                                         [n x E]

@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_pilco/gp_training.h"
 
+#include <ddm_model/minimise.h>
+
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
-#include "ddm_pilco/minimizer.h"
 #include "ddm_pilco/squared_exponential.h"
 #include "gp_data.h"
 #include "option_rules.h"
@@ -89,12 +90,12 @@ struct OutputProblem {
 };
 
 Minimum trainOutput(const OutputProblem& problem, const Eigen::VectorXd& start) {
-  MinimizerOptions solver;
+  MinimiseOptions solver;
   solver.max_iterations = problem.options.max_iterations;
   solver.max_evaluations = kEvaluationsPerIteration * solver.max_iterations;
   solver.function_tolerance = 1e-13;
   solver.gradient_tolerance = 1e-6;
-  return minimize(problem, start, solver);
+  return minimise(problem, start, solver);
 }
 
 void setTheta(const Eigen::VectorXd& theta, Eigen::Index output, Hyperparameters* out) {
@@ -223,11 +224,11 @@ GpFit trainGp(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
   for (int a = 0; a < targets.cols(); ++a) {
     const OutputProblem problem{inputs, targets.col(a), input_std, options, on_evaluation};
     Minimum minimum = trainOutput(problem, thetaOf(start != nullptr ? *start : initial, a));
-    if (!minimum.start_ok && start != nullptr) {
+    if (minimum.reason == MinimumReason::kStartFailed && start != nullptr) {
       say(a, "the previous hyper-parameters cannot be evaluated, trained anew");
       minimum = trainOutput(problem, thetaOf(initial, a));
     }
-    if (!minimum.start_ok) {
+    if (minimum.reason == MinimumReason::kStartFailed) {
       GpFit failed;
       say(a, "the likelihood cannot be evaluated at the start of the training");
       failed.message = message;
@@ -241,7 +242,7 @@ GpFit trainGp(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
     training.iterations = minimum.iterations;
     training.evaluations = minimum.evaluations;
     outputs.push_back(training);
-    if (!minimum.improved && !minimum.converged) {
+    if (!minimum.improved() && !minimum.converged()) {
       say(a, "kept at the start, " + minimum.message);
     }
     setTheta(minimum.x, a, &trained);

@@ -22,14 +22,14 @@ PolicySearchResult searchPolicy(const DifferentiableFunction& cost, const Eigen:
                                 const PolicySearchOptions& options) {
   const std::vector<std::string> problems = options.problems();
   if (!problems.empty()) throw std::invalid_argument(problems.front());
-  MinimizerOptions solver;
+  MinimiseOptions solver;
   solver.max_iterations = options.max_iterations;
   solver.max_evaluations = options.max_evaluations;
   solver.function_tolerance = options.function_tolerance;
-  const Minimum minimum = minimize(cost, start, solver);
+  const Minimum minimum = minimise(cost, start, solver);
   PolicySearchResult result;
-  result.ok = minimum.start_ok;
-  result.improved = minimum.improved;
+  result.ok = minimum.reason != MinimumReason::kStartFailed;
+  result.improved = minimum.improved();
   result.parameters = minimum.x;
   result.cost_before = minimum.initial_cost;
   result.cost_after = minimum.cost;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_pilco/sparse_gp.h"
 
+#include <ddm_model/minimise.h>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -10,7 +12,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "ddm_pilco/minimizer.h"
 #include "ddm_pilco/squared_exponential.h"
 #include "gp_data.h"
 #include "option_rules.h"
@@ -205,25 +206,26 @@ GpFit trainSparseGp(const Eigen::MatrixXd& start, const Eigen::MatrixXd& inputs,
     if (on_evaluation) on_evaluation();
     return value;
   };
-  MinimizerOptions solver;
-  solver.limited_memory = true;
+  MinimiseOptions solver;
+  solver.lbfgs_rank = 20;
   solver.max_iterations = max_iterations;
   solver.max_evaluations = kEvaluationsPerIteration * max_iterations;
   solver.function_tolerance = 1e-9;
   solver.gradient_tolerance = 1e-5;
   const Minimum minimum =
-      minimize(cost, Eigen::Map<const Eigen::VectorXd>(start.data(), start.size()), solver);
+      minimise(cost, Eigen::Map<const Eigen::VectorXd>(start.data(), start.size()), solver);
   const Eigen::MatrixXd inducing =
       Eigen::Map<const Eigen::MatrixXd>(minimum.x.data(), start.rows(), start.cols());
   GpFit fit = makeSparseGpModel(inducing, inputs, targets, hyperparameters, ridge);
   OutputTraining training;
   training.initial_cost = minimum.initial_cost;
   training.final_cost = minimum.cost;
-  training.gradient_norm = minimum.start_ok ? minimum.gradient.norm() : kNaN;
+  training.gradient_norm =
+      minimum.reason == MinimumReason::kStartFailed ? kNaN : minimum.gradient.norm();
   training.iterations = minimum.iterations;
   training.evaluations = minimum.evaluations;
   fit.outputs.push_back(training);
-  if (fit.ok && !minimum.improved && !minimum.converged) {
+  if (fit.ok && !minimum.improved() && !minimum.converged()) {
     fit.message = "inducing inputs kept at the start, " + minimum.message;
   }
   return fit;

@@ -12,8 +12,8 @@
 #include "ddm_model/testing/expect_error.h"
 #include "ddm_model/testing/gradient_check.h"
 #include "ddm_model/testing/random_matrix.h"
+#include "ddm_model/testing/vector_of.h"
 #include "ddm_pilco/squared_exponential.h"
-#include "vector_of.h"
 
 namespace ddm {
 namespace pilco {
@@ -22,6 +22,7 @@ namespace {
 using ::ddm::testing::gradientMatches;
 using ::ddm::testing::randomMatrix;
 using ::ddm::testing::throwsNaming;
+using ::ddm::testing::vectorOf;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 

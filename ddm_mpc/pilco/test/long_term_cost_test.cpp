@@ -12,19 +12,20 @@
 
 #include "adjoint_check.h"
 #include "ddm_model/testing/expect_error.h"
+#include "ddm_model/testing/vector_of.h"
 #include "ddm_pilco/linear_policy.h"
 #include "ddm_pilco/rbf_policy.h"
 #include "ddm_pilco/squashed_policy.h"
 #include "gp_sampler.h"
 #include "monte_carlo.h"
 #include "random_gp.h"
-#include "vector_of.h"
 
 namespace ddm {
 namespace pilco {
 namespace {
 
 using ::ddm::testing::throwsNaming;
+using ::ddm::testing::vectorOf;
 
 /// A pendulum that has been seen only a few times: state [dphi, phi], one torque.
 struct Pendulum {

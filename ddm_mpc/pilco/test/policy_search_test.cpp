@@ -8,13 +8,14 @@
 #include <limits>
 
 #include "ddm_model/testing/expect_error.h"
-#include "vector_of.h"
+#include "ddm_model/testing/vector_of.h"
 
 namespace ddm {
 namespace pilco {
 namespace {
 
 using ::ddm::testing::throwsNaming;
+using ::ddm::testing::vectorOf;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 

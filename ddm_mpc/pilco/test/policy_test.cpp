@@ -12,16 +12,18 @@
 #include <stdexcept>
 
 #include "adjoint_check.h"
+#include "ddm_model/testing/vector_of.h"
 #include "ddm_pilco/linear_policy.h"
 #include "ddm_pilco/rbf_policy.h"
 #include "ddm_pilco/squashed_policy.h"
 #include "monte_carlo.h"
 #include "random_gp.h"
-#include "vector_of.h"
 
 namespace ddm {
 namespace pilco {
 namespace {
+
+using ::ddm::testing::vectorOf;
 
 std::unique_ptr<RbfPolicy> randomRbfPolicy(int dim, int controls, int centres,
                                            std::mt19937_64& random) {

@@ -10,13 +10,15 @@
 #include <stdexcept>
 
 #include "adjoint_check.h"
+#include "ddm_model/testing/vector_of.h"
 #include "monte_carlo.h"
 #include "random_gp.h"
-#include "vector_of.h"
 
 namespace ddm {
 namespace pilco {
 namespace {
+
+using ::ddm::testing::vectorOf;
 
 TEST(Squashing, StaysInItsRangeButForRoundingAndReachesIt) {
   const Squashing squashing(vectorOf({6.0, 0.3}));

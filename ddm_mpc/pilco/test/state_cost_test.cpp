@@ -10,13 +10,15 @@
 #include <stdexcept>
 
 #include "adjoint_check.h"
+#include "ddm_model/testing/vector_of.h"
 #include "monte_carlo.h"
 #include "random_gp.h"
-#include "vector_of.h"
 
 namespace ddm {
 namespace pilco {
 namespace {
+
+using ::ddm::testing::vectorOf;
 
 constexpr double kPi = 3.14159265358979323846;
 

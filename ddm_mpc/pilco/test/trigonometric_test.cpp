@@ -9,14 +9,16 @@
 #include <stdexcept>
 
 #include "adjoint_check.h"
+#include "ddm_model/testing/vector_of.h"
 #include "ddm_pilco/sine_covariance.h"
 #include "monte_carlo.h"
 #include "random_gp.h"
-#include "vector_of.h"
 
 namespace ddm {
 namespace pilco {
 namespace {
+
+using ::ddm::testing::vectorOf;
 
 ::testing::AssertionResult augmentationAdjointMatches(const Augmentation& augmentation,
                                                       const Gaussian& input,

@@ -7,15 +7,12 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
+
+#include "ddm_model/minimise.h"
 
 namespace ddm {
 namespace testing {
-
-/// A differentiable function. Writes its gradient where `gradient` is not null.
-using DifferentiableFunction =
-    std::function<double(const Eigen::VectorXd& x, Eigen::VectorXd* gradient)>;
 
 /// Derivative of f at x along a direction by central differences of fourth order:
 ///

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_model/minimise.h>
+
 #include <Eigen/Core>
 #include <string>
 #include <vector>
-
-#include "ddm_pilco/minimizer.h"
 
 namespace ddm {
 namespace pilco {

@@ -7,15 +7,15 @@
 #include <initializer_list>
 
 namespace ddm {
-namespace pilco {
+namespace testing {
 
-/// Of dynamic size from the start: where one of fixed size is made into such a vector, GCC 12 with
-/// AVX-512 warns of an access out of bounds that is none.
+/// A vector of dynamic size from the start: converting one of fixed size, GCC 12 with AVX-512 warns
+/// of an access out of bounds where there is none.
 inline Eigen::VectorXd vectorOf(std::initializer_list<double> entries) {
   Eigen::VectorXd out(static_cast<Eigen::Index>(entries.size()));
   std::copy(entries.begin(), entries.end(), out.data());
   return out;
 }
 
-}  // namespace pilco
+}  // namespace testing
 }  // namespace ddm

@@ -1,0 +1,184 @@
+// Unconstrained minimisation by BFGS or L-BFGS: for training, planning and PILCO.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/minimise.h"
+
+#include <ceres/gradient_problem.h>
+#include <ceres/gradient_problem_solver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+namespace ddm {
+namespace {
+
+/// One search: passes points to the function until a limit is reached, and keeps the best.
+class Search {
+ public:
+  Search(const DifferentiableFunction& f, const Eigen::VectorXd& start,
+         const MinimiseOptions& options)
+      : f_(f), options_(options), point_(start), slope_(start.size()) {
+    best_.x = start;
+  }
+
+  Eigen::Index size() const { return point_.size(); }
+
+  /// What ceres::FirstOrderFunction::Evaluate() promises.
+  bool evaluate(const double* x, double* value, double* gradient) {
+    point_ = Eigen::Map<const Eigen::VectorXd>(x, size());
+    if (!point_.allFinite() || ended()) return false;
+    ++best_.evaluations;
+    *value = f_(point_, &slope_);
+    if (!std::isfinite(*value) || !slope_.allFinite()) return false;
+    if (gradient != nullptr) Eigen::Map<Eigen::VectorXd>(gradient, size()) = slope_;
+    if (!anyPoint()) best_.initial_cost = *value;  // the solver begins at the start
+    if (*value < best_.cost) {
+      best_.x = point_;
+      best_.gradient = slope_;
+      best_.cost = *value;
+    }
+    return true;
+  }
+
+  /// Ends a search whose iterations hardly change the cost. The solver's own test compares the
+  /// change with the cost and not with its magnitude: it never ends a search with negative costs.
+  ceres::CallbackReturnType afterIteration(const ceres::IterationSummary& summary) {
+    const double last = accepted_cost_;
+    accepted_cost_ = summary.cost;
+    best_.iterations = summary.iteration;
+    if (options_.on_iteration && !options_.on_iteration(best_)) ended_by_ = MinimumReason::kStopped;
+    if (ended_by_) return ceres::SOLVER_ABORT;
+    if (summary.iteration == 0) return ceres::SOLVER_CONTINUE;
+    const double magnitude = std::max(std::abs(last), std::abs(summary.cost));
+    return std::abs(summary.cost - last) <= options_.function_tolerance * magnitude
+               ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+               : ceres::SOLVER_CONTINUE;
+  }
+
+  /// @param summary  of the solver, which has ended
+  Minimum result(const ceres::GradientProblemSolver::Summary& summary) && {
+    const bool content = summary.termination_type == ceres::CONVERGENCE ||
+                         summary.termination_type == ceres::USER_SUCCESS;
+    best_.reason = reason(content, summary.termination_type == ceres::NO_CONVERGENCE);
+    best_.message = message();
+    if (best_.reason == MinimumReason::kNoDecrease && !content) {
+      best_.message += ": " + summary.message;
+    }
+    return std::move(best_);
+  }
+
+ private:
+  bool anyPoint() const { return best_.gradient.size() > 0; }
+
+  /// Whether the function must not be evaluated any more. It remains so.
+  bool ended() {
+    if (!ended_by_ && options_.max_evaluations > 0 &&
+        best_.evaluations >= options_.max_evaluations) {
+      ended_by_ = MinimumReason::kEvaluationLimit;
+    }
+    if (!ended_by_ && options_.stop && options_.stop()) ended_by_ = MinimumReason::kStopped;
+    return ended_by_.has_value();
+  }
+
+  double slope() const { return best_.gradient.lpNorm<Eigen::Infinity>(); }
+
+  MinimumReason reason(bool solver_content, bool iteration_limit) const {
+    if (ended_by_) return *ended_by_;
+    if (!anyPoint()) return MinimumReason::kStartFailed;
+    if (slope() <= options_.gradient_tolerance || (solver_content && best_.improved())) {
+      return MinimumReason::kConverged;
+    }
+    return iteration_limit ? MinimumReason::kIterationLimit : MinimumReason::kNoDecrease;
+  }
+
+  std::string message() const {
+    switch (best_.reason) {
+      case MinimumReason::kConverged:
+        return "converged";
+      case MinimumReason::kIterationLimit:
+        return "limit of iterations reached";
+      case MinimumReason::kEvaluationLimit:
+        return "limit of evaluations reached";
+      case MinimumReason::kStopped:
+        return "stopped";
+      case MinimumReason::kStartFailed:
+        return "the function cannot be evaluated at the start";
+      case MinimumReason::kNoDecrease:
+        break;
+    }
+    std::ostringstream text;
+    text << (best_.improved() ? "no further step" : "no step")
+         << " lowers the cost, though its gradient has an entry of magnitude " << slope();
+    return text.str();
+  }
+
+  const DifferentiableFunction& f_;
+  const MinimiseOptions& options_;
+  Minimum best_;
+  Eigen::VectorXd point_;
+  Eigen::VectorXd slope_;
+  double accepted_cost_ = 0.0;             // of the last iteration
+  std::optional<MinimumReason> ended_by_;  // a limit that is not the solver's
+};
+
+class CeresFunction : public ceres::FirstOrderFunction {
+ public:
+  explicit CeresFunction(Search* search) : search_(*search) {}
+  bool Evaluate(const double* x, double* value, double* gradient) const override {
+    return search_.evaluate(x, value, gradient);
+  }
+  int NumParameters() const override { return static_cast<int>(search_.size()); }
+
+ private:
+  Search& search_;
+};
+
+class CeresCallback : public ceres::IterationCallback {
+ public:
+  explicit CeresCallback(Search* search) : search_(*search) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    return search_.afterIteration(summary);
+  }
+
+ private:
+  Search& search_;
+};
+
+ceres::GradientProblemSolver::Options solverOptions(const MinimiseOptions& options,
+                                                    CeresCallback* callback) {
+  ceres::GradientProblemSolver::Options out;
+  out.line_search_direction_type = options.lbfgs_rank > 0 ? ceres::LBFGS : ceres::BFGS;
+  if (options.lbfgs_rank > 0) out.max_lbfgs_rank = options.lbfgs_rank;
+  out.max_num_iterations = options.max_iterations;
+  out.function_tolerance = 0.0;  // see Search::afterIteration()
+  out.gradient_tolerance = options.gradient_tolerance;
+  out.parameter_tolerance = 0.0;  // a short step alone is not convergence
+  out.callbacks.push_back(callback);
+  out.logging_type = ceres::SILENT;
+  return out;
+}
+
+}  // namespace
+
+Minimum minimise(const DifferentiableFunction& f, const Eigen::VectorXd& start,
+                 const MinimiseOptions& options) {
+  if (start.size() == 0 || !start.allFinite()) {
+    throw std::invalid_argument("the start of a minimisation must be finite numbers, got " +
+                                (start.size() == 0 ? std::string("none") : "others"));
+  }
+  if (options.max_iterations < 0 || options.max_evaluations < 0 || options.lbfgs_rank < 0) {
+    throw std::invalid_argument("the limits of a minimisation must be >= 0");
+  }
+  Search search(f, start, options);
+  CeresCallback callback(&search);
+  const ceres::GradientProblem problem(new CeresFunction(&search));  // owns the function
+  ceres::GradientProblemSolver::Summary summary;
+  Eigen::VectorXd x = start;
+  ceres::Solve(solverOptions(options, &callback), problem, x.data(), &summary);
+  return std::move(search).result(summary);
+}
+
+}  // namespace ddm

@@ -1,0 +1,293 @@
+// Tests of minimise(): it finds minima, keeps its limits, and believes nobody.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/minimise.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "ddm_model/testing/expect_error.h"
+#include "ddm_model/testing/vector_of.h"
+
+namespace ddm {
+namespace {
+
+using testing::throwsNaming;
+using testing::vectorOf;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Rosenbrock's valley; its minimum 0 is at (1, 1).
+double valley(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+  const double bend = x[1] - x[0] * x[0];
+  if (gradient != nullptr) {
+    *gradient = vectorOf({-400.0 * x[0] * bend - 2.0 * (1.0 - x[0]), 200.0 * bend});
+  }
+  return 100.0 * bend * bend + (1.0 - x[0]) * (1.0 - x[0]);
+}
+
+TEST(Minimise, FindsTheMinimumWithFullAndWithLimitedMemory) {
+  for (const int rank : {0, 1, 20}) {
+    MinimiseOptions options;
+    options.lbfgs_rank = rank;
+    const Minimum minimum = minimise(valley, vectorOf({-1.2, 1.0}), options);
+    EXPECT_TRUE(minimum.improved());
+    EXPECT_TRUE(minimum.converged());
+    EXPECT_EQ("converged", minimum.message);
+    EXPECT_NEAR(24.2, minimum.initial_cost, 1e-10);
+    EXPECT_LT((minimum.x - vectorOf({1.0, 1.0})).norm(), 1e-5);
+    EXPECT_EQ(valley(minimum.x, nullptr), minimum.cost);
+    EXPECT_LT(minimum.gradient.norm(), 1e-4);
+    EXPECT_GE(minimum.evaluations, minimum.iterations);
+  }
+}
+
+TEST(Minimise, KeepsItsLimitsAndReturnsTheBestSoFar) {
+  MinimiseOptions options;
+  options.max_iterations = 4;
+  const Minimum few = minimise(valley, vectorOf({-1.2, 1.0}), options);
+  EXPECT_EQ(4, few.iterations);
+  EXPECT_TRUE(few.improved());
+  EXPECT_FALSE(few.converged());
+  EXPECT_EQ(MinimumReason::kIterationLimit, few.reason);
+  EXPECT_EQ("limit of iterations reached", few.message);
+
+  int calls = 0;
+  const auto counting = [&calls](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+    ++calls;
+    return valley(x, gradient);
+  };
+  options.max_iterations = 100;
+  options.max_evaluations = 9;
+  const Minimum capped = minimise(counting, vectorOf({-1.2, 1.0}), options);
+  EXPECT_EQ(9, calls);
+  EXPECT_EQ(9, capped.evaluations);
+  EXPECT_TRUE(capped.improved());
+  EXPECT_FALSE(capped.converged());
+  EXPECT_EQ(MinimumReason::kEvaluationLimit, capped.reason);
+  EXPECT_EQ("limit of evaluations reached", capped.message);
+  EXPECT_EQ(valley(capped.x, nullptr), capped.cost);
+}
+
+TEST(Minimise, NeverReturnsAWorsePointForOneMoreEvaluation) {
+  double last_evaluated = 0.0;
+  const auto watched = [&last_evaluated](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+    return last_evaluated = valley(x, gradient);
+  };
+  MinimiseOptions options;
+  double best = valley(vectorOf({-1.2, 1.0}), nullptr);
+  int ended_uphill = 0;
+  for (options.max_evaluations = 1; options.max_evaluations <= 30; ++options.max_evaluations) {
+    const Minimum minimum = minimise(watched, vectorOf({-1.2, 1.0}), options);
+    EXPECT_LE(minimum.cost, best);
+    EXPECT_FALSE(minimum.converged()) << "refused evaluations are no convergence";
+    EXPECT_EQ(valley(minimum.x, nullptr), minimum.cost);
+    if (last_evaluated > minimum.cost) ++ended_uphill;
+    best = minimum.cost;
+  }
+  EXPECT_GT(ended_uphill, 0) << "the last point was always the best: the test shows nothing";
+}
+
+TEST(Minimise, SurvivesPointsThatCannotBeEvaluated) {
+  for (bool bad_gradient : {false, true}) {
+    int failures = 0;
+    // x - log(x) / 100: next to no curvature, so that BFGS jumps beyond 0.
+    const auto walled = [&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+      if (gradient != nullptr) *gradient = 1.0 - 0.01 * x.array().inverse();
+      if (x[0] > 0.0) return x[0] - 0.01 * std::log(x[0]);
+      ++failures;
+      if (bad_gradient && gradient != nullptr) gradient->setConstant(kNaN);
+      return bad_gradient ? -1.0 : kNaN;
+    };
+    const Eigen::VectorXd start = Eigen::VectorXd::Constant(1, 5.0);
+    const Minimum minimum = minimise(walled, start, MinimiseOptions());
+    EXPECT_TRUE(minimum.improved());
+    EXPECT_NEAR(0.01, minimum.x[0], 1e-5) << minimum.message;
+    EXPECT_GT(failures, 0) << "the wall was never met: the test shows nothing";
+  }
+}
+
+TEST(Minimise, SaysThatTheStartCannotBeEvaluated) {
+  const auto nowhere = [](const Eigen::VectorXd&, Eigen::VectorXd*) { return kNaN; };
+  const Minimum minimum = minimise(nowhere, vectorOf({3.0, 4.0}), MinimiseOptions());
+  EXPECT_EQ(MinimumReason::kStartFailed, minimum.reason);
+  EXPECT_FALSE(minimum.improved());
+  EXPECT_FALSE(minimum.converged());
+  EXPECT_EQ(kInfinity, minimum.cost);
+  EXPECT_EQ(kInfinity, minimum.initial_cost);
+  EXPECT_EQ(0, minimum.gradient.size());
+  EXPECT_EQ(vectorOf({3.0, 4.0}), minimum.x);
+  EXPECT_EQ("the function cannot be evaluated at the start", minimum.message);
+}
+
+TEST(Minimise, ClaimsNoImprovementWhereThereIsNone) {
+  const Minimum at_optimum = minimise(valley, vectorOf({1.0, 1.0}), MinimiseOptions());
+  EXPECT_FALSE(at_optimum.improved());
+  EXPECT_TRUE(at_optimum.converged());
+  EXPECT_EQ("converged", at_optimum.message);
+  EXPECT_EQ(at_optimum.initial_cost, at_optimum.cost);
+
+  const auto uphill = [](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+    const double value = valley(x, gradient);
+    if (gradient != nullptr) *gradient = -*gradient;  // a gradient that lies
+    return value;
+  };
+  const Minimum misled = minimise(uphill, vectorOf({-1.2, 1.0}), MinimiseOptions());
+  EXPECT_LE(misled.cost, misled.initial_cost);
+  EXPECT_EQ(misled.cost < misled.initial_cost, misled.improved());
+}
+
+TEST(Minimise, DoesNotCallItConvergedWhereNoStepHelpsThoughThereIsASlope) {
+  const auto stuck = [](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+    if (gradient != nullptr) *gradient = vectorOf({-3.0});  // but it is flat
+    return 5.0 + std::abs(x[0]);
+  };
+  MinimiseOptions options;
+  for (options.function_tolerance = 1e-10; options.function_tolerance < 1.0;
+       options.function_tolerance *= 1e10) {
+    const Minimum minimum = minimise(stuck, vectorOf({0.0}), options);
+    EXPECT_FALSE(minimum.improved());
+    EXPECT_FALSE(minimum.converged());
+    EXPECT_EQ(MinimumReason::kNoDecrease, minimum.reason);
+    EXPECT_NE(std::string::npos, minimum.message.find("no step lowers the cost"))
+        << minimum.message;
+    EXPECT_NE(std::string::npos, minimum.message.find("magnitude 3")) << minimum.message;
+  }
+}
+
+TEST(Minimise, EndsByTheChangeOfTheCostWhateverItsSign) {
+  // x^4, nowhere steep: the search comes closer by a factor each time and ends by the cost only.
+  const Eigen::VectorXd start = vectorOf({1.0, -0.8});
+  const double at_start = start.array().square().square().sum();
+  for (const double offset : {1.0, -1.0, -at_start}) {  // the last one: the cost starts at 0
+    const auto quartic = [offset](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+      if (gradient != nullptr) *gradient = 4.0 * x.array().cube();
+      return offset + x.array().square().square().sum();
+    };
+    MinimiseOptions options;
+    options.gradient_tolerance = 0.0;
+    options.function_tolerance = 1e-4;
+    const Minimum loose = minimise(quartic, start, options);
+    options.function_tolerance = 1e-10;
+    const Minimum tight = minimise(quartic, start, options);
+    for (const Minimum* minimum : {&loose, &tight}) {
+      EXPECT_TRUE(minimum->improved() && minimum->converged()) << minimum->message;
+      EXPECT_LT(minimum->iterations, 60);
+    }
+    EXPECT_LT(loose.iterations, tight.iterations) << "offset " << offset;
+    EXPECT_NEAR(offset, loose.cost, 1e-3);
+    EXPECT_NEAR(offset, tight.cost, 1e-8);
+  }
+}
+
+/// Rosenbrock's valley in steps of 1e-3: near its minimum no line search succeeds.
+double terraced(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+  return std::floor(1e3 * valley(x, gradient)) / 1e3;
+}
+
+TEST(Minimise, KeepsTheProgressOfASearchThatEndsInFailure) {
+  MinimiseOptions options;
+  options.function_tolerance = options.gradient_tolerance = 0.0;
+  for (const int rank : {0, 20}) {
+    options.lbfgs_rank = rank;
+    const Minimum minimum = minimise(terraced, vectorOf({-1.2, 1.0}), options);
+    EXPECT_EQ(MinimumReason::kNoDecrease, minimum.reason) << minimum.message;
+    EXPECT_NEAR(24.2, minimum.initial_cost, 1e-3);
+    EXPECT_LT(minimum.cost, 1e-2) << "rank " << rank;
+    EXPECT_EQ(terraced(minimum.x, nullptr), minimum.cost);
+  }
+}
+
+TEST(Minimise, AsksForPermissionBeforeEachEvaluationAndNeverAgainOnceItIsRefused) {
+  const Minimum whole = minimise(valley, vectorOf({-1.2, 1.0}), MinimiseOptions());
+  double best = kInfinity;
+  for (int allowed = 0; allowed < whole.evaluations; ++allowed) {
+    int evaluations = 0, asked = 0;
+    const auto counting = [&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+      ++evaluations;
+      EXPECT_EQ(evaluations, asked);
+      return valley(x, gradient);
+    };
+    MinimiseOptions options;
+    options.stop = [&] { return ++asked > allowed; };
+    const Minimum minimum = minimise(counting, vectorOf({-1.2, 1.0}), options);
+    EXPECT_EQ(allowed, evaluations);
+    EXPECT_EQ(allowed + 1, asked);
+    EXPECT_EQ(allowed, minimum.evaluations);
+    EXPECT_EQ(MinimumReason::kStopped, minimum.reason) << minimum.message;
+    EXPECT_LE(minimum.cost, best);
+    best = minimum.cost;
+    EXPECT_EQ(allowed > 0 ? valley(minimum.x, nullptr) : kInfinity, minimum.cost);
+    if (allowed == 0) {
+      EXPECT_EQ(vectorOf({-1.2, 1.0}), minimum.x);
+    }
+  }
+}
+
+TEST(Minimise, ShowsTheBestSoFarBeforeTheFirstIterationAndAfterEach) {
+  std::vector<Minimum> shown;
+  MinimiseOptions options;
+  options.on_iteration = [&shown](const Minimum& so_far) {
+    shown.push_back(so_far);
+    return true;
+  };
+  const Minimum minimum = minimise(valley, vectorOf({-1.2, 1.0}), options);
+  ASSERT_EQ(static_cast<size_t>(minimum.iterations) + 1, shown.size());
+  EXPECT_EQ(vectorOf({-1.2, 1.0}), shown.front().x);
+  for (size_t i = 0; i < shown.size(); ++i) {
+    EXPECT_EQ(static_cast<int>(i), shown[i].iterations);
+    Eigen::VectorXd gradient;
+    EXPECT_EQ(valley(shown[i].x, &gradient), shown[i].cost);
+    EXPECT_EQ(gradient, shown[i].gradient);
+    EXPECT_LE(shown[i].cost, shown[std::max<size_t>(i, 1) - 1].cost);
+  }
+}
+
+TEST(Minimise, EndsWhereTheCallbackSaysSo) {
+  int calls = 0;
+  MinimiseOptions options;
+  options.on_iteration = [&calls](const Minimum&) { return ++calls < 4; };
+  const Minimum minimum = minimise(valley, vectorOf({-1.2, 1.0}), options);
+  EXPECT_EQ(4, calls);
+  EXPECT_EQ(3, minimum.iterations);
+  EXPECT_EQ(MinimumReason::kStopped, minimum.reason);
+  EXPECT_TRUE(minimum.improved());
+}
+
+TEST(Minimise, PassesOnWhatItsFunctionsThrow) {
+  const auto thrown = [](const Eigen::VectorXd&, Eigen::VectorXd*) -> double {
+    throw std::runtime_error("out of paper");
+  };
+  EXPECT_TRUE(throwsNaming<std::runtime_error>(
+      [&] { minimise(thrown, vectorOf({1.0}), MinimiseOptions()); }, {"out of paper"}));
+}
+
+TEST(Minimise, RefusesAStartThatIsEmptyOrNotFinite) {
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [] { minimise(valley, Eigen::VectorXd(), MinimiseOptions()); }, {"start", "none"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [] {
+        minimise(valley, vectorOf({0.0, kNaN}), MinimiseOptions());
+      },
+      {"finite"}));
+  for (int MinimiseOptions::*limit :
+       {&MinimiseOptions::max_iterations, &MinimiseOptions::max_evaluations,
+        &MinimiseOptions::lbfgs_rank}) {
+    MinimiseOptions options;
+    options.*limit = -1;
+    EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+        [&] {
+          minimise(valley, vectorOf({0.0, 0.0}), options);
+        },
+        {">= 0"}));
+  }
+}
+
+}  // namespace
+}  // namespace ddm
