@@ -37,7 +37,7 @@ void ModelNode::train(const ddm_msgs::TrainGoalConstPtr& goal) {
     const TrainingResult training = trainOn(data, *goal);
     result.train_time = training.seconds;
     result.evaluations = training.evaluations;
-    if (!training.model && server_.isPreemptRequested()) {
+    if (training.cancelled) {
       health_.cancel();
       server_.setPreempted(result, training.message);
     } else if (!training.model) {

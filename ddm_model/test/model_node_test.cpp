@@ -173,6 +173,19 @@ TEST_F(ModelNodeTest, TellsItsProgressAndCanBePreempted) {
   EXPECT_TRUE(reports("slow/model_node", DiagnosticStatus::WARN, "trial 4: training cancelled"));
 }
 
+TEST_F(ModelNodeTest, AFailureIsNotTakenForACancellation) {
+  testing::writeTrial(folder_.file("long.bag"), testing::toyTrial(300, 1, 24));
+  Client failing("failing/train", /*spin_thread=*/true);
+  ASSERT_TRUE(failing.waitForServer(kLimit));
+  failing.sendGoal(goal({"long.bag"}), Client::SimpleDoneCallback(),
+                   [&failing] { failing.cancelGoal(); });  // while the bag is read
+  ASSERT_TRUE(failing.waitForResult(kLimit));
+  EXPECT_EQ(failing.getState(), State::ABORTED);
+  EXPECT_TRUE(contains(failing.getState().getText(), "did not lower the objective"))
+      << failing.getState().getText();
+  EXPECT_TRUE(reports("failing/model_node", DiagnosticStatus::ERROR, "did not lower"));
+}
+
 TEST_F(ModelNodeTest, RefusesToStartWithParametersThatAreWrong) {
   ros::param::set("/wrong_model_node/training/max_iteratoins", 3);
   ros::param::set("/wrong_model_node/model/order", 0);
