@@ -1,12 +1,14 @@
 // Fuzz target: what reaches robot_node, in any order and at any time: frames, torques, orders.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Input: for each event its kind (1 byte), a time (8 bytes), then what the kind needs.
+// Input: for each event its kind (1 byte), the time since the last one (4 bytes), the stamp of an
+// image (8 bytes), what the kind needs, then what the clock of this machine says (8 bytes).
 #include <ddm_msgs/testing/fuzzing.h>
 
 #include <cmath>
 
 #include "frame_picker.h"
+#include "stamp_check.h"
 #include "torque_gate.h"
 
 using ddm::TorqueGate;
@@ -15,12 +17,13 @@ using ddm::testing::require;
 
 namespace {
 
-TorqueGate::Time drawTime(FuzzBytes* bytes) {
+ddm::Stamp drawStamp(FuzzBytes* bytes) {
   const auto seconds = std::chrono::seconds(bytes->number<std::uint32_t>());
-  return seconds + TorqueGate::Time(bytes->number<std::uint32_t>());
+  return seconds + ddm::Stamp(bytes->number<std::uint32_t>());
 }
 
-void act(std::uint8_t kind, TorqueGate::Time time, FuzzBytes* bytes, TorqueGate* gate) {
+void act(std::uint8_t kind, ddm::SteadyTime time, ddm::Stamp stamp, FuzzBytes* bytes,
+         TorqueGate* gate) {
   switch (kind % 8) {
     case 0:
       gate->arm();
@@ -38,13 +41,12 @@ void act(std::uint8_t kind, TorqueGate::Time time, FuzzBytes* bytes, TorqueGate*
       gate->endTrial();
       break;
     case 5:
-      gate->showImage(time);
+      gate->showImage(time, stamp);
       break;
     case 6:
       gate->setPublishers(bytes->number<std::uint8_t>() % 3);
       break;
     default: {
-      const TorqueGate::Time stamp = drawTime(bytes);
       std::vector<double> torque(bytes->number<std::uint8_t>() % 4);
       for (double& value : torque) value = bytes->number<double>();
       const bool acts = gate->takeTorque(time, stamp, torque);
@@ -60,16 +62,22 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   ddm::RobotOptions options;
   options.slew_rate = bytes.number<std::uint8_t>();
   TorqueGate gate(options);
+  ddm::StampCheck stamps(options.dt);
   ddm::FramePicker picker(options.dt);
+  ddm::SteadyTime time{};
   while (!bytes.empty()) {
     const auto kind = bytes.number<std::uint8_t>();
-    const TorqueGate::Time time = drawTime(&bytes);
-    act(kind, time, &bytes, &gate);
+    time += std::chrono::nanoseconds(bytes.number<std::uint32_t>());
+    const ddm::Stamp stamp = drawStamp(&bytes);
+    act(kind, time, stamp, &bytes, &gate);
     const double effort = gate.effort(time);
     require(std::abs(effort) <= options.max_torque, "the motor's bound holds");
     require(effort == 0.0 || gate.state() == TorqueGate::State::kFollowing,
             "no torque but in a trial");
-    picker.pick(time);
+    if (stamps.take(time, drawStamp(&bytes), stamp).empty()) {
+      require(stamps.taken() <= time, "no image is taken after its arrival");
+      picker.pick(stamp);
+    }
     require(std::isfinite(picker.step()) && picker.step() >= 0.0, "a step is a time");
   }
   require(!gate.describe().empty(), "a state has words");

@@ -16,8 +16,8 @@ namespace {
 const ros::WallDuration kLook(0.05);
 constexpr int kLook_ms = 50;
 
-bool timeIsLeft(const ros::WallTime& deadline) {
-  return ros::ok() && ros::WallTime::now() < deadline;
+bool timeIsLeft(const ros::SteadyTime& deadline) {
+  return ros::ok() && ros::SteadyTime::now() < deadline;
 }
 
 /// Waits a moment for a line on the terminal.
@@ -38,11 +38,11 @@ ResetRoutine::ResetRoutine(ros::NodeHandle nh, const std::string& service)
       service_(service.empty() ? "" : nh.resolveName(service)),
       done_server_(nh_.advertiseService(topics::kResetDone, &ResetRoutine::onDone, this)) {}
 
-std::string ResetRoutine::run(const ros::WallTime& deadline) {
+std::string ResetRoutine::run(const ros::SteadyTime& deadline) {
   return byService() ? callService(deadline) : askPerson(deadline);
 }
 
-std::string ResetRoutine::callService(const ros::WallTime& deadline) {
+std::string ResetRoutine::callService(const ros::SteadyTime& deadline) {
   // Persistent, because only then does shutdown() below end a call.
   ros::ServiceClient client = nh_.serviceClient<std_srvs::Trigger>(service_, /*persistent=*/true);
   while (!client.exists()) {
@@ -64,7 +64,7 @@ std::string ResetRoutine::callService(const ros::WallTime& deadline) {
   return "";
 }
 
-std::string ResetRoutine::askPerson(const ros::WallTime& deadline) {
+std::string ResetRoutine::askPerson(const ros::SteadyTime& deadline) {
   done_ = false;
   asking_ = true;
   ::tcflush(STDIN_FILENO, TCIFLUSH);  // what was typed before is no answer

@@ -18,13 +18,13 @@ class ResetRoutine {
 
   /// Brings the robot to its start. Blocks until it is there, or until the deadline.
   /// @return what went wrong; empty: nothing
-  std::string run(const ros::WallTime& deadline);
+  std::string run(const ros::SteadyTime& deadline);
 
   bool byService() const { return !service_.empty(); }
 
  private:
-  std::string callService(const ros::WallTime& deadline);
-  std::string askPerson(const ros::WallTime& deadline);
+  std::string callService(const ros::SteadyTime& deadline);
+  std::string askPerson(const ros::SteadyTime& deadline);
   bool onDone(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
   ros::NodeHandle nh_;

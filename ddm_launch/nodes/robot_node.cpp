@@ -20,15 +20,18 @@ namespace ddm {
 namespace {
 
 constexpr int kQueue = 10;
-constexpr double kFreshCamera = 1.0;    // a camera that is silent for longer is not there [s]
-constexpr double kStepTolerance = 0.1;  // of dt
+constexpr std::chrono::seconds kFreshCamera(1);  // one that is silent for longer is not there
+constexpr double kStepTolerance = 0.1;           // of dt
 const ros::WallDuration kLook(0.1);
 const ros::WallDuration kRemindPeriod(10.0);
 const ros::WallDuration kDiagnosisPeriod(1.0);
 
-std::chrono::nanoseconds toChrono(const ros::Time& time) {
-  return std::chrono::nanoseconds(static_cast<std::int64_t>(time.toNSec()));
+template <class RosTime>
+Stamp toStamp(const RosTime& time) {
+  return Stamp(static_cast<std::int64_t>(time.toNSec()));
 }
+
+SteadyTime steadyNow() { return std::chrono::steady_clock::now(); }
 
 }  // namespace
 
@@ -38,6 +41,7 @@ RobotNode::RobotNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size,
       options_(options),
       routine_(nh, options.reset_service),
       gate_(options),
+      stamps_(options.dt),
       picker_(options.dt),
       transport_(nh),
       image_pub_(transport_.advertise(topics::kImage, kQueue)),
@@ -65,9 +69,9 @@ RobotNode::RobotNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size,
       topics::kCamera, 1, &RobotNode::onFrame, this,
       image_transport::TransportHints("raw", ros::TransportHints().tcpNoDelay(), pnh));
   timer_ =
-      nh.createWallTimer(ros::WallDuration(1.0 / options.effort_rate), &RobotNode::onTick, this);
-  diagnosis_timer_ = nh.createWallTimer(kDiagnosisPeriod,
-                                        [this](const ros::WallTimerEvent&) { updater_.update(); });
+      nh.createSteadyTimer(ros::WallDuration(1.0 / options.effort_rate), &RobotNode::onTick, this);
+  diagnosis_timer_ = nh.createSteadyTimer(
+      kDiagnosisPeriod, [this](const ros::SteadyTimerEvent&) { updater_.update(); });
   enable_server_ = nh.advertiseService(topics::kEnable, &RobotNode::onEnable, this);
   take_goal_server_ = nh.advertiseService(topics::kTakeGoal, &RobotNode::onTakeGoal, this);
   // Last: whoever sees the service finds everything else in place.
@@ -90,15 +94,23 @@ sensor_msgs::Image RobotNode::shown(const sensor_msgs::Image& frame) const {
 }
 
 bool RobotNode::seesCamera() const {
-  return frame_ != nullptr && (ros::WallTime::now() - frame_arrival_).toSec() <= kFreshCamera;
+  return frame_ != nullptr && steadyNow() - frame_arrival_ <= kFreshCamera;
 }
 
 void RobotNode::onFrame(const sensor_msgs::ImageConstPtr& frame) {
+  const Stamp stamp = toStamp(frame->header.stamp);
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     frame_ = frame;
-    frame_arrival_ = ros::WallTime::now();
-    if (!picker_.pick(toChrono(frame->header.stamp))) return;
+    frame_arrival_ = steadyNow();
+    frame_arrival_clock_ = toStamp(ros::WallTime::now());
+    const std::string refusal = stamps_.take(frame_arrival_, frame_arrival_clock_, stamp);
+    if (!refusal.empty()) {
+      frame_problem_ = refusal;
+      ROS_WARN_STREAM_THROTTLE(5.0, "frame of " << frame_sub_.getTopic() << ": " << refusal);
+      return;
+    }
+    if (!picker_.pick(stamp)) return;
   }
   std::string problem;
   sensor_msgs::Image image;
@@ -112,7 +124,7 @@ void RobotNode::onFrame(const sensor_msgs::ImageConstPtr& frame) {
     const std::lock_guard<std::mutex> lock(mutex_);
     frame_problem_ = problem;
     if (!problem.empty()) return;
-    gate_.showImage(toChrono(image.header.stamp));  // before anybody can answer it
+    gate_.showImage(stamps_.taken(), stamp);  // before anybody can answer it
   }
   image_pub_.publish(image);
 }
@@ -122,7 +134,7 @@ void RobotNode::onTorque(const ddm_msgs::TorqueConstPtr& torque) {
   std_msgs::Float64 latency;
   latency.data = (now - torque->header.stamp).toSec();
   const std::lock_guard<std::mutex> lock(mutex_);
-  gate_.takeTorque(toChrono(now), toChrono(torque->header.stamp), torque->torque);
+  gate_.takeTorque(steadyNow(), toStamp(torque->header.stamp), torque->torque);
   publishEffort();
   latency_pub_.publish(latency);
   worst_latency_ = std::max(worst_latency_, latency.data);
@@ -134,7 +146,7 @@ void RobotNode::onTrialEnd(const ddm_msgs::RunTrialActionResultConstPtr& /*resul
   publishEffort();
 }
 
-void RobotNode::onTick(const ros::WallTimerEvent& /*event*/) {
+void RobotNode::onTick(const ros::SteadyTimerEvent& /*event*/) {
   const auto num_publishers = static_cast<int>(torque_sub_.getNumPublishers());
   const std::lock_guard<std::mutex> lock(mutex_);
   gate_.setPublishers(num_publishers);
@@ -144,7 +156,7 @@ void RobotNode::onTick(const ros::WallTimerEvent& /*event*/) {
 /// To be called with the lock, whenever something may have changed.
 void RobotNode::publishEffort() {
   std_msgs::Float64 effort;
-  effort.data = gate_.effort(toChrono(ros::Time::now()));
+  effort.data = gate_.effort(steadyNow());
   if (!routine_moves_) effort_pub_.publish(effort);
   reportState();
 }
@@ -234,7 +246,8 @@ bool RobotNode::onReset(ddm_msgs::Reset::Request& /*request*/,
     response.message = "another reset is under way";
     return true;
   }
-  const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(options_.reset_timeout);
+  const ros::SteadyTime deadline =
+      ros::SteadyTime::now() + ros::WallDuration(options_.reset_timeout);
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     gate_.beginReset();
@@ -251,6 +264,7 @@ bool RobotNode::onReset(ddm_msgs::Reset::Request& /*request*/,
       ROS_WARN("the camera's frames do not fit: images are %g s apart where dt is %g s",
                picker_.step(), options_.dt);
     }
+    stamps_.restart();
     picker_.restart();
     publishEffort();
   }
@@ -261,7 +275,7 @@ bool RobotNode::onReset(ddm_msgs::Reset::Request& /*request*/,
   return true;
 }
 
-std::string RobotNode::bringToStart(const ros::WallTime& deadline) {
+std::string RobotNode::bringToStart(const ros::SteadyTime& deadline) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     routine_moves_ = routine_.byService();
@@ -273,12 +287,12 @@ std::string RobotNode::bringToStart(const ros::WallTime& deadline) {
 }
 
 /// @return what has not come in time; empty: nothing
-std::string RobotNode::waitUntilThere(const ros::WallTime& deadline, bool motors) {
+std::string RobotNode::waitUntilThere(const ros::SteadyTime& deadline, bool motors) {
   std::string told;
-  ros::WallTime last_told;
+  ros::SteadyTime last_told;
   for (;;) {
     const std::string what = missing(motors);
-    const ros::WallTime now = ros::WallTime::now();
+    const ros::SteadyTime now = ros::SteadyTime::now();
     if (what.empty()) return "";
     if (!ros::ok() || now > deadline) return "the trial cannot begin: " + what;
     if (what != told || now - last_told > kRemindPeriod) {
@@ -298,13 +312,12 @@ std::string RobotNode::missing(bool motors) {
     lock.unlock();  // the master may be slow, and must not be in the way of a stop
     return "no image from the camera, " + describePublishers(frame_sub_.getTopic());
   }
-  if (!frame_problem_.empty()) return frame_problem_;
-  const double age = frame_arrival_.toSec() - frame_->header.stamp.toSec();
-  if (std::abs(age) > options_.dt) {
-    std::ostringstream text;
-    text << "the camera's stamps are " << age << " s behind this machine's clock when they come, "
-         << "at most dt is allowed: set the stamps in the driver, synchronise the clocks";
-    return text.str();
+  std::string problem = stamps_.compare(frame_arrival_clock_, toStamp(frame_->header.stamp));
+  if (problem.empty()) problem = frame_problem_;
+  if (!problem.empty()) {
+    stamps_.restart();  // the clocks may be set while the trial waits
+    picker_.restart();
+    return problem;
   }
   if (!has_goal_) return "no goal image: bring the robot to its goal and call service take_goal";
   if (motors && !gate_.armed()) return gate_.describe();
@@ -325,6 +338,7 @@ void RobotNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("deadlines missed", gate_.numMisses());
   status.add("worst latency since the last status [s]", worst_latency_);
   status.add("time between images [s]", picker_.step());
+  status.add("images refused for their stamps", stamps_.numRefused());
   worst_latency_ = 0.0;
 }
 

@@ -17,6 +17,7 @@
 #include "frame_picker.h"
 #include "reset_routine.h"
 #include "robot_options.h"
+#include "stamp_check.h"
 #include "torque_gate.h"
 
 namespace ddm {
@@ -40,7 +41,7 @@ class RobotNode {
   void onFrame(const sensor_msgs::ImageConstPtr& frame);
   void onTorque(const ddm_msgs::TorqueConstPtr& torque);
   void onTrialEnd(const ddm_msgs::RunTrialActionResultConstPtr& result);
-  void onTick(const ros::WallTimerEvent& event);
+  void onTick(const ros::SteadyTimerEvent& event);
   bool onEnable(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   bool onTakeGoal(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Response& response);
@@ -51,8 +52,8 @@ class RobotNode {
   void publishGoal(const sensor_msgs::Image& goal);
   void publishEffort();
   void reportState();
-  std::string bringToStart(const ros::WallTime& deadline);
-  std::string waitUntilThere(const ros::WallTime& deadline, bool motors);
+  std::string bringToStart(const ros::SteadyTime& deadline);
+  std::string waitUntilThere(const ros::SteadyTime& deadline, bool motors);
   std::string missing(bool motors);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
@@ -62,10 +63,12 @@ class RobotNode {
 
   std::mutex mutex_;  // guards what callbacks change, below
   TorqueGate gate_;
+  StampCheck stamps_;
   FramePicker picker_;
   sensor_msgs::ImageConstPtr frame_;  // the newest of the camera
-  ros::WallTime frame_arrival_;
-  std::string frame_problem_;  // why the newest frame cannot be used
+  SteadyTime frame_arrival_;
+  Stamp frame_arrival_clock_{0};  // the same by the clock of this machine
+  std::string frame_problem_;     // why the newest frame cannot be used
   bool has_goal_ = false;
   bool routine_moves_ = false;  // the user's reset has the motor, and effort_command is silent
   bool was_in_trial_ = false;
@@ -84,9 +87,9 @@ class RobotNode {
   image_transport::Subscriber frame_sub_;
   ros::Subscriber torque_sub_;
   ros::Subscriber trial_end_sub_;
-  ros::WallTimer timer_;
+  ros::SteadyTimer timer_;
   diagnostic_updater::Updater updater_;
-  ros::WallTimer diagnosis_timer_;
+  ros::SteadyTimer diagnosis_timer_;
   ros::ServiceServer enable_server_;
   ros::ServiceServer take_goal_server_;
   ros::ServiceServer reset_server_;

@@ -10,10 +10,6 @@ namespace {
 
 constexpr std::size_t kNumIntervals = 9;
 
-double seconds(std::chrono::nanoseconds time) {
-  return std::chrono::duration<double>(time).count();
-}
-
 /// The lower of two middle ones.
 double median(std::deque<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
@@ -23,19 +19,21 @@ double median(std::deque<double> values) {
 
 }  // namespace
 
-bool FramePicker::pick(Time stamp) {
-  if (stamp <= last_frame_) return false;
-  if (last_frame_.count() > 0) {
-    intervals_.push_back(seconds(stamp - last_frame_));
+bool FramePicker::pick(Stamp stamp) {
+  const bool first = !last_frame_;
+  if (!first) {
+    if (stamp <= *last_frame_) return false;
+    intervals_.push_back(toSeconds(stamp - *last_frame_));
     if (intervals_.size() > kNumIntervals) intervals_.pop_front();
     period_ = median(intervals_);
   }
   last_frame_ = stamp;
-  if (started_ && seconds(stamp - last_pick_) < dt_ - 0.5 * period_) return false;
-  started_ = true;
+  if (!first && toSeconds(stamp - last_pick_) < dt_ - 0.5 * period_) return false;
   last_pick_ = stamp;
   return true;
 }
+
+void FramePicker::restart() { last_frame_.reset(); }
 
 double FramePicker::step() const {
   return period_ == 0.0 ? 0.0 : std::max(1.0, std::round(dt_ / period_)) * period_;

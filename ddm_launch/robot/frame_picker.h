@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
 #include <deque>
+#include <optional>
+
+#include "clocks.h"
 
 namespace ddm {
 
@@ -14,27 +16,23 @@ namespace ddm {
 /// jitter of stamps below T / 2; otherwise they are round(dt / T) T, still equally long.
 class FramePicker {
  public:
-  using Time = std::chrono::nanoseconds;  ///< since the epoch of the camera's clock
-
   /// @param dt  time step, > 0 [s]
   explicit FramePicker(double dt) : dt_(dt) {}
 
   /// To be called for each frame.
-  /// @param stamp  its time
-  /// @return       whether to act on it; never for one that is not newer than all before
-  bool pick(Time stamp);
+  /// @return whether to act on it; never for one that is not newer than all since restart()
+  bool pick(Stamp stamp);
 
-  /// The next frame will be picked.
-  void restart() { started_ = false; }
+  /// The next frame will be picked, whatever its stamp.
+  void restart();
 
   /// Time between frames that are picked, as far as it is known [s]; 0: not yet.
   double step() const;
 
  private:
   double dt_;
-  bool started_ = false;
-  Time last_frame_{0};
-  Time last_pick_{0};
+  std::optional<Stamp> last_frame_;  // empty: none since restart()
+  Stamp last_pick_{0};
   std::deque<double> intervals_;  // between the latest frames [s]
   double period_ = 0.0;           // T, their median: a lost frame or a pause must not count [s]
 };

@@ -20,8 +20,7 @@ std::string textOf(const std::vector<double>& torque) {
 }  // namespace
 
 TorqueGate::TorqueGate(const RobotOptions& options)
-    : options_(options),
-      dt_(std::chrono::duration_cast<Time>(std::chrono::duration<double>(options.dt))) {}
+    : options_(options), dt_(fromSeconds(options.dt)) {}
 
 std::string TorqueGate::arm() {
   if (num_publishers_ > 1) {
@@ -59,12 +58,12 @@ void TorqueGate::wait() {
   effort_ = 0.0;
 }
 
-void TorqueGate::showImage(Time stamp) {
-  unanswered_.push_back(stamp);
-  last_image_ = stamp;
+void TorqueGate::showImage(SteadyTime taken, Stamp stamp) {
+  unanswered_.push_back({stamp, taken});
+  last_image_ = taken;
 }
 
-bool TorqueGate::takeTorque(Time now, Time stamp, const std::vector<double>& torque) {
+bool TorqueGate::takeTorque(SteadyTime now, Stamp stamp, const std::vector<double>& torque) {
   expire(now);
   if (!armed()) return false;
   if (torque.size() != 1 || !std::isfinite(torque[0])) {
@@ -72,7 +71,8 @@ bool TorqueGate::takeTorque(Time now, Time stamp, const std::vector<double>& tor
     return false;
   }
   if (state_ == State::kResetting) return false;
-  const auto image = std::find(unanswered_.begin(), unanswered_.end(), stamp);
+  const auto image = std::find_if(unanswered_.begin(), unanswered_.end(),
+                                  [stamp](const Unanswered& each) { return each.stamp == stamp; });
   if (image == unanswered_.end()) return false;
   if (inTrial()) num_misses_ += static_cast<int>(image - unanswered_.begin());
   unanswered_.erase(unanswered_.begin(), image + 1);
@@ -90,8 +90,8 @@ void TorqueGate::setPublishers(int num_publishers) {
 }
 
 /// Notices what has not come.
-void TorqueGate::expire(Time now) {
-  while (!unanswered_.empty() && now - unanswered_.front() > dt_) {
+void TorqueGate::expire(SteadyTime now) {
+  while (!unanswered_.empty() && now - unanswered_.front().taken > dt_) {
     unanswered_.pop_front();
     if (!inTrial()) continue;
     ++num_misses_;
@@ -100,9 +100,9 @@ void TorqueGate::expire(Time now) {
   if (state_ == State::kFollowing && now - last_image_ > 2 * dt_) state_ = State::kImagesStopped;
 }
 
-double TorqueGate::effort(Time now) {
+double TorqueGate::effort(SteadyTime now) {
   expire(now);
-  const double passed = std::chrono::duration<double>(now - last_effort_).count();
+  const double passed = toSeconds(now - last_effort_);
   last_effort_ = now;
   if (state_ != State::kFollowing) {
     target_ = 0.0;
@@ -110,7 +110,7 @@ double TorqueGate::effort(Time now) {
   } else if (options_.slew_rate == 0.0) {
     effort_ = target_;
   } else {
-    const double step = options_.slew_rate * std::max(0.0, passed);  // clocks may be set back
+    const double step = options_.slew_rate * passed;
     effort_ += std::max(-step, std::min(step, target_ - effort_));
   }
   return effort_;

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
 #include <deque>
 #include <string>
 #include <vector>
 
+#include "clocks.h"
 #include "robot_options.h"
 
 namespace ddm {
@@ -25,12 +25,12 @@ namespace ddm {
 /// that something is wired wrongly: a torque that is not one finite number, and a second publisher
 /// of torques. They switch the motors off until arm(), which is refused while the fault is there.
 ///
+/// Time is that of the monotonic clock: whatever stamps say, a motor that hears nothing stops.
+///
 /// A trial begins with the first torque in time after arm() and endReset(), and ends with
 /// endTrial(). In kFollowing a torque acts until the next.
 class TorqueGate {
  public:
-  using Time = std::chrono::nanoseconds;  ///< since the epoch of the clock that stamps images
-
   enum class State { kStopped, kResetting, kWaiting, kFollowing, kImagesStopped, kLate };
 
   explicit TorqueGate(const RobotOptions& options);
@@ -45,21 +45,22 @@ class TorqueGate {
   void endReset();
   void endTrial();
 
-  /// An image was shown to the controller.
-  void showImage(Time stamp);
+  /// An image is shown to the controller.
+  /// @param taken  when the camera took it, at the latest now: its torque is due within dt of it
+  /// @param stamp  by which its torque will name it
+  void showImage(SteadyTime taken, Stamp stamp);
 
   /// A torque has come.
-  /// @param now     when, by the clock that stamps images
   /// @param stamp   of the image that it answers
   /// @param torque  [N m]
   /// @return        whether it acts
-  bool takeTorque(Time now, Time stamp, const std::vector<double>& torque);
+  bool takeTorque(SteadyTime now, Stamp stamp, const std::vector<double>& torque);
 
   /// How many publish torques at present; more than one is a fault.
   void setPublishers(int num_publishers);
 
-  /// What the motor shall get at this time [N m].
-  double effort(Time now);
+  /// What the motor gets now [N m]. To be called with times that never decrease.
+  double effort(SteadyTime now);
 
   State state() const { return state_; }
   bool armed() const { return state_ != State::kStopped; }
@@ -75,20 +76,26 @@ class TorqueGate {
   int numAnswers() const { return num_answers_; }
 
  private:
-  void expire(Time now);
+  /// An image whose torque may still come.
+  struct Unanswered {
+    Stamp stamp;
+    SteadyTime taken;
+  };
+
+  void expire(SteadyTime now);
   void wait();
 
   RobotOptions options_;
-  Time dt_;
+  std::chrono::nanoseconds dt_;
   State state_ = State::kStopped;
   bool resetting_ = false;
   std::string stop_reason_ = "service enable arms them";
   int num_publishers_ = 0;
-  std::deque<Time> unanswered_;  // images whose torque may still come
-  Time last_image_{0};
+  std::deque<Unanswered> unanswered_;
+  SteadyTime last_image_;
   double target_ = 0.0;  // [N m]
   double effort_ = 0.0;  // what the motor got last [N m]
-  Time last_effort_{0};
+  SteadyTime last_effort_;
   int num_misses_ = 0;
   int num_answers_ = 0;
 };

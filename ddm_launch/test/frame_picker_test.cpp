@@ -4,19 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <random>
 #include <vector>
 
 namespace ddm {
 namespace {
 
-using Time = FramePicker::Time;
-
-Time at(double seconds) {
-  return std::chrono::seconds(1700000000) +
-         Time(static_cast<std::int64_t>(std::llround(seconds * 1e9)));
-}
+Stamp at(double seconds) { return std::chrono::seconds(1700000000) + fromSeconds(seconds); }
 
 /// Steps between the frames that are picked of those at these times [s].
 std::vector<double> stepsOf(FramePicker* picker, const std::vector<double>& frames) {
@@ -73,9 +67,14 @@ TEST(FramePicker, NeverTakesAFrameTwiceOrAnOlderOne) {
   EXPECT_TRUE(picker.pick(at(1.0)));
   EXPECT_FALSE(picker.pick(at(1.0)));
   EXPECT_FALSE(picker.pick(at(0.5)));
+}
+
+TEST(FramePicker, ARestartForgetsTheStampsOfBefore) {
+  FramePicker picker(0.2);
+  EXPECT_TRUE(picker.pick(at(1.0)));
   picker.restart();
-  EXPECT_FALSE(picker.pick(at(1.0)));
-  EXPECT_TRUE(picker.pick(at(1.01)));
+  EXPECT_TRUE(picker.pick(at(0.5)));
+  EXPECT_EQ(picker.step(), 0.0);
 }
 
 TEST(FramePicker, LostFramesAndPausesDoNotShortenSteps) {

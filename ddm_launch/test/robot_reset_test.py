@@ -90,7 +90,7 @@ class RobotResetTest(RobotCase):
         self.offer("go_home", lambda _: TriggerResponse(success=False, message="the arm is stuck"))
         wait_until(lambda: "the arm is stuck" in robot.reset()().message, "the reason")
         robot.camera.age_s = 5.0
-        wait_until(lambda: "behind this machine's clock" in robot.reset()().message, "the reason")
+        wait_until(lambda: "this machine's clock" in robot.reset()().message, "the reason")
         robot.camera.showing = False
         wait_until(lambda: "no image from the camera" in robot.reset()().message, "the reason")
         self.assertIn("no image on", robot.takeGoal().message)

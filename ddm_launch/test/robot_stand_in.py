@@ -17,7 +17,7 @@ from scratch_case import ScratchCase
 LIMIT_S = 15.0
 DT = 0.4
 WIDTH, HEIGHT = 48, 40
-OPTIONS = ["_image/size:=4", "_robot/dt:=%g" % DT, "_robot/max_torque:=4.0",
+OPTIONS = ["_image/size:=4", "_robot/max_torque:=4.0",
            "_robot/crop_x:=8", "_robot/crop_width:=32", "_robot/crop_height:=32"]
 
 
@@ -54,7 +54,9 @@ class Camera:
         self.left = 255
         self.showing = True
         self.age_s = 0.0
+        self.shown_at = 0.0  # monotonic time of the last image
         self._ended = False
+        self._lock = threading.Lock()
         self._publisher = rospy.Publisher(topic, Image, queue_size=2)
         self._thread = threading.Thread(target=self._show, daemon=True)
         self._thread.start()
@@ -66,18 +68,35 @@ class Camera:
 
     def _show(self):
         while not self._ended:
-            if self.showing:
-                image = Image(width=WIDTH, height=HEIGHT, step=3 * WIDTH, encoding="rgb8")
-                image.header.stamp = rospy.Time.now() - rospy.Duration(self.age_s)
-                image.data = bytes([self.left] * 3 * (WIDTH // 2) + [0] * 3 * (WIDTH - WIDTH // 2)) * HEIGHT
-                self._publisher.publish(image)
+            with self._lock:
+                if self.showing:
+                    self.shown_at = time.monotonic()
+                    self._publish(self.age_s)
             time.sleep(1.0 / 30.0)
+
+    def _publish(self, age_s):
+        image = Image(width=WIDTH, height=HEIGHT, step=3 * WIDTH, encoding="rgb8")
+        image.header.stamp = rospy.Time.now() - rospy.Duration(age_s)
+        image.data = bytes([self.left] * 3 * (WIDTH // 2) + [0] * 3 * (WIDTH - WIDTH // 2)) * HEIGHT
+        self._publisher.publish(image)
+
+    def end_with_image(self, age_s):
+        """One more image, then silence. Returns the monotonic time of the image before."""
+        with self._lock:
+            self.showing = False
+            self._publish(age_s)
+            return self.shown_at
 
 
 class Listener:
     def __init__(self, topic, kind):
         self.messages = []
-        self._subscriber = rospy.Subscriber(topic, kind, self.messages.append, queue_size=1000, tcp_nodelay=True)
+        self.times = []  # monotonic, of their arrival
+        self._subscriber = rospy.Subscriber(topic, kind, self._take, queue_size=1000, tcp_nodelay=True)
+
+    def _take(self, message):
+        self.times.append(time.monotonic())
+        self.messages.append(message)
 
     def end(self):
         self._subscriber.unregister()
@@ -102,6 +121,7 @@ class Robot:
         self.cancels = Listener("run_trial/cancel", GoalID)
         self.torques = rospy.Publisher("torque", Torque, queue_size=10, tcp_nodelay=True)
         self.trial_ends = rospy.Publisher("run_trial/result", RunTrialActionResult, queue_size=1)
+        self.controller = None
         self.process = Process([find_program("ddm_launch", "robot_node")] + list(arguments), **kwargs)
         rospy.wait_for_service("reset", LIMIT_S)
         wait_until(lambda: self.torques.get_num_connections() and self.trial_ends.get_num_connections(), "robot_node")
@@ -110,6 +130,8 @@ class Robot:
         """Leaves the topics to the next one."""
         self.process.stop()
         self.camera.end()
+        if self.controller is not None:
+            self.controller.unregister()
         self.torques.unregister()
         self.trial_ends.unregister()
         for listener in (self.images, self.goals, self.efforts, self.latencies, self.misses, self.cancels):
@@ -133,10 +155,17 @@ class Robot:
 
     def answer(self, *torque, delay_s=0.0):
         """Answers the next image."""
-        stamp = self.images.next().header.stamp
+        image = self.images.next()
         time.sleep(delay_s)
+        self.publishTorque(image, *torque)
+
+    def answerAll(self, torque):
+        """Answers each image from now on."""
+        self.controller = rospy.Subscriber("camera/image_raw", Image, lambda image: self.publishTorque(image, torque), tcp_nodelay=True)
+
+    def publishTorque(self, image, *torque):
         message = Torque(torque=list(torque))
-        message.header.stamp = stamp
+        message.header.stamp = image.header.stamp
         self.torques.publish(message)
 
     def waitForEffort(self, effort):
@@ -154,10 +183,10 @@ class Robot:
 
 
 class RobotCase(ScratchCase):
-    def start(self, *arguments, **kwargs):
+    def start(self, *arguments, dt=DT, **kwargs):
         """A robot_node of which nothing stays after the test."""
         if rospy.has_param("/robot_node"):
             rospy.delete_param("/robot_node")
-        robot = Robot(*(OPTIONS + list(arguments)), **kwargs)
+        robot = Robot("_robot/dt:=%g" % dt, *(OPTIONS + list(arguments)), **kwargs)
         self.addCleanup(robot.end)
         return robot
