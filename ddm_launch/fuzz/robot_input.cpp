@@ -24,9 +24,9 @@ ddm::Stamp drawStamp(FuzzBytes* bytes) {
 
 void act(std::uint8_t kind, ddm::SteadyTime time, ddm::Stamp stamp, FuzzBytes* bytes,
          TorqueGate* gate) {
-  switch (kind % 8) {
+  switch (kind % 9) {
     case 0:
-      gate->arm();
+      gate->arm(time);
       break;
     case 1:
       gate->stop("service enable stopped them");
@@ -46,6 +46,12 @@ void act(std::uint8_t kind, ddm::SteadyTime time, ddm::Stamp stamp, FuzzBytes* b
     case 6:
       gate->setPublishers(bytes->number<std::uint8_t>() % 3);
       break;
+    case 7: {
+      std::vector<double> values(bytes->number<std::uint8_t>() % 4);
+      for (double& value : values) value = bytes->number<double>();
+      gate->takeJoints(time, std::vector<std::string>(values.size(), "joint"), values, values);
+      break;
+    }
     default: {
       std::vector<double> torque(bytes->number<std::uint8_t>() % 4);
       for (double& value : torque) value = bytes->number<double>();
@@ -61,6 +67,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   FuzzBytes bytes(data, size);
   ddm::RobotOptions options;
   options.slew_rate = bytes.number<std::uint8_t>();
+  if (bytes.number<std::uint8_t>() % 2 == 1) options.position_limits = {{-1.0, 1.0}};
   TorqueGate gate(options);
   ddm::StampCheck stamps(options.dt);
   ddm::FramePicker picker(options.dt);

@@ -63,6 +63,14 @@ RobotNode::RobotNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size,
   updater_.add("motor and camera", this, &RobotNode::diagnose);
   torque_sub_ = nh.subscribe(topics::kTorque, kQueue, &RobotNode::onTorque, this,
                              ros::TransportHints().tcpNoDelay());
+  if (JointLimits(options).given()) {
+    joints_sub_ = nh.subscribe(topics::kJointStates, kQueue, &RobotNode::onJointStates, this,
+                               ros::TransportHints().tcpNoDelay());
+  } else {
+    ROS_WARN(
+        "positions and speeds are not guarded: robot/position_limits and robot/speed_limit "
+        "are empty");
+  }
   trial_end_sub_ =
       nh.subscribe(std::string(topics::kRunTrial) + "/result", 1, &RobotNode::onTrialEnd, this);
   frame_sub_ = transport_.subscribe(
@@ -140,6 +148,12 @@ void RobotNode::onTorque(const ddm_msgs::TorqueConstPtr& torque) {
   worst_latency_ = std::max(worst_latency_, latency.data);
 }
 
+void RobotNode::onJointStates(const sensor_msgs::JointStateConstPtr& joints) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  gate_.takeJoints(steadyNow(), joints->name, joints->position, joints->velocity);
+  if (was_in_trial_ && !gate_.armed()) publishEffort();  // not at each report
+}
+
 void RobotNode::onTrialEnd(const ddm_msgs::RunTrialActionResultConstPtr& /*result*/) {
   const std::lock_guard<std::mutex> lock(mutex_);
   gate_.endTrial();
@@ -189,7 +203,7 @@ bool RobotNode::onEnable(std_srvs::SetBool::Request& request,
   const std::lock_guard<std::mutex> lock(mutex_);
   std::string problem;
   if (request.data) {
-    problem = gate_.arm();
+    problem = gate_.arm(steadyNow());
   } else {
     gate_.stop("service enable stopped them");
   }
@@ -321,6 +335,7 @@ std::string RobotNode::missing(bool motors) {
   }
   if (!has_goal_) return "no goal image: bring the robot to its goal and call service take_goal";
   if (motors && !gate_.armed()) return gate_.describe();
+  if (motors) return gate_.fault(steadyNow());
   return "";
 }
 

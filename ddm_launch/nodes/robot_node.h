@@ -8,6 +8,7 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <image_transport/image_transport.h>
 #include <ros/ros.h>
+#include <sensor_msgs/JointState.h>
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
 
@@ -40,6 +41,7 @@ class RobotNode {
  private:
   void onFrame(const sensor_msgs::ImageConstPtr& frame);
   void onTorque(const ddm_msgs::TorqueConstPtr& torque);
+  void onJointStates(const sensor_msgs::JointStateConstPtr& joints);
   void onTrialEnd(const ddm_msgs::RunTrialActionResultConstPtr& result);
   void onTick(const ros::SteadyTimerEvent& event);
   bool onEnable(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
@@ -86,6 +88,7 @@ class RobotNode {
   ros::Publisher cancel_pub_;
   image_transport::Subscriber frame_sub_;
   ros::Subscriber torque_sub_;
+  ros::Subscriber joints_sub_;  // only where joints have limits
   ros::Subscriber trial_end_sub_;
   ros::SteadyTimer timer_;
   diagnostic_updater::Updater updater_;

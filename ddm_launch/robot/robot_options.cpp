@@ -6,6 +6,17 @@
 #include <sstream>
 
 namespace ddm {
+namespace {
+
+std::string textOf(const std::vector<double>& values) {
+  std::ostringstream out;
+  out << "[";
+  for (const double value : values) out << (out.tellp() > 1 ? ", " : "") << value;
+  out << "]";
+  return out.str();
+}
+
+}  // namespace
 
 std::vector<std::string> RobotOptions::problems() const {
   std::vector<std::string> out;
@@ -27,6 +38,34 @@ std::vector<std::string> RobotOptions::problems() const {
           effort_rate);
   require(reset_timeout > 0.0 && std::isfinite(reset_timeout), "reset_timeout must be > 0",
           reset_timeout);
+  for (const std::string& problem : problemsOfLimits()) out.push_back(problem);
+  return out;
+}
+
+std::vector<std::string> RobotOptions::problemsOfLimits() const {
+  std::vector<std::string> out;
+  for (const std::vector<double>& limits : position_limits) {
+    if (limits.size() == 2 && limits[0] < limits[1]) continue;
+    out.push_back("robot/position_limits must be a list of [lower, upper], lower < upper, got " +
+                  textOf(limits) + " in it");
+  }
+  for (const double limit : speed_limit) {
+    if (limit > 0.0) continue;
+    out.push_back("robot/speed_limit must be > 0 for each joint, got " + textOf(speed_limit));
+    break;
+  }
+  const auto requireEach = [&out](const char* key, std::size_t size, const char* of,
+                                  std::size_t count) {
+    if (size == 0 || count == 0 || size == count) return;
+    out.push_back(std::string("robot/") + key + " must have as many entries as robot/" + of + ", " +
+                  std::to_string(count) + ", got " + std::to_string(size));
+  };
+  if (!joints.empty() && position_limits.empty() && speed_limit.empty()) {
+    out.push_back("robot/joints names joints without robot/position_limits or robot/speed_limit");
+  }
+  requireEach("position_limits", position_limits.size(), "joints", joints.size());
+  requireEach("speed_limit", speed_limit.size(), "joints", joints.size());
+  requireEach("speed_limit", speed_limit.size(), "position_limits", position_limits.size());
   return out;
 }
 

@@ -20,14 +20,20 @@ std::string textOf(const std::vector<double>& torque) {
 }  // namespace
 
 TorqueGate::TorqueGate(const RobotOptions& options)
-    : options_(options), dt_(fromSeconds(options.dt)) {}
+    : options_(options), dt_(fromSeconds(options.dt)), joints_(options) {}
 
-std::string TorqueGate::arm() {
+std::string TorqueGate::fault(SteadyTime now) const {
   if (num_publishers_ > 1) {
     return std::to_string(num_publishers_) + " nodes publish torques: end all but one";
   }
-  if (state_ == State::kStopped) wait();
-  return "";
+  const std::string silence = joints_.silence(now);
+  return silence.empty() ? joints_.violation() : silence;
+}
+
+std::string TorqueGate::arm(SteadyTime now) {
+  const std::string problem = fault(now);
+  if (problem.empty() && state_ == State::kStopped) wait();
+  return problem;
 }
 
 void TorqueGate::stop(const std::string& reason) {
@@ -70,7 +76,11 @@ bool TorqueGate::takeTorque(SteadyTime now, Stamp stamp, const std::vector<doubl
     stop("a torque was " + textOf(torque) + " where one finite number is due [N m]");
     return false;
   }
-  if (state_ == State::kResetting) return false;
+  if (state_ == State::kResetting || !joints_.silence(now).empty()) return false;
+  if (!joints_.violation().empty()) {
+    stop(joints_.violation());
+    return false;
+  }
   const auto image = std::find_if(unanswered_.begin(), unanswered_.end(),
                                   [stamp](const Unanswered& each) { return each.stamp == stamp; });
   if (image == unanswered_.end()) return false;
@@ -80,6 +90,13 @@ bool TorqueGate::takeTorque(SteadyTime now, Stamp stamp, const std::vector<doubl
   state_ = State::kFollowing;
   target_ = std::max(-options_.max_torque, std::min(options_.max_torque, torque[0]));
   return true;
+}
+
+void TorqueGate::takeJoints(SteadyTime now, const std::vector<std::string>& names,
+                            const std::vector<double>& positions,
+                            const std::vector<double>& velocities) {
+  joints_.take(now, names, positions, velocities);
+  if (inTrial() && !joints_.violation().empty()) stop(joints_.violation());
 }
 
 void TorqueGate::setPublishers(int num_publishers) {
@@ -98,6 +115,7 @@ void TorqueGate::expire(SteadyTime now) {
     state_ = State::kLate;
   }
   if (state_ == State::kFollowing && now - last_image_ > 2 * dt_) state_ = State::kImagesStopped;
+  if (inTrial() && !joints_.silence(now).empty()) state_ = State::kJointsSilent;
 }
 
 double TorqueGate::effort(SteadyTime now) {
@@ -130,6 +148,8 @@ std::string TorqueGate::describe() const {
       return "zero torque: no image came for two dt";
     case State::kLate:
       return "zero torque: an image had no torque within dt";
+    case State::kJointsSilent:
+      return "zero torque: joint_states does not report the joints that have limits";
   }
   return "";
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "clocks.h"
+#include "joint_limits.h"
 #include "robot_options.h"
 
 namespace ddm {
@@ -20,10 +21,12 @@ namespace ddm {
 ///   kWaiting        no trial is under way
 ///   kImagesStopped  a trial is under way, and no image came for two dt
 ///   kLate           an image had no answer within dt. A torque that comes later does not act
+///   kJointsSilent   the joints have limits, and joint_states does not report them
 ///
-/// The last two end by themselves with the next torque in time. Two faults latch, because they mean
-/// that something is wired wrongly: a torque that is not one finite number, and a second publisher
-/// of torques. They switch the motors off until arm(), which is refused while the fault is there.
+/// The last three end by themselves with the next torque in time. Three faults latch: a torque that
+/// is not one finite number, a second publisher of torques, and a joint beyond its limits when a
+/// torque acts or is about to. They switch the motors off until arm(), which is refused while the
+/// fault is there. Between trials, where no torque acts, joints may be moved beyond their limits.
 ///
 /// Time is that of the monotonic clock: whatever stamps say, a motor that hears nothing stops.
 ///
@@ -31,13 +34,23 @@ namespace ddm {
 /// endTrial(). In kFollowing a torque acts until the next.
 class TorqueGate {
  public:
-  enum class State { kStopped, kResetting, kWaiting, kFollowing, kImagesStopped, kLate };
+  enum class State {
+    kStopped,
+    kResetting,
+    kWaiting,
+    kFollowing,
+    kImagesStopped,
+    kLate,
+    kJointsSilent
+  };
 
   explicit TorqueGate(const RobotOptions& options);
 
   /// Lets torques through from now on.
   /// @return what is in the way; empty: armed
-  std::string arm();
+  std::string arm(SteadyTime now);
+  /// A fault that is there now: the motors cannot be armed; empty: none.
+  std::string fault(SteadyTime now) const;
   /// Switches the motors off.
   void stop(const std::string& reason);
 
@@ -56,6 +69,10 @@ class TorqueGate {
   /// @return        whether it acts
   bool takeTorque(SteadyTime now, Stamp stamp, const std::vector<double>& torque);
 
+  /// What joint_states reports, as in JointLimits::take().
+  void takeJoints(SteadyTime now, const std::vector<std::string>& names,
+                  const std::vector<double>& positions, const std::vector<double>& velocities);
+
   /// How many publish torques at present; more than one is a fault.
   void setPublishers(int num_publishers);
 
@@ -65,7 +82,8 @@ class TorqueGate {
   State state() const { return state_; }
   bool armed() const { return state_ != State::kStopped; }
   bool inTrial() const {
-    return state_ == State::kFollowing || state_ == State::kImagesStopped || state_ == State::kLate;
+    return state_ == State::kFollowing || state_ == State::kImagesStopped ||
+           state_ == State::kLate || state_ == State::kJointsSilent;
   }
   /// The state in words, with what brought it about.
   std::string describe() const;
@@ -87,6 +105,7 @@ class TorqueGate {
 
   RobotOptions options_;
   std::chrono::nanoseconds dt_;
+  JointLimits joints_;
   State state_ = State::kStopped;
   bool resetting_ = false;
   std::string stop_reason_ = "service enable arms them";

@@ -41,6 +41,32 @@ TEST(RobotOptions, EachKeyHasItsRule) {
     EXPECT_NE(problem([&](auto* o) { o->reset_timeout = bad; }).find("robot/reset_timeout"),
               std::string::npos);
   }
+  for (const std::vector<double>& bad : std::vector<std::vector<double>>{
+           {}, {1.0}, {1.0, 1.0}, {2.0, 1.0}, {nan, 1.0}, {0.0, nan}, {0.0, 1.0, 2.0}}) {
+    EXPECT_NE(problem([&](auto* o) { o->position_limits = {bad}; }).find("robot/position_limits"),
+              std::string::npos);
+  }
+  for (const double bad : {0.0, -1.0, nan}) {
+    EXPECT_NE(problem([&](auto* o) { o->speed_limit = {bad}; }).find("robot/speed_limit"),
+              std::string::npos);
+  }
+  EXPECT_NE(problem([](auto* o) { o->joints = {"arm"}; }).find("robot/joints"), std::string::npos);
+  EXPECT_NE(problem([](auto* o) {
+              o->joints = {"elbow", "wrist"};
+              o->speed_limit = {1.0};
+            }).find("as many entries as robot/joints"),
+            std::string::npos);
+  EXPECT_NE(problem([](auto* o) {
+              o->position_limits = {{0.0, 1.0}, {0.0, 1.0}};
+              o->speed_limit = {1.0};
+            }).find("as many entries as robot/position_limits"),
+            std::string::npos);
+  EXPECT_EQ(problem([](auto* o) {
+              o->joints = {"arm"};
+              o->position_limits = {{-2.0, std::numeric_limits<double>::infinity()}};
+              o->speed_limit = {8.0};
+            }),
+            "0 problems");
   EXPECT_NE(problem([](auto* o) { o->crop_x = -1; }).find("robot/crop_x"), std::string::npos);
   EXPECT_NE(problem([](auto* o) { o->crop_y = 16384; }).find("robot/crop_y"), std::string::npos);
   EXPECT_NE(problem([](auto* o) { o->crop_width = -1; }).find("robot/crop_width"),

@@ -183,10 +183,12 @@ class Robot:
 
 
 class RobotCase(ScratchCase):
-    def start(self, *arguments, dt=DT, **kwargs):
-        """A robot_node of which nothing stays after the test."""
+    def start(self, *arguments, dt=DT, robot=None, **kwargs):
+        """A robot_node of which nothing stays after the test; `robot` has parameters that are no single value."""
         if rospy.has_param("/robot_node"):
             rospy.delete_param("/robot_node")
+        if robot is not None:
+            rospy.set_param("/robot_node/robot", robot)
         robot = Robot("_robot/dt:=%g" % dt, *(OPTIONS + list(arguments)), **kwargs)
         self.addCleanup(robot.end)
         return robot

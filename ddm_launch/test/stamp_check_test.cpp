@@ -24,7 +24,7 @@ Stamp clockAt(double seconds) { return kEpoch + fromSeconds(seconds); }
 class Robot {
  public:
   Robot() {
-    EXPECT_EQ(gate_.arm(), "");
+    EXPECT_EQ(gate_.arm(at(0.0)), "");
     gate_.effort(at(0.0));
   }
 

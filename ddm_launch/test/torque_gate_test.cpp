@@ -30,7 +30,7 @@ class TorqueGateTest : public ::testing::Test {
 
   /// Armed, and in a trial with the torque 2 for the image at 0.
   void follow() {
-    ASSERT_EQ(gate_.arm(), "");
+    ASSERT_EQ(gate_.arm(at(0)), "");
     showImage(0);
     ASSERT_TRUE(answer(20, 0, 2.0));
     ASSERT_EQ(effort(20), 2.0);
@@ -39,7 +39,7 @@ class TorqueGateTest : public ::testing::Test {
   void followWith(const RobotOptions& options) {
     gate_ = TorqueGate(options);
     gate_.effort(at(0));
-    ASSERT_EQ(gate_.arm(), "");
+    ASSERT_EQ(gate_.arm(at(0)), "");
     showImage(0);
   }
 
@@ -128,7 +128,7 @@ TEST_F(TorqueGateTest, ATorqueForAnImageThatWasNeverShownOrIsAnsweredDoesNotAct)
 }
 
 TEST_F(TorqueGateTest, BetweenTrialsNothingIsMissed) {
-  ASSERT_EQ(gate_.arm(), "");
+  ASSERT_EQ(gate_.arm(at(0)), "");
   showImage(0);
   EXPECT_EQ(effort(500), 0.0);
   EXPECT_EQ(gate_.state(), State::kWaiting);
@@ -150,7 +150,7 @@ TEST_F(TorqueGateTest, StopIsZeroAtOnceAndNothingActsUntilArmedAgain) {
   EXPECT_FALSE(gate_.armed());
   showImage(200);
   EXPECT_FALSE(answer(210, 200, 3.0));
-  ASSERT_EQ(gate_.arm(), "");
+  ASSERT_EQ(gate_.arm(at(0)), "");
   EXPECT_FALSE(answer(215, 0, 3.0));  // of before
   EXPECT_EQ(effort(220), 0.0);
   showImage(400);
@@ -179,11 +179,11 @@ TEST_F(TorqueGateTest, ASecondPublisherStopsTheMotorsAndMustBeGoneBeforeTheyAreA
   gate_.setPublishers(2);
   EXPECT_EQ(gate_.state(), State::kStopped);
   EXPECT_EQ(effort(21), 0.0);
-  EXPECT_NE(gate_.arm().find("2 nodes publish torques"), std::string::npos);
+  EXPECT_NE(gate_.arm(at(0)).find("2 nodes publish torques"), std::string::npos);
   EXPECT_FALSE(gate_.armed());
   gate_.setPublishers(1);
   EXPECT_FALSE(gate_.armed());
-  EXPECT_EQ(gate_.arm(), "");
+  EXPECT_EQ(gate_.arm(at(0)), "");
 }
 
 TEST_F(TorqueGateTest, NothingActsDuringAResetArmedBeforeOrMeanwhile) {
@@ -192,7 +192,7 @@ TEST_F(TorqueGateTest, NothingActsDuringAResetArmedBeforeOrMeanwhile) {
   EXPECT_EQ(effort(21), 0.0);
   EXPECT_EQ(gate_.state(), State::kResetting);
   gate_.stop("service enable");
-  ASSERT_EQ(gate_.arm(), "");
+  ASSERT_EQ(gate_.arm(at(0)), "");
   EXPECT_EQ(gate_.state(), State::kResetting);
   showImage(200);
   EXPECT_FALSE(answer(210, 200, 3.0));
@@ -234,6 +234,64 @@ TEST_F(TorqueGateTest, TheTorqueChangesNoFasterThanTheSlewRateButStopsAtOnce) {
   EXPECT_NEAR(effort(300), -0.8, 1e-9);
   gate_.stop("service enable");
   EXPECT_EQ(effort(301), 0.0);
+}
+
+/// The joint may be at -2 to 1 and is reported at 0.
+class GuardedTorqueGateTest : public TorqueGateTest {
+ protected:
+  void SetUp() override {
+    RobotOptions options;
+    options.position_limits = {{-2.0, 1.0}};
+    gate_ = TorqueGate(options);
+    gate_.effort(at(0));
+    report(0, 0.0);
+  }
+  void report(int now, double position) { gate_.takeJoints(at(now), {"arm"}, {position}, {}); }
+};
+
+TEST_F(GuardedTorqueGateTest, BeyondALimitTheMotorsStopForGoodAndCannotBeArmedThere) {
+  follow();
+  report(50, 1.01);
+  EXPECT_EQ(gate_.state(), State::kStopped);
+  EXPECT_EQ(effort(50), 0.0);
+  EXPECT_NE(gate_.describe().find("robot/position_limits"), std::string::npos);
+  EXPECT_NE(gate_.arm(at(60)), "");
+  EXPECT_FALSE(gate_.armed());
+  report(70, 0.9);
+  EXPECT_FALSE(gate_.armed()) << "back within its limits, but nobody has looked";
+  EXPECT_EQ(gate_.arm(at(80)), "");
+}
+
+TEST_F(GuardedTorqueGateTest, WhenTheJointsAreSilentTheTorqueIsZeroUntilTheyAreBack) {
+  follow();
+  EXPECT_EQ(effort(200), 2.0);
+  EXPECT_EQ(effort(201), 0.0);
+  EXPECT_EQ(gate_.state(), State::kJointsSilent);
+  showImage(210);
+  EXPECT_FALSE(answer(220, 210, 3.0));
+  EXPECT_EQ(effort(220), 0.0);
+  report(230, 0.0);
+  showImage(240);
+  EXPECT_TRUE(answer(250, 240, 1.0));
+  EXPECT_EQ(effort(250), 1.0);
+}
+
+TEST_F(GuardedTorqueGateTest, WithoutAReportTheMotorsCannotBeArmed) {
+  EXPECT_NE(gate_.arm(at(300)), "");
+  EXPECT_FALSE(gate_.armed());
+}
+
+TEST_F(GuardedTorqueGateTest, BetweenTrialsJointsMayBeMovedBeyondTheirLimitsButNoTrialBeginsThere) {
+  ASSERT_EQ(gate_.arm(at(0)), "");
+  report(10, 5.0);
+  EXPECT_TRUE(gate_.armed());
+  gate_.beginReset();
+  report(20, -5.0);
+  gate_.endReset();
+  EXPECT_TRUE(gate_.armed());
+  showImage(30);
+  EXPECT_FALSE(answer(40, 30, 1.0));
+  EXPECT_EQ(gate_.state(), State::kStopped);
 }
 
 }  // namespace

@@ -124,6 +124,10 @@ bool parseValue(const YAML::Node& node, std::vector<std::string>* value) {
   return parseList(node, value);
 }
 
+bool parseValue(const YAML::Node& node, std::vector<std::vector<double>>* value) {
+  return parseList(node, value);
+}
+
 const char* expectedType(const int*) { return "an integer (32 bit)"; }
 const char* expectedType(const double*) { return "a number"; }
 const char* expectedType(const bool*) { return "true or false"; }
@@ -131,6 +135,9 @@ const char* expectedType(const std::string*) { return "a text"; }
 const char* expectedType(const std::vector<int>*) { return "a list of integers (32 bit)"; }
 const char* expectedType(const std::vector<double>*) { return "a list of numbers"; }
 const char* expectedType(const std::vector<std::string>*) { return "a list of texts"; }
+const char* expectedType(const std::vector<std::vector<double>>*) {
+  return "a list of lists of numbers";
+}
 
 YAML::Node valueToYaml(int value) { return YAML::Node(std::to_string(value)); }
 YAML::Node valueToYaml(double value) { return YAML::Node(formatDouble(value)); }
@@ -139,5 +146,6 @@ YAML::Node valueToYaml(const std::string& value) { return YAML::Node(value); }
 YAML::Node valueToYaml(const std::vector<int>& value) { return listToYaml(value); }
 YAML::Node valueToYaml(const std::vector<double>& value) { return listToYaml(value); }
 YAML::Node valueToYaml(const std::vector<std::string>& value) { return listToYaml(value); }
+YAML::Node valueToYaml(const std::vector<std::vector<double>>& value) { return listToYaml(value); }
 
 }  // namespace ddm

@@ -180,5 +180,16 @@ TEST(ParamValue, ReadsAndPrintsListsOfTexts) {
   EXPECT_TRUE(again.empty());
 }
 
+TEST(ParamValue, ReadsAndPrintsListsOfLists) {
+  std::vector<std::vector<double>> value = {{1.0}};
+  for (const char* wrong : {"[1.0]", "1.0", "[[1.0], 2.0]", "[[x]]", "[[[1.0]]]"}) {
+    EXPECT_FALSE(parses(wrong, &value)) << wrong;
+  }
+  EXPECT_EQ(value, (std::vector<std::vector<double>>{{1.0}}));
+  EXPECT_TRUE(parses("[[-2, 2.5], []]", &value));
+  EXPECT_EQ(value, (std::vector<std::vector<double>>{{-2.0, 2.5}, {}}));
+  EXPECT_EQ(YAML::Dump(valueToYaml(value)), "[[-2.0, 2.5], []]");
+}
+
 }  // namespace
 }  // namespace ddm

@@ -23,6 +23,7 @@ bool parseValue(const YAML::Node& node, std::string* value);
 bool parseValue(const YAML::Node& node, std::vector<int>* value);
 bool parseValue(const YAML::Node& node, std::vector<double>* value);
 bool parseValue(const YAML::Node& node, std::vector<std::string>* value);
+bool parseValue(const YAML::Node& node, std::vector<std::vector<double>>* value);
 
 /// What a value of this type must be, to end the sentence "key must be ...".
 const char* expectedType(const int*);
@@ -32,6 +33,7 @@ const char* expectedType(const std::string*);
 const char* expectedType(const std::vector<int>*);
 const char* expectedType(const std::vector<double>*);
 const char* expectedType(const std::vector<std::string>*);
+const char* expectedType(const std::vector<std::vector<double>>*);
 
 /// One value as YAML; lists in flow style. parseValue() reads back exactly the same.
 YAML::Node valueToYaml(int value);
@@ -41,5 +43,6 @@ YAML::Node valueToYaml(const std::string& value);
 YAML::Node valueToYaml(const std::vector<int>& value);
 YAML::Node valueToYaml(const std::vector<double>& value);
 YAML::Node valueToYaml(const std::vector<std::string>& value);
+YAML::Node valueToYaml(const std::vector<std::vector<double>>& value);
 
 }  // namespace ddm

@@ -26,7 +26,8 @@ constexpr char kLearningCurveImage[] =
     "learning_curve_image";  ///< sensor_msgs/Image, latched: what each model could do
 
 constexpr char kCamera[] = "camera/source";  ///< sensor_msgs/Image: a robot's camera, as it comes
-constexpr char kLatency[] = "latency";       ///< std_msgs/Float64: from an image to its torque [s]
+constexpr char kJointStates[] = "joint_states";  ///< sensor_msgs/JointState: a robot's, for limits
+constexpr char kLatency[] = "latency";  ///< std_msgs/Float64: from an image to its torque [s]
 constexpr char kDeadlineMisses[] =
     "deadline_misses";  ///< std_msgs/UInt32, latched: images of trials without a timely torque
 

@@ -1,0 +1,103 @@
+// Tests of the limits of a robot's joints: what violates them, and which joints are silent.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "joint_limits.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace ddm {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+SteadyTime at(int ms) { return SteadyTime(std::chrono::hours(1) + std::chrono::milliseconds(ms)); }
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+RobotOptions oneJoint() {
+  RobotOptions options;
+  options.position_limits = {{-2.0, 1.0}};
+  options.speed_limit = {8.0};
+  return options;
+}
+
+RobotOptions twoNamedJoints() {
+  RobotOptions options;
+  options.joints = {"elbow", "wrist"};
+  options.position_limits = {{-2.0, 1.0}, {0.0, kInfinity}};
+  return options;
+}
+
+TEST(JointLimits, WithoutLimitsNothingIsGuardedAndNothingIsMissing) {
+  JointLimits limits{RobotOptions()};
+  EXPECT_FALSE(limits.given());
+  EXPECT_EQ(limits.silence(at(0)), "");
+  EXPECT_EQ(limits.violation(), "");
+}
+
+TEST(JointLimits, AJointMustKeepItsPositionAndItsSpeed) {
+  JointLimits limits(oneJoint());
+  for (const double good : {-2.0, 0.0, 1.0}) {
+    limits.take(at(0), {}, {good}, {8.0});
+    EXPECT_EQ(limits.violation(), "") << good;
+  }
+  for (const double bad : {-2.001, 1.001, kNaN, kInfinity}) {
+    limits.take(at(0), {"arm"}, {bad}, {0.0});
+    EXPECT_TRUE(contains(limits.violation(), "robot/position_limits allows -2 to 1")) << bad;
+  }
+  for (const double bad : {8.001, -8.001, kNaN, -kInfinity}) {
+    limits.take(at(0), {}, {0.0}, {bad});
+    EXPECT_TRUE(contains(limits.violation(), "robot/speed_limit allows 8")) << bad;
+  }
+  limits.take(at(0), {}, {0.0}, {0.0});
+  EXPECT_EQ(limits.violation(), "") << "it is judged by its last report";
+}
+
+TEST(JointLimits, WhatALimitNeedsMustBeReported) {
+  JointLimits limits(oneJoint());
+  limits.take(at(0), {"arm"}, {0.0}, {});
+  EXPECT_TRUE(contains(limits.violation(), "no velocity"));
+  limits.take(at(0), {"arm"}, {}, {0.0});
+  EXPECT_TRUE(contains(limits.violation(), "no position"));
+  RobotOptions speed_only = oneJoint();
+  speed_only.position_limits.clear();
+  JointLimits speed(speed_only);
+  speed.take(at(0), {"arm"}, {}, {0.0});
+  EXPECT_EQ(speed.violation(), "");
+}
+
+TEST(JointLimits, WithoutNamesTheNumberOfJointsMustFit) {
+  JointLimits limits(oneJoint());
+  limits.take(at(0), {"a", "b"}, {0.0, 0.0}, {0.0, 0.0});
+  EXPECT_TRUE(contains(limits.violation(), "robot/joints"));
+  EXPECT_NE(limits.silence(at(0)), "");
+  limits.take(at(10), {"a"}, {0.0}, {0.0});
+  EXPECT_EQ(limits.violation() + limits.silence(at(10)), "");
+}
+
+TEST(JointLimits, JointsAreFoundByNameInAnyOrderAndInSeveralMessages) {
+  JointLimits limits(twoNamedJoints());
+  limits.take(at(0), {"gripper", "wrist", "elbow"}, {99.0, 5.0, 0.5}, {});
+  EXPECT_EQ(limits.violation(), "");
+  limits.take(at(0), {"gripper"}, {99.0}, {});
+  EXPECT_EQ(limits.violation(), "");
+  limits.take(at(0), {"wrist"}, {-0.1}, {});
+  limits.take(at(0), {"elbow"}, {0.5}, {});
+  EXPECT_TRUE(contains(limits.violation(), "joint wrist is at -0.1")) << limits.violation();
+}
+
+TEST(JointLimits, EachJointThatIsNotReportedForAWhileIsSilent) {
+  JointLimits limits(twoNamedJoints());
+  EXPECT_TRUE(contains(limits.silence(at(0)), "elbow"));
+  limits.take(at(0), {"elbow", "wrist"}, {0.5, 5.0}, {});
+  EXPECT_EQ(limits.silence(at(200)), "");
+  limits.take(at(200), {"elbow"}, {0.5}, {});
+  EXPECT_TRUE(contains(limits.silence(at(201)), "wrist"));
+}
+
+}  // namespace
+}  // namespace ddm
