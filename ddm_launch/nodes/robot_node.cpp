@@ -20,6 +20,7 @@ namespace ddm {
 namespace {
 
 constexpr int kQueue = 10;
+constexpr int kAppliedQueue = 1000;              // a recorder that is slow must not lose one
 constexpr std::chrono::seconds kFreshCamera(1);  // one that is silent for longer is not there
 constexpr double kStepTolerance = 0.1;           // of dt
 const ros::WallDuration kLook(0.1);
@@ -47,6 +48,7 @@ RobotNode::RobotNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size,
       image_pub_(transport_.advertise(topics::kImage, kQueue)),
       goal_pub_(nh.advertise<sensor_msgs::Image>(topics::kGoalImage, 1, /*latch=*/true)),
       effort_pub_(nh.advertise<std_msgs::Float64>(topics::kEffortCommand, kQueue)),
+      applied_pub_(nh.advertise<ddm_msgs::Torque>(topics::kAppliedTorque, kAppliedQueue)),
       latency_pub_(nh.advertise<std_msgs::Float64>(topics::kLatency, kQueue)),
       misses_pub_(nh.advertise<std_msgs::UInt32>(topics::kDeadlineMisses, 1, /*latch=*/true)),
       cancel_pub_(
@@ -142,8 +144,10 @@ void RobotNode::onTorque(const ddm_msgs::TorqueConstPtr& torque) {
   std_msgs::Float64 latency;
   latency.data = (now - torque->header.stamp).toSec();
   const std::lock_guard<std::mutex> lock(mutex_);
-  gate_.takeTorque(steadyNow(), toStamp(torque->header.stamp), torque->torque);
+  const Stamp stamp = toStamp(torque->header.stamp);
+  const bool acts = gate_.takeTorque(steadyNow(), stamp, torque->torque);
   publishEffort();
+  if (acts) publishApplied(stamp, {gate_.target()}, torque->exploratory != 0);
   latency_pub_.publish(latency);
   worst_latency_ = std::max(worst_latency_, latency.data);
 }
@@ -172,7 +176,18 @@ void RobotNode::publishEffort() {
   std_msgs::Float64 effort;
   effort.data = gate_.effort(steadyNow());
   if (!routine_moves_) effort_pub_.publish(effort);
+  for (const Stamp& stamp : gate_.takeUnanswered()) publishApplied(stamp, {}, false);
   reportState();
+}
+
+/// What acted as the answer to an image; no torque: nothing did.
+void RobotNode::publishApplied(const Stamp& stamp, const std::vector<double>& torque,
+                               bool exploratory) {
+  ddm_msgs::Torque applied;
+  applied.header.stamp.fromNSec(static_cast<std::uint64_t>(stamp.count()));
+  applied.torque = torque;
+  applied.exploratory = exploratory;
+  applied_pub_.publish(applied);
 }
 
 void RobotNode::reportState() {

@@ -53,6 +53,7 @@ class RobotNode {
   void loadGoal();
   void publishGoal(const sensor_msgs::Image& goal);
   void publishEffort();
+  void publishApplied(const Stamp& stamp, const std::vector<double>& torque, bool exploratory);
   void reportState();
   std::string bringToStart(const ros::SteadyTime& deadline);
   std::string waitUntilThere(const ros::SteadyTime& deadline, bool motors);
@@ -83,6 +84,7 @@ class RobotNode {
   image_transport::Publisher image_pub_;
   ros::Publisher goal_pub_;
   ros::Publisher effort_pub_;
+  ros::Publisher applied_pub_;
   ros::Publisher latency_pub_;
   ros::Publisher misses_pub_;
   ros::Publisher cancel_pub_;

@@ -42,8 +42,8 @@ ros::NodeHandle withQueue(ros::NodeHandle nh, ros::CallbackQueue* queue, double 
 /// Resolved names of what the nodes of the loop tell each other.
 std::vector<std::string> loopTopics(const ros::NodeHandle& nh) {
   std::vector<std::string> names;
-  for (const char* topic : {topics::kImage, topics::kTorque, topics::kGoalImage, topics::kModel,
-                            topics::kGroundTruth}) {
+  for (const char* topic : {topics::kImage, topics::kTorque, topics::kAppliedTorque,
+                            topics::kGoalImage, topics::kModel, topics::kGroundTruth}) {
     names.push_back(nh.resolveName(topic));
   }
   return names;
@@ -221,7 +221,7 @@ TrialOutcome RosWorld::runTrial(const TrialRequest& request, const PhaseCallback
   const ddm_msgs::RunTrialResult result = runPolicy(request, start, progress);
   last_image_ = result.last;
   refuseIntruders();
-  if (!request.bag.empty()) stopRecording(request.num_steps);
+  if (!request.bag.empty()) stopRecording(request.num_steps, result.last);
 
   TrialOutcome outcome;
   const size_t torque_dim = result.torque.size() / result.num_steps;
@@ -243,10 +243,15 @@ void RosWorld::startRecording(const std::string& bag) {
   call(topics::kStartRecording, &start_client_, &service, timeout_);
 }
 
-void RosWorld::stopRecording(int num_steps) {
+void RosWorld::stopRecording(int num_steps, const ros::Time& last) {
   ddm_msgs::StopRecording service;
   service.request.num_steps = static_cast<std::uint32_t>(num_steps);
+  service.request.last = last;
   call(topics::kStopRecording, &stop_client_, &service, timeout_);
+  if (service.response.pairs < service.request.num_steps) {
+    ROS_WARN("%u of %d images had their torque in time: only these are learned from",
+             service.response.pairs, num_steps);
+  }
 }
 
 ros::Time RosWorld::reset(const TrialRequest& request) {

@@ -49,7 +49,7 @@ class RosWorld : public World {
  private:
   void connect();
   void startRecording(const std::string& bag);
-  void stopRecording(int num_steps);
+  void stopRecording(int num_steps, const ros::Time& last);
   ros::Time reset(const TrialRequest& request);
   ddm_msgs::RunTrialResult runPolicy(const TrialRequest& request, const ros::Time& start,
                                      const PhaseCallback& progress);

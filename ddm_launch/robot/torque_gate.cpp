@@ -59,13 +59,24 @@ void TorqueGate::endTrial() {
 /// Zero torque, and no image that an answer is due to.
 void TorqueGate::wait() {
   state_ = resetting_ ? State::kResetting : State::kWaiting;
-  unanswered_.clear();
+  while (!pending_.empty()) giveUpFirst();
   target_ = 0.0;
   effort_ = 0.0;
 }
 
+void TorqueGate::giveUpFirst() {
+  unanswered_.push_back(pending_.front().stamp);
+  pending_.pop_front();
+}
+
+std::vector<Stamp> TorqueGate::takeUnanswered() {
+  std::vector<Stamp> taken;
+  taken.swap(unanswered_);
+  return taken;
+}
+
 void TorqueGate::showImage(SteadyTime taken, Stamp stamp) {
-  unanswered_.push_back({stamp, taken});
+  pending_.push_back({stamp, taken});
   last_image_ = taken;
 }
 
@@ -81,11 +92,12 @@ bool TorqueGate::takeTorque(SteadyTime now, Stamp stamp, const std::vector<doubl
     stop(joints_.violation());
     return false;
   }
-  const auto image = std::find_if(unanswered_.begin(), unanswered_.end(),
-                                  [stamp](const Unanswered& each) { return each.stamp == stamp; });
-  if (image == unanswered_.end()) return false;
-  if (inTrial()) num_misses_ += static_cast<int>(image - unanswered_.begin());
-  unanswered_.erase(unanswered_.begin(), image + 1);
+  const auto image = std::find_if(pending_.begin(), pending_.end(),
+                                  [stamp](const Pending& each) { return each.stamp == stamp; });
+  if (image == pending_.end()) return false;
+  if (inTrial()) num_misses_ += static_cast<int>(image - pending_.begin());
+  while (pending_.front().stamp != stamp) giveUpFirst();
+  pending_.pop_front();
   ++num_answers_;
   state_ = State::kFollowing;
   target_ = std::max(-options_.max_torque, std::min(options_.max_torque, torque[0]));
@@ -108,8 +120,8 @@ void TorqueGate::setPublishers(int num_publishers) {
 
 /// Notices what has not come.
 void TorqueGate::expire(SteadyTime now) {
-  while (!unanswered_.empty() && now - unanswered_.front().taken > dt_) {
-    unanswered_.pop_front();
+  while (!pending_.empty() && now - pending_.front().taken > dt_) {
+    giveUpFirst();
     if (!inTrial()) continue;
     ++num_misses_;
     state_ = State::kLate;

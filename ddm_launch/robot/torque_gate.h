@@ -69,6 +69,13 @@ class TorqueGate {
   /// @return        whether it acts
   bool takeTorque(SteadyTime now, Stamp stamp, const std::vector<double>& torque);
 
+  /// Images that were shown, and that no torque answered in time, since the last call. Each image
+  /// has one of both in the end, a torque that acts or a place here.
+  std::vector<Stamp> takeUnanswered();
+
+  /// What the motor follows, within its bound [N m]: the last torque that acts, 0 if none does.
+  double target() const { return target_; }
+
   /// What joint_states reports, as in JointLimits::take().
   void takeJoints(SteadyTime now, const std::vector<std::string>& names,
                   const std::vector<double>& positions, const std::vector<double>& velocities);
@@ -95,12 +102,13 @@ class TorqueGate {
 
  private:
   /// An image whose torque may still come.
-  struct Unanswered {
+  struct Pending {
     Stamp stamp;
     SteadyTime taken;
   };
 
   void expire(SteadyTime now);
+  void giveUpFirst();
   void wait();
 
   RobotOptions options_;
@@ -110,7 +118,8 @@ class TorqueGate {
   bool resetting_ = false;
   std::string stop_reason_ = "service enable arms them";
   int num_publishers_ = 0;
-  std::deque<Unanswered> unanswered_;
+  std::deque<Pending> pending_;
+  std::vector<Stamp> unanswered_;
   SteadyTime last_image_;
   double target_ = 0.0;  // [N m]
   double effort_ = 0.0;  // what the motor got last [N m]

@@ -69,6 +69,15 @@ class RobotMotorTest(RobotCase):
         self.robot.answer(1.0)  # ... and the next one in time does
         self.robot.waitForEffort(1.0)
 
+    def test_of_each_image_it_is_published_which_torque_acted(self):
+        lost = self.robot.images.next().header.stamp
+        self.enterTrial()
+        self.assertEqual(self.robot.appliedAt(self.robot.answer(9.0)), [4.0])  # as the motor has it
+        self.assertEqual(self.robot.appliedAt(self.robot.answer(3.0, delay_s=1.1 * DT)), [])
+        self.assertEqual(self.robot.appliedAt(lost), [])
+        self.robot.enable(False)
+        self.assertEqual(self.robot.appliedAt(self.robot.answer(1.0)), [])
+
     def test_the_torque_is_zero_when_the_camera_stops(self):
         self.enterTrial()
         self.robot.camera.showing = False

@@ -117,6 +117,7 @@ class Robot:
         self.goals = Listener("goal_image", Image)
         self.efforts = Listener("effort_command", Float64)
         self.latencies = Listener("latency", Float64)
+        self.applied = Listener("applied_torque", Torque)
         self.misses = Listener("deadline_misses", UInt32)
         self.cancels = Listener("run_trial/cancel", GoalID)
         self.torques = rospy.Publisher("torque", Torque, queue_size=10, tcp_nodelay=True)
@@ -134,7 +135,7 @@ class Robot:
             self.controller.unregister()
         self.torques.unregister()
         self.trial_ends.unregister()
-        for listener in (self.images, self.goals, self.efforts, self.latencies, self.misses, self.cancels):
+        for listener in (self.images, self.goals, self.efforts, self.applied, self.latencies, self.misses, self.cancels):
             listener.end()
 
     def enable(self, on):
@@ -154,10 +155,17 @@ class Robot:
         return in_background(rospy.ServiceProxy("reset", Reset))
 
     def answer(self, *torque, delay_s=0.0):
-        """Answers the next image."""
+        """Answers the next image. Returns its stamp."""
         image = self.images.next()
         time.sleep(delay_s)
         self.publishTorque(image, *torque)
+        return image.header.stamp
+
+    def appliedAt(self, stamp):
+        """What acted as the answer to an image."""
+        def found():
+            return [message for message in self.applied.messages if message.header.stamp == stamp]
+        return list(wait_until(found, "what acted")[0].torque)
 
     def answerAll(self, torque):
         """Answers each image from now on."""

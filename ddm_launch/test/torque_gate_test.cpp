@@ -120,6 +120,36 @@ TEST_F(TorqueGateTest, AnImageThatWasLongOnItsWayIsAnsweredTooLate) {
   EXPECT_EQ(gate_.numMisses(), 1);
 }
 
+TEST_F(TorqueGateTest, EachImageHasATorqueThatActsOrIsUnanswered) {
+  const auto unanswered = [this] {
+    std::vector<int> out;
+    for (const Stamp stamp : gate_.takeUnanswered()) {
+      for (const int ms : {0, 200, 350, 600, 800, 990}) {
+        if (stamp == stampOf(ms)) out.push_back(ms);
+      }
+    }
+    return out;
+  };
+  follow();
+  EXPECT_EQ(unanswered(), std::vector<int>());
+  showImage(200);
+  showImage(350);
+  EXPECT_TRUE(answer(360, 350, 9.0));
+  EXPECT_EQ(gate_.target(), 6.0) << "what the motor can do";
+  EXPECT_EQ(unanswered(), std::vector<int>{200}) << "skipped";
+  showImage(600);
+  EXPECT_FALSE(answer(801, 600, 1.0));
+  EXPECT_EQ(unanswered(), std::vector<int>{600}) << "late";
+  showImage(800);
+  gate_.stop("service enable");
+  EXPECT_EQ(unanswered(), std::vector<int>{800}) << "stopped";
+  showImage(990);
+  EXPECT_FALSE(answer(1000, 990, 1.0));
+  effort(1191);
+  EXPECT_EQ(unanswered(), std::vector<int>{990}) << "while the motors are off";
+  EXPECT_EQ(unanswered(), std::vector<int>());
+}
+
 TEST_F(TorqueGateTest, ATorqueForAnImageThatWasNeverShownOrIsAnsweredDoesNotAct) {
   follow();
   EXPECT_FALSE(answer(30, 5, 3.0));

@@ -4,8 +4,11 @@
 
 #include <ddm_msgs/topics.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
+#include <sstream>
 
 namespace ddm {
 namespace {
@@ -30,7 +33,8 @@ TrialRecorder::TrialRecorder(ros::NodeHandle nh, const BagOptions& bag, const Ba
   image_sub_ = transport_.subscribe(
       topics::kImage, kQueue, [this](const sensor_msgs::ImageConstPtr& image) { record(*image); });
   torque_sub_ = nh.subscribe<ddm_msgs::Torque>(
-      topics::kTorque, kQueue, [this](const ddm_msgs::TorqueConstPtr& torque) { record(*torque); },
+      topics::kAppliedTorque, kQueue,
+      [this](const ddm_msgs::TorqueConstPtr& torque) { recordApplied(*torque); },
       ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
   start_server_ = nh.advertiseService(topics::kStartRecording, &TrialRecorder::start, this);
   stop_server_ = nh.advertiseService(topics::kStopRecording, &TrialRecorder::stop, this);
@@ -51,6 +55,14 @@ void TrialRecorder::record(const Message& message) {
   frame_written_.notify_all();
 }
 
+void TrialRecorder::recordApplied(const ddm_msgs::Torque& torque) {
+  if (!torque.torque.empty()) return record(torque);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (bag_ == nullptr) return;
+  unanswered_.insert(torque.header.stamp);
+  frame_written_.notify_all();
+}
+
 /// The goal image is stamped with the trial's first message, so that the bag begins with the trial.
 void TrialRecorder::writeGoal(const ros::Time& stamp) {
   if (goal_written_ || goal_ == nullptr) return;
@@ -67,6 +79,7 @@ bool TrialRecorder::start(ddm_msgs::StartRecording::Request& request,
   frame_written_.notify_all();  // a stop that still waits for the old one
   error_.clear();
   after_ = request.after;
+  unanswered_.clear();
   goal_written_ = false;
   try {
     access_.requireNew(request.path);
@@ -79,6 +92,38 @@ bool TrialRecorder::start(ddm_msgs::StartRecording::Request& request,
   return true;
 }
 
+/// Whether the bag has all images of the trial, and it is known of each what acted.
+bool TrialRecorder::complete(const ddm_msgs::StopRecording::Request& request) const {
+  const std::set<ros::Time>& images = bag_->images();
+  if (images.size() < request.num_steps) return false;
+  auto end = images.end();
+  if (!request.last.isZero()) {
+    end = images.upper_bound(request.last);
+    if (images.count(request.last) == 0) return false;
+  } else if (request.num_steps > 0) {
+    end = std::next(images.begin(), request.num_steps);
+  }
+  return std::distance(images.begin(), end) >= request.num_steps &&
+         std::all_of(images.begin(), end, [this](const ros::Time& stamp) {
+           return bag_->torques().count(stamp) + unanswered_.count(stamp) > 0;
+         });
+}
+
+/// Why the bag is not that of the trial; empty: it is.
+std::string TrialRecorder::shortcoming(const ddm_msgs::StopRecording::Request& request) const {
+  if (request.num_steps == 0) return "";
+  std::ostringstream text;
+  if (!complete(request)) {
+    text << "of " << request.num_steps << " images and torques that are due, the bag holds "
+         << bag_->images().size() << " and " << bag_->torques().size() << ", and "
+         << bag_->numFrames() << " pairs of them; of the others nobody said that no torque acted";
+  } else if (bag_->numFrames() == 0) {
+    text << "no torque acted in time: there is nothing to learn from in " << bag_->images().size()
+         << " images";
+  }
+  return text.str();
+}
+
 bool TrialRecorder::stop(ddm_msgs::StopRecording::Request& request,
                          ddm_msgs::StopRecording::Response& response) {
   std::unique_lock<std::mutex> lock(mutex_);
@@ -86,27 +131,20 @@ bool TrialRecorder::stop(ddm_msgs::StopRecording::Request& request,
     response.message = "nothing is being recorded";
     return true;
   }
-  const std::int64_t due = request.num_steps;
   // Other services run while this one waits: afterwards the recording may be another one.
   const int recording = num_recordings_;
   const auto replaced = [&] { return bag_ == nullptr || num_recordings_ != recording; };
-  const auto complete = [&] {
-    return bag_->numFrames() >= due && (due > 0 || bag_->numFrames() == bag_->numImages());
-  };
   frame_written_.wait_for(lock, std::chrono::duration<double>(options_.timeout),
-                          [&] { return replaced() || !error_.empty() || complete(); });
+                          [&] { return replaced() || !error_.empty() || complete(request); });
   if (replaced()) {
     response.message = "another recording was started or stopped meanwhile";
     return true;
   }
+  if (error_.empty()) error_ = shortcoming(request);
   const std::unique_ptr<BagWriter> bag = std::move(bag_);
-  response.images = bag->numImages();
-  response.torques = bag->numTorques();
-  if (error_.empty() && bag->numFrames() < due) {
-    error_ = "of " + std::to_string(due) + " images and torques that are due, the bag holds " +
-             std::to_string(bag->numImages()) + " and " + std::to_string(bag->numTorques()) +
-             ", and " + std::to_string(bag->numFrames()) + " pairs of them";
-  }
+  response.images = static_cast<std::uint32_t>(bag->images().size());
+  response.torques = static_cast<std::uint32_t>(bag->torques().size());
+  response.pairs = static_cast<std::uint32_t>(bag->numFrames());
   try {
     if (error_.empty()) bag->close();
   } catch (const std::exception& e) {

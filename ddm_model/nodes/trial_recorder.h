@@ -12,6 +12,8 @@
 #include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <set>
+#include <string>
 
 namespace ddm {
 
@@ -26,7 +28,9 @@ struct RecorderOptions {
   std::vector<std::string> problems() const;
 };
 
-/// Services `start_recording` and `stop_recording`; writes images, torques and the goal image.
+/// Services `start_recording` and `stop_recording`; writes images, the goal image, and the torques
+/// that acted, by topic `applied_torque`. An image whose torque did not act in time has none in the
+/// bag: the trial has a gap there. An image of which nobody says what acted is an error.
 /// Needs a spinner with two threads or more: stopping waits for messages on their way.
 class TrialRecorder {
  public:
@@ -40,6 +44,9 @@ class TrialRecorder {
   void writeGoal(const ros::Time& stamp);
   template <class Message>
   void record(const Message& message);
+  void recordApplied(const ddm_msgs::Torque& torque);
+  bool complete(const ddm_msgs::StopRecording::Request& request) const;
+  std::string shortcoming(const ddm_msgs::StopRecording::Request& request) const;
 
   BagOptions bag_options_;
   BagAccess access_;
@@ -49,6 +56,7 @@ class TrialRecorder {
   std::unique_ptr<BagWriter> bag_;  // null while not recording
   ros::Time after_;                 // messages up to this stamp are of an earlier trial
   std::string error_;               // first write that failed
+  std::set<ros::Time> unanswered_;  // images of which is known that no torque acted in time
   sensor_msgs::ImageConstPtr goal_;
   bool goal_written_ = false;
   int num_recordings_ = 0;

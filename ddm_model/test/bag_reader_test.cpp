@@ -100,6 +100,17 @@ TEST_F(BagReader, AnImageWithoutTorqueSplitsTheTrial) {
   EXPECT_EQ(read().num_torques_without_image, 1);
 }
 
+TEST_F(BagReader, ATorqueWithoutANumberIsNone) {
+  {
+    ToyBag bag(path_);
+    for (int t = 0; t < 10; ++t) {
+      bag.image(1.0 + 0.2 * t, 0.1 * t);
+      bag.torque(1.0 + 0.2 * t, t == 4 ? std::vector<double>() : std::vector<double>{1.0});
+    }
+  }
+  EXPECT_EQ(pieceSizes(), (Sizes{4, 5}));
+}
+
 TEST_F(BagReader, AnImageWithoutTorqueSplitsEvenWhereTimeHasNoGap) {
   {
     ToyBag bag(path_);

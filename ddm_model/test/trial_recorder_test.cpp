@@ -46,14 +46,19 @@ class TrialRecorderTest : public ::testing::Test {
     message_ = call.response.message;
     return call.response.success;
   }
-  static ddm_msgs::StopRecording::Response stop(std::uint32_t num_steps) {
+  static ddm_msgs::StopRecording::Response stop(std::uint32_t num_steps, int last = -1) {
     ddm_msgs::StopRecording call;
     call.request.num_steps = num_steps;
+    if (last >= 0) call.request.last = stampOf(last);
     EXPECT_TRUE(ros::service::call(topics::kStopRecording, call));
     return call.response;
   }
-  void publishImage(int t) { image_pub_.publish(imageMessage(1.0 + 0.2 * t, toyImage(0.1 * t))); }
-  void publishTorque(int t) { torque_pub_.publish(torqueMessage(1.0 + 0.2 * t, {0.5 * t})); }
+  static ros::Time stampOf(int t) { return ros::Time(1.0 + 0.2 * t); }
+  void publishImage(int t) {
+    image_pub_.publish(imageMessage(stampOf(t).toSec(), toyImage(0.1 * t)));
+  }
+  void publishTorque(int t) { torque_pub_.publish(torqueMessage(stampOf(t).toSec(), {0.5 * t})); }
+  void publishNoTorque(int t) { torque_pub_.publish(torqueMessage(stampOf(t).toSec(), {})); }
   void publishFrames(int count) {
     for (int t = 0; t < count; ++t) {
       publishImage(t);
@@ -66,7 +71,7 @@ class TrialRecorderTest : public ::testing::Test {
   std::string message_;
   ros::NodeHandle nh_;
   ros::Publisher image_pub_ = nh_.advertise<sensor_msgs::Image>(topics::kImage, 1000);
-  ros::Publisher torque_pub_ = nh_.advertise<ddm_msgs::Torque>(topics::kTorque, 1000);
+  ros::Publisher torque_pub_ = nh_.advertise<ddm_msgs::Torque>(topics::kAppliedTorque, 1000);
   ros::Publisher goal_pub_ = nh_.advertise<sensor_msgs::Image>(topics::kGoalImage, 1, true);
 };
 
@@ -120,6 +125,58 @@ TEST_F(TrialRecorderTest, RefusesATrialWithAMissingTorqueAndKeepsWhatThereIs) {
   EXPECT_TRUE(contains(response.message, "5 and 4, and 4 pairs")) << response.message;
   EXPECT_FALSE(fs::exists(path_));
   EXPECT_TRUE(fs::exists(path_ + ".active"));
+}
+
+TEST_F(TrialRecorderTest, ImagesThatNoTorqueAnsweredInTimeAreGapsOfTheTrial) {
+  ASSERT_TRUE(start(path_)) << message_;
+  for (int t = 0; t < 10; ++t) {
+    publishImage(t);
+    if (t == 4 || t == 9) {
+      publishNoTorque(t);
+    } else {
+      publishTorque(t);
+    }
+  }
+  const auto response = stop(10, /*last=*/9);
+  EXPECT_TRUE(response.success) << response.message;
+  EXPECT_EQ(response.images, 10U);
+  EXPECT_EQ(response.torques, 8U);
+  EXPECT_EQ(response.pairs, 8U);
+  const DataSet data = readBag(path_, testing::kToySize, BagOptions()).data;
+  EXPECT_EQ(data.numFrames(), 8);
+  ASSERT_EQ(data.pieces().size(), 2U);
+  EXPECT_EQ(data.torques()(0, 4), 2.5);  // of image 5: that of image 4 is in no frame
+}
+
+TEST_F(TrialRecorderTest, WaitsUntilItIsKnownWhatActedOnTheLastImage) {
+  ASSERT_TRUE(start(path_)) << message_;
+  publishFrames(4);
+  publishImage(4);
+  publishImage(5);  // after the trial
+  auto stopping = std::async(std::launch::async, [] { return stop(4, /*last=*/4); });
+  publishNoTorque(4);
+  const auto response = stopping.get();
+  EXPECT_TRUE(response.success) << response.message;
+  EXPECT_EQ(response.pairs, 4U);
+}
+
+TEST_F(TrialRecorderTest, RefusesATrialWhoseLastImageDidNotArrive) {
+  ASSERT_TRUE(start(path_)) << message_;
+  publishFrames(4);
+  EXPECT_FALSE(stop(4, /*last=*/4).success);
+  EXPECT_FALSE(fs::exists(path_));
+}
+
+TEST_F(TrialRecorderTest, RefusesATrialInWhichNoTorqueActed) {
+  ASSERT_TRUE(start(path_)) << message_;
+  for (int t = 0; t < 3; ++t) {
+    publishImage(t);
+    publishNoTorque(t);
+  }
+  const auto response = stop(3, /*last=*/2);
+  EXPECT_FALSE(response.success);
+  EXPECT_TRUE(contains(response.message, "no torque acted in time")) << response.message;
+  EXPECT_FALSE(fs::exists(path_));
 }
 
 TEST_F(TrialRecorderTest, AnImageAfterTheLastTorqueDoesNoHarm) {

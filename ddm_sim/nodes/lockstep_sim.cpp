@@ -52,8 +52,9 @@ ros::Time LockstepSim::beginTrial(const ddm_msgs::Reset::Request& request) {
   return now();
 }
 
-void LockstepSim::takeTorque(const ros::Time& stamp, const Eigen::VectorXd& torque,
+void LockstepSim::takeTorque(const ddm_msgs::Torque& message, const Eigen::VectorXd& torque,
                              const std::string& publisher) {
+  const ros::Time& stamp = message.header.stamp;
   if (!running_ || stamp != now()) {
     ++ignored_;
     ROS_WARN_STREAM_THROTTLE(
@@ -64,6 +65,7 @@ void LockstepSim::takeTorque(const ros::Time& stamp, const Eigen::VectorXd& torq
   if (num_steps_ != 0 && frame_ + 1 == num_steps_) {
     ROS_INFO_STREAM(trial_ << ": " << num_steps_ << " frames answered, " << ignored_
                            << " torques ignored");
+    publishApplied(message);
     endTrial();
     return;
   }
@@ -74,6 +76,7 @@ void LockstepSim::takeTorque(const ros::Time& stamp, const Eigen::VectorXd& torq
     }
     now_ns_ += step_ns_;
   } while (!showFrame());
+  publishApplied(message);  // after the image, for which the controller waits
   ++frame_;
 }
 

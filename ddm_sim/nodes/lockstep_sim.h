@@ -32,7 +32,7 @@ class LockstepSim : public SimNode {
 
  private:
   ros::Time beginTrial(const ddm_msgs::Reset::Request& request) override;
-  void takeTorque(const ros::Time& stamp, const Eigen::VectorXd& torque,
+  void takeTorque(const ddm_msgs::Torque& message, const Eigen::VectorXd& torque,
                   const std::string& publisher) override;
   void torqueRefused(const ros::Time& stamp, const std::string& reason) override;
 

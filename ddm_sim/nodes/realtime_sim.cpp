@@ -27,7 +27,7 @@ RealtimeSim::RealtimeSim(ros::NodeHandle nh, std::unique_ptr<Plant> plant,
           nh.advertise<actionlib_msgs::GoalID>(std::string(topics::kRunTrial) + "/cancel", 1)) {
   switchMotorOff();
   publishGoal(wallNow());
-  timer_ = nh.createWallTimer(ros::WallDuration(this->plant().dt()), &RealtimeSim::onTick, this);
+  timer_ = nh.createSteadyTimer(ros::WallDuration(this->plant().dt()), &RealtimeSim::onTick, this);
 }
 
 ros::Time RealtimeSim::beginTrial(const ddm_msgs::Reset::Request& request) {
@@ -36,15 +36,17 @@ ros::Time RealtimeSim::beginTrial(const ddm_msgs::Reset::Request& request) {
   timer_.stop();     // stop and start, so that the first step is a whole one
   timer_.start();
   const ros::Time stamp = wallNow();
-  publishFrame(stamp);
-  publishGroundTruth();
+  settleAnswer();
+  showFrame(stamp);
   ROS_INFO("%s %u starts in real time", request.evaluation ? "evaluation" : "trial", request.trial);
   return stamp;
 }
 
-void RealtimeSim::takeTorque(const ros::Time& /*stamp*/, const Eigen::VectorXd& torque,
+void RealtimeSim::takeTorque(const ddm_msgs::Torque& message, const Eigen::VectorXd& torque,
                              const std::string& /*publisher*/) {
   if (stopped_) return;
+  answer_.torque.clear();
+  if (message.header.stamp == answer_.header.stamp) answer_ = message;
   held_ = torque;
   steps_held_ = 0;
 }
@@ -57,16 +59,31 @@ void RealtimeSim::torqueRefused(const ros::Time& /*stamp*/, const std::string& /
   cancel_pub_.publish(actionlib_msgs::GoalID());  // without an id: all goals
 }
 
-void RealtimeSim::switchMotorOff() { held_ = Eigen::VectorXd::Zero(plant().torqueDim()); }
+void RealtimeSim::switchMotorOff() {
+  held_ = Eigen::VectorXd::Zero(plant().torqueDim());
+  answer_.torque.clear();
+}
 
-void RealtimeSim::onTick(const ros::WallTimerEvent& /*event*/) {
+void RealtimeSim::showFrame(const ros::Time& stamp) {
+  shown_ = publishFrame(stamp);
+  answer_ = ddm_msgs::Torque();
+  answer_.header.stamp = stamp;
+  publishGroundTruth();
+}
+
+/// The time in which the last frame could be answered is over.
+void RealtimeSim::settleAnswer() {
+  if (shown_) publishApplied(answer_);
+}
+
+void RealtimeSim::onTick(const ros::SteadyTimerEvent& /*event*/) {
   if (++steps_held_ > kMaxStepsHeld) switchMotorOff();
   if (!advance(held_)) {
     timer_.stop();
     return;
   }
-  publishFrame(wallNow());
-  publishGroundTruth();
+  settleAnswer();
+  showFrame(wallNow());
 }
 
 }  // namespace ddm

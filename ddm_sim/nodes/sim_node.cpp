@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim_node.h"
 
+#include <algorithm>
 #include <random>
 #include <sstream>
 #include <stdexcept>
@@ -15,7 +16,8 @@ namespace ddm {
 namespace {
 
 constexpr int kQueueSize = 10;
-constexpr double kRubbish = 1000.0;  // times max_torque: no command, but an error
+constexpr int kAppliedQueueSize = 1000;  // a recorder that is slow must not lose one
+constexpr double kRubbish = 1000.0;      // times max_torque: no command, but an error
 
 Eigen::VectorXd toEigen(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
@@ -28,7 +30,8 @@ SimNode::SimNode(ros::NodeHandle nh, std::unique_ptr<Plant> plant, const CameraO
     : plant_(std::move(plant)),
       camera_(camera),
       publisher_(nh, *plant_, clock),
-      applied_(Eigen::VectorXd::Zero(plant_->torqueDim())) {
+      applied_(Eigen::VectorXd::Zero(plant_->torqueDim())),
+      applied_pub_(nh.advertise<ddm_msgs::Torque>(topics::kAppliedTorque, kAppliedQueueSize)) {
   torque_sub_ = nh.subscribe(topics::kTorque, kQueueSize, &SimNode::onTorque, this,
                              ros::TransportHints().tcpNoDelay());
   // Last: whoever sees the service finds everything else in place.
@@ -49,6 +52,12 @@ bool SimNode::publishFrame(const ros::Time& stamp) {
   const auto photograph = camera_.photograph(*plant_);
   if (photograph) publisher_.publishFrame(applied_, *photograph, stamp);
   return photograph.has_value();
+}
+
+void SimNode::publishApplied(ddm_msgs::Torque answer) const {
+  const double limit = plant_->maxTorque();
+  for (double& value : answer.torque) value = std::max(-limit, std::min(limit, value));
+  applied_pub_.publish(answer);
 }
 
 void SimNode::publishGoal(const ros::Time& stamp) const {
@@ -77,7 +86,7 @@ void SimNode::onTorque(const ros::MessageEvent<ddm_msgs::Torque const>& event) {
   const Eigen::VectorXd torque = toEigen(message.torque);
   const std::string rule = brokenRule(torque);
   if (rule.empty()) {
-    takeTorque(message.header.stamp, torque, event.getPublisherName());
+    takeTorque(message, torque, event.getPublisherName());
     return;
   }
   std::ostringstream reason;

@@ -39,6 +39,11 @@ class SimNode {
   /// Ground truth of the frames since the last call.
   void publishGroundTruth() { publisher_.publishGroundTruth(); }
 
+  /// What acted as the answer to an image: this torque, as far as the motor can do it. To be called
+  /// once for each image that was shown.
+  /// @param answer  without a torque: none acted in time
+  void publishApplied(ddm_msgs::Torque answer) const;
+
   void publishGoal(const ros::Time& stamp) const;
   void publishClock(const ros::Time& stamp) const { publisher_.publishClock(stamp); }
 
@@ -55,7 +60,7 @@ class SimNode {
   virtual ros::Time beginTrial(const ddm_msgs::Reset::Request& request) = 0;
 
   /// A torque that the plant can take.
-  virtual void takeTorque(const ros::Time& stamp, const Eigen::VectorXd& torque,
+  virtual void takeTorque(const ddm_msgs::Torque& message, const Eigen::VectorXd& torque,
                           const std::string& publisher) = 0;
 
   /// A torque that was refused; `reason` names its publisher and value and has been logged.
@@ -65,6 +70,7 @@ class SimNode {
   Camera camera_;
   SimPublisher publisher_;
   Eigen::VectorXd applied_;  ///< torque of the last step, zero at a start
+  ros::Publisher applied_pub_;
   ros::ServiceServer reset_server_;
   ros::Subscriber torque_sub_;
 };

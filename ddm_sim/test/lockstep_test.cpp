@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <ros/ros.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "ddm_sim/plant_factory.h"
@@ -88,6 +89,21 @@ TEST_F(Lockstep, MovesThePlantAsTheLibraryDoesAndTellsTheTruthOfEachImage) {
     if (t == 3) break;
     client_->publish(image.header.stamp, {torques[t]});
     applied = plant->step(Eigen::VectorXd::Constant(1, torques[t]))[0];
+  }
+}
+
+TEST_F(Lockstep, PublishesWhatActedAsTheAnswerToEachImage) {
+  const ros::Time start = begin(3);
+  client_->publish(start + ros::Duration(0, 1), {6.0});  // answers nothing
+  const std::vector<double> torques{2.0, -9.0, 0.5};     // the second one saturates
+  for (std::size_t t = 0; t < 3; ++t) {
+    ASSERT_TRUE(client_->waitForImages(t + 1));
+    client_->publish(client_->images[t].header.stamp, {torques[t]});
+  }
+  ASSERT_TRUE(client_->waitUntil([] { return client_->applied.size() == 3; }));
+  for (std::size_t t = 0; t < 3; ++t) {
+    EXPECT_EQ(client_->applied[t].header.stamp, client_->images[t].header.stamp);
+    EXPECT_EQ(client_->applied[t].torque, std::vector<double>{std::max(torques[t], -6.0)});
   }
 }
 

@@ -30,6 +30,27 @@ class Realtime : public SimNodeTest {
     });
   }
 
+  /// Waits for the next image.
+  /// @return its stamp
+  static ros::Time nextImage() {
+    const std::size_t seen = client_->images.size();
+    EXPECT_TRUE(client_->waitForImages(seen + 1));
+    return client_->images[seen].header.stamp;
+  }
+
+  /// Waits for what acted as the answer to an image.
+  static std::vector<double> appliedAt(const ros::Time& stamp) {
+    const ddm_msgs::Torque* found = nullptr;
+    EXPECT_TRUE(client_->waitUntil([&] {
+      for (const ddm_msgs::Torque& applied : client_->applied) {
+        if (applied.header.stamp == stamp) found = &applied;
+      }
+      return found != nullptr;
+    }));
+    return found == nullptr ? std::vector<double>{kNothing} : found->torque;
+  }
+  static constexpr double kNothing = -77.0;
+
   static std::ptrdiff_t numFramesWithEffort(double effort) {
     return std::count_if(client_->truths.begin(), client_->truths.end(),
                          [effort](const auto& truth) { return truth.effort[0] == effort; });
@@ -57,6 +78,57 @@ TEST_F(Realtime, HoldsATorqueForTwoPeriodsAndThenSwitchesTheMotorOff) {
   ASSERT_TRUE(waitForEffort(0.0));
   ASSERT_TRUE(waitForEffort(0.0));  // and it stays off
   EXPECT_EQ(numFramesWithEffort(3.0), 2);
+}
+
+TEST_F(Realtime, WhatIsPublishedAsAppliedIsWhatTheMotorHadUntilTheNextImage) {
+  client_->forget();
+  std::vector<ros::Time> stamps = {nextImage()};
+  while (stamps.size() < 20) {
+    const double torque = 0.1 * static_cast<double>(stamps.size());
+    client_->publish(stamps.back(), {torque});
+    // Every third answer is replaced by a torque that is late.
+    if (stamps.size() % 3 == 0) client_->publish(stamps[stamps.size() - 2], {-torque});
+    stamps.push_back(nextImage());
+  }
+  int num_acted = 0;
+  for (std::size_t i = 0; i + 1 < stamps.size(); ++i) {
+    const std::vector<double> applied = appliedAt(stamps[i]);
+    if (applied.empty()) continue;
+    const auto& truths = client_->truths;
+    const auto next = std::find_if(truths.begin(), truths.end(), [&](const auto& truth) {
+      return truth.header.stamp > stamps[i];
+    });
+    ASSERT_NE(next, truths.end());
+    EXPECT_EQ(applied, next->effort) << "image " << i;
+    ++num_acted;
+  }
+  EXPECT_GT(num_acted, 0);
+}
+
+TEST_F(Realtime, ATorqueThatIsLateOrLostActedAsTheAnswerToNoImage) {
+  const ros::Time lost = nextImage();
+  const ros::Time late = nextImage();
+  const ros::Time next = nextImage();
+  client_->publish(late, {1.5});
+  EXPECT_EQ(appliedAt(lost), std::vector<double>{});
+  EXPECT_EQ(appliedAt(late), std::vector<double>{});
+  EXPECT_EQ(appliedAt(next), std::vector<double>{});
+  EXPECT_GE(numFramesWithEffort(1.5), 1);  // though it did act
+}
+
+TEST_F(Realtime, EachImageIsSettledOnce) {
+  client_->forget();
+  const ros::Time first = nextImage();
+  for (int i = 0; i < 3; ++i) client_->publish(nextImage(), {1.0});
+  const ros::Time last = nextImage();
+  appliedAt(last);
+  for (const sensor_msgs::Image& image : client_->images) {
+    if (image.header.stamp < first || image.header.stamp > last) continue;
+    EXPECT_EQ(std::count_if(
+                  client_->applied.begin(), client_->applied.end(),
+                  [&](const auto& applied) { return applied.header.stamp == image.header.stamp; }),
+              1);
+  }
 }
 
 TEST_F(Realtime, SwitchesTheMotorOffUntilTheNextResetAtATorqueThatIsNotFinite) {

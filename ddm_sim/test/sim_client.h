@@ -28,6 +28,7 @@ class SimClient {
     image_ = nh_.subscribe(topics::kImage, 1000, &SimClient::onImage, this);
     truth_ = nh_.subscribe(topics::kGroundTruth, 1000, &SimClient::onTruth, this);
     goal_ = nh_.subscribe(topics::kGoalImage, 10, &SimClient::onGoal, this);
+    applied_ = nh_.subscribe(topics::kAppliedTorque, 1000, &SimClient::onApplied, this);
     clock_ = nh_.subscribe("/clock", 1000, &SimClient::onClock, this);
     log_ = nh_.subscribe("/rosout", 1000, &SimClient::onLog, this);
     advertise();
@@ -45,7 +46,7 @@ class SimClient {
       refused.request.start = {1.0, 2.0, 3.0};
       reset_.call(refused);
       return image_.getNumPublishers() == 1 && truth_.getNumPublishers() == 1 &&
-             logged("reset refused");
+             applied_.getNumPublishers() == 1 && logged("reset refused");
     });
   }
 
@@ -99,11 +100,13 @@ class SimClient {
   void forget() {
     images.clear();
     truths.clear();
+    applied.clear();
     log_lines.clear();
   }
 
   std::vector<sensor_msgs::Image> images;
   std::vector<sensor_msgs::JointState> truths;
+  std::vector<ddm_msgs::Torque> applied;
   std::vector<sensor_msgs::Image> goals;
   std::vector<ros::Time> clocks;
   std::vector<std::string> log_lines;
@@ -111,12 +114,13 @@ class SimClient {
  private:
   void onImage(const sensor_msgs::Image& image) { images.push_back(image); }
   void onTruth(const sensor_msgs::JointState& truth) { truths.push_back(truth); }
+  void onApplied(const ddm_msgs::Torque& torque) { applied.push_back(torque); }
   void onGoal(const sensor_msgs::Image& goal) { goals.push_back(goal); }
   void onClock(const rosgraph_msgs::Clock& clock) { clocks.push_back(clock.clock); }
   void onLog(const rosgraph_msgs::Log& log) { log_lines.push_back(log.msg); }
 
   ros::NodeHandle nh_;
-  ros::Subscriber image_, truth_, goal_, clock_, log_;
+  ros::Subscriber image_, truth_, applied_, goal_, clock_, log_;
   ros::Publisher torque_;
   ros::ServiceClient reset_;
 };

@@ -60,6 +60,7 @@ void TrialMessages::takeImage(const sensor_msgs::Image& image) {
 
 void TrialMessages::takeTorque(const ddm_msgs::Torque& torque) {
   requireTime(torque.header.stamp, "a torque");
+  if (torque.torque.empty()) return;  // applied_torque says so where none acted in time
   for (double value : torque.torque) {
     if (!std::isfinite(value)) {
       throw std::runtime_error("the torque at " + textOf(torque.header.stamp) +
@@ -68,10 +69,10 @@ void TrialMessages::takeTorque(const ddm_msgs::Torque& torque) {
     }
   }
   const size_t dim = torques_.empty() ? torque.torque.size() : torques_.begin()->second.size();
-  if (torque.torque.empty() || torque.torque.size() != dim) {
+  if (torque.torque.size() != dim) {
     throw std::runtime_error("the torque at " + textOf(torque.header.stamp) + " has " +
                              std::to_string(torque.torque.size()) + " value(s) where " +
-                             std::to_string(std::max<size_t>(dim, 1)) + " are due");
+                             std::to_string(dim) + " are due");
   }
   const auto inserted = torques_.emplace(torque.header.stamp, torque.torque);
   if (!inserted.second && inserted.first->second != torque.torque) {

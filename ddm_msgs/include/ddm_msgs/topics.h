@@ -5,9 +5,11 @@
 namespace ddm {
 namespace topics {
 
-constexpr char kImage[] = "camera/image_raw";        ///< sensor_msgs/Image
-constexpr char kGoalImage[] = "goal_image";          ///< sensor_msgs/Image, latched
-constexpr char kTorque[] = "torque";                 ///< ddm_msgs/Torque
+constexpr char kImage[] = "camera/image_raw";  ///< sensor_msgs/Image
+constexpr char kGoalImage[] = "goal_image";    ///< sensor_msgs/Image, latched
+constexpr char kTorque[] = "torque";           ///< ddm_msgs/Torque
+constexpr char kAppliedTorque[] =
+    "applied_torque";  ///< ddm_msgs/Torque: what acted as the answer to each image, if anything
 constexpr char kEffortCommand[] = "effort_command";  ///< std_msgs/Float64 [N m]: one motor
 constexpr char kGroupEffortCommand[] =
     "group_effort_command";  ///< std_msgs/Float64MultiArray [N m]: several motors

@@ -32,8 +32,9 @@ class BagWriter {
   void write(const ddm_msgs::Torque& torque);
   void writeGoal(const sensor_msgs::Image& goal, const ros::Time& stamp);
 
-  int numImages() const { return static_cast<int>(images_.size()); }
-  int numTorques() const { return static_cast<int>(torques_.size()); }
+  /// Their stamps.
+  const std::set<ros::Time>& images() const { return images_; }
+  const std::set<ros::Time>& torques() const { return torques_; }
   /// Number of images whose torque is there too.
   int numFrames() const;
 
