@@ -2,28 +2,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_msgs/param_reader.h>
 #include <ddm_msgs/tool.h>
 
 #include <string>
-#include <vector>
 
 #include "configuration.h"
+#include "resolution.h"
 
 namespace ddm {
 
-/// What all of them are told.
-struct Arguments {
-  std::string preset;
-  std::string plant;
-  std::string method;                  ///< empty: what the files say
-  std::vector<std::string> nuisances;  ///< names
-  int seed = 0;
-  std::string out;
-  std::vector<std::string> configs;
-};
+/// A value of the command line that becomes that of `key` ("block/key") if the user gives it. There
+/// are no defaults here: those are in the files.
+template <class Value>
+boost::program_options::typed_value<Value>* given(const std::string& key, Arguments* arguments) {
+  return boost::program_options::value<Value>()->notifier(
+      [key, arguments](const Value& value) { arguments->set(key, value); });
+}
 
-/// The options that name the files of a configuration.
+/// The options that choose the files of a configuration.
 /// @param about  text above the list of options
 boost::program_options::options_description configurationOptions(const std::string& about,
                                                                  Arguments* arguments);
@@ -32,19 +28,11 @@ boost::program_options::options_description configurationOptions(const std::stri
 boost::program_options::options_description commonOptions(const std::string& about,
                                                           Arguments* arguments);
 
-/// --method, for a program that lets all of them act.
+/// --method, for a program that offers all of them.
 void addMethodOption(boost::program_options::options_description* options, Arguments* arguments);
 
-/// The files that the arguments name: after the plant's that of the method (config/methods), then
-/// those of the nuisances. Blocks beside those of a Configuration are read first.
-ParamReader openConfiguration(const Arguments& arguments);
-
-/// Reads all blocks, those of the method too, and sets in `experiment` what the arguments say.
+/// Reads all blocks, those of the method too.
 /// @throws std::invalid_argument with all problems
-Configuration readConfiguration(const Arguments& arguments, ParamReader* reader);
-
-/// Checks the block `experiment` after arguments have changed it.
-/// @throws std::invalid_argument with all problems
-void requireValid(const ExperimentOptions& options);
+Configuration readWithMethod(ParamReader* reader);
 
 }  // namespace ddm

@@ -4,10 +4,7 @@
 
 #include <ddm_model/schedule.h>
 #include <ddm_plant_plugin/plant_config.h>
-#include <ros/package.h>
 
-#include <algorithm>
-#include <boost/filesystem.hpp>
 #include <sstream>
 #include <stdexcept>
 
@@ -15,34 +12,6 @@
 
 namespace ddm {
 namespace {
-
-namespace fs = boost::filesystem;
-
-std::string packageFolder(const std::string& package) {
-  const std::string path = ros::package::getPath(package);
-  if (path.empty()) {
-    throw std::invalid_argument("package " + package +
-                                " cannot be found: source devel/setup.bash of your workspace");
-  }
-  return path;
-}
-
-/// FOLDER/NAME.yaml
-/// @throws std::invalid_argument naming what there is, if there is no such file
-std::string chooseFile(const std::string& folder, const std::string& name,
-                       const std::string& kind) {
-  std::vector<std::string> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
-  if (std::find(names.begin(), names.end(), name) != names.end()) {
-    return folder + "/" + name + ".yaml";
-  }
-  std::string known;
-  for (const std::string& other : names) known += (known.empty() ? "" : ", ") + other;
-  throw std::invalid_argument("unknown " + kind + " '" + name + "': there are " + known);
-}
 
 /// What no block can see by itself.
 std::vector<std::string> contradictions(const Configuration& all) {
@@ -79,7 +48,7 @@ std::vector<std::string> contradictions(const Configuration& all) {
 
 }  // namespace
 
-Configuration readConfiguration(ParamReader* reader) {
+Configuration readEachBlock(ParamReader* reader) {
   Configuration all;
   all.experiment = reader->read<ExperimentOptions>("experiment");
   all.start = reader->read<StartOptions>("start");
@@ -92,9 +61,18 @@ Configuration readConfiguration(ParamReader* reader) {
   all.mpc = reader->read<MpcOptions>("mpc");
   if (reader->has("robot")) all.robot = reader->read<RobotOptions>("robot");
   reader->requireValid();
+  return all;
+}
+
+void requireConsistent(const Configuration& configuration) {
   std::string problems;
-  for (const std::string& problem : contradictions(all)) problems += "\n - " + problem;
+  for (const std::string& problem : contradictions(configuration)) problems += "\n - " + problem;
   if (!problems.empty()) throw std::invalid_argument("invalid configuration:" + problems);
+}
+
+Configuration readConfiguration(ParamReader* reader) {
+  const Configuration all = readEachBlock(reader);
+  requireConsistent(all);
   return all;
 }
 
@@ -121,30 +99,6 @@ YAML::Node toYaml(const Configuration& configuration) {
     for (const auto& block : configuration.method->blocks()) out[block.first] = block.second;
   }
   return out;
-}
-
-std::vector<std::string> configurationFiles(const std::string& preset, const std::string& plant,
-                                            const std::vector<std::string>& configs) {
-  const std::string launch = packageFolder("ddm_launch") + "/config";
-  std::vector<std::string> files = {packageFolder("ddm_sim") + "/config/sim.yaml",
-                                    packageFolder("ddm_model") + "/config/model.yaml",
-                                    packageFolder("ddm_mpc") + "/config/mpc.yaml",
-                                    packageFolder("ddm_mpc") + "/config/pilco.yaml",
-                                    launch + "/experiment.yaml",
-                                    launch + "/pilco.yaml",
-                                    chooseFile(launch + "/presets", preset, "preset"),
-                                    plantFile(plant)};
-  files.insert(files.end(), configs.begin(), configs.end());
-  return files;
-}
-
-std::string nuisanceFile(const std::string& name) {
-  return chooseFile(packageFolder("ddm_launch") + "/config/nuisances", name, "nuisance");
-}
-
-std::string methodFile(const std::string& method) {
-  const std::string file = packageFolder("ddm_launch") + "/config/methods/" + method + ".yaml";
-  return !method.empty() && fs::exists(file) ? file : "";
 }
 
 }  // namespace ddm

@@ -37,6 +37,7 @@ constexpr char kAbout[] =
 
 struct Request {
   std::string model;
+  std::string out;  ///< folder
   int first_seed = 0;
   int end_seed = 0;  ///< excluded
   int jobs = 1;
@@ -69,15 +70,15 @@ bool configure(int argc, char** argv, Request* request, ddm::Configuration* conf
   options.add_options()("seeds", po::value(&seeds)->required(), "A:B, B excluded");
   options.add_options()("jobs", po::value(&request->jobs)->default_value(num_cores),
                         "runs at a time");
-  options.add_options()("out", po::value(&arguments.out)->default_value("."),
+  options.add_options()("out", po::value(&request->out)->default_value("."),
                         "folder of the results; made if need be");
   if (!ddm::parseCommandLine(argc, argv, options)) return false;
   parseSeeds(seeds, request);
   if (request->jobs < 1) {
     throw po::error("--jobs must be >= 1, got " + std::to_string(request->jobs));
   }
-  ddm::ParamReader reader = ddm::openConfiguration(arguments);
-  *configuration = ddm::readConfiguration(arguments, &reader);
+  ddm::ParamReader reader = ddm::resolve(arguments).reader();
+  *configuration = ddm::readWithMethod(&reader);
   return true;
 }
 
@@ -176,7 +177,7 @@ void run(const Request& request, ddm::Configuration configuration) {
   configuration.model.image.size = model->imageSize();
   configuration.model.model = model->options();
   configuration.method = std::make_shared<ddm::SavedModelSetup>(model, request.model);
-  const std::string& folder = configuration.experiment.runs;
+  const std::string& folder = request.out;
   std::cerr << "model " << request.model << " on " << configuration.experiment.plant
             << ", mpc of preset " << configuration.experiment.preset << "\n";
   const std::vector<Row> rows = evaluateAll(configuration, request, model->info().trial);

@@ -8,6 +8,7 @@
 #include "ddm_method.h"
 #include "oracle_method.h"
 #include "pilco/pilco_methods.h"
+#include "resolution.h"
 
 namespace ddm {
 namespace {

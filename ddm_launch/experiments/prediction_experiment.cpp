@@ -223,10 +223,9 @@ void requireFit(const Experiment& experiment) {
 bool configure(int argc, char** argv, Experiment* experiment) {
   Arguments arguments;
   if (!parseCommandLine(argc, argv, commonOptions(kAbout, &arguments))) return false;
-  ParamReader reader = openConfiguration(arguments);
+  ParamReader reader = resolve(arguments).reader();
   experiment->prediction = reader.read<PredictionOptions>("prediction");
-  experiment->configuration = readConfiguration(arguments, &reader);
-  requireValid(experiment->configuration.experiment);
+  experiment->configuration = readWithMethod(&reader);
   requireFit(*experiment);
   return true;
 }

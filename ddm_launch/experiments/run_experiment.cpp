@@ -6,6 +6,7 @@
 
 #include <iostream>
 #include <string>
+#include <vector>
 
 #include "command_line.h"
 #include "experiment.h"
@@ -20,30 +21,26 @@ constexpr char kAbout[] =
     "Runs an experiment in one process: a random trial, then training, greedy evaluation and an\n"
     "epsilon-greedy trial in turn. The same command on the same folder resumes.\n\n"
     "usage: rosrun ddm_launch run_experiment --preset paper --plant pendulum --seed 1\n"
-    "                                        --trials 15 --out DIR [--model FILE] [--bags BAG...]";
+    "                                        --trials 15 --out DIR [--model FILE] [--bags BAG...]\n"
+    "       rosrun ddm_launch run_experiment --config RUN/config.yaml --out DIR  (the same again)";
 
 /// @return false where --help was asked for and has been printed
 bool configure(int argc, char** argv, ddm::Configuration* configuration) {
   ddm::Arguments arguments;
-  int trials = 15;
-  ddm::StartOptions start;
   po::options_description options = ddm::commonOptions(kAbout, &arguments);
-  options.add_options()("trials", po::value(&trials)->default_value(trials),
-                        "epsilon-greedy trials after the random one");
+  options.add_options()("trials", ddm::given<int>("experiment/trials", &arguments),
+                        "epsilon-greedy trials after the random one; otherwise as in the files, "
+                        "or 15");
   ddm::addMethodOption(&options, &arguments);
-  options.add_options()("model", po::value(&start.model),
+  options.add_options()("model", ddm::given<std::string>("start/model", &arguments),
                         "saved model that trial 0 explores with, instead of random torques");
   options.add_options()(
-      "bags", po::value(&start.bags)->multitoken(),
+      "bags", ddm::given<std::vector<std::string>>("start/bags", &arguments)->multitoken(),
       "bags that count as trials before trial 0: every training learns from them; "
       "without --model trial 0 explores with the model trained on them");
   if (!ddm::parseCommandLine(argc, argv, options)) return false;
-  ddm::ParamReader reader = ddm::openConfiguration(arguments);
-  *configuration = ddm::readConfiguration(arguments, &reader);
-  configuration->experiment.trials = trials;
-  ddm::requireValid(configuration->experiment);
-  if (!start.model.empty()) configuration->start.model = start.model;
-  if (!start.bags.empty()) configuration->start.bags = start.bags;
+  ddm::ParamReader reader = ddm::resolve(arguments).reader();
+  *configuration = ddm::readWithMethod(&reader);
   return true;
 }
 

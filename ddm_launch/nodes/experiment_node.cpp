@@ -51,8 +51,6 @@ void run(Node* node) {
                                 configuration.experiment.method + ": use run_experiment");
   }
   ddm::requireLearnedPrediction(configuration.model.training);
-  // roslaunch has loaded the files by name; this refuses a name that is no preset or plant.
-  ddm::configurationFiles(configuration.experiment.preset, configuration.experiment.plant, {});
   ddm::prepareStart(&configuration);
   ddm::RunFolder folder(configuration);
   ddm::Progress progress(&std::cout, ::isatty(STDOUT_FILENO) != 0, configuration.experiment.trials);

@@ -14,6 +14,7 @@
 #include <set>
 
 #include "method.h"
+#include "resolution.h"
 #include "toy_run.h"
 
 namespace ddm {
@@ -40,6 +41,21 @@ Configuration read(const std::vector<std::string>& files) {
   return readConfiguration(&reader);
 }
 
+Configuration read(const Arguments& arguments) {
+  ParamReader reader = resolve(arguments).reader();
+  return readConfiguration(&reader);
+}
+
+/// What --preset, --plant and --config say.
+Arguments arguments(const std::string& preset, const std::string& plant,
+                    const std::vector<std::string>& configs = {}) {
+  Arguments given;
+  given.set("experiment/preset", preset);
+  given.set("experiment/plant", plant);
+  given.configs = configs;
+  return given;
+}
+
 std::set<std::string> keysOf(const YAML::Node& map) {
   std::set<std::string> keys;
   for (const auto& entry : map) keys.insert(entry.first.as<std::string>());
@@ -50,7 +66,7 @@ std::set<std::string> keysOf(const YAML::Node& map) {
 Configuration readText(const std::string& text, const std::string& preset = "paper") {
   const TempFolder folder;
   writeText(folder.file("differs.yaml"), text);
-  return read(configurationFiles(preset, "pendulum", {folder.file("differs.yaml")}));
+  return read(arguments(preset, "pendulum", {folder.file("differs.yaml")}));
 }
 
 TEST(Configuration, EveryPresetLoadsWithEveryPlant) {
@@ -58,7 +74,7 @@ TEST(Configuration, EveryPresetLoadsWithEveryPlant) {
   ASSERT_GE(presets.size(), 2u);
   for (const std::string& preset : presets) {
     for (const std::string plant : {"moving_tile", "pendulum", "pendulum_gravity"}) {
-      const Configuration all = read(configurationFiles(preset, plant, {}));
+      const Configuration all = read(arguments(preset, plant));
       EXPECT_EQ(all.plant.gravity > 0.0, plant == "pendulum_gravity") << preset;
       EXPECT_EQ(all.mpc.max_torque, all.plant.max_torque) << preset << ", " << plant;
       EXPECT_NO_THROW(makePlant(all.plant, all.camera)) << preset << ", " << plant;
@@ -67,7 +83,7 @@ TEST(Configuration, EveryPresetLoadsWithEveryPlant) {
 }
 
 TEST(Configuration, ThePaperPresetHoldsTheNumbersOfThePaper) {
-  const Configuration all = read(configurationFiles("paper", "pendulum", {}));
+  const Configuration all = read(arguments("paper", "pendulum"));
   EXPECT_EQ(all.model.image.size, 51);
   EXPECT_EQ(all.model.model.pca_dim, 50);
   EXPECT_EQ(all.model.model.feature_dim, 2);
@@ -99,7 +115,7 @@ TEST(Configuration, ThePaperPresetHoldsTheNumbersOfThePaper) {
 
 TEST(Configuration, APresetThatDoesNotExistIsRefusedWithThoseThatDo) {
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [] { configurationFiles("papier", "pendulum", {}); },
+      [] { resolve(arguments("papier", "pendulum")); },
       {"unknown preset 'papier'", "debug, efficient, efficient_gravity, paper"}));
 }
 
@@ -107,15 +123,15 @@ TEST(Configuration, APlantThatDoesNotExistIsRefusedWithThoseThatDo) {
   // sim.yaml stands in the same folder but is no plant
   for (const std::string plant : {"pendulumm", "sim", "", "../config/pendulum"}) {
     EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-        [&] { configurationFiles("paper", plant, {}); },
+        [&] { resolve(arguments("paper", plant)); },
         {"unknown plant '" + plant + "'", "there are moving_tile, pendulum, pendulum_gravity"}))
         << plant;
   }
 }
 
 TEST(Configuration, APlantKnowsBetterThanAPresetWhatItNeeds) {
-  const Configuration tile = read(configurationFiles("paper", "moving_tile", {}));
-  const Configuration pendulum = read(configurationFiles("paper", "pendulum", {}));
+  const Configuration tile = read(arguments("paper", "moving_tile"));
+  const Configuration pendulum = read(arguments("paper", "pendulum"));
   EXPECT_EQ(tile.model.training.max_iterations, 3000);
   EXPECT_EQ(pendulum.model.training.max_iterations, 500);
 }
@@ -125,7 +141,9 @@ TEST(Configuration, AMethodIsGivenItsFileIfItHasOne) {
   const std::vector<std::string> names = namesIn(DDM_LAUNCH_SOURCE_DIR "/config/methods");
   ASSERT_FALSE(names.empty());
   for (const std::string& name : names) {
-    const Configuration all = read(configurationFiles("paper", "pendulum", {methodFile(name)}));
+    Arguments given = arguments("paper", "pendulum");
+    given.set("experiment/method", name);
+    const Configuration all = read(given);
     EXPECT_EQ(all.trial.num_steps, 125) << name;
     EXPECT_EQ(all.mpc.epsilon, 0.0) << name;
   }
@@ -137,8 +155,7 @@ TEST(Configuration, EveryScheduleButTheJointHasAFileOfItsName) {
   EXPECT_EQ(std::set<std::string>(names.begin(), names.end()),
             (std::set<std::string>{"sequential", "v_p_only", "joint_random_init"}));
   for (const std::string& name : names) {
-    const Configuration all =
-        read(configurationFiles("paper", "pendulum", {folder + "/" + name + ".yaml"}));
+    const Configuration all = read(arguments("paper", "pendulum", {folder + "/" + name + ".yaml"}));
     EXPECT_EQ(all.model.training.schedule, name);
   }
 }
@@ -151,7 +168,9 @@ TEST(Configuration, EveryNuisanceIsOneThatIsWrongWithTheCamera) {
   const auto camera = [](const std::string& name) {
     EXPECT_EQ(keysOf(YAML::LoadFile(nuisanceFile(name))), (std::set<std::string>{"camera"}))
         << name;
-    return read(configurationFiles("paper", "pendulum", {nuisanceFile(name)})).camera;
+    Arguments given = arguments("paper", "pendulum");
+    given.nuisances = {name};
+    return read(given).camera;
   };
   EXPECT_EQ(camera("noise").noise_std, 0.1);
   EXPECT_EQ(camera("brightness").brightness_drift, 0.2);
@@ -189,7 +208,7 @@ TEST(Configuration, LaterFilesWin) {
   writeText(folder.file("a.yaml"), "mpc: {epsilon: 0.3, horizon: 9}\n");
   writeText(folder.file("b.yaml"), "mpc: {epsilon: 0.4}\n");
   const Configuration all =
-      read(configurationFiles("paper", "pendulum", {folder.file("a.yaml"), folder.file("b.yaml")}));
+      read(arguments("paper", "pendulum", {folder.file("a.yaml"), folder.file("b.yaml")}));
   EXPECT_EQ(all.mpc.epsilon, 0.4);
   EXPECT_EQ(all.mpc.horizon, 9);
 }

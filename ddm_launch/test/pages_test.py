@@ -20,6 +20,7 @@ FOREIGN = {
     "REQUIRED process […] has died!": DIST + "/roslaunch/pmon.py",
     "process has finished cleanly": DIST + "/roslaunch/*.py",
     "exit code …": DIST + "/roslaunch/*.py",
+    "Cannot load command parameter […]: command […] returned with code …": DIST + "/roslaunch/loader.py",
     "Unable to contact my own server at […]": DIST + "/roslaunch/server.py",
     "RLException: […] is neither a launch file in package […] nor is […] a launch file name":
         DIST + "/roslaunch/rlutil.py",

@@ -2,14 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_msgs/node_params.h"
 
+#include <ros/names.h>
 #include <ros/param.h>
 
 #include <stdexcept>
 
+#include "ddm_msgs/config_blocks.h"
 #include "ddm_msgs/param_value.h"
 
 namespace ddm {
-
 YAML::Node toYaml(XmlRpc::XmlRpcValue value, const std::string& name) {
   switch (value.getType()) {
     case XmlRpc::XmlRpcValue::TypeBoolean:
@@ -42,13 +43,26 @@ YAML::Node toYaml(XmlRpc::XmlRpcValue value, const std::string& name) {
 }
 
 YAML::Node nodeParams(const ros::NodeHandle& pnh) {
+  const std::string name = "configuration";  // as a char* it would pass for a bool
+  const std::string shared =
+      ros::names::resolve(ros::names::parentNamespace(pnh.getNamespace()), name);
+  YAML::Node params(YAML::NodeType::Map);
+  std::string text;
+  if (ros::param::get(shared, text)) {
+    params = parseBlocks(text, "parameter " + shared);
+  } else if (ros::param::has(shared)) {
+    throw std::invalid_argument("parameter " + shared +
+                                " must be the text of a configuration, as the launch files of "
+                                "ddm_launch set it: delete it, or start this node elsewhere");
+  }
   XmlRpc::XmlRpcValue value;
-  if (!ros::param::get(pnh.getNamespace(), value)) return YAML::Node(YAML::NodeType::Map);
+  if (!ros::param::get(pnh.getNamespace(), value)) return params;
   if (value.getType() != XmlRpc::XmlRpcValue::TypeStruct) {
     throw std::invalid_argument("parameter " + pnh.getNamespace() +
                                 " must be the namespace of a node's parameters, not a value");
   }
-  return toYaml(value, pnh.getNamespace());
+  overlay(toYaml(value, pnh.getNamespace()), &params);
+  return params;
 }
 
 }  // namespace ddm

@@ -1,19 +1,16 @@
-// Strict configuration reader: files, merging, and the collection of problems.
+// Strict configuration reader: the collection of problems.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_msgs/param_reader.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <utility>
 
+#include "ddm_msgs/config_blocks.h"
 #include "ddm_msgs/yaml_text.h"
 
 namespace ddm {
 namespace {
-
-constexpr std::size_t kMaxBytes = 1000000;  // of a configuration file
 
 const std::set<std::string>& blocksOfThisRepository() {
   static const std::set<std::string> blocks = {
@@ -57,77 +54,11 @@ std::string hint(const std::string& name, const char* kind, const Names& known) 
   return " (" + question + "known " + kind + ": " + list + ")";
 }
 
-/// A value in one line, for a message.
-std::string asText(const YAML::Node& node) {
-  constexpr std::size_t kMaxLength = 120;
-  if (node.IsNull()) return "nothing";
-  if (node.IsScalar() && node.Scalar().empty()) return "an empty text";
-  std::string text;
-  if (node.IsScalar()) {
-    text = node.Scalar();
-  } else {
-    YAML::Node copy = YAML::Clone(node);
-    copy.SetStyle(YAML::EmitterStyle::Flow);
-    text = YAML::Dump(copy);
-  }
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-  std::replace_if(text.begin(), text.end(), is_control, ' ');
-  return text.size() <= kMaxLength ? text : text.substr(0, kMaxLength) + "...";
-}
-
-[[noreturn]] void refuseAt(const std::string& path, const YAML::Mark& mark,
-                           const std::string& what) {
-  throw std::invalid_argument(path + ":" + std::to_string(mark.line + 1) + ": " + what);
-}
-
-void requireUniqueKeys(const YAML::Node& map, const std::string& path) {
-  std::set<std::string> seen;
-  for (const auto& entry : map) {
-    if (!entry.first.IsScalar()) refuseAt(path, entry.first.Mark(), "a key must be a plain name");
-    if (!seen.insert(entry.first.Scalar()).second) {
-      refuseAt(path, entry.first.Mark(), "'" + entry.first.Scalar() + "' is given twice");
-    }
-  }
-}
-
-std::string readText(const std::string& path) {
-  // A folder opens like a file and then reads as an empty one.
-  std::error_code ignored;
-  std::ifstream in(path);
-  if (std::filesystem::is_directory(path, ignored) || !in) {
-    throw std::runtime_error("cannot read the configuration file " + path);
-  }
-  std::string text;
-  char piece[4096];
-  while (in.read(piece, sizeof(piece)) || in.gcount() > 0) {
-    text.append(piece, static_cast<std::size_t>(in.gcount()));
-    if (text.size() > kMaxBytes) {
-      throw std::runtime_error(path + " has more than " + std::to_string(kMaxBytes) +
-                               " bytes: it is no configuration file");
-    }
-  }
-  if (in.bad()) throw std::runtime_error("cannot read the configuration file " + path);
-  return text;
-}
-
-YAML::Node loadFile(const std::string& path) {
-  const YAML::Node document = parseYaml(readText(path), path);
-  if (document.IsNull()) return YAML::Node(YAML::NodeType::Map);  // a preset may be all comments
-  if (!document.IsMap()) {
-    refuseAt(path, document.Mark(), "expected a map of blocks, got " + asText(document));
-  }
-  requireUniqueKeys(document, path);
-  for (const auto& block : document) {
-    if (block.second.IsMap()) requireUniqueKeys(block.second, path);
-  }
-  return document;
-}
-
 }  // namespace
 
 ParamReader::ParamReader(const YAML::Node& root, std::string source) : source_(std::move(source)) {
   if (root.IsDefined() && !root.IsNull() && !root.IsMap()) {
-    throw std::invalid_argument("the configuration must be a map of blocks, got " + asText(root));
+    throw std::invalid_argument("the configuration must be a map of blocks, got " + oneLine(root));
   }
   root_ = root.IsDefined() && root.IsMap() ? root : YAML::Node(YAML::NodeType::Map);
 }
@@ -136,18 +67,7 @@ ParamReader ParamReader::fromFiles(const std::vector<std::string>& paths) {
   YAML::Node merged(YAML::NodeType::Map);
   std::string source;
   for (const std::string& path : paths) {
-    const YAML::Node file = loadFile(path);
-    for (const auto& block : file) {
-      const std::string name = block.first.Scalar();
-      YAML::Node target = merged[name];
-      if (target.IsDefined() && target.IsMap() && block.second.IsMap()) {
-        for (const auto& entry : block.second) {
-          target[entry.first.Scalar()] = YAML::Clone(entry.second);
-        }
-      } else if (!target.IsDefined() || !block.second.IsNull()) {
-        merged[name] = YAML::Clone(block.second);  // or an alias would change with its anchor
-      }
-    }
+    overlay(readBlocks(path), &merged);
     source += (source.empty() ? "" : ", ") + path;
   }
   return ParamReader(merged, source);
@@ -164,7 +84,7 @@ YAML::Node ParamReader::openBlock(const std::string& block) {
   const YAML::Node values = root[block];
   if (values.IsDefined() && values.IsMap()) return values;
   if (values.IsDefined() && !values.IsNull()) {
-    report(block + " must be a block of keys, got " + asText(values));
+    report(block + " must be a block of keys, got " + oneLine(values));
   }
   return YAML::Node(YAML::NodeType::Map);
 }
@@ -172,7 +92,7 @@ YAML::Node ParamReader::openBlock(const std::string& block) {
 void ParamReader::reportUnknownKeys(const std::string& block, const YAML::Node& values,
                                     const std::vector<std::string>& known_keys) {
   for (const auto& entry : values) {
-    const std::string key = asText(entry.first);
+    const std::string key = oneLine(entry.first);
     if (std::find(known_keys.begin(), known_keys.end(), key) == known_keys.end()) {
       report("unknown key " + block + "/" + key + hint(key, "keys", known_keys));
     }
@@ -181,7 +101,7 @@ void ParamReader::reportUnknownKeys(const std::string& block, const YAML::Node& 
 
 void ParamReader::reportWrongType(const std::string& path, const YAML::Node& value,
                                   const char* expected) {
-  report(path + " must be " + expected + ", got " + asText(value));
+  report(path + " must be " + expected + ", got " + oneLine(value));
 }
 
 void ParamReader::report(const std::string& problem) {
@@ -194,7 +114,7 @@ void ParamReader::report(const std::string& problem) {
 std::vector<std::string> ParamReader::problems() const {
   std::vector<std::string> out = problems_;
   for (const auto& entry : root_) {
-    const std::string name = asText(entry.first);
+    const std::string name = oneLine(entry.first);
     if (name == "version") continue;  // a saved configuration says which code made it
     if (blocksOfThisRepository().count(name) + read_.count(name) + ignored_.count(name) == 0) {
       out.push_back("unknown block " + name + hint(name, "blocks", blocksOfThisRepository()));

@@ -1,4 +1,4 @@
-// YAML from a file that nobody vouches for.
+// YAML from a file of unknown origin, and its values in messages.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_msgs/yaml_text.h"
 
@@ -101,6 +101,23 @@ YAML::Node parseYaml(const std::string& text, const std::string& source) {
   } catch (const YAML::Exception& e) {
     refuse(source, e.mark, "not valid YAML: " + e.msg);
   }
+}
+
+std::string oneLine(const YAML::Node& node) {
+  constexpr std::size_t kMaxLength = 120;
+  if (node.IsNull()) return "nothing";
+  if (node.IsScalar() && node.Scalar().empty()) return "an empty text";
+  std::string text;
+  if (node.IsScalar()) {
+    text = node.Scalar();
+  } else {
+    YAML::Node copy = YAML::Clone(node);
+    copy.SetStyle(YAML::EmitterStyle::Flow);
+    text = YAML::Dump(copy);
+  }
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  std::replace_if(text.begin(), text.end(), is_control, ' ');
+  return text.size() <= kMaxLength ? text : text.substr(0, kMaxLength) + "...";
 }
 
 }  // namespace ddm

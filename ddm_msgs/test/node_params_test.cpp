@@ -100,6 +100,19 @@ TEST(NodeParams, ReadsTheParametersOfANodeFromTheServer) {
   EXPECT_NO_THROW(reader.requireValid());
 }
 
+TEST(NodeParams, LaysPrivateParametersOverTheConfigurationOfTheNamespace) {
+  ParamReader reader(nodeParams(ros::NodeHandle("/shared/node")));
+  const auto options = reader.read<MpcOptions>("mpc");
+  EXPECT_EQ(options.horizon, 6);
+  EXPECT_EQ(options.epsilon, 1e-3);
+  EXPECT_NO_THROW(reader.requireValid());
+  EXPECT_EQ(nodeParams(ros::NodeHandle("/shared/other"))["mpc"]["horizon"].Scalar(), "5");
+}
+
+TEST(NodeParams, RefusesAConfigurationThatIsNotAText) {
+  EXPECT_THROW(nodeParams(ros::NodeHandle("/broken/node")), std::invalid_argument);
+}
+
 TEST(NodeParams, GivesAnEmptyMapToANodeWithoutParameters) {
   const YAML::Node params = nodeParams(ros::NodeHandle("/nobody"));
   EXPECT_TRUE(params.IsMap());

@@ -19,13 +19,15 @@ namespace ddm {
 /// @throws std::invalid_argument if the value is a date, binary data or unset
 YAML::Node toYaml(XmlRpc::XmlRpcValue value, const std::string& name);
 
-/// All private parameters of a node, blocks by name; an empty map if there are none.
+/// The parameters of a node, blocks by name: those of the text parameter `configuration` in the
+/// node's namespace, which all nodes of a launch share, and over them the node's private ones.
 ///
 ///   ParamReader reader(nodeParams(pnh), pnh.getNamespace());
 ///
 /// @param pnh  private node handle, ros::NodeHandle("~")
-/// @throws std::invalid_argument if the node's own name holds a value instead of parameters, or a
-///         value cannot be written as YAML
+/// @return an empty map if there are none
+/// @throws std::invalid_argument if `configuration` is not a text of blocks, the node's own name
+///         holds a value instead of parameters, or a value cannot be written as YAML
 YAML::Node nodeParams(const ros::NodeHandle& pnh);
 
 }  // namespace ddm

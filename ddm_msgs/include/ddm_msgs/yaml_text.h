@@ -1,4 +1,4 @@
-// YAML from a file that nobody vouches for.
+// YAML from a file of unknown origin, and its values in messages.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -16,5 +16,8 @@ namespace ddm {
 ///         one document or more than 20 levels, a list or map that contains itself, or a name or
 ///         value that is not UTF-8
 YAML::Node parseYaml(const std::string& text, const std::string& source);
+
+/// A value in one line of at most 120 characters, for a message.
+std::string oneLine(const YAML::Node& node);
 
 }  // namespace ddm

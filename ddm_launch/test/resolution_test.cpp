@@ -1,0 +1,152 @@
+// Tests of how a configuration comes about: which layer wins, what a saved one brings back.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "resolution.h"
+
+#include <ddm_model/testing/expect_error.h>
+#include <ddm_model/testing/temp_folder.h>
+#include <gtest/gtest.h>
+
+#include "configuration.h"
+#include "toy_run.h"
+
+namespace ddm {
+namespace {
+
+using testing::TempFolder;
+using testing::throwsNaming;
+using testing::writeText;
+
+class Resolution : public ::testing::Test {
+ protected:
+  /// The path of a new file.
+  std::string file(const std::string& name, const std::string& text) const {
+    writeText(folder_.file(name), text);
+    return folder_.file(name);
+  }
+
+  Configuration read() const {
+    ParamReader reader = resolve(given_).reader();
+    return readConfiguration(&reader);
+  }
+
+  /// A file as experiments leave it, of what has been given so far.
+  std::string saved() const {
+    return file("config.yaml", "version: 0.1.0 (test)\n" + YAML::Dump(toYaml(read())) + "\n");
+  }
+
+  Arguments given_;
+  TempFolder folder_;
+};
+
+TEST_F(Resolution, WithoutArgumentsGivesTheDefaults) {
+  const Configuration all = read();
+  EXPECT_EQ(YAML::Dump(toYaml(all.experiment)), YAML::Dump(toYaml(ExperimentOptions())));
+  EXPECT_EQ(all.trial.num_steps, 100);
+}
+
+TEST_F(Resolution, LaterLayersWinKeyByKey) {
+  // pilco_state: trial/num_steps 125, mpc/epsilon 0; noise: camera/noise_std 0.1
+  given_.set("experiment/method", std::string("pilco_state"));
+  given_.set("experiment/plant", std::string("pendulum_gravity"));
+  EXPECT_EQ(read().trial.num_steps, 125);
+  EXPECT_EQ(read().plant.gravity, 9.82);
+  given_.nuisances = {"noise"};
+  EXPECT_EQ(read().camera.noise_std, 0.1);
+  given_.configs = {file("a.yaml", "camera: {noise_std: 0.2, delay: 2}\nexperiment: {seed: 3}\n"),
+                    file("b.yaml", "camera: {noise_std: 0.3}\n")};
+  EXPECT_EQ(read().camera.noise_std, 0.3);
+  EXPECT_EQ(read().camera.delay, 2);
+  EXPECT_EQ(read().experiment.seed, 3);
+  given_.set("experiment/seed", 4);
+  EXPECT_EQ(read().experiment.seed, 4);
+}
+
+TEST_F(Resolution, AFileNamesPresetPlantAndMethodWhereNoArgumentDoes) {
+  given_.configs = {
+      file("names.yaml", "experiment: {preset: debug, plant: moving_tile, method: pilco_pca}\n")};
+  Configuration all = read();
+  EXPECT_EQ(all.plant.type, "moving_tile");
+  EXPECT_EQ(all.model.model.encoder_widths, std::vector<int>{6});  // of preset debug
+  EXPECT_EQ(all.trial.num_steps, 125);                             // of the method
+  given_.set("experiment/plant", std::string("pendulum"));
+  all = read();
+  EXPECT_EQ(all.plant.type, "pendulum");
+  EXPECT_EQ(all.experiment.preset, "debug");
+}
+
+TEST_F(Resolution, ASavedConfigurationComesBackWhole) {
+  given_.set("experiment/preset", std::string("debug"));
+  given_.set("experiment/plant", std::string("pendulum_gravity"));
+  given_.set("experiment/seed", 5);
+  given_.set("experiment/trials", 2);
+  given_.set("start/model", std::string("/model.ddm"));
+  given_.set("start/bags", std::vector<std::string>{"/a.bag", "/b c.bag"});
+  given_.nuisances = {"noise", "delay"};
+  const std::string before = YAML::Dump(toYaml(read()));
+  const std::string config = saved();
+  given_ = Arguments();
+  given_.configs = {config};
+  EXPECT_EQ(YAML::Dump(toYaml(read())), before);
+}
+
+TEST_F(Resolution, AnArgumentWinsOverASavedConfiguration) {
+  given_.set("experiment/seed", 5);
+  given_.set("experiment/trials", 2);
+  const std::string config = saved();
+  given_ = Arguments();
+  given_.configs = {config};
+  given_.set("experiment/trials", 3);
+  given_.set("experiment/runs", std::string("/new"));
+  const Configuration all = read();
+  EXPECT_EQ(all.experiment.seed, 5);
+  EXPECT_EQ(all.experiment.trials, 3);
+  EXPECT_EQ(all.experiment.runs, "/new");
+}
+
+TEST_F(Resolution, ASavedPlantIsNotMixedWithAnother) {
+  given_.set("experiment/plant", std::string("pendulum_gravity"));
+  const std::string config = saved();
+  given_ = Arguments();
+  given_.configs = {config};
+  given_.set("experiment/plant", std::string("pendulum"));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [this] { read(); }, {config, "pendulum_gravity", "not pendulum", "leave"}));
+  given_.set("experiment/plant", std::string("pendulum_gravity"));
+  EXPECT_EQ(read().plant.gravity, 9.82);
+}
+
+TEST_F(Resolution, ASavedCameraDoesNotSwallowANuisance) {
+  given_.nuisances = {"delay"};
+  const std::string config = saved();
+  given_.configs = {config};
+  EXPECT_EQ(read().camera.delay, 1);
+  given_.nuisances = {"delay", "noise"};
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [this] { read(); }, {config, "without the nuisance noise", nuisanceFile("noise")}));
+  given_.configs = {config, nuisanceFile("noise")};
+  given_.nuisances.clear();
+  EXPECT_EQ(read().camera.noise_std, 0.1);
+}
+
+TEST_F(Resolution, AnotherModelOrOtherBagsBringTheirOwnChecksums) {
+  given_.configs = {
+      file("start.yaml",
+           "start: {model: /a.ddm, bags: [/a.bag], model_id: crc32-1, bag_ids: [crc32-2]}\n")};
+  given_.set("start/model", std::string("/b.ddm"));
+  EXPECT_EQ(read().start.model, "/b.ddm");
+  EXPECT_EQ(read().start.model_id, "");
+  EXPECT_EQ(read().start.bag_ids, std::vector<std::string>{"crc32-2"});
+  given_.set("start/bags", std::vector<std::string>{"/c.bag"});
+  EXPECT_TRUE(read().start.bag_ids.empty());
+}
+
+TEST_F(Resolution, MessagesNameTheFiles) {
+  given_.configs = {file("bad.yaml", "mpc: {horzion: 3}\n")};
+  EXPECT_TRUE(
+      throwsNaming<std::invalid_argument>([this] { read(); }, {given_.configs[0], "mpc/horzion"}));
+  given_.configs = {folder_.file("missing.yaml")};
+  EXPECT_TRUE(throwsNaming<std::runtime_error>([this] { read(); }, {given_.configs[0]}));
+}
+
+}  // namespace
+}  // namespace ddm

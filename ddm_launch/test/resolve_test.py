@@ -1,0 +1,76 @@
+#!/usr/bin/python3
+# resolve: what the launch files take their configuration from.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import sys
+
+import rosunit
+import yaml
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from processes import call, find_program  # noqa: E402
+from scratch_case import ScratchCase  # noqa: E402
+
+
+class ResolveTest(ScratchCase):
+    def resolve(self, *arguments):
+        """What is printed, read as YAML."""
+        code, output = call([find_program("ddm_launch", "resolve")] + list(arguments), folder=self.scratch)
+        self.assertEqual(code, 0, output)
+        return yaml.safe_load(output)
+
+    def assertRefused(self, words, *arguments, code=2):
+        actual, output = call([find_program("ddm_launch", "resolve")] + list(arguments), folder=self.scratch)
+        self.assertEqual(actual, code, output)
+        for word in words:
+            self.assertIn(word, output)
+
+    def test_an_option_with_an_empty_value_counts_as_not_given(self):
+        self.assertEqual(self.resolve("--preset", "", "--plant", "", "--set", "experiment/seed=", "--crop", "",
+                                      "--model", "", "--bags", "--config", "", "--access"), self.resolve())
+
+    def test_values_win_over_files(self):
+        self.write("more.yaml", "experiment: {seed: 3, trials: 4}\nshow: {frame_rate: 2.0}\n")
+        blocks = self.resolve("--preset", "debug", "--config", "more.yaml", "--set", "experiment/trials=5")
+        self.assertEqual([blocks["experiment"][key] for key in ("preset", "seed")], ["debug", 3])
+        self.assertEqual(int(blocks["experiment"]["trials"]), 5)
+        self.assertEqual(blocks["show"]["frame_rate"], 2.0)
+        self.assertEqual(blocks["trial"]["num_steps"], 30)  # of the preset
+
+    def test_paths_are_those_of_the_folder_where_it_was_called(self):
+        blocks = self.resolve("--runs", "runs/one", "--model", "m.ddm", "--bags", "a.bag", "/b.bag",
+                              "--set", "robot/goal_file=goal.png")
+        bags = [self.file("a.bag"), "/b.bag"]
+        self.assertEqual(blocks["experiment"]["runs"], self.file("runs/one"))
+        self.assertEqual((blocks["start"]["model"], blocks["start"]["bags"]), (self.file("m.ddm"), bags))
+        self.assertEqual(blocks["robot"]["goal_file"], self.file("goal.png"))
+        self.assertEqual(blocks["access"]["bags"], [self.file("runs/one")] + bags)
+
+    def test_bags_that_a_file_starts_from_may_be_read_by_the_nodes(self):
+        self.write("start.yaml", "start: {bags: [/a.bag]}\n")
+        self.assertEqual(self.resolve("--runs", "/runs", "--config", "start.yaml")["access"]["bags"],
+                         ["/runs", "/a.bag"])
+        self.write("access.yaml", "access: {bags: [/elsewhere]}\n")
+        self.assertEqual(self.resolve("--runs", "/runs", "--config", "access.yaml")["access"]["bags"],
+                         ["/elsewhere"])
+
+    def test_a_crop_is_four_numbers(self):
+        robot = self.resolve("--crop", "1,2,30,40")["robot"]
+        self.assertEqual([robot["crop_" + key] for key in ("x", "y", "width", "height")], [1, 2, 30, 40])
+        for crop in ("1,2,3", "1,2,3,4,5", "a,2,3,4"):
+            self.assertRefused(["--crop", crop], "--crop", crop)
+
+    def test_one_value_can_be_printed(self):
+        self.assertIs(self.resolve("--print", "sim/lockstep"), True)
+        self.write("real_time.yaml", "sim: {lockstep: false}\n")
+        self.assertIs(self.resolve("--config", "real_time.yaml", "--print", "sim/lockstep"), False)
+
+    def test_bad_arguments_and_files_are_named(self):
+        self.assertRefused(["--set", "seed"], "--set", "seed")
+        self.assertRefused(["unknown preset 'papier'"], "--preset", "papier", code=1)
+        self.assertRefused(["no.yaml"], "--config", "no.yaml", code=1)
+        self.assertRefused(["mpc/horizon", "many"], "--set", "mpc/horizon=many", code=1)
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "resolve_test", ResolveTest)

@@ -1,0 +1,27 @@
+// Blocks of a configuration: read from a file, laid over those of another.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <string>
+
+namespace ddm {
+
+/// The blocks of a configuration file by name; an empty map if the file holds only comments.
+///
+/// @throws std::runtime_error with the path if the file cannot be read
+/// @throws std::invalid_argument with path and line if it is not valid YAML, is not a map of
+///         blocks, has more than one document, or gives a block or a key twice
+YAML::Node readBlocks(const std::string& path);
+
+/// The blocks of a text.
+/// @param source  for messages
+/// @throws std::invalid_argument as readBlocks()
+YAML::Node parseBlocks(const std::string& text, const std::string& source);
+
+/// Lays blocks over others: `above` wins, key by key inside a block; a list is replaced as a whole,
+/// and a block without a value changes nothing.
+void overlay(const YAML::Node& above, YAML::Node* below);
+
+}  // namespace ddm

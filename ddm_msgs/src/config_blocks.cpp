@@ -1,0 +1,83 @@
+// Blocks of a configuration: read from a file, laid over those of another.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_msgs/config_blocks.h"
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <stdexcept>
+
+#include "ddm_msgs/yaml_text.h"
+
+namespace ddm {
+namespace {
+
+constexpr std::size_t kMaxBytes = 1000000;  // of a configuration file
+
+[[noreturn]] void refuseAt(const std::string& path, const YAML::Mark& mark,
+                           const std::string& what) {
+  throw std::invalid_argument(path + ":" + std::to_string(mark.line + 1) + ": " + what);
+}
+
+void requireUniqueKeys(const YAML::Node& map, const std::string& path) {
+  std::set<std::string> seen;
+  for (const auto& entry : map) {
+    if (!entry.first.IsScalar()) refuseAt(path, entry.first.Mark(), "a key must be a plain name");
+    if (!seen.insert(entry.first.Scalar()).second) {
+      refuseAt(path, entry.first.Mark(), "'" + entry.first.Scalar() + "' is given twice");
+    }
+  }
+}
+
+std::string readText(const std::string& path) {
+  // A folder opens like a file and then reads as an empty one.
+  std::error_code ignored;
+  std::ifstream in(path);
+  if (std::filesystem::is_directory(path, ignored) || !in) {
+    throw std::runtime_error("cannot read the configuration file " + path);
+  }
+  std::string text;
+  char piece[4096];
+  while (in.read(piece, sizeof(piece)) || in.gcount() > 0) {
+    text.append(piece, static_cast<std::size_t>(in.gcount()));
+    if (text.size() > kMaxBytes) {
+      throw std::runtime_error(path + " has more than " + std::to_string(kMaxBytes) +
+                               " bytes: it is no configuration file");
+    }
+  }
+  if (in.bad()) throw std::runtime_error("cannot read the configuration file " + path);
+  return text;
+}
+
+}  // namespace
+
+YAML::Node readBlocks(const std::string& path) { return parseBlocks(readText(path), path); }
+
+YAML::Node parseBlocks(const std::string& text, const std::string& source) {
+  const YAML::Node document = parseYaml(text, source);
+  if (document.IsNull()) return YAML::Node(YAML::NodeType::Map);  // a preset may be all comments
+  if (!document.IsMap()) {
+    refuseAt(source, document.Mark(), "expected a map of blocks, got " + oneLine(document));
+  }
+  requireUniqueKeys(document, source);
+  for (const auto& block : document) {
+    if (block.second.IsMap()) requireUniqueKeys(block.second, source);
+  }
+  return document;
+}
+
+void overlay(const YAML::Node& above, YAML::Node* below) {
+  for (const auto& block : above) {
+    const std::string name = block.first.Scalar();
+    YAML::Node target = (*below)[name];
+    if (target.IsDefined() && target.IsMap() && block.second.IsMap()) {
+      for (const auto& entry : block.second) {
+        target[entry.first.Scalar()] = YAML::Clone(entry.second);
+      }
+    } else if (!target.IsDefined() || !block.second.IsNull()) {
+      (*below)[name] = YAML::Clone(block.second);  // or an alias would change with its anchor
+    }
+  }
+}
+
+}  // namespace ddm
