@@ -48,7 +48,8 @@ void ResultsFolder::compareWith(const std::string& file) {
   } catch (const std::exception& e) {
     throw std::runtime_error(file + " cannot be read (" + e.what() + "): use another folder");
   }
-  const std::string differences = differencesOf(there.values, keysOf(configuration_));
+  const std::string differences =
+      differencesOf(there.values, keysOf(configuration_), fs::exists(path_ + "/trials.csv"));
   if (!differences.empty()) {
     throw std::runtime_error("the folder " + path_ +
                              " holds another experiment, use another folder:" + differences);

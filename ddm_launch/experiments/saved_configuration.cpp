@@ -4,6 +4,7 @@
 
 #include <ddm_msgs/yaml_text.h>
 
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -14,6 +15,14 @@ namespace {
 bool mayDiffer(const std::string& key) {
   return key == "experiment/trials" || key == "experiment/runs" || key == "experiment/timeout" ||
          key == "sim/watchdog";
+}
+
+/// Keys that a user chooses by looking at the robot, which takes more than one launch.
+bool isChosenOnTheRobot(const std::string& key) {
+  static const std::set<std::string> keys = {"robot/crop_x",     "robot/crop_y",
+                                             "robot/crop_width", "robot/crop_height",
+                                             "robot/goal_file",  "evaluation/goal_distance"};
+  return keys.count(key) > 0;
 }
 
 void requireNames(const YAML::Node& map, const std::string& source) {
@@ -51,7 +60,9 @@ SavedConfiguration readConfigurationText(const std::string& text, const std::str
   return saved;
 }
 
-std::string differencesOf(const ConfigurationValues& there, const ConfigurationValues& here) {
+std::string differencesOf(const ConfigurationValues& there, const ConfigurationValues& here,
+                          bool trial_finished) {
+  const bool robot = there.count("robot/dt") + here.count("robot/dt") == 2;
   std::map<std::string, std::pair<std::string, std::string>> values;
   for (const auto& entry : there) values[entry.first].first = entry.second;
   for (const auto& entry : here) values[entry.first].second = entry.second;
@@ -59,8 +70,11 @@ std::string differencesOf(const ConfigurationValues& there, const ConfigurationV
   std::string differences;
   for (const auto& entry : values) {
     if (mayDiffer(entry.first) || entry.second.first == entry.second.second) continue;
+    const bool chosen = robot && isChosenOnTheRobot(entry.first);
+    if (chosen && !trial_finished) continue;
     differences += "\n - " + entry.first + ": " + words(entry.second.first) + " there, " +
-                   words(entry.second.second) + " here";
+                   words(entry.second.second) + " here" +
+                   (chosen ? ", fixed since the first trial was finished" : "");
   }
   return differences;
 }

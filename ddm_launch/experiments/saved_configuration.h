@@ -24,7 +24,9 @@ ConfigurationValues keysOf(const YAML::Node& configuration);
 /// @throws std::invalid_argument with source and line if the text is not YAML of blocks by name
 SavedConfiguration readConfigurationText(const std::string& text, const std::string& source);
 
-/// The keys in which an experiment may not differ if it shall go on, a line each; empty: none.
-std::string differencesOf(const ConfigurationValues& there, const ConfigurationValues& here);
+/// The differences with which an experiment must not go on, a line each; empty: none. What is
+/// chosen by looking at the robot (crop and goal) may change until the first trial is finished.
+std::string differencesOf(const ConfigurationValues& there, const ConfigurationValues& here,
+                          bool trial_finished);
 
 }  // namespace ddm

@@ -12,7 +12,7 @@ from std_srvs.srv import SetBool
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import roslaunch, start_roslaunch  # noqa: E402
-from run_files import expected_files, files_in, read_bag, read_rows, read_yaml  # noqa: E402
+from run_files import expected_files, files_in, read_bag, read_bytes, read_rows, read_yaml  # noqa: E402
 from scratch_case import ScratchCase  # noqa: E402
 
 STEPS = 30
@@ -31,10 +31,12 @@ class RobotLoopTest(ScratchCase):
         steps = sorted(1e-9 * (after - before) for before, after in zip(stamps["torque"], stamps["torque"][1:]))
         self.assertAlmostEqual(steps[len(steps) // 2], dt, delta=0.3 * dt)
 
-    def test_an_experiment_on_a_robot_is_stopped_and_resumed(self):
+    def test_an_experiment_on_a_robot_is_stopped_and_resumed_with_another_crop(self):
+        """As the tutorial says: crop and goal_distance are chosen by looking, until the first trial is finished."""
         arguments = ["robot_check.launch", "preset:=debug", "trials:=0", "dt:=0.2", "load:=false",
                      "runs:=" + self.out]
-        launch = start_roslaunch(self.scratch, *arguments, port=0)  # on the master of this test
+        launch = start_roslaunch(self.scratch, *arguments, "crop:=100,20,440,440", "goal_distance:=0.5",
+                                 port=0)  # on the master of this test
         self.addCleanup(launch.stop)
         launch.waitForText("the motors follow the controller", LIMIT_S)
         self.assertTrue(rospy.ServiceProxy("enable", SetBool)(False).success)
@@ -46,6 +48,13 @@ class RobotLoopTest(ScratchCase):
         _, output = roslaunch(self.scratch, *arguments, limit_s=LIMIT_S)
         self.assertTrue(os.path.exists(os.path.join(self.out, "summary.yaml")), output)
         self.checkRobotRun()
+        self.assertEqual(read_yaml(self.out, "config.yaml")["evaluation"]["goal_distance"], 0.3)
+
+        rows = read_bytes(self.out, "trials.csv")
+        _, output = roslaunch(self.scratch, *arguments, "crop:=100,20,440,440", limit_s=LIMIT_S)
+        self.assertRegex(output, r"robot/crop_x: 140 there, 100 here, .*first trial")
+        self.assertEqual(read_bytes(self.out, "trials.csv"), rows)
+        self.assertEqual(read_yaml(self.out, "config.yaml")["robot"]["crop_x"], 140)
 
     def checkRobotRun(self):
         self.assertEqual(files_in(self.out), sorted(

@@ -43,6 +43,9 @@ class RunFolderTest : public ::testing::Test {
     }
   }
 
+  /// Begins the first trial, which is not finished.
+  void begin() { RunFolder(configuration_).beginTrial(0); }
+
   void expectRefused(const std::vector<std::string>& words) {
     EXPECT_TRUE(
         throwsNaming<std::runtime_error>([this] { RunFolder folder(configuration_); }, words));
@@ -151,6 +154,43 @@ TEST_F(RunFolderTest, AnotherValueOfAnyOtherKeyIsRefused) {
     change.second(&configuration_);
     expectRefused({change.first});
   }
+}
+
+TEST_F(RunFolderTest, CropAndGoalOfARobotMayChangeUntilATrialIsFinished) {
+  const std::vector<std::pair<std::string, std::function<void(Configuration*)>>> changes = {
+      {"robot/crop_x: 0 there, 8 here", [](auto* c) { c->robot->crop_x = 8; }},
+      {"robot/crop_height: 0 there, 80 here", [](auto* c) { c->robot->crop_height = 80; }},
+      {"robot/goal_file", [](auto* c) { c->robot->goal_file = "/goal.png"; }},
+      {"evaluation/goal_distance: 0.0 there, 0.4 here",
+       [](auto* c) { c->evaluation.goal_distance = 0.4; }}};
+  configuration_.robot = RobotOptions();
+  const Configuration there = configuration_;
+  begin();
+  for (const auto& change : changes) change.second(&configuration_);
+  begin();
+  EXPECT_EQ(YAML::LoadFile(file("config.yaml"))["robot"]["crop_x"].as<int>(), 8);
+  configuration_ = there;
+  finish(1);
+  for (const auto& change : changes) {
+    configuration_ = there;
+    change.second(&configuration_);
+    expectRefused({change.first, "use another folder", "first trial"});
+  }
+}
+
+TEST_F(RunFolderTest, NothingElseMayChangeBeforeATrialIsFinished) {
+  configuration_.robot = RobotOptions();
+  const Configuration there = configuration_;
+  begin();
+  configuration_.robot->dt = 0.3;
+  expectRefused({"robot/dt"});
+  configuration_ = there;
+  configuration_.experiment.seed = 8;
+  expectRefused({"experiment/seed"});
+  configuration_ = there;
+  configuration_.robot.reset();
+  configuration_.evaluation.goal_distance = 0.4;
+  expectRefused({"evaluation/goal_distance"});
 }
 
 TEST_F(RunFolderTest, ARefusedFolderKeepsItsConfigurationAndRows) {
