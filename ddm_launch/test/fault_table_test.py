@@ -5,12 +5,16 @@ import os
 import sys
 
 import rosunit
+from std_msgs.msg import Float64
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from ddm_launch.faults import table  # noqa: E402
-from ddm_launch.faults.cases import CASES, ENDS, RECOVERS, Case  # noqa: E402
+from ddm_launch.faults.cases import CASES, RECOVERS, STAYS, Case  # noqa: E402
 from ddm_launch.faults.damage import damage, find_record  # noqa: E402
+from ddm_launch.faults.finished import Finished  # noqa: E402
 from ddm_launch.faults.motor import MotorWatch  # noqa: E402
+from ddm_launch.faults.order import OrderWatch  # noqa: E402
+from ddm_launch.faults.robot_injector import Effort  # noqa: E402
 from ddm_launch.faults.run import FaultBench  # noqa: E402
 from processes import call, find_program, run_experiment  # noqa: E402
 from run_files import read_rows  # noqa: E402
@@ -25,7 +29,7 @@ class FaultTableTest(ScratchCase):
 
     def test_all_quick_cases_pass(self):
         code, output = call([find_program("ddm_launch", "fault_table"), "--subset", "quick", "--out", self.scratch],
-                            limit_s=270.0)
+                            limit_s=500.0)
         rows = read_rows(self.scratch, "faults.csv")
         self.assertEqual(rows[0], table.COLUMNS)
         self.assertEqual([row for row in rows[1:] if row[3] != row[4] or row[5] != "1"], [], output)
@@ -38,10 +42,53 @@ class FaultTableTest(ScratchCase):
         bench.make_reference()
         never = Case("never", "no such phase", "drop image", RECOVERS, (), False, False)
         self.assertEqual(bench.run(never), "not injected")
-        silent = Case("silent", "at rest", "remove trial.bag", ENDS, ("nobody says this",), False, False)
-        self.assertEqual(bench.run(silent), ENDS.replace("named", "not named: nobody says this"))
+        silent = Case("silent", "at rest", "remove trial.bag", STAYS, ("nobody says this",), False, False)
+        self.assertEqual(bench.run(silent), STAYS.replace("named", "not named: nobody says this"))
         rows = table.table([never, silent], {"never": "not injected", "silent": "ended"})
         self.assertEqual([line[-2:] for line in rows.splitlines()[1:]], [",0", ",0"])
+
+    def test_where_nothing_was_finished_nothing_can_be_called_undamaged(self):
+        bench = FaultBench(self.scratch)
+        bench.make_reference()
+        first = Case("first", "random trial", "kill sim_node", "ended, undamaged, resumes, equal", (), False, False)
+        self.assertEqual(bench.run(first), "ended, nothing to compare, resumes, equal")
+
+    def test_files_of_finished_trials_that_change_or_vanish_are_named(self):
+        code, output = run_experiment("--preset", "debug", "--trials", 0, "--out", self.out)
+        self.assertEqual(code, 0, output)
+        before = Finished.of(self.out)
+        self.assertEqual(before.lost(self.out), [])
+        self.write(os.path.join(self.out, "trial_000", "torques.csv"), "changed")
+        os.remove(os.path.join(self.out, "evaluation_000", "torques.csv"))
+        with open(os.path.join(self.out, "trials.csv"), "a") as stream:
+            stream.write("another row\n")
+        self.assertEqual(before.lost(self.out), ["evaluation_000/torques.csv", "trial_000/torques.csv"])
+        os.remove(os.path.join(self.out, "trials.csv"))
+        self.assertIn("trials.csv", before.lost(self.out))
+
+    def test_the_older_of_two_torques_may_not_act_and_the_older_of_two_images_may_not_be_answered_late(self):
+        for torque, acted, answers, verdict in (
+                (2.0, [3.0, 3.0, 4.0], [], "in order"), (2.0, [2.0, 3.0, 4.0], [], "the older torque acted"),
+                (2.0, [3.0], [], "only 1 frames seen"), (None, [1.0] * 3, [7, 9], "in order"),
+                (None, [1.0] * 3, [8, 7, 9], "the older image was answered late")):
+            watch = OrderWatch()
+            watch.torque_has_acted(6, 2.0)
+            watch.swap(7, torque)
+            for each in acted:
+                watch.torque_has_acted(8, each)
+            for each in answers:
+                watch.torque_passes(8, each)
+            self.assertEqual(watch.verdict(), verdict)
+
+    def test_a_robot_must_have_zero_torque_from_the_limit_to_the_end_of_the_fault(self):
+        for efforts, verdict in (([0.0] * 30, "zero"), ([0.0] * 29 + [1.5], "driven: 1.5"),
+                                 ([0.0] * 5, "only 5 torques seen")):
+            effort = Effort()
+            effort.fault_begins()
+            for each in efforts:
+                effort.take(Float64(data=each))
+            self.assertEqual(effort.verdict(0.0), verdict)
+            self.assertEqual(effort.verdict(60.0), "only 0 torques seen")
 
     @staticmethod
     def motor(torques, passed=(), stays_off=False):

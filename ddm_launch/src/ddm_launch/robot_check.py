@@ -69,6 +69,23 @@ class Load:
         self._thread.join(5.0)
 
 
+def call(name, kind, *values, **fields):
+    """Calls a service that answers with success and message. Raises rospy.ServiceException where it does not succeed."""
+    rospy.wait_for_service(name, LIMIT_S)
+    answer = rospy.ServiceProxy(name, kind)(*values, **fields)
+    if not answer.success:
+        raise rospy.ServiceException("%s: %s" % (name, answer.message))
+
+
+def show_goal_and_enable():
+    """What a user does: shows the robot its goal, then switches the motors on."""
+    call("plant/reset", Reset, start=[math.pi, 0.0])
+    for _ in range(3):  # the camera is a frame late
+        rospy.wait_for_message("stand_in/image_raw", Image, LIMIT_S)
+    call("take_goal", Trigger)
+    call("enable", SetBool, True)
+
+
 class RobotCheck:
     def __init__(self):
         self._runs = rospy.get_param("~runs")
@@ -87,21 +104,6 @@ class RobotCheck:
                                      ("run_trial/goal", RunTrialActionGoal, self._on_goal),
                                      ("run_trial/result", RunTrialActionResult, self._on_result)):
             rospy.Subscriber(name, kind, callback, queue_size=1000)
-
-    def act(self):
-        """What a user does: shows the robot its goal, then switches the motors on."""
-        self._call("plant/reset", Reset, start=[math.pi, 0.0])
-        for _ in range(3):  # the camera is a frame late
-            rospy.wait_for_message("stand_in/image_raw", Image, LIMIT_S)
-        self._call("take_goal", Trigger)
-        self._call("enable", SetBool, True)
-
-    @staticmethod
-    def _call(name, kind, *values, **fields):
-        rospy.wait_for_service(name, LIMIT_S)
-        answer = rospy.ServiceProxy(name, kind)(*values, **fields)
-        if not answer.success:
-            raise rospy.ServiceException("%s: %s" % (name, answer.message))
 
     def _on_truth(self, joints):
         with self._lock:
@@ -158,7 +160,7 @@ def main():
     check = RobotCheck()
     rospy.on_shutdown(check.end)
     try:
-        check.act()
+        show_goal_and_enable()
     except (rospy.ROSException, rospy.ServiceException) as error:
         rospy.logfatal("robot_check: %s", error)
         return 1

@@ -1,8 +1,8 @@
 # fault_injector: relays between plant and controller, and does one thing wrong at one moment.
 # SPDX-License-Identifier: BSD-3-Clause
 """The moment is exact: the injector sees each reset, image and torque before it arrives, and holds it until its fault
-is done. Only a training is hit wherever it is when its first progress is heard.
-In real time the report also tells what the motor has done since."""
+is done. Only a training is hit wherever it is when its first progress is heard. What the experiment has finished at that
+moment is written next to the report. In real time the report also says what the motor has done since."""
 import copy
 import os
 import signal
@@ -18,7 +18,11 @@ import rospy
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Image, JointState
 
+from ddm_launch.faults import robot_injector
+from ddm_launch.faults.finished import Finished
 from ddm_launch.faults.motor import MotorWatch
+from ddm_launch.faults.order import OrderWatch
+from ddm_launch.faults.pairs import write_acted
 from ddm_launch.node_processes import pid_of
 from ddm_launch.step_runner import program
 
@@ -29,8 +33,13 @@ RUN_OF_PHASE = {"random trial": (0, False), "exploring trial": (1, False), "reco
 REAL_TIME = " in real time"
 TRAINED_TRIAL = 1  # of the phase `training`
 FRAME = 7          # of a trial or evaluation
-PAUSE_S, LATE_S = 1.0, 1.0
+LATE_S = 1.0
 QUEUE = 100
+
+# How long a node stops, in terms of the first limit that somebody who waits for it has.
+STOPS = {"pause": 0.6, "oversleep": 1.25, "hold": float("inf")}
+LIMITS = {"sim_node": "/mpc_node/controller/timeout", "mpc_node": "/sim_node/sim/watchdog"}
+OTHER_LIMIT = "/experiment_node/experiment/timeout"
 
 
 def altered(message, how):
@@ -66,8 +75,22 @@ def late(message):
 # What is passed on in the place of a message, given the one before it.
 MESSAGE_FAULTS = {"drop": lambda message, before, how: [], "double": lambda message, before, how: [message, message],
                   "late": lambda message, before, how: late(message),
-                  "reorder": lambda message, before, how: [before, message],  # that one comes once more, late
+                  "repeat": lambda message, before, how: [before, message],
                   "alter": lambda message, before, how: [altered(message, how)]}
+
+
+def has_ended(pid):
+    """Also of a process whose parent has not asked for its exit code yet."""
+    try:
+        with open("/proc/%d/stat" % pid) as stream:
+            return stream.read().rsplit(")", 1)[1].split()[0] == "Z"
+    except OSError:
+        return True
+
+
+def later(seconds, signal_name, pid):
+    """Sends a signal, even if this process has ended by then."""
+    subprocess.Popen(["sh", "-c", "sleep %g; kill -%s %d" % (seconds, signal_name, pid)], start_new_session=True)
 
 
 class Injector:
@@ -79,8 +102,10 @@ class Injector:
         self.lock = threading.Lock()
         self.run, self.frame, self.num_steps, self.stamp = None, -1, 0, None
         self.last, self.muted = {}, None  # topic: the message before; topic that is no longer passed on
-        self.motor = MotorWatch(stays_off=self.verb in ("alter", "publish"))
-        self.trained, self.pid, self.killed, self.done = -1, None, False, False
+        self.held = None                  # the first one of two messages that change places
+        self.acted = []                   # (stamp of an image [ns], torque that acted before it)
+        self.motor = OrderWatch() if self.verb == "swap" else MotorWatch(stays_off=self.verb in ("alter", "publish"))
+        self.trained, self.pid, self.experiment_pid, self.killed, self.done = -1, None, None, False, False
         self.intruder = None
         if self.verb == "publish":
             self.intruder = subprocess.Popen(
@@ -108,8 +133,9 @@ class Injector:
         rospy.Service("reset", Reset, self.on_reset)
 
     def on_reset(self, request):
-        if self.pid is None and self.verb in ("kill", "pause", "hold"):
-            self.pid = pid_of(rosgraph.Master(rospy.get_name()), self.what)  # only now all nodes are sure to be there
+        if self.pid is None and (self.verb in ("kill", "lose") or self.verb in STOPS):
+            master = rosgraph.Master(rospy.get_name())  # only now all nodes are sure to be there
+            self.pid, self.experiment_pid = pid_of(master, self.what), pid_of(master, "experiment_node")
         with self.lock:
             self.run, self.frame, self.num_steps = (request.trial, request.evaluation), -1, request.num_steps
         self.wait_for_end()
@@ -131,7 +157,7 @@ class Injector:
         with self.lock:
             self.frame, self.stamp = self.frame + 1, image.header.stamp
             due = self.is_due()
-        if due and self.phase != "recording" and self.verb not in MESSAGE_FAULTS:
+        if due and self.phase != "recording" and self.verb not in MESSAGE_FAULTS and self.verb != "swap":
             self.inject()
         self.relay("image", image, self.images, due)
 
@@ -144,12 +170,15 @@ class Injector:
 
     def on_ground_truth(self, state):
         self.motor.torque_has_acted(state.header.stamp.to_sec(), state.effort[0])
+        self.acted.append((state.header.stamp.to_nsec(), state.effort[0]))
 
     def relay(self, topic, message, publisher, due):
         self.wait_for_end()
         before, self.last[topic] = self.last.get(topic), message
         messages = [message]
-        if due and self.what == topic and self.verb in MESSAGE_FAULTS and not self.done:
+        if self.verb == "swap" and self.what == topic and not self.done and (due or self.held):
+            messages = self.swapped(message)
+        elif due and self.what == topic and self.verb in MESSAGE_FAULTS and not self.done:
             self.motor.fault_begins(time.time(), self.stamp.to_sec())
             messages = MESSAGE_FAULTS[self.verb](message, before, self.how)
             self.tell()
@@ -163,6 +192,18 @@ class Injector:
             except rospy.ROSException:
                 if not rospy.core.is_shutdown_requested():  # in real time the plant goes on while this node ends
                     raise
+
+    def swapped(self, message):
+        """Holds a message; returns it behind the next one. Two equal torques would not show their order."""
+        if self.held is None:
+            self.held = message
+            return []
+        first, self.held = self.held, None
+        if self.what == "torque" and first.torque == message.torque:
+            return [first, message]
+        self.motor.swap(first.header.stamp.to_sec(), first.torque[0] if self.what == "torque" else None)
+        self.tell()
+        return [message, first]
 
     def on_training(self, goal):
         self.trained = goal.goal.trial
@@ -184,10 +225,12 @@ class Injector:
             self.killed = True
             os.kill(self.pid, signal.SIGKILL)
             return
-        if self.verb in ("pause", "hold"):
+        if self.verb in STOPS:
             os.kill(self.pid, signal.SIGSTOP)
-            if self.verb == "pause":
-                threading.Timer(PAUSE_S, os.kill, (self.pid, signal.SIGCONT)).start()
+            if self.verb != "hold":
+                later(STOPS[self.verb] * rospy.get_param(LIMITS.get(self.what, OTHER_LIMIT)), "CONT", self.pid)
+        elif self.verb == "lose":
+            self.lose()
         elif self.verb == "mute":
             self.muted = self.what
         elif self.verb == "fill":
@@ -203,6 +246,19 @@ class Injector:
             raise ValueError("no such fault: " + self.verb)
         self.tell(said)
 
+    def lose(self):
+        """Kills a node where no roslaunch sees it, as on another machine: the others must notice. roslaunch, which has
+        started all of them, sleeps until the experiment has ended."""
+        roslaunch = os.getppid()
+        os.kill(roslaunch, signal.SIGSTOP)
+        os.kill(self.pid, signal.SIGKILL)
+
+        def wake():
+            while not has_ended(self.experiment_pid):
+                time.sleep(0.05)
+            os.kill(roslaunch, signal.SIGCONT)
+        threading.Thread(target=wake, daemon=True).start()
+
     def fill_disk(self):
         with open(os.path.join(self.runs, "filler"), "wb", buffering=0) as stream:
             try:
@@ -213,17 +269,21 @@ class Injector:
 
     def tell(self, said=""):
         self.done = True
+        Finished.of(self.runs).write(os.path.dirname(self.report))
         with open(self.report, "w") as stream:
             stream.write(said + "\n")
 
 
 def main():
     rospy.init_node("fault_injector")
+    if rospy.get_param("~phase").endswith(robot_injector.ON_A_ROBOT):
+        return robot_injector.main()
     injector = Injector()
     rospy.spin()
     if injector.done and injector.real_time:
         with open(injector.report, "a") as stream:
             stream.write("motor: %s\n" % injector.motor.verdict())
+        write_acted(injector.acted, os.path.dirname(injector.report))
     if injector.intruder:
         injector.intruder.stdin.close()  # it ends, too
     return 0

@@ -6,13 +6,16 @@ import re
 import shutil
 import subprocess
 
-from ddm_launch.faults.damage import damage
+from ddm_launch.faults import at_rest, pairs
+from ddm_launch.faults.cases import AT_REST, ON_A_ROBOT, REAL_TIME
+from ddm_launch.faults.finished import Finished
 from ddm_launch.processes import start_roslaunch
-from ddm_launch.run_comparison import differences, expected_files, files_in, read_bytes
-from ddm_launch.run_folder import is_finished, num_finished
+from ddm_launch.run_comparison import differences, expected_files, read_bytes
+from ddm_launch.run_folder import is_finished
 from ddm_launch.step_runner import Failure
 
 SEED, TRIALS = 1, 1
+NO_FAULT = "none"
 LIMIT_S = 120.0  # of a launch
 # Long trainings, so that there is time for a fault; short limits, so that a silent node is named soon.
 CONFIG = """\
@@ -23,20 +26,20 @@ recorder: {{timeout: {node_s}}}
 experiment: {{timeout: {experiment_s}}}
 """
 REAL_TIME_CONFIG = "plant: {dt: 0.05}\n"  # shorter waits than with the paper's 0.2 s
+ROBOT_CONFIG = "robot: {position_limits: [[-1000.0, 1000.0]], speed_limit: [1000.0]}\n"
+SLACK_S = 0.05  # that a torque may take, apart from two dt, to its end
 NODE_S, EXPERIMENT_S = 5.0, 8.0  # without a sign of life
 CRASH = re.compile(r"exit code -(?!2\b|9\b|15\b)\d+|Traceback|terminate called|Segmentation fault")
 DISK_BYTES = 2 * 1024 * 1024
 COMPARED = [name for name in expected_files(TRIALS) if not name.endswith((".bag", "config.yaml"))]
 
 
+def is_on_robot(case):
+    return case.phase.endswith(ON_A_ROBOT)
+
+
 def is_real_time(case):
-    return case.phase.endswith("in real time")
-
-
-def files_of_trials(folder, count):
-    """{name: content} of what the first trials have left."""
-    folders = tuple("%s_%03d/" % (kind, k) for kind in ("trial", "evaluation") for k in range(count))
-    return {name: read_bytes(folder, name) for name in files_in(folder) if name.startswith(folders)}
+    return case.phase.endswith(REAL_TIME) or is_on_robot(case)
 
 
 @contextlib.contextmanager
@@ -58,15 +61,19 @@ class FaultBench:
       logs/CASE.txt        what its launches said
     """
 
+    seed = SEED
+
     def __init__(self, out, patience=1.0):
         """patience: what all time limits are multiplied by."""
-        self.out, self.limit_s = out, LIMIT_S * patience
-        self.config, self.real_time_config = (os.path.join(out, name) for name in ("config.yaml", "real_time.yaml"))
+        self.out, self.limit_s, self.slack_s = out, LIMIT_S * patience, SLACK_S * patience
+        self.config, self.real_time_config, self.robot_config = (
+            os.path.join(out, name) for name in ("config.yaml", "real_time.yaml", "robot.yaml"))
         self.reference, self.begun = os.path.join(out, "reference", "run"), os.path.join(out, "begun")
         self.launches = []
         os.makedirs(os.path.join(out, "logs"), exist_ok=True)
         config = CONFIG.format(node_s=NODE_S * patience, experiment_s=EXPERIMENT_S * patience)
-        for path, text in ((self.config, config), (self.real_time_config, config + REAL_TIME_CONFIG)):
+        for path, text in ((self.config, config), (self.real_time_config, config + REAL_TIME_CONFIG),
+                           (self.robot_config, config + ROBOT_CONFIG)):
             with open(path, "w") as stream:
                 stream.write(text)
 
@@ -74,7 +81,7 @@ class FaultBench:
         """Raises Failure if even the undisturbed experiment does not finish."""
         for folder in (os.path.dirname(self.reference), self.begun):
             shutil.rmtree(folder, ignore_errors=True)
-        output = self.launch(self.reference, "experiment.launch", self.experiment(self.reference))
+        output = self.launch_experiment(self.reference, self.reference)
         if not is_finished(self.reference):
             raise Failure("the undisturbed experiment did not finish:\n%s" % output[-2000:])
         shutil.copytree(self.reference, self.begun)
@@ -85,10 +92,32 @@ class FaultBench:
         with open(os.path.join(self.begun, "trials.csv"), "wb") as stream:
             stream.writelines(rows[:2])
 
-    def experiment(self, folder, real_time=False):
-        return ["preset:=debug", "seed:=%d" % SEED, "trials:=%d" % TRIALS, "runs:=" + folder,
-                "config:=" + (self.real_time_config if real_time else self.config),
-                "real_time:=%s" % str(real_time).lower()]
+    def arguments(self, folder, seed=SEED, **more):
+        """Of a launch of the experiment in this folder."""
+        values = dict({"preset": "debug", "seed": seed, "trials": TRIALS, "runs": folder, "config": self.config}, **more)
+        return ["%s:=%s" % item for item in values.items()]
+
+    def launch_experiment(self, beside, folder, seed=SEED):
+        """Without a fault, in lock-step. beside: the logs of its nodes go next to this folder."""
+        return self.launch(beside, "experiment.launch", self.arguments(folder, seed))
+
+    def launch_case(self, case, folder, fault=NO_FAULT):
+        """Runs the experiment of a case, with a fault if there is one."""
+        injection = {"phase": case.phase, "fault": fault, "report": self.report(folder)}
+        if is_on_robot(case):
+            return self.launch(folder, "fault_robot.launch", self.arguments(
+                folder, config=self.robot_config, slack=self.slack_s, **injection))
+        if is_real_time(case):
+            injection.update(real_time="true", config=self.real_time_config)
+        if fault != NO_FAULT:
+            return self.launch(folder, "fault.launch", self.arguments(folder, **dict({"real_time": "false"}, **injection)))
+        for name in ("phase", "fault", "report"):
+            del injection[name]
+        return self.launch(folder, "experiment.launch", self.arguments(folder, **injection))
+
+    @staticmethod
+    def report(folder):
+        return os.path.join(os.path.dirname(folder), "report.txt")
 
     def launch(self, folder, launch_file, arguments):
         """Runs a launch to its end. Returns its output; raises TimeoutError if it does not end."""
@@ -122,73 +151,63 @@ class FaultBench:
 
     def facts(self, case, folder, log):
         try:
-            output, mend = self.disturb(case, folder)
+            if case.phase == AT_REST:
+                return at_rest.facts(self, case, folder, log)
+            return self.disturb(case, folder, log)
         except TimeoutError as error:
             log.write(str(error))
             return ["hung"]
-        log.write(output)
-        if output.startswith("not injected"):
-            return ["not injected"]
-        facts = ["finished" if is_finished(folder) else "ended"]
-        if CRASH.search(output):
-            facts.append("crashed")
+
+    @staticmethod
+    def verdict(folder):
+        return "finished" if is_finished(folder) else "ended"
+
+    @staticmethod
+    def words(case, output):
+        facts = ["crashed"] if CRASH.search(output) else []
         missing = [word for word in case.words if word not in output]
         if case.words:
             facts.append("not named: " + " | ".join(missing) if missing else "named")
-        if is_real_time(case):
-            facts += re.findall("^motor: (.*)$", output, re.MULTILINE) or ["the motor was not watched"]
-        if "undamaged" in case.expected:
-            facts += self.resume(case, folder, mend, log)
-        if "equal" in case.expected:
-            found = differences(self.reference, folder, COMPARED) if is_finished(folder) else ["no verdict"]
-            facts.append("differs: " + " ".join(found) if found else "equal")
         return facts
 
-    def disturb(self, case, folder):
-        """Returns what the disturbed launch said, and a function that takes away what still disturbs."""
-        report = os.path.join(os.path.dirname(folder), "report.txt")
-        if case.phase == "at rest":
-            return self.disturb_at_rest(case, folder)
-        arguments = self.experiment(folder, is_real_time(case)) + [
-            "phase:=" + case.phase, "fault:=" + case.fault, "report:=" + report]
-        output = self.launch(folder, "fault.launch", arguments)
-        if not os.path.exists(report):
-            return "not injected: the phase did not come\n" + output, None
-        with open(report) as stream:
+    def compared(self, folder):
+        found = differences(self.reference, folder, COMPARED) if is_finished(folder) else ["no verdict"]
+        return "differs: " + " ".join(found) if found else "equal"
+
+    def disturb(self, case, folder, log):
+        output = self.launch_case(case, folder, case.fault)
+        log.write(output)
+        if not os.path.exists(self.report(folder)):
+            return ["not injected"]
+        with open(self.report(folder)) as stream:
             said = stream.read()
-        filler = os.path.join(folder, "filler")
-        return output + said, lambda: os.path.exists(filler) and os.remove(filler)
+        log.write(said)
+        facts = [self.verdict(folder)] + self.words(case, output + said)
+        if is_real_time(case):
+            facts += re.findall("^motor: (.*)$", said, re.MULTILINE) or ["the motor was not watched"]
+        if "learned" in case.expected:
+            bag = os.path.join(folder, "trial_001", "trial.bag")
+            facts.append(pairs.verdict(bag, os.path.dirname(folder)) if os.path.exists(bag) else "no bag")
+        if "resumes" in case.expected:
+            filler = os.path.join(folder, "filler")
+            if os.path.exists(filler):
+                os.remove(filler)
+            facts += self.resume(case, folder, Finished.read(os.path.dirname(folder)), log)
+        elif "equal" in case.expected:
+            facts.append(self.compared(folder))
+        return facts
 
-    def disturb_at_rest(self, case, folder):
-        shutil.copytree(self.begun, folder, dirs_exist_ok=True)
-        if case.fault == "read-only folder":
-            subprocess.run(["mount", "-o", "remount,ro", folder], check=True)
-            output = self.launch(self.reference, "experiment.launch", self.experiment(folder))
-            return output, lambda: subprocess.run(["mount", "-o", "remount,rw", folder], check=True)
-        path, content = damage(case.fault, folder)
-        if path.endswith("model.ddm"):
-            return self.launch(folder, "control.launch", ["preset:=debug", "model:=" + path]), None
-        output = self.launch(folder, "experiment.launch", self.experiment(folder))
-
-        def mend():
-            with open(path, "wb") as stream:
-                stream.write(content)
-        return output, mend
-
-    def resume(self, case, folder, mend, log):
-        count = num_finished(folder)
-        mend()
-        before = files_of_trials(folder, count)
+    def resume(self, case, folder, before, log):
+        """The same command again. before: what was finished before the fault."""
+        damaged = before.lost(folder)
         log.write("\n--- the same command again ---\n")
-        try:
-            log.write(self.launch(folder, "experiment.launch", self.experiment(folder, is_real_time(case))))
-        except TimeoutError as error:
-            log.write(str(error))
-        after = files_of_trials(folder, count)
-        damaged = [name for name in before if before[name] != after.get(name)]
-        # A trial that had been finished before the fault is as the undisturbed experiment has it. In real time no two
-        # experiments are equal.
-        wrong = [] if is_real_time(case) else differences(self.reference, folder,
-                                                          [name for name in COMPARED if name in before])
-        return ["damaged: " + " ".join(sorted(set(damaged + wrong))) if damaged + wrong else "undamaged",
-                "resumes" if is_finished(folder) else "does not resume"]
+        log.write(self.launch_case(case, folder))
+        facts = []
+        if "undamaged" in case.expected:
+            damaged += before.lost(folder)
+            if not is_real_time(case):  # in which no two experiments are equal
+                damaged += differences(self.reference, folder, [name for name in COMPARED if name in before.files])
+            facts.append("damaged: " + " ".join(sorted(set(damaged))) if damaged else
+                         "undamaged" if before.files else "nothing to compare")
+        facts.append("resumes" if is_finished(folder) else "does not resume")
+        return facts + ([self.compared(folder)] if "equal" in case.expected else [])
