@@ -61,8 +61,8 @@ TEST_F(BagWriterTest, CountsImagesTorquesAndPairs) {
   writer.write(imageMessage(7.0, toyImage(0.0)));
   writer.write(torqueMessage(8.0, {1.0}));
   writer.write(torqueMessage(9.0, {1.0}));
-  EXPECT_EQ(writer.numImages(), 4);
-  EXPECT_EQ(writer.numTorques(), 5);
+  EXPECT_EQ(writer.images().size(), 4U);
+  EXPECT_EQ(writer.torques().size(), 5U);
   EXPECT_EQ(writer.numFrames(), 3);
 }
 
