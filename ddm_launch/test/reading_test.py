@@ -16,6 +16,7 @@ from scratch_case import SharedScratchCase  # noqa: E402
 
 PACKAGE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 TRIALS = 1
+LIMIT_S = 240.0  # of a program on a machine that has much else to do
 QUICK = "training: {max_iterations: 20, num_starts: 1}\nprediction: {training_frames: 60, held_out_frames: 30}\n"
 
 # Each program: what it reads, what it writes. Programs that read a run or a prediction are called below; figures and
@@ -73,9 +74,9 @@ class ReadingTest(SharedScratchCase):
         for folder, before in self.before.items():
             self.assertEqual(changes(before, fingerprint(folder)), [], words)
 
-    def assertReads(self, package, name, *arguments, **kwargs):
+    def assertReads(self, package, name, *arguments):
         """The program succeeds and leaves the folders as they are."""
-        code, output = call([find_program(package, name)] + list(arguments), folder=self.scratch, **kwargs)
+        code, output = call([find_program(package, name)] + list(arguments), LIMIT_S, folder=self.scratch)
         self.assertEqual(code, 0, output)
         self.assertUnchanged([name] + list(arguments))
 
@@ -132,7 +133,7 @@ class ReadingTest(SharedScratchCase):
                         "bag:=" + self.file("new.bag")],
                        ["replay.launch", "preset:=debug", "model:=" + self.model, "bag:=" + self.bags[0], "rate:=0",
                         "out:=" + self.file("replay.csv")]):
-            _, output = roslaunch(self.scratch, *launch)
+            _, output = roslaunch(self.scratch, *launch, limit_s=LIMIT_S)
             self.assertUnchanged(output)
             self.assertNotIn("exit code", output)
 
