@@ -29,6 +29,10 @@ std::vector<std::string> contradictions(const Configuration& all) {
   require(all.mpc.max_torque <= all.model.model.max_torque,
           "mpc/max_torque must be at most model/max_torque, which scales what f sees",
           all.mpc.max_torque);
+  require(all.mpc.time_budget <= (all.robot ? all.robot->dt : all.plant.dt),
+          std::string("mpc/time_budget must be at most ") + (all.robot ? "robot/dt" : "plant/dt") +
+              ", when the next image comes",
+          all.mpc.time_budget);
   require(
       all.mpc.disagreement_bonus == 0.0 || all.model.training.ensemble_size > 1,
       "mpc/disagreement_bonus must be 0 where training/ensemble_size is 1: one model agrees with "

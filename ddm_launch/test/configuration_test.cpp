@@ -232,6 +232,8 @@ TEST(Configuration, WhatContradictsIsRefused) {
        {"mpc/max_torque", "plant/max_torque", "got 6.5"}},
       {"mpc: {max_torque: 6.0}\nmodel: {max_torque: 5.0}",
        {"mpc/max_torque", "model/max_torque", "got 6"}},
+      {"mpc: {time_budget: 0.3}", {"mpc/time_budget", "plant/dt", "got 0.3"}},
+      {"mpc: {time_budget: 0.15}\nrobot: {dt: 0.1}", {"mpc/time_budget", "robot/dt", "got 0.15"}},
       {"trial: {num_steps: 60}\nevaluation: {settled_steps_strict: 61}",
        {"evaluation/settled_steps_strict", "trial/num_steps", "got 61"}},
       {"trial: {num_steps: 50}", {"trial/num_steps", "model/pca_dim", "got 50"}},
@@ -258,6 +260,7 @@ TEST(Configuration, ARobotIsOneWhereItsBlockIsGiven) {
 TEST(Configuration, WhatJustFitsIsAccepted) {
   EXPECT_NO_THROW(readText("trial: {num_steps: 51}\nevaluation: {settled_steps_strict: 51}\n"));
   EXPECT_NO_THROW(readText("trial: {num_steps: 30}\nmodel: {pca_dim: 10, order: 29}\n"));
+  EXPECT_NO_THROW(readText("mpc: {time_budget: 0.2}\n"));
 }
 
 TEST(Configuration, AllContradictionsAreReportedAtOnce) {

@@ -52,6 +52,7 @@ void ControlHealth::countPlan(const Plan& plan) {
   const std::lock_guard<std::mutex> lock(mutex_);
   ++plans_.count;
   if (plan.status == PlanStatus::kFailed) ++plans_.failed;
+  if (plan.status == PlanStatus::kTimeLimit) ++plans_.cut;
   plans_.sum_s += plan.solve_time;
   plans_.max_s = std::max(plans_.max_s, plan.solve_time);
 }
@@ -69,6 +70,7 @@ void ControlHealth::onTick() {
   reported_ = ros::SteadyTime::now();
   num_plans_ += plans_.count;
   num_failed_plans_ += plans_.failed;
+  num_cut_plans_ += plans_.cut;
   updater_.force_update();
   plans_ = Plans();
 }
@@ -98,12 +100,14 @@ void ControlHealth::reportPlans(Status* status) const {
   }
   status->add("plans", plans_.count);
   status->add("failed", plans_.failed);
+  status->add("cut short", plans_.cut);
   if (plans_.count > 0) {
     status->addf("mean solve time [ms]", "%.3f", mean_ms);
     status->addf("longest solve time [ms]", "%.3f", 1e3 * plans_.max_s);
   }
   status->add("plans in all", num_plans_);
   status->add("failed in all", num_failed_plans_);
+  status->add("cut short in all", num_cut_plans_);
 }
 
 void ControlHealth::reportModel(Status* status) const {

@@ -44,6 +44,7 @@ class ControlHealth {
   struct Plans {
     int count = 0;
     int failed = 0;
+    int cut = 0;  ///< by mpc/time_budget
     double sum_s = 0.0;
     double max_s = 0.0;
   };
@@ -63,6 +64,7 @@ class ControlHealth {
   Plans plans_;  ///< since the last report
   std::uint64_t num_plans_ = 0;
   std::uint64_t num_failed_plans_ = 0;
+  std::uint64_t num_cut_plans_ = 0;
   ddm_msgs::Model model_;  ///< without its data
   ros::SteadyTime model_came_;
 

@@ -9,6 +9,7 @@
 #include <ddm_msgs/topics.h>
 
 #include <algorithm>
+#include <chrono>
 #include <sstream>
 #include <stdexcept>
 
@@ -25,6 +26,20 @@ ros::NodeHandle withQueue(ros::NodeHandle nh, ros::CallbackQueue* queue) {
 
 std::vector<double> flat(const Eigen::MatrixXd& values) {
   return std::vector<double>(values.data(), values.data() + values.size());
+}
+
+std::uint8_t statusOf(const Plan& plan) {
+  switch (plan.status) {
+    case PlanStatus::kConverged:
+      return ddm_msgs::Plan::CONVERGED;
+    case PlanStatus::kIterationLimit:
+      return ddm_msgs::Plan::ITERATION_LIMIT;
+    case PlanStatus::kTimeLimit:
+      return ddm_msgs::Plan::TIME_LIMIT;
+    case PlanStatus::kFailed:
+      break;
+  }
+  return ddm_msgs::Plan::FAILED;
 }
 
 }  // namespace
@@ -136,10 +151,11 @@ void MpcNode::onImage(const sensor_msgs::ImageConstPtr& image) {
 }
 
 void MpcNode::answer(const sensor_msgs::Image& image) {
+  const auto arrival = std::chrono::steady_clock::now();
   const std::shared_ptr<TrialRun> trial = trialToAnswer();
   if (trial == nullptr) return;
   std::string problem;
-  const std::optional<Decision> decision = decide(trial.get(), image, &problem);
+  const std::optional<Decision> decision = decide(trial.get(), image, arrival, &problem);
 
   const std::lock_guard<std::mutex> lock(mutex_);
   deciding_since_.reset();
@@ -172,13 +188,14 @@ std::shared_ptr<TrialRun> MpcNode::trialToAnswer() {
 
 /// @param problem  out: why the image cannot be answered
 std::optional<Decision> MpcNode::decide(TrialRun* trial, const sensor_msgs::Image& image,
+                                        std::chrono::steady_clock::time_point arrival,
                                         std::string* problem) const {
   try {
     if (image_sub_.getNumPublishers() > 1) {
       throw std::runtime_error("only one camera may be looked through: stop the others, " +
                                describePublishers(image_sub_.getTopic()));
     }
-    return trial->decide(image);
+    return trial->decide(image, arrival);
   } catch (const std::exception& e) {
     *problem = std::string("image refused: ") + e.what();
     return std::nullopt;
@@ -220,9 +237,7 @@ void MpcNode::publishPlan(const ros::Time& stamp, const Plan& plan) {
   message.cost = plan.cost;
   message.iterations = plan.iterations;
   message.evaluations = plan.evaluations;
-  message.status = plan.status == PlanStatus::kConverged        ? ddm_msgs::Plan::CONVERGED
-                   : plan.status == PlanStatus::kIterationLimit ? ddm_msgs::Plan::ITERATION_LIMIT
-                                                                : ddm_msgs::Plan::FAILED;
+  message.status = statusOf(plan);
   message.message = plan.message;
   message.solve_time = plan.solve_time;
   plan_pub_.publish(message);
@@ -242,9 +257,9 @@ void MpcNode::onFinish() {
   }
   const ddm_msgs::RunTrialGoalConstPtr goal = goal_;
   const ddm_msgs::RunTrialResult result = endTrial();
-  ROS_INFO("trial %u%s: %u torques, %u exploratory, %u failed plans", goal->trial,
+  ROS_INFO("trial %u%s: %u torques, %u exploratory, %u failed plans, %u cut short", goal->trial,
            goal->evaluation != 0 ? " (evaluation)" : "", result.num_steps, result.num_exploratory,
-           result.num_failed_plans);
+           result.num_failed_plans, result.num_cut_plans);
   server_.setSucceeded(result);
 }
 

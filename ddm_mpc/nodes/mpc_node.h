@@ -10,6 +10,7 @@
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -75,6 +76,7 @@ class MpcNode {
   void answer(const sensor_msgs::Image& image);
   std::shared_ptr<TrialRun> trialToAnswer();
   std::optional<Decision> decide(TrialRun* trial, const sensor_msgs::Image& image,
+                                 std::chrono::steady_clock::time_point arrival,
                                  std::string* problem) const;
   void publish(const std_msgs::Header& header, const Decision& decision);
   void publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torque, bool exploratory);

@@ -42,6 +42,7 @@ TrialRun::TrialRun(const ddm_msgs::RunTrialGoal& goal, std::shared_ptr<const Ddm
       greedy_(makePolicy(std::move(model), image_size, mpc, controller)),
       policy_(greedy_, explorationOf(goal, mpc, controller),
               TrialId{goal.seed, goal.trial, evaluation_}) {
+  if (greedy_ != nullptr) greedy_->setStop([this] { return ended(); });
   if (num_steps_ < 1) throw std::invalid_argument("num_steps must be >= 1, got 0");
   if (!goal.start.isZero()) last_stamp_ = goal.start - ros::Duration(0, 1);
 }
@@ -53,7 +54,8 @@ void TrialRun::turn(const MpcOptions& mpc, const std::optional<double>& epsilon)
   if (epsilon && !evaluation_) policy_.setEpsilon(*epsilon);
 }
 
-std::optional<Decision> TrialRun::decide(const sensor_msgs::Image& image) {
+std::optional<Decision> TrialRun::decide(const sensor_msgs::Image& image,
+                                         std::chrono::steady_clock::time_point arrival) {
   if (image.header.stamp.isZero()) {
     throw std::invalid_argument(
         "it has no stamp, which pairs it with its torque: set it in the camera driver");
@@ -65,6 +67,7 @@ std::optional<Decision> TrialRun::decide(const sensor_msgs::Image& image) {
   if (camera != camera_) {
     throw std::invalid_argument("the images change from " + camera_ + " to " + camera);
   }
+  if (greedy_ != nullptr) greedy_->setArrival(arrival);
   Decision decision = policy_.decide(decodeImage(image, image_size_));
   last_stamp_ = image.header.stamp;
   return decision;
@@ -83,6 +86,7 @@ void TrialRun::collect(const ros::Time& stamp, const Decision& decision) {
   if (!decision.plan) return;
   result_.solve_time.push_back(decision.plan->solve_time);
   if (decision.plan->status == PlanStatus::kFailed) ++result_.num_failed_plans;
+  if (decision.plan->status == PlanStatus::kTimeLimit) ++result_.num_cut_plans;
 }
 
 }  // namespace ddm

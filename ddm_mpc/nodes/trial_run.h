@@ -6,6 +6,8 @@
 #include <ddm_msgs/RunTrialAction.h>
 #include <sensor_msgs/Image.h>
 
+#include <atomic>
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,11 +29,14 @@ class TrialRun {
   TrialRun(const ddm_msgs::RunTrialGoal& goal, std::shared_ptr<const Ddm> model, int image_size,
            const MpcOptions& mpc, const ControllerOptions& controller);
 
+  /// @param arrival  of the image: mpc/time_budget begins there
   /// @return the decision, or nothing for an image that is not the next of this trial: one from
   ///         before its start, or one that was already answered
   /// @throws std::invalid_argument for an image that cannot be used, that has no stamp, or whose
   ///         size or encoding differs from those before
-  std::optional<Decision> decide(const sensor_msgs::Image& image);
+  std::optional<Decision> decide(
+      const sensor_msgs::Image& image,
+      std::chrono::steady_clock::time_point arrival = std::chrono::steady_clock::now());
 
   /// From the next image on, plans with these, and explores with this epsilon instead of the
   /// goal's. A random trial plans nothing, and an evaluation does not explore.
@@ -40,7 +45,8 @@ class TrialRun {
   /// Adds a decision that was published to the result.
   void collect(const ros::Time& stamp, const Decision& decision);
 
-  /// No image is answered from here on, and what decide() is planning no longer counts.
+  /// No image is answered from here on. From any thread: a decide() under way ends its search, and
+  /// what it returns no longer counts.
   void end() { ended_ = true; }
   bool ended() const { return ended_; }
 
@@ -55,7 +61,7 @@ class TrialRun {
   std::string camera_;                 // size and encoding of the images
   std::shared_ptr<MpcPolicy> greedy_;  // null: a random trial
   EpsilonGreedy policy_;
-  bool ended_ = false;
+  std::atomic<bool> ended_{false};
   ddm_msgs::RunTrialResult result_;
 };
 

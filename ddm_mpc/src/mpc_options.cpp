@@ -33,6 +33,8 @@ std::vector<std::string> MpcOptions::problems() const {
   require(max_iterations >= 1, "max_iterations must be >= 1", max_iterations);
   require(function_tolerance >= 0.0 && function_tolerance < 1.0,
           "function_tolerance must lie in [0, 1)", function_tolerance);
+  require(time_budget >= 0.0 && std::isfinite(time_budget), "time_budget must be >= 0",
+          time_budget);
   return out;
 }
 

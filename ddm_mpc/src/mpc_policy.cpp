@@ -70,6 +70,7 @@ void MpcPolicy::Member::apply(const Eigen::VectorXd& u) {
 MpcPolicy::MpcPolicy(std::shared_ptr<const Ddm> model, const MpcOptions& options)
     : model_(std::move(model)),
       disagreement_bonus_(options.disagreement_bonus),
+      time_budget_(options.time_budget),
       members_(makeMembers(*model_, options)),
       cost_(costsOf(members_)),
       planner_(&cost_, options) {}
@@ -106,6 +107,8 @@ void MpcPolicy::startTrial(const TrialId& id) {
 }
 
 void MpcPolicy::observe(const Grey& grey) {
+  began_ = arrival_.value_or(std::chrono::steady_clock::now());
+  arrival_.reset();
   for (const auto& member : members_) member->observe(grey);
 }
 
@@ -119,7 +122,10 @@ Plan MpcPolicy::plan() {
   for (const auto& member : members_) {
     member->cost.setProblem(member->x, member->model.goalFeature(), member->offset);
   }
-  return planner_.solve(&rng_);
+  if (time_budget_.count() <= 0.0) return planner_.solve(&rng_, stop_);
+  return planner_.solve(&rng_, [this] {
+    return std::chrono::steady_clock::now() - began_ >= time_budget_ || (stop_ && stop_());
+  });
 }
 
 void MpcPolicy::apply(const Eigen::VectorXd& u) {

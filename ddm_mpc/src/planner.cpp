@@ -60,18 +60,26 @@ Eigen::MatrixXd Planner::startOf(int start, std::mt19937_64* rng) const {
   return level.replicate(1, K);
 }
 
-Plan Planner::solve(std::mt19937_64* rng) {
+Plan Planner::solve(std::mt19937_64* rng, const std::function<bool()>& stop) {
   const auto begin = std::chrono::steady_clock::now();
   BoundedCost cost(&cost_, options_.max_torque);
   MinimiseOptions solver;
   solver.max_iterations = options_.max_iterations;
   solver.function_tolerance = options_.function_tolerance;
   solver.gradient_tolerance = 1e-8;
+  bool asked = false, stopped = false;
+  if (stop) {
+    solver.stop = [&] {
+      stopped = asked && stop();
+      asked = true;
+      return stopped;
+    };
+  }
 
   Plan plan;
   plan.goal_feature = cost_.goalFeature();
   Minimum best;
-  for (int start = 0; start < options_.num_starts; ++start) {
+  for (int start = 0; start < options_.num_starts && !stopped; ++start) {
     const Eigen::MatrixXd v = startOf(start, rng);
     Minimum minimum =
         minimise(std::ref(cost), Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()), solver);
@@ -80,7 +88,9 @@ Plan Planner::solve(std::mt19937_64* rng) {
     if (minimum.cost < best.cost) best = std::move(minimum);
   }
   if (std::isfinite(best.cost)) {
-    plan.status = best.converged() ? PlanStatus::kConverged : PlanStatus::kIterationLimit;
+    plan.status = stopped            ? PlanStatus::kTimeLimit
+                  : best.converged() ? PlanStatus::kConverged
+                                     : PlanStatus::kIterationLimit;
     plan.cost = best.cost;
     last_v_ = Eigen::Map<const Eigen::MatrixXd>(best.x.data(), cost_.torqueDim(), cost_.horizon());
     plan.torques = options_.max_torque * last_v_.array().tanh();

@@ -13,9 +13,10 @@ class ModelPlanner {
   ModelPlanner(const Ddm& model, const MpcOptions& options)
       : cost_(model, options.horizon, options.control_weight), planner_(&cost_, options) {}
 
-  Plan solve(const History& x, const Eigen::VectorXd& goal_feature, std::mt19937_64* rng) {
+  Plan solve(const History& x, const Eigen::VectorXd& goal_feature, std::mt19937_64* rng,
+             const std::function<bool()>& stop = {}) {
     cost_.setProblem(x, goal_feature);
-    return planner_.solve(rng);
+    return planner_.solve(rng, stop);
   }
   void setHorizon(int horizon) { cost_.setHorizon(horizon); }
   void clear() { planner_.clear(); }

@@ -78,6 +78,8 @@ TEST_F(TwoMotors, GetZeroWhenAnImageIsRefused) {
 
 class LongPlan : public TwoMotors {
  protected:
+  using TwoMotors::TwoMotors;
+
   /// Starts a trial with an image that takes minutes to answer.
   void beginPlan(unsigned seed) {
     RandomModelOptions options;
@@ -100,11 +102,20 @@ class LongPlan : public TwoMotors {
   }
 };
 
+/// A second node, where such a plan has a budget.
+class InTime : public LongPlan {
+ protected:
+  InTime() : LongPlan("/in_time") {}
+};
+
 TEST_F(LongPlan, DoesNotDelayTheAnswerToACancelledGoal) {
   beginPlan(21);
   action_.cancelGoal();
   expectEnd(State::PREEMPTED);
   expectZerosAndNothingElse();
+  begin(trialGoal(2, 1.0));
+  show(2);  // the search has ended with its trial, and the next image is answered
+  expectEnd(State::SUCCEEDED);
 }
 
 TEST_F(LongPlan, EndsWithTheTimeoutOfItsTrial) {
@@ -122,6 +133,21 @@ TEST_F(LongPlan, DoesNotDelayAChangeOfParameters) {
   EXPECT_TRUE(answered.value_or(false));
   action_.cancelGoal();
   expectEnd(State::PREEMPTED);
+}
+
+TEST_F(InTime, GivesTheBestSoFarWithinItsBudgetAndIsCounted) {
+  beginPlan(24);
+  show(2);
+  expectEnd(State::SUCCEEDED);
+  ASSERT_TRUE(waitUntil([this] { return plan_.messages.size() == 2; }));
+  for (const ddm_msgs::Plan& plan : plan_.messages) {
+    EXPECT_EQ(plan.status, ddm_msgs::Plan::TIME_LIMIT);
+    EXPECT_GT(plan.evaluations, 1U);
+    EXPECT_TRUE(plan.message.empty());
+  }
+  EXPECT_EQ(action_.getResult()->num_cut_plans, 2U);
+  EXPECT_EQ(action_.getResult()->num_failed_plans, 0U);
+  expectEffortsOfTorquesAndThenZeros();
 }
 
 /// Starts a node of its own.

@@ -54,6 +54,7 @@ TEST(MpcOptions, RefuseNumbersOutOfRangeNanIncluded) {
     expectProblem<MpcOptions>("mpc/epsilon", [bad](MpcOptions* o) { o->epsilon = bad; });
     expectProblem<MpcOptions>("mpc/function_tolerance",
                               [bad](MpcOptions* o) { o->function_tolerance = bad; });
+    expectProblem<MpcOptions>("mpc/time_budget", [bad](MpcOptions* o) { o->time_budget = bad; });
     expectProblem<MpcOptions>("mpc/saturation_width",
                               [bad](MpcOptions* o) { o->saturation_width = bad; });
     expectProblem<MpcOptions>("mpc/terminal_weight",

@@ -6,6 +6,7 @@
 #include <ddm_model/testing/expect_error.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <vector>
 
 #include "ddm_mpc/random_stream.h"
@@ -265,6 +266,29 @@ TEST(MpcPolicy, TheCostOfAPlanIsThatOfEachKeyForIt) {
   options = MpcOptions();
   options.terminal_weight = 100.0;
   EXPECT_GT(costOfFirstPlan(options), plain);
+}
+
+TEST(MpcPolicy, CutsAPlanShortWhenTheBudgetOrTheStopSaysSo) {
+  const auto firstPlan = [](double time_budget, std::chrono::seconds age, bool stop) {
+    MpcOptions options;
+    options.time_budget = time_budget;
+    MpcPolicy policy(sharedModel(), options);
+    policy.setStop([stop] { return stop; });
+    policy.startTrial(TrialId());
+    policy.setArrival(std::chrono::steady_clock::now() - age);
+    policy.observe(randomGrey(8, 3));
+    return policy.plan();
+  };
+  const Plan free = firstPlan(0.0, std::chrono::seconds(100), false);
+  EXPECT_NE(free.status, PlanStatus::kTimeLimit);
+  for (const Plan& plan : {firstPlan(1e-9, std::chrono::seconds(0), false),
+                           firstPlan(60.0, std::chrono::seconds(100), false),
+                           firstPlan(0.0, std::chrono::seconds(0), true)}) {
+    EXPECT_EQ(plan.status, PlanStatus::kTimeLimit);
+    EXPECT_EQ(plan.evaluations, 1);
+    EXPECT_EQ(plan.torques, Eigen::MatrixXd::Zero(1, 15)) << "the first start, with no torque";
+  }
+  EXPECT_EQ(firstPlan(3600.0, std::chrono::seconds(0), false).torques, free.torques);
 }
 
 TEST(MpcPolicy, RefusesAnImageOfAnotherSize) {

@@ -7,6 +7,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "model_planner.h"
@@ -309,6 +310,57 @@ TEST(Planner, PlansASingleStep) {
   }
 }
 
+/// True from the question number `count` on.
+std::function<bool()> stopAfter(int count) {
+  return [count, asked = 0]() mutable { return ++asked >= count; };
+}
+
+TEST(Planner, ReturnsTheBestPlanSoFarWhenItIsStoppedAfterAnyNumberOfEvaluations) {
+  const MpcOptions options = exactOptions();
+  const Ddm model = randomModel({});
+  const History x = randomHistory(model, 3);
+  double last_cost = kInfinity;
+  for (const int evaluations : {1, 2, 3, 10, 30, 100}) {
+    ModelPlanner planner(model, options);
+    std::mt19937_64 rng(1);
+    const Plan plan = planner.solve(x, model.goalFeature(), &rng, stopAfter(evaluations));
+    EXPECT_EQ(plan.status, PlanStatus::kTimeLimit) << evaluations;
+    EXPECT_EQ(plan.evaluations, evaluations);
+    EXPECT_NEAR(plan.cost, costOf(model, options, x, model.goalFeature(), plan.torques), 1e-12);
+    EXPECT_LE(plan.cost, last_cost) << "more evaluations, and a worse plan";
+    last_cost = plan.cost;
+  }
+  EXPECT_LT(last_cost, costOf(model, options, x, model.goalFeature(),
+                              Eigen::MatrixXd::Zero(1, options.horizon)));
+}
+
+TEST(Planner, KeepsTheBestOfTheStartsBeforeTheOneThatIsStopped) {
+  const Ddm model = randomModel({});
+  const History x = randomHistory(model, 3);
+  MpcOptions options;
+  options.num_starts = 1;
+  std::mt19937_64 rng(1);
+  const Plan first = ModelPlanner(model, options).solve(x, model.goalFeature(), &rng);
+  options.num_starts = 5;
+  rng.seed(1);
+  const Plan plan = ModelPlanner(model, options)
+                        .solve(x, model.goalFeature(), &rng, stopAfter(first.evaluations + 1));
+  EXPECT_EQ(plan.status, PlanStatus::kTimeLimit);
+  EXPECT_LE(plan.cost, first.cost);
+  EXPECT_LE(plan.evaluations, first.evaluations + 1);
+}
+
+TEST(Planner, IsNotCutShortByAStopThatNeverCame) {
+  const Ddm model = randomModel({});
+  const History x = randomHistory(model, 3);
+  std::mt19937_64 rng(1), same(1);
+  const Plan free = ModelPlanner(model, MpcOptions()).solve(x, model.goalFeature(), &rng);
+  const Plan asked =
+      ModelPlanner(model, MpcOptions()).solve(x, model.goalFeature(), &same, [] { return false; });
+  EXPECT_EQ(asked.status, free.status);
+  EXPECT_EQ(asked.torques, free.torques);
+}
+
 void expectFailure(const Plan& plan) {
   EXPECT_EQ(plan.status, PlanStatus::kFailed);
   EXPECT_FALSE(plan.message.empty());
@@ -323,6 +375,9 @@ TEST(Planner, FailsWithoutTorqueWhereTheModelOverflows) {
   std::mt19937_64 rng(1);
   Plan plan;
   EXPECT_NO_THROW(plan = planner.solve(randomHistory(model, 3), model.goalFeature(), &rng));
+  expectFailure(plan);
+  EXPECT_NO_THROW(plan = planner.solve(randomHistory(model, 3), model.goalFeature(), &rng,
+                                       [] { return true; }));
   expectFailure(plan);
 }
 

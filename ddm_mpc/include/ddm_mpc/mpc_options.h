@@ -23,6 +23,7 @@ struct MpcOptions {
   int num_starts = 3;        ///< initial plans that the solver starts from [-]
   int max_iterations = 40;   ///< cap on the BFGS iterations of each start [-]
   double function_tolerance = 1e-4;  ///< stop when the cost changes by less than this fraction [-]
+  double time_budget = 0.0;  ///< from an image to the end of the search for its plan; 0: none [s]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
@@ -39,6 +40,7 @@ struct MpcOptions {
     visitor("num_starts", num_starts);
     visitor("max_iterations", max_iterations);
     visitor("function_tolerance", function_tolerance);
+    visitor("time_budget", time_budget);
   }
   /// Everything wrong with these values, in words a user can act on. Empty means valid.
   std::vector<std::string> problems() const;

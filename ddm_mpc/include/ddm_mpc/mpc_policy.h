@@ -5,8 +5,12 @@
 #include <ddm_model/ddm.h>
 #include <ddm_model/history.h>
 
+#include <chrono>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "ddm_mpc/ddm_plan_cost.h"
@@ -19,6 +23,7 @@ namespace ddm {
 
 /// Encodes each image, keeps the state x, and plans towards the model's goal feature (paper,
 /// Sec. 3.1). With an ensemble each model does so, and the plan minimises the mean of their costs.
+/// mpc/time_budget covers the whole decision: what it took to decode and encode the image, too.
 class MpcPolicy : public Policy {
  public:
   /// @throws std::invalid_argument if the model has no goal image, or max_torque exceeds the
@@ -29,6 +34,12 @@ class MpcPolicy : public Policy {
   /// @throws std::invalid_argument if the horizon is < 1
   void setHorizon(int horizon);
   void setControlWeight(double control_weight);
+
+  /// When the image arrived that observe() takes in next; otherwise the budget begins there.
+  void setArrival(std::chrono::steady_clock::time_point arrival) { arrival_ = arrival; }
+
+  /// Another reason to end the search for a plan, asked before each evaluation of the cost.
+  void setStop(std::function<bool()> stop) { stop_ = std::move(stop); }
 
   void startTrial(const TrialId& id) override;
   void observe(const Grey& grey) override;
@@ -66,6 +77,10 @@ class MpcPolicy : public Policy {
 
   std::shared_ptr<const Ddm> model_;
   double disagreement_bonus_;
+  std::chrono::duration<double> time_budget_;
+  std::optional<std::chrono::steady_clock::time_point> arrival_;  // of the next image
+  std::chrono::steady_clock::time_point began_;                   // the decision under way
+  std::function<bool()> stop_;
   std::vector<std::unique_ptr<Member>> members_;
   EnsemblePlanCost cost_;
   Planner planner_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <random>
 #include <string>
 
@@ -15,6 +16,7 @@ namespace ddm {
 enum class PlanStatus {
   kConverged,       ///< the solver met its tolerance
   kIterationLimit,  ///< usable; the search ended before that
+  kTimeLimit,       ///< usable; the search was stopped, this is the best plan it had found
   kFailed,          ///< no usable plan
 };
 
@@ -43,8 +45,11 @@ class Planner {
   void clear() { last_v_.resize(0, 0); }
 
   /// Never throws for numerical trouble: the status tells.
-  /// @param rng  draws the random starts
-  Plan solve(std::mt19937_64* rng);
+  /// @param rng   draws the random starts
+  /// @param stop  asked before each evaluation of the cost but the first: true ends the search,
+  /// over
+  ///              all starts, and the best plan evaluated so far counts; empty: never
+  Plan solve(std::mt19937_64* rng, const std::function<bool()>& stop = {});
 
  private:
   Eigen::MatrixXd startOf(int start, std::mt19937_64* rng) const;
