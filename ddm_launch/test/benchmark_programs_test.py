@@ -35,6 +35,17 @@ class BenchmarkProgramsTest(ScratchCase):
             self.assertTrue(0.0 < median <= p99, (name, median, p99))
         self.assertGreater(bench.plan_iterations, 0.0)
 
+    def test_each_plan_that_would_take_minutes_is_cut_short_by_its_budget(self):
+        bench = benchmark.Benchmark(self.scratch, False, self.scratch)
+        with mock.patch.object(benchmark, "NUM_PLANS", 20):
+            bench.planning_budget()
+        rows = [dict(zip(benchmark.BUDGET_COLUMNS, row)) for row in bench.budgets]
+        self.assertEqual([row["load"] for row in rows], ["idle", "idle", "busy", "busy"])
+        for row in rows:
+            self.assertEqual(len(row), len(benchmark.BUDGET_COLUMNS), row)
+            self.assertEqual((row["plans"], row["cut_short"]), ("20", "20"))
+            self.assertGreater(float(row["median_ms"]), 5.0)
+
     def test_growth_gives_a_row(self):
         code, output = call([find_program("ddm_launch", "speed_growth"), "--frames", "200", "--size", "21"], 60.0)
         self.assertEqual(code, 0, output)

@@ -41,6 +41,8 @@ class BenchmarkTest(ScratchCase):
             path = next(word.split(":=")[1] for word in command if word.startswith("out:="))
             time_us = 40.0 if what == "bare" else 80.0
             self.write(path, "{median_us: %g, p99_us: %g, count: 3000}\n" % (time_us, 2.0 * time_us))
+        elif what == "planning_budget":
+            return "%s,%s,5,2000,2000,5.1,5.2,5.3,6,1,1\n" % (command[2], "busy" if "--busy" in command else "idle")
         elif "torch_peers" in " ".join(command):
             return json.dumps({"plan": {"median_us": 60000.0, "p99_us": 70000.0}})
         return "1.13\n"
@@ -64,6 +66,10 @@ class BenchmarkTest(ScratchCase):
             "ros_experiment": ["9.5e+06", "", ""], "lockstep_round_trip": ["80", "160", ""],
             "bare_round_trip": ["40", "80", ""]})
         self.assertEqual(read_yaml(self.out, "machine.yaml")["plan_iterations"], 42.0)
+        budgets = read_rows(self.out, "planning_budget.csv")
+        self.assertEqual(budgets[0], benchmark.BUDGET_COLUMNS)
+        self.assertEqual([row[:2] for row in budgets[1:]],
+                         [[preset, load] for load in ("idle", "busy") for preset in ("paper", "efficient")])
         self.assertRegex(output, r"plan +300 us +600 us +60 ms +200\.0")
 
     def test_without_peers_their_column_is_empty(self):

@@ -18,7 +18,9 @@ from ddm_launch.sweep_folder import read_yaml
 from ddm_model.plain_file import write_file
 
 COLUMNS = ["name", "median_us", "p99_us", "peer_median_us"]
-TRIALS, ITERATIONS, RESTARTS, NUM_FRAMES = 15, 200, 9, 10000
+BUDGET_COLUMNS = ["preset", "load", "budget_ms", "plans", "cut_short", "median_ms", "p99_ms", "p999_ms", "max_ms",
+                  "within_2_ms", "within_10_ms"]
+TRIALS, ITERATIONS, RESTARTS, NUM_FRAMES, NUM_PLANS = 15, 200, 9, 10000, 2000
 
 ABOUT = """\
 Times objective and gradient, one retraining, PCA, encoding, plans, renderer and bag reading on the 1600 frames of an
@@ -40,6 +42,9 @@ DIR/speed.csv, one row a name; times in microseconds, of single calls unless sai
   bare_round_trip      the same messages between two nodes that do nothing with them, restarts taking turns
   experiment           15 trials after the random one in one process, the whole; once
   ros_experiment       the same by roslaunch, from the first frame to the last; once
+DIR/planning_budget.csv  2000 decisions of presets paper and efficient that would take minutes, with mpc/time_budget at
+                       5 ms, on the idle machine and with a busy process on each core: time from when an image is due to
+                       its torque, and the fraction that took at most the budget and 2 ms, or 10 ms
 With --peers, peer_median_us is the time of the same mathematics in PyTorch, one thread, its own L-BFGS.
 DIR/machine.yaml       processor, versions, iterations of a plan"""
 
@@ -51,6 +56,7 @@ class Benchmark:
         self.run = os.path.join(scratch, "experiment")
         self.rows = {}  # name: [median, 99 % quantile, peer's median] [us]
         self.plan_iterations = None
+        self.budgets = []  # rows of planning_budget.csv
 
     def experiment(self):
         self.programs.call("experiment", [program("run_experiment"), "--preset", "paper", "--plant", "pendulum",
@@ -100,6 +106,13 @@ class Benchmark:
         for name, found in times.items():
             self.rows[name + "_round_trip"] = [statistics.median(column) for column in zip(*found)] + [""]
 
+    def planning_budget(self):
+        for load in ([], ["--busy"]):
+            for preset in ("paper", "efficient"):
+                row = self.programs.call("planning_budget", [program("planning_budget"), "--preset", preset, "--plans",
+                                                             str(NUM_PLANS)] + load)
+                self.budgets.append(row.strip().split(","))
+
     def ros_experiment(self):
         run = os.path.join(self.scratch, "ros_experiment")
         self.programs.roslaunch("ros_experiment", "ddm_launch", "experiment.launch", "preset:=paper",
@@ -112,7 +125,7 @@ class Benchmark:
     def work(self):
         steps = [("experiment", self.experiment), ("kernels", self.kernels)]
         steps += [("PyTorch", self.peer)] if self.peers else []
-        steps += [("roslaunch experiment", self.ros_experiment)]
+        steps += [("planning with a budget", self.planning_budget), ("roslaunch experiment", self.ros_experiment)]
         with tqdm(total=len(steps) + 2 * RESTARTS, unit="step", dynamic_ncols=True, disable=None) as progress:
             for name, step in steps:
                 progress.set_description(name)
@@ -125,6 +138,7 @@ class Benchmark:
     def write(self):
         write_csv(os.path.join(self.out, "speed.csv"), COLUMNS,
                   [[name] + ["" if value == "" else float(value) for value in row] for name, row in self.rows.items()])
+        write_csv(os.path.join(self.out, "planning_budget.csv"), BUDGET_COLUMNS, self.budgets)
         machine = {"cpu": processor(), "cores": os.cpu_count(), "plan_iterations": self.plan_iterations,
                    "version": read_yaml(os.path.join(self.run, "config.yaml")).get("version", "?")}
         if self.peers:
@@ -138,6 +152,9 @@ class Benchmark:
         for name, (median, p99, peer) in self.rows.items():
             lines.append("%-20s %14s %14s %14s %9s" % (name, readable(median), readable(p99), readable(peer),
                                                        "" if peer == "" else "%.1f" % (peer / median)))
+        for row in self.budgets:
+            lines.append("budget of %(budget_ms)s ms, %(preset)s, %(load)s: 99 %% of %(plans)s plans within %(p99_ms)s ms, "
+                         "99.9 %% within %(p999_ms)s ms" % dict(zip(BUDGET_COLUMNS, row)))
         return lines
 
 
