@@ -113,6 +113,24 @@ void forgetChecksums(const YAML::Node& values, YAML::Node* blocks) {
   if (start["bags"].IsDefined()) below.remove("bag_ids");
 }
 
+bool has(const YAML::Node& blocks, const std::string& block, const std::string& key) {
+  const YAML::Node values = blocks[block];
+  return values.IsDefined() && values.IsMap() && values[key].IsDefined();
+}
+
+/// In real time a plan has to be there before the next image.
+void boundPlanning(YAML::Node* blocks) {
+  const bool robot = (*blocks)["robot"].IsDefined();
+  bool lockstep = true;
+  if (has(*blocks, "sim", "lockstep")) parseValue((*blocks)["sim"]["lockstep"], &lockstep);
+  const char* const clock = robot ? "robot" : "plant";
+  double dt = 0.0;
+  if ((!robot && lockstep) || !has(*blocks, clock, "dt")) return;
+  if (parseValue((*blocks)[clock]["dt"], &dt)) {
+    (*blocks)["mpc"]["time_budget"] = valueToYaml(0.5 * dt);
+  }
+}
+
 }  // namespace
 
 ResolvedConfiguration resolve(const Arguments& arguments) {
@@ -122,6 +140,7 @@ ResolvedConfiguration resolve(const Arguments& arguments) {
     return layers;
   };
   std::vector<Layer> layers = layersOf(manuals());
+  const auto num_manuals = static_cast<std::ptrdiff_t>(layers.size());
   const std::vector<Layer> configs = layersOf(arguments.configs);
   const YAML::Node& values = arguments.values;
 
@@ -148,6 +167,11 @@ ResolvedConfiguration resolve(const Arguments& arguments) {
   resolved.blocks.remove("version");  // of the code that saved a file
   forgetChecksums(values, &resolved.blocks);
   overlay(values, &resolved.blocks);
+  const bool budget_given =
+      has(values, "mpc", "time_budget") ||
+      std::any_of(layers.begin() + num_manuals, layers.end(),
+                  [](const Layer& layer) { return has(layer.blocks, "mpc", "time_budget"); });
+  if (!budget_given) boundPlanning(&resolved.blocks);
   return resolved;
 }
 

@@ -37,6 +37,7 @@ struct ResolvedConfiguration {
 ///
 ///   defaults, preset, plant, method, nuisances, configs, values
 ///
+/// In real time mpc/time_budget is half a time step where nothing above the defaults gives it.
 /// Preset, plant and method are those that `experiment` names in values, else in the last of the
 /// configs that names them, else in the defaults. A file that names its plant and has a block
 /// `plant` describes that plant, so it is refused for another one; a saved configuration is refused

@@ -103,6 +103,18 @@ TEST_F(Resolution, AnArgumentWinsOverASavedConfiguration) {
   EXPECT_EQ(all.experiment.runs, "/new");
 }
 
+TEST_F(Resolution, PlansTakeHalfATimeStepInRealTimeUnlessAnythingSaysOtherwise) {
+  EXPECT_EQ(read().mpc.time_budget, 0.0);
+  given_.set("sim/lockstep", false);
+  EXPECT_EQ(read().mpc.time_budget, 0.1);
+  given_.configs = {file("robot.yaml", "robot: {dt: 0.05}\n")};
+  EXPECT_EQ(read().mpc.time_budget, 0.025);
+  given_.configs.push_back(file("none.yaml", "mpc: {time_budget: 0}\n"));
+  EXPECT_EQ(read().mpc.time_budget, 0.0);
+  given_.set("mpc/time_budget", 0.04);
+  EXPECT_EQ(read().mpc.time_budget, 0.04);
+}
+
 TEST_F(Resolution, ASavedPlantIsNotMixedWithAnother) {
   given_.set("experiment/plant", std::string("pendulum_gravity"));
   const std::string config = saved();
