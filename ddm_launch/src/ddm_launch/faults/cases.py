@@ -17,7 +17,7 @@ ENDS = "ended, named, undamaged, resumes, equal"
 ENDS_IN_FIRST_TRIAL = "ended, named, resumes, equal"
 KILLED = "ended, undamaged, resumes, equal"  # roslaunch names the node, and ends the others at once
 KILLED_IN_FIRST_TRIAL = "ended, resumes, equal"
-STAYS = "ended, named, undamaged, resumes, equal"
+STAYS = "ended, named, unchanged, undamaged, resumes, equal"
 REFUSED = "refused, named, acts when restored"
 REFUSED_AND_KEPT = "refused, named, kept, acts when restored"
 GOES_ON_AFTER_ZERO = "finished, zero"
@@ -41,10 +41,11 @@ lose sim_node in exploring trial|oversleep mpc_node in evaluation
 drop image in exploring trial|double torque in exploring trial|repeat image in evaluation
 publish torque in exploring trial|publish image in evaluation|publish clock in evaluation
 alter torque nan in exploring trial|alter image size in evaluation
-cut chunk of trial.bag at rest|flip model.ddm at rest|flip end of trials.csv at rest|other seed at rest|fill disk in random trial
+cut chunk of trial.bag at rest|flip model.ddm at rest|flip end of trials.csv at rest|unfinished bag at rest|other seed at rest|fill disk in random trial
 begin experiment in exploring trial
 hold mpc_node in evaluation in real time|alter torque nan in exploring trial in real time
 mute image in exploring trial in real time|swap image in exploring trial in real time
+future image in exploring trial on a robot
 """.replace("\n", "|").split("|")) - {""}
 
 
@@ -105,7 +106,7 @@ def real_time():
     """The plant does not wait: whatever happens, the motor must stop by itself, and no torque that came too late or
     never reached it may be learned from."""
     for run in RUNS:
-        phase, learns = run + REAL_TIME, ""
+        phase, learns = run + REAL_TIME, ", learned what acted" if run == EXPLORING else ""
         # As good as dead, to the plant; when it is killed roslaunch ends the plant, too, and there is nothing to see.
         yield case("hold mpc_node", phase, ENDS_WITH_ZERO, "action /run_trial shows no sign of life")
         yield case("pause mpc_node", phase, GOES_ON_AFTER_ZERO + learns)
@@ -117,6 +118,16 @@ def real_time():
         for how in ("nan", "inf", "none", "twice", "1e300"):
             yield case("alter torque " + how, phase, ENDS_WITH_ZERO, "torque refused", "/fault_injector")
         yield case("publish torque", phase, ENDS_WITH_ZERO, "torque refused", "/intruder")
+
+
+def robot():
+    """A wrong clock, or a joint beyond its limits, must bring zero torque within two dt and 50 ms."""
+    for phase in [run + ON_A_ROBOT for run in RUNS]:
+        yield case("future image", phase, ENDS_WITH_ZERO, "no image after step")  # and then silence
+        yield case("set clock forward", phase, GOES_ON_NAMED_AFTER_ZERO, "the camera's clock has jumped forward")
+        yield case("set clock back", phase, GOES_ON_NAMED_AFTER_ZERO, "before the one that came before it")
+        yield case("exceed position", phase, ENDS_WITH_ZERO, "robot/position_limits", "was cancelled")
+        yield case("exceed speed", phase, ENDS_WITH_ZERO, "robot/speed_limit", "was cancelled")
 
 
 def values():
@@ -150,9 +161,12 @@ def files():
 
 def folders():
     yield case("other seed", AT_REST, STAYS, "holds another experiment", "experiment/seed")
+    yield case("unfinished bag", AT_REST, REFUSED_AND_KEPT, "new.bag.active", "rosbag reindex")
+    yield case("unfinished trial", AT_REST, "finished, kept, equal")
+    yield case("two writers", AT_REST, "one is whole")
     yield case("begin experiment", "exploring trial", NOTICED, "another experiment is running in the folder")
     yield case("begin experiment", "random trial", NOTICED, "another experiment is running in the folder")
 
 
-CASES = [each for group in (processes, missed, transport, intruders, clocks, real_time, values, files,
+CASES = [each for group in (processes, missed, transport, intruders, clocks, real_time, robot, values, files,
                                         folders) for each in group()]

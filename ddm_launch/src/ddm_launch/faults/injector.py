@@ -19,6 +19,7 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Image, JointState
 
 from ddm_launch.faults import robot_injector
+from ddm_launch.faults.configuration import configuration
 from ddm_launch.faults.finished import Finished
 from ddm_launch.faults.motor import MotorWatch
 from ddm_launch.faults.order import OrderWatch
@@ -38,8 +39,8 @@ QUEUE = 100
 
 # How long a node stops, in terms of the first limit that somebody who waits for it has.
 STOPS = {"pause": 0.6, "oversleep": 1.25, "hold": float("inf")}
-LIMITS = {"sim_node": "/mpc_node/controller/timeout", "mpc_node": "/sim_node/sim/watchdog"}
-OTHER_LIMIT = "/experiment_node/experiment/timeout"
+LIMITS = {"sim_node": ("controller", "timeout"), "mpc_node": ("sim", "watchdog")}
+OTHER_LIMIT = ("experiment", "timeout")
 
 
 def altered(message, how):
@@ -228,7 +229,8 @@ class Injector:
         if self.verb in STOPS:
             os.kill(self.pid, signal.SIGSTOP)
             if self.verb != "hold":
-                later(STOPS[self.verb] * rospy.get_param(LIMITS.get(self.what, OTHER_LIMIT)), "CONT", self.pid)
+                block, key = LIMITS.get(self.what, OTHER_LIMIT)
+                later(STOPS[self.verb] * configuration()[block][key], "CONT", self.pid)
         elif self.verb == "lose":
             self.lose()
         elif self.verb == "mute":

@@ -10,6 +10,7 @@ import rospy
 from sensor_msgs.msg import Image, JointState
 from std_msgs.msg import Float64
 
+from ddm_launch.faults.configuration import configuration
 from ddm_launch.faults.finished import Finished
 from ddm_launch.robot_check import show_goal_and_enable
 
@@ -128,7 +129,7 @@ class RobotInjector:
 
 def main():
     injector = RobotInjector()
-    limit = 2.0 * rospy.get_param("/robot_node/robot/dt") + rospy.get_param("~slack")
+    limit = 2.0 * configuration()["robot"]["dt"] + rospy.get_param("~slack")
     show_goal_and_enable()
     rospy.spin()
     injector.end(limit)
