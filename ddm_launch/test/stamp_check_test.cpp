@@ -123,11 +123,9 @@ TEST(StampCheck, TheFirstImageIsComparedWithTheClockOfTheMachine) {
 TEST(StampCheck, AClockThatDriftsByAMillisecondPerSecondNeverStopsATrial) {
   for (const double drift : {1e-3, -1e-3}) {
     Robot robot;
-    int shown = 0;
     for (double now = 0.0; now < 1800.0; now += kPeriod) {
       ASSERT_TRUE(robot.image(now, drift * now)) << now;
-      if (now > 1.0) ASSERT_EQ(robot.effort(now + 0.011), 2.0) << now;
-      ++shown;
+      ASSERT_EQ(robot.effort(now + 0.011), 2.0) << now;
     }
     EXPECT_EQ(robot.gate_.numMisses(), 0);
   }
