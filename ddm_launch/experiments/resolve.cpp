@@ -102,7 +102,7 @@ bool configure(int argc, char** argv, Request* request) {
           }),
       "BLOCK/KEY=VALUE, wins over all files; repeatable");
   add("access", po::value(&request->access)->multitoken(),
-      "folders and bags that requests to the nodes may name; otherwise those of the experiment");
+      "folders and bags that requests to the nodes may name, with those of the experiment");
   add("print", po::value(&request->print), "BLOCK/KEY: print this value alone");
   const std::vector<std::string> given = givenWords(argc, argv);
   std::vector<char*> words = {argv[0]};
@@ -116,12 +116,22 @@ void makeAbsolute(YAML::Node path) {
   path = boost::filesystem::absolute(path.Scalar()).lexically_normal().string();
 }
 
+/// Adds to what requests to the nodes may name; the default, the folder in which a node runs, goes.
+void allowAccess(const std::vector<std::string>& paths, YAML::Node* blocks) {
+  YAML::Node bags(YAML::NodeType::Sequence);
+  for (const std::string& path : paths) bags.push_back(path);
+  for (const YAML::Node& bag : (*blocks)["access"]["bags"]) {
+    if (bag.Scalar() != ".") bags.push_back(bag.Scalar());
+  }
+  (*blocks)["access"]["bags"] = bags;
+}
+
 void run(const Request& request) {
   ResolvedConfiguration resolved = resolve(request.arguments);
   ParamReader reader = resolved.reader();
   const Configuration all = readEachBlock(&reader);
-  const YAML::Node runs = request.arguments.values["experiment"]["runs"];
-  const bool experiment = runs.IsDefined();
+  const YAML::Node names = request.arguments.values["experiment"];
+  const bool experiment = names.IsDefined() && names["runs"].IsDefined();
   if (experiment) requireConsistent(all);
 
   YAML::Node& blocks = resolved.blocks;
@@ -129,11 +139,10 @@ void run(const Request& request) {
   makeAbsolute(blocks["start"]["model"]);
   for (YAML::Node bag : blocks["start"]["bags"]) makeAbsolute(bag);
   if (all.robot) makeAbsolute(blocks["robot"]["goal_file"]);
-  if (!blocks["access"].IsDefined()) {
-    if (experiment) blocks["access"]["bags"].push_back(blocks["experiment"]["runs"]);
-    for (const YAML::Node& bag : blocks["start"]["bags"]) blocks["access"]["bags"].push_back(bag);
-    for (const std::string& path : request.access) blocks["access"]["bags"].push_back(path);
-  }
+  std::vector<std::string> access = request.access;
+  if (experiment) access.push_back(blocks["experiment"]["runs"].Scalar());
+  for (const YAML::Node& bag : blocks["start"]["bags"]) access.push_back(bag.Scalar());
+  if (!access.empty()) allowAccess(access, &blocks);
   if (request.print.empty()) {
     std::cout << YAML::Dump(blocks) << "\n";
     return;

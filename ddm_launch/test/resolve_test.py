@@ -52,7 +52,7 @@ class ResolveTest(ScratchCase):
                          ["/runs", "/a.bag"])
         self.write("access.yaml", "access: {bags: [/elsewhere]}\n")
         self.assertEqual(self.resolve("--runs", "/runs", "--config", "access.yaml")["access"]["bags"],
-                         ["/elsewhere"])
+                         ["/runs", "/elsewhere"])
 
     def test_a_crop_is_four_numbers(self):
         robot = self.resolve("--crop", "1,2,30,40")["robot"]
