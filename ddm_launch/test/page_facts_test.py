@@ -36,8 +36,8 @@ def documented(page, node):
         if "default" in table[0] or "colour" in table[0] or "status" in table[0] or "state" in table[0]:
             continue
         for row in table[1:]:
-            if row[-1].startswith(("real time only", "several motors")):
-                continue  # the nodes here are in lock-step and have one motor
+            if row[-1].startswith(("real time only", "several motors", "only where joints have limits")):
+                continue  # the nodes here are in lock-step and have one motor without limits
             kind = row[0] or kind
             cell = row[0] if row[0].startswith("`") else row[1] if kind != "parameters" else ""
             names.update(pages.code_spans(cell))
