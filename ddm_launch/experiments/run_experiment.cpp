@@ -20,7 +20,7 @@ namespace {
 constexpr char kAbout[] =
     "Runs an experiment in one process: a random trial, then training, greedy evaluation and an\n"
     "epsilon-greedy trial in turn. The same command on the same folder resumes.\n\n"
-    "usage: rosrun ddm_launch run_experiment --preset paper --plant pendulum --seed 1\n"
+    "usage: rosrun ddm_launch run_experiment --preset paper --plant pendulum --seed 3\n"
     "                                        --trials 15 --out DIR [--model FILE] [--bags BAG...]\n"
     "       rosrun ddm_launch run_experiment --config RUN/config.yaml --out DIR  (the same again)";
 
