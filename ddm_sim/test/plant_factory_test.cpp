@@ -70,7 +70,7 @@ std::vector<Flaw> namesAndSizes() {
        {"torqueNames()", "a_nm, b_nm"}},
       {"TorqueNameMissing", [](Traits* t) { t->torques.clear(); }, {"torqueNames()"}},
       {"NoJoint", [](Traits* t) { t->joints.clear(); }, {"jointNames()"}},
-      {"MoreJointsThanStates", [](Traits* t) { t->joints = names(3); }, {"jointNames()", "3"}},
+      {"MoreJointsThanStates", [](Traits* t) { t->joints = names(3); }, {"jointNames()", "name_2"}},
       {"NameWithComma",
        [](Traits* t) { t->states[0] = "angle,rad"; },
        {"stateNames()", "angle,rad"}},
@@ -181,7 +181,7 @@ INSTANTIATE_TEST_SUITE_P(Memories, PlantFactoryFlawTest, ::testing::ValuesIn(mem
 
 TEST(PlantFactory, MakesASoundPlantOfAnotherPackageAtItsStart) {
   Traits traits;
-  traits.start = Eigen::Vector2d(0.25, -0.5);
+  traits.start << 0.25, -0.5;
   EXPECT_EQ(makePlant(toyOptions(traits), CameraOptions())->state(), traits.start);
 }
 
