@@ -44,7 +44,8 @@ ros::Time RealtimeSim::beginTrial(const ddm_msgs::Reset::Request& request) {
 
 void RealtimeSim::takeTorque(const ddm_msgs::Torque& message, const Eigen::VectorXd& torque,
                              const std::string& /*publisher*/) {
-  if (stopped_) return;
+  if (stopped_ || message.header.stamp < held_stamp_) return;
+  held_stamp_ = message.header.stamp;
   answer_.torque.clear();
   if (message.header.stamp == answer_.header.stamp) answer_ = message;
   held_ = torque;
@@ -61,6 +62,7 @@ void RealtimeSim::torqueRefused(const ros::Time& /*stamp*/, const std::string& /
 
 void RealtimeSim::switchMotorOff() {
   held_ = Eigen::VectorXd::Zero(plant().torqueDim());
+  held_stamp_ = ros::Time();
   answer_.torque.clear();
 }
 

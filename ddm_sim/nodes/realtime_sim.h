@@ -14,7 +14,7 @@ namespace ddm {
 ///
 /// A torque that comes before the next step acts in the whole of it. It is the answer to the last
 /// image if it carries that stamp: with the step it is published as applied. Any other torque is
-/// late; it acts, and the image has no answer.
+/// late: the image has no answer, and the torque acts unless the one on hold answers a newer image.
 ///
 /// Stamps are wall time, all else goes by the monotonic clock, and no clock is published. A torque
 /// acts for two periods at most: without a newer one the motor is switched off. A torque that is
@@ -37,6 +37,7 @@ class RealtimeSim : public SimNode {
   void onTick(const ros::SteadyTimerEvent& event);
 
   Eigen::VectorXd held_;     ///< newest torque, zero when the motor is off
+  ros::Time held_stamp_;     ///< of the image that held_ answers, zero when the motor is off
   int steps_held_ = 0;       ///< steps taken under held_
   bool shown_ = false;       ///< the camera has not lost the last frame
   ddm_msgs::Torque answer_;  ///< to the last frame, as it stands; without a torque: none

@@ -86,7 +86,7 @@ TEST_F(Realtime, WhatIsPublishedAsAppliedIsWhatTheMotorHadUntilTheNextImage) {
   while (stamps.size() < 20) {
     const double torque = 0.1 * static_cast<double>(stamps.size());
     client_->publish(stamps.back(), {torque});
-    // Every third answer is replaced by a torque that is late.
+    // Every third answer comes too late: the image has another one.
     if (stamps.size() % 3 == 0) client_->publish(stamps[stamps.size() - 2], {-torque});
     stamps.push_back(nextImage());
   }
@@ -113,7 +113,18 @@ TEST_F(Realtime, ATorqueThatIsLateOrLostActedAsTheAnswerToNoImage) {
   EXPECT_EQ(appliedAt(lost), std::vector<double>{});
   EXPECT_EQ(appliedAt(late), std::vector<double>{});
   EXPECT_EQ(appliedAt(next), std::vector<double>{});
-  EXPECT_GE(numFramesWithEffort(1.5), 1);  // though it did act
+  // Though it did act, which is published after that.
+  EXPECT_TRUE(client_->waitUntil([] { return numFramesWithEffort(1.5) >= 1; }));
+}
+
+TEST_F(Realtime, ATorqueForAnOlderImageDoesNotReplaceOneForANewerImage) {
+  const ros::Time older = nextImage();
+  const ros::Time newer = nextImage();
+  client_->publish(newer, {1.25});
+  client_->publish(older, {-1.25});
+  ASSERT_TRUE(waitForEffort(1.25));
+  ASSERT_TRUE(waitForEffort(0.0));
+  EXPECT_EQ(numFramesWithEffort(-1.25), 0);
 }
 
 TEST_F(Realtime, EachImageIsSettledOnce) {

@@ -44,7 +44,7 @@ alter torque nan in exploring trial|alter image size in evaluation
 cut chunk of trial.bag at rest|flip model.ddm at rest|flip end of trials.csv at rest|unfinished bag at rest|other seed at rest|fill disk in random trial
 begin experiment in exploring trial
 hold mpc_node in evaluation in real time|alter torque nan in exploring trial in real time
-mute image in exploring trial in real time|swap image in exploring trial in real time
+mute image in exploring trial in real time|swap torque in exploring trial in real time
 future image in exploring trial on a robot
 """.replace("\n", "|").split("|")) - {""}
 
@@ -114,7 +114,7 @@ def real_time():
         yield case("mute torque", phase, GOES_ON_AFTER_ZERO + learns)  # a motor that hears nothing says nothing
         for what in ("image", "torque"):
             yield case("late " + what, phase, GOES_ON_AFTER_ZERO + learns)
-        yield case("swap image", phase, GOES_ON_IN_ORDER + learns)
+            yield case("swap " + what, phase, GOES_ON_IN_ORDER + learns)
         for how in ("nan", "inf", "none", "twice", "1e300"):
             yield case("alter torque " + how, phase, ENDS_WITH_ZERO, "torque refused", "/fault_injector")
         yield case("publish torque", phase, ENDS_WITH_ZERO, "torque refused", "/intruder")
