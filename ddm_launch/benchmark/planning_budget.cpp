@@ -1,6 +1,7 @@
 // planning_budget: how closely decisions keep mpc/time_budget, on an idle or a busy machine.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_model/networks.h>
+#include <ddm_model/solver_log.h>
 #include <ddm_mpc/mpc_policy.h>
 #include <ddm_msgs/param_value.h>
 #include <ddm_msgs/tool.h>
@@ -168,6 +169,7 @@ bool parse(int argc, char** argv, BudgetArguments* arguments) {
 }  // namespace ddm
 
 int main(int argc, char** argv) {
+  ddm::silenceSolverLog();
   ddm::BudgetArguments arguments;
   return ddm::runTool(
       "planning_budget", [&] { return ddm::parse(argc, argv, &arguments); },
