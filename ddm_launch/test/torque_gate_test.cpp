@@ -260,8 +260,8 @@ TEST_F(TorqueGateTest, TheTorqueChangesNoFasterThanTheSlewRateButStopsAtOnce) {
   EXPECT_EQ(effort(150), 2.0);
   showImage(200);
   EXPECT_TRUE(answer(210, 200, -2.0));
-  EXPECT_NEAR(effort(260), 0.0, 1e-9);
-  EXPECT_NEAR(effort(300), -0.8, 1e-9);
+  EXPECT_NEAR(effort(250), 0.0, 1e-9);
+  EXPECT_NEAR(effort(300), -1.0, 1e-9);
   gate_.stop("service enable");
   EXPECT_EQ(effort(301), 0.0);
 }
