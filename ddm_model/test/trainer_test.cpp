@@ -64,15 +64,15 @@ TEST_F(Trainer, StopsWhereTheCostHardlyFalls) {
   EXPECT_LT(run().iterations, 50);
 }
 
-TEST_F(Trainer, KeepsWhatItHasLearnedWhereTheLineSearchFails) {
-  training_.max_iterations = 5000;
-  training_.function_tolerance = 0.0;  // until float32 has no better point
+TEST_F(Trainer, FailsWhereTheSolverCannotMoveTheStart) {
+  training_.score_std = 1e11;  // the encoder's weights are smaller than any step
   for (const char* solver : {"lbfgs", "bfgs"}) {
     training_.solver = solver;
     const TrainingResult result = run();
-    ASSERT_TRUE(result.model) << solver << ": " << result.message;
-    EXPECT_LT(result.iterations, training_.max_iterations) << "the line search never failed";
-    EXPECT_LT(result.final_cost, 0.1 * result.initial_cost) << solver;
+    EXPECT_FALSE(result.model) << solver << ": " << result.message;
+    EXPECT_FALSE(result.cancelled);
+    EXPECT_NE(result.message.find("did not lower the objective"), std::string::npos)
+        << result.message;
   }
 }
 
@@ -310,6 +310,8 @@ TEST_F(Trainer, AnotherSeedOrTrialGivesAnotherModel) {
 }
 
 TEST_F(Trainer, TellsItsProgress) {
+  training_.max_iterations = 1000;
+  training_.function_tolerance = 0.0;  // line searches get difficult
   std::vector<TrainingProgress> told;
   const TrainingResult result = run([&told](const TrainingProgress& progress) {
     told.push_back(progress);
