@@ -120,6 +120,13 @@ def real_time():
         yield case("publish torque", phase, ENDS_WITH_ZERO, "torque refused", "/intruder")
 
 
+def planning():
+    """Plans that would go on for minutes."""
+    phase = "every run" + REAL_TIME
+    yield case("long plans", phase, "ended, named", "no plan for step 1", "mpc/time_budget")
+    yield case("long plans with a budget", phase, "finished, in time")
+
+
 def robot():
     """A wrong clock, or a joint beyond its limits, must bring zero torque within two dt and 50 ms."""
     for phase in [run + ON_A_ROBOT for run in RUNS]:
@@ -168,5 +175,5 @@ def folders():
     yield case("begin experiment", "random trial", NOTICED, "another experiment is running in the folder")
 
 
-CASES = [each for group in (processes, missed, transport, intruders, clocks, real_time, robot, values, files,
+CASES = [each for group in (processes, missed, transport, intruders, clocks, real_time, planning, robot, values, files,
                                         folders) for each in group()]

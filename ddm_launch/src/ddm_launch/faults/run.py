@@ -5,12 +5,15 @@ import os
 import re
 import shutil
 import subprocess
+import traceback
+
+import rosbag
 
 from ddm_launch.faults import at_rest, pairs
 from ddm_launch.faults.cases import AT_REST, ON_A_ROBOT, REAL_TIME
 from ddm_launch.faults.finished import Finished
 from ddm_launch.processes import start_roslaunch
-from ddm_launch.run_comparison import differences, expected_files, read_bytes
+from ddm_launch.run_comparison import differences, expected_files, read_bytes, read_rows
 from ddm_launch.run_folder import is_finished
 from ddm_launch.step_runner import Failure
 
@@ -25,8 +28,11 @@ controller: {{timeout: {node_s}}}
 recorder: {{timeout: {node_s}}}
 experiment: {{timeout: {experiment_s}}}
 """
-REAL_TIME_CONFIG = "plant: {dt: 0.05}\n"  # shorter waits than with the paper's 0.2 s
+REAL_TIME_DT_S = 0.05  # shorter waits than with the paper's 0.2 s
+REAL_TIME_CONFIG = "plant: {dt: %g}\n" % REAL_TIME_DT_S
 ROBOT_CONFIG = "robot: {position_limits: [[-1000.0, 1000.0]], speed_limit: [1000.0]}\n"
+LONG_PLANS = "mpc: {horizon: 200, num_starts: 1000, max_iterations: 1000000, function_tolerance: 0.0, time_budget: %g}\n"
+CONFIGS = {"long plans": LONG_PLANS % 0.0, "long plans with a budget": LONG_PLANS % 0.02}  # by fault
 SLACK_S = 0.05  # that a torque may take, apart from two dt, to its end
 NODE_S, EXPERIMENT_S = 5.0, 8.0  # without a sign of life
 CRASH = re.compile(r"exit code -(?!2\b|9\b|15\b)\d+|Traceback|terminate called|Segmentation fault")
@@ -153,10 +159,15 @@ class FaultBench:
         try:
             if case.phase == AT_REST:
                 return at_rest.facts(self, case, folder, log)
+            if case.fault in CONFIGS:
+                return self.configure(case, folder, log)
             return self.disturb(case, folder, log)
         except TimeoutError as error:
             log.write(str(error))
             return ["hung"]
+        except (OSError, ValueError, IndexError, KeyError, rosbag.ROSBagException) as error:  # of files that it has left
+            log.write(traceback.format_exc())
+            return ["unreadable: %s" % error]
 
     @staticmethod
     def verdict(folder):
@@ -173,6 +184,21 @@ class FaultBench:
     def compared(self, folder):
         found = differences(self.reference, folder, COMPARED) if is_finished(folder) else ["no verdict"]
         return "differs: " + " ".join(found) if found else "equal"
+
+    def configure(self, case, folder, log):
+        """The fault is in the configuration."""
+        os.makedirs(os.path.dirname(folder))
+        path = os.path.join(os.path.dirname(folder), "config.yaml")
+        with open(self.real_time_config) as stream, open(path, "w") as out:
+            out.write(stream.read() + CONFIGS[case.fault])
+        output = self.launch(folder, "experiment.launch", self.arguments(folder, config=path, real_time="true"))
+        log.write(output)
+        facts = [self.verdict(folder)] + self.words(case, output)
+        if "in time" in case.expected and is_finished(folder):
+            header, *rows = read_rows(folder, "trials.csv")
+            slowest = max(float(row[header.index("plan_ms_median")]) for row in rows)
+            facts.append("in time" if slowest < 1e3 * REAL_TIME_DT_S else "plans took %g ms" % slowest)
+        return facts
 
     def disturb(self, case, folder, log):
         output = self.launch_case(case, folder, case.fault)
