@@ -5,6 +5,7 @@
 #include <ddm_mpc/mpc_policy.h>
 #include <ddm_msgs/param_value.h>
 #include <ddm_msgs/tool.h>
+#include <sched.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <random>
@@ -56,6 +58,8 @@ class BusyCores {
       if (child < 0) throw std::runtime_error("no process can be started to keep a core busy");
       if (child == 0) {
         prctl(PR_SET_PDEATHSIG, SIGKILL);
+        const sched_param lowest{};  // whatever priority this program was given
+        if (sched_setscheduler(0, SCHED_OTHER, &lowest) != 0) _exit(EXIT_FAILURE);
         for (volatile unsigned sum = 0;;) sum = sum + 1;
       }
       children_.push_back(child);
