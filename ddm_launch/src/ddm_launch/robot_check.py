@@ -80,8 +80,8 @@ def call(name, kind, *values, **fields):
 def show_goal_and_enable():
     """What a user does: shows the robot its goal, then switches the motors on."""
     call("plant/reset", Reset, start=[math.pi, 0.0])
-    for _ in range(3):  # the camera is a frame late
-        rospy.wait_for_message("stand_in/image_raw", Image, LIMIT_S)
+    for _ in range(3):  # the camera is a frame late, and robot_node may not have seen any yet
+        rospy.wait_for_message("camera/image_raw", Image, LIMIT_S)
     call("take_goal", Trigger)
     call("enable", SetBool, True)
 
