@@ -60,11 +60,12 @@ class Search {
 
   /// @param summary  of the solver, which has ended
   Minimum result(const ceres::GradientProblemSolver::Summary& summary) && {
-    const bool content = summary.termination_type == ceres::CONVERGENCE ||
-                         summary.termination_type == ceres::USER_SUCCESS;
-    best_.reason = reason(content, summary.termination_type == ceres::NO_CONVERGENCE);
+    // Of the solver's verdicts only that of afterIteration() counts. It calls a line search that
+    // returns to where it began convergence, too.
+    best_.reason = reason(summary.termination_type == ceres::USER_SUCCESS,
+                          summary.termination_type == ceres::NO_CONVERGENCE);
     best_.message = message();
-    if (best_.reason == MinimumReason::kNoDecrease && !content) {
+    if (best_.reason == MinimumReason::kNoDecrease && summary.termination_type == ceres::FAILURE) {
       best_.message += ": " + summary.message;
     }
     return std::move(best_);
@@ -85,10 +86,10 @@ class Search {
 
   double slope() const { return best_.gradient.lpNorm<Eigen::Infinity>(); }
 
-  MinimumReason reason(bool solver_content, bool iteration_limit) const {
+  MinimumReason reason(bool hardly_changed, bool iteration_limit) const {
     if (ended_by_) return *ended_by_;
     if (!anyPoint()) return MinimumReason::kStartFailed;
-    if (slope() <= options_.gradient_tolerance || (solver_content && best_.improved())) {
+    if (slope() <= options_.gradient_tolerance || (hardly_changed && best_.improved())) {
       return MinimumReason::kConverged;
     }
     return iteration_limit ? MinimumReason::kIterationLimit : MinimumReason::kNoDecrease;

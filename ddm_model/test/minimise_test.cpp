@@ -199,6 +199,8 @@ TEST(Minimise, KeepsTheProgressOfASearchWhoseLastLineSearchFails) {
   for (const int rank : {0, 20}) {
     options.lbfgs_rank = rank;
     const Minimum minimum = minimise(bowl, vectorOf({5.0}), options);
+    EXPECT_EQ(MinimumReason::kNoDecrease, minimum.reason) << minimum.message;
+    EXPECT_NE(std::string::npos, minimum.message.find("magnitude 3")) << minimum.message;
     EXPECT_EQ(12.5, minimum.initial_cost);
     EXPECT_EQ(0.125, minimum.cost);
     EXPECT_EQ(bowl(minimum.x, nullptr), minimum.cost);
