@@ -32,7 +32,8 @@ def damage(fault, folder):
         data = stream.read()
     begin, end = 0, len(data)
     if place:
-        places = {"head": (0, 8), "end": (end - 16, end), "digit": (end - 3, end)}  # the last digit of a table
+        digit = data.rfind(b",") - 1  # the last one of a table: its last column is text
+        places = {"head": (0, 8), "end": (end - 16, end), "digit": (digit, digit + 1)}
         begin, end = places.get(place[0]) or find_record(data, place[0])
     middle = (begin + end) // 2
     if verb == "remove":
