@@ -11,7 +11,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   ddm::SavedConfiguration saved;
   const auto read = [&] { saved = ddm::readConfigurationText(text, "config.yaml"); };
   if (!ddm::testing::accepts<std::invalid_argument>(read)) return 0;
-  require(ddm::differencesOf(saved.values, saved.values, true).empty(), "nothing differs from itself");
+  require(ddm::differencesOf(saved.values, saved.values, true).empty(),
+          "nothing differs from itself");
   ddm::ConfigurationValues other = saved.values;
   other["mpc/horizon"] = "a value that no file has";
   require(!ddm::differencesOf(saved.values, other, true).empty(), "another value is a difference");
