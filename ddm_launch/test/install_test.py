@@ -24,12 +24,13 @@ TRIALS = 1
 
 
 def cached(name):
-    """A value of the build's CMakeCache.txt."""
+    """A value of the build's CMakeCache.txt; empty if it has none."""
     with open(os.path.join(BUILD, "CMakeCache.txt")) as stream:
-        return re.search(r"^%s:\w+=(.*)$" % name, stream.read(), re.MULTILINE).group(1)
+        found = re.search(r"^%s:\w+=(.*)$" % name, stream.read(), re.MULTILINE)
+    return found.group(1) if found else ""
 
 
-ALONE = "" if os.path.isdir(os.path.join(BUILD, "ddm_msgs")) else "each package has a build folder of its own"
+ALONE = "" if cached("ddm_msgs_BINARY_DIR") else "each package has a build folder of its own"
 HINDRANCE = ALONE or why_not("mount")
 
 

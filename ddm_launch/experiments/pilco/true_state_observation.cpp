@@ -40,7 +40,7 @@ TrueStateObservation::TrueStateObservation(const Plant& plant, const PlantOption
       << "PILCO on the true state is for one joint with angle and rate whose goal is the angle pi; "
          "plant/type "
       << plant_options.type << " has " << plant.jointNames().size() << " joint(s), "
-      << plant.stateDim() << " state component(s)" << (plant.turns() ? "" : " that are no angles")
+      << plant.stateDim() << " state component(s)" << (plant.turns() ? "" : " that are not angles")
       << " and the goal [" << plant.goalState().transpose()
       << "]: use method pilco_features or pilco_pca";
   throw std::invalid_argument(text.str());
