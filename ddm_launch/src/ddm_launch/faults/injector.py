@@ -227,10 +227,11 @@ class Injector:
             os.kill(self.pid, signal.SIGKILL)
             return
         if self.verb in STOPS:
+            block, key = LIMITS.get(self.what, OTHER_LIMIT)
+            limit = configuration()[block][key]  # first: it comes from the master, which may be the one to stop
             os.kill(self.pid, signal.SIGSTOP)
             if self.verb != "hold":
-                block, key = LIMITS.get(self.what, OTHER_LIMIT)
-                later(STOPS[self.verb] * configuration()[block][key], "CONT", self.pid)
+                later(STOPS[self.verb] * limit, "CONT", self.pid)
         elif self.verb == "lose":
             self.lose()
         elif self.verb == "mute":
