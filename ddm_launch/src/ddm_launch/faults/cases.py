@@ -71,8 +71,9 @@ def missed():
             yield case(verb + " mpc_node", phase, ENDS, "no torque for frame", "action /run_trial")
         yield case(verb + " trial_recorder", EXPLORING, ENDS, "service /stop_recording does not answer")
         yield case(verb + " model_node", TRAINING, ENDS, "action /train shows no sign of life")
+    yield case("lose sim_node", RECORDING, ENDS, "service /stop_recording")  # nobody says whether the last torque acted
+    yield case("lose sim_node", TRAINING, ENDS, "service /reset does not answer")
     for phase in (RECORDING, TRAINING):
-        yield case("lose sim_node", phase, ENDS, "service /reset does not answer")
         yield case("lose mpc_node", phase, ENDS, "action /run_trial shows no sign of life")
     # A node that knows others needs no master: the experiment takes longer, since each of its questions has a limit.
     for phase in RUNS + (TRAINING,):
