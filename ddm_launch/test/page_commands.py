@@ -12,8 +12,9 @@ RUN_HERE = {"run_experiment", "sweep", "film_strip", "learning_curve", "success_
 
 # Those that another test runs, with all that takes long or needs more than one machine: the test must name it.
 ELSEWHERE = {"reproduce_paper": "reproduce_paper_test.py", "reproduce_efficient": "reproduce_efficient_test.py",
-             "benchmark": "benchmark_test.py", "growth": "growth_test.py", "fault_table": "fault_table_test.py",
-             "soak": "soak_test.py", "rviz_screenshot": "rviz_test.py",
+             "benchmark": "benchmark_test.py", "planning_budget": "benchmark_programs_test.py",
+             "growth": "growth_test.py", "fault_table": "fault_table_test.py", "soak": "soak_test.py",
+             "rviz_screenshot": "rviz_test.py",
              "robot.launch": "robot_loop_test.py", "robot_check.launch": "robot_loop_test.py",
              "part.launch": "several_machines_test.py", "test.sh": "scripts_test.py", "fuzz.sh": "fuzzing_test.py",
              "decode_features": "../../ddm_model/test/decode_features_test.cpp",
