@@ -129,7 +129,9 @@ class RobotInjector:
 
 def main():
     injector = RobotInjector()
-    limit = 2.0 * configuration()["robot"]["dt"] + rospy.get_param("~slack")
+    limit = rospy.get_param("~slack")
+    if not injector.fault.startswith("exceed"):  # which is seen at once: nothing has to stay away first
+        limit += 2.0 * configuration()["robot"]["dt"]
     show_goal_and_enable()
     rospy.spin()
     injector.end(limit)
