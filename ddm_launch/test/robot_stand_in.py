@@ -192,7 +192,7 @@ class Robot:
 
 class RobotCase(ScratchCase):
     def start(self, *arguments, dt=DT, robot=None, **kwargs):
-        """A robot_node of which nothing stays after the test; `robot` has parameters that are no single value."""
+        """A robot_node that leaves nothing behind after the test; `robot` has the parameters that are lists."""
         if rospy.has_param("/robot_node"):
             rospy.delete_param("/robot_node")
         if robot is not None:

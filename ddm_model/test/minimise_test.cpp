@@ -86,7 +86,7 @@ TEST(Minimise, NeverReturnsAWorsePointForOneMoreEvaluation) {
   for (options.max_evaluations = 1; options.max_evaluations <= 30; ++options.max_evaluations) {
     const Minimum minimum = minimise(watched, vectorOf({-1.2, 1.0}), options);
     EXPECT_LE(minimum.cost, best);
-    EXPECT_FALSE(minimum.converged()) << "refused evaluations are no convergence";
+    EXPECT_FALSE(minimum.converged()) << "refused evaluations are not convergence";
     EXPECT_EQ(valley(minimum.x, nullptr), minimum.cost);
     if (last_evaluated > minimum.cost) ++ended_uphill;
     best = minimum.cost;
