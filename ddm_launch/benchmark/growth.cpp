@@ -106,7 +106,7 @@ void run(const GrowthArguments& arguments) {
   const double pca_us =
       microseconds([&] { pca = fitPca(data, model.pca_dim, TrainingOptions().score_std); });
   const Networks<float> networks(model, data.torqueDim());
-  JointObjective<float> objective(networks, makeTrainingData(data, pca, model.max_torque));
+  JointObjective<float> objective(networks, makeTrainingData(data, pca));
   const Eigen::VectorXf theta = Eigen::VectorXf::Constant(networks.numParams(), 0.05F);
   Eigen::VectorXf d_theta;
   std::vector<double> times;

@@ -80,8 +80,7 @@ void measureObjective(const Experience& experience) {
   const auto networks = std::make_shared<const Networks<float>>(experience.model->options(),
                                                                 experience.data.torqueDim());
   const auto objective = std::make_shared<JointObjective<float>>(
-      *networks, makeTrainingData(experience.data, experience.model->pca(),
-                                  experience.model->options().max_torque));
+      *networks, makeTrainingData(experience.data, experience.model->pca()));
   const Eigen::VectorXf theta = experience.model->theta().cast<float>();
   const auto d_theta = std::make_shared<Eigen::VectorXf>();
   measure("objective_gradient", 1000, [networks, objective, theta, d_theta]() {

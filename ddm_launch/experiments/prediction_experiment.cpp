@@ -112,7 +112,7 @@ std::string stripCsv(const Plant& plant, const Recording& recording, const Ddm& 
   const Eigen::Index order = model.options().order;
   const Eigen::Index frame = order - 1 + (recording.held_out.numFrames() - max_steps - order) / 2;
   const Eigen::Index begin = recording.training.numFrames();
-  const Eigen::MatrixXd predicted = rollOut(model, Z.rightCols(recording.held_out.numFrames()),
+  const Eigen::MatrixXd predicted = model.rollOut(Z.rightCols(recording.held_out.numFrames()),
                                             recording.held_out.torques(), frame, max_steps);
   std::string text = "steps" + columns(plant, static_cast<int>(Z.rows()));
   for (int k = 0; k <= max_steps; ++k) {

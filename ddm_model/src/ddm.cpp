@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "ddm_model/roll_out.h"
+
 namespace ddm {
 
 Ddm::Ddm(ModelOptions options, int image_size, int torque_dim, Pca pca, Eigen::VectorXd theta,
@@ -65,6 +67,42 @@ Grey Ddm::decode(const Eigen::VectorXd& z) const {
         std::lround(255.0F * std::min(1.0F, std::max(0.0F, image(i, 0)))));
   }
   return grey;
+}
+
+Eigen::VectorXd Ddm::predict(const History& x, const Eigen::VectorXd& u) const {
+  const PredictionModel<double>& f = predictionModel();
+  const Eigen::Index n = f.order();
+  if (x.empty() || x.features().rows() != f.featureDim() || x.features().cols() != n ||
+      x.torques().rows() != f.torqueDim() || u.size() != f.torqueDim()) {
+    throw std::invalid_argument("prediction: history or torque do not fit the model");
+  }
+  Eigen::MatrixXd torques(f.torqueDim(), n);
+  torques.leftCols(n - 1) = x.torques().rowwise().reverse();
+  torques.col(n - 1) = u;
+  return rollOut(x.features().rowwise().reverse(), torques, n - 1, 1).col(1);
+}
+
+Eigen::MatrixXd Ddm::rollOut(const Eigen::MatrixXd& Z,
+                             const Eigen::Ref<const Eigen::MatrixXd>& torques, Eigen::Index frame,
+                             int num_steps) const {
+  const PredictionModel<double>& f = predictionModel();
+  const Eigen::Index n = f.order();
+  if (Z.rows() != f.featureDim() || torques.rows() != f.torqueDim() || torques.cols() != Z.cols()) {
+    throw std::invalid_argument("roll-out: features or torques do not fit the model");
+  }
+  if (num_steps < 0 || frame < n - 1 || frame >= Z.cols() || frame + num_steps > Z.cols()) {
+    throw std::invalid_argument("roll-out: frame " + std::to_string(frame) + " needs " +
+                                std::to_string(n - 1) + " frames before it and torques for " +
+                                std::to_string(num_steps) + " steps, there are " +
+                                std::to_string(Z.cols()) + " frames");
+  }
+  const Eigen::Index target = frame + 1;
+  RollOut<double> predictions(f);
+  predictions.forward(thetaP(), Z, torques, RollOut<double>::Targets(&target, 1), num_steps);
+  Eigen::MatrixXd path(f.featureDim(), num_steps + 1);
+  path.col(0) = Z.col(frame);
+  for (int step = 0; step < num_steps; ++step) path.col(step + 1) = predictions.predicted(step);
+  return path;
 }
 
 const Eigen::VectorXd& Ddm::goalFeature() const {

@@ -1,4 +1,4 @@
-// Long-term predictions: one-step predictions of f put one after the other, and how wrong they are.
+// Long-term predictions: from which frames they can be made, and how wrong they are.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/long_term_prediction.h"
 
@@ -28,54 +28,6 @@ Eigen::MatrixXd encodeAll(const Ddm& model, const DataSet& data) {
     Z.col(i) = model.encode(data.image(i));
   }
   return Z;
-}
-
-Eigen::MatrixXd rollOut(const Ddm& model, const Eigen::MatrixXd& Z,
-                        const Eigen::Ref<const Eigen::MatrixXd>& torques, Eigen::Index frame,
-                        int num_steps) {
-  const PredictionModel<double>& f = model.predictionModel();
-  const Eigen::Index n = f.order();
-  if (Z.rows() != f.featureDim() || torques.rows() != f.torqueDim() || torques.cols() != Z.cols()) {
-    throw std::invalid_argument("roll-out: features or torques do not fit the model");
-  }
-  if (num_steps < 0 || frame < n - 1 || frame >= Z.cols() || frame + num_steps > Z.cols()) {
-    throw std::invalid_argument("roll-out: frame " + std::to_string(frame) + " needs " +
-                                std::to_string(n - 1) + " frames before it and torques for " +
-                                std::to_string(num_steps) + " steps, there are " +
-                                std::to_string(Z.cols()) + " frames");
-  }
-  Eigen::MatrixXd path(f.featureDim(), n + num_steps);  // z_{t-n+1} ... z_{t+num_steps}
-  path.leftCols(n) = Z.middleCols(frame - n + 1, n);
-  Eigen::VectorXd h(f.regressorDim());
-  Mlp<double>::Tape tape;
-  for (int step = 0; step < num_steps; ++step) {
-    for (int lag = 0; lag < n; ++lag) {
-      h.segment(f.featureRow(lag), f.featureDim()) = path.col(n - 1 + step - lag);
-      h.segment(f.torqueRow(lag), f.torqueDim()) =
-          torques.col(frame + step - lag) / model.options().max_torque;
-    }
-    f.forward(model.thetaP(), h, &tape, path.col(n + step));
-  }
-  return path.rightCols(num_steps + 1);
-}
-
-Eigen::VectorXd predictNext(const Ddm& model, const History& x, const Eigen::VectorXd& u) {
-  const PredictionModel<double>& f = model.predictionModel();
-  if (x.empty()) throw std::invalid_argument("prediction: there is no feature to predict from");
-  Eigen::VectorXd h(f.regressorDim());
-  for (int lag = 0; lag < f.order(); ++lag) {
-    h.segment(f.featureRow(lag), f.featureDim()) = x.features().col(lag);
-    auto torque = h.segment(f.torqueRow(lag), f.torqueDim());
-    if (lag == 0) {
-      torque = u / model.options().max_torque;
-    } else {
-      torque = x.torques().col(lag - 1) / model.options().max_torque;
-    }
-  }
-  Mlp<double>::Tape tape;
-  Eigen::MatrixXd z(f.featureDim(), 1);
-  f.forward(model.thetaP(), h, &tape, z);
-  return z.col(0);
 }
 
 std::vector<Eigen::Index> predictionStarts(const Ddm& model, const DataSet& data, int num_steps) {
@@ -112,9 +64,9 @@ std::vector<PredictionError> predictionErrors(const Ddm& model, const DataSet& d
   std::vector<PredictionError> errors(max_steps);
   for (size_t i = 0; i < starts.size(); ++i) {
     const Eigen::Index frame = starts[i];
-    const Eigen::MatrixXd predicted = rollOut(model, Z, data.torques(), frame, max_steps);
+    const Eigen::MatrixXd predicted = model.rollOut(Z, data.torques(), frame, max_steps);
     told.middleCols(frame, max_steps).colwise() = mean_torque;
-    const Eigen::MatrixXd blind = rollOut(model, Z, told, frame, max_steps);
+    const Eigen::MatrixXd blind = model.rollOut(Z, told, frame, max_steps);
     told.middleCols(frame, max_steps) = data.torques().middleCols(frame, max_steps);
     for (int k = 1; k <= max_steps; ++k) {
       const Grey& truth = data.image(frame + k);

@@ -32,7 +32,7 @@ void addDecay(const Mlp<Scalar>& net, const Scalar* theta, Scalar price, Scalar*
 
 template <class Scalar>
 JointObjective<Scalar>::JointObjective(const Networks<Scalar>& networks, TrainingData<Scalar> data)
-    : networks_(networks), data_(std::move(data)) {
+    : networks_(networks), data_(std::move(data)), roll_out_(networks.prediction_model) {
   const PredictionModel<Scalar>& f = networks_.prediction_model;
   const Eigen::Index num_images = data_.scores.cols();
   if (data_.scores.rows() != networks_.encoder().inputDim() ||
@@ -65,18 +65,14 @@ JointObjective<Scalar>::JointObjective(const Networks<Scalar>& networks, Trainin
   }
   features_.resize(f.featureDim(), num_images);
   d_features_.resize(f.featureDim(), num_images);
-  regressors_.resize(f.regressorDim(), kBlock);
 }
 
 /// Memory for predictions so many steps ahead.
 template <class Scalar>
 void JointObjective<Scalar>::reserve(int num_steps) {
-  if (static_cast<int>(predicted_.size()) >= num_steps) return;
-  const Eigen::Index feature_dim = networks_.prediction_model.featureDim();
-  predictor_tapes_.resize(num_steps);
+  if (residual_.cols() >= (1 + num_steps) * kBlock) return;
   encoder_tapes_.resize(1 + blocksOf(num_steps - 1) + blocksOf(networks_.prediction_model.order()));
-  predicted_.resize(num_steps, Matrix(feature_dim, kBlock));
-  d_predicted_.resize(num_steps, Matrix(feature_dim, kBlock));
+  roll_out_.reserve(kBlock, num_steps);
   residual_.resize(data_.scores.rows(), (1 + num_steps) * kBlock);
 }
 
@@ -181,11 +177,12 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::decodeBlock(const
   const Eigen::Index count = block_target_[block + 1] - first;
   const int steps = terms.prediction_steps;
   const Eigen::Index columns = size + steps * count;
-  rollOut(theta, first, count, steps);
+  const typename RollOut<Scalar>::Targets targets(targets_.data() + first, count);
+  roll_out_.forward(networks_.predictorOf(theta), features_, data_.torques, targets, steps);
   auto codes = networks_.decoder().inputs(columns, &decoder_tape_);
   codes.leftCols(size) = features_.middleCols(begin, size);
   for (int j = 0; j < steps; ++j) {
-    codes.middleCols(size + j * count, count) = predicted_[j].leftCols(count);
+    codes.middleCols(size + j * count, count) = roll_out_.predicted(j);
   }
   networks_.decoder().forward(networks_.decoderOf(theta), &decoder_tape_);
 
@@ -194,19 +191,19 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::decodeBlock(const
   residual_.leftCols(size) = decoded.leftCols(size) - data_.scores.middleCols(begin, size);
   const Scalar step_weight = Scalar(1) / Scalar(steps);
   for (int j = 0; j < steps; ++j) {
-    d_predicted_[j].leftCols(count) = predicted_[j].leftCols(count);
+    roll_out_.dPredicted(j) = roll_out_.predicted(j);
     for (Eigen::Index i = 0; i < count; ++i) {
       const Eigen::Index frame = targets_[first + i] + j;
       if (frame < piece_end_[first + i]) {
         residual_.col(size + j * count + i) =
             decoded.col(size + j * count + i) - data_.scores.col(frame);
-        d_predicted_[j].col(i) -= features_.col(frame);
+        roll_out_.dPredicted(j).col(i) -= features_.col(frame);
       } else {  // beyond the piece there is nothing to compare with
         residual_.col(size + j * count + i).setZero();
-        d_predicted_[j].col(i).setZero();
+        roll_out_.dPredicted(j).col(i).setZero();
       }
     }
-    value.v_z += static_cast<double>(step_weight * d_predicted_[j].leftCols(count).squaredNorm());
+    value.v_z += static_cast<double>(step_weight * roll_out_.dPredicted(j).squaredNorm());
   }
   value.v_r = static_cast<double>(residual_.leftCols(size).squaredNorm());
   value.v_p =
@@ -226,64 +223,20 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::decodeBlock(const
   d_features_.middleCols(begin, size) += d_codes_.leftCols(size);
   const Scalar consistency = Scalar(terms.v_p ? terms.consistency_weight : 0.0) * step_weight;
   for (int j = 0; j < steps; ++j) {
-    d_predicted_[j].leftCols(count) *= consistency;
+    roll_out_.dPredicted(j) *= consistency;
     if (consistency != Scalar(0)) {
       for (Eigen::Index i = 0; i < count; ++i) {
         const Eigen::Index frame = targets_[first + i] + j;
-        if (frame < piece_end_[first + i]) d_features_.col(frame) -= d_predicted_[j].col(i);
+        if (frame < piece_end_[first + i]) d_features_.col(frame) -= roll_out_.dPredicted(j).col(i);
       }
     }
-    d_predicted_[j].leftCols(count) += d_codes_.middleCols(size + j * count, count);
+    roll_out_.dPredicted(j) += d_codes_.middleCols(size + j * count, count);
   }
-  backwardThroughRollOut(theta, first, count, steps, d_theta);
+  for (int j = steps - 1; j >= 0; --j) {
+    roll_out_.backward(networks_.predictorOf(theta), targets, j, networks_.predictorOf(d_theta),
+                       &d_features_, nullptr);
+  }
   return value;
-}
-
-/// Predictions of the block's targets (j = 0) and of the frames after them, each from those before.
-/// Beyond its piece a prediction goes on with whatever torques come, and is not used.
-template <class Scalar>
-void JointObjective<Scalar>::rollOut(const Scalar* theta, Eigen::Index first, Eigen::Index count,
-                                     int num_steps) {
-  const PredictionModel<Scalar>& f = networks_.prediction_model;
-  const Eigen::Index last_frame = data_.torques.cols() - 1;
-  for (int j = 0; j < num_steps; ++j) {
-    for (Eigen::Index i = 0; i < count; ++i) {
-      for (int lag = 0; lag < f.order(); ++lag) {
-        const Eigen::Index frame = std::min(targets_[first + i] + j - 1 - lag, last_frame);
-        auto feature = regressors_.col(i).segment(f.featureRow(lag), f.featureDim());
-        if (lag < j) {
-          feature = predicted_[j - 1 - lag].col(i);
-        } else {
-          feature = features_.col(frame);
-        }
-        regressors_.col(i).segment(f.torqueRow(lag), f.torqueDim()) = data_.torques.col(frame);
-      }
-    }
-    f.forward(networks_.predictorOf(theta), regressors_.leftCols(count), &predictor_tapes_[j],
-              predicted_[j].leftCols(count));
-  }
-}
-
-/// Takes dV/dz_{t+j|t} of each step back to the features that the roll-out began with.
-template <class Scalar>
-void JointObjective<Scalar>::backwardThroughRollOut(const Scalar* theta, Eigen::Index first,
-                                                    Eigen::Index count, int num_steps,
-                                                    Scalar* d_theta) {
-  const PredictionModel<Scalar>& f = networks_.prediction_model;
-  for (int j = num_steps - 1; j >= 0; --j) {
-    f.backward(networks_.predictorOf(theta), &predictor_tapes_[j], d_predicted_[j].leftCols(count),
-               networks_.predictorOf(d_theta), &d_regressors_);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      for (int lag = 0; lag < f.order(); ++lag) {
-        const auto d_feature = d_regressors_.col(i).segment(f.featureRow(lag), f.featureDim());
-        if (lag < j) {
-          d_predicted_[j - 1 - lag].col(i) += d_feature;
-        } else {
-          d_features_.col(targets_[first + i] + j - 1 - lag) += d_feature;
-        }
-      }
-    }
-  }
 }
 
 template class JointObjective<float>;

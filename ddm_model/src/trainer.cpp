@@ -240,7 +240,7 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
   const auto start = std::chrono::steady_clock::now();
   const Networks<float> networks(model, data.torqueDim());
   Pca pca = fitPca(data, model.pca_dim, training.score_std);
-  TrainingData<float> training_data = makeTrainingData(data, pca, model.max_torque);
+  TrainingData<float> training_data = makeTrainingData(data, pca);
   const Eigen::MatrixXd scores = training_data.scores.cast<double>();
   const Networks<double> initial_networks(model, data.torqueDim());
   std::mt19937_64 rng = initialisationStream(info.seed, info.trial);

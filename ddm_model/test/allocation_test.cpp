@@ -27,7 +27,7 @@ TEST_P(Allocation, AnEvaluationTakesNoMemory) {
   const Networks<float> networks(options, 1);
   TrainingData<float> data;
   data.scores = testing::randomMatrix(options.pca_dim, 301, 1).cast<float>();
-  data.torques = testing::randomMatrix(1, 300, 2).cast<float>();
+  data.torques = testing::randomMatrix(1, 300, 2);
   data.pieces = {{0, 200}, {200, 100}};
   JointObjective<float> objective(networks, data);
   const Eigen::VectorXf theta =

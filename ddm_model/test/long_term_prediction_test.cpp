@@ -54,7 +54,7 @@ TEST(RollOut, FeedsPredictionsBackAndTakesTheTorquesThatFollowed) {
   const Ddm model = testing::toyModel();
   const DataSet data = testing::toyTrial(12, 1);
   const Eigen::MatrixXd Z = encodeAll(model, data);
-  const Eigen::MatrixXd path = rollOut(model, Z, data.torques(), 3, 6);
+  const Eigen::MatrixXd path = model.rollOut(Z, data.torques(), 3, 6);
   ASSERT_EQ(path.cols(), 7);
   EXPECT_EQ(path.col(0), Z.col(3));
   for (int k = 1; k <= 6; ++k) {
@@ -62,44 +62,44 @@ TEST(RollOut, FeedsPredictionsBackAndTakesTheTorquesThatFollowed) {
   }
 }
 
-TEST(PredictNext, IsTheFirstStepOfARollOut) {
+TEST(Predict, IsTheFirstStepOfARollOut) {
   const Ddm model = testing::toyModel();
   const DataSet data = testing::toyTrial(6, 1);
   const Eigen::MatrixXd Z = encodeAll(model, data);
   History x(2, model.featureDim(), 1);
-  EXPECT_THROW(predictNext(model, x, data.torques().col(0)), std::invalid_argument);
+  EXPECT_THROW(model.predict(x, data.torques().col(0)), std::invalid_argument);
   for (Eigen::Index t = 0; t < 4; ++t) {
     if (t > 0) x.apply(data.torques().col(t - 1));
     x.observe(Z.col(t));
   }
-  EXPECT_TRUE(predictNext(model, x, data.torques().col(3))
-                  .isApprox(rollOut(model, Z, data.torques(), 3, 1).col(1), 1e-14));
-  EXPECT_FALSE(predictNext(model, x, data.torques().col(2))
-                   .isApprox(rollOut(model, Z, data.torques(), 3, 1).col(1), 1e-6));
+  EXPECT_TRUE(model.predict(x, data.torques().col(3))
+                  .isApprox(model.rollOut(Z, data.torques(), 3, 1).col(1), 1e-14));
+  EXPECT_FALSE(model.predict(x, data.torques().col(2))
+                   .isApprox(model.rollOut(Z, data.torques(), 3, 1).col(1), 1e-6));
 }
 
 TEST(RollOut, UsesNothingThatComesLaterThanItsFrame) {
   const Ddm model = testing::toyModel();
   const DataSet data = testing::toyTrial(12, 1);
   Eigen::MatrixXd Z = encodeAll(model, data);
-  const Eigen::MatrixXd path = rollOut(model, Z, data.torques(), 3, 6);
+  const Eigen::MatrixXd path = model.rollOut(Z, data.torques(), 3, 6);
   Z.rightCols(8).setConstant(100.0);
-  EXPECT_EQ(rollOut(model, Z, data.torques(), 3, 6), path);
+  EXPECT_EQ(model.rollOut(Z, data.torques(), 3, 6), path);
   Z.col(2).setZero();
-  EXPECT_NE(rollOut(model, Z, data.torques(), 3, 6), path);  // the check above can fail
+  EXPECT_NE(model.rollOut(Z, data.torques(), 3, 6), path);  // the check above can fail
 }
 
 TEST(RollOut, ReachesFromTheFirstPossibleFrameToTheLast) {
   const Ddm model = testing::toyModel();
   const DataSet data = testing::toyTrial(10, 1);
   const Eigen::MatrixXd Z = encodeAll(model, data);
-  EXPECT_EQ(rollOut(model, Z, data.torques(), 1, 9).cols(), 10);
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { rollOut(model, Z, data.torques(), 1, 10); },
+  EXPECT_EQ(model.rollOut(Z, data.torques(), 1, 9).cols(), 10);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { model.rollOut(Z, data.torques(), 1, 10); },
                                                   {"frame 1", "10 steps", "10 frames"}));
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { rollOut(model, Z, data.torques(), 0, 1); },
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { model.rollOut(Z, data.torques(), 0, 1); },
                                                   {"frame 0", "1 frames before"}));
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { rollOut(model, Z.leftCols(9), data.torques(), 1, 1); }, {"do not fit"}));
+      [&] { model.rollOut(Z.leftCols(9), data.torques(), 1, 1); }, {"do not fit"}));
 }
 
 TEST(PredictionErrors, AreTheRootMeanSquareOverAllPredictionsAndPixels) {

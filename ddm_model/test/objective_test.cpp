@@ -24,12 +24,12 @@ ModelOptions tinyOptions() {
   return options;
 }
 
-/// Random scores and torques; frames that are in no piece are allowed.
+/// Random scores and torques [N m]; frames that are in no piece are allowed.
 TrainingData<double> randomData(int pca_dim, int torque_dim, int num_frames, bool with_goal,
                                 std::vector<Piece> pieces) {
   TrainingData<double> data;
   data.scores = randomMatrix(pca_dim, num_frames + (with_goal ? 1 : 0), 1);
-  data.torques = randomMatrix(torque_dim, num_frames, 2);
+  data.torques = 6.0 * randomMatrix(torque_dim, num_frames, 2);
   data.pieces = std::move(pieces);
   return data;
 }
@@ -69,7 +69,8 @@ JointObjective<double>::Value slowValue(const Networks<double>& nets,
           if (form.increments && lag > 0) {
             feature = path[path.size() - static_cast<size_t>(lag)] - feature;
           }
-          const Eigen::VectorXd torque = data.torques.col(t + j - 1 - lag);
+          const Eigen::VectorXd torque =
+              data.torques.col(t + j - 1 - lag).cwiseQuotient(nets.prediction_model.maxTorque());
           Eigen::VectorXd longer(h.size() + feature.size() + torque.size());
           longer << h, feature, torque;
           h = longer;
@@ -291,7 +292,7 @@ TEST(JointObjective, SinglePrecisionAgreesWithDouble) {
   const Networks<double> nets(tinyOptions(), 1);
   const Networks<float> nets_single(tinyOptions(), 1);
   const auto data = randomData(4, 1, 200, true, {{0, 200}});
-  TrainingData<float> single{data.scores.cast<float>(), data.torques.cast<float>(), data.pieces};
+  TrainingData<float> single{data.scores.cast<float>(), data.torques, data.pieces};
   const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
   Eigen::VectorXd gradient;
   Eigen::VectorXf gradient_single;

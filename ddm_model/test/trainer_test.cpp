@@ -101,7 +101,7 @@ TEST_F(Trainer, ReportsTheErrorsOfTheModelItReturns) {
   TrainingData<double> data;
   data.scores = model.pca().project(data_).cast<double>();
   ASSERT_EQ(data.scores.cols(), 61);  // the goal is the last
-  data.torques = data_.torques() / model_.max_torque;
+  data.torques = data_.torques();
   data.pieces = data_.pieces();
   const Networks<double> nets(model_, 1);
   const auto value = JointObjective<double>(nets, data).evaluate(model.theta(), nullptr);

@@ -162,7 +162,7 @@ std::vector<std::pair<std::string, Eigen::Index>> notableStarts(
     const std::vector<Eigen::Index>& starts, int num_steps) {
   std::vector<std::pair<double, Eigen::Index>> ranked;
   for (const Eigen::Index frame : starts) {
-    const Eigen::MatrixXd path = rollOut(model, Z, data.torques(), frame, num_steps);
+    const Eigen::MatrixXd path = model.rollOut(Z, data.torques(), frame, num_steps);
     ranked.emplace_back((path.rightCols(1) - Z.col(frame + num_steps)).norm(), frame);
   }
   std::sort(ranked.begin(), ranked.end());
@@ -175,7 +175,7 @@ void writePredictions(const Ddm& model, const DataSet& data, const Eigen::Matrix
   std::string text = "kind,frame,steps" + columns("z", Z.rows()) + "\n";
   for (const auto& notable : notableStarts(model, data, Z, starts, num_steps)) {
     const Eigen::Index frame = notable.second;
-    const Eigen::MatrixXd path = rollOut(model, Z, data.torques(), frame, num_steps);
+    const Eigen::MatrixXd path = model.rollOut(Z, data.torques(), frame, num_steps);
     Pictures pictures(model.imageSize());
     for (int k = 0; k <= num_steps; ++k) {
       text += notable.first + "," + std::to_string(frame) + "," + std::to_string(k) +

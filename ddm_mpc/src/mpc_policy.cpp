@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/mpc_policy.h"
 
-#include <ddm_model/long_term_prediction.h>
-
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -63,7 +61,7 @@ void MpcPolicy::Member::observe(const Grey& grey) {
 }
 
 void MpcPolicy::Member::apply(const Eigen::VectorXd& u) {
-  if (offset_gain > 0.0) predicted = predictNext(model, x, u);
+  if (offset_gain > 0.0) predicted = model.predict(x, u);
   x.apply(u);
 }
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/mpc_policy.h"
 
-#include <ddm_model/long_term_prediction.h>
 #include <ddm_model/testing/expect_error.h>
 #include <gtest/gtest.h>
 
@@ -172,7 +171,7 @@ TEST(MpcPolicy, PlansWithTheErrorOfItsLastPredictionAddedToAllOfThem) {
   const Eigen::VectorXd u = Eigen::VectorXd::Constant(1, 2.0);
   History x(2, 2, 1);
   x.observe(model->encode(randomGrey(8, 3)));
-  const Eigen::VectorXd predicted = predictNext(*model, x, u);
+  const Eigen::VectorXd predicted = model->predict(x, u);
   x.apply(u);
   x.observe(model->encode(randomGrey(8, 4)));
   const Eigen::VectorXd error = model->encode(randomGrey(8, 4)) - predicted;
@@ -185,7 +184,7 @@ TEST(MpcPolicy, PlansWithTheErrorOfItsLastPredictionAddedToAllOfThem) {
     policy.apply(u);
     policy.observe(randomGrey(8, 4));
     const Plan plan = policy.plan();
-    const Eigen::VectorXd first = predictNext(*model, x, plan.torques.col(0)) + gain * error;
+    const Eigen::VectorXd first = model->predict(x, plan.torques.col(0)) + gain * error;
     EXPECT_TRUE(plan.features.col(1).isApprox(first, 1e-12)) << "gain " << gain;
   }
 }
@@ -202,7 +201,7 @@ TEST(MpcPolicy, AveragesTheErrorsOfItsPredictionsAndForgetsThemWithTheTrial) {
   for (int step = 0; step < 4; ++step) {
     const Eigen::VectorXd z = model->encode(randomGrey(8, 50 + step));
     if (step > 0) {
-      offset = 0.6 * offset + 0.4 * (z - predictNext(*model, x, u));
+      offset = 0.6 * offset + 0.4 * (z - model->predict(x, u));
       x.apply(u);
     }
     x.observe(z);
@@ -211,14 +210,14 @@ TEST(MpcPolicy, AveragesTheErrorsOfItsPredictionsAndForgetsThemWithTheTrial) {
   }
   const Plan plan = policy.plan();
   EXPECT_TRUE(
-      plan.features.col(1).isApprox(predictNext(*model, x, plan.torques.col(0)) + offset, 1e-12));
+      plan.features.col(1).isApprox(model->predict(x, plan.torques.col(0)) + offset, 1e-12));
   policy.apply(u);
   policy.startTrial(TrialId());
   policy.observe(randomGrey(8, 3));
   History rest(2, 2, 1);
   rest.observe(model->encode(randomGrey(8, 3)));
   const Plan next = policy.plan();
-  EXPECT_TRUE(next.features.col(1).isApprox(predictNext(*model, rest, next.torques.col(0)), 1e-12));
+  EXPECT_TRUE(next.features.col(1).isApprox(model->predict(rest, next.torques.col(0)), 1e-12));
 }
 
 TEST(MpcPolicy, PlansOnTheMeanCostOfAnEnsembleWithABonusInTrialsAlone) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ddm_model/data_set.h"
+#include "ddm_model/history.h"
 #include "ddm_model/model_options.h"
 #include "ddm_model/networks.h"
 #include "ddm_model/pca.h"
@@ -51,6 +52,24 @@ class Ddm {
   /// @throws std::logic_error if the model has no goal image
   const Eigen::VectorXd& goalFeature() const;
   bool hasGoal() const { return !goal_.empty(); }
+
+  /// z_{t+1} = f(h_n), one step from the state that a policy keeps (eq. 2).
+  /// @param x  features and torques until t, not empty
+  /// @param u  u_t [N m]                                                 [torque_dim]
+  /// @return   [feature_dim]
+  /// @throws std::invalid_argument if x is empty, or x or u do not fit the model
+  Eigen::VectorXd predict(const History& x, const Eigen::VectorXd& u) const;
+
+  /// z_t, then z_{t+1} ... z_{t+num_steps} predicted from the last n features and torques that were
+  /// seen until t, and the torques that followed (paper, Sec. 4.1).
+  /// @param Z        features of all frames                               [feature_dim x N]
+  /// @param torques  torques of all frames [N m]                           [torque_dim x N]
+  /// @param frame    t; n - 1 <= t <= N - num_steps. No gap may lie in between
+  /// @return         [feature_dim x (num_steps + 1)]
+  /// @throws std::invalid_argument for sizes or a frame that do not fit
+  Eigen::MatrixXd rollOut(const Eigen::MatrixXd& Z,
+                          const Eigen::Ref<const Eigen::MatrixXd>& torques, Eigen::Index frame,
+                          int num_steps) const;
 
   const PredictionModel<double>& predictionModel() const { return networks_.prediction_model; }
   /// Parameters theta_P of predictionModel().

@@ -1,4 +1,4 @@
-// Long-term predictions: one-step predictions of f put one after the other, and how wrong they are.
+// Long-term predictions: from which frames they can be made, and how wrong they are.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,7 +8,6 @@
 
 #include "ddm_model/data_set.h"
 #include "ddm_model/ddm.h"
-#include "ddm_model/history.h"
 
 namespace ddm {
 
@@ -16,27 +15,6 @@ namespace ddm {
 /// @return Z  [feature_dim x numFrames()]
 /// @throws std::invalid_argument if the images have another size than the model's
 Eigen::MatrixXd encodeAll(const Ddm& model, const DataSet& data);
-
-/// z_t, then z_{t+1} ... z_{t+num_steps} predicted from the last n features and torques that were
-/// seen until t, and the torques that followed (paper, Sec. 4.1):
-///
-///   z_{k+1} = f(z_k, u_k, ..., z_{k-n+1}, u_{k-n+1}),   every z after t predicted
-///
-/// @param Z        features of all frames                               [feature_dim x N]
-/// @param torques  torques of all frames [N m]                           [torque_dim x N]
-/// @param frame    t; n - 1 <= t <= N - num_steps. No gap may lie in between
-/// @return         [feature_dim x (num_steps + 1)]
-/// @throws std::invalid_argument for sizes or a frame that do not fit
-Eigen::MatrixXd rollOut(const Ddm& model, const Eigen::MatrixXd& Z,
-                        const Eigen::Ref<const Eigen::MatrixXd>& torques, Eigen::Index frame,
-                        int num_steps);
-
-/// z_{t+1} = f(h), one step from the state that a policy keeps.
-/// @param x  features and torques until t, not empty
-/// @param u  u_t [N m]                                                 [torque_dim]
-/// @return   [feature_dim]
-/// @throws std::invalid_argument if x is empty
-Eigen::VectorXd predictNext(const Ddm& model, const History& x, const Eigen::VectorXd& u);
 
 /// Frames that have n - 1 predecessors and num_steps successors without a gap: what can be
 /// predicted from. In the order of the data.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ddm_model/networks.h"
+#include "ddm_model/roll_out.h"
 #include "ddm_model/schedule.h"
 #include "ddm_model/training_data.h"
 
@@ -76,9 +77,6 @@ class JointObjective {
   void encode(const Scalar* theta, Eigen::Index block);
   void backwardThroughEncoder(const Scalar* theta, Eigen::Index block, Scalar* d_theta);
   Value decodeBlock(const Scalar* theta, Eigen::Index block, const Terms& terms, Scalar* d_theta);
-  void rollOut(const Scalar* theta, Eigen::Index first, Eigen::Index count, int num_steps);
-  void backwardThroughRollOut(const Scalar* theta, Eigen::Index first, Eigen::Index count,
-                              int num_steps, Scalar* d_theta);
   void reserve(int num_steps);
 
   Eigen::Index blocksOf(Eigen::Index frames) const;
@@ -97,12 +95,7 @@ class JointObjective {
   // turn: they stay in cache, however many frames there are.
   std::vector<typename Mlp<Scalar>::Tape> encoder_tapes_;
   typename Mlp<Scalar>::Tape decoder_tape_;
-  std::vector<typename Mlp<Scalar>::Tape> predictor_tapes_;  // one per step ahead
-  std::vector<Matrix>
-      predicted_;  // z_{t+j|t} of the block's targets   j times [feature_dim x kBlock]
-  std::vector<Matrix> d_predicted_;  // dV/dz_{t+j|t}
-  Matrix regressors_;                // h of the block's targets
-  Matrix d_regressors_;
+  RollOut<Scalar> roll_out_;  // of the block's targets
   Matrix d_codes_;   // dV/dz: of the block, then of the predicted z of its targets, step by step
   Matrix residual_;  // of their decoded scores
 };

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "ddm_model/mlp.h"
@@ -11,11 +12,12 @@ namespace ddm {
 
 /// One-step prediction in feature space (paper, Sec. 2.2), without its parameters.
 ///
-///   z_{t+1} = f(h; theta_P),   h = [z_t, u_t, z_{t-1}, u_{t-1}, ..., z_{t-n+1}, u_{t-n+1}]
+///   z_{t+1} = f(h_n; theta_P),   h_n = [z_t, u_t, z_{t-1}, u_{t-1}, ..., z_{t-n+1}, u_{t-n+1}]
 ///
-/// with u in units of max_torque. f is a network with a linear output layer, or, with
-/// model/residual, z_t plus such a network: what does not move is then predicted without learning.
-/// With model/increments the network is told of the past as z_t, z_t - z_{t-1}, z_{t-1} - z_{t-2},
+/// with u in units of max_torque; RollOut makes h_n. f is a network with a linear output layer, or,
+/// with model/residual, z_t plus such a network: what does not move is then predicted without
+/// learning. With model/increments the network is told of the past as z_t, z_t - z_{t-1}, z_{t-1} -
+/// z_{t-2},
 /// ...: features of successive images are almost equal, and the motion lies in what is left.
 template <class Scalar>
 class PredictionModel {
@@ -29,24 +31,28 @@ class PredictionModel {
         order_(options.order),
         residual_(options.residual),
         increments_(options.increments),
+        max_torque_(Eigen::VectorXd::Constant(torque_dim, options.max_torque)),
         network_(layers(options, torque_dim), Mlp<Scalar>::Output::kLinear) {}
 
   int featureDim() const { return feature_dim_; }
   int torqueDim() const { return torque_dim_; }
   /// @return n
   int order() const { return order_; }
-  /// @return n (feature_dim + torque_dim), the size of h
+  /// What f sees as 1 [N m]  [torque_dim]
+  const Eigen::VectorXd& maxTorque() const { return max_torque_; }
+  /// @return n (feature_dim + torque_dim), the size of h_n
   int regressorDim() const { return network_.inputDim(); }
-  /// Where the feature of `lag` steps ago (0: the current one) starts in h.
+  /// Where the feature of `lag` steps ago (0: the current one) starts in h_n.
   int featureRow(int lag) const { return lag * (feature_dim_ + torque_dim_); }
-  /// Where the torque of `lag` steps ago starts in h.
+  /// Where the torque of `lag` steps ago starts in h_n.
   int torqueRow(int lag) const { return featureRow(lag) + feature_dim_; }
 
   /// The network within f.
   const Mlp<Scalar>& network() const { return network_; }
 
   /// @param theta_p     parameters of f                                                      [P_f]
-  /// @param regressors  one h per column; afterwards what the network saw      [regressorDim() x N]
+  /// @param regressors  one h_n per column; afterwards what the network saw      [regressorDim() x
+  /// N]
   /// @param tape        out: record for backward()
   /// @param predicted   out: z_{t+1}, of this size already                      [feature_dim x N]
   void forward(const Scalar* theta_p, Eigen::Ref<Matrix> regressors,
@@ -54,14 +60,14 @@ class PredictionModel {
     for (int lag = increments_ ? order_ - 1 : 0; lag > 0; --lag) {
       features(lag, regressors) = features(lag - 1, regressors) - features(lag, regressors);
     }
-    network_.forward(theta_p, regressors, tape);
+    network_.forward(theta_p, regressors, tape);  // eq. (2)
     predicted = tape->output();
     if (residual_) predicted += features(0, regressors);
   }
 
   /// Vector-Jacobian product of forward(). Uses the tape up.
   /// @param d_theta_p     dV/d theta_P is ADDED to this; null: not wanted                    [P_f]
-  /// @param d_regressors  out: dV/dh in its first N columns                [regressorDim() x >= N]
+  /// @param d_regressors  out: dV/dh_n in its first N columns              [regressorDim() x >= N]
   void backward(const Scalar* theta_p, typename Mlp<Scalar>::Tape* tape,
                 const Eigen::Ref<const Matrix>& d_predicted, Scalar* d_theta_p,
                 Matrix* d_regressors) const {
@@ -93,6 +99,7 @@ class PredictionModel {
   int order_;
   bool residual_;
   bool increments_;
+  Eigen::VectorXd max_torque_;
   Mlp<Scalar> network_;
 };
 

@@ -1,4 +1,4 @@
-// What the objective is computed from: PCA scores and scaled torques of a data set.
+// What the objective is computed from: PCA scores and torques of a data set.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,12 +13,11 @@ namespace ddm {
 template <class Scalar>
 struct TrainingData {
   using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
-  Matrix scores;   ///< PCA scores: all frames, then the goal if there is one  [pca_dim x M]
-  Matrix torques;  ///< torques in units of max_torque                  [torque_dim x N]
+  Matrix scores;              ///< all frames, then the goal if there is one  [pca_dim x M]
+  Eigen::MatrixXd torques;    ///< [N m]                               [torque_dim x N]
   std::vector<Piece> pieces;  ///< no prediction straddles two of them
 };
 
-/// @param max_torque  unit of the torques [N m]
-TrainingData<float> makeTrainingData(const DataSet& data, const Pca& pca, double max_torque);
+TrainingData<float> makeTrainingData(const DataSet& data, const Pca& pca);
 
 }  // namespace ddm

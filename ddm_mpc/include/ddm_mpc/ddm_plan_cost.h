@@ -4,9 +4,9 @@
 
 #include <ddm_model/ddm.h>
 #include <ddm_model/history.h>
+#include <ddm_model/roll_out.h>
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "ddm_mpc/distance_cost.h"
 #include "ddm_mpc/plan_cost.h"
@@ -51,24 +51,19 @@ class DdmPlanCost : public PlanCost {
 
  private:
   double distanceCost(int step);
-  void fillRegressor(int step, const Eigen::Ref<const Eigen::MatrixXd>& U);
 
   const PredictionModel<double>& f_;
   const double* theta_p_;
   int horizon_ = 0;
   double control_weight_;
   DistanceCost distance_cost_;
-  double max_torque_;
-  int order_;
   Eigen::VectorXd goal_feature_;
   Eigen::VectorXd offset_;
-  Eigen::MatrixXd past_torques_;  // u_{-1}, u_{-2}, ... in units of max_torque
-  Eigen::MatrixXd features_;      // z_{-n+1} ... z_K; z_0 stands in column n - 1
-  Eigen::MatrixXd d_features_;
-  Eigen::VectorXd slopes_;  // of the distance cost at z_1 ... z_K
-  Eigen::VectorXd regressor_;
-  Eigen::MatrixXd d_regressor_;
-  std::vector<Mlp<double>::Tape> tapes_;  // one per step
+  RollOut<double> roll_out_;
+  Eigen::MatrixXd features_;   // z_{-n+1} ... z_0                          [feature_dim x n]
+  Eigen::MatrixXd torques_;    // u_{-n+1} ... u_{K-1} [N m]     [torque_dim x (n - 1 + K)]
+  Eigen::MatrixXd d_torques_;  // dJ/du of these
+  Eigen::VectorXd slopes_;     // of the distance cost at z_1 ... z_K
 };
 
 }  // namespace ddm

@@ -1,0 +1,124 @@
+// Tests of multi-step prediction: the regressor, several targets at once, the gradient.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/roll_out.h"
+
+#include <gtest/gtest.h>
+
+#include "ddm_model/testing/gradient_check.h"
+#include "ddm_model/testing/random_matrix.h"
+
+namespace ddm {
+namespace {
+
+using testing::randomMatrix;
+
+constexpr int kFrames = 12;
+constexpr int kSteps = 4;
+const std::vector<Eigen::Index> kTargets = {3, 5, 8};
+
+RollOut<double>::Targets targets() { return {kTargets.data(), 3}; }
+
+/// n, and whether f sees and predicts differences of features.
+class RollOutOfEachForm : public ::testing::TestWithParam<std::tuple<int, bool>> {
+ protected:
+  static ModelOptions options() {
+    ModelOptions options;
+    options.order = std::get<0>(GetParam());
+    options.residual = options.increments = std::get<1>(GetParam());
+    options.max_torque = 1.5;
+    return options;
+  }
+
+  /// By the formula, one frame at a time.                                   [feature_dim x kSteps]
+  Eigen::MatrixXd slow(Eigen::Index target) const {
+    Eigen::MatrixXd path = Z_;
+    for (Eigen::Index frame = target; frame < target + kSteps; ++frame) {
+      Eigen::VectorXd h(f_.regressorDim());
+      for (int lag = 0; lag < f_.order(); ++lag) {
+        Eigen::Vector2d z = path.col(frame - 1 - lag);
+        if (options().increments && lag > 0) z = path.col(frame - lag) - z;
+        h.segment(4 * lag, 2) = z;
+        h.segment(4 * lag + 2, 2) = U_.col(frame - 1 - lag) / 1.5;
+      }
+      Mlp<double>::Tape tape;
+      f_.network().forward(theta_p_.data(), h, &tape);
+      const Eigen::Vector2d last = path.col(frame - 1);
+      path.col(frame) = tape.output() + offset_;
+      if (options().residual) path.col(frame) += last;
+    }
+    return path.middleCols(target, kSteps);
+  }
+
+  const PredictionModel<double> f_{options(), 2};
+  const Eigen::VectorXd theta_p_ = 0.7 * randomMatrix(f_.network().numParams(), 1, 1);
+  const Eigen::MatrixXd Z_ = randomMatrix(2, kFrames, 2);
+  const Eigen::MatrixXd U_ = randomMatrix(2, kFrames, 3);
+  const Eigen::VectorXd offset_ = 0.1 * randomMatrix(2, 1, 4);
+};
+
+TEST_P(RollOutOfEachForm, EqualsTheFormula) {
+  RollOut<double> roll_out(f_);
+  roll_out.forward(theta_p_.data(), Z_, U_, targets(), kSteps, &offset_);
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::MatrixXd expected = slow(kTargets[i]);
+    for (int step = 0; step < kSteps; ++step) {
+      EXPECT_TRUE(roll_out.predicted(step).col(i).isApprox(expected.col(step), 1e-12))
+          << "target " << kTargets[i] << ", step " << step;
+    }
+  }
+}
+
+TEST_P(RollOutOfEachForm, GradientMatchesDifferencesForParametersFeaturesAndTorques) {
+  const Eigen::Index num_params = theta_p_.size(), num_features = Z_.size();
+  const Eigen::MatrixXd weight = randomMatrix(2, 3 * kSteps, 5);
+  RollOut<double> roll_out(f_);
+  const auto weighted_sum = [&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+    const Eigen::Map<const Eigen::MatrixXd> Z(x.data() + num_params, 2, kFrames);
+    const Eigen::Map<const Eigen::MatrixXd> U(x.data() + num_params + num_features, 2, kFrames);
+    roll_out.forward(x.data(), Z, U, targets(), kSteps);
+    double sum = 0.0;
+    for (int step = 0; step < kSteps; ++step) {
+      sum += roll_out.predicted(step).cwiseProduct(weight.middleCols(3 * step, 3)).sum();
+      roll_out.dPredicted(step) = weight.middleCols(3 * step, 3);
+    }
+    if (gradient == nullptr) return sum;
+    Eigen::VectorXd d_theta_p = Eigen::VectorXd::Zero(num_params);
+    Eigen::MatrixXd d_Z = Eigen::MatrixXd::Zero(2, kFrames), d_U = d_Z;
+    for (int step = kSteps - 1; step >= 0; --step) {
+      roll_out.backward(x.data(), targets(), step, d_theta_p.data(), &d_Z, &d_U);
+    }
+    gradient->resize(x.size());
+    *gradient << d_theta_p, Eigen::Map<Eigen::VectorXd>(d_Z.data(), d_Z.size()),
+        Eigen::Map<Eigen::VectorXd>(d_U.data(), d_U.size());
+    return sum;
+  };
+  Eigen::VectorXd x(num_params + 2 * num_features);
+  x << theta_p_, Eigen::Map<const Eigen::VectorXd>(Z_.data(), num_features),
+      Eigen::Map<const Eigen::VectorXd>(U_.data(), num_features);
+  EXPECT_TRUE(testing::gradientMatches(weighted_sum, x));
+}
+
+TEST_P(RollOutOfEachForm, BeyondTheLastTorqueRepeatsIt) {
+  RollOut<double> cut(f_), whole(f_);
+  Eigen::MatrixXd U = U_;
+  U.rightCols(kFrames - 9).colwise() = U_.col(8);
+  cut.forward(theta_p_.data(), Z_, U_.leftCols(9), targets(), kSteps);
+  whole.forward(theta_p_.data(), Z_, U, targets(), kSteps);
+  EXPECT_EQ(cut.predicted(kSteps - 1), whole.predicted(kSteps - 1));
+}
+
+TEST_P(RollOutOfEachForm, IsTheSameAfterALargerOne) {
+  RollOut<double> used(f_), fresh(f_);
+  used.forward(theta_p_.data(), Z_, U_, targets(), kSteps);
+  const RollOut<double>::Targets one(kTargets.data() + 1, 1);
+  used.forward(theta_p_.data(), Z_, U_, one, 2);
+  fresh.forward(theta_p_.data(), Z_, U_, one, 2);
+  ASSERT_EQ(used.predicted(1).cols(), 1);
+  EXPECT_TRUE(used.predicted(1).isApprox(fresh.predicted(1), 1e-14));
+}
+
+INSTANTIATE_TEST_SUITE_P(OrdersAndForms, RollOutOfEachForm,
+                         ::testing::Combine(::testing::Values(1, 2, 3), ::testing::Bool()));
+
+}  // namespace
+}  // namespace ddm
