@@ -3,6 +3,7 @@
 #include <ddm_bag_io/bag_writer.h>
 #include <ddm_model/objective.h>
 #include <ddm_model/pca.h>
+#include <ddm_model/per_motor.h>
 #include <ddm_model/training_data.h>
 #include <ddm_mpc/epsilon_greedy.h>
 #include <ddm_msgs/image_codec.h>
@@ -56,8 +57,7 @@ DataSet randomTrial(int num_frames, int trial, int image_size) {
   id.trial = static_cast<std::uint32_t>(trial);
   EpsilonGreedy::Options exploration;
   exploration.epsilon = 1.0;
-  exploration.max_torque = options.max_torque;
-  exploration.torque_dim = plant->torqueDim();
+  exploration.max_torque = perMotor(options.max_torque, plant->torqueDim(), "mpc/max_torque");
   EpsilonGreedy policy(nullptr, exploration, id);
   std::mt19937_64 start = startStream(id.seed, id.trial, id.evaluation);
   plant->setState(plant->drawStart(start));

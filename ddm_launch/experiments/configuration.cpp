@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "configuration.h"
 
+#include <ddm_model/per_motor.h>
 #include <ddm_model/schedule.h>
 #include <ddm_plant_plugin/plant_config.h>
 
@@ -16,19 +17,21 @@ namespace {
 /// What no block can see by itself.
 std::vector<std::string> contradictions(const Configuration& all) {
   std::vector<std::string> out;
-  const auto require = [&out](bool ok, const std::string& rule, double value) {
+  const auto require = [&out](bool ok, const std::string& rule, const auto& value) {
     if (ok) return;
     std::ostringstream text;
     text << rule << ", got " << value;
     out.push_back(text.str());
   };
   const std::string motor = all.robot ? "robot/max_torque" : "plant/max_torque";
-  require(all.mpc.max_torque <= (all.robot ? all.robot->max_torque : all.plant.max_torque),
+  const std::vector<double> limits = all.robot ? std::vector<double>{all.robot->max_torque}
+                                               : std::vector<double>{all.plant.max_torque};
+  require(within(all.mpc.max_torque, limits),
           "mpc/max_torque must be at most " + motor + ", beyond which the motor saturates",
-          all.mpc.max_torque);
-  require(all.mpc.max_torque <= all.model.model.max_torque,
+          limitsText(all.mpc.max_torque));
+  require(within(all.mpc.max_torque, all.model.model.max_torque),
           "mpc/max_torque must be at most model/max_torque, which scales what f sees",
-          all.mpc.max_torque);
+          limitsText(all.mpc.max_torque));
   require(all.mpc.time_budget <= (all.robot ? all.robot->dt : all.plant.dt),
           std::string("mpc/time_budget must be at most ") + (all.robot ? "robot/dt" : "plant/dt") +
               ", when the next image comes",

@@ -3,6 +3,7 @@
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_model/long_term_prediction.h>
 #include <ddm_model/model_file.h>
+#include <ddm_model/per_motor.h>
 #include <ddm_model/plain_file.h>
 #include <ddm_model/solver_log.h>
 #include <ddm_mpc/epsilon_greedy.h>
@@ -89,8 +90,7 @@ Plan planAt(const Arguments& arguments, const Configuration& all,
   const std::unique_ptr<Plant> plant = makePlant(all.plant, all.camera);
   EpsilonGreedy::Options options;
   options.epsilon = 0.0;
-  options.max_torque = all.mpc.max_torque;
-  options.torque_dim = plant->torqueDim();
+  options.max_torque = perMotor(all.mpc.max_torque, plant->torqueDim(), "mpc/max_torque");
   EpsilonGreedy policy(std::make_shared<MpcPolicy>(std::move(model), all.mpc), options, id);
   std::mt19937_64 start = startStream(id.seed, id.trial, id.evaluation);
   plant->setState(plant->drawStart(start));

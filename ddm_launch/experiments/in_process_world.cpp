@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "in_process_world.h"
 
+#include <ddm_model/per_motor.h>
 #include <ddm_msgs/Torque.h>
 #include <ddm_sim/plant_factory.h>
 
@@ -47,8 +48,8 @@ EpsilonGreedy InProcessWorld::makePolicy(const TrialRequest& request) const {
   EpsilonGreedy::Options options;
   options.epsilon = request.epsilon;
   options.hold_steps = request.hold_steps;
-  options.max_torque = configuration_.mpc.max_torque;
-  options.torque_dim = plant_->torqueDim();
+  options.max_torque =
+      perMotor(configuration_.mpc.max_torque, plant_->torqueDim(), "mpc/max_torque");
   return EpsilonGreedy(request.epsilon < 1.0 ? method_->policy() : nullptr, options, request.id);
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_model/long_term_prediction.h>
 #include <ddm_model/model_file.h>
+#include <ddm_model/per_motor.h>
 #include <ddm_model/solver_log.h>
 #include <ddm_model/trainer.h>
 #include <ddm_mpc/epsilon_greedy.h>
@@ -58,8 +59,7 @@ Recording record(const Experiment& experiment, Plant* plant) {
   EpsilonGreedy::Options options;
   options.epsilon = 1.0;
   options.hold_steps = all.mpc.hold_steps;
-  options.max_torque = all.mpc.max_torque;
-  options.torque_dim = plant->torqueDim();
+  options.max_torque = perMotor(all.mpc.max_torque, plant->torqueDim(), "mpc/max_torque");
   EpsilonGreedy random(nullptr, options, id);
   std::mt19937_64 start = startStream(id.seed, id.trial, id.evaluation);
   plant->setState(plant->drawStart(start));
@@ -113,7 +113,7 @@ std::string stripCsv(const Plant& plant, const Recording& recording, const Ddm& 
   const Eigen::Index frame = order - 1 + (recording.held_out.numFrames() - max_steps - order) / 2;
   const Eigen::Index begin = recording.training.numFrames();
   const Eigen::MatrixXd predicted = model.rollOut(Z.rightCols(recording.held_out.numFrames()),
-                                            recording.held_out.torques(), frame, max_steps);
+                                                  recording.held_out.torques(), frame, max_steps);
   std::string text = "steps" + columns(plant, static_cast<int>(Z.rows()));
   for (int k = 0; k <= max_steps; ++k) {
     text += std::to_string(k) + cells(recording.states.col(begin + frame + k)) +

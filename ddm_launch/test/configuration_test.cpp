@@ -76,7 +76,8 @@ TEST(Configuration, EveryPresetLoadsWithEveryPlant) {
     for (const std::string plant : {"moving_tile", "pendulum", "pendulum_gravity"}) {
       const Configuration all = read(arguments(preset, plant));
       EXPECT_EQ(all.plant.gravity > 0.0, plant == "pendulum_gravity") << preset;
-      EXPECT_EQ(all.mpc.max_torque, all.plant.max_torque) << preset << ", " << plant;
+      EXPECT_EQ(all.mpc.max_torque, std::vector<double>{all.plant.max_torque})
+          << preset << ", " << plant;
       EXPECT_NO_THROW(makePlant(all.plant, all.camera)) << preset << ", " << plant;
     }
   }

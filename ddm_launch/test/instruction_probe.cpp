@@ -22,7 +22,7 @@ void evaluateObjective(int count) {
   const Networks<float> networks(options, 1);
   TrainingData<float> data;
   data.scores = testing::randomMatrix(options.pca_dim, kFrames + 1, 1).cast<float>();
-  data.torques = options.max_torque * testing::randomMatrix(1, kFrames, 2);
+  data.torques = options.max_torque[0] * testing::randomMatrix(1, kFrames, 2);
   data.pieces = {{0, kFrames}};
   JointObjective<float> objective(networks, data);
   const Eigen::VectorXf theta =

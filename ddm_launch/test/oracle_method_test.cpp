@@ -105,7 +105,7 @@ TEST_F(OracleTest, StandsUpAndStaysWhereverItStarts) {
 TEST_F(OracleTest, BringsTheTileToItsGoal) {
   configuration_.plant.type = "moving_tile";
   configuration_.plant.max_torque = 5.0;
-  configuration_.mpc.max_torque = 5.0;
+  configuration_.mpc.max_torque = {5.0};
   const std::unique_ptr<Plant> plant = makePlant(configuration_.plant, configuration_.camera);
   const TrialOutcome outcome = greedyRun(0);
   EXPECT_GT(plant->goalError(outcome.states.front()), 10.0);

@@ -16,7 +16,8 @@ namespace {
 
 constexpr char kMagic[] = "DDMMODEL";
 constexpr size_t kMagicSize = sizeof(kMagic) - 1;
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kOneLimit = 2;  // the version of a model with one max_torque for all motors
 constexpr size_t kHeaderSize = kMagicSize + 4 + 8 + 4;
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "model files are little-endian");
@@ -101,7 +102,11 @@ void writeOptions(const ModelOptions& options, Writer* out) {
   widths(options.predictor_widths);
   out->number<std::uint8_t>(options.residual ? 1 : 0);
   out->number<std::uint8_t>(options.increments ? 1 : 0);
-  out->number<double>(options.max_torque);
+  if (options.max_torque.size() == 1) {
+    out->number<double>(options.max_torque[0]);
+  } else {
+    out->array(options.max_torque.data(), options.max_torque.size());
+  }
 }
 
 ModelOptions readOptions(std::uint32_t version, Reader* in) {
@@ -118,7 +123,8 @@ ModelOptions readOptions(std::uint32_t version, Reader* in) {
   options.predictor_widths = widths();
   options.residual = version > 1 && in->flag();
   options.increments = version > 1 && in->flag();
-  options.max_torque = in->number<double>();
+  options.max_torque =
+      version > kOneLimit ? in->array<double>() : std::vector<double>{in->number<double>()};
   for (const std::string& problem : options.problems()) throw std::runtime_error(problem);
   return options;
 }
@@ -205,7 +211,7 @@ std::string serialiseModel(const Ddm& model) {
   for (const Ddm& other : model.others()) writeContent(other, &content);
 
   Writer header;
-  header.number<std::uint32_t>(kVersion);
+  header.number<std::uint32_t>(model.options().max_torque.size() == 1 ? kOneLimit : kVersion);
   header.number<std::uint64_t>(content.bytes().size());
   header.number<std::uint32_t>(crc32(content.bytes().data(), content.bytes().size()));
   return kMagic + header.bytes() + content.bytes();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "ddm_model/per_motor.h"
 #include "ddm_model/schedule.h"
 
 namespace ddm {
@@ -43,8 +44,7 @@ std::vector<std::string> ModelOptions::problems() const {
   requireWidths(encoder_widths, "model/encoder_widths", &out);
   requireWidths(decoder_widths, "model/decoder_widths", &out);
   requireWidths(predictor_widths, "model/predictor_widths", &out);
-  require(max_torque > 0.0 && std::isfinite(max_torque), "model/max_torque must be > 0", max_torque,
-          &out);
+  require(areLimits(max_torque), "model/max_torque must be > 0", limitsText(max_torque), &out);
   return out;
 }
 

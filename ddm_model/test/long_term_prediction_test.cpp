@@ -30,7 +30,7 @@ Eigen::VectorXd predictedByHand(const Ddm& model, const DataSet& data, Eigen::In
   Eigen::VectorXd before = model.encode(data.image(frame - 1));
   Eigen::VectorXd now = model.encode(data.image(frame));
   for (int step = 0; step < num_steps; ++step) {
-    const double scale = model.options().max_torque;
+    const double scale = model.options().max_torque[0];
     Eigen::VectorXd h(6);
     h << now, data.torques()(0, frame + step) / scale, before,
         data.torques()(0, frame + step - 1) / scale;

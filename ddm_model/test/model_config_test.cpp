@@ -69,7 +69,7 @@ TEST(ModelConfig, ItsTextReadsBackAsTheSameConfiguration) {
   ModelConfig config;
   config.image.size = 33;
   config.model.encoder_widths = {};
-  config.model.max_torque = 0.1 + 0.2;
+  config.model.max_torque = {0.1 + 0.2};
   config.training.solver = "bfgs";
   config.data_set.goal_topic = "/aim";
   ParamReader reader(YAML::Load(toText(config)));

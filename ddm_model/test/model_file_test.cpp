@@ -73,6 +73,24 @@ TEST(ModelFile, KeepsTheFormOfF) {
   }
 }
 
+TEST(ModelFile, KeepsALimitForEachMotorAndIsVersionTwoWhereThereIsOneForAll) {
+  const Ddm one = toyModel();
+  ModelOptions options = one.options();
+  const auto model = [&] {
+    const Eigen::Index num_params = Networks<double>(options, 2).numParams();
+    return Ddm(options, one.imageSize(), 2, one.pca(), testing::randomMatrix(num_params, 1, 4),
+               one.goal(), one.info());
+  };
+  EXPECT_EQ(serialiseModel(model())[kVersionAt], 2);
+  options.max_torque = {4.0, 2.0};
+  const std::string bytes = serialiseModel(model());
+  EXPECT_EQ(bytes[kVersionAt], 3);
+  const Ddm back = deserialiseModel(bytes, "memory");
+  EXPECT_EQ(back.options().max_torque, options.max_torque);
+  EXPECT_EQ(back.predictionModel().maxTorque(), Eigen::Vector2d(4.0, 2.0));
+  EXPECT_EQ(serialiseModel(back), bytes);
+}
+
 /// Where two texts of equal size differ first.
 size_t firstDifference(const std::string& a, const std::string& b, size_t from) {
   while (a[from] == b[from]) ++from;
@@ -135,8 +153,8 @@ TEST(ModelFile, BytesAfterTheEndAreRefused) {
 
 TEST(ModelFile, AnotherVersionIsRefusedWithBothVersionsAndTheRemedy) {
   std::string bytes = serialiseModel(toyModel());
-  bytes[kVersionAt] = 3;
-  EXPECT_TRUE(isRefused(bytes, {"format version 3", "reads versions 1 to 2", "train it again"}));
+  bytes[kVersionAt] = 4;
+  EXPECT_TRUE(isRefused(bytes, {"format version 4", "reads versions 1 to 3", "train it again"}));
 }
 
 TEST(ModelFile, WhatIsNoModelIsRefused) {

@@ -58,9 +58,14 @@ TEST(ModelOptions, RefusesEachKeyOutOfRangeWithItsNameAndValue) {
   EXPECT_TRUE(refuses(with(&ModelOptions::encoder_widths, zero), "model/encoder_widths", "0"));
   EXPECT_TRUE(refuses(with(&ModelOptions::decoder_widths, huge), "model/decoder_widths", "4097"));
   EXPECT_TRUE(refuses(with(&ModelOptions::predictor_widths, zero), "model/predictor_widths", "0"));
-  EXPECT_TRUE(refuses(with(&ModelOptions::max_torque, 0.0), "model/max_torque", "0"));
-  EXPECT_TRUE(refuses(with(&ModelOptions::max_torque, kNaN), "model/max_torque", "nan"));
-  EXPECT_TRUE(refuses(with(&ModelOptions::max_torque, kInf), "model/max_torque", "inf"));
+  using Limits = std::vector<double>;
+  const auto max_torque = [](const Limits& limits) {
+    return with(&ModelOptions::max_torque, limits);
+  };
+  EXPECT_TRUE(refuses(max_torque({0.0}), "model/max_torque", "0"));
+  EXPECT_TRUE(refuses(max_torque({kNaN}), "model/max_torque", "nan"));
+  EXPECT_TRUE(refuses(max_torque({6.0, kInf}), "model/max_torque", "[6, inf]"));
+  EXPECT_TRUE(refuses(max_torque({}), "model/max_torque", "[]"));
 }
 
 TEST(TrainingOptions, RefusesEachKeyOutOfRangeWithItsNameAndValue) {
@@ -113,7 +118,7 @@ TEST(ModelOptions, ReportsAllProblemsAtOnce) {
   ModelOptions options;
   options.order = 0;
   options.encoder_widths = {0, -1};
-  options.max_torque = -6.0;
+  options.max_torque = {-6.0};
   EXPECT_EQ(options.problems().size(), 4U);
 }
 

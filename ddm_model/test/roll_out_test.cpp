@@ -25,7 +25,7 @@ class RollOutOfEachForm : public ::testing::TestWithParam<std::tuple<int, bool>>
     ModelOptions options;
     options.order = std::get<0>(GetParam());
     options.residual = options.increments = std::get<1>(GetParam());
-    options.max_torque = 1.5;
+    options.max_torque = {1.5, 0.5};
     return options;
   }
 
@@ -38,7 +38,7 @@ class RollOutOfEachForm : public ::testing::TestWithParam<std::tuple<int, bool>>
         Eigen::Vector2d z = path.col(frame - 1 - lag);
         if (options().increments && lag > 0) z = path.col(frame - lag) - z;
         h.segment(4 * lag, 2) = z;
-        h.segment(4 * lag + 2, 2) = U_.col(frame - 1 - lag) / 1.5;
+        h.segment(4 * lag + 2, 2) << U_(0, frame - 1 - lag) / 1.5, U_(1, frame - 1 - lag) / 0.5;
       }
       Mlp<double>::Tape tape;
       f_.network().forward(theta_p_.data(), h, &tape);

@@ -55,7 +55,7 @@ inline ModelOptions toyModelOptions() {
   options.encoder_widths = {5};
   options.decoder_widths = {5};
   options.predictor_widths = {4};
-  options.max_torque = 2.0;
+  options.max_torque = {2.0};
   return options;
 }
 

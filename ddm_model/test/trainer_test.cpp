@@ -121,7 +121,7 @@ TEST_F(Trainer, PredictsBetterThanStandingStill) {
     Eigen::VectorXd h(f.regressorDim());
     for (int lag = 0; lag < 2; ++lag) {
       h.segment(f.featureRow(lag), 2) = feature(t - lag);
-      h[f.torqueRow(lag)] = fresh.torques()(0, t - lag) / model_.max_torque;
+      h[f.torqueRow(lag)] = fresh.torques()(0, t - lag) / model_.max_torque[0];
     }
     Mlp<double>::Tape tape;
     f.network().forward(model.thetaP(), h, &tape);

@@ -17,7 +17,7 @@ class GoodData:
         half = num_frames // 2
         self.facts = {"frames": "500"}
         self.options = {"pca_dim": "50", "feature_dim": "2"}
-        self.max_torque = 6.0
+        self.max_torque = np.array([6.0])
         self.variation = 0.1
         angle = np.linspace(0.0, 6.3, num_frames)
         self.features = np.column_stack([np.sin(angle), np.cos(angle)])

@@ -3,6 +3,7 @@
 #include "model_arrays.h"
 
 #include <ddm_model/networks.h>
+#include <ddm_model/per_motor.h>
 
 #include <cstdint>
 
@@ -34,7 +35,11 @@ void addModel(const Ddm& model, const std::string& prefix, Arrays* out) {
   addNumber("feature_dim", std::int64_t{options.feature_dim});
   addNumber("torque_dim", std::int64_t{model.torqueDim()});
   addNumber("order", std::int64_t{options.order});
-  addNumber("max_torque", options.max_torque);
+  if (options.max_torque.size() == 1) {
+    addNumber("max_torque", options.max_torque[0]);
+  } else {
+    add("max_torque", perMotor(options.max_torque, model.torqueDim(), "model/max_torque"));
+  }
   addNumber("residual", std::int64_t{options.residual ? 1 : 0});
   addNumber("increments", std::int64_t{options.increments ? 1 : 0});
   add("pca_mean", model.pca().mean);

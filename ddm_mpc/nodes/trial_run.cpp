@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "trial_run.h"
 
+#include <ddm_model/per_motor.h>
 #include <ddm_msgs/image_codec.h>
 
 #include <stdexcept>
@@ -27,8 +28,7 @@ EpsilonGreedy::Options explorationOf(const ddm_msgs::RunTrialGoal& goal, const M
   EpsilonGreedy::Options options;
   options.epsilon = goal.epsilon;
   options.hold_steps = static_cast<int>(goal.hold_steps);
-  options.max_torque = mpc.max_torque;
-  options.torque_dim = controller.torque_dim;
+  options.max_torque = perMotor(mpc.max_torque, controller.torque_dim, "mpc/max_torque");
   return options;
 }
 

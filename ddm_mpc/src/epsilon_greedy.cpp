@@ -20,8 +20,8 @@ EpsilonGreedy::EpsilonGreedy(std::shared_ptr<Policy> policy, const Options& opti
     throw std::invalid_argument("hold_steps must be >= 1, got " +
                                 std::to_string(options_.hold_steps));
   }
-  if (!(options_.max_torque > 0.0) || options_.torque_dim < 1) {
-    throw std::invalid_argument("max_torque must be > 0 and torque_dim >= 1");
+  if (options_.max_torque.size() < 1 || !(options_.max_torque.array() > 0.0).all()) {
+    throw std::invalid_argument("max_torque must be > 0 for each of at least one motor");
   }
   if (policy_ != nullptr) policy_->startTrial(id);
 }
@@ -43,9 +43,11 @@ Decision EpsilonGreedy::decide(const Grey& grey) {
   if (held_steps_left_ == 0) {
     std::uniform_real_distribution<double> probability(0.0, 1.0);
     if (probability(rng_) < options_.epsilon) {
-      std::uniform_real_distribution<double> torque(-options_.max_torque, options_.max_torque);
-      held_torque_.resize(options_.torque_dim);
-      for (Eigen::Index i = 0; i < held_torque_.size(); ++i) held_torque_[i] = torque(rng_);
+      held_torque_.resize(options_.max_torque.size());
+      for (Eigen::Index i = 0; i < held_torque_.size(); ++i) {
+        const double limit = options_.max_torque[i];
+        held_torque_[i] = std::uniform_real_distribution<double>(-limit, limit)(rng_);
+      }
       held_steps_left_ = options_.hold_steps;
     }
   }

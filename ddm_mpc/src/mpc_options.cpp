@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/mpc_options.h"
 
+#include <ddm_model/per_motor.h>
+
 #include <cmath>
 #include <sstream>
 
@@ -9,7 +11,7 @@ namespace ddm {
 
 std::vector<std::string> MpcOptions::problems() const {
   std::vector<std::string> out;
-  const auto require = [&out](bool ok, const char* rule, double value) {
+  const auto require = [&out](bool ok, const char* rule, const auto& value) {
     if (ok) return;
     std::ostringstream text;
     text << "mpc/" << rule << ", got " << value;
@@ -26,7 +28,7 @@ std::vector<std::string> MpcOptions::problems() const {
           "disagreement_bonus must be >= 0", disagreement_bonus);
   require(offset_gain >= 0.0 && offset_gain <= 1.0, "offset_gain must be between 0 and 1",
           offset_gain);
-  require(max_torque > 0.0 && std::isfinite(max_torque), "max_torque must be > 0", max_torque);
+  require(areLimits(max_torque), "max_torque must be > 0", limitsText(max_torque));
   require(epsilon >= 0.0 && epsilon <= 1.0, "epsilon must lie in [0, 1]", epsilon);
   require(hold_steps >= 1, "hold_steps must be >= 1", hold_steps);
   require(num_starts >= 1 && num_starts <= 1000, "num_starts must lie in [1, 1000]", num_starts);

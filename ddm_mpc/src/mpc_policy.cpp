@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/mpc_policy.h"
 
+#include <ddm_model/per_motor.h>
+
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 #include "ddm_mpc/random_stream.h"
@@ -39,12 +40,11 @@ MpcPolicy::Member::Member(const Ddm& of_model, const MpcOptions& options)
   if (!model.hasGoal()) {
     throw std::invalid_argument("the model has no goal image to plan to: train it with one");
   }
-  if (options.max_torque > model.options().max_torque) {
-    std::ostringstream text;
-    text << "mpc/max_torque must be at most the model's model/max_torque "
-         << model.options().max_torque << " N m, got " << options.max_torque
-         << ": the model has seen no larger torque";
-    throw std::invalid_argument(text.str());
+  if (!within(options.max_torque, model.options().max_torque)) {
+    throw std::invalid_argument("mpc/max_torque must be at most the model's model/max_torque " +
+                                limitsText(model.options().max_torque) + " N m, got " +
+                                limitsText(options.max_torque) +
+                                ": the model has seen no larger torque");
   }
 }
 

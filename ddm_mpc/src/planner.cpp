@@ -3,6 +3,7 @@
 #include "ddm_mpc/planner.h"
 
 #include <ddm_model/minimise.h>
+#include <ddm_model/per_motor.h>
 
 #include <algorithm>
 #include <chrono>
@@ -18,15 +19,20 @@ constexpr double kMaxV = 3.0;  // tanh(3) = 0.995: a start beyond it would hardl
 /// J as a function of v, with u = max_torque tanh(v).
 class BoundedCost {
  public:
-  BoundedCost(PlanCost* cost, double max_torque)
-      : cost_(*cost), max_torque_(max_torque), torques_(cost->torqueDim(), cost->horizon()) {}
+  BoundedCost(PlanCost* cost, const Eigen::VectorXd& max_torque)
+      : cost_(*cost), max_torque_(max_torque.replicate(1, cost->horizon())) {}
+
+  Eigen::MatrixXd torquesOf(const Eigen::VectorXd& v) const {
+    return max_torque_ *
+           Eigen::Map<const Eigen::ArrayXXd>(v.data(), max_torque_.rows(), max_torque_.cols())
+               .tanh();
+  }
 
   double operator()(const Eigen::VectorXd& v, Eigen::VectorXd* gradient) {
-    const Eigen::Index dim = torques_.rows(), K = torques_.cols();
-    torques_ = max_torque_ * Eigen::Map<const Eigen::ArrayXXd>(v.data(), dim, K).tanh();
+    torques_ = torquesOf(v);
     const double value = cost_.evaluate(torques_, gradient != nullptr ? &d_torques_ : nullptr);
     if (gradient != nullptr) {
-      Eigen::Map<Eigen::ArrayXXd>(gradient->data(), dim, K) =
+      Eigen::Map<Eigen::ArrayXXd>(gradient->data(), torques_.rows(), torques_.cols()) =
           d_torques_.array() * (max_torque_ - torques_.array().square() / max_torque_);
     }
     return value;
@@ -34,14 +40,17 @@ class BoundedCost {
 
  private:
   PlanCost& cost_;
-  double max_torque_;
+  Eigen::ArrayXXd max_torque_;  // [torque_dim x K]
   Eigen::MatrixXd torques_;
   Eigen::MatrixXd d_torques_;
 };
 
 }  // namespace
 
-Planner::Planner(PlanCost* cost, const MpcOptions& options) : options_(options), cost_(*cost) {}
+Planner::Planner(PlanCost* cost, const MpcOptions& options)
+    : options_(options),
+      cost_(*cost),
+      max_torque_(perMotor(options.max_torque, cost->torqueDim(), "mpc/max_torque")) {}
 
 /// Unbounded variables that start number `start` begins with.
 Eigen::MatrixXd Planner::startOf(int start, std::mt19937_64* rng) const {
@@ -62,7 +71,7 @@ Eigen::MatrixXd Planner::startOf(int start, std::mt19937_64* rng) const {
 
 Plan Planner::solve(std::mt19937_64* rng, const std::function<bool()>& stop) {
   const auto begin = std::chrono::steady_clock::now();
-  BoundedCost cost(&cost_, options_.max_torque);
+  BoundedCost cost(&cost_, max_torque_);
   MinimiseOptions solver;
   solver.max_iterations = options_.max_iterations;
   solver.function_tolerance = options_.function_tolerance;
@@ -93,7 +102,7 @@ Plan Planner::solve(std::mt19937_64* rng, const std::function<bool()>& stop) {
                                      : PlanStatus::kIterationLimit;
     plan.cost = best.cost;
     last_v_ = Eigen::Map<const Eigen::MatrixXd>(best.x.data(), cost_.torqueDim(), cost_.horizon());
-    plan.torques = options_.max_torque * last_v_.array().tanh();
+    plan.torques = cost.torquesOf(best.x);
     cost_.evaluate(plan.torques, nullptr);
     plan.features = cost_.predictedFeatures();
   } else {

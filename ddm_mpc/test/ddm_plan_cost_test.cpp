@@ -32,7 +32,9 @@ double slowCost(const Ddm& model, const History& x, const Eigen::VectorXd& goal,
     std::vector<double> h;
     for (int lag = 0; lag < model.options().order; ++lag) {
       for (const double z : features[lag]) h.push_back(z);
-      for (const double u : torques[lag]) h.push_back(u / model.options().max_torque);
+      for (Eigen::Index i = 0; i < torques[lag].size(); ++i) {
+        h.push_back(torques[lag][i] / model.predictionModel().maxTorque()[i]);
+      }
     }
     Mlp<double>::Tape tape;
     model.predictionModel().network().forward(
@@ -51,6 +53,7 @@ class DdmPlanCostShapes : public ::testing::TestWithParam<std::tuple<int, int, i
     RandomModelOptions options;
     options.model.order = std::get<0>(GetParam());
     options.torque_dim = std::get<1>(GetParam());
+    if (options.torque_dim == 2) options.model.max_torque = {4.0, 2.0};
     options.gain = 0.7;
     return options;
   }

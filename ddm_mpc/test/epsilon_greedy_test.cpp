@@ -96,12 +96,13 @@ TEST(EpsilonGreedy, DrawsUniformlyWithinTheBounds) {
   constexpr int kNumSteps = 8000;
   constexpr int kNumBins = 8;
   EpsilonGreedy::Options options = explore(1.0);
-  options.max_torque = 2.0;
+  constexpr double kLimit = 2.0;
+  options.max_torque[0] = kLimit;
   EpsilonGreedy policy(nullptr, options, TrialId());
   std::vector<int> bins(kNumBins);
   for (const double u : torques(decide(&policy, kNumSteps))) {
-    ASSERT_LE(std::abs(u), options.max_torque);
-    ++bins[std::min(kNumBins - 1, static_cast<int>((u / options.max_torque + 1.0) * kNumBins / 2))];
+    ASSERT_LE(std::abs(u), kLimit);
+    ++bins[std::min(kNumBins - 1, static_cast<int>((u / kLimit + 1.0) * kNumBins / 2))];
   }
   const double expected = static_cast<double>(kNumSteps) / kNumBins;
   const double deviation = std::sqrt(expected * (1.0 - 1.0 / kNumBins));
@@ -140,12 +141,13 @@ TEST(EpsilonGreedy, GoesBackToPlansAfterAHeldTorque) {
 
 TEST(EpsilonGreedy, DrawsEachMotorsTorqueByItself) {
   EpsilonGreedy::Options options = explore(1.0);
-  options.torque_dim = 3;
+  options.max_torque = (Eigen::VectorXd(3) << 6.0, 1.0, 0.01).finished();
   EpsilonGreedy policy(nullptr, options, TrialId());
   const Eigen::VectorXd u = policy.decide(randomGrey(8, 1)).torque;
   ASSERT_EQ(u.size(), 3);
   EXPECT_NE(u[0], u[1]);
   EXPECT_NE(u[1], u[2]);
+  EXPECT_TRUE((u.cwiseAbs().array() <= options.max_torque.array()).all()) << u;
 }
 
 TEST(EpsilonGreedy, TellsThePolicyOfEachImageAndEachTorque) {
@@ -215,11 +217,11 @@ TEST(EpsilonGreedy, RefusesOptionsOutOfRange) {
   EXPECT_THROW(EpsilonGreedy(policy, explore(0.5, 0), TrialId()), std::invalid_argument);
   for (const double max_torque : {0.0, -1.0, nan}) {
     EpsilonGreedy::Options options;
-    options.max_torque = max_torque;
+    options.max_torque = (Eigen::VectorXd(2) << 1.0, max_torque).finished();
     EXPECT_THROW(EpsilonGreedy(policy, options, TrialId()), std::invalid_argument);
   }
   EpsilonGreedy::Options options;
-  options.torque_dim = 0;
+  options.max_torque.resize(0);
   EXPECT_THROW(EpsilonGreedy(policy, options, TrialId()), std::invalid_argument);
 }
 

@@ -50,7 +50,9 @@ TEST(MpcOptions, RefuseNumbersOutOfRangeNanIncluded) {
   for (const double bad : {-0.1, kNan, kInfinity}) {
     expectProblem<MpcOptions>("mpc/control_weight",
                               [bad](MpcOptions* o) { o->control_weight = bad; });
-    expectProblem<MpcOptions>("mpc/max_torque", [bad](MpcOptions* o) { o->max_torque = bad; });
+    expectProblem<MpcOptions>("mpc/max_torque", [bad](MpcOptions* o) {
+      o->max_torque = {1.0, bad};
+    });
     expectProblem<MpcOptions>("mpc/epsilon", [bad](MpcOptions* o) { o->epsilon = bad; });
     expectProblem<MpcOptions>("mpc/function_tolerance",
                               [bad](MpcOptions* o) { o->function_tolerance = bad; });
@@ -64,7 +66,7 @@ TEST(MpcOptions, RefuseNumbersOutOfRangeNanIncluded) {
     expectProblem<MpcOptions>("mpc/offset_gain", [bad](MpcOptions* o) { o->offset_gain = bad; });
   }
   expectProblem<MpcOptions>("mpc/offset_gain", [](MpcOptions* o) { o->offset_gain = 1.01; });
-  expectProblem<MpcOptions>("mpc/max_torque", [](MpcOptions* o) { o->max_torque = 0.0; });
+  expectProblem<MpcOptions>("mpc/max_torque", [](MpcOptions* o) { o->max_torque = {0.0}; });
   expectProblem<MpcOptions>("mpc/epsilon", [](MpcOptions* o) { o->epsilon = 1.01; });
   expectProblem<MpcOptions>("mpc/function_tolerance",
                             [](MpcOptions* o) { o->function_tolerance = 1.0; });

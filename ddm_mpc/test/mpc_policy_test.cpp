@@ -43,7 +43,7 @@ TEST(MpcPolicy, RefusesAModelWithoutAGoalImage) {
 
 TEST(MpcPolicy, RefusesMoreTorqueThanTheModelKnowsAndNamesBothKeys) {
   MpcOptions options;
-  options.max_torque = 6.5;
+  options.max_torque = {6.5};
   EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
       [&options] { MpcPolicy policy(sharedModel(), options); },
       {"mpc/max_torque", "model/max_torque", "6.5", "6 N m"}));
@@ -59,7 +59,7 @@ TEST(MpcPolicy, RefusesToScaleDistancesByASpreadThatTheModelDoesNotKnow) {
 
 TEST(MpcPolicy, AcceptsLessTorqueThanTheModelKnowsAndKeepsToIt) {
   MpcOptions options;
-  options.max_torque = 0.5;
+  options.max_torque = {0.5};
   MpcPolicy policy(sharedModel(), options);
   for (const double u : torquesOfATrial(&policy, TrialId())) EXPECT_LE(std::abs(u), 0.5);
 }

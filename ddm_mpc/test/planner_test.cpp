@@ -60,7 +60,7 @@ TEST(Planner, NeverExceedsTheTorqueBoundWhereverTheGoalIs) {
     model_options.seed = 100 * seed;
     const Ddm model = randomModel(model_options);
     MpcOptions options;
-    options.max_torque = 0.7;
+    options.max_torque = {0.7, 0.2};
     options.control_weight = 0.0;
     ModelPlanner planner(model, options);
     std::mt19937_64 rng(seed);
@@ -68,9 +68,18 @@ TEST(Planner, NeverExceedsTheTorqueBoundWhereverTheGoalIs) {
       const Plan plan =
           planner.solve(randomHistory(model, seed), 10.0 * testing::randomMatrix(2, 1, seed), &rng);
       ASSERT_NE(plan.status, PlanStatus::kFailed) << plan.message;
-      EXPECT_LE(plan.torques.cwiseAbs().maxCoeff(), options.max_torque);
+      for (int motor = 0; motor < 2; ++motor) {
+        EXPECT_LE(plan.torques.row(motor).cwiseAbs().maxCoeff(), options.max_torque[motor]);
+      }
     }
   }
+}
+
+TEST(Planner, RefusesLimitsForAnotherNumberOfMotors) {
+  MpcOptions options;
+  options.max_torque = {1.0, 2.0};
+  const Ddm model = randomModel({});
+  EXPECT_THROW(ModelPlanner(model, options), std::invalid_argument);
 }
 
 TEST(Planner, PushesAgainstTheBoundWhenTheGoalIsOutOfReach) {
@@ -101,7 +110,7 @@ TEST(Planner, FindsTheClosedFormOptimumOfALinearModel) {
   for (int k = 0; k < K; ++k) {
     free = A.leftCols(2) * free + b;
     miss.segment<2>(2 * k) = goal - free;
-    Eigen::Vector2d effect = A.col(2) / model.options().max_torque;
+    Eigen::Vector2d effect = A.col(2) / model.options().max_torque[0];
     for (int j = k; j >= 0; --j) {
       G.block<2, 1>(2 * k, j) = effect;
       effect = A.leftCols(2) * effect;
@@ -110,7 +119,7 @@ TEST(Planner, FindsTheClosedFormOptimumOfALinearModel) {
   const Eigen::MatrixXd normal =
       G.transpose() * G + options.control_weight * Eigen::MatrixXd::Identity(K, K);
   const Eigen::VectorXd expected = normal.fullPivLu().solve(G.transpose() * miss);
-  ASSERT_LT(expected.cwiseAbs().maxCoeff(), 0.9 * options.max_torque)
+  ASSERT_LT(expected.cwiseAbs().maxCoeff(), 0.9 * options.max_torque[0])
       << "the bound must not matter";
 
   ModelPlanner planner(model, options);
@@ -159,7 +168,7 @@ TEST(Planner, IsNeverWorseThanAnyOfItsStarts) {
     EXPECT_LE(plan.cost, costOf(model, options, x, model.goalFeature(), start));
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
     for (int i = 1; i < options.num_starts; ++i) {
-      start.setConstant(options.max_torque * 0.95 * uniform(same));
+      start.setConstant(options.max_torque[0] * 0.95 * uniform(same));
       EXPECT_LE(plan.cost, costOf(model, options, x, model.goalFeature(), start) + 1e-12);
     }
     EXPECT_EQ(rng, same) << "the starts drawn here are those of the planner";

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco_method.h"
 
+#include <ddm_model/per_motor.h>
 #include <ddm_model/plain_file.h>
 #include <ddm_mpc/random_stream.h>
 #include <ddm_msgs/param_value.h>
@@ -141,7 +142,7 @@ pilco::LongTermCost PilcoMethod::improvePolicy(pilco::Propagation dynamics, cons
   const pilco::Augmentation features = dynamics.features();
   const int torque_dim = dynamics.controlDim();
   policy_ = makePilcoPolicy(features.outputDim(), pilco_.pilco.num_centres,
-                            Eigen::VectorXd::Constant(torque_dim, configuration_.mpc.max_torque));
+                            perMotor(configuration_.mpc.max_torque, torque_dim, "mpc/max_torque"));
   const auto drawStart = [&] {
     return drawPolicyStart(task, features, pilco_.pilco.num_centres, torque_dim, &training->rng);
   };

@@ -13,8 +13,10 @@ namespace ddm {
 ///   "DDMMODEL" | format version, uint32 | size of the content, uint64 | CRC-32 of the content |
 ///   content
 ///
-/// The content of version 2 is a model and the rest of its ensemble, one after the other; version
-/// 1, which is still read, knows neither ensembles nor the flags of f and the spread of features.
+/// The content of version 2 is a model and the rest of its ensemble, one after the other. Version
+/// 3, of models with a max_torque for each motor, has a list of them where version 2 has one
+/// number. Version 1, which is still read, knows neither ensembles nor the flags of f and the
+/// spread of features.
 std::string serialiseModel(const Ddm& model);
 
 /// The inverse. Sizes are checked against what is there before memory is taken.

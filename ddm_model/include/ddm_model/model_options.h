@@ -29,7 +29,7 @@ struct ModelOptions {
   std::vector<int> predictor_widths = {4};        ///< hidden layers of f
   bool residual = false;                          ///< f predicts the change of z, not z
   bool increments = false;                        ///< f sees past features as their differences
-  double max_torque = 6.0;                        ///< f sees u / max_torque [N m]
+  std::vector<double> max_torque = {6.0};  ///< f sees u / max_torque; one, or one per motor [N m]
 
   template <class Visitor>
   void visit(Visitor& visitor) {

@@ -13,7 +13,7 @@ struct Networks {
   AutoEncoder<Scalar> auto_encoder;
   PredictionModel<Scalar> prediction_model;
 
-  /// @throws std::invalid_argument if a width is < 1
+  /// @throws std::invalid_argument if a width is < 1, or max_torque is for other motors
   Networks(const ModelOptions& options, int torque_dim)
       : auto_encoder(options), prediction_model(options, torque_dim) {}
 

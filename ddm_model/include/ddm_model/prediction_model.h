@@ -7,6 +7,7 @@
 
 #include "ddm_model/mlp.h"
 #include "ddm_model/model_options.h"
+#include "ddm_model/per_motor.h"
 
 namespace ddm {
 
@@ -24,14 +25,14 @@ class PredictionModel {
  public:
   using Matrix = typename Mlp<Scalar>::Matrix;
 
-  /// @throws std::invalid_argument if a width is < 1
+  /// @throws std::invalid_argument if a width is < 1, or max_torque is for other motors
   PredictionModel(const ModelOptions& options, int torque_dim)
       : feature_dim_(options.feature_dim),
         torque_dim_(torque_dim),
         order_(options.order),
         residual_(options.residual),
         increments_(options.increments),
-        max_torque_(Eigen::VectorXd::Constant(torque_dim, options.max_torque)),
+        max_torque_(perMotor(options.max_torque, torque_dim, "model/max_torque")),
         network_(layers(options, torque_dim), Mlp<Scalar>::Output::kLinear) {}
 
   int featureDim() const { return feature_dim_; }

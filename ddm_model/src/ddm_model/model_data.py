@@ -81,4 +81,5 @@ class ModelData:
 
     @property
     def max_torque(self):
-        return float(self.model["max_torque"])
+        """One for each motor [N m]."""
+        return np.broadcast_to(self.model["max_torque"], (int(self.facts["torque_dim"]),))

@@ -142,16 +142,17 @@ def draw_line(data):
 
 def draw_coverage(data):
     """How often each feature and each torque occurs."""
-    series = [("feature $z_{%d}$ [-]" % (i + 1), column) for i, column in enumerate(data.features.T)]
-    series += [("torque $u_{%d}$ [N m]" % (i + 1), column) for i, column in enumerate(data.torques.T)]
+    series = [("feature $z_{%d}$ [-]" % (i + 1), column, None) for i, column in enumerate(data.features.T)]
+    series += [("torque $u_{%d}$ [N m]" % (i + 1), column, limit)
+               for i, (column, limit) in enumerate(zip(data.torques.T, data.max_torque))]
     series = series[:6]
     figure, axes = new_axes(2.6, columns=len(series))
-    for one, (label, values) in zip(axes, series):
+    for one, (label, values, limit) in zip(axes, series):
         one.hist(values, bins=30, color=BLUE)
         one.yaxis.set_major_locator(MaxNLocator(nbins=6, integer=True))
         one.set_xlabel(label)
-        if label.startswith("torque"):
-            one.axvline(-data.max_torque, color=GREY, linestyle="--")
-            one.axvline(data.max_torque, color=GREY, linestyle="--")
+        if limit is not None:
+            one.axvline(-limit, color=GREY, linestyle="--")
+            one.axvline(limit, color=GREY, linestyle="--")
     axes[0].set_ylabel("frames")
     return figure

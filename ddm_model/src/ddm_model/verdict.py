@@ -91,20 +91,25 @@ def check_variation(data):
                  "camera's exposure.")
 
 
+def limits(data):
+    return ", ".join("%g" % limit for limit in data.max_torque)
+
+
 def check_excitation(data):
     shares = data.torques.std(axis=0) / data.max_torque
     words = ", ".join("motor %d: %s" % (i + 1, percent(share)) for i, share in enumerate(shares))
     return Check("Torques are excited", bool(np.min(shares) >= EXCITATION),
-                 "standard deviation over model/max_torque = %g N m: %s" % (data.max_torque, words),
+                 "standard deviation over model/max_torque = %s N m: %s" % (limits(data), words),
                  "at least %s for each motor; uniformly random torques have 58 %%" % percent(EXCITATION),
                  "Record trials with random torques over the motor's whole range, held for a few frames; if the motor "
                  "cannot do more, set model/max_torque to what it can, and train again.")
 
 
 def check_torque_range(data):
-    largest = float(np.max(np.abs(data.torques)))
-    return Check("Torques are within the model's range", largest <= 1.05 * data.max_torque,
-                 "the largest is %.4g N m, model/max_torque is %g N m" % (largest, data.max_torque),
+    largest = np.max(np.abs(data.torques), axis=0)
+    return Check("Torques are within the model's range", bool(np.all(largest <= 1.05 * data.max_torque)),
+                 "the largest is %s N m, model/max_torque is %s N m" % (
+                     ", ".join("%.4g" % torque for torque in largest), limits(data)),
                  "at most model/max_torque: beyond it f saturates",
                  "Set model/max_torque to the limit of the motor and train again; check the unit of the torque topic "
                  "(N m).")

@@ -24,10 +24,9 @@ struct Decision {
 class EpsilonGreedy {
  public:
   struct Options {
-    double epsilon = 0.2;     ///< [-]
-    int hold_steps = 1;       ///< [-]
-    double max_torque = 6.0;  ///< [N m]
-    int torque_dim = 1;
+    double epsilon = 0.2;                                            ///< [-]
+    int hold_steps = 1;                                              ///< [-]
+    Eigen::VectorXd max_torque = Eigen::VectorXd::Constant(1, 6.0);  ///< of each motor [N m]
   };
 
   /// @param policy  may be null where epsilon = 1

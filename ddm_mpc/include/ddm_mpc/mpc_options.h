@@ -17,11 +17,11 @@ struct MpcOptions {
   double disagreement_bonus =
       0.0;                   ///< trials that are learned from seek what models disagree about
   double offset_gain = 0.0;  ///< share of a prediction error that corrects later ones [-]
-  double max_torque = 6.0;   ///< bound on |u| [N m]
-  double epsilon = 0.2;      ///< probability of a uniformly random torque [-]
-  int hold_steps = 1;        ///< steps for which a random torque is held [-]
-  int num_starts = 3;        ///< initial plans that the solver starts from [-]
-  int max_iterations = 40;   ///< cap on the BFGS iterations of each start [-]
+  std::vector<double> max_torque = {6.0};  ///< bound on |u|; one, or one per motor [N m]
+  double epsilon = 0.2;                    ///< probability of a uniformly random torque [-]
+  int hold_steps = 1;                      ///< steps for which a random torque is held [-]
+  int num_starts = 3;                      ///< initial plans that the solver starts from [-]
+  int max_iterations = 40;                 ///< cap on the BFGS iterations of each start [-]
   double function_tolerance = 1e-4;  ///< stop when the cost changes by less than this fraction [-]
   double time_budget = 0.0;  ///< from an image to the end of the search for its plan; 0: none [s]
 

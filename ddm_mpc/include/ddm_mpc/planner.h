@@ -39,6 +39,7 @@ struct Plan {
 class Planner {
  public:
   /// @param cost  of plans from the current state on; outlives the planner
+  /// @throws std::invalid_argument if max_torque is for another number of motors
   Planner(PlanCost* cost, const MpcOptions& options);
 
   /// Forgets the last plan: the next problem is the first of a trial.
@@ -56,7 +57,8 @@ class Planner {
 
   MpcOptions options_;
   PlanCost& cost_;
-  Eigen::MatrixXd last_v_;  // unbounded variables of the last plan; empty: none
+  Eigen::VectorXd max_torque_;  // of each motor [N m]
+  Eigen::MatrixXd last_v_;      // unbounded variables of the last plan; empty: none
 };
 
 }  // namespace ddm
