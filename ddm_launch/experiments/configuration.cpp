@@ -36,11 +36,6 @@ std::vector<std::string> contradictions(const Configuration& all) {
           std::string("mpc/time_budget must be at most ") + (all.robot ? "robot/dt" : "plant/dt") +
               ", when the next image comes",
           all.mpc.time_budget);
-  require(
-      all.mpc.disagreement_bonus == 0.0 || all.model.training.ensemble_size > 1,
-      "mpc/disagreement_bonus must be 0 where training/ensemble_size is 1: one model agrees with "
-      "itself",
-      all.mpc.disagreement_bonus);
   require(all.evaluation.settled_steps_strict <= all.trial.num_steps,
           "evaluation/settled_steps_strict must be at most trial/num_steps",
           all.evaluation.settled_steps_strict);

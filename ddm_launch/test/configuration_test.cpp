@@ -94,14 +94,9 @@ TEST(Configuration, ThePaperPresetHoldsTheNumbersOfThePaper) {
   EXPECT_EQ(all.model.model.predictor_widths, (std::vector<int>{4}));
   EXPECT_FALSE(all.model.model.residual || all.model.model.increments);
   EXPECT_EQ(all.model.training.prediction_steps, 1);
-  EXPECT_EQ(all.model.training.consistency_weight, 0.0);
   EXPECT_EQ(all.model.training.weight_decay, 0.0);
-  EXPECT_EQ(all.model.training.ensemble_size, 1);
   EXPECT_EQ(all.model.training.selection_steps, 0);
   EXPECT_EQ(all.mpc.offset_gain, 0.0);
-  EXPECT_EQ(all.mpc.saturation_width, 0.0);
-  EXPECT_EQ(all.mpc.terminal_weight, 1.0);
-  EXPECT_FALSE(all.mpc.scale_distance);
   EXPECT_EQ(all.mpc.horizon, 15);
   EXPECT_EQ(all.mpc.control_weight, 0.01);
   EXPECT_EQ(all.mpc.epsilon, 0.2);

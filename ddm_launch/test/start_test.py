@@ -152,13 +152,12 @@ class StartTest(SharedScratchCase):
         self.assertEqual(summary["success"], "%d of 5" % sum(row[1] == "1" for row in one[1:]))
         self.assertIn("success_interval_95", summary)
 
-    def test_evaluate_takes_ensembles_with_the_model_s_own_shape(self):
-        config = self.write("ensemble.yaml", "image: {size: 40}\nmodel: {residual: true, increments: true, order: 3}\n"
-                            "training: {num_starts: 2, pca_starts: 1, ensemble_size: 2}\n")
+    def test_evaluate_takes_the_model_s_own_shape(self):
+        config = self.write("shape.yaml", "image: {size: 40}\nmodel: {residual: true, increments: true, order: 3}\n")
         code, output = call([find_program("ddm_model", "train_from_bags"), "--config", config, "--out",
-                             self.file("ensemble.ddm")] + self.bags)
+                             self.file("shape.ddm")] + self.bags)
         self.assertEqual(code, 0, output)
-        code, output = self.evaluate("--seeds", "0:2", model=self.file("ensemble.ddm"))
+        code, output = self.evaluate("--seeds", "0:2", model=self.file("shape.ddm"))
         self.assertEqual(code, 0, output)
         self.assertEqual(len(read_rows(self.out, "evaluation.csv")), 3)
 

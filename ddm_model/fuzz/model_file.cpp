@@ -24,10 +24,6 @@ void checkModel(const Ddm& model) {
   require(model.decode(Eigen::VectorXd::Zero(model.featureDim())).size() == num_pixels,
           "a feature has an image");
   if (model.hasGoal()) require(model.goalFeature().allFinite(), "the goal's feature is finite");
-  for (const Ddm& other : model.others()) {
-    require(other.torqueDim() == model.torqueDim(), "an ensemble drives one robot");
-    checkModel(other);
-  }
 }
 
 void checkFile(const std::string& bytes) {

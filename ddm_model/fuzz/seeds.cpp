@@ -44,15 +44,11 @@ void writeModels(const std::string& folder) {
   const SeedFolder files(folder + "/model_file");
   files.write("with_goal", serialiseModel(smallModel(1, true)));
   files.write("two_motors", serialiseModel(smallModel(2, false)));
-  Ddm ensemble = smallModel(1, true);
-  ensemble.setOthers({smallModel(1, false)});
-  files.write("ensemble", serialiseModel(ensemble));
   std::string old = serialiseModel(smallModel(1, false));
   old[8] = 1;  // its version; not all of the content fits, which is a seed, too
   files.write("version_1", old);
   const SeedFolder messages(folder + "/model_message");
   messages.write("with_goal", bytesOf(toMessage(smallModel(1, true), ros::Time(1.5))));
-  messages.write("ensemble", bytesOf(toMessage(ensemble, ros::Time(1.5))));
 }
 
 sensor_msgs::Image image(double stamp, std::uint8_t grey) {

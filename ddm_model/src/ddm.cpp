@@ -35,16 +35,6 @@ Ddm::Ddm(ModelOptions options, int image_size, int torque_dim, Pca pca, Eigen::V
   }
 }
 
-void Ddm::setOthers(std::vector<Ddm> others) {
-  for (const Ddm& other : others) {
-    if (other.imageSize() != imageSize() || other.torqueDim() != torqueDim() ||
-        !other.others().empty()) {
-      throw std::invalid_argument("model: the models of an ensemble do not fit together");
-    }
-  }
-  others_ = std::move(others);
-}
-
 Eigen::VectorXd Ddm::encode(const Grey& grey) const {
   if (static_cast<Eigen::Index>(grey.size()) != pca_.mean.size()) {
     throw std::invalid_argument("model: an image must have " + std::to_string(pca_.mean.size()) +

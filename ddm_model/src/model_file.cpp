@@ -172,14 +172,12 @@ Ddm readContent(std::uint32_t version, Reader* in) {
              std::move(info));
 }
 
-/// A model, then the rest of its ensemble.
-Ddm readEnsemble(std::uint32_t version, Reader* in) {
+/// The first model of what may once have been an ensemble.
+Ddm readFirst(std::uint32_t version, Reader* in) {
   Ddm model = readContent(version, in);
-  const auto count = version > 1 ? in->number<std::uint32_t>() : 0U;
-  std::vector<Ddm> others;
-  for (std::uint32_t i = 0; i < count; ++i) others.push_back(readContent(version, in));
+  const auto others = version > 1 ? in->number<std::uint32_t>() : 0U;
+  for (std::uint32_t i = 0; i < others; ++i) readContent(version, in);
   if (in->left() > 0) throw std::runtime_error("there are bytes after its content");
-  model.setOthers(std::move(others));
   return model;
 }
 
@@ -207,8 +205,7 @@ void writeContent(const Ddm& model, Writer* out) {
 std::string serialiseModel(const Ddm& model) {
   Writer content;
   writeContent(model, &content);
-  content.number<std::uint32_t>(static_cast<std::uint32_t>(model.others().size()));
-  for (const Ddm& other : model.others()) writeContent(other, &content);
+  content.number<std::uint32_t>(0);  // other models of an ensemble
 
   Writer header;
   header.number<std::uint32_t>(model.options().max_torque.size() == 1 ? kOneLimit : kVersion);
@@ -243,7 +240,7 @@ Ddm deserialiseModel(const std::string& bytes, const std::string& source) {
   }
   Reader content(bytes.data() + kHeaderSize, size);
   try {
-    return readEnsemble(version, &content);
+    return readFirst(version, &content);
   } catch (const std::exception& e) {
     throw fail(std::string("makes no sense: ") + e.what());
   }

@@ -63,30 +63,19 @@ std::vector<std::string> TrainingOptions::problems() const {
           "training/selection_steps must lie in [0, 1000]", selection_steps, &out);
   require(pca_starts >= 0 && pca_starts <= 1000, "training/pca_starts must lie in [0, 1000]",
           pca_starts, &out);
-  require(ensemble_size >= 1 && ensemble_size <= num_starts,
-          "training/ensemble_size must lie in [1, training/num_starts]", ensemble_size, &out);
-  require(held_out >= 0.0 && held_out < 1.0, "training/held_out must lie in [0, 1)", held_out,
-          &out);
   require(prediction_steps >= 1 && prediction_steps <= 100,
           "training/prediction_steps must lie in [1, 100]", prediction_steps, &out);
   require(warm_up_iterations >= 0, "training/warm_up_iterations must be >= 0", warm_up_iterations,
           &out);
-  require(consistency_weight >= 0.0 && std::isfinite(consistency_weight),
-          "training/consistency_weight must be >= 0", consistency_weight, &out);
   require(weight_decay >= 0.0 && std::isfinite(weight_decay), "training/weight_decay must be >= 0",
           weight_decay, &out);
   require(selection_steps <= 0 || num_starts > 1,
           "training/selection_steps must be 0 where training/num_starts is 1: there is no choice",
           selection_steps, &out);
-  require(selection_steps > 0 || !(held_out > 0.0 && held_out < 1.0),
-          "training/held_out must be 0 where training/selection_steps is 0: what is held out is "
-          "what predictions are measured on",
-          held_out, &out);
   if (schedule == "v_r_only") {
-    require(selection_steps == 0 && prediction_steps == 1 && consistency_weight == 0.0 &&
-                ensemble_size == 1,
-            "training/selection_steps, consistency_weight must be 0 and prediction_steps, "
-            "ensemble_size 1 where nothing is predicted: training/schedule",
+    require(selection_steps == 0 && prediction_steps == 1,
+            "training/selection_steps must be 0 and prediction_steps 1 where nothing is predicted: "
+            "training/schedule",
             schedule, &out);
   }
   require(max_iterations >= 1, "training/max_iterations must be >= 1", max_iterations, &out);

@@ -114,7 +114,6 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::evaluate(const Ve
     const Value part = decodeBlock(theta.data(), block, terms, gradient);
     value.v_r += part.v_r;
     value.v_p += part.v_p;
-    value.v_z += part.v_z;
     if (gradient == nullptr) continue;
     const Eigen::Index last = block + 1 == num_blocks ? block : block - behind;
     while (finished <= last) backwardThroughEncoder(theta.data(), finished++, gradient);
@@ -191,19 +190,15 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::decodeBlock(const
   residual_.leftCols(size) = decoded.leftCols(size) - data_.scores.middleCols(begin, size);
   const Scalar step_weight = Scalar(1) / Scalar(steps);
   for (int j = 0; j < steps; ++j) {
-    roll_out_.dPredicted(j) = roll_out_.predicted(j);
     for (Eigen::Index i = 0; i < count; ++i) {
       const Eigen::Index frame = targets_[first + i] + j;
+      auto residual = residual_.col(size + j * count + i);
       if (frame < piece_end_[first + i]) {
-        residual_.col(size + j * count + i) =
-            decoded.col(size + j * count + i) - data_.scores.col(frame);
-        roll_out_.dPredicted(j).col(i) -= features_.col(frame);
-      } else {  // beyond the piece there is nothing to compare with
-        residual_.col(size + j * count + i).setZero();
-        roll_out_.dPredicted(j).col(i).setZero();
+        residual = decoded.col(size + j * count + i) - data_.scores.col(frame);  // eq. (4)
+      } else {
+        residual.setZero();  // beyond the piece there is nothing to compare with
       }
     }
-    value.v_z += static_cast<double>(step_weight * roll_out_.dPredicted(j).squaredNorm());
   }
   value.v_r = static_cast<double>(residual_.leftCols(size).squaredNorm());
   value.v_p =
@@ -221,16 +216,8 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::decodeBlock(const
                                residual_.leftCols(columns), networks_.decoderOf(d_theta),
                                &d_codes_);
   d_features_.middleCols(begin, size) += d_codes_.leftCols(size);
-  const Scalar consistency = Scalar(terms.v_p ? terms.consistency_weight : 0.0) * step_weight;
   for (int j = 0; j < steps; ++j) {
-    roll_out_.dPredicted(j) *= consistency;
-    if (consistency != Scalar(0)) {
-      for (Eigen::Index i = 0; i < count; ++i) {
-        const Eigen::Index frame = targets_[first + i] + j;
-        if (frame < piece_end_[first + i]) d_features_.col(frame) -= roll_out_.dPredicted(j).col(i);
-      }
-    }
-    roll_out_.dPredicted(j) += d_codes_.middleCols(size + j * count, count);
+    roll_out_.dPredicted(j) = d_codes_.middleCols(size + j * count, count);
   }
   for (int j = steps - 1; j >= 0; --j) {
     roll_out_.backward(networks_.predictorOf(theta), targets, j, networks_.predictorOf(d_theta),

@@ -31,7 +31,6 @@ Terms Schedule::terms() const {
     all.v_r = all.v_r || stage.terms.v_r;
     all.v_p = all.v_p || stage.terms.v_p;
     all.prediction_steps = std::max(all.prediction_steps, stage.terms.prediction_steps);
-    all.consistency_weight = stage.terms.consistency_weight;
     all.weight_decay = stage.terms.weight_decay;
   }
   return all;
@@ -47,7 +46,6 @@ Schedule makeSchedule(const TrainingOptions& training) {
   Schedule schedule = makeSchedule(training.schedule);
   std::vector<Stage> stages;
   for (Stage stage : schedule.stages) {
-    stage.terms.consistency_weight = training.consistency_weight;
     stage.terms.weight_decay = training.weight_decay;
     if (stage.terms.v_p && training.prediction_steps > 1 && training.warm_up_iterations > 0) {
       stages.push_back(stage);

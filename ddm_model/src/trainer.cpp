@@ -110,6 +110,15 @@ class Minimisation {
     return objective_.weight() * objective_.evaluate(theta.cast<float>(), nullptr, terms).of(terms);
   }
 
+  /// @return what starts are chosen by: the error of predictions training/selection_steps ahead, or
+  ///         the cost
+  double selectionError(const Eigen::VectorXd& theta) {
+    if (training_.selection_steps == 0) return cost(theta);
+    Terms terms;
+    terms.prediction_steps = training_.selection_steps;
+    return objective_.weight() * objective_.evaluate(theta.cast<float>(), nullptr, terms).v_p;
+  }
+
   /// @param done    of the whole training, when this start began
   /// @param theta   in: initial parameters, out: the minimum
   /// @param result  out: message; iterations and evaluations are added
@@ -175,57 +184,6 @@ class Minimisation {
   const TrainingCallback& callback_;
 };
 
-/// What starts are chosen by, where training/selection_steps asks for it: how well they predict
-/// that many steps ahead; with training/held_out the end of each piece that is long enough, which
-/// none of them has been trained to predict then, without it all frames.
-class Selection {
- public:
-  /// @param data  in: all, out: without the frames that predictions are measured on
-  Selection(const Networks<float>& networks, TrainingData<float>* data, int order,
-            const TrainingOptions& training)
-      : objective_(networks, split(data, order, training)) {
-    terms_.prediction_steps = training.selection_steps;
-  }
-
-  double error(const Eigen::VectorXd& theta) {
-    return objective_.weight() * objective_.evaluate(theta.cast<float>(), nullptr, terms_).v_p;
-  }
-
- private:
-  static TrainingData<float> split(TrainingData<float>* data, int order,
-                                   const TrainingOptions& training) {
-    TrainingData<float> held_out = *data;
-    if (training.held_out == 0.0) return held_out;
-    held_out.pieces.clear();
-    for (Piece& piece : data->pieces) {
-      const auto size = static_cast<Eigen::Index>(
-          std::lround(training.held_out * static_cast<double>(piece.size)));
-      if (size <= order || piece.size - size <= order) continue;  // too short to be divided
-      piece.size -= size;
-      held_out.pieces.push_back({piece.begin + piece.size, size});
-    }
-    if (held_out.pieces.empty()) {
-      throw std::invalid_argument(
-          "training/held_out holds nothing out: a share of no piece of the data (frames without a "
-          "gap) and what is left are both more than model/order = " +
-          std::to_string(order) + " frames. Record longer trials or set it to 0");
-    }
-    return held_out;
-  }
-
-  JointObjective<float> objective_;
-  Terms terms_;
-};
-
-/// What one start came to.
-struct Candidate {
-  Eigen::VectorXd theta;
-  double initial_cost = 0.0;
-  double final_cost = 0.0;
-  double chosen_by = 0.0;  ///< less is better
-  std::string message;     ///< how the solver ended
-};
-
 }  // namespace
 
 std::mt19937_64 initialisationStream(std::uint64_t seed, std::uint32_t trial) {
@@ -239,57 +197,41 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
                      const TrainingCallback& callback) {
   const auto start = std::chrono::steady_clock::now();
   const Networks<float> networks(model, data.torqueDim());
-  Pca pca = fitPca(data, model.pca_dim, training.score_std);
+  const Pca pca = fitPca(data, model.pca_dim, training.score_std);
   TrainingData<float> training_data = makeTrainingData(data, pca);
   const Eigen::MatrixXd scores = training_data.scores.cast<double>();
   const Networks<double> initial_networks(model, data.torqueDim());
   std::mt19937_64 rng = initialisationStream(info.seed, info.trial);
-  std::optional<Selection> selection;
-  if (training.num_starts > 1 && training.selection_steps > 0) {
-    selection.emplace(networks, &training_data, model.order, training);
-  }
   JointObjective<float> objective(networks, std::move(training_data));
   Minimisation minimisation(networks, &objective, pca, training, callback);
 
   TrainingResult result;
-  std::vector<Candidate> candidates;
+  Eigen::VectorXd best;  // theta
+  double best_error = std::numeric_limits<double>::infinity();
+  std::string message;
   for (int number = 0; number < training.num_starts && !result.cancelled; ++number) {
-    Candidate candidate;
-    candidate.theta = minimisation.initial(number, initial_networks, scores, &rng);
-    candidate.initial_cost = minimisation.cost(candidate.theta);
+    Eigen::VectorXd theta = minimisation.initial(number, initial_networks, scores, &rng);
+    const double initial_cost = minimisation.cost(theta);
     const double done = static_cast<double>(number) / training.num_starts;
-    if (!minimisation.run(done, &candidate.theta, &result)) continue;
-    candidate.final_cost = minimisation.cost(candidate.theta);
-    candidate.chosen_by = selection ? selection->error(candidate.theta) : candidate.final_cost;
-    if (!std::isfinite(candidate.chosen_by)) {  // a roll-out that grows without bound
-      candidate.chosen_by = std::numeric_limits<double>::infinity();
-    }
-    candidate.message = result.message;
-    candidates.push_back(std::move(candidate));
+    if (!minimisation.run(done, &theta, &result)) continue;
+    double error = minimisation.selectionError(theta);
+    if (!std::isfinite(error))
+      error = std::numeric_limits<double>::max();  // a roll-out without bound
+    if (error >= best_error) continue;
+    best_error = error;
+    best = std::move(theta);
+    message = result.message;
+    result.initial_cost = initial_cost;
   }
-  if (!candidates.empty() && !result.cancelled) {
-    std::stable_sort(
-        candidates.begin(), candidates.end(),
-        [](const Candidate& a, const Candidate& b) { return a.chosen_by < b.chosen_by; });
-    const auto most = static_cast<size_t>(training.ensemble_size);
-    if (candidates.size() > most) candidates.resize(most);
-    result.message = candidates.front().message;
-    result.initial_cost = candidates.front().initial_cost;
-    result.final_cost = candidates.front().final_cost;
+  if (best.size() > 0 && !result.cancelled) {
+    result.message = message;
+    result.final_cost = minimisation.cost(best);
+    const JointObjective<float>::Value value = objective.evaluate(best.cast<float>(), nullptr);
     info.frames = static_cast<std::uint32_t>(data.numFrames());
-    std::vector<Ddm> models;
-    for (const Candidate& candidate : candidates) {
-      const JointObjective<float>::Value value =
-          objective.evaluate(candidate.theta.cast<float>(), nullptr);
-      info.v_r = squaredScale(pca) * value.v_r;
-      info.v_p = squaredScale(pca) * value.v_p;
-      info.feature_spread = objective.featureSpread();
-      models.emplace_back(model, data.imageSize(), data.torqueDim(), pca, candidate.theta,
-                          data.goal(), info);
-    }
-    result.model = std::move(models.front());
-    models.erase(models.begin());
-    result.model->setOthers(std::move(models));
+    info.v_r = squaredScale(pca) * value.v_r;
+    info.v_p = squaredScale(pca) * value.v_p;
+    info.feature_spread = objective.featureSpread();
+    result.model.emplace(model, data.imageSize(), data.torqueDim(), pca, best, data.goal(), info);
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -36,7 +36,7 @@ TEST_P(Allocation, AnEvaluationTakesNoMemory) {
   Terms terms;
   for (const int steps : {1, 4}) {
     terms.prediction_steps = steps;
-    terms.weight_decay = terms.consistency_weight = 0.1;
+    terms.weight_decay = 0.1;
     objective.evaluate(theta, &d_theta, terms);  // takes it
     EXPECT_EQ(allocationsOf([&] { objective.evaluate(theta, &d_theta, terms); }), 0) << steps;
     EXPECT_EQ(allocationsOf([&] { objective.evaluate(theta, nullptr, terms); }), 0) << steps;

@@ -59,7 +59,6 @@ TEST(Schedule, PredictionsOfSeveralStepsAreWarmedUpByOne) {
   TrainingOptions training;
   EXPECT_EQ(makeSchedule(training).stages.size(), 1u);
   training.prediction_steps = 5;
-  training.consistency_weight = 0.5;
   training.weight_decay = 2.0;
   const Schedule joint = makeSchedule(training);
   ASSERT_EQ(joint.stages.size(), 2u);
@@ -67,7 +66,6 @@ TEST(Schedule, PredictionsOfSeveralStepsAreWarmedUpByOne) {
   EXPECT_EQ(joint.stages[0].terms.prediction_steps, 1);
   EXPECT_EQ(joint.stages[1].terms.prediction_steps, 5);
   EXPECT_EQ(joint.terms().prediction_steps, 5);
-  EXPECT_EQ(joint.terms().consistency_weight, 0.5);
   for (const Stage& stage : joint.stages) EXPECT_EQ(stage.terms.weight_decay, 2.0);
   EXPECT_EQ(joint.terms().weight_decay, 2.0);
   training.schedule = "sequential";

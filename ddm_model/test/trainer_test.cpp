@@ -218,53 +218,6 @@ TEST_F(Trainer, ChoosesAmongStartsByWhatIsAskedFor) {
   EXPECT_NE(run().model->theta(), by_prediction.theta());
 }
 
-TEST_F(Trainer, WhatIsHeldOutIsNoTargetOfTraining) {
-  training_.num_starts = 2;
-  training_.selection_steps = 2;
-  training_.held_out = 0.3;
-  training_.ensemble_size = 2;  // both, so that the choice does not matter
-  const auto learned = [this](double torque) {
-    DataSet data(testing::kToySize, 1);
-    for (Eigen::Index t = 0; t < data_.numFrames(); ++t) {
-      Eigen::VectorXd u = data_.torques().col(t);
-      if (t >= 21 && t < 30) u.setConstant(torque);  // the end of the first piece
-      data.append(data_.image(t), u, t == 0 || t == 30);
-    }
-    data.setGoal(data_.goal());
-    const Ddm model = train(data, model_, training_, info_, nullptr).model.value();
-    return model.theta().norm() + model.others()[0].theta().norm();
-  };
-  EXPECT_NEAR(learned(2.0), learned(-2.0), 1e-12);
-  training_.held_out = 0.0;
-  EXPECT_GT(std::abs(learned(2.0) - learned(-2.0)), 1e-6);
-}
-
-TEST_F(Trainer, RefusesToHoldOutLessThanCanBePredicted) {
-  training_.num_starts = 2;
-  training_.selection_steps = 2;
-  training_.held_out = 0.05;  // two frames
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { run(); },
-                                                  {"training/held_out", "model/order = 2"}));
-}
-
-TEST_F(Trainer, KeepsAnEnsembleOfTheBestInTheirOrder) {
-  training_.num_starts = 4;
-  training_.pca_starts = 4;
-  const Ddm best = run().model.value();
-  EXPECT_TRUE(best.others().empty());
-  training_.ensemble_size = 3;
-  const Ddm ensemble = run().model.value();
-  EXPECT_EQ(ensemble.theta(), best.theta());
-  ASSERT_EQ(ensemble.others().size(), 2u);
-  const auto cost = [](const Ddm& model) { return model.info().v_r + model.info().v_p; };
-  EXPECT_LT(cost(ensemble), cost(ensemble.others()[0]));
-  EXPECT_LT(cost(ensemble.others()[0]), cost(ensemble.others()[1]));
-  const Ddm back = deserialiseModel(serialiseModel(ensemble), "memory");
-  ASSERT_EQ(back.others().size(), 2u);
-  EXPECT_EQ(back.others()[1].theta(), ensemble.others()[1].theta());
-  EXPECT_EQ(serialiseModel(back), serialiseModel(ensemble));
-}
-
 TEST_F(Trainer, PredictionsOfSeveralStepsGetBetterWhereTheyAreMinimised) {
   training_.max_iterations = 200;
   const double one = predictionErrors(run().model.value(), data_, 6).back().rmse;

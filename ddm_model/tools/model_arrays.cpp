@@ -23,12 +23,13 @@ void addNetwork(const Mlp<double>& network, const double* theta, const std::stri
   }
 }
 
-void addModel(const Ddm& model, const std::string& prefix, Arrays* out) {
-  const auto add = [&](const std::string& name, const auto& matrix) {
-    (*out)[prefix + name] = npyOf(matrix);
-  };
+}  // namespace
+
+std::map<std::string, std::string> modelArrays(const Ddm& model) {
+  Arrays out;
+  const auto add = [&](const std::string& name, const auto& matrix) { out[name] = npyOf(matrix); };
   const auto addNumber = [&](const std::string& name, auto value) {
-    (*out)[prefix + name] = npyOfNumber(value);
+    out[name] = npyOfNumber(value);
   };
   const ModelOptions& options = model.options();
   addNumber("image_size", std::int64_t{model.imageSize()});
@@ -48,25 +49,15 @@ void addModel(const Ddm& model, const std::string& prefix, Arrays* out) {
   addNumber("pca_scale", static_cast<double>(model.pca().scale));
   const Networks<double> networks(options, model.torqueDim());
   const double* theta = model.theta().data();
-  addNetwork(networks.encoder(), networks.encoderOf(theta), prefix + "encoder", out);
-  addNetwork(networks.decoder(), networks.decoderOf(theta), prefix + "decoder", out);
-  addNetwork(networks.f(), networks.predictorOf(theta), prefix + "f", out);
-  if (!model.hasGoal()) return;
+  addNetwork(networks.encoder(), networks.encoderOf(theta), "encoder", &out);
+  addNetwork(networks.decoder(), networks.decoderOf(theta), "decoder", &out);
+  addNetwork(networks.f(), networks.predictorOf(theta), "f", &out);
+  if (!model.hasGoal()) return out;
   using Bytes = Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>;
   add("goal", Bytes(Eigen::Map<const Bytes>(model.goal().data(),
                                             static_cast<Eigen::Index>(model.goal().size()))));
   add("goal_feature", model.goalFeature());
-}
-
-}  // namespace
-
-std::map<std::string, std::string> modelArrays(const Ddm& model) {
-  Arrays arrays;
-  addModel(model, "", &arrays);
-  for (std::size_t i = 0; i < model.others().size(); ++i) {
-    addModel(model.others()[i], "other" + std::to_string(i + 1) + "_", &arrays);
-  }
-  return arrays;
+  return out;
 }
 
 }  // namespace ddm

@@ -70,7 +70,6 @@ std::string factsOf(const ddm::Ddm& model, const std::string& id) {
   facts["feature_spread"] = ddm::formatDouble(info.feature_spread);
   facts["image_size"] = std::to_string(model.imageSize());
   facts["torque_dim"] = std::to_string(model.torqueDim());
-  facts["num_models"] = std::to_string(1 + model.others().size());
   facts["goal"] = model.hasGoal() ? "true" : "false";
   facts["options"] = ddm::toYaml(model.options());
   facts["config"] = info.config;

@@ -6,12 +6,10 @@
 
 namespace ddm {
 
-DdmPlanCost::DdmPlanCost(const Ddm& model, int horizon, double control_weight,
-                         const DistanceCost& distance_cost)
+DdmPlanCost::DdmPlanCost(const Ddm& model, int horizon, double control_weight)
     : f_(model.predictionModel()),
       theta_p_(model.thetaP()),
       control_weight_(control_weight),
-      distance_cost_(distance_cost),
       roll_out_(f_) {
   setHorizon(horizon);
 }
@@ -21,7 +19,6 @@ void DdmPlanCost::setHorizon(int horizon) {
   horizon_ = horizon;
   roll_out_.reserve(/*num_targets=*/1, horizon);
   torques_.setZero(f_.torqueDim(), f_.order() - 1 + horizon);
-  slopes_.resize(horizon);
 }
 
 void DdmPlanCost::setProblem(const History& x, const Eigen::VectorXd& goal_feature,
@@ -37,15 +34,6 @@ void DdmPlanCost::setProblem(const History& x, const Eigen::VectorXd& goal_featu
   offset_ = offset;
 }
 
-/// Cost of z_{step+1}; notes its slope.
-double DdmPlanCost::distanceCost(int step) {
-  const double weight = step + 1 == horizon_ ? distance_cost_.terminal_weight : 1.0;
-  const double squared = (roll_out_.predicted(step) - goal_feature_).squaredNorm();
-  const double cost = weight * distance_cost_.of(squared, &slopes_[step]);
-  slopes_[step] *= weight;
-  return cost;
-}
-
 double DdmPlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) {
   eigen_assert(U.rows() == f_.torqueDim() && U.cols() == horizon_);
   const Eigen::Index target = f_.order();  // z_1 follows the n features that were seen
@@ -53,14 +41,16 @@ double DdmPlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::
   torques_.rightCols(horizon_) = U;
   roll_out_.forward(theta_p_, features_, torques_, targets, horizon_, &offset_);
   double cost = control_weight_ * U.squaredNorm();  // eq. (9)
-  for (int step = 0; step < horizon_; ++step) cost += distanceCost(step);
+  for (int step = 0; step < horizon_; ++step) {
+    cost += (roll_out_.predicted(step) - goal_feature_).squaredNorm();
+  }
   if (d_U == nullptr) return cost;
 
   d_torques_.setZero(torques_.rows(), torques_.cols());
   d_torques_.rightCols(horizon_) = 2.0 * control_weight_ * U;
   for (int step = 0; step < horizon_; ++step) roll_out_.dPredicted(step).setZero();
   for (int step = horizon_ - 1; step >= 0; --step) {
-    roll_out_.dPredicted(step) += 2.0 * slopes_[step] * (roll_out_.predicted(step) - goal_feature_);
+    roll_out_.dPredicted(step) += 2.0 * (roll_out_.predicted(step) - goal_feature_);
     roll_out_.backward(theta_p_, targets, step, nullptr, nullptr, &d_torques_);
   }
   *d_U = d_torques_.rightCols(horizon_);

@@ -20,12 +20,6 @@ std::vector<std::string> MpcOptions::problems() const {
   require(horizon >= 1 && horizon <= 1000, "horizon must lie in [1, 1000]", horizon);
   require(control_weight >= 0.0 && std::isfinite(control_weight), "control_weight must be >= 0",
           control_weight);
-  require(saturation_width >= 0.0 && std::isfinite(saturation_width),
-          "saturation_width must be >= 0", saturation_width);
-  require(terminal_weight >= 0.0 && std::isfinite(terminal_weight), "terminal_weight must be >= 0",
-          terminal_weight);
-  require(disagreement_bonus >= 0.0 && std::isfinite(disagreement_bonus),
-          "disagreement_bonus must be >= 0", disagreement_bonus);
   require(offset_gain >= 0.0 && offset_gain <= 1.0, "offset_gain must be between 0 and 1",
           offset_gain);
   require(areLimits(max_torque), "max_torque must be > 0", limitsText(max_torque));

@@ -94,59 +94,26 @@ TEST_P(DdmPlanCostShapes, ValueAndPredictedFeaturesEqualASlowComputation) {
   }
 }
 
-TEST(DdmPlanCost, GradientMatchesDifferencesWithEveryDistanceCostAndFormOfF) {
+TEST(DdmPlanCost, GradientMatchesDifferencesForEveryFormOfFAndWithAnOffset) {
   for (const bool residual : {false, true}) {
-    for (const DistanceCost& distance :
-         {DistanceCost{2.0, 0.0, 1.0}, DistanceCost{0.5, 0.8, 1.0}, DistanceCost{1.5, 0.7, 10.0}}) {
-      RandomModelOptions options;
-      options.model.residual = residual;
-      options.model.increments = residual;
-      options.model.order = residual ? 3 : 2;
-      options.gain = 0.7;
-      const Ddm model = randomModel(options);
-      DdmPlanCost cost(model, 6, kControlWeight, distance);
-      cost.setProblem(randomHistory(model, 10), testing::randomMatrix(2, 1, 20),
-                      0.1 * testing::randomMatrix(2, 1, 30));
-      const auto f = [&](const Eigen::VectorXd& u, Eigen::VectorXd* gradient) {
-        Eigen::MatrixXd d_U;
-        const double value = cost.evaluate(u.transpose(), gradient != nullptr ? &d_U : nullptr);
-        if (gradient != nullptr) *gradient = d_U.transpose();
-        return value;
-      };
-      EXPECT_TRUE(testing::gradientMatches(f, 2.0 * testing::randomMatrix(6, 1, 30), 1e-6))
-          << residual << ", w = " << distance.width;
-    }
+    RandomModelOptions options;
+    options.model.residual = residual;
+    options.model.increments = residual;
+    options.model.order = residual ? 3 : 2;
+    options.gain = 0.7;
+    const Ddm model = randomModel(options);
+    DdmPlanCost cost(model, 6, kControlWeight);
+    cost.setProblem(randomHistory(model, 10), testing::randomMatrix(2, 1, 20),
+                    0.1 * testing::randomMatrix(2, 1, 30));
+    const auto f = [&](const Eigen::VectorXd& u, Eigen::VectorXd* gradient) {
+      Eigen::MatrixXd d_U;
+      const double value = cost.evaluate(u.transpose(), gradient != nullptr ? &d_U : nullptr);
+      if (gradient != nullptr) *gradient = d_U.transpose();
+      return value;
+    };
+    EXPECT_TRUE(testing::gradientMatches(f, 2.0 * testing::randomMatrix(6, 1, 30), 1e-6))
+        << residual;
   }
-}
-
-TEST(DistanceCost, IsQuadraticNearTheGoalAndSaturatesFarFromIt) {
-  const DistanceCost quadratic{2.0, 0.0, 1.0}, saturating{2.0, 0.5, 1.0};
-  double slope = 0.0;
-  EXPECT_DOUBLE_EQ(quadratic.of(8.0, &slope), 2.0);
-  EXPECT_DOUBLE_EQ(slope, 0.25);
-  EXPECT_NEAR(saturating.of(1e-6, &slope), 0.25e-6, 1e-12);
-  EXPECT_NEAR(slope, 0.25, 1e-6);
-  EXPECT_NEAR(saturating.of(1e3, &slope), 0.5, 1e-12);
-  EXPECT_NEAR(slope, 0.0, 1e-12);
-  EXPECT_NEAR(saturating.of(1.0, &slope), 0.5 * (1.0 - std::exp(-0.5)), 1e-12);
-}
-
-TEST(DdmPlanCost, TheLastStepCountsAsOftenAsTheTerminalWeightSays) {
-  const Ddm model = randomModel({});
-  const Eigen::MatrixXd U = testing::randomMatrix(1, 4, 1);
-  const History x = randomHistory(model, 5);
-  const Eigen::VectorXd goal = testing::randomMatrix(2, 1, 6);
-  const auto value = [&](double terminal_weight) {
-    DdmPlanCost cost(model, 4, kControlWeight, {1.0, 0.0, terminal_weight});
-    cost.setProblem(x, goal);
-    return cost.evaluate(U, nullptr);
-  };
-  DdmPlanCost plain(model, 4, kControlWeight);
-  plain.setProblem(x, goal);
-  const double expected = plain.evaluate(U, nullptr);
-  const double last = (plain.predictedFeatures().col(4) - goal).squaredNorm();
-  EXPECT_NEAR(value(1.0), expected, 1e-12);
-  EXPECT_NEAR(value(5.0), expected + 4.0 * last, 1e-9);
 }
 
 INSTANTIATE_TEST_SUITE_P(OrdersTorquesHorizons, DdmPlanCostShapes,

@@ -57,12 +57,6 @@ TEST(MpcOptions, RefuseNumbersOutOfRangeNanIncluded) {
     expectProblem<MpcOptions>("mpc/function_tolerance",
                               [bad](MpcOptions* o) { o->function_tolerance = bad; });
     expectProblem<MpcOptions>("mpc/time_budget", [bad](MpcOptions* o) { o->time_budget = bad; });
-    expectProblem<MpcOptions>("mpc/saturation_width",
-                              [bad](MpcOptions* o) { o->saturation_width = bad; });
-    expectProblem<MpcOptions>("mpc/terminal_weight",
-                              [bad](MpcOptions* o) { o->terminal_weight = bad; });
-    expectProblem<MpcOptions>("mpc/disagreement_bonus",
-                              [bad](MpcOptions* o) { o->disagreement_bonus = bad; });
     expectProblem<MpcOptions>("mpc/offset_gain", [bad](MpcOptions* o) { o->offset_gain = bad; });
   }
   expectProblem<MpcOptions>("mpc/offset_gain", [](MpcOptions* o) { o->offset_gain = 1.01; });

@@ -49,14 +49,6 @@ TEST(MpcPolicy, RefusesMoreTorqueThanTheModelKnowsAndNamesBothKeys) {
       {"mpc/max_torque", "model/max_torque", "6.5", "6 N m"}));
 }
 
-TEST(MpcPolicy, RefusesToScaleDistancesByASpreadThatTheModelDoesNotKnow) {
-  MpcOptions options;
-  options.scale_distance = true;
-  EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
-      [&options] { MpcPolicy policy(sharedModel(), options); },
-      {"mpc/scale_distance", "spread", "train it again"}));
-}
-
 TEST(MpcPolicy, AcceptsLessTorqueThanTheModelKnowsAndKeepsToIt) {
   MpcOptions options;
   options.max_torque = {0.5};
@@ -218,53 +210,6 @@ TEST(MpcPolicy, AveragesTheErrorsOfItsPredictionsAndForgetsThemWithTheTrial) {
   rest.observe(model->encode(randomGrey(8, 3)));
   const Plan next = policy.plan();
   EXPECT_TRUE(next.features.col(1).isApprox(model->predict(rest, next.torques.col(0)), 1e-12));
-}
-
-TEST(MpcPolicy, PlansOnTheMeanCostOfAnEnsembleWithABonusInTrialsAlone) {
-  RandomModelOptions other;
-  other.seed = 9;
-  Ddm both = randomModel({});
-  both.setOthers({randomModel(other)});
-  const auto ensemble = std::make_shared<const Ddm>(std::move(both));
-  MpcOptions options;
-  const auto costOfFirstPlan = [&options](const std::shared_ptr<const Ddm>& model,
-                                          bool evaluation) {
-    MpcPolicy policy(model, options);
-    policy.startTrial(TrialId{0, 0, evaluation});
-    policy.observe(randomGrey(8, 3));
-    return policy.plan().cost;
-  };
-  const double in_trial = costOfFirstPlan(ensemble, false);
-  const double in_evaluation = costOfFirstPlan(ensemble, true);
-  EXPECT_NE(in_trial, costOfFirstPlan(sharedModel(), false));
-  options.disagreement_bonus = 0.5;
-  EXPECT_LT(costOfFirstPlan(ensemble, false), in_trial);
-  EXPECT_EQ(costOfFirstPlan(ensemble, true), in_evaluation);
-}
-
-TEST(MpcPolicy, TheCostOfAPlanIsThatOfEachKeyForIt) {
-  const auto costOfFirstPlan = [](const MpcOptions& options) {
-    Ddm model = randomModel({});
-    ModelInfo info = model.info();
-    info.feature_spread = 2.0;
-    const auto known =
-        std::make_shared<const Ddm>(model.options(), model.imageSize(), model.torqueDim(),
-                                    model.pca(), model.theta(), model.goal(), info);
-    MpcPolicy policy(known, options);
-    policy.startTrial(TrialId());
-    policy.observe(randomGrey(8, 3));
-    return policy.plan().cost;
-  };
-  const double plain = costOfFirstPlan(MpcOptions());
-  MpcOptions options;
-  options.scale_distance = true;
-  EXPECT_LT(costOfFirstPlan(options), plain);
-  options = MpcOptions();
-  options.saturation_width = 0.1;
-  EXPECT_LT(costOfFirstPlan(options), plain);
-  options = MpcOptions();
-  options.terminal_weight = 100.0;
-  EXPECT_GT(costOfFirstPlan(options), plain);
 }
 
 TEST(MpcPolicy, CutsAPlanShortWhenTheBudgetOrTheStopSaysSo) {

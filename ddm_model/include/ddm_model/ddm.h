@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "ddm_model/data_set.h"
 #include "ddm_model/history.h"
@@ -75,12 +74,6 @@ class Ddm {
   /// Parameters theta_P of predictionModel().
   const double* thetaP() const { return networks_.predictorOf(theta_.data()); }
 
-  /// The rest of an ensemble, trained on the same data from other starts; empty for a single model.
-  const std::vector<Ddm>& others() const { return others_; }
-  /// @throws std::invalid_argument if one has another image size or number of motors, or others
-  /// itself
-  void setOthers(std::vector<Ddm> others);
-
   const ModelOptions& options() const { return options_; }
   const ModelInfo& info() const { return info_; }
   const Pca& pca() const { return pca_; }
@@ -99,7 +92,6 @@ class Ddm {
   Grey goal_;
   ModelInfo info_;
   Eigen::VectorXd goal_feature_;
-  std::vector<Ddm> others_;
 };
 
 }  // namespace ddm

@@ -13,9 +13,9 @@ namespace ddm {
 ///   "DDMMODEL" | format version, uint32 | size of the content, uint64 | CRC-32 of the content |
 ///   content
 ///
-/// The content of version 2 is a model and the rest of its ensemble, one after the other. Version
-/// 3, of models with a max_torque for each motor, has a list of them where version 2 has one
-/// number. Version 1, which is still read, knows neither ensembles nor the flags of f and the
+/// Version 2 is of models with one max_torque for all motors, version 3 has a list with one for
+/// each in its place. Both may hold the other models of an ensemble, which older programs trained:
+/// they are read over. Version 1, which is still read, has neither those nor the flags of f and the
 /// spread of features.
 std::string serialiseModel(const Ddm& model);
 

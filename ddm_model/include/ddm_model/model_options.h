@@ -48,18 +48,15 @@ struct ModelOptions {
 
 /// Block `training`.
 struct TrainingOptions {
-  std::string schedule = "joint";   ///< what is minimised over what, see scheduleNames()
-  std::string solver = "lbfgs";     ///< "lbfgs" or "bfgs"
-  int num_starts = 1;               ///< trainings, of which the best is kept [-]
-  int pca_starts = 1;               ///< how many of them start from PCA, the rest at random [-]
-  int ensemble_size = 1;            ///< the best so many of them are kept [-]
-  int selection_steps = 0;          ///< by predictions so many steps ahead; 0: by what is minimised
-  double held_out = 0.0;            ///< share of each piece that they are measured on; 0: all [-]
-  int max_iterations = 500;         ///< cap on the iterations of the solver, each stage [-]
-  int prediction_steps = 1;         ///< V_P: predictions up to so many steps ahead [-]
-  int warm_up_iterations = 100;     ///< cap on those with one step first, if more are asked for [-]
-  double consistency_weight = 0.0;  ///< price of V_Z [score^2/feature^2]
-  double weight_decay = 0.0;        ///< price of V_W, the squared weights [score^2]
+  std::string schedule = "joint";  ///< what is minimised over what, see scheduleNames()
+  std::string solver = "lbfgs";    ///< "lbfgs" or "bfgs"
+  int num_starts = 1;              ///< trainings, of which the best is kept [-]
+  int pca_starts = 1;              ///< how many of them start from PCA, the rest at random [-]
+  int selection_steps = 0;         ///< by predictions so many steps ahead; 0: by what is minimised
+  int max_iterations = 500;        ///< cap on the iterations of the solver, each stage [-]
+  int prediction_steps = 1;        ///< V_P: predictions up to so many steps ahead [-]
+  int warm_up_iterations = 100;    ///< cap on those with one step first, if more are asked for [-]
+  double weight_decay = 0.0;       ///< price of V_W, the squared weights [score^2]
   double function_tolerance = 1e-6;  ///< stop when V changes by less than this fraction [-]
   int lbfgs_rank = 20;               ///< pairs that L-BFGS remembers [-]
   double score_std = 1.0;            ///< spread of the leading PCA score at the encoder's input [-]
@@ -72,13 +69,10 @@ struct TrainingOptions {
     visitor("solver", solver);
     visitor("num_starts", num_starts);
     visitor("pca_starts", pca_starts);
-    visitor("ensemble_size", ensemble_size);
     visitor("selection_steps", selection_steps);
-    visitor("held_out", held_out);
     visitor("max_iterations", max_iterations);
     visitor("prediction_steps", prediction_steps);
     visitor("warm_up_iterations", warm_up_iterations);
-    visitor("consistency_weight", consistency_weight);
     visitor("weight_decay", weight_decay);
     visitor("function_tolerance", function_tolerance);
     visitor("lbfgs_rank", lbfgs_rank);

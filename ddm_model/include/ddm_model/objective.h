@@ -19,10 +19,9 @@ namespace ddm {
 ///   V_P = sum_t |s_{t+1} - g(f(h_t))|^2         over all frames with n predecessors in their piece
 ///
 /// With Terms::prediction_steps k > 1, V_P is the mean over predictions 1 ... k steps ahead, each
-/// from the one before it; with Terms::consistency_weight w_c > 0, w_c V_Z is added, in features:
+/// from the one before it:
 ///
-///   V_P = 1/k sum_t sum_{j=1..k} |s_{t+j} - g(z_{t+j|t})|^2,  V_Z the same of |z_{t+j} -
-///   z_{t+j|t}|^2
+///   V_P = 1/k sum_t sum_{j=1..k} |s_{t+j} - g(z_{t+j|t})|^2
 ///
 /// With Terms::weight_decay w_d > 0, w_d V_W is added, V_W the sum of all squared weights (biases
 /// are free): networks that fit few data in many ways are held to the smoothest.
@@ -41,13 +40,11 @@ class JointObjective {
   struct Value {
     double v_r = 0.0;  ///< V_R [score^2]
     double v_p = 0.0;  ///< V_P [score^2]
-    double v_z = 0.0;  ///< V_Z [feature^2]
     double v_w = 0.0;  ///< V_W, sum of all squared weights [-]
 
     /// What `terms` minimise, without the weight w.
     double of(const Terms& terms) const {
-      return (terms.v_r ? v_r : 0.0) + (terms.v_p ? v_p + terms.consistency_weight * v_z : 0.0) +
-             terms.weight_decay * v_w;
+      return (terms.v_r ? v_r : 0.0) + (terms.v_p ? v_p : 0.0) + terms.weight_decay * v_w;
     }
   };
 

@@ -11,11 +11,10 @@ namespace ddm {
 
 /// The terms of the objective that count.
 struct Terms {
-  bool v_r = true;                  ///< V_R, reconstruction error
-  bool v_p = true;                  ///< V_P, prediction error
-  int prediction_steps = 1;         ///< k of V_P
-  double consistency_weight = 0.0;  ///< price of V_Z, with V_P
-  double weight_decay = 0.0;        ///< price of V_W
+  bool v_r = true;            ///< V_R, reconstruction error
+  bool v_p = true;            ///< V_P, prediction error
+  int prediction_steps = 1;   ///< k of V_P
+  double weight_decay = 0.0;  ///< weight of V_W
 };
 
 /// One minimisation: `terms` over the parameters that are free, the others held fixed.

@@ -42,8 +42,7 @@ struct TrainingResult {
 std::mt19937_64 initialisationStream(std::uint64_t seed, std::uint32_t trial);
 
 /// Trains a model from scratch on all data (a warm start from the last optimum gets stuck) by the
-/// schedule of `training`, from num_starts starts, and keeps the best,
-/// or the best training/ensemble_size of them.
+/// schedule of `training`, from num_starts starts, and keeps the best.
 /// @param info  seed, trial and config are kept; frames, V_R, V_P and the spread are filled in
 /// @throws std::invalid_argument if the data are too few for the options, or all the same
 TrainingResult train(const DataSet& data, const ModelOptions& model,

@@ -33,7 +33,6 @@ def facts_table(data, model):
         ("hidden layers", "; ".join(widths)),
         ("f", "residual: %s, increments: %s, torques in units of %s N m" % (
             options["residual"], options["increments"], options["max_torque"])),
-        ("ensemble", "%s model(s); this report is of the first" % facts["num_models"]),
         ("trained on", "%s frames, the last trial was %s, seed %s" % (
             facts["frames"], facts["trial"], facts["seed"])),
         ("V_R, V_P", "%.4g, %.4g grey²: %.3g and %.3g grey a pixel, within the principal components" % (

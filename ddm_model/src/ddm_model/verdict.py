@@ -154,7 +154,7 @@ def check_spread(data):
     return Check("Features tell images apart", spread >= COLLAPSED,
                  "their distance to their mean is %.3g (root mean square)" % spread,
                  "at least %g; features lie within 1.57" % COLLAPSED,
-                 "Train again with another seed or more starts; lower training/consistency_weight and weight_decay.")
+                 "Train again with another seed or more starts; lower training/weight_decay.")
 
 
 def first_third(data):

@@ -8,7 +8,6 @@
 
 #include <Eigen/Core>
 
-#include "ddm_mpc/distance_cost.h"
 #include "ddm_mpc/plan_cost.h"
 
 namespace ddm {
@@ -25,9 +24,7 @@ class DdmPlanCost : public PlanCost {
   /// @param model           outlives the cost
   /// @param horizon         K, steps
   /// @param control_weight  lambda [(N m)^-2]
-  /// @param distance_cost   of a feature's distance to the goal
-  DdmPlanCost(const Ddm& model, int horizon, double control_weight,
-              const DistanceCost& distance_cost = DistanceCost());
+  DdmPlanCost(const Ddm& model, int horizon, double control_weight);
 
   /// Other values for the plans to come; setProblem comes first.
   /// @throws std::invalid_argument if the horizon is < 1
@@ -50,20 +47,16 @@ class DdmPlanCost : public PlanCost {
   int torqueDim() const override { return f_.torqueDim(); }
 
  private:
-  double distanceCost(int step);
-
   const PredictionModel<double>& f_;
   const double* theta_p_;
   int horizon_ = 0;
   double control_weight_;
-  DistanceCost distance_cost_;
   Eigen::VectorXd goal_feature_;
   Eigen::VectorXd offset_;
   RollOut<double> roll_out_;
   Eigen::MatrixXd features_;   // z_{-n+1} ... z_0                          [feature_dim x n]
   Eigen::MatrixXd torques_;    // u_{-n+1} ... u_{K-1} [N m]     [torque_dim x (n - 1 + K)]
   Eigen::MatrixXd d_torques_;  // dJ/du of these
-  Eigen::VectorXd slopes_;     // of the distance cost at z_1 ... z_K
 };
 
 }  // namespace ddm

@@ -9,14 +9,9 @@ namespace ddm {
 
 /// Block `mpc`.
 struct MpcOptions {
-  int horizon = 15;               ///< K, planned steps [-]
-  double control_weight = 0.01;   ///< lambda, price of torque [(N m)^-2]
-  bool scale_distance = false;    ///< distances count in units of the features' spread
-  double saturation_width = 0.0;  ///< the cost bends at this distance; 0: quadratic
-  double terminal_weight = 1.0;   ///< how often the last step's distance counts [-]
-  double disagreement_bonus =
-      0.0;                   ///< trials that are learned from seek what models disagree about
-  double offset_gain = 0.0;  ///< share of a prediction error that corrects later ones [-]
+  int horizon = 15;              ///< K, planned steps [-]
+  double control_weight = 0.01;  ///< lambda, price of torque [(N m)^-2]
+  double offset_gain = 0.0;      ///< share of a prediction error that corrects later ones [-]
   std::vector<double> max_torque = {6.0};  ///< bound on |u|; one, or one per motor [N m]
   double epsilon = 0.2;                    ///< probability of a uniformly random torque [-]
   int hold_steps = 1;                      ///< steps for which a random torque is held [-]
@@ -29,10 +24,6 @@ struct MpcOptions {
   void visit(Visitor& visitor) {
     visitor("horizon", horizon);
     visitor("control_weight", control_weight);
-    visitor("scale_distance", scale_distance);
-    visitor("saturation_width", saturation_width);
-    visitor("terminal_weight", terminal_weight);
-    visitor("disagreement_bonus", disagreement_bonus);
     visitor("offset_gain", offset_gain);
     visitor("max_torque", max_torque);
     visitor("epsilon", epsilon);

@@ -11,10 +11,8 @@
 #include <optional>
 #include <random>
 #include <utility>
-#include <vector>
 
 #include "ddm_mpc/ddm_plan_cost.h"
-#include "ddm_mpc/ensemble_plan_cost.h"
 #include "ddm_mpc/mpc_options.h"
 #include "ddm_mpc/planner.h"
 #include "ddm_mpc/policy.h"
@@ -22,8 +20,12 @@
 namespace ddm {
 
 /// Encodes each image, keeps the state x, and plans towards the model's goal feature (paper,
-/// Sec. 3.1). With an ensemble each model does so, and the plan minimises the mean of their costs.
-/// mpc/time_budget covers the whole decision: what it took to decode and encode the image, too.
+/// Sec. 3.1). mpc/time_budget covers the whole decision, from the arrival of the image on. An
+/// offset is added to each prediction and follows their errors,
+///
+///   offset <- offset + offset_gain (z_{t+1} - z_{t+1|t} - offset)
+///
+/// so that a model that is a little wrong about rest does not keep the plant off its goal.
 class MpcPolicy : public Policy {
  public:
   /// @throws std::invalid_argument if the model has no goal image, or max_torque exceeds the
@@ -32,8 +34,8 @@ class MpcPolicy : public Policy {
 
   /// Other values for the plans to come, also in the middle of a trial.
   /// @throws std::invalid_argument if the horizon is < 1
-  void setHorizon(int horizon);
-  void setControlWeight(double control_weight);
+  void setHorizon(int horizon) { cost_.setHorizon(horizon); }
+  void setControlWeight(double control_weight) { cost_.setControlWeight(control_weight); }
 
   /// When the image arrived that observe() takes in next; otherwise the budget begins there.
   void setArrival(std::chrono::steady_clock::time_point arrival) { arrival_ = arrival; }
@@ -43,46 +45,22 @@ class MpcPolicy : public Policy {
 
   void startTrial(const TrialId& id) override;
   void observe(const Grey& grey) override;
-  /// |z - z_ref| in units of the features' spread, by the first model of an ensemble; nothing if
-  /// the model does not know the spread.
+  /// |z - z_ref| in units of the features' spread; nothing if the model does not know the spread.
   std::optional<double> goalDistance() const override;
   Plan plan() override;
   void apply(const Eigen::VectorXd& u) override;
 
  private:
-  /// A model of the ensemble and what it makes of the trial: the state x, and the offset of its
-  /// predictions, which follows their errors,
-  ///
-  ///   offset <- offset + offset_gain (z_{t+1} - z_{t+1|t} - offset)
-  ///
-  /// so that a model that is a little wrong about rest does not keep the plant off its goal.
-  struct Member {
-    Member(const Ddm& model, const MpcOptions& options);
-
-    void startTrial();
-    void observe(const Grey& grey);
-    void apply(const Eigen::VectorXd& u);
-
-    const Ddm& model;
-    History x;
-    DdmPlanCost cost;
-    double offset_gain;
-    Eigen::VectorXd offset;     ///< [feature_dim]
-    Eigen::VectorXd predicted;  ///< z_{t+1|t}, empty before the first torque  [feature_dim]
-  };
-
-  static std::vector<std::unique_ptr<Member>> makeMembers(const Ddm& model,
-                                                          const MpcOptions& options);
-  static std::vector<PlanCost*> costsOf(const std::vector<std::unique_ptr<Member>>& members);
-
   std::shared_ptr<const Ddm> model_;
-  double disagreement_bonus_;
+  double offset_gain_;
   std::chrono::duration<double> time_budget_;
   std::optional<std::chrono::steady_clock::time_point> arrival_;  // of the next image
   std::chrono::steady_clock::time_point began_;                   // the decision under way
   std::function<bool()> stop_;
-  std::vector<std::unique_ptr<Member>> members_;
-  EnsemblePlanCost cost_;
+  History x_;
+  Eigen::VectorXd offset_;     // [feature_dim]
+  Eigen::VectorXd predicted_;  // z_{t+1|t}, empty before the first torque  [feature_dim]
+  DdmPlanCost cost_;
   Planner planner_;
   std::mt19937_64 rng_;
 };
