@@ -40,14 +40,14 @@ Eigen::VectorXd Ddm::encode(const Grey& grey) const {
     throw std::invalid_argument("model: an image must have " + std::to_string(pca_.mean.size()) +
                                 " pixels, got " + std::to_string(grey.size()));
   }
-  Mlp<double>::Tape tape;
+  Mlp<double>::Tape tape;  // g^-1, eq. (3a)
   networks_.encoder().forward(networks_.encoderOf(theta_.data()), pca_.project(grey).cast<double>(),
                               &tape);
   return tape.output();
 }
 
 Grey Ddm::decode(const Eigen::VectorXd& z) const {
-  Mlp<double>::Tape tape;
+  Mlp<double>::Tape tape;  // g, eq. (3b)
   networks_.decoder().forward(networks_.decoderOf(theta_.data()), z, &tape);
   const Eigen::MatrixXd scores = tape.output();
   const Eigen::MatrixXf image = pca_.reconstruct(scores.cast<float>());

@@ -148,7 +148,7 @@ void JointObjective<Scalar>::addDecay(const Scalar* theta, double price, Scalar*
 template <class Scalar>
 void JointObjective<Scalar>::encode(const Scalar* theta, Eigen::Index block) {
   typename Mlp<Scalar>::Tape& tape = encoder_tapes_[block % encoder_tapes_.size()];
-  networks_.encoder().forward(networks_.encoderOf(theta),
+  networks_.encoder().forward(networks_.encoderOf(theta),  // g^-1, eq. (3a)
                               data_.scores.middleCols(blockBegin(block), blockSize(block)), &tape);
   features_.middleCols(blockBegin(block), blockSize(block)) = tape.output();
 }
@@ -183,11 +183,12 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::decodeBlock(const
   for (int j = 0; j < steps; ++j) {
     codes.middleCols(size + j * count, count) = roll_out_.predicted(j);
   }
-  networks_.decoder().forward(networks_.decoderOf(theta), &decoder_tape_);
+  networks_.decoder().forward(networks_.decoderOf(theta), &decoder_tape_);  // g, eq. (3b)
 
   Value value;
   const auto decoded = decoder_tape_.output();
-  residual_.leftCols(size) = decoded.leftCols(size) - data_.scores.middleCols(begin, size);
+  residual_.leftCols(size) =
+      decoded.leftCols(size) - data_.scores.middleCols(begin, size);  // eq. (1)
   const Scalar step_weight = Scalar(1) / Scalar(steps);
   for (int j = 0; j < steps; ++j) {
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -200,8 +201,8 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::decodeBlock(const
       }
     }
   }
-  value.v_r = static_cast<double>(residual_.leftCols(size).squaredNorm());
-  value.v_p =
+  value.v_r = static_cast<double>(residual_.leftCols(size).squaredNorm());  // eq. (5c)
+  value.v_p =                                                               // eq. (5b)
       static_cast<double>(step_weight * residual_.middleCols(size, steps * count).squaredNorm());
   if (d_theta == nullptr) return value;
 

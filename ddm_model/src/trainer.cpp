@@ -2,167 +2,73 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/trainer.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <optional>
-#include <stdexcept>
 #include <string>
 
 #include "ddm_model/initialisation.h"
-#include "ddm_model/minimise.h"
 #include "ddm_model/objective.h"
 #include "ddm_model/pca.h"
 #include "ddm_model/schedule.h"
 #include "ddm_model/training_data.h"
+#include "stage_minimisation.h"
 
 namespace ddm {
 namespace {
 
 constexpr std::uint32_t kInitialisationRole = 2;
 
-/// Where the parameters that a stage may change lie in theta.
-struct Range {
-  Eigen::Index begin;
-  Eigen::Index size;
-};
-
-Range freeParameters(const Networks<float>& networks, Stage::Free free) {
-  const Eigen::Index num_params = networks.numParams();
-  const Eigen::Index num_auto_encoder = num_params - networks.f().numParams();
-  switch (free) {
-    case Stage::Free::kAutoEncoder:
-      return {0, num_auto_encoder};
-    case Stage::Free::kPredictor:
-      return {num_auto_encoder, num_params - num_auto_encoder};
-    case Stage::Free::kAll:
-      break;
-  }
-  return {0, num_params};
-}
-
-/// The scaled objective of one stage in float32, as a function of the free parameters.
-class StageObjective {
- public:
-  using Value = JointObjective<float>::Value;
-
-  /// @param theta  all parameters; gives the values of those that are not free
-  StageObjective(JointObjective<float>* objective, const Terms& terms, Range free,
-                 const Eigen::VectorXd& theta)
-      : objective_(*objective), terms_(terms), free_(free), theta_(theta.cast<float>()) {}
-
-  double operator()(const Eigen::VectorXd& free, Eigen::VectorXd* gradient) {
-    theta_.segment(free_.begin, free_.size) = free.cast<float>();
-    const Value value =
-        objective_.evaluate(theta_, gradient != nullptr ? &d_theta_ : nullptr, terms_);
-    const double cost = objective_.weight() * value.of(terms_);
-    if (gradient != nullptr) {
-      *gradient = objective_.weight() * d_theta_.segment(free_.begin, free_.size).cast<double>();
-    }
-    if (cost < lowest_) {
-      lowest_ = cost;
-      best_ = value;
-    }
-    return cost;
-  }
-
-  /// V_R and V_P where the cost was lowest.
-  const Value& best() const { return best_; }
-
- private:
-  JointObjective<float>& objective_;
-  Terms terms_;
-  Range free_;
-  Eigen::VectorXf theta_;
-  Eigen::VectorXf d_theta_;
-  double lowest_ = std::numeric_limits<double>::infinity();
-  Value best_;
-};
+using Value = JointObjective<float>::Value;
 
 /// @return what turns [score^2] into [grey^2]
 double squaredScale(const Pca& pca) { return 1.0 / (static_cast<double>(pca.scale) * pca.scale); }
 
-/// The stages of a schedule, one after the other.
-class Minimisation {
+/// All starts and stages as one progress.
+class Progress {
  public:
-  Minimisation(const Networks<float>& networks, JointObjective<float>* objective, const Pca& pca,
-               const TrainingOptions& training, const TrainingCallback& callback)
-      : networks_(networks),
-        objective_(*objective),
-        squared_scale_(squaredScale(pca)),
-        training_(training),
-        schedule_(makeSchedule(training)),
-        callback_(callback) {}
+  Progress(const TrainingCallback& callback, double num_stages, const Pca& pca)
+      : callback_(callback), share_(1.0 / num_stages), squared_scale_(squaredScale(pca)) {}
 
-  /// Initial parameters, the auto-encoder's from PCA if this is one of the first starts and the
-  /// schedule says so.
-  Eigen::VectorXd initial(int start, const Networks<double>& networks,
-                          const Eigen::MatrixXd& scores, std::mt19937_64* rng) const {
-    return initialTheta(networks, scores, training_,
-                        schedule_.pca_start && start < training_.pca_starts, rng);
-  }
-
-  /// @return w times the sum of the terms that the schedule minimises
-  double cost(const Eigen::VectorXd& theta) {
-    const Terms terms = schedule_.terms();
-    return objective_.weight() * objective_.evaluate(theta.cast<float>(), nullptr, terms).of(terms);
-  }
-
-  /// @return what starts are chosen by: the error of predictions training/selection_steps ahead, or
-  ///         the cost
-  double selectionError(const Eigen::VectorXd& theta) {
-    if (training_.selection_steps == 0) return cost(theta);
-    Terms terms;
-    terms.prediction_steps = training_.selection_steps;
-    return objective_.weight() * objective_.evaluate(theta.cast<float>(), nullptr, terms).v_p;
-  }
-
-  /// @param done    of the whole training, when this start began
-  /// @param theta   in: initial parameters, out: the minimum
-  /// @param result  out: message; iterations and evaluations are added
-  /// @return false if there is no usable minimum; the message tells why
-  bool run(double done, Eigen::VectorXd* theta, TrainingResult* result) {
-    const double share = 1.0 / static_cast<double>(schedule_.stages.size() * training_.num_starts);
-    TrainingProgress before;
-    before.fraction_done = done;
-    for (const Stage& stage : schedule_.stages) {
-      before.iteration = result->iterations;
-      if (!runStage(stage, before, share / iterations(stage), theta, result)) return false;
-      before.fraction_done += share;
-    }
-    return true;
+  /// @param stage       number of the stage, counted over all starts
+  /// @param cap         on its iterations
+  /// @param iterations  of all stages before
+  /// @return            what is to be called while it is minimised
+  StageCallback ofStage(size_t stage, int cap, int iterations) const {
+    if (!callback_) return nullptr;
+    return [this, stage, cap, iterations](const Minimum& so_far, const Value& value) {
+      TrainingProgress progress;
+      progress.iteration = iterations + so_far.iterations;
+      progress.v_r = squared_scale_ * value.v_r;
+      progress.v_p = squared_scale_ * value.v_p;
+      progress.gradient_norm = so_far.gradient.lpNorm<Eigen::Infinity>();
+      progress.fraction_done =
+          share_ * (static_cast<double>(stage) + static_cast<double>(so_far.iterations) / cap);
+      return callback_(progress);
+    };
   }
 
  private:
-  int iterations(const Stage& stage) const {
-    return stage.warm_up ? training_.warm_up_iterations : training_.max_iterations;
-  }
+  const TrainingCallback& callback_;
+  double share_;  // of one stage in the whole training
+  double squared_scale_;
+};
 
-  bool runStage(const Stage& stage, const TrainingProgress& before, double share,
-                Eigen::VectorXd* theta, TrainingResult* result) {
-    const Range free = freeParameters(networks_, stage.free);
-    StageObjective function(&objective_, stage.terms, free, *theta);
-    MinimiseOptions options;
-    options.lbfgs_rank = training_.solver == "bfgs" ? 0 : training_.lbfgs_rank;
-    options.max_iterations = iterations(stage);
-    options.function_tolerance = training_.function_tolerance;
-    options.gradient_tolerance = 1e-9;
-    if (callback_) {
-      options.on_iteration = [&](const Minimum& so_far) {
-        TrainingProgress progress = before;
-        progress.iteration += so_far.iterations;
-        progress.v_r = squared_scale_ * function.best().v_r;
-        progress.v_p = squared_scale_ * function.best().v_p;
-        progress.gradient_norm = so_far.gradient.lpNorm<Eigen::Infinity>();
-        progress.fraction_done += share * so_far.iterations;
-        return callback_(progress);
-      };
-    }
+/// Minimises the stages one after the other.
+/// @param start   number of the start
+/// @param theta   in: initial parameters, out: the minimum
+/// @param result  out: message; iterations and evaluations are added
+/// @return false if there is no usable minimum; the message says why
+bool runStages(const Schedule& schedule, const TrainingOptions& training,
+               const Networks<float>& networks, int start, const Progress& progress,
+               JointObjective<float>* objective, Eigen::VectorXd* theta, TrainingResult* result) {
+  const size_t num_stages = schedule.stages.size();
+  for (size_t i = 0; i < num_stages; ++i) {
+    const Stage& stage = schedule.stages[i];
     const Minimum minimum =
-        minimise(std::ref(function), theta->segment(free.begin, free.size), options);
-    theta->segment(free.begin, free.size) = minimum.x;
+        minimiseStage(stage, training, networks, objective, theta,
+                      progress.ofStage(start * num_stages + i, iterationCap(stage, training),
+                                       result->iterations));
     result->message = minimum.message;
     result->iterations += minimum.iterations;
     result->evaluations += minimum.evaluations;
@@ -171,17 +77,29 @@ class Minimisation {
       result->cancelled = true;
       return false;
     }
-    if (minimum.improved()) return true;
-    result->message = "training did not lower the objective: " + minimum.message;
-    return false;
+    if (!minimum.improved()) {
+      result->message = "training did not lower the objective: " + minimum.message;
+      return false;
+    }
   }
+  return true;
+}
 
-  const Networks<float>& networks_;
-  JointObjective<float>& objective_;
-  double squared_scale_;
-  const TrainingOptions& training_;
-  Schedule schedule_;
-  const TrainingCallback& callback_;
+/// The terms that the best start is chosen by: predictions training/selection_steps ahead, or what
+/// the schedule minimises.
+Terms selectionTerms(const Schedule& schedule, const TrainingOptions& training) {
+  if (training.selection_steps == 0) return schedule.terms();
+  Terms terms{false, true};
+  terms.prediction_steps = training.selection_steps;
+  return terms;
+}
+
+/// What one start came to.
+struct Candidate {
+  Eigen::VectorXd theta;  ///< empty: nothing usable
+  double initial_cost = 0.0;
+  double error = std::numeric_limits<double>::infinity();  ///< less is better
+  std::string message;                                     ///< how the solver ended
 };
 
 }  // namespace
@@ -195,45 +113,52 @@ std::mt19937_64 initialisationStream(std::uint64_t seed, std::uint32_t trial) {
 TrainingResult train(const DataSet& data, const ModelOptions& model,
                      const TrainingOptions& training, ModelInfo info,
                      const TrainingCallback& callback) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto began = std::chrono::steady_clock::now();
   const Networks<float> networks(model, data.torqueDim());
+  const Networks<double> initial_networks(model, data.torqueDim());
   const Pca pca = fitPca(data, model.pca_dim, training.score_std);
   TrainingData<float> training_data = makeTrainingData(data, pca);
   const Eigen::MatrixXd scores = training_data.scores.cast<double>();
-  const Networks<double> initial_networks(model, data.torqueDim());
-  std::mt19937_64 rng = initialisationStream(info.seed, info.trial);
   JointObjective<float> objective(networks, std::move(training_data));
-  Minimisation minimisation(networks, &objective, pca, training, callback);
+  const Schedule schedule = makeSchedule(training);
+  const auto cost = [&objective](const Eigen::VectorXd& theta, const Terms& terms) {
+    return objective.weight() * objective.evaluate(theta.cast<float>(), nullptr, terms).of(terms);
+  };
+  const Progress progress(callback,
+                          static_cast<double>(schedule.stages.size()) * training.num_starts, pca);
+  std::mt19937_64 rng = initialisationStream(info.seed, info.trial);
 
   TrainingResult result;
-  Eigen::VectorXd best;  // theta
-  double best_error = std::numeric_limits<double>::infinity();
-  std::string message;
-  for (int number = 0; number < training.num_starts && !result.cancelled; ++number) {
-    Eigen::VectorXd theta = minimisation.initial(number, initial_networks, scores, &rng);
-    const double initial_cost = minimisation.cost(theta);
-    const double done = static_cast<double>(number) / training.num_starts;
-    if (!minimisation.run(done, &theta, &result)) continue;
-    double error = minimisation.selectionError(theta);
-    if (!std::isfinite(error))
-      error = std::numeric_limits<double>::max();  // a roll-out without bound
-    if (error >= best_error) continue;
-    best_error = error;
-    best = std::move(theta);
-    message = result.message;
-    result.initial_cost = initial_cost;
+  Candidate best;
+  for (int start = 0; start < training.num_starts && !result.cancelled; ++start) {
+    Candidate candidate;
+    candidate.theta = initialTheta(initial_networks, scores, training,
+                                   schedule.pca_start && start < training.pca_starts, &rng);
+    candidate.initial_cost = cost(candidate.theta, schedule.terms());
+    if (!runStages(schedule, training, networks, start, progress, &objective, &candidate.theta,
+                   &result)) {
+      continue;
+    }
+    candidate.error = cost(candidate.theta, selectionTerms(schedule, training));
+    if (!std::isfinite(candidate.error)) {  // a roll-out that grows without bound
+      candidate.error = std::numeric_limits<double>::max();
+    }
+    candidate.message = result.message;
+    if (candidate.error < best.error) best = std::move(candidate);
   }
-  if (best.size() > 0 && !result.cancelled) {
-    result.message = message;
-    result.final_cost = minimisation.cost(best);
-    const JointObjective<float>::Value value = objective.evaluate(best.cast<float>(), nullptr);
+  if (best.theta.size() > 0 && !result.cancelled) {
+    result.message = best.message;
+    result.initial_cost = best.initial_cost;
+    result.final_cost = cost(best.theta, schedule.terms());
+    const Value value = objective.evaluate(best.theta.cast<float>(), nullptr);
     info.frames = static_cast<std::uint32_t>(data.numFrames());
     info.v_r = squaredScale(pca) * value.v_r;
     info.v_p = squaredScale(pca) * value.v_p;
     info.feature_spread = objective.featureSpread();
-    result.model.emplace(model, data.imageSize(), data.torqueDim(), pca, best, data.goal(), info);
+    result.model.emplace(model, data.imageSize(), data.torqueDim(), pca, best.theta, data.goal(),
+                         info);
   }
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return result;
 }
 

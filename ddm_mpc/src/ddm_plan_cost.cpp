@@ -40,9 +40,9 @@ double DdmPlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::
   const RollOut<double>::Targets targets(&target, 1);
   torques_.rightCols(horizon_) = U;
   roll_out_.forward(theta_p_, features_, torques_, targets, horizon_, &offset_);
-  double cost = control_weight_ * U.squaredNorm();  // eq. (9)
+  double cost = control_weight_ * U.squaredNorm();
   for (int step = 0; step < horizon_; ++step) {
-    cost += (roll_out_.predicted(step) - goal_feature_).squaredNorm();
+    cost += (roll_out_.predicted(step) - goal_feature_).squaredNorm();  // eq. (9)
   }
   if (d_U == nullptr) return cost;
 

@@ -37,13 +37,13 @@ class Ddm {
   Ddm(ModelOptions options, int image_size, int torque_dim, Pca pca, Eigen::VectorXd theta,
       Grey goal, ModelInfo info);
 
-  /// z = g^-1(y)
+  /// z = g^-1(y) (eq. 3a)
   /// @param grey  image  [D]
   /// @return      z      [feature_dim]
   /// @throws std::invalid_argument for a wrong number of pixels
   Eigen::VectorXd encode(const Grey& grey) const;
 
-  /// y_hat = g(z), clamped to what an image can show.
+  /// y_hat = g(z) (eq. 3b), clamped to what an image can show.
   /// @param z  [feature_dim]
   Grey decode(const Eigen::VectorXd& z) const;
 

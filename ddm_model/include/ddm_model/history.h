@@ -7,7 +7,7 @@
 
 namespace ddm {
 
-/// x_t = [z_t, ..., z_{t-n+1}, u_{t-1}, ..., u_{t-n+1}] (paper, Sec. 3.1). At the start of a trial
+/// x_t = [z_t, ..., z_{t-n+1}, u_{t-1}, ..., u_{t-n+1}] (paper, eq. 8). At the start of a trial
 /// the first feature stands for those before it, with torque 0: the plant is taken to be at rest.
 class History {
  public:

@@ -56,7 +56,7 @@ struct TrainingOptions {
   int max_iterations = 500;        ///< cap on the iterations of the solver, each stage [-]
   int prediction_steps = 1;        ///< V_P: predictions up to so many steps ahead [-]
   int warm_up_iterations = 100;    ///< cap on those with one step first, if more are asked for [-]
-  double weight_decay = 0.0;       ///< price of V_W, the squared weights [score^2]
+  double weight_decay = 0.0;       ///< weight of V_W, the squared weights [score^2]
   double function_tolerance = 1e-6;  ///< stop when V changes by less than this fraction [-]
   int lbfgs_rank = 20;               ///< pairs that L-BFGS remembers [-]
   double score_std = 1.0;            ///< spread of the leading PCA score at the encoder's input [-]

@@ -13,10 +13,11 @@
 
 namespace ddm {
 
-/// V = w (V_R + V_P) with (paper, eqs. 1, 4 and 5)
+/// V = w (V_R + V_P) with (paper, eq. 5a)
 ///
-///   V_R = sum_t |s_t - g(g^-1(s_t))|^2          over all images, the goal included
-///   V_P = sum_t |s_{t+1} - g(f(h_t))|^2         over all frames with n predecessors in their piece
+///   V_R = sum_t |s_t - g(g^-1(s_t))|^2     all images and the goal                 eqs. (1, 5c)
+///   V_P = sum_t |s_{t+1} - g(f(h_n))|^2    frames with n predecessors in their     eqs. (4, 5b)
+///                                          piece
 ///
 /// With Terms::prediction_steps k > 1, V_P is the mean over predictions 1 ... k steps ahead, each
 /// from the one before it:
@@ -44,6 +45,7 @@ class JointObjective {
 
     /// What `terms` minimise, without the weight w.
     double of(const Terms& terms) const {
+      // eq. (5a)
       return (terms.v_r ? v_r : 0.0) + (terms.v_p ? v_p : 0.0) + terms.weight_decay * v_w;
     }
   };

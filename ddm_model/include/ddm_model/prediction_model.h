@@ -11,7 +11,7 @@
 
 namespace ddm {
 
-/// One-step prediction in feature space (paper, Sec. 2.2), without its parameters.
+/// One-step prediction in feature space (paper, eq. 2), without its parameters.
 ///
 ///   z_{t+1} = f(h_n; theta_P),   h_n = [z_t, u_t, z_{t-1}, u_{t-1}, ..., z_{t-n+1}, u_{t-n+1}]
 ///

@@ -37,7 +37,7 @@ struct Schedule {
 
 /// The values that `training/schedule` may have.
 ///
-///   joint              V_R + V_P over all parameters (paper, eq. 3)
+///   joint              V_R + V_P over all parameters (paper, eq. 5a)
 ///   sequential         V_R over theta_E and theta_D, then V_P over theta_P: the features are fixed
 ///                      before f is learned (the paper's counter-example, footnote in Sec. 2.3)
 ///   v_p_only           V_P over all parameters: without the term that the paper calls crucial

@@ -12,7 +12,7 @@
 
 namespace ddm {
 
-/// Features as f predicts them from the current state x_0 on (paper, Sec. 3.1):
+/// J(U) of eq. (9), with features as f predicts them from the current state x_0 (eq. 8) on:
 ///
 ///   z_{k+1} = f(z_k, u_k, z_{k-1}, u_{k-1}) + offset
 ///

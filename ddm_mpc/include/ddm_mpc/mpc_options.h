@@ -10,7 +10,7 @@ namespace ddm {
 /// Block `mpc`.
 struct MpcOptions {
   int horizon = 15;              ///< K, planned steps [-]
-  double control_weight = 0.01;  ///< lambda, price of torque [(N m)^-2]
+  double control_weight = 0.01;  ///< lambda, weight of torque [(N m)^-2]
   double offset_gain = 0.0;      ///< share of a prediction error that corrects later ones [-]
   std::vector<double> max_torque = {6.0};  ///< bound on |u|; one, or one per motor [N m]
   double epsilon = 0.2;                    ///< probability of a uniformly random torque [-]

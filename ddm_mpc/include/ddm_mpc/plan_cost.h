@@ -10,10 +10,10 @@ namespace ddm {
 ///
 ///   J(U) = sum_{k=1}^{K} |z_k - z_ref|^2 + lambda |u_{k-1}|^2
 ///
-/// Whose predictions the features z_k are makes the difference between implementations (paper,
-/// Sec. 3.1: classical MPC plans with a known model of the state, this one in feature space).
-/// Deviation: the paper's sum runs over z_0 ... z_{K-1}, in which z_0 is a constant and u_{K-1}
-/// acts on nothing; here it runs over the K features that the K torques bring about.
+/// Implementations differ in whose predictions z_k are: eq. (7) of the paper plans with a known
+/// model of the state, eq. (9) in feature space. Deviation: the paper's sum runs over z_0 ...
+/// z_{K-1}, in which z_0 is a constant and u_{K-1} acts on nothing; here it runs over the K
+/// features that the K torques bring about.
 class PlanCost {
  public:
   virtual ~PlanCost() = default;
