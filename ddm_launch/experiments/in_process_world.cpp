@@ -81,7 +81,7 @@ TrialOutcome InProcessWorld::runTrial(const TrialRequest& request, const PhaseCa
       outcome.torques.push_back(torque);
       outcome.exploratory.push_back(decision.exploratory);
       if (decision.goal_distance) outcome.goal_distances.push_back(*decision.goal_distance);
-      if (decision.plan) outcome.solve_times.push_back(decision.plan->solve_time);
+      if (decision.solve_time) outcome.solve_times.push_back(*decision.solve_time);
       if (bag != nullptr) write(image, decision, bag.get());
       progress(static_cast<double>(++frame) / request.num_steps);
     }

@@ -45,7 +45,7 @@ class OraclePolicy : public Policy {
     rng_ = randomStream(id, StreamRole::kPlannerStarts);
   }
   void observe(const Grey& /*grey*/) override { cost_.setState(plant_.state()); }
-  Plan plan() override { return planner_.solve(&rng_); }
+  Answer answer() override { return answerWith(planner_.solve(&rng_)); }
   void apply(const Eigen::VectorXd& /*u*/) override {}
 
  private:

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "ddm_mpc/random_stream.h"
 
@@ -56,8 +57,10 @@ Decision EpsilonGreedy::decide(const Grey& grey) {
     decision.exploratory = true;
     decision.torque = held_torque_;
   } else {
-    decision.plan = policy_->plan();
-    decision.torque = decision.plan->torques.col(0);
+    Answer answer = policy_->answer();
+    decision.torque = std::move(answer.torque);
+    decision.solve_time = answer.solve_time;
+    decision.plan = std::move(answer.plan);
   }
   if (policy_ != nullptr) policy_->apply(decision.torque);
   return decision;

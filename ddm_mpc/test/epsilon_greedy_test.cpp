@@ -17,20 +17,20 @@
 namespace ddm {
 namespace {
 
-/// Always plans the same torque and writes down what it is told.
+/// Always answers with the same torque and writes down what it is told.
 class ConstantPolicy : public Policy {
  public:
   void startTrial(const TrialId& id) override { trials.push_back(id.trial); }
   void observe(const Grey& /*grey*/) override { ++num_images; }
-  Plan plan() override {
-    Plan plan;
-    plan.status = PlanStatus::kConverged;
-    plan.torques = Eigen::MatrixXd::Constant(1, 3, kPlanned);
-    return plan;
+  Answer answer() override {
+    Answer answer;
+    answer.torque = Eigen::VectorXd::Constant(1, kTorque);
+    answer.solve_time = 0.5;
+    return answer;
   }
   void apply(const Eigen::VectorXd& u) override { applied.push_back(u[0]); }
 
-  static constexpr double kPlanned = 1.25;
+  static constexpr double kTorque = 1.25;
   std::vector<std::uint32_t> trials;
   std::vector<double> applied;
   int num_images = 0;
@@ -67,8 +67,9 @@ TEST(EpsilonGreedy, NeverExploresAtEpsilonZero) {
   EpsilonGreedy policy(constant, explore(0.0), TrialId());
   for (const Decision& decision : decide(&policy, 500)) {
     EXPECT_FALSE(decision.exploratory);
-    ASSERT_TRUE(decision.plan.has_value());
-    EXPECT_EQ(decision.torque[0], ConstantPolicy::kPlanned);
+    EXPECT_EQ(decision.solve_time, 0.5);
+    EXPECT_FALSE(decision.plan.has_value());
+    EXPECT_EQ(decision.torque[0], ConstantPolicy::kTorque);
   }
 }
 
@@ -76,7 +77,7 @@ TEST(EpsilonGreedy, AlwaysExploresAtEpsilonOneAndNeedsNoModel) {
   EpsilonGreedy policy(nullptr, explore(1.0), TrialId());
   for (const Decision& decision : decide(&policy, 500)) {
     EXPECT_TRUE(decision.exploratory);
-    EXPECT_FALSE(decision.plan.has_value());
+    EXPECT_FALSE(decision.solve_time.has_value());
   }
 }
 

@@ -27,9 +27,10 @@ std::vector<double> torquesOfATrial(Policy* policy, const TrialId& id) {
   std::vector<double> torques;
   for (int step = 0; step < kNumSteps; ++step) {
     policy->observe(randomGrey(8, 50 + step));
-    const Plan plan = policy->plan();
-    torques.push_back(plan.torques(0, 0));
-    policy->apply(plan.torques.col(0));
+    const Answer answer = policy->answer();
+    EXPECT_EQ(answer.torque, answer.plan->torques.col(0));
+    torques.push_back(answer.torque[0]);
+    policy->apply(answer.torque);
   }
   return torques;
 }

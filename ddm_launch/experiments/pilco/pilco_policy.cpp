@@ -14,18 +14,14 @@ PilcoPolicy::PilcoPolicy(std::shared_ptr<Observation> observation,
       policy_(std::move(policy)),
       features_(pilco::replaceAngles(static_cast<int>(observation_->names().size()), angles)) {}
 
-Plan PilcoPolicy::plan() {
+Answer PilcoPolicy::answer() {
   const auto start = std::chrono::steady_clock::now();
-  Plan plan;
-  plan.torques = policy_->control(features_.value(x_));
-  const bool finite = plan.torques.allFinite();
-  plan.status = finite ? PlanStatus::kConverged : PlanStatus::kFailed;
-  if (!finite) {
-    plan.message = "the torque of PILCO's policy is not finite";
-    plan.torques.setZero();
-  }
-  plan.solve_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return plan;
+  Answer answer;
+  answer.torque = policy_->control(features_.value(x_));
+  if (!answer.torque.allFinite()) answer.torque.setZero();
+  answer.solve_time =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return answer;
 }
 
 }  // namespace ddm

@@ -13,7 +13,7 @@
 
 namespace ddm {
 
-/// u = policy(features of x); its plan is that one torque.
+/// u = policy(features of x)
 class PilcoPolicy : public Policy {
  public:
   /// @param angles  entries of x that are angles
@@ -22,7 +22,8 @@ class PilcoPolicy : public Policy {
 
   void startTrial(const TrialId& id) override { observation_->startTrial(id); }
   void observe(const Grey& grey) override { x_ = observation_->observe(grey); }
-  Plan plan() override;
+  /// 0 where the policy's torque is not finite.
+  Answer answer() override;
   void apply(const Eigen::VectorXd& /*u*/) override {}
 
  private:

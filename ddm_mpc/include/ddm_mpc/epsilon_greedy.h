@@ -12,14 +12,15 @@ namespace ddm {
 
 /// What was decided for one image.
 struct Decision {
-  Eigen::VectorXd torque;               ///< u_t [N m]; 0 where the plan failed  [torque_dim]
+  Eigen::VectorXd torque;               ///< u_t [N m]                     [torque_dim]
   bool exploratory = false;             ///< a random torque
-  std::optional<Plan> plan;             ///< empty where exploratory
+  std::optional<double> solve_time;     ///< see Answer; empty where exploratory [s]
+  std::optional<Plan> plan;             ///< of a policy that plans; empty where exploratory
   std::optional<double> goal_distance;  ///< see Policy::goalDistance()
 };
 
 /// With probability epsilon a torque uniform in +-max_torque, held for hold_steps steps; otherwise
-/// the first torque of the policy's plan (paper, Sec. 3.2). epsilon = 1 is the random trial, 0 the
+/// the policy's answer (paper, Sec. 3.2). epsilon = 1 is the random trial, 0 the
 /// greedy one. Exploration has a random stream of its own.
 class EpsilonGreedy {
  public:

@@ -47,7 +47,9 @@ class MpcPolicy : public Policy {
   void observe(const Grey& grey) override;
   /// |z - z_ref| in units of the features' spread; nothing if the model does not know the spread.
   std::optional<double> goalDistance() const override;
-  Plan plan() override;
+  Answer answer() override { return answerWith(plan()); }
+  /// The plan from the state now on.
+  Plan plan();
   void apply(const Eigen::VectorXd& u) override;
 
  private:

@@ -19,7 +19,17 @@ struct TrialId {
   bool evaluation = false;  ///< the greedy run after the trial
 };
 
-/// Called in turn for each frame: observe(y_t), torque() unless something else decides, apply(u_t).
+/// What a policy answers an image with.
+struct Answer {
+  Eigen::VectorXd torque;    ///< u_t [N m]; 0 where the policy finds none  [torque_dim]
+  double solve_time = 0.0;   ///< wall time that it took [s]
+  std::optional<Plan> plan;  ///< of a policy that plans: torque is the first of it
+};
+
+/// The answer of a policy that plans.
+Answer answerWith(Plan plan);
+
+/// Called in turn for each frame: observe(y_t), answer() unless something else decides, apply(u_t).
 class Policy {
  public:
   virtual ~Policy() = default;
@@ -35,8 +45,8 @@ class Policy {
   /// nothing where the policy knows none.
   virtual std::optional<double> goalDistance() const { return std::nullopt; }
 
-  /// @return a plan; its first torque answers the image just seen
-  virtual Plan plan() = 0;
+  /// Decides u_t, the torque that answers the image just seen.
+  virtual Answer answer() = 0;
 
   /// Takes in the torque [N m] that was applied, whoever decided it.
   virtual void apply(const Eigen::VectorXd& u) = 0;
