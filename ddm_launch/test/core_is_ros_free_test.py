@@ -17,7 +17,7 @@ CORES = {"ddm_sim": ("ddm_sim", "include", "src"), "ddm_model": ("ddm_model", "i
 if "pilco:=OFF" in sys.argv:
     del CORES["ddm_pilco"]
 ROS_INCLUDE = re.compile(
-    r'^\s*#\s*include\s*[<"]((?:ros|xmlrpcpp|\w+_msgs|actionlib|cv_bridge|image_transport|dynamic_reconfigure'
+    r'^\s*#\s*include\s*[<"](?!ddm_msgs/random_stream\.h)((?:ros|xmlrpcpp|\w+_msgs|actionlib|cv_bridge|image_transport|dynamic_reconfigure'
     r'|diagnostic_updater|nodelet|pluginlib|class_loader|tf2?(?:_ros)?|ros\w+|ddm_bag_io'
     r'|ddm_plant_plugin)/[^>"]+)', re.MULTILINE)
 ROS_LIBRARY = re.compile(
@@ -65,6 +65,11 @@ class CoreIsRosFreeTest(unittest.TestCase):
             self.assertGreater(len(files), 5, library)
             for path in files:
                 self.assertEqual(rosIncludes(path), [], path)
+
+    def test_the_only_header_of_ddm_msgs_that_cores_may_include_includes_the_standard_library_alone(self):
+        header = os.path.join(rospkg.RosPack().get_path("ddm_msgs"), "include", "ddm_msgs", "random_stream.h")
+        with open(header) as stream:
+            self.assertEqual(re.findall(r"#include (.+)", stream.read()), ["<cstdint>", "<random>"])
 
     def test_cores_link_no_library_of_ros(self):
         for name in CORES:

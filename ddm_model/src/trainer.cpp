@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/trainer.h"
 
+#include <ddm_msgs/random_stream.h>
+
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -16,8 +18,6 @@
 
 namespace ddm {
 namespace {
-
-constexpr std::uint32_t kInitialisationRole = 2;
 
 using Value = JointObjective<float>::Value;
 
@@ -104,12 +104,6 @@ struct Candidate {
 
 }  // namespace
 
-std::mt19937_64 initialisationStream(std::uint64_t seed, std::uint32_t trial) {
-  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
-                         trial, 0U, kInitialisationRole};
-  return std::mt19937_64(sequence);
-}
-
 TrainingResult train(const DataSet& data, const ModelOptions& model,
                      const TrainingOptions& training, ModelInfo info,
                      const TrainingCallback& callback) {
@@ -126,7 +120,7 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
   };
   const Progress progress(callback,
                           static_cast<double>(schedule.stages.size()) * training.num_starts, pca);
-  std::mt19937_64 rng = initialisationStream(info.seed, info.trial);
+  std::mt19937_64 rng = randomStream({info.seed, info.trial}, StreamRole::kInitialisation);
 
   TrainingResult result;
   Candidate best;

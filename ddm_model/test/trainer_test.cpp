@@ -305,12 +305,5 @@ TEST_F(Trainer, RefusesDataWithoutAPieceThatIsLongEnough) {
                                                   {"no prediction can be learned", "model/order"}));
 }
 
-TEST(InitialisationStream, IsFixedBySeedAndTrial) {
-  EXPECT_EQ(initialisationStream(1, 2)(), initialisationStream(1, 2)());
-  EXPECT_NE(initialisationStream(1, 2)(), initialisationStream(1, 3)());
-  EXPECT_NE(initialisationStream(1, 2)(), initialisationStream(2, 2)());
-  EXPECT_NE(initialisationStream(1, 2)(), initialisationStream(1 + (1ULL << 32), 2)());
-}
-
 }  // namespace
 }  // namespace ddm

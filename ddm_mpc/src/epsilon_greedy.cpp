@@ -7,8 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "ddm_mpc/random_stream.h"
-
 namespace ddm {
 
 EpsilonGreedy::EpsilonGreedy(std::shared_ptr<Policy> policy, const Options& options,

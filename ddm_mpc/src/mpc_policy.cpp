@@ -7,8 +7,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "ddm_mpc/random_stream.h"
-
 namespace ddm {
 namespace {
 

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "ddm_mpc/mpc_policy.h"
-#include "ddm_mpc/random_stream.h"
 #include "random_model.h"
 
 namespace ddm {
@@ -224,22 +223,6 @@ TEST(EpsilonGreedy, RefusesOptionsOutOfRange) {
   EpsilonGreedy::Options options;
   options.max_torque.resize(0);
   EXPECT_THROW(EpsilonGreedy(policy, options, TrialId()), std::invalid_argument);
-}
-
-TEST(RandomStream, GivesEachRoleItsOwnDraws) {
-  const TrialId id{1, 2, false};
-  EXPECT_NE(randomStream(id, StreamRole::kExploration)(),
-            randomStream(id, StreamRole::kPlannerStarts)());
-}
-
-TEST(RandomStream, IsFixedByRunAndRole) {
-  const TrialId id{1, 2, true};
-  EXPECT_EQ(randomStream(id, StreamRole::kExploration), randomStream(id, StreamRole::kExploration));
-}
-
-TEST(RandomStream, DoesNotChangeFromOneVersionToTheNext) {
-  // Published seeds stand for these draws.
-  EXPECT_EQ(randomStream({1, 2, false}, StreamRole::kExploration)(), 880987923637700293ULL);
 }
 
 }  // namespace

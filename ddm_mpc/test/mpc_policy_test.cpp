@@ -8,7 +8,6 @@
 #include <chrono>
 #include <vector>
 
-#include "ddm_mpc/random_stream.h"
 #include "model_planner.h"
 #include "random_model.h"
 

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/camera.h"
 
+#include <ddm_msgs/random_stream.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
-
-#include "run_stream.h"
 
 namespace ddm {
 namespace {
@@ -60,8 +60,9 @@ std::vector<double> drawBackground(const CameraOptions& options) {
   const int size = options.size;
   std::vector<double> grey(static_cast<std::size_t>(size) * size, 0.0);
   if (options.clutter == 0.0) return grey;
-  std::mt19937_64 rng = runStream(static_cast<std::uint64_t>(options.clutter_seed), /*trial=*/0,
-                                  /*evaluation=*/false, SimRole::kClutter);
+  TrialId id;
+  id.seed = static_cast<std::uint64_t>(options.clutter_seed);
+  std::mt19937_64 rng = randomStream(id, StreamRole::kClutter);
   for (int k = 0; k < kNumShapes; ++k) {
     const Shape shape = drawShape(size, &rng);
     auto pixel = grey.begin();
@@ -90,8 +91,8 @@ Camera::Camera(const CameraOptions& options)
 }
 
 void Camera::begin(std::uint64_t seed, std::uint32_t trial, bool evaluation) {
-  rng_ = runStream(seed, trial, evaluation, SimRole::kCamera);
-  noise_ = runStream(seed, trial, evaluation, SimRole::kNoise);
+  rng_ = randomStream({seed, trial, evaluation}, StreamRole::kCamera);
+  noise_ = randomStream({seed, trial, evaluation}, StreamRole::kNoise);
   phase_ = std::uniform_real_distribution<double>(0.0, kTwoPi)(rng_);
   taken_.clear();
   frame_ = 0;
@@ -114,7 +115,7 @@ std::optional<Camera::Picture> Camera::take(const Plant& plant) {
 }
 
 std::vector<std::uint8_t> Camera::photographGoal(const Plant& plant) const {
-  std::mt19937_64 noise = runStream(0, 0, false, SimRole::kGoalNoise);
+  std::mt19937_64 noise = randomStream(TrialId(), StreamRole::kGoalNoise);
   return expose(plant, plant.goalState(), /*brightness=*/1.0, &noise);
 }
 

@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/plant.h"
 
+#include <ddm_msgs/random_stream.h>
+
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "ddm_sim/few_numbers.h"
-#include "run_stream.h"
 
 namespace ddm {
 namespace {
@@ -99,7 +100,7 @@ Eigen::VectorXd Plant::visiblePosition(const Eigen::VectorXd& state) const {
 }
 
 std::mt19937_64 startStream(std::uint64_t seed, std::uint32_t trial, bool evaluation) {
-  return runStream(seed, trial, evaluation, SimRole::kStart);
+  return randomStream({seed, trial, evaluation}, StreamRole::kStart);
 }
 
 }  // namespace ddm

@@ -4,8 +4,8 @@
 
 #include <ddm_model/per_motor.h>
 #include <ddm_model/plain_file.h>
-#include <ddm_mpc/random_stream.h>
 #include <ddm_msgs/param_value.h>
+#include <ddm_msgs/random_stream.h>
 #include <ddm_sim/plant.h>
 
 #include <algorithm>

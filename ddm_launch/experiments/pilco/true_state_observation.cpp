@@ -3,7 +3,7 @@
 #include "true_state_observation.h"
 
 #include <ddm_model/plain_file.h>
-#include <ddm_mpc/random_stream.h>
+#include <ddm_msgs/random_stream.h>
 
 #include <boost/filesystem.hpp>
 #include <cmath>

@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <optional>
-#include <random>
 #include <string>
 
 #include "ddm_model/data_set.h"
@@ -37,9 +35,6 @@ struct TrainingResult {
   double final_cost = 0.0;    ///< and after, of the start that is kept; 0 without a model
   double seconds = 0.0;       ///< wall time [s]
 };
-
-/// Initial parameters are drawn from this stream. (Fixed for a given libstdc++.)
-std::mt19937_64 initialisationStream(std::uint64_t seed, std::uint32_t trial);
 
 /// Trains a model from scratch on all data (a warm start from the last optimum gets stuck) by the
 /// schedule of `training`, from num_starts starts, and keeps the best.

@@ -3,21 +3,14 @@
 #pragma once
 
 #include <ddm_model/data_set.h>
+#include <ddm_msgs/random_stream.h>
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <optional>
 
 #include "ddm_mpc/planner.h"
 
 namespace ddm {
-
-/// Which run of an experiment this is. Fixes every random draw made in it.
-struct TrialId {
-  std::uint64_t seed = 0;   ///< seed of the experiment
-  std::uint32_t trial = 0;  ///< number of the trial, 0 is the random one
-  bool evaluation = false;  ///< the greedy run after the trial
-};
 
 /// What a policy answers an image with.
 struct Answer {
