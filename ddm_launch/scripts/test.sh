@@ -77,21 +77,25 @@ run_build() {  # release|debug|thread
 # Builds in a session of its own, whose processes run only where all others leave a core idle.
 start_debug_build() {
   mkdir -p "$DDM_WS/debug"
+  rm -f "$DDM_WS/debug/build.code"
   export checkout
-  setsid bash -c "$(declare -f); set -euo pipefail; lower_priority; build_sanitized address all tests" \
-    >"$DDM_WS/debug/build.log" 2>&1 </dev/null &
+  setsid bash -c "$(declare -f)"'
+    lower_priority
+    code=0
+    (set -e; build_sanitized address all tests) || code=$?
+    echo "$code" >"$DDM_WS/debug/build.code"' >"$DDM_WS/debug/build.log" 2>&1 </dev/null &
   debug_build=$!
 }
 
 lower_priority() {
   renice -n 19 "$$" >/dev/null || true
   # Linux shares the cores between sessions first, by a niceness of their own
-  echo 19 2>/dev/null >"/proc/$$/autogroup" || true
+  { echo 19 >"/proc/$$/autogroup"; } 2>/dev/null || true
 }
 
 finish_debug_build() {
   tail --pid="$debug_build" -n +1 -f "$DDM_WS/debug/build.log"
-  wait "$debug_build"
+  return "$(cat "$DDM_WS/debug/build.code")"
 }
 
 results=()
