@@ -45,6 +45,8 @@ def main():
     for topic, publisher in publishers.items():
         while publisher.get_num_connections() < subscribers_of(topic):
             time.sleep(0.01)
+    # Only when every subscriber sees two publishers: fault_injector passes torques on, and the plant would take them.
+    for publisher in publishers.values():
         publisher.publish(message)
     print("intruder is there", flush=True)
     sys.stdin.readline()  # stays to the end

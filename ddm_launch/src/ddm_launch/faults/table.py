@@ -90,7 +90,8 @@ def main():
     parser.add_argument("--out", required=True, metavar="DIR", help="folder for table and logs")
     parser.add_argument("--subset", choices=["all", "quick"], default="all", help="quick: some of each class")
     parser.add_argument("--only", nargs="+", default=[], metavar="WORDS", help="cases whose names have one of these")
-    parser.add_argument("--jobs", type=int, default=2, metavar="N", help="cases at a time (default: %(default)s)")
+    parser.add_argument("--jobs", type=int, default=3, metavar="N",
+                        help="cases at a time, which wait more than they compute (default: %(default)s)")
     parser.add_argument("--patience", type=float, default=1.0, metavar="X",
                         help="all time limits times this, for slow machines (default: %(default)s)")
     arguments = parser.parse_args()
