@@ -9,9 +9,10 @@ from unittest import mock
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch import benchmark  # noqa: E402
-from ddm_launch.programs import Programs  # noqa: E402
-from ddm_launch.step_runner import Failure  # noqa: E402
+import rooms  # noqa: E402, F401
+from ddm_launch.command import Failure  # noqa: E402
+from ddm_qa import benchmark  # noqa: E402
+from ddm_qa.programs import Programs  # noqa: E402
 from processes import call_main  # noqa: E402
 from run_files import read_rows, read_yaml  # noqa: E402
 from scratch_case import ScratchCase  # noqa: E402
@@ -49,7 +50,7 @@ class BenchmarkTest(ScratchCase):
 
     def runWithStandIns(self, *arguments):
         with mock.patch.object(Programs, "call", lambda *words, **more: self.leave(*words, **more)), \
-                mock.patch.object(benchmark, "program", lambda name: name), \
+                mock.patch.object(benchmark, "find_program", lambda name: name), \
                 mock.patch.object(benchmark.importlib.util, "find_spec", lambda _: True):
             return self.call(*arguments)
 

@@ -13,7 +13,8 @@ import rosunit
 
 TEST = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, TEST)
-from ddm_launch import reproduce_efficient, step_runner  # noqa: E402
+import rooms  # noqa: E402, F401
+from ddm_study import reproduce_efficient, step_runner  # noqa: E402
 from processes import call_main  # noqa: E402
 from run_files import read_bytes, read_rows, read_yaml  # noqa: E402
 from scratch_case import ScratchCase  # noqa: E402
@@ -37,10 +38,11 @@ class EfficientReproductionTest(ScratchCase):
                            ("nuisances/thin_rod", "# A rod half as wide.\n"), ("nuisances/noise", "# Noise.\n")):
             self.writeConfig(name, text)
 
-        self.writeRunExperiment("pilco_state: PILCO on the true state")
+        self.writeRunExperiment(code=1)
 
-        def program(name):
-            return {"sweep": os.path.join(TEST, "stand_in_sweep.py"), "run_experiment": self.run_experiment}.get(
+        def find_program(name):
+            return {"sweep": os.path.join(TEST, "stand_in_sweep.py"), "run_experiment": self.run_experiment,
+                    "study_figure": os.path.join(PACKAGE, "study", "scripts", name)}.get(
                 name, os.path.join(PACKAGE, "scripts", name))
 
         def package_path(*names, package="ddm_launch"):
@@ -48,7 +50,7 @@ class EfficientReproductionTest(ScratchCase):
             return os.path.join(self.scratch if names[0] == "config" else PACKAGE, *names)
 
         for module in (step_runner, reproduce_efficient):
-            for name, stand_in in (("program", program), ("package_path", package_path)):
+            for name, stand_in in (("find_program", find_program), ("package_path", package_path)):
                 patch = mock.patch.object(module, name, stand_in)
                 patch.start()
                 self.addCleanup(patch.stop)
@@ -56,9 +58,9 @@ class EfficientReproductionTest(ScratchCase):
     def writeConfig(self, name, text):
         self.write("config/%s.yaml" % name, text)
 
-    def writeRunExperiment(self, methods):
-        """A stand-in that tells its methods."""
-        self.run_experiment = self.write("run_experiment", "#!/bin/sh\necho '%s'\n" % methods)
+    def writeRunExperiment(self, code):
+        """A stand-in that knows all methods (1), or refuses its options (2)."""
+        self.run_experiment = self.write("run_experiment", "#!/bin/sh\nexit %d\n" % code)
         os.chmod(self.run_experiment, 0o755)
 
     def call(self, *arguments, stops=None):
@@ -173,7 +175,6 @@ class EfficientReproductionTest(ScratchCase):
         self.assertFalse(os.path.exists(os.path.join(self.out, "trials.csv")))
         self.assertEqual(read_yaml(self.out, "machine.yaml")["steps"]["efficient"]["seeds_run"], 10)
         self.assertWorks("--only", "efficient")
-        self.assertIn(b"15 of 25 seeds to run", read_bytes(self.out, "logs", "efficient.log"))
         self.assertEqual(read_yaml(self.out, "machine.yaml")["steps"]["efficient"]["seeds_run"], 25)
 
     def test_finished_results_of_changed_settings_are_refused(self):
@@ -216,7 +217,7 @@ class EfficientReproductionTest(ScratchCase):
                                            "config 2 more.yaml": {"model": {"order": 3}}})
 
     def test_seeds_that_did_not_run_are_bound_to_no_settings(self):
-        with mock.patch.object(step_runner, "program", lambda name: "/bin/false"):
+        with mock.patch.object(step_runner, "find_program", lambda name: "/bin/false"):
             self.assertFails(["not all seeds are finished"], "--only", "ablation")
         self.writeConfig("presets/efficient", "model: {residual: true, order: 3}\n")
         self.assertWorks("--only", "ablation")
@@ -301,7 +302,7 @@ class EfficientReproductionTest(ScratchCase):
             open(os.path.join(self.out, folder, "trials.csv"), "w").close()
         reproduction = reproduce_efficient.EfficientReproduction(argparse.Namespace(
             preset="efficient", out=self.out, jobs=None, seeds=range(2), only=["gravity"]))
-        self.assertEqual([word.split("=")[0] for word in reproduction.gravity_figure()[1:3]],
+        self.assertEqual([word.split("=")[0] for word in reproduction.gravity_figure()[2:4]],
                          ["efficient_gravity", "oracle"])
 
     def test_a_preset_that_is_not_there_is_told_before_anything_runs(self):
@@ -329,7 +330,7 @@ class EfficientReproductionTest(ScratchCase):
         self.assertFails(["presets/nowhere.yaml, which is not there", "name another --preset"], "--preset", "nowhere")
 
     def test_a_build_without_pilco_is_told_before_anything_runs_unless_pilco_is_left_out(self):
-        self.writeRunExperiment("ddm: the only one")
+        self.writeRunExperiment(code=2)
         self.assertFails(["PILCO is not in this build", "--pilco-seeds 0"])
         self.assertFalse(os.path.exists(os.path.join(self.out, "runs")))
         self.assertWorks("--only", "nuisances")

@@ -10,7 +10,8 @@ import xml.etree.ElementTree as ElementTree
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch import fuzzing  # noqa: E402
+import rooms  # noqa: E402, F401
+from ddm_qa import fuzzing  # noqa: E402
 from processes import call_main  # noqa: E402
 from scratch_case import ScratchCase  # noqa: E402
 

@@ -137,9 +137,10 @@ class PageCommandsTest(SharedScratchCase):
         package = re.search(r"(?:rosrun|--libexec) (\w+)", command)
         if program in ("sim_node", "mpc_node", "dynparam", "speed_kernels"):
             return {"--benchmark_filter"}
-        path = (find_program(package.group(1), program) if package
-                else os.path.join(pages.CHECKOUT, "ddm_launch", "scripts", program))
-        code, output = call((["bash"] if program.endswith(".sh") else []) + [path, "--help"])
+        name, *words = program.split()
+        path = (find_program(package.group(1), name) if package
+                else os.path.join(pages.CHECKOUT, "ddm_launch", "scripts", name))
+        code, output = call((["bash"] if name.endswith(".sh") else []) + [path] + words + ["--help"])
         assert code == 0, output
         return set(re.findall(r"--\w[\w-]*", output))
 

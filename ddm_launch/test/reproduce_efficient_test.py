@@ -7,7 +7,8 @@ import sys
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch.reproduce_efficient import VARIANTS, yaml_names  # noqa: E402
+import rooms  # noqa: E402, F401
+from ddm_study.reproduce_efficient import VARIANTS, yaml_names  # noqa: E402
 from processes import call, find_program, run_experiment  # noqa: E402
 from run_files import COLUMNS, read_rows, read_yaml  # noqa: E402
 from scratch_case import ScratchCase  # noqa: E402

@@ -6,14 +6,14 @@ import re
 import sys
 import time
 
+from ddm_launch.command import run_program
 from ddm_launch.gnu_parallel import GnuParallel
-from ddm_launch.interruption import Interrupted, raised_as_exception
-from ddm_launch.seed_script import BadOptions, SeedProgram, SweepError, TABLES
+from ddm_launch.interruption import Interrupted
+from ddm_launch.seed_script import TABLES, SeedProgram
 from ddm_launch.slurm import SlurmArray, end_left_over
 from ddm_launch.sweep_folder import SweepFolder
 
 MAX_SEEDS = 100000
-FAILURE, USAGE_ERROR = 1, 2
 
 ABOUT = """\
 Runs an experiment for each seed, several at a time, and collects the rows of all seeds in DIR/sweep.csv. The same
@@ -175,20 +175,9 @@ def sweep(options, more):
         complete = report(folder, options.seeds, start)
     if interruption:
         raise interruption
-    return 0 if complete else FAILURE
+    return 0 if complete else 1
 
 
 def main(arguments=None):
     options, more = parse(sys.argv[1:] if arguments is None else arguments)
-    try:
-        with raised_as_exception():
-            return sweep(options, more)
-    except Interrupted as error:
-        print("sweep: %s" % error, file=sys.stderr)
-        return 128 + error.number  # as a shell says it
-    except SweepError as error:
-        print("sweep: %s" % error, file=sys.stderr)
-        return USAGE_ERROR if isinstance(error, BadOptions) else FAILURE
-    except OSError as error:
-        print("sweep: %s" % error, file=sys.stderr)
-        return FAILURE
+    return run_program("sweep", lambda: sweep(options, more))
