@@ -35,7 +35,7 @@ COMMANDS_ELSEWHERE = [
 NOT_RUN = {r"^perf (record|report)": "a profiler, which needs rights on the kernel",
            r"pilco_benchmark": "a minute of computing times"}
 
-# The same programs and options, less work. What is left out here has a test of its own: paper_reproduction, rviz.test.
+# The same programs and options, less work. What is left out here has a test of its own: reproduce_paper_test, rviz_test.
 CHEAPER = [
     (r"preset:=\w+", "preset:=debug"), (r"--preset \w+", "--preset debug"), (r"presets/\w+", "presets/debug"),
     (r"(run_experiment)(?!.*--preset)", r"\1 --preset debug"), (r"(run_experiment)(?!.*--trials)", r"\1 --trials 1"),
