@@ -75,11 +75,11 @@ class AngleTrajectoriesTest(figure_case.FigureCase):
     def test_a_file_that_is_missing_or_lacks_a_column_is_named(self):
         self.assertRefused(angle_trajectories, ["missing.csv"], "missing.csv", "reproduce_paper")
         path = self.writeLines("angles.csv", "seed,step,time_s", "1,0,0")
-        self.assertRefused(angle_trajectories, [path], path, "no column frames, angle_rad, success")
+        self.assertRefused(angle_trajectories, [path], path, "frames, angle_rad, success")
 
     def test_a_step_that_is_there_twice_is_refused(self):
         path = self.writeLines("angles.csv", HEADER, *(rows(1, 1, 1.0) + rows(1, 1, 2.0)))
-        self.assertRefused(angle_trajectories, [path], "step 0 of seed 1 after 1 frames twice")
+        self.assertRefused(angle_trajectories, [path], "seed 1, frames 1, step 0")
 
 
 if __name__ == "__main__":

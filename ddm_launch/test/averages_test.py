@@ -10,7 +10,7 @@ from ddm_launch.run_folder import Trial
 
 
 def trial(frames, success, strict):
-    return Trial(0, frames, success, strict, None, "?")
+    return Trial(0, frames, success, strict, None)
 
 
 class AveragesTest(unittest.TestCase):

@@ -132,11 +132,11 @@ class DotPlotsTest(figure_case.FigureCase):
     def test_a_variant_that_lacks_a_row_is_named(self):
         path = self.writeAblation("preset,Full preset,100,50,0.9,0.01,0,0", "preset,Full preset,200,50,0.9,0.01,0,0",
                                   "steps,Without steps,100,50,0.9,0.01,0,0")
-        self.assertRefused(ablation_compared, [path], "no row of steps at 100 or 200 frames")
+        self.assertRefused(ablation_compared, [path], "steps", "100", "200")
 
     def test_the_preset_alone_is_nothing_to_draw(self):
         path = self.writeAblation("preset,Full preset,100,50,0.9,0.01,0,0")
-        self.assertRefused(ablation_compared, [path], path, "no row of any variant")
+        self.assertRefused(ablation_compared, [path], path)
 
     def test_missing_tables_are_named_with_the_remedy(self):
         for module in (ablation_compared, nuisances_compared):

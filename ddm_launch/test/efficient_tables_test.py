@@ -103,7 +103,7 @@ class EfficientTablesTest(figure_case.FigureCase):
     def test_an_ablation_without_a_common_seed_is_refused(self):
         labels = self.writeAblation()
         self.writeTrials("ablation/steps/trials.csv", range(7, 9), 3, lambda seed, trial: True)
-        with self.assertRaisesRegex(Failure, "no seed has 100 frames of both steps and the preset itself"):
+        with self.assertRaisesRegex(Failure, "100 frames .*steps"):
             efficient_tables.variant_rows(self.scratch, "ablation", labels)
 
     def test_other_variants_are_compared_with_the_same_reference_at_frames_that_each_has(self):
@@ -124,7 +124,7 @@ class EfficientTablesTest(figure_case.FigureCase):
         self.writeAblation()
         self.writeTrials("tried/ensemble/trials.csv", range(4), 2, lambda seed, trial: True,
                          frames=lambda trial: 30 * (trial + 1))
-        with self.assertRaisesRegex(Failure, "tried: no number of frames is known of ensemble and the preset"):
+        with self.assertRaisesRegex(Failure, "tried.*ensemble"):
             efficient_tables.variant_rows(self.scratch, "tried", {"preset": "Full preset", "ensemble": "Ensemble"})
 
     def test_nuisances_are_told_after_the_last_trial_beside_the_same_seeds_without_any(self):
@@ -138,13 +138,12 @@ class EfficientTablesTest(figure_case.FigureCase):
     def test_nuisances_of_differing_frames_are_refused(self):
         self.writeTrials("nuisances/delay/trials.csv", range(4), 3, lambda seed, trial: True)
         self.writeTrials("nuisances/noise/trials.csv", range(4), 2, lambda seed, trial: True)
-        with self.assertRaisesRegex(Failure, "nuisances/noise/trials.csv must end at 300 frames as that of "
-                                                    "delay, got 200"):
+        with self.assertRaisesRegex(Failure, "nuisances/noise/trials.csv.* 300 .*delay.* 200"):
             efficient_tables.nuisance_rows(self.scratch, ["delay", "noise"])
 
     def test_a_nuisance_without_known_success_is_refused(self):
         self.writeLines("nuisances/noise/trials.csv", "seed,trial,frames,success,final_error_deg", "0,0,100,,")
-        with self.assertRaisesRegex(Failure, "nuisances/noise/trials.csv must say of some trial"):
+        with self.assertRaisesRegex(Failure, "nuisances/noise/trials.csv.*success"):
             efficient_tables.nuisance_rows(self.scratch, ["noise"])
 
     def test_gravity_has_the_rows_of_the_methods_that_were_run(self):

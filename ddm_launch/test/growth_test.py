@@ -49,7 +49,7 @@ class GrowthTest(figure_case.FigureCase):
         self.assertAlmostEqual(growth.exponent([1.0, 2.0, 4.0, 8.0], [3.0, 12.0, 48.0, 192.0]), 2.0)
 
     def test_a_trainer_that_learned_from_less_is_told(self):
-        with self.assertRaisesRegex(Failure, "did not learn from 100000 frames, but left .*7"):
+        with self.assertRaisesRegex(Failure, "100000.*7"):
             self.make(frames_learned=7)
 
 

@@ -52,7 +52,7 @@ class PendulumFeatureSpaceTest(figure_case.FigureCase):
         self.assertDrawn(pendulum_feature_space, [path, "--model", model], COLUMN_WIDTH)
 
     def test_a_kind_that_is_missing_or_unknown_is_named(self):
-        with self.assertRaisesRegex(Failure, "no row of kind goal"):
+        with self.assertRaisesRegex(Failure, "kind goal"):
             self.draw([row for row in ROWS if not row.startswith("goal")])
         with self.assertRaisesRegex(Failure, "got 'dream'"):
             self.draw(ROWS + ["dream,0,0,0"])

@@ -46,10 +46,10 @@ class PilcoRunsTest(figure_case.FigureCase):
 
     def test_a_run_that_is_not_pilcos_is_named(self):
         path = self.write(self.path("trial_001", "pilco.yaml"), "gp_s: 1\npolicy_search_s: 2\n")
-        with self.assertRaisesRegex(Failure, "trial_001/pilco.yaml has no sparse, points, .*PILCO"):
+        with self.assertRaisesRegex(Failure, "trial_001/pilco.yaml.*sparse, points"):
             pilco_runs.search_rows({7: self.run_folder})
         os.remove(path)
-        with self.assertRaisesRegex(Failure, "trial_001/pilco.yaml cannot be read .*PILCO"):
+        with self.assertRaisesRegex(Failure, "trial_001/pilco.yaml"):
             pilco_runs.search_rows({7: self.run_folder})
 
     def test_a_policy_is_shown_as_predicted_in_its_evaluation_and_in_the_next_trial(self):
@@ -70,7 +70,7 @@ class PilcoRunsTest(figure_case.FigureCase):
     def test_a_prediction_of_something_else_than_the_angle_is_refused(self):
         with open(self.path("trial_000", "prediction.csv"), "w") as stream:
             stream.write("step,time_s,z_1_mean,z_1_std,cost_mean,cost_std\n0,0,0.1,0.1,,\n")
-        with self.assertRaisesRegex(Failure, "trial_000/prediction.csv has no column angle_rad_mean"):
+        with self.assertRaisesRegex(Failure, "trial_000/prediction.csv.*angle_rad_mean"):
             pilco_runs.distribution_rows({7: self.run_folder}, [0])
 
 

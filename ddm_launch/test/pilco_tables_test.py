@@ -97,7 +97,7 @@ class PilcoTablesTest(ScratchCase):
             lines = [line for line in stream if not line.startswith("3,11,")]
         with open(path, "w") as stream:
             stream.writelines(lines)
-        with self.assertRaisesRegex(Failure, "pilco_state/trials.csv: seed 3 must have the trials 0 to 11"):
+        with self.assertRaisesRegex(Failure, "pilco_state/trials.csv.*seed 3.* 11"):
             pilco_tables.time_rows(self.scratch, ["pilco_state"])
 
     def test_ten_of_twelve_first_policies_are_enough(self):

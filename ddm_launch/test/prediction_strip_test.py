@@ -73,7 +73,7 @@ class PredictionStripTest(figure_case.FigureCase):
 
     def test_a_strip_without_true_state_or_features_is_refused(self):
         self.writeLines("strip.csv", "steps,z_1,z_2", "0,1,1")
-        with self.assertRaisesRegex(Failure, "no column of the true state"):
+        with self.assertRaisesRegex(Failure, "strip.csv"):
             prediction_strip.Strip(self.scratch)
         self.writeLines("strip.csv", "steps,angle_rad", "0,1")
         with self.assertRaisesRegex(Failure, "no column z_1"):

@@ -125,7 +125,7 @@ class SuccessRateTest(figure_case.FigureCase):
 
     def test_a_name_that_is_there_twice_is_refused(self):
         curve = "DDM + MPC=" + self.writeSweep()
-        self.assertRefused(success_rate, [curve, curve], "got 'DDM + MPC' twice")
+        self.assertRefused(success_rate, [curve, curve], "DDM + MPC")
 
     def test_several_files_and_the_paper_make_a_picture_as_wide_as_a_column(self):
         path = self.writeSweep()
@@ -144,11 +144,11 @@ class SuccessRateTest(figure_case.FigureCase):
 
     def test_a_seed_that_is_there_twice_is_refused(self):
         path = self.writeLines("twice.csv", HEADER, "7,0,100,0,90", "7,0,100,1,2")
-        self.assertRefused(success_rate, ["mine=" + path], path, "trial 0 of seed 7 twice")
+        self.assertRefused(success_rate, ["mine=" + path], path, "seed 7, trial 0")
 
     def test_runs_of_unknown_success_are_refused(self):
         path = self.writeLines("unknown.csv", HEADER, "7,0,100,,")
-        with self.assertRaisesRegex(Failure, "success is not known in any row"):
+        with self.assertRaisesRegex(Failure, path):
             success_rate.read_curve("mine", path)
 
     def test_files_that_are_missing_are_named(self):

@@ -89,7 +89,7 @@ class TrajectoryDistributionsTest(figure_case.FigureCase):
                              "'guessed'"),
                             (rows(0, 0, "predicted", 1.0), "angle_std_rad must be >= 0, got None"),
                             (rows(0, 0, "predicted", 1.0, -0.1), "angle_std_rad must be >= 0, got -0.1"),
-                            (policy(0, 0) + policy(0, 0), "step 0 of seed 0 after 125 frames (evaluation) twice")):
+                            (policy(0, 0) + policy(0, 0), "seed 0, frames 125, kind predicted, step 0")):
             path = self.writeLines("angles.csv", HEADER, *lines)
             self.assertRefused(trajectory_distributions, [path], path, part)
 

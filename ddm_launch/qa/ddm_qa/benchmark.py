@@ -110,8 +110,8 @@ class Benchmark:
     def planning_budget(self):
         for load in ([], ["--busy"]):
             for preset in ("paper", "efficient"):
-                row = self.programs.call("planning_budget", [find_program("planning_budget"), "--preset", preset, "--plans",
-                                                             str(NUM_PLANS)] + load)
+                row = self.programs.call("planning_budget", [find_program("planning_budget"), "--preset", preset,
+                                                             "--plans", str(NUM_PLANS)] + load)
                 self.budgets.append(row.strip().split(","))
 
     def ros_experiment(self):
@@ -147,26 +147,6 @@ class Benchmark:
             machine["torch"] = self.programs.call("peers", version).strip()
         write_file(os.path.join(self.out, "machine.yaml"), yaml.safe_dump(machine, sort_keys=False))
 
-    def table(self):
-        """Lines for people."""
-        lines = ["%-20s %14s %14s %14s %9s" % ("", "median", "99 %", "PyTorch", "ratio")]
-        for name, (median, p99, peer) in self.rows.items():
-            lines.append("%-20s %14s %14s %14s %9s" % (name, readable(median), readable(p99), readable(peer),
-                                                       "" if peer == "" else "%.1f" % (peer / median)))
-        for row in self.budgets:
-            lines.append("budget of %(budget_ms)s ms, %(preset)s, %(load)s: 99 %% of %(plans)s plans within %(p99_ms)s ms, "
-                         "99.9 %% within %(p999_ms)s ms" % dict(zip(BUDGET_COLUMNS, row)))
-        return lines
-
-
-def readable(time_us):
-    if time_us == "":
-        return ""
-    for limit, factor, unit in ((1e3, 1.0, "us"), (1e6, 1e-3, "ms")):
-        if time_us < limit:
-            return "%.3g %s" % (time_us * factor, unit)
-    return "%.3g s" % (time_us * 1e-6)
-
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(prog="benchmark", description=ABOUT, epilog=EPILOG,
@@ -182,5 +162,5 @@ def main(arguments=None):
         with tempfile.TemporaryDirectory() as scratch:
             benchmark = Benchmark(options.out, options.peers, scratch)
             benchmark.work()
-        print("\n".join(benchmark.table() + ["results: %s" % benchmark.out]))
+        print("results: %s" % benchmark.out)
     return run_program("benchmark", work)

@@ -173,10 +173,6 @@ def run(arguments):
     if arguments.junit:
         os.makedirs(os.path.dirname(os.path.abspath(arguments.junit)), exist_ok=True)
         write_file(os.path.abspath(arguments.junit), junit(outcomes))
-    rows = [COLUMNS] + [[row[column] for column in COLUMNS] for row in read_table(table).values()]
-    widths = [max(len(row[i]) for row in rows) for i in range(len(COLUMNS))]
-    for row in rows:
-        print("  ".join([row[0].ljust(widths[0])] + [cell.rjust(width) for cell, width in zip(row[1:], widths[1:])]))
     for outcome in outcomes:
         for finding in outcome.findings:
             print("FOUND by %s: %s\n      %s" % (outcome.target.name, finding, reason(outcome)))

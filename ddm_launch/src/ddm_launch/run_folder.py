@@ -11,8 +11,8 @@ from ddm_launch.settings import read_yaml
 from ddm_launch.tables import convert, optional, read_csv, unreadable
 
 # One row of trials.csv: the model after a trial, and its greedy evaluation. frames: image-torque pairs learned from.
-# success, success_strict, final_error_deg: None where not known. version: of the code that made the row, or "?".
-Trial = collections.namedtuple("Trial", "trial frames success success_strict final_error_deg version")
+# success, success_strict, final_error_deg: None where not known.
+Trial = collections.namedtuple("Trial", "trial frames success success_strict final_error_deg")
 
 FLAG = optional(lambda text: convert(text, float) > 0.5)
 TRIAL_COLUMNS = {"trial": int, "frames": int, "success": FLAG,
@@ -20,9 +20,8 @@ TRIAL_COLUMNS = {"trial": int, "frames": int, "success": FLAG,
 
 
 def trial_of(row):
-    """Older tables have neither success_strict nor version."""
-    return Trial(row["trial"], row["frames"], row["success"], FLAG(row.get("success_strict")), row["final_error_deg"],
-                 row.get("version") or "?")
+    """Older tables have no success_strict."""
+    return Trial(row["trial"], row["frames"], row["success"], FLAG(row.get("success_strict")), row["final_error_deg"])
 
 
 def read_trials(folder):
@@ -35,12 +34,10 @@ def read_sweep(path, remedy="give a trials.csv or sweep.csv"):
 
     Raises Failure as read_csv() does, and if a trial of a seed is there twice.
     """
-    runs = collections.defaultdict(dict)
-    for row in read_csv(path, dict(TRIAL_COLUMNS, seed=int), remedy):
-        if row["trial"] in runs[row["seed"]]:
-            raise Failure("%s holds trial %d of seed %d twice: give each seed once" % (path, row["trial"], row["seed"]))
-        runs[row["seed"]][row["trial"]] = trial_of(row)
-    return {seed: list(trials.values()) for seed, trials in runs.items()}
+    runs = {}
+    for row in read_csv(path, dict(TRIAL_COLUMNS, seed=int), remedy, once=("seed", "trial")):
+        runs.setdefault(row["seed"], []).append(trial_of(row))
+    return runs
 
 
 def is_finished(folder):

@@ -35,12 +35,13 @@ def convert(text, kind):
     return {float: finite, int: whole}.get(kind, kind)(text)
 
 
-def read_csv(path, columns, remedy=None):
+def read_csv(path, columns, remedy=None, once=()):
     """The rows of a CSV file as dictionaries.
 
     columns: those that must be there; as {name: kind} their cells are converted by kind: str, int, float (finite) or a
     function of the text that raises ValueError. remedy: what to do if the file is missing, unless it is a run's.
-    Raises Failure if the file is missing, lacks a column, has no row, or a cell cannot be converted.
+    once: columns whose cells name a row. Raises Failure if the file is missing, lacks a column, has no row, names a row
+    twice, or if a cell cannot be converted.
     """
     try:
         with open(path, newline="") as stream:
@@ -60,6 +61,13 @@ def read_csv(path, columns, remedy=None):
                 row[name] = convert(row[name], kind)
             except (TypeError, ValueError):
                 raise Failure("%s: column %s must hold numbers, got '%s'" % (path, name, row[name])) from None
+    seen = set()
+    for row in rows if once else ():
+        name = tuple(row[column] for column in once)
+        if name in seen:
+            raise Failure("%s has two rows of %s: give each once" % (path, ", ".join(
+                "%s %s" % item for item in zip(once, name))))
+        seen.add(name)
     return rows
 
 

@@ -5,7 +5,6 @@ import math
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from ddm_launch.command import Failure
 from ddm_launch.figure_style import BLUE, PAGE_WIDTH, VERMILLION, add_legend, new_figure, save
 from ddm_launch.film_strip import SUCCESS_LIMIT_RAD
 from ddm_launch.tables import read_csv
@@ -35,16 +34,13 @@ class Trajectory:
 def read_trajectories(path):
     """All trajectories of a file, as {frames learned from: {seed: Trajectory}}; both keys ascend."""
     keys = {"frames": int, "seed": int, "step": int, "time_s": float, "angle_rad": float, "success": float}
-    rows = read_csv(path, keys, "rosrun ddm_launch reproduce_paper writes it")
-    trials, last = {}, None
-    for frames, seed, step, time_s, angle_rad, success in sorted([row[key] for key in keys] for row in rows):
-        if (frames, seed, step) == last:
-            raise Failure("%s holds step %d of seed %d after %d frames twice: give each run once" % (
-                path, step, seed, frames))
-        last = frames, seed, step
-        trajectory = trials.setdefault(frames, {}).setdefault(seed, Trajectory(success > 0.5))
-        trajectory.time_s.append(time_s)
-        trajectory.angle_rad.append(angle_rad)
+    rows = read_csv(path, keys, "rosrun ddm_launch reproduce_paper writes it", once=("seed", "frames", "step"))
+    trials = {}
+    for row in sorted(rows, key=lambda row: (row["frames"], row["seed"], row["step"])):
+        of_trial = trials.setdefault(row["frames"], {})
+        trajectory = of_trial.setdefault(row["seed"], Trajectory(row["success"] > 0.5))
+        trajectory.time_s.append(row["time_s"])
+        trajectory.angle_rad.append(row["angle_rad"])
     for trajectories in trials.values():
         for trajectory in trajectories.values():
             start = trajectory.time_s[0]

@@ -1,6 +1,7 @@
 # Runs the experiments about data-efficiency and turns them into tables and figures, with one command.
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
+import collections
 import os
 import re
 
@@ -26,24 +27,15 @@ figures. All of it takes hours; the same command resumes, and --only chooses par
 
 EPILOG = """\
 parts (--only), in this order, and what they leave in DIR:
-  efficient    trials.csv, config.yaml; success_rate.csv: success, success_strict and Wilson's 95 % intervals;
-               success_rate.png; times.csv: of each seed's experiment training and wall time in all [s] (empty if it
-               was interrupted) and the time that 99 % of the plans of its slowest greedy run keep [ms]
-  ablation     ablation/NAME/trials.csv without what each file of ddm_launch/config/ablations takes away, and of the
-               preset itself; ablation.csv: success and differences paired by seed; ablation.png
-  tried        tried/NAME/trials.csv with what each file of ddm_launch/config/tried changes, to 200 frames; tried.csv
-               and tried.png: as those of the ablation, and compared with the same runs of the preset
-  gravity      gravity/trials.csv of the preset `efficient_gravity`; gravity/oracle/, gravity/pilco_state/: trials.csv
-               of the same planner on the true plant, and of PILCO on the true state with sparse GPs; gravity.csv,
-               gravity.png
-  nuisances    nuisances/NAME/trials.csv for each file of ddm_launch/config/nuisances; nuisances.csv,
-               nuisances.png
-
-beside them:
-  bars.csv             what the results must reach, and whether they do
-  machine.yaml         of each step: version of the code, processor, time, peak memory of a process
-  runs/, logs/         everything that the programs left behind; runs/*/settings.yaml: what the preset, the plant's and the
-                       other files of a step said. A step whose files have changed since is refused"""
+  efficient    trials.csv, config.yaml, success_rate.csv, times.csv, success_rate.png
+  ablation     ablation/NAME/trials.csv, ablation.csv, ablation.png: without what each file of config/ablations takes away
+  tried        tried/NAME/trials.csv, tried.csv, tried.png: with what each file of config/tried changes, to 200 frames
+  gravity      gravity/trials.csv of the preset `efficient_gravity`, gravity/oracle/ and gravity/pilco_state/,
+               gravity.csv, gravity.png
+  nuisances    nuisances/NAME/trials.csv, nuisances.csv, nuisances.png: under each file of config/nuisances
+bars.csv holds what the results must reach and whether they do, machine.yaml how each step was made, runs/ and logs/
+everything that the programs left. A step whose files have changed since it was made is refused. The columns are explained
+in ddm_launch's README."""
 
 
 def count(text):
@@ -73,9 +65,12 @@ def label_of(path):
     return label
 
 
+# steps: its sweeps. write_tables(). figure: the command that draws what is kept, made when all is there.
+Part = collections.namedtuple("Part", "steps write_tables figure")
+
+
 class EfficientReproduction(StepRunner):
-    """Each of PARTS is three methods: PART_steps, the sweeps; PART_tables; PART_figure, the command that draws it from
-    nothing but what is kept."""
+    """Each of PARTS is a method that returns a Part."""
 
     def __init__(self, options):
         self.preset = options.preset
@@ -83,52 +78,36 @@ class EfficientReproduction(StepRunner):
         super().__init__("reproduce_efficient", options.out,
                          {"preset": self.preset, "gravity_preset": self.gravity_preset}, options.jobs)
         self.options, self.few_seeds = options, options.seeds[:NUM_FEW_SEEDS]
-        self.parts = [part for part in PARTS if part in options.only]
-        self.variants, self.labels = {}, {}  # {part: {name: path}}, {part: {name: label}}
-        self.nuisances = {}  # {name: path}
+        self.variants = {}  # {part: {name: path}}
 
     def work(self):
-        for part in VARIANTS:
-            if part in self.parts:
-                self.find_variants(part)
-        if "nuisances" in self.parts:
-            self.nuisances = yaml_names("nuisances")
-        steps = {part: getattr(self, part + "_steps")() for part in self.parts}
-        self.require_files(steps)
-        if "gravity" in self.parts:
+        parts = {name: getattr(self, name)() for name in PARTS if name in self.options.only}
+        self.require_files(parts)
+        if "gravity" in parts:
             self.require_pilco()
-        with self.progress(sum(len(step.seeds) for of_part in steps.values() for step in of_part) +
-                           2 * len(self.parts)) as bar:
-            for part in self.parts:
-                for step in steps[part]:
+        with self.progress(sum(len(step.seeds) for part in parts.values() for step in part.steps) + 2 * len(parts)) as bar:
+            for name, part in parts.items():
+                for step in part.steps:
                     self.run_sweep(step, bar)
-                bar.set_description(part + ": tables")
-                getattr(self, part + "_tables")(steps[part][0])
+                bar.set_description(name + ": tables")
+                part.write_tables()
                 bar.update(1)
-                self.draw({"figure_of_" + part: getattr(self, part + "_figure")()}, bar)
+                self.draw({"figure_of_" + name: part.figure()}, bar)
             bar.set_description("done")
         return self.idle_variants() + verdict_lines(write_bars(self.out))
 
-    def find_variants(self, part):
-        """Files that change the preset, and what tables and figures call each."""
-        paths = yaml_names(VARIANTS[part])
-        if PRESET in paths:
-            raise Failure("%s: the name is that of the reference, the preset itself: rename the file" % paths[PRESET])
-        self.variants[part] = paths
-        self.labels[part] = dict({PRESET: FULL_LABEL}, **{name: label_of(path) for name, path in paths.items()})
-
-    def require_files(self, steps):
+    def require_files(self, parts):
         """Before hours have passed: all parts must have their presets and other files."""
         missing = {}  # part: paths
-        for part, of_part in steps.items():
-            paths = [path for step in of_part for path in step.files().values() if not os.path.isfile(path)]
+        for name, part in parts.items():
+            paths = {path for step in part.steps for path in step.files().values() if not os.path.isfile(path)}
             if paths:
-                missing[part] = sorted(set(paths))
+                missing[name] = sorted(paths)
         if missing:
-            rest = [part for part in self.parts if part not in missing]
+            rest = [name for name in parts if name not in missing]
             raise Failure("%s: %s" % (
-                "; ".join("the part %s needs %s, which is not there" % (part, " and ".join(paths))
-                          for part, paths in missing.items()),
+                "; ".join("the part %s needs %s, which is not there" % (name, " and ".join(paths))
+                          for name, paths in missing.items()),
                 "leave it out with --only %s" % " ".join(rest) if rest else "name another --preset"))
 
     def require_pilco(self):
@@ -139,85 +118,76 @@ class EfficientReproduction(StepRunner):
             raise Failure("%s holds results of PILCO, which --pilco-seeds 0 leaves out: remove it, leave out that "
                           "option, or use another --out" % self.path(PILCO_TABLE))
 
-    def sweep_step(self, name, folder, seeds, trials, more=(), preset=None, plant="pendulum", limit_s=None):
+    def step(self, name, folder, seeds, trials, more=(), preset=None, plant="pendulum", limit_s=None):
         words = ["--preset", preset or self.preset, "--plant", plant, "--trials", str(trials)]
         return SweepStep(name, os.path.join(folder, "trials.csv"), seeds, words, list(more), limit_s)
 
-    def efficient_steps(self):
-        return [self.sweep_step("efficient", "", self.options.seeds, TRIALS)]
+    def efficient(self):
+        step = self.step("efficient", "", self.options.seeds, TRIALS)
 
-    def variant_step(self, part, name, trials, more):
-        return self.sweep_step("%s_%s" % (part, name), os.path.join(part, name), self.options.ablation_seeds, trials,
-                               more)
+        def write_tables():
+            self.keep_config(step, "config.yaml")
+            write_success(self.out, step.folder(self.out), self.resumed(step))
+
+        def figure():
+            curves = [(self.preset, self.path("trials.csv")),
+                      ("DDM + MPC", package_path("results", "paper", "trials.csv"))]
+            return self.success_figure("success_rate", curves) + [
+                "--published", package_path("results", "published", "success_rate.csv")]
+        return Part([step], write_tables, figure)
+
+    def variant_step(self, part, name, trials, more=()):
+        return self.step("%s_%s" % (part, name), os.path.join(part, name), self.options.ablation_seeds, trials, more)
 
     def reference_step(self):
         """The preset itself, which variants are compared with."""
-        return self.variant_step("ablation", PRESET, ABLATION_TRIALS, [])
+        return self.variant_step("ablation", PRESET, ABLATION_TRIALS)
 
-    def ablation_steps(self, part="ablation", trials=ABLATION_TRIALS):
-        return [self.reference_step()] + [self.variant_step(part, name, trials, ["--config", path])
-                                          for name, path in self.variants[part].items()]
+    def ablation(self, part="ablation", trials=ABLATION_TRIALS):
+        paths = yaml_names(VARIANTS[part])
+        if PRESET in paths:
+            raise Failure("%s: the name is that of the reference, the preset itself: rename the file" % paths[PRESET])
+        self.variants[part] = paths
+        labels = dict({PRESET: FULL_LABEL}, **{name: label_of(path) for name, path in paths.items()})
+        steps = [self.reference_step()] + [self.variant_step(part, name, trials, ["--config", path])
+                                           for name, path in paths.items()]
+        return Part(steps, lambda: write_variants(self.out, part, labels), lambda: [
+            find_program("study_figure"), "ablation_compared", self.path(part + ".csv"), "--out",
+            self.path(part + ".png")])
 
-    def tried_steps(self):
-        return self.ablation_steps("tried", TRIED_TRIALS)
+    def tried(self):
+        return self.ablation("tried", TRIED_TRIALS)
 
-    def gravity_steps(self):
-        def step(name, folder, seeds, trials, more, limit_s=None):
-            return self.sweep_step(name, folder, seeds, trials, more, self.gravity_preset, "pendulum_gravity", limit_s)
+    def gravity(self):
+        def step(name, folder, seeds, trials, more=(), limit_s=None):
+            return self.step(name, folder, seeds, trials, more, self.gravity_preset, "pendulum_gravity", limit_s)
 
-        steps = [step("gravity", "gravity", self.few_seeds, GRAVITY_TRIALS, []),
+        steps = [step("gravity", "gravity", self.few_seeds, GRAVITY_TRIALS),
                  step("gravity_oracle", "gravity/oracle", self.few_seeds, GRAVITY_TRIALS, ["--method", "oracle"])]
         pilco_seeds = self.few_seeds[:self.options.pilco_seeds]
         if pilco_seeds:
             steps.append(step("gravity_pilco_state", os.path.dirname(PILCO_TABLE), pilco_seeds, PILCO_TRIALS,
                               ["--method", "pilco_state", "--config", package_path("config", "sparse_gp.yaml")],
                               60.0 * self.options.pilco_minutes))
-        return steps
 
-    def nuisances_steps(self):
-        return [self.sweep_step("nuisance_" + name, os.path.join("nuisances", name), self.few_seeds, NUISANCE_TRIALS,
-                                ["--nuisance", name]) for name in self.nuisances]
+        def write_tables():
+            self.keep_config(steps[0], "gravity/config.yaml")
+            write_gravity(self.out)
+        return Part(steps, write_tables, lambda: self.success_figure("gravity", [
+            (self.gravity_preset, self.path("gravity", "trials.csv")),
+            ("PILCO, state, sparse GP", self.path(PILCO_TABLE)),
+            ("oracle", self.path("gravity", "oracle", "trials.csv"))]))
 
-    def efficient_tables(self, step):
-        self.keep_config(step, "config.yaml")
-        write_success(self.out, step.folder(self.out), self.resumed(step))
-
-    def ablation_tables(self, _, part="ablation"):
-        write_variants(self.out, part, self.labels[part])
-
-    def tried_tables(self, step):
-        self.ablation_tables(step, "tried")
-
-    def gravity_tables(self, step):
-        self.keep_config(step, "gravity/config.yaml")
-        write_gravity(self.out)
-
-    def nuisances_tables(self, _):
-        write_nuisances(self.out, list(self.nuisances))
+    def nuisances(self):
+        names = list(yaml_names("nuisances"))
+        steps = [self.step("nuisance_" + name, os.path.join("nuisances", name), self.few_seeds, NUISANCE_TRIALS,
+                           ["--nuisance", name]) for name in names]
+        return Part(steps, lambda: write_nuisances(self.out, names), lambda: [
+            find_program("study_figure"), "nuisances_compared", self.path("nuisances.csv"), "--out",
+            self.path("nuisances.png")])
 
     def keep_config(self, step, name):
         self.keep(os.path.join(step.seed_folder(self.out, step.seeds[0]), "config.yaml"), name)
-
-    def efficient_figure(self):
-        curves = [(self.preset, self.path("trials.csv")), ("DDM + MPC", package_path("results", "paper", "trials.csv"))]
-        return self.success_figure("success_rate", curves) + ["--published", package_path("results", "published",
-                                                                                          "success_rate.csv")]
-
-    def ablation_figure(self, part="ablation"):
-        return [find_program("study_figure"), "ablation_compared", self.path(part + ".csv"), "--out",
-                self.path(part + ".png")]
-
-    def tried_figure(self):
-        return self.ablation_figure("tried")
-
-    def gravity_figure(self):
-        return self.success_figure("gravity", [(self.gravity_preset, self.path("gravity", "trials.csv")),
-                                               ("PILCO, state, sparse GP", self.path(PILCO_TABLE)),
-                                               ("oracle", self.path("gravity", "oracle", "trials.csv"))])
-
-    def nuisances_figure(self):
-        return [find_program("study_figure"), "nuisances_compared", self.path("nuisances.csv"), "--out",
-                self.path("nuisances.png")]
 
     def success_figure(self, name, curves):
         """The command that draws those of the curves (label, path) that are there."""

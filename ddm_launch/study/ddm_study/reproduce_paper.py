@@ -35,19 +35,9 @@ tables and figures. PILCO takes hours, all else minutes: --without-pilco leaves 
 without that option it adds PILCO."""
 
 EPILOG = """\
-in DIR:
-  trials.csv, *.csv    rows of all seeds, and tables made from them; agreement.csv: what holds of the paper's claims
-  *.png                figures
-  SCHEDULE/, oracle/   trials.csv of the other schedules and of the oracle
-  tile/                predictions.csv, features and model of joint training on the moving tile
-  tile_predictions/, pendulum_predictions/
-                       predictions.csv of each schedule, each with a single start
-  pilco_*/             trials.csv, config.yaml and policy_search.csv (times and costs) of PILCO on the true state (with
-                       the full and with the sparse Gaussian process), on features, on principal components
-  trajectory_distributions.csv
-                       angles that PILCO on the state predicted, and actual ones
-  machine.yaml         of each step: version of the code, processor, time, peak memory of a process
-  runs/, logs/         everything that the programs left behind; not needed for the figures"""
+DIR gets the rows of all seeds, tables and figures; the files are explained in ddm_launch/results/paper/README.md.
+agreement.csv: what holds of the paper's claims. machine.yaml: how each step was made. runs/, logs/: everything that the
+programs left, which the figures do not need."""
 
 
 def schedule_options(schedule):

@@ -23,13 +23,11 @@ def read_predictions_csv(path):
     """The rows of a predictions.csv, as {seed: {steps: Prediction}}."""
     predictions = {}
     columns = {"seed": int, "steps": int, "rmse": float, "rmse_repeat": float, "position_r2": float}
-    for row in read_csv(path, columns, REMEDY):
-        seed, steps, *values = (row[name] for name in columns)
-        if steps in predictions.setdefault(seed, {}):
-            raise Failure("%s holds %d steps of seed %d twice: give each seed once" % (path, steps, seed))
-        predictions[seed][steps] = Prediction(*values)
+    for row in read_csv(path, columns, REMEDY, once=("seed", "steps")):
         if not row["rmse_repeat"] > 0.0:
             raise Failure("%s: column rmse_repeat must be > 0, got %g" % (path, row["rmse_repeat"]))
+        predictions.setdefault(row["seed"], {})[row["steps"]] = Prediction(
+            row["rmse"], row["rmse_repeat"], row["position_r2"])
     return predictions
 
 

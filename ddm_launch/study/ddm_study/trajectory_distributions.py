@@ -36,23 +36,19 @@ class Angles:
 
 def read_distributions(path):
     """All of a file, as {seed: {frames learned from: {kind: Angles}}}, in ascending order."""
-    columns = {"seed": int, "frames": int, "kind": str, "step": int, "time_s": float, "angle_rad": float,
+    columns = {"seed": int, "trial": int, "frames": int, "kind": str, "step": int, "time_s": float, "angle_rad": float,
                "angle_std_rad": optional(float)}
-    seeds, last = {}, None
-    rows = read_csv(path, dict(columns, trial=int), "rosrun ddm_launch reproduce_paper writes it")
-    for row in sorted(rows, key=lambda row: [row[key] for key in columns][:5]):
-        seed, frames, kind, step, time_s, angle_rad, deviation_rad = (row[key] for key in columns)
+    names, seeds = ("seed", "frames", "kind", "step"), {}
+    rows = read_csv(path, columns, "rosrun ddm_launch reproduce_paper writes it", once=names)
+    for row in sorted(rows, key=lambda row: [row[name] for name in names]):
+        kind, deviation_rad = row["kind"], row["angle_std_rad"]
         if kind not in KINDS:
             raise Failure("%s: column kind must hold one of %s, got '%s'" % (path, ", ".join(KINDS), kind))
         if kind == PREDICTED and (deviation_rad is None or deviation_rad < 0.0):
             raise Failure("%s: column angle_std_rad must be >= 0, got %s" % (path, deviation_rad))
-        if (seed, frames, kind, step) == last:
-            raise Failure("%s holds step %d of seed %d after %d frames (%s) twice: give each run once" % (
-                path, step, seed, frames, kind))
-        last = seed, frames, kind, step
-        angles = seeds.setdefault(seed, {}).setdefault(frames, {}).setdefault(kind, Angles())
-        angles.time_s.append(time_s)
-        angles.angle_rad.append(angle_rad)
+        angles = seeds.setdefault(row["seed"], {}).setdefault(row["frames"], {}).setdefault(kind, Angles())
+        angles.time_s.append(row["time_s"])
+        angles.angle_rad.append(row["angle_rad"])
         angles.deviation_rad.append(deviation_rad if kind == PREDICTED else 0.0)
     return seeds
 
