@@ -39,8 +39,8 @@ def write_results(out, run, samples, frames, bars):
     for name, columns, rows in (("soak.csv", Sample._fields, samples), ("bars.csv", Bar._fields, bars),
                                 ("frames.csv", COLUMNS, [[row[column] for column in COLUMNS] for row in frames])):
         path = os.path.join(out, name)
-        write_csv(path, columns, sorted(keep_others(path, columns, run) + [list(row) for row in rows],
-                                          key=lambda row: RUNS.index(row[0])))
+        write_csv(path, columns, sorted(keep_others(path, columns, run) + [list(map(str, row)) for row in rows],
+                                        key=lambda row: RUNS.index(row[0])))
     draw(read_samples(os.path.join(out, "soak.csv")), os.path.join(out, "soak.png"))
 
 
