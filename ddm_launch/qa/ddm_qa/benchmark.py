@@ -1,4 +1,4 @@
-# Times what users wait for, beside what they would pick instead, and makes one table of it.
+# Times what users wait for, and what they would use instead, in one table.
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
 import importlib.util
@@ -25,8 +25,8 @@ TRIALS, ITERATIONS, RESTARTS, NUM_FRAMES, NUM_PLANS = 15, 200, 9, 10000, 2000
 
 ABOUT = """\
 Times objective and gradient, one retraining, PCA, encoding, plans, renderer and bag reading on the 1600 frames of an
-experiment that it runs first; the experiment itself, in one process and with the nodes; and the lock-step loop beside two
-nodes that only send the same messages to and fro. Starts what it needs, a master too. Everything runs on one core where
+experiment that it runs first; the experiment itself, in one process and with the nodes; and the lock-step loop next to
+two nodes that only send the same messages to and fro. Starts what it needs, a master too. Everything runs on one core where
 it can; the machine should have nothing else to do."""
 
 EPILOG = """\
@@ -151,7 +151,7 @@ class Benchmark:
 def main(arguments=None):
     parser = argparse.ArgumentParser(prog="benchmark", description=ABOUT, epilog=EPILOG,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--peers", action="store_true", help="beside it PyTorch, which must be installed")
+    parser.add_argument("--peers", action="store_true", help="also time PyTorch, which must be installed")
     parser.add_argument("--out", default="speed", metavar="DIR", help="default speed")
     options = parser.parse_args(arguments)
 

@@ -29,7 +29,7 @@ package whose input it is. It also checks what must hold for what is accepted, a
 EPILOG = """\
 DIR/fuzzing.csv    a row a target: runs since its last finding, seconds, files in its corpus, findings of this call
 DIR/findings/      the inputs that were found, by target. Again: PROGRAMS/PACKAGE/fuzz_TARGET FILE
-DIR/corpus/        what was learned, from which the next call goes on; its runs are added to the table
+DIR/corpus/        what was learned, from which the next call continues; its runs are added to the table
 DIR/logs/          what each target said
 Exit code: 0 nothing was found, 1 something was, 2 bad options."""
 
@@ -192,7 +192,7 @@ def main(arguments=None):
     parser.add_argument("--jobs", type=int, default=2, metavar="N", help="targets at a time (default: %(default)s)")
     parser.add_argument("--seed", type=int, default=0, metavar="S",
                         help="of the random draws; 0: another each time (default: %(default)s)")
-    parser.add_argument("--junit", metavar="FILE", help="verdicts as a result file of tests, too")
+    parser.add_argument("--junit", metavar="FILE", help="also write the verdicts as a result file of tests")
     arguments = parser.parse_args(arguments)
     for name in ("runs", "jobs"):
         if getattr(arguments, name) < 1:

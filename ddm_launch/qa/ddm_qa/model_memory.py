@@ -1,4 +1,4 @@
-# Has model_node learn from a folder of bags and tells its peak memory.
+# Has model_node learn from a folder of bags and writes down its peak memory.
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
 import os

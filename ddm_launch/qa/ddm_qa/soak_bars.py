@@ -1,4 +1,4 @@
-# What a soak must reach, told from its samples and frames.
+# What a soak must reach, judged by its samples and frames.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
 

@@ -36,7 +36,7 @@ def draw_run(samples, memory, files):
 
 
 def draw(samples, out):
-    """Raises RunFolderError if `out` is no .png."""
+    """Raises Failure if `out` is not a .png."""
     runs = sorted({sample.run for sample in samples})
     with new_figure(PAGE_WIDTH, 4.4) as figure:
         panels = figure.subplots(2, len(runs), sharex="col", sharey="row", squeeze=False, gridspec_kw={"height_ratios": [2, 1]})

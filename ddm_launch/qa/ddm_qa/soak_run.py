@@ -62,7 +62,7 @@ class SoakRun:
         self.samples, self.processes, self.begin = [], {}, None
 
     def make(self, on_progress):
-        """Returns (samples, rows of frames.csv). on_progress: told how much is done, in trials or seconds.
+        """Returns (samples, rows of frames.csv). on_progress: called with how much is done, in trials or seconds.
         Raises Failure if the experiment ends too early or hangs."""
         shutil.rmtree(self.folder, ignore_errors=True)
         os.makedirs(self.folder)

@@ -36,7 +36,7 @@ def grid_around(points):
     """
     low, high = [min(values) for values in zip(*points)], [max(values) for values in zip(*points)]
     if not all(b - a > 1e-9 for a, b in zip(low, high)):
-        raise Failure("the features cover [%g, %g] x [%g, %g], which is no plane" % (
+        raise Failure("the features cover [%g, %g] x [%g, %g], which is not a plane" % (
             low[0], high[0], low[1], high[1]))
     margin = [0.05 * (b - a) for a, b in zip(low, high)]
     return FeatureGrid([a - m for a, m in zip(low, margin)], [b + m for b, m in zip(high, margin)])

@@ -11,7 +11,7 @@ from ddm_launch.command import run_program
 def program(name, about, figures):
     """The main function of a program that draws figures. A figure is a module with
 
-      ABOUT                  what it draws; the first sentence stands in the list of figures
+      ABOUT                  what it draws; --help lists its first sentence
       add_arguments(parser)  of its own; every figure has --out, by default FIGURE.png in the working folder
       draw(options)          writes options.out
     """

@@ -16,7 +16,7 @@ from ddm_model.plain_file import write_file  # noqa: E402
 COLUMN_WIDTH, PAGE_WIDTH = 3.4, 7.0  # [in], to be printed at this size, in one column or across two
 DPI = 200
 
-# The Okabe-Ito set: told apart by colour-blind readers. Figures vary shapes and dashes along with them.
+# The Okabe-Ito set: colour-blind readers can distinguish them. Figures vary shapes and dashes along with them.
 ORANGE, SKY, GREEN, YELLOW = "#E69F00", "#56B4E9", "#009E73", "#F0E442"
 BLUE, VERMILLION, PURPLE, BLACK = "#0072B2", "#D55E00", "#CC79A7", "#000000"
 GREY = "#666666"  # for references

@@ -1,4 +1,4 @@
-# Draws success rates over the frames learned from, beside the curves of the paper: its Fig. 8.
+# Draws success rates over the frames learned from, next to the curves of the paper's Fig. 8.
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
 import math
@@ -24,7 +24,7 @@ OTHERS = ((BLACK, "X"), (ORANGE, "P"), (SKY, "v"), (GREY, "*"))
 OURS_LINE, PUBLISHED_LINE = "-", "--"
 ABOUT = ("Success rate over the frames learned from. One curve per file of many seeds, with the standard error "
          "sqrt(p (1 - p) / (n - 1)); a level line where nothing is learned.")
-LONGEST_PAIR = 54  # [characters] that fit beside each other into the width of a column
+LONGEST_PAIR = 54  # [characters] that fit next to each other into the width of a column
 
 
 class Curve:
@@ -48,9 +48,9 @@ class Curve:
 
 
 def read_curve(name, path, wilson=False):
-    """The curve of a trials.csv or sweep.csv; the number of its seeds stands in the label.
+    """The curve of a trials.csv or sweep.csv; the label names the number of its seeds.
 
-    wilson: with 95 % intervals as a band in the place of standard errors.
+    wilson: with 95 % intervals as a band instead of standard errors.
     """
     runs = read_sweep(path)
     rows = success_rates(runs.values())
@@ -77,14 +77,14 @@ def read_published(path):
 
 
 def styles(names):
-    """(colour, marker) of each curve of ours. Raises Failure if some could not be told apart."""
+    """(colour, marker) of each curve of ours. Raises Failure if some could not be distinguished."""
     of_name = {name: (colour, marker) for name, colour, marker, _, _ in METHODS}
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise Failure("each curve must have a label of its own, got '%s' twice: give it another" % twice[0])
     others = [name for name in names if name not in of_name]
     if len(others) > len(OTHERS):
-        raise Failure("at most %d curves beside those of the paper's methods (%s) can be told apart, got %d: "
+        raise Failure("at most %d curves besides those of the paper's methods (%s) can be distinguished, got %d: "
                              "draw two figures" % (len(OTHERS), "; ".join(of_name), len(others)))
     of_name.update(zip(others, OTHERS))
     return [of_name[name] for name in names]
@@ -117,7 +117,7 @@ def draw_curves(axes, ours, published):
 
 
 def num_legend_columns(ours, published):
-    """2 where the longest label of ours fits beside the longest of the paper's."""
+    """2 where the longest label of ours fits next to the longest of the paper's."""
     first, second = (max([len(curve.label) for curve in curves], default=0) for curves in (ours, published or ours))
     return 2 if first + second <= LONGEST_PAIR else 1
 

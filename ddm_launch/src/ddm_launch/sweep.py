@@ -40,7 +40,7 @@ hosts (--hosts FILE):
   ssh command is $PARALLEL_SSH.
 
 Slurm (--slurm):
-  One task of one core for each seed. What else sbatch shall know goes into the variables that it reads itself:
+  One task of one core for each seed. Everything else that sbatch must know goes into the variables that it reads itself:
   SBATCH_PARTITION, SBATCH_TIMELIMIT, SBATCH_ACCOUNT, SBATCH_QOS, SBATCH_MEM_PER_CPU and so on. Tasks see this workspace
   and DIR under the same paths."""
 
@@ -86,7 +86,7 @@ def parse(arguments):
     options, more = parser.parse_args(arguments[:split]), arguments[split + 1:]
     for word in more:
         if re.match(r"(-h|--(help|preset|plant|seed|trials|out)(=.*)?)$", word):
-            parser.error("%s after '--': only options that sweep itself has not may stand there" % word)
+            parser.error("%s after '--': only options that sweep itself does not have may follow it" % word)
     if options.program != "run_experiment" and options.trials is not None:
         parser.error("--trials is an option of run_experiment, %s has none: leave it out" % options.program)
     if options.program == "run_experiment" and options.trials is None:
@@ -94,7 +94,7 @@ def parse(arguments):
     if options.hosts is not None and options.slurm:
         parser.error("--hosts and --slurm exclude each other: a Slurm cluster chooses its hosts itself")
     if options.hosts is not None and not os.path.isfile(options.hosts):
-        parser.error("--hosts must name a file of ssh hosts, got '%s', which is none" % options.hosts)
+        parser.error("--hosts must name a file of ssh hosts, got '%s', which is not a file" % options.hosts)
     return options, more
 
 
@@ -132,7 +132,7 @@ def report(folder, seeds, start):
         print("sweep: not finished:", file=sys.stderr)
         for seed, problem in problems.items():
             print("  seed %d: %s" % (seed, problem), file=sys.stderr)
-        print("sweep: the same command goes on where this one ended", file=sys.stderr)
+        print("sweep: the same command resumes where this one ended", file=sys.stderr)
     versions = folder.versions(last_rows)
     if len(versions) > 1:
         print("sweep: warning: the seeds come from %d versions of the code, they may not be comparable: %s"

@@ -128,7 +128,7 @@ class SweepFolder:
         return words + (", is the disk full?" if shutil.disk_usage(self.path).free < FULL_BYTES else "")
 
     def _exit_code(self, seed):
-        """As GNU parallel's job log tells it; None where it does not, as with Slurm."""
+        """From GNU parallel's job log; None where it has none, as with Slurm."""
         try:
             with open(self.joblog, errors="replace", newline="") as stream:
                 jobs = list(csv.DictReader(stream, delimiter="\t", quoting=csv.QUOTE_NONE))
@@ -178,7 +178,7 @@ class SweepFolder:
         return lines[0], lines[1:count + 1], rows[count - 1]
 
     def _require_equal(self, first, seed, header):
-        """One table speaks of one experiment: same columns, same configuration as the first finished seed."""
+        """A table is about one experiment: same columns, same configuration as the first finished seed."""
         there, here = (read_yaml(os.path.join(self.seed_folder(k), "config.yaml")) for k in (first[0], seed))
         found = differences(there, here, MAY_DIFFER)
         if header != first[1]:

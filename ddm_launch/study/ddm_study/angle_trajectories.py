@@ -10,7 +10,7 @@ from ddm_launch.film_strip import SUCCESS_LIMIT_RAD
 from ddm_launch.tables import read_csv
 
 ABOUT = ("The angle over time in greedy evaluations. One panel per number of frames learned from and all seeds in it; how "
-         "many succeed stands above each panel. Angles count full turns; what lies beyond the panels is cut off.")
+         "many succeed is written above each panel. Angles count full turns; what lies beyond the panels is cut off.")
 COLUMNS = 5  # panels in a row
 MOST_TURNS = 2.3  # the panels show at most +- this many half turns [pi rad]; few trajectories leave them
 TARGET = "#c8c8c8"  # light enough that lines on it stand out
@@ -75,7 +75,7 @@ def target_handle():
 
 
 def draw_panel(axes, trajectories, frames):
-    """All seeds after so many frames, those that succeed drawn last; how many do stands above."""
+    """All seeds after so many frames, those that succeed drawn last; how many do is written above."""
     for success, colour, style, width in ((False, VERMILLION, (0, (3, 1)), 0.7), (True, BLUE, "-", 0.7)):
         for trajectory in trajectories.values():
             if trajectory.success is success:

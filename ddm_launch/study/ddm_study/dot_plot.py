@@ -20,7 +20,7 @@ def draw_figure_of_dots(figure, names, series, num_columns):
 
 
 def draw_dots(axes, names, series):
-    """names: of the rows, from top to bottom. The dots of a row stand below each other, the first series on top."""
+    """names: of the rows, from top to bottom. The dots of a row are below each other, the first series on top."""
     for k, each in enumerate(series):
         shift = SPREAD * (k - 0.5 * (len(series) - 1))
         errors = [[value - low for value, low in zip(each.values, each.lows)],

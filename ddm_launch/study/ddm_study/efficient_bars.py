@@ -8,7 +8,7 @@ from ddm_study.efficient_tables import REMEDY
 from ddm_study.paper_tables import verdict
 
 ROUNDING = 1e-9  # rates are quotients of small whole numbers, and bars decimal fractions
-SEEDS, FEW_SEEDS = 50, 20  # without as many there is no verdict
+SEEDS, FEW_SEEDS = 50, 20  # with fewer there is no verdict
 FIRST_FRAMES, LATER_FRAMES, GRAVITY_FRAMES, NUISANCE_FRAMES = 100, (200, 1600), (1500, 2000), 500
 TRIAL_FRAMES = 100
 LEAST_FIRST, LEAST_MEAN, LEAST_LATER, MOST_UNSETTLED = 0.86, 0.99, 0.96, 0.04

@@ -19,7 +19,7 @@ TRIALS_OF_TIMES = (0, 4, 9, 14)  # 100 to 1500 frames
 
 
 def success_table(trials, published):
-    """Our success rate beside the paper's at equal frames.
+    """Our success rate next to the paper's at equal frames.
 
     trials: path of a trials.csv of many seeds; published: path of the paper's curves. Rows (frames, seeds, success,
     its standard error, paper's success, its standard error, difference in standard errors of the paper).
@@ -158,7 +158,7 @@ def schedule_agreement(folder):
 
 
 def agreement_table(folder, published, pilco=()):
-    """Rows (point, claim of the paper or bar, here, yes | no | n/a) of all that numbers can tell.
+    """Rows (point, claim of the paper or bar, here, yes | no | n/a) of all that numbers can decide.
 
     pilco: those of pilco_tables.LABELS that have results.
     """

@@ -1,4 +1,4 @@
-# What is kept of PILCO's run folders: its policy searches, and the angles that it predicted beside the actual ones.
+# What is kept of PILCO's run folders: its policy searches, and the angles that it predicted next to the actual ones.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 

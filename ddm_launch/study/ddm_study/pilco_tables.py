@@ -91,7 +91,7 @@ def total_seconds(folder, name):
 
 
 def time_rows(folder, names):
-    """Rows (what, frames, median, largest, unit, source), to stand beside those of DDM + MPC."""
+    """Rows (what, frames, median, largest, unit, source), as those of DDM + MPC."""
     rows = []
     for name in names:
         def add(what, frames, values, unit, table="trials.csv"):

@@ -21,7 +21,7 @@ NUM_FEW_SEEDS = 20  # with gravity, and of each nuisance
 FULL_LABEL = "Full preset"
 
 ABOUT = """\
-Makes the results about data-efficiency: the preset `efficient` on the pendulum beside the paper's curves, what each of
+Makes the results about data-efficiency: the preset `efficient` on the pendulum next to the paper's curves, what each of
 its ingredients is worth, what else was tried, the swing-up with gravity, and nuisances of the camera, with tables and
 figures. All of it takes hours; the same command resumes, and --only chooses parts."""
 
@@ -201,7 +201,7 @@ class EfficientReproduction(StepRunner):
             return []
         step = self.reference_step()
         config = flat(read_yaml(os.path.join(step.seed_folder(self.out, step.seeds[0]), "config.yaml")))
-        return ["note: config/%s/%s.yaml changes nothing of the preset %s: its differences are no result" % (
+        return ["note: config/%s/%s.yaml changes nothing of the preset %s: its differences mean nothing" % (
             VARIANTS[part], name, self.preset) for part, variants in self.variants.items()
                 for name, path in variants.items()
                 if all(config.get(key) == value for key, value in flat(read_yaml(path)).items())]

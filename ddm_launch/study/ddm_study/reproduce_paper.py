@@ -30,7 +30,7 @@ DISTRIBUTION_SECONDS = 3  # a swing-up takes one; what happens later shows in th
 
 ABOUT = """\
 Reproduces the paper's experiments: success on the pendulum (Fig. 7 and 8) with the oracle, PILCO and other training
-schedules beside it, predictions of the moving tile (Fig. 4 and 5) and of the pendulum, the feature space (Fig. 6),
+schedules for comparison, predictions of the moving tile (Fig. 4 and 5) and of the pendulum, the feature space (Fig. 6),
 tables and figures. PILCO takes hours, all else minutes: --without-pilco leaves it out. The same command resumes;
 without that option it adds PILCO."""
 
@@ -179,6 +179,6 @@ def main(arguments=None):
     parser.add_argument("--preset", default="paper", help="default paper; debug is for a quick look at the path")
     parser.add_argument("--without-pilco", action="store_true", help="leave out PILCO, which takes hours")
     parser.add_argument("--config", action="append", default=[], metavar="FILE",
-                        help="YAML file with what shall differ in all experiments; repeatable, later files win")
+                        help="YAML file with overrides for all experiments; repeatable, later files win")
     parser.add_argument("--jobs", type=positive, metavar="N", help="seeds at a time; default one per core")
     return Reproduction(parser.parse_args(arguments)).run()

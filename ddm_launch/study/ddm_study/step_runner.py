@@ -111,7 +111,7 @@ class StepRunner:
             try:
                 lines = self.work()
             except Interrupted:
-                print("%s: the same command goes on" % self.name, file=sys.stderr)
+                print("%s: the same command resumes" % self.name, file=sys.stderr)
                 raise
             print("\n".join(lines + ["results: %s (%.0f s)" % (self.out, time.monotonic() - start)]))
             versions = sorted({step["version"] for step in self.measured.values()})
@@ -189,7 +189,7 @@ class StepRunner:
         if error:
             raise error
         if process.returncode != 0 and not is_up:
-            raise Failure("%s: not all seeds are finished, see %s; the same command goes on" % (step.name, log))
+            raise Failure("%s: not all seeds are finished, see %s; the same command resumes" % (step.name, log))
         return process.returncode == 0
 
     def require_settings(self, step):
