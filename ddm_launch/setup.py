@@ -4,4 +4,4 @@ from setuptools import setup
 
 from catkin_pkg.python_setup import generate_distutils_setup
 
-setup(**generate_distutils_setup(packages=["ddm_launch", "ddm_launch.faults", "ddm_launch.soak"], package_dir={"": "src"}))
+setup(**generate_distutils_setup(packages=["ddm_launch"], package_dir={"": "src"}))

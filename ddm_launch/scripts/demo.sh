@@ -99,8 +99,8 @@ run_experiment() {
 
 draw_pictures() {
   say "Drawing"
-  rosrun ddm_launch learning_curve "$runs" --out "$runs/learning_curve.png" || fail "no learning curve was drawn."
-  rosrun ddm_launch film_strip "$runs" --out "$runs/film_strip.png" || fail "no film strip was drawn."
+  rosrun ddm_launch figure learning_curve "$runs" --out "$runs/learning_curve.png" || fail "no learning curve was drawn."
+  rosrun ddm_launch figure film_strip "$runs" --out "$runs/film_strip.png" || fail "no film strip was drawn."
 }
 
 print_result() {
@@ -115,7 +115,7 @@ Pictures
 What to try next (in a new terminal, first: export PATH=/usr/bin:\$PATH; . $DDM_WS/devel/setup.bash)
   bash $checkout/ddm_launch/scripts/demo.sh --trials $((trials + 5))
       goes on with more trials
-  rosrun ddm_launch film_strip $runs --out /tmp/film_strip.png --gif /tmp/swing_up.gif
+  rosrun ddm_launch figure film_strip $runs --out /tmp/film_strip.png --gif /tmp/swing_up.gif
       the same swing-up as an animation
   roslaunch ddm_launch experiment.launch preset:=paper plant:=pendulum seed:=2 trials:=15 runs:=$DDM_WS/runs/seed_2 rviz:=true
       another seed, with the camera, the predictions and the feature space on the screen

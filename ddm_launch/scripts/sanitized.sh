@@ -46,7 +46,8 @@ short_loop() {  # address|thread REPORTS
   . "$folder/devel/setup.bash"
   set -u
   local port programs=$folder/devel/lib/ddm_launch
-  port=$(/usr/bin/python3 -c 'from ddm_launch.programs import free_port; print(free_port())')
+  port=$(PYTHONPATH=$PYTHONPATH:$checkout/ddm_launch/qa /usr/bin/python3 -c \
+    'from ddm_qa.programs import free_port; print(free_port())')
   "$programs/run_experiment" --preset debug --trials 1 --out "$out/process" </dev/null >"$out/process.log" 2>&1 &&
     "$programs/evaluate" --preset debug --model "$out/process/trial_001/model.ddm" --seeds 0:8 --jobs 4 \
       --out "$out/evaluate" </dev/null >"$out/evaluate.log" 2>&1 || cat "$out"/*.log >"$2/one_process"
@@ -76,8 +77,7 @@ run_sanitized() {  # address|thread PATTERN
 
 # Runs the fuzz targets; arguments are those of fuzz.sh.
 run_fuzzing() {
-  PYTHONPATH=$checkout/ddm_launch/src:$checkout/ddm_model/src /usr/bin/python3 -c \
-    'import sys; from ddm_launch.fuzzing import main; sys.exit(main())' \
+  PYTHONPATH=$checkout/ddm_launch/src:$checkout/ddm_model/src /usr/bin/python3 "$checkout/ddm_launch/qa/scripts/fuzzing" \
     --programs "$(sanitized_folder address)/devel/lib" "$@"
 }
 

@@ -43,7 +43,7 @@ packages_to_run=(
 # What only the tests need: linters, the check of .rosinstall, sanitizers with symbols in their reports, a screen for
 # rviz, and other machines, played by this one.
 packages_to_test=(
-  catkin-lint catkin-tools clang-format python3-wstool git valgrind
+  catkin-lint catkin-tools clang-format python3-wstool git
   clang libclang-rt-dev llvm
   xvfb imagemagick
   openssh-client openssh-server iproute2 nftables

@@ -8,7 +8,8 @@ import sys
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch import angle_trajectories  # noqa: E402
+import rooms  # noqa: E402, F401
+from ddm_study import angle_trajectories  # noqa: E402
 from ddm_launch.figure_style import BLUE, PAGE_WIDTH, VERMILLION, new_figure  # noqa: E402
 import figure_case  # noqa: E402
 
@@ -69,16 +70,16 @@ class AngleTrajectoriesTest(figure_case.FigureCase):
 
     def test_fifteen_trials_of_sixteen_seeds_make_a_picture_as_wide_as_a_page(self):
         lines = [row for trial in range(1, 16) for seed in range(16) for row in rows(seed, trial, math.pi * seed / 15)]
-        self.assertDrawn(angle_trajectories.main, [self.writeLines("angles.csv", HEADER, *lines)], PAGE_WIDTH)
+        self.assertDrawn(angle_trajectories, [self.writeLines("angles.csv", HEADER, *lines)], PAGE_WIDTH)
 
     def test_a_file_that_is_missing_or_lacks_a_column_is_named(self):
-        self.assertRefused(angle_trajectories.main, ["missing.csv"], "missing.csv", "reproduce_paper")
+        self.assertRefused(angle_trajectories, ["missing.csv"], "missing.csv", "reproduce_paper")
         path = self.writeLines("angles.csv", "seed,step,time_s", "1,0,0")
-        self.assertRefused(angle_trajectories.main, [path], path, "no column frames, angle_rad, success")
+        self.assertRefused(angle_trajectories, [path], path, "frames, angle_rad, success")
 
     def test_a_step_that_is_there_twice_is_refused(self):
         path = self.writeLines("angles.csv", HEADER, *(rows(1, 1, 1.0) + rows(1, 1, 2.0)))
-        self.assertRefused(angle_trajectories.main, [path], "step 0 of seed 1 after 1 frames twice")
+        self.assertRefused(angle_trajectories, [path], "seed 1, frames 1, step 0")
 
 
 if __name__ == "__main__":

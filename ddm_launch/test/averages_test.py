@@ -10,8 +10,7 @@ from ddm_launch.run_folder import Trial
 
 
 def trial(frames, success, strict):
-    return Trial({"trial": "0", "frames": frames, "success": success, "success_strict": strict,
-                  "final_error_deg": ""}, "made up")
+    return Trial(0, frames, success, strict, None)
 
 
 class AveragesTest(unittest.TestCase):
@@ -35,7 +34,7 @@ class AveragesTest(unittest.TestCase):
         self.assertGreater(wide[1], narrow[1])
 
     def test_both_measures_of_success_have_a_rate_of_their_own(self):
-        runs = [[trial("100", "1", "0"), trial("200", "1", "1")], [trial("100", "1", "1"), trial("200", "", "")]]
+        runs = [[trial(100, True, False), trial(200, True, True)], [trial(100, True, True), trial(200, None, None)]]
         self.assertEqual(success_rates(runs), [(100, 1.0, 0.0, 2), (200, 1.0, 0.0, 1)])
         self.assertEqual(success_rates(runs, "success_strict"), [(100, 0.5, 0.5, 2), (200, 1.0, 0.0, 1)])
 

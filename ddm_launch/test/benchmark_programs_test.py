@@ -8,7 +8,8 @@ from unittest import mock
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch import benchmark  # noqa: E402
+import rooms  # noqa: E402, F401
+from ddm_qa import benchmark  # noqa: E402
 from processes import call, find_program, run_experiment  # noqa: E402
 from scratch_case import ScratchCase  # noqa: E402
 

@@ -1,16 +1,15 @@
 #!/usr/bin/python3
 # The ablation's figure and that of the nuisances: their dots and bars, the order of rows, and what is refused.
 # SPDX-License-Identifier: BSD-3-Clause
-import contextlib
-import io
 import os
 import sys
 
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch import ablation_compared, nuisances_compared, reproduce_efficient  # noqa: E402
-from ddm_launch.dot_plot import draw_dots  # noqa: E402
+import rooms  # noqa: E402, F401
+from ddm_study import ablation_compared, nuisances_compared, reproduce_efficient  # noqa: E402
+from ddm_study.dot_plot import draw_dots  # noqa: E402
 from ddm_launch.figure_style import COLUMN_WIDTH, new_figure  # noqa: E402
 import figure_case  # noqa: E402
 
@@ -46,8 +45,8 @@ class DotPlotsTest(figure_case.FigureCase):
         """Returns (names of the rows, {label: (values, bars)}, edges of the vertical axis)."""
         variants, frames = ablation_compared.read_differences(self.writeAblation())
         with new_figure(COLUMN_WIDTH, 3.0) as figure:
-            axes = figure.add_subplot(1, 1, 1)
-            ablation_compared.draw_differences(axes, variants, frames)
+            ablation_compared.draw_figure(figure, variants, frames)
+            axes = figure.axes[0]
             drawn = {label: (figure_case.drawn_points(axes, label), bars(axes, label))
                      for label in ("100 frames", LATER)}
             return [tick.get_text() for tick in axes.get_yticklabels()], drawn, axes.get_ylim()
@@ -89,7 +88,7 @@ class DotPlotsTest(figure_case.FigureCase):
     def test_a_single_number_of_frames_is_one_dot_in_a_row(self):
         path = self.writeAblation("preset,Full preset,100,50,0.9,0.01,0,0", "steps,Without steps,100,5,0.9,0.01,-1,0")
         self.assertEqual(ablation_compared.read_differences(path)[1], ["100"])
-        self.assertDrawn(ablation_compared.main, [path], COLUMN_WIDTH)
+        self.assertDrawn(ablation_compared, [path], COLUMN_WIDTH)
 
     def test_the_labels_of_the_ablations_leave_room_for_axis_and_legend(self):
         labels = [reproduce_efficient.label_of(path) for path in reproduce_efficient.yaml_names("ablations").values()]
@@ -120,28 +119,28 @@ class DotPlotsTest(figure_case.FigureCase):
                 self.assertAlmostEqual(right, expected[1])
 
     def test_both_tables_make_a_picture_as_wide_as_a_column(self):
-        self.assertDrawn(ablation_compared.main, [self.writeAblation()], COLUMN_WIDTH)
+        self.assertDrawn(ablation_compared, [self.writeAblation()], COLUMN_WIDTH)
         os.remove(self.out)
-        self.assertDrawn(nuisances_compared.main, [self.writeNuisances()], COLUMN_WIDTH)
+        self.assertDrawn(nuisances_compared, [self.writeNuisances()], COLUMN_WIDTH)
 
-    def test_help_tells_of_a_per_cent_sign_only_once(self):
-        for main in (ablation_compared.main, nuisances_compared.main):
-            with contextlib.redirect_stdout(io.StringIO()) as output:
-                self.assertRaises(SystemExit, main, ["--help"])
-            self.assertNotIn("%%", output.getvalue())
+    def test_help_shows_a_per_cent_sign_only_once(self):
+        for module in (ablation_compared, nuisances_compared):
+            code, output = self.callMain(module, "--help")
+            self.assertEqual(code, 0)
+            self.assertNotIn("%%", output)
 
     def test_a_variant_that_lacks_a_row_is_named(self):
         path = self.writeAblation("preset,Full preset,100,50,0.9,0.01,0,0", "preset,Full preset,200,50,0.9,0.01,0,0",
                                   "steps,Without steps,100,50,0.9,0.01,0,0")
-        self.assertRefused(ablation_compared.main, [path], "no row of steps at 100 or 200 frames")
+        self.assertRefused(ablation_compared, [path], "steps", "100", "200")
 
     def test_the_preset_alone_is_nothing_to_draw(self):
         path = self.writeAblation("preset,Full preset,100,50,0.9,0.01,0,0")
-        self.assertRefused(ablation_compared.main, [path], path, "no row of any variant")
+        self.assertRefused(ablation_compared, [path], path)
 
     def test_missing_tables_are_named_with_the_remedy(self):
-        for main in (ablation_compared.main, nuisances_compared.main):
-            self.assertRefused(main, ["missing.csv"], "missing.csv", "reproduce_efficient writes it")
+        for module in (ablation_compared, nuisances_compared):
+            self.assertRefused(module, ["missing.csv"], "missing.csv", "reproduce_efficient writes it")
 
 
 if __name__ == "__main__":

@@ -9,8 +9,8 @@ import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from ddm_launch import feature_plane  # noqa: E402
+from ddm_launch.command import Failure  # noqa: E402
 from ddm_launch.figure_style import COLUMN_WIDTH, PAGE_WIDTH, new_figure  # noqa: E402
-from ddm_launch.run_folder import RunFolderError  # noqa: E402
 from ddm_model.feature_grid import BRIGHTEST, DARKEST, FeatureGrid  # noqa: E402
 import figure_case  # noqa: E402
 
@@ -68,29 +68,29 @@ class FeaturePlaneTest(figure_case.FigureCase):
 
     def test_one_folder_fills_a_column_and_two_stand_side_by_side(self):
         joint, sequential = self.makeFolder("a", "joint"), self.makeFolder("b", "sequential")
-        self.assertDrawn(feature_plane.main, [joint], COLUMN_WIDTH)
-        self.assertDrawn(feature_plane.main, [joint, sequential], PAGE_WIDTH)
+        self.assertDrawn(feature_plane, [joint], COLUMN_WIDTH)
+        self.assertDrawn(feature_plane, [joint, sequential], PAGE_WIDTH)
 
     def test_features_that_lie_on_a_line_are_refused(self):
-        with self.assertRaisesRegex(RunFolderError, r"\[-1, 1\] x \[0.5, 0.5\], which is no plane"):
+        with self.assertRaisesRegex(Failure, r"\[-1, 1\] x \[0.5, 0.5\]"):
             feature_plane.grid_around([(-1.0, 0.5), (1.0, 0.5)])
 
     def test_an_unknown_set_and_features_of_three_numbers_are_refused(self):
         self.writeLines("features.csv", HEADER, "0,validation,1,1,0,0")
-        with self.assertRaisesRegex(RunFolderError, "must be training or held_out, got 'validation'"):
+        with self.assertRaisesRegex(Failure, "column set.*validation"):
             feature_plane.read_features(self.scratch)
         self.writeLines("features.csv", HEADER + ",z_3", "0,training,1,1,0,0,0")
-        with self.assertRaisesRegex(RunFolderError, "more than two numbers"):
+        with self.assertRaisesRegex(Failure, "more than two numbers"):
             feature_plane.read_features(self.scratch)
 
     def test_a_configuration_without_schedule_is_refused(self):
         self.writeLines("features.csv", HEADER, *ROWS)
         self.writeLines("config.yaml", "training: {}")
-        self.assertRefused(feature_plane.main, [self.scratch], "config.yaml", "training/schedule")
+        self.assertRefused(feature_plane, [self.scratch], "config.yaml", "training/schedule")
 
     def test_a_folder_without_features_is_named_with_the_remedy(self):
         self.writeLines("config.yaml", "training: {schedule: joint}")
-        self.assertRefused(feature_plane.main, [self.scratch], "features.csv", "prediction_experiment")
+        self.assertRefused(feature_plane, [self.scratch], "features.csv", "prediction_experiment")
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ import subprocess
 from PIL import Image
 import roslib.packages
 
-from ddm_launch import figure_style
+from ddm_launch import figure, figure_style
 from processes import call_main
 from scratch_case import ScratchCase
 
@@ -41,6 +41,12 @@ def make_run(folder):
     return os.path.join(folder, "trial_000", "model.ddm")
 
 
+def call_figure(module, *arguments):
+    """Draws a figure as its program does. Returns (exit code, output)."""
+    name = module.__name__.split(".")[-1]
+    return call_main(figure.program("figure", "", [module]), [name] + list(arguments))
+
+
 class FigureCase(ScratchCase):
     def setUp(self):
         super().setUp()
@@ -50,21 +56,21 @@ class FigureCase(ScratchCase):
         """Writes a text file into the folder of this test. Returns its path."""
         return self.write(name, "".join(line + "\n" for line in lines))
 
-    def callMain(self, main, *arguments):
-        """Returns (exit code, output) of a program that draws self.out."""
-        return call_main(main, list(arguments) + ["--out", self.out])
+    def callMain(self, module, *arguments):
+        """Returns (exit code, output) of a figure that is drawn into self.out."""
+        return call_figure(module, *arguments, "--out", self.out)
 
-    def assertRefused(self, main, arguments, *parts):
-        """The program ends with code 1, says all parts and draws nothing."""
-        code, output = self.callMain(main, *arguments)
+    def assertRefused(self, module, arguments, *parts):
+        """The program ends with code 1, names all parts and draws nothing."""
+        code, output = self.callMain(module, *arguments)
         self.assertEqual(code, 1, output)
         for part in parts:
             self.assertIn(part, output)
         self.assertFalse(os.path.exists(self.out))
 
-    def assertDrawn(self, main, arguments, width):
+    def assertDrawn(self, module, arguments, width):
         """The program draws a picture of this width [in] that is not blank and not too large for a repository."""
-        code, output = self.callMain(main, *arguments)
+        code, output = self.callMain(module, *arguments)
         self.assertEqual((code, output), (0, "wrote %s\n" % self.out))
         self.assertLess(os.path.getsize(self.out), 200000)
         with Image.open(self.out) as picture:

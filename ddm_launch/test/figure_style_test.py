@@ -10,8 +10,9 @@ import rosunit
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from ddm_launch import figure_style  # noqa: E402
 from ddm_launch.averages import mean_and_error  # noqa: E402
-from ddm_launch.run_folder import RunFolderError  # noqa: E402
+from ddm_launch.command import Failure, run_program  # noqa: E402
 from figure_case import FigureCase  # noqa: E402
+from processes import call_main  # noqa: E402
 
 
 class FigureStyleTest(FigureCase):
@@ -39,13 +40,12 @@ class FigureStyleTest(FigureCase):
         self.assertGreaterEqual(min(sizes), 7)
 
     def test_a_picture_that_is_no_png_is_refused(self):
-        with self.assertRaisesRegex(RunFolderError, r"must be a \.png, got '.*a\.pdf'"):
+        with self.assertRaisesRegex(Failure, r"\.png.*a\.pdf"):
             self.draw("a.pdf")
 
     def test_a_folder_that_does_not_exist_ends_with_code_1_and_its_name(self):
         self.out = self.file("missing", "a.png")
-        code, output = self.callMain(lambda arguments: figure_style.write(
-            "program", arguments[-1], lambda out: self.draw(out)))
+        code, output = call_main(lambda: run_program("program", lambda: self.draw(self.out)))
         self.assertEqual(code, 1)
         self.assertTrue(output.startswith("program: "), output)
         self.assertIn(self.out, output)

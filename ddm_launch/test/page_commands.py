@@ -6,7 +6,7 @@ import re
 import pages
 
 # Programs and launch files that page_commands_test runs as the page says, but for CHEAPER.
-RUN_HERE = {"run_experiment", "sweep", "film_strip", "learning_curve", "success_rate", "evaluate", "train_from_bags",
+RUN_HERE = {"run_experiment", "sweep", "figure film_strip", "figure learning_curve", "figure success_rate", "evaluate", "train_from_bags",
             "inspect", "export", "simulate", "sim_node", "mpc_node", "dynparam", "experiment.launch", "record.launch",
             "control.launch", "replay.launch", "demo.sh"}
 
@@ -35,7 +35,7 @@ COMMANDS_ELSEWHERE = [
 NOT_RUN = {r"^perf (record|report)": "a profiler, which needs rights on the kernel",
            r"pilco_benchmark": "a minute of computing times"}
 
-# The same programs and options, less work. What is left out here has a test of its own: paper_reproduction, rviz.test.
+# The same programs and options, less work. What is left out here has a test of its own: reproduce_paper_test, rviz_test.
 CHEAPER = [
     (r"preset:=\w+", "preset:=debug"), (r"--preset \w+", "--preset debug"), (r"presets/\w+", "presets/debug"),
     (r"(run_experiment)(?!.*--preset)", r"\1 --preset debug"), (r"(run_experiment)(?!.*--trials)", r"\1 --trials 1"),
@@ -86,7 +86,7 @@ def usage_commands(text):
 
 def program_of(command):
     """Name of the program or launch file that a command starts, or None for one of the shell."""
-    found = re.search(r"\b(?:rosrun|roslaunch(?: --wait)?|catkin_find --libexec) \w+ (\w[\w.]*)|scripts/(\w+\.sh)",
+    found = re.search(r"\b(?:rosrun|roslaunch(?: --wait)?|catkin_find --libexec) \w+ (figure \w+|\w[\w.]*)|scripts/(\w+\.sh)",
                       command)
     return found and (found.group(1) or found.group(2))
 

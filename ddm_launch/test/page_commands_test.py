@@ -137,9 +137,10 @@ class PageCommandsTest(SharedScratchCase):
         package = re.search(r"(?:rosrun|--libexec) (\w+)", command)
         if program in ("sim_node", "mpc_node", "dynparam", "speed_kernels"):
             return {"--benchmark_filter"}
-        path = (find_program(package.group(1), program) if package
-                else os.path.join(pages.CHECKOUT, "ddm_launch", "scripts", program))
-        code, output = call((["bash"] if program.endswith(".sh") else []) + [path, "--help"])
+        name, *words = program.split()
+        path = (find_program(package.group(1), name) if package
+                else os.path.join(pages.CHECKOUT, "ddm_launch", "scripts", name))
+        code, output = call((["bash"] if name.endswith(".sh") else []) + [path] + words + ["--help"])
         assert code == 0, output
         return set(re.findall(r"--\w[\w-]*", output))
 
@@ -148,20 +149,19 @@ class PageCommandsTest(SharedScratchCase):
         self.assertGreater(len(rows), 12)
         for row in rows:
             programs = [page_commands.program_of(command) for command in pages.code_spans(row[1])]
-            text = "".join(self.sourcesOf(test) for test in re.findall(r"\w+\.test", row[2]))
+            text = "".join(self.sourcesOf(test) for test in re.findall(r"\w+(?:\.test|_test\.py)", row[2]))
             for program in filter(None, programs):
                 if program != "dynparam":  # the test turns by the library behind it
                     self.assertRegex(text, r"\b%s\b" % re.escape(program.replace(".launch", "")), row)
 
     @staticmethod
     def sourcesOf(test):
-        """A .test file and all sources of the tests beside it that its programs may be made of."""
+        """A test and all sources beside it that its programs may be made of."""
         for package in pages.PACKAGES:
             folder = os.path.join(pages.CHECKOUT, package, "test")
             if os.path.exists(os.path.join(folder, test)):
                 text = pages.read(os.path.join(folder, test))
-                names = re.findall(r'type="(\w+)\.py"', text)
-                for name in names:
+                for name in re.findall(r'type="(\w+)\.py"', text):
                     text += pages.read(os.path.join(folder, name + ".py"))
                 for helper in re.findall(r"^from (both_drivers_case|processes|robot_stand_in|toy_robot) import", text,
                                          re.MULTILINE):

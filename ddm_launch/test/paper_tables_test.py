@@ -9,7 +9,8 @@ import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from run_files import COLUMNS  # noqa: E402
-from ddm_launch import paper_tables  # noqa: E402
+import rooms  # noqa: E402, F401
+from ddm_study import paper_tables  # noqa: E402
 from ddm_launch.run_folder import read_sweep  # noqa: E402
 from scratch_case import ScratchCase  # noqa: E402
 import synthetic_run  # noqa: E402

@@ -8,8 +8,8 @@ import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from ddm_launch import pendulum_feature_space  # noqa: E402
+from ddm_launch.command import Failure  # noqa: E402
 from ddm_launch.figure_style import COLUMN_WIDTH, new_figure  # noqa: E402
-from ddm_launch.run_folder import RunFolderError  # noqa: E402
 import figure_case  # noqa: E402
 
 HEADER = "kind,step,z_1,z_2"
@@ -49,19 +49,19 @@ class PendulumFeatureSpaceTest(figure_case.FigureCase):
     def test_a_real_model_makes_a_picture(self):
         model = figure_case.make_run(self.file("run"))
         path = self.writeLines("space.csv", HEADER, *ROWS)
-        self.assertDrawn(pendulum_feature_space.main, [path, "--model", model], COLUMN_WIDTH)
+        self.assertDrawn(pendulum_feature_space, [path, "--model", model], COLUMN_WIDTH)
 
     def test_a_kind_that_is_missing_or_unknown_is_named(self):
-        with self.assertRaisesRegex(RunFolderError, "no row of kind goal"):
+        with self.assertRaisesRegex(Failure, "kind goal"):
             self.draw([row for row in ROWS if not row.startswith("goal")])
-        with self.assertRaisesRegex(RunFolderError, "got 'dream'"):
+        with self.assertRaisesRegex(Failure, "got 'dream'"):
             self.draw(ROWS + ["dream,0,0,0"])
 
     def test_a_file_or_model_that_is_missing_is_named(self):
-        self.assertRefused(pendulum_feature_space.main, ["missing.csv", "--model", "m.ddm"], "missing.csv",
+        self.assertRefused(pendulum_feature_space, ["missing.csv", "--model", "m.ddm"], "missing.csv",
                            "feature_space writes it")
         path = self.writeLines("space.csv", HEADER, *ROWS)
-        self.assertRefused(pendulum_feature_space.main, [path, "--model", "no.ddm"], "no.ddm")
+        self.assertRefused(pendulum_feature_space, [path, "--model", "no.ddm"], "no.ddm")
 
 
 if __name__ == "__main__":

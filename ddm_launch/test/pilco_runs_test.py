@@ -7,8 +7,11 @@ import sys
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch import learning_curve, pilco_runs, success_rate  # noqa: E402
-from ddm_launch.run_folder import RunFolderError, read_sweep, read_trials  # noqa: E402
+import rooms  # noqa: E402, F401
+from ddm_launch import learning_curve, success_rate  # noqa: E402
+from ddm_launch.command import Failure  # noqa: E402
+from ddm_launch.run_folder import read_sweep, read_trials  # noqa: E402
+from ddm_study import pilco_runs  # noqa: E402
 import figure_case  # noqa: E402
 import synthetic_run  # noqa: E402
 
@@ -29,7 +32,7 @@ class PilcoRunsTest(figure_case.FigureCase):
                          [(125, True), (250, True), (375, True)])
         self.assertEqual(list(read_sweep(self.path("trials.csv"))), [7])
         self.assertEqual(success_rate.read_curve("PILCO, state", self.path("trials.csv")).frames, [125, 250, 375])
-        code, output = self.callMain(learning_curve.main, self.run_folder)
+        code, output = self.callMain(learning_curve, self.run_folder)
         self.assertEqual((code, output), (0, "wrote %s\n" % self.out))
 
     def test_each_search_has_a_row(self):
@@ -43,10 +46,10 @@ class PilcoRunsTest(figure_case.FigureCase):
 
     def test_a_run_that_is_not_pilcos_is_named(self):
         path = self.write(self.path("trial_001", "pilco.yaml"), "gp_s: 1\npolicy_search_s: 2\n")
-        with self.assertRaisesRegex(RunFolderError, "trial_001/pilco.yaml has no sparse, points, .*PILCO"):
+        with self.assertRaisesRegex(Failure, "trial_001/pilco.yaml.*sparse, points"):
             pilco_runs.search_rows({7: self.run_folder})
         os.remove(path)
-        with self.assertRaisesRegex(RunFolderError, "trial_001/pilco.yaml cannot be read .*PILCO"):
+        with self.assertRaisesRegex(Failure, "trial_001/pilco.yaml"):
             pilco_runs.search_rows({7: self.run_folder})
 
     def test_a_policy_is_shown_as_predicted_in_its_evaluation_and_in_the_next_trial(self):
@@ -67,7 +70,7 @@ class PilcoRunsTest(figure_case.FigureCase):
     def test_a_prediction_of_something_else_than_the_angle_is_refused(self):
         with open(self.path("trial_000", "prediction.csv"), "w") as stream:
             stream.write("step,time_s,z_1_mean,z_1_std,cost_mean,cost_std\n0,0,0.1,0.1,,\n")
-        with self.assertRaisesRegex(RunFolderError, "trial_000/prediction.csv has no column angle_rad_mean"):
+        with self.assertRaisesRegex(Failure, "trial_000/prediction.csv.*angle_rad_mean"):
             pilco_runs.distribution_rows({7: self.run_folder}, [0])
 
 

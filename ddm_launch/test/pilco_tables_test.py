@@ -7,8 +7,10 @@ import sys
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch import pilco_tables, success_rate  # noqa: E402
-from ddm_launch.run_folder import RunFolderError  # noqa: E402
+import rooms  # noqa: E402, F401
+from ddm_launch import success_rate  # noqa: E402
+from ddm_launch.command import Failure  # noqa: E402
+from ddm_study import pilco_tables  # noqa: E402
 from scratch_case import ScratchCase  # noqa: E402
 import synthetic_run  # noqa: E402
 
@@ -95,7 +97,7 @@ class PilcoTablesTest(ScratchCase):
             lines = [line for line in stream if not line.startswith("3,11,")]
         with open(path, "w") as stream:
             stream.writelines(lines)
-        with self.assertRaisesRegex(RunFolderError, "pilco_state/trials.csv: seed 3 must have the trials 0 to 11"):
+        with self.assertRaisesRegex(Failure, "pilco_state/trials.csv.*seed 3.* 11"):
             pilco_tables.time_rows(self.scratch, ["pilco_state"])
 
     def test_ten_of_twelve_first_policies_are_enough(self):

@@ -9,9 +9,9 @@ import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from ddm_launch import prediction_strip  # noqa: E402
+from ddm_launch.command import Failure  # noqa: E402
 from ddm_launch.figure_style import PAGE_WIDTH, new_figure  # noqa: E402
 from ddm_launch.images import Camera, Decoder  # noqa: E402
-from ddm_launch.run_folder import RunFolderError  # noqa: E402
 import figure_case  # noqa: E402
 import synthetic_run  # noqa: E402
 
@@ -45,7 +45,7 @@ class PredictionStripTest(figure_case.FigureCase):
         run = self.file("run")
         shutil.copy(figure_case.make_run(run), self.file("model.ddm"))
         shutil.copy(os.path.join(run, "config.yaml"), self.scratch)
-        self.assertDrawn(prediction_strip.main, [self.scratch], PAGE_WIDTH)
+        self.assertDrawn(prediction_strip, [self.scratch], PAGE_WIDTH)
 
     def test_a_model_decodes_each_feature_of_a_list_in_order(self):
         decoder = Decoder(figure_case.make_run(self.file("run")))
@@ -65,24 +65,24 @@ class PredictionStripTest(figure_case.FigureCase):
     def test_a_model_that_is_none_is_named_in_the_programs_words(self):
         self.writeWholeStrip()
         synthetic_run.write_config(self.scratch)
-        self.assertRefused(prediction_strip.main, [self.scratch], "decode_features", "model.ddm")
+        self.assertRefused(prediction_strip, [self.scratch], "decode_features", "model.ddm")
 
     def test_a_folder_without_strip_is_named_with_the_remedy(self):
-        self.assertRefused(prediction_strip.main, [self.scratch], self.file("strip.csv"),
+        self.assertRefused(prediction_strip, [self.scratch], self.file("strip.csv"),
                            "prediction_experiment")
 
     def test_a_strip_without_true_state_or_features_is_refused(self):
         self.writeLines("strip.csv", "steps,z_1,z_2", "0,1,1")
-        with self.assertRaisesRegex(RunFolderError, "no column of the true state"):
+        with self.assertRaisesRegex(Failure, "strip.csv"):
             prediction_strip.Strip(self.scratch)
         self.writeLines("strip.csv", "steps,angle_rad", "0,1")
-        with self.assertRaisesRegex(RunFolderError, "no column z_1"):
+        with self.assertRaisesRegex(Failure, "no column z_1"):
             prediction_strip.Strip(self.scratch)
 
     def test_a_cell_that_is_no_number_is_named(self):
         for word in ("", "nan", "inf", "one"):
             self.writeStrip("0,0,0,0,%s" % word)
-            with self.assertRaisesRegex(RunFolderError, "column z_2 must hold numbers, got '%s'" % word):
+            with self.assertRaisesRegex(Failure, "column z_2 must hold numbers, got '%s'" % word):
                 prediction_strip.Strip(self.scratch)
 
 

@@ -5,8 +5,9 @@ import io
 
 import roslib.packages
 
-from ddm_launch.processes import Process, line_by_line, start_roslaunch  # noqa: F401
-from ddm_launch.programs import free_port  # noqa: F401
+import rooms  # noqa: F401
+from ddm_qa.processes import Process, line_by_line, start_roslaunch  # noqa: F401
+from ddm_qa.programs import free_port  # noqa: F401
 
 
 def find_program(package, name):

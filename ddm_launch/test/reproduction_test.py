@@ -8,7 +8,8 @@ import sys
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch import reproduce_paper  # noqa: E402
+import rooms  # noqa: E402, F401
+from ddm_study import reproduce_paper  # noqa: E402
 from run_files import read_bytes, read_rows  # noqa: E402
 from scratch_case import ScratchCase  # noqa: E402
 import synthetic_run  # noqa: E402
@@ -56,11 +57,11 @@ class ReproductionTest(ScratchCase):
             self.assertIn("--", self.words(reproduction, step.name))
 
     def test_figures_show_pilco_only_where_it_is_run(self):
-        figures = dict(self.reproduction().figure_commands())
+        figures = self.reproduction().figure_commands()
         self.assertEqual([word.split("=")[0] for word in figures["success_rate"] if word.endswith("trials.csv")],
                          ["DDM + MPC", "PILCO, state", "PILCO, features", "PILCO, PCA", "oracle"])
         self.assertIn(os.path.join(self.out, "trajectory_distributions.csv"), figures["trajectory_distributions"])
-        figures = dict(self.reproduction(without_pilco=True).figure_commands())
+        figures = self.reproduction(without_pilco=True).figure_commands()
         self.assertNotIn("PILCO", " ".join(figures["success_rate"]))
         self.assertNotIn("trajectory_distributions", figures)
 

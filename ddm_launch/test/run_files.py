@@ -4,7 +4,8 @@ import os
 
 import rosbag
 
-from ddm_launch.run_comparison import (COLUMNS, TIME_COLUMNS, comparable, differences, expected_files,  # noqa: F401
+import rooms  # noqa: F401
+from ddm_qa.run_comparison import (COLUMNS, TIME_COLUMNS, comparable, differences, expected_files,  # noqa: F401
                                        files_in, read_bytes, read_rows, read_yaml)
 
 

@@ -10,7 +10,8 @@ import numpy as np
 from PIL import Image
 import rosunit
 
-from ddm_launch.rviz_screenshot import DISPLAYS, HEIGHT, WIDTH, missing_displays
+import rooms  # noqa: E402, F401
+from ddm_qa.rviz_screenshot import DISPLAYS, HEIGHT, WIDTH, blank_displays
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import call, find_program  # noqa: E402
@@ -29,21 +30,20 @@ class RvizTest(unittest.TestCase):
     def test_each_display_shows_what_it_should(self):
         self.assertEqual(self.code, 0, self.output)
         self.assertEqual(self.pixels.shape, (HEIGHT, WIDTH, 3))
-        self.assertEqual(missing_displays(self.pixels), [])
+        self.assertEqual(blank_displays(self.pixels), [])
 
-    def test_a_display_that_stays_black_or_shows_another_ones_picture_is_noticed(self):
+    def test_a_display_of_one_colour_is_noticed(self):
         self.assertEqual(self.code, 0, self.output)
-        for name, ((left, top, right, bottom), _) in DISPLAYS.items():
+        for name, (left, top, right, bottom) in DISPLAYS.items():
             for spoilt in (0, 48, 255):
                 pixels = self.pixels.copy()
                 pixels[top:bottom, left:right] = spoilt
-                self.assertEqual(missing_displays(pixels), [name])
+                self.assertEqual(blank_displays(pixels), [name])
 
     def test_what_the_launch_file_does_not_accept_is_told(self):
         code, output = call([find_program("ddm_launch", "rviz_screenshot"), "--out", "/nowhere/rviz.png", "--",
                              "preset:=no_such_preset"])
         self.assertEqual(code, 1)
-        self.assertIn("the experiment ended too early", output)
         self.assertIn("no_such_preset", output)
 
 

@@ -7,9 +7,10 @@ import sys
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch import schedules, schedules_compared  # noqa: E402
+import rooms  # noqa: E402, F401
+from ddm_launch.command import Failure  # noqa: E402
 from ddm_launch.figure_style import PAGE_WIDTH, new_figure  # noqa: E402
-from ddm_launch.run_folder import RunFolderError  # noqa: E402
+from ddm_study import schedules, schedules_compared  # noqa: E402
 import figure_case  # noqa: E402
 
 NAMES = list(schedules.SCHEDULES)
@@ -70,7 +71,7 @@ class SchedulesComparedTest(figure_case.FigureCase):
 
     def test_schedules_without_a_common_seed_are_refused(self):
         self.writePredictions("tile_predictions", "joint", [77], 9.0)
-        with self.assertRaisesRegex(RunFolderError, "no seed has predictions of all schedules"):
+        with self.assertRaisesRegex(Failure, "predictions.*schedules"):
             schedules.read_predictions(self.file("tile_predictions"))
 
     def test_no_two_schedules_share_marker_line_or_colour(self):
@@ -78,20 +79,20 @@ class SchedulesComparedTest(figure_case.FigureCase):
             self.assertEqual(len({row[column] for row in schedules_compared.STYLES}), 4)
 
     def test_a_results_folder_makes_a_picture_as_wide_as_a_page(self):
-        self.assertDrawn(schedules_compared.main, [self.scratch], PAGE_WIDTH)
+        self.assertDrawn(schedules_compared, [self.scratch], PAGE_WIDTH)
 
     def test_each_missing_file_is_named_with_the_remedy(self):
         for path in ("trials.csv", "v_p_only/trials.csv", "tile_predictions/joint/predictions.csv",
                      "pendulum_predictions/joint_random_init/predictions.csv"):
             whole = self.file(path)
             os.rename(whole, whole + ".away")
-            self.assertRefused(schedules_compared.main, [self.scratch], whole, "reproduce_paper writes it")
+            self.assertRefused(schedules_compared, [self.scratch], whole, "reproduce_paper writes it")
             os.rename(whole + ".away", whole)
 
     def test_a_seed_that_is_there_twice_is_refused(self):
         self.writeLines("tile_predictions/joint/predictions.csv", PREDICTIONS, prediction(3, 1, 0.1, 0.1),
                         prediction(3, 1, 0.2, 0.1))
-        self.assertRefused(schedules_compared.main, [self.scratch], "1 steps of seed 3 twice")
+        self.assertRefused(schedules_compared, [self.scratch], "seed 3, steps 1")
 
 
 if __name__ == "__main__":

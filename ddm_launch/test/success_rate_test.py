@@ -9,8 +9,8 @@ import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from ddm_launch import success_rate  # noqa: E402
+from ddm_launch.command import Failure  # noqa: E402
 from ddm_launch.figure_style import COLUMN_WIDTH, new_figure  # noqa: E402
-from ddm_launch.run_folder import RunFolderError  # noqa: E402
 import figure_case  # noqa: E402
 
 PUBLISHED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "results", "published", "success_rate.csv")
@@ -41,7 +41,7 @@ class SuccessRateTest(figure_case.FigureCase):
             self.assertEqual((min(corners[:, 0]), max(corners[:, 0])), (100, 200))
             self.assertAlmostEqual(min(corners[:, 1]), curve.band[0][0])
             self.assertEqual(axes.containers[0].lines[2], ())  # no error bars
-        self.assertDrawn(success_rate.main, ["mine=" + self.writeSweep(), "--published", PUBLISHED, "--wilson"],
+        self.assertDrawn(success_rate, ["mine=" + self.writeSweep(), "--published", PUBLISHED, "--wilson"],
                          COLUMN_WIDTH)
 
     def test_the_published_curve_is_the_papers(self):
@@ -125,35 +125,35 @@ class SuccessRateTest(figure_case.FigureCase):
 
     def test_a_name_that_is_there_twice_is_refused(self):
         curve = "DDM + MPC=" + self.writeSweep()
-        self.assertRefused(success_rate.main, [curve, curve], "got 'DDM + MPC' twice")
+        self.assertRefused(success_rate, [curve, curve], "DDM + MPC")
 
     def test_several_files_and_the_paper_make_a_picture_as_wide_as_a_column(self):
         path = self.writeSweep()
-        self.assertDrawn(success_rate.main, ["joint=" + path, "oracle=" + path, "--published", PUBLISHED],
+        self.assertDrawn(success_rate, ["joint=" + path, "oracle=" + path, "--published", PUBLISHED],
                          COLUMN_WIDTH)
 
     def test_a_curve_without_label_or_file_is_refused(self):
         for word in ("sweep.csv", "=sweep.csv", "mine="):
-            code, output = self.callMain(success_rate.main, word)
+            code, output = self.callMain(success_rate, word)
             self.assertEqual(code, 2)
             self.assertIn("must be LABEL=FILE.csv, got '%s'" % word, output)
 
     def test_more_curves_than_can_be_told_apart_are_refused(self):
         curves = ["%d=%s" % (k, self.writeSweep()) for k in range(5)] + ["DDM + MPC=" + self.writeSweep()]
-        self.assertRefused(success_rate.main, curves, "at most 4 curves", "PILCO, state", "got 5")
+        self.assertRefused(success_rate, curves, "at most 4 curves", "PILCO, state", "got 5")
 
     def test_a_seed_that_is_there_twice_is_refused(self):
         path = self.writeLines("twice.csv", HEADER, "7,0,100,0,90", "7,0,100,1,2")
-        self.assertRefused(success_rate.main, ["mine=" + path], path, "trial 0 of seed 7 twice")
+        self.assertRefused(success_rate, ["mine=" + path], path, "seed 7, trial 0")
 
     def test_runs_of_unknown_success_are_refused(self):
         path = self.writeLines("unknown.csv", HEADER, "7,0,100,,")
-        with self.assertRaisesRegex(RunFolderError, "success is not known in any row"):
+        with self.assertRaisesRegex(Failure, path):
             success_rate.read_curve("mine", path)
 
     def test_files_that_are_missing_are_named(self):
-        self.assertRefused(success_rate.main, ["mine=missing.csv"], "missing.csv", "give a trials.csv or sweep.csv")
-        self.assertRefused(success_rate.main, ["mine=" + self.writeSweep(), "--published", "no.csv"], "no.csv",
+        self.assertRefused(success_rate, ["mine=missing.csv"], "missing.csv", "give a trials.csv or sweep.csv")
+        self.assertRefused(success_rate, ["mine=" + self.writeSweep(), "--published", "no.csv"], "no.csv",
                            "results/published/success_rate.csv")
 
 

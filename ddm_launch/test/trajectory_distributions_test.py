@@ -8,7 +8,8 @@ import sys
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch import pilco_runs, trajectory_distributions  # noqa: E402
+import rooms  # noqa: E402, F401
+from ddm_study import pilco_runs, trajectory_distributions  # noqa: E402
 from ddm_launch.figure_style import PAGE_WIDTH, BLUE, ORANGE, VERMILLION, new_figure  # noqa: E402
 import figure_case  # noqa: E402
 
@@ -79,22 +80,22 @@ class TrajectoryDistributionsTest(figure_case.FigureCase):
     def test_three_seeds_of_six_policies_make_a_picture_as_wide_as_a_page(self):
         lines = [row for seed in range(3) for trial in (0, 1, 2, 3, 5, 7) for row in policy(seed, trial)]
         path = self.writeLines("angles.csv", HEADER, *lines)
-        self.assertDrawn(trajectory_distributions.main, [path], PAGE_WIDTH)
-        self.assertDrawn(trajectory_distributions.main, [path, "--seconds", "2.5"], PAGE_WIDTH)
+        self.assertDrawn(trajectory_distributions, [path], PAGE_WIDTH)
+        self.assertDrawn(trajectory_distributions, [path, "--seconds", "2.5"], PAGE_WIDTH)
 
     def test_files_that_make_no_sense_are_refused(self):
-        self.assertRefused(trajectory_distributions.main, ["missing.csv"], "missing.csv", "reproduce_paper")
+        self.assertRefused(trajectory_distributions, ["missing.csv"], "missing.csv", "reproduce_paper")
         for lines, part in (((["0,0,125,guessed,0,0,0,0"]), "kind must hold one of predicted, evaluation, trial, got "
                              "'guessed'"),
-                            (rows(0, 0, "predicted", 1.0), "angle_std_rad must hold numbers, got ''"),
+                            (rows(0, 0, "predicted", 1.0), "angle_std_rad must be >= 0, got None"),
                             (rows(0, 0, "predicted", 1.0, -0.1), "angle_std_rad must be >= 0, got -0.1"),
-                            (policy(0, 0) + policy(0, 0), "step 0 of seed 0 after 125 frames (evaluation) twice")):
+                            (policy(0, 0) + policy(0, 0), "seed 0, frames 125, kind predicted, step 0")):
             path = self.writeLines("angles.csv", HEADER, *lines)
-            self.assertRefused(trajectory_distributions.main, [path], path, part)
+            self.assertRefused(trajectory_distributions, [path], path, part)
 
     def test_a_time_that_is_none_ends_with_code_2(self):
         for text in ("0", "-1", "nan", "inf", "long"):
-            code, output = self.callMain(trajectory_distributions.main, "angles.csv", "--seconds=" + text)
+            code, output = self.callMain(trajectory_distributions, "angles.csv", "--seconds=" + text)
             self.assertEqual(code, 2)
             self.assertIn("must be a time > 0 [s], got '%s'" % text, output)
 

@@ -30,7 +30,7 @@ def wilson_interval(rate, n, confidence=0.95):
       |p_hat - p| <= z sqrt(p (1 - p) / n),   solved for p; z: quantile of N(0, 1), 1.96 at 95 %
 
     E. B. Wilson, "Probable inference, the law of succession, and statistical inference", J. Am. Stat. Assoc. 22
-    (1927). Other than the standard error it is no point where all runs succeed.
+    (1927). Unlike the standard error it does not shrink to a point where all runs succeed.
     """
     z = statistics.NormalDist().inv_cdf(0.5 + 0.5 * confidence)
     centre = (rate + z * z / (2.0 * n)) / (1.0 + z * z / n)

@@ -1,14 +1,18 @@
 # Draws the feature plane of one model or of several side by side: decoded images, and where the frames lie.
 # SPDX-License-Identifier: BSD-3-Clause
-import argparse
 import os
 
-from ddm_launch.figure_style import COLUMN_WIDTH, PAGE_WIDTH, VERMILLION, YELLOW, new_figure, save, write
+from ddm_launch.command import Failure
+from ddm_launch.figure_style import COLUMN_WIDTH, PAGE_WIDTH, VERMILLION, YELLOW, add_legend, new_figure, save
 from ddm_launch.images import Decoder
 from ddm_launch.prediction_strip import REMEDY
-from ddm_launch.run_folder import RunFolderError, number, read_csv, read_setting
+from ddm_launch.run_folder import read_setting
+from ddm_launch.tables import read_csv
 from ddm_model.feature_grid import GRID, FeatureGrid
 
+ABOUT = ("The plane of features of folders of prediction_experiment, side by side. %d x %d images that the model decodes, "
+         "over the smallest rectangle that holds the features of all frames and a margin, and on them the features of "
+         "training and held-out frames." % (GRID, GRID))
 SETS = (("training", "o", VERMILLION, "training frames"), ("held_out", "^", YELLOW, "held-out frames"))
 
 
@@ -16,23 +20,23 @@ def read_features(folder):
     """The features of all frames of FOLDER/features.csv, as {set: list of (z_1, z_2)}."""
     path = os.path.join(folder, "features.csv")
     features = {name: [] for name, _, _, _ in SETS}
-    for row in read_csv(path, ["set", "z_1", "z_2"], REMEDY):
+    for row in read_csv(path, {"set": str, "z_1": float, "z_2": float}, REMEDY):
         if "z_3" in row:
-            raise RunFolderError("%s has features of more than two numbers: a plane shows two" % path)
+            raise Failure("%s has features of more than two numbers: a plane shows two" % path)
         if row["set"] not in features:
-            raise RunFolderError("%s: column set must be training or held_out, got '%s'" % (path, row["set"]))
-        features[row["set"]].append((number(row, "z_1", path), number(row, "z_2", path)))
+            raise Failure("%s: column set must be training or held_out, got '%s'" % (path, row["set"]))
+        features[row["set"]].append((row["z_1"], row["z_2"]))
     return features
 
 
 def grid_around(points):
     """The grid over all these features, with a margin of a twentieth of their range.
 
-    Raises RunFolderError if they lie on a line along an axis: then there is no plane to draw.
+    Raises Failure if they lie on a line along an axis: then there is no plane to draw.
     """
     low, high = [min(values) for values in zip(*points)], [max(values) for values in zip(*points)]
     if not all(b - a > 1e-9 for a, b in zip(low, high)):
-        raise RunFolderError("the features cover [%g, %g] x [%g, %g], which is no plane" % (
+        raise Failure("the features cover [%g, %g] x [%g, %g], which is not a plane" % (
             low[0], high[0], low[1], high[1]))
     margin = [0.05 * (b - a) for a, b in zip(low, high)]
     return FeatureGrid([a - m for a, m in zip(low, margin)], [b + m for b, m in zip(high, margin)])
@@ -47,10 +51,14 @@ def draw_plane(axes, features, decoder):
                          label=label, zorder=2)
 
 
-def draw(folders, out, make_decoder=Decoder):
-    """Draws one panel per folder of prediction_experiment into a picture file."""
+def add_arguments(parser):
+    parser.add_argument("folders", metavar="DIR", nargs="+", help="folder of prediction_experiment")
+
+
+def draw(options):
+    """One panel per folder, named by its training schedule."""
     panels = [(read_setting(folder, "training", "schedule", "training schedule"), read_features(folder),
-               make_decoder(os.path.join(folder, "model.ddm"))) for folder in folders]
+               Decoder(os.path.join(folder, "model.ddm"))) for folder in options.folders]
     width = COLUMN_WIDTH if len(panels) == 1 else PAGE_WIDTH
     with new_figure(width, width / len(panels) + 0.35) as figure:
         grid = figure.add_gridspec(2, len(panels), height_ratios=[1.0, 0.001])
@@ -58,20 +66,5 @@ def draw(folders, out, make_decoder=Decoder):
             axes = figure.add_subplot(grid[0, column])
             draw_plane(axes, features, decoder)
             axes.set_title(schedule.replace("_", " "))
-        handles, labels = axes.get_legend_handles_labels()
-        legend = figure.add_subplot(grid[1, :])
-        legend.axis("off")
-        legend.legend(handles, labels, loc="center", ncol=2, markerscale=2.0, frameon=False)
-        save(figure, out)
-
-
-def main(arguments=None):
-    parser = argparse.ArgumentParser(
-        prog="feature_plane",
-        description="Draws for each folder of prediction_experiment the plane of its features: %d x %d images that the "
-        "model decodes, over the smallest rectangle that holds the features of all frames and a margin, and on them "
-        "the features of training and held-out frames. Each panel is named by its training schedule." % (GRID, GRID))
-    parser.add_argument("folders", metavar="DIR", nargs="+", help="folder of prediction_experiment")
-    parser.add_argument("--out", metavar="FILE.png", required=True, help="picture to write")
-    options = parser.parse_args(arguments)
-    return write("feature_plane", options.out, lambda out: draw(options.folders, out))
+        add_legend(figure, grid[1, :], *axes.get_legend_handles_labels(), ncol=2, markerscale=2.0)
+        save(figure, options.out)

@@ -3,7 +3,6 @@
 import contextlib
 import io
 import os
-import sys
 
 import matplotlib
 matplotlib.use("Agg")  # no display needed
@@ -11,13 +10,13 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from PIL import Image  # noqa: E402
 
-from ddm_launch.run_folder import RunFolderError  # noqa: E402
+from ddm_launch.command import Failure  # noqa: E402
 from ddm_model.plain_file import write_file  # noqa: E402
 
 COLUMN_WIDTH, PAGE_WIDTH = 3.4, 7.0  # [in], to be printed at this size, in one column or across two
 DPI = 200
 
-# The Okabe-Ito set: told apart by colour-blind readers. Figures vary shapes and dashes along with them.
+# The Okabe-Ito set: colour-blind readers can distinguish them. Figures vary shapes and dashes along with them.
 ORANGE, SKY, GREEN, YELLOW = "#E69F00", "#56B4E9", "#009E73", "#F0E442"
 BLUE, VERMILLION, PURPLE, BLACK = "#0072B2", "#D55E00", "#CC79A7", "#000000"
 GREY = "#666666"  # for references
@@ -40,22 +39,45 @@ def new_figure(width, height):
             plt.close(figure)
 
 
+@contextlib.contextmanager
+def new_screen_figure(width, height):
+    """A figure in matplotlib's own style, closed at the end of the `with`."""
+    figure = plt.figure(figsize=(width, height), constrained_layout=True)
+    try:
+        yield figure
+    finally:
+        plt.close(figure)
+
+
 def require_png(out):
-    """Raises RunFolderError if the name has another suffix."""
+    """Raises Failure if the name has another suffix."""
     if not out.lower().endswith(".png"):
-        raise RunFolderError("the picture must be a .png, got '%s': give --out another name" % out)
+        raise Failure("the picture must be a .png, got '%s': give --out another name" % out)
 
 
 def save(figure, out):
     """Writes a PNG without time or program in it: the same figure gives the same bytes.
 
-    Raises RunFolderError if the name has another suffix, OSError if it cannot be written.
+    Raises Failure if the name has another suffix, OSError if it cannot be written.
     """
     require_png(out)
     figure.canvas.draw()
     picture = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB")
     picture = picture.quantize(256)  # about half as large; only the colours of smoothed edges move, and not visibly
     save_picture(picture, out, "PNG", optimize=True, dpi=(DPI, DPI))
+
+
+def panel_above_legend(figure):
+    """(axes, place for add_legend() below them)"""
+    grid = figure.add_gridspec(2, 1, height_ratios=[1.0, 0.001])
+    return figure.add_subplot(grid[0]), grid[1]
+
+
+def add_legend(figure, place, handles, labels, **options):
+    """A legend alone in a place of a grid."""
+    axes = figure.add_subplot(place)
+    axes.axis("off")
+    axes.legend(handles, labels, loc="center", frameon=False, **options)
 
 
 def save_picture(picture, out, file_format, **options):
@@ -68,19 +90,11 @@ def save_picture(picture, out, file_format, **options):
 def save_for_screen(figure, out):
     """Writes a figure as the suffix of the name says, PNG if it has none.
 
-    Raises ValueError for a suffix that matplotlib does not know, OSError if the file cannot be written.
+    Raises Failure for a suffix that matplotlib does not know, OSError if the file cannot be written.
     """
     stream = io.BytesIO()
-    figure.savefig(stream, dpi=150, format=os.path.splitext(out)[1][1:].lower() or "png")
-    write_file(out, stream.getvalue())
-
-
-def write(program, out, draw):
-    """What each figure's program does in the end: draw(out), then the exit code; a failure is told on stderr."""
     try:
-        draw(out)
-    except (RunFolderError, OSError) as error:
-        print("%s: %s" % (program, error), file=sys.stderr)
-        return 1
-    print("wrote %s" % out)
-    return 0
+        figure.savefig(stream, dpi=150, format=os.path.splitext(out)[1][1:].lower() or "png")
+    except ValueError as error:
+        raise Failure(str(error)) from None
+    write_file(out, stream.getvalue())

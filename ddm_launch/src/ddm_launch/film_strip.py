@@ -1,20 +1,16 @@
 # Draws a greedy evaluation as a film strip (PNG) and as an animation (GIF).
 # SPDX-License-Identifier: BSD-3-Clause
-import argparse
 import math
-import sys
 
-import matplotlib
-matplotlib.use("Agg")  # no display needed
-import matplotlib.pyplot as plt  # noqa: E402
-from matplotlib import font_manager  # noqa: E402
-from PIL import Image, ImageDraw, ImageFont  # noqa: E402
+from matplotlib import font_manager
+from PIL import Image, ImageDraw, ImageFont
 
-from ddm_launch.figure_style import save_for_screen, save_picture  # noqa: E402
-from ddm_launch.images import Camera  # noqa: E402
-from ddm_launch.run_folder import Evaluation, RunFolderError, read_trials  # noqa: E402
+from ddm_launch.figure_style import BLUE, GREY, new_screen_figure, save_for_screen, save_picture
+from ddm_launch.images import Camera
+from ddm_launch.run_folder import Evaluation, read_trials
 
-BLUE, GREY = "#0072B2", "#666666"
+ABOUT = ("The greedy evaluation of a run folder. Images from the start until the rod is up, and the torque below; "
+         "--gif writes an animation of it.")
 NUM_IMAGES = 12
 SUCCESS_LIMIT_RAD = math.radians(10.0)
 
@@ -49,8 +45,7 @@ def draw_strip(evaluation, end, camera, out):
     steps = steps_to_show(end, len(evaluation.time_s))
     last = steps[-1]
     period = evaluation.time_s[1] - evaluation.time_s[0]
-    figure = plt.figure(figsize=(len(steps) * 1.0 + 0.6, 3.0), constrained_layout=True)
-    try:
+    with new_screen_figure(len(steps) * 1.0 + 0.6, 3.0) as figure:
         grid = figure.add_gridspec(2, len(steps), height_ratios=[1.0, 1.1])
         for column, step in enumerate(steps):
             axes = figure.add_subplot(grid[0, column])
@@ -70,8 +65,6 @@ def draw_strip(evaluation, end, camera, out):
         axes.set_xlabel("time [s]")
         axes.set_ylabel("torque [N m]")
         save_for_screen(figure, out)
-    finally:
-        plt.close(figure)
 
 
 def draw_animation(evaluation, end, camera, out):
@@ -97,27 +90,19 @@ def draw_animation(evaluation, end, camera, out):
     save_picture(pictures[0], out, "GIF", save_all=True, append_images=pictures[1:], duration=durations, loop=0)
 
 
-def main(arguments=None, make_camera=Camera):
-    parser = argparse.ArgumentParser(
-        prog="film_strip", description="Draws the greedy evaluation of a run folder: about %d images from the start "
-        "until the rod is up, and the torque below." % NUM_IMAGES)
+def add_arguments(parser):
     parser.add_argument("folder", metavar="DIR", help="run folder (it holds trials.csv and evaluation_NNN)")
     parser.add_argument("--trial", type=int, metavar="N", help="default: the last that succeeded, else the last")
-    parser.add_argument("--out", metavar="FILE.png", default="film_strip.png",
-                        help="picture to write; default film_strip.png, here")
-    parser.add_argument("--gif", metavar="FILE.gif", help="write an animation in real time too")
-    options = parser.parse_args(arguments)
-    try:
-        trial = options.trial if options.trial is not None else default_trial(read_trials(options.folder))
-        evaluation = Evaluation(options.folder, trial)
-        end = swing_up_end(evaluation.angle_rad)
-        camera = make_camera(options.folder)
-        draw_strip(evaluation, end, camera, options.out)
-        print("wrote %s (evaluation after trial %d)" % (options.out, trial))
-        if options.gif:
-            draw_animation(evaluation, end, camera, options.gif)
-            print("wrote %s" % options.gif)
-    except (RunFolderError, OSError, ValueError) as error:  # ValueError: a suffix that matplotlib cannot write
-        print("film_strip: %s" % error, file=sys.stderr)
-        return 1
-    return 0
+    parser.add_argument("--gif", metavar="FILE.gif", help="also write an animation in real time")
+
+
+def draw(options):
+    trial = options.trial if options.trial is not None else default_trial(read_trials(options.folder))
+    evaluation = Evaluation(options.folder, trial)
+    end = swing_up_end(evaluation.angle_rad)
+    camera = Camera(options.folder)
+    draw_strip(evaluation, end, camera, options.out)
+    print("evaluation after trial %d" % trial)
+    if options.gif:
+        draw_animation(evaluation, end, camera, options.gif)
+        print("wrote %s" % options.gif)

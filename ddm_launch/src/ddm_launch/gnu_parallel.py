@@ -7,7 +7,8 @@ import signal
 import subprocess
 import tempfile
 
-from ddm_launch.seed_script import DIE_WITH_PARENT, SweepError
+from ddm_launch.command import Failure
+from ddm_launch.seed_script import DIE_WITH_PARENT
 
 POLL_S = 0.5
 
@@ -18,15 +19,15 @@ class GnuParallel:
     def __init__(self, jobs, hosts, terminal):
         """jobs: None for one per core. hosts: file of ssh hosts, None for this machine. terminal: show a bar.
 
-        Raises SweepError if GNU parallel is not installed.
+        Raises Failure if GNU parallel is not installed.
         """
         self.jobs, self.hosts, self.terminal = jobs, hosts, terminal
         if shutil.which("parallel") is None:
-            raise SweepError("the program parallel is not installed: apt-get install parallel")
+            raise Failure("the program parallel is not installed: apt-get install parallel")
         version = subprocess.run(["parallel", "--plain", "--will-cite", "--version"], stdin=subprocess.DEVNULL,
                                  stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, universal_newlines=True).stdout
         if not version.startswith("GNU parallel"):  # moreutils has another program of this name
-            raise SweepError("%s is not GNU parallel: apt-get install parallel" % shutil.which("parallel"))
+            raise Failure("%s is not GNU parallel: apt-get install parallel" % shutil.which("parallel"))
 
     def _command(self, folder):
         words = DIE_WITH_PARENT + ["parallel", "--plain", "--will-cite", "--joblog", folder.joblog]
@@ -53,7 +54,7 @@ class GnuParallel:
         except OSError as error:
             if error.filename:
                 raise
-            raise SweepError("cannot write the list of seeds into %s: %s" % (tempfile.gettempdir(), error.strerror))
+            raise Failure("cannot write the list of seeds into %s: %s" % (tempfile.gettempdir(), error.strerror))
         try:
             while True:
                 try:

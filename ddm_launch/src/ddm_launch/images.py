@@ -5,33 +5,24 @@ import subprocess
 import tempfile
 
 from PIL import Image
-import roslib.packages
 
-from ddm_launch.run_folder import RunFolderError, read_plant, read_setting
+from ddm_launch.command import Failure, find_program
+from ddm_launch.run_folder import read_setting
 
 TORQUE_COLUMNS = {"moving_tile": "dx_px,dy_px"}  # of the types of plants that do not turn a motor
-
-
-def find_program(package, name):
-    """Path of a program. Raises RunFolderError if it is not built."""
-    programs = roslib.packages.find_node(package, name)
-    if not programs:
-        raise RunFolderError("the program '%s' of %s is not there: build the workspace, then source its "
-                             "devel/setup.bash" % (name, package))
-    return programs[0]
 
 
 def draw_images(command, text):
     """The images that a program with the option --frames DIR draws when it is given this text.
 
-    Returns grey PIL images, in order. Raises RunFolderError with the program's own words if it fails.
+    Returns grey PIL images, in order. Raises Failure with the program's own words if it fails.
     """
     with tempfile.TemporaryDirectory() as folder:
         done = subprocess.run(command + ["--frames", folder], input=text, stdout=subprocess.DEVNULL,
                               stderr=subprocess.PIPE, universal_newlines=True)
         names = sorted(name for name in os.listdir(folder) if name.endswith(".png"))
         if done.returncode != 0 or not names:
-            raise RunFolderError("'%s' drew no image: %s" % (" ".join(command), done.stderr.strip()))
+            raise Failure("'%s' drew no image: %s" % (" ".join(command), done.stderr.strip()))
         images = []
         for name in names:
             with Image.open(os.path.join(folder, name)) as image:
@@ -43,8 +34,8 @@ class Camera:
     """Images of a folder's plant in given states, drawn by the simulator with the folder's own configuration."""
 
     def __init__(self, folder):
-        plant = read_plant(folder)
-        self.command = [find_program("ddm_sim", "simulate"), "--plant", plant,
+        plant = read_setting(folder, "experiment", "plant", "plant")
+        self.command = [find_program("simulate", "ddm_sim"), "--plant", plant,
                         "--config", os.path.join(folder, "config.yaml")]
         self.header = TORQUE_COLUMNS.get(read_setting(folder, "plant", "type", "type of the plant"), "torque_nm")
 
@@ -58,7 +49,7 @@ class Decoder:
     """Images of features, decoded by a model."""
 
     def __init__(self, model):
-        self.command = [find_program("ddm_model", "decode_features"), model]
+        self.command = [find_program("decode_features", "ddm_model"), model]
 
     def decode(self, features):
         """One grey image for each feature (z_1, z_2, ...)."""

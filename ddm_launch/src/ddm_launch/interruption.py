@@ -7,7 +7,7 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class Interrupted(BaseException):
-    """A signal asks to end. Not an Exception: nothing but the sweep itself shall take it for an error."""
+    """A signal asks to end. Not an Exception: nothing but the program itself may handle it."""
 
     def __init__(self, number):
         super().__init__("interrupted by %s" % signal.Signals(number).name)
@@ -25,7 +25,7 @@ def raised_as_exception():
 
     before = {number: signal.getsignal(number) for number in SIGNALS}
     for number in SIGNALS:
-        if number != signal.SIGHUP or before[number] != signal.SIG_IGN:  # under nohup a lost terminal is no reason
+        if number != signal.SIGHUP or before[number] != signal.SIG_IGN:  # under nohup a lost terminal is not a reason
             signal.signal(number, on_signal)
     try:
         yield

@@ -1,18 +1,11 @@
 # Draws the learning curve of one run (final error) or of many (success rate with standard error).
 # SPDX-License-Identifier: BSD-3-Clause
-import argparse
-import sys
+from ddm_launch.averages import success_rates
+from ddm_launch.command import Failure
+from ddm_launch.figure_style import BLUE, GREY, VERMILLION, new_screen_figure, save_for_screen
+from ddm_launch.run_folder import read_trials
 
-import matplotlib
-matplotlib.use("Agg")  # no display needed
-import matplotlib.pyplot as plt  # noqa: E402
-
-from ddm_launch.averages import success_rates  # noqa: E402
-from ddm_launch.figure_style import save_for_screen  # noqa: E402
-from ddm_launch.run_folder import RunFolderError, read_trials  # noqa: E402
-
-# From the Okabe-Ito set: told apart by colour-blind readers, and the shapes differ too.
-BLUE, VERMILLION, GREY = "#0072B2", "#D55E00", "#666666"
+ABOUT = "One run folder: final error after each trial; several: success rate. The latter with its standard error."
 SUCCESS_LIMIT_DEG = 10.0
 
 
@@ -20,7 +13,7 @@ def draw_one(axes, trials):
     """Final error of the greedy policy over the frames learned from, each point marked with its success."""
     known = [trial for trial in trials if trial.final_error_deg is not None]
     if not known:
-        raise RunFolderError("trials.csv has no final error in any row: there is nothing to draw")
+        raise Failure("trials.csv has no final error in any row: there is nothing to draw")
     axes.plot([t.frames for t in known], [t.final_error_deg for t in known], color=GREY, linewidth=1, zorder=1)
     for success, marker, colour, label in ((True, "o", BLUE, "success"), (False, "X", VERMILLION, "no success"),
                                            (None, "D", GREY, "success not known")):
@@ -38,7 +31,7 @@ def draw_many(axes, runs):
     """Success rate over the frames learned from, with its standard error."""
     rows = success_rates(runs)
     if not rows:
-        raise RunFolderError("the success is not known in any row of these runs: there is nothing to draw")
+        raise Failure("the success is not known in any row of these runs: there is nothing to draw")
     fewest, most = min(row[3] for row in rows), max(row[3] for row in rows)
     runs_text = "%d runs" % most if fewest == most else "%d to %d runs" % (fewest, most)
     axes.errorbar([row[0] for row in rows], [row[1] for row in rows], yerr=[row[2] for row in rows], color=BLUE,
@@ -47,11 +40,14 @@ def draw_many(axes, runs):
     axes.set_ylabel("success rate [-]")
 
 
-def draw(folders, out):
-    """Draws the learning curve of these run folders into a picture file."""
-    runs = [read_trials(folder) for folder in folders]
-    figure, axes = plt.subplots(figsize=(7.0, 4.2), constrained_layout=True)
-    try:
+def add_arguments(parser):
+    parser.add_argument("folders", metavar="DIR", nargs="+", help="run folder (it holds trials.csv)")
+
+
+def draw(options):
+    runs = [read_trials(folder) for folder in options.folders]
+    with new_screen_figure(7.0, 4.2) as figure:
+        axes = figure.subplots()
         if len(runs) == 1:
             draw_one(axes, runs[0])
         else:
@@ -62,23 +58,4 @@ def draw(folders, out):
         axes.grid(True, color="#dddddd", linewidth=0.6)
         axes.set_axisbelow(True)
         axes.legend(loc="best")
-        save_for_screen(figure, out)
-    finally:
-        plt.close(figure)
-
-
-def main(arguments=None):
-    parser = argparse.ArgumentParser(
-        prog="learning_curve",
-        description="One run folder: final error after each trial. Several: success rate with standard error.")
-    parser.add_argument("folders", metavar="DIR", nargs="+", help="run folder (it holds trials.csv)")
-    parser.add_argument("--out", metavar="FILE.png", default="learning_curve.png",
-                        help="picture to write; default learning_curve.png, here")
-    options = parser.parse_args(arguments)
-    try:
-        draw(options.folders, options.out)
-    except (RunFolderError, OSError, ValueError) as error:  # ValueError: a suffix that matplotlib cannot write
-        print("learning_curve: %s" % error, file=sys.stderr)
-        return 1
-    print("wrote %s" % options.out)
-    return 0
+        save_for_screen(figure, options.out)

@@ -1,10 +1,10 @@
 # Draws the pendulum's feature space: decoded images, experience so far, current frame, goal and plan.
 # SPDX-License-Identifier: BSD-3-Clause
-import argparse
-
-from ddm_launch.figure_style import COLUMN_WIDTH, GREEN, SKY, VERMILLION, YELLOW, new_figure, save, write
+from ddm_launch.command import Failure
+from ddm_launch.figure_style import (COLUMN_WIDTH, GREEN, SKY, VERMILLION, YELLOW, add_legend, new_figure,
+                                     panel_above_legend, save)
 from ddm_launch.images import Decoder
-from ddm_launch.run_folder import RunFolderError, number, read_csv
+from ddm_launch.tables import optional, read_csv
 from ddm_model.feature_grid import GRID, FeatureGrid
 
 # kind: marker, size [pt^2], colour, label, in the order of drawing. The colours are those of the paper's figure.
@@ -12,22 +12,23 @@ KINDS = {"experience": ("o", 6, GREEN, "experience"),
          "goal": ("*", 190, VERMILLION, "goal"),
          "plan": ("^", 14, YELLOW, "plan"),
          "current": ("s", 32, SKY, "current")}
+ABOUT = ("The feature space of one moment, as feature_space wrote it. %d x %d decoded images over [-1, 1] x [-1, 1], the "
+         "features of all frames so far, the current one, the goal's, and the planned ones. The axes reach beyond the "
+         "images where a feature does." % (GRID, GRID))
 OUTSIDE = "#333333"  # where there are features and no images
 
 
 def read_space(path):
     """The features of a file of feature_space, as {kind: list of (z_1, z_2)}, the plan in order of its steps."""
-    rows = read_csv(path, ["kind", "step", "z_1", "z_2"], "rosrun ddm_launch feature_space writes it")
     space = {kind: [] for kind in KINDS}
-    for row in rows:
+    for row in read_csv(path, {"kind": str, "step": optional(int), "z_1": float, "z_2": float},
+                        "rosrun ddm_launch feature_space writes it"):
         if row["kind"] not in space:
-            raise RunFolderError("%s: column kind must be one of %s, got '%s'" % (
-                path, ", ".join(KINDS), row["kind"]))
-        step = number(row, "step", path) if row["kind"] == "plan" else 0
-        space[row["kind"]].append((step, number(row, "z_1", path), number(row, "z_2", path)))
+            raise Failure("%s: column kind must be one of %s, got '%s'" % (path, ", ".join(KINDS), row["kind"]))
+        space[row["kind"]].append((row["step"], row["z_1"], row["z_2"]))
     missing = [kind for kind in KINDS if not space[kind]]
     if missing:
-        raise RunFolderError("%s has no row of kind %s: was it written by feature_space?" % (path, ", ".join(missing)))
+        raise Failure("%s has no row of kind %s: was it written by feature_space?" % (path, ", ".join(missing)))
     space["plan"].sort()
     return {kind: [(z_1, z_2) for _, z_1, z_2 in points] for kind, points in space.items()}
 
@@ -51,28 +52,15 @@ def draw_space(axes, space, decoder):
     axes.set_ylim(min(bottom, -reach), max(top, reach))
 
 
-def draw(path, model, out, make_decoder=Decoder):
-    """Draws a file of feature_space over the images that the model decodes."""
-    space = read_space(path)
-    with new_figure(COLUMN_WIDTH, COLUMN_WIDTH + 0.05) as figure:
-        grid = figure.add_gridspec(2, 1, height_ratios=[1.0, 0.001])
-        axes = figure.add_subplot(grid[0])
-        draw_space(axes, space, make_decoder(model))
-        legend = figure.add_subplot(grid[1])
-        legend.axis("off")
-        legend.legend(*axes.get_legend_handles_labels(), loc="center", ncol=4, columnspacing=1.0, handletextpad=0.2,
-                      frameon=False)
-        save(figure, out)
-
-
-def main(arguments=None):
-    parser = argparse.ArgumentParser(
-        prog="pendulum_feature_space",
-        description="Draws a file of feature_space: %d x %d decoded images over [-1, 1] x [-1, 1], the features of all "
-        "frames so far, the current one, the goal's, and the planned ones. The axes reach beyond the images where a "
-        "feature does." % (GRID, GRID))
+def add_arguments(parser):
     parser.add_argument("file", metavar="FILE.csv", help="what feature_space has written")
     parser.add_argument("--model", metavar="MODEL.ddm", required=True, help="the model of that trial")
-    parser.add_argument("--out", metavar="FILE.png", required=True, help="picture to write")
-    options = parser.parse_args(arguments)
-    return write("pendulum_feature_space", options.out, lambda out: draw(options.file, options.model, out))
+
+
+def draw(options):
+    space = read_space(options.file)
+    with new_figure(COLUMN_WIDTH, COLUMN_WIDTH + 0.05) as figure:
+        axes, place = panel_above_legend(figure)
+        draw_space(axes, space, Decoder(options.model))
+        add_legend(figure, place, *axes.get_legend_handles_labels(), ncol=4, columnspacing=1.0, handletextpad=0.2)
+        save(figure, options.out)

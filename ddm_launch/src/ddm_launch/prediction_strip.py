@@ -1,12 +1,15 @@
 # Draws what a model predicts 1, 2, ... steps ahead below what really happened.
 # SPDX-License-Identifier: BSD-3-Clause
-import argparse
 import os
 
-from ddm_launch.figure_style import PAGE_WIDTH, new_figure, save, write
+from ddm_launch.command import Failure
+from ddm_launch.figure_style import PAGE_WIDTH, new_figure, save
 from ddm_launch.images import Camera, Decoder
-from ddm_launch.run_folder import RunFolderError, number, read_csv
+from ddm_launch.tables import read_csv
 
+ABOUT = ("True images, and the model's long-term predictions of the same frames below. From a folder of "
+         "prediction_experiment. The column 'now' is the frame from which the model predicts; below it is its "
+         "reconstruction.")
 REMEDY = "is its folder one that prediction_experiment has written?"
 
 
@@ -15,14 +18,15 @@ class Strip:
 
     def __init__(self, folder):
         path = os.path.join(folder, "strip.csv")
-        rows = read_csv(path, ["steps", "z_1"], REMEDY)
-        features = [name for name in rows[0] if name.startswith("z_")]
-        state = [name for name in rows[0] if name != "steps" and name not in features]
+        names = list(read_csv(path, ["steps", "z_1"], REMEDY)[0])
+        rows = read_csv(path, dict.fromkeys(names, float), REMEDY)
+        features = [name for name in names if name.startswith("z_")]
+        state = [name for name in names if name != "steps" and name not in features]
         if not state:
-            raise RunFolderError("%s has no column of the true state, only: %s" % (path, ", ".join(rows[0])))
-        self.steps = [int(number(row, "steps", path)) for row in rows]
-        self.states = [[number(row, name, path) for name in state] for row in rows]
-        self.features = [[number(row, name, path) for name in features] for row in rows]
+            raise Failure("%s has no column of the true state, only: %s" % (path, ", ".join(names)))
+        self.steps = [int(row["steps"]) for row in rows]
+        self.states = [[row[name] for name in state] for row in rows]
+        self.features = [[row[name] for name in features] for row in rows]
 
 
 def column_label(steps):
@@ -47,22 +51,12 @@ def draw_strip(figure, strip, camera, decoder):
     figure.axes[len(strip.steps) + len(strip.steps) // 2].set_xlabel("steps ahead [-]")
 
 
-def draw(folder, out, make_camera=Camera, make_decoder=Decoder):
-    """Draws the strip of a folder of prediction_experiment into a picture file."""
-    strip = Strip(folder)
-    camera, decoder = make_camera(folder), make_decoder(os.path.join(folder, "model.ddm"))
-    with new_figure(PAGE_WIDTH, 1.85) as figure:
-        draw_strip(figure, strip, camera, decoder)
-        save(figure, out)
-
-
-def main(arguments=None):
-    parser = argparse.ArgumentParser(
-        prog="prediction_strip",
-        description="Draws true images (above) and long-term predictions of the same frames (below), from the "
-        "strip.csv, model.ddm and config.yaml of a folder of prediction_experiment. The column 'now' is the frame "
-        "from which the model predicts: below it stands its reconstruction.")
+def add_arguments(parser):
     parser.add_argument("folder", metavar="DIR", help="folder of prediction_experiment")
-    parser.add_argument("--out", metavar="FILE.png", required=True, help="picture to write")
-    options = parser.parse_args(arguments)
-    return write("prediction_strip", options.out, lambda out: draw(options.folder, out))
+
+
+def draw(options):
+    strip = Strip(options.folder)
+    with new_figure(PAGE_WIDTH, 1.85) as figure:
+        draw_strip(figure, strip, Camera(options.folder), Decoder(os.path.join(options.folder, "model.ddm")))
+        save(figure, options.out)

@@ -15,7 +15,7 @@ from std_msgs.msg import Float64, UInt32
 from std_srvs.srv import SetBool, Trigger
 import yaml
 
-from ddm_launch.step_runner import program
+from ddm_launch.command import find_program
 from ddm_model.plain_file import write_file
 
 LIMIT_S = 60.0
@@ -54,7 +54,7 @@ class Load:
                     rospy.sleep(0.5)
                     continue
                 self._process = subprocess.Popen(
-                    [program("train_from_bags", "ddm_model"), "--config", self._preset_file,
+                    [find_program("train_from_bags", "ddm_model"), "--config", self._preset_file,
                      "--out", os.path.join(scratch, "model.ddm")] + bags,
                     stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                     env=dict(os.environ, OMP_NUM_THREADS="1"))

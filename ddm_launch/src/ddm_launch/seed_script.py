@@ -4,7 +4,7 @@ import os
 import shlex
 import subprocess
 
-import roslib.packages
+from ddm_launch.command import Failure, find_program
 
 # Whoever starts a process may be killed without a chance to end it: then the kernel does. With this each link of the
 # chain sweep - parallel - (ssh -) script - program falls with the one before it.
@@ -30,12 +30,10 @@ exit "$code"
 """
 
 
-class SweepError(Exception):
-    """A sweep cannot start or go on; the message names the thing and the remedy."""
-
-
-class BadOptions(SweepError):
+class BadOptions(Failure):
     """The program refuses the options that it is given."""
+
+    exit_code = 2
 
 
 class SeedProgram:
@@ -44,14 +42,10 @@ class SeedProgram:
     def __init__(self, name, preset, plant, trials, options):
         """trials: None for a program that has none. options: more options, handed on as they are.
 
-        Raises SweepError if the program or the setup.bash of its workspace is not there.
+        Raises Failure if the program or the setup.bash of its workspace is not there.
         """
         self.name, self.preset, self.plant, self.trials, self.options = name, preset, plant, trials, list(options)
-        paths = roslib.packages.find_node("ddm_launch", name)
-        if not paths:
-            raise SweepError("ddm_launch has no program %s here: build the workspace, then source its "
-                             "devel/setup.bash" % name)
-        self.path = paths[0]
+        self.path = find_program(name)
         self.setup = find_setup(self.path)
 
     @property
@@ -88,5 +82,5 @@ def find_setup(program):
         path = os.path.join(folder, "setup.bash")
         if folder and os.path.isfile(path):
             return path
-    raise SweepError("there is no setup.bash in %s, where %s comes from, nor in CMAKE_PREFIX_PATH: source the "
-                     "workspace's devel/setup.bash" % (prefix, program))
+    raise Failure("there is no setup.bash in %s, where %s comes from, nor in CMAKE_PREFIX_PATH: source the "
+                  "workspace's devel/setup.bash" % (prefix, program))

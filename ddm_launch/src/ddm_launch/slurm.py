@@ -9,8 +9,8 @@ import subprocess
 import sys
 import time
 
+from ddm_launch.command import Failure
 from ddm_launch.interruption import held_back
-from ddm_launch.seed_script import SweepError
 from ddm_model.plain_file import write_file
 
 END_LIMIT_S = 120.0  # Slurm itself kills what does not end by KillWait, 30 s by default
@@ -39,7 +39,7 @@ def call(*command):
 def require_commands():
     for name in ("sbatch", "squeue", "scancel"):
         if shutil.which(name) is None:
-            raise SweepError("the program %s is not installed: apt-get install slurm-client, on a machine of a Slurm "
+            raise Failure("the program %s is not installed: apt-get install slurm-client, on a machine of a Slurm "
                              "cluster" % name)
 
 
@@ -52,12 +52,12 @@ def task_states(job):
 
 
 def cancel(job):
-    """Ends all tasks of a job. Returns when they have ended; raises SweepError if they do not."""
+    """Ends all tasks of a job. Returns when they have ended; raises Failure if they do not."""
     _, _, error = call("scancel", job)
     end = time.monotonic() + END_LIMIT_S
     while task_states(job) != collections.Counter():
         if time.monotonic() > end:
-            raise SweepError("Slurm has not ended job %s within %d s (%s): end it with 'scancel %s' before the next "
+            raise Failure("Slurm has not ended job %s within %d s (%s): end it with 'scancel %s' before the next "
                              "sweep in this folder" % (job, END_LIMIT_S, error or "scancel said nothing", job))
         time.sleep(0.2)
 
@@ -105,7 +105,7 @@ class SlurmArray:
                                    folder.script)
         job = output.strip().split(";")[0]
         if code != 0 or not re.match(r"\d+$", job):
-            raise SweepError("sbatch refused the job array %s: %s\nRemedy: set what your cluster wants in the "
+            raise Failure("sbatch refused the job array %s: %s\nRemedy: set what your cluster wants in the "
                              "variables that sbatch reads (SBATCH_PARTITION, ...). Seeds are indices of the array: "
                              "they must be less than MaxArraySize, see 'scontrol show config'." % (array, error))
         return job

@@ -1,4 +1,4 @@
-# Draws success rates over the frames learned from, beside the curves of the paper: its Fig. 8.
+# Draws success rates over the frames learned from, next to the curves of the paper's Fig. 8.
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
 import math
@@ -7,9 +7,11 @@ from matplotlib.colors import to_rgb
 from matplotlib.ticker import MaxNLocator
 
 from ddm_launch.averages import success_rates, wilson_interval
+from ddm_launch.command import Failure
 from ddm_launch.figure_style import (BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION,
-                                     new_figure, save, write)
-from ddm_launch.run_folder import RunFolderError, number, read_csv, read_sweep
+                                     add_legend, new_figure, panel_above_legend, save)
+from ddm_launch.run_folder import read_sweep
+from ddm_launch.tables import read_csv
 
 # The paper's methods: name, colour, marker; of the published curve: column of the rate, of its standard error (None:
 # not given). A curve of ours of such a name is drawn in the same colour as the published one.
@@ -20,7 +22,9 @@ METHODS = (("DDM + MPC", BLUE, "o", "ddm_mpc", "ddm_mpc_se"),
 # Colour, marker of the first, second, ... of our curves of another name.
 OTHERS = ((BLACK, "X"), (ORANGE, "P"), (SKY, "v"), (GREY, "*"))
 OURS_LINE, PUBLISHED_LINE = "-", "--"
-LONGEST_PAIR = 54  # [characters] that fit beside each other into the width of a column
+ABOUT = ("Success rate over the frames learned from. One curve per file of many seeds, with the standard error "
+         "sqrt(p (1 - p) / (n - 1)); a level line where nothing is learned.")
+LONGEST_PAIR = 54  # [characters] that fit next to each other into the width of a column
 
 
 class Curve:
@@ -44,14 +48,14 @@ class Curve:
 
 
 def read_curve(name, path, wilson=False):
-    """The curve of a trials.csv or sweep.csv; the number of its seeds stands in the label.
+    """The curve of a trials.csv or sweep.csv; the label names the number of its seeds.
 
-    wilson: with 95 % intervals as a band in the place of standard errors.
+    wilson: with 95 % intervals as a band instead of standard errors.
     """
     runs = read_sweep(path)
     rows = success_rates(runs.values())
     if not rows:
-        raise RunFolderError("%s: the success is not known in any row: there is nothing to draw" % path)
+        raise Failure("%s: the success is not known in any row: there is nothing to draw" % path)
     remark = "%d seed%s" % (len(runs), "" if len(runs) == 1 else "s")
     frames, rates, errors, counts = (list(column) for column in zip(*rows))
     if not wilson:
@@ -63,24 +67,24 @@ def read_curve(name, path, wilson=False):
 def read_published(path):
     """The paper's curves, in the order of METHODS."""
     columns = [name for method in METHODS for name in method[3:] if name]
-    rows = read_csv(path, ["frames"] + columns, "it is results/published/success_rate.csv of ddm_launch")
+    rows = read_csv(path, dict.fromkeys(["frames"] + columns, float),
+                    "it is results/published/success_rate.csv of ddm_launch")
 
     def column(name):
-        return [number(row, name, path) for row in rows]
+        return [row[name] for row in rows] if name else None
 
-    return [Curve(name, "paper", column("frames"), column(rate), column(error) if error else None)
-            for name, _, _, rate, error in METHODS]
+    return [Curve(name, "paper", column("frames"), column(rate), column(error)) for name, _, _, rate, error in METHODS]
 
 
 def styles(names):
-    """(colour, marker) of each curve of ours. Raises RunFolderError if some could not be told apart."""
+    """(colour, marker) of each curve of ours. Raises Failure if some could not be distinguished."""
     of_name = {name: (colour, marker) for name, colour, marker, _, _ in METHODS}
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
-        raise RunFolderError("each curve must have a label of its own, got '%s' twice: give it another" % twice[0])
+        raise Failure("each curve must have a label of its own, got '%s' twice: give it another" % twice[0])
     others = [name for name in names if name not in of_name]
     if len(others) > len(OTHERS):
-        raise RunFolderError("at most %d curves beside those of the paper's methods (%s) can be told apart, got %d: "
+        raise Failure("at most %d curves besides those of the paper's methods (%s) can be distinguished, got %d: "
                              "draw two figures" % (len(OTHERS), "; ".join(of_name), len(others)))
     of_name.update(zip(others, OTHERS))
     return [of_name[name] for name in names]
@@ -113,30 +117,9 @@ def draw_curves(axes, ours, published):
 
 
 def num_legend_columns(ours, published):
-    """2 where the longest label of ours fits beside the longest of the paper's."""
+    """2 where the longest label of ours fits next to the longest of the paper's."""
     first, second = (max([len(curve.label) for curve in curves], default=0) for curves in (ours, published or ours))
     return 2 if first + second <= LONGEST_PAIR else 1
-
-
-def draw_figure(figure, ours, published):
-    """The curves, and below them the legend: ours on the left, the paper's on the right."""
-    grid = figure.add_gridspec(2, 1, height_ratios=[1.0, 0.001])
-    axes = figure.add_subplot(grid[0])
-    draw_curves(axes, ours, published)
-    legend = figure.add_subplot(grid[1])
-    legend.axis("off")
-    legend.legend(*axes.get_legend_handles_labels(), loc="center", ncol=num_legend_columns(ours, published),
-                  columnspacing=0.8, frameon=False, handlelength=2.2, handletextpad=0.5)
-
-
-def draw(sources, published, wilson, out):
-    """sources: (label, path) of each of our curves; published: path of the paper's, or None; wilson: of ours."""
-    ours = [read_curve(label, path, wilson) for label, path in sources]
-    paper = read_published(published) if published else []
-    legend_rows = math.ceil(len(ours + paper) / num_legend_columns(ours, paper))
-    with new_figure(COLUMN_WIDTH, 2.45 + 0.15 * legend_rows) as figure:
-        draw_figure(figure, ours, paper)
-        save(figure, out)
 
 
 def source(text):
@@ -147,20 +130,29 @@ def source(text):
     return label, path
 
 
-def main(arguments=None):
-    parser = argparse.ArgumentParser(
-        prog="success_rate",
-        description="Draws the success rate of greedy evaluations and its standard error sqrt(p (1 - p) / (n - 1)) "
-        "over the frames learned from, one curve per file of many seeds; a level line where nothing is learned. The "
-        "labels %s have the colours of the paper's curves." % "; ".join(method[0] for method in METHODS))
+def add_arguments(parser):
     parser.add_argument("curves", metavar="LABEL=FILE.csv", nargs="+", type=source,
-                        help="a label, and a trials.csv or sweep.csv")
+                        help="a label, and a trials.csv or sweep.csv; the labels %s have the colours of the paper's curves"
+                        % "; ".join(method[0] for method in METHODS))
     parser.add_argument("--published", metavar="FILE.csv",
-                        help="draw the paper's curves too: results/published/success_rate.csv of ddm_launch")
+                        help="also draw the paper's curves: results/published/success_rate.csv of ddm_launch")
     parser.add_argument("--wilson", action="store_true",
-                        help="draw Wilson's 95 %% intervals as bands in the place of our standard errors, which are 0 "
-                        "where all seeds succeed")
-    parser.add_argument("--out", metavar="FILE.png", required=True, help="picture to write")
-    options = parser.parse_args(arguments)
-    return write("success_rate", options.out,
-                 lambda out: draw(options.curves, options.published, options.wilson, out))
+                        help="draw Wilson's 95 %% intervals as bands instead of our standard errors, which are 0 where "
+                        "all seeds succeed")
+
+
+def draw_figure(figure, ours, published):
+    """The curves, and below them the legend: ours on the left, the paper's on the right."""
+    axes, place = panel_above_legend(figure)
+    draw_curves(axes, ours, published)
+    add_legend(figure, place, *axes.get_legend_handles_labels(), ncol=num_legend_columns(ours, published),
+               columnspacing=0.8, handlelength=2.2, handletextpad=0.5)
+
+
+def draw(options):
+    ours = [read_curve(label, path, options.wilson) for label, path in options.curves]
+    published = read_published(options.published) if options.published else []
+    num_rows = math.ceil(len(ours + published) / num_legend_columns(ours, published))
+    with new_figure(COLUMN_WIDTH, 2.45 + 0.15 * num_rows) as figure:
+        draw_figure(figure, ours, published)
+        save(figure, options.out)

@@ -6,14 +6,14 @@ import re
 import sys
 import time
 
+from ddm_launch.command import run_program
 from ddm_launch.gnu_parallel import GnuParallel
-from ddm_launch.interruption import Interrupted, raised_as_exception
-from ddm_launch.seed_script import BadOptions, SeedProgram, SweepError, TABLES
+from ddm_launch.interruption import Interrupted
+from ddm_launch.seed_script import TABLES, SeedProgram
 from ddm_launch.slurm import SlurmArray, end_left_over
 from ddm_launch.sweep_folder import SweepFolder
 
 MAX_SEEDS = 100000
-FAILURE, USAGE_ERROR = 1, 2
 
 ABOUT = """\
 Runs an experiment for each seed, several at a time, and collects the rows of all seeds in DIR/sweep.csv. The same
@@ -40,7 +40,7 @@ hosts (--hosts FILE):
   ssh command is $PARALLEL_SSH.
 
 Slurm (--slurm):
-  One task of one core for each seed. What else sbatch shall know goes into the variables that it reads itself:
+  One task of one core for each seed. Everything else that sbatch must know goes into the variables that it reads itself:
   SBATCH_PARTITION, SBATCH_TIMELIMIT, SBATCH_ACCOUNT, SBATCH_QOS, SBATCH_MEM_PER_CPU and so on. Tasks see this workspace
   and DIR under the same paths."""
 
@@ -86,7 +86,7 @@ def parse(arguments):
     options, more = parser.parse_args(arguments[:split]), arguments[split + 1:]
     for word in more:
         if re.match(r"(-h|--(help|preset|plant|seed|trials|out)(=.*)?)$", word):
-            parser.error("%s after '--': only options that sweep itself has not may stand there" % word)
+            parser.error("%s after '--': only options that sweep itself does not have may follow it" % word)
     if options.program != "run_experiment" and options.trials is not None:
         parser.error("--trials is an option of run_experiment, %s has none: leave it out" % options.program)
     if options.program == "run_experiment" and options.trials is None:
@@ -94,7 +94,7 @@ def parse(arguments):
     if options.hosts is not None and options.slurm:
         parser.error("--hosts and --slurm exclude each other: a Slurm cluster chooses its hosts itself")
     if options.hosts is not None and not os.path.isfile(options.hosts):
-        parser.error("--hosts must name a file of ssh hosts, got '%s', which is none" % options.hosts)
+        parser.error("--hosts must name a file of ssh hosts, got '%s', which is not a file" % options.hosts)
     return options, more
 
 
@@ -132,7 +132,7 @@ def report(folder, seeds, start):
         print("sweep: not finished:", file=sys.stderr)
         for seed, problem in problems.items():
             print("  seed %d: %s" % (seed, problem), file=sys.stderr)
-        print("sweep: the same command goes on where this one ended", file=sys.stderr)
+        print("sweep: the same command resumes where this one ended", file=sys.stderr)
     versions = folder.versions(last_rows)
     if len(versions) > 1:
         print("sweep: warning: the seeds come from %d versions of the code, they may not be comparable: %s"
@@ -175,20 +175,9 @@ def sweep(options, more):
         complete = report(folder, options.seeds, start)
     if interruption:
         raise interruption
-    return 0 if complete else FAILURE
+    return 0 if complete else 1
 
 
 def main(arguments=None):
     options, more = parse(sys.argv[1:] if arguments is None else arguments)
-    try:
-        with raised_as_exception():
-            return sweep(options, more)
-    except Interrupted as error:
-        print("sweep: %s" % error, file=sys.stderr)
-        return 128 + error.number  # as a shell says it
-    except SweepError as error:
-        print("sweep: %s" % error, file=sys.stderr)
-        return USAGE_ERROR if isinstance(error, BadOptions) else FAILURE
-    except OSError as error:
-        print("sweep: %s" % error, file=sys.stderr)
-        return FAILURE
+    return run_program("sweep", lambda: sweep(options, more))

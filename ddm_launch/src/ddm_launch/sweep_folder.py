@@ -7,41 +7,15 @@ import shutil
 
 import yaml
 
-from ddm_launch.seed_script import SweepError
+from ddm_launch.command import Failure
+from ddm_launch.settings import differences, read_yaml
 from ddm_model.plain_file import write_file
-
-LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the former is ten times as fast
 
 # Keys of config.yaml in which the seeds of one sweep may differ.
 MAY_DIFFER = {"version", "experiment/seed", "experiment/trials", "experiment/runs", "experiment/timeout",
               "sim/watchdog"}
 
 FULL_BYTES = 1 << 20  # free space below which a disk may be why nothing was said
-
-
-def read_yaml(path):
-    """The mapping in a YAML file; empty if the file is missing or holds something else."""
-    try:
-        with open(path) as stream:
-            tree = yaml.load(stream, Loader=LOADER)
-    except (OSError, UnicodeDecodeError, yaml.YAMLError):
-        return {}
-    return tree if isinstance(tree, dict) else {}
-
-
-def flat(tree, prefix=""):
-    """{"block/key": value} of nested mappings."""
-    entries = {}
-    for key, value in tree.items():
-        entries.update(flat(value, "%s%s/" % (prefix, key)) if isinstance(value, dict) else {prefix + str(key): value})
-    return entries
-
-
-def differences(there, here, may_differ=()):
-    """Lines that name each key whose value is not the same."""
-    there, here = flat(there), flat(here)
-    return ["%s: %s there, %s here" % (key, there.get(key, "nothing"), here.get(key, "nothing"))
-            for key in sorted(set(there) | set(here)) if key not in may_differ and there.get(key) != here.get(key)]
 
 
 def with_versions(lines):
@@ -68,23 +42,23 @@ class SweepFolder:
     """
 
     def __init__(self, path, program):
-        """Makes the folder, or opens that of the same sweep. Raises SweepError if it holds another one."""
+        """Makes the folder, or opens that of the same sweep. Raises Failure if it holds another one."""
         self.path, self.program = os.path.abspath(path), program
         try:
             os.makedirs(os.path.join(self.path, "logs"), exist_ok=True)
             self._lock = open(os.path.join(self.path, ".lock"), "a")
         except OSError as error:
-            raise SweepError("cannot write into the folder %s (%s): choose another with --out"
+            raise Failure("cannot write into the folder %s (%s): choose another with --out"
                              % (self.path, error.strerror))
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             self._lock.close()
-            raise SweepError("another sweep is running in the folder %s: wait for it, or use another folder"
+            raise Failure("another sweep is running in the folder %s: wait for it, or use another folder"
                              % self.path)
         try:
             self._compare()
-        except SweepError:
+        except Failure:
             self._lock.close()
             raise
 
@@ -101,7 +75,7 @@ class SweepFolder:
         if os.path.exists(path):
             found = differences(read_yaml(path), here)
             if found:
-                raise SweepError("the folder %s holds another sweep, use another folder:\n - %s"
+                raise Failure("the folder %s holds another sweep, use another folder:\n - %s"
                                  % (self.path, "\n - ".join(found)))
         else:
             write_file(path, yaml.safe_dump(here, sort_keys=False))
@@ -154,7 +128,7 @@ class SweepFolder:
         return words + (", is the disk full?" if shutil.disk_usage(self.path).free < FULL_BYTES else "")
 
     def _exit_code(self, seed):
-        """As GNU parallel's job log tells it; None where it does not, as with Slurm."""
+        """From GNU parallel's job log; None where it has none, as with Slurm."""
         try:
             with open(self.joblog, errors="replace", newline="") as stream:
                 jobs = list(csv.DictReader(stream, delimiter="\t", quoting=csv.QUOTE_NONE))
@@ -177,7 +151,7 @@ class SweepFolder:
                 header, rows, last_row = self._read_table(seed)
                 first = first or (seed, header)
                 self._require_equal(first, seed, header)
-            except SweepError as error:
+            except Failure as error:
                 problems[seed] = str(error)
                 continue
             lines += rows
@@ -195,22 +169,22 @@ class SweepFolder:
             with open(path, newline="") as stream:
                 lines = with_versions(stream.read().splitlines())
         except (OSError, UnicodeDecodeError) as error:
-            raise SweepError("%s cannot be read (%s): remove the folder, and the seed is run again" % (path, error))
+            raise Failure("%s cannot be read (%s): remove the folder, and the seed is run again" % (path, error))
         count = len(lines) - 1 if self.program.trials is None else self.program.trials + 1
         rows = list(csv.DictReader(lines))
         if not 1 <= count <= len(rows) or any(row.get("seed") != str(seed) for row in rows):
-            raise SweepError("%s must hold %s rows of seed %d: remove the folder, and the seed is run again"
+            raise Failure("%s must hold %s rows of seed %d: remove the folder, and the seed is run again"
                              % (path, "some" if self.program.trials is None else count, seed))
         return lines[0], lines[1:count + 1], rows[count - 1]
 
     def _require_equal(self, first, seed, header):
-        """One table speaks of one experiment: same columns, same configuration as the first finished seed."""
+        """A table is about one experiment: same columns, same configuration as the first finished seed."""
         there, here = (read_yaml(os.path.join(self.seed_folder(k), "config.yaml")) for k in (first[0], seed))
         found = differences(there, here, MAY_DIFFER)
         if header != first[1]:
             found.append("columns of %s" % self.program.table)
         if found:
-            raise SweepError("%s is not the experiment of seed %d: %s; use another folder for it"
+            raise Failure("%s is not the experiment of seed %d: %s; use another folder for it"
                              % (self.seed_folder(seed), first[0], ", ".join(found)))
 
     def versions(self, seeds):

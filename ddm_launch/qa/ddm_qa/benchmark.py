@@ -1,0 +1,166 @@
+# Times what users wait for, and what they would use instead, in one table.
+# SPDX-License-Identifier: BSD-3-Clause
+import argparse
+import importlib.util
+import json
+import os
+import statistics
+import sys
+import tempfile
+
+from tqdm import tqdm
+import yaml
+
+from ddm_launch.command import Failure, find_program, package_path, processor, run_program
+from ddm_launch.settings import read_yaml
+from ddm_launch.tables import write_csv
+from ddm_model.plain_file import write_file
+from ddm_qa.programs import Programs
+
+COLUMNS = ["name", "median_us", "p99_us", "peer_median_us"]
+BUDGET_COLUMNS = ["preset", "load", "budget_ms", "plans", "cut_short", "median_ms", "p99_ms", "p999_ms", "max_ms",
+                  "within_2_ms", "within_10_ms"]
+PEERS = os.path.join(os.path.dirname(__file__), "torch_peers.py")
+TRIALS, ITERATIONS, RESTARTS, NUM_FRAMES, NUM_PLANS = 15, 200, 9, 10000, 2000
+
+ABOUT = """\
+Times objective and gradient, one retraining, PCA, encoding, plans, renderer and bag reading on the 1600 frames of an
+experiment that it runs first; the experiment itself, in one process and with the nodes; and the lock-step loop next to
+two nodes that only send the same messages to and fro. Starts what it needs, a master too. Everything runs on one core where
+it can; the machine should have nothing else to do."""
+
+EPILOG = """\
+DIR/speed.csv, one row a name; times in microseconds, of single calls unless said otherwise:
+  objective_gradient   V_R + V_P and its gradient, float32, 1600 frames
+  matrix_products/N    the matrix products of the same and nothing else, N samples at a time
+  matrix_products      the same in their best blocking
+  retrain              a retraining of 200 iterations on 1600 frames, PCA included
+  pca, encode          PCA of 1601 images; the features of one image
+  plan                 a whole plan along greedy trials; plan_cost_gradient: one evaluation of its cost
+  render, read_bag     an image of the simulator; a bag of 100 frames
+  lockstep_round_trip  image to torque to next image with sim_node and mpc_node, random policy, recorder off: means of
+                       100 in a row; median of the medians, and of the 99 % quantiles, of 9 restarts
+  bare_round_trip      the same messages between two nodes that do nothing with them, restarts taking turns
+  experiment           15 trials after the random one in one process, the whole; once
+  ros_experiment       the same by roslaunch, from the first frame to the last; once
+DIR/planning_budget.csv  2000 decisions of presets paper and efficient that would take minutes, with mpc/time_budget at
+                       5 ms, on the idle machine and with a busy process on each core: time from when an image is due to
+                       its torque, and the fraction that took at most the budget and 2 ms, or 10 ms
+With --peers, peer_median_us is the time of the same mathematics in PyTorch, one thread, its own L-BFGS.
+DIR/machine.yaml       processor, versions, iterations of a plan"""
+
+
+class Benchmark:
+    def __init__(self, out, peers, scratch):
+        self.out, self.peers, self.scratch = os.path.abspath(out), peers, scratch
+        self.programs = Programs(scratch)
+        self.run = os.path.join(scratch, "experiment")
+        self.rows = {}  # name: [median, 99 % quantile, peer's median] [us]
+        self.plan_iterations = None
+        self.budgets = []  # rows of planning_budget.csv
+
+    def experiment(self):
+        self.programs.call("experiment", [find_program("run_experiment"), "--preset", "paper", "--plant", "pendulum",
+                                          "--seed", "0", "--trials", str(TRIALS), "--out", self.run])
+        self.rows["experiment"] = [1e6 * read_yaml(os.path.join(self.run, "summary.yaml"))["wall_s"], "", ""]
+
+    def kernels(self):
+        report = os.path.join(self.scratch, "kernels.json")
+        self.programs.call("kernels", [find_program("speed_kernels"), self.run, "--benchmark_out_format=json",
+                                       "--benchmark_out=" + report])
+        with open(report) as stream:
+            found = json.load(stream)["benchmarks"]
+        times = {}  # name: {median, p99}
+        for row in found:
+            if row.get("error_occurred"):
+                raise Failure("kernels: %s: %s" % (row["name"], row.get("error_message", "failed")))
+            name = row["run_name"].split("/iterations")[0]
+            if row.get("aggregate_name") in ("median", "p99"):
+                times.setdefault(name, {})[row["aggregate_name"]] = row["real_time"]
+            if name == "plan" and row.get("aggregate_name") == "mean":
+                self.plan_iterations = row["plan_iterations"]
+        times["matrix_products"] = min((found for name, found in times.items() if name.startswith("matrix_products/")),
+                                       key=lambda found: found["median"])
+        for name in times:
+            self.rows[name] = [times[name]["median"], times[name]["p99"], ""]
+
+    def peer(self):
+        text = self.programs.call("peers", [sys.executable, PEERS, self.run, "--iterations", str(ITERATIONS),
+                                            "--plan-iterations", "%.1f" % self.plan_iterations])
+        for name, times in json.loads(text.splitlines()[-1]).items():
+            self.rows[name][2] = times["median_us"]
+
+    def round_trips(self, progress):
+        """Restarts of both loops, taking turns."""
+        times = {"lockstep": [], "bare": []}
+        for restart in range(RESTARTS):
+            for name, found in times.items():
+                path = os.path.join(self.scratch, "%s_%d.yaml" % (name, restart))
+                self.programs.roslaunch(name, package_path("qa", "benchmark", name + ".launch"), "out:=" + path,
+                                        "num_frames:=%d" % NUM_FRAMES)
+                measured = read_yaml(path)
+                if not measured:
+                    raise Failure("%s: the nodes ended without a result: look for their errors above and in %s"
+                                  % (name, os.path.join(self.scratch, "ros")))
+                found.append((measured["median_us"], measured["p99_us"]))
+                progress.update(1)
+        for name, found in times.items():
+            self.rows[name + "_round_trip"] = [statistics.median(column) for column in zip(*found)] + [""]
+
+    def planning_budget(self):
+        for load in ([], ["--busy"]):
+            for preset in ("paper", "efficient"):
+                row = self.programs.call("planning_budget", [find_program("planning_budget"), "--preset", preset,
+                                                             "--plans", str(NUM_PLANS)] + load)
+                self.budgets.append(row.strip().split(","))
+
+    def ros_experiment(self):
+        run = os.path.join(self.scratch, "ros_experiment")
+        self.programs.roslaunch("ros_experiment", "ddm_launch", "experiment.launch", "preset:=paper",
+                                "plant:=pendulum", "seed:=0", "trials:=%d" % TRIALS, "runs:=" + run)
+        summary = read_yaml(os.path.join(run, "summary.yaml"))
+        if summary.get("finished") is not True:
+            raise Failure("ros_experiment: the experiment of the nodes did not finish")
+        self.rows["ros_experiment"] = [1e6 * summary["wall_s"], "", ""]
+
+    def work(self):
+        steps = [("experiment", self.experiment), ("kernels", self.kernels)]
+        steps += [("PyTorch", self.peer)] if self.peers else []
+        steps += [("planning with a budget", self.planning_budget), ("roslaunch experiment", self.ros_experiment)]
+        with tqdm(total=len(steps) + 2 * RESTARTS, unit="step", dynamic_ncols=True, disable=None) as progress:
+            for name, step in steps:
+                progress.set_description(name)
+                step()
+                progress.update(1)
+            progress.set_description("lock-step and bare loop")
+            self.round_trips(progress)
+        self.write()
+
+    def write(self):
+        write_csv(os.path.join(self.out, "speed.csv"), COLUMNS,
+                  [[name] + ["" if value == "" else float(value) for value in row] for name, row in self.rows.items()])
+        write_csv(os.path.join(self.out, "planning_budget.csv"), BUDGET_COLUMNS, self.budgets)
+        machine = {"cpu": processor(), "cores": os.cpu_count(), "plan_iterations": self.plan_iterations,
+                   "version": read_yaml(os.path.join(self.run, "config.yaml")).get("version", "?")}
+        if self.peers:
+            version = [sys.executable, "-c", "import torch; print(torch.__version__)"]
+            machine["torch"] = self.programs.call("peers", version).strip()
+        write_file(os.path.join(self.out, "machine.yaml"), yaml.safe_dump(machine, sort_keys=False))
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(prog="benchmark", description=ABOUT, epilog=EPILOG,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--peers", action="store_true", help="also time PyTorch, which must be installed")
+    parser.add_argument("--out", default="speed", metavar="DIR", help="default speed")
+    options = parser.parse_args(arguments)
+
+    def work():
+        if options.peers and importlib.util.find_spec("torch") is None:
+            raise Failure("--peers needs PyTorch for %s: sudo apt install python3-torch, or leave the option out"
+                          % sys.executable)
+        with tempfile.TemporaryDirectory() as scratch:
+            benchmark = Benchmark(options.out, options.peers, scratch)
+            benchmark.work()
+        print("results: %s" % benchmark.out)
+    return run_program("benchmark", work)

@@ -1,0 +1,292 @@
+# fault_injector: relays between plant and controller, and does one thing wrong at one moment.
+# SPDX-License-Identifier: BSD-3-Clause
+"""The moment is exact: the injector sees each reset, image and torque before it arrives, and holds it until its fault
+is done. Only a training is hit wherever it is when its first progress is heard. What the experiment has finished at that
+moment is written next to the report. In real time the report also says what the motor has done since."""
+import copy
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+from ddm_msgs.msg import Torque, TrainActionFeedback, TrainActionGoal
+from ddm_msgs.srv import Reset
+import rosgraph
+import rospy
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import Image, JointState
+
+from ddm_launch.command import find_program
+from ddm_qa.faults import intruder, robot_injector
+from ddm_qa.faults.configuration import configuration
+from ddm_qa.faults.finished import Finished
+from ddm_qa.faults.motor import MotorWatch
+from ddm_qa.faults.order import OrderWatch
+from ddm_qa.faults.pairs import write_acted
+from ddm_qa.node_processes import pid_of
+
+# (trial, whether it is the evaluation after it). `recording` is when the last torque has been sent: the bag is closed.
+# In real time they are those words and REAL_TIME.
+RUN_OF_PHASE = {"random trial": (0, False), "exploring trial": (1, False), "recording": (1, False),
+                "evaluation": (1, True)}
+REAL_TIME = " in real time"
+TRAINED_TRIAL = 1  # of the phase `training`
+FRAME = 7          # of a trial or evaluation
+LATE_S = 1.0
+QUEUE = 100
+
+# How long a node stops, in terms of the first limit that somebody who waits for it has.
+STOPS = {"pause": 0.6, "oversleep": 1.25, "hold": float("inf")}
+LIMITS = {"sim_node": ("controller", "timeout"), "mpc_node": ("sim", "watchdog")}
+OTHER_LIMIT = ("experiment", "timeout")
+
+
+def altered(message, how):
+    """An image or a torque as it should not be."""
+    message = copy.deepcopy(message)
+    if how in ("nan", "inf", "1e300"):
+        message.torque = [float(how)]
+    elif how == "none":
+        message.torque = []
+    elif how == "twice":
+        message.torque = list(message.torque) * 2
+    elif how == "size":
+        message.width = message.height = message.step = message.width // 2
+        message.data = message.data[:message.width * message.height]
+    elif how == "encoding":
+        message.encoding, message.step, message.data = "rgb8", 3 * message.step, 3 * message.data
+    elif how == "unknown":
+        message.encoding = "smell"
+    elif how == "cut":
+        message.data = message.data[:len(message.data) // 2]
+    elif how == "unstamped":
+        message.header.stamp = rospy.Time()
+    else:
+        raise ValueError("no such alteration: " + how)
+    return message
+
+
+def late(message):
+    time.sleep(LATE_S)
+    return [message]
+
+
+# What is passed on in the place of a message, given the one before it.
+MESSAGE_FAULTS = {"drop": lambda message, before, how: [], "double": lambda message, before, how: [message, message],
+                  "late": lambda message, before, how: late(message),
+                  "repeat": lambda message, before, how: [before, message],
+                  "alter": lambda message, before, how: [altered(message, how)]}
+
+
+def has_ended(pid):
+    """Also of a process whose parent has not asked for its exit code yet."""
+    try:
+        with open("/proc/%d/stat" % pid) as stream:
+            return stream.read().rsplit(")", 1)[1].split()[0] == "Z"
+    except OSError:
+        return True
+
+
+def later(seconds, signal_name, pid):
+    """Sends a signal, even if this process has ended by then."""
+    subprocess.Popen(["sh", "-c", "sleep %g; kill -%s %d" % (seconds, signal_name, pid)], start_new_session=True)
+
+
+class Injector:
+    def __init__(self):
+        phase = rospy.get_param("~phase")
+        self.real_time, self.phase = phase.endswith(REAL_TIME), phase.replace(REAL_TIME, "")
+        self.verb, self.what, self.how = (rospy.get_param("~fault").split() + ["", ""])[:3]
+        self.report, self.runs = rospy.get_param("~report"), rospy.get_param("~runs")
+        self.lock = threading.Lock()
+        self.run, self.frame, self.num_steps, self.stamp = None, -1, 0, None
+        self.last, self.muted = {}, None  # topic: the message before; topic that is no longer passed on
+        self.held = None                  # the first one of two messages that change places
+        self.acted = []                   # (stamp of an image [ns], torque that acted before it)
+        self.motor = OrderWatch() if self.verb == "swap" else MotorWatch(stays_off=self.verb in ("alter", "publish"))
+        self.trained, self.pid, self.experiment_pid, self.killed, self.done = -1, None, None, False, False
+        self.intruder = None
+        if self.verb == "publish":
+            self.intruder = subprocess.Popen(
+                [sys.executable, intruder.__file__, self.what], stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE, universal_newlines=True, start_new_session=True)  # Ctrl-C is not for it
+            self.intruder.stdout.readline()
+        self.connect()
+
+    def connect(self):
+        """The service comes last: the experiment waits for it, and then finds everything else in place."""
+        self.images = rospy.Publisher("camera/image_raw", Image, queue_size=QUEUE)
+        self.torques = rospy.Publisher("plant/torque", Torque, queue_size=QUEUE)
+        from_plant = rospy.Subscriber("plant/image_raw", Image, self.on_image, queue_size=QUEUE, tcp_nodelay=True)
+        from_controller = rospy.Subscriber("torque", Torque, self.on_torque, queue_size=QUEUE, tcp_nodelay=True)
+        self.clocks = rospy.Publisher("/clock", Clock, queue_size=QUEUE, latch=True)
+        rospy.Subscriber("plant/clock", Clock, lambda clock: self.relay("clock", clock, self.clocks, False))
+        rospy.Subscriber("ground_truth/joint_states", JointState, self.on_ground_truth, queue_size=QUEUE)
+        rospy.Subscriber("train/goal", TrainActionGoal, self.on_training, queue_size=QUEUE)
+        rospy.Subscriber("train/feedback", TrainActionFeedback, self.on_progress, queue_size=QUEUE)
+        ends = (from_plant, from_controller, self.torques, self.images)
+        while not rospy.is_shutdown() and not all(end.get_num_connections() for end in ends):
+            time.sleep(0.01)
+        rospy.wait_for_service("plant/reset")
+        self.reset = rospy.ServiceProxy("plant/reset", Reset, persistent=True)  # needs no master
+        rospy.Service("reset", Reset, self.on_reset)
+
+    def on_reset(self, request):
+        if self.pid is None and (self.verb in ("kill", "lose") or self.verb in STOPS):
+            master = rosgraph.Master(rospy.get_name())  # only now all nodes are sure to be there
+            self.pid, self.experiment_pid = pid_of(master, self.what), pid_of(master, "experiment_node")
+        with self.lock:
+            self.run, self.frame, self.num_steps = (request.trial, request.evaluation), -1, request.num_steps
+        self.wait_for_end()
+        return self.reset(request)
+
+    def wait_for_end(self):
+        """roslaunch takes a moment to notice that a process is dead: meanwhile nobody gets any further."""
+        while self.killed and not rospy.is_shutdown():
+            time.sleep(0.01)
+
+    def is_due(self):
+        """Whether the frame on show is the one of the phase."""
+        frame = self.num_steps - 1 if self.phase == "recording" else FRAME
+        if RUN_OF_PHASE.get(self.phase) != self.run:
+            return False
+        return self.frame >= frame if self.real_time else self.frame == frame  # whose torque may have been late
+
+    def on_image(self, image):
+        with self.lock:
+            self.frame, self.stamp = self.frame + 1, image.header.stamp
+            due = self.is_due()
+        if due and self.phase != "recording" and self.verb not in MESSAGE_FAULTS and self.verb != "swap":
+            self.inject()
+        self.relay("image", image, self.images, due)
+
+    def on_torque(self, torque):
+        with self.lock:
+            due = self.is_due() and torque.header.stamp == self.stamp
+        if due and self.phase == "recording":
+            self.inject()
+        self.relay("torque", torque, self.torques, due)
+
+    def on_ground_truth(self, state):
+        self.motor.torque_has_acted(state.header.stamp.to_sec(), state.effort[0])
+        self.acted.append((state.header.stamp.to_nsec(), state.effort[0]))
+
+    def relay(self, topic, message, publisher, due):
+        self.wait_for_end()
+        before, self.last[topic] = self.last.get(topic), message
+        messages = [message]
+        if self.verb == "swap" and self.what == topic and not self.done and (due or self.held):
+            messages = self.swapped(message)
+        elif due and self.what == topic and self.verb in MESSAGE_FAULTS and not self.done:
+            self.motor.fault_begins(time.time(), self.stamp.to_sec())
+            messages = MESSAGE_FAULTS[self.verb](message, before, self.how)
+            self.tell()
+        if topic == self.muted:
+            return
+        for each in messages:
+            if topic == "torque":
+                self.motor.torque_passes(time.time(), each.header.stamp.to_sec())
+            try:
+                publisher.publish(each)
+            except rospy.ROSException:
+                if not rospy.core.is_shutdown_requested():  # in real time the plant goes on while this node ends
+                    raise
+
+    def swapped(self, message):
+        """Holds a message; returns it behind the next one. Two equal torques would not show their order."""
+        if self.held is None:
+            self.held = message
+            return []
+        first, self.held = self.held, None
+        if self.what == "torque" and first.torque == message.torque:
+            return [first, message]
+        self.motor.swap(first.header.stamp.to_sec(), first.torque[0] if self.what == "torque" else None)
+        self.tell()
+        return [message, first]
+
+    def on_training(self, goal):
+        self.trained = goal.goal.trial
+
+    def on_progress(self, _):
+        if self.phase == "training" and self.trained == TRAINED_TRIAL:
+            self.inject()
+
+    def inject(self):
+        """Faults that do not change a message. Once only."""
+        with self.lock:
+            if self.done:
+                return
+            self.done = True
+            self.motor.fault_begins(time.time(), self.stamp.to_sec())
+        said = ""
+        if self.verb == "kill":
+            self.tell()  # first: this node ends with the other
+            self.killed = True
+            os.kill(self.pid, signal.SIGKILL)
+            return
+        if self.verb in STOPS:
+            block, key = LIMITS.get(self.what, OTHER_LIMIT)
+            limit = configuration()[block][key]  # first: it comes from the master, which may be the one to stop
+            os.kill(self.pid, signal.SIGSTOP)
+            if self.verb != "hold":
+                later(STOPS[self.verb] * limit, "CONT", self.pid)
+        elif self.verb == "lose":
+            self.lose()
+        elif self.verb == "mute":
+            self.muted = self.what
+        elif self.verb == "fill":
+            said = self.fill_disk()
+        elif self.verb == "publish":
+            self.intruder.stdin.write("now\n")
+            self.intruder.stdin.flush()
+            said = self.intruder.stdout.readline()
+        elif self.verb == "begin":  # a second experiment in the same folder
+            said = subprocess.run([find_program("run_experiment"), "--preset", "debug", "--out", self.runs],
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True).stdout
+        else:
+            raise ValueError("no such fault: " + self.verb)
+        self.tell(said)
+
+    def lose(self):
+        """Kills a node where no roslaunch sees it, as on another machine: the others must notice. roslaunch, which has
+        started all of them, sleeps until the experiment has ended."""
+        roslaunch = os.getppid()
+        os.kill(roslaunch, signal.SIGSTOP)
+        os.kill(self.pid, signal.SIGKILL)
+
+        def wake():
+            while not has_ended(self.experiment_pid):
+                time.sleep(0.05)
+            os.kill(roslaunch, signal.SIGCONT)
+        threading.Thread(target=wake, daemon=True).start()
+
+    def fill_disk(self):
+        with open(os.path.join(self.runs, "filler"), "wb", buffering=0) as stream:
+            try:
+                while True:
+                    stream.write(bytes(4096))
+            except OSError as error:
+                return str(error)
+
+    def tell(self, said=""):
+        self.done = True
+        Finished.of(self.runs).write(os.path.dirname(self.report))
+        with open(self.report, "w") as stream:
+            stream.write(said + "\n")
+
+
+def main():
+    rospy.init_node("fault_injector")
+    if rospy.get_param("~phase").endswith(robot_injector.ON_A_ROBOT):
+        return robot_injector.main()
+    injector = Injector()
+    rospy.spin()
+    if injector.done and injector.real_time:
+        with open(injector.report, "a") as stream:
+            stream.write("motor: %s\n" % injector.motor.verdict())
+        write_acted(injector.acted, os.path.dirname(injector.report))
+    if injector.intruder:
+        injector.intruder.stdin.close()  # it ends, too
+    return 0

@@ -1,0 +1,117 @@
+# How time and memory of learning grow with frames and pixels: a table, a figure, and the trainer's own peak.
+# SPDX-License-Identifier: BSD-3-Clause
+import argparse
+import math
+import os
+import tempfile
+
+from tqdm import tqdm
+import yaml
+
+from ddm_launch.command import Failure, find_program, package_path, processor, run_program
+from ddm_launch.figure_style import BLUE, COLUMN_WIDTH, VERMILLION, new_figure, save
+from ddm_launch.settings import read_yaml
+from ddm_launch.tables import read_csv
+from ddm_model.plain_file import write_file
+from ddm_qa.programs import Programs
+
+COLUMNS = "frames,size_px,pca_us,objective_gradient_us,peak_memory_mb"
+FRAMES, SIZES = (1000, 3000, 10000, 30000, 100000), (51, 71, 101, 142, 201)
+SIZE, NUM_FRAMES = 51, 1600  # of the rows in which the other one grows
+REMEDY = "rosrun ddm_launch growth writes it"
+
+ABOUT = """\
+Times PCA and one objective with its gradient on 1,000 to 100,000 frames of 51 x 51 pixels, and on 1600 frames of up to
+201 x 201; then has model_node learn from bags of 100,000 frames, and reads its peak memory. Takes a few minutes."""
+
+EPILOG = """\
+DIR/growth.csv    frames, size [pixels], PCA and objective with gradient [us], peak memory of the process [MB]
+DIR/growth.png    both times over frames and over pixels
+DIR/growth.yaml   exponent of the objective's time over frames, peak memory of model_node [MB], processor"""
+
+
+def write_table(out, programs, progress):
+    lines = [COLUMNS]
+    for frames, size in [(frames, SIZE) for frames in FRAMES] + [(NUM_FRAMES, size) for size in SIZES]:
+        progress.set_description("%d frames of %d x %d pixels" % (frames, size, size))
+        lines.append(programs.call("growth", [find_program("speed_growth"), "--frames", str(frames), "--size",
+                                              str(size)]).strip())
+        progress.update(1)
+    write_file(os.path.join(out, "growth.csv"), "\n".join(lines) + "\n")
+
+
+def read_table(path):
+    """Lists (frames, size, PCA [us], objective [us]) of the rows that grow in frames, and in pixels."""
+    names = COLUMNS.split(",")
+    rows = [[row[name] for name in names[:4]] for row in read_csv(path, dict.fromkeys(names, float), REMEDY)]
+    return [row for row in rows if row[0] != NUM_FRAMES], [row for row in rows if row[0] == NUM_FRAMES]
+
+
+def exponent(xs, ys):
+    """Slope of log y over log x by least squares."""
+    xs, ys = [math.log(x) for x in xs], [math.log(y) for y in ys]
+    mean_x, mean_y = sum(xs) / len(xs), sum(ys) / len(ys)
+    return (sum((x - mean_x) * (y - mean_y) for x, y in zip(xs, ys)) / sum((x - mean_x) ** 2 for x in xs))
+
+
+def draw(path, out):
+    by_frames, by_size = read_table(path)
+    with new_figure(COLUMN_WIDTH, 1.9) as figure:
+        left, right = figure.subplots(1, 2, sharey=True)
+        for axes, rows, xs in ((left, by_frames, [row[0] for row in by_frames]),
+                               (right, by_size, [row[1] ** 2 for row in by_size])):
+            axes.plot(xs, [1e-6 * row[2] for row in rows], color=VERMILLION, marker="s", label="PCA")
+            axes.plot(xs, [1e-6 * row[3] for row in rows], color=BLUE, marker="o", label="objective, gradient")
+            axes.set_xscale("log")
+            axes.set_yscale("log")
+            axes.grid(True)
+        left.set_xlabel("frames of 51 x 51 pixels")
+        right.set_xlabel("pixels, %d frames" % NUM_FRAMES)
+        left.set_ylabel("time [s]")
+        right.legend(loc="center", bbox_to_anchor=(0.5, 0.28))  # between the curves
+        save(figure, out)
+
+
+def node_memory(programs, progress):
+    """Peak memory of model_node that has learned from as many frames [MB]."""
+    progress.set_description("model_node, %d frames" % FRAMES[-1])
+    bags, result = os.path.join(programs.scratch, "bags"), os.path.join(programs.scratch, "memory.yaml")
+    os.makedirs(bags)
+    programs.call("bags", [find_program("speed_growth"), "--frames", str(FRAMES[-1]), "--bags", bags])
+    programs.roslaunch("model_node", package_path("qa", "benchmark", "model_memory.launch"), "bags:=" + bags,
+                       "out:=" + result)
+    progress.update(1)
+    measured = read_yaml(result)
+    if measured.get("frames") != FRAMES[-1]:
+        raise Failure("model_node: it did not learn from %d frames, but left %s" % (FRAMES[-1], measured or "nothing"))
+    return measured["peak_memory_mb"]
+
+
+def make(out):
+    os.makedirs(out, exist_ok=True)
+    with tempfile.TemporaryDirectory() as scratch, tqdm(
+            total=len(FRAMES) + len(SIZES) + 1, unit="step", dynamic_ncols=True, disable=None) as progress:
+        programs = Programs(scratch)
+        write_table(out, programs, progress)
+        memory_mb = node_memory(programs, progress)
+    table = os.path.join(out, "growth.csv")
+    draw(table, os.path.join(out, "growth.png"))
+    by_frames, _ = read_table(table)
+    found = {"exponent": round(exponent([row[0] for row in by_frames], [row[3] for row in by_frames]), 3),
+             "model_node_peak_memory_mb": round(memory_mb, 1), "cpu": processor()}
+    write_file(os.path.join(out, "growth.yaml"), yaml.safe_dump(found, sort_keys=False))
+    return found
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(prog="growth", description=ABOUT, epilog=EPILOG,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", default="speed", metavar="DIR", help="default speed")
+    options = parser.parse_args(arguments)
+
+    def work():
+        found = make(os.path.abspath(options.out))
+        print("objective: time grows with the %.2f-th power of the frames; model_node at %d frames: %.0f MB" % (
+            found["exponent"], FRAMES[-1], found["model_node_peak_memory_mb"]))
+        print("results: %s" % options.out)
+    return run_program("growth", work)

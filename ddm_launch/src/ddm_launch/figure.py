@@ -1,0 +1,39 @@
+# figure NAME: every figure that is made of run folders and of what programs leave.
+# SPDX-License-Identifier: BSD-3-Clause
+import argparse
+import sys
+
+from ddm_launch import (feature_plane, film_strip, learning_curve, pendulum_feature_space, prediction_strip,
+                        success_rate)
+from ddm_launch.command import run_program
+
+
+def program(name, about, figures):
+    """The main function of a program that draws figures. A figure is a module with
+
+      ABOUT                  what it draws; --help lists its first sentence
+      add_arguments(parser)  of its own; every figure has --out, by default FIGURE.png in the working folder
+      draw(options)          writes options.out
+    """
+    def main(arguments=None):
+        parser = argparse.ArgumentParser(prog=name, description=about)
+        names = parser.add_subparsers(dest="figure", metavar="FIGURE", required=True)
+        for module in figures:
+            figure = module.__name__.split(".")[-1]
+            of_figure = names.add_parser(figure, description=module.ABOUT,
+                                         help=module.ABOUT.split(". ")[0].replace("%", "%%"))
+            module.add_arguments(of_figure)
+            of_figure.add_argument("--out", metavar="FILE.png", default=figure + ".png",
+                                   help="picture to write; default %(default)s")
+            of_figure.set_defaults(draw=module.draw)
+        options = parser.parse_args(sys.argv[1:] if arguments is None else arguments)
+
+        def work():
+            options.draw(options)
+            print("wrote %s" % options.out)
+        return run_program(options.figure, work)
+    return main
+
+
+main = program("figure", "Draws a figure; `figure FIGURE --help` lists its options.",
+               (film_strip, learning_curve, success_rate, pendulum_feature_space, feature_plane, prediction_strip))

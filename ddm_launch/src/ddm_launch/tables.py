@@ -1,0 +1,81 @@
+# CSV files: reading with checks that name file and column, and writing.
+# SPDX-License-Identifier: BSD-3-Clause
+import csv
+import io
+import math
+import os
+
+from ddm_launch.command import Failure
+from ddm_model.plain_file import write_file
+
+
+def unreadable(path, error, remedy="is its folder a run folder?"):
+    """The exception to raise for a file that cannot be read at all."""
+    reason = getattr(error, "strerror", None) or error
+    return Failure("%s cannot be read (%s): %s" % (path, reason, remedy))
+
+
+def finite(text):
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError
+    return value
+
+
+def whole(text):
+    return int(finite(text))
+
+
+def optional(kind):
+    """A kind of column whose cells may be empty: None."""
+    return lambda text: convert(text, kind) if (text or "").strip() else None
+
+
+def convert(text, kind):
+    return {float: finite, int: whole}.get(kind, kind)(text)
+
+
+def read_csv(path, columns, remedy=None, once=()):
+    """The rows of a CSV file as dictionaries.
+
+    columns: those that must be there; as {name: kind} their cells are converted by kind: str, int, float (finite) or a
+    function of the text that raises ValueError. remedy: what to do if the file is missing, unless it is a run's.
+    once: columns whose cells name a row. Raises Failure if the file is missing, lacks a column, has no row, names a row
+    twice, or if a cell cannot be converted.
+    """
+    try:
+        with open(path, newline="") as stream:
+            reader = csv.DictReader(stream)
+            rows = list(reader)
+            header = reader.fieldnames or []
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise unreadable(path, error, remedy) if remedy else unreadable(path, error)
+    missing = [column for column in columns if column not in header]
+    if missing:
+        raise Failure("%s has no column %s, only: %s" % (path, ", ".join(missing), ", ".join(header)))
+    if not rows:
+        raise Failure("%s has no row yet: %s" % (path, remedy or "wait for the first trial"))
+    for name, kind in columns.items() if isinstance(columns, dict) else ():
+        for row in rows:
+            try:
+                row[name] = convert(row[name], kind)
+            except (TypeError, ValueError):
+                raise Failure("%s: column %s must hold numbers, got '%s'" % (path, name, row[name])) from None
+    seen = set()
+    for row in rows if once else ():
+        name = tuple(row[column] for column in once)
+        if name in seen:
+            raise Failure("%s has two rows of %s: give each once" % (path, ", ".join(
+                "%s %s" % item for item in zip(once, name))))
+        seen.add(name)
+    return rows
+
+
+def write_csv(path, header, rows):
+    """Floats get six digits. The file appears only when it is complete."""
+    os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows([["%.6g" % cell if isinstance(cell, float) else cell for cell in row] for row in rows])
+    write_file(path, text.getvalue())

@@ -1,0 +1,150 @@
+# Tables of PILCO in the reproduction: success by policy, computing times, and what holds against the authors' runs.
+# SPDX-License-Identifier: BSD-3-Clause
+import math
+import os
+import statistics
+
+from ddm_launch.command import Failure
+from ddm_launch.run_folder import read_sweep
+from ddm_launch.tables import read_csv
+
+LABELS = {"pilco_state": "PILCO, state", "pilco_state_sparse": "PILCO, state, sparse GP",
+          "pilco_features": "PILCO, features", "pilco_pca": "PILCO, PCA"}  # by folder of reproduce_paper
+ON_THE_STATE = ("pilco_state", "pilco_state_sparse")
+AUTHORS = "UCL-SML/pilco-matlab, stored runs"
+AUTHORS_SEEDS = 12
+AUTHORS_SUCCESSES = (11, 12, 12, 12, 12, 12, 12, 12, 12, 12, 12, 11, 12, 12, 9, 10)  # of policy 1, 2, ...
+AUTHORS_HOURS = (3.75, 10.5)  # policies 2 to 10 together: median and largest of the seeds
+GROUPS = ((1, 1), (2, 6))  # policies that the bars look at together
+BAR_FIRST, BAR_LATER = 10, 57  # of 12 and of 60 successes
+NUM_TIMED = 10  # policies whose times are added up
+BAR_TIME_S = 30.0 * 60.0
+REMEDY = "rosrun ddm_launch reproduce_paper writes it"
+
+
+class Count:
+    """How often the policies `first` to `last` succeeded: their greedy runs over all seeds together."""
+
+    def __init__(self, runs, first=1, last=math.inf):
+        trials = [trial for by_seed in runs.values() for trial in by_seed
+                  if first <= trial.trial + 1 <= last and trial.success is not None]
+        self.successes, self.runs = sum(trial.success for trial in trials), len(trials)
+        self.frames = sorted({trial.frames for trial in trials})
+
+    def __str__(self):
+        return "%d of %d" % (self.successes, self.runs)
+
+
+def of_authors(first, last):
+    """(successes, runs) of the authors' policies `first` to `last`, on the true state."""
+    counts = AUTHORS_SUCCESSES[first - 1:last]
+    return sum(counts), AUTHORS_SEEDS * len(counts)
+
+
+def range_text(first, last):
+    return "%d" % first if first == last else "%d to %d" % (first, last)
+
+
+def read_runs(folder, name):
+    return read_sweep(os.path.join(folder, name, "trials.csv"), REMEDY)
+
+
+def success_rows(folder, names):
+    """Rows (method, policies, frames, successes, runs, authors' successes, authors' runs): each policy, then groups."""
+    rows = []
+    for name in names:
+        runs = read_runs(folder, name)
+        num_policies = 1 + max(trial.trial for trials in runs.values() for trial in trials)
+        groups = [(first, last) for first, last in GROUPS if first < last <= num_policies]
+        for first, last in [(k, k) for k in range(1, num_policies + 1)] + groups:
+            count = Count(runs, first, last)
+            if count.runs:
+                comparable = name in ON_THE_STATE and last <= len(AUTHORS_SUCCESSES)
+                authors = of_authors(first, last) if comparable else ("", "")
+                rows.append((name, range_text(first, last), range_text(count.frames[0], count.frames[-1]),
+                             count.successes, count.runs) + authors)
+    return rows
+
+
+def times_by_seed(path, column):
+    """{seed: [time of trial 0, 1, ...]} and the frames of each trial, of a table with one row per seed and trial.
+
+    Raises Failure if a seed lacks a trial that others have.
+    """
+    times, frames = {}, {}
+    for row in read_csv(path, {"seed": int, "trial": int, "frames": int, column: float}, REMEDY):
+        times.setdefault(row["seed"], {})[row["trial"]] = row[column]
+        frames[row["trial"]] = row["frames"]
+    trials = sorted(frames)
+    for seed, by_trial in times.items():
+        if sorted(by_trial) != list(range(len(trials))):
+            raise Failure("%s: seed %d must have the trials 0 to %d, once each: run it to its end" % (
+                path, seed, trials[-1]))
+    return {seed: [by_trial[k] for k in trials] for seed, by_trial in times.items()}, [frames[k] for k in trials]
+
+
+def total_seconds(folder, name):
+    """(number of policies, their frames, seconds by seed) of learning the first policies, at most NUM_TIMED."""
+    seconds, frames = times_by_seed(os.path.join(folder, name, "trials.csv"), "train_s")
+    count = min(NUM_TIMED, len(frames))
+    return count, frames[count - 1], [sum(of_seed[:count]) for of_seed in seconds.values()]
+
+
+def time_rows(folder, names):
+    """Rows (what, frames, median, largest, unit, source), as those of DDM + MPC."""
+    rows = []
+    for name in names:
+        def add(what, frames, values, unit, table="trials.csv"):
+            rows.append(("%s: %s" % (LABELS[name], what), frames, statistics.median(values), max(values), unit,
+                         "%s/%s" % (name, table)))
+
+        count, total_frames, totals = total_seconds(folder, name)
+        for table, column, what in (("trials.csv", "train_s", "training"),
+                                    ("policy_search.csv", "gp_s", "of it Gaussian process"),
+                                    ("policy_search.csv", "policy_search_s", "of it policy search")):
+            seconds, frames = times_by_seed(os.path.join(folder, name, table), column)
+            for trial in sorted({0, count - 1}):
+                add(what, frames[trial], [of_seed[trial] for of_seed in seconds.values()], "s", table)
+        add("training of the first %d policies" % count, total_frames, [total / 60.0 for total in totals], "min")
+        by_seed, _ = times_by_seed(os.path.join(folder, name, "trials.csv"), "plan_ms_median")
+        add("control, median of a greedy run", "all", [value for of_seed in by_seed.values() for value in of_seed], "ms")
+    if names:
+        rows.append(("PILCO on the state, policies 2 to 10 of the authors", 125 * NUM_TIMED) + AUTHORS_HOURS +
+                    ("h", AUTHORS + " (times of the files, %d seeds at once)" % AUTHORS_SEEDS))
+    return rows
+
+
+def bar_rows(folder):
+    """Rows (point, bar, here, True | False | None) of PILCO on the state, full GP."""
+    runs, rows = read_runs(folder, "pilco_state"), []
+    for (first, last), bar in zip(GROUPS, (BAR_FIRST, BAR_LATER)):
+        authors, of_runs = of_authors(first, last)
+        count = Count(runs, first, last)
+        rows.append(("PILCO, state: successes of policy " + range_text(first, last),
+                     ">= %d of %d (authors: %d)" % (bar, of_runs, authors), str(count),
+                     count.successes >= bar if count.runs == of_runs else None))
+    count, _, totals = total_seconds(folder, "pilco_state")
+    rows.append(("PILCO, state: time to policy %d, largest of %d seeds" % (count, len(totals)),
+                 "< %g min (authors: 3 to 10 h)" % (BAR_TIME_S / 60.0), minutes_text(totals),
+                 max(totals) < BAR_TIME_S if (count, len(totals)) == (NUM_TIMED, AUTHORS_SEEDS) else None))
+    return rows
+
+
+def minutes_text(seconds):
+    return "%.1f min (median %.1f)" % (max(seconds) / 60.0, statistics.median(seconds) / 60.0)
+
+
+def agreement_rows(folder, names):
+    """Rows as of bar_rows(); what is only reported has no verdict."""
+    rows = bar_rows(folder) if "pilco_state" in names else []
+    for name in names:
+        if name == "pilco_state":
+            continue
+        runs = read_runs(folder, name)
+        num_policies, _, totals = total_seconds(folder, name)
+        rows.append(("%s: successes of all policies" % LABELS[name],
+                     "reported" if name in ON_THE_STATE else "reported (paper: 0)", str(Count(runs)), None))
+        rows.append(("%s: time to policy %d, largest of %d seed%s" % (
+            LABELS[name], num_policies, len(runs), "" if len(runs) == 1 else "s"), "reported", minutes_text(totals),
+                     None))
+    return rows

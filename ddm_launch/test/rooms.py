@@ -1,0 +1,10 @@
+# Import this to find the Python packages of the rooms that are not installed.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import sys
+
+PACKAGE = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+ROOMS = {"ddm_launch": os.path.join(PACKAGE, "src"), "ddm_study": os.path.join(PACKAGE, "study"),
+         "ddm_qa": os.path.join(PACKAGE, "qa")}
+
+sys.path += [ROOMS["ddm_study"], ROOMS["ddm_qa"]]
