@@ -113,6 +113,9 @@ TEST(ParamValue, ReadsListsAndRefusesAListWithOneWrongElement) {
   EXPECT_TRUE(parses("[1, 1e-4]", &start));
   EXPECT_EQ(start, std::vector<double>({1.0, 1e-4}));
   EXPECT_FALSE(parses("[1, x]", &start));
+  EXPECT_FALSE(parses("x", &start));
+  EXPECT_TRUE(parses("2.5", &start));
+  EXPECT_EQ(start, std::vector<double>({2.5}));
 }
 
 TEST(ParamValue, PrintsDoublesShortAndAlwaysWithAPoint) {
@@ -163,6 +166,8 @@ TEST(ParamValue, IsTheSameUnderALocaleWithADecimalComma) {
 TEST(ParamValue, WritesListsInFlowStyle) {
   EXPECT_EQ(YAML::Dump(valueToYaml(std::vector<int>{50, 25})), "[50, 25]");
   EXPECT_EQ(YAML::Dump(valueToYaml(std::vector<double>{0.2, 1.0})), "[0.2, 1.0]");
+  EXPECT_EQ(YAML::Dump(valueToYaml(std::vector<double>{6.0})), "6.0");
+  EXPECT_EQ(YAML::Dump(valueToYaml(std::vector<std::vector<double>>{{6.0}})), "[[6.0]]");
   EXPECT_EQ(YAML::Dump(valueToYaml(std::vector<int>{})), "[]");
 }
 

@@ -15,7 +15,8 @@ std::string formatDouble(double value);
 
 /// Conversions of one YAML value. Each returns false, and leaves `value` alone, where the text does
 /// not have the type: 15.5 and 010 are no int, 0x10 is no double, `yes` is no bool. A quoted number
-/// is a number. .inf and .nan are doubles: it is the options' business to refuse them.
+/// is a number. .inf and .nan are doubles: it is the options' business to refuse them. A list of
+/// numbers with one entry may be the bare number.
 bool parseValue(const YAML::Node& node, int* value);
 bool parseValue(const YAML::Node& node, double* value);
 bool parseValue(const YAML::Node& node, bool* value);
@@ -35,7 +36,8 @@ const char* expectedType(const std::vector<double>*);
 const char* expectedType(const std::vector<std::string>*);
 const char* expectedType(const std::vector<std::vector<double>>*);
 
-/// One value as YAML; lists in flow style. parseValue() reads back exactly the same.
+/// One value as YAML; lists in flow style, a list of numbers with one entry as the number.
+/// parseValue() reads back exactly the same.
 YAML::Node valueToYaml(int value);
 YAML::Node valueToYaml(double value);
 YAML::Node valueToYaml(bool value);
