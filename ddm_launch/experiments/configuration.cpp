@@ -5,6 +5,7 @@
 #include <ddm_model/schedule.h>
 #include <ddm_plant_plugin/plant_config.h>
 
+#include <algorithm>
 #include <sstream>
 #include <stdexcept>
 
@@ -23,7 +24,10 @@ std::vector<std::string> contradictions(const Configuration& all) {
     out.push_back(text.str());
   };
   const std::string motor = all.robot ? "robot/max_torque" : "plant/max_torque";
-  require(all.mpc.max_torque <= (all.robot ? all.robot->max_torque : all.plant.max_torque),
+  const double motor_limit =
+      all.robot ? *std::min_element(all.robot->max_torque.begin(), all.robot->max_torque.end())
+                : all.plant.max_torque;
+  require(all.mpc.max_torque <= motor_limit,
           "mpc/max_torque must be at most " + motor + ", beyond which the motor saturates",
           all.mpc.max_torque);
   require(all.mpc.max_torque <= all.model.model.max_torque,
