@@ -6,6 +6,7 @@
 #include <ddm_model/schedule.h>
 #include <ddm_plant_plugin/plant_config.h>
 
+#include <algorithm>
 #include <sstream>
 #include <stdexcept>
 
@@ -24,8 +25,8 @@ std::vector<std::string> contradictions(const Configuration& all) {
     out.push_back(text.str());
   };
   const std::string motor = all.robot ? "robot/max_torque" : "plant/max_torque";
-  const std::vector<double> limits = all.robot ? std::vector<double>{all.robot->max_torque}
-                                               : std::vector<double>{all.plant.max_torque};
+  const std::vector<double> limits =
+      all.robot ? all.robot->max_torque : std::vector<double>{all.plant.max_torque};
   require(within(all.mpc.max_torque, limits),
           "mpc/max_torque must be at most " + motor + ", beyond which the motor saturates",
           limitsText(all.mpc.max_torque));

@@ -5,6 +5,7 @@
 #include <ddm_bag_io/model_config.h>
 #include <ddm_mpc/mpc_options.h>
 #include <ddm_msgs/param_reader.h>
+#include <ddm_robot/robot_options.h>
 #include <ddm_sim/plant_options.h>
 #include <yaml-cpp/yaml.h>
 
@@ -13,7 +14,6 @@
 #include <string>
 
 #include "experiment_options.h"
-#include "robot_options.h"
 
 namespace ddm {
 

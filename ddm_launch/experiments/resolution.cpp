@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <boost/filesystem.hpp>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 
@@ -118,8 +119,44 @@ bool has(const YAML::Node& blocks, const std::string& block, const std::string& 
   return values.IsDefined() && values.IsMap() && values[key].IsDefined();
 }
 
+/// Whether the user, the preset, the plant or another layer above the manuals gives BLOCK/KEY.
+using Given = std::function<bool(const std::string& block, const std::string& key)>;
+
+/// Sets a value that follows from others. The reader refuses a block that is not a map.
+void follow(const std::string& block, const std::string& key, const YAML::Node& value,
+            YAML::Node* blocks) {
+  const YAML::Node values = (*blocks)[block];
+  if (!values.IsDefined() || values.IsMap()) (*blocks)[block][key] = YAML::Clone(value);
+}
+
+/// What a learner must know about its motors is written once: `max_torque` of the block `robot`,
+/// without a robot of the block `plant`. A list has one entry per motor.
+/// @throws std::invalid_argument if another number of motors is given
+void shareMotors(const Given& given, YAML::Node* blocks) {
+  const bool robot = (*blocks)["robot"].IsDefined();
+  const std::string owner = robot ? "robot" : "plant";
+  if (!has(*blocks, owner, "max_torque")) return;
+  const YAML::Node limits = (*blocks)[owner]["max_torque"];
+  for (const std::string learner : {"model", "mpc"}) {
+    if (!given(learner, "max_torque")) follow(learner, "max_torque", limits, blocks);
+  }
+  if (!robot && !limits.IsSequence()) return;  // one number holds for all motors of a plant
+  const int num_motors = limits.IsSequence() ? static_cast<int>(limits.size()) : 1;
+  if (!given("controller", "torque_dim")) {
+    follow("controller", "torque_dim", valueToYaml(num_motors), blocks);
+    return;
+  }
+  int torque_dim = num_motors;
+  parseValue((*blocks)["controller"]["torque_dim"], &torque_dim);  // else the reader refuses it
+  if (torque_dim == num_motors) return;
+  throw std::invalid_argument("controller/torque_dim must be the number of motors in " + owner +
+                              "/max_torque, " + std::to_string(num_motors) + ", got " +
+                              std::to_string(torque_dim) + ": leave it out");
+}
+
 /// In real time a plan has to be there before the next image.
-void boundPlanning(YAML::Node* blocks) {
+void boundPlanning(const Given& given, YAML::Node* blocks) {
+  if (given("mpc", "time_budget")) return;
   const bool robot = (*blocks)["robot"].IsDefined();
   bool lockstep = true;
   if (has(*blocks, "sim", "lockstep")) parseValue((*blocks)["sim"]["lockstep"], &lockstep);
@@ -127,7 +164,7 @@ void boundPlanning(YAML::Node* blocks) {
   double dt = 0.0;
   if ((!robot && lockstep) || !has(*blocks, clock, "dt")) return;
   if (parseValue((*blocks)[clock]["dt"], &dt)) {
-    (*blocks)["mpc"]["time_budget"] = valueToYaml(0.5 * dt);
+    follow("mpc", "time_budget", valueToYaml(0.5 * dt), blocks);
   }
 }
 
@@ -167,11 +204,13 @@ ResolvedConfiguration resolve(const Arguments& arguments) {
   resolved.blocks.remove("version");  // of the code that saved a file
   forgetChecksums(values, &resolved.blocks);
   overlay(values, &resolved.blocks);
-  const bool budget_given =
-      has(values, "mpc", "time_budget") ||
-      std::any_of(layers.begin() + num_manuals, layers.end(),
-                  [](const Layer& layer) { return has(layer.blocks, "mpc", "time_budget"); });
-  if (!budget_given) boundPlanning(&resolved.blocks);
+  layers.push_back({"", values});
+  const Given given = [&](const std::string& block, const std::string& key) {
+    return std::any_of(layers.begin() + num_manuals, layers.end(),
+                       [&](const Layer& layer) { return has(layer.blocks, block, key); });
+  };
+  shareMotors(given, &resolved.blocks);
+  boundPlanning(given, &resolved.blocks);
   return resolved;
 }
 

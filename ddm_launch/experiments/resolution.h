@@ -37,14 +37,16 @@ struct ResolvedConfiguration {
 ///
 ///   defaults, preset, plant, method, nuisances, configs, values
 ///
-/// In real time mpc/time_budget is half a time step where nothing above the defaults gives it.
-/// Preset, plant and method are those that `experiment` names in values, else in the last of the
-/// configs that names them, else in the defaults. A file that names its plant and has a block
-/// `plant` describes that plant, so it is refused for another one; a saved configuration is refused
-/// with a nuisance that it does not have.
+/// Where nothing above the defaults gives them, model/max_torque and mpc/max_torque are max_torque
+/// of the robot, without a robot of the plant; controller/torque_dim is the number of motors that
+/// it lists; and in real time mpc/time_budget is half a time step. Preset, plant and method are
+/// those that `experiment` names in values, else in the last of the configs that names them, else
+/// in the defaults. A file that names its plant and has a block `plant` describes that plant, so it
+/// is refused for another one; a saved configuration is refused with a nuisance that it does not
+/// have.
 /// @throws std::invalid_argument if there is no such preset, plant or nuisance (those that exist
-/// are
-///         named), or a config describes another plant or nuisance
+///         are named), if a config describes another plant or nuisance, or if controller/torque_dim
+///         is not the number of motors
 /// @throws std::runtime_error or std::invalid_argument as readBlocks(), for a file
 ResolvedConfiguration resolve(const Arguments& arguments);
 

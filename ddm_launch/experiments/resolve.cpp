@@ -1,6 +1,8 @@
 // resolve: the configuration of a launch as one text, from the arguments of the launch.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_msgs/config_blocks.h>
 #include <ddm_msgs/tool.h>
+#include <ddm_plant_plugin/plant_config.h>
 
 #include <boost/filesystem.hpp>
 #include <cstdio>
@@ -55,6 +57,16 @@ void setCrop(const std::string& text, Arguments* arguments) {
   arguments->set("robot/crop_height", crop[3]);
 }
 
+/// The robot is a stand-in: this plant, simulated.
+void setMotors(const std::string& plant, Arguments* arguments) {
+  const YAML::Node blocks = readBlocks(plantFile(plant));
+  const YAML::Node block = blocks["plant"];
+  if (!block.IsDefined() || !block.IsMap() || !block["max_torque"].IsDefined()) {
+    throw po::error("--motors-of " + plant + ": " + plantFile(plant) + " has no plant/max_torque");
+  }
+  arguments->values["robot"]["max_torque"] = block["max_torque"];
+}
+
 /// Command line without the options that have an empty value: launch files pass an argument that
 /// was not given like that.
 std::vector<std::string> givenWords(int argc, char** argv) {
@@ -95,6 +107,10 @@ bool configure(int argc, char** argv, Request* request) {
     setCrop(crop, arguments);
   }),
       "X,Y,WIDTH,HEIGHT: the part of a robot's camera image that counts");
+  add("motors-of", po::value<std::string>()->notifier([=](const std::string& plant) {
+    setMotors(plant, arguments);
+  }),
+      "plant whose motors the robot has: robot/max_torque is that of its file");
   add("set",
       po::value<std::vector<std::string>>()->composing()->notifier(
           [=](const std::vector<std::string>& all) {

@@ -42,7 +42,8 @@ struct Trials {
 /// A robot's images come from robot_node, at the model's size.
 Trials trialsOf(const Configuration& configuration, const Plant& plant) {
   if (!configuration.robot) return {plant.torqueDim(), plant.imageSize(), plant.dt(), "the plant"};
-  return {1, configuration.model.image.size, configuration.robot->dt, "the robot"};
+  const RobotOptions& robot = *configuration.robot;
+  return {robot.numMotors(), configuration.model.image.size, robot.dt, "the robot"};
 }
 
 void requireFits(const std::string& path, const Configuration& configuration,

@@ -244,13 +244,13 @@ TEST(Configuration, WhatContradictsIsRefused) {
 
 TEST(Configuration, ARobotIsOneWhereItsBlockIsGiven) {
   EXPECT_FALSE(readText("mpc: {horizon: 3}\n").robot.has_value());
-  const Configuration robot = readText(
-      "robot: {dt: 0.1, max_torque: 8.0}\nmpc: {max_torque: 7.0}\n"
-      "model: {max_torque: 7.0}\n");
+  const Configuration robot =
+      readText("robot: {dt: 0.1, max_torque: 8.0}\nmpc: {max_torque: 7.0}\n");
   ASSERT_TRUE(robot.robot.has_value());
   EXPECT_EQ(toYaml(robot)["robot"]["dt"].as<double>(), 0.1);
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>([] { readText("robot: {max_torque: 3.0}\n"); },
-                                                  {"mpc/max_torque", "robot/max_torque"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [] { readText("robot: {max_torque: 3.0}\nmpc: {max_torque: 3.5}\n"); },
+      {"mpc/max_torque", "robot/max_torque", "got 3.5"}));
 }
 
 TEST(Configuration, WhatJustFitsIsAccepted) {

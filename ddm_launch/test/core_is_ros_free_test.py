@@ -13,7 +13,7 @@ import rosunit
 # library -> folders with its sources and headers: a package, and where in it
 CORES = {"ddm_sim": ("ddm_sim", "include", "src"), "ddm_model": ("ddm_model", "include", "src"),
          "ddm_mpc": ("ddm_mpc", "include", "src"), "ddm_pilco": ("ddm_mpc", "pilco/include", "pilco/src"),
-         "ddm_launch_robot": ("ddm_launch", "robot")}
+         "ddm_robot": ("ddm_sim", "robot/include", "robot/src")}
 if "pilco:=OFF" in sys.argv:
     del CORES["ddm_pilco"]
 ROS_INCLUDE = re.compile(

@@ -19,10 +19,10 @@ import pages  # noqa: E402
 LIMIT_S = 60.0  # until all nodes have made their topics
 NODES = [("ddm_sim/README.md", "sim_node", ""), ("ddm_mpc/README.md", "mpc_node", ""),
          ("ddm_mpc/README.md", "view_node", ""), ("ddm_model/README.md", "model_node", ""),
-         ("ddm_model/README.md", "trial_recorder", ""), ("ddm_launch/README.md", "robot_node", "/robot")]
+         ("ddm_model/README.md", "trial_recorder", ""), ("ddm_sim/README.md", "robot_node", "/robot")]
 ACTION_TOPICS = ("goal", "cancel", "status", "feedback", "result")
 # Blocks of parameters in a table, and the manuals whose values are the structs' (tests of each package say so).
-PARAMETERS = [("ddm_launch/README.md", "robot_node", ["robot"], ["ddm_launch/config/robot.yaml"]),
+PARAMETERS = [("ddm_sim/README.md", "robot_node", ["robot"], ["ddm_sim/config/robot.yaml"]),
               ("ddm_sim/README.md", "Parameters", ["plant", "camera", "sim", "show"],
                ["ddm_sim/config/moving_tile.yaml", "ddm_sim/config/pendulum.yaml", "ddm_sim/config/sim.yaml"]),
               ("ddm_mpc/README.md", "Turned while it runs", [], ["ddm_mpc/config/mpc.yaml"])]

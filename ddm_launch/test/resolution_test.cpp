@@ -115,6 +115,54 @@ TEST_F(Resolution, PlansTakeHalfATimeStepInRealTimeUnlessAnythingSaysOtherwise) 
   EXPECT_EQ(read().mpc.time_budget, 0.04);
 }
 
+/// model/max_torque, mpc/max_torque and controller/torque_dim
+std::vector<std::string> learnersMotors(const Arguments& given) {
+  const YAML::Node blocks = resolve(given).blocks;
+  std::vector<std::string> out;
+  for (const YAML::Node& value : {blocks["model"]["max_torque"], blocks["mpc"]["max_torque"],
+                                  blocks["controller"]["torque_dim"]}) {
+    out.push_back(YAML::Dump(value));
+  }
+  return out;
+}
+
+TEST_F(Resolution, ALearnerKnowsTheMotorsOfItsPlant) {
+  using Motors = std::vector<std::string>;
+  EXPECT_EQ(learnersMotors(given_), (Motors{"6.0", "6.0", "1"}));
+  given_.set("experiment/plant", std::string("moving_tile"));
+  EXPECT_EQ(learnersMotors(given_), (Motors{"5.0", "5.0", "2"}));
+  given_.set("experiment/plant", std::string("pendulum_gravity"));
+  EXPECT_EQ(learnersMotors(given_), (Motors{"2.5", "2.5", "1"}));
+  given_.configs = {file("motor.yaml", "plant: {max_torque: 3}\n")};
+  EXPECT_EQ(learnersMotors(given_), (Motors{"3", "3", "1"}));
+  given_.configs = {file("smaller.yaml", "plant: {max_torque: 3}\nmpc: {max_torque: 1}\n")};
+  EXPECT_EQ(learnersMotors(given_), (Motors{"3", "1", "1"}));
+  given_.set("model/max_torque", 4.0);
+  EXPECT_EQ(learnersMotors(given_), (Motors{"4.0", "1", "1"}));
+}
+
+TEST_F(Resolution, WhereThereIsARobotItsMotorsDecide) {
+  using Motors = std::vector<std::string>;
+  given_.set("experiment/plant", std::string("pendulum_gravity"));
+  given_.configs = {file("robot.yaml", "robot: {max_torque: 2}\n")};
+  EXPECT_EQ(learnersMotors(given_), (Motors{"2", "2", "1"}));
+  given_.configs = {file("two.yaml", "robot: {max_torque: [4, 2]}\n")};
+  EXPECT_EQ(learnersMotors(given_), (Motors{"[4, 2]", "[4, 2]", "2"}));
+  EXPECT_EQ(YAML::Dump(resolve(given_).blocks).find('&'), std::string::npos) << "no aliases";
+  given_.set("controller/torque_dim", 2);
+  EXPECT_EQ(learnersMotors(given_)[2], "2");
+  given_.set("controller/torque_dim", 3);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [this] { resolve(given_); }, {"controller/torque_dim", "robot/max_torque", "got 3"}));
+  given_.set("controller/torque_dim", std::string("two"));
+  EXPECT_EQ(learnersMotors(given_)[2], "two") << "for the reader to refuse";
+}
+
+TEST_F(Resolution, ABlockThatIsNotAMapIsLeftToTheReader) {
+  given_.configs = {file("robot.yaml", "robot: {max_torque: 2}\nmodel: 3\nmpc: [1]\n")};
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { read(); }, {"model", "mpc"}));
+}
+
 TEST_F(Resolution, ASavedPlantIsNotMixedWithAnother) {
   given_.set("experiment/plant", std::string("pendulum_gravity"));
   const std::string config = saved();

@@ -29,12 +29,6 @@ void requireWidths(const std::vector<int>& widths, const std::string& key,
 
 }  // namespace
 
-std::vector<std::string> ImageOptions::problems() const {
-  std::vector<std::string> out;
-  require(size >= 4 && size <= 1024, "image/size must lie in [4, 1024]", size, &out);
-  return out;
-}
-
 std::vector<std::string> ModelOptions::problems() const {
   std::vector<std::string> out;
   require(pca_dim >= 1 && pca_dim <= 1000, "model/pca_dim must lie in [1, 1000]", pca_dim, &out);

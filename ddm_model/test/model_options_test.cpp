@@ -1,4 +1,4 @@
-// Tests of the rules of the blocks image, model and training.
+// Tests of the rules of the blocks model and training.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/model_options.h"
 
@@ -37,17 +37,13 @@ Options with(Value Options::*member, Value value) {
 }
 
 TEST(ModelOptions, DefaultsAreValidAndThePapers) {
-  EXPECT_TRUE(ImageOptions{}.problems().empty());
   EXPECT_TRUE(ModelOptions{}.problems().empty());
   EXPECT_TRUE(TrainingOptions{}.problems().empty());
-  EXPECT_EQ(ImageOptions{}.size, 51);
   EXPECT_EQ(ModelOptions{}.pca_dim, 50);
   EXPECT_EQ(ModelOptions{}.encoder_widths, (std::vector<int>{25, 12, 6}));
 }
 
 TEST(ModelOptions, RefusesEachKeyOutOfRangeWithItsNameAndValue) {
-  EXPECT_TRUE(refuses(with(&ImageOptions::size, 3), "image/size", "3"));
-  EXPECT_TRUE(refuses(with(&ImageOptions::size, 1025), "image/size", "1025"));
   EXPECT_TRUE(refuses(with(&ModelOptions::pca_dim, 0), "model/pca_dim", "0"));
   EXPECT_TRUE(refuses(with(&ModelOptions::pca_dim, 1001), "model/pca_dim", "1001"));
   EXPECT_TRUE(refuses(with(&ModelOptions::feature_dim, 0), "model/feature_dim", "0"));
@@ -100,7 +96,6 @@ TEST(TrainingOptions, RefusesEachKeyOutOfRangeWithItsNameAndValue) {
 }
 
 TEST(ModelOptions, AcceptsTheEdgesOfItsRanges) {
-  for (int size : {4, 1024}) EXPECT_TRUE(with(&ImageOptions::size, size).problems().empty());
   for (int order : {1, 50}) EXPECT_TRUE(with(&ModelOptions::order, order).problems().empty());
   EXPECT_TRUE(with(&ModelOptions::encoder_widths, std::vector<int>()).problems().empty());
   EXPECT_TRUE(with(&TrainingOptions::function_tolerance, 0.0).problems().empty());

@@ -220,7 +220,7 @@ void MpcNode::publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torqu
   message.exploratory = exploratory;
   torque_pub_.publish(message);
   health_.countTorque();
-  effort_.publish(torque);
+  effort_.publish(message.torque);
 }
 
 void MpcNode::publishPlan(const ros::Time& stamp, const Plan& plan) {

@@ -6,6 +6,7 @@
 #include <ddm_model/ddm.h>
 #include <ddm_msgs/Model.h>
 #include <ddm_msgs/RunTrialAction.h>
+#include <ddm_msgs/effort_publisher.h>
 #include <image_transport/image_transport.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
@@ -21,7 +22,6 @@
 #include "control_health.h"
 #include "controller_options.h"
 #include "ddm_mpc/mpc_options.h"
-#include "effort_publisher.h"
 #include "live_options.h"
 #include "plan_scalars.h"
 #include "trial_run.h"

@@ -1,12 +1,12 @@
 // mpc_node: parameters, then the node.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_model/model_options.h>
 #include <ddm_model/solver_log.h>
+#include <ddm_msgs/end_signals.h>
+#include <ddm_msgs/image_options.h>
 #include <ddm_msgs/node_params.h>
 #include <ddm_msgs/param_reader.h>
 #include <ros/callback_queue.h>
 
-#include <csignal>
 #include <cstdlib>
 
 #include "mpc_node.h"
@@ -16,14 +16,9 @@ namespace {
 const ros::WallDuration kLook(0.05);
 const ros::WallDuration kFlush(0.1);  // for the last message to leave
 
-volatile std::sig_atomic_t asked_to_end = 0;
-
-void onSignal(int /*number*/) { asked_to_end = 1; }
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Not roscpp's own handler: it shuts all topics down before a zero can be sent to the motors.
   ros::init(argc, argv, "mpc_node", ros::init_options::NoSigintHandler);
   ros::NodeHandle nh;
   ros::NodeHandle pnh("~");  // outside the try: its destructor shuts the log down
@@ -38,9 +33,8 @@ int main(int argc, char** argv) {
     params.requireValid();
     ROS_INFO_STREAM("mpc_node runs with\n" << ddm::toYaml(mpc) << "\n" << ddm::toYaml(controller));
     ddm::MpcNode node(nh, pnh, image.size, mpc, controller);
-    std::signal(SIGINT, onSignal);  // not before: a node that waits for a master must still end
-    std::signal(SIGTERM, onSignal);
-    while (ros::ok() && asked_to_end == 0) ros::getGlobalCallbackQueue()->callAvailable(kLook);
+    ddm::catchEndSignals();  // not before: a node that waits for a master must still end
+    while (ros::ok() && !ddm::endRequested()) ros::getGlobalCallbackQueue()->callAvailable(kLook);
     if (node.stop()) kFlush.sleep();
     ros::shutdown();
   } catch (const std::exception& e) {

@@ -249,17 +249,6 @@ TEST(Config, MovingTileIsThatOfTheExperiments) {
   EXPECT_EQ(plant.start_std, 5.0);
 }
 
-TEST(Config, TellsALearnerTheTorqueLimitOfTheSamePlant) {
-  for (const char* name : {"pendulum_gravity.yaml", "moving_tile.yaml"}) {
-    const YAML::Node config = YAML::LoadFile(kConfig + name);
-    for (const char* block : {"mpc", "model"}) {
-      EXPECT_EQ(config[block]["max_torque"].as<double>(),
-                config["plant"]["max_torque"].as<double>())
-          << name << ": " << block;
-    }
-  }
-}
-
 TEST(Config, TellsALearnerTheNumberOfTorquesOfTheMovingTile) {
   auto reader = ParamReader::fromFiles({kConfig + "moving_tile.yaml"});
   const auto plant = makePlant(reader.read<PlantOptions>("plant"), CameraOptions());

@@ -7,18 +7,6 @@
 
 namespace ddm {
 
-/// Block `image`.
-struct ImageOptions {
-  int size = 51;  ///< images have size x size pixels, D = size^2
-
-  template <class Visitor>
-  void visit(Visitor& visitor) {
-    visitor("size", size);
-  }
-  /// Everything wrong with these values, in words a user can act on. Empty means valid.
-  std::vector<std::string> problems() const;
-};
-
 /// Block `model`: the architecture. Defaults are the paper's.
 struct ModelOptions {
   int pca_dim = 50;                               ///< input of the encoder [-]

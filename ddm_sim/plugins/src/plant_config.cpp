@@ -66,8 +66,8 @@ std::vector<std::string> plantsOf(const std::string& package) {
   if (!fs::is_directory(folder)) return names;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const fs::path name = entry.path().filename();
-    // sim.yaml is about the camera and time.
-    if (name.extension() == ".yaml" && name.stem() != "sim") names.push_back(name.stem());
+    const bool of_a_plant = name.stem() != "sim" && name.stem() != "robot";
+    if (name.extension() == ".yaml" && of_a_plant) names.push_back(name.stem());
   }
   std::sort(names.begin(), names.end());
   return names;

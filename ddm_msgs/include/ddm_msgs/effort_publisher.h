@@ -1,0 +1,48 @@
+// Torques for the effort controllers of ros_control.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ros/ros.h>
+#include <std_msgs/Float64.h>
+#include <std_msgs/Float64MultiArray.h>
+
+#include <vector>
+
+#include "ddm_msgs/topics.h"
+
+namespace ddm {
+
+/// Sends each torque to every motor: on `effort_command` as a std_msgs/Float64 where there is one
+/// motor, on `group_effort_command` as a std_msgs/Float64MultiArray where there are several.
+class EffortPublisher {
+ public:
+  EffortPublisher(ros::NodeHandle nh, int num_motors)
+      : num_motors_(num_motors),
+        publisher_(num_motors == 1 ? nh.advertise<std_msgs::Float64>(topics::kEffortCommand, kQueue)
+                                   : nh.advertise<std_msgs::Float64MultiArray>(
+                                         topics::kGroupEffortCommand, kQueue)) {}
+
+  /// @param torque  one value per motor [N m]                                        [num_motors]
+  void publish(const std::vector<double>& torque) {
+    if (num_motors_ == 1) {
+      std_msgs::Float64 message;
+      message.data = torque.front();
+      publisher_.publish(message);
+    } else {
+      std_msgs::Float64MultiArray message;
+      message.data = torque;
+      publisher_.publish(message);
+    }
+  }
+
+  /// Zero to every motor.
+  void publishZero() { publish(std::vector<double>(static_cast<std::size_t>(num_motors_), 0.0)); }
+
+ private:
+  static constexpr int kQueue = 10;
+
+  int num_motors_;
+  ros::Publisher publisher_;
+};
+
+}  // namespace ddm

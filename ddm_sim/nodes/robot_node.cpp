@@ -1,0 +1,374 @@
+// robot_node: a camera and motors of yours instead of the simulator.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot_node.h"
+
+#include <actionlib_msgs/GoalID.h>
+#include <ddm_msgs/image_codec.h>
+#include <ddm_msgs/topic_peers.h>
+#include <ddm_msgs/topics.h>
+#include <std_msgs/Float64.h>
+#include <std_msgs/UInt32.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "goal_picture.h"
+
+namespace ddm {
+namespace {
+
+constexpr int kQueue = 10;
+constexpr int kAppliedQueue = 1000;              // a recorder that is slow must not lose one
+constexpr std::chrono::seconds kFreshCamera(1);  // one that is silent for longer is not there
+constexpr double kStepTolerance = 0.1;           // of dt
+const ros::WallDuration kLook(0.1);
+const ros::WallDuration kRemindPeriod(10.0);
+const ros::WallDuration kDiagnosisPeriod(1.0);
+
+template <class RosTime>
+Stamp toStamp(const RosTime& time) {
+  return Stamp(static_cast<std::int64_t>(time.toNSec()));
+}
+
+SteadyTime steadyNow() { return std::chrono::steady_clock::now(); }
+
+}  // namespace
+
+RobotNode::RobotNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size,
+                     const RobotOptions& options)
+    : image_size_(image_size),
+      options_(options),
+      routine_(nh, options.reset_service),
+      gate_(options),
+      stamps_(options.dt),
+      picker_(options.dt),
+      transport_(nh),
+      image_pub_(transport_.advertise(topics::kImage, kQueue)),
+      goal_pub_(nh.advertise<sensor_msgs::Image>(topics::kGoalImage, 1, /*latch=*/true)),
+      effort_(nh, options.numMotors()),
+      applied_pub_(nh.advertise<ddm_msgs::Torque>(topics::kAppliedTorque, kAppliedQueue)),
+      latency_pub_(nh.advertise<std_msgs::Float64>(topics::kLatency, kQueue)),
+      misses_pub_(nh.advertise<std_msgs::UInt32>(topics::kDeadlineMisses, 1, /*latch=*/true)),
+      cancel_pub_(
+          nh.advertise<actionlib_msgs::GoalID>(std::string(topics::kRunTrial) + "/cancel", 1)),
+      updater_(nh, pnh) {
+  if (nh.resolveName(topics::kCamera) == nh.resolveName(topics::kImage)) {
+    throw std::invalid_argument(
+        "the camera's topic is " + nh.resolveName(topics::kImage) +
+        ", on which this node publishes: rename the driver's, or start all of this in a namespace, "
+        "ROS_NAMESPACE=ddm roslaunch ...");
+  }
+  loadGoal();
+  updater_.setHardwareID("none");
+  updater_.add("motor and camera", this, &RobotNode::diagnose);
+  torque_sub_ = nh.subscribe(topics::kTorque, kQueue, &RobotNode::onTorque, this,
+                             ros::TransportHints().tcpNoDelay());
+  if (JointLimits(options).given()) {
+    joints_sub_ = nh.subscribe(topics::kJointStates, kQueue, &RobotNode::onJointStates, this,
+                               ros::TransportHints().tcpNoDelay());
+  } else {
+    ROS_WARN(
+        "positions and speeds are not guarded: robot/position_limits and robot/speed_limit "
+        "are empty");
+  }
+  trial_end_sub_ =
+      nh.subscribe(std::string(topics::kRunTrial) + "/result", 1, &RobotNode::onTrialEnd, this);
+  frame_sub_ = transport_.subscribe(
+      topics::kCamera, 1, &RobotNode::onFrame, this,
+      image_transport::TransportHints("raw", ros::TransportHints().tcpNoDelay(), pnh));
+  timer_ =
+      nh.createSteadyTimer(ros::WallDuration(1.0 / options.effort_rate), &RobotNode::onTick, this);
+  diagnosis_timer_ = nh.createSteadyTimer(
+      kDiagnosisPeriod, [this](const ros::SteadyTimerEvent&) { updater_.update(); });
+  enable_server_ = nh.advertiseService(topics::kEnable, &RobotNode::onEnable, this);
+  take_goal_server_ = nh.advertiseService(topics::kTakeGoal, &RobotNode::onTakeGoal, this);
+  // Last: whoever sees the service finds everything else in place.
+  reset_server_ = nh.advertiseService(topics::kReset, &RobotNode::onReset, this);
+}
+
+void RobotNode::stopMotors(const std::string& reason) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  gate_.stop(reason);
+  publishEffort();
+}
+
+/// What the controller sees of a frame of the camera.
+/// @throws std::invalid_argument for one that cannot be used
+sensor_msgs::Image RobotNode::shown(const sensor_msgs::Image& frame) const {
+  const ImageCrop crop = {options_.crop_x, options_.crop_y, options_.crop_width,
+                          options_.crop_height};
+  return encodeImage(decodeImage(frame, image_size_, crop), image_size_, frame.header.stamp,
+                     frame.header.frame_id);
+}
+
+bool RobotNode::seesCamera() const {
+  return frame_ != nullptr && steadyNow() - frame_arrival_ <= kFreshCamera;
+}
+
+void RobotNode::onFrame(const sensor_msgs::ImageConstPtr& frame) {
+  const Stamp stamp = toStamp(frame->header.stamp);
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    frame_ = frame;
+    frame_arrival_ = steadyNow();
+    frame_arrival_clock_ = toStamp(ros::WallTime::now());
+    const std::string refusal = stamps_.take(frame_arrival_, frame_arrival_clock_, stamp);
+    if (!refusal.empty()) {
+      frame_problem_ = refusal;
+      ROS_WARN_STREAM_THROTTLE(5.0, "frame of " << frame_sub_.getTopic() << ": " << refusal);
+      return;
+    }
+    if (!picker_.pick(stamp)) return;
+  }
+  std::string problem;
+  sensor_msgs::Image image;
+  try {
+    image = shown(*frame);
+  } catch (const std::exception& e) {
+    problem = e.what();
+    ROS_ERROR_STREAM_THROTTLE(5.0, "frame of " << frame_sub_.getTopic() << ": " << problem);
+  }
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    frame_problem_ = problem;
+    if (!problem.empty()) return;
+    gate_.showImage(stamps_.taken(), stamp);  // before anybody can answer it
+  }
+  image_pub_.publish(image);
+}
+
+void RobotNode::onTorque(const ddm_msgs::TorqueConstPtr& torque) {
+  const ros::Time now = ros::Time::now();
+  std_msgs::Float64 latency;
+  latency.data = (now - torque->header.stamp).toSec();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const Stamp stamp = toStamp(torque->header.stamp);
+  const bool acts = gate_.takeTorque(steadyNow(), stamp, torque->torque);
+  publishEffort();
+  if (acts) publishApplied(stamp, gate_.target(), torque->exploratory != 0);
+  latency_pub_.publish(latency);
+  worst_latency_ = std::max(worst_latency_, latency.data);
+}
+
+void RobotNode::onJointStates(const sensor_msgs::JointStateConstPtr& joints) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  gate_.takeJoints(steadyNow(), joints->name, joints->position, joints->velocity);
+  if (was_in_trial_ && !gate_.armed()) publishEffort();  // not at each report
+}
+
+void RobotNode::onTrialEnd(const ddm_msgs::RunTrialActionResultConstPtr& /*result*/) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  gate_.endTrial();
+  publishEffort();
+}
+
+void RobotNode::onTick(const ros::SteadyTimerEvent& /*event*/) {
+  const auto num_publishers = static_cast<int>(torque_sub_.getNumPublishers());
+  const std::lock_guard<std::mutex> lock(mutex_);
+  gate_.setPublishers(num_publishers);
+  publishEffort();
+}
+
+/// To be called with the lock, whenever something may have changed.
+void RobotNode::publishEffort() {
+  const std::vector<double>& effort = gate_.effort(steadyNow());
+  if (!routine_moves_) effort_.publish(effort);
+  for (const Stamp& stamp : gate_.takeUnanswered()) publishApplied(stamp, {}, false);
+  reportState();
+}
+
+/// What acted as the answer to an image; no torque: nothing did.
+void RobotNode::publishApplied(const Stamp& stamp, const std::vector<double>& torque,
+                               bool exploratory) {
+  ddm_msgs::Torque applied;
+  applied.header.stamp.fromNSec(static_cast<std::uint64_t>(stamp.count()));
+  applied.torque = torque;
+  applied.exploratory = exploratory;
+  applied_pub_.publish(applied);
+}
+
+void RobotNode::reportState() {
+  if (gate_.numMisses() != last_misses_) {
+    last_misses_ = gate_.numMisses();
+    std_msgs::UInt32 misses;
+    misses.data = static_cast<std::uint32_t>(last_misses_);
+    misses_pub_.publish(misses);
+  }
+  if (was_in_trial_ && !gate_.armed()) {
+    ROS_ERROR("the motors were stopped in a trial: it is cancelled");
+    cancel_pub_.publish(actionlib_msgs::GoalID());  // without an id: all goals
+  }
+  was_in_trial_ = gate_.inTrial();
+  const std::string state = gate_.describe();
+  if (state == last_state_) return;
+  last_state_ = state;
+  if (gate_.state() == TorqueGate::State::kWaiting ||
+      gate_.state() == TorqueGate::State::kFollowing) {
+    ROS_INFO_STREAM(state);
+  } else {
+    ROS_WARN_STREAM(state);
+  }
+}
+
+bool RobotNode::onEnable(std_srvs::SetBool::Request& request,
+                         std_srvs::SetBool::Response& response) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::string problem;
+  if (request.data) {
+    problem = gate_.arm(steadyNow());
+  } else {
+    gate_.stop("service enable stopped them");
+  }
+  publishEffort();
+  response.success = problem.empty();
+  response.message = problem.empty() ? gate_.describe() : problem;
+  return true;
+}
+
+void RobotNode::loadGoal() {
+  if (options_.goal_file.empty()) return;
+  if (!goalPictureExists(options_.goal_file)) {
+    ROS_WARN_STREAM("there is no picture " << options_.goal_file
+                                           << " yet: service take_goal writes it");
+    return;
+  }
+  const sensor_msgs::Image picture = readGoalPicture(options_.goal_file);
+  publishGoal(encodeImage(decodeImage(picture, image_size_), image_size_, ros::Time::now(), ""));
+}
+
+void RobotNode::publishGoal(const sensor_msgs::Image& goal) {
+  goal_pub_.publish(goal);
+  has_goal_ = true;
+}
+
+bool RobotNode::onTakeGoal(std_srvs::Trigger::Request& /*request*/,
+                           std_srvs::Trigger::Response& response) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (gate_.inTrial()) {
+    response.message = "a trial is under way, and it has a goal: wait for its end";
+    return true;
+  }
+  if (!seesCamera()) {
+    response.message = "no image on " + frame_sub_.getTopic();
+    return true;
+  }
+  try {
+    const sensor_msgs::Image goal = shown(*frame_);
+    if (!options_.goal_file.empty()) writeGoalPicture(options_.goal_file, goal);
+    publishGoal(goal);
+    response.success = true;
+    response.message = "the goal is what the camera sees now" +
+                       (options_.goal_file.empty() ? "" : ", and in " + options_.goal_file);
+  } catch (const std::exception& e) {
+    response.message = e.what();
+  }
+  return true;
+}
+
+bool RobotNode::onReset(ddm_msgs::Reset::Request& /*request*/,
+                        ddm_msgs::Reset::Response& response) {
+  const std::unique_lock<std::mutex> only(one_reset_, std::try_to_lock);
+  if (!only) {
+    response.message = "another reset is under way";
+    return true;
+  }
+  const ros::SteadyTime deadline =
+      ros::SteadyTime::now() + ros::WallDuration(options_.reset_timeout);
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    gate_.beginReset();
+    publishEffort();
+  }
+  // The goal first: to show it, the robot has to leave its start. The motors last: people reach in.
+  std::string problem = waitUntilThere(deadline, /*motors=*/false);
+  if (problem.empty()) problem = bringToStart(deadline);
+  if (problem.empty()) problem = waitUntilThere(deadline, /*motors=*/true);
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    gate_.endReset();
+    if (std::abs(picker_.step() - options_.dt) > kStepTolerance * options_.dt) {
+      ROS_WARN("the camera's frames do not fit: images are %g s apart where dt is %g s",
+               picker_.step(), options_.dt);
+    }
+    stamps_.restart();
+    picker_.restart();
+    publishEffort();
+  }
+  response.success = problem.empty();
+  response.message = problem;
+  response.start = ros::Time::now();
+  if (!problem.empty()) ROS_ERROR_STREAM("reset: " << problem);
+  return true;
+}
+
+std::string RobotNode::bringToStart(const ros::SteadyTime& deadline) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    routine_moves_ = routine_.byService();
+  }
+  const std::string problem = routine_.run(deadline);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  routine_moves_ = false;
+  return problem;
+}
+
+/// @return what has not come in time; empty: nothing
+std::string RobotNode::waitUntilThere(const ros::SteadyTime& deadline, bool motors) {
+  std::string told;
+  ros::SteadyTime last_told;
+  for (;;) {
+    const std::string what = missing(motors);
+    const ros::SteadyTime now = ros::SteadyTime::now();
+    if (what.empty()) return "";
+    if (!ros::ok() || now > deadline) return "the trial cannot begin: " + what;
+    if (what != told || now - last_told > kRemindPeriod) {
+      told = what;
+      last_told = now;
+      ROS_WARN_STREAM("the trial waits: " << what);
+    }
+    kLook.sleep();
+  }
+}
+
+/// What a trial cannot begin without, the first thing first; empty if nothing is missing.
+/// @param motors  they must be on, too
+std::string RobotNode::missing(bool motors) {
+  std::unique_lock<std::mutex> lock(mutex_);
+  if (!seesCamera()) {
+    lock.unlock();  // the master may be slow, and must not be in the way of a stop
+    return "no image from the camera, " + describePublishers(frame_sub_.getTopic());
+  }
+  std::string problem = stamps_.compare(frame_arrival_clock_, toStamp(frame_->header.stamp));
+  if (problem.empty()) problem = frame_problem_;
+  if (!problem.empty()) {
+    stamps_.restart();  // the clocks may be set while the trial waits
+    picker_.restart();
+    return problem;
+  }
+  if (!has_goal_) return "no goal image: bring the robot to its goal and call service take_goal";
+  if (motors && !gate_.armed()) return gate_.describe();
+  if (motors) return gate_.fault(steadyNow());
+  return "";
+}
+
+void RobotNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const bool fine = gate_.state() == TorqueGate::State::kWaiting ||
+                    gate_.state() == TorqueGate::State::kFollowing;
+  status.summary(
+      fine ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
+      gate_.describe());
+  if (!frame_problem_.empty()) {
+    status.summary(diagnostic_msgs::DiagnosticStatus::ERROR, frame_problem_);
+  }
+  status.add("torques in time", gate_.numAnswers());
+  status.add("deadlines missed", gate_.numMisses());
+  status.add("worst latency since the last status [s]", worst_latency_);
+  status.add("time between images [s]", picker_.step());
+  status.add("images refused for their stamps", stamps_.numRefused());
+  worst_latency_ = 0.0;
+}
+
+}  // namespace ddm

@@ -1,0 +1,104 @@
+// robot_node: a camera and motors of yours instead of the simulator.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ddm_msgs/Reset.h>
+#include <ddm_msgs/RunTrialAction.h>
+#include <ddm_msgs/Torque.h>
+#include <ddm_msgs/effort_publisher.h>
+#include <ddm_robot/frame_picker.h>
+#include <ddm_robot/robot_options.h>
+#include <ddm_robot/stamp_check.h>
+#include <ddm_robot/torque_gate.h>
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <image_transport/image_transport.h>
+#include <ros/ros.h>
+#include <sensor_msgs/JointState.h>
+#include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
+
+#include <mutex>
+#include <string>
+
+#include "reset_routine.h"
+
+namespace ddm {
+
+/// Shows the controller an image every dt and hands its torques to the motors through a TorqueGate.
+/// A trial in which the motors are stopped is cancelled: its torques do not act, so nothing is to
+/// be learned from it.
+///
+/// Needs a spinner with several threads: a reset may wait for a person while all else goes on.
+class RobotNode {
+ public:
+  /// @param pnh  private: the user's choice of an image transport
+  /// @throws std::invalid_argument if the camera's topic is the one that this node publishes on,
+  ///         or the goal cannot be read
+  RobotNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size, const RobotOptions& options);
+
+  /// Zero torque, now.
+  void stopMotors(const std::string& reason);
+
+ private:
+  void onFrame(const sensor_msgs::ImageConstPtr& frame);
+  void onTorque(const ddm_msgs::TorqueConstPtr& torque);
+  void onJointStates(const sensor_msgs::JointStateConstPtr& joints);
+  void onTrialEnd(const ddm_msgs::RunTrialActionResultConstPtr& result);
+  void onTick(const ros::SteadyTimerEvent& event);
+  bool onEnable(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
+  bool onTakeGoal(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  bool onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Response& response);
+
+  bool seesCamera() const;
+  sensor_msgs::Image shown(const sensor_msgs::Image& frame) const;
+  void loadGoal();
+  void publishGoal(const sensor_msgs::Image& goal);
+  void publishEffort();
+  void publishApplied(const Stamp& stamp, const std::vector<double>& torque, bool exploratory);
+  void reportState();
+  std::string bringToStart(const ros::SteadyTime& deadline);
+  std::string waitUntilThere(const ros::SteadyTime& deadline, bool motors);
+  std::string missing(bool motors);
+  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  const int image_size_;
+  const RobotOptions options_;
+  ResetRoutine routine_;
+
+  std::mutex mutex_;  // guards what callbacks change, below
+  TorqueGate gate_;
+  StampCheck stamps_;
+  FramePicker picker_;
+  sensor_msgs::ImageConstPtr frame_;  // the newest of the camera
+  SteadyTime frame_arrival_;
+  Stamp frame_arrival_clock_{0};  // the same by the clock of this machine
+  std::string frame_problem_;     // why the newest frame cannot be used
+  bool has_goal_ = false;
+  bool routine_moves_ = false;  // the user's reset has the motors, and no effort is published
+  bool was_in_trial_ = false;
+  std::string last_state_;
+  int last_misses_ = -1;
+  double worst_latency_ = 0.0;  // since the last diagnosis [s]
+
+  std::mutex one_reset_;
+  image_transport::ImageTransport transport_;
+  image_transport::Publisher image_pub_;
+  ros::Publisher goal_pub_;
+  EffortPublisher effort_;
+  ros::Publisher applied_pub_;
+  ros::Publisher latency_pub_;
+  ros::Publisher misses_pub_;
+  ros::Publisher cancel_pub_;
+  image_transport::Subscriber frame_sub_;
+  ros::Subscriber torque_sub_;
+  ros::Subscriber joints_sub_;  // only where joints have limits
+  ros::Subscriber trial_end_sub_;
+  ros::SteadyTimer timer_;
+  diagnostic_updater::Updater updater_;
+  ros::SteadyTimer diagnosis_timer_;
+  ros::ServiceServer enable_server_;
+  ros::ServiceServer take_goal_server_;
+  ros::ServiceServer reset_server_;
+};
+
+}  // namespace ddm

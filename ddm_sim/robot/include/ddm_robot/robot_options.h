@@ -1,0 +1,54 @@
+// Parameters of a robot: camera, motors, start and goal. One struct = one YAML block.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace ddm {
+
+/// Block `robot`.
+struct RobotOptions {
+  double dt = 0.2;      ///< time step: one image and one torque each [s]
+  int crop_x = 0;       ///< what counts of the camera's image: first column [pixels]
+  int crop_y = 0;       ///< first row [pixels]
+  int crop_width = 0;   ///< columns; 0: to the right edge [pixels]
+  int crop_height = 0;  ///< rows; 0: to the bottom [pixels]
+  std::vector<double> max_torque = {6.0};  ///< bound on the torque of each motor [N m]
+  std::vector<double> slew_rate = {0.0};   ///< bound on its change, or one for all; 0: none [N m/s]
+  std::vector<std::string> joints;  ///< that have limits; empty: all that joint_states reports
+  std::vector<std::vector<double>> position_limits;  ///< [lower, upper] of each [rad or m]
+  std::vector<double> speed_limit;                   ///< of each [rad/s or m/s]
+  double effort_rate = 100.0;                        ///< how often the motors get their torque [Hz]
+  std::string goal_file;                             ///< picture of the goal; take_goal writes it
+  std::string reset_service;     ///< std_srvs/Trigger that brings it to its start; empty: a person
+  double reset_timeout = 300.0;  ///< time that all of a reset may take [s]
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("dt", dt);
+    visitor("crop_x", crop_x);
+    visitor("crop_y", crop_y);
+    visitor("crop_width", crop_width);
+    visitor("crop_height", crop_height);
+    visitor("max_torque", max_torque);
+    visitor("slew_rate", slew_rate);
+    visitor("joints", joints);
+    visitor("position_limits", position_limits);
+    visitor("speed_limit", speed_limit);
+    visitor("effort_rate", effort_rate);
+    visitor("goal_file", goal_file);
+    visitor("reset_service", reset_service);
+    visitor("reset_timeout", reset_timeout);
+  }
+  int numMotors() const { return static_cast<int>(max_torque.size()); }
+
+  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  std::vector<std::string> problems() const;
+
+ private:
+  std::vector<std::string> problemsOfMotors() const;
+  std::vector<std::string> problemsOfLimits() const;
+};
+
+}  // namespace ddm

@@ -1,0 +1,72 @@
+// Whether the stamps of a camera can be trusted: each is compared with the arrival of its image.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_robot/stamp_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <vector>
+
+namespace ddm {
+namespace {
+
+constexpr std::size_t kNumOffsets = 100;  // some seconds of a camera: drift within them is nothing
+
+Stamp median(const std::deque<Stamp>& values) {
+  std::vector<Stamp> sorted(values.begin(), values.end());
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return *middle;
+}
+
+}  // namespace
+
+std::string StampCheck::compare(Stamp clock, Stamp stamp) const {
+  const Stamp age = clock - stamp;
+  if (age <= dt_ && age >= -dt_) return "";
+  std::ostringstream text;
+  text
+      << "the camera's stamps and this machine's clock differ by " << std::abs(toSeconds(age))
+      << " s when images arrive, at most dt is allowed: let the driver set the stamps, synchronise "
+         "the clocks";
+  return text.str();
+}
+
+std::string StampCheck::refusal(SteadyTime arrival, Stamp clock, Stamp stamp) const {
+  if (!last_) return compare(clock, stamp);
+  const Stamp ahead = stamp - arrival.time_since_epoch() - highest_;
+  std::ostringstream text;
+  if (ahead > dt_) {
+    text << "the camera's clock has jumped forward by " << toSeconds(ahead) << " s";
+  } else if (stamp <= *last_) {
+    text << "an image is stamped " << toSeconds(*last_ - stamp)
+         << " s before the one that came before it: the camera's clock was set back, or images "
+            "come out of order";
+  } else {
+    return "";
+  }
+  text << ". Images are refused until its clock is right, or until the next reset";
+  return text.str();
+}
+
+std::string StampCheck::take(SteadyTime arrival, Stamp clock, Stamp stamp) {
+  std::string problem = refusal(arrival, clock, stamp);
+  if (!problem.empty()) {
+    ++num_refused_;
+    return problem;
+  }
+  const Stamp offset = stamp - arrival.time_since_epoch();
+  highest_ = last_ ? std::max(highest_, offset) : offset;
+  last_ = stamp;
+  offsets_.push_back(offset);
+  if (offsets_.size() > kNumOffsets) offsets_.pop_front();
+  taken_ = arrival + std::min(Stamp(0), offset - median(offsets_));
+  return "";
+}
+
+void StampCheck::restart() {
+  last_.reset();
+  offsets_.clear();
+}
+
+}  // namespace ddm

@@ -1,0 +1,186 @@
+// The gate between a controller and the motors: which torque they get, and when it is zero.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_robot/torque_gate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace ddm {
+namespace {
+
+std::string textOf(const std::vector<double>& torque) {
+  std::ostringstream out;
+  out << "[";
+  for (const double value : torque) out << (out.tellp() > 1 ? ", " : "") << value;
+  out << "]";
+  return out.str();
+}
+
+bool allFinite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(),
+                     [](double value) { return std::isfinite(value); });
+}
+
+}  // namespace
+
+TorqueGate::TorqueGate(const RobotOptions& options)
+    : max_torque_(options.max_torque),
+      slew_rate_(options.slew_rate),
+      dt_(fromSeconds(options.dt)),
+      joints_(options),
+      target_(max_torque_.size(), 0.0),
+      effort_(max_torque_.size(), 0.0) {
+  if (slew_rate_.size() == 1) slew_rate_.assign(max_torque_.size(), options.slew_rate.front());
+}
+
+std::string TorqueGate::fault(SteadyTime now) const {
+  if (num_publishers_ > 1) {
+    return std::to_string(num_publishers_) + " nodes publish torques: end all but one";
+  }
+  const std::string silence = joints_.silence(now);
+  return silence.empty() ? joints_.violation() : silence;
+}
+
+std::string TorqueGate::arm(SteadyTime now) {
+  const std::string problem = fault(now);
+  if (problem.empty() && state_ == State::kStopped) wait();
+  return problem;
+}
+
+void TorqueGate::stop(const std::string& reason) {
+  wait();
+  state_ = State::kStopped;
+  stop_reason_ = reason;
+}
+
+void TorqueGate::beginReset() {
+  resetting_ = true;
+  if (armed()) wait();
+}
+
+void TorqueGate::endReset() {
+  resetting_ = false;
+  if (armed()) wait();
+}
+
+void TorqueGate::endTrial() {
+  if (inTrial()) wait();
+}
+
+/// Zero torque, and no image that an answer is due to.
+void TorqueGate::wait() {
+  state_ = resetting_ ? State::kResetting : State::kWaiting;
+  while (!pending_.empty()) giveUpFirst();
+  setZero();
+}
+
+void TorqueGate::setZero() {
+  std::fill(target_.begin(), target_.end(), 0.0);
+  std::fill(effort_.begin(), effort_.end(), 0.0);
+}
+
+void TorqueGate::giveUpFirst() {
+  unanswered_.push_back(pending_.front().stamp);
+  pending_.pop_front();
+}
+
+std::vector<Stamp> TorqueGate::takeUnanswered() {
+  std::vector<Stamp> taken;
+  taken.swap(unanswered_);
+  return taken;
+}
+
+void TorqueGate::showImage(SteadyTime taken, Stamp stamp) {
+  pending_.push_back({stamp, taken});
+  last_image_ = taken;
+}
+
+bool TorqueGate::takeTorque(SteadyTime now, Stamp stamp, const std::vector<double>& torque) {
+  expire(now);
+  if (!armed()) return false;
+  if (torque.size() != max_torque_.size() || !allFinite(torque)) {
+    stop("a torque must be " + std::to_string(max_torque_.size()) +
+         " finite number(s) [N m], one for each motor, got " + textOf(torque));
+    return false;
+  }
+  if (state_ == State::kResetting || !joints_.silence(now).empty()) return false;
+  if (!joints_.violation().empty()) {
+    stop(joints_.violation());
+    return false;
+  }
+  const auto image = std::find_if(pending_.begin(), pending_.end(),
+                                  [stamp](const Pending& each) { return each.stamp == stamp; });
+  if (image == pending_.end()) return false;
+  if (inTrial()) num_misses_ += static_cast<int>(image - pending_.begin());
+  while (pending_.front().stamp != stamp) giveUpFirst();
+  pending_.pop_front();
+  ++num_answers_;
+  state_ = State::kFollowing;
+  for (std::size_t i = 0; i < torque.size(); ++i) {
+    target_[i] = std::max(-max_torque_[i], std::min(max_torque_[i], torque[i]));
+  }
+  return true;
+}
+
+void TorqueGate::takeJoints(SteadyTime now, const std::vector<std::string>& names,
+                            const std::vector<double>& positions,
+                            const std::vector<double>& velocities) {
+  joints_.take(now, names, positions, velocities);
+  if (inTrial() && !joints_.violation().empty()) stop(joints_.violation());
+}
+
+void TorqueGate::setPublishers(int num_publishers) {
+  num_publishers_ = num_publishers;
+  if (num_publishers > 1 && armed()) {
+    stop(std::to_string(num_publishers) + " nodes publish torques, one must");
+  }
+}
+
+/// Notices what has not come.
+void TorqueGate::expire(SteadyTime now) {
+  while (!pending_.empty() && now - pending_.front().taken > dt_) {
+    giveUpFirst();
+    if (!inTrial()) continue;
+    ++num_misses_;
+    state_ = State::kLate;
+  }
+  if (state_ == State::kFollowing && now - last_image_ > 2 * dt_) state_ = State::kImagesStopped;
+  if (inTrial() && !joints_.silence(now).empty()) state_ = State::kJointsSilent;
+}
+
+const std::vector<double>& TorqueGate::effort(SteadyTime now) {
+  expire(now);
+  const double passed = toSeconds(now - last_effort_);
+  last_effort_ = now;
+  if (state_ != State::kFollowing) setZero();
+  for (std::size_t i = 0; i < effort_.size(); ++i) {
+    const double step = slew_rate_[i] * passed;
+    const double change = target_[i] - effort_[i];
+    effort_[i] =
+        slew_rate_[i] == 0.0 ? target_[i] : effort_[i] + std::max(-step, std::min(step, change));
+  }
+  return effort_;
+}
+
+std::string TorqueGate::describe() const {
+  switch (state_) {
+    case State::kStopped:
+      return "the motors are off: " + stop_reason_;
+    case State::kResetting:
+      return "zero torque while the robot goes to its start";
+    case State::kWaiting:
+      return "zero torque, no trial is under way";
+    case State::kFollowing:
+      return "the motors follow the controller";
+    case State::kImagesStopped:
+      return "zero torque: no image came for two dt";
+    case State::kLate:
+      return "zero torque: an image had no torque within dt";
+    case State::kJointsSilent:
+      return "zero torque: joint_states does not report the joints that have limits";
+  }
+  return "";
+}
+
+}  // namespace ddm

@@ -1,0 +1,98 @@
+// Tests of which frames of a camera are acted on.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_robot/frame_picker.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <vector>
+
+namespace ddm {
+namespace {
+
+Stamp at(double seconds) { return std::chrono::seconds(1700000000) + fromSeconds(seconds); }
+
+/// Steps between the frames that are picked of those at these times [s].
+std::vector<double> stepsOf(FramePicker* picker, const std::vector<double>& frames) {
+  std::vector<double> picked;
+  for (const double frame : frames) {
+    if (picker->pick(at(frame))) picked.push_back(frame);
+  }
+  std::vector<double> steps;
+  for (size_t i = 1; i < picked.size(); ++i) steps.push_back(picked[i] - picked[i - 1]);
+  return steps;
+}
+
+std::vector<double> camera(double rate, double jitter = 0.0) {
+  std::mt19937_64 rng(1);
+  std::uniform_real_distribution<double> error(-jitter, jitter);
+  std::vector<double> frames;
+  for (int i = 0; i < 20 * rate; ++i) frames.push_back(i / rate + error(rng));
+  return frames;
+}
+
+TEST(FramePicker, TakesEverySixthFrameOfThirtyHertzAtDtOfAFifth) {
+  for (const double rate : {29.97, 30.0, 30.03}) {
+    for (const double jitter : {0.0, 0.006}) {
+      FramePicker picker(0.2);
+      const std::vector<double> steps = stepsOf(&picker, camera(rate, jitter));
+      ASSERT_GT(steps.size(), 95u);
+      for (const double step : steps) EXPECT_NEAR(step, 6.0 / rate, 2.0 * jitter + 1e-6);
+    }
+  }
+}
+
+TEST(FramePicker, StepsAreEquallyLongWhereDtIsNoMultipleOfThePeriod) {
+  FramePicker picker(0.2);
+  for (const double step : stepsOf(&picker, camera(24.0))) EXPECT_NEAR(step, 5.0 / 24.0, 1e-6);
+  EXPECT_NEAR(picker.step(), 5.0 / 24.0, 1e-6);
+}
+
+TEST(FramePicker, TakesEachFrameOfACameraThatIsSlowerThanDt) {
+  FramePicker picker(0.05);
+  for (const double step : stepsOf(&picker, camera(10.0))) EXPECT_NEAR(step, 0.1, 1e-6);
+  EXPECT_NEAR(picker.step(), 0.1, 1e-6);
+}
+
+TEST(FramePicker, FollowsACameraThatBecomesSlower) {
+  FramePicker picker(0.25);
+  for (int i = 0; i < 200; ++i) picker.pick(at(i / 30.0));
+  EXPECT_NEAR(picker.step(), 8.0 / 30.0, 1e-6);
+  for (int i = 1; i < 20; ++i) picker.pick(at(7.0 + i / 10.0));
+  EXPECT_NEAR(picker.step(), 0.3, 1e-6);
+}
+
+TEST(FramePicker, NeverTakesAFrameTwiceOrAnOlderOne) {
+  FramePicker picker(0.2);
+  EXPECT_TRUE(picker.pick(at(1.0)));
+  EXPECT_FALSE(picker.pick(at(1.0)));
+  EXPECT_FALSE(picker.pick(at(0.5)));
+}
+
+TEST(FramePicker, ARestartForgetsTheStampsOfBefore) {
+  FramePicker picker(0.2);
+  EXPECT_TRUE(picker.pick(at(1.0)));
+  picker.restart();
+  EXPECT_TRUE(picker.pick(at(0.5)));
+  EXPECT_EQ(picker.step(), 0.0);
+}
+
+TEST(FramePicker, LostFramesAndPausesDoNotShortenSteps) {
+  FramePicker picker(0.2);
+  std::vector<double> frames = camera(30.0);
+  frames.erase(frames.begin() + 32, frames.begin() + 35);
+  for (size_t i = 100; i < frames.size(); ++i) frames[i] += 60.0;
+  for (const double step : stepsOf(&picker, frames)) EXPECT_GT(step, 0.199);
+}
+
+TEST(FramePicker, ARestartTakesTheNextFrameAndCountsFromIt) {
+  FramePicker picker(0.2);
+  for (int i = 0; i <= 8; ++i) picker.pick(at(i / 30.0));
+  picker.restart();
+  const std::vector<double> steps = stepsOf(&picker, {9.0 / 30, 10.0 / 30, 14.0 / 30, 15.0 / 30});
+  ASSERT_EQ(steps.size(), 1u);
+  EXPECT_NEAR(steps[0], 6.0 / 30, 1e-6);
+}
+
+}  // namespace
+}  // namespace ddm

@@ -1,0 +1,119 @@
+#!/usr/bin/python3
+# robot_node: what the controller sees of a camera, and what the motor gets of its torques, over the wire.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import signal
+import sys
+
+from ddm_msgs.msg import RunTrialActionResult
+import rospy
+import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from process import Process  # noqa: E402
+from robot_stand_in import DT, LIMIT_S, RobotCase, wait_until  # noqa: E402
+
+
+class RobotMotorTest(RobotCase):
+    def setUp(self):
+        self.robot = self.start()
+
+    def enterTrial(self, torque=2.0):
+        self.assertTrue(self.robot.enable(True).success)
+        self.robot.answer(torque)
+        self.robot.waitForEffort(torque)
+
+    def test_images_are_cropped_small_and_grey_and_dt_apart(self):
+        self.robot.camera.left = 200
+        first = self.robot.images.next()
+        images = [first] + [self.robot.images.next() for _ in range(4)]
+        for image in images[1:]:
+            self.assertEqual((image.width, image.height, image.encoding), (4, 4, "mono8"))
+            self.assertEqual(list(bytearray(image.data)), 4 * [200, 200, 0, 0])  # 16 of 24 columns, then 16 black ones
+        stamps = [image.header.stamp.to_sec() for image in images]
+        for before, after in zip(stamps, stamps[1:]):
+            self.assertGreater(after - before, 0.9 * DT)
+
+    def test_the_motor_is_off_until_it_is_enabled_and_stops_at_once(self):
+        self.robot.answer(2.0)
+        self.assertEqual(self.robot.effort(), 0.0)
+        self.enterTrial()
+        answer = self.robot.enable(False)
+        self.assertTrue(answer.success)
+        self.assertIn("the motors are off", answer.message)
+        self.assertEqual(self.robot.effort(), 0.0)
+        wait_until(lambda: self.robot.cancels.messages, "the trial is cancelled")
+        self.robot.answer(2.0)
+        self.assertEqual(self.robot.effort(), 0.0)
+
+    def test_the_motor_gets_no_more_than_its_limit_and_zero_when_the_trial_ends(self):
+        self.assertTrue(self.robot.enable(True).success)
+        self.robot.answer(9.0)
+        self.robot.waitForEffort(4.0)
+        self.robot.trial_ends.publish(RunTrialActionResult())
+        self.robot.waitForEffort(0.0)
+        self.robot.images.next()
+        self.robot.images.next()
+        self.assertEqual(self.robot.numMisses(), 0)
+        self.assertEqual(self.robot.cancels.messages, [])
+
+    def test_a_late_torque_does_not_act_and_is_counted(self):
+        self.enterTrial()
+        self.robot.answer(3.0, delay_s=1.1 * DT)
+        self.robot.waitForEffort(0.0)
+        wait_until(lambda: self.robot.numMisses() >= 1, "a miss")
+        self.assertNotIn(3.0, [message.data for message in self.robot.efforts.messages])
+        wait_until(lambda: len(self.robot.latencies.messages) == 2, "latencies")
+        self.assertLess(self.robot.latencies.messages[0].data, DT)
+        self.assertGreater(self.robot.latencies.messages[1].data, 1.1 * DT)
+        self.robot.answer(1.0)  # ... and the next one in time does
+        self.robot.waitForEffort(1.0)
+
+    def test_of_each_image_it_is_published_which_torque_acted(self):
+        lost = self.robot.images.next().header.stamp
+        self.enterTrial()
+        self.assertEqual(self.robot.appliedAt(self.robot.answer(9.0)), [4.0])  # as the motor has it
+        self.assertEqual(self.robot.appliedAt(self.robot.answer(3.0, delay_s=1.1 * DT)), [])
+        self.assertEqual(self.robot.appliedAt(lost), [])
+        self.robot.enable(False)
+        self.assertEqual(self.robot.appliedAt(self.robot.answer(1.0)), [])
+
+    def test_the_torque_is_zero_when_the_camera_stops(self):
+        self.enterTrial()
+        self.robot.camera.showing = False
+        self.robot.waitForEffort(0.0)
+        wait_until(lambda: "zero torque: " in self.robot.process.output, "a warning")
+        self.robot.camera.showing = True
+        self.robot.answer(1.0)
+        self.robot.waitForEffort(1.0)
+
+    def test_a_torque_that_is_no_number_stops_the_motors_until_they_are_enabled_again(self):
+        self.enterTrial()
+        self.robot.answer(float("nan"))
+        self.robot.waitForEffort(0.0)
+        wait_until(lambda: self.robot.cancels.messages, "the trial is cancelled")
+        self.robot.answer(1.0)
+        self.assertEqual(self.robot.effort(), 0.0)
+        self.enterTrial(3.0)
+
+    def test_two_publishers_of_torques_stop_the_motors_while_they_are_there(self):
+        self.enterTrial()
+        second = Process(["rostopic", "pub", "-r", "1", "torque", "ddm_msgs/Torque", "{torque: [1.0]}"])
+        self.addCleanup(second.stop)
+        self.robot.process.waitForText("the motors are off: 2 nodes publish torques", LIMIT_S)
+        refused = self.robot.enable(True)
+        self.assertFalse(refused.success)
+        self.assertIn("2 nodes publish torques", refused.message)
+        second.stop()
+        wait_until(lambda: self.robot.enable(True).success, "one publisher")
+
+    def test_the_last_word_to_the_motor_is_zero(self):
+        self.enterTrial()
+        self.robot.process.send(signal.SIGINT)
+        self.assertEqual(self.robot.process.waitForEnd(LIMIT_S), 0)
+        wait_until(lambda: self.robot.efforts.messages[-1].data == 0.0, "zero")
+
+
+if __name__ == "__main__":
+    rospy.init_node("robot_motor_test")
+    rosunit.unitrun("ddm_sim", "robot_motor", RobotMotorTest)

@@ -1,0 +1,135 @@
+#!/usr/bin/python3
+# robot_node: how a robot comes to its start and its goal, and what is refused.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import pty
+import sys
+import threading
+
+import rospy
+import rosunit
+from std_srvs.srv import Trigger, TriggerResponse
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from process import Process, find_program  # noqa: E402
+from robot_stand_in import LIMIT_S, RobotCase, wait_until  # noqa: E402
+
+
+class RobotResetTest(RobotCase):
+    def setUp(self):
+        super().setUp()
+        self.goal = self.file("goal.png")
+
+    def offer(self, name, function):
+        service = rospy.Service(name, Trigger, function)
+        self.addCleanup(service.shutdown)
+
+    def test_a_reset_asks_for_goal_start_and_motors_in_turn(self):
+        robot = self.start("_robot/goal_file:=" + self.goal)
+        self.assertFalse(robot.resetDone().success)  # nobody has asked
+        answer = robot.reset()
+        robot.process.waitForText("take_goal", LIMIT_S)
+        wait_until(lambda: robot.takeGoal().success, "a camera")
+        wait_until(lambda: robot.goals.messages, "the goal")
+        robot.camera.left = 0
+        robot.process.waitForText("Bring the robot to its start", LIMIT_S)
+        self.assertTrue(robot.resetDone().success)
+        robot.process.waitForText("the trial waits: the motors are off", LIMIT_S)
+        self.assertTrue(robot.enable(True).success)
+        reset = answer()
+        self.assertTrue(reset.success, reset.message)
+        self.assertLess(abs((rospy.Time.now() - reset.start).to_sec()), LIMIT_S)
+        self.assertGreater(robot.images.next().header.stamp, reset.start)
+        self.assertEqual(list(bytearray(robot.goals.messages[0].data)), 4 * [255, 255, 0, 0])
+
+    def test_the_goal_is_kept_in_its_file(self):
+        robot = self.start("_robot/goal_file:=" + self.goal)
+        wait_until(lambda: robot.takeGoal().success, "a camera")
+        robot.process.stop()
+        second = self.start("_robot/goal_file:=" + self.goal)
+        wait_until(lambda: second.goals.messages, "the goal")
+        self.assertEqual(list(bytearray(second.goals.messages[0].data)), 4 * [255, 255, 0, 0])
+
+    def test_a_person_presses_enter_on_the_terminal(self):
+        ours, terminal = pty.openpty()
+        self.addCleanup(os.close, ours)
+        robot = self.start(terminal=terminal)
+        os.close(terminal)
+        wait_until(lambda: robot.takeGoal().success, "a camera")
+        self.assertTrue(robot.enable(True).success)
+        os.write(ours, b"typed before\n")
+        answer = robot.reset()
+        robot.process.waitForText("press Enter here", LIMIT_S)
+        self.assertEqual(robot.process.output.count("the trial waits"), 0)
+        os.write(ours, b"\n")
+        self.assertTrue(answer().success)
+
+    def test_the_service_of_the_user_has_the_motor_to_itself(self):
+        robot = self.start("_robot/reset_service:=go_home", "_robot/reset_timeout:=3.0")
+        wait_until(lambda: robot.takeGoal().success, "a camera")
+        self.assertTrue(robot.enable(True).success)
+        heard = []
+
+        def goHome(_):
+            before = len(robot.efforts.messages)
+            rospy.sleep(0.2)
+            heard.append(len(robot.efforts.messages) - before)
+            return TriggerResponse(success=True)
+
+        self.offer("go_home", goHome)
+        reset = robot.reset()()
+        self.assertTrue(reset.success, reset.message)
+        self.assertLessEqual(heard[0], 2)  # one may have been on its way
+        self.assertEqual(robot.effort(), 0.0)
+
+    def test_what_does_not_come_in_time_is_named(self):
+        robot = self.start("_robot/reset_service:=go_home", "_robot/reset_timeout:=1.5")
+        self.assertIn("no goal image", robot.reset()().message)
+        self.assertTrue(robot.takeGoal().success)
+        self.assertIn("service /go_home is not offered", robot.reset()().message)
+        self.offer("go_home", lambda _: TriggerResponse(success=False, message="the arm is stuck"))
+        wait_until(lambda: "the arm is stuck" in robot.reset()().message, "the reason")
+        robot.camera.age_s = 5.0
+        wait_until(lambda: "this machine's clock" in robot.reset()().message, "the reason")
+        robot.camera.showing = False
+        wait_until(lambda: "no image from the camera" in robot.reset()().message, "the reason")
+        self.assertIn("no image on", robot.takeGoal().message)
+
+    def test_a_service_that_hangs_does_not_hang_the_reset(self):
+        robot = self.start("_robot/reset_service:=go_home", "_robot/reset_timeout:=1.5")
+        wait_until(lambda: robot.takeGoal().success, "a camera")
+        called, released = threading.Event(), threading.Event()
+        self.addCleanup(released.set)
+
+        def hang(_):
+            called.set()
+            released.wait(LIMIT_S)
+            return TriggerResponse(success=True)
+
+        self.offer("go_home", hang)
+        first = robot.reset()
+        self.assertTrue(called.wait(LIMIT_S))
+        self.assertIn("another reset is under way", robot.reset()().message)
+        self.assertIn("service /go_home does not answer", first().message)
+
+    def assertRefused(self, words, *arguments):
+        if rospy.has_param("/refused"):
+            rospy.delete_param("/refused")
+        process = Process([find_program("ddm_sim", "robot_node"), "__name:=refused"] + list(arguments))
+        self.assertEqual(process.waitForEnd(LIMIT_S), 1)
+        self.assertIn(words, process.output)
+
+    def test_a_camera_on_the_topic_of_the_controller_is_refused(self):
+        self.assertRefused("/camera/image_raw", "camera/source:=camera/image_raw")
+
+    def test_a_goal_that_is_no_picture_is_refused(self):
+        self.assertRefused(os.path.abspath(__file__), "_robot/goal_file:=" + os.path.abspath(__file__))
+
+    def test_what_is_misspelt_or_out_of_range_is_named(self):
+        self.assertRefused("slew_rate", "_robot/slew_rat:=1.0")
+        self.assertRefused("robot/dt", "_robot/dt:=0.0")
+
+
+if __name__ == "__main__":
+    rospy.init_node("robot_reset_test")
+    rosunit.unitrun("ddm_sim", "robot_reset", RobotResetTest)

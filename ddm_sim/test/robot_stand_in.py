@@ -1,0 +1,210 @@
+# What robot_node has around it: a camera, a controller, a motor and a user, played in one process.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import tempfile
+import threading
+import time
+import unittest
+
+from actionlib_msgs.msg import GoalID
+from ddm_msgs.msg import RunTrialActionResult, Torque
+from ddm_msgs.srv import Reset
+import rospy
+from sensor_msgs.msg import Image
+from std_msgs.msg import Float64, Float64MultiArray, UInt32
+from std_srvs.srv import SetBool, Trigger
+
+from process import Process, find_program
+
+LIMIT_S = 15.0
+DT = 0.4
+WIDTH, HEIGHT = 48, 40
+OPTIONS = ["_image/size:=4", "_robot/crop_x:=8", "_robot/crop_width:=32", "_robot/crop_height:=32"]
+
+
+def wait_until(condition, what="the condition"):
+    """Returns what the condition gives as soon as that is true."""
+    end = time.time() + LIMIT_S
+    while time.time() < end:
+        value = condition()
+        if value:
+            return value
+        time.sleep(0.005)
+    raise AssertionError("%s did not come about within %g s" % (what, LIMIT_S))
+
+
+def in_background(function, *arguments):
+    """Calls it at once. Returns a function that waits for its end and gives what it returned."""
+    box = []
+    thread = threading.Thread(target=lambda: box.append(function(*arguments)), daemon=True)
+    thread.start()
+
+    def result():
+        thread.join(LIMIT_S)
+        if not box:
+            raise AssertionError("no answer within %g s" % LIMIT_S)
+        return box[0]
+
+    return result
+
+
+class Camera:
+    """30 images a second; left half `left`, right half black."""
+
+    def __init__(self, topic):
+        self.left = 255
+        self.showing = True
+        self.age_s = 0.0
+        self.shown_at = 0.0  # monotonic time of the last image
+        self._ended = False
+        self._lock = threading.Lock()
+        self._publisher = rospy.Publisher(topic, Image, queue_size=2)
+        self._thread = threading.Thread(target=self._show, daemon=True)
+        self._thread.start()
+
+    def end(self):
+        self._ended = True
+        self._thread.join()
+        self._publisher.unregister()
+
+    def _show(self):
+        while not self._ended:
+            with self._lock:
+                if self.showing:
+                    self.shown_at = time.monotonic()
+                    self._publish(self.age_s)
+            time.sleep(1.0 / 30.0)
+
+    def _publish(self, age_s):
+        image = Image(width=WIDTH, height=HEIGHT, step=3 * WIDTH, encoding="rgb8")
+        image.header.stamp = rospy.Time.now() - rospy.Duration(age_s)
+        image.data = bytes([self.left] * 3 * (WIDTH // 2) + [0] * 3 * (WIDTH - WIDTH // 2)) * HEIGHT
+        self._publisher.publish(image)
+
+    def end_with_image(self, age_s):
+        """One more image, then silence. Returns the monotonic time of the image before."""
+        with self._lock:
+            self.showing = False
+            self._publish(age_s)
+            return self.shown_at
+
+
+class Listener:
+    def __init__(self, topic, kind):
+        self.messages = []
+        self.times = []  # monotonic, of their arrival
+        self._subscriber = rospy.Subscriber(topic, kind, self._take, queue_size=1000, tcp_nodelay=True)
+
+    def _take(self, message):
+        self.times.append(time.monotonic())
+        self.messages.append(message)
+
+    def end(self):
+        self._subscriber.unregister()
+
+    def next(self):
+        """The next message from now on."""
+        seen = len(self.messages)
+        wait_until(lambda: len(self.messages) > seen, "a message on " + self._subscriber.name)
+        return self.messages[seen]
+
+
+class Robot:
+    """robot_node and its surroundings."""
+
+    def __init__(self, num_motors, *arguments, **kwargs):
+        self.camera = Camera("camera/source")
+        self.images = Listener("camera/image_raw", Image)
+        self.goals = Listener("goal_image", Image)
+        self.efforts = (Listener("effort_command", Float64) if num_motors == 1 else
+                        Listener("group_effort_command", Float64MultiArray))
+        self.latencies = Listener("latency", Float64)
+        self.applied = Listener("applied_torque", Torque)
+        self.misses = Listener("deadline_misses", UInt32)
+        self.cancels = Listener("run_trial/cancel", GoalID)
+        self.torques = rospy.Publisher("torque", Torque, queue_size=10, tcp_nodelay=True)
+        self.trial_ends = rospy.Publisher("run_trial/result", RunTrialActionResult, queue_size=1)
+        self.controller = None
+        self.process = Process([find_program("ddm_sim", "robot_node")] + list(arguments), **kwargs)
+        rospy.wait_for_service("reset", LIMIT_S)
+        wait_until(lambda: self.torques.get_num_connections() and self.trial_ends.get_num_connections(), "robot_node")
+
+    def end(self):
+        """Leaves the topics to the next one."""
+        self.process.stop()
+        self.camera.end()
+        if self.controller is not None:
+            self.controller.unregister()
+        self.torques.unregister()
+        self.trial_ends.unregister()
+        for listener in (self.images, self.goals, self.efforts, self.applied, self.latencies, self.misses, self.cancels):
+            listener.end()
+
+    def enable(self, on):
+        return rospy.ServiceProxy("enable", SetBool)(on)
+
+    @staticmethod
+    def takeGoal():
+        return rospy.ServiceProxy("take_goal", Trigger)()
+
+    @staticmethod
+    def resetDone():
+        return rospy.ServiceProxy("reset_done", Trigger)()
+
+    @staticmethod
+    def reset():
+        """The answer, which may take a while."""
+        return in_background(rospy.ServiceProxy("reset", Reset))
+
+    def answer(self, *torque, delay_s=0.0):
+        """Answers the next image. Returns its stamp."""
+        image = self.images.next()
+        time.sleep(delay_s)
+        self.publishTorque(image, *torque)
+        return image.header.stamp
+
+    def appliedAt(self, stamp):
+        """What acted as the answer to an image."""
+        def found():
+            return [message for message in self.applied.messages if message.header.stamp == stamp]
+        return list(wait_until(found, "what acted")[0].torque)
+
+    def answerAll(self, torque):
+        """Answers each image from now on."""
+        self.controller = rospy.Subscriber("camera/image_raw", Image, lambda image: self.publishTorque(image, torque), tcp_nodelay=True)
+
+    def publishTorque(self, image, *torque):
+        message = Torque(torque=list(torque))
+        message.header.stamp = image.header.stamp
+        self.torques.publish(message)
+
+    def waitForEffort(self, effort):
+        """From now on. A number, of several motors a tuple."""
+        seen = len(self.efforts.messages)
+        wait_until(lambda: any(message.data == effort for message in self.efforts.messages[seen:]),
+                   "effort %s" % (effort,))
+
+    def effort(self):
+        """What the motors get now."""
+        return self.efforts.next().data
+
+    def numMisses(self):
+        return self.misses.messages[-1].data
+
+
+class RobotCase(unittest.TestCase):
+    def file(self, name):
+        """A path in a folder of this test."""
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        return os.path.join(folder.name, name)
+
+    def start(self, *arguments, dt=DT, max_torque=4.0, robot=None, **kwargs):
+        """A robot_node that leaves nothing behind after the test; `robot` has the parameters that are lists."""
+        if rospy.has_param("/robot_node"):
+            rospy.delete_param("/robot_node")
+        rospy.set_param("/robot_node/robot", dict(robot or {}, dt=dt, max_torque=max_torque))
+        num_motors = len(max_torque) if isinstance(max_torque, list) else 1
+        robot = Robot(num_motors, *(OPTIONS + list(arguments)), **kwargs)
+        self.addCleanup(robot.end)
+        return robot

@@ -1,0 +1,189 @@
+// Tests of whether the stamps of a camera can be trusted, and of a motor whose camera's cannot.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_robot/stamp_check.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "ddm_robot/frame_picker.h"
+#include "ddm_robot/torque_gate.h"
+
+namespace ddm {
+namespace {
+
+constexpr double kDt = 0.2;
+constexpr double kPeriod = 1.0 / 30.0;
+constexpr double kHour = 3600.0;
+const Stamp kEpoch = std::chrono::hours(24 * 365 * 50);  // of the wall clock, when a test begins
+
+SteadyTime at(double seconds) { return SteadyTime(std::chrono::hours(5) + fromSeconds(seconds)); }
+Stamp clockAt(double seconds) { return kEpoch + fromSeconds(seconds); }
+
+/// Camera and motor of a robot as robot_node connects them, without its messages.
+class Robot {
+ public:
+  Robot() {
+    EXPECT_EQ(gate_.arm(at(0.0)), "");
+    gate_.effort(at(0.0));
+  }
+
+  /// An image arrives and is answered after 10 ms.
+  /// @param error  of the clock that stamps it [s]
+  /// @param delay  more than the 15 ms that others take from camera to node [s]
+  /// @return       whether it was accepted
+  bool image(double now, double error = 0.0, double delay = 0.0) {
+    const Stamp stamp = clockAt(now - 0.015 - delay + error);
+    if (!stamps_.take(at(now), clockAt(now), stamp).empty()) return false;
+    if (!picker_.pick(stamp)) return true;
+    gate_.showImage(stamps_.taken(), stamp);
+    gate_.takeTorque(at(now + 0.01), stamp, {2.0});
+    return true;
+  }
+
+  /// 30 images a second.
+  /// @return when the next one is due
+  double images(double begin, double end, double error = 0.0) {
+    double now = begin;
+    for (; now < end; now += kPeriod) image(now, error);
+    return now;
+  }
+
+  /// @return for how long the motor still gets a torque, looked at every 10 ms [s]
+  double timeUntilZero(double now) {
+    double passed = 0.0;
+    while (gate_.effort(at(now + passed)).at(0) != 0.0 && passed < 10.0) passed += 0.01;
+    return passed;
+  }
+
+  double effort(double now) { return gate_.effort(at(now)).at(0); }
+  void restart() {
+    stamps_.restart();
+    picker_.restart();
+  }
+
+  RobotOptions options_;
+  TorqueGate gate_{options_};
+  StampCheck stamps_{kDt};
+  FramePicker picker_{kDt};
+};
+
+TEST(StampCheck, AfterAnImageFromTheFutureAndThenSilenceTheMotorStopsInTwentyOfTwentyTries) {
+  for (int i = 0; i < 20; ++i) {
+    Robot robot;
+    const double last = robot.images(0.0, 2.0 + 0.011 * i) - kPeriod;
+    ASSERT_EQ(robot.effort(last + 0.01), 2.0);
+    EXPECT_FALSE(robot.image(last + kPeriod, kHour));
+    EXPECT_LE(0.01 + robot.timeUntilZero(last + 0.01), 2.0 * kDt + 0.05) << "try " << i;
+    EXPECT_EQ(robot.stamps_.numRefused(), 1);
+  }
+}
+
+TEST(StampCheck, AnImageFromTheFutureAmongGoodOnesChangesNothing) {
+  Robot robot;
+  double now = robot.images(0.0, 2.0);
+  EXPECT_FALSE(robot.image(now, kHour));
+  now = robot.images(now + kPeriod, now + 2.0);
+  EXPECT_EQ(robot.effort(now), 2.0);
+  EXPECT_EQ(robot.gate_.numMisses(), 0);
+  EXPECT_NEAR(robot.picker_.step(), 6.0 * kPeriod, 1e-6);
+}
+
+TEST(StampCheck, AClockThatIsSetForwardOrBackStopsTheMotorUntilItIsRightAgain) {
+  for (const double error : {kHour, -kHour, 0.5, -0.5}) {
+    Robot robot;
+    double now = robot.images(0.0, 2.0);
+    const int answers = robot.gate_.numAnswers();
+    now = robot.images(now, now + 0.45, error);
+    EXPECT_EQ(robot.effort(now), 0.0) << error;
+    EXPECT_EQ(robot.gate_.numAnswers(), answers) << error;
+    now = robot.images(now, now + 0.5);
+    EXPECT_EQ(robot.effort(now), 2.0) << error;
+  }
+}
+
+TEST(StampCheck, AfterARestartAClockThatWasSetIsAcceptedIfTheMachineHasTheSame) {
+  StampCheck check(kDt);
+  EXPECT_EQ(check.take(at(0.0), clockAt(0.0), clockAt(-0.01)), "");
+  EXPECT_NE(check.take(at(0.1), clockAt(0.1 - kHour), clockAt(0.09 - kHour)), "");
+  check.restart();
+  EXPECT_EQ(check.take(at(0.2), clockAt(0.2 - kHour), clockAt(0.19 - kHour)), "");
+}
+
+TEST(StampCheck, TheFirstImageIsComparedWithTheClockOfTheMachine) {
+  for (const double error : {kHour, -kHour, 0.21, -0.21}) {
+    StampCheck check(kDt);
+    EXPECT_NE(check.take(at(0.0), clockAt(0.0), clockAt(error)), "") << error;
+    EXPECT_EQ(check.take(at(0.1), clockAt(0.1), clockAt(0.1)), "") << "nothing of it is remembered";
+  }
+  StampCheck check(kDt);
+  EXPECT_NE(check.take(at(0.0), clockAt(0.0), Stamp(0)), "") << "a stamp that nobody has set";
+}
+
+TEST(StampCheck, AClockThatDriftsByAMillisecondPerSecondNeverStopsATrial) {
+  for (const double drift : {1e-3, -1e-3}) {
+    Robot robot;
+    for (double now = 0.0; now < 1800.0; now += kPeriod) {
+      ASSERT_TRUE(robot.image(now, drift * now)) << now;
+      ASSERT_EQ(robot.effort(now + 0.011), 2.0) << now;
+    }
+    EXPECT_EQ(robot.gate_.numMisses(), 0);
+  }
+}
+
+TEST(StampCheck, ImagesThatComeLateAreAcceptedAndSoIsTheNextOneInTime) {
+  for (const double delay : {0.5 * kDt, 1.2 * kDt, 5.0 * kDt}) {
+    Robot robot;
+    double now = robot.images(0.0, 2.0);
+    EXPECT_TRUE(robot.image(now + delay, 0.0, delay)) << delay;
+    now = robot.images(now + delay + kPeriod, now + delay + 1.0);
+    EXPECT_EQ(robot.effort(now), 2.0) << delay;
+    EXPECT_EQ(robot.stamps_.numRefused(), 0) << delay;
+  }
+}
+
+TEST(StampCheck, AfterTenSecondsOfDelayTheFirstImageInTimeIsNotTakenForAJump) {
+  Robot robot;
+  double now = robot.images(0.0, 2.0);
+  for (const double end = now + 10.0; now < end; now += kPeriod) robot.image(now, 0.0, 3.0 * kDt);
+  now = robot.images(now, now + 2.0);
+  EXPECT_EQ(robot.effort(now), 2.0);
+}
+
+TEST(StampCheck, AJitteryTransportRefusesNothing) {
+  std::mt19937_64 engine(1);
+  std::exponential_distribution<double> delay(1.0 / 0.02);
+  StampCheck check(kDt);
+  double arrival = 0.0;
+  for (int i = 0; i < 3000; ++i) {
+    const double taken = i * kPeriod;
+    arrival = std::max(arrival, taken + delay(engine));  // a transport keeps the order
+    ASSERT_EQ(check.take(at(arrival), clockAt(arrival), clockAt(taken)), "") << i;
+    ASSERT_LE(check.taken(), at(arrival));
+  }
+}
+
+TEST(StampCheck, TellsWhenALateImageWasTakenAndNeverMoreThanItsArrival) {
+  StampCheck check(kDt);
+  for (int i = 0; i < 50; ++i) {
+    const double now = i * kPeriod;
+    ASSERT_EQ(check.take(at(now), clockAt(now), clockAt(now - 0.05)), "");
+    EXPECT_NEAR(toSeconds(at(now) - check.taken()), 0.0, 1e-6) << "the usual delay is not known";
+  }
+  ASSERT_EQ(check.take(at(2.0), clockAt(2.0), clockAt(1.85)), "");
+  EXPECT_NEAR(toSeconds(at(2.0) - check.taken()), 0.1, 1e-6);
+  ASSERT_EQ(check.take(at(2.1), clockAt(2.1), clockAt(2.2)), "");
+  EXPECT_EQ(check.taken(), at(2.1));
+}
+
+TEST(StampCheck, AnImageThatComesTwiceOrOutOfOrderIsRefusedOnce) {
+  StampCheck check(kDt);
+  EXPECT_EQ(check.take(at(0.0), clockAt(0.0), clockAt(0.0)), "");
+  EXPECT_NE(check.take(at(0.01), clockAt(0.01), clockAt(0.0)), "");
+  EXPECT_NE(check.take(at(0.02), clockAt(0.02), clockAt(-0.01)), "");
+  EXPECT_EQ(check.take(at(0.03), clockAt(0.03), clockAt(0.03)), "");
+  EXPECT_EQ(check.numRefused(), 2);
+}
+
+}  // namespace
+}  // namespace ddm
