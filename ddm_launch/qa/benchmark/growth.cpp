@@ -57,7 +57,7 @@ DataSet randomTrial(int num_frames, int trial, int image_size) {
   id.trial = static_cast<std::uint32_t>(trial);
   EpsilonGreedy::Options exploration;
   exploration.epsilon = 1.0;
-  exploration.max_torque = perMotor(options.max_torque, plant->torqueDim(), "mpc/max_torque");
+  exploration.max_torque = perMotor({options.max_torque}, plant->torqueDim(), "mpc/max_torque");
   EpsilonGreedy policy(nullptr, exploration, id);
   std::mt19937_64 start = startStream(id.seed, id.trial, id.evaluation);
   plant->setState(plant->drawStart(start));
