@@ -217,11 +217,11 @@ TrialOutcome RosWorld::runTrial(const TrialRequest& request, const PhaseCallback
     const std::lock_guard<std::mutex> lock(mutex_);
     ground_truth_.clear();
   }
-  const ros::Time start = reset(request);
-  const ddm_msgs::RunTrialResult result = runPolicy(request, start, progress);
+  const ddm_msgs::Reset::Response begin = reset(request);
+  const ddm_msgs::RunTrialResult result = runPolicy(request, begin, progress);
   last_image_ = result.last;
   refuseIntruders();
-  if (!request.bag.empty()) stopRecording(request.num_steps, result.last);
+  if (!request.bag.empty()) stopRecording(request.num_steps, result.last, begin.goal);
 
   TrialOutcome outcome;
   const size_t torque_dim = result.torque.size() / result.num_steps;
@@ -243,10 +243,11 @@ void RosWorld::startRecording(const std::string& bag) {
   call(topics::kStartRecording, &start_client_, &service, timeout_);
 }
 
-void RosWorld::stopRecording(int num_steps, const ros::Time& last) {
+void RosWorld::stopRecording(int num_steps, const ros::Time& last, const ros::Time& goal) {
   ddm_msgs::StopRecording service;
   service.request.num_steps = static_cast<std::uint32_t>(num_steps);
   service.request.last = last;
+  service.request.goal = goal;
   call(topics::kStopRecording, &stop_client_, &service, timeout_);
   if (service.response.pairs < service.request.num_steps) {
     ROS_WARN("%u of %d images had their torque in time: only these are learned from",
@@ -254,17 +255,18 @@ void RosWorld::stopRecording(int num_steps, const ros::Time& last) {
   }
 }
 
-ros::Time RosWorld::reset(const TrialRequest& request) {
+ddm_msgs::Reset::Response RosWorld::reset(const TrialRequest& request) {
   ddm_msgs::Reset service;
   service.request.seed = request.id.seed;
   service.request.trial = request.id.trial;
   service.request.evaluation = request.id.evaluation;
   service.request.num_steps = static_cast<std::uint32_t>(request.num_steps);
   call(topics::kReset, &reset_client_, &service, timeout_ + peers_.reset_timeout);
-  return service.response.start;
+  return service.response;
 }
 
-ddm_msgs::RunTrialResult RosWorld::runPolicy(const TrialRequest& request, const ros::Time& start,
+ddm_msgs::RunTrialResult RosWorld::runPolicy(const TrialRequest& request,
+                                             const ddm_msgs::Reset::Response& begin,
                                              const PhaseCallback& progress) {
   ddm_msgs::RunTrialGoal goal;
   goal.num_steps = static_cast<std::uint32_t>(request.num_steps);
@@ -274,7 +276,8 @@ ddm_msgs::RunTrialResult RosWorld::runPolicy(const TrialRequest& request, const 
   goal.trial = request.id.trial;
   goal.evaluation = request.id.evaluation;
   goal.model_id = request.epsilon < 1.0 ? model_id_ : "";
-  goal.start = start;
+  goal.start = begin.start;
+  goal.goal = begin.goal;
   const ddm_msgs::RunTrialResult result = execute(
       &trial_client_, nh_.resolveName(topics::kRunTrial), goal,
       [num_steps = request.num_steps](const ddm_msgs::RunTrialFeedback& feedback) {

@@ -29,6 +29,7 @@ TrialRecorder::TrialRecorder(ros::NodeHandle nh, const BagOptions& bag, const Ba
                                                [this](const sensor_msgs::ImageConstPtr& goal) {
                                                  const std::lock_guard<std::mutex> lock(mutex_);
                                                  goal_ = goal;
+                                                 changed_.notify_all();
                                                });
   image_sub_ = transport_.subscribe(
       topics::kImage, kQueue, [this](const sensor_msgs::ImageConstPtr& image) { record(*image); });
@@ -46,13 +47,12 @@ void TrialRecorder::record(const Message& message) {
   if (bag_ == nullptr || !error_.empty()) return;
   if (!after_.isZero() && message.header.stamp <= after_) return;
   try {
-    writeGoal(message.header.stamp);
     bag_->write(message);
   } catch (const std::exception& e) {
     error_ = e.what();
     ROS_ERROR_STREAM("recording stopped: " << error_);
   }
-  frame_written_.notify_all();
+  changed_.notify_all();
 }
 
 void TrialRecorder::recordApplied(const ddm_msgs::Torque& torque) {
@@ -60,42 +60,24 @@ void TrialRecorder::recordApplied(const ddm_msgs::Torque& torque) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (bag_ == nullptr) return;
   unanswered_.insert(torque.header.stamp);
-  frame_written_.notify_all();
+  changed_.notify_all();
 }
 
-/// The goal image is stamped with the trial's first message, so that the bag begins with the trial.
-void TrialRecorder::writeGoal(const ros::Time& stamp) {
-  if (goal_written_ || goal_ == nullptr) return;
-  bag_->writeGoal(*goal_, stamp);
-  goal_written_ = true;
+/// The goal image is stamped with the trial's first image, so that the bag begins with the trial. It
+/// is written last: it may come after the first images, since it has a topic of its own.
+void TrialRecorder::writeGoal(BagWriter* bag) const {
+  if (goal_ != nullptr && !bag->images().empty()) bag->writeGoal(*goal_, *bag->images().begin());
 }
 
-bool TrialRecorder::start(ddm_msgs::StartRecording::Request& request,
-                          ddm_msgs::StartRecording::Response& response) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (bag_ != nullptr) ROS_WARN("a recording was not stopped: its bag stays *.active");
-  bag_.reset();
-  ++num_recordings_;
-  frame_written_.notify_all();  // a stop that still waits for the old one
-  error_.clear();
-  after_ = request.after;
-  unanswered_.clear();
-  goal_written_ = false;
-  try {
-    access_.requireNew(request.path);
-    bag_ = std::make_unique<BagWriter>(request.path, bag_options_);
-    response.success = true;
-  } catch (const std::exception& e) {
-    response.message = e.what();
-    ROS_ERROR_STREAM(response.message);
-  }
-  return true;
+bool TrialRecorder::hasGoal(const ddm_msgs::StopRecording::Request& request) const {
+  return request.goal.isZero() || (goal_ != nullptr && goal_->header.stamp == request.goal);
 }
 
 /// Whether the bag has all images of the trial, and it is known of each what acted.
 bool TrialRecorder::complete(const ddm_msgs::StopRecording::Request& request) const {
   const std::set<ros::Time>& images = bag_->images();
   if (images.size() < request.num_steps) return false;
+  if (!hasGoal(request)) return false;
   auto end = images.end();
   if (!request.last.isZero()) {
     end = images.upper_bound(request.last);
@@ -112,11 +94,12 @@ bool TrialRecorder::complete(const ddm_msgs::StopRecording::Request& request) co
 /// Why the bag is not that of the trial; empty: it is.
 std::string TrialRecorder::shortcoming(const ddm_msgs::StopRecording::Request& request) const {
   if (request.num_steps == 0) return "";
+  if (!hasGoal(request)) return "the goal image of the trial did not come";
   std::ostringstream text;
   if (!complete(request)) {
     text << "of " << request.num_steps << " images and torques that are due, the bag holds "
          << bag_->images().size() << " and " << bag_->torques().size() << ", and "
-         << bag_->numFrames() << " pairs of them; of the others nobody said that no torque acted";
+         << bag_->numFrames() << " pairs of them; whether a torque acted on the others was not reported";
   } else if (bag_->numFrames() == 0) {
     text << "no torque acted in time: there is nothing to learn from in " << bag_->images().size()
          << " images";
@@ -134,7 +117,7 @@ bool TrialRecorder::stop(ddm_msgs::StopRecording::Request& request,
   // Other services run while this one waits: afterwards the recording may be another one.
   const int recording = num_recordings_;
   const auto replaced = [&] { return bag_ == nullptr || num_recordings_ != recording; };
-  frame_written_.wait_for(lock, std::chrono::duration<double>(options_.timeout),
+  changed_.wait_for(lock, std::chrono::duration<double>(options_.timeout),
                           [&] { return replaced() || !error_.empty() || complete(request); });
   if (replaced()) {
     response.message = "another recording was started or stopped meanwhile";
@@ -146,6 +129,7 @@ bool TrialRecorder::stop(ddm_msgs::StopRecording::Request& request,
   response.torques = static_cast<std::uint32_t>(bag->torques().size());
   response.pairs = static_cast<std::uint32_t>(bag->numFrames());
   try {
+    if (error_.empty()) writeGoal(bag.get());
     if (error_.empty()) bag->close();
   } catch (const std::exception& e) {
     error_ = e.what();

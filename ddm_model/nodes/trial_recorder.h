@@ -41,10 +41,11 @@ class TrialRecorder {
   bool start(ddm_msgs::StartRecording::Request& request,
              ddm_msgs::StartRecording::Response& response);
   bool stop(ddm_msgs::StopRecording::Request& request, ddm_msgs::StopRecording::Response& response);
-  void writeGoal(const ros::Time& stamp);
+  void writeGoal(BagWriter* bag) const;
   template <class Message>
   void record(const Message& message);
   void recordApplied(const ddm_msgs::Torque& torque);
+  bool hasGoal(const ddm_msgs::StopRecording::Request& request) const;
   bool complete(const ddm_msgs::StopRecording::Request& request) const;
   std::string shortcoming(const ddm_msgs::StopRecording::Request& request) const;
 
@@ -52,13 +53,12 @@ class TrialRecorder {
   BagAccess access_;
   RecorderOptions options_;
   std::mutex mutex_;
-  std::condition_variable frame_written_;
+  std::condition_variable changed_;
   std::unique_ptr<BagWriter> bag_;  // null while not recording
   ros::Time after_;                 // messages up to this stamp are of an earlier trial
   std::string error_;               // first write that failed
   std::set<ros::Time> unanswered_;  // images of which is known that no torque acted in time
   sensor_msgs::ImageConstPtr goal_;
-  bool goal_written_ = false;
   int num_recordings_ = 0;
   image_transport::ImageTransport transport_;
   image_transport::Subscriber image_sub_;

@@ -5,6 +5,7 @@
 #include <ddm_model/model_file.h>
 #include <ddm_msgs/Plan.h>
 #include <ddm_msgs/Torque.h>
+#include <ddm_msgs/image_codec.h>
 #include <ddm_msgs/topic_peers.h>
 #include <ddm_msgs/topics.h>
 
@@ -65,6 +66,7 @@ MpcNode::MpcNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size, const 
   server_.registerGoalCallback([this] { onGoal(); });
   server_.registerPreemptCallback([this] { onPreempt(); });
   model_sub_ = nh.subscribe(topics::kModel, 1, &MpcNode::onModel, this);
+  goal_image_sub_ = nh.subscribe(topics::kGoalImage, 1, &MpcNode::onGoalImage, this);
   timer_ = nh.createSteadyTimer(kTick, [this](const ros::SteadyTimerEvent&) { onTick(); });
   image_sub_ = transport_.subscribe(
       topics::kImage, 1, &MpcNode::onImage, this,
@@ -116,16 +118,32 @@ void MpcNode::onModel(const ddm_msgs::ModelConstPtr& message) {
   beginIfReady();
 }
 
-/// Starts the trial once its model is there.
+void MpcNode::onGoalImage(const sensor_msgs::ImageConstPtr& image) {
+  try {
+    decodeImage(*image, image_size_);
+  } catch (const std::exception& e) {
+    ROS_ERROR_STREAM("goal image refused: " << e.what());
+    return;
+  }
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    goal_image_ = image;
+    goal_changed_ = true;
+  }
+  beginIfReady();
+}
+
+/// Starts the trial once its model and its goal image are there.
 void MpcNode::beginIfReady() {
   if (goal_ == nullptr || trial_ != nullptr) return;
   if (!goal_->model_id.empty() && goal_->model_id != model_id_) return;
   try {
-    auto trial = std::make_shared<TrialRun>(*goal_, goal_->model_id.empty() ? nullptr : model_,
-                                            image_size_, mpc_, controller_);
     const std::lock_guard<std::mutex> lock(mutex_);
-    trial_ = std::move(trial);
+    if (!goalImageIsThere()) return;
+    trial_ = std::make_shared<TrialRun>(*goal_, goal_->model_id.empty() ? nullptr : model_,
+                                        goal_image_, image_size_, mpc_, controller_);
     turned_ = true;
+    goal_changed_ = false;
     last_progress_ = ros::SteadyTime::now();
   } catch (const std::exception& e) {
     abort(std::string("trial refused: ") + e.what());
@@ -135,6 +153,12 @@ void MpcNode::beginIfReady() {
   health_.expect(ControlHealth::Expected::kImage);
   // In lock-step the first image may have come before the goal; there will be no second one.
   if (!goal_->start.isZero()) image_queue_.addCallback(answer_last_image_);
+}
+
+/// Locked by the caller.
+bool MpcNode::goalImageIsThere() const {
+  if (goal_->goal.isZero()) return true;
+  return goal_image_ != nullptr && goal_image_->header.stamp == goal_->goal;
 }
 
 void MpcNode::onTurn(const MpcOptions& mpc) {
@@ -182,6 +206,8 @@ std::shared_ptr<TrialRun> MpcNode::trialToAnswer() {
   if (trial_ == nullptr || trial_->ended()) return nullptr;
   if (turned_) trial_->turn(mpc_, turned_epsilon_);
   turned_ = false;
+  if (goal_changed_) trial_->setGoal(*goal_image_);
+  goal_changed_ = false;
   deciding_since_ = ros::SteadyTime::now();
   return trial_;
 }
@@ -292,7 +318,10 @@ std::string MpcNode::describeSilence() {
         std::max(last_progress_, deciding_since_.value_or(last_progress_));
     if ((ros::SteadyTime::now() - since).toSec() <= controller_.timeout) return "";
     if (trial_ == nullptr) {
-      reason << "model " << goal_->model_id << " did not come";
+      const bool is_goal = goal_->model_id.empty() || goal_->model_id == model_id_;
+      reason << (is_goal ? "the goal image of the trial" : "model " + goal_->model_id)
+             << " did not come";
+      if (is_goal) topic = goal_image_sub_.getTopic();
     } else if (deciding_since_) {
       reason << "no plan for step " << trial_->result().num_steps + 1;
       topic.clear();

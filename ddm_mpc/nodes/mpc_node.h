@@ -61,11 +61,13 @@ class MpcNode {
   // In the thread of the global queue.
   void onGoal();
   void onPreempt();
+  void onGoalImage(const sensor_msgs::ImageConstPtr& image);
   void onModel(const ddm_msgs::ModelConstPtr& message);
   void onTick();
   void onTurn(const MpcOptions& mpc);
   void onFinish();
   void beginIfReady();
+  bool goalImageIsThere() const;
   void publishFeedback();
   std::string describeSilence();
   ddm_msgs::RunTrialResult endTrial();
@@ -99,7 +101,9 @@ class MpcNode {
   MpcOptions mpc_;
   std::optional<double> turned_epsilon_;  // empty: nobody has turned it, that of the goal counts
   bool turned_ = false;                   // the trial does not know yet
-  std::shared_ptr<TrialRun> trial_;       // null: no trial, or it is waiting for its model
+  sensor_msgs::ImageConstPtr goal_image_;  // the newest; null: none came
+  bool goal_changed_ = false;             // the trial does not know yet
+  std::shared_ptr<TrialRun> trial_;       // null: no trial, or it waits for its model or goal image
   std::optional<std::string> finished_;   // why the image thread ended the trial; "": all is done
   ros::SteadyTime last_progress_;
   std::optional<ros::SteadyTime> deciding_since_;
@@ -112,6 +116,7 @@ class MpcNode {
   ros::Publisher scalars_pub_;
   image_transport::Subscriber image_sub_;
   ros::Subscriber model_sub_;
+  ros::Subscriber goal_image_sub_;
   ros::SteadyTimer timer_;
   LiveOptions live_;
   ControlHealth health_;

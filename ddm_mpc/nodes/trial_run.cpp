@@ -35,7 +35,8 @@ EpsilonGreedy::Options explorationOf(const ddm_msgs::RunTrialGoal& goal, const M
 }  // namespace
 
 TrialRun::TrialRun(const ddm_msgs::RunTrialGoal& goal, std::shared_ptr<const Ddm> model,
-                   int image_size, const MpcOptions& mpc, const ControllerOptions& controller)
+                   const sensor_msgs::ImageConstPtr& goal_image, int image_size,
+                   const MpcOptions& mpc, const ControllerOptions& controller)
     : num_steps_(goal.num_steps),
       image_size_(image_size),
       evaluation_(goal.evaluation != 0),
@@ -43,6 +44,11 @@ TrialRun::TrialRun(const ddm_msgs::RunTrialGoal& goal, std::shared_ptr<const Ddm
       policy_(greedy_, explorationOf(goal, mpc, controller),
               TrialId{goal.seed, goal.trial, evaluation_}) {
   if (greedy_ != nullptr) greedy_->setStop([this] { return ended(); });
+  if (goal_image != nullptr) setGoal(*goal_image);
+  if (greedy_ != nullptr && !greedy_->hasGoal()) {
+    throw std::invalid_argument("there is no goal image to plan to: publish one on goal_image, or "
+                                "train the model with one");
+  }
   if (num_steps_ < 1) throw std::invalid_argument("num_steps must be >= 1, got 0");
   if (!goal.start.isZero()) last_stamp_ = goal.start - ros::Duration(0, 1);
 }
@@ -52,6 +58,10 @@ void TrialRun::turn(const MpcOptions& mpc, const std::optional<double>& epsilon)
   greedy_->setHorizon(mpc.horizon);
   greedy_->setControlWeight(mpc.control_weight);
   if (epsilon && !evaluation_) policy_.setEpsilon(*epsilon);
+}
+
+void TrialRun::setGoal(const sensor_msgs::Image& goal) {
+  policy_.setGoal(decodeImage(goal, image_size_));
 }
 
 std::optional<Decision> TrialRun::decide(const sensor_msgs::Image& image,

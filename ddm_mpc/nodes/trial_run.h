@@ -24,10 +24,12 @@ namespace ddm {
 /// which it need not hold while decide() plans.
 class TrialRun {
  public:
-  /// @param model  may be null where goal.epsilon = 1
+  /// @param model       may be null where goal.epsilon = 1
+  /// @param goal_image  to plan to; null: the model's
   /// @throws std::invalid_argument if goal, model and options do not fit together
-  TrialRun(const ddm_msgs::RunTrialGoal& goal, std::shared_ptr<const Ddm> model, int image_size,
-           const MpcOptions& mpc, const ControllerOptions& controller);
+  TrialRun(const ddm_msgs::RunTrialGoal& goal, std::shared_ptr<const Ddm> model,
+           const sensor_msgs::ImageConstPtr& goal_image, int image_size, const MpcOptions& mpc,
+           const ControllerOptions& controller);
 
   /// @param arrival  of the image: mpc/time_budget begins there
   /// @return the decision, or nothing for an image that is not the next of this trial: one from
@@ -41,6 +43,10 @@ class TrialRun {
   /// From the next image on, plans with these, and explores with this epsilon instead of the
   /// goal's. A random trial plans nothing, and an evaluation does not explore.
   void turn(const MpcOptions& mpc, const std::optional<double>& epsilon);
+
+  /// From the next image on, plans to this goal.
+  /// @throws std::invalid_argument for an image that cannot be used; nothing has changed
+  void setGoal(const sensor_msgs::Image& goal);
 
   /// Adds a decision that was published to the result.
   void collect(const ros::Time& stamp, const Decision& decision);

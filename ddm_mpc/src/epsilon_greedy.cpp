@@ -35,6 +35,10 @@ void EpsilonGreedy::setEpsilon(double epsilon) {
   options_.epsilon = epsilon;
 }
 
+void EpsilonGreedy::setGoal(const Grey& goal) {
+  if (policy_ != nullptr) policy_->setGoal(goal);
+}
+
 Decision EpsilonGreedy::decide(const Grey& grey) {
   if (policy_ != nullptr) policy_->observe(grey);
   Decision decision;

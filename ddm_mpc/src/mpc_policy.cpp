@@ -12,9 +12,6 @@ namespace {
 
 /// The model, if plans can be made with it.
 std::shared_ptr<const Ddm> usable(std::shared_ptr<const Ddm> model, const MpcOptions& options) {
-  if (!model->hasGoal()) {
-    throw std::invalid_argument("the model has no goal image to plan to: train it with one");
-  }
   if (!within(options.max_torque, model->options().max_torque)) {
     throw std::invalid_argument("mpc/max_torque must be at most the model's model/max_torque " +
                                 limitsText(model->options().max_torque) + " N m, got " +
@@ -30,6 +27,7 @@ MpcPolicy::MpcPolicy(std::shared_ptr<const Ddm> model, const MpcOptions& options
     : model_(usable(std::move(model), options)),
       offset_gain_(options.offset_gain),
       time_budget_(options.time_budget),
+      z_ref_(model_->hasGoal() ? model_->goalFeature() : Eigen::VectorXd()),
       x_(model_->options().order, model_->featureDim(), model_->torqueDim()),
       offset_(Eigen::VectorXd::Zero(model_->featureDim())),
       cost_(*model_, options.horizon, options.control_weight),
@@ -53,13 +51,14 @@ void MpcPolicy::observe(const Grey& grey) {
 
 std::optional<double> MpcPolicy::goalDistance() const {
   const double spread = model_->info().feature_spread;
-  if (!(spread > 0.0) || !std::isfinite(spread)) return std::nullopt;
+  if (!hasGoal() || !(spread > 0.0) || !std::isfinite(spread)) return std::nullopt;
   const Eigen::VectorXd z = x_.features().col(0);
-  return (z - model_->goalFeature()).norm() / spread;
+  return (z - z_ref_).norm() / spread;
 }
 
 Plan MpcPolicy::plan() {
-  cost_.setProblem(x_, model_->goalFeature(), offset_);
+  if (!hasGoal()) throw std::logic_error("there is no goal image to plan to");
+  cost_.setProblem(x_, z_ref_, offset_);
   if (time_budget_.count() <= 0.0) return planner_.solve(&rng_, stop_);
   return planner_.solve(&rng_, [this] {
     return std::chrono::steady_clock::now() - began_ >= time_budget_ || (stop_ && stop_());

@@ -38,6 +38,9 @@ class EpsilonGreedy {
   /// @throws std::invalid_argument if it is out of range, or < 1 where there is no policy
   void setEpsilon(double epsilon);
 
+  /// See Policy::setGoal().
+  void setGoal(const Grey& goal);
+
   /// @param grey  the image just seen
   /// @throws std::invalid_argument for a wrong number of pixels
   Decision decide(const Grey& grey);

@@ -19,8 +19,8 @@
 
 namespace ddm {
 
-/// Encodes each image, keeps the state x, and plans towards the model's goal feature (paper,
-/// Sec. 3.1). mpc/time_budget covers the whole decision, from the arrival of the image on. An
+/// Encodes each image, keeps the state x, and plans towards the feature of the goal image
+/// (paper, Sec. 3.1): the model's own until there is another. mpc/time_budget covers the whole decision, from the arrival of the image on. An
 /// offset is added to each prediction and follows their errors,
 ///
 ///   offset <- offset + offset_gain (z_{t+1} - z_{t+1|t} - offset)
@@ -28,8 +28,7 @@ namespace ddm {
 /// so that a model that is a little wrong about rest does not keep the plant off its goal.
 class MpcPolicy : public Policy {
  public:
-  /// @throws std::invalid_argument if the model has no goal image, or max_torque exceeds the
-  /// model's
+  /// @throws std::invalid_argument if max_torque exceeds the model's
   MpcPolicy(std::shared_ptr<const Ddm> model, const MpcOptions& options);
 
   /// Other values for the plans to come, also in the middle of a trial.
@@ -44,11 +43,15 @@ class MpcPolicy : public Policy {
   void setStop(std::function<bool()> stop) { stop_ = std::move(stop); }
 
   void startTrial(const TrialId& id) override;
+  void setGoal(const Grey& goal) override { z_ref_ = model_->encode(goal); }
+  bool hasGoal() const { return z_ref_.size() > 0; }
   void observe(const Grey& grey) override;
-  /// |z - z_ref| in units of the features' spread; nothing if the model does not know the spread.
+  /// |z - z_ref| in units of the features' spread; nothing if the model does not know the spread,
+  /// or there is no goal.
   std::optional<double> goalDistance() const override;
   Answer answer() override { return answerWith(plan()); }
   /// The plan from the state now on.
+  /// @throws std::logic_error if there is no goal
   Plan plan();
   void apply(const Eigen::VectorXd& u) override;
 
@@ -59,6 +62,7 @@ class MpcPolicy : public Policy {
   std::optional<std::chrono::steady_clock::time_point> arrival_;  // of the next image
   std::chrono::steady_clock::time_point began_;                   // the decision under way
   std::function<bool()> stop_;
+  Eigen::VectorXd z_ref_;  // empty: no goal  [feature_dim]
   History x_;
   Eigen::VectorXd offset_;     // [feature_dim]
   Eigen::VectorXd predicted_;  // z_{t+1|t}, empty before the first torque  [feature_dim]

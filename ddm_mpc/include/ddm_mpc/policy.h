@@ -30,6 +30,11 @@ class Policy {
   /// Forgets the last trial.
   virtual void startTrial(const TrialId& id) = 0;
 
+  /// Another goal than that of the data, from the next answer on. Ignored by those who have learned
+  /// to reach one goal, or know the true one.
+  /// @throws std::invalid_argument for a wrong number of pixels
+  virtual void setGoal(const Grey& /*goal*/) {}
+
   /// Takes in the image just seen.
   /// @throws std::invalid_argument for a wrong number of pixels
   virtual void observe(const Grey& grey) = 0;
