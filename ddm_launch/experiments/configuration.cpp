@@ -3,7 +3,7 @@
 #include "configuration.h"
 
 #include <ddm_model/schedule.h>
-#include <ddm_plant_plugin/plant_config.h>
+#include <ddm_sim/plant_factory.h>
 
 #include <sstream>
 #include <stdexcept>
@@ -23,13 +23,14 @@ std::vector<std::string> contradictions(const Configuration& all) {
     out.push_back(text.str());
   };
   const std::string motor = all.robot ? "robot/max_torque" : "plant/max_torque";
-  require(all.mpc.max_torque <= (all.robot ? all.robot->max_torque : all.plant.max_torque),
+  require(all.mpc.max_torque <=
+              (all.robot ? all.robot->max_torque : all.plant_info.max_torque.minCoeff()),
           "mpc/max_torque must be at most " + motor + ", beyond which the motor saturates",
           all.mpc.max_torque);
   require(all.mpc.max_torque <= all.model.model.max_torque,
           "mpc/max_torque must be at most model/max_torque, which scales what f sees",
           all.mpc.max_torque);
-  require(all.mpc.time_budget <= (all.robot ? all.robot->dt : all.plant.dt),
+  require(all.mpc.time_budget <= (all.robot ? all.robot->dt : all.plant_info.dt),
           std::string("mpc/time_budget must be at most ") + (all.robot ? "robot/dt" : "plant/dt") +
               ", when the next image comes",
           all.mpc.time_budget);
@@ -65,6 +66,8 @@ Configuration readEachBlock(ParamReader* reader) {
   all.mpc = reader->read<MpcOptions>("mpc");
   if (reader->has("robot")) all.robot = reader->read<RobotOptions>("robot");
   reader->requireValid();
+  all.plant_info = makePlant(*all.plant)->info();
+  all.evaluation.complete(all.plant_info);
   return all;
 }
 
@@ -93,7 +96,7 @@ YAML::Node toYaml(const Configuration& configuration) {
   if (!configuration.start.empty()) out["start"] = toYaml(configuration.start);
   out["trial"] = toYaml(configuration.trial);
   out["evaluation"] = toYaml(configuration.evaluation);
-  out["plant"] = plantBlock(configuration.plant);
+  out["plant"] = configuration.plant->block();
   out["camera"] = toYaml(configuration.camera);
   out["sim"] = toYaml(configuration.sim);
   for (const auto& block : toYaml(configuration.model)) out[block.first] = block.second;

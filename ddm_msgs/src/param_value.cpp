@@ -117,7 +117,10 @@ bool parseValue(const YAML::Node& node, std::string* value) {
 bool parseValue(const YAML::Node& node, std::vector<int>* value) { return parseList(node, value); }
 
 bool parseValue(const YAML::Node& node, std::vector<double>* value) {
-  return parseList(node, value);
+  double number = 0.0;
+  if (!parseValue(node, &number)) return parseList(node, value);
+  *value = {number};
+  return true;
 }
 
 bool parseValue(const YAML::Node& node, std::vector<std::string>* value) {
@@ -133,7 +136,7 @@ const char* expectedType(const double*) { return "a number"; }
 const char* expectedType(const bool*) { return "true or false"; }
 const char* expectedType(const std::string*) { return "a text"; }
 const char* expectedType(const std::vector<int>*) { return "a list of integers (32 bit)"; }
-const char* expectedType(const std::vector<double>*) { return "a list of numbers"; }
+const char* expectedType(const std::vector<double>*) { return "a number or a list of numbers"; }
 const char* expectedType(const std::vector<std::string>*) { return "a list of texts"; }
 const char* expectedType(const std::vector<std::vector<double>>*) {
   return "a list of lists of numbers";
@@ -144,7 +147,9 @@ YAML::Node valueToYaml(double value) { return YAML::Node(formatDouble(value)); }
 YAML::Node valueToYaml(bool value) { return YAML::Node(value ? "true" : "false"); }
 YAML::Node valueToYaml(const std::string& value) { return YAML::Node(value); }
 YAML::Node valueToYaml(const std::vector<int>& value) { return listToYaml(value); }
-YAML::Node valueToYaml(const std::vector<double>& value) { return listToYaml(value); }
+YAML::Node valueToYaml(const std::vector<double>& value) {
+  return value.size() == 1 ? valueToYaml(value.front()) : listToYaml(value);
+}
 YAML::Node valueToYaml(const std::vector<std::string>& value) { return listToYaml(value); }
 YAML::Node valueToYaml(const std::vector<std::vector<double>>& value) { return listToYaml(value); }
 

@@ -14,7 +14,8 @@ enum class SimRole : std::uint32_t {
   kCamera = 7,  ///< brightness and lost frames
   kNoise = 8,
   kGoalNoise = 9,
-  kClutter = 10
+  kClutter = 10,
+  kGoal = 11
 };
 
 /// @return an engine fixed by run and role

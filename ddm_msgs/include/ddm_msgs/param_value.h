@@ -15,7 +15,8 @@ std::string formatDouble(double value);
 
 /// Conversions of one YAML value. Each returns false, and leaves `value` alone, where the text does
 /// not have the type: 15.5 and 010 are no int, 0x10 is no double, `yes` is no bool. A quoted number
-/// is a number. .inf and .nan are doubles: it is the options' business to refuse them.
+/// is a number. .inf and .nan are doubles: it is the options' business to refuse them. Where a list
+/// of numbers is expected, one number is a list of one, and is printed as a number again.
 bool parseValue(const YAML::Node& node, int* value);
 bool parseValue(const YAML::Node& node, double* value);
 bool parseValue(const YAML::Node& node, bool* value);
