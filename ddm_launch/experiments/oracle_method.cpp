@@ -36,12 +36,13 @@ class OraclePolicy : public Policy {
  public:
   OraclePolicy(const Configuration& configuration, const Plant& plant)
       : plant_(plant),
-        cost_(makePlant(configuration.plant, configuration.camera), configuration.mpc.horizon,
+        cost_(makePlant(*configuration.plant), configuration.mpc.horizon,
               configuration.mpc.control_weight),
         planner_(&cost_, configuration.mpc) {}
 
   void startTrial(const TrialId& id) override {
     planner_.clear();
+    cost_.setGoal(plant_.goal());
     rng_ = randomStream(id, StreamRole::kPlannerStarts);
   }
   void observe(const Grey& /*grey*/) override { cost_.setState(plant_.state()); }
@@ -61,7 +62,7 @@ OraclePlanCost::OraclePlanCost(std::unique_ptr<Plant> plant, int horizon, double
     : plant_(std::move(plant)),
       horizon_(horizon),
       control_weight_(control_weight),
-      goal_(plant_->visiblePosition(plant_->goalState())),
+      goal_(plant_->visiblePosition(plant_->goal())),
       state_(plant_->state()),
       states_(plant_->stateDim(), horizon + 1),
       positions_(goal_.size(), horizon + 1) {}
