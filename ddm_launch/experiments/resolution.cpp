@@ -12,8 +12,6 @@
 #include <optional>
 #include <stdexcept>
 
-#include "renamed_keys.h"
-
 namespace ddm {
 namespace {
 
@@ -177,8 +175,7 @@ void boundPlanning(const Given& given, YAML::Node* blocks) {
 ResolvedConfiguration resolve(const Arguments& arguments) {
   const auto layersOf = [](const std::vector<std::string>& files) {
     std::vector<Layer> layers;
-    for (const std::string& file : files)
-      layers.push_back({file, withTodaysKeys(readBlocks(file))});
+    for (const std::string& file : files) layers.push_back({file, readBlocks(file)});
     return layers;
   };
   std::vector<Layer> layers = layersOf(manuals());

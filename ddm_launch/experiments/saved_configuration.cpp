@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "saved_configuration.h"
 
+#include <ddm_msgs/renamed_keys.h>
 #include <ddm_msgs/yaml_text.h>
 
 #include <set>
 #include <stdexcept>
 #include <utility>
-
-#include "renamed_keys.h"
 
 namespace ddm {
 namespace {

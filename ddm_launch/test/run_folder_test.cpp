@@ -357,6 +357,8 @@ YAML::Node asSavedBefore(const YAML::Node& today) {
   old["evaluation"]["tolerance_deg"] = old["evaluation"]["tolerance"];
   old["evaluation"].remove("tolerance");
   old["evaluation"].remove("error_unit");
+  old["training"]["ensemble_size"] = "1";
+  old["mpc"]["terminal_weight"] = "1.0";
   return old;
 }
 

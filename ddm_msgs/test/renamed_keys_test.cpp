@@ -1,6 +1,6 @@
 // Tests of keys that have another name today: where they move, and what stays to be refused.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "renamed_keys.h"
+#include "ddm_msgs/renamed_keys.h"
 
 #include <gtest/gtest.h>
 
@@ -56,12 +56,11 @@ TEST(RenamedKeys, KeepAValueOfAnyKindToBeJudgedByItsBlock) {
 }
 
 TEST(RenamedKeys, LeaveAKeyThatIsGivenByBothNames) {
-  const char* sizes = "camera: {size: 40}\nplant: {picture_size: 41}";
-  EXPECT_EQ(today(sizes), same(sizes));
-  const YAML::Node tolerances =
-      withTodaysKeys(YAML::Load("evaluation: {tolerance_deg: 5.0, tolerance: 6.0}"));
-  EXPECT_EQ(tolerances["evaluation"]["tolerance_deg"].as<double>(), 5.0);
-  EXPECT_EQ(tolerances["evaluation"]["tolerance"].as<double>(), 6.0);
+  for (const char* text : {"camera: {size: 40}\nplant: {picture_size: 41}",
+                           "camera: {half_extent: 1.2}\nplant: {half_extent: 1.3}",
+                           "evaluation: {tolerance_deg: 5.0, tolerance: 6.0}"}) {
+    EXPECT_EQ(today(text), same(text)) << text;
+  }
 }
 
 TEST(RenamedKeys, ChangeNothingElse) {
@@ -152,6 +151,25 @@ TEST(RenamedKeys, DropTheToleranceInDegreesThatARunSavedWithAPlantOfLengths) {
       withTodaysKeys(YAML::Load("version: 0.1.0 (abcdef0)\nplant: {type: moving_tile}\n"
                                 "evaluation: {tolerance_deg: 10.0, settled_steps: 10}\n"));
   EXPECT_EQ(dumped(out["evaluation"]), same("{settled_steps: 10}"));
+}
+
+const char kOptionsThatAreGone[] =
+    "training: {ensemble_size: 1, num_starts: 6, held_out: 0.0, consistency_weight: 0.0}\n"
+    "mpc: {scale_distance: false, horizon: 15, saturation_width: 0.0, terminal_weight: 1.0,"
+    " disagreement_bonus: 0.0}\n";
+
+TEST(RenamedKeys, DropOptionsThatAreGoneWhereARunSavedThemSwitchedOff) {
+  const YAML::Node out =
+      withTodaysKeys(YAML::Load("version: 0.1.0 (abcdef0)\n" + std::string(kOptionsThatAreGone)));
+  EXPECT_EQ(dumped(out["training"]), same("{num_starts: 6}"));
+  EXPECT_EQ(dumped(out["mpc"]), same("{horizon: 15}"));
+}
+
+TEST(RenamedKeys, KeepOptionsThatAreGoneWhereTheyChangedARunOrAPersonWroteThem) {
+  EXPECT_EQ(today(kOptionsThatAreGone), same(kOptionsThatAreGone));
+  const char* used =
+      "version: 0.1.0 (abcdef0)\ntraining: {ensemble_size: 3}\nmpc: {scale_distance: true}";
+  EXPECT_EQ(today(used), same(used));
 }
 
 }  // namespace
