@@ -1,6 +1,6 @@
 // Tests of the limits of a robot's joints: what violates them, and which joints are silent.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "joint_limits.h"
+#include "ddm_robot/joint_limits.h"
 
 #include <gtest/gtest.h>
 
