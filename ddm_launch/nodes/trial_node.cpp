@@ -9,6 +9,7 @@
 
 #include <cstdlib>
 #include <iostream>
+#include <memory>
 #include <optional>
 
 #include "evaluation.h"
@@ -93,7 +94,9 @@ void run(Node* node) {
   progress.beginPhase(0, options.model.empty() ? "random" : "control");
   const ddm::TrialOutcome outcome =
       node->world->runTrial(request, [&progress](double fraction) { progress.update(fraction); });
-  report(*ddm::makePlant(*plant), outcome, evaluation, &progress);
+  const std::unique_ptr<ddm::Plant> judge = ddm::makePlant(*plant);
+  judge->setGoal(ddm::goalOf(*judge, request.id.seed, request.id.trial, request.id.evaluation));
+  report(*judge, outcome, evaluation, &progress);
   if (!options.bag.empty()) progress.note("recorded: " + options.bag);
 }
 

@@ -258,19 +258,19 @@ TEST(Configuration, ARobotIsOneWhereItsBlockIsGiven) {
       {"mpc/max_torque", "robot/max_torque", "got 3.5"}));
 }
 
-TEST(Configuration, TheWeakestMotorBoundsWhatIsPlanned) {
-  const auto with = [](const std::string& limits) {
-    return "plant: {type: moving_tile, max_torque: " + limits +
-           "}\nmpc: {max_torque: 4.0}\nmodel: {max_torque: 4.0}\n";
-  };
+TEST(Configuration, EachMotorBoundsWhatIsPlannedForIt) {
   const TempFolder folder;
-  const auto readTile = [&](const std::string& limits) {
-    writeText(folder.file("limits.yaml"), with(limits));
+  const auto readTile = [&](const std::string& limits, const std::string& planned) {
+    writeText(folder.file("limits.yaml"), "plant: {type: moving_tile, max_torque: " + limits +
+                                              "}\nmpc: {max_torque: " + planned + "}\n");
     return read(arguments("paper", "moving_tile", {folder.file("limits.yaml")}));
   };
-  EXPECT_EQ(readTile("[5.0, 4.0]").plant_info.max_torque, Eigen::Vector2d(5.0, 4.0));
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { readTile("[5.0, 3.9]"); },
-                                                  {"mpc/max_torque", "plant/max_torque"}));
+  EXPECT_EQ(readTile("[5.0, 4.0]", "4.0").plant_info.max_torque, Eigen::Vector2d(5.0, 4.0));
+  EXPECT_NO_THROW(readTile("[5.0, 4.0]", "[5.0, 4.0]"));
+  for (const char* planned : {"4.1", "[3.5, 4.1]"}) {
+    EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+        [&] { readTile("[5.0, 4.0]", planned); }, {"mpc/max_torque", "plant/max_torque", planned}));
+  }
 }
 
 TEST(Configuration, AToleranceInAnotherUnitThanThatOfThePlantIsRefused) {

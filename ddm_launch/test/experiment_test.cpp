@@ -161,7 +161,8 @@ TEST_F(ExperimentTest, ARowTellsTheErrorInTheUnitOfThePlantAndItsReturn) {
   };
   testing::usePlant(testing::plantOf(traits), &configuration_);
   configuration_.experiment.trials = 0;
-  world_.state = Eigen::Vector2d(0.75, 0.0);  // a quarter of a metre away, torques 0, 0.1, ... 2.9
+  world_.state = (Eigen::VectorXd(2) << 0.75, 0.0)
+                     .finished();  // a quarter of a metre away, torques 0, 0.1, ... 2.9
   run();
   const TrialRow row = parseTrialsCsv(textOf(file("trials.csv")), "trials.csv").at(0);
   EXPECT_EQ(row.evaluation.final_error, 0.25);

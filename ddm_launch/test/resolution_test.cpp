@@ -135,6 +135,8 @@ TEST_F(Resolution, ALearnerKnowsTheMotorsOfItsPlant) {
   EXPECT_EQ(learnersMotors(given_), (Motors{"6.0", "6.0", "1"}));
   given_.set("experiment/plant", std::string("moving_tile"));
   EXPECT_EQ(learnersMotors(given_), (Motors{"5.0", "5.0", "2"}));
+  given_.set("experiment/plant", std::string("two_link"));
+  EXPECT_EQ(learnersMotors(given_), (Motors{"[4.0, 2.0]", "[4.0, 2.0]", "2"}));
   given_.set("experiment/plant", std::string("pendulum_gravity"));
   EXPECT_EQ(learnersMotors(given_), (Motors{"2.5", "2.5", "1"}));
   given_.configs = {file("motor.yaml", "plant: {max_torque: 3}\n")};

@@ -120,7 +120,7 @@ std::vector<Flaw> numbers() {
       {"NegativeSpread", [](Traits* t) { t->info.start_std[1] = -0.1; }, {"start_std", "-0.1"}},
       {"GoalIsNaN", [](Traits* t) { t->info.goal[1] = kNaN; }, {"goal", "nan"}},
       {"GoalOfAnotherSize",
-       [](Traits* t) { t->info.goal = Eigen::Vector3d::Ones(); },
+       [](Traits* t) { t->info.goal = Eigen::VectorXd::Ones(3); },
        {"goal", "[1 1 1]"}},
       {"NoTolerance", [](Traits* t) { t->info.tolerance = 0.0; }, {"tolerance", "got 0"}},
       {"ToleranceIsNaN", [](Traits* t) { t->info.tolerance = kNaN; }, {"tolerance", "nan"}},

@@ -1,5 +1,4 @@
-// Tests of the options: valid ranges, the registry of plants, and that the shipped YAML files say
-// what the structs say.
+// Tests of the options: valid ranges, the registry of plants, shipped YAML files like the structs.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/plant_options.h"
 

@@ -35,8 +35,8 @@ inline PlantInfo toyInfo() {
   info.state_names = {"position_m", "speed_m_per_s"};
   info.torque_names = {"force_n"};
   info.max_torque = Eigen::VectorXd::Constant(1, 6.0);
-  info.start = Eigen::Vector2d::Zero();
-  info.start_std = Eigen::Vector2d::Constant(0.1);
+  info.start = Eigen::VectorXd::Zero(2);
+  info.start_std = Eigen::VectorXd::Constant(2, 0.1);
   info.goal = Eigen::VectorXd::Unit(2, 0);
   info.error_unit = "m";
   info.tolerance = 0.05;
