@@ -42,10 +42,12 @@ class OraclePolicy : public Policy {
 
   void startTrial(const TrialId& id) override {
     planner_.clear();
-    cost_.setGoal(plant_.goal());
     rng_ = randomStream(id, StreamRole::kPlannerStarts);
   }
-  void observe(const Grey& /*grey*/) override { cost_.setState(plant_.state()); }
+  void observe(const Grey& /*grey*/) override {
+    cost_.setGoal(plant_.goal());  // only now: a trial starts before its goal is drawn
+    cost_.setState(plant_.state());
+  }
   Answer answer() override { return answerWith(planner_.solve(&rng_)); }
   void apply(const Eigen::VectorXd& /*u*/) override {}
 
