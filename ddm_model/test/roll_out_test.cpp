@@ -35,14 +35,14 @@ class RollOutOfEachForm : public ::testing::TestWithParam<std::tuple<int, bool>>
     for (Eigen::Index frame = target; frame < target + kSteps; ++frame) {
       Eigen::VectorXd h(f_.regressorDim());
       for (int lag = 0; lag < f_.order(); ++lag) {
-        Eigen::Vector2d z = path.col(frame - 1 - lag);
+        Eigen::VectorXd z = path.col(frame - 1 - lag);
         if (options().increments && lag > 0) z = path.col(frame - lag) - z;
         h.segment(4 * lag, 2) = z;
         h.segment(4 * lag + 2, 2) << U_(0, frame - 1 - lag) / 1.5, U_(1, frame - 1 - lag) / 0.5;
       }
       Mlp<double>::Tape tape;
       f_.network().forward(theta_p_.data(), h, &tape);
-      const Eigen::Vector2d last = path.col(frame - 1);
+      const Eigen::VectorXd last = path.col(frame - 1);
       path.col(frame) = tape.output() + offset_;
       if (options().residual) path.col(frame) += last;
     }
