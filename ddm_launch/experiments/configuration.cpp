@@ -4,7 +4,7 @@
 
 #include <ddm_model/per_motor.h>
 #include <ddm_model/schedule.h>
-#include <ddm_plant_plugin/plant_config.h>
+#include <ddm_sim/plant_factory.h>
 
 #include <algorithm>
 #include <sstream>
@@ -25,15 +25,17 @@ std::vector<std::string> contradictions(const Configuration& all) {
     out.push_back(text.str());
   };
   const std::string motor = all.robot ? "robot/max_torque" : "plant/max_torque";
+  const Eigen::VectorXd& of_plant = all.plant_info.max_torque;
   const std::vector<double> limits =
-      all.robot ? all.robot->max_torque : std::vector<double>{all.plant.max_torque};
+      all.robot ? all.robot->max_torque
+                : std::vector<double>(of_plant.data(), of_plant.data() + of_plant.size());
   require(within(all.mpc.max_torque, limits),
           "mpc/max_torque must be at most " + motor + ", beyond which the motor saturates",
           limitsText(all.mpc.max_torque));
   require(within(all.mpc.max_torque, all.model.model.max_torque),
           "mpc/max_torque must be at most model/max_torque, which scales what f sees",
           limitsText(all.mpc.max_torque));
-  require(all.mpc.time_budget <= (all.robot ? all.robot->dt : all.plant.dt),
+  require(all.mpc.time_budget <= (all.robot ? all.robot->dt : all.plant_info.dt),
           std::string("mpc/time_budget must be at most ") + (all.robot ? "robot/dt" : "plant/dt") +
               ", when the next image comes",
           all.mpc.time_budget);
@@ -64,6 +66,8 @@ Configuration readEachBlock(ParamReader* reader) {
   all.mpc = reader->read<MpcOptions>("mpc");
   if (reader->has("robot")) all.robot = reader->read<RobotOptions>("robot");
   reader->requireValid();
+  all.plant_info = makePlant(*all.plant)->info();
+  all.evaluation.complete(all.plant_info);
   return all;
 }
 
@@ -92,7 +96,7 @@ YAML::Node toYaml(const Configuration& configuration) {
   if (!configuration.start.empty()) out["start"] = toYaml(configuration.start);
   out["trial"] = toYaml(configuration.trial);
   out["evaluation"] = toYaml(configuration.evaluation);
-  out["plant"] = plantBlock(configuration.plant);
+  out["plant"] = configuration.plant->block();
   out["camera"] = toYaml(configuration.camera);
   out["sim"] = toYaml(configuration.sim);
   for (const auto& block : toYaml(configuration.model)) out[block.first] = block.second;

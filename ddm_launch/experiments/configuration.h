@@ -5,8 +5,10 @@
 #include <ddm_bag_io/model_config.h>
 #include <ddm_mpc/mpc_options.h>
 #include <ddm_msgs/param_reader.h>
+#include <ddm_plant_plugin/plant_config.h>
 #include <ddm_robot/robot_options.h>
-#include <ddm_sim/plant_options.h>
+#include <ddm_sim/camera_options.h>
+#include <ddm_sim/sim_options.h>
 #include <yaml-cpp/yaml.h>
 
 #include <memory>
@@ -24,7 +26,8 @@ struct Configuration {
   StartOptions start;
   TrialOptions trial;
   EvaluationOptions evaluation;
-  PlantOptions plant;
+  std::shared_ptr<const PlantPlugin> plant;
+  PlantInfo plant_info;  ///< of that plant
   CameraOptions camera;
   SimOptions sim;
   ModelConfig model;

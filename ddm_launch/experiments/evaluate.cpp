@@ -94,12 +94,13 @@ Row evaluateSeed(ddm::Configuration configuration, int seed, std::uint32_t trial
     const std::lock_guard<std::mutex> lock(
         *making);  // nobody promised that plants are made at once
     world = std::make_unique<ddm::InProcessWorld>(configuration);
-    plant = ddm::makePlant(configuration.plant, configuration.camera);
+    plant = ddm::makePlant(*configuration.plant);
   }
   const ddm::TrialOutcome outcome = world->runTrial(request, [](double) {});
   Row row;
   row.seed = seed;
-  row.evaluation = ddm::evaluate(*plant, outcome.states, configuration.evaluation);
+  plant->setGoal(ddm::goalOf(*plant, request.id.seed, trial, /*evaluation=*/true));
+  row.evaluation = ddm::evaluate(*plant, outcome.states, outcome.torques, configuration.evaluation);
   row.plan_ms_median = 1e3 * ddm::quantile(outcome.solve_times, 0.5);
   row.plan_ms_p99 = 1e3 * ddm::quantile(outcome.solve_times, 0.99);
   return row;
@@ -143,17 +144,14 @@ double rounded(double value) { return std::round(1e4 * value) / 1e4; }
 
 std::string csvOf(const std::vector<Row>& rows) {
   std::ostringstream out;
-  out << "seed,success,success_strict,final_error_deg,plan_ms_median,plan_ms_p99\n";
+  out << "seed,success,success_strict,final_error,plan_ms_median,plan_ms_p99,return\n";
   for (const Row& row : rows) {
-    out << row.seed << ",";
-    if (row.evaluation.known) {
-      out << row.evaluation.success << "," << row.evaluation.success_strict << ","
-          << ddm::formatDouble(row.evaluation.final_error_deg.value());
-    } else {
-      out << ",,";
-    }
-    out << "," << ddm::formatDouble(rounded(row.plan_ms_median)) << ","
-        << ddm::formatDouble(rounded(row.plan_ms_p99)) << "\n";
+    const ddm::Evaluation& evaluation = row.evaluation;
+    out << row.seed << "," << evaluation.success << "," << evaluation.success_strict << ","
+        << ddm::formatDouble(evaluation.final_error.value()) << ","
+        << ddm::formatDouble(rounded(row.plan_ms_median)) << ","
+        << ddm::formatDouble(rounded(row.plan_ms_p99)) << ","
+        << (evaluation.total_reward ? ddm::formatDouble(*evaluation.total_reward) : "") << "\n";
   }
   return out.str();
 }
@@ -187,15 +185,16 @@ void run(const Request& request, ddm::Configuration configuration) {
   summary["plant"] = configuration.experiment.plant;
   summary["preset"] = configuration.experiment.preset;
   summary["seeds"] = std::to_string(request.first_seed) + ":" + std::to_string(request.end_seed);
-  if (rows.front().evaluation.known) {
-    addRate(rows, "success", &ddm::Evaluation::success, &summary);
-    addRate(rows, "success_strict", &ddm::Evaluation::success_strict, &summary);
-    std::vector<double> errors;
-    for (const Row& row : rows) errors.push_back(row.evaluation.final_error_deg.value());
-    summary["final_error_deg_median"] = ddm::valueToYaml(ddm::quantile(errors, 0.5));
-  } else {
-    summary["success"] = "not known: the plant has no angle to measure";
+  addRate(rows, "success", &ddm::Evaluation::success, &summary);
+  addRate(rows, "success_strict", &ddm::Evaluation::success_strict, &summary);
+  std::vector<double> errors, returns;
+  for (const Row& row : rows) {
+    errors.push_back(row.evaluation.final_error.value());
+    if (row.evaluation.total_reward) returns.push_back(*row.evaluation.total_reward);
   }
+  summary["error_unit"] = configuration.evaluation.error_unit;
+  summary["final_error_median"] = ddm::valueToYaml(ddm::quantile(errors, 0.5));
+  if (!returns.empty()) summary["return_median"] = ddm::valueToYaml(ddm::quantile(returns, 0.5));
   boost::filesystem::create_directories(boost::filesystem::absolute(folder));  // refuses a mere "."
   ddm::writeFileAtomically(folder + "/evaluation.csv", csvOf(rows));
   ddm::writeFileAtomically(folder + "/evaluation.yaml", YAML::Dump(summary) + "\n");

@@ -33,14 +33,16 @@ Evaluation settled(const std::vector<double>& errors, double tolerance,
 }  // namespace
 
 Evaluation evaluate(const Plant& plant, const std::vector<Eigen::VectorXd>& states,
-                    const EvaluationOptions& options) {
-  if (states.empty() || !plant.turns()) return Evaluation();
-  std::vector<double> errors_deg;
-  for (const Eigen::VectorXd& state : states) {
-    errors_deg.push_back(plant.goalError(state) * 180.0 / 3.14159265358979323846);
+                    const std::vector<Eigen::VectorXd>& torques, const EvaluationOptions& options) {
+  if (states.empty()) return Evaluation();
+  std::vector<double> errors;
+  for (const Eigen::VectorXd& state : states) errors.push_back(plant.goalError(state));
+  Evaluation evaluation = settled(errors, options.tolerance, options);
+  evaluation.final_error = errors.back();
+  for (std::size_t t = 0; t < states.size() && t < torques.size(); ++t) {
+    const std::optional<double> reward = plant.reward(states[t], torques[t]);
+    if (reward) evaluation.total_reward = evaluation.total_reward.value_or(0.0) + *reward;
   }
-  Evaluation evaluation = settled(errors_deg, options.tolerance_deg, options);
-  evaluation.final_error_deg = errors_deg.back();
   return evaluation;
 }
 

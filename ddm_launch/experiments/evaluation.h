@@ -15,17 +15,22 @@ namespace ddm {
 
 /// What a greedy run came to.
 struct Evaluation {
-  bool known = false;                     ///< false: nothing to judge by
-  bool success = false;                   ///< the last settled_steps frames within the tolerance
-  bool success_strict = false;            ///< the last settled_steps_strict frames within it
-  std::optional<double> final_error_deg;  ///< distance to the goal at the last frame [deg]; empty
-                                          ///< without ground truth or an angle
+  bool known = false;           ///< false: nothing to judge by
+  bool success = false;         ///< the last settled_steps frames within the tolerance
+  bool success_strict = false;  ///< the last settled_steps_strict frames within it
+  /// Plant::goalError() at the last frame; empty without ground truth.
+  std::optional<double> final_error;
+  /// Sum of the plant's rewards; empty without ground truth, or if the plant has none.
+  std::optional<double> total_reward;
 };
 
-/// @param states  the plant's state at each frame, see Plant::state(); empty: no ground truth
+/// @param plant    with the goal of this run, see Plant::setGoal()
+/// @param states   the plant's state at each frame; empty: no ground truth
+/// @param torques  one for each frame
+/// @param options  completed by those of the plant
 /// @throws std::invalid_argument if there are fewer frames than settled_steps_strict
 Evaluation evaluate(const Plant& plant, const std::vector<Eigen::VectorXd>& states,
-                    const EvaluationOptions& options);
+                    const std::vector<Eigen::VectorXd>& torques, const EvaluationOptions& options);
 
 /// The same by the features that the policy saw, where nobody tells the true state.
 /// @param goal_distances  of each frame, see Policy::goalDistance(); empty: nothing is known

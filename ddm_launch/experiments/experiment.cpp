@@ -20,7 +20,7 @@ class Loop {
         world_(*world),
         folder_(*folder),
         progress_(*progress),
-        plant_(makePlant(configuration.plant, configuration.camera)),
+        plant_(makePlant(*configuration.plant)),
         update_([progress](double fraction) { progress->update(fraction); }) {}
 
   /// What trial 0 explores with.
@@ -65,9 +65,12 @@ class Loop {
     row.seed = configuration_.experiment.seed;
     row.trial = trial;
     row.frames = training.frames;
-    row.evaluation = greedy.states.empty()
-                         ? evaluateFeatures(greedy.goal_distances, configuration_.evaluation)
-                         : evaluate(*plant_, greedy.states, configuration_.evaluation);
+    plant_->setGoal(goalOf(*plant_, static_cast<std::uint64_t>(row.seed),
+                           static_cast<std::uint32_t>(trial), /*evaluation=*/true));
+    row.evaluation =
+        greedy.states.empty()
+            ? evaluateFeatures(greedy.goal_distances, configuration_.evaluation)
+            : evaluate(*plant_, greedy.states, greedy.torques, configuration_.evaluation);
     row.v_r = training.v_r;
     row.v_p = training.v_p;
     row.train_s = training.seconds;

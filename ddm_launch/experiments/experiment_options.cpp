@@ -3,6 +3,7 @@
 #include "experiment_options.h"
 
 #include <cmath>
+#include <stdexcept>
 
 namespace ddm {
 
@@ -25,9 +26,8 @@ std::vector<std::string> TrialOptions::problems() const {
 
 std::vector<std::string> EvaluationOptions::problems() const {
   std::vector<std::string> out;
-  if (!(tolerance_deg > 0.0 && tolerance_deg <= 180.0)) {
-    out.push_back("evaluation/tolerance_deg must lie in (0, 180], got " +
-                  std::to_string(tolerance_deg));
+  if (!(tolerance >= 0.0 && std::isfinite(tolerance))) {
+    out.push_back("evaluation/tolerance must be >= 0 and finite, got " + std::to_string(tolerance));
   }
   if (settled_steps < 1) {
     out.push_back("evaluation/settled_steps must be >= 1, got " + std::to_string(settled_steps));
@@ -40,6 +40,16 @@ std::vector<std::string> EvaluationOptions::problems() const {
     out.push_back("evaluation/goal_distance must be >= 0, got " + std::to_string(goal_distance));
   }
   return out;
+}
+
+void EvaluationOptions::complete(const PlantInfo& plant) {
+  if (!error_unit.empty() && error_unit != plant.error_unit) {
+    throw std::invalid_argument("evaluation/error_unit must be that of the plant, " +
+                                plant.error_unit + ", got " + error_unit +
+                                ": leave it out, and give evaluation/tolerance in that unit");
+  }
+  error_unit = plant.error_unit;
+  if (tolerance == 0.0) tolerance = plant.tolerance;
 }
 
 std::vector<std::string> PredictionOptions::problems() const {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_sim/plant_info.h>
+
 #include <string>
 #include <vector>
 
@@ -63,19 +65,25 @@ struct TrialOptions {
 
 /// Block `evaluation`: when a greedy run is a success.
 struct EvaluationOptions {
-  double tolerance_deg = 10.0;    ///< largest distance to the goal [deg]
+  double tolerance = 0.0;         ///< largest error [error_unit]; 0: the plant's own
+  std::string error_unit;         ///< unit of the plant's error; empty: whatever it is
   int settled_steps = 10;         ///< last frames that must be within it: `success` [-]
   int settled_steps_strict = 25;  ///< the same for `success_strict` [-]
   double goal_distance = 0.0;     ///< tolerance without ground truth [spread of features]; 0: none
 
   template <class Visitor>
   void visit(Visitor& visitor) {
-    visitor("tolerance_deg", tolerance_deg);
+    visitor("tolerance", tolerance);
+    visitor("error_unit", error_unit);
     visitor("settled_steps", settled_steps);
     visitor("settled_steps_strict", settled_steps_strict);
     visitor("goal_distance", goal_distance);
   }
   std::vector<std::string> problems() const;
+
+  /// Fills in what the plant says.
+  /// @throws std::invalid_argument if the error of this plant has another unit
+  void complete(const PlantInfo& plant);
 };
 
 /// Block `prediction`: what prediction_experiment does.

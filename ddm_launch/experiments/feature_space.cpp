@@ -10,8 +10,8 @@
 #include <ddm_mpc/mpc_policy.h>
 #include <ddm_msgs/param_value.h>
 #include <ddm_msgs/tool.h>
-#include <ddm_sim/camera.h>
 #include <ddm_sim/plant_factory.h>
+#include <ddm_sim/rig.h>
 #include <ros/time.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@
 #include <string>
 #include <vector>
 
-#include "camera_view.h"
+#include "closed_loop.h"
 #include "configuration.h"
 #include "csv_text.h"
 #include "torques_csv.h"
@@ -87,42 +87,35 @@ Plan planAt(const Arguments& arguments, const Configuration& all,
   id.seed = static_cast<std::uint64_t>(all.experiment.seed);
   id.trial = static_cast<std::uint32_t>(arguments.trial);
   id.evaluation = true;
-  const std::unique_ptr<Plant> plant = makePlant(all.plant, all.camera);
+  Rig rig(makePlant(*all.plant), all.camera);
   EpsilonGreedy::Options options;
   options.epsilon = 0.0;
-  options.max_torque = perMotor(all.mpc.max_torque, plant->torqueDim(), "mpc/max_torque");
+  options.max_torque = perMotor(all.mpc.max_torque, rig.plant().torqueDim(), "mpc/max_torque");
   EpsilonGreedy policy(std::make_shared<MpcPolicy>(std::move(model), all.mpc), options, id);
-  std::mt19937_64 start = startStream(id.seed, id.trial, id.evaluation);
-  plant->setState(plant->drawStart(start));
-  Camera camera(all.camera);
-  camera.begin(id.seed, id.trial, id.evaluation);
   const std::string file = subfolder(arguments, "evaluation", arguments.trial) + "/torques.csv";
   const std::vector<Eigen::VectorXd> recorded =
-      parseTorquesCsv(readFile(file), plant->torqueNames(), file).torques;
+      parseTorquesCsv(readFile(file), all.plant_info.torque_names, file).torques;
   if (arguments.step >= static_cast<int>(recorded.size())) {
     throw std::runtime_error("--step must be less than the " + std::to_string(recorded.size()) +
                              " steps of " + file + ", got " + std::to_string(arguments.step));
   }
-  auto photograph = camera.photograph(*plant);  // the first is never lost
-  for (int step = 0;; ++step) {
-    const Decision decision =
-        policy.decide(cameraView(*photograph, all.camera.size, all.model.image.size));
-    if ((decision.torque - recorded[step]).cwiseAbs().maxCoeff() > 1e-9) {
-      throw std::runtime_error(file + ": the torque of step " + std::to_string(step) +
-                               " is another here: use the machine and build that made the run");
-    }
-    if (step < arguments.step) {
-      do {
-        plant->step(decision.torque);
-        photograph = camera.photograph(*plant);
-      } while (!photograph);
-    } else if (decision.plan->status == PlanStatus::kFailed) {
-      throw std::runtime_error("there is no plan at step " + std::to_string(step) + ": " +
-                               decision.plan->message);
-    } else {
-      return *decision.plan;
-    }
+  Plan plan;
+  runClosedLoop(
+      &rig, &policy, id, all.model.image.size, arguments.step + 1,
+      [&](const ClosedLoopFrame& frame) {
+        const Decision& decision = frame.decision;
+        const Eigen::VectorXd& torque = recorded[static_cast<size_t>(frame.index)];
+        if ((decision.torque - torque).cwiseAbs().maxCoeff() > 1e-9) {
+          throw std::runtime_error(file + ": the torque of step " + std::to_string(frame.index) +
+                                   " is another here: use the machine and build that made the run");
+        }
+        plan = *decision.plan;
+      });
+  if (plan.status == PlanStatus::kFailed) {
+    throw std::runtime_error("there is no plan at step " + std::to_string(arguments.step) + ": " +
+                             plan.message);
   }
+  return plan;
 }
 
 std::string row(const std::string& kind, Eigen::Index step,

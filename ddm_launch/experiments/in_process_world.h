@@ -4,8 +4,7 @@
 
 #include <ddm_bag_io/bag_writer.h>
 #include <ddm_mpc/epsilon_greedy.h>
-#include <ddm_sim/camera.h>
-#include <ddm_sim/plant.h>
+#include <ddm_sim/rig.h>
 
 #include <memory>
 
@@ -31,11 +30,10 @@ class InProcessWorld : public World {
 
  private:
   EpsilonGreedy makePolicy(const TrialRequest& request) const;
-  std::unique_ptr<BagWriter> openBag(const TrialRequest& request) const;
+  std::unique_ptr<BagWriter> openBag(const TrialRequest& request);
 
   const Configuration& configuration_;
-  std::unique_ptr<Plant> plant_;
-  Camera camera_;
+  Rig rig_;
   std::unique_ptr<Method> method_;
 };
 

@@ -36,7 +36,7 @@ class OraclePolicy : public Policy {
  public:
   OraclePolicy(const Configuration& configuration, const Plant& plant)
       : plant_(plant),
-        cost_(makePlant(configuration.plant, configuration.camera), configuration.mpc.horizon,
+        cost_(makePlant(*configuration.plant), configuration.mpc.horizon,
               configuration.mpc.control_weight),
         planner_(&cost_, configuration.mpc) {}
 
@@ -44,7 +44,10 @@ class OraclePolicy : public Policy {
     planner_.clear();
     rng_ = randomStream(id, StreamRole::kPlannerStarts);
   }
-  void observe(const Grey& /*grey*/) override { cost_.setState(plant_.state()); }
+  void observe(const Grey& /*grey*/) override {
+    cost_.setGoal(plant_.goal());  // only now: a trial starts before its goal is drawn
+    cost_.setState(plant_.state());
+  }
   Answer answer() override { return answerWith(planner_.solve(&rng_)); }
   void apply(const Eigen::VectorXd& /*u*/) override {}
 
@@ -61,7 +64,7 @@ OraclePlanCost::OraclePlanCost(std::unique_ptr<Plant> plant, int horizon, double
     : plant_(std::move(plant)),
       horizon_(horizon),
       control_weight_(control_weight),
-      goal_(plant_->visiblePosition(plant_->goalState())),
+      goal_(plant_->visiblePosition(plant_->goal())),
       state_(plant_->state()),
       states_(plant_->stateDim(), horizon + 1),
       positions_(goal_.size(), horizon + 1) {}

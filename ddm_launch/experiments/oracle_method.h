@@ -25,6 +25,9 @@ class OraclePlanCost : public PlanCost {
  public:
   OraclePlanCost(std::unique_ptr<Plant> plant, int horizon, double control_weight);
 
+  /// The state to reach.
+  void setGoal(const Eigen::VectorXd& state) { goal_ = plant_->visiblePosition(state); }
+
   /// The state to plan from.
   void setState(const Eigen::VectorXd& state) { state_ = state; }
 

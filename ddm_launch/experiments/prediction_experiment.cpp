@@ -7,8 +7,8 @@
 #include <ddm_model/trainer.h>
 #include <ddm_mpc/epsilon_greedy.h>
 #include <ddm_msgs/param_value.h>
-#include <ddm_sim/camera.h>
 #include <ddm_sim/plant_factory.h>
+#include <ddm_sim/rig.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "camera_view.h"
+#include "closed_loop.h"
 #include "command_line.h"
 #include "csv_text.h"
 #include "progress.h"
@@ -50,38 +50,32 @@ struct Experiment {
 };
 
 /// Training and held-out frames in one go: uniformly random torques from a random start.
-Recording record(const Experiment& experiment, Plant* plant) {
+Recording record(const Experiment& experiment, Rig* rig) {
   const Configuration& all = experiment.configuration;
-  const int num_frames =
-      experiment.prediction.training_frames + experiment.prediction.held_out_frames;
+  const PlantInfo& info = rig->plant().info();
+  const int num_training = experiment.prediction.training_frames;
+  const int num_frames = num_training + experiment.prediction.held_out_frames;
   TrialId id;
   id.seed = static_cast<std::uint64_t>(all.experiment.seed);
   EpsilonGreedy::Options options;
   options.epsilon = 1.0;
   options.hold_steps = all.mpc.hold_steps;
-  options.max_torque = perMotor(all.mpc.max_torque, plant->torqueDim(), "mpc/max_torque");
+  options.max_torque = perMotor(all.mpc.max_torque, info.torqueDim(), "mpc/max_torque");
   EpsilonGreedy random(nullptr, options, id);
-  std::mt19937_64 start = startStream(id.seed, id.trial, id.evaluation);
-  plant->setState(plant->drawStart(start));
-  Camera camera(all.camera);
-  camera.begin(id.seed, id.trial, id.evaluation);
 
   const int image_size = all.model.image.size;
-  Recording out{DataSet(image_size, plant->torqueDim()), DataSet(image_size, plant->torqueDim()),
-                Eigen::MatrixXd(plant->stateDim(), num_frames), Eigen::MatrixXd()};
-  for (int frame = 0; frame < num_frames; ++frame) {
-    const bool learn = frame < experiment.prediction.training_frames;
-    const bool first = frame == 0 || frame == experiment.prediction.training_frames;
-    const auto photograph = camera.photograph(*plant);  // requireFit(): none is lost
-    const Grey grey = cameraView(*photograph, all.camera.size, image_size);
-    const Eigen::VectorXd torque = random.decide(grey).torque;
-    (learn ? out.training : out.held_out).append(grey, torque, first);
-    const Eigen::VectorXd position = plant->visiblePosition(plant->state());
+  Recording out{DataSet(image_size, info.torqueDim()), DataSet(image_size, info.torqueDim()),
+                Eigen::MatrixXd(info.stateDim(), num_frames), Eigen::MatrixXd()};
+  runClosedLoop(rig, &random, id, image_size, num_frames, [&](const ClosedLoopFrame& frame) {
+    const bool learn = frame.index < num_training;
+    const bool first = frame.index == 0 || frame.index == num_training;
+    (learn ? out.training : out.held_out).append(frame.grey, frame.decision.torque, first);
+    const Eigen::VectorXd& state = rig->plant().state();
+    const Eigen::VectorXd position = rig->plant().visiblePosition(state);
     out.positions.conservativeResize(position.size(), num_frames);
-    out.positions.col(frame) = position;
-    out.states.col(frame) = plant->state();
-    plant->step(torque);
-  }
+    out.positions.col(frame.index) = position;
+    out.states.col(frame.index) = state;
+  });
   return out;
 }
 
@@ -92,11 +86,12 @@ std::string cells(const Eigen::Ref<const Eigen::VectorXd>& values) {
 }
 
 /// The columns of states and features.
-std::string columns(const Plant& plant, int feature_dim) {
-  return csvHeader(csvHeader("", plant.stateNames()), featureNames(feature_dim)) + "\n";
+std::string columns(const PlantInfo& plant, int feature_dim) {
+  return csvHeader(csvHeader("", plant.state_names), featureNames(feature_dim)) + "\n";
 }
 
-std::string featuresCsv(const Plant& plant, const Recording& recording, const Eigen::MatrixXd& Z) {
+std::string featuresCsv(const PlantInfo& plant, const Recording& recording,
+                        const Eigen::MatrixXd& Z) {
   std::string text = "frame,set" + columns(plant, static_cast<int>(Z.rows()));
   for (Eigen::Index i = 0; i < Z.cols(); ++i) {
     const bool training = i < recording.training.numFrames();
@@ -107,7 +102,7 @@ std::string featuresCsv(const Plant& plant, const Recording& recording, const Ei
 }
 
 /// The prediction from the middle of the held-out frames, of those that have a full history.
-std::string stripCsv(const Plant& plant, const Recording& recording, const Ddm& model,
+std::string stripCsv(const PlantInfo& plant, const Recording& recording, const Ddm& model,
                      const Eigen::MatrixXd& Z, int max_steps) {
   const Eigen::Index order = model.options().order;
   const Eigen::Index frame = order - 1 + (recording.held_out.numFrames() - max_steps - order) / 2;
@@ -142,8 +137,8 @@ void run(const Experiment& experiment) {
   ResultsFolder folder(all.experiment.runs, saved);
   for (const std::string& warning : folder.warnings()) std::cout << "warning: " << warning << "\n";
 
-  const std::unique_ptr<Plant> plant = makePlant(all.plant, all.camera);
-  const Recording recording = record(experiment, plant.get());
+  Rig rig(makePlant(*all.plant), all.camera);
+  const Recording recording = record(experiment, &rig);
   folder.begin();  // nothing is left that could refuse
   ModelInfo info;
   info.seed = static_cast<std::uint64_t>(all.experiment.seed);
@@ -170,8 +165,8 @@ void run(const Experiment& experiment) {
       predictionErrors(model, recording.held_out, max_steps);
 
   folder.write("model.ddm", serialiseModel(model));
-  folder.write("features.csv", featuresCsv(*plant, recording, Z));
-  folder.write("strip.csv", stripCsv(*plant, recording, model, Z, max_steps));
+  folder.write("features.csv", featuresCsv(all.plant_info, recording, Z));
+  folder.write("strip.csv", stripCsv(all.plant_info, recording, model, Z, max_steps));
   folder.write("predictions.csv",
                predictionsCsv(errors, position_r2, model.info(), result.seconds));
   YAML::Node summary(YAML::NodeType::Map);

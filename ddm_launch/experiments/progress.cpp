@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 namespace ddm {
 namespace {
@@ -23,16 +24,16 @@ std::string format(const char* pattern, Values... values) {
   return text;
 }
 
-std::string verdictOf(const Evaluation& evaluation) {
-  if (!evaluation.final_error_deg) return evaluation.success ? "success" : "no success";
-  return format("error %5.1f deg%s", *evaluation.final_error_deg,
+std::string verdictOf(const Evaluation& evaluation, const std::string& unit) {
+  if (!evaluation.final_error) return evaluation.success ? "success" : "no success";
+  return format("error %5.3g %s%s", *evaluation.final_error, unit.c_str(),
                 evaluation.success ? "  success" : "");
 }
 
 }  // namespace
 
-Progress::Progress(std::ostream* out, bool live, int num_trials)
-    : out_(out), live_(live), num_trials_(num_trials) {}
+Progress::Progress(std::ostream* out, bool live, int num_trials, std::string error_unit)
+    : out_(out), live_(live), num_trials_(num_trials), error_unit_(std::move(error_unit)) {}
 
 void Progress::note(const std::string& text) {
   wipe();
@@ -70,7 +71,7 @@ void Progress::finishTrial(const std::vector<TrialRow>& rows) {
   const TrialRow& row = rows.back();
   std::string verdict = "no ground truth";
   if (row.evaluation.known) {
-    verdict = verdictOf(row.evaluation);
+    verdict = verdictOf(row.evaluation, error_unit_);
     success_so_far_ =
         format("success %d of %d", countSuccesses(rows), static_cast<int>(rows.size()));
   }

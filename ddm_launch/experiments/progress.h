@@ -17,7 +17,8 @@ class Progress {
  public:
   /// @param live        out is a terminal: draw the moving line
   /// @param num_trials  epsilon-greedy trials of the whole experiment
-  Progress(std::ostream* out, bool live, int num_trials);
+  /// @param error_unit  of the plant's error
+  Progress(std::ostream* out, bool live, int num_trials, std::string error_unit = "");
   ~Progress() { wipe(); }  // what comes next, an error perhaps, begins a line of its own
 
   void note(const std::string& text);
@@ -35,6 +36,7 @@ class Progress {
   std::ostream* out_;
   bool live_;
   int num_trials_;
+  std::string error_unit_;
   int trial_ = 0;
   std::string phase_;
   std::string success_so_far_;

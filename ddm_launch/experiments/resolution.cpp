@@ -84,23 +84,25 @@ void requirePlant(const std::string& plant, const Layer& config) {
                               "and values yourself");
 }
 
-/// A saved configuration also holds every value of its camera, so a nuisance below it would be lost
-/// without a word.
+/// A saved configuration also holds every value of plant and camera, so a nuisance below it would
+/// be lost without a word.
 void requireNuisance(const std::string& name, const Layer& config) {
-  const YAML::Node saved = config.blocks["camera"];
-  if (!config.blocks["version"].IsDefined() || !saved.IsDefined() || !saved.IsMap()) return;
+  if (!config.blocks["version"].IsDefined()) return;
   const std::string file = nuisanceFile(name);
-  const YAML::Node nuisance = readBlocks(file);
-  for (const auto& entry : nuisance["camera"]) {
-    double here = 0.0, there = 0.0;
-    const YAML::Node value = saved[entry.first.Scalar()];
-    if (!value.IsDefined() || !parseValue(value, &there) || !parseValue(entry.second, &here) ||
-        here == there) {
-      continue;
+  for (const auto& block : readBlocks(file)) {
+    const YAML::Node saved = config.blocks[block.first.Scalar()];
+    if (!saved.IsDefined() || !saved.IsMap()) continue;
+    for (const auto& entry : block.second) {
+      double here = 0.0, there = 0.0;
+      const YAML::Node value = saved[entry.first.Scalar()];
+      if (!value.IsDefined() || !parseValue(value, &there) || !parseValue(entry.second, &here) ||
+          here == there) {
+        continue;
+      }
+      throw std::invalid_argument(
+          config.file + " describes an experiment without the nuisance " + name +
+          ": leave the nuisance out, or give its file after that one, " + file);
     }
-    throw std::invalid_argument(
-        config.file + " describes an experiment without the nuisance " + name +
-        ": leave the nuisance out, or give its file after that one, " + file);
   }
 }
 

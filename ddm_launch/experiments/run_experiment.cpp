@@ -48,7 +48,8 @@ void run(ddm::Configuration configuration) {
   ddm::prepareStart(&configuration);
   ddm::InProcessWorld world(configuration);  // first: what it refuses must not leave a folder
   ddm::RunFolder folder(configuration);
-  ddm::Progress progress(&std::cout, ::isatty(STDOUT_FILENO) != 0, configuration.experiment.trials);
+  ddm::Progress progress(&std::cout, ::isatty(STDOUT_FILENO) != 0, configuration.experiment.trials,
+                         configuration.evaluation.error_unit);
   for (const std::string& warning : folder.warnings()) progress.note("warning: " + warning);
   ddm::runExperiment(configuration, &world, &folder, &progress);
 }

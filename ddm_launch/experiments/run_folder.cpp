@@ -4,11 +4,9 @@
 
 #include <ddm_model/plain_file.h>
 #include <ddm_msgs/param_value.h>
-#include <ddm_sim/plant_factory.h>
 
 #include <boost/filesystem.hpp>
 #include <cstdio>
-#include <memory>
 #include <stdexcept>
 
 #include "torques_csv.h"
@@ -47,9 +45,6 @@ std::string keep(const std::string& stem, const std::string& ending) {
 
 RunFolder::RunFolder(const Configuration& configuration)
     : configuration_(configuration), folder_(configuration.experiment.runs, toYaml(configuration)) {
-  const std::unique_ptr<Plant> plant = makePlant(configuration.plant, configuration.camera);
-  torque_names_ = plant->torqueNames();
-  state_names_ = plant->stateNames();
   readRows(path() + "/" + kRows);
 }
 
@@ -117,11 +112,12 @@ void RunFolder::writeEvaluation(int trial, const TrialOutcome& outcome) {
 }
 
 void RunFolder::writeRun(const std::string& folder, const TrialOutcome& outcome) {
-  folder_.write(folder + "/torques.csv",
-                formatTorquesCsv({outcome.torques, outcome.exploratory}, torque_names_));
+  folder_.write(folder + "/torques.csv", formatTorquesCsv({outcome.torques, outcome.exploratory},
+                                                          configuration_.plant_info.torque_names));
   if (!outcome.states.empty()) {
-    folder_.write(folder + "/trajectory.csv",
-                  formatTrajectoryCsv(outcome.times, outcome.states, state_names_));
+    folder_.write(
+        folder + "/trajectory.csv",
+        formatTrajectoryCsv(outcome.times, outcome.states, configuration_.plant_info.state_names));
   } else if (!outcome.goal_distances.empty()) {
     writeGoalDistances(folder, outcome.goal_distances);
   }

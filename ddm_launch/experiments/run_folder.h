@@ -75,8 +75,6 @@ class RunFolder {
 
   Configuration configuration_;
   ResultsFolder folder_;
-  std::vector<std::string> torque_names_;
-  std::vector<std::string> state_names_;
   std::vector<TrialRow> rows_;
   std::vector<std::string> warnings_;
 };

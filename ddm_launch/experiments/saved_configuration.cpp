@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "saved_configuration.h"
 
+#include <ddm_msgs/renamed_keys.h>
 #include <ddm_msgs/yaml_text.h>
 
 #include <set>
@@ -47,12 +48,13 @@ ConfigurationValues keysOf(const YAML::Node& configuration) {
 }
 
 SavedConfiguration readConfigurationText(const std::string& text, const std::string& source) {
-  const YAML::Node root = parseYaml(text, source);
-  if (!root.IsMap()) throw std::invalid_argument(source + ":1: expected a map of blocks");
-  requireNames(root, source);
-  for (const auto& block : root) {
+  const YAML::Node as_saved = parseYaml(text, source);
+  if (!as_saved.IsMap()) throw std::invalid_argument(source + ":1: expected a map of blocks");
+  requireNames(as_saved, source);
+  for (const auto& block : as_saved) {
     if (block.second.IsMap()) requireNames(block.second, source);
   }
+  const YAML::Node root = withTodaysKeys(as_saved);
   SavedConfiguration saved;
   saved.values = keysOf(root);
   const YAML::Node version = root["version"];

@@ -34,16 +34,25 @@ void identify(std::string* path, std::string* id) {
 /// What the trials to come will be like.
 struct Trials {
   int torque_dim;
-  int image_size;
+  std::string camera;  ///< as BagContent::camera
   double dt;
   std::string whose;  ///< "the plant", "the robot"
 };
 
 /// A robot's images come from robot_node, at the model's size.
 Trials trialsOf(const Configuration& configuration, const Plant& plant) {
-  if (!configuration.robot) return {plant.torqueDim(), plant.imageSize(), plant.dt(), "the plant"};
-  const RobotOptions& robot = *configuration.robot;
-  return {robot.numMotors(), configuration.model.image.size, robot.dt, "the robot"};
+  const auto camera = [](int width, int height, const char* encoding) {
+    return std::to_string(width) + "x" + std::to_string(height) + " " + encoding;
+  };
+  if (configuration.robot) {
+    const RobotOptions& robot = *configuration.robot;
+    const int size = configuration.model.image.size;
+    return {robot.numMotors(), camera(size, size, "mono8"), robot.dt, "the robot"};
+  }
+  const Picture picture = plant.render(plant.state());
+  return {plant.torqueDim(),
+          camera(picture.width, picture.height, picture.channels == 1 ? "mono8" : "rgb8"),
+          plant.info().dt, "the plant"};
 }
 
 void requireFits(const std::string& path, const Configuration& configuration,
@@ -60,9 +69,7 @@ void requireFits(const std::string& path, const Configuration& configuration,
   };
   require(bag.data.torqueDim() == trials.torque_dim, "torques a frame", bag.data.torqueDim(),
           trials.torque_dim);
-  const std::string size = std::to_string(trials.image_size);
-  const std::string camera = size + "x" + size + " mono8";
-  require(bag.camera == camera, "images", bag.camera, camera);
+  require(bag.camera == trials.camera, "images", bag.camera, trials.camera);
   const bool same_rate =
       bag.interval == 0.0 || std::abs(bag.interval - trials.dt) <= kRateTolerance * trials.dt;
   require(same_rate, "seconds between frames (dt)", bag.interval, trials.dt);
@@ -77,7 +84,7 @@ void prepareStart(Configuration* configuration) {
     throw std::invalid_argument("an experiment with method " + configuration->experiment.method +
                                 " cannot start from a model or bags: only ddm can");
   }
-  const std::unique_ptr<Plant> plant = makePlant(configuration->plant, configuration->camera);
+  const std::unique_ptr<Plant> plant = makePlant(*configuration->plant);
   if (!start.model.empty()) {
     identify(&start.model, &start.model_id);
     makeModelPolicy(readModel(start.model), start.model, *configuration, *plant);

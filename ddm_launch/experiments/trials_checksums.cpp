@@ -25,7 +25,7 @@ bool isUnchanged(const std::string& trials_csv, size_t num_rows, const std::stri
     if (!std::getline(lines, line)) return false;
   }
   return num_rows == 0 || line == checksum(trials_csv) ||
-         line == checksum(withVersions(trials_csv));
+         line == checksum(inTodaysColumns(trials_csv));
 }
 
 }  // namespace ddm

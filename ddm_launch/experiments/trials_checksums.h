@@ -14,8 +14,8 @@ namespace ddm {
 std::string formatTrialsChecksums(const std::vector<TrialRow>& rows);
 
 /// @param trials_csv  the table, with `num_rows` rows
-/// @return            whether it is the one that the checksums were made of, be it before it got
-///                    its column `version`
+/// @return            whether it is the one that the checksums were made of, be it in the columns
+///                    of an older version
 bool isUnchanged(const std::string& trials_csv, size_t num_rows, const std::string& checksums);
 
 }  // namespace ddm

@@ -14,13 +14,22 @@
 namespace ddm {
 namespace {
 
-/// Of tables that older versions wrote.
-constexpr char kHeaderWithoutVersion[] =
-    "seed,trial,frames,success,success_strict,final_error_deg,v_r,v_p,train_s,train_evaluations,"
-    "plan_ms_median,plan_ms_p99";
-constexpr char kVersion[] = ",version";
+constexpr char kHeader[] =
+    "seed,trial,frames,success,success_strict,final_error,v_r,v_p,train_s,train_evaluations,"
+    "plan_ms_median,plan_ms_p99,version,return";
 
-std::string header() { return std::string(kHeaderWithoutVersion) + kVersion; }
+/// Headers of older versions, and the cells that their rows lack.
+struct OldTable {
+  const char* header;
+  const char* missing_cells;
+};
+constexpr OldTable kOldTables[] = {
+    {"seed,trial,frames,success,success_strict,final_error_deg,v_r,v_p,train_s,train_evaluations,"
+     "plan_ms_median,plan_ms_p99,version",
+     ","},
+    {"seed,trial,frames,success,success_strict,final_error_deg,v_r,v_p,train_s,train_evaluations,"
+     "plan_ms_median,plan_ms_p99",
+     ",?,"}};
 
 std::string milliseconds(double value) {
   char text[32];
@@ -62,9 +71,11 @@ TrialRow parseRow(const std::vector<std::string>& columns) {
   if (row.evaluation.known) {
     row.evaluation.success = flag(columns[3]);
     row.evaluation.success_strict = flag(columns[4]);
-    row.evaluation.final_error_deg = optionalNumber(columns[5]);
-  } else if (!columns[4].empty() || !columns[5].empty()) {
-    throw std::runtime_error("success_strict and final_error_deg must be empty where success is");
+    row.evaluation.final_error = optionalNumber(columns[5]);
+    row.evaluation.total_reward = optionalNumber(columns[13]);
+  } else if (!columns[4].empty() || !columns[5].empty() || !columns[13].empty()) {
+    throw std::runtime_error(
+        "success_strict, final_error and return must be empty where success is");
   }
   row.v_r = optionalNumber(columns[6]);
   row.v_p = optionalNumber(columns[7]);
@@ -84,36 +95,40 @@ TrialRow parseRow(const std::vector<std::string>& columns) {
 
 std::string formatTrialsCsv(const std::vector<TrialRow>& rows) {
   std::ostringstream out;
-  out << header() << "\n";
+  out << kHeader << "\n";
   for (const TrialRow& row : rows) {
     out << row.seed << "," << row.trial << "," << row.frames << ",";
     if (row.evaluation.known) {
       out << row.evaluation.success << "," << row.evaluation.success_strict << ","
-          << format(row.evaluation.final_error_deg);
+          << format(row.evaluation.final_error);
     } else {
       out << ",,";
     }
     out << "," << format(row.v_r) << "," << format(row.v_p) << "," << milliseconds(row.train_s)
         << "," << row.train_evaluations << "," << milliseconds(row.plan_ms_median) << ","
-        << milliseconds(row.plan_ms_p99) << "," << row.version << "\n";
+        << milliseconds(row.plan_ms_p99) << "," << row.version << ","
+        << format(row.evaluation.total_reward) << "\n";
   }
   return out.str();
 }
 
-std::string withVersions(const std::string& text) {
-  const std::string old_header = std::string(kHeaderWithoutVersion) + "\n";
-  if (text.compare(0, old_header.size(), old_header) != 0) return text;
-  std::string out = header() + "\n";
-  for (size_t i = old_header.size(); i < text.size(); ++i) {
-    if (text[i] == '\n') out += ",?";
-    out += text[i];
+std::string inTodaysColumns(const std::string& text) {
+  for (const OldTable& old : kOldTables) {
+    const std::string old_header = std::string(old.header) + "\n";
+    if (text.compare(0, old_header.size(), old_header) != 0) continue;
+    std::string out = std::string(kHeader) + "\n";
+    for (size_t i = old_header.size(); i < text.size(); ++i) {
+      if (text[i] == '\n') out += old.missing_cells;
+      out += text[i];
+    }
+    return out;
   }
-  return out;
+  return text;
 }
 
 std::vector<TrialRow> parseTrialsCsv(const std::string& text, const std::string& source) {
   std::vector<TrialRow> rows;
-  parseCsv(withVersions(text), header(), source,
+  parseCsv(inTodaysColumns(text), kHeader, source,
            [&rows](const std::vector<std::string>& cells) { rows.push_back(parseRow(cells)); });
   return rows;
 }

@@ -16,9 +16,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const ddm::TrialRow& row : rows) {
     require(std::isfinite(row.train_s) && row.train_s >= 0.0, "a training takes time");
     require(std::isfinite(row.v_r.value_or(0.0)) && std::isfinite(row.v_p.value_or(0.0)),
-            "errors are finite");
+            "V_R and V_P are finite");
     require(row.v_r.has_value() == row.v_p.has_value(), "errors come in pairs");
-    require(std::isfinite(row.evaluation.final_error_deg.value_or(0.0)), "angles are finite");
+    require(std::isfinite(row.evaluation.final_error.value_or(0.0)), "errors are finite");
+    require(std::isfinite(row.evaluation.total_reward.value_or(0.0)), "returns are finite");
   }
   const std::string written = ddm::formatTrialsCsv(rows);
   require(ddm::formatTrialsCsv(ddm::parseTrialsCsv(written, "trials.csv")) == written,

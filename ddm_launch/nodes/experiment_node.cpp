@@ -29,8 +29,8 @@ void publishCurve(const ros::Publisher& publisher, const std::vector<ddm::TrialR
   cv_bridge::CvImage image;
   image.header.stamp = ros::Time::now();
   image.encoding = sensor_msgs::image_encodings::RGB8;
-  image.image = ddm::drawLearningCurve(rows, static_cast<std::uint32_t>(frames),
-                                       configuration.evaluation.tolerance_deg);
+  image.image =
+      ddm::drawLearningCurve(rows, static_cast<std::uint32_t>(frames), configuration.evaluation);
   publisher.publish(image.toImageMsg());
 }
 
@@ -53,7 +53,8 @@ void run(Node* node) {
   ddm::requireLearnedPrediction(configuration.model.training);
   ddm::prepareStart(&configuration);
   ddm::RunFolder folder(configuration);
-  ddm::Progress progress(&std::cout, ::isatty(STDOUT_FILENO) != 0, configuration.experiment.trials);
+  ddm::Progress progress(&std::cout, ::isatty(STDOUT_FILENO) != 0, configuration.experiment.trials,
+                         configuration.evaluation.error_unit);
   for (const std::string& warning : folder.warnings()) progress.note("warning: " + warning);
   node->curve_pub =
       node->nh.advertise<sensor_msgs::Image>(ddm::topics::kLearningCurveImage, 1, /*latch=*/true);

@@ -81,43 +81,48 @@ void drawCurve(const Axes& axes, const std::vector<cv::Point2d>& points, const c
   }
 }
 
-std::string titleOf(const std::vector<TrialRow>& rows) {
-  const std::string title = "distance from the goal at the end [deg]";
+std::string titleOf(const std::vector<TrialRow>& rows, const std::string& unit) {
+  const std::string title = "distance from the goal at the end [" + unit + "]";
   if (rows.empty()) return title;
   const TrialRow& last = rows.back();
   if (!last.evaluation.known) return title + ": not known, no ground truth";
   const std::string end = format(", after trial %d: ", last.trial) +
                           (last.evaluation.success ? "success" : "no success");
-  if (!last.evaluation.final_error_deg) return "judged by the distance in features" + end;
-  return title + end + format(", %.1f", *last.evaluation.final_error_deg);
+  if (!last.evaluation.final_error) return "judged by the distance in features" + end;
+  return title + end + format(", %.3g", *last.evaluation.final_error);
 }
 
-void drawErrors(const std::vector<TrialRow>& rows, double max_x, double goal_deg,
-                cv::Mat* picture) {
-  const Axes axes{kUpper, max_x, 0.0, 180.0};
-  const bool angles = rows.empty() || rows.back().evaluation.final_error_deg.has_value();
-  drawFrame(axes,
-            angles ? std::vector<double>{0.0, 45.0, 90.0, 135.0, 180.0} : std::vector<double>(),
-            "%5.0f", picture);
-  if (angles) cv::line(*picture, axes.at(0.0, goal_deg), axes.at(max_x, goal_deg), kGrey);
+void drawErrors(const std::vector<TrialRow>& rows, double max_x,
+                const EvaluationOptions& evaluation, cv::Mat* picture) {
+  const bool known = rows.empty() || rows.back().evaluation.final_error.has_value();
+  double largest = 2.0 * evaluation.tolerance;
+  for (const TrialRow& row : rows) {
+    largest = std::max(largest, row.evaluation.final_error.value_or(0.0));
+  }
+  const Axes axes{kUpper, max_x, 0.0, known ? largest : 1.0};
+  std::vector<double> ticks;
+  for (int i = 0; known && i <= 4; ++i) ticks.push_back(largest * i / 4);
+  drawFrame(axes, ticks, "%5.3g", picture);
+  if (known) {
+    const double tolerance = evaluation.tolerance;
+    cv::line(*picture, axes.at(0.0, tolerance), axes.at(max_x, tolerance), kGrey);
+  }
   std::vector<cv::Point2d> points;
   for (const TrialRow& row : rows) {
-    const Evaluation& evaluation = row.evaluation;
-    if (evaluation.final_error_deg) points.emplace_back(row.frames, *evaluation.final_error_deg);
+    if (row.evaluation.final_error) points.emplace_back(row.frames, *row.evaluation.final_error);
   }
   drawCurve(axes, points, kGrey, picture);
   for (const TrialRow& row : rows) {
     if (!row.evaluation.known) continue;
-    const double without_angle = row.evaluation.success ? 45.0 : 135.0;  // two rows of marks
-    const cv::Point at =
-        axes.at(row.frames, row.evaluation.final_error_deg.value_or(without_angle));
+    const double mark = row.evaluation.success ? 0.25 : 0.75;  // two rows, without an error
+    const cv::Point at = axes.at(row.frames, row.evaluation.final_error.value_or(mark));
     if (row.evaluation.success) {
       cv::circle(*picture, at, 6, kBlue, cv::FILLED, cv::LINE_AA);
     } else {
       cv::drawMarker(*picture, at, kRed, cv::MARKER_TILTED_CROSS, 12, 3, cv::LINE_AA);
     }
   }
-  write(titleOf(rows), {kUpper.x, kUpper.y - 12}, kBlack, picture);
+  write(titleOf(rows, evaluation.error_unit), {kUpper.x, kUpper.y - 12}, kBlack, picture);
 }
 
 using Value = std::optional<double> TrialRow::*;
@@ -165,11 +170,11 @@ void drawModelErrors(const std::vector<TrialRow>& rows, double max_x, cv::Mat* p
 }  // namespace
 
 cv::Mat drawLearningCurve(const std::vector<TrialRow>& rows, std::uint32_t all_frames,
-                          double goal_deg) {
+                          const EvaluationOptions& evaluation) {
   cv::Mat picture(kSize, CV_8UC3, cv::Scalar(255, 255, 255));
   double max_x = std::max(1U, all_frames);
   for (const TrialRow& row : rows) max_x = std::max(max_x, static_cast<double>(row.frames));
-  drawErrors(rows, max_x, goal_deg, &picture);
+  drawErrors(rows, max_x, evaluation, &picture);
   drawModelErrors(rows, max_x, &picture);
   return picture;
 }

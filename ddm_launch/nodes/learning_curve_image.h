@@ -16,9 +16,9 @@ namespace ddm {
 /// were learned from.
 /// @param rows        of trials.csv; none is fine
 /// @param all_frames  of the whole experiment: the picture grows to the right up to there
-/// @param goal_deg    a run that ends nearer to the goal has reached it [deg]
+/// @param evaluation  unit of the error, and below which the goal is reached
 /// @return            8 bit red, green, blue  [480 x 640]
 cv::Mat drawLearningCurve(const std::vector<TrialRow>& rows, std::uint32_t all_frames,
-                          double goal_deg);
+                          const EvaluationOptions& evaluation);
 
 }  // namespace ddm

@@ -9,6 +9,7 @@
 
 #include <cstdlib>
 #include <iostream>
+#include <memory>
 #include <optional>
 
 #include "evaluation.h"
@@ -53,13 +54,14 @@ struct RunOptions {
 };
 
 void report(const ddm::Plant& plant, const ddm::TrialOutcome& outcome,
-            const ddm::EvaluationOptions& options, ddm::Progress* progress) {
+            ddm::EvaluationOptions options, ddm::Progress* progress) {
+  options.complete(plant.info());
   const bool enough = static_cast<int>(outcome.states.size()) >= options.settled_steps_strict;
   progress->note(std::to_string(outcome.torques.size()) + " torques");
   if (!enough) return;
-  const ddm::Evaluation evaluation = ddm::evaluate(plant, outcome.states, options);
-  if (!evaluation.known) return;
-  progress->note("final error " + std::to_string(*evaluation.final_error_deg) + " deg: " +
+  const ddm::Evaluation evaluation = ddm::evaluate(plant, outcome.states, outcome.torques, options);
+  progress->note("final error " + std::to_string(*evaluation.final_error) + " " +
+                 options.error_unit + ": " +
                  (evaluation.success ? "the goal was reached" : "the goal was not reached"));
 }
 
@@ -75,7 +77,6 @@ void run(Node* node) {
   ddm::ParamReader params(ddm::nodeParams(pnh), pnh.getNamespace());
   const auto options = params.read<RunOptions>("run");
   const auto plant = ddm::readPlant(&params);
-  const auto camera = params.read<ddm::CameraOptions>("camera");
   const auto evaluation = params.read<ddm::EvaluationOptions>("evaluation");
   const auto mpc = params.read<ddm::MpcOptions>("mpc");
   params.requireValid();
@@ -93,7 +94,9 @@ void run(Node* node) {
   progress.beginPhase(0, options.model.empty() ? "random" : "control");
   const ddm::TrialOutcome outcome =
       node->world->runTrial(request, [&progress](double fraction) { progress.update(fraction); });
-  report(*ddm::makePlant(plant, camera), outcome, evaluation, &progress);
+  const std::unique_ptr<ddm::Plant> judge = ddm::makePlant(*plant);
+  judge->setGoal(ddm::goalOf(*judge, request.id.seed, request.id.trial, request.id.evaluation));
+  report(*judge, outcome, evaluation, &progress);
   if (!options.bag.empty()) progress.note("recorded: " + options.bag);
 }
 

@@ -6,6 +6,7 @@
 #include <ddm_model/testing/temp_folder.h>
 #include <ddm_msgs/param_reader.h>
 #include <ddm_sim/plant_factory.h>
+#include <ddm_sim/rod_renderer.h>
 #include <gtest/gtest.h>
 
 #include <boost/filesystem.hpp>
@@ -75,10 +76,13 @@ TEST(Configuration, EveryPresetLoadsWithEveryPlant) {
   for (const std::string& preset : presets) {
     for (const std::string plant : {"moving_tile", "pendulum", "pendulum_gravity"}) {
       const Configuration all = read(arguments(preset, plant));
-      EXPECT_EQ(all.plant.gravity > 0.0, plant == "pendulum_gravity") << preset;
-      EXPECT_EQ(all.mpc.max_torque, std::vector<double>{all.plant.max_torque})
-          << preset << ", " << plant;
-      EXPECT_NO_THROW(makePlant(all.plant, all.camera)) << preset << ", " << plant;
+      EXPECT_EQ(all.plant->type(), plant == "moving_tile" ? plant : "pendulum") << preset;
+      ASSERT_EQ(all.mpc.max_torque.size(), 1U) << preset << ", " << plant;
+      EXPECT_EQ(all.plant_info.max_torque.minCoeff(), all.mpc.max_torque[0]) << preset << plant;
+      EXPECT_EQ(all.plant_info.max_torque.maxCoeff(), all.mpc.max_torque[0]) << preset << plant;
+      EXPECT_EQ(all.evaluation.error_unit, plant == "moving_tile" ? "px" : "deg") << preset;
+      EXPECT_EQ(all.evaluation.tolerance, plant == "moving_tile" ? 2.0 : 10.0) << preset;
+      EXPECT_NO_THROW(makePlant(*all.plant)) << preset << ", " << plant;
     }
   }
 }
@@ -102,11 +106,11 @@ TEST(Configuration, ThePaperPresetHoldsTheNumbersOfThePaper) {
   EXPECT_EQ(all.mpc.epsilon, 0.2);
   EXPECT_EQ(all.experiment.trials, 15);
   EXPECT_EQ(all.trial.num_steps, 100);
-  EXPECT_EQ(all.plant.dt, 0.2);
-  EXPECT_EQ(all.plant.length, 1.0);
-  EXPECT_EQ(all.plant.mass, 1.0);
-  EXPECT_EQ(all.plant.friction, 1.0);
-  EXPECT_EQ(all.evaluation.tolerance_deg, 10.0);
+  EXPECT_EQ(all.plant_info.dt, 0.2);
+  for (const char* key : {"length", "mass", "friction"}) {
+    EXPECT_EQ(all.plant->block()[key].as<double>(), 1.0) << key;
+  }
+  EXPECT_EQ(all.evaluation.tolerance, 10.0);
 }
 
 TEST(Configuration, APresetThatDoesNotExistIsRefusedWithThoseThatDo) {
@@ -120,7 +124,7 @@ TEST(Configuration, APlantThatDoesNotExistIsRefusedWithThoseThatDo) {
   for (const std::string plant : {"pendulumm", "sim", "", "../config/pendulum"}) {
     EXPECT_TRUE(throwsNaming<std::invalid_argument>(
         [&] { resolve(arguments("paper", plant)); },
-        {"unknown plant '" + plant + "'", "there are moving_tile, pendulum, pendulum_gravity"}))
+        {"'" + plant + "'", "moving_tile, pendulum, pendulum_gravity, two_link"}))
         << plant;
   }
 }
@@ -156,25 +160,26 @@ TEST(Configuration, EveryScheduleButTheJointHasAFileOfItsName) {
   }
 }
 
-TEST(Configuration, EveryNuisanceIsOneThatIsWrongWithTheCamera) {
+TEST(Configuration, EveryNuisanceIsOneOfTheCameraOrTheLookOfTheRod) {
   const std::vector<std::string> names = namesIn(DDM_LAUNCH_SOURCE_DIR "/config/nuisances");
   EXPECT_EQ(
       std::set<std::string>(names.begin(), names.end()),
       (std::set<std::string>{"noise", "brightness", "clutter", "thin_rod", "delay", "drops"}));
-  const auto camera = [](const std::string& name) {
-    EXPECT_EQ(keysOf(YAML::LoadFile(nuisanceFile(name))), (std::set<std::string>{"camera"}))
-        << name;
+  const auto with = [](const std::string& name) {
+    const std::string block = name == "thin_rod" ? "plant" : "camera";
+    EXPECT_EQ(keysOf(YAML::LoadFile(nuisanceFile(name))), (std::set<std::string>{block})) << name;
     Arguments given = arguments("paper", "pendulum");
     given.nuisances = {name};
-    return read(given).camera;
+    return read(given);
   };
-  EXPECT_EQ(camera("noise").noise_std, 0.1);
-  EXPECT_EQ(camera("brightness").brightness_drift, 0.2);
-  EXPECT_GT(camera("clutter").clutter, 0.0);
-  EXPECT_EQ(camera("thin_rod").rod_half_width, CameraOptions().rod_half_width / 2);
-  EXPECT_EQ(camera("thin_rod").edge_softness, 0.05);
-  EXPECT_EQ(camera("delay").delay, 1);
-  EXPECT_EQ(camera("drops").drop_rate, 0.05);
+  EXPECT_EQ(with("noise").camera.noise_std, 0.1);
+  EXPECT_EQ(with("brightness").camera.brightness_drift, 0.2);
+  EXPECT_GT(with("clutter").camera.clutter, 0.0);
+  EXPECT_EQ(with("thin_rod").plant->block()["rod_half_width"].as<double>(),
+            RodLook().rod_half_width / 2);
+  EXPECT_EQ(with("thin_rod").plant->block()["edge_softness"].as<double>(), 0.05);
+  EXPECT_EQ(with("delay").camera.delay, 1);
+  EXPECT_EQ(with("drops").camera.drop_rate, 0.05);
 }
 
 TEST(Configuration, ANuisanceThatDoesNotExistIsRefusedWithThoseThatDo) {
@@ -214,11 +219,11 @@ TEST(Configuration, ProblemsOfAllBlocksAreReportedAtOnce) {
       [] {
         readText(
             "mpc: {horzion: 3, epsilon: 1.5}\nexperiment: {seed: -1}\ntrial: {num_steps: 0}\n"
-            "evaluation: {tolerance_deg: .nan, settled_steps: 0}\nplant: {dt: fast}\n"
+            "evaluation: {tolerance: .nan, settled_steps: 0}\nplant: {dt: fast}\n"
             "model: {order: 2.5}\nsin: {watchdog: 1}\n");
       },
       {"mpc/horzion", "did you mean horizon", "mpc/epsilon", "1.5", "experiment/seed", "-1",
-       "trial/num_steps", "evaluation/tolerance_deg", "nan", "evaluation/settled_steps", "plant/dt",
+       "trial/num_steps", "evaluation/tolerance", "nan", "evaluation/settled_steps", "plant/dt",
        "fast", "model/order", "2.5", "unknown block sin"}));
 }
 
@@ -253,6 +258,29 @@ TEST(Configuration, ARobotIsOneWhereItsBlockIsGiven) {
       {"mpc/max_torque", "robot/max_torque", "got 3.5"}));
 }
 
+TEST(Configuration, EachMotorBoundsWhatIsPlannedForIt) {
+  const TempFolder folder;
+  const auto readTile = [&](const std::string& limits, const std::string& planned) {
+    writeText(folder.file("limits.yaml"), "plant: {type: moving_tile, max_torque: " + limits +
+                                              "}\nmpc: {max_torque: " + planned + "}\n");
+    return read(arguments("paper", "moving_tile", {folder.file("limits.yaml")}));
+  };
+  EXPECT_EQ(readTile("[5.0, 4.0]", "4.0").plant_info.max_torque, Eigen::Vector2d(5.0, 4.0));
+  EXPECT_NO_THROW(readTile("[5.0, 4.0]", "[5.0, 4.0]"));
+  for (const char* planned : {"4.1", "[3.5, 4.1]"}) {
+    EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+        [&] { readTile("[5.0, 4.0]", planned); }, {"mpc/max_torque", "plant/max_torque", planned}));
+  }
+}
+
+TEST(Configuration, AToleranceInAnotherUnitThanThatOfThePlantIsRefused) {
+  EXPECT_EQ(readText("evaluation: {tolerance: 5.0}").evaluation.tolerance, 5.0);
+  EXPECT_EQ(readText("evaluation: {tolerance: 5.0, error_unit: deg}").evaluation.tolerance, 5.0);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [] { readText("evaluation: {tolerance: 0.1, error_unit: m}"); },
+      {"evaluation/error_unit", "deg"}));
+}
+
 TEST(Configuration, WhatJustFitsIsAccepted) {
   EXPECT_NO_THROW(readText("trial: {num_steps: 51}\nevaluation: {settled_steps_strict: 51}\n"));
   EXPECT_NO_THROW(readText("trial: {num_steps: 30}\nmodel: {pca_dim: 10, order: 29}\n"));
@@ -269,6 +297,7 @@ TEST(Configuration, WhatIsSavedIsReadBackAsTheSameConfiguration) {
   const TempFolder folder;
   Configuration all = readText("mpc: {epsilon: 0.123456789012345678}\n", "debug");
   all.experiment.runs = "/some/where";
+  testing::usePlant(testing::plantOf("{type: pendulum, start_std: [0.1, 0.25]}"), &all);
   all.start.bags = {"/a.bag", "/b c.bag"};
   all.start.bag_ids = {"crc32-00000001", "crc32-1e234567"};
   writeText(folder.file("config.yaml"), YAML::Dump(toYaml(all)));
@@ -278,14 +307,20 @@ TEST(Configuration, WhatIsSavedIsReadBackAsTheSameConfiguration) {
 TEST(ExperimentManual, HasTheKeysAndDefaultsOfEachBlock) {
   const std::string manual = DDM_LAUNCH_SOURCE_DIR "/config/experiment.yaml";
   const YAML::Node blocks = YAML::LoadFile(manual);
-  const Configuration defaults;
-  YAML::Node expected = toYaml(defaults);
+  YAML::Node expected;
+  expected["experiment"] = toYaml(ExperimentOptions());
+  expected["trial"] = toYaml(TrialOptions());
+  expected["evaluation"] = toYaml(EvaluationOptions());
   expected["prediction"] = toYaml(PredictionOptions());
   expected["start"] = toYaml(StartOptions());
-  YAML::Node there = toYaml(read({manual}));
+  YAML::Node there;
   ParamReader reader = ParamReader::fromFiles({manual});
+  there["experiment"] = toYaml(reader.read<ExperimentOptions>("experiment"));
+  there["trial"] = toYaml(reader.read<TrialOptions>("trial"));
+  there["evaluation"] = toYaml(reader.read<EvaluationOptions>("evaluation"));
   there["prediction"] = toYaml(reader.read<PredictionOptions>("prediction"));
   there["start"] = toYaml(reader.read<StartOptions>("start"));
+  EXPECT_NO_THROW(reader.requireValid());
   const std::set<std::string> names = {"experiment", "trial", "evaluation", "prediction", "start"};
   EXPECT_EQ(keysOf(blocks), names);
   for (const std::string& block : names) {
@@ -326,10 +361,9 @@ TEST(ExperimentOptions, EachKeyOutOfRangeIsNamed) {
     options.num_steps = num_steps;
     EXPECT_NE(problem(options).find("trial/num_steps must lie in"), std::string::npos);
   }
-  for (const double tolerance : {0.0, -1.0, 180.1, nan}) {
-    EXPECT_NE(
-        evaluation([&](auto* o) { o->tolerance_deg = tolerance; }).find("evaluation/tolerance_deg"),
-        std::string::npos);
+  for (const double tolerance : {-1.0, inf, nan}) {
+    EXPECT_NE(evaluation([&](auto* o) { o->tolerance = tolerance; }).find("evaluation/tolerance"),
+              std::string::npos);
   }
   for (const double distance : {-0.1, nan, inf}) {
     EXPECT_NE(

@@ -24,7 +24,7 @@ class EfficientTablesTest(figure_case.FigureCase):
             for trial in range(trials):
                 row = dict.fromkeys(COLUMNS, "0")
                 row.update(seed=seed, trial=trial, frames=frames(trial), success=int(success(seed, trial)),
-                           success_strict=int((strict or success)(seed, trial)), final_error_deg=1.0,
+                           success_strict=int((strict or success)(seed, trial)), final_error=1.0,
                            train_s=seed + 0.1, plan_ms_p99=2.0 + seed + 0.5 * trial)
                 rows.append(",".join(str(row[column]) for column in COLUMNS))
         return self.writeLines(name, ",".join(COLUMNS), *rows)

@@ -3,7 +3,10 @@
 #include "evaluation.h"
 
 #include <ddm_model/testing/expect_error.h>
-#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/angles.h>
+#include <ddm_sim/moving_tile.h>
+#include <ddm_sim/pendulum.h>
+#include <ddm_sim/testing/toy_plant.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,8 +19,23 @@ namespace {
 
 using States = std::vector<Eigen::VectorXd>;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kDegree = kPi / 180.0;
+
+/// Options that the plant has completed.
+EvaluationOptions optionsFor(const Plant& plant) {
+  EvaluationOptions options;
+  options.complete(plant.info());
+  return options;
+}
+
+States zeroTorques(const Plant& plant, const States& states) {
+  return States(states.size(), Eigen::VectorXd::Zero(plant.torqueDim()));
+}
+
+/// Of a run without torques.
+Evaluation evaluated(const Plant& plant, const States& states, const EvaluationOptions& options) {
+  return evaluate(plant, states, zeroTorques(plant, states), options);
+}
 
 class EvaluationTest : public ::testing::Test {
  protected:
@@ -30,10 +48,12 @@ class EvaluationTest : public ::testing::Test {
     return states;
   }
 
-  Evaluation evaluated(const States& states) const { return evaluate(*plant_, states, options_); }
+  Evaluation evaluated(const States& states) const {
+    return ddm::evaluated(plant_, states, options_);
+  }
 
-  std::unique_ptr<Plant> plant_ = makePlant(PlantOptions(), CameraOptions());
-  EvaluationOptions options_;
+  Pendulum plant_{PendulumOptions()};
+  EvaluationOptions options_ = optionsFor(plant_);
 };
 
 TEST_F(EvaluationTest, SuccessTakesTheLastTenFramesAtTheGoal) {
@@ -52,14 +72,14 @@ TEST_F(EvaluationTest, LeavingTheGoalAtTheVeryEndIsNoSuccess) {
   States states(40, at(kPi));
   states.back() = at(kPi - 11.0 * kDegree);
   EXPECT_FALSE(evaluated(states).success);
-  EXPECT_NEAR(evaluated(states).final_error_deg.value(), 11.0, 1e-12);
+  EXPECT_NEAR(evaluated(states).final_error.value(), 11.0, 1e-12);
 }
 
 TEST_F(EvaluationTest, AFrameAtExactlyTheToleranceCounts) {
   const States states(40, at(kPi - 10.0 * kDegree));
-  options_.tolerance_deg = plant_->goalError(states[0]) * 180.0 / kPi;
+  options_.tolerance = plant_.goalError(states[0]);
   EXPECT_TRUE(evaluated(states).success);
-  options_.tolerance_deg = std::nextafter(options_.tolerance_deg, 0.0);
+  options_.tolerance = std::nextafter(options_.tolerance, 0.0);
   EXPECT_FALSE(evaluated(states).success);
 }
 
@@ -67,22 +87,92 @@ TEST_F(EvaluationTest, AnglesCountModuloAWholeTurn) {
   for (const double goal : {kPi, -kPi, 5.0 * kPi, -7.0 * kPi}) {
     const Evaluation evaluation = evaluated(States(40, at(goal + 9.0 * kDegree)));
     EXPECT_TRUE(evaluation.success) << goal;
-    EXPECT_NEAR(evaluation.final_error_deg.value(), 9.0, 1e-9) << goal;
+    EXPECT_NEAR(evaluation.final_error.value(), 9.0, 1e-9) << goal;
     EXPECT_FALSE(evaluated(States(40, at(goal - 10.1 * kDegree))).success) << goal;
   }
+}
+
+TEST_F(EvaluationTest, TheGoalIsThatOfTheRun) {
+  plant_.setGoal(at(kPi / 2));
+  EXPECT_FALSE(evaluated(arriving(40)).success);
+  EXPECT_NEAR(evaluated(arriving(40)).final_error.value(), 90.0, 1e-12);
+  EXPECT_TRUE(evaluated(States(40, at(kPi / 2))).success);
 }
 
 TEST_F(EvaluationTest, WithoutGroundTruthNothingIsKnown) {
   const Evaluation evaluation = evaluated({});
   EXPECT_FALSE(evaluation.known);
   EXPECT_FALSE(evaluation.success);
+  EXPECT_FALSE(evaluation.final_error.has_value());
+  EXPECT_FALSE(evaluation.total_reward.has_value());
 }
 
-TEST_F(EvaluationTest, OfAPlantWithoutAnAngleNothingIsKnown) {
-  PlantOptions options;
-  options.type = "moving_tile";
-  const std::unique_ptr<Plant> tile = makePlant(options, CameraOptions());
-  EXPECT_FALSE(evaluate(*tile, States(40, tile->goalState()), options_).known);
+TEST(EvaluationOfLengths, CountsTheTileWithinItsPixels) {
+  const MovingTile tile{MovingTileOptions()};
+  const EvaluationOptions options = optionsFor(tile);
+  EXPECT_EQ(options.error_unit, "px");
+  const auto away = [&](double distance) {
+    const Eigen::VectorXd state = tile.goal() + distance * Eigen::Vector2d(0.6, -0.8);
+    return evaluated(tile, States(40, state), options);
+  };
+  EXPECT_TRUE(away(1.99).success_strict);
+  EXPECT_NEAR(away(1.99).final_error.value(), 1.99, 1e-12);
+  EXPECT_TRUE(away(2.01).known);
+  EXPECT_FALSE(away(2.01).success);
+  EXPECT_FALSE(away(1.0).total_reward.has_value());
+}
+
+TEST(EvaluationOfLengths, CountsTheCartWithinItsMetres) {
+  const testing::ToyPlant cart{testing::ToyPlant::Traits()};
+  const EvaluationOptions options = optionsFor(cart);
+  EXPECT_EQ(options.error_unit, "m");
+  EXPECT_EQ(options.tolerance, 0.05);
+  const auto at = [&](double position) {
+    return evaluated(cart, States(40, Eigen::Vector2d(position, 3.0)), options);
+  };
+  EXPECT_TRUE(at(0.951).success);
+  EXPECT_FALSE(at(0.949).success);
+  EXPECT_NEAR(at(-1.5).final_error.value(), 2.5, 1e-12);
+}
+
+TEST(EvaluationOfRewards, AddsUpWhatThePlantSaysOfEachStateAndItsTorque) {
+  const testing::ToyPlant plant(testing::colourfulToy());  // -x^2 - v^2 - 0.1 u^2
+  States states, torques;
+  double expected = 0.0;
+  for (int t = 0; t < 30; ++t) {
+    states.emplace_back(Eigen::Vector2d(0.1 * t, -0.2));
+    torques.emplace_back(Eigen::VectorXd::Constant(1, 0.3 * t));
+    expected -= 0.01 * t * t + 0.04 + 0.1 * 0.09 * t * t;
+  }
+  const EvaluationOptions options = optionsFor(plant);
+  EXPECT_NEAR(evaluate(plant, states, torques, options).total_reward.value(), expected, 1e-9);
+  torques.back() *= -1.0;
+  EXPECT_NEAR(evaluate(plant, states, torques, options).total_reward.value(), expected, 1e-9);
+  torques[7] *= 2.0;
+  EXPECT_LT(evaluate(plant, states, torques, options).total_reward.value(), expected - 1e-3);
+}
+
+TEST(EvaluationOptions, AreCompletedByThePlant) {
+  const PlantInfo info = testing::toyInfo();
+  EvaluationOptions options;
+  options.complete(info);
+  EXPECT_EQ(options.tolerance, 0.05);
+  EXPECT_EQ(options.error_unit, "m");
+  options.complete(info);  // of a saved file
+  EXPECT_EQ(options.tolerance, 0.05);
+  options = EvaluationOptions();
+  options.tolerance = 0.5;
+  options.error_unit = "m";
+  options.complete(info);
+  EXPECT_EQ(options.tolerance, 0.5);
+}
+
+TEST(EvaluationOptions, AreRefusedInAnotherUnitThanThatOfThePlant) {
+  EvaluationOptions options;
+  options.tolerance = 10.0;
+  options.error_unit = "deg";
+  EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
+      [&] { options.complete(testing::toyInfo()); }, {"evaluation/error_unit", "deg", "m"}));
 }
 
 TEST_F(EvaluationTest, WithoutGroundTruthTheLastFramesMustBeNearInFeatures) {
@@ -91,7 +181,7 @@ TEST_F(EvaluationTest, WithoutGroundTruthTheLastFramesMustBeNearInFeatures) {
   std::fill(distances.end() - 24, distances.end(), 0.5);
   EXPECT_TRUE(evaluateFeatures(distances, options_).success);
   EXPECT_FALSE(evaluateFeatures(distances, options_).success_strict);
-  EXPECT_FALSE(evaluateFeatures(distances, options_).final_error_deg.has_value());
+  EXPECT_FALSE(evaluateFeatures(distances, options_).final_error.has_value());
   distances[30] = 0.51;
   EXPECT_TRUE(evaluateFeatures(distances, options_).known);
   EXPECT_FALSE(evaluateFeatures(distances, options_).success);
@@ -111,7 +201,7 @@ TEST_F(EvaluationTest, ADistanceThatIsNoNumberIsNoSuccess) {
 
 TEST_F(EvaluationTest, FewerFramesThanTheStrictCriterionNeedsAreRefused) {
   EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>([this] { evaluated(arriving(24, 24)); },
-                                                           {"at least 25", "got 24"}));
+                                                           {"25", "got 24"}));
 }
 
 TEST(Quantile, IsTheValueThatAFractionDoesNotExceed) {

@@ -8,10 +8,13 @@
 
 #include <algorithm>
 #include <boost/filesystem.hpp>
+#include <cmath>
+#include <memory>
 #include <sstream>
 
 #include "code_version.h"
 #include "toy_run.h"
+#include "trials_csv.h"
 
 namespace ddm {
 namespace {
@@ -148,7 +151,39 @@ TEST_F(ExperimentTest, ARowTellsFramesSuccessAndPlanTimesOfTheGreedyRun) {
   configuration_.experiment.trials = 0;
   run();
   EXPECT_EQ(textOf(file("trials.csv")).substr(textOf(file("trials.csv")).find('\n') + 1),
-            "7,0,30,1,1,0.0,0.5,0.25,2.000,0,15.000,30.000," + codeVersion() + "\n");
+            "7,0,30,1,1,0.0,0.5,0.25,2.000,0,15.000,30.000," + codeVersion() + ",\n");
+}
+
+TEST_F(ExperimentTest, ARowTellsTheErrorInTheUnitOfThePlantAndItsReturn) {
+  testing::ToyPlant::Traits traits;
+  traits.reward = [](const Eigen::VectorXd& state, const Eigen::VectorXd& torque) {
+    return -2.0 * state[0] - torque[0];
+  };
+  testing::usePlant(testing::plantOf(traits), &configuration_);
+  configuration_.experiment.trials = 0;
+  world_.state = (Eigen::VectorXd(2) << 0.75, 0.0)
+                     .finished();  // a quarter of a metre away, torques 0, 0.1, ... 2.9
+  run();
+  const TrialRow row = parseTrialsCsv(textOf(file("trials.csv")), "trials.csv").at(0);
+  EXPECT_EQ(row.evaluation.final_error, 0.25);
+  EXPECT_FALSE(row.evaluation.success);
+  EXPECT_NEAR(row.evaluation.total_reward.value(), -2.0 * 0.75 * 30 - 43.5, 1e-9);
+  EXPECT_EQ(YAML::LoadFile(file("config.yaml"))["evaluation"]["error_unit"].as<std::string>(), "m");
+}
+
+TEST_F(ExperimentTest, AGreedyRunIsJudgedByTheGoalThatWasDrawnForIt) {
+  const auto plant = testing::plantOf(testing::colourfulToy());
+  testing::usePlant(plant, &configuration_);
+  const std::unique_ptr<Plant> alone = plant->make();
+  world_.state = goalOf(*alone, 7, 1, /*evaluation=*/true);
+  run();
+  const auto rows = parseTrialsCsv(textOf(file("trials.csv")), "trials.csv");
+  ASSERT_EQ(rows.size(), 3u);
+  for (std::uint32_t trial = 0; trial < 3; ++trial) {
+    const double goal = goalOf(*alone, 7, trial, true)[0];
+    EXPECT_EQ(rows[trial].evaluation.final_error, std::abs(world_.state[0] - goal)) << trial;
+    EXPECT_EQ(rows[trial].evaluation.success, trial == 1) << trial;
+  }
 }
 
 TEST_F(ExperimentTest, WithoutGroundTruthSuccessStaysEmpty) {

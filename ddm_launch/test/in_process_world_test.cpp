@@ -6,11 +6,12 @@
 #include <ddm_model/testing/temp_folder.h>
 #include <ddm_sim/camera.h>
 #include <ddm_sim/plant_factory.h>
-#include <ddm_sim/testing/toy_plant.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "toy_run.h"
 
@@ -20,10 +21,10 @@ namespace {
 /// A plant whose state is the number of its steps, and which has none beyond the last.
 testing::ToyPlant::Traits counter(int last) {
   testing::ToyPlant::Traits traits;
-  traits.start = Eigen::VectorXd::Zero(1);
-  traits.start_std = 0.0;
-  traits.states = {"steps"};
-  traits.goal = Eigen::VectorXd::Zero(1);
+  traits.info.start = Eigen::VectorXd::Zero(1);
+  traits.info.start_std = Eigen::VectorXd::Zero(1);
+  traits.info.state_names = {"steps"};
+  traits.info.goal = Eigen::VectorXd::Zero(1);
   traits.advance = [last](const Eigen::VectorXd& state, const Eigen::VectorXd& /*torque*/) {
     const double next = state[0] < last ? state[0] + 1.0 : std::numeric_limits<double>::infinity();
     return Eigen::VectorXd(Eigen::VectorXd::Constant(1, next));
@@ -54,7 +55,7 @@ class InProcessWorldTest : public ::testing::Test {
   /// Time steps from one frame to the next.
   int stepsAfter(const TrialOutcome& outcome, size_t frame) const {
     const double steps =
-        (outcome.times[frame + 1] - outcome.times[frame]) / configuration_.plant.dt;
+        (outcome.times[frame + 1] - outcome.times[frame]) / configuration_.plant_info.dt;
     EXPECT_NEAR(steps, std::round(steps), 1e-6) << frame;
     return static_cast<int>(std::round(steps));
   }
@@ -73,7 +74,7 @@ TEST_F(InProcessWorldTest, APerfectCameraGivesAFrameInEachStepAndOnePiece) {
 }
 
 TEST_F(InProcessWorldTest, ThePlantStaysWhereTheLastFrameShowsItAsInLockStep) {
-  configuration_.plant = testing::toyOptions(counter(39));
+  testing::usePlant(testing::plantOf(counter(39)), &configuration_);
   const TrialOutcome outcome = run();
   ASSERT_EQ(outcome.states.size(), 40u);
   EXPECT_EQ(outcome.states.back()[0], 39.0);
@@ -86,7 +87,7 @@ TEST_F(InProcessWorldTest, ThePlantGoesOnUnderTheLastTorqueWhereAFrameIsLost) {
   ASSERT_EQ(outcome.times.size(), 40u);
   ASSERT_EQ(outcome.torques.size(), 40u);
   EXPECT_EQ(outcome.times[0], 0.0);
-  const auto plant = makePlant(configuration_.plant, configuration_.camera);
+  const auto plant = makePlant(*configuration_.plant);
   int num_lost = 0;
   for (size_t t = 0; t + 1 < 40; ++t) {
     const int steps = stepsAfter(outcome, t);
@@ -121,20 +122,62 @@ TEST_F(InProcessWorldTest, FramesAndGoalAreThoseOfTheCameraInThisRun) {
   configuration_.camera.drop_rate = 0.2;
   const TrialOutcome outcome = run();
   const BagContent content = bag();
-  const auto plant = makePlant(configuration_.plant, configuration_.camera);
-  Camera camera(configuration_.camera);
+  const auto plant = makePlant(*configuration_.plant);
+  Camera camera(configuration_.camera, configuration_.plant_info.dt);
+  const auto photographed = [&] { return camera.photograph(plant->render(plant->state())); };
   camera.begin(7, 2, false);
-  EXPECT_EQ(content.data.goal(), camera.photographGoal(*plant));
+  EXPECT_EQ(content.data.goal(), camera.photographGoal(plant->render(plant->goal())).bytes);
   plant->setState(outcome.states[0]);
   for (Eigen::Index t = 0; t < 40; ++t) {
-    auto photograph = camera.photograph(*plant);
+    auto photograph = photographed();
     while (!photograph) {
       plant->step(outcome.torques[static_cast<size_t>(t) - 1]);
-      photograph = camera.photograph(*plant);
+      photograph = photographed();
     }
-    ASSERT_EQ(content.data.image(t), *photograph) << t;
+    ASSERT_EQ(content.data.image(t), photograph->bytes) << t;
     plant->step(outcome.torques[static_cast<size_t>(t)]);
   }
+}
+
+/// A grey level for each place, so that frames tell where the cart is and goals where it shall be.
+testing::ToyPlant::Traits wandering() {
+  testing::ToyPlant::Traits traits = testing::colourfulToy();
+  traits.draw = [](const Eigen::VectorXd& state) {
+    const double grey = 128.0 + 40.0 * state[0];
+    return testing::plainPicture(
+        51, static_cast<std::uint8_t>(std::lround(std::min(255.0, std::max(0.0, grey)))));
+  };
+  return traits;
+}
+
+TEST_F(InProcessWorldTest, EachRunHasAGoalOfItsOwnInItsBagWhereThePlantDrawsOne) {
+  testing::usePlant(testing::plantOf(wandering()), &configuration_);
+  const auto plant = makePlant(*configuration_.plant);
+  std::set<Grey> goals;
+  for (const std::uint32_t trial : {0U, 1U, 2U}) {
+    request_.id.trial = trial;
+    request_.bag = scratch_.file(std::to_string(trial) + ".bag");
+    run();
+    const Grey expected = plant->render(goalOf(*plant, 7, trial, false)).bytes;
+    EXPECT_EQ(bag().data.goal(), expected) << trial;
+    goals.insert(expected);
+  }
+  EXPECT_EQ(goals.size(), 3u);
+}
+
+TEST_F(InProcessWorldTest, APlantWithTwoMotorsIsDrivenByBoth) {
+  testing::usePlant(testing::plantOf("{type: two_link}"), &configuration_);
+  configuration_.mpc.max_torque = {2.0};
+  const TrialOutcome outcome = run();
+  ASSERT_EQ(outcome.torques.size(), 40u);
+  double largest[2] = {0.0, 0.0};
+  for (const Eigen::VectorXd& torque : outcome.torques) {
+    ASSERT_EQ(torque.size(), 2);
+    for (int i = 0; i < 2; ++i) largest[i] = std::max(largest[i], std::abs(torque[i]));
+  }
+  EXPECT_GT(largest[0], 1.0);
+  EXPECT_GT(largest[1], 1.0);
+  EXPECT_EQ(bag().data.torques().rows(), 2);
 }
 
 }  // namespace

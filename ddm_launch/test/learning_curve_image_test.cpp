@@ -14,14 +14,20 @@ namespace {
 using testing::kToySteps;
 using testing::toyRow;
 
-constexpr double kGoalDeg = 10.0;
 const cv::Scalar kBlue(0, 114, 178);
 const cv::Scalar kRed(213, 94, 0);
 const cv::Scalar kOrange(230, 159, 0);
 
-TrialRow rowWith(int trial, double error_deg, bool success) {
+EvaluationOptions inDegrees() {
+  EvaluationOptions options;
+  options.tolerance = 10.0;
+  options.error_unit = "deg";
+  return options;
+}
+
+TrialRow rowWith(int trial, double error, bool success) {
   TrialRow row = toyRow(trial);
-  row.evaluation.final_error_deg = error_deg;
+  row.evaluation.final_error = error;
   row.evaluation.success = success;
   return row;
 }
@@ -43,24 +49,38 @@ cv::Point2d middle(const cv::Mat& picture, const cv::Scalar& colour) {
 }
 
 TEST(LearningCurveImage, MarksSuccessWithABlueDotAndFailureWithARedCross) {
-  const cv::Mat success = drawLearningCurve({rowWith(0, 5.0, true)}, 300, kGoalDeg);
+  const cv::Mat success = drawLearningCurve({rowWith(0, 5.0, true)}, 300, inDegrees());
   EXPECT_GT(count(success, kBlue), 50);
   EXPECT_EQ(count(success, kRed), 0);
-  const cv::Mat failure = drawLearningCurve({rowWith(0, 90.0, false)}, 300, kGoalDeg);
+  const cv::Mat failure = drawLearningCurve({rowWith(0, 90.0, false)}, 300, inDegrees());
   EXPECT_EQ(count(failure, kBlue), 0);
   EXPECT_GT(count(failure, kRed), 30);
 }
 
 TEST(LearningCurveImage, PutsLargeErrorsHighAndManyFramesToTheRight) {
-  const auto at = [](int trial, double error_deg) {
-    return middle(drawLearningCurve({rowWith(trial, error_deg, true)}, 10 * kToySteps, kGoalDeg),
-                  kBlue);
+  // The cross of a failure at 180 sets the scale.
+  const auto at = [](int trial, double error) {
+    const std::vector<TrialRow> rows = {rowWith(0, 180.0, false), rowWith(trial, error, true)};
+    return middle(drawLearningCurve(rows, 10 * kToySteps, inDegrees()), kBlue);
   };
-  EXPECT_NEAR(at(0, 180.0).y, 34.0, 1.0) << "upper edge";
-  EXPECT_NEAR(at(0, 0.0).y, 34.0 + 218.0, 1.0) << "lower edge";
-  EXPECT_NEAR(at(0, 90.0).y, 34.0 + 109.0, 1.0);
+  EXPECT_NEAR(at(1, 180.0).y, 34.0, 1.0) << "upper edge";
+  EXPECT_NEAR(at(1, 0.0).y, 34.0 + 218.0, 1.0) << "lower edge";
+  EXPECT_NEAR(at(1, 90.0).y, 34.0 + 109.0, 1.0);
   EXPECT_NEAR(at(4, 90.0).x, 58.0 + 275.0, 1.0) << "half of the frames";
   EXPECT_NEAR(at(9, 90.0).x, 58.0 + 550.0, 1.0) << "all of them";
+}
+
+TEST(LearningCurveImage, ReachesUpToTheLargestErrorOrTwiceTheTolerance) {
+  EvaluationOptions in_metres;
+  in_metres.tolerance = 0.05;
+  in_metres.error_unit = "m";
+  const auto height = [&](double error) {
+    const cv::Mat picture = drawLearningCurve({rowWith(4, error, true)}, 300, in_metres);
+    return middle(picture, kBlue).y;
+  };
+  EXPECT_NEAR(height(0.05), 34.0 + 109.0, 1.0);
+  EXPECT_NEAR(height(0.025), 34.0 + 163.5, 1.0);
+  EXPECT_NEAR(height(3.0), 34.0, 1.0);
 }
 
 TEST(LearningCurveImage, GrowsTrialByTrialAndLeavesWhatWasThere) {
@@ -68,7 +88,7 @@ TEST(LearningCurveImage, GrowsTrialByTrialAndLeavesWhatWasThere) {
   int marks = 0;
   for (int trial = 0; trial < 5; ++trial) {
     rows.push_back(rowWith(trial, 30.0 * trial, true));
-    const int now = count(drawLearningCurve(rows, 5 * kToySteps, kGoalDeg), kBlue);
+    const int now = count(drawLearningCurve(rows, 5 * kToySteps, inDegrees()), kBlue);
     EXPECT_GT(now, marks + 30) << "trial " << trial;
     marks = now;
   }
@@ -76,8 +96,8 @@ TEST(LearningCurveImage, GrowsTrialByTrialAndLeavesWhatWasThere) {
 
 TEST(LearningCurveImage, HasARowOfDotsAndARowOfCrossesWhereFeaturesAreTheJudge) {
   std::vector<TrialRow> rows = {rowWith(0, 0.0, false), rowWith(4, 0.0, true)};
-  for (TrialRow& row : rows) row.evaluation.final_error_deg = std::nullopt;
-  const cv::Mat picture = drawLearningCurve(rows, 10 * kToySteps, kGoalDeg);
+  for (TrialRow& row : rows) row.evaluation.final_error = std::nullopt;
+  const cv::Mat picture = drawLearningCurve(rows, 10 * kToySteps, inDegrees());
   EXPECT_GT(middle(picture, kBlue).y, middle(picture, kRed).y + 100.0);
   EXPECT_GT(middle(picture, kBlue).x, middle(picture, kRed).x + 100.0);
 }
@@ -85,17 +105,17 @@ TEST(LearningCurveImage, HasARowOfDotsAndARowOfCrossesWhereFeaturesAreTheJudge) 
 TEST(LearningCurveImage, ShowsTheErrorsOfTheModelWhereNobodyKnowsTheTruth) {
   TrialRow row = toyRow(1);
   row.evaluation = Evaluation();
-  const cv::Mat picture = drawLearningCurve({row}, 300, kGoalDeg);
+  const cv::Mat picture = drawLearningCurve({row}, 300, inDegrees());
   EXPECT_EQ(count(picture, kBlue) + count(picture, kRed), 0);
   EXPECT_GT(count(picture, kOrange), 10);
 }
 
 TEST(LearningCurveImage, IsAnEmptyFrameBeforeTheFirstTrialAndForAMethodWithoutErrors) {
-  EXPECT_EQ(drawLearningCurve({}, 300, kGoalDeg).size(), cv::Size(640, 480));
+  EXPECT_EQ(drawLearningCurve({}, 300, inDegrees()).size(), cv::Size(640, 480));
   TrialRow row = toyRow(0);
   row.v_r.reset();
   row.v_p.reset();
-  EXPECT_GT(count(drawLearningCurve({row}, 0, kGoalDeg), kRed), 30);
+  EXPECT_GT(count(drawLearningCurve({row}, 0, inDegrees()), kRed), 30);
 }
 
 }  // namespace

@@ -12,7 +12,8 @@ from run_files import read_bag, read_rows, read_yaml  # noqa: E402
 
 TRIALS = 1
 STEP_NS = 200000000
-REST = """camera: {noise_std: 0.1, brightness_drift: 0.2, delay: 1, drop_rate: 0.15, rod_half_width: 0.05}
+REST = """camera: {noise_std: 0.1, brightness_drift: 0.2, delay: 1, drop_rate: 0.15}
+plant: {rod_half_width: 0.05}
 model: {residual: true, increments: true, order: 3}
 training: {num_starts: 2, pca_starts: 2, selection_steps: 2, prediction_steps: 2, weight_decay: 0.1}
 mpc: {offset_gain: 0.3}

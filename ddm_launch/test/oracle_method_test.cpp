@@ -22,11 +22,9 @@ using testing::randomMatrix;
 
 constexpr double kControlWeight = 0.01;
 
-std::unique_ptr<Plant> plantOf(const std::string& type, double gravity = 0.0) {
-  PlantOptions options;
-  options.type = type;
-  options.gravity = gravity;
-  return makePlant(options, CameraOptions());
+std::unique_ptr<Plant> makePlantOf(const std::string& type, double gravity = 0.0) {
+  const std::string more = gravity > 0.0 ? ", gravity: " + std::to_string(gravity) : "";
+  return makePlant(*testing::plantOf("{type: " + type + more + "}"));
 }
 
 /// J(U) as a function of a flat vector of torques.
@@ -41,11 +39,11 @@ DifferentiableFunction costFunction(PlanCost* cost) {
 }
 
 TEST(OraclePlanCost, AddsUpSquaredDistancesOfTheTipAndThePriceOfTorque) {
-  OraclePlanCost cost(plantOf("pendulum"), 5, kControlWeight);
+  OraclePlanCost cost(makePlantOf("pendulum"), 5, kControlWeight);
   const Eigen::Vector2d start(0.3, -0.2);
   cost.setState(start);
   const Eigen::MatrixXd U = 3.0 * randomMatrix(1, 5, 1);
-  const std::unique_ptr<Plant> plant = plantOf("pendulum");
+  const std::unique_ptr<Plant> plant = makePlantOf("pendulum");
   plant->setState(start);
   double expected = 0.0;
   for (int k = 0; k < 5; ++k) {
@@ -61,14 +59,17 @@ TEST(OraclePlanCost, AddsUpSquaredDistancesOfTheTipAndThePriceOfTorque) {
 
 TEST(OraclePlanCost, GradientMatchesDifferencesOnEveryPlant) {
   for (const double gravity : {0.0, 9.82}) {
-    OraclePlanCost cost(plantOf("pendulum", gravity), 6, kControlWeight);
+    OraclePlanCost cost(makePlantOf("pendulum", gravity), 6, kControlWeight);
     cost.setState(Eigen::Vector2d(0.4, 1.0));
     EXPECT_TRUE(testing::gradientMatches(costFunction(&cost), 2.0 * randomMatrix(6, 1, 2)))
         << gravity;
   }
-  OraclePlanCost tile(plantOf("moving_tile"), 4, kControlWeight);
+  OraclePlanCost tile(makePlantOf("moving_tile"), 4, kControlWeight);
   tile.setState(Eigen::Vector2d(20.0, 30.0));
   EXPECT_TRUE(testing::gradientMatches(costFunction(&tile), randomMatrix(8, 1, 3)));
+  OraclePlanCost arm(makePlantOf("two_link"), 4, kControlWeight);
+  arm.setState(Eigen::Vector4d(0.4, -0.3, 1.0, 0.5));
+  EXPECT_TRUE(testing::gradientMatches(costFunction(&arm), randomMatrix(8, 1, 4)));
 }
 
 class OracleTest : public ::testing::Test {
@@ -93,23 +94,37 @@ class OracleTest : public ::testing::Test {
 };
 
 TEST_F(OracleTest, StandsUpAndStaysWhereverItStarts) {
-  const std::unique_ptr<Plant> plant = plantOf("pendulum");
+  const std::unique_ptr<Plant> plant = makePlantOf("pendulum");
   for (int trial = 0; trial < 10; ++trial) {
+    const TrialOutcome run = greedyRun(trial);
     const Evaluation evaluation =
-        evaluate(*plant, greedyRun(trial).states, configuration_.evaluation);
+        evaluate(*plant, run.states, run.torques, configuration_.evaluation);
     EXPECT_TRUE(evaluation.success_strict) << "trial " << trial;
-    EXPECT_LT(evaluation.final_error_deg.value(), 0.1) << "trial " << trial;
+    EXPECT_LT(evaluation.final_error.value(), 0.1) << "trial " << trial;
   }
 }
 
 TEST_F(OracleTest, BringsTheTileToItsGoal) {
-  configuration_.plant.type = "moving_tile";
-  configuration_.plant.max_torque = 5.0;
+  testing::usePlant(testing::plantOf("{type: moving_tile, max_torque: 5.0}"), &configuration_);
   configuration_.mpc.max_torque = {5.0};
-  const std::unique_ptr<Plant> plant = makePlant(configuration_.plant, configuration_.camera);
+  const std::unique_ptr<Plant> plant = makePlant(*configuration_.plant);
   const TrialOutcome outcome = greedyRun(0);
   EXPECT_GT(plant->goalError(outcome.states.front()), 10.0);
   EXPECT_LT(plant->goalError(outcome.states.back()), 0.01);
+}
+
+TEST_F(OracleTest, BringsACartToTheGoalOfEachRun) {
+  testing::usePlant(testing::plantOf(testing::colourfulToy()), &configuration_);
+  configuration_.trial.num_steps = 30;
+  const std::unique_ptr<Plant> plant = makePlant(*configuration_.plant);
+  for (int trial = 0; trial < 3; ++trial) {
+    const TrialOutcome outcome = greedyRun(trial);
+    plant->setGoal(goalOf(*plant, 7, static_cast<std::uint32_t>(trial), /*evaluation=*/true));
+    EXPECT_NE(plant->goal(), plant->info().goal);
+    EXPECT_LT(plant->goalError(outcome.states.back()), 0.02) << trial;
+    EXPECT_TRUE(
+        evaluate(*plant, outcome.states, outcome.torques, configuration_.evaluation).success);
+  }
 }
 
 TEST_F(OracleTest, LearnsNothingAndNeedsNoBag) {

@@ -13,7 +13,8 @@ from processes import call, find_program, run_experiment  # noqa: E402
 from run_files import read_rows, read_yaml  # noqa: E402
 
 EXAMPLE = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../examples/ddm_cart"))
-PLANT_KEYS = ["type", "max_torque", "dt", "start_std", "mass", "friction", "track", "goal", "half_width"]
+PLANT_KEYS = ["type", "max_torque", "dt", "start_std", "picture_size", "mass", "friction", "track", "goal", "half_width",
+              "half_extent", "edge_softness"]
 TRIALS = 1
 
 
@@ -59,6 +60,7 @@ class OwnPlantTest(BothDriversCase):
         rows = read_rows(self.process, "evaluation_000", "torques.csv")
         self.assertEqual(rows[0], ["step", "force_n", "exploratory"])
         self.assertTrue(any(abs(float(row[1])) > 0.0 for row in rows[1:]))
+        self.assertEqual(read_yaml(self.process, "config.yaml")["evaluation"]["error_unit"], "m")
         rows = read_rows(self.process, "trial_000", "trajectory.csv")
         self.assertEqual(rows[0], ["step", "time_s", "x_m", "rate_m_per_s"])
         self.assertGreater(len({row[2] for row in rows[1:]}), 20)  # it moves
@@ -97,11 +99,11 @@ class OwnPlantTest(BothDriversCase):
         self.assertRefused(["unknown key plant/gravity"], config="plant: {gravity: 9.8}\n")
         self.assertRefused(["plant/dt must lie in"], config="plant: {dt: 0.0}\n")
 
-    def test_what_plant_and_camera_cannot_see_alone_is_refused(self):
-        self.assertRefused(["plant/track must be at most camera/half_extent", "1.5"], config="plant: {track: 1.5}\n")
+    def test_a_rail_that_leaves_the_picture_is_refused(self):
+        self.assertRefused(["plant/track must be at most plant/half_extent", "1.5"], config="plant: {track: 1.5}\n")
 
     def test_an_unknown_plugin_or_plant_is_told_what_there_is(self):
-        self.assertRefused(["ddm_cart/Kart", "pendulum, moving_tile", "ddm_cart/Cart"],
+        self.assertRefused(["ddm_cart/Kart", "ddm_cart/Cart, moving_tile, pendulum, two_link"],
                            config="plant: {type: ddm_cart/Kart}\n")
         self.assertRefused(["unknown plant 'ddm_cart/kart'", "in package ddm_cart cart", "pendulum_gravity"],
                            "--plant", "ddm_cart/kart")

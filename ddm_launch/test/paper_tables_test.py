@@ -48,7 +48,7 @@ class PaperTablesTest(ScratchCase):
             for trial in range(trials):
                 row = dict.fromkeys(COLUMNS, "0")
                 row.update(seed=seed, trial=trial, frames=100 * (trial + 1) if frames is None else frames,
-                           success=int(success(seed, trial)), success_strict=0, final_error_deg=1.0,
+                           success=int(success(seed, trial)), success_strict=0, final_error=1.0,
                            train_s=0.1 * (seed + 1), plan_ms_median=0.5, plan_ms_p99=2.0 + seed)
                 rows.append([row[column] for column in COLUMNS])
         write(self.file(name), COLUMNS, rows)

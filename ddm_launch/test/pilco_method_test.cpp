@@ -190,7 +190,7 @@ TEST_F(PilcoMethodTest, WhatIsPredictedIsWhatHappensAndItIsBetterThanTheFirstPol
   Configuration all = smallConfiguration("pilco_state", folder("run"));
   all.experiment.trials = 0;
   all.trial.num_steps = 60;
-  all.plant.start_std = 0.01;
+  testing::usePlant(testing::plantOf("{type: pendulum, start_std: 0.01}"), &all);
   ParamReader reader(
       YAML::Load("pilco: {horizon: 12, num_centres: 8}\npolicy_search: {max_iterations: 30}\n"));
   all.method = methodKind("pilco_state").read(&reader);

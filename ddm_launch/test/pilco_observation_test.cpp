@@ -3,7 +3,6 @@
 #include <ddm_model/testing/expect_error.h>
 #include <ddm_model/testing/temp_folder.h>
 #include <ddm_sim/plant_factory.h>
-#include <ddm_sim/testing/toy_plant.h>
 #include <gtest/gtest.h>
 
 #include <boost/filesystem.hpp>
@@ -31,15 +30,25 @@ Eigen::VectorXd pair(double first, double second) {
   return out;
 }
 
+std::unique_ptr<Plant> pendulum() { return makePlant(*testing::plantOf("{type: pendulum}")); }
+
+/// An arm of another package, one joint with angle and rate.
+testing::ToyPlant::Traits armTo(double angle) {
+  testing::ToyPlant::Traits traits;
+  traits.info.joints = {{"arm", JointKind::kAngle}};
+  traits.info.state_names = {"angle_rad", "rate_rad_per_s"};
+  traits.info.goal = pair(angle, 0.0);
+  return traits;
+}
+
 class TrueStateTest : public ::testing::Test {
  protected:
-  PlantOptions plant_options_;
-  std::unique_ptr<Plant> plant_ = makePlant(plant_options_, CameraOptions());
+  std::unique_ptr<Plant> plant_ = pendulum();
   testing::TempFolder scratch_;
 };
 
 TEST_F(TrueStateTest, LearningMeetsTheMeasurementsThatThePolicyActedOn) {
-  TrueStateObservation acting(*plant_, plant_options_, PilcoOptions());
+  TrueStateObservation acting(*plant_, PilcoOptions());
   const TrialId id{5, 0, false};
   std::vector<Eigen::VectorXd> states, measured;
   std::vector<double> times;
@@ -53,8 +62,8 @@ TEST_F(TrueStateTest, LearningMeetsTheMeasurementsThatThePolicyActedOn) {
     plant_->step(Eigen::VectorXd::Constant(1, 0.3 * t));
   }
   writeText(scratch_.file("trajectory.csv"),
-            formatTrajectoryCsv(times, states, plant_->stateNames()));
-  TrueStateObservation learning(*plant_, plant_options_, PilcoOptions());
+            formatTrajectoryCsv(times, states, plant_->info().state_names));
+  TrueStateObservation learning(*plant_, PilcoOptions());
   const Eigen::MatrixXd X = learning.learn({scratch_.file("trial.bag")}, data, id);
   ASSERT_EQ(X.cols(), 20);
   for (int t = 0; t < 20; ++t) EXPECT_EQ(X.col(t), measured[static_cast<size_t>(t)]) << t;
@@ -65,13 +74,14 @@ TEST_F(TrueStateTest, LearningMeetsTheMeasurementsThatThePolicyActedOn) {
 TEST_F(TrueStateTest, FramesThatDoNotFitTheBagBesideThemAreRefusedWithTheFile) {
   DataSet data(2, 1);  // two trials of 3 frames
   for (int t = 0; t < 6; ++t) data.append(Grey(4, 0), Eigen::VectorXd::Zero(1), t % 3 == 0);
-  TrueStateObservation observation(*plant_, plant_options_, PilcoOptions());
+  TrueStateObservation observation(*plant_, PilcoOptions());
   std::vector<std::string> bags;
   const auto write = [&](const std::string& trial, size_t frames) {
     fs::create_directories(scratch_.file(trial));
     const std::vector<Eigen::VectorXd> states(frames, plant_->state());
-    writeText(scratch_.file(trial + "/trajectory.csv"),
-              formatTrajectoryCsv(std::vector<double>(frames, 0.0), states, plant_->stateNames()));
+    writeText(
+        scratch_.file(trial + "/trajectory.csv"),
+        formatTrajectoryCsv(std::vector<double>(frames, 0.0), states, plant_->info().state_names));
     bags.push_back(scratch_.file(trial + "/trial.bag"));
   };
   const auto learn = [&] { observation.learn(bags, data, TrialId()); };
@@ -90,7 +100,7 @@ TEST_F(TrueStateTest, FramesThatDoNotFitTheBagBesideThemAreRefusedWithTheFile) {
 }
 
 TEST_F(TrueStateTest, NoiseHasTheSpreadThatIsAskedFor) {
-  TrueStateObservation observation(*plant_, plant_options_, PilcoOptions());
+  TrueStateObservation observation(*plant_, PilcoOptions());
   observation.startTrial(TrialId());
   Eigen::MatrixXd noise(2, 4000);
   for (Eigen::Index t = 0; t < noise.cols(); ++t) noise.col(t) = observation.observe({});
@@ -100,64 +110,58 @@ TEST_F(TrueStateTest, NoiseHasTheSpreadThatIsAskedFor) {
 }
 
 TEST_F(TrueStateTest, TheTaskIsUprightWithinTheLengthOfTheRod) {
-  plant_options_.length = 2.0;
-  plant_options_.start_std = 0.3;
-  const TrueStateObservation observation(*plant_, plant_options_, PilcoOptions());
+  plant_ = makePlant(*testing::plantOf("{type: pendulum, length: 2.0, start_std: [0.3, 0.5]}"));
+  const TrueStateObservation observation(*plant_, PilcoOptions());
   const PilcoTask task = observation.task();
   EXPECT_EQ(task.angles, std::vector<int>{1});
   EXPECT_NEAR(task.cost.value(pair(3.0, M_PI)), 0.0, 1e-12);
   // Hanging, the tip is two lengths away: four widths of half a length each.
   EXPECT_NEAR(task.cost.value(pair(0.0, 0.0)), 1.0 - std::exp(-8.0), 1e-12);
-  EXPECT_EQ(task.start.covariance, (0.3 * 0.3 * Eigen::MatrixXd::Identity(2, 2)).eval());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(2, 2);
+  covariance.diagonal() << 0.5 * 0.5, 0.3 * 0.3;  // rate first
+  EXPECT_EQ(task.start.covariance, covariance);
+  EXPECT_EQ(task.start.mean, Eigen::VectorXd::Zero(2));
 }
 
-/// Of another package, whose rod is as long as it likes.
 TEST_F(TrueStateTest, APluginIsLearnedInLengthsOfItsRodIfItsGoalIsUpright) {
-  testing::ToyPlant::Traits traits;
-  traits.goal = pair(-M_PI, 0.0);
-  PlantOptions options = testing::toyOptions(traits);
-  const std::unique_ptr<Plant> plant = makePlant(options, CameraOptions());
-  const PilcoTask task = TrueStateObservation(*plant, options, PilcoOptions()).task();
+  const std::unique_ptr<Plant> plant = makePlant(testing::ToyMaker(armTo(-M_PI)));
+  const PilcoTask task = TrueStateObservation(*plant, PilcoOptions()).task();
   for (const double angle : {0.0, 1.0, 3.0}) {
     const double lengths = 2.0 * std::cos(angle / 2.0);  // of the tip from its goal
     EXPECT_NEAR(task.cost.value(pair(0.0, angle)), 1.0 - std::exp(-2.0 * lengths * lengths), 1e-12);
   }
-  traits.goal = pair(0.0, 0.0);
-  options = testing::toyOptions(traits);
-  const std::unique_ptr<Plant> hanging = makePlant(options, CameraOptions());
+  const std::unique_ptr<Plant> hanging = makePlant(testing::ToyMaker(armTo(0.0)));
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { TrueStateObservation(*hanging, options, PilcoOptions()); },
-      {"their_package/Toy", "[0 0]", "pilco_features"}));
+      [&] { TrueStateObservation(*hanging, PilcoOptions()); }, {"[0 0]", "pilco_features"}));
 }
 
 TEST_F(TrueStateTest, TwoJointsWithoutRatesAreRefused) {
-  testing::ToyPlant::Traits traits;
-  traits.joints = {"shoulder", "elbow"};
-  traits.states = {"shoulder_rad", "elbow_rad"};
-  traits.goal = pair(M_PI, 0.0);
-  const PlantOptions options = testing::toyOptions(traits);
-  const std::unique_ptr<Plant> plant = makePlant(options, CameraOptions());
+  testing::ToyPlant::Traits traits = armTo(M_PI);
+  traits.info.joints = {{"shoulder", JointKind::kAngle}, {"elbow", JointKind::kAngle}};
+  traits.info.state_names = {"shoulder_rad", "elbow_rad"};
+  const std::unique_ptr<Plant> plant = makePlant(testing::ToyMaker(traits));
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { TrueStateObservation(*plant, options, PilcoOptions()); },
-      {"their_package/Toy", "2 joint(s)"}));
+      [&] { TrueStateObservation(*plant, PilcoOptions()); }, {"2 joint(s)"}));
 }
 
 TEST_F(TrueStateTest, APlantThatDoesNotTurnIsRefused) {
-  plant_options_.type = "moving_tile";
-  plant_options_.max_torque = 5.0;
-  const std::unique_ptr<Plant> tile = makePlant(plant_options_, CameraOptions());
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { TrueStateObservation(*tile, plant_options_, PilcoOptions()); },
-      {"plant/type moving_tile", "pilco_features"}));
+  testing::ToyPlant::Traits traits = armTo(M_PI);
+  traits.info.joints[0].kind = JointKind::kLength;
+  const std::unique_ptr<Plant> lift = makePlant(testing::ToyMaker(traits));
+  const std::unique_ptr<Plant> tile = makePlant(*testing::plantOf("{type: moving_tile}"));
+  for (const Plant* plant : {lift.get(), tile.get()}) {
+    EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+        [&] { TrueStateObservation(*plant, PilcoOptions()); }, {"pilco_features"}));
+  }
 }
 
 /// Images of a rod that turns round, and of its goal.
 DataSet imagesOf(const Plant& plant) {
-  DataSet data(plant.imageSize(), 1);
+  DataSet data(plant.render(plant.state()).width, 1);
   for (int t = 0; t < 40; ++t) {
-    data.append(plant.render(pair(0.15 * t, 0.0)), Eigen::VectorXd::Zero(1), t == 0);
+    data.append(plant.render(pair(0.15 * t, 0.0)).bytes, Eigen::VectorXd::Zero(1), t == 0);
   }
-  data.setGoal(plant.render(plant.goalState()));
+  data.setGoal(plant.render(plant.goal()).bytes);
   return data;
 }
 
@@ -174,7 +178,7 @@ void expectConsistent(Observation* observation, const DataSet& data) {
 }
 
 TEST(ImageObservations, LearnFromWhatTheyObserveAndTakeTheGoalFromItsImage) {
-  const std::unique_ptr<Plant> plant = makePlant(PlantOptions(), CameraOptions());
+  const std::unique_ptr<Plant> plant = pendulum();
   const DataSet data = imagesOf(*plant);
   ModelConfig config;
   config.model.pca_dim = 5;
@@ -214,9 +218,8 @@ TEST(ImageTask, FramesThatAreAllTheSameAreRefused) {
 }
 
 TEST(PolicyStart, CentresFollowTheFeaturesOfTheStart) {
-  PlantOptions plant_options;
-  const std::unique_ptr<Plant> plant = makePlant(plant_options, CameraOptions());
-  const PilcoTask task = TrueStateObservation(*plant, plant_options, PilcoOptions()).task();
+  const std::unique_ptr<Plant> plant = pendulum();
+  const PilcoTask task = TrueStateObservation(*plant, PilcoOptions()).task();
   const pilco::Augmentation features = pilco::replaceAngles(2, {1});
   std::mt19937_64 rng(1);
   const int count = 4000;

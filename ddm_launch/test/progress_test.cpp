@@ -19,7 +19,7 @@ class ProgressTest : public ::testing::Test {
   /// Two trials, the second a success, and the summary.
   std::string textOf(bool live) {
     std::ostringstream out;
-    Progress progress(&out, live, /*num_trials=*/1);
+    Progress progress(&out, live, /*num_trials=*/1, "px");
     progress.note("warning: mind the step");
     for (int trial = 0; trial < 2; ++trial) {
       progress.beginPhase(trial, "train");
@@ -50,7 +50,7 @@ TEST_F(ProgressTest, AFileHoldsLinesOnly) {
 TEST_F(ProgressTest, EachFinishedTrialIsOneLineWithItsVerdict) {
   const std::string text = textOf(/*live=*/false);
   for (const std::string part :
-       {"trial  0/1", "trial  1/1", "30 frames", "60 frames", "0.1 deg", "success"}) {
+       {"trial  0/1", "trial  1/1", "30 frames", "60 frames", "0.1 px", "success"}) {
     EXPECT_TRUE(has(text, part)) << part << " is not in\n" << text;
   }
 }
@@ -95,17 +95,17 @@ TEST_F(ProgressTest, TheSummaryCountsAndSaysWhereTheResultsAre) {
   }
 }
 
-TEST_F(ProgressTest, WithoutGroundTruthSuccessInFeaturesIsToldWithoutDegrees) {
+TEST_F(ProgressTest, WithoutGroundTruthSuccessInFeaturesIsToldWithoutAnError) {
   for (const bool success : {true, false}) {
     std::ostringstream out;
-    Progress progress(&out, /*live=*/false, /*num_trials=*/0);
+    Progress progress(&out, /*live=*/false, /*num_trials=*/0, "px");
     TrialRow row = toyRow(0);
     row.evaluation = Evaluation();
     row.evaluation.known = true;
     row.evaluation.success = success;
     progress.finishTrial({row});
     EXPECT_TRUE(has(out.str(), success ? "  success\n" : "  no success\n")) << out.str();
-    EXPECT_FALSE(has(out.str(), "deg")) << out.str();
+    EXPECT_FALSE(has(out.str(), "px")) << out.str();
   }
 }
 

@@ -29,6 +29,10 @@ class Resolution : public ::testing::Test {
     return readConfiguration(&reader);
   }
 
+  static double gravity(const Configuration& all) {
+    return all.plant->block()["gravity"].as<double>();
+  }
+
   /// A file as experiments leave it, of what has been given so far.
   std::string saved() const {
     return file("config.yaml", "version: 0.1.0 (test)\n" + YAML::Dump(toYaml(read())) + "\n");
@@ -49,7 +53,7 @@ TEST_F(Resolution, LaterLayersWinKeyByKey) {
   given_.set("experiment/method", std::string("pilco_state"));
   given_.set("experiment/plant", std::string("pendulum_gravity"));
   EXPECT_EQ(read().trial.num_steps, 125);
-  EXPECT_EQ(read().plant.gravity, 9.82);
+  EXPECT_EQ(gravity(read()), 9.82);
   given_.nuisances = {"noise"};
   EXPECT_EQ(read().camera.noise_std, 0.1);
   given_.configs = {file("a.yaml", "camera: {noise_std: 0.2, delay: 2}\nexperiment: {seed: 3}\n"),
@@ -65,12 +69,12 @@ TEST_F(Resolution, AFileNamesPresetPlantAndMethodWhereNoArgumentDoes) {
   given_.configs = {
       file("names.yaml", "experiment: {preset: debug, plant: moving_tile, method: pilco_pca}\n")};
   Configuration all = read();
-  EXPECT_EQ(all.plant.type, "moving_tile");
+  EXPECT_EQ(all.plant->type(), "moving_tile");
   EXPECT_EQ(all.model.model.encoder_widths, std::vector<int>{6});  // of preset debug
   EXPECT_EQ(all.trial.num_steps, 125);                             // of the method
   given_.set("experiment/plant", std::string("pendulum"));
   all = read();
-  EXPECT_EQ(all.plant.type, "pendulum");
+  EXPECT_EQ(all.plant->type(), "pendulum");
   EXPECT_EQ(all.experiment.preset, "debug");
 }
 
@@ -131,6 +135,8 @@ TEST_F(Resolution, ALearnerKnowsTheMotorsOfItsPlant) {
   EXPECT_EQ(learnersMotors(given_), (Motors{"6.0", "6.0", "1"}));
   given_.set("experiment/plant", std::string("moving_tile"));
   EXPECT_EQ(learnersMotors(given_), (Motors{"5.0", "5.0", "2"}));
+  given_.set("experiment/plant", std::string("two_link"));
+  EXPECT_EQ(learnersMotors(given_), (Motors{"[4.0, 2.0]", "[4.0, 2.0]", "2"}));
   given_.set("experiment/plant", std::string("pendulum_gravity"));
   EXPECT_EQ(learnersMotors(given_), (Motors{"2.5", "2.5", "1"}));
   given_.configs = {file("motor.yaml", "plant: {max_torque: 3}\n")};
@@ -172,7 +178,7 @@ TEST_F(Resolution, ASavedPlantIsNotMixedWithAnother) {
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
       [this] { read(); }, {config, "pendulum_gravity", "not pendulum", "leave"}));
   given_.set("experiment/plant", std::string("pendulum_gravity"));
-  EXPECT_EQ(read().plant.gravity, 9.82);
+  EXPECT_EQ(gravity(read()), 9.82);
 }
 
 TEST_F(Resolution, ASavedCameraDoesNotSwallowANuisance) {
@@ -198,6 +204,18 @@ TEST_F(Resolution, AnotherModelOrOtherBagsBringTheirOwnChecksums) {
   EXPECT_EQ(read().start.bag_ids, std::vector<std::string>{"crc32-2"});
   given_.set("start/bags", std::vector<std::string>{"/c.bag"});
   EXPECT_TRUE(read().start.bag_ids.empty());
+}
+
+TEST_F(Resolution, FilesWithTheKeysOfOlderVersionsStayGood) {
+  given_.configs = {file("old.yaml",
+                         "camera: {half_extent: 1.5, noise_std: 0.2}\n"
+                         "evaluation: {tolerance_deg: 5.0}\n")};
+  const Configuration all = read();
+  EXPECT_EQ(all.plant->block()["half_extent"].as<double>(), 1.5);
+  EXPECT_EQ(all.camera.noise_std, 0.2);
+  EXPECT_EQ(all.evaluation.tolerance, 5.0);
+  given_.configs = {file("both.yaml", "camera: {half_extent: 1.5}\nplant: {half_extent: 1.6}\n")};
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { read(); }, {"camera/half_extent"}));
 }
 
 TEST_F(Resolution, MessagesNameTheFiles) {

@@ -137,8 +137,13 @@ TEST_F(RunFolderTest, AnotherValueOfAnyOtherKeyIsRefused) {
   const std::vector<std::pair<std::string, std::function<void(Configuration*)>>> changes = {
       {"trial/num_steps: 30 there, 31 here", [](auto* c) { c->trial.num_steps = 31; }},
       {"evaluation/settled_steps: 10", [](auto* c) { c->evaluation.settled_steps = 11; }},
-      {"plant/friction: 1.0 there, 0.5 here", [](auto* c) { c->plant.friction = 0.5; }},
-      {"camera/edge_softness", [](auto* c) { c->camera.edge_softness = 0.3; }},
+      {"plant/friction: 1.0 there, 0.5 here",
+       [](auto* c) { c->plant = testing::plantOf("{type: pendulum, friction: 0.5}"); }},
+      {"plant/edge_softness",
+       [](auto* c) { c->plant = testing::plantOf("{type: pendulum, edge_softness: 0.3}"); }},
+      {"camera/noise_std", [](auto* c) { c->camera.noise_std = 0.3; }},
+      {"evaluation/tolerance: 10.0 there, 9.0 here",
+       [](auto* c) { c->evaluation.tolerance = 9.0; }},
       {"sim/lockstep", [](auto* c) { c->sim.lockstep = false; }},
       {"image/size", [](auto* c) { c->model.image.size = 50; }},
       {"model/encoder_widths",
@@ -314,23 +319,57 @@ std::string checksumsOf(const std::vector<std::string>& rows) {
   return lines;
 }
 
-TEST_F(RunFolderTest, AFolderOfAnOlderVersionGoesOnWithUnknownVersions) {
-  finish(2);
-  const std::vector<std::string> old = {withoutVersions(formatTrialsCsv({toyRow(0)})),
-                                        withoutVersions(textOf(file("trials.csv")))};
-  writeText(file("trials.csv"), old[1]);
-  writeText(file(".trials.crc32"), checksumsOf(old));
-  {
-    RunFolder folder(configuration_);
-    ASSERT_EQ(folder.rows().size(), 2u);
-    EXPECT_EQ(folder.rows()[1].version, "?");
-    EXPECT_TRUE(folder.warnings().empty());
-    writeText(folder.beginTrial(2), "a bag");
-    folder.finishTrial(toyRow(2));
+TEST_F(RunFolderTest, ATableOfAnOlderVersionGoesOnInTodaysColumns) {
+  for (const auto& older : {testing::inDegrees, withoutVersions}) {
+    fs::remove_all(scratch_.file("run"));
+    finish(2);
+    const std::vector<std::string> old = {older(formatTrialsCsv({toyRow(0)})),
+                                          older(textOf(file("trials.csv")))};
+    writeText(file("trials.csv"), old[1]);
+    writeText(file(".trials.crc32"), checksumsOf(old));
+    const std::string version = older == withoutVersions ? "?" : toyRow(1).version;
+    {
+      RunFolder folder(configuration_);
+      ASSERT_EQ(folder.rows().size(), 2u);
+      EXPECT_EQ(folder.rows()[1].version, version);
+      EXPECT_EQ(folder.rows()[1].evaluation.final_error, toyRow(1).evaluation.final_error);
+      EXPECT_TRUE(folder.warnings().empty());
+      writeText(folder.beginTrial(2), "a bag");
+      folder.finishTrial(toyRow(2));
+    }
+    const RunFolder folder(configuration_);
+    EXPECT_EQ(folder.rows()[0].version, version);
+    EXPECT_EQ(folder.rows()[2].version, toyRow(2).version);
   }
-  const RunFolder folder(configuration_);
-  EXPECT_EQ(folder.rows()[0].version, "?");
-  EXPECT_EQ(folder.rows()[2].version, toyRow(2).version);
+}
+
+/// config.yaml as versions saved it whose cameras drew the rod and whose errors were angles.
+YAML::Node asSavedBefore(const YAML::Node& today) {
+  YAML::Node old = YAML::Clone(today);
+  old["camera"]["size"] = old["plant"]["picture_size"];
+  old["plant"].remove("picture_size");
+  for (const char* key : {"half_extent", "rod_half_width", "edge_softness"}) {
+    old["camera"][key] = old["plant"][key];
+    old["plant"].remove(key);
+  }
+  old["plant"]["tile_width"] = 9.0;
+  old["plant"]["tile_softness"] = 9.0;
+  old["evaluation"]["tolerance_deg"] = old["evaluation"]["tolerance"];
+  old["evaluation"].remove("tolerance");
+  old["evaluation"].remove("error_unit");
+  old["training"]["ensemble_size"] = "1";
+  old["mpc"]["terminal_weight"] = "1.0";
+  return old;
+}
+
+TEST_F(RunFolderTest, AFolderOfAnOlderVersionIsTakenUp) {
+  finish(2);
+  const YAML::Node today = YAML::LoadFile(file("config.yaml"));
+  const YAML::Node old = asSavedBefore(today);
+  writeText(file("config.yaml"), YAML::Dump(old) + "\n");
+  EXPECT_EQ(RunFolder(configuration_).rows().size(), 2u);
+  configuration_.camera.noise_std = 0.3;
+  expectRefused({"camera/noise_std"});
 }
 
 TEST_F(RunFolderTest, AFolderOfAnOlderVersionThatEndedBetweenTheChecksumAndItsRowIsTakenUp) {

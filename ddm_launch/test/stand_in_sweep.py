@@ -12,8 +12,8 @@ import sys
 
 from ddm_launch.sweep import parse
 
-COLUMNS = ("seed,trial,frames,success,success_strict,final_error_deg,v_r,v_p,train_s,train_evaluations,plan_ms_median,"
-           "plan_ms_p99,version")
+COLUMNS = ("seed,trial,frames,success,success_strict,final_error,v_r,v_p,train_s,train_evaluations,plan_ms_median,"
+           "plan_ms_p99,version,return")
 
 
 def write(path, *lines):
@@ -26,7 +26,7 @@ def write_trials(path, seed, num_trials, plain):
     rows = []
     for trial in range(num_trials):
         success = plain and (trial > 0 or seed % 2 == 0)
-        rows.append("%d,%d,%d,%d,%d,1.5,1,1,2,50,1,4,made up" % (seed, trial, 100 * (trial + 1), success, success))
+        rows.append("%d,%d,%d,%d,%d,1.5,1,1,2,50,1,4,made up," % (seed, trial, 100 * (trial + 1), success, success))
     write(path, COLUMNS, *rows)
     return rows
 

@@ -108,7 +108,7 @@ class StartTest(SharedScratchCase):
         bag = self.bags[0]
         fast = self.write("fast.yaml", "plant: {dt: 0.1}\n")
         self.assertRefused(["bag " + bag, "does not fit the plant", "(dt): 0.2 in the bag, 0.1 in"], "--config", fast, "--bags", bag)
-        small = self.write("small.yaml", "camera: {size: 40}\n")
+        small = self.write("small.yaml", "plant: {picture_size: 40}\n")
         self.assertRefused(["bag " + bag, "images: 51x51 mono8 in the bag, 40x40 mono8 in"], "--config", small, "--bags", bag)
         tile = ["--plant", "moving_tile"]
         self.assertRefused(["bag " + bag, "torques a frame: 1 in the bag, 2 in"], "--bags", bag, *tile)
@@ -130,7 +130,7 @@ class StartTest(SharedScratchCase):
         code, output = self.evaluate("--seeds", "1:2")
         self.assertEqual(code, 0, output)
         rows = read_rows(self.out, "evaluation.csv")
-        self.assertEqual(rows[0][:4], ["seed", "success", "success_strict", "final_error_deg"])
+        self.assertEqual(rows[0][:4], ["seed", "success", "success_strict", "final_error"])
         theirs = read_rows(self.before, "trials.csv")[2]
         self.assertEqual(rows[1][:4], [theirs[0]] + theirs[3:6])
 

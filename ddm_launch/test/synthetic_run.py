@@ -3,7 +3,7 @@
 import math
 import os
 
-TRIAL_COLUMNS = ("seed,trial,frames,success,success_strict,final_error_deg,v_r,v_p,train_s,train_evaluations,"
+TRIAL_COLUMNS = ("seed,trial,frames,success,success_strict,final_error,v_r,v_p,train_s,train_evaluations,"
                  "plan_ms_median,plan_ms_p99")
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# Plant `moving_tile` in a closed loop: two torques, no angle; the nodes and run_experiment give the same.
+# Plant `moving_tile` in a closed loop: two torques, lengths; the nodes and run_experiment give the same.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import sys
@@ -30,10 +30,13 @@ class TileLoopTest(BothDriversCase):
         self.assertEqual(read_rows(self.nodes, "evaluation_001", "trajectory.csv")[0],
                          ["step", "time_s", "x_px", "y_px"])
 
-    def test_a_success_in_degrees_is_not_known(self):
+    def test_it_is_judged_by_its_distance_to_the_goal_in_pixels(self):
         for row in read_rows(self.nodes, "trials.csv")[1:]:
-            self.assertEqual(row[3:6], ["", "", ""])
-        self.assertNotIn("success", read_yaml(self.nodes, "summary.yaml"))
+            self.assertIn(row[3], ("0", "1"))
+            self.assertTrue(0.0 <= float(row[5]) <= 51.0, row)
+        self.assertIn("success", read_yaml(self.nodes, "summary.yaml"))
+        evaluation = read_yaml(self.nodes, "config.yaml")["evaluation"]
+        self.assertEqual((evaluation["tolerance"], evaluation["error_unit"]), (2.0, "px"))
 
 
 if __name__ == "__main__":

@@ -2,15 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_plant_plugin/plant_config.h>
+#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/testing/toy_plant.h>
 #include <sys/stat.h>
 
 #include <boost/filesystem.hpp>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "configuration.h"
@@ -22,6 +27,47 @@ namespace testing {
 
 constexpr int kToySteps = 30;
 
+/// A toy as the plant of a configuration.
+class ToyPlugin : public PlantPlugin {
+ public:
+  explicit ToyPlugin(const ToyPlant::Traits& traits) : maker_(traits) {}
+
+  std::string type() const override { return maker_.type(); }
+  void read(ParamReader* /*reader*/) override {}
+  YAML::Node block() const override {
+    YAML::Node out;
+    out["type"] = type();
+    return out;
+  }
+  std::unique_ptr<Plant> make() const override { return maker_.make(); }
+
+ private:
+  ToyMaker maker_;
+};
+
+/// Another plant, with all that follows from it.
+inline void usePlant(std::shared_ptr<const PlantPlugin> plant, Configuration* all) {
+  all->plant = std::move(plant);
+  all->plant_info = makePlant(*all->plant)->info();
+  all->evaluation.tolerance = 0.0;
+  all->evaluation.error_unit.clear();
+  all->evaluation.complete(all->plant_info);
+}
+
+/// @param block  of YAML, like {type: moving_tile, dt: 0.1}
+inline std::shared_ptr<const PlantPlugin> plantOf(const std::string& block) {
+  YAML::Node blocks;
+  blocks["plant"] = YAML::Load(block);
+  ParamReader reader(blocks);
+  auto plant = readPlant(&reader);
+  reader.requireValid();
+  return plant;
+}
+
+inline std::shared_ptr<const PlantPlugin> plantOf(const ToyPlant::Traits& traits) {
+  return std::make_shared<ToyPlugin>(traits);
+}
+
 /// @param runs  folder for the results
 inline Configuration toyConfiguration(const std::string& runs) {
   Configuration all;
@@ -30,6 +76,7 @@ inline Configuration toyConfiguration(const std::string& runs) {
   all.experiment.trials = 2;
   all.trial.num_steps = kToySteps;
   all.model.model.pca_dim = 10;
+  usePlant(plantOf("{type: pendulum}"), &all);
   return all;
 }
 
@@ -40,7 +87,7 @@ inline TrialRow toyRow(int trial, int seed = 7) {
   row.frames = static_cast<std::uint32_t>(kToySteps * (trial + 1));
   row.evaluation.known = true;
   row.evaluation.success = trial % 2 == 1;
-  row.evaluation.final_error_deg = 0.1 * (trial + 1);
+  row.evaluation.final_error = 0.1 * (trial + 1);
   row.v_r = 1.0 / 3.0;
   row.v_p = 1e-7;
   row.train_s = 0.125;
@@ -51,9 +98,18 @@ inline TrialRow toyRow(int trial, int seed = 7) {
   return row;
 }
 
-/// trials.csv as older versions wrote it, without the column `version`.
-inline std::string withoutVersions(const std::string& trials_csv) {
+/// trials.csv as versions wrote it that knew errors in degrees only, and no return.
+inline std::string inDegrees(const std::string& trials_csv) {
   std::istringstream in(trials_csv);
+  std::string text;
+  for (std::string line; std::getline(in, line);) text += line.substr(0, line.rfind(',')) + "\n";
+  const std::string column = "final_error";
+  return text.insert(text.find(column) + column.size(), "_deg");
+}
+
+/// trials.csv as still older ones wrote it, which did not note the version either.
+inline std::string withoutVersions(const std::string& trials_csv) {
+  std::istringstream in(inDegrees(trials_csv));
   std::string text;
   for (std::string line; std::getline(in, line);) text += line.substr(0, line.rfind(',')) + "\n";
   return text;

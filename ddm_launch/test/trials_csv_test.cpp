@@ -29,12 +29,13 @@ std::string withColumn(size_t index, const std::string& value) {
 
 TEST(TrialsCsv, HasTheColumnsOfTheContract) {
   EXPECT_EQ(header(),
-            "seed,trial,frames,success,success_strict,final_error_deg,v_r,v_p,train_s,"
-            "train_evaluations,plan_ms_median,plan_ms_p99,version\n");
+            "seed,trial,frames,success,success_strict,final_error,v_r,v_p,train_s,"
+            "train_evaluations,plan_ms_median,plan_ms_p99,version,return\n");
 }
 
 TEST(TrialsCsv, RowsAreReadBackAsTheyWere) {
-  const std::vector<TrialRow> rows = {toyRow(0), toyRow(1), toyRow(2)};
+  std::vector<TrialRow> rows = {toyRow(0), toyRow(1), toyRow(2)};
+  rows[1].evaluation.total_reward = -1.0 / 3.0;
   const std::vector<TrialRow> read = parseTrialsCsv(formatTrialsCsv(rows), "trials.csv");
   ASSERT_EQ(read.size(), rows.size());
   for (size_t i = 0; i < rows.size(); ++i) {
@@ -44,7 +45,8 @@ TEST(TrialsCsv, RowsAreReadBackAsTheyWere) {
     EXPECT_EQ(read[i].evaluation.known, rows[i].evaluation.known);
     EXPECT_EQ(read[i].evaluation.success, rows[i].evaluation.success);
     EXPECT_EQ(read[i].evaluation.success_strict, rows[i].evaluation.success_strict);
-    EXPECT_EQ(read[i].evaluation.final_error_deg, rows[i].evaluation.final_error_deg);
+    EXPECT_EQ(read[i].evaluation.final_error, rows[i].evaluation.final_error);
+    EXPECT_EQ(read[i].evaluation.total_reward, rows[i].evaluation.total_reward);
     EXPECT_EQ(read[i].v_r, rows[i].v_r);
     EXPECT_EQ(read[i].v_p, rows[i].v_p);
     EXPECT_EQ(read[i].train_s, rows[i].train_s);
@@ -60,16 +62,60 @@ TEST(TrialsCsv, AFileThatIsReadAndWrittenStaysTheSame) {
   EXPECT_EQ(formatTrialsCsv(parseTrialsCsv(text, "trials.csv")), text);
 }
 
-TEST(TrialsCsv, ATableWithoutVersionsIsReadWithUnknownOnes) {
-  const std::string text = formatTrialsCsv({toyRow(0), toyRow(1)});
-  const std::vector<TrialRow> read = parseTrialsCsv(testing::withoutVersions(text), "trials.csv");
+/// Lines that older versions wrote, byte by byte.
+const char kInDegrees[] =
+    "seed,trial,frames,success,success_strict,final_error_deg,v_r,v_p,train_s,train_evaluations,"
+    "plan_ms_median,plan_ms_p99,version\n"
+    "7,0,30,0,0,170.5,0.5,0.25,2.000,26,15.000,30.000,0.9.0 (abcdef0)\n"
+    "7,1,60,,,,0.5,0.25,2.000,26,15.000,30.000,0.9.0 (abcdef0)\n";
+const char kWithoutVersions[] =
+    "seed,trial,frames,success,success_strict,final_error_deg,v_r,v_p,train_s,train_evaluations,"
+    "plan_ms_median,plan_ms_p99\n"
+    "7,0,30,0,0,170.5,0.5,0.25,2.000,26,15.000,30.000\n"
+    "7,1,60,,,,0.5,0.25,2.000,26,15.000,30.000\n";
+
+TEST(TrialsCsv, ATableInDegreesIsReadWithoutAReturn) {
+  const std::vector<TrialRow> read = parseTrialsCsv(kInDegrees, "trials.csv");
   ASSERT_EQ(read.size(), 2u);
+  EXPECT_EQ(read[0].evaluation.final_error, 170.5);
+  EXPECT_TRUE(read[0].evaluation.known);
+  EXPECT_FALSE(read[1].evaluation.known);
+  for (const TrialRow& row : read) {
+    EXPECT_EQ(row.version, "0.9.0 (abcdef0)");
+    EXPECT_EQ(row.plan_ms_p99, 30.0);
+    EXPECT_FALSE(row.evaluation.total_reward.has_value());
+  }
+}
+
+TEST(TrialsCsv, ATableWithoutVersionsIsReadWithUnknownOnes) {
+  const std::vector<TrialRow> read = parseTrialsCsv(kWithoutVersions, "trials.csv");
+  ASSERT_EQ(read.size(), 2u);
+  EXPECT_EQ(read[0].evaluation.final_error, 170.5);
   for (const TrialRow& row : read) {
     EXPECT_EQ(row.version, "?");
-    EXPECT_EQ(row.plan_ms_p99, 1.5);
+    EXPECT_EQ(row.plan_ms_p99, 30.0);
   }
-  EXPECT_EQ(formatTrialsCsv(read), withVersions(testing::withoutVersions(text)));
-  EXPECT_EQ(withVersions(text), text);
+}
+
+TEST(TrialsCsv, AnOldTableGetsTheColumnsOfTodayAndOneOfTodayStays) {
+  for (const char* old : {kInDegrees, kWithoutVersions}) {
+    const std::vector<TrialRow> read = parseTrialsCsv(old, "trials.csv");
+    EXPECT_EQ(inTodaysColumns(old), formatTrialsCsv(read));
+  }
+  const std::string text = formatTrialsCsv({toyRow(0), toyRow(1)});
+  EXPECT_EQ(inTodaysColumns(text), text);
+  EXPECT_EQ(inTodaysColumns("seed,trial\n7,0\n"), "seed,trial\n7,0\n");
+  EXPECT_EQ(inTodaysColumns(""), "");
+}
+
+TEST(TrialsCsv, AReturnIsTheLastColumn) {
+  TrialRow row = toyRow(1);
+  row.evaluation.total_reward = -12.5;
+  const std::string text = formatTrialsCsv({row});
+  EXPECT_EQ(text.substr(text.size() - 7), ",-12.5\n");
+  EXPECT_EQ(parseTrialsCsv(text, "trials.csv")[0].evaluation.total_reward, -12.5);
+  row.evaluation.total_reward.reset();
+  EXPECT_EQ(formatTrialsCsv({row}).substr(formatTrialsCsv({row}).rfind(',')), ",\n");
 }
 
 TEST(TrialsCsv, SuccessIsEmptyWhereItIsNotKnown) {
@@ -81,14 +127,14 @@ TEST(TrialsCsv, SuccessIsEmptyWhereItIsNotKnown) {
   EXPECT_EQ(formatTrialsCsv(parseTrialsCsv(text, "trials.csv")), text);
 }
 
-TEST(TrialsCsv, SuccessWithoutGroundTruthHasNoErrorInDegrees) {
+TEST(TrialsCsv, SuccessWithoutGroundTruthHasNoError) {
   TrialRow row = toyRow(1);
-  row.evaluation.final_error_deg = std::nullopt;
+  row.evaluation.final_error = std::nullopt;
   const std::string text = formatTrialsCsv({row});
   EXPECT_NE(text.find("7,1,60,1,0,,0.333"), std::string::npos) << text;
   const TrialRow read = parseTrialsCsv(text, "trials.csv")[0];
   EXPECT_TRUE(read.evaluation.known && read.evaluation.success);
-  EXPECT_FALSE(read.evaluation.final_error_deg.has_value());
+  EXPECT_FALSE(read.evaluation.final_error.has_value());
 }
 
 TEST(TrialsCsv, ErrorsThatAMethodDoesNotHaveAreEmpty) {
@@ -113,9 +159,10 @@ TEST(TrialsCsv, AnotherHeaderIsRefused) {
 
 TEST(TrialsCsv, ADamagedValueIsRefusedWithItsLine) {
   const std::vector<std::pair<size_t, std::string>> faults = {
-      {0, "x"},  {0, ""},     {1, "1.5"}, {2, "-1"},      {2, ""},  {3, "2"},     {3, "yes"},
-      {3, ""},   {4, ""},     {5, "far"}, {6, "nan"},     {6, ""},  {7, "inf"},   {8, "1s"},
-      {8, "-1"}, {8, "1e13"}, {9, "2.5"}, {10, "0.2 ms"}, {11, ""}, {11, "-inf"}, {12, ""}};
+      {0, "x"},   {0, ""},      {1, "1.5"}, {2, "-1"},    {2, ""},    {3, "2"},
+      {3, "yes"}, {3, ""},      {4, ""},    {5, "far"},   {6, "nan"}, {6, ""},
+      {7, "inf"}, {8, "1s"},    {8, "-1"},  {8, "1e13"},  {9, "2.5"}, {10, "0.2 ms"},
+      {11, ""},   {11, "-inf"}, {12, ""},   {13, "much"}, {13, "nan"}};
   for (const auto& fault : faults) {
     EXPECT_TRUE(throwsNaming<std::runtime_error>(
         [&] { parseTrialsCsv(withColumn(fault.first, fault.second), "DIR/trials.csv"); },
@@ -124,11 +171,24 @@ TEST(TrialsCsv, ADamagedValueIsRefusedWithItsLine) {
   }
 }
 
+TEST(TrialsCsv, AnErrorOrReturnOfARunThatIsNotKnownIsRefused) {
+  TrialRow row = toyRow(0);
+  row.evaluation = Evaluation();
+  const std::string text = formatTrialsCsv({row});
+  const std::string with_return = text.substr(0, text.size() - 1) + "-1.0\n";
+  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { parseTrialsCsv(with_return, "trials.csv"); },
+                                               {"trials.csv, line 2", "return"}));
+  std::string with_error = text;
+  with_error.insert(with_error.find(",,,,") + 3, "0.5");
+  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { parseTrialsCsv(with_error, "trials.csv"); },
+                                               {"trials.csv, line 2", "final_error"}));
+}
+
 TEST(TrialsCsv, ALineOfAnotherLengthIsRefusedWithItsNumber) {
   const std::string good = formatTrialsCsv({toyRow(0)});
-  for (const std::string line : {"7,1,60\n", "\n", "7,1,60,1,1,0.1,1,1,1,26,1,1,1,1\n"}) {
+  for (const std::string line : {"7,1,60\n", "\n", "7,1,60,1,1,0.1,1,1,1,26,1,1,1,1,1\n"}) {
     EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { parseTrialsCsv(good + line, "trials.csv"); },
-                                                 {"trials.csv, line 3", "13 are due"}))
+                                                 {"trials.csv, line 3", "14"}))
         << line;
   }
 }
@@ -141,10 +201,11 @@ TEST(TrialsCsv, AFileThatIsCutShortIsRefused) {
   EXPECT_TRUE(throwsNaming<std::runtime_error>(
       [&] { parseTrialsCsv(text.substr(0, text.size() - 1), "trials.csv"); },
       {"trials.csv, line 3", "has no end"}));
-  const std::string old = testing::withoutVersions(text);
-  EXPECT_TRUE(throwsNaming<std::runtime_error>(
-      [&] { parseTrialsCsv(old.substr(0, old.size() - 1), "trials.csv"); },
-      {"trials.csv, line 3"}));
+  for (const std::string old : {kInDegrees, kWithoutVersions}) {
+    EXPECT_TRUE(throwsNaming<std::runtime_error>(
+        [&] { parseTrialsCsv(old.substr(0, old.size() - 1), "trials.csv"); },
+        {"trials.csv, line 3"}));
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "ddm_msgs/renamed_keys.h"
 #include "ddm_msgs/yaml_text.h"
 
 namespace ddm {
@@ -51,7 +52,9 @@ std::string readText(const std::string& path) {
 
 }  // namespace
 
-YAML::Node readBlocks(const std::string& path) { return parseBlocks(readText(path), path); }
+YAML::Node readBlocks(const std::string& path) {
+  return withTodaysKeys(parseBlocks(readText(path), path));
+}
 
 YAML::Node parseBlocks(const std::string& text, const std::string& source) {
   const YAML::Node document = parseYaml(text, source);

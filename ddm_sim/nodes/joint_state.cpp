@@ -18,8 +18,8 @@ std::vector<double> toVector(const Eigen::VectorXd& values) {
 
 sensor_msgs::JointState jointStateOf(const Plant& plant, const Eigen::VectorXd& applied) {
   sensor_msgs::JointState out;
-  out.name = plant.jointNames();
-  const std::vector<std::string> components = plant.stateNames();
+  for (const Joint& joint : plant.info().joints) out.name.push_back(joint.name);
+  const std::vector<std::string>& components = plant.info().state_names;
   const auto rest = components.begin() + static_cast<std::ptrdiff_t>(out.name.size());
   const bool has_rates = components.size() == 2 * out.name.size() &&
                          std::all_of(rest, components.end(), [](const std::string& name) {

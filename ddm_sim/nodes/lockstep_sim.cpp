@@ -19,12 +19,11 @@ const ros::WallDuration kTellPeriod(0.001);
 
 }  // namespace
 
-LockstepSim::LockstepSim(ros::NodeHandle nh, std::unique_ptr<Plant> plant,
-                         const CameraOptions& camera, const SimOptions& options,
+LockstepSim::LockstepSim(ros::NodeHandle nh, std::unique_ptr<Rig> rig, const SimOptions& options,
                          const ShowOptions& show)
-    : SimNode(nh, std::move(plant), camera, /*clock=*/true),
+    : SimNode(nh, std::move(rig), /*clock=*/true),
       options_(options),
-      step_ns_(static_cast<std::uint64_t>(std::llround(this->plant().dt() * kSecond))),
+      step_ns_(static_cast<std::uint64_t>(std::llround(this->plant().info().dt * kSecond))),
       now_ns_(kSecond) {  // not 0, which means "no time yet" to everybody else
   if (show.frame_rate > 0.0) pace_.emplace(show.frame_rate);
   tell_timer_ = nh.createWallTimer(
@@ -48,6 +47,7 @@ ros::Time LockstepSim::beginTrial(const ddm_msgs::Reset::Request& request) {
   ignored_ = 0;
   running_ = true;
   tell();
+  publishGoal(now());
   showFrame();
   return now();
 }

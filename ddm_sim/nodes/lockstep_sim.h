@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "ddm_sim/plant_options.h"
+#include "ddm_sim/sim_options.h"
 #include "show_options.h"
 #include "sim_node.h"
 
@@ -27,8 +27,8 @@ namespace ddm {
 /// whole nanoseconds, so equality is exact.
 class LockstepSim : public SimNode {
  public:
-  LockstepSim(ros::NodeHandle nh, std::unique_ptr<Plant> plant, const CameraOptions& camera,
-              const SimOptions& options, const ShowOptions& show);
+  LockstepSim(ros::NodeHandle nh, std::unique_ptr<Rig> rig, const SimOptions& options,
+              const ShowOptions& show);
 
  private:
   ros::Time beginTrial(const ddm_msgs::Reset::Request& request) override;

@@ -20,14 +20,14 @@ ros::Time wallNow() {  // ros::Time::now() would follow /clock if somebody else 
 
 }  // namespace
 
-RealtimeSim::RealtimeSim(ros::NodeHandle nh, std::unique_ptr<Plant> plant,
-                         const CameraOptions& camera)
-    : SimNode(nh, std::move(plant), camera, /*clock=*/false),
+RealtimeSim::RealtimeSim(ros::NodeHandle nh, std::unique_ptr<Rig> rig)
+    : SimNode(nh, std::move(rig), /*clock=*/false),
       cancel_pub_(
           nh.advertise<actionlib_msgs::GoalID>(std::string(topics::kRunTrial) + "/cancel", 1)) {
   switchMotorOff();
   publishGoal(wallNow());
-  timer_ = nh.createSteadyTimer(ros::WallDuration(this->plant().dt()), &RealtimeSim::onTick, this);
+  timer_ =
+      nh.createSteadyTimer(ros::WallDuration(this->plant().info().dt), &RealtimeSim::onTick, this);
 }
 
 ros::Time RealtimeSim::beginTrial(const ddm_msgs::Reset::Request& request) {
@@ -36,6 +36,7 @@ ros::Time RealtimeSim::beginTrial(const ddm_msgs::Reset::Request& request) {
   timer_.stop();     // stop and start, so that the first step is a whole one
   timer_.start();
   const ros::Time stamp = wallNow();
+  publishGoal(stamp);
   settleAnswer();
   showFrame(stamp);
   ROS_INFO("%s %u starts in real time", request.evaluation ? "evaluation" : "trial", request.trial);

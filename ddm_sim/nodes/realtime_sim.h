@@ -23,7 +23,7 @@ namespace ddm {
 /// num_steps has no effect.
 class RealtimeSim : public SimNode {
  public:
-  RealtimeSim(ros::NodeHandle nh, std::unique_ptr<Plant> plant, const CameraOptions& camera);
+  RealtimeSim(ros::NodeHandle nh, std::unique_ptr<Rig> rig);
 
  private:
   ros::Time beginTrial(const ddm_msgs::Reset::Request& request) override;

@@ -3,7 +3,6 @@
 #include "sim_node.h"
 
 #include <algorithm>
-#include <random>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -25,12 +24,9 @@ Eigen::VectorXd toEigen(const std::vector<double>& values) {
 
 }  // namespace
 
-SimNode::SimNode(ros::NodeHandle nh, std::unique_ptr<Plant> plant, const CameraOptions& camera,
-                 bool clock)
-    : plant_(std::move(plant)),
-      camera_(camera),
-      publisher_(nh, *plant_, clock),
-      applied_(Eigen::VectorXd::Zero(plant_->torqueDim())),
+SimNode::SimNode(ros::NodeHandle nh, std::unique_ptr<Rig> rig, bool clock)
+    : rig_(std::move(rig)),
+      publisher_(nh, rig_->plant(), clock),
       applied_pub_(nh.advertise<ddm_msgs::Torque>(topics::kAppliedTorque, kAppliedQueueSize)) {
   torque_sub_ = nh.subscribe(topics::kTorque, kQueueSize, &SimNode::onTorque, this,
                              ros::TransportHints().tcpNoDelay());
@@ -40,7 +36,7 @@ SimNode::SimNode(ros::NodeHandle nh, std::unique_ptr<Plant> plant, const CameraO
 
 bool SimNode::advance(const Eigen::VectorXd& torque) {
   try {
-    applied_ = plant_->step(torque);
+    seen_ = rig_->step(torque);
     return true;
   } catch (const std::range_error& e) {
     ROS_ERROR_STREAM("the trial ends, a reset starts another: " << e.what());
@@ -49,33 +45,37 @@ bool SimNode::advance(const Eigen::VectorXd& torque) {
 }
 
 bool SimNode::publishFrame(const ros::Time& stamp) {
-  const auto photograph = camera_.photograph(*plant_);
-  if (photograph) publisher_.publishFrame(applied_, *photograph, stamp);
-  return photograph.has_value();
+  if (seen_) publisher_.publishFrame(rig_->applied(), *seen_, stamp);
+  return seen_.has_value();
 }
 
 void SimNode::publishApplied(ddm_msgs::Torque answer) const {
-  const double limit = plant_->maxTorque();
-  for (double& value : answer.torque) value = std::max(-limit, std::min(limit, value));
+  const Eigen::VectorXd& limit = plant().info().max_torque;
+  for (std::size_t i = 0; i < answer.torque.size(); ++i) {
+    const double bound = limit[static_cast<Eigen::Index>(i)];
+    answer.torque[i] = std::max(-bound, std::min(bound, answer.torque[i]));
+  }
   applied_pub_.publish(answer);
 }
 
-void SimNode::publishGoal(const ros::Time& stamp) const {
-  publisher_.publishGoal(camera_.photographGoal(*plant_), stamp);
+void SimNode::publishGoal(const ros::Time& stamp) {
+  Picture image = rig_->goalImage();
+  if (image.bytes == goal_image_.bytes) return;
+  goal_image_ = std::move(image);
+  publisher_.publishGoal(goal_image_, stamp);
 }
 
 bool SimNode::onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Response& response) {
-  std::mt19937_64 engine = startStream(request.seed, request.trial, request.evaluation);
+  std::optional<Eigen::VectorXd> start;
+  if (!request.start.empty()) start = toEigen(request.start);
   try {
-    plant_->setState(request.start.empty() ? plant_->drawStart(engine) : toEigen(request.start));
+    seen_ = rig_->reset(request.seed, request.trial, request.evaluation, start);
   } catch (const std::invalid_argument& e) {
     response.success = false;
     response.message = std::string("field `start` of the request: ") + e.what();
     ROS_WARN_STREAM("reset refused, nothing has changed: " << response.message);
     return true;
   }
-  applied_.setZero();
-  camera_.begin(request.seed, request.trial, request.evaluation);
   response.start = beginTrial(request);
   response.success = true;
   return true;
@@ -103,13 +103,13 @@ std::string SimNode::brokenRule(const Eigen::VectorXd& torque) const {
            describePublishers(torqueTopic());
   }
   std::ostringstream rule;
-  const double limit = kRubbish * plant_->maxTorque();
-  if (torque.size() != plant_->torqueDim() || !torque.allFinite()) {
-    rule << "it must be " << plant_->torqueDim() << " finite number(s):";
-    for (const std::string& name : plant_->torqueNames()) rule << ' ' << name;
-  } else if (torque.cwiseAbs().maxCoeff() > limit) {
-    rule << "it must lie within +-" << limit << ", which is " << kRubbish
-         << " times what the motor can do: check the units";
+  const PlantInfo& info = plant().info();
+  if (torque.size() != info.torqueDim() || !torque.allFinite()) {
+    rule << "it must be " << info.torqueDim() << " finite number(s):";
+    for (const std::string& name : info.torque_names) rule << ' ' << name;
+  } else if ((torque.cwiseAbs() - kRubbish * info.max_torque).maxCoeff() > 0.0) {
+    rule << "it must lie within +-" << fewNumbers(kRubbish * info.max_torque) << ", which is "
+         << kRubbish << " times what the motor can do: check the units";
   }
   return rule.str();
 }

@@ -8,10 +8,10 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <string>
 
-#include "ddm_sim/camera.h"
-#include "ddm_sim/plant.h"
+#include "ddm_sim/rig.h"
 #include "sim_publisher.h"
 
 namespace ddm {
@@ -25,14 +25,13 @@ class SimNode {
   SimNode& operator=(const SimNode&) = delete;
 
  protected:
-  SimNode(ros::NodeHandle nh, std::unique_ptr<Plant> plant, const CameraOptions& camera,
-          bool clock);
+  SimNode(ros::NodeHandle nh, std::unique_ptr<Rig> rig, bool clock);
 
-  /// Steps the plant and remembers the applied torque.
+  /// One time step.
   /// @return false if the plant has no next state; the reason has been logged
   bool advance(const Eigen::VectorXd& torque);
 
-  /// The image of this time step, to be called once in each. publishGroundTruth tells the rest.
+  /// The image of this time step. publishGroundTruth() publishes the rest.
   /// @return false if the camera has lost the frame: there will be nothing of it
   bool publishFrame(const ros::Time& stamp);
 
@@ -44,10 +43,11 @@ class SimNode {
   /// @param answer  without a torque: none acted in time
   void publishApplied(ddm_msgs::Torque answer) const;
 
-  void publishGoal(const ros::Time& stamp) const;
+  /// The goal of this run, unless it looks like the last one.
+  void publishGoal(const ros::Time& stamp);
   void publishClock(const ros::Time& stamp) const { publisher_.publishClock(stamp); }
 
-  const Plant& plant() const { return *plant_; }
+  const Plant& plant() const { return rig_->plant(); }
   std::string torqueTopic() const { return torque_sub_.getTopic(); }
 
  private:
@@ -66,10 +66,10 @@ class SimNode {
   /// A torque that was refused; `reason` names its publisher and value and has been logged.
   virtual void torqueRefused(const ros::Time& stamp, const std::string& reason) = 0;
 
-  std::unique_ptr<Plant> plant_;
-  Camera camera_;
+  std::unique_ptr<Rig> rig_;
+  std::optional<Picture> seen_;  ///< the frame of this time step; empty: lost
+  Picture goal_image_;           ///< as published last
   SimPublisher publisher_;
-  Eigen::VectorXd applied_;  ///< torque of the last step, zero at a start
   ros::Publisher applied_pub_;
   ros::ServiceServer reset_server_;
   ros::Subscriber torque_sub_;

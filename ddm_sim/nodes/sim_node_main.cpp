@@ -7,10 +7,13 @@
 #include <cstdlib>
 #include <exception>
 #include <memory>
+#include <utility>
 
 #include "ddm_msgs/node_params.h"
 #include "ddm_msgs/param_reader.h"
 #include "ddm_sim/plant_factory.h"
+#include "ddm_sim/rig.h"
+#include "ddm_sim/sim_options.h"
 #include "lockstep_sim.h"
 #include "realtime_sim.h"
 
@@ -27,18 +30,18 @@ int main(int argc, char** argv) {
     params.requireValid();
 
     YAML::Node effective;
-    effective["plant"] = ddm::plantBlock(plant);
+    effective["plant"] = plant->block();
     effective["camera"] = ddm::toYaml(camera);
     effective["sim"] = ddm::toYaml(sim);
     effective["show"] = ddm::toYaml(show);
     ROS_INFO_STREAM("sim_node: effective configuration\n" << effective);
 
     std::unique_ptr<ddm::SimNode> node;
+    auto rig = std::make_unique<ddm::Rig>(ddm::makePlant(*plant), camera);
     if (sim.lockstep) {
-      node =
-          std::make_unique<ddm::LockstepSim>(nh, ddm::makePlant(plant, camera), camera, sim, show);
+      node = std::make_unique<ddm::LockstepSim>(nh, std::move(rig), sim, show);
     } else {
-      node = std::make_unique<ddm::RealtimeSim>(nh, ddm::makePlant(plant, camera), camera);
+      node = std::make_unique<ddm::RealtimeSim>(nh, std::move(rig));
     }
     ros::spin();
   } catch (const std::exception& e) {

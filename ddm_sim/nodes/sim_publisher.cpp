@@ -2,20 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim_publisher.h"
 
+#include <ddm_plant_plugin/picture_message.h>
 #include <image_transport/image_transport.h>
 #include <rosgraph_msgs/Clock.h>
 #include <sensor_msgs/Image.h>
 
 #include <utility>
 
-#include "ddm_msgs/image_codec.h"
 #include "ddm_msgs/topics.h"
 #include "joint_state.h"
 
 namespace ddm {
 namespace {
 
-constexpr char kFrameId[] = "camera";
 constexpr int kQueueSize = 10;
 constexpr int kGroundTruthQueueSize = 1000;  // several frames are told at a time
 
@@ -29,9 +28,8 @@ SimPublisher::SimPublisher(ros::NodeHandle nh, const Plant& plant, bool clock) :
   image_ = image_transport::ImageTransport(nh).advertise(topics::kImage, kQueueSize);
 }
 
-void SimPublisher::publishGoal(const std::vector<std::uint8_t>& photograph,
-                               const ros::Time& stamp) const {
-  goal_image_.publish(encodeImage(photograph, plant_.imageSize(), stamp, kFrameId));
+void SimPublisher::publishGoal(const Picture& photograph, const ros::Time& stamp) const {
+  goal_image_.publish(imageMessage(photograph, stamp));
 }
 
 void SimPublisher::publishClock(const ros::Time& stamp) const {
@@ -40,10 +38,9 @@ void SimPublisher::publishClock(const ros::Time& stamp) const {
   clock_.publish(clock);
 }
 
-void SimPublisher::publishFrame(const Eigen::VectorXd& applied,
-                                const std::vector<std::uint8_t>& photograph,
+void SimPublisher::publishFrame(const Eigen::VectorXd& applied, const Picture& photograph,
                                 const ros::Time& stamp) {
-  image_.publish(encodeImage(photograph, plant_.imageSize(), stamp, kFrameId));
+  image_.publish(imageMessage(photograph, stamp));
   sensor_msgs::JointState joints = jointStateOf(plant_, applied);
   joints.header.stamp = stamp;
   kept_.push_back(std::move(joints));

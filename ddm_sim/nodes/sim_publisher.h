@@ -7,7 +7,6 @@
 #include <sensor_msgs/JointState.h>
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <vector>
 
 #include "ddm_sim/plant.h"
@@ -23,7 +22,7 @@ class SimPublisher {
   SimPublisher(ros::NodeHandle nh, const Plant& plant, bool clock);
 
   /// The goal image, latched: also whoever comes later sees it.
-  void publishGoal(const std::vector<std::uint8_t>& photograph, const ros::Time& stamp) const;
+  void publishGoal(const Picture& photograph, const ros::Time& stamp) const;
 
   /// Simulated time, latched. Must not run backwards.
   void publishClock(const ros::Time& stamp) const;
@@ -32,7 +31,7 @@ class SimPublisher {
   /// publishGroundTruth.
   /// @param applied     torque of the step that led here
   /// @param photograph  what the camera shows of it
-  void publishFrame(const Eigen::VectorXd& applied, const std::vector<std::uint8_t>& photograph,
+  void publishFrame(const Eigen::VectorXd& applied, const Picture& photograph,
                     const ros::Time& stamp);
 
   /// What was kept, one message a frame. Not much later than the frames: each is kept in memory.

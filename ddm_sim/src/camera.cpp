@@ -1,4 +1,4 @@
-// The camera: photographs of a plant as a learner gets them, with what may go wrong with them.
+// The camera: pictures of a plant as a learner gets them, with what may go wrong with them.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/camera.h"
 
@@ -7,7 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <string>
+
+#include "ddm_sim/option_checks.h"
 
 namespace ddm {
 namespace {
@@ -35,14 +36,15 @@ struct Shape {
   }
 };
 
-Shape drawShape(int size, std::mt19937_64* rng) {
+Shape drawShape(int width, int height, std::mt19937_64* rng) {
   const auto uniform = [rng](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(*rng);
   };
+  const int size = std::min(width, height);
   Shape shape;
   shape.disc = uniform(0.0, 1.0) < 0.5;
-  shape.x = uniform(0.0, size);
-  shape.y = uniform(0.0, size);
+  shape.x = uniform(0.0, width);
+  shape.y = uniform(0.0, height);
   shape.half_width = uniform(0.03, 0.2) * size;
   shape.half_height = uniform(0.03, 0.2) * size;
   const double angle = uniform(0.0, kTwoPi);
@@ -55,19 +57,17 @@ Shape drawShape(int size, std::mt19937_64* rng) {
   return shape;
 }
 
-/// Shapes on black, each in front of the last, the brightest pixel `clutter`.  [size * size]
-std::vector<double> drawBackground(const CameraOptions& options) {
-  const int size = options.size;
-  std::vector<double> grey(static_cast<std::size_t>(size) * size, 0.0);
-  if (options.clutter == 0.0) return grey;
+/// Shapes on black, each in front of the last, the brightest pixel `clutter`.   [width * height]
+std::vector<double> drawClutter(int width, int height, const CameraOptions& options) {
+  std::vector<double> grey(static_cast<std::size_t>(width) * height, 0.0);
   TrialId id;
   id.seed = static_cast<std::uint64_t>(options.clutter_seed);
   std::mt19937_64 rng = randomStream(id, StreamRole::kClutter);
   for (int k = 0; k < kNumShapes; ++k) {
-    const Shape shape = drawShape(size, &rng);
+    const Shape shape = drawShape(width, height, &rng);
     auto pixel = grey.begin();
-    for (int i = 0; i < size; ++i) {
-      for (int j = 0; j < size; ++j, ++pixel) {
+    for (int i = 0; i < height; ++i) {
+      for (int j = 0; j < width; ++j, ++pixel) {
         *pixel += shape.cover(j + 0.5, i + 0.5) * (shape.grey - *pixel);
       }
     }
@@ -77,16 +77,23 @@ std::vector<double> drawBackground(const CameraOptions& options) {
   return grey;
 }
 
-/// `options` unchanged, so that the checks precede the first use of its values.
-const CameraOptions& checked(const CameraOptions& options) {
-  requireNone(options.problems());
-  return options;
-}
-
 }  // namespace
 
-Camera::Camera(const CameraOptions& options)
-    : options_(checked(options)), background_(drawBackground(options_)) {
+std::vector<std::string> CameraOptions::problems() const {
+  OptionChecks camera("camera");
+  camera.require(noise_std >= 0.0 && noise_std <= 1.0, "noise_std", "lie in [0, 1]", noise_std);
+  camera.require(brightness_drift >= 0.0 && brightness_drift < 1.0, "brightness_drift",
+                 "lie in [0, 1)", brightness_drift);
+  camera.requirePositive("brightness_period", brightness_period);
+  camera.require(clutter >= 0.0 && clutter <= 1.0, "clutter", "lie in [0, 1]", clutter);
+  camera.require(clutter_seed >= 0, "clutter_seed", "be >= 0", clutter_seed);
+  camera.require(delay >= 0 && delay <= 1000, "delay", "lie in [0, 1000] frames", delay);
+  // A reader of bags takes the median interval for the time step: most frames must follow directly.
+  camera.require(drop_rate >= 0.0 && drop_rate <= 0.3, "drop_rate", "lie in [0, 0.3]", drop_rate);
+  return camera.problems();
+}
+
+Camera::Camera(const CameraOptions& options, double dt) : options_(checked(options)), dt_(dt) {
   begin(0, 0, false);
 }
 
@@ -98,53 +105,47 @@ void Camera::begin(std::uint64_t seed, std::uint32_t trial, bool evaluation) {
   frame_ = 0;
 }
 
-std::optional<std::vector<std::uint8_t>> Camera::photograph(const Plant& plant) {
-  taken_.push_back(take(plant));
+std::optional<Picture> Camera::photograph(const Picture& picture) {
+  const int frame = frame_++;
+  const double draw = std::uniform_real_distribution<double>(0.0, 1.0)(rng_);
+  if (frame > 0 && draw < options_.drop_rate) {
+    taken_.push_back(std::nullopt);
+  } else {
+    const double turns = frame * dt_ / options_.brightness_period;
+    const double brightness = 1.0 + options_.brightness_drift * std::sin(kTwoPi * turns + phase_);
+    taken_.push_back(expose(picture, brightness, &noise_));
+  }
   if (static_cast<int>(taken_.size()) > options_.delay + 1) taken_.pop_front();
   return taken_.front();
 }
 
-/// @return nothing if it is lost
-std::optional<Camera::Picture> Camera::take(const Plant& plant) {
-  const int frame = frame_++;
-  const double draw = std::uniform_real_distribution<double>(0.0, 1.0)(rng_);
-  if (frame > 0 && draw < options_.drop_rate) return std::nullopt;
-  const double turns = frame * plant.dt() / options_.brightness_period;
-  const double brightness = 1.0 + options_.brightness_drift * std::sin(kTwoPi * turns + phase_);
-  return expose(plant, plant.state(), brightness, &noise_);
-}
-
-std::vector<std::uint8_t> Camera::photographGoal(const Plant& plant) const {
+Picture Camera::photographGoal(const Picture& picture) {
   std::mt19937_64 noise = randomStream(TrialId(), StreamRole::kGoalNoise);
-  return expose(plant, plant.goalState(), /*brightness=*/1.0, &noise);
+  return expose(picture, /*brightness=*/1.0, &noise);
 }
 
-Camera::Picture Camera::expose(const Plant& plant, const Eigen::VectorXd& state, double brightness,
-                               std::mt19937_64* noise) const {
-  const Picture picture = plant.render(state);
-  if (picture.size() != background_.size()) {
-    throw std::invalid_argument("camera: the plant's picture must have " +
-                                std::to_string(background_.size()) + " pixels, got " +
-                                std::to_string(picture.size()));
-  }
+Picture Camera::expose(const Picture& picture, double brightness, std::mt19937_64* noise) {
+  Picture out = picture;
+  out.cover.clear();
   const bool cluttered = options_.clutter > 0.0;
-  if (brightness == 1.0 && !cluttered && options_.noise_std == 0.0) return picture;
-  const Picture cover = cluttered ? plant.coverage(state) : Picture();
-  if (cluttered && cover.empty()) {
+  if (brightness == 1.0 && !cluttered && options_.noise_std == 0.0) return out;
+  if (cluttered && picture.cover.empty()) {
     throw std::invalid_argument(
-        "camera/clutter must be 0 before a plant that does not say what it covers: implement its "
-        "cover()");
+        "camera/clutter must be 0 where the plant's picture does not say what it covers");
+  }
+  if (cluttered && clutter_.size() != picture.numPixels()) {
+    clutter_ = drawClutter(picture.width, picture.height, options_);
   }
   std::normal_distribution<double> standard_normal;
-  Picture bytes(picture.size());
-  for (std::size_t i = 0; i < picture.size(); ++i) {
-    double grey = picture[i] / 255.0;
-    if (cluttered) grey += (1.0 - cover[i] / 255.0) * background_[i];
-    grey *= brightness;
-    if (options_.noise_std > 0.0) grey += options_.noise_std * standard_normal(*noise);
-    bytes[i] = static_cast<std::uint8_t>(255.0 * std::clamp(grey, 0.0, 1.0) + 0.5);
+  for (std::size_t i = 0; i < out.bytes.size(); ++i) {
+    const std::size_t pixel = i / static_cast<std::size_t>(picture.channels);
+    double value = picture.bytes[i] / 255.0;
+    if (cluttered) value += (1.0 - picture.cover[pixel] / 255.0) * clutter_[pixel];
+    value *= brightness;
+    if (options_.noise_std > 0.0) value += options_.noise_std * standard_normal(*noise);
+    out.bytes[i] = static_cast<std::uint8_t>(255.0 * std::clamp(value, 0.0, 1.0) + 0.5);
   }
-  return bytes;
+  return out;
 }
 
 }  // namespace ddm

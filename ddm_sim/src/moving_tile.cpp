@@ -3,22 +3,28 @@
 #include "ddm_sim/moving_tile.h"
 
 #include <cmath>
-#include <sstream>
+
+#include "ddm_sim/option_checks.h"
 
 namespace ddm {
 namespace {
 
-/// `plant` unchanged, so that the checks precede the first use of its values.
-const PlantOptions& checked(const PlantOptions& plant, const CameraOptions& camera) {
-  std::vector<std::string> problems = problemsOf(plant, camera);
-  if (plant.tile_width >= camera.size) {  // neither block can see this by itself
-    std::ostringstream problem;
-    problem << "plant/tile_width must be smaller than camera/size (" << camera.size
-            << " pixels), got " << plant.tile_width;
-    problems.push_back(problem.str());
-  }
-  requireNone(problems);
-  return plant;
+PlantInfo infoOf(const MovingTileOptions& options) {
+  const double size = options.picture_size;
+  const double margin = options.tile_width / 2;
+  const Eigen::VectorXd goal = (Eigen::VectorXd(2) << 0.75 * size, 0.25 * size).finished();
+  PlantInfo info;
+  info.joints = {{"x", JointKind::kLength}, {"y", JointKind::kLength}};
+  info.state_names = {"x_px", "y_px"};
+  info.torque_names = {"dx_px", "dy_px"};
+  info.max_torque = forEach(options.max_torque, 2, "plant/max_torque");
+  info.dt = options.dt;
+  info.start = Eigen::VectorXd::Constant(2, size / 2);
+  info.start_std = forEach(options.start_std, 2, "plant/start_std");
+  info.goal = goal.cwiseMax(margin).cwiseMin(size - margin);
+  info.error_unit = "px";
+  info.tolerance = 2.0;
+  return info;
 }
 
 /// `position` folded back into [lowest, highest] at both ends: a triangle wave.
@@ -28,17 +34,23 @@ double reflected(double position, double lowest, double highest) {
 
 }  // namespace
 
-MovingTile::MovingTile(const PlantOptions& plant, const CameraOptions& camera)
-    : Plant(Eigen::Vector2d::Constant(camera.size / 2.0), 2, checked(plant, camera).dt,
-            plant.max_torque, plant.start_std),
-      lowest_(plant.tile_width / 2),
-      highest_(camera.size - plant.tile_width / 2),
-      renderer_(camera.size, plant.tile_width, plant.tile_softness) {}
-
-Eigen::VectorXd MovingTile::goalState() const {
-  const Eigen::Vector2d goal(0.75 * imageSize(), 0.25 * imageSize());
-  return goal.cwiseMax(lowest_).cwiseMin(highest_);
+std::vector<std::string> MovingTileOptions::problems() const {
+  OptionChecks plant("plant");
+  plant.requirePositive("tile_width", tile_width);
+  plant.require(tile_width < picture_size, "tile_width",
+                "be smaller than plant/picture_size (" + std::to_string(picture_size) + ")",
+                tile_width);
+  plant.require(tile_softness >= 1.0 && isPositive(tile_softness), "tile_softness",
+                "be >= 1 and finite", tile_softness);
+  plant.add(PlantOptions::problems());
+  return plant.problems();
 }
+
+MovingTile::MovingTile(const MovingTileOptions& options)
+    : Plant(infoOf(checked(options))),
+      lowest_(options.tile_width / 2),
+      highest_(options.picture_size - options.tile_width / 2),
+      renderer_(options.picture_size, options.tile_width, options.tile_softness) {}
 
 Eigen::VectorXd MovingTile::advance(const Eigen::VectorXd& state,
                                     const Eigen::VectorXd& torque) const {
@@ -47,12 +59,10 @@ Eigen::VectorXd MovingTile::advance(const Eigen::VectorXd& state,
   });
 }
 
-double MovingTile::distanceToGoal(const Eigen::VectorXd& state) const {
-  return (state - goalState()).stableNorm();
+double MovingTile::distance(const Eigen::VectorXd& state, const Eigen::VectorXd& goal) const {
+  return (state - goal).stableNorm();
 }
 
-std::vector<std::uint8_t> MovingTile::draw(const Eigen::VectorXd& state) const {
-  return renderer_.render(state);
-}
+Picture MovingTile::draw(const Eigen::VectorXd& state) const { return renderer_.render(state); }
 
 }  // namespace ddm

@@ -6,18 +6,28 @@
 #include <boost/numeric/odeint.hpp>
 #include <cmath>
 
+#include "ddm_sim/angles.h"
+
 namespace ddm {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 // Error per internal step, absolute and relative: leaves a margin of several orders to the 1e-9
 // within which a step and 100 steps of a hundredth of the length agree.
 constexpr double kTolerance = 1e-12;
 
-/// `plant` unchanged, so that the checks precede the first use of its values.
-const PlantOptions& checked(const PlantOptions& plant, const CameraOptions& camera) {
-  requireNone(problemsOf(plant, camera));
-  return plant;
+PlantInfo infoOf(const PendulumOptions& options) {
+  PlantInfo info;
+  info.joints = {{"pendulum", JointKind::kAngle}};
+  info.state_names = {"angle_rad", "rate_rad_per_s"};
+  info.torque_names = {"torque_nm"};
+  info.max_torque = forEach(options.max_torque, 1, "plant/max_torque");
+  info.dt = options.dt;
+  info.start = Eigen::VectorXd::Zero(2);
+  info.start_std = forEach(options.start_std, 2, "plant/start_std");
+  info.goal = (Eigen::VectorXd(2) << kPi, 0.0).finished();
+  info.error_unit = "deg";
+  info.tolerance = 10.0;
+  return info;
 }
 
 /// (1 - p1(x)) / x with p1(x) = (1 - e^-x) / x, the weight of u in the angle; 1/2 at x = 0.
@@ -30,16 +40,24 @@ double secondWeight(double x) {
 
 }  // namespace
 
-Pendulum::Pendulum(const PlantOptions& plant, const CameraOptions& camera)
-    : Plant(Eigen::Vector2d::Zero(), 1, checked(plant, camera).dt, plant.max_torque,
-            plant.start_std),
-      length_(plant.length),
-      inertia_(plant.mass * plant.length * plant.length / 3.0),
-      friction_(plant.friction),
-      gravity_torque_(plant.mass * plant.gravity * plant.length / 2.0),
-      renderer_(camera, plant.length) {}
+std::vector<std::string> PendulumOptions::problems() const {
+  OptionChecks plant("plant");
+  plant.requireNotNegative("gravity", gravity);
+  plant.requirePositive("length", length);
+  plant.requirePositive("mass", mass);
+  plant.requireNotNegative("friction", friction);
+  plant.add(PlantOptions::problems());
+  plant.add(look.problems());
+  return plant.problems();
+}
 
-Eigen::VectorXd Pendulum::goalState() const { return Eigen::Vector2d(kPi, 0.0); }
+Pendulum::Pendulum(const PendulumOptions& options)
+    : Plant(infoOf(checked(options))),
+      length_(options.length),
+      inertia_(options.mass * options.length * options.length / 3.0),
+      friction_(options.friction),
+      gravity_torque_(options.mass * options.gravity * options.length / 2.0),
+      renderer_(options.picture_size, options.look) {}
 
 Eigen::VectorXd Pendulum::advance(const Eigen::VectorXd& state,
                                   const Eigen::VectorXd& torque) const {
@@ -48,12 +66,12 @@ Eigen::VectorXd Pendulum::advance(const Eigen::VectorXd& state,
 }
 
 Eigen::Vector2d Pendulum::advanceExactly(const Eigen::Vector2d& state, double torque) const {
-  const double x = friction_ / inertia_ * dt();
+  const double x = friction_ / inertia_ * info().dt;
   const double p1 = x > 0.0 ? -std::expm1(-x) / x : 1.0;
   const double p2 = secondWeight(x);
   const double acceleration = torque / inertia_;  // of the rod at rest
-  return {state[0] + dt() * p1 * state[1] + dt() * dt() * p2 * acceleration,
-          std::exp(-x) * state[1] + dt() * p1 * acceleration};
+  return {state[0] + info().dt * p1 * state[1] + info().dt * info().dt * p2 * acceleration,
+          std::exp(-x) * state[1] + info().dt * p1 * acceleration};
 }
 
 Eigen::Vector2d Pendulum::advanceNumerically(const Eigen::Vector2d& state, double torque) const {
@@ -66,16 +84,16 @@ Eigen::Vector2d Pendulum::advanceNumerically(const Eigen::Vector2d& state, doubl
   State x{state[0], state[1]};
   const auto stepper =
       odeint::make_controlled(kTolerance, kTolerance, odeint::runge_kutta_dopri5<State>());
-  odeint::integrate_adaptive(stepper, derivative, x, 0.0, dt(), dt() / 10.0);
+  odeint::integrate_adaptive(stepper, derivative, x, 0.0, info().dt, info().dt / 10.0);
   return {x[0], x[1]};
 }
 
-double Pendulum::distanceToGoal(const Eigen::VectorXd& state) const {
-  return std::abs(std::remainder(state[0] - kPi, 2.0 * kPi));
+double Pendulum::distance(const Eigen::VectorXd& state, const Eigen::VectorXd& goal) const {
+  return degreesBetween(state[0], goal[0]);
 }
 
-std::vector<std::uint8_t> Pendulum::draw(const Eigen::VectorXd& state) const {
-  return renderer_.render(state[0]);
+Picture Pendulum::draw(const Eigen::VectorXd& state) const {
+  return renderer_.render({{Eigen::Vector2d::Zero(), state[0], length_}});
 }
 
 Eigen::VectorXd Pendulum::locate(const Eigen::VectorXd& state) const {

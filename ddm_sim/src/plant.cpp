@@ -6,6 +6,7 @@
 
 #include <sstream>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "ddm_sim/few_numbers.h"
@@ -21,39 +22,49 @@ void requireFinite(const char* name, const Eigen::VectorXd& value, Eigen::Index 
   throw std::invalid_argument(message.str());
 }
 
-/// @throws std::logic_error if the function of the derived class made `got` of something
-void requireCount(const char* function, std::size_t count, std::size_t got) {
-  if (got == count) return;
-  throw std::logic_error(std::string("plant: ") + function + " must return " +
-                         std::to_string(count) + " bytes, one for each pixel, got " +
-                         std::to_string(got));
+/// @throws std::logic_error if draw() made something else than a picture
+void requirePicture(const Picture& picture) {
+  const bool sound = picture.width >= 1 && picture.height >= 1 &&
+                     (picture.channels == 1 || picture.channels == 3) &&
+                     picture.bytes.size() == picture.numBytes() &&
+                     (picture.cover.empty() || picture.cover.size() == picture.numPixels());
+  if (sound) return;
+  std::ostringstream message;
+  message << "plant: draw() must return a picture of 1 or 3 channels with a byte for each, and a "
+             "cover of none or one for each pixel, got "
+          << picture.width << " x " << picture.height << " x " << picture.channels << " with "
+          << picture.bytes.size() << " and " << picture.cover.size() << " bytes";
+  throw std::logic_error(message.str());
 }
 
 }  // namespace
 
-Plant::Plant(Eigen::VectorXd start, int torque_dim, double dt, double max_torque, double start_std)
-    : start_(std::move(start)),
-      state_(start_),
-      torque_dim_(torque_dim),
-      dt_(dt),
-      max_torque_(max_torque),
-      start_std_(start_std) {}
+Plant::Plant(PlantInfo info) : info_(std::move(info)), state_(info_.start), goal_(info_.goal) {}
 
 void Plant::setState(const Eigen::VectorXd& state) {
-  requireFinite("state", state, state_.size());
+  requireFinite("state", state, stateDim());
   state_ = state;
+}
+
+void Plant::setGoal(const Eigen::VectorXd& goal) {
+  requireFinite("goal", goal, stateDim());
+  goal_ = goal;
 }
 
 Eigen::VectorXd Plant::drawStart(std::mt19937_64& engine) const {
   std::normal_distribution<double> standard_normal;
-  Eigen::VectorXd start = start_;
-  for (Eigen::Index i = 0; i < start.size(); ++i) start[i] += start_std_ * standard_normal(engine);
+  Eigen::VectorXd start = info_.start;
+  for (Eigen::Index i = 0; i < start.size(); ++i) {
+    start[i] += info_.start_std[i] * standard_normal(engine);
+  }
   return start;
 }
 
+Eigen::VectorXd Plant::drawGoal(std::mt19937_64& /*engine*/) const { return info_.goal; }
+
 Eigen::VectorXd Plant::step(const Eigen::VectorXd& torque) {
-  requireFinite("torque", torque, torque_dim_);
-  const Eigen::VectorXd applied = torque.cwiseMax(-max_torque_).cwiseMin(max_torque_);
+  requireFinite("torque", torque, torqueDim());
+  const Eigen::VectorXd applied = torque.cwiseMax(-info_.max_torque).cwiseMin(info_.max_torque);
   const Eigen::VectorXd next = advance(state_, applied);
   if (next.size() != state_.size()) {
     throw std::logic_error("plant: advance() must return " + std::to_string(state_.size()) +
@@ -71,36 +82,35 @@ Eigen::VectorXd Plant::step(const Eigen::VectorXd& torque) {
 }
 
 double Plant::goalError(const Eigen::VectorXd& state) const {
-  requireFinite("state", state, state_.size());
-  return distanceToGoal(state);
+  requireFinite("state", state, stateDim());
+  return distance(state, goal_);
 }
 
-std::size_t Plant::numPixels() const {
-  const auto size = static_cast<std::size_t>(imageSize());
-  return size * size;
+std::optional<double> Plant::reward(const Eigen::VectorXd& /*state*/,
+                                    const Eigen::VectorXd& /*torque*/) const {
+  return std::nullopt;
 }
 
-std::vector<std::uint8_t> Plant::render(const Eigen::VectorXd& state) const {
-  requireFinite("state", state, state_.size());
-  std::vector<std::uint8_t> picture = draw(state);
-  requireCount("draw()", numPixels(), picture.size());
+Picture Plant::render(const Eigen::VectorXd& state) const {
+  requireFinite("state", state, stateDim());
+  Picture picture = draw(state);
+  requirePicture(picture);
   return picture;
 }
 
-std::vector<std::uint8_t> Plant::coverage(const Eigen::VectorXd& state) const {
-  requireFinite("state", state, state_.size());
-  std::vector<std::uint8_t> cover = this->cover(state);
-  if (!cover.empty()) requireCount("cover()", numPixels(), cover.size());
-  return cover;
-}
-
 Eigen::VectorXd Plant::visiblePosition(const Eigen::VectorXd& state) const {
-  requireFinite("state", state, state_.size());
+  requireFinite("state", state, stateDim());
   return locate(state);
 }
 
 std::mt19937_64 startStream(std::uint64_t seed, std::uint32_t trial, bool evaluation) {
   return randomStream({seed, trial, evaluation}, StreamRole::kStart);
+}
+
+Eigen::VectorXd goalOf(const Plant& plant, std::uint64_t seed, std::uint32_t trial,
+                       bool evaluation) {
+  std::mt19937_64 stream = randomStream({seed, trial, evaluation}, StreamRole::kGoal);
+  return plant.drawGoal(stream);
 }
 
 }  // namespace ddm

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace ddm {
 namespace {
@@ -41,7 +42,7 @@ TileRenderer::TileRenderer(int size, double tile_width, double softness)
   }
 }
 
-std::vector<std::uint8_t> TileRenderer::render(const Eigen::Vector2d& centre) const {
+Picture TileRenderer::render(const Eigen::Vector2d& centre) const {
   const std::vector<double> columns = coverage(size_, centre.x(), tile_width_, softness_);
   const std::vector<double> rows = coverage(size_, centre.y(), tile_width_, softness_);
   std::vector<std::uint8_t> bytes;
@@ -51,7 +52,7 @@ std::vector<std::uint8_t> TileRenderer::render(const Eigen::Vector2d& centre) co
       bytes.push_back(static_cast<std::uint8_t>(255.0 * row * column + 0.5));
     }
   }
-  return bytes;
+  return brightOnBlack(size_, std::move(bytes));
 }
 
 }  // namespace ddm

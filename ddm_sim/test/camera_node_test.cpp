@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "ddm_sim/camera.h"
-#include "ddm_sim/plant_factory.h"
+#include "ddm_sim/pendulum.h"
 #include "sim_client.h"
 
 namespace ddm {
@@ -28,9 +29,9 @@ class CameraNode : public ::testing::Test {
     sim.getParam("camera/clutter", camera_options_.clutter);
     sim.getParam("camera/delay", camera_options_.delay);
     sim.getParam("camera/drop_rate", camera_options_.drop_rate);
-    plant_ = makePlant(plant_options_, camera_options_);
+    plant_ = std::make_unique<Pendulum>(plant_options_);
     plant_->setState(Eigen::Vector2d(kStart[0], kStart[1]));
-    camera_ = std::make_unique<Camera>(camera_options_);
+    camera_ = std::make_unique<Camera>(camera_options_, plant_options_.dt);
     camera_->begin(kSeed, kTrial, false);
   }
 
@@ -41,13 +42,18 @@ class CameraNode : public ::testing::Test {
   }
 
   /// Ground truth and image `index` are what the library shows in this step.
-  void expectFrame(std::size_t index, const std::vector<std::uint8_t>& photograph) {
-    EXPECT_EQ(client_.images[index].data, photograph) << index;
+  void expectFrame(std::size_t index, const Picture& photograph) {
+    EXPECT_EQ(client_.images[index].data, photograph.bytes) << index;
     EXPECT_EQ(client_.truths[index].header.stamp, client_.images[index].header.stamp) << index;
     EXPECT_EQ(client_.truths[index].position, std::vector<double>{plant_->state()[0]}) << index;
   }
 
-  PlantOptions plant_options_;
+  /// What the camera shows of the plant now; empty: the frame is lost.
+  std::optional<Picture> photograph() {
+    return camera_->photograph(plant_->render(plant_->state()));
+  }
+
+  PendulumOptions plant_options_;
   CameraOptions camera_options_;
   std::unique_ptr<Plant> plant_;
   std::unique_ptr<Camera> camera_;
@@ -60,22 +66,22 @@ using RealtimeCamera = CameraNode;
 TEST_F(LockstepCamera, ShowsTheFramesOfTheLibraryAndGoesOnUnderTheLastTorqueWhereOneIsLost) {
   constexpr std::size_t kFrames = 40;
   ASSERT_TRUE(client_.waitUntil([this] { return !client_.goals.empty(); }));
-  EXPECT_EQ(client_.goals[0].data, camera_->photographGoal(*plant_));
+  EXPECT_EQ(client_.goals[0].data, camera_->photographGoal(plant_->render(plant_->goal())).bytes);
   const ros::Time start = client_.reset(kFrames, kStart, kSeed, kTrial).start;
   std::uint64_t step = 0;
-  auto photograph = camera_->photograph(*plant_);
+  auto seen = photograph();
   for (std::size_t t = 0; t < kFrames; ++t) {
     ASSERT_TRUE(client_.waitForImages(t + 1));
     const ros::Time stamp = client_.images[t].header.stamp;
     EXPECT_EQ(stamp.toNSec(), start.toNSec() + step * 200000000ULL) << t;
-    expectFrame(t, *photograph);
+    expectFrame(t, *seen);
     const double torque = t % 2 == 0 ? 4.0 : -1.0;
     client_.publish(stamp, {torque});
     do {
       plant_->step(Eigen::VectorXd::Constant(1, torque));
-      photograph = camera_->photograph(*plant_);
+      seen = photograph();
       ++step;
-    } while (!photograph);
+    } while (!seen);
   }
   EXPECT_GT(step, kFrames);
   ASSERT_TRUE(client_.waitForLog("40 frames answered"));  // those that were seen
@@ -97,8 +103,8 @@ TEST_F(RealtimeCamera, ShowsTheFramesOfTheLibraryAndNothingWhereOneIsLost) {
   client_.truths.erase(client_.truths.begin(), client_.truths.begin() + first);
   int num_lost = 0;
   for (std::size_t t = 0; t < kFrames;) {
-    if (const auto photograph = camera_->photograph(*plant_)) {
-      expectFrame(t++, *photograph);
+    if (const auto seen = photograph()) {
+      expectFrame(t++, *seen);
     } else {
       ++num_lost;
     }

@@ -4,7 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "ddm_sim/plant_factory.h"
+#include "ddm_sim/moving_tile.h"
+#include "ddm_sim/pendulum.h"
 #include "ddm_sim/testing/toy_plant.h"
 
 namespace ddm {
@@ -22,34 +23,43 @@ Eigen::VectorXd numbers(const Numbers& values) {
 sensor_msgs::JointState toyState(const Names& joints, const Names& states, const Names& torques) {
   ToyPlant::Traits traits;
   const auto dim = static_cast<Eigen::Index>(states.size());
-  traits.start = Eigen::VectorXd::LinSpaced(dim, 1.0, static_cast<double>(dim));
-  traits.torque_dim = static_cast<int>(torques.size());
-  traits.joints = joints;
-  traits.states = states;
-  traits.torques = torques;
-  return jointStateOf(ToyPlant(traits), Eigen::VectorXd::Constant(traits.torque_dim, 0.5));
+  traits.info.start = Eigen::VectorXd::LinSpaced(dim, 1.0, static_cast<double>(dim));
+  traits.info.joints.clear();
+  for (const std::string& joint : joints) traits.info.joints.push_back({joint, JointKind::kAngle});
+  traits.info.state_names = states;
+  traits.info.torque_names = torques;
+  const Eigen::VectorXd applied = Eigen::VectorXd::Constant(traits.info.torqueDim(), 0.5);
+  return jointStateOf(ToyPlant(traits), applied);
 }
 
 TEST(JointState, OfAPendulumHasAngleRateAndTorque) {
-  const auto plant = makePlant(PlantOptions(), CameraOptions());
-  plant->setState(Eigen::Vector2d(1.0, 2.0));
-  const sensor_msgs::JointState out = jointStateOf(*plant, numbers({3.0}));
-  EXPECT_EQ(out.name, plant->jointNames());
+  Pendulum plant{PendulumOptions()};
+  plant.setState(Eigen::Vector2d(1.0, 2.0));
+  const sensor_msgs::JointState out = jointStateOf(plant, numbers({3.0}));
+  EXPECT_EQ(out.name, Names{"pendulum"});
   EXPECT_EQ(out.position, Numbers{1.0});
   EXPECT_EQ(out.velocity, Numbers{2.0});
   EXPECT_EQ(out.effort, Numbers{3.0});
 }
 
 TEST(JointState, OfATileHasTwoPositionsTwoEffortsAndNoVelocity) {
-  PlantOptions options;
-  options.type = "moving_tile";
-  const auto plant = makePlant(options, CameraOptions());
-  plant->setState(Eigen::Vector2d(10.0, 20.0));
-  const sensor_msgs::JointState out = jointStateOf(*plant, numbers({1.0, -1.0}));
+  MovingTile plant{MovingTileOptions()};
+  plant.setState(Eigen::Vector2d(10.0, 20.0));
+  const sensor_msgs::JointState out = jointStateOf(plant, numbers({1.0, -1.0}));
   EXPECT_EQ(out.name, (Names{"x", "y"}));
   EXPECT_EQ(out.position, (Numbers{10.0, 20.0}));
   EXPECT_TRUE(out.velocity.empty());
   EXPECT_EQ(out.effort, (Numbers{1.0, -1.0}));
+}
+
+TEST(JointState, OfAnArmHasTwoOfEachInTheOrderOfItsJoints) {
+  const auto out = toyState({"shoulder", "elbow"},
+                            {"shoulder_rad", "elbow_rad", "shoulder_rad_per_s", "elbow_rad_per_s"},
+                            {"shoulder_nm", "elbow_nm"});
+  EXPECT_EQ(out.name, (Names{"shoulder", "elbow"}));
+  EXPECT_EQ(out.position, (Numbers{1.0, 2.0}));
+  EXPECT_EQ(out.velocity, (Numbers{3.0, 4.0}));
+  EXPECT_EQ(out.effort, (Numbers{0.5, 0.5}));
 }
 
 TEST(JointState, HasNoEffortWhereMotorsAreNotAsManyAsJoints) {

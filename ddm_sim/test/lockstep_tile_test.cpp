@@ -5,18 +5,17 @@
 
 #include <memory>
 
-#include "ddm_sim/plant_factory.h"
+#include "ddm_sim/moving_tile.h"
 #include "sim_client.h"
 
 namespace ddm {
 namespace {
 
 std::unique_ptr<Plant> tile() {
-  PlantOptions options;
-  options.type = "moving_tile";
-  options.max_torque = 5.0;
-  options.start_std = 5.0;
-  return makePlant(options, CameraOptions());
+  MovingTileOptions options;
+  options.max_torque = {5.0};
+  options.start_std = {5.0};
+  return std::make_unique<MovingTile>(options);
 }
 
 std::vector<double> toVector(const Eigen::VectorXd& values) {
@@ -27,7 +26,7 @@ using LockstepTile = SimNodeTest;
 
 TEST_F(LockstepTile, ShowsTheGoalStateOnTheGoalImage) {
   ASSERT_TRUE(client_->waitUntil([] { return !client_->goals.empty(); }));
-  EXPECT_EQ(client_->goals[0].data, tile()->render(tile()->goalState()));
+  EXPECT_EQ(client_->goals[0].data, tile()->render(tile()->goal()).bytes);
 }
 
 TEST_F(LockstepTile, MovesTheTileAsTheLibraryDoesAndTellsTheTruthOfEachImage) {
@@ -46,7 +45,7 @@ TEST_F(LockstepTile, MovesTheTileAsTheLibraryDoesAndTellsTheTruthOfEachImage) {
     EXPECT_EQ(truth.position, toVector(plant->state()));
     EXPECT_TRUE(truth.velocity.empty());
     EXPECT_EQ(truth.effort, toVector(applied));
-    EXPECT_EQ(image.data, plant->render(plant->state()));
+    EXPECT_EQ(image.data, plant->render(plant->state()).bytes);
     if (t == 3) break;
     client_->publish(image.header.stamp, toVector(torques[t]));
     applied = plant->step(torques[t]);

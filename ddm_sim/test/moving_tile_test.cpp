@@ -16,19 +16,18 @@ namespace {
 constexpr double kLowest = 4.5;
 constexpr double kHighest = 46.5;
 
-PlantOptions tileOptions() {
-  PlantOptions options;
-  options.type = "moving_tile";
-  options.max_torque = 5.0;
-  options.start_std = 5.0;
+MovingTileOptions tileOptions() {
+  MovingTileOptions options;
+  options.max_torque = {5.0};
+  options.start_std = {5.0};
   return options;
 }
 
 /// One step of a tile that may be pushed by any distance.
 Eigen::VectorXd stepOf(const Eigen::Vector2d& state, const Eigen::Vector2d& increment) {
-  PlantOptions options = tileOptions();
-  options.max_torque = 1e300;
-  MovingTile tile(options, CameraOptions());
+  MovingTileOptions options = tileOptions();
+  options.max_torque = {1e300};
+  MovingTile tile(options);
   tile.setState(state);
   tile.step(increment);
   return tile.state();
@@ -83,10 +82,10 @@ TEST(MovingTile, StaysInsideWhateverPushesItFromWherever) {
 
 TEST(MovingTile, StaysWhollyInsideUnderTenThousandRandomIncrements) {
   for (const double width : {9.0, 0.7, 40.3, 50.9}) {
-    PlantOptions options = tileOptions();
+    MovingTileOptions options = tileOptions();
     options.tile_width = width;
     options.tile_softness = 1.0;  // soft edges reach beyond the border
-    MovingTile tile(options, CameraOptions());
+    MovingTile tile(options);
     std::mt19937_64 engine(2);
     std::uniform_real_distribution<double> increment(-5.0, 5.0);
     double least = 51.0;
@@ -95,7 +94,7 @@ TEST(MovingTile, StaysWhollyInsideUnderTenThousandRandomIncrements) {
       tile.step(Eigen::Vector2d(increment(engine), increment(engine)));
       least = std::min(least, tile.state().minCoeff());
       greatest = std::max(greatest, tile.state().maxCoeff());
-      const std::vector<std::uint8_t> grey = tile.render(tile.state());
+      const std::vector<std::uint8_t> grey = tile.render(tile.state()).bytes;
       const double sum = std::accumulate(grey.begin(), grey.end(), 0.0);
       ASSERT_NEAR(sum, 255 * width * width, 0.5 * (4 * width + 8)) << "step " << i;
     }
@@ -109,11 +108,11 @@ TEST(MovingTile, StaysWhollyInsideUnderTenThousandRandomIncrements) {
 
 TEST(MovingTile, IsNeverRoundedBeyondTheBorderWhateverItsWidth) {
   for (int tenths = 1; tenths < 510; ++tenths) {
-    PlantOptions options = tileOptions();
+    MovingTileOptions options = tileOptions();
     options.tile_width = tenths / 10.0;
     const double lowest = options.tile_width / 2;
     const double highest = 51 - options.tile_width / 2;
-    MovingTile tile(options, CameraOptions());
+    MovingTile tile(options);
     const double room = highest - lowest;
     // All of these are the greatest coordinate after folding, but for what rounding adds to it.
     for (const double position : {highest, lowest - room, highest + 2 * room}) {
@@ -126,7 +125,7 @@ TEST(MovingTile, IsNeverRoundedBeyondTheBorderWhateverItsWidth) {
 }
 
 TEST(MovingTile, SaturatesEachIncrementByItself) {
-  MovingTile tile(tileOptions(), CameraOptions());
+  MovingTile tile(tileOptions());
   EXPECT_EQ(tile.step(Eigen::Vector2d(100.0, -5.5)), Eigen::Vector2d(5.0, -5.0));
   EXPECT_EQ(tile.state(), Eigen::Vector2d(30.5, 20.5));
   EXPECT_EQ(tile.step(Eigen::Vector2d(-4.75, 5.0)), Eigen::Vector2d(-4.75, 5.0));
@@ -134,20 +133,20 @@ TEST(MovingTile, SaturatesEachIncrementByItself) {
 }
 
 TEST(MovingTile, ReportsTheIncrementBeforeTheBounce) {
-  MovingTile tile(tileOptions(), CameraOptions());
+  MovingTile tile(tileOptions());
   tile.setState(Eigen::Vector2d(46.0, 25.0));
   EXPECT_EQ(tile.step(Eigen::Vector2d(4.0, 0.0)), Eigen::Vector2d(4.0, 0.0));
   EXPECT_EQ(tile.state(), Eigen::Vector2d(43.0, 25.0));
 }
 
 TEST(MovingTile, RefusesAnIncrementOfOneNumber) {
-  MovingTile tile(tileOptions(), CameraOptions());
+  MovingTile tile(tileOptions());
   EXPECT_THROW(tile.step(Eigen::VectorXd::Zero(1)), std::invalid_argument);
   EXPECT_EQ(tile.state(), Eigen::Vector2d(25.5, 25.5));
 }
 
 TEST(MovingTile, StartsAroundTheMiddleOfThePicture) {
-  const MovingTile tile(tileOptions(), CameraOptions());
+  const MovingTile tile(tileOptions());
   EXPECT_EQ(tile.state(), Eigen::Vector2d(25.5, 25.5));
   std::mt19937_64 engine = startStream(1, 0, false);
   constexpr int kDraws = 20000;
@@ -165,38 +164,40 @@ TEST(MovingTile, StartsAroundTheMiddleOfThePicture) {
 }
 
 TEST(MovingTile, ShowsAndBringsBackAStartFarOutside) {
-  PlantOptions options = tileOptions();
-  options.start_std = 1e6;
-  MovingTile tile(options, CameraOptions());
+  MovingTileOptions options = tileOptions();
+  options.start_std = {1e6};
+  MovingTile tile(options);
   std::mt19937_64 engine = startStream(1, 0, false);
   tile.setState(tile.drawStart(engine));
   ASSERT_GT((tile.state().array() - 25.5).abs().maxCoeff(), 1e3);
-  EXPECT_EQ(tile.render(tile.state()), std::vector<std::uint8_t>(51 * 51, 0));
+  EXPECT_EQ(tile.render(tile.state()).bytes, std::vector<std::uint8_t>(51 * 51, 0));
   tile.step(Eigen::Vector2d::Zero());
   EXPECT_GE(tile.state().minCoeff(), kLowest);
   EXPECT_LE(tile.state().maxCoeff(), kHighest);
 }
 
 TEST(MovingTile, HasItsGoalUpAndToTheRightAndMeasuresTheDistanceInPixels) {
-  const MovingTile tile(tileOptions(), CameraOptions());
-  EXPECT_EQ(tile.goalState(), Eigen::Vector2d(38.25, 12.75));
-  EXPECT_EQ(tile.goalError(tile.goalState()), 0.0);
+  const MovingTile tile(tileOptions());
+  EXPECT_EQ(tile.goal(), Eigen::Vector2d(38.25, 12.75));
+  EXPECT_EQ(tile.goalError(tile.goal()), 0.0);
   EXPECT_EQ(tile.goalError(Eigen::Vector2d(38.25 - 3.0, 12.75 + 4.0)), 5.0);
+  EXPECT_EQ(tile.info().error_unit, "px");
+  EXPECT_EQ(tile.info().tolerance, 2.0);
 }
 
 TEST(MovingTile, HasItsGoalWithinItsReachWhereTheTileIsLarge) {
-  PlantOptions options = tileOptions();
+  MovingTileOptions options = tileOptions();
   options.tile_width = 41.0;
-  const MovingTile tile(options, CameraOptions());
-  EXPECT_EQ(tile.goalState(), Eigen::Vector2d(30.5, 20.5));
+  const MovingTile tile(options);
+  EXPECT_EQ(tile.goal(), Eigen::Vector2d(30.5, 20.5));
 }
 
 TEST(MovingTile, IsSeenWhereItsCentreIs) {
-  const MovingTile tile(tileOptions(), CameraOptions());
+  const MovingTile tile(tileOptions());
   const Eigen::Vector2d state(17.25, 31.5);
   EXPECT_EQ(tile.visiblePosition(state), state);
   // The centre of brightness in the picture is there too; pixel j has its centre at j + 1/2.
-  const std::vector<std::uint8_t> grey = tile.render(state);
+  const std::vector<std::uint8_t> grey = tile.render(state).bytes;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   double total = 0.0;
   for (int i = 0; i < 51; ++i) {
@@ -209,39 +210,57 @@ TEST(MovingTile, IsSeenWhereItsCentreIs) {
 }
 
 TEST(MovingTile, NamesItsStateAndTorquesWithTheirUnitsAndHasNoRates) {
-  const MovingTile tile(tileOptions(), CameraOptions());
-  EXPECT_EQ(tile.stateNames(), (std::vector<std::string>{"x_px", "y_px"}));
-  EXPECT_EQ(tile.torqueNames(), (std::vector<std::string>{"dx_px", "dy_px"}));
-  EXPECT_EQ(tile.jointNames(), (std::vector<std::string>{"x", "y"}));
+  const PlantInfo info = MovingTile(tileOptions()).info();
+  EXPECT_EQ(info.state_names, (std::vector<std::string>{"x_px", "y_px"}));
+  EXPECT_EQ(info.torque_names, (std::vector<std::string>{"dx_px", "dy_px"}));
+  ASSERT_EQ(info.joints.size(), 2U);
+  EXPECT_EQ(info.joints[0].name, "x");
+  EXPECT_EQ(info.joints[1].name, "y");
+  EXPECT_EQ(info.joints[0].kind, JointKind::kLength);
+  EXPECT_EQ(info.joints[1].kind, JointKind::kLength);
+}
+
+TEST(MovingTile, TakesALimitAndASpreadForEachDirection) {
+  MovingTileOptions options;
+  options.max_torque = {3.0, 4.0};
+  options.start_std = {0.0, 2.0};
+  MovingTile tile(options);
+  EXPECT_EQ(tile.info().start_std, Eigen::Vector2d(0.0, 2.0));
+  EXPECT_EQ(tile.step(Eigen::Vector2d(9.0, -9.0)), Eigen::Vector2d(3.0, -4.0));
 }
 
 TEST(MovingTile, FitsAPictureOfAnotherSize) {
-  CameraOptions camera;
-  camera.size = 20;
-  MovingTile tile(tileOptions(), camera);
-  EXPECT_EQ(tile.imageSize(), 20);
+  MovingTileOptions options = tileOptions();
+  options.picture_size = 20;
+  const MovingTile tile(options);
   EXPECT_EQ(tile.state(), Eigen::Vector2d(10.0, 10.0));
-  EXPECT_EQ(tile.goalState(), Eigen::Vector2d(15.0, 5.0));
-  EXPECT_EQ(tile.render(tile.state()).size(), 400U);
+  EXPECT_EQ(tile.goal(), Eigen::Vector2d(15.0, 5.0));
+  const Picture picture = tile.render(tile.state());
+  EXPECT_EQ(picture.width, 20);
+  EXPECT_EQ(picture.height, 20);
+  EXPECT_EQ(picture.channels, 1);
+  EXPECT_EQ(picture.bytes.size(), 400U);
 }
 
 TEST(MovingTile, RefusesATileThatHasNoRoomInThePictureAndAllOtherProblemsWithIt) {
-  PlantOptions options = tileOptions();
+  MovingTileOptions options = tileOptions();
   options.dt = -1.0;
-  CameraOptions camera;
-  camera.size = 9;
+  options.picture_size = 9;
+  options.tile_softness = 0.5;
   try {
-    MovingTile tile(options, camera);
+    MovingTile tile(options);
     FAIL() << "a tile without room was made";
   } catch (const std::invalid_argument& e) {
     const std::string message = e.what();
-    const char* rule = "plant/tile_width must be smaller than camera/size (9 pixels), got 9";
-    EXPECT_NE(message.find(rule), std::string::npos) << message;
-    EXPECT_NE(message.find("plant/dt"), std::string::npos) << message;
+    for (const char* part :
+         {"plant/tile_width", "plant/picture_size (9)", "plant/tile_softness", "plant/dt"}) {
+      EXPECT_NE(message.find(part), std::string::npos) << message;
+    }
   }
-  options.dt = 0.2;
+  options = tileOptions();
+  options.picture_size = 9;
   options.tile_width = 8.9;
-  EXPECT_NO_THROW(MovingTile(options, camera));
+  EXPECT_NO_THROW(MovingTile{options});
 }
 
 }  // namespace

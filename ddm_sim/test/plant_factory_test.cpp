@@ -16,22 +16,23 @@
 namespace ddm {
 namespace {
 
-using testing::toyOptions;
+using testing::ToyMaker;
 using testing::ToyPlant;
-using Bytes = ToyPlant::Bytes;
 using Traits = ToyPlant::Traits;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// What the factory says of it; empty if it makes it.
-std::string refusal(const PlantOptions& plant, const CameraOptions& camera = CameraOptions()) {
+std::string refusal(const PlantMaker& maker) {
   try {
-    makePlant(plant, camera);
+    makePlant(maker);
   } catch (const std::invalid_argument& e) {
     return e.what();
   }
   return "";
 }
+
+std::string refusal(const Traits& traits) { return refusal(ToyMaker(traits)); }
 
 struct Flaw {
   const char* name;
@@ -46,7 +47,7 @@ class PlantFactoryFlawTest : public ::testing::TestWithParam<Flaw> {};
 TEST_P(PlantFactoryFlawTest, IsRefusedByName) {
   Traits traits;
   GetParam().spoil(&traits);
-  const std::string text = refusal(toyOptions(traits));
+  const std::string text = refusal(traits);
   EXPECT_NE(text.find("their_package/Toy"), std::string::npos) << text;
   EXPECT_NE(text.find("doc/your_plant.md"), std::string::npos) << text;
   for (const std::string& word : GetParam().words) {
@@ -62,90 +63,170 @@ std::vector<std::string> names(int count) {
 
 std::vector<Flaw> namesAndSizes() {
   return {
-      {"StateNameMissing", [](Traits* t) { t->states = {"angle_rad"}; }, {"stateNames()", "2"}},
+      {"StateNameMissing",
+       [](Traits* t) { t->info.state_names.pop_back(); },
+       {"start", "start_std", "goal", "1"}},
+      {"StateNameTooMany",
+       [](Traits* t) { t->info.state_names.push_back("more_m"); },
+       {"start", "start_std", "goal", "3"}},
       {"TorqueNameTooMany",
+       [](Traits* t) { t->info.torque_names.push_back("more_n"); },
+       {"max_torque", "2"}},
+      {"NoTorqueName", [](Traits* t) { t->info.torque_names.clear(); }, {"torque_names"}},
+      {"NoStateName", [](Traits* t) { t->info.state_names.clear(); }, {"state_names"}},
+      {"NoJoint", [](Traits* t) { t->info.joints.clear(); }, {"joints"}},
+      {"MoreJointsThanStates",
        [](Traits* t) {
-         t->torques = {"a_nm", "b_nm"};
+         t->info.joints = {
+             {"a", JointKind::kAngle}, {"b", JointKind::kAngle}, {"c", JointKind::kAngle}};
        },
-       {"torqueNames()", "a_nm, b_nm"}},
-      {"TorqueNameMissing", [](Traits* t) { t->torques.clear(); }, {"torqueNames()"}},
-      {"NoJoint", [](Traits* t) { t->joints.clear(); }, {"jointNames()"}},
-      {"MoreJointsThanStates", [](Traits* t) { t->joints = names(3); }, {"jointNames()", "name_2"}},
+       {"joints", "a, b, c"}},
       {"NameWithComma",
-       [](Traits* t) { t->states[0] = "angle,rad"; },
-       {"stateNames()", "angle,rad"}},
-      {"NameWithNewline", [](Traits* t) { t->torques[0] = "torque\n"; }, {"torqueNames()"}},
-      {"EmptyName", [](Traits* t) { t->joints[0] = ""; }, {"jointNames()"}},
-      {"SameNameTwice", [](Traits* t) { t->states[1] = t->states[0]; }, {"stateNames()"}},
-      {"NoState",
-       [](Traits* t) {
-         t->start.resize(0);
-         t->states.clear();
-         t->joints.clear();
-       },
-       {"stateDim()", "got 0"}},
-      {"NoTorque",
-       [](Traits* t) {
-         t->torque_dim = 0;
-         t->torques.clear();
-       },
-       {"torqueDim()", "got 0"}},
-      {"NegativeTorqueDim", [](Traits* t) { t->torque_dim = -1; }, {"torqueDim()", "got -1"}},
+       [](Traits* t) { t->info.state_names[0] = "angle,rad"; },
+       {"state_names", "angle,rad"}},
+      {"NameWithBlank", [](Traits* t) { t->info.state_names[0] = "a b"; }, {"state_names", "a b"}},
+      {"NameWithQuote", [](Traits* t) { t->info.joints[0].name = "a\"b"; }, {"joints"}},
+      {"NameWithNewline",
+       [](Traits* t) { t->info.torque_names[0] = "torque\n"; },
+       {"torque_names"}},
+      {"EmptyName", [](Traits* t) { t->info.joints[0].name = ""; }, {"joints"}},
+      {"SameNameTwice",
+       [](Traits* t) { t->info.state_names[1] = t->info.state_names[0]; },
+       {"state_names"}},
       {"TooManyTorques",
        [](Traits* t) {
-         t->torque_dim = 1001;
-         t->torques = names(1001);
+         t->info.torque_names = names(1001);
+         t->info.max_torque = Eigen::VectorXd::Ones(1001);
        },
-       {"torqueDim()", "got 1001"}},
-      {"OtherTimeStep", [](Traits* t) { t->dt = 0.1; }, {"plant/dt", "got 0.1"}},
-      {"NoTimeStep", [](Traits* t) { t->dt = 0.0; }, {"plant/dt", "got 0"}},
-      {"OtherLimit", [](Traits* t) { t->max_torque = 1.0; }, {"plant/max_torque", "got 1"}},
-      {"OtherImageSize", [](Traits* t) { t->image_size = 50; }, {"camera/size", "got 50"}},
+       {"torque_names", "1001"}},
+      {"TooManyStates",
+       [](Traits* t) {
+         t->info.state_names = names(1001);
+         t->info.start = t->info.start_std = t->info.goal = Eigen::VectorXd::Zero(1001);
+       },
+       {"state_names", "1001"}},
   };
 }
 
-std::vector<Flaw> values() {
+std::vector<Flaw> numbers() {
   return {
-      {"StartIsNaN", [](Traits* t) { t->start[0] = kNaN; }, {"state()", "nan"}},
-      {"GoalIsNaN", [](Traits* t) { t->goal[1] = kNaN; }, {"goalState()", "nan"}},
+      {"NoTimeStep", [](Traits* t) { t->info.dt = 0.0; }, {"dt", "got 0"}},
+      {"TimeStepIsNaN", [](Traits* t) { t->info.dt = kNaN; }, {"dt", "nan"}},
+      {"NoLimit", [](Traits* t) { t->info.max_torque[0] = 0.0; }, {"max_torque", "[0]"}},
+      {"LimitIsNaN", [](Traits* t) { t->info.max_torque[0] = kNaN; }, {"max_torque", "nan"}},
+      {"LimitMissing", [](Traits* t) { t->info.max_torque.resize(0); }, {"max_torque"}},
+      {"StartIsNaN", [](Traits* t) { t->info.start[0] = kNaN; }, {"start", "nan"}},
+      {"SpreadIsNaN", [](Traits* t) { t->info.start_std[1] = kNaN; }, {"start_std", "nan"}},
+      {"NegativeSpread", [](Traits* t) { t->info.start_std[1] = -0.1; }, {"start_std", "-0.1"}},
+      {"GoalIsNaN", [](Traits* t) { t->info.goal[1] = kNaN; }, {"goal", "nan"}},
       {"GoalOfAnotherSize",
-       [](Traits* t) { t->goal = Eigen::Vector3d::Ones(); },
-       {"goalState()", "[1 1 1]"}},
-      {"DistanceIsNaN", [](Traits* t) { t->goal_error = kNaN; }, {"distanceToGoal()", "nan"}},
-      {"NegativeDistance", [](Traits* t) { t->goal_error = -1.0; }, {"distanceToGoal()", "-1"}},
-      {"AngleTheLongWayRound", [](Traits* t) { t->goal_error = 4.0; }, {"distanceToGoal()", "4"}},
-      {"PlaceIsNaN", [](Traits* t) { t->place[0] = kNaN; }, {"locate()", "nan"}},
-      {"PlaceInSpace",
-       [](Traits* t) { t->place = Eigen::Vector3d::Ones(); },
-       {"locate()", "[1 1 1]"}},
+       [](Traits* t) { t->info.goal = Eigen::VectorXd::Ones(3); },
+       {"goal", "[1 1 1]"}},
+      {"NoTolerance", [](Traits* t) { t->info.tolerance = 0.0; }, {"tolerance", "got 0"}},
+      {"ToleranceIsNaN", [](Traits* t) { t->info.tolerance = kNaN; }, {"tolerance", "nan"}},
+      {"NoUnitOfTheError", [](Traits* t) { t->info.error_unit = ""; }, {"error_unit"}},
+  };
+}
+
+/// Everywhere the same picture.
+void show(Traits* traits, const Picture& picture) {
+  traits->draw = [picture](const Eigen::VectorXd&) { return picture; };
+}
+
+std::vector<Flaw> answers() {
+  using Vector = Eigen::VectorXd;
+  return {
+      {"ErrorIsNaN",
+       [](Traits* t) { t->distance = [](const Vector&, const Vector&) { return kNaN; }; },
+       {"error", "nan"}},
+      {"NegativeError",
+       [](Traits* t) { t->distance = [](const Vector&, const Vector&) { return -1.0; }; },
+       {"error", "-1"}},
+      {"ErrorAtTheGoal",
+       [](Traits* t) { t->distance = [](const Vector&, const Vector&) { return 0.51; }; },
+       {"goal", "tolerance", "0.51"}},
+      {"ErrorThrows",
+       [](Traits* t) {
+         t->distance = [](const Vector&, const Vector&) -> double {
+           throw std::runtime_error("no ruler");
+         };
+       },
+       {"distance()", "no ruler"}},
+      {"DrawnGoalOfAnotherSize",
+       [](Traits* t) { t->draw_goal = [](std::mt19937_64*) { return Vector::Ones(3); }; },
+       {"drawGoal()", "[1 1 1]"}},
+      {"DrawnGoalIsNaN",
+       [](Traits* t) { t->draw_goal = [](std::mt19937_64*) { return Vector::Constant(2, kNaN); }; },
+       {"drawGoal()", "nan"}},
+      {"DrawnGoalIsAnotherEachTime",
+       [](Traits* t) {
+         const auto calls = std::make_shared<int>(0);
+         t->draw_goal = [calls](std::mt19937_64*) { return Vector::Constant(2, ++*calls); };
+       },
+       {"drawGoal()"}},
+      {"PictureOfTheDrawnGoalOfAnotherSize",
+       [](Traits* t) {
+         t->draw_goal = [](std::mt19937_64*) { return Vector::Constant(2, 9.0); };
+         t->draw = [](const Vector& state) {
+           return testing::plainPicture(state[0] > 8.0 ? 52 : 51, 255);
+         };
+       },
+       {"draw()", "goal"}},
+      {"RewardIsNaN",
+       [](Traits* t) { t->reward = [](const Vector&, const Vector&) { return kNaN; }; },
+       {"reward()", "nan"}},
+      {"PlaceIsNaN",
+       [](Traits* t) { t->locate = [](const Vector&) { return Vector::Constant(2, kNaN); }; },
+       {"visiblePosition()", "nan"}},
+      {"NoPlace",
+       [](Traits* t) { t->locate = [](const Vector&) { return Vector(); }; },
+       {"visiblePosition()"}},
       {"TooFewPixels",
-       [](Traits* t) { t->draw = [](const Eigen::VectorXd&) { return Bytes(2600, 255); }; },
-       {"draw()", "2601", "2600"}},
+       [](Traits* t) {
+         Picture picture = testing::plainPicture(51, 255);
+         picture.bytes.pop_back();
+         show(t, picture);
+       },
+       {"draw()", "51", "2600"}},
       {"CoversLessThanItDraws",
-       [](Traits* t) { t->cover = [](const Eigen::VectorXd&) { return Bytes(2601, 254); }; },
-       {"cover()", "254"}},
+       [](Traits* t) {
+         Picture picture = testing::plainPicture(51, 200);
+         picture.cover[77] = 199;
+         show(t, picture);
+       },
+       {"cover", "199", "200", "77"}},
+      {"CoversLessThanTheBrightestColour",
+       [](Traits* t) {
+         show(t, {1, 1, 3, {10, 200, 10}, {100}});
+       },
+       {"cover", "100", "200"}},
       {"CoversAnotherNumberOfPixels",
-       [](Traits* t) { t->cover = [](const Eigen::VectorXd&) { return Bytes(2602, 255); }; },
-       {"cover()", "2602"}},
+       [](Traits* t) {
+         Picture picture = testing::plainPicture(51, 255);
+         picture.cover.push_back(255);
+         show(t, picture);
+       },
+       {"draw()", "cover", "2602"}},
       {"NextStateIsNaN",
        [](Traits* t) {
-         t->advance = [](const Eigen::VectorXd&, const Eigen::VectorXd&) {
-           return Eigen::VectorXd(Eigen::Vector2d(0.0, kNaN));
-         };
+         t->advance = [](const Vector&, const Vector&) { return Vector::Constant(2, kNaN); };
        },
        {"advance()"}},
       {"NextStateOfAnotherSize",
-       [](Traits* t) {
-         t->advance = [](const Eigen::VectorXd&, const Eigen::VectorXd&) {
-           return Eigen::VectorXd(Eigen::VectorXd::Zero(1));
-         };
-       },
+       [](Traits* t) { t->advance = [](const Vector&, const Vector&) { return Vector::Zero(1); }; },
        {"advance()", "[0]"}},
       {"PictureThrows",
        [](Traits* t) {
-         t->draw = [](const Eigen::VectorXd&) -> Bytes { throw std::runtime_error("no texture"); };
+         t->draw = [](const Vector&) -> Picture { throw std::runtime_error("no texture"); };
        },
-       {"no texture"}},
+       {"draw()", "no texture"}},
+      {"PictureGrows",
+       [](Traits* t) {
+         t->draw = [](const Vector& state) {
+           return testing::plainPicture(state[0] > 0.3 ? 52 : 51, 255);
+         };
+       },
+       {"draw()", "size"}},
   };
 }
 
@@ -158,17 +239,17 @@ std::vector<Flaw> memories() {
            return Eigen::VectorXd(state.array() + 1e-12 * ++*calls);
          };
        },
-       {"advance()", "same"}},
+       {"advance()"}},
       {"PictureRemembers",
        [](Traits* t) {
          const auto calls = std::make_shared<int>(0);
          t->draw = [calls](const Eigen::VectorXd&) {
-           Bytes picture(2601, 255);
-           picture[1000] = static_cast<std::uint8_t>(255 - ++*calls);
+           Picture picture = testing::plainPicture(51, 255);
+           picture.bytes[1000] = static_cast<std::uint8_t>(255 - ++*calls);
            return picture;
          };
        },
-       {"draw()", "same"}},
+       {"draw()"}},
   };
 }
 
@@ -176,29 +257,37 @@ std::string nameOf(const ::testing::TestParamInfo<Flaw>& info) { return info.par
 
 INSTANTIATE_TEST_SUITE_P(NamesAndSizes, PlantFactoryFlawTest, ::testing::ValuesIn(namesAndSizes()),
                          nameOf);
-INSTANTIATE_TEST_SUITE_P(Values, PlantFactoryFlawTest, ::testing::ValuesIn(values()), nameOf);
+INSTANTIATE_TEST_SUITE_P(Numbers, PlantFactoryFlawTest, ::testing::ValuesIn(numbers()), nameOf);
+INSTANTIATE_TEST_SUITE_P(Answers, PlantFactoryFlawTest, ::testing::ValuesIn(answers()), nameOf);
 INSTANTIATE_TEST_SUITE_P(Memories, PlantFactoryFlawTest, ::testing::ValuesIn(memories()), nameOf);
 
 TEST(PlantFactory, MakesASoundPlantOfAnotherPackageAtItsStart) {
   Traits traits;
-  traits.start << 0.25, -0.5;
-  EXPECT_EQ(makePlant(toyOptions(traits), CameraOptions())->state(), traits.start);
+  traits.info.start << 0.25, -0.5;
+  EXPECT_EQ(makePlant(ToyMaker(traits))->state(), traits.info.start);
+}
+
+TEST(PlantFactory, MakesAPlantThatDoesNotKnowWhatItCovers) {
+  Traits traits;
+  show(&traits, {3, 2, 3, std::vector<std::uint8_t>(18, 255), {}});
+  EXPECT_EQ(refusal(traits), "");
 }
 
 TEST(PlantFactory, ReportsAllThatIsWrongWithAPlantAtOnce) {
   Traits traits;
-  traits.states.pop_back();
-  traits.goal[0] = kNaN;
-  traits.image_size = 10;
-  const std::string text = refusal(toyOptions(traits));
-  for (const char* word : {"stateNames()", "goalState()", "camera/size"}) {
+  traits.info.joints.clear();
+  traits.info.goal[0] = kNaN;
+  traits.info.tolerance = -1.0;
+  traits.info.dt = 0.0;
+  const std::string text = refusal(traits);
+  for (const char* word : {"joints", "goal", "tolerance", "dt"}) {
     EXPECT_NE(text.find(word), std::string::npos) << text;
   }
 }
 
 TEST(PlantFactory, RefusesAPlantThatIsAnotherOneEachTimeItIsMade) {
   double slope = 0.1;
-  const std::string text = refusal(toyOptions([&slope] {
+  const std::string text = refusal(ToyMaker([&slope] {
     slope += 0.01;
     Traits traits;
     traits.advance = [slope](const Eigen::VectorXd& state, const Eigen::VectorXd& torque) {
@@ -206,35 +295,19 @@ TEST(PlantFactory, RefusesAPlantThatIsAnotherOneEachTimeItIsMade) {
     };
     return std::make_unique<ToyPlant>(traits);
   }));
-  EXPECT_NE(text.find("same"), std::string::npos) << text;
+  EXPECT_NE(text.find("advance()"), std::string::npos) << text;
 }
 
 TEST(PlantFactory, RefusesAMakerThatMakesNothing) {
-  const std::string text = refusal(toyOptions([] { return nullptr; }));
+  const std::string text = refusal(ToyMaker([] { return nullptr; }));
   EXPECT_NE(text.find("their_package/Toy"), std::string::npos) << text;
 }
 
-TEST(PlantFactory, ChecksTheBlocksOfAPluginAsThoseOfOurPlants) {
-  PlantOptions plant = toyOptions(Traits());
-  plant.dt = 0.0;
-  CameraOptions camera;
-  camera.size = 0;
-  const std::string text = refusal(plant, camera);
-  for (const char* key : {"plant/dt", "camera/size"}) {
-    EXPECT_NE(text.find(key), std::string::npos) << text;
-  }
-}
-
-TEST(PlantFactory, RefusesClutterBehindAPlantThatDoesNotSayWhatItCovers) {
-  Traits traits;
-  traits.cover = [](const Eigen::VectorXd&) { return Bytes(); };
-  EXPECT_EQ(refusal(toyOptions(traits)), "");
-  CameraOptions camera;
-  camera.clutter = 0.25;
-  const std::string text = refusal(toyOptions(traits), camera);
-  for (const char* word : {"their_package/Toy", "cover()", "camera/clutter", "0.25"}) {
-    EXPECT_NE(text.find(word), std::string::npos) << text;
-  }
+TEST(PlantFactory, LetsTheRefusalOfOptionsPass) {
+  const auto refuse = []() -> std::unique_ptr<Plant> {
+    throw std::invalid_argument("plant/length");
+  };
+  EXPECT_EQ(refusal(ToyMaker(refuse)), "plant/length");
 }
 
 }  // namespace

@@ -10,15 +10,19 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "ddm_sim/angles.h"
+
 namespace ddm {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kSize = 51;
 
 using Bytes = std::vector<std::uint8_t>;
 
-Bytes render(double angle) { return RodRenderer(CameraOptions(), 1.0).render(angle); }
+/// A rod of 1 m that is fixed in the middle of the picture.
+Rod rodAt(double angle) { return {Eigen::Vector2d::Zero(), angle, 1.0}; }
+
+Bytes render(double angle) { return RodRenderer(kSize, RodLook()).render({rodAt(angle)}).bytes; }
 
 int brightness(const Bytes& image, int row_begin, int row_end, int column_begin, int column_end) {
   int sum = 0;
@@ -95,23 +99,71 @@ TEST(RodRenderer, RoundsTheGreyValueOfThePublishedFormula) {
   }
 }
 
-TEST(RodRenderer, HasTheSizeAndExtentOfItsOptions) {
-  CameraOptions options;
-  options.size = 20;
-  options.half_extent = 4.0;
-  const Bytes small = RodRenderer(options, 1.0).render(0.0);
-  EXPECT_EQ(small.size(), 400U);
-  // The tip stands at a quarter of the half height: rows below 10 + 2.5 + softness are black.
-  EXPECT_EQ(std::accumulate(small.begin() + 14 * 20, small.end(), 0), 0);
+TEST(RodRenderer, ShowsTheNearestOfSeveralRodsInEachPixel) {
+  const RodRenderer renderer(kSize, RodLook());
+  const Rod first = rodAt(0.4);
+  const Rod second{first.end(), 2.0, 0.5};
+  const Rod apart{{-0.8, 0.7}, -1.0, 0.2};
+  const Bytes all = renderer.render({first, second, apart}).bytes;
+  const Bytes one = renderer.render({first}).bytes;
+  const Bytes two = renderer.render({second}).bytes;
+  const Bytes three = renderer.render({apart}).bytes;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    ASSERT_EQ(all[i], std::max({one[i], two[i], three[i]})) << i;
+  }
+  EXPECT_EQ(renderer.render({apart, second, first}).bytes, all);
 }
 
-TEST(RodRenderer, RefusesInvalidOptionsAndLengths) {
-  CameraOptions options;
-  options.edge_softness = 0.0;
-  EXPECT_THROW(RodRenderer(options, 1.0), std::invalid_argument);
-  EXPECT_THROW(RodRenderer(CameraOptions(), 0.0), std::invalid_argument);
-  EXPECT_THROW(RodRenderer(CameraOptions(), std::numeric_limits<double>::quiet_NaN()),
-               std::invalid_argument);
+TEST(RodRenderer, StartsARodWhereItSays) {
+  constexpr int kShift = 7;  // [pixels]
+  const double pixel = 2.4 / kSize;
+  const RodRenderer renderer(kSize, RodLook());
+  const Bytes middle = renderer.render({{Eigen::Vector2d::Zero(), 0.6, 0.5}}).bytes;
+  const Bytes moved = renderer.render({{{kShift * pixel, 2 * pixel}, 0.6, 0.5}}).bytes;
+  for (int i = 0; i < kSize - 2; ++i) {
+    for (int j = 0; j < kSize - kShift; ++j) {  // to the right, and two rows up
+      ASSERT_NEAR(moved[i * kSize + j + kShift], middle[(i + 2) * kSize + j], 1) << i << ", " << j;
+    }
+  }
+}
+
+TEST(RodRenderer, KnowsWhereARodEnds) {
+  EXPECT_LT((Rod{{1.0, 2.0}, 0.0, 0.5}.end() - Eigen::Vector2d(1.0, 1.5)).norm(), 1e-15);
+  EXPECT_LT((Rod{{1.0, 2.0}, kPi / 2, 0.5}.end() - Eigen::Vector2d(1.5, 2.0)).norm(), 1e-15);
+}
+
+TEST(RodRenderer, HasTheSizeAndExtentOfItsOptions) {
+  RodLook look;
+  look.half_extent = 4.0;
+  const Picture small = RodRenderer(20, look).render({rodAt(0.0)});
+  EXPECT_EQ(small.width, 20);
+  EXPECT_EQ(small.height, 20);
+  EXPECT_EQ(small.channels, 1);
+  EXPECT_EQ(small.bytes.size(), 400U);
+  EXPECT_EQ(small.cover, small.bytes);
+  // The tip stands at a quarter of the half height: rows below 10 + 2.5 + softness are black.
+  EXPECT_EQ(std::accumulate(small.bytes.begin() + 14 * 20, small.bytes.end(), 0), 0);
+}
+
+TEST(RodRenderer, RefusesALookWithoutAnExtentAWidthOrAnEdge) {
+  const auto accepts = [](double RodLook::*value, double number) {
+    RodLook look;
+    look.*value = number;
+    try {
+      RodRenderer(kSize, look).render({rodAt(0.0)});
+    } catch (const std::invalid_argument&) {
+      return false;
+    }
+    return true;
+  };
+  for (const auto value :
+       {&RodLook::half_extent, &RodLook::rod_half_width, &RodLook::edge_softness}) {
+    EXPECT_TRUE(accepts(value, 0.5));
+    for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
+                             std::numeric_limits<double>::infinity()}) {
+      EXPECT_FALSE(accepts(value, bad)) << bad;
+    }
+  }
 }
 
 }  // namespace

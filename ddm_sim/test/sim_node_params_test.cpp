@@ -21,21 +21,31 @@ TEST_F(SimNodeParams, RefusesAMisspeltBlock) {
 
 TEST_F(SimNodeParams, ReportsTheProblemsOfAllBlocksAtOnce) {
   ros::param::set("/bad_node/plant/mass", -1.0);
-  ros::param::set("/bad_node/camera/size", 0);
+  ros::param::set("/bad_node/camera/noise_std", -1.0);
   ros::param::set("/bad_node/sim/watchdog", 0.0);
-  expectRefused(DDM_SIM_NODE, {"plant/mass", "camera/size", "sim/watchdog"});
+  expectRefused(DDM_SIM_NODE, {"plant/mass", "camera/noise_std", "sim/watchdog"});
 }
 
 TEST_F(SimNodeParams, RefusesAnUnknownPlantAndListsTheKnownOnes) {
   ros::param::set("/bad_node/plant/type", "cart");
-  expectRefused(DDM_SIM_NODE, {"plant/type must be one of: pendulum, moving_tile", "cart"});
+  expectRefused(DDM_SIM_NODE, {"plant/type", "cart", "moving_tile", "pendulum", "two_link"});
 }
 
 TEST_F(SimNodeParams, RefusesATileThatFillsThePicture) {
   ros::param::set("/bad_node/plant/type", "moving_tile");
   ros::param::set("/bad_node/plant/tile_width", 51.0);
-  expectRefused(DDM_SIM_NODE,
-                {"plant/tile_width must be smaller than camera/size (51 pixels), got 51"});
+  expectRefused(DDM_SIM_NODE, {"plant/tile_width", "plant/picture_size (51)", "got 51"});
+}
+
+TEST_F(SimNodeParams, RefusesTheKeysOfAnotherPlant) {
+  ros::param::set("/bad_node/plant/type", "moving_tile");
+  ros::param::set("/bad_node/plant/mass", 1.0);
+  expectRefused(DDM_SIM_NODE, {"plant/mass"});
+}
+
+TEST_F(SimNodeParams, RefusesAListThatIsTooLongForThePlant) {
+  ros::param::set("/bad_node/plant/max_torque", std::vector<double>{1.0, 2.0});
+  expectRefused(DDM_SIM_NODE, {"plant/max_torque"});
 }
 
 TEST_F(SimNodeParams, RefusesAValueOfAnotherType) {

@@ -11,7 +11,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
-#include "ddm_sim/plant_factory.h"
+#include "ddm_sim/moving_tile.h"
+#include "ddm_sim/pendulum.h"
+#include "ddm_sim/two_link.h"
 
 namespace ddm {
 namespace {
@@ -35,9 +37,10 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// Rows of the trajectory: step, time, two components of the state. Checks the header.
+/// Rows of the trajectory: step, time, components of the state. Checks header and columns.
 std::vector<std::vector<double>> rows(
-    const std::string& csv, const std::string& header = "step,time_s,angle_rad,rate_rad_per_s") {
+    const std::string& csv, const std::string& header = "step,time_s,angle_rad,rate_rad_per_s",
+    std::size_t num_columns = 4) {
   std::istringstream lines(csv);
   std::string line;
   std::getline(lines, line);
@@ -47,20 +50,13 @@ std::vector<std::vector<double>> rows(
     std::istringstream cells(line);
     std::vector<double> row;
     for (std::string cell; std::getline(cells, cell, ',');) row.push_back(std::stod(cell));
-    EXPECT_EQ(row.size(), 4U) << line;
+    EXPECT_EQ(row.size(), num_columns) << line;
     out.push_back(row);
   }
   return out;
 }
 
 const char kTileHeader[] = "step,time_s,x_px,y_px";
-
-PlantOptions tileOptions() {
-  PlantOptions options;
-  options.type = "moving_tile";
-  options.max_torque = 5.0;
-  return options;
-}
 
 class Simulate : public ::testing::Test {
  protected:
@@ -92,15 +88,15 @@ TEST_F(Simulate, WritesTheTrajectoryOfThePlant) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const auto table = rows(result.out);
   ASSERT_EQ(table.size(), 5U);
-  const auto plant = makePlant(PlantOptions(), CameraOptions());
-  plant->setState(Eigen::Vector2d(0.25, -3.0));
+  Pendulum plant{PendulumOptions()};
+  plant.setState(Eigen::Vector2d(0.25, -3.0));
   const std::vector<double> torques{1.0, -2.5, 6.0, 0.0};
   for (std::size_t t = 0; t < table.size(); ++t) {
-    if (t > 0) plant->step(Eigen::VectorXd::Constant(1, torques[t - 1]));
+    if (t > 0) plant.step(Eigen::VectorXd::Constant(1, torques[t - 1]));
     EXPECT_EQ(table[t][0], t);
     EXPECT_NEAR(table[t][1], 0.2 * t, 1e-15);
-    EXPECT_EQ(table[t][2], plant->state()[0]);  // 17 digits: the same double
-    EXPECT_EQ(table[t][3], plant->state()[1]);
+    EXPECT_EQ(table[t][2], plant.state()[0]);  // 17 digits: the same double
+    EXPECT_EQ(table[t][3], plant.state()[1]);
   }
 }
 
@@ -150,13 +146,13 @@ TEST_F(Simulate, WritesTheTrajectoryAndThePicturesOfTheMovingTile) {
   const std::vector<std::vector<double>> expected{
       {0, 0, 44.25, 6}, {1, 0.2, 44.75, 5.5}, {2, 0.4, 39.75, 7.5}, {3, 0.2 * 3, 39.75, 6.5}};
   EXPECT_EQ(table, expected);
-  const auto plant = makePlant(tileOptions(), CameraOptions());
+  const MovingTile plant{MovingTileOptions()};
   for (int t = 0; t < 4; ++t) {
     const fs::path path = frames / ("frame_000" + std::to_string(t) + ".png");
     const cv::Mat image = cv::imread(path.string(), cv::IMREAD_UNCHANGED);
     ASSERT_EQ(image.type(), CV_8UC1) << path;
     const std::vector<std::uint8_t> grey(image.begin<std::uint8_t>(), image.end<std::uint8_t>());
-    EXPECT_EQ(grey, plant->render(Eigen::Vector2d(table.at(t)[2], table.at(t)[3]))) << path;
+    EXPECT_EQ(grey, plant.render(Eigen::Vector2d(table.at(t)[2], table.at(t)[3])).bytes) << path;
   }
 }
 
@@ -166,16 +162,45 @@ TEST_F(Simulate, StartsTheMovingTileInTheMiddle) {
   EXPECT_EQ(result.out, "step,time_s,x_px,y_px\n0,0,25.5,25.5\n");
 }
 
+TEST_F(Simulate, WritesTheTrajectoryAndThePicturesOfTheArm) {
+  const fs::path frames = folder_ / "frames";
+  const Result result = run("--plant two_link --start 0.1,-0.2,0,0.5 --frames " + frames.string(),
+                            "shoulder_nm,elbow_nm\n4,-2\n-100,1\n");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  TwoLink plant{TwoLinkOptions()};
+  plant.setState(Eigen::Vector4d(0.1, -0.2, 0.0, 0.5));
+  const auto table =
+      rows(result.out, "step,time_s,shoulder_rad,elbow_rad,shoulder_rad_per_s,elbow_rad_per_s", 6U);
+  ASSERT_EQ(table.size(), 3U);
+  for (std::size_t t = 0; t < 3; ++t) {
+    if (t > 0) plant.step(t == 1 ? Eigen::Vector2d(4.0, -2.0) : Eigen::Vector2d(-4.0, 1.0));
+    for (Eigen::Index i = 0; i < 4; ++i) EXPECT_EQ(table[t][2 + i], plant.state()[i]) << t;
+    const fs::path path = frames / ("frame_000" + std::to_string(t) + ".png");
+    const cv::Mat image = cv::imread(path.string(), cv::IMREAD_UNCHANGED);
+    ASSERT_EQ(image.type(), CV_8UC1) << path;
+    const std::vector<std::uint8_t> grey(image.begin<std::uint8_t>(), image.end<std::uint8_t>());
+    EXPECT_EQ(grey, plant.render(plant.state()).bytes) << path;
+  }
+}
+
+TEST_F(Simulate, TakesALimitForEachMotor) {
+  const std::string path = (folder_ / "limits.yaml").string();
+  std::ofstream(path) << "plant: {max_torque: [1.5, 2.5]}\n";
+  const Result result =
+      run("--plant moving_tile --start 20,20 --config " + path, "dx_px,dy_px\n9,-9\n");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(rows(result.out, kTileHeader).at(1), (std::vector<double>{1, 0.2, 21.5, 17.5}));
+}
+
 TEST_F(Simulate, RefusesAnAngleOfAPlantThatHasNone) {
   for (const char* option : {"--angle", "--rate"}) {
     for (const char* value : {" 0", " 1"}) {  // 0 too: it would mean the upper left corner
       const Result result =
           run(std::string("--plant moving_tile ") + option + value, "dx_px,dy_px\n");
       EXPECT_EQ(result.exit_code, 2) << option << value;
-      EXPECT_TRUE(contains(result.err, std::string("option ") + option +
-                                           " is for a pendulum; the state of this plant is "
-                                           "x_px,y_px, use --start"))
-          << result.err;
+      for (const char* part : {option, "x_px,y_px", "--start"}) {
+        EXPECT_TRUE(contains(result.err, part)) << result.err;
+      }
       EXPECT_EQ(result.out, "");
     }
   }
@@ -194,7 +219,7 @@ TEST_F(Simulate, RefusesATileThatFillsThePicture) {
   const Result result = run("--plant moving_tile --config " + path, "dx_px,dy_px\n");
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_TRUE(contains(result.err, "plant/tile_width")) << result.err;
-  EXPECT_TRUE(contains(result.err, "camera/size")) << result.err;
+  EXPECT_TRUE(contains(result.err, "plant/picture_size")) << result.err;
 }
 
 TEST_F(Simulate, WritesOnePictureARow) {
@@ -203,14 +228,14 @@ TEST_F(Simulate, WritesOnePictureARow) {
       run("--plant pendulum --angle 0.5 --frames " + frames.string(), "torque_nm\n1\n1\n");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(std::distance(fs::directory_iterator(frames), fs::directory_iterator()), 3);
-  const auto plant = makePlant(PlantOptions(), CameraOptions());
+  const Pendulum plant{PendulumOptions()};
   const auto table = rows(result.out);
   for (int t = 0; t < 3; ++t) {
     const fs::path path = frames / ("frame_000" + std::to_string(t) + ".png");
     const cv::Mat image = cv::imread(path.string(), cv::IMREAD_UNCHANGED);
     ASSERT_EQ(image.type(), CV_8UC1) << path;
     const std::vector<std::uint8_t> grey(image.begin<std::uint8_t>(), image.end<std::uint8_t>());
-    EXPECT_EQ(grey, plant->render(Eigen::Vector2d(table[t][2], table[t][3]))) << path;
+    EXPECT_EQ(grey, plant.render(Eigen::Vector2d(table[t][2], table[t][3])).bytes) << path;
   }
 }
 
@@ -239,7 +264,8 @@ TEST_F(Simulate, ListsTheKnownPlantsWhenThePlantIsUnknown) {
   for (const char* plant : {"cart", "sim", "../config/pendulum", "''"}) {
     const Result result = run(std::string("--plant ") + plant, "torque_nm\n");
     EXPECT_EQ(result.exit_code, 2) << plant;
-    EXPECT_TRUE(contains(result.err, "moving_tile, pendulum, pendulum_gravity")) << result.err;
+    EXPECT_TRUE(contains(result.err, "moving_tile, pendulum, pendulum_gravity, two_link"))
+        << result.err;
     EXPECT_EQ(result.out, "");
   }
 }
@@ -292,7 +318,8 @@ TEST_F(Simulate, RefusesABadConfigurationFile) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {"plant: {dt: -1}\n", "plant/dt"},
       {"plant: {lenght: 1}\n", "lenght"},
-      {"camera: {size: many}\n", "camera/size"},
+      {"plant: {picture_size: many}\n", "plant/picture_size"},
+      {"plant: {max_torque: [1, 2]}\n", "plant/max_torque"},
       {"plant: {type: cart}\n", "plant/type"}};
   for (const auto& [yaml, word] : cases) {
     std::ofstream(path) << yaml;

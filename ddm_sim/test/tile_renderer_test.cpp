@@ -20,11 +20,11 @@ using Bytes = std::vector<std::uint8_t>;
 
 /// A tile as sharp as pixels allow.
 Bytes render(double x, double y, double width = 9.0) {
-  return TileRenderer(kSize, width, 1.0).render({x, y});
+  return TileRenderer(kSize, width, 1.0).render({x, y}).bytes;
 }
 
 Bytes renderSoft(double x, double y, double softness) {
-  return TileRenderer(kSize, 9.0, softness).render({x, y});
+  return TileRenderer(kSize, 9.0, softness).render({x, y}).bytes;
 }
 
 int at(const Bytes& image, int row, int column) { return image[row * kSize + column]; }
@@ -148,7 +148,7 @@ TEST(TileRenderer, IsTheMeanOfShiftedSharpTilesWhereSoft) {
 }
 
 TEST(TileRenderer, KeepsTheAreaOfATileThatIsNarrowerThanItsEdges) {
-  const Bytes image = TileRenderer(kSize, 2.0, 6.0).render({25.5, 25.5});
+  const Bytes image = TileRenderer(kSize, 2.0, 6.0).render({25.5, 25.5}).bytes;
   EXPECT_NEAR(sum(image), 255 * 4.0, 0.5 * 49);
   EXPECT_EQ(at(image, 25, 25), 28);  // 255 / 9
 }
@@ -180,9 +180,12 @@ TEST(TileRenderer, ChangesTheImageWithinATenthOfAPixel) {
 }
 
 TEST(TileRenderer, HasTheSizeOfItsPicture) {
-  const TileRenderer renderer(20, 3.0, 1.0);
-  EXPECT_EQ(renderer.size(), 20);
-  EXPECT_EQ(renderer.render({10.0, 10.0}).size(), 400U);
+  const Picture picture = TileRenderer(20, 3.0, 1.0).render({10.0, 10.0});
+  EXPECT_EQ(picture.width, 20);
+  EXPECT_EQ(picture.height, 20);
+  EXPECT_EQ(picture.channels, 1);
+  EXPECT_EQ(picture.bytes.size(), 400U);
+  EXPECT_EQ(picture.cover, picture.bytes);
 }
 
 TEST(TileRenderer, RefusesAPictureOrATileWithoutASize) {

@@ -11,6 +11,7 @@
 #include <iostream>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -85,8 +86,7 @@ po::options_description describedOptions() {
       "also write one picture a row, without nuisances of the camera: DIR/frame_0000.png, ... The "
       "folder is made if need be; pictures of these names in it are replaced");
   add("config", po::value<std::vector<Text>>()->value_name("FILE"),
-      "YAML file whose blocks `plant` and `camera` differ from the plant's own; repeatable, later "
-      "wins");
+      "YAML file with overrides of the block `plant`; repeatable, later wins");
   return options;
 }
 
@@ -146,17 +146,18 @@ std::vector<std::string> configFiles(const Arguments& arguments) {
 std::unique_ptr<Plant> configuredPlant(const Arguments& arguments) {
   ParamReader params = ParamReader::fromFiles(configFiles(arguments));
   const auto plant = readPlant(&params);
-  const auto camera = params.read<CameraOptions>("camera");
   params.requireValid();
-  return makePlant(plant, camera);
+  return makePlant(*plant);
 }
 
 void writeFrame(const Plant& plant, const std::string& folder, std::size_t row) {
-  std::vector<std::uint8_t> grey = plant.render(plant.state());
+  Picture picture = plant.render(plant.state());
   char name[32];
   std::snprintf(name, sizeof(name), "frame_%04zu.png", row);
   const std::string path = (fs::path(folder) / name).string();
-  const cv::Mat image(plant.imageSize(), plant.imageSize(), CV_8UC1, grey.data());
+  const int type = picture.channels == 1 ? CV_8UC1 : CV_8UC3;
+  cv::Mat image(picture.height, picture.width, type, picture.bytes.data());
+  if (picture.channels == 3) cv::cvtColor(image, image, cv::COLOR_RGB2BGR);
   bool written = false;
   try {
     written = cv::imwrite(path, image);
@@ -172,7 +173,7 @@ std::string csvRow(const Plant& plant, std::size_t row) {
     std::snprintf(text, sizeof(text), "%.17g", value);
     return "," + std::string(text);
   };
-  std::string text = std::to_string(row) + number(static_cast<double>(row) * plant.dt());
+  std::string text = std::to_string(row) + number(static_cast<double>(row) * plant.info().dt);
   for (Eigen::Index i = 0; i < plant.state().size(); ++i) text += number(plant.state()[i]);
   return text + "\n";
 }
@@ -181,7 +182,7 @@ std::string csvRow(const Plant& plant, std::size_t row) {
 void setComponent(const std::string& option, const std::optional<double>& value,
                   const std::string& name, Plant* plant) {
   if (!value) return;
-  const std::vector<std::string> names = plant->stateNames();
+  const std::vector<std::string> names = plant->info().state_names;
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) {
     throw UsageError("option " + option + " is for a pendulum; the state of this plant is " +
@@ -199,8 +200,8 @@ void setStart(const Arguments& arguments, Plant* plant) {
   Eigen::VectorXd state;
   if (!parseNumbers(arguments.start, plant->stateDim(), &state)) {
     throw UsageError("option --start must be " + std::to_string(plant->stateDim()) +
-                     " finite number(s) (" + joinedByCommas(plant->stateNames()) + "), got \"" +
-                     arguments.start + "\"");
+                     " finite number(s) (" + joinedByCommas(plant->info().state_names) +
+                     "), got \"" + arguments.start + "\"");
   }
   plant->setState(state);
 }
@@ -208,10 +209,10 @@ void setStart(const Arguments& arguments, Plant* plant) {
 void simulate(const Arguments& arguments) {
   const std::unique_ptr<Plant> plant = configuredPlant(arguments);
   setStart(arguments, plant.get());
-  const std::vector<Eigen::VectorXd> torques = readTorques(std::cin, plant->torqueNames());
+  const std::vector<Eigen::VectorXd> torques = readTorques(std::cin, plant->info().torque_names);
   if (!arguments.frames.empty()) fs::create_directories(arguments.frames);
 
-  std::string trajectory = "step,time_s," + joinedByCommas(plant->stateNames()) + "\n";
+  std::string trajectory = "step,time_s," + joinedByCommas(plant->info().state_names) + "\n";
   for (std::size_t row = 0; row <= torques.size(); ++row) {
     if (row > 0) plant->step(torques[row - 1]);
     trajectory += csvRow(*plant, row);

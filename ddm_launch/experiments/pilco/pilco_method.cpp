@@ -200,7 +200,7 @@ std::string PilcoMethod::predictionCsv(const pilco::LongTermCost& cost) const {
   const std::vector<double> cost_std = cost.costStandardDeviations();
   for (size_t step = 0; step < cost.states().size(); ++step) {
     const pilco::Gaussian& state = cost.states()[step];
-    text += std::to_string(step) + cell(static_cast<double>(step) * configuration_.plant.dt);
+    text += std::to_string(step) + cell(static_cast<double>(step) * configuration_.plant_info.dt);
     for (Eigen::Index i = 0; i < state.mean.size(); ++i) {
       text += cell(state.mean[i]) + cell(std::sqrt(std::max(0.0, state.covariance(i, i))));
     }

@@ -68,8 +68,8 @@ MethodKind pilcoKind(const std::string& name, const std::string& about,
 
 std::vector<MethodKind> pilcoMethods() {
   return {pilcoKind("pilco_state", "the true state",
-                    [](const Configuration& all, const PilcoOptions& options, const Plant& plant) {
-                      return std::make_unique<TrueStateObservation>(plant, all.plant, options);
+                    [](const Configuration&, const PilcoOptions& options, const Plant& plant) {
+                      return std::make_unique<TrueStateObservation>(plant, options);
                     }),
           pilcoKind("pilco_features", "features of an auto-encoder that is trained alone",
                     [](const Configuration& all, const PilcoOptions& options, const Plant&) {

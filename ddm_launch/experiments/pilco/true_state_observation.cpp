@@ -25,29 +25,29 @@ Eigen::VectorXd reorder(const Eigen::VectorXd& state) { return state.reverse(); 
 
 /// One joint that turns, seen as angle and rate, whose goal is upright: what the cost is made for.
 bool isPendulum(const Plant& plant) {
-  if (!plant.turns() || plant.stateDim() != 2 || plant.jointNames().size() != 1) return false;
-  return std::abs(std::remainder(plant.goalState()[0] - kPi, 2.0 * kPi)) <= kUprightWithin;
+  const PlantInfo& info = plant.info();
+  return info.joints.size() == 1 && info.joints[0].kind == JointKind::kAngle &&
+         info.stateDim() == 2 &&
+         std::abs(std::remainder(info.goal[0] - kPi, 2.0 * kPi)) <= kUprightWithin;
 }
 
 }  // namespace
 
-TrueStateObservation::TrueStateObservation(const Plant& plant, const PlantOptions& plant_options,
-                                           const PilcoOptions& options)
-    : plant_(plant), plant_options_(plant_options), options_(options), start_(plant.state()) {
+TrueStateObservation::TrueStateObservation(const Plant& plant, const PilcoOptions& options)
+    : plant_(plant), options_(options) {
   if (isPendulum(plant)) return;
   std::ostringstream text;
   text
       << "PILCO on the true state is for one joint with angle and rate whose goal is the angle pi; "
-         "plant/type "
-      << plant_options.type << " has " << plant.jointNames().size() << " joint(s), "
-      << plant.stateDim() << " state component(s)" << (plant.turns() ? "" : " that are not angles")
-      << " and the goal [" << plant.goalState().transpose()
+         "this plant has "
+      << plant.info().joints.size() << " joint(s), " << plant.stateDim()
+      << " state component(s) and the goal [" << plant.info().goal.transpose()
       << "]: use method pilco_features or pilco_pca";
   throw std::invalid_argument(text.str());
 }
 
 std::vector<std::string> TrueStateObservation::names() const {
-  const std::vector<std::string> of_plant = plant_.stateNames();
+  const std::vector<std::string>& of_plant = plant_.info().state_names;
   return {of_plant[1], of_plant[0]};
 }
 
@@ -58,7 +58,8 @@ Eigen::MatrixXd TrueStateObservation::learn(const std::vector<std::string>& bags
   for (size_t trial = 0; trial < bags.size(); ++trial) {
     const std::string file =
         (boost::filesystem::path(bags[trial]).parent_path() / "trajectory.csv").string();
-    const Eigen::MatrixXd states = parseTrajectoryCsv(readFile(file), plant_.stateNames(), file);
+    const Eigen::MatrixXd states =
+        parseTrajectoryCsv(readFile(file), plant_.info().state_names, file);
     const Eigen::Index due = trial < data.pieces().size() ? data.pieces()[trial].size : 0;
     if (states.cols() != due) {
       throw std::runtime_error(
@@ -72,8 +73,8 @@ Eigen::MatrixXd TrueStateObservation::learn(const std::vector<std::string>& bags
 }
 
 PilcoTask TrueStateObservation::task() const {
-  const double variance = plant_options_.start_std * plant_options_.start_std;
-  const pilco::Gaussian start{reorder(start_), variance * Eigen::MatrixXd::Identity(2, 2)};
+  const Eigen::VectorXd variance = reorder(plant_.info().start_std).cwiseAbs2();
+  const pilco::Gaussian start{reorder(plant_.info().start), variance.asDiagonal()};
   Eigen::VectorXd length_scales(3);  // of rate, sine, cosine, as in the published runs
   length_scales << 1.0, 0.7, 0.7;
   // Distance and width are in lengths of the rod, so no rod needs to be known.

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <ddm_sim/plant.h>
-#include <ddm_sim/plant_options.h>
 
 #include <random>
 
@@ -19,13 +18,10 @@ namespace ddm {
 /// very measurements that the policy acted on in it.
 class TrueStateObservation : public Observation {
  public:
-  /// @param plant          the one that is controlled, outlives the observation
-  /// @param plant_options  of it
+  /// @param plant  the one that is controlled, outlives the observation
   /// @throws std::invalid_argument if the plant is not one joint with angle and rate, or if its
-  /// goal
-  ///         is not upright, at pi
-  TrueStateObservation(const Plant& plant, const PlantOptions& plant_options,
-                       const PilcoOptions& options);
+  ///         goal is not upright, at pi
+  TrueStateObservation(const Plant& plant, const PilcoOptions& options);
 
   std::vector<std::string> names() const override;
   /// Reads trajectory.csv beside each bag: bags hold no true state.
@@ -40,9 +36,7 @@ class TrueStateObservation : public Observation {
   Eigen::VectorXd measure(const Eigen::VectorXd& state);
 
   const Plant& plant_;
-  PlantOptions plant_options_;
   PilcoOptions options_;
-  Eigen::VectorXd start_;  // middle of the start states
   std::mt19937_64 noise_;
 };
 

@@ -3,13 +3,13 @@
 #include <ddm_bag_io/bag_writer.h>
 #include <ddm_model/objective.h>
 #include <ddm_model/pca.h>
-#include <ddm_model/per_motor.h>
 #include <ddm_model/training_data.h>
 #include <ddm_mpc/epsilon_greedy.h>
 #include <ddm_msgs/image_codec.h>
 #include <ddm_msgs/param_value.h>
 #include <ddm_msgs/tool.h>
-#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/pendulum.h>
+#include <ddm_sim/rig.h>
 #include <ros/time.h>
 #include <sys/resource.h>
 
@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "closed_loop.h"
 #include "evaluation.h"
 
 namespace ddm {
@@ -49,26 +50,20 @@ double microseconds(const std::function<void()>& call) {
 
 /// One trial of random torques.
 DataSet randomTrial(int num_frames, int trial, int image_size) {
-  CameraOptions camera;
-  camera.size = image_size;
-  const PlantOptions options;
-  const std::unique_ptr<Plant> plant = makePlant(options, camera);
+  PendulumOptions options;
+  options.picture_size = image_size;
+  Rig rig(std::make_unique<Pendulum>(options), CameraOptions());
   TrialId id;
   id.trial = static_cast<std::uint32_t>(trial);
   EpsilonGreedy::Options exploration;
   exploration.epsilon = 1.0;
-  exploration.max_torque = perMotor({options.max_torque}, plant->torqueDim(), "mpc/max_torque");
+  exploration.max_torque = rig.plant().info().max_torque;
   EpsilonGreedy policy(nullptr, exploration, id);
-  std::mt19937_64 start = startStream(id.seed, id.trial, id.evaluation);
-  plant->setState(plant->drawStart(start));
-  DataSet data(image_size, plant->torqueDim());
-  for (int frame = 0; frame < num_frames; ++frame) {
-    const Grey grey = plant->render(plant->state());
-    const Eigen::VectorXd torque = policy.decide(grey).torque;
-    data.append(grey, torque, frame == 0);
-    plant->step(torque);
-  }
-  data.setGoal(plant->render(plant->goalState()));
+  DataSet data(image_size, rig.plant().torqueDim());
+  runClosedLoop(&rig, &policy, id, image_size, num_frames, [&data](const ClosedLoopFrame& frame) {
+    data.append(frame.grey, frame.decision.torque, frame.index == 0);
+  });
+  data.setGoal(rig.goalImage().bytes);
   return data;
 }
 

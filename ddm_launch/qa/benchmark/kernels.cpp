@@ -115,7 +115,7 @@ void measureTraining(const Experience& experience) {
 class PlanSequence {
  public:
   explicit PlanSequence(const Experience& experience)
-      : plant_(makePlant(experience.configuration.plant, experience.configuration.camera)),
+      : plant_(makePlant(*experience.configuration.plant)),
         policy_(experience.model, experience.configuration.mpc) {}
 
   Plan next() {
@@ -126,7 +126,7 @@ class PlanSequence {
       plant_->setState(plant_->drawStart(start));
       policy_.startTrial(id_);
     }
-    policy_.observe(plant_->render(plant_->state()));
+    policy_.observe(plant_->render(plant_->state()).bytes);
     const Plan plan = policy_.plan();
     const Eigen::VectorXd torque = plan.torques.col(0);
     policy_.apply(torque);
@@ -175,7 +175,7 @@ void measureImages(const Experience& experience) {
   measure("encode", 1000, [&experience]() {
     benchmark::DoNotOptimize(experience.model->encode(experience.data.image(0)));
   });
-  const std::shared_ptr<Plant> plant = makePlant(all.plant, all.camera);
+  const std::shared_ptr<Plant> plant = makePlant(*all.plant);
   measure("render", 1000, [plant]() { benchmark::DoNotOptimize(plant->render(plant->state())); });
   measure("read_bag", 50, [&experience, &all]() {
     benchmark::DoNotOptimize(

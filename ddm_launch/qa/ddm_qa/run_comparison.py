@@ -5,8 +5,8 @@ import os
 
 import yaml
 
-COLUMNS = ["seed", "trial", "frames", "success", "success_strict", "final_error_deg", "v_r", "v_p", "train_s",
-           "train_evaluations", "plan_ms_median", "plan_ms_p99", "version"]
+COLUMNS = ["seed", "trial", "frames", "success", "success_strict", "final_error", "v_r", "v_p", "train_s",
+           "train_evaluations", "plan_ms_median", "plan_ms_p99", "version", "return"]
 TIME_COLUMNS = ["train_s", "plan_ms_median", "plan_ms_p99"]
 CHECKSUMS = ".trials.crc32"  # of trials.csv with its times
 

@@ -9,7 +9,7 @@ from PIL import Image
 from ddm_launch.command import Failure, find_program
 from ddm_launch.run_folder import read_setting
 
-TORQUE_COLUMNS = {"moving_tile": "dx_px,dy_px"}  # of the types of plants that do not turn a motor
+TORQUE_COLUMNS = {"moving_tile": "dx_px,dy_px", "two_link": "shoulder_nm,elbow_nm"}  # else torque_nm
 
 
 def draw_images(command, text):

@@ -3,28 +3,30 @@
 from ddm_launch.averages import success_rates
 from ddm_launch.command import Failure
 from ddm_launch.figure_style import BLUE, GREY, VERMILLION, new_screen_figure, save_for_screen
-from ddm_launch.run_folder import read_trials
+from ddm_launch.run_folder import read_goal, read_trials
 
 ABOUT = "One run folder: final error after each trial; several: success rate. The latter with its standard error."
-SUCCESS_LIMIT_DEG = 10.0
 
 
-def draw_one(axes, trials):
+def draw_one(axes, trials, goal):
     """Final error of the greedy policy over the frames learned from, each point marked with its success."""
-    known = [trial for trial in trials if trial.final_error_deg is not None]
+    known = [trial for trial in trials if trial.final_error is not None]
     if not known:
         raise Failure("trials.csv has no final error in any row: there is nothing to draw")
-    axes.plot([t.frames for t in known], [t.final_error_deg for t in known], color=GREY, linewidth=1, zorder=1)
+    axes.plot([t.frames for t in known], [t.final_error for t in known], color=GREY, linewidth=1, zorder=1)
     for success, marker, colour, label in ((True, "o", BLUE, "success"), (False, "X", VERMILLION, "no success"),
                                            (None, "D", GREY, "success not known")):
         points = [t for t in known if t.success is success]
         if points:
-            axes.scatter([t.frames for t in points], [t.final_error_deg for t in points], marker=marker, s=70,
+            axes.scatter([t.frames for t in points], [t.final_error for t in points], marker=marker, s=70,
                          color=colour, edgecolors="white", linewidths=0.8, zorder=2, label=label)
-    axes.axhline(SUCCESS_LIMIT_DEG, color=GREY, linewidth=1, linestyle="--", zorder=0)
-    axes.set_ylim(-6, 186)
-    axes.set_yticks([0, 10, 45, 90, 135, 180])
-    axes.set_ylabel("distance from the target at the end [°]")
+    axes.axhline(goal.tolerance, color=GREY, linewidth=1, linestyle="--", zorder=0)
+    if goal.unit == "deg":
+        axes.set_ylim(-6, 186)
+        axes.set_yticks(sorted({0, goal.tolerance, 45, 90, 135, 180}))
+    else:
+        axes.set_ylim(bottom=0)
+    axes.set_ylabel("distance from the target at the end [%s]" % goal.unit.replace("deg", "°"))
 
 
 def draw_many(axes, runs):
@@ -49,7 +51,7 @@ def draw(options):
     with new_screen_figure(7.0, 4.2) as figure:
         axes = figure.subplots()
         if len(runs) == 1:
-            draw_one(axes, runs[0])
+            draw_one(axes, runs[0], read_goal(options.folders[0]))
         else:
             draw_many(axes, runs)
         axes.set_xlabel("frames learned from [image-torque pairs]")

@@ -11,22 +11,49 @@ from ddm_launch.settings import read_yaml
 from ddm_launch.tables import convert, optional, read_csv, unreadable
 
 # One row of trials.csv: the model after a trial, and its greedy evaluation. frames: image-torque pairs learned from.
-# success, success_strict, final_error_deg: None where not known.
-Trial = collections.namedtuple("Trial", "trial frames success success_strict final_error_deg")
+# success, success_strict, final_error: None where not known.
+Trial = collections.namedtuple("Trial", "trial frames success success_strict final_error")
+
+# Unit of the final errors of a run, and the largest one that counts as reached.
+Goal = collections.namedtuple("Goal", "unit tolerance")
 
 FLAG = optional(lambda text: convert(text, float) > 0.5)
 TRIAL_COLUMNS = {"trial": int, "frames": int, "success": FLAG,
-                 "final_error_deg": optional(lambda text: abs(convert(text, float)))}
+                 "final_error": optional(lambda text: abs(convert(text, float)))}
+
+# Older versions measured angles only, and wrote neither of the columns that came later.
+OLD_COLUMNS = {"final_error_deg": "final_error"}
+LATER_COLUMNS = {"version": "?", "return": ""}
+OLD_GOAL = Goal("deg", 10.0)
+
+
+def in_todays_columns(lines):
+    """The lines of a trials.csv of any version, the header first, with today's columns. Other tables stay as they are."""
+    columns = [OLD_COLUMNS.get(name, name) for name in lines[0].split(",")] if lines else []
+    if "trial" not in columns:
+        return lines
+    later = [name for name in LATER_COLUMNS if name not in columns]
+    cells = [LATER_COLUMNS[name] for name in later]
+    return [",".join(columns + later)] + [",".join([line] + cells) for line in lines[1:]]
 
 
 def trial_of(row):
     """Older tables have no success_strict."""
-    return Trial(row["trial"], row["frames"], row["success"], FLAG(row.get("success_strict")), row["final_error_deg"])
+    return Trial(row["trial"], row["frames"], row["success"], FLAG(row.get("success_strict")), row["final_error"])
 
 
 def read_trials(folder):
     """All rows of FOLDER/trials.csv, oldest first."""
-    return [trial_of(row) for row in read_csv(os.path.join(folder, "trials.csv"), TRIAL_COLUMNS)]
+    return [trial_of(row) for row in read_csv(os.path.join(folder, "trials.csv"), TRIAL_COLUMNS, renamed=OLD_COLUMNS)]
+
+
+def read_goal(folder):
+    """The Goal of a run, from FOLDER/config.yaml."""
+    evaluation = read_yaml(os.path.join(folder, "config.yaml")).get("evaluation")
+    if not isinstance(evaluation, dict):
+        return OLD_GOAL
+    return Goal(str(evaluation.get("error_unit") or OLD_GOAL.unit),
+                float(evaluation.get("tolerance") or evaluation.get("tolerance_deg") or OLD_GOAL.tolerance))
 
 
 def read_sweep(path, remedy="give a trials.csv or sweep.csv"):
@@ -35,7 +62,7 @@ def read_sweep(path, remedy="give a trials.csv or sweep.csv"):
     Raises Failure as read_csv() does, and if a trial of a seed is there twice.
     """
     runs = {}
-    for row in read_csv(path, dict(TRIAL_COLUMNS, seed=int), remedy, once=("seed", "trial")):
+    for row in read_csv(path, dict(TRIAL_COLUMNS, seed=int), remedy, ("seed", "trial"), OLD_COLUMNS):
         runs.setdefault(row["seed"], []).append(trial_of(row))
     return runs
 

@@ -8,6 +8,7 @@ import shutil
 import yaml
 
 from ddm_launch.command import Failure
+from ddm_launch.run_folder import in_todays_columns
 from ddm_launch.settings import differences, read_yaml
 from ddm_model.plain_file import write_file
 
@@ -16,15 +17,6 @@ MAY_DIFFER = {"version", "experiment/seed", "experiment/trials", "experiment/run
               "sim/watchdog"}
 
 FULL_BYTES = 1 << 20  # free space below which a disk may be why nothing was said
-
-
-def with_versions(lines):
-    """The lines of a trials.csv, the header first, with the column `version`: "?" in each row of a table that was written
-    before there was one. Other tables stay as they are."""
-    columns = lines[0].split(",") if lines else []
-    if "trial" not in columns or "version" in columns:
-        return lines
-    return [lines[0] + ",version"] + [line + ",?" for line in lines[1:]]
 
 
 class SweepFolder:
@@ -167,7 +159,7 @@ class SweepFolder:
         path = os.path.join(self.seed_folder(seed), self.program.table)
         try:
             with open(path, newline="") as stream:
-                lines = with_versions(stream.read().splitlines())
+                lines = in_todays_columns(stream.read().splitlines())
         except (OSError, UnicodeDecodeError) as error:
             raise Failure("%s cannot be read (%s): remove the folder, and the seed is run again" % (path, error))
         count = len(lines) - 1 if self.program.trials is None else self.program.trials + 1

@@ -35,19 +35,20 @@ def convert(text, kind):
     return {float: finite, int: whole}.get(kind, kind)(text)
 
 
-def read_csv(path, columns, remedy=None, once=()):
+def read_csv(path, columns, remedy=None, once=(), renamed=None):
     """The rows of a CSV file as dictionaries.
 
     columns: those that must be there; as {name: kind} their cells are converted by kind: str, int, float (finite) or a
     function of the text that raises ValueError. remedy: what to do if the file is missing, unless it is a run's.
-    once: columns whose cells name a row. Raises Failure if the file is missing, lacks a column, has no row, names a row
+    once: columns whose cells name a row. renamed: {name of a column in older files: today's}. Raises Failure if the file is missing, lacks a column, has no row, names a row
     twice, or if a cell cannot be converted.
     """
     try:
         with open(path, newline="") as stream:
             reader = csv.DictReader(stream)
+            header = [(renamed or {}).get(name, name) for name in reader.fieldnames or []]
+            reader.fieldnames = header
             rows = list(reader)
-            header = reader.fieldnames or []
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise unreadable(path, error, remedy) if remedy else unreadable(path, error)
     missing = [column for column in columns if column not in header]

@@ -14,9 +14,8 @@ import yaml
 
 from ddm_launch.command import Failure, find_program, package_path, processor, run_program
 from ddm_launch.interruption import Interrupted
-from ddm_launch.run_folder import is_finished, num_finished
+from ddm_launch.run_folder import in_todays_columns, is_finished, num_finished
 from ddm_launch.settings import differences, read_yaml
-from ddm_launch.sweep_folder import with_versions
 from ddm_model.plain_file import write_file
 
 # Where the file NAME.yaml lies that an option names: package, folder of its config/.
@@ -215,7 +214,7 @@ class StepRunner:
             path = os.path.join(folder, "trials.csv")
             if os.path.exists(path):
                 with open(path) as stream:
-                    header, *rows = with_versions(stream.read().splitlines())
+                    header, *rows = in_todays_columns(stream.read().splitlines())
                 lines += rows if lines else [header] + rows
         if lines:
             os.makedirs(os.path.dirname(self.path(step.table)), exist_ok=True)

@@ -8,7 +8,8 @@
 
 namespace ddm {
 
-/// The blocks of a configuration file by name; an empty map if the file holds only comments.
+/// The blocks of a configuration file by name, with today's keys, see withTodaysKeys(); an empty
+/// map if the file holds only comments.
 ///
 /// @throws std::runtime_error with the path if the file cannot be read
 /// @throws std::invalid_argument with path and line if it is not valid YAML, is not a map of

@@ -8,6 +8,24 @@
 
 namespace ddm {
 
+/// YAML block `plant:` of the type `moving_tile`.
+struct MovingTileOptions : PlantOptions {
+  double tile_width = 9.0;     ///< width and height of the tile [pixels]
+  double tile_softness = 9.0;  ///< grey falls from 1 to 0 over so much [pixels]
+
+  MovingTileOptions() { type = "moving_tile"; }
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    PlantOptions::visit(visitor);
+    visitor("tile_width", tile_width);
+    visitor("tile_softness", tile_softness);
+  }
+
+  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  std::vector<std::string> problems() const;
+};
+
 /// Tile with the state (x, y), its centre in the picture [pixels], and two inputs.
 ///
 ///   (x, y)+ = reflect((x, y) + u),   reflect into [w/2, size - w/2] in each direction
@@ -19,32 +37,20 @@ namespace ddm {
 /// reports the increment before the reflection.
 ///
 /// It starts around the middle of the picture. Its goal is (3/4 size, 1/4 size), or the nearest
-/// place that it can reach. A start state may lie outside, where the picture shows a part of the
-/// tile or none; the next step brings it back.
+/// place that it can reach; its error is the distance to it [pixels]. A start state may lie
+/// outside, where the picture shows a part of the tile or none; the next step brings it back.
 /// Deviation: the paper gives neither the size of the tile nor the range of the increments, nor
 /// what happens at the border; these are ours.
 class MovingTile : public Plant {
  public:
-  /// Of the keys of the camera that draw a plant, `size` alone matters.
-  /// @throws std::invalid_argument with all problems of both blocks, a tile too large for the
-  ///         picture among them
-  MovingTile(const PlantOptions& plant, const CameraOptions& camera);
-
-  Eigen::VectorXd goalState() const override;
-  bool turns() const override { return false; }
-  int imageSize() const override { return renderer_.size(); }
-  std::vector<std::string> jointNames() const override { return {"x", "y"}; }
-  std::vector<std::string> stateNames() const override { return {"x_px", "y_px"}; }
-  std::vector<std::string> torqueNames() const override { return {"dx_px", "dy_px"}; }
+  /// @throws std::invalid_argument with all problems of the options
+  explicit MovingTile(const MovingTileOptions& options);
 
  private:
   Eigen::VectorXd advance(const Eigen::VectorXd& state,
                           const Eigen::VectorXd& torque) const override;
-  double distanceToGoal(const Eigen::VectorXd& state) const override;
-  std::vector<std::uint8_t> draw(const Eigen::VectorXd& state) const override;
-  std::vector<std::uint8_t> cover(const Eigen::VectorXd& state) const override {
-    return draw(state);  // white on black
-  }
+  double distance(const Eigen::VectorXd& state, const Eigen::VectorXd& goal) const override;
+  Picture draw(const Eigen::VectorXd& state) const override;
   Eigen::VectorXd locate(const Eigen::VectorXd& state) const override { return state; }
 
   double lowest_;   ///< w / 2, least coordinate of the centre [pixels]

@@ -1,39 +1,60 @@
-// Camera picture of a rod that turns about the image centre, with soft edges.
+// Picture of rods with soft edges: the link of a pendulum, the links of an arm.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
+#include <string>
 #include <vector>
 
-#include "ddm_sim/plant_options.h"
+#include "ddm_sim/picture.h"
 
 namespace ddm {
 
-/// Draws y, the image of the paper's pendulum: a bright rod on black.
+/// How rods look. Keys of the block `plant` of each plant that is made of rods.
+struct RodLook {
+  double half_extent = 1.2;     ///< from the image centre to its edge [m]
+  double rod_half_width = 0.1;  ///< half the width of a rod [m]
+  double edge_softness = 0.2;   ///< width over which grey falls from 1 to 0 [m]
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("half_extent", half_extent);
+    visitor("rod_half_width", rod_half_width);
+    visitor("edge_softness", edge_softness);
+  }
+
+  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  std::vector<std::string> problems() const;
+};
+
+/// A rod from `start` to start + length (sin angle, -cos angle): angle 0 points down,
+/// counter-clockwise is positive. The origin is the image centre, y points upwards.
+struct Rod {
+  Eigen::Vector2d start;  ///< [m]
+  double angle;           ///< [rad]
+  double length;          ///< [m]
+
+  Eigen::Vector2d end() const;
+};
+
+/// Draws bright rods on black:
 ///
-///   grey(p) = clamp((rod_half_width - distance(p, rod)) / edge_softness + 1/2, 0, 1)
+///   grey(p) = clamp((rod_half_width - distance(p, nearest rod)) / edge_softness + 1/2, 0, 1)
 ///
-/// with p the centre of a pixel and the rod the segment from the image centre (the pivot) to
-/// length (sin angle, -cos angle): angle 0 hangs (points down in the image), counter-clockwise is
-/// positive, so pi/2 points right. The distance is exact and nothing is sampled: the image is a
-/// continuous function of the angle, and with the default softness one degree changes it.
+/// with p the centre of a pixel. The distance is exact and nothing is sampled: the image is a
+/// continuous function of the angles, and with the default softness one degree changes it.
 /// Deviation: the paper does not describe its renderer; this one is ours.
 class RodRenderer {
  public:
-  /// @param rod_length  [m]
-  /// @throws std::invalid_argument if the options have problems or rod_length is not > 0
-  RodRenderer(const CameraOptions& options, double rod_length);
+  /// @param size  width and height of the image [pixels]
+  /// @throws std::invalid_argument if the look has problems
+  RodRenderer(int size, const RodLook& look);
 
-  /// @param angle  [rad], finite
-  /// @return k = round(255 grey), rows from top to bottom                            [size * size]
-  std::vector<std::uint8_t> render(double angle) const;
-
-  int size() const { return size_; }  ///< width and height of the image [pixels]
+  /// @param rods  one or more, all values finite
+  Picture render(const std::vector<Rod>& rods) const;
 
  private:
   int size_;
-  double rod_length_;
   double rod_half_width_;
   double edge_softness_;
   Eigen::ArrayXd offsets_;  ///< x of the pixel centres of a row, from left to right [m]     [size]

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
-#include <vector>
+
+#include "ddm_sim/picture.h"
 
 namespace ddm {
 
@@ -28,10 +28,7 @@ class TileRenderer {
   TileRenderer(int size, double tile_width, double softness);
 
   /// @param centre  (x, y), x to the right and y downwards [pixels], finite         [2 x 1]
-  /// @return k = round(255 grey), rows from top to bottom                   [size * size]
-  std::vector<std::uint8_t> render(const Eigen::Vector2d& centre) const;
-
-  int size() const { return size_; }  ///< width and height of the image [pixels]
+  Picture render(const Eigen::Vector2d& centre) const;
 
  private:
   int size_;

@@ -2,16 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_plant_plugin/plant_config.h"
 
+#include <ddm_sim/moving_tile.h>
+#include <ddm_sim/pendulum.h>
+#include <ddm_sim/two_link.h>
 #include <ros/package.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
 #include <pluginlib/class_loader.hpp>
 #include <stdexcept>
 #include <vector>
-
-#include "ddm_plant_plugin/plant_plugin.h"
 
 namespace ddm {
 namespace {
@@ -20,7 +23,7 @@ namespace fs = std::filesystem;
 
 /// `plant/type` alone, which decides what other keys there are.
 struct TypeOption {
-  std::string type = PlantBasics().type;
+  std::string type = "pendulum";
 
   template <class Visitor>
   void visit(Visitor& visitor) {
@@ -35,15 +38,29 @@ std::string joined(const std::vector<std::string>& words) {
   return out;
 }
 
-std::shared_ptr<PlantPlugin> loadPlugin(const std::string& type) {
+using MakePlugin = std::function<std::shared_ptr<PlantPlugin>()>;
+
+/// The plants of this package, by `plant/type`.
+const std::map<std::string, MakePlugin>& ownPlants() {
+  static const std::map<std::string, MakePlugin> plants = {
+      {"moving_tile", std::make_shared<PlantPluginOf<MovingTile, MovingTileOptions>>},
+      {"pendulum", std::make_shared<PlantPluginOf<Pendulum, PendulumOptions>>},
+      {"two_link", std::make_shared<PlantPluginOf<TwoLink, TwoLinkOptions>>}};
+  return plants;
+}
+
+std::shared_ptr<PlantPlugin> makePlugin(const std::string& type) {
+  const auto own = ownPlants().find(type);
+  if (own != ownPlants().end()) return own->second();
   // Never destroyed: the plants that it has loaded, and their code, live until the program ends.
   static auto* const loader =
       new pluginlib::ClassLoader<PlantPlugin>("ddm_sim", "ddm::PlantPlugin");
   if (!loader->isClassAvailable(type)) {
-    const std::vector<std::string> known = loader->getDeclaredClasses();
+    std::vector<std::string> known = loader->getDeclaredClasses();
+    for (const auto& plant : ownPlants()) known.push_back(plant.first);
+    std::sort(known.begin(), known.end());
     throw std::invalid_argument("plant/type must be a plant of this workspace, got \"" + type +
-                                "\": there are " + joined(plantTypes()) + " and as plugins " +
-                                (known.empty() ? "none" : joined(known)) +
+                                "\": there are " + joined(known) +
                                 "; source the setup.bash of the workspace that holds it");
   }
   try {
@@ -75,21 +92,11 @@ std::vector<std::string> plantsOf(const std::string& package) {
 
 }  // namespace
 
-PlantOptions readPlant(ParamReader* reader) {
+std::shared_ptr<const PlantPlugin> readPlant(ParamReader* reader) {
   ParamReader ahead = *reader;  // a copy: what it finds wrong is not yet known to be wrong
-  const std::string type = ahead.read<TypeOption>("plant").type;
-  if (type.find('/') == std::string::npos) return reader->read<PlantOptions>("plant");
-  const std::shared_ptr<PlantPlugin> plugin = loadPlugin(type);
+  const std::shared_ptr<PlantPlugin> plugin = makePlugin(ahead.read<TypeOption>("plant").type);
   plugin->read(reader);
-  PlantOptions plant;
-  static_cast<PlantBasics&>(plant) = plugin->basics();
-  plant.maker = plugin;
-  return plant;
-}
-
-YAML::Node plantBlock(const PlantOptions& plant) {
-  if (plant.maker == nullptr) return toYaml(plant);
-  return static_cast<const PlantPlugin&>(*plant.maker).effectiveBlock();
+  return plugin;
 }
 
 std::string plantFile(const std::string& name) {

@@ -6,116 +6,114 @@
 #include <algorithm>
 #include <cmath>
 #include <pluginlib/class_list_macros.hpp>
-#include <stdexcept>
+#include <utility>
 
 namespace ddm_cart {
 
 /// The block `plant`: the keys of every plant (max_torque is a force here [N]), then our own.
-struct CartOptions : ddm::PlantBasics {
-  double mass = 1.0;        ///< m [kg]
-  double friction = 2.0;    ///< b, viscous [N s/m]
-  double track = 1.0;       ///< from the middle of the rail to each buffer [m]
-  double goal = 0.6;        ///< where the cart shall stop [m]
-  double half_width = 0.3;  ///< of the cart in the picture, and half its height [m]
+struct CartOptions : ddm::PlantOptions {
+  double mass = 1.0;           ///< m [kg]
+  double friction = 2.0;       ///< b, viscous [N s/m]
+  double track = 1.0;          ///< from the middle of the rail to each buffer [m]
+  double goal = 0.6;           ///< where the cart is to stop [m]
+  double half_width = 0.3;     ///< half the width and height of the cart in the picture [m]
+  double half_extent = 1.2;    ///< from the middle of the picture to its edge [m]
+  double edge_softness = 0.2;  ///< width over which grey falls from 1 to 0 [m]
 
-  CartOptions() { max_torque = 2.0; }
+  CartOptions() { max_torque = {2.0}; }
 
   template <class Visitor>
   void visit(Visitor& visitor) {
-    PlantBasics::visit(visitor);
+    PlantOptions::visit(visitor);
     visitor("mass", mass);
     visitor("friction", friction);
     visitor("track", track);
     visitor("goal", goal);
     visitor("half_width", half_width);
+    visitor("half_extent", half_extent);
+    visitor("edge_softness", edge_softness);
   }
 
   std::vector<std::string> problems() const {
-    std::vector<std::string> out = PlantBasics::problems();
-    const auto require = [&out](bool ok, const std::string& rule, double value) {
-      if (!ok) out.push_back("plant/" + rule + ", got " + std::to_string(value));
-    };
-    const auto positive = [](double value) { return value > 0.0 && std::isfinite(value); };
-    require(positive(mass), "mass must be > 0 and finite", mass);
-    require(positive(friction), "friction must be > 0 and finite", friction);
-    require(positive(track), "track must be > 0 and finite", track);
-    require(std::abs(goal) <= track, "goal must lie within +- plant/track", goal);
-    require(positive(half_width), "half_width must be > 0 and finite", half_width);
-    return out;
+    ddm::OptionChecks plant("plant");
+    plant.requirePositive("mass", mass);
+    plant.requirePositive("friction", friction);
+    plant.requirePositive("track", track);
+    plant.require(track <= half_extent, "track", "be at most plant/half_extent", track);
+    plant.require(std::abs(goal) <= track, "goal", "lie within +- plant/track", goal);
+    plant.requirePositive("half_width", half_width);
+    plant.requirePositive("half_extent", half_extent);
+    plant.requirePositive("edge_softness", edge_softness);
+    plant.add(PlantOptions::problems());
+    return plant.problems();
   }
 };
+
+ddm::PlantInfo infoOf(const CartOptions& options) {
+  ddm::PlantInfo info;
+  info.joints = {{"cart", ddm::JointKind::kLength}};
+  info.state_names = {"x_m", "rate_m_per_s"};
+  info.torque_names = {"force_n"};
+  info.max_torque = ddm::forEach(options.max_torque, 1, "plant/max_torque");
+  info.dt = options.dt;
+  info.start = Eigen::VectorXd::Zero(2);
+  info.start_std = ddm::forEach(options.start_std, 2, "plant/start_std");
+  info.goal = (Eigen::VectorXd(2) << options.goal, 0.0).finished();
+  info.error_unit = "m";
+  info.tolerance = 0.05;
+  return info;
+}
 
 /// State (x, v): position [m] and rate [m/s]; one force [N]. Between the buffers
 ///
 ///   m v' = u - b v,   x' = v,   solved exactly over dt; at a buffer it stops
 class Cart : public ddm::Plant {
  public:
-  Cart(const CartOptions& options, const ddm::CameraOptions& camera)
-      : Plant(Eigen::Vector2d::Zero(), /*torque_dim=*/1, options.dt, options.max_torque,
-              options.start_std),
-        options_(options),
-        camera_(camera) {
-    if (options.track > camera.half_extent) {  // neither block can see this by itself
-      throw std::invalid_argument("plant/track must be at most camera/half_extent: got " +
-                                  std::to_string(options.track) + " and " +
-                                  std::to_string(camera.half_extent));
-    }
-  }
-
-  Eigen::VectorXd goalState() const override { return Eigen::Vector2d(options_.goal, 0.0); }
-  bool turns() const override { return false; }
-  int imageSize() const override { return camera_.size; }
-  std::vector<std::string> jointNames() const override { return {"cart"}; }
-  std::vector<std::string> stateNames() const override { return {"x_m", "rate_m_per_s"}; }
-  std::vector<std::string> torqueNames() const override { return {"force_n"}; }
+  explicit Cart(const CartOptions& options)
+      : Plant(infoOf(ddm::checked(options))), options_(options) {}
 
  private:
   Eigen::VectorXd advance(const Eigen::VectorXd& state,
                           const Eigen::VectorXd& force) const override {
     const double final_rate = force[0] / options_.friction;
     const double time_constant = options_.mass / options_.friction;
-    const double decay = std::exp(-dt() / time_constant);
+    const double decay = std::exp(-options_.dt / time_constant);
     const double excess = state[1] - final_rate;
-    const double x = state[0] + final_rate * dt() + excess * time_constant * (1.0 - decay);
+    const double x = state[0] + final_rate * options_.dt + excess * time_constant * (1.0 - decay);
     if (std::abs(x) >= options_.track)
       return Eigen::Vector2d(std::copysign(options_.track, x), 0.0);
     return Eigen::Vector2d(x, final_rate + excess * decay);
   }
 
-  double distanceToGoal(const Eigen::VectorXd& state) const override {
-    return std::abs(state[0] - options_.goal);
+  double distance(const Eigen::VectorXd& state, const Eigen::VectorXd& goal) const override {
+    return std::abs(state[0] - goal[0]);
   }
 
   Eigen::VectorXd locate(const Eigen::VectorXd& state) const override {
-    return Eigen::Vector2d(state[0], 0.0);
+    return Eigen::VectorXd::Constant(1, state[0]);
   }
 
-  /// White on black; grey falls from 1 to 0 over camera/edge_softness, as at the pendulum's rod.
-  std::vector<std::uint8_t> draw(const Eigen::VectorXd& state) const override {
-    const double pixel = 2.0 * camera_.half_extent / camera_.size;  // [m]
-    const auto inside = [this](double offset) {  // 1 in the middle, 0 beyond the edge
+  /// White on black; grey falls from 1 to 0 over edge_softness, as at the pendulum's rod.
+  ddm::Picture draw(const Eigen::VectorXd& state) const override {
+    const int size = options_.picture_size;
+    const double pixel = 2.0 * options_.half_extent / size;  // [m]
+    const auto inside = [this](double offset) {              // 1 in the middle, 0 beyond the edge
       const double depth = options_.half_width - std::abs(offset);
-      return std::min(std::max(depth / camera_.edge_softness + 0.5, 0.0), 1.0);
+      return std::min(std::max(depth / options_.edge_softness + 0.5, 0.0), 1.0);
     };
     std::vector<std::uint8_t> grey;
-    for (int row = 0; row < camera_.size; ++row) {
-      for (int column = 0; column < camera_.size; ++column) {
-        const double x = (column + 0.5) * pixel - camera_.half_extent;
-        const double y = (row + 0.5) * pixel - camera_.half_extent;
+    for (int row = 0; row < size; ++row) {
+      for (int column = 0; column < size; ++column) {
+        const double x = (column + 0.5) * pixel - options_.half_extent;
+        const double y = (row + 0.5) * pixel - options_.half_extent;
         const double level = inside(x - state[0]) * inside(y);
         grey.push_back(static_cast<std::uint8_t>(std::lround(255.0 * level)));
       }
     }
-    return grey;
-  }
-
-  /// White on black: as bright as it is, it hides a camera's clutter.
-  std::vector<std::uint8_t> cover(const Eigen::VectorXd& state) const override {
-    return draw(state);
+    return ddm::brightOnBlack(size, std::move(grey));
   }
 
   CartOptions options_;
-  ddm::CameraOptions camera_;
 };
 
 using CartPlugin = ddm::PlantPluginOf<Cart, CartOptions>;

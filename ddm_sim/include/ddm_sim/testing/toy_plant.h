@@ -3,95 +3,140 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "ddm_sim/picture.h"
 #include "ddm_sim/plant.h"
 #include "ddm_sim/plant_factory.h"
-#include "ddm_sim/plant_options.h"
+#include "ddm_sim/plant_info.h"
 
 namespace ddm {
 namespace testing {
 
+/// A picture of one grey, all of it covered.
+inline Picture plainPicture(int size, std::uint8_t grey) {
+  const auto num_pixels = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
+  return brightOnBlack(size, std::vector<std::uint8_t>(num_pixels, grey));
+}
+
+/// A cart on a rail, one motor, to be brought to 1 m.
+inline PlantInfo toyInfo() {
+  PlantInfo info;
+  info.joints = {{"cart", JointKind::kLength}};
+  info.state_names = {"position_m", "speed_m_per_s"};
+  info.torque_names = {"force_n"};
+  info.max_torque = Eigen::VectorXd::Constant(1, 6.0);
+  info.start = Eigen::VectorXd::Zero(2);
+  info.start_std = Eigen::VectorXd::Constant(2, 0.1);
+  info.goal = Eigen::VectorXd::Unit(2, 0);
+  info.error_unit = "m";
+  info.tolerance = 0.05;
+  return info;
+}
+
 /// By default it keeps all rules of a plant; its picture is white, whatever its state.
 class ToyPlant : public Plant {
  public:
-  using Bytes = std::vector<std::uint8_t>;
-
   struct Traits {
-    Eigen::VectorXd start = Eigen::Vector2d::Zero();
-    int torque_dim = 1;
-    double dt = PlantBasics().dt;                  // [s]
-    double max_torque = PlantBasics().max_torque;  // [N m]
-    double start_std = 0.1;
-    int image_size = CameraOptions().size;  // [pixels]
-    bool turns = true;
-    std::vector<std::string> joints = {"arm"};
-    std::vector<std::string> states = {"angle_rad", "rate_rad_per_s"};
-    std::vector<std::string> torques = {"torque_nm"};
-    Eigen::VectorXd goal = Eigen::Vector2d(1.0, 0.0);
-    double goal_error = 0.5;
-    Eigen::VectorXd place = Eigen::Vector2d::Zero();
+    PlantInfo info = toyInfo();
     std::function<Eigen::VectorXd(const Eigen::VectorXd&, const Eigen::VectorXd&)> advance =
         [](const Eigen::VectorXd& state, const Eigen::VectorXd& torque) {
           return Eigen::VectorXd(state.array() + 0.1 * torque[0]);
         };
-    std::function<Bytes(const Eigen::VectorXd&)> draw = [](const Eigen::VectorXd&) {
-      return Bytes(51 * 51, 255);
+    std::function<double(const Eigen::VectorXd&, const Eigen::VectorXd&)> distance =
+        [](const Eigen::VectorXd& state, const Eigen::VectorXd& goal) {
+          return std::abs(state[0] - goal[0]);
+        };
+    std::function<Picture(const Eigen::VectorXd&)> draw = [](const Eigen::VectorXd&) {
+      return plainPicture(51, 255);
     };
-    std::function<Bytes(const Eigen::VectorXd&)> cover = [](const Eigen::VectorXd&) {
-      return Bytes(51 * 51, 255);
-    };
+    std::function<Eigen::VectorXd(const Eigen::VectorXd&)> locate =
+        [](const Eigen::VectorXd& state) { return Eigen::VectorXd(state.head(1)); };
+
+    // Empty: as every plant does by default.
+    std::function<Eigen::VectorXd(std::mt19937_64*)> draw_start;
+    std::function<Eigen::VectorXd(std::mt19937_64*)> draw_goal;
+    std::function<std::optional<double>(const Eigen::VectorXd&, const Eigen::VectorXd&)> reward;
   };
 
-  explicit ToyPlant(const Traits& traits)
-      : Plant(traits.start, traits.torque_dim, traits.dt, traits.max_torque, traits.start_std),
-        traits_(traits) {}
+  explicit ToyPlant(const Traits& traits) : Plant(traits.info), traits_(traits) {}
 
-  Eigen::VectorXd goalState() const override { return traits_.goal; }
-  bool turns() const override { return traits_.turns; }
-  int imageSize() const override { return traits_.image_size; }
-  std::vector<std::string> jointNames() const override { return traits_.joints; }
-  std::vector<std::string> stateNames() const override { return traits_.states; }
-  std::vector<std::string> torqueNames() const override { return traits_.torques; }
+  Eigen::VectorXd drawStart(std::mt19937_64& engine) const override {
+    return traits_.draw_start ? traits_.draw_start(&engine) : Plant::drawStart(engine);
+  }
+  Eigen::VectorXd drawGoal(std::mt19937_64& engine) const override {
+    return traits_.draw_goal ? traits_.draw_goal(&engine) : Plant::drawGoal(engine);
+  }
+  std::optional<double> reward(const Eigen::VectorXd& state,
+                               const Eigen::VectorXd& torque) const override {
+    return traits_.reward ? traits_.reward(state, torque) : Plant::reward(state, torque);
+  }
 
  private:
   Eigen::VectorXd advance(const Eigen::VectorXd& state,
                           const Eigen::VectorXd& torque) const override {
     return traits_.advance(state, torque);
   }
-  double distanceToGoal(const Eigen::VectorXd& /*state*/) const override {
-    return traits_.goal_error;
+  double distance(const Eigen::VectorXd& state, const Eigen::VectorXd& goal) const override {
+    return traits_.distance(state, goal);
   }
-  Bytes draw(const Eigen::VectorXd& state) const override { return traits_.draw(state); }
-  Bytes cover(const Eigen::VectorXd& state) const override { return traits_.cover(state); }
-  Eigen::VectorXd locate(const Eigen::VectorXd& /*state*/) const override { return traits_.place; }
+  Picture draw(const Eigen::VectorXd& state) const override { return traits_.draw(state); }
+  Eigen::VectorXd locate(const Eigen::VectorXd& state) const override {
+    return traits_.locate(state);
+  }
 
   Traits traits_;
 };
 
-/// Options of the plugin "their_package/Toy" that makes toys.
-inline PlantOptions toyOptions(std::function<std::unique_ptr<Plant>()> make) {
-  struct Maker : PlantMaker {
-    std::unique_ptr<Plant> make(const CameraOptions& /*camera*/) const override {
-      return make_toy();
-    }
-    std::function<std::unique_ptr<Plant>()> make_toy;
-  };
-  const auto maker = std::make_shared<Maker>();
-  maker->make_toy = std::move(make);
-  PlantOptions options;
-  options.type = "their_package/Toy";
-  options.maker = maker;
-  return options;
-}
+/// Makes toys as the plant "their_package/Toy".
+class ToyMaker : public PlantMaker {
+ public:
+  using Make = std::function<std::unique_ptr<Plant>()>;
 
-inline PlantOptions toyOptions(const ToyPlant::Traits& traits) {
-  return toyOptions([traits] { return std::make_unique<ToyPlant>(traits); });
+  explicit ToyMaker(Make make) : make_(std::move(make)) {}
+  explicit ToyMaker(const ToyPlant::Traits& traits)
+      : ToyMaker([traits] { return std::make_unique<ToyPlant>(traits); }) {}
+
+  std::string type() const override { return "their_package/Toy"; }
+  std::unique_ptr<Plant> make() const override { return make_(); }
+
+ private:
+  Make make_;
+};
+
+/// A cart that is seen as a disc on a wide picture in colour, has a reward, and draws its goal:
+/// all that our own plants do not do.
+inline ToyPlant::Traits colourfulToy() {
+  ToyPlant::Traits traits;
+  traits.draw = [](const Eigen::VectorXd& state) {
+    Picture picture{30, 10, 3, {}, {}};
+    for (int i = 0; i < picture.height; ++i) {
+      for (int j = 0; j < picture.width; ++j) {
+        const bool inside = std::hypot(0.1 * (j - 15) - state[0], 0.1 * (i - 5)) < 0.3;
+        const std::uint8_t red = inside ? 200 : 0;
+        picture.bytes.insert(picture.bytes.end(), {red, static_cast<std::uint8_t>(red / 2), 0});
+        picture.cover.push_back(inside ? 255 : 0);
+      }
+    }
+    return picture;
+  };
+  traits.reward = [](const Eigen::VectorXd& state, const Eigen::VectorXd& torque) {
+    return -state.squaredNorm() - 0.1 * torque.squaredNorm();
+  };
+  traits.draw_goal = [](std::mt19937_64* engine) {
+    const double position = std::uniform_real_distribution<double>(0.5, 1.5)(*engine);
+    return Eigen::VectorXd(position * Eigen::VectorXd::Unit(2, 0));
+  };
+  return traits;
 }
 
 }  // namespace testing

@@ -3,20 +3,19 @@
 #pragma once
 
 #include <ddm_msgs/param_reader.h>
-#include <ddm_sim/plant_options.h>
 
+#include <memory>
 #include <string>
+
+#include "ddm_plant_plugin/plant_plugin.h"
 
 namespace ddm {
 
-/// Reads the block `plant`. A `plant/type` with a slash names a plugin (PACKAGE/CLASS), which is
-/// loaded and reads the block; it stays loaded until the program ends.
-/// @throws std::invalid_argument naming what there is, if there is no such plugin
+/// Reads the block `plant`. Its key `type` (default: pendulum) names the plant; with a slash it is
+/// PACKAGE/CLASS of another package, which is loaded and stays loaded until the program ends.
+/// @throws std::invalid_argument naming what there is, if there is no such plant
 /// @throws std::runtime_error if its library cannot be loaded
-PlantOptions readPlant(ParamReader* reader);
-
-/// Effective values of the block that readPlant() read.
-YAML::Node plantBlock(const PlantOptions& plant);
+std::shared_ptr<const PlantPlugin> readPlant(ParamReader* reader);
 
 /// The file that describes a plant: config/NAME.yaml of ddm_sim, for PACKAGE/NAME of that package.
 /// @throws std::invalid_argument naming what there is, if there is no such file or package

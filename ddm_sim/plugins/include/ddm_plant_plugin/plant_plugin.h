@@ -1,11 +1,13 @@
-// A plant from another package: what pluginlib loads.
+// A plant as a configuration describes it: how plants register, ours and those of other packages.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <ddm_msgs/param_reader.h>
 #include <ddm_sim/plant_factory.h>
+#include <ddm_sim/plant_options.h>
 
 #include <memory>
+#include <string>
 
 namespace ddm {
 
@@ -15,26 +17,20 @@ class PlantPlugin : public PlantMaker {
   /// Reads all keys; what is wrong with them stays with the reader.
   virtual void read(ParamReader* reader) = 0;
 
-  virtual PlantBasics basics() const = 0;         ///< the keys that every plant has
-  virtual YAML::Node effectiveBlock() const = 0;  ///< all keys, as toYaml() writes them
+  virtual YAML::Node block() const = 0;  ///< effective values of all keys
 };
 
 /// The plugin of a plant with these constructor and options:
 ///
-///   struct CartOptions : ddm::PlantBasics { ... visit() ... problems() ... };
-///   Cart(const CartOptions& options, const ddm::CameraOptions& camera);
-///
-/// Both options are valid by themselves when a plant is made; whether they fit together is for the
-/// constructor to check, with std::invalid_argument.
+///   struct CartOptions : ddm::PlantOptions { ... visit() ... problems() ... };
+///   explicit Cart(const CartOptions& options);
 template <class PlantType, class Options>
 class PlantPluginOf : public PlantPlugin {
  public:
+  std::string type() const override { return options_.type; }
   void read(ParamReader* reader) override { options_ = reader->read<Options>("plant"); }
-  PlantBasics basics() const override { return options_; }
-  YAML::Node effectiveBlock() const override { return toYaml(options_); }
-  std::unique_ptr<Plant> make(const CameraOptions& camera) const override {
-    return std::make_unique<PlantType>(options_, camera);
-  }
+  YAML::Node block() const override { return toYaml(options_); }
+  std::unique_ptr<Plant> make() const override { return std::make_unique<PlantType>(options_); }
 
  private:
   Options options_;

@@ -1,0 +1,34 @@
+// The closed loop in one process: what is seen is decided on, and what is decided acts.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "closed_loop.h"
+
+#include <ddm_msgs/image_codec.h>
+
+#include <cmath>
+
+namespace ddm {
+namespace {
+
+/// Stamp of a frame of a trial that begins at one second, like sim_node's first.
+ros::Time stampOf(const Rig& rig) {
+  const auto step_ns = static_cast<std::uint64_t>(std::llround(rig.plant().info().dt * 1e9));
+  return ros::Time(1, 0) +
+         ros::Duration().fromNSec(static_cast<std::int64_t>(rig.numSteps() * step_ns));
+}
+
+}  // namespace
+
+void runClosedLoop(Rig* rig, EpsilonGreedy* policy, const TrialId& id, int image_size,
+                   int num_frames, const std::function<void(const ClosedLoopFrame&)>& take) {
+  ClosedLoopFrame frame;
+  for (frame.index = 0; frame.index < num_frames; ++frame.index) {
+    const Picture picture = frame.index == 0 ? rig->reset(id.seed, id.trial, id.evaluation)
+                                             : rig->stepUntilSeen(frame.decision.torque);
+    frame.image = imageMessage(picture, stampOf(*rig));
+    frame.grey = decodeImage(frame.image, image_size);
+    frame.decision = policy->decide(frame.grey);
+    take(frame);
+  }
+}
+
+}  // namespace ddm

@@ -1,0 +1,54 @@
+// A plant in front of a camera: the loop that every driver closes.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "ddm_sim/camera.h"
+#include "ddm_sim/plant.h"
+
+namespace ddm {
+
+/// Plant and camera move together: one photograph in each time step.
+class Rig {
+ public:
+  /// @throws std::invalid_argument with all problems of the options
+  Rig(std::unique_ptr<Plant> plant, const CameraOptions& camera);
+
+  /// Start and goal of a run, and its first photograph, which is never lost.
+  /// @param seed        seed of the experiment
+  /// @param trial       number of the trial, 0 is the random one
+  /// @param evaluation  the greedy run after `trial`
+  /// @param start       (optional) this state, digit by digit, instead of a drawn one
+  /// @throws std::invalid_argument if the start is not a state; nothing has changed
+  Picture reset(std::uint64_t seed, std::uint32_t trial, bool evaluation,
+                const std::optional<Eigen::VectorXd>& start = {});
+
+  /// One time step under a constant torque.
+  /// @return what the camera shows now, or nothing if that frame is lost
+  /// @throws as Plant::step(); nothing has changed
+  std::optional<Picture> step(const Eigen::VectorXd& torque);
+
+  /// Time steps under a constant torque until a frame is seen.
+  /// @throws as Plant::step(), at the state that was reached
+  Picture stepUntilSeen(const Eigen::VectorXd& torque);
+
+  /// The goal of this run as the camera sees it.
+  Picture goalImage() { return camera_.photographGoal(plant_->render(plant_->goal())); }
+
+  const Plant& plant() const { return *plant_; }
+  std::uint64_t numSteps() const { return num_steps_; }        ///< since the reset
+  double time() const;                                         ///< since the reset [s]
+  const Eigen::VectorXd& applied() const { return applied_; }  ///< torque of the last step, or zero
+
+ private:
+  std::unique_ptr<Plant> plant_;
+  Camera camera_;
+  std::uint64_t num_steps_ = 0;
+  Eigen::VectorXd applied_;
+};
+
+}  // namespace ddm

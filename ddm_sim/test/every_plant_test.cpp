@@ -1,0 +1,270 @@
+// Tests of what every plant must fulfil: one for each rule, over all plants that there are.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_msgs/param_reader.h>
+#include <ddm_plant_plugin/plant_config.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "ddm_sim/plant_factory.h"
+#include "ddm_sim/testing/toy_plant.h"
+
+namespace ddm {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ToyMaker;
+using testing::ToyPlant;
+
+struct Candidate {
+  std::string name;
+  std::function<std::shared_ptr<const PlantMaker>()> maker;
+};
+
+void PrintTo(const Candidate& candidate, std::ostream* out) { *out << candidate.name; }
+
+std::shared_ptr<const PlantMaker> makerOfFile(const std::string& path) {
+  ParamReader reader = ParamReader::fromFiles({path});
+  const std::shared_ptr<const PlantMaker> maker = readPlant(&reader);
+  reader.requireValid();
+  return maker;
+}
+
+/// All plants that the folder config/ describes, and toys for what those do not do.
+std::vector<Candidate> candidates() {
+  std::vector<Candidate> out;
+  for (const fs::directory_entry& entry : fs::directory_iterator(DDM_SIM_SOURCE_DIR "/config")) {
+    const std::string path = entry.path().string();
+    const std::string name = entry.path().stem().string();
+    if (name == "sim") continue;
+    out.push_back({name, [path] { return makerOfFile(path); }});
+  }
+  std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+  out.push_back({"toy", [] { return std::make_shared<ToyMaker>(ToyPlant::Traits()); }});
+  out.push_back(
+      {"colourful_toy", [] { return std::make_shared<ToyMaker>(testing::colourfulToy()); }});
+  return out;
+}
+
+class EveryPlantTest : public ::testing::TestWithParam<Candidate> {
+ protected:
+  void SetUp() override {
+    maker_ = GetParam().maker();
+    plant_ = makePlant(*maker_);
+  }
+
+  const PlantInfo& info() const { return plant_->info(); }
+
+  /// States on the way of a plant that is pushed at random, among them start and goal.
+  std::vector<Eigen::VectorXd> states() const {
+    const std::unique_ptr<Plant> plant = makePlant(*maker_);
+    std::mt19937_64 engine(1);
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    std::vector<Eigen::VectorXd> out = {info().start, info().goal, plant->drawGoal(engine),
+                                        plant->drawStart(engine)};
+    plant->setState(out.back());
+    for (int t = 0; t < 50; ++t) {
+      const auto share = [&](double limit) { return limit * uniform(engine); };
+      plant->step(info().max_torque.unaryExpr(share));
+      out.push_back(plant->state());
+    }
+    return out;
+  }
+
+  std::shared_ptr<const PlantMaker> maker_;
+  std::unique_ptr<Plant> plant_;
+};
+
+TEST_P(EveryPlantTest, IsMadeWhereItsStartsHaveTheirMiddleWithTheGoalOfItsInfo) {
+  EXPECT_EQ(plant_->state(), info().start);
+  EXPECT_EQ(plant_->goal(), info().goal);
+}
+
+TEST_P(EveryPlantTest, HasANameALimitAStartAndAGoalForEachComponent) {
+  EXPECT_EQ(plant_->stateDim(), static_cast<int>(info().state_names.size()));
+  EXPECT_EQ(plant_->torqueDim(), static_cast<int>(info().torque_names.size()));
+  EXPECT_GE(plant_->stateDim(), 1);
+  EXPECT_GE(plant_->torqueDim(), 1);
+  EXPECT_GE(info().joints.size(), 1U);
+  EXPECT_LE(info().joints.size(), info().state_names.size());
+  EXPECT_EQ(info().max_torque.size(), plant_->torqueDim());
+  EXPECT_GT(info().max_torque.minCoeff(), 0.0);
+  for (const Eigen::VectorXd& of_state : {info().start, info().start_std, info().goal}) {
+    EXPECT_EQ(of_state.size(), plant_->stateDim());
+    EXPECT_TRUE(of_state.allFinite());
+  }
+  EXPECT_GE(info().start_std.minCoeff(), 0.0);
+  EXPECT_GT(info().dt, 0.0);
+}
+
+TEST_P(EveryPlantTest, TakesAStateAndAGoalDigitByDigitAndNothingElse) {
+  for (const Eigen::VectorXd& state : states()) {
+    const Eigen::VectorXd crooked = state.array() + 0.1 / 3.0;
+    plant_->setState(crooked);
+    plant_->setGoal(crooked);
+    ASSERT_EQ(plant_->state(), crooked);
+    ASSERT_EQ(plant_->goal(), crooked);
+  }
+  const Eigen::VectorXd kept = plant_->state();
+  const Eigen::VectorXd too_long = Eigen::VectorXd::Zero(plant_->stateDim() + 1);
+  EXPECT_THROW(plant_->setState(too_long), std::invalid_argument);
+  EXPECT_THROW(plant_->setGoal(too_long), std::invalid_argument);
+  EXPECT_EQ(plant_->state(), kept);
+  EXPECT_EQ(plant_->goal(), kept);
+}
+
+TEST_P(EveryPlantTest, SaturatesEachMotorByItself) {
+  for (Eigen::Index motor = 0; motor < plant_->torqueDim(); ++motor) {
+    for (const double sign : {-1.0, 1.0}) {
+      Eigen::VectorXd beyond = 0.5 * info().max_torque;
+      beyond[motor] = sign * 1e6 * info().max_torque[motor];
+      Eigen::VectorXd at_limit = beyond;
+      at_limit[motor] = sign * info().max_torque[motor];
+      plant_->setState(info().start);
+      EXPECT_EQ(plant_->step(beyond), at_limit) << motor;
+      const Eigen::VectorXd reached = plant_->state();
+      plant_->setState(info().start);
+      EXPECT_EQ(plant_->step(at_limit), at_limit) << motor;
+      EXPECT_EQ(plant_->state(), reached) << motor;
+    }
+  }
+}
+
+TEST_P(EveryPlantTest, MovesUnderEachMotorAndStaysWhereItIsWithoutATorqueAtTheStart) {
+  plant_->step(Eigen::VectorXd::Zero(plant_->torqueDim()));
+  EXPECT_EQ(plant_->state(), info().start);
+  for (Eigen::Index motor = 0; motor < plant_->torqueDim(); ++motor) {
+    plant_->setState(info().start);
+    plant_->step(info().max_torque[motor] * Eigen::VectorXd::Unit(plant_->torqueDim(), motor));
+    EXPECT_NE(plant_->state(), info().start) << motor;
+  }
+}
+
+TEST_P(EveryPlantTest, HasReachedItsGoalThereAndNotAtTheStart) {
+  EXPECT_LE(plant_->goalError(info().goal), 1e-9 * info().tolerance);
+  EXPECT_GT(plant_->goalError(info().start), info().tolerance);
+  EXPECT_FALSE(info().error_unit.empty());
+  for (const Eigen::VectorXd& state : states()) {
+    const double error = plant_->goalError(state);
+    ASSERT_TRUE(error >= 0.0 && std::isfinite(error)) << state.transpose();
+    plant_->setGoal(state);  // the error is that to the goal of this trial
+    ASSERT_LE(plant_->goalError(state), 1e-9 * info().tolerance) << state.transpose();
+    plant_->setGoal(info().goal);
+  }
+}
+
+TEST_P(EveryPlantTest, DrawsAStartThatItsStreamFixesAndDoesNotTakeIt) {
+  std::mt19937_64 first = startStream(7, 3, true);
+  std::mt19937_64 second = startStream(7, 3, true);
+  std::mt19937_64 other = startStream(7, 4, true);
+  const Eigen::VectorXd start = plant_->drawStart(first);
+  EXPECT_EQ(makePlant(*maker_)->drawStart(second), start);
+  EXPECT_NE(plant_->drawStart(other), start);
+  EXPECT_EQ(plant_->state(), info().start);
+}
+
+TEST_P(EveryPlantTest, SpreadsItsStartsAsItSays) {
+  std::mt19937_64 engine = startStream(1, 0, false);
+  constexpr int kDraws = 20000;
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(plant_->stateDim());
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(plant_->stateDim(), plant_->stateDim());
+  for (int i = 0; i < kDraws; ++i) {
+    const Eigen::VectorXd offset = plant_->drawStart(engine) - info().start;
+    sum += offset.array();
+    products += offset * offset.transpose();
+  }
+  for (Eigen::Index i = 0; i < plant_->stateDim(); ++i) {
+    // Five standard errors: 1 / sqrt(n) of mean and correlation, 1 / sqrt(2 n) of the deviation.
+    const double spread = info().start_std[i];
+    EXPECT_NEAR(sum[i] / kDraws, 0.0, 5 * spread / std::sqrt(kDraws)) << i;
+    EXPECT_NEAR(std::sqrt(products(i, i) / kDraws), spread, 5 * spread / std::sqrt(2.0 * kDraws));
+    for (Eigen::Index j = 0; j < i; ++j) {
+      EXPECT_NEAR(products(i, j) / kDraws, 0.0,
+                  5 * spread * info().start_std[j] / std::sqrt(kDraws));
+    }
+  }
+}
+
+TEST_P(EveryPlantTest, DrawsAGoalThatTheRunFixesAndDoesNotTakeIt) {
+  for (const bool evaluation : {false, true}) {
+    const Eigen::VectorXd goal = goalOf(*plant_, 7, 3, evaluation);
+    EXPECT_EQ(goalOf(*makePlant(*maker_), 7, 3, evaluation), goal);
+    plant_->setGoal(goal);
+    EXPECT_LE(plant_->goalError(goal), 1e-9 * info().tolerance);
+    plant_->setGoal(info().goal);
+  }
+  EXPECT_EQ(plant_->goal(), info().goal);
+}
+
+TEST_P(EveryPlantTest, ShowsPicturesOfOneSizeWithACoverOfAtLeastTheirBrightness) {
+  const Picture first = plant_->render(info().start);
+  for (const Eigen::VectorXd& state : states()) {
+    const Picture picture = plant_->render(state);
+    ASSERT_EQ(picture.width, first.width);
+    ASSERT_EQ(picture.height, first.height);
+    ASSERT_EQ(picture.channels, first.channels);
+    ASSERT_EQ(picture.bytes.size(), picture.numBytes());
+    ASSERT_EQ(picture.cover.size(), picture.numPixels());  // ours all know it, see camera/clutter
+    for (std::size_t i = 0; i < picture.bytes.size(); ++i) {
+      const std::size_t pixel = i / static_cast<std::size_t>(picture.channels);
+      ASSERT_GE(picture.cover[pixel], picture.bytes[i]) << pixel;
+    }
+  }
+}
+
+TEST_P(EveryPlantTest, IsSeenAtAsManyCoordinatesInEachState) {
+  const Eigen::Index count = plant_->visiblePosition(info().start).size();
+  EXPECT_GE(count, 1);
+  for (const Eigen::VectorXd& state : states()) {
+    const Eigen::VectorXd place = plant_->visiblePosition(state);
+    ASSERT_EQ(place.size(), count);
+    ASSERT_TRUE(place.allFinite());
+  }
+}
+
+TEST_P(EveryPlantTest, HasNoRewardOrAFiniteOneForEachStep) {
+  const bool has_reward = plant_->reward(info().start, info().max_torque).has_value();
+  for (const Eigen::VectorXd& state : states()) {
+    const std::optional<double> reward = plant_->reward(state, -info().max_torque);
+    ASSERT_EQ(reward.has_value(), has_reward);
+    ASSERT_TRUE(std::isfinite(reward.value_or(0.0)));
+  }
+}
+
+TEST_P(EveryPlantTest, RemembersNothingButItsStateAndGoal) {
+  const std::vector<Eigen::VectorXd> way = states();
+  EXPECT_EQ(states(), way);
+  const std::unique_ptr<Plant> fresh = makePlant(*maker_);
+  for (const Eigen::VectorXd& state : {way[3], way[40], way[7]}) {
+    plant_->setState(state);
+    plant_->step(info().max_torque);
+    fresh->setState(info().goal);
+    fresh->step(-info().max_torque);
+    fresh->setState(state);
+    fresh->step(info().max_torque);
+    EXPECT_EQ(plant_->state(), fresh->state());
+    EXPECT_EQ(plant_->render(state).bytes, fresh->render(state).bytes);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EveryPlantTest, ::testing::ValuesIn(candidates()),
+                         [](const auto& info) { return info.param.name; });
+
+TEST(EveryPlant, OfThisPackageIsTested) {
+  std::vector<std::string> types;
+  for (const Candidate& candidate : candidates()) types.push_back(candidate.maker()->type());
+  for (const char* type : {"pendulum", "moving_tile", "two_link"}) {
+    EXPECT_EQ(std::count(types.begin(), types.end(), type), type == std::string("pendulum") ? 2 : 1)
+        << type;
+  }
+}
+
+}  // namespace
+}  // namespace ddm

@@ -1,0 +1,236 @@
+// Tests of plant and camera together: what is seen, what time it is, and how a run begins.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_sim/rig.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <set>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "ddm_sim/pendulum.h"
+#include "ddm_sim/testing/toy_plant.h"
+
+namespace ddm {
+namespace {
+
+using testing::ToyPlant;
+
+constexpr std::uint64_t kSeed = 7;
+constexpr std::uint32_t kTrial = 3;
+
+CameraOptions allFaults() {
+  CameraOptions options;
+  options.noise_std = 0.05;
+  options.brightness_drift = 0.2;
+  options.clutter = 0.6;
+  options.delay = 1;
+  options.drop_rate = 0.3;
+  return options;
+}
+
+PendulumOptions quickPendulum() {
+  PendulumOptions options;
+  options.dt = 0.1;
+  return options;
+}
+
+std::unique_ptr<Plant> pendulum() { return std::make_unique<Pendulum>(quickPendulum()); }
+
+Eigen::VectorXd torque(double value) { return Eigen::VectorXd::Constant(1, value); }
+
+/// Plant and camera, moved by hand.
+struct ByHand {
+  Pendulum plant{quickPendulum()};
+  Camera camera{allFaults(), quickPendulum().dt};
+
+  std::optional<Picture> begin() {
+    std::mt19937_64 starts = startStream(kSeed, kTrial, true);
+    plant.setState(plant.drawStart(starts));
+    camera.begin(kSeed, kTrial, true);
+    return look();
+  }
+  std::optional<Picture> step(double value) {
+    plant.step(torque(value));
+    return look();
+  }
+  std::optional<Picture> look() { return camera.photograph(plant.render(plant.state())); }
+};
+
+TEST(Rig, ShowsInEachStepWhatPlantAndCameraShowByHand) {
+  Rig rig(pendulum(), allFaults());
+  ByHand by_hand;
+  EXPECT_EQ(rig.reset(kSeed, kTrial, true).bytes, by_hand.begin()->bytes);
+  int num_lost = 0;
+  for (int t = 1; t <= 60; ++t) {
+    const double value = 4.0 * std::sin(t);
+    const std::optional<Picture> seen = rig.step(torque(value));
+    const std::optional<Picture> expected = by_hand.step(value);
+    ASSERT_EQ(seen.has_value(), expected.has_value()) << t;
+    if (seen) {
+      ASSERT_EQ(seen->bytes, expected->bytes) << t;
+    } else {
+      ++num_lost;
+    }
+    ASSERT_EQ(rig.plant().state(), by_hand.plant.state()) << t;
+    EXPECT_EQ(rig.numSteps(), static_cast<std::uint64_t>(t));
+  }
+  EXPECT_GT(num_lost, 0);
+}
+
+TEST(Rig, GoesOnUnderTheSameTorqueUntilAFrameIsSeenAndCountsTheLostOnes) {
+  Rig rig(pendulum(), allFaults());
+  ByHand by_hand;
+  rig.reset(kSeed, kTrial, true);
+  by_hand.begin();
+  std::uint64_t steps = 0;
+  for (int frame = 1; frame <= 40; ++frame) {
+    const double value = frame % 2 == 0 ? 4.0 : -1.0;
+    const Picture seen = rig.stepUntilSeen(torque(value));
+    std::optional<Picture> expected;
+    while (!expected) {
+      expected = by_hand.step(value);
+      ++steps;
+    }
+    ASSERT_EQ(seen.bytes, expected->bytes) << frame;
+    ASSERT_EQ(rig.plant().state(), by_hand.plant.state()) << frame;
+    EXPECT_EQ(rig.numSteps(), steps);
+    EXPECT_DOUBLE_EQ(rig.time(), 0.1 * static_cast<double>(steps));
+  }
+  EXPECT_GT(steps, 40U);
+}
+
+TEST(Rig, BeginsARunAtTheDrawnStartWithoutTorqueAtTimeZero) {
+  Rig rig(pendulum(), CameraOptions());
+  const Picture first = rig.reset(kSeed, kTrial, false);
+  std::mt19937_64 starts = startStream(kSeed, kTrial, false);
+  const Eigen::VectorXd start = rig.plant().drawStart(starts);
+  EXPECT_EQ(rig.plant().state(), start);
+  rig.step(torque(100.0));
+  EXPECT_EQ(rig.applied(), torque(6.0));  // as it acted
+  EXPECT_EQ(rig.numSteps(), 1U);
+  EXPECT_EQ(rig.time(), 0.1);
+  EXPECT_EQ(rig.reset(kSeed, kTrial, false).bytes, first.bytes);
+  EXPECT_EQ(rig.plant().state(), start);
+  EXPECT_EQ(rig.applied(), torque(0.0));
+  EXPECT_EQ(rig.numSteps(), 0U);
+  EXPECT_EQ(rig.time(), 0.0);
+}
+
+TEST(Rig, BeginsARunAtAGivenStartDigitByDigitWithTheFramesOfThatRun) {
+  Rig rig(pendulum(), allFaults());
+  const Eigen::Vector2d start(0.1 + 0.2, -1e-17);
+  const Picture first = rig.reset(kSeed, kTrial, true, start);
+  EXPECT_EQ(rig.plant().state(), start);
+  ByHand by_hand;
+  by_hand.begin();
+  by_hand.plant.setState(start);
+  by_hand.camera.begin(kSeed, kTrial, true);
+  EXPECT_EQ(first.bytes, by_hand.look()->bytes);
+}
+
+TEST(Rig, ChangesNothingWhereAStartIsRefused) {
+  ToyPlant::Traits traits = testing::colourfulToy();
+  Rig rig(std::make_unique<ToyPlant>(traits), allFaults());
+  Rig undisturbed(std::make_unique<ToyPlant>(traits), allFaults());
+  for (Rig* each : {&rig, &undisturbed}) {
+    each->reset(kSeed, kTrial, true);
+    each->stepUntilSeen(torque(2.0));
+  }
+  EXPECT_THROW(rig.reset(1, 1, false, Eigen::VectorXd::Zero(3)), std::invalid_argument);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(rig.reset(1, 1, false, Eigen::Vector2d(0.0, nan)), std::invalid_argument);
+  EXPECT_EQ(rig.plant().state(), undisturbed.plant().state());
+  EXPECT_EQ(rig.plant().goal(), undisturbed.plant().goal());
+  EXPECT_EQ(rig.numSteps(), undisturbed.numSteps());
+  EXPECT_EQ(rig.applied(), undisturbed.applied());
+  for (int t = 0; t < 20; ++t) {
+    const std::optional<Picture> expected = undisturbed.step(torque(1.0));
+    const std::optional<Picture> seen = rig.step(torque(1.0));
+    ASSERT_EQ(seen.has_value(), expected.has_value());
+    if (!seen) continue;
+    ASSERT_EQ(seen->bytes, expected->bytes);
+  }
+}
+
+TEST(Rig, ChangesNothingWhereATorqueIsRefused) {
+  Rig rig(pendulum(), allFaults());
+  Rig undisturbed(pendulum(), allFaults());
+  for (Rig* each : {&rig, &undisturbed}) {
+    each->reset(kSeed, kTrial, true);
+    each->step(torque(2.0));
+  }
+  EXPECT_THROW(rig.step(Eigen::VectorXd::Zero(2)), std::invalid_argument);
+  EXPECT_THROW(rig.stepUntilSeen(Eigen::VectorXd::Zero(0)), std::invalid_argument);
+  EXPECT_EQ(rig.numSteps(), 1U);
+  EXPECT_EQ(rig.applied(), torque(2.0));
+  for (int t = 0; t < 20; ++t) {
+    const Picture expected = undisturbed.stepUntilSeen(torque(1.0));
+    ASSERT_EQ(rig.stepUntilSeen(torque(1.0)).bytes, expected.bytes);
+  }
+}
+
+TEST(Rig, StaysAtTheLastStateWhereThePlantHasNoNext) {
+  ToyPlant::Traits traits;
+  traits.advance = [](const Eigen::VectorXd& state, const Eigen::VectorXd&) {
+    const double limit = state[0] < 2.5 ? 1.0 : std::numeric_limits<double>::infinity();
+    return Eigen::VectorXd(state.array() + limit);
+  };
+  Rig rig(std::make_unique<ToyPlant>(traits), CameraOptions());
+  rig.reset(0, 0, false, Eigen::Vector2d(0.0, 0.0));
+  for (int t = 0; t < 3; ++t) rig.stepUntilSeen(torque(1.0));
+  EXPECT_THROW(rig.stepUntilSeen(torque(1.0)), std::range_error);
+  EXPECT_EQ(rig.plant().state(), Eigen::Vector2d(3.0, 3.0));
+  EXPECT_EQ(rig.numSteps(), 3U);
+}
+
+TEST(Rig, DrawsAGoalForEachRunAndShowsItOnTheGoalImage) {
+  const auto toy = [] { return std::make_unique<ToyPlant>(testing::colourfulToy()); };
+  const ToyPlant alone(testing::colourfulToy());
+  Rig rig(toy(), CameraOptions());
+  EXPECT_EQ(rig.plant().goal(), alone.info().goal);
+  std::set<double> goals;
+  std::set<std::vector<std::uint8_t>> images;
+  for (const bool evaluation : {false, true}) {
+    for (std::uint32_t trial = 0; trial < 5; ++trial) {
+      rig.reset(kSeed, trial, evaluation);
+      const Eigen::VectorXd goal = rig.plant().goal();
+      EXPECT_EQ(goal, goalOf(alone, kSeed, trial, evaluation));
+      EXPECT_EQ(rig.goalImage().bytes, alone.render(goal).bytes);
+      EXPECT_EQ(rig.plant().goalError(goal), 0.0);
+      goals.insert(goal[0]);
+      images.insert(rig.goalImage().bytes);
+      // A given start leaves the goal of the run as it is.
+      rig.reset(kSeed, trial, evaluation, Eigen::Vector2d(0.0, 0.0));
+      EXPECT_EQ(rig.plant().goal(), goal);
+    }
+  }
+  EXPECT_EQ(goals.size(), 10U);
+  EXPECT_GT(images.size(), 3U);  // pixels are coarser
+}
+
+TEST(Rig, TakesTheGoalImageWithTheFaultsOfTheCameraButChangesNoPhotograph) {
+  Rig rig(pendulum(), allFaults());
+  Rig undisturbed(pendulum(), allFaults());
+  ByHand by_hand;
+  rig.reset(kSeed, kTrial, true);
+  undisturbed.reset(kSeed, kTrial, true);
+  const Picture goal = by_hand.camera.photographGoal(by_hand.plant.render(by_hand.plant.goal()));
+  for (int t = 0; t < 20; ++t) {
+    EXPECT_EQ(rig.goalImage().bytes, goal.bytes);
+    EXPECT_EQ(rig.stepUntilSeen(torque(1.0)).bytes, undisturbed.stepUntilSeen(torque(1.0)).bytes);
+  }
+}
+
+TEST(Rig, RefusesACameraWithProblems) {
+  CameraOptions options;
+  options.delay = -1;
+  EXPECT_THROW(Rig(pendulum(), options), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace ddm
