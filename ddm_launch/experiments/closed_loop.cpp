@@ -20,10 +20,11 @@ ros::Time stampOf(const Rig& rig) {
 
 void runClosedLoop(Rig* rig, EpsilonGreedy* policy, const TrialId& id, int image_size,
                    int num_frames, const std::function<void(const ClosedLoopFrame&)>& take) {
+  Picture picture = rig->reset(id.seed, id.trial, id.evaluation);
+  policy->setGoal(decodeImage(imageMessage(rig->goalImage(), stampOf(*rig)), image_size));
   ClosedLoopFrame frame;
   for (frame.index = 0; frame.index < num_frames; ++frame.index) {
-    const Picture picture = frame.index == 0 ? rig->reset(id.seed, id.trial, id.evaluation)
-                                             : rig->stepUntilSeen(frame.decision.torque);
+    if (frame.index > 0) picture = rig->stepUntilSeen(frame.decision.torque);
     frame.image = imageMessage(picture, stampOf(*rig));
     frame.grey = decodeImage(frame.image, image_size);
     frame.decision = policy->decide(frame.grey);

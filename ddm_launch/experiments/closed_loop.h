@@ -19,7 +19,8 @@ struct ClosedLoopFrame {
   Decision decision;
 };
 
-/// Runs `num_frames` frames from the start of the run `id` on. Time goes on where a frame is lost.
+/// Runs `num_frames` frames from the start of the run `id` on, towards the goal of that run. Time
+/// goes on where a frame is lost.
 /// @param image_size  `image/size` [pixels]
 /// @param take        called for each frame before its torque acts; the last torque does not act
 void runClosedLoop(Rig* rig, EpsilonGreedy* policy, const TrialId& id, int image_size,

@@ -44,10 +44,8 @@ class OraclePolicy : public Policy {
     planner_.clear();
     rng_ = randomStream(id, StreamRole::kPlannerStarts);
   }
-  void observe(const Grey& /*grey*/) override {
-    cost_.setGoal(plant_.goal());  // only now: a trial starts before its goal is drawn
-    cost_.setState(plant_.state());
-  }
+  void setGoal(const Grey& /*goal*/) override { cost_.setGoal(plant_.goal()); }
+  void observe(const Grey& /*grey*/) override { cost_.setState(plant_.state()); }
   Answer answer() override { return answerWith(planner_.solve(&rng_)); }
   void apply(const Eigen::VectorXd& /*u*/) override {}
 

@@ -5,7 +5,6 @@
 #include <ddm_bag_io/model_message.h>
 #include <ddm_model/model_file.h>
 #include <ddm_model/plain_file.h>
-#include <ddm_msgs/Reset.h>
 #include <ddm_msgs/StartRecording.h>
 #include <ddm_msgs/StopRecording.h>
 #include <ddm_msgs/topic_peers.h>

@@ -4,6 +4,7 @@
 
 #include <actionlib/client/simple_action_client.h>
 #include <ddm_msgs/Model.h>
+#include <ddm_msgs/Reset.h>
 #include <ddm_msgs/RunTrialAction.h>
 #include <ddm_msgs/TrainAction.h>
 #include <ros/callback_queue.h>
@@ -49,9 +50,10 @@ class RosWorld : public World {
  private:
   void connect();
   void startRecording(const std::string& bag);
-  void stopRecording(int num_steps, const ros::Time& last);
-  ros::Time reset(const TrialRequest& request);
-  ddm_msgs::RunTrialResult runPolicy(const TrialRequest& request, const ros::Time& start,
+  void stopRecording(int num_steps, const ros::Time& last, const ros::Time& goal);
+  ddm_msgs::Reset::Response reset(const TrialRequest& request);
+  ddm_msgs::RunTrialResult runPolicy(const TrialRequest& request,
+                                     const ddm_msgs::Reset::Response& begin,
                                      const PhaseCallback& progress);
   void takeGroundTruth(const std::vector<ros::Time>& stamps, TrialOutcome* outcome);
   std::string takeModel(const std::string& model_id);

@@ -46,10 +46,12 @@ class TrialRecorderTest : public ::testing::Test {
     message_ = call.response.message;
     return call.response.success;
   }
-  static ddm_msgs::StopRecording::Response stop(std::uint32_t num_steps, int last = -1) {
+  static ddm_msgs::StopRecording::Response stop(std::uint32_t num_steps, int last = -1,
+                                                const ros::Time& goal = {}) {
     ddm_msgs::StopRecording call;
     call.request.num_steps = num_steps;
     if (last >= 0) call.request.last = stampOf(last);
+    call.request.goal = goal;
     EXPECT_TRUE(ros::service::call(topics::kStopRecording, call));
     return call.response;
   }
@@ -102,6 +104,26 @@ TEST_F(TrialRecorderTest, PutsTheGoalImageIntoEachBagOnceItHasSeenIt) {
   while (recordedGoal("early.bag") != toyImage(3.0)) ASSERT_LT(ros::WallTime::now(), end);
   EXPECT_EQ(recordedGoal("next.bag"), toyImage(3.0));
   EXPECT_EQ(recordedGoal("one_more.bag"), toyImage(3.0));
+}
+
+TEST_F(TrialRecorderTest, RecordsTheGoalOfTheTrialThoughItComesAfterTheFrames) {
+  goal_pub_.publish(imageMessage(0.5, toyImage(3.0)));
+  ASSERT_TRUE(start(path_)) << message_;
+  publishFrames(3);
+  std::future<ddm_msgs::StopRecording::Response> stopped =
+      std::async(std::launch::async, [] { return stop(3, /*last=*/2, /*goal=*/ros::Time(0.75)); });
+  goal_pub_.publish(imageMessage(0.75, toyImage(2.0)));
+  EXPECT_TRUE(stopped.get().success);
+  EXPECT_EQ(readBag(path_, testing::kToySize, BagOptions()).data.goal(), toyImage(2.0));
+}
+
+TEST_F(TrialRecorderTest, RefusesATrialWithoutItsGoal) {
+  ASSERT_TRUE(start(path_)) << message_;
+  publishFrames(3);
+  const auto response = stop(3, /*last=*/2, /*goal=*/ros::Time(0.875));
+  EXPECT_FALSE(response.success);
+  EXPECT_NE(response.message.find("goal image"), std::string::npos) << response.message;
+  EXPECT_TRUE(fs::exists(path_ + ".active"));
 }
 
 TEST_F(TrialRecorderTest, WaitsForATorqueThatIsLate) {

@@ -160,6 +160,42 @@ TEST_F(MpcNodeTest, NamesTheSilentCameraWhenNoImageComes) {
   EXPECT_EQ(action_.getResult()->num_steps, 2U);
 }
 
+TEST_F(MpcNodeTest, WaitsForTheGoalImageOfTheTrialAndTakesNewerOnes) {
+  RandomModelOptions options;
+  const Ddm model = randomModel(options);
+  const auto isOf = [&model](unsigned seed, const ddm_msgs::Plan& plan) {
+    const Eigen::VectorXd z = model.encode(randomGrey(kSize, seed));
+    return plan.goal_feature == std::vector<double>(z.data(), z.data() + z.size());
+  };
+  ASSERT_TRUE(waitUntil([this] { return client_.goalImageIsHeard(); }));
+  client_.publish(modelMessage(model));
+  client_.publishGoalImage(kSize, 20, ros::Time(500.0));  // of an earlier trial
+  ddm_msgs::RunTrialGoal goal = trialGoal(1000, /*epsilon=*/0.0, modelMessage(model).id);
+  stamps_.push_back(client_.publishImage(kSize, 0));
+  goal.start = stamps_[0];
+  goal.goal = ros::Time(501.0);
+  begin(goal);
+  EXPECT_TRUE(torque_.messages.empty());
+  client_.publishGoalImage(kSize, 21, goal.goal);
+  ASSERT_TRUE(waitUntil([this] { return plan_.messages.size() == 1; }));
+  EXPECT_TRUE(isOf(21, plan_.messages[0]));
+  client_.publishGoalImage(kSize, 22, ros::Time(502.0));
+  for (int image = 0; image < 500 && !isOf(22, plan_.messages.back()); ++image) {
+    show(torque_.messages.size() + 1);
+    ASSERT_TRUE(waitUntil([this] { return plan_.messages.size() == torque_.messages.size(); }));
+  }
+  EXPECT_TRUE(isOf(22, plan_.messages.back()));
+  action_.cancelGoal();
+  expectEnd(State::PREEMPTED);
+}
+
+TEST_F(MpcNodeTest, NamesTheGoalImageThatDoesNotCome) {
+  ddm_msgs::RunTrialGoal goal = trialGoal(10, /*epsilon=*/1.0);
+  goal.goal = ros::Time(499.0);
+  begin(goal);
+  expectEnd(State::ABORTED, {"goal image of the trial did not come", "/goal_image"});
+}
+
 TEST_F(MpcNodeTest, NamesTheModelThatDoesNotCome) {
   begin(trialGoal(10, 0.0, "0badc0de"));
   expectEnd(State::ABORTED, {"model 0badc0de did not come within 3 s", "/model"});

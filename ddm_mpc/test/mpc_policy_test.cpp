@@ -34,11 +34,21 @@ std::vector<double> torquesOfATrial(Policy* policy, const TrialId& id) {
   return torques;
 }
 
-TEST(MpcPolicy, RefusesAModelWithoutAGoalImage) {
-  RandomModelOptions options;
-  options.goal = false;
-  EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
-      [&options] { MpcPolicy policy(sharedModel(options), MpcOptions()); }, {"goal image"}));
+TEST(MpcPolicy, PlansToTheGoalItIsGivenWhateverTheModelHas) {
+  for (const bool model_has_goal : {false, true}) {
+    RandomModelOptions options;
+    options.goal = model_has_goal;
+    const auto model = sharedModel(options);
+    MpcPolicy policy(model, MpcOptions());
+    EXPECT_EQ(policy.hasGoal(), model_has_goal);
+    policy.startTrial(TrialId());
+    policy.observe(randomGrey(8, 3));
+    if (!model_has_goal) EXPECT_THROW(policy.plan(), std::logic_error);
+    for (const unsigned seed : {4U, 5U}) {
+      policy.setGoal(randomGrey(8, seed));
+      EXPECT_EQ(policy.plan().goal_feature, model->encode(randomGrey(8, seed)));
+    }
+  }
 }
 
 TEST(MpcPolicy, RefusesMoreTorqueThanTheModelKnowsAndNamesBothKeys) {

@@ -73,7 +73,8 @@ class NodeClient {
       : nh(ns),
         log(nh, "/rosout"),
         image_(nh.advertise<sensor_msgs::Image>(topics::kImage, 10)),
-        model_(nh.advertise<ddm_msgs::Model>(topics::kModel, 1, /*latch=*/true)) {}
+        model_(nh.advertise<ddm_msgs::Model>(topics::kModel, 1, /*latch=*/true)),
+        goal_image_(nh.advertise<sensor_msgs::Image>(topics::kGoalImage, 1)) {}
 
   bool connect() {
     return waitUntil(
@@ -96,6 +97,11 @@ class NodeClient {
 
   void publish(const sensor_msgs::Image& image) { image_.publish(image); }
 
+  void publishGoalImage(int size, unsigned seed, const ros::Time& stamp) {
+    goal_image_.publish(encodeImage(randomGrey(size, seed), size, stamp, "camera"));
+  }
+  bool goalImageIsHeard() const { return goal_image_.getNumSubscribers() > 0; }
+
   bool logged(const std::string& part) const {
     for (const rosgraph_msgs::Log& line : log.messages) {
       if (line.msg.find(part) != std::string::npos) return true;
@@ -109,6 +115,7 @@ class NodeClient {
  private:
   ros::Publisher image_;
   ros::Publisher model_;
+  ros::Publisher goal_image_;
   ros::Time stamp_{1000.0};
 };
 

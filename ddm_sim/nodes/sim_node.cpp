@@ -62,6 +62,7 @@ void SimNode::publishGoal(const ros::Time& stamp) {
   Picture image = rig_->goalImage();
   if (image.bytes == goal_image_.bytes) return;
   goal_image_ = std::move(image);
+  goal_stamp_ = stamp;
   publisher_.publishGoal(goal_image_, stamp);
 }
 
@@ -77,6 +78,7 @@ bool SimNode::onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Respon
     return true;
   }
   response.start = beginTrial(request);
+  response.goal = goal_stamp_;
   response.success = true;
   return true;
 }

@@ -43,7 +43,8 @@ class SimNode {
   /// @param answer  without a torque: none acted in time
   void publishApplied(ddm_msgs::Torque answer) const;
 
-  /// The goal of this run, unless it looks like the last one.
+  /// The goal of this run, unless it looks like the last one: who waits for it knows its stamp from
+  /// the answer to `reset`.
   void publishGoal(const ros::Time& stamp);
   void publishClock(const ros::Time& stamp) const { publisher_.publishClock(stamp); }
 
@@ -69,6 +70,7 @@ class SimNode {
   std::unique_ptr<Rig> rig_;
   std::optional<Picture> seen_;  ///< the frame of this time step; empty: lost
   Picture goal_image_;           ///< as published last
+  ros::Time goal_stamp_;         ///< of goal_image_
   SimPublisher publisher_;
   ros::Publisher applied_pub_;
   ros::ServiceServer reset_server_;

@@ -48,6 +48,11 @@ TEST_F(Lockstep, ShowsClockAndGoalButNoImageBeforeTheFirstReset) {
   EXPECT_EQ(client_->images[0].header.stamp, start);
 }
 
+TEST_F(Lockstep, ResetTellsTheStampOfTheGoalImage) {
+  ASSERT_FALSE(client_->goals.empty());
+  EXPECT_EQ(client_->reset(0).goal, client_->goals.back().header.stamp);
+}
+
 TEST_F(Lockstep, ShowsTheGoalStateOnTheGoalImage) {
   const Pendulum plant{PendulumOptions()};
   ASSERT_FALSE(client_->goals.empty());
