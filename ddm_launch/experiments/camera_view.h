@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_images/image_codec.h>
 #include <ddm_model/data_set.h>
-#include <ddm_msgs/image_codec.h>
 
 #include <cstdint>
 #include <vector>

@@ -4,7 +4,7 @@
 
 #include <ddm_bag_io/model_config.h>
 #include <ddm_mpc/mpc_options.h>
-#include <ddm_msgs/param_reader.h>
+#include <ddm_params/param_reader.h>
 #include <ddm_sim/plant_options.h>
 #include <yaml-cpp/yaml.h>
 

@@ -1,6 +1,6 @@
 // resolve: the configuration of a launch as one text, from the arguments of the launch.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_msgs/tool.h>
+#include <ddm_params/tool.h>
 
 #include <boost/filesystem.hpp>
 #include <cstdio>

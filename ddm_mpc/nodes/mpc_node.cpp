@@ -5,8 +5,8 @@
 #include <ddm_model/model_file.h>
 #include <ddm_msgs/Plan.h>
 #include <ddm_msgs/Torque.h>
-#include <ddm_msgs/topic_peers.h>
 #include <ddm_msgs/topics.h>
+#include <ddm_node/topic_peers.h>
 
 #include <algorithm>
 #include <chrono>

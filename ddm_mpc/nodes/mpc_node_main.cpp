@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_model/model_options.h>
 #include <ddm_model/solver_log.h>
-#include <ddm_msgs/node_params.h>
-#include <ddm_msgs/param_reader.h>
+#include <ddm_node/node_params.h>
+#include <ddm_params/param_reader.h>
 #include <ros/callback_queue.h>
 
 #include <csignal>

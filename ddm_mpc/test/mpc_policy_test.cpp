@@ -3,7 +3,7 @@
 #include "ddm_mpc/mpc_policy.h"
 
 #include <ddm_model/long_term_prediction.h>
-#include <ddm_model/testing/expect_error.h>
+#include <ddm_msgs/testing/expect_error.h>
 #include <gtest/gtest.h>
 
 #include <chrono>

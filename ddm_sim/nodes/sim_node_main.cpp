@@ -8,8 +8,8 @@
 #include <exception>
 #include <memory>
 
-#include "ddm_msgs/node_params.h"
-#include "ddm_msgs/param_reader.h"
+#include "ddm_node/node_params.h"
+#include "ddm_params/param_reader.h"
 #include "ddm_sim/plant_factory.h"
 #include "lockstep_sim.h"
 #include "realtime_sim.h"

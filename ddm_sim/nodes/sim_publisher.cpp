@@ -8,7 +8,7 @@
 
 #include <utility>
 
-#include "ddm_msgs/image_codec.h"
+#include "ddm_images/image_codec.h"
 #include "ddm_msgs/topics.h"
 #include "joint_state.h"
 

@@ -9,7 +9,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "ddm_msgs/param_reader.h"
+#include "ddm_params/param_reader.h"
 #include "ddm_sim/plant_factory.h"
 #include "show_options.h"
 

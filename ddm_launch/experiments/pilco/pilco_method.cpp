@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco_method.h"
 
-#include <ddm_model/plain_file.h>
+#include <ddm_files/plain_file.h>
 #include <ddm_mpc/random_stream.h>
-#include <ddm_msgs/param_value.h>
+#include <ddm_params/param_value.h>
 #include <ddm_sim/plant.h>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <ddm_model/model_options.h>
-#include <ddm_msgs/param_reader.h>
+#include <ddm_params/param_reader.h>
 
 #include <string>
 

@@ -1,6 +1,6 @@
 // Tests of the image codec: every encoding, every refusal.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_msgs/image_codec.h"
+#include "ddm_images/image_codec.h"
 
 #include <gtest/gtest.h>
 
