@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "closed_loop.h"
 
-#include <ddm_msgs/image_codec.h>
+#include <ddm_images/image_codec.h>
 
 #include <cmath>
 

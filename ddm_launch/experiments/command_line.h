@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_msgs/tool.h>
+#include <ddm_params/tool.h>
 
 #include <string>
 

@@ -4,7 +4,7 @@
 
 #include <ddm_bag_io/model_config.h>
 #include <ddm_mpc/mpc_options.h>
-#include <ddm_msgs/param_reader.h>
+#include <ddm_params/param_reader.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ddm_robot/robot_options.h>
 #include <ddm_sim/camera_options.h>

@@ -1,15 +1,15 @@
 // feature_space: what a run's model makes of its experience, and what it planned at one step.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/bag_cache.h>
+#include <ddm_files/plain_file.h>
 #include <ddm_model/long_term_prediction.h>
 #include <ddm_model/model_file.h>
 #include <ddm_model/per_motor.h>
-#include <ddm_model/plain_file.h>
 #include <ddm_model/solver_log.h>
 #include <ddm_mpc/epsilon_greedy.h>
 #include <ddm_mpc/mpc_policy.h>
-#include <ddm_msgs/param_value.h>
-#include <ddm_msgs/tool.h>
+#include <ddm_params/param_value.h>
+#include <ddm_params/tool.h>
 #include <ddm_sim/plant_factory.h>
 #include <ddm_sim/rig.h>
 #include <ros/time.h>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <ddm_mpc/policy.h>
-#include <ddm_msgs/param_reader.h>
+#include <ddm_params/param_reader.h>
 #include <ddm_sim/plant.h>
 #include <yaml-cpp/yaml.h>
 

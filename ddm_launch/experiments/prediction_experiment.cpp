@@ -6,7 +6,7 @@
 #include <ddm_model/solver_log.h>
 #include <ddm_model/trainer.h>
 #include <ddm_mpc/epsilon_greedy.h>
-#include <ddm_msgs/param_value.h>
+#include <ddm_params/param_value.h>
 #include <ddm_sim/plant_factory.h>
 #include <ddm_sim/rig.h>
 #include <unistd.h>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "resolution.h"
 
-#include <ddm_msgs/config_blocks.h>
+#include <ddm_params/config_blocks.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ros/package.h>
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_msgs/param_reader.h>
-#include <ddm_msgs/param_value.h>
+#include <ddm_params/param_reader.h>
+#include <ddm_params/param_value.h>
 #include <yaml-cpp/yaml.h>
 
 #include <string>

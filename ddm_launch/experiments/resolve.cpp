@@ -1,7 +1,7 @@
 // resolve: the configuration of a launch as one text, from the arguments of the launch.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_msgs/config_blocks.h>
-#include <ddm_msgs/tool.h>
+#include <ddm_params/config_blocks.h>
+#include <ddm_params/tool.h>
 #include <ddm_plant_plugin/plant_config.h>
 
 #include <boost/filesystem.hpp>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "results_folder.h"
 
-#include <ddm_model/plain_file.h>
+#include <ddm_files/plain_file.h>
 #include <unistd.h>
 
 #include <boost/filesystem.hpp>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run_folder.h"
 
-#include <ddm_model/plain_file.h>
-#include <ddm_msgs/param_value.h>
+#include <ddm_files/plain_file.h>
+#include <ddm_params/param_value.h>
 
 #include <boost/filesystem.hpp>
 #include <cstdio>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "saved_configuration.h"
 
-#include <ddm_msgs/renamed_keys.h>
-#include <ddm_msgs/yaml_text.h>
+#include <ddm_params/renamed_keys.h>
+#include <ddm_params/yaml_text.h>
 
 #include <set>
 #include <stdexcept>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "saved_model.h"
 
+#include <ddm_files/plain_file.h>
 #include <ddm_model/model_file.h>
-#include <ddm_model/plain_file.h>
 #include <ddm_mpc/mpc_policy.h>
 
 #include <stdexcept>

@@ -3,8 +3,8 @@
 #include "start.h"
 
 #include <ddm_bag_io/bag_reader.h>
+#include <ddm_files/plain_file.h>
 #include <ddm_model/model_file.h>
-#include <ddm_model/plain_file.h>
 #include <ddm_sim/plant_factory.h>
 
 #include <boost/filesystem.hpp>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "trials_csv.h"
 
-#include <ddm_msgs/param_value.h>
+#include <ddm_params/param_value.h>
 
 #include <boost/lexical_cast.hpp>
 #include <cstdio>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "connections.h"
 
-#include <ddm_msgs/call_within.h>
-#include <ddm_msgs/topic_peers.h>
+#include <ddm_node/call_within.h>
+#include <ddm_node/topic_peers.h>
 #include <ros/console.h>
 #include <ros/network.h>
 #include <ros/this_node.h>

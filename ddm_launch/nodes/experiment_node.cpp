@@ -1,9 +1,9 @@
 // experiment_node: Algorithm 1 with the real nodes.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cv_bridge/cv_bridge.h>
-#include <ddm_msgs/node_params.h>
-#include <ddm_msgs/param_reader.h>
 #include <ddm_msgs/topics.h>
+#include <ddm_node/node_params.h>
+#include <ddm_params/param_reader.h>
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/image_encodings.h>
 #include <unistd.h>

@@ -3,15 +3,15 @@
 #include <actionlib/client/simple_action_client.h>
 #include <ddm_bag_io/bag_reader.h>
 #include <ddm_bag_io/model_message.h>
+#include <ddm_files/plain_file.h>
+#include <ddm_images/image_codec.h>
 #include <ddm_model/model_file.h>
-#include <ddm_model/plain_file.h>
 #include <ddm_msgs/RunTrialAction.h>
 #include <ddm_msgs/Torque.h>
-#include <ddm_msgs/image_codec.h>
-#include <ddm_msgs/node_params.h>
-#include <ddm_msgs/param_reader.h>
-#include <ddm_msgs/param_value.h>
 #include <ddm_msgs/topics.h>
+#include <ddm_node/node_params.h>
+#include <ddm_params/param_reader.h>
+#include <ddm_params/param_value.h>
 #include <ros/ros.h>
 #include <unistd.h>
 

@@ -3,12 +3,12 @@
 #include "ros_world.h"
 
 #include <ddm_bag_io/model_message.h>
+#include <ddm_files/plain_file.h>
 #include <ddm_model/model_file.h>
-#include <ddm_model/plain_file.h>
 #include <ddm_msgs/StartRecording.h>
 #include <ddm_msgs/StopRecording.h>
-#include <ddm_msgs/topic_peers.h>
 #include <ddm_msgs/topics.h>
+#include <ddm_node/topic_peers.h>
 
 #include <algorithm>
 #include <chrono>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulated_time.h"
 
-#include <ddm_msgs/topic_peers.h>
+#include <ddm_node/topic_peers.h>
 #include <ros/ros.h>
 
 #include <sstream>

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "configuration.h"
 
-#include <ddm_model/testing/expect_error.h>
-#include <ddm_model/testing/temp_folder.h>
-#include <ddm_msgs/param_reader.h>
+#include <ddm_msgs/testing/expect_error.h>
+#include <ddm_msgs/testing/temp_folder.h>
+#include <ddm_params/param_reader.h>
 #include <ddm_sim/plant_factory.h>
 #include <ddm_sim/rod_renderer.h>
 #include <gtest/gtest.h>
@@ -302,6 +302,16 @@ TEST(Configuration, WhatIsSavedIsReadBackAsTheSameConfiguration) {
   all.start.bag_ids = {"crc32-00000001", "crc32-1e234567"};
   writeText(folder.file("config.yaml"), YAML::Dump(toYaml(all)));
   EXPECT_EQ(YAML::Dump(toYaml(read({folder.file("config.yaml")}))), YAML::Dump(toYaml(all)));
+}
+
+TEST(Manuals, AreRegisteredSoThatEveryProgramLeavesTheirBlocksAlone) {
+  for (const char* package : {"ddm_launch", "ddm_model", "ddm_mpc", "ddm_sim"}) {
+    const std::string folder = std::string(DDM_LAUNCH_SOURCE_DIR "/../") + package + "/config/";
+    for (const std::string& name : namesIn(folder)) {
+      const ParamReader reader = ParamReader::fromFiles({folder + name + ".yaml"});
+      EXPECT_EQ(reader.problems(), std::vector<std::string>()) << folder << name;
+    }
+  }
 }
 
 TEST(ExperimentManual, HasTheKeysAndDefaultsOfEachBlock) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "connections.h"
 
-#include <ddm_msgs/topic_peers.h>
+#include <ddm_node/topic_peers.h>
 #include <gtest/gtest.h>
 #include <ros/ros.h>
 #include <signal.h>

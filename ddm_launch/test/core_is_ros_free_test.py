@@ -11,7 +11,9 @@ import rospkg
 import rosunit
 
 # library -> folders with its sources and headers: a package, and where in it
-CORES = {"ddm_sim": ("ddm_sim", "include", "src"), "ddm_model": ("ddm_model", "include", "src"),
+CORES = {"ddm_files": ("ddm_msgs", "files/include", "files/src"),
+         "ddm_params": ("ddm_msgs", "params/include", "params/src"),
+         "ddm_sim": ("ddm_sim", "include", "src"), "ddm_model": ("ddm_model", "include", "src"),
          "ddm_mpc": ("ddm_mpc", "include", "src"), "ddm_pilco": ("ddm_mpc", "pilco/include", "pilco/src"),
          "ddm_robot": ("ddm_sim", "robot/include", "robot/src")}
 if "pilco:=OFF" in sys.argv:
@@ -19,10 +21,10 @@ if "pilco:=OFF" in sys.argv:
 ROS_INCLUDE = re.compile(
     r'^\s*#\s*include\s*[<"](?!ddm_msgs/random_stream\.h)((?:ros|xmlrpcpp|\w+_msgs|actionlib|cv_bridge|image_transport|dynamic_reconfigure'
     r'|diagnostic_updater|nodelet|pluginlib|class_loader|tf2?(?:_ros)?|ros\w+|ddm_bag_io'
-    r'|ddm_plant_plugin)/[^>"]+)', re.MULTILINE)
+    r'|ddm_images|ddm_node|ddm_plant_plugin)/[^>"]+)', re.MULTILINE)
 ROS_LIBRARY = re.compile(
-    r"^\s*(lib(?:ros\w*|xmlrpcpp|cpp_common|message_filters|actionlib|cv_bridge|image_transport|ddm_msgs"
-    r"|ddm_bag_io|ddm_plant_plugin|class_loader)\.so\S*)", re.MULTILINE)
+    r"^\s*(lib(?:ros\w*|xmlrpcpp|cpp_common|message_filters|actionlib|cv_bridge|image_transport|ddm_images"
+    r"|ddm_node|ddm_bag_io|ddm_plant_plugin|class_loader)\.so\S*)", re.MULTILINE)
 
 
 def sourceFiles(library):
@@ -62,7 +64,7 @@ class CoreIsRosFreeTest(unittest.TestCase):
     def test_cores_include_no_header_of_ros(self):
         for library in CORES:
             files = sourceFiles(library)
-            self.assertGreater(len(files), 5, library)
+            self.assertGreater(len(files), 1, library)
             for path in files:
                 self.assertEqual(rosIncludes(path), [], path)
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation.h"
 
-#include <ddm_model/testing/expect_error.h>
+#include <ddm_msgs/testing/expect_error.h>
 #include <ddm_sim/angles.h>
 #include <ddm_sim/moving_tile.h>
 #include <ddm_sim/pendulum.h>

@@ -3,7 +3,7 @@
 #include "in_process_world.h"
 
 #include <ddm_bag_io/bag_reader.h>
-#include <ddm_model/testing/temp_folder.h>
+#include <ddm_msgs/testing/temp_folder.h>
 #include <ddm_sim/camera.h>
 #include <ddm_sim/plant_factory.h>
 #include <gtest/gtest.h>

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco/pilco_method.h"
 
-#include <ddm_model/plain_file.h>
+#include <ddm_files/plain_file.h>
 #include <ddm_model/solver_log.h>
-#include <ddm_model/testing/expect_error.h>
 #include <ddm_model/testing/random_matrix.h>
-#include <ddm_model/testing/temp_folder.h>
+#include <ddm_msgs/testing/expect_error.h>
+#include <ddm_msgs/testing/temp_folder.h>
 #include <gtest/gtest.h>
 
 #include <boost/algorithm/string.hpp>

@@ -1,7 +1,7 @@
 // Tests of what the baselines observe, of the task that they make of it, and of their first policy.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_model/testing/expect_error.h>
-#include <ddm_model/testing/temp_folder.h>
+#include <ddm_msgs/testing/expect_error.h>
+#include <ddm_msgs/testing/temp_folder.h>
 #include <ddm_sim/plant_factory.h>
 #include <gtest/gtest.h>
 

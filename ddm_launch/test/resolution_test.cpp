@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "resolution.h"
 
-#include <ddm_model/testing/expect_error.h>
-#include <ddm_model/testing/temp_folder.h>
+#include <ddm_msgs/testing/expect_error.h>
+#include <ddm_msgs/testing/temp_folder.h>
 #include <gtest/gtest.h>
 
 #include "configuration.h"

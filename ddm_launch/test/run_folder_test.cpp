@@ -3,8 +3,8 @@
 #include "run_folder.h"
 
 #include <ddm_model/model_file.h>
-#include <ddm_model/testing/expect_error.h>
-#include <ddm_model/testing/temp_folder.h>
+#include <ddm_msgs/testing/expect_error.h>
+#include <ddm_msgs/testing/temp_folder.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -3,9 +3,9 @@
 #include "start.h"
 
 #include <ddm_bag_io/bag_writer.h>
-#include <ddm_model/testing/expect_error.h>
-#include <ddm_model/testing/temp_folder.h>
-#include <ddm_msgs/image_codec.h>
+#include <ddm_images/image_codec.h>
+#include <ddm_msgs/testing/expect_error.h>
+#include <ddm_msgs/testing/temp_folder.h>
 #include <gtest/gtest.h>
 
 #include "toy_run.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "trajectory_csv.h"
 
-#include <ddm_model/testing/expect_error.h>
+#include <ddm_msgs/testing/expect_error.h>
 #include <gtest/gtest.h>
 
 #include <utility>

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/bag_options.h>
 #include <ddm_bag_io/model_message.h>
+#include <ddm_files/plain_file.h>
+#include <ddm_images/image_codec.h>
 #include <ddm_model/model_file.h>
-#include <ddm_model/plain_file.h>
 #include <ddm_msgs/Torque.h>
-#include <ddm_msgs/image_codec.h>
 #include <ddm_msgs/testing/seed_files.h>
 #include <rosbag/bag.h>
 #include <std_msgs/Float64.h>

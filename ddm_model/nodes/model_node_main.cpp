@@ -1,8 +1,8 @@
 // model_node: parameters, then the node.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_model/solver_log.h>
-#include <ddm_msgs/node_params.h>
-#include <ddm_msgs/param_reader.h>
+#include <ddm_node/node_params.h>
+#include <ddm_params/param_reader.h>
 
 #include <cstdlib>
 

@@ -1,7 +1,7 @@
 // trial_recorder: parameters, then the node.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_msgs/node_params.h>
-#include <ddm_msgs/param_reader.h>
+#include <ddm_node/node_params.h>
+#include <ddm_params/param_reader.h>
 
 #include <cstdlib>
 

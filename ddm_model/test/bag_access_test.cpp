@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "ddm_model/testing/expect_error.h"
-#include "ddm_model/testing/temp_folder.h"
+#include "ddm_msgs/testing/expect_error.h"
+#include "ddm_msgs/testing/temp_folder.h"
 
 namespace ddm {
 namespace {

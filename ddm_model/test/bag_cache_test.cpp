@@ -8,8 +8,8 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "ddm_model/testing/expect_error.h"
-#include "ddm_model/testing/temp_folder.h"
+#include "ddm_msgs/testing/expect_error.h"
+#include "ddm_msgs/testing/temp_folder.h"
 #include "toy_bags.h"
 
 namespace ddm {

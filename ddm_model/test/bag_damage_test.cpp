@@ -11,9 +11,9 @@
 
 #include "ddm_bag_io/bag_reader.h"
 #include "ddm_bag_io/bag_writer.h"
-#include "ddm_model/plain_file.h"
-#include "ddm_model/testing/expect_error.h"
-#include "ddm_model/testing/temp_folder.h"
+#include "ddm_files/plain_file.h"
+#include "ddm_msgs/testing/expect_error.h"
+#include "ddm_msgs/testing/temp_folder.h"
 #include "subprocess.h"
 #include "toy_bags.h"
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "ddm_model/testing/expect_error.h"
+#include "ddm_msgs/testing/expect_error.h"
 
 namespace ddm {
 namespace {

@@ -9,7 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "ddm_model/testing/expect_error.h"
+#include "ddm_msgs/testing/expect_error.h"
 #include "toy_data.h"
 
 namespace ddm {

@@ -6,9 +6,9 @@
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
+#include "ddm_files/plain_file.h"
 #include "ddm_model/model_file.h"
-#include "ddm_model/plain_file.h"
-#include "ddm_model/testing/temp_folder.h"
+#include "ddm_msgs/testing/temp_folder.h"
 #include "subprocess.h"
 #include "toy_data.h"
 

@@ -9,8 +9,8 @@
 
 #include "ddm_model/history.h"
 #include "ddm_model/solver_log.h"
-#include "ddm_model/testing/expect_error.h"
 #include "ddm_model/trainer.h"
+#include "ddm_msgs/testing/expect_error.h"
 #include "toy_data.h"
 
 namespace ddm {

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "ddm_model/testing/expect_error.h"
 #include "ddm_model/testing/vector_of.h"
+#include "ddm_msgs/testing/expect_error.h"
 
 namespace ddm {
 namespace {

@@ -8,7 +8,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "ddm_model/testing/expect_error.h"
+#include "ddm_msgs/testing/expect_error.h"
 #include "trial_recorder.h"
 
 namespace ddm {

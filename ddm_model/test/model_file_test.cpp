@@ -7,7 +7,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "ddm_model/testing/expect_error.h"
+#include "ddm_msgs/testing/expect_error.h"
 #include "toy_data.h"
 
 namespace ddm {

@@ -17,7 +17,7 @@
 #include <mutex>
 
 #include "ddm_model/model_file.h"
-#include "ddm_model/testing/temp_folder.h"
+#include "ddm_msgs/testing/temp_folder.h"
 #include "subprocess.h"
 #include "toy_bags.h"
 

@@ -6,9 +6,9 @@
 
 #include <stdexcept>
 
-#include "ddm_model/testing/expect_error.h"
 #include "ddm_model/testing/gradient_check.h"
 #include "ddm_model/testing/random_matrix.h"
+#include "ddm_msgs/testing/expect_error.h"
 
 namespace ddm {
 namespace {

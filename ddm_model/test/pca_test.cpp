@@ -11,7 +11,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "ddm_model/testing/expect_error.h"
+#include "ddm_msgs/testing/expect_error.h"
 #include "toy_data.h"
 
 namespace ddm {

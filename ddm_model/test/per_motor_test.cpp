@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ddm_model/testing/expect_error.h"
+#include "ddm_msgs/testing/expect_error.h"
 
 namespace ddm {
 namespace {

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <ddm_bag_io/bag_options.h>
+#include <ddm_images/image_codec.h>
 #include <ddm_msgs/Torque.h>
-#include <ddm_msgs/image_codec.h>
 #include <rosbag/bag.h>
 #include <sensor_msgs/Image.h>
 

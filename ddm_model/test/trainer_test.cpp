@@ -11,7 +11,7 @@
 #include "ddm_model/model_file.h"
 #include "ddm_model/objective.h"
 #include "ddm_model/solver_log.h"
-#include "ddm_model/testing/expect_error.h"
+#include "ddm_msgs/testing/expect_error.h"
 #include "toy_data.h"
 
 namespace ddm {

@@ -10,7 +10,7 @@
 #include <future>
 
 #include "ddm_bag_io/bag_reader.h"
-#include "ddm_model/testing/temp_folder.h"
+#include "ddm_msgs/testing/temp_folder.h"
 #include "subprocess.h"
 #include "toy_bags.h"
 

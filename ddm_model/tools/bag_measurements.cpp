@@ -3,10 +3,10 @@
 #include "bag_measurements.h"
 
 #include <ddm_bag_io/bag_reader.h>
+#include <ddm_files/plain_file.h>
 #include <ddm_model/image_errors.h>
 #include <ddm_model/long_term_prediction.h>
-#include <ddm_model/plain_file.h>
-#include <ddm_msgs/param_value.h>
+#include <ddm_params/param_value.h>
 #include <unistd.h>
 
 #include <algorithm>

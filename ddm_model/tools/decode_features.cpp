@@ -1,8 +1,8 @@
 // decode_features: the images y_hat = g(z) of given features. Features in, pictures out.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_files/plain_file.h>
 #include <ddm_model/model_file.h>
-#include <ddm_model/plain_file.h>
-#include <ddm_msgs/tool.h>
+#include <ddm_params/tool.h>
 
 #include <cstdio>
 #include <cstdlib>

@@ -1,10 +1,10 @@
 // model_data: a model, and what it makes of bags, as files for inspect and export.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/model_config.h>
+#include <ddm_files/plain_file.h>
 #include <ddm_model/model_file.h>
-#include <ddm_model/plain_file.h>
-#include <ddm_msgs/param_value.h>
-#include <ddm_msgs/tool.h>
+#include <ddm_params/param_value.h>
+#include <ddm_params/tool.h>
 #include <ros/time.h>
 
 #include <filesystem>

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_bag_io/model_config.h>
+#include <ddm_files/plain_file.h>
+#include <ddm_images/image_codec.h>
 #include <ddm_model/model_file.h>
-#include <ddm_model/plain_file.h>
 #include <ddm_model/solver_log.h>
 #include <ddm_model/trainer.h>
-#include <ddm_msgs/image_codec.h>
-#include <ddm_msgs/tool.h>
+#include <ddm_params/tool.h>
 #include <ros/time.h>
 #include <sensor_msgs/Image.h>
 #include <unistd.h>

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mpc_node.h"
 
+#include <ddm_images/image_codec.h>
 #include <ddm_model/model_file.h>
 #include <ddm_msgs/Plan.h>
 #include <ddm_msgs/Torque.h>
-#include <ddm_msgs/image_codec.h>
-#include <ddm_msgs/topic_peers.h>
 #include <ddm_msgs/topics.h>
+#include <ddm_node/topic_peers.h>
 
 #include <algorithm>
 #include <chrono>

@@ -1,10 +1,10 @@
 // mpc_node: parameters, then the node.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_model/solver_log.h>
-#include <ddm_msgs/end_signals.h>
-#include <ddm_msgs/image_options.h>
-#include <ddm_msgs/node_params.h>
-#include <ddm_msgs/param_reader.h>
+#include <ddm_node/end_signals.h>
+#include <ddm_node/node_params.h>
+#include <ddm_params/image_options.h>
+#include <ddm_params/param_reader.h>
 #include <ros/callback_queue.h>
 
 #include <cstdlib>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "view_node.h"
 
+#include <ddm_images/image_codec.h>
 #include <ddm_model/model_file.h>
-#include <ddm_msgs/image_codec.h>
 #include <ddm_msgs/topics.h>
 #include <sensor_msgs/image_encodings.h>
 

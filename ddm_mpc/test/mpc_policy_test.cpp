@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/mpc_policy.h"
 
-#include <ddm_model/testing/expect_error.h>
+#include <ddm_msgs/testing/expect_error.h>
 #include <gtest/gtest.h>
 
 #include <chrono>

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_images/image_codec.h>
 #include <ddm_model/model_file.h>
 #include <ddm_msgs/Model.h>
-#include <ddm_msgs/image_codec.h>
 #include <ddm_msgs/topics.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>

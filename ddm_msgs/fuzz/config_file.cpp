@@ -1,7 +1,7 @@
 // Fuzz target: a configuration file, read into a block with each type of value.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_msgs/param_reader.h>
 #include <ddm_msgs/testing/fuzzing.h>
+#include <ddm_params/param_reader.h>
 
 #include <algorithm>
 #include <cmath>

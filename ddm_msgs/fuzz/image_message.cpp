@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Input: size (1 byte), then 1 and a crop (4 bytes) or 0 for none, then the message.
-#include <ddm_msgs/image_codec.h>
+#include <ddm_images/image_codec.h>
 #include <ddm_msgs/message_bytes.h>
 #include <ddm_msgs/testing/fuzzing.h>
 

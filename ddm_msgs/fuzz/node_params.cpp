@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Input: a value, one byte for its type, then what the type needs; see draw().
-#include <ddm_msgs/node_params.h>
-#include <ddm_msgs/param_value.h>
 #include <ddm_msgs/testing/fuzzing.h>
+#include <ddm_node/node_params.h>
+#include <ddm_params/param_value.h>
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // Writes the seeds of this package's fuzz targets that are not text: ddm_msgs_fuzz_seeds FOLDER.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_msgs/image_codec.h>
+#include <ddm_images/image_codec.h>
 #include <ddm_msgs/testing/seed_files.h>
 
 #include <string>

@@ -7,8 +7,8 @@
 #include <sstream>
 #include <utility>
 
-#include "ddm_msgs/param_value.h"
-#include "ddm_msgs/topic_peers.h"
+#include "ddm_node/topic_peers.h"
+#include "ddm_params/param_value.h"
 
 namespace ddm {
 namespace {

@@ -5,7 +5,7 @@
 #include <ddm_msgs/Reset.h>
 #include <ddm_msgs/RunTrialAction.h>
 #include <ddm_msgs/Torque.h>
-#include <ddm_msgs/effort_publisher.h>
+#include <ddm_node/effort_publisher.h>
 #include <ddm_robot/frame_picker.h>
 #include <ddm_robot/robot_options.h>
 #include <ddm_robot/stamp_check.h>

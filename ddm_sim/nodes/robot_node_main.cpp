@@ -1,9 +1,9 @@
 // robot_node: parameters, then the node.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_msgs/end_signals.h>
-#include <ddm_msgs/image_options.h>
-#include <ddm_msgs/node_params.h>
-#include <ddm_msgs/param_reader.h>
+#include <ddm_node/end_signals.h>
+#include <ddm_node/node_params.h>
+#include <ddm_params/image_options.h>
+#include <ddm_params/param_reader.h>
 
 #include <cstdlib>
 

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "ddm_msgs/topic_peers.h"
 #include "ddm_msgs/topics.h"
+#include "ddm_node/topic_peers.h"
 #include "ddm_sim/few_numbers.h"
 
 namespace ddm {

@@ -9,8 +9,8 @@
 #include <memory>
 #include <utility>
 
-#include "ddm_msgs/node_params.h"
-#include "ddm_msgs/param_reader.h"
+#include "ddm_node/node_params.h"
+#include "ddm_params/param_reader.h"
 #include "ddm_sim/plant_factory.h"
 #include "ddm_sim/rig.h"
 #include "ddm_sim/sim_options.h"

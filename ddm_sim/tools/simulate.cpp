@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "ddm_msgs/param_reader.h"
+#include "ddm_params/param_reader.h"
 #include "ddm_sim/plant_factory.h"
 #include "torque_csv.h"
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco_memory.h"
 
-#include <ddm_msgs/param_value.h>
-#include <ddm_msgs/yaml_text.h>
+#include <ddm_params/param_value.h>
+#include <ddm_params/yaml_text.h>
 
 #include <stdexcept>
 

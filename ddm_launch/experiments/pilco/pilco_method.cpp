@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco_method.h"
 
+#include <ddm_files/plain_file.h>
 #include <ddm_model/per_motor.h>
-#include <ddm_model/plain_file.h>
-#include <ddm_msgs/param_value.h>
 #include <ddm_msgs/random_stream.h>
+#include <ddm_params/param_value.h>
 #include <ddm_sim/plant.h>
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco_methods.h"
 
-#include <ddm_msgs/param_value.h>
+#include <ddm_params/param_value.h>
 
 #include <memory>
 #include <stdexcept>

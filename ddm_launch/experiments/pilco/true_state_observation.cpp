@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "true_state_observation.h"
 
-#include <ddm_model/plain_file.h>
+#include <ddm_files/plain_file.h>
 #include <ddm_msgs/random_stream.h>
 
 #include <boost/filesystem.hpp>

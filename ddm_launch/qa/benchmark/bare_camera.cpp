@@ -1,7 +1,7 @@
 // bare_camera: publishes an image as soon as the last one has its torque, and times the round
 // trips. SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_images/image_codec.h>
 #include <ddm_msgs/Torque.h>
-#include <ddm_msgs/image_codec.h>
 #include <ddm_msgs/topics.h>
 #include <ros/ros.h>
 #include <sensor_msgs/Image.h>

@@ -1,13 +1,13 @@
 // speed_growth: computing time and memory of learning from so many frames of so many pixels.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/bag_writer.h>
+#include <ddm_images/image_codec.h>
 #include <ddm_model/objective.h>
 #include <ddm_model/pca.h>
 #include <ddm_model/training_data.h>
 #include <ddm_mpc/epsilon_greedy.h>
-#include <ddm_msgs/image_codec.h>
-#include <ddm_msgs/param_value.h>
-#include <ddm_msgs/tool.h>
+#include <ddm_params/param_value.h>
+#include <ddm_params/tool.h>
 #include <ddm_sim/pendulum.h>
 #include <ddm_sim/rig.h>
 #include <ros/time.h>

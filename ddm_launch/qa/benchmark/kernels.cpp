@@ -2,10 +2,10 @@
 // experiment. SPDX-License-Identifier: BSD-3-Clause
 #include <benchmark/benchmark.h>
 #include <ddm_bag_io/bag_cache.h>
+#include <ddm_files/plain_file.h>
 #include <ddm_model/initialisation.h>
 #include <ddm_model/model_file.h>
 #include <ddm_model/objective.h>
-#include <ddm_model/plain_file.h>
 #include <ddm_model/solver_log.h>
 #include <ddm_model/trainer.h>
 #include <ddm_mpc/ddm_plan_cost.h>

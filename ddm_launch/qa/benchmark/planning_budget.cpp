@@ -3,8 +3,8 @@
 #include <ddm_model/networks.h>
 #include <ddm_model/solver_log.h>
 #include <ddm_mpc/mpc_policy.h>
-#include <ddm_msgs/param_value.h>
-#include <ddm_msgs/tool.h>
+#include <ddm_params/param_value.h>
+#include <ddm_params/tool.h>
 #include <sched.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_bag_io/bag_reader.h"
 
-#include <ddm_model/plain_file.h>
+#include <ddm_files/plain_file.h>
 #include <ddm_msgs/message_bytes.h>
 
 #include <cerrno>

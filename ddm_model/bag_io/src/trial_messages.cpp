@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "trial_messages.h"
 
-#include <ddm_msgs/image_codec.h>
+#include <ddm_images/image_codec.h>
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,7 @@
 #include <tuple>
 
 #include "adjoint_check.h"
-#include "ddm_model/testing/expect_error.h"
+#include "ddm_msgs/testing/expect_error.h"
 #include "gp_sampler.h"
 #include "monte_carlo.h"
 #include "random_gp.h"

@@ -9,10 +9,10 @@
 #include <functional>
 #include <limits>
 
-#include "ddm_model/testing/expect_error.h"
 #include "ddm_model/testing/gradient_check.h"
 #include "ddm_model/testing/random_matrix.h"
 #include "ddm_model/testing/vector_of.h"
+#include "ddm_msgs/testing/expect_error.h"
 #include "ddm_pilco/squared_exponential.h"
 
 namespace ddm {

@@ -11,8 +11,8 @@
 #include <stdexcept>
 
 #include "adjoint_check.h"
-#include "ddm_model/testing/expect_error.h"
 #include "ddm_model/testing/vector_of.h"
+#include "ddm_msgs/testing/expect_error.h"
 #include "ddm_pilco/linear_policy.h"
 #include "ddm_pilco/rbf_policy.h"
 #include "ddm_pilco/squashed_policy.h"

@@ -10,7 +10,7 @@
 #include <sstream>
 #include <string>
 
-#include "ddm_model/testing/temp_folder.h"
+#include "ddm_msgs/testing/temp_folder.h"
 
 namespace ddm {
 namespace pilco {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "ddm_model/testing/expect_error.h"
 #include "ddm_model/testing/vector_of.h"
+#include "ddm_msgs/testing/expect_error.h"
 
 namespace ddm {
 namespace pilco {

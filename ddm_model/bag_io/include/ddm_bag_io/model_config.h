@@ -3,8 +3,8 @@
 #pragma once
 
 #include <ddm_model/model_options.h>
-#include <ddm_msgs/image_options.h>
-#include <ddm_msgs/param_reader.h>
+#include <ddm_params/image_options.h>
+#include <ddm_params/param_reader.h>
 
 #include <string>
 

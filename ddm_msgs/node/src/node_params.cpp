@@ -1,14 +1,14 @@
 // Parameters of a ROS node as a YAML tree.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_msgs/node_params.h"
+#include "ddm_node/node_params.h"
 
 #include <ros/names.h>
 #include <ros/param.h>
 
 #include <stdexcept>
 
-#include "ddm_msgs/config_blocks.h"
-#include "ddm_msgs/param_value.h"
+#include "ddm_params/config_blocks.h"
+#include "ddm_params/param_value.h"
 
 namespace ddm {
 YAML::Node toYaml(XmlRpc::XmlRpcValue value, const std::string& name) {

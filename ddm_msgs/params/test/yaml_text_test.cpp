@@ -1,6 +1,6 @@
 // Tests of YAML that nobody vouches for: what yaml-cpp would take to the end of the stack is
 // refused. SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_msgs/yaml_text.h"
+#include "ddm_params/yaml_text.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Tests of single configuration values: what is accepted, what is refused, exact printing.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_msgs/param_value.h"
+#include "ddm_params/param_value.h"
 
 #include <gtest/gtest.h>
 

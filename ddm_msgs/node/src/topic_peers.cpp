@@ -1,11 +1,11 @@
 // Who is at the other end of a topic, for messages that name the silent side.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_msgs/topic_peers.h"
+#include "ddm_node/topic_peers.h"
 
 #include <ros/master.h>
 #include <ros/this_node.h>
 
-#include "ddm_msgs/call_within.h"
+#include "ddm_node/call_within.h"
 
 namespace ddm {
 namespace {

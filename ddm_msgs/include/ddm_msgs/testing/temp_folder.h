@@ -14,7 +14,7 @@ namespace testing {
 class TempFolder {
  public:
   TempFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "ddm_model_XXXXXX").string();
+    std::string pattern = (std::filesystem::temp_directory_path() / "ddm_test_XXXXXX").string();
     if (::mkdtemp(pattern.data()) == nullptr) {
       throw std::runtime_error("cannot make a folder like " + pattern);
     }

@@ -1,23 +1,36 @@
 // Strict configuration reader: the collection of problems.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_msgs/param_reader.h"
+#include "ddm_params/param_reader.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
-#include "ddm_msgs/config_blocks.h"
-#include "ddm_msgs/yaml_text.h"
+#include "ddm_params/config_blocks.h"
+#include "ddm_params/yaml_text.h"
 
 namespace ddm {
 namespace {
 
-const std::set<std::string>& blocksOfThisRepository() {
-  static const std::set<std::string> blocks = {
-      "plant",      "camera",     "sim",        "image",    "model",      "training",
-      "data_set",   "mpc",        "pilco",      "gp",       "sparse_gp",  "policy_search",
-      "trial",      "evaluation", "experiment", "recorder", "controller", "run",
-      "prediction", "show",       "replay",     "start",    "robot",      "access"};
+namespace fs = std::filesystem;
+
+/// The blocks of all packages: those in the manuals that ddm_register_manuals() of
+/// ddm_msgs/cmake/ddm_build.cmake has registered, in each workspace that was sourced.
+std::set<std::string> registeredBlocks() {
+  std::set<std::string> blocks;
+  const char* const workspaces = std::getenv("CMAKE_PREFIX_PATH");
+  std::istringstream prefixes(workspaces == nullptr ? "" : workspaces);
+  std::error_code ignored;  // a workspace without manuals
+  for (std::string prefix, block; std::getline(prefixes, prefix, ':');) {
+    for (const auto& package : fs::directory_iterator(prefix + "/share/ddm_params", ignored)) {
+      std::ifstream names(package.path());
+      while (names >> block) blocks.insert(block);
+    }
+  }
   return blocks;
 }
 
@@ -113,11 +126,14 @@ void ParamReader::report(const std::string& problem) {
 
 std::vector<std::string> ParamReader::problems() const {
   std::vector<std::string> out = problems_;
+  std::set<std::string> known = registeredBlocks();
+  const char* const remedy = known.empty() ? ": source the setup.bash of its workspace" : "";
+  known.insert(read_.begin(), read_.end());
   for (const auto& entry : root_) {
     const std::string name = oneLine(entry.first);
     if (name == "version") continue;  // a saved configuration says which code made it
-    if (blocksOfThisRepository().count(name) + read_.count(name) + ignored_.count(name) == 0) {
-      out.push_back("unknown block " + name + hint(name, "blocks", blocksOfThisRepository()));
+    if (known.count(name) + ignored_.count(name) == 0) {
+      out.push_back("unknown block " + name + hint(name, "blocks", known) + remedy);
     }
   }
   return out;

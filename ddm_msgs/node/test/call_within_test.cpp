@@ -1,6 +1,6 @@
 // Tests of calls with a limit.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_msgs/call_within.h"
+#include "ddm_node/call_within.h"
 
 #include <gtest/gtest.h>
 

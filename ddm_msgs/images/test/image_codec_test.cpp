@@ -1,6 +1,6 @@
 // Tests of the image codec: every encoding, every refusal.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_msgs/image_codec.h"
+#include "ddm_images/image_codec.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,6 @@
 #include <string>
 #include <utility>
 #include <vector>
-
-#include "ddm_msgs/image_options.h"
 
 namespace ddm {
 namespace {
@@ -343,17 +341,6 @@ TEST(ImageCodec, RefusesACropThatReachesBeyondTheImage) {
       EXPECT_NE(std::string(e.what()).find("must lie within the image's 6 x 5"), std::string::npos)
           << e.what();
     }
-  }
-}
-
-TEST(ImageOptions, TheSizeHasARange) {
-  EXPECT_EQ(ImageOptions().size, 51);
-  for (const int size : {4, 51, 1024}) EXPECT_TRUE(ImageOptions{size}.problems().empty()) << size;
-  for (const int size : {3, 1025}) {
-    const std::vector<std::string> problems = ImageOptions{size}.problems();
-    ASSERT_EQ(problems.size(), 1u) << size;
-    EXPECT_EQ(problems[0].rfind("image/size must ", 0), 0u) << problems[0];
-    EXPECT_NE(problems[0].find(", got " + std::to_string(size)), std::string::npos) << problems[0];
   }
 }
 

@@ -1,16 +1,19 @@
 // Tests of the strict configuration reader: files, merging, collected problems.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_msgs/param_reader.h"
+#include "ddm_params/param_reader.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
+
+#include "ddm_msgs/testing/temp_folder.h"
 
 namespace ddm {
 namespace {
@@ -82,22 +85,34 @@ bool contains(const std::string& text, const std::string& part) {
 /// A file that is gone when the test ends.
 class ScratchFile {
  public:
-  ScratchFile(const std::string& name, const std::string& text)
-      : path_(::testing::TempDir() + "param_reader_" + std::to_string(getpid()) + "_" + name) {
+  ScratchFile(const std::string& name, const std::string& text) : path_(folder_.file(name)) {
     std::ofstream(path_) << text;
   }
-  ~ScratchFile() { std::remove(path_.c_str()); }
-  ScratchFile(const ScratchFile&) = delete;
-  ScratchFile& operator=(const ScratchFile&) = delete;
-
   const std::string& path() const { return path_; }
 
  private:
-  std::string path_;
+  const testing::TempFolder folder_;
+  const std::string path_;
+};
+
+/// Workspaces that are sourced as long as this lives.
+class Workspaces {
+ public:
+  explicit Workspaces(const std::string& prefixes) {
+    const char* const before = std::getenv("CMAKE_PREFIX_PATH");
+    before_ = before == nullptr ? "" : before;
+    ::setenv("CMAKE_PREFIX_PATH", prefixes.c_str(), /*overwrite=*/1);
+  }
+  ~Workspaces() { ::setenv("CMAKE_PREFIX_PATH", before_.c_str(), /*overwrite=*/1); }
+  Workspaces(const Workspaces&) = delete;
+  Workspaces& operator=(const Workspaces&) = delete;
+
+ private:
+  std::string before_;
 };
 
 TEST(ParamReader, GivesDefaultsWhereTheConfigurationIsSilent) {
-  for (const char* yaml : {"", "{}", "mpc:", "mpc: {}", "plant: {name: pendulum}"}) {
+  for (const char* yaml : {"", "{}", "mpc:", "mpc: {}"}) {
     ParamReader reader = readerOf(yaml);
     const auto options = reader.read<MpcOptions>("mpc");
     EXPECT_EQ(YAML::Dump(toYaml(options)), YAML::Dump(toYaml(MpcOptions()))) << yaml;
@@ -188,11 +203,28 @@ TEST(ParamReader, ReportsAnUnknownBlockWithTheNearest) {
   EXPECT_TRUE(contains(problems[0], "unknown block mpcc (did you mean mpc? known blocks: "));
 }
 
-TEST(ParamReader, IgnoresTheBlocksOfOtherPrograms) {
-  EXPECT_TRUE(mpcProblems("{plant: 1, camera: 1, sim: 1, image: 1, model: 1, training: 1, "
-                          "data_set: 1, trial: 1, evaluation: 1, experiment: 1, recorder: 1, "
-                          "pilco: 1, gp: 1, sparse_gp: 1, policy_search: 1}")
-                  .empty());
+TEST(ParamReader, LeavesBlocksAloneThatPackagesOfAnySourcedWorkspaceHaveRegistered) {
+  const testing::TempFolder below, above, empty;
+  for (const auto& [workspace, package, blocks] :
+       {std::make_tuple(&below, "ddm_sim", "plant\ncamera\n"),
+        std::make_tuple(&below, "ddm_model", "model\n"),
+        std::make_tuple(&above, "my_package", "my_robot\n")}) {
+    std::filesystem::create_directories(workspace->file("share/ddm_params"));
+    std::ofstream(workspace->file("share/ddm_params/") + package) << blocks;
+  }
+  const std::string yaml = "{plant: 1, camera: 1, model: 1, my_robot: 1, mpc: {horizon: 3}}";
+  {
+    const Workspaces sourced(above.file("") + ":" + empty.file("") + ":" + below.file(""));
+    EXPECT_EQ(mpcProblems(yaml), std::vector<std::string>());
+    ASSERT_EQ(mpcProblems("my_robt: 1").size(), 1u);
+    EXPECT_TRUE(contains(mpcProblems("my_robt: 1")[0], "camera, model, mpc, my_robot, plant"));
+  }
+  const Workspaces sourced(below.file(""));
+  ASSERT_EQ(mpcProblems(yaml).size(), 1u);
+  EXPECT_TRUE(contains(mpcProblems(yaml)[0], " my_robot "));
+  const Workspaces none("");
+  EXPECT_EQ(mpcProblems(yaml).size(), 4u);
+  EXPECT_TRUE(contains(mpcProblems(yaml)[0], "setup.bash"));
 }
 
 TEST(ParamReader, IgnoresAForeignBlockOnlyIfTold) {

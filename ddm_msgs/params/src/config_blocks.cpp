@@ -1,14 +1,14 @@
 // Blocks of a configuration: read from a file, laid over those of another.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_msgs/config_blocks.h"
+#include "ddm_params/config_blocks.h"
 
 #include <filesystem>
 #include <fstream>
 #include <set>
 #include <stdexcept>
 
-#include "ddm_msgs/renamed_keys.h"
-#include "ddm_msgs/yaml_text.h"
+#include "ddm_params/renamed_keys.h"
+#include "ddm_params/yaml_text.h"
 
 namespace ddm {
 namespace {

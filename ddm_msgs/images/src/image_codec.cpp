@@ -1,6 +1,6 @@
 // Image codec: checks first, then grey, square, resize.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_msgs/image_codec.h"
+#include "ddm_images/image_codec.h"
 
 #include <cv_bridge/cv_bridge.h>
 #include <sensor_msgs/image_encodings.h>

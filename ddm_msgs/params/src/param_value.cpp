@@ -1,6 +1,6 @@
 // Single values of a configuration: strict parsing, exact printing.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_msgs/param_value.h"
+#include "ddm_params/param_value.h"
 
 #include <algorithm>
 #include <charconv>

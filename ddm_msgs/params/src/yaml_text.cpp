@@ -1,6 +1,6 @@
 // YAML from a file of unknown origin, and its values in messages.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_msgs/yaml_text.h"
+#include "ddm_params/yaml_text.h"
 
 #include <yaml-cpp/eventhandler.h>
 

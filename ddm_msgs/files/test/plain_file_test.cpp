@@ -1,6 +1,6 @@
 // Tests of whole files: what is written is read, faults are named, and what was there stays.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_model/plain_file.h"
+#include "ddm_files/plain_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -11,9 +11,9 @@
 #include <thread>
 #include <vector>
 
-#include "ddm_model/testing/expect_error.h"
-#include "ddm_model/testing/file_size_limit.h"
-#include "ddm_model/testing/temp_folder.h"
+#include "ddm_msgs/testing/expect_error.h"
+#include "ddm_msgs/testing/file_size_limit.h"
+#include "ddm_msgs/testing/temp_folder.h"
 
 namespace ddm {
 namespace {

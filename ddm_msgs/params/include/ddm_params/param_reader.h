@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "ddm_msgs/param_value.h"
+#include "ddm_params/param_value.h"
 
 namespace ddm {
 
@@ -32,8 +32,10 @@ YAML::Node toYaml(const Options& options) {
 ///   const auto mpc = reader.read<MpcOptions>("mpc");
 ///   reader.requireValid();  // not before all blocks are read: it reports them together
 ///
-/// A block of this repository that is not read is left alone, so that each program can be given
-/// the same files. A block that nobody knows is a mistake.
+/// A block that another package has registered is left alone, so that each program can be given the
+/// same files. A block that nobody knows is a mistake. A package registers its blocks by the manual
+/// in its CMakeLists.txt, ddm_register_manuals(config/mpc.yaml); they are found in the workspaces
+/// that setup.bash has put into CMAKE_PREFIX_PATH.
 class ParamReader {
  public:
   /// @param root    blocks by name; nothing at all is an empty configuration

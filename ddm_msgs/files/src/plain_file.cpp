@@ -1,6 +1,6 @@
 // Files that are read and written as a whole.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_model/plain_file.h"
+#include "ddm_files/plain_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

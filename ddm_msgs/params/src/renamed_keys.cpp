@@ -1,6 +1,6 @@
 // Keys of the configuration that had another name in older versions, or are gone.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_msgs/renamed_keys.h"
+#include "ddm_params/renamed_keys.h"
 
 #include <string>
 
