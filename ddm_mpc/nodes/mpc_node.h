@@ -99,12 +99,12 @@ class MpcNode {
 
   std::mutex mutex_;  // not held while a plan is computed; guards these and effort_
   MpcOptions mpc_;
-  std::optional<double> turned_epsilon_;  // empty: nobody has turned it, that of the goal counts
-  bool turned_ = false;                   // the trial does not know yet
+  std::optional<double> turned_epsilon_;   // empty: nobody has turned it, that of the goal counts
+  bool turned_ = false;                    // the trial does not know yet
   sensor_msgs::ImageConstPtr goal_image_;  // the newest; null: none came
-  bool goal_changed_ = false;             // the trial does not know yet
-  std::shared_ptr<TrialRun> trial_;       // null: no trial, or it waits for its model or goal image
-  std::optional<std::string> finished_;   // why the image thread ended the trial; "": all is done
+  bool goal_changed_ = false;              // the trial does not know yet
+  std::shared_ptr<TrialRun> trial_;      // null: no trial, or it waits for its model or goal image
+  std::optional<std::string> finished_;  // why the image thread ended the trial; "": all is done
   ros::SteadyTime last_progress_;
   std::optional<ros::SteadyTime> deciding_since_;
 

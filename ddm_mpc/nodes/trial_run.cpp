@@ -46,8 +46,9 @@ TrialRun::TrialRun(const ddm_msgs::RunTrialGoal& goal, std::shared_ptr<const Ddm
   if (greedy_ != nullptr) greedy_->setStop([this] { return ended(); });
   if (goal_image != nullptr) setGoal(*goal_image);
   if (greedy_ != nullptr && !greedy_->hasGoal()) {
-    throw std::invalid_argument("there is no goal image to plan to: publish one on goal_image, or "
-                                "train the model with one");
+    throw std::invalid_argument(
+        "there is no goal image to plan to: publish one on goal_image, or "
+        "train the model with one");
   }
   if (num_steps_ < 1) throw std::invalid_argument("num_steps must be >= 1, got 0");
   if (!goal.start.isZero()) last_stamp_ = goal.start - ros::Duration(0, 1);
