@@ -47,6 +47,9 @@ std::shared_ptr<Policy> DdmMethod::policy() const {
   return std::make_shared<MpcPolicy>(model_, configuration_.mpc);
 }
 
-void DdmMethod::useModel(const std::string& path) { model_ = readModel(path); }
+bool DdmMethod::useModel(const std::string& path) {
+  model_ = readModel(path);
+  return true;
+}
 
 }  // namespace ddm

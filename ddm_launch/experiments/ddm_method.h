@@ -23,7 +23,7 @@ class DdmMethod : public Method {
   TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,
                         const PhaseCallback& progress) override;
   std::shared_ptr<Policy> policy() const override;
-  void useModel(const std::string& path) override;
+  bool useModel(const std::string& path) override;
 
  private:
   const Configuration& configuration_;

@@ -4,7 +4,9 @@
 
 #include <ddm_sim/plant_factory.h>
 
+#include <boost/filesystem.hpp>
 #include <chrono>
+#include <stdexcept>
 
 #include "code_version.h"
 #include "evaluation.h"
@@ -27,11 +29,20 @@ class Loop {
   void start() {
     const StartOptions& start = configuration_.start;
     if (!start.model.empty()) {
-      world_.useModel(start.model);
+      if (!world_.useModel(start.model)) {
+        throw std::logic_error("method " + configuration_.experiment.method +
+                               " cannot use the model " + start.model);
+      }
     } else if (!start.bags.empty()) {
       progress_.beginPhase(0, "train");
       world_.train(start.bags, requestFor(0, /*evaluation=*/false).id, update_);
     }
+  }
+
+  /// Goes on after this trial: with its model, which is trained again only where none was saved.
+  void resumeAfter(int trial) {
+    const std::string model = folder_.modelPath(trial);
+    if (!boost::filesystem::exists(model) || !world_.useModel(model)) train(trial);
   }
 
   void recordTrial(int trial) {
@@ -39,12 +50,7 @@ class Loop {
     progress_.beginPhase(trial, random ? "random" : "explore");
     TrialRequest request = requestFor(trial, /*evaluation=*/false);
     request.epsilon = random ? 1.0 : configuration_.mpc.epsilon;
-    std::vector<std::string> kept;
-    request.bag = folder_.beginTrial(trial, &kept);
-    for (const std::string& bag : kept) {
-      progress_.note("trial " + std::to_string(trial) + " was begun before, kept its bag as " +
-                     bag);
-    }
+    request.bag = newBag(trial, /*evaluation=*/false);
     folder_.writeTrial(trial, world_.runTrial(request, update_));
   }
 
@@ -57,7 +63,9 @@ class Loop {
 
   TrialOutcome evaluateGreedily(int trial) {
     progress_.beginPhase(trial, "evaluate");
-    return world_.runTrial(requestFor(trial, /*evaluation=*/true), update_);
+    TrialRequest request = requestFor(trial, /*evaluation=*/true);
+    if (configuration_.evaluation.record) request.bag = newBag(trial, /*evaluation=*/true);
+    return world_.runTrial(request, update_);
   }
 
   TrialRow rowOf(int trial, const TrainingOutcome& training, const TrialOutcome& greedy) const {
@@ -82,6 +90,16 @@ class Loop {
   }
 
  private:
+  std::string newBag(int trial, bool evaluation) {
+    std::vector<std::string> kept;
+    const std::string bag = folder_.beginRun(trial, evaluation, &kept);
+    for (const std::string& name : kept) {
+      progress_.note("trial " + std::to_string(trial) + " was begun before, kept its bag as " +
+                     name);
+    }
+    return bag;
+  }
+
   TrialRequest requestFor(int trial, bool evaluation) const {
     TrialRequest request;
     request.id.seed = static_cast<std::uint64_t>(configuration_.experiment.seed);
@@ -123,7 +141,7 @@ void runExperiment(const Configuration& configuration, World* world, RunFolder* 
   if (!all_done) folder->requireWritable();
   if (num_finished > 0) {
     progress->note("resuming after trial " + std::to_string(num_finished - 1));
-    if (!all_done) loop.train(num_finished - 1);
+    if (!all_done) loop.resumeAfter(num_finished - 1);
   } else {
     loop.start();
   }

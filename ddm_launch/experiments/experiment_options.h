@@ -70,6 +70,7 @@ struct EvaluationOptions {
   int settled_steps = 10;         ///< last frames that must be within it: `success` [-]
   int settled_steps_strict = 25;  ///< the same for `success_strict` [-]
   double goal_distance = 0.0;     ///< tolerance without ground truth [spread of features]; 0: none
+  bool record = false;            ///< write a bag of each greedy run
 
   template <class Visitor>
   void visit(Visitor& visitor) {
@@ -78,6 +79,7 @@ struct EvaluationOptions {
     visitor("settled_steps", settled_steps);
     visitor("settled_steps_strict", settled_steps_strict);
     visitor("goal_distance", goal_distance);
+    visitor("record", record);
   }
   std::vector<std::string> problems() const;
 

@@ -26,7 +26,7 @@ class InProcessWorld : public World {
   TrialOutcome runTrial(const TrialRequest& request, const PhaseCallback& progress) override;
   TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,
                         const PhaseCallback& progress) override;
-  void useModel(const std::string& path) override { method_->useModel(path); }
+  bool useModel(const std::string& path) override { return method_->useModel(path); }
 
  private:
   EpsilonGreedy makePolicy(const TrialRequest& request) const;

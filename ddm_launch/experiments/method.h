@@ -9,7 +9,6 @@
 
 #include <functional>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -32,10 +31,8 @@ class Method {
   virtual std::shared_ptr<Policy> policy() const = 0;
 
   /// Acts by a saved model until the next training.
-  /// @throws std::logic_error for a method that has no such models
-  virtual void useModel(const std::string& path) {
-    throw std::logic_error("method cannot use the model " + path);
-  }
+  /// @return false for a method that has no such models: nothing has changed
+  virtual bool useModel(const std::string& /*path*/) { return false; }
 };
 
 /// A method with those blocks of the configuration that it alone reads.

@@ -116,11 +116,6 @@ void forgetChecksums(const YAML::Node& values, YAML::Node* blocks) {
   if (start["bags"].IsDefined()) below.remove("bag_ids");
 }
 
-bool has(const YAML::Node& blocks, const std::string& block, const std::string& key) {
-  const YAML::Node values = blocks[block];
-  return values.IsDefined() && values.IsMap() && values[key].IsDefined();
-}
-
 /// Whether the user, the preset, the plant or another layer above the manuals gives BLOCK/KEY.
 using Given = std::function<bool(const std::string& block, const std::string& key)>;
 
@@ -135,14 +130,14 @@ void follow(const std::string& block, const std::string& key, const YAML::Node& 
 /// without a robot of the block `plant`. A list has one entry per motor.
 /// @throws std::invalid_argument if another number of motors is given
 void shareMotors(const Given& given, YAML::Node* blocks) {
-  const bool robot = (*blocks)["robot"].IsDefined();
-  const std::string owner = robot ? "robot" : "plant";
-  if (!has(*blocks, owner, "max_torque")) return;
+  const std::string owner = ownerOfMotors(*blocks);
+  if (owner.empty()) return;
   const YAML::Node limits = (*blocks)[owner]["max_torque"];
   for (const std::string learner : {"model", "mpc"}) {
     if (!given(learner, "max_torque")) follow(learner, "max_torque", limits, blocks);
   }
-  if (!robot && !limits.IsSequence()) return;  // one number holds for all motors of a plant
+  if (owner == "plant" && !limits.IsSequence())
+    return;  // one number holds for all motors of a plant
   const int num_motors = limits.IsSequence() ? static_cast<int>(limits.size()) : 1;
   if (!given("controller", "torque_dim")) {
     follow("controller", "torque_dim", valueToYaml(num_motors), blocks);
@@ -161,10 +156,10 @@ void boundPlanning(const Given& given, YAML::Node* blocks) {
   if (given("mpc", "time_budget")) return;
   const bool robot = (*blocks)["robot"].IsDefined();
   bool lockstep = true;
-  if (has(*blocks, "sim", "lockstep")) parseValue((*blocks)["sim"]["lockstep"], &lockstep);
+  if (hasKey(*blocks, "sim", "lockstep")) parseValue((*blocks)["sim"]["lockstep"], &lockstep);
   const char* const clock = robot ? "robot" : "plant";
   double dt = 0.0;
-  if ((!robot && lockstep) || !has(*blocks, clock, "dt")) return;
+  if ((!robot && lockstep) || !hasKey(*blocks, clock, "dt")) return;
   if (parseValue((*blocks)[clock]["dt"], &dt)) {
     follow("mpc", "time_budget", valueToYaml(0.5 * dt), blocks);
   }
@@ -209,7 +204,7 @@ ResolvedConfiguration resolve(const Arguments& arguments) {
   layers.push_back({"", values});
   const Given given = [&](const std::string& block, const std::string& key) {
     return std::any_of(layers.begin() + num_manuals, layers.end(),
-                       [&](const Layer& layer) { return has(layer.blocks, block, key); });
+                       [&](const Layer& layer) { return hasKey(layer.blocks, block, key); });
   };
   shareMotors(given, &resolved.blocks);
   boundPlanning(given, &resolved.blocks);

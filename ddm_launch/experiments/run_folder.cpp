@@ -87,14 +87,19 @@ std::string RunFolder::bagPath(int trial) const {
   return path() + "/" + numbered("trial", trial) + "/trial.bag";
 }
 
-std::string RunFolder::beginTrial(int trial, std::vector<std::string>* kept) {
-  folder_.makeFolder(numbered("trial", trial));
-  const std::string bag = bagPath(trial);
+std::string RunFolder::modelPath(int trial) const {
+  return path() + "/" + numbered("trial", trial) + "/model.ddm";
+}
+
+std::string RunFolder::beginRun(int trial, bool evaluation, std::vector<std::string>* kept) {
+  const std::string folder = numbered(evaluation ? "evaluation" : "trial", trial);
+  folder_.makeFolder(folder);
+  const std::string stem = path() + "/" + folder + "/trial";
   for (const char* ending : {".bag", ".bag.active"}) {
-    const std::string kept_as = keep(bag.substr(0, bag.size() - 4), ending);
+    const std::string kept_as = keep(stem, ending);
     if (!kept_as.empty() && kept != nullptr) kept->push_back(kept_as);
   }
-  return bag;
+  return stem + ".bag";
 }
 
 void RunFolder::writeTrial(int trial, const TrialOutcome& outcome) {

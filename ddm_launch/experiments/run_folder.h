@@ -33,7 +33,7 @@ struct TrialRow {
 ///   trials.csv                           one row per finished trial
 ///   .trials.crc32                        its checksums
 ///   trial_NNN/{trial.bag,torques.csv,trajectory.csv} and the files of the training, model.ddm
-///   evaluation_NNN/{torques.csv,trajectory.csv}
+///   evaluation_NNN/{torques.csv,trajectory.csv}, and trial.bag with evaluation/record
 ///   evaluation_NNN/goal_distance.csv     instead of the trajectory, where nobody tells it
 ///   trial_NNN/trial.K.bag[.active]       of the K-th try that was not finished
 ///   summary.yaml                         written last: the verdict
@@ -52,13 +52,16 @@ class RunFolder {
   const std::vector<TrialRow>& rows() const { return rows_; }
 
   std::string bagPath(int trial) const;
+  /// Where a training leaves its model, if it can be saved.
+  std::string modelPath(int trial) const;
   /// @throws std::runtime_error if nothing can be written there; changes nothing
   void requireWritable() const { folder_.requireWritable(); }
-  /// Makes the folder of a trial that has not been finished. Bags of an earlier try, complete or
-  /// not, are kept under other names: they may be all that is left of it.
-  /// @param kept  (optional) out: their new names are added
-  /// @return      bagPath(trial), where nothing is
-  std::string beginTrial(int trial, std::vector<std::string>* kept = nullptr);
+  /// Makes the folder of a run of a trial that has not been finished. Bags of an earlier try,
+  /// complete or not, are kept under other names: they may be all that is left of it.
+  /// @param evaluation  its greedy run
+  /// @param kept        (optional) out: their new names are added
+  /// @return            path of its bag, where nothing is
+  std::string beginRun(int trial, bool evaluation, std::vector<std::string>* kept = nullptr);
   void writeTrial(int trial, const TrialOutcome& outcome);
   void writeTraining(int trial, const TrainingOutcome& outcome);
   void writeEvaluation(int trial, const TrialOutcome& outcome);

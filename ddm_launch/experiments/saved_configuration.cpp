@@ -15,7 +15,7 @@ namespace {
 /// Keys in which two runs of one experiment may differ.
 bool mayDiffer(const std::string& key) {
   return key == "experiment/trials" || key == "experiment/runs" || key == "experiment/timeout" ||
-         key == "sim/watchdog";
+         key == "sim/watchdog" || key == "evaluation/record";
 }
 
 /// Keys that a user chooses by looking at the robot, which takes more than one launch.

@@ -56,7 +56,8 @@ class World {
                                 const PhaseCallback& progress) = 0;
 
   /// Acts by a saved model in the trials to come, until one is trained.
-  virtual void useModel(const std::string& path) = 0;
+  /// @return false if it acts by what cannot be saved: nothing has changed
+  virtual bool useModel(const std::string& path) = 0;
 };
 
 }  // namespace ddm

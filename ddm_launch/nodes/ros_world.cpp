@@ -340,11 +340,12 @@ TrainingOutcome RosWorld::train(const std::vector<std::string>& bags, const Tria
   return outcome;
 }
 
-void RosWorld::useModel(const std::string& path) {
+bool RosWorld::useModel(const std::string& path) {
   const ddm_msgs::Model model = toMessage(deserialiseModel(readFile(path), path), ros::Time::now());
   model_pub_ = nh_.advertise<ddm_msgs::Model>(topics::kModel, 1, /*latch=*/true);
   model_pub_.publish(model);
   model_id_ = model.id;
+  return true;
 }
 
 std::string RosWorld::takeModel(const std::string& model_id) {

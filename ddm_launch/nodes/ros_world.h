@@ -45,7 +45,7 @@ class RosWorld : public World {
                         const PhaseCallback& progress) override;
 
   /// Publishes it, until the trainer publishes its own.
-  void useModel(const std::string& path) override;
+  bool useModel(const std::string& path) override;
 
  private:
   void connect();

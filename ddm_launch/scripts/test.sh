@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/workspace.sh"
-. "$(dirname "${BASH_SOURCE[0]}")/sanitized.sh"
+. "$(dirname "${BASH_SOURCE[0]}")/../qa/sanitized.sh"
 
 usage() {
   cat <<TEXT
@@ -127,7 +127,7 @@ main() {
   printf '%s\n' "${durations[@]}"
   reported=yes
   say "Result"
-  /usr/bin/python3 "$checkout/ddm_launch/scripts/test_report.py" "${results[@]}"
+  /usr/bin/python3 "$checkout/ddm_launch/qa/test_report.py" "${results[@]}"
 }
 
 main "$@"

@@ -209,7 +209,19 @@ TEST_F(ExperimentTest, WithoutGroundTruthSuccessIsThatInFeatures) {
   EXPECT_NE(rows.find("\n7,0,30,1,1,,"), std::string::npos) << rows;
 }
 
-TEST_F(ExperimentTest, AnExperimentThatIsTakenUpTrainsOnceAndGoesOn) {
+TEST_F(ExperimentTest, AnExperimentThatIsTakenUpGoesOnWithItsLastModel) {
+  configuration_.experiment.trials = 1;
+  run();
+  world_.calls.clear();
+  configuration_.experiment.trials = 2;
+  run();
+  EXPECT_EQ(world_.calls,
+            (Calls{"use " + file("trial_001/model.ddm"), "run 2", "train 2", "evaluate 2"}));
+  EXPECT_EQ(numRows(), 3u);
+}
+
+TEST_F(ExperimentTest, AnExperimentWhoseModelsCannotBeSavedTrainsOnceAndGoesOn) {
+  world_.has_models = false;
   configuration_.experiment.trials = 1;
   run();
   world_.calls.clear();
@@ -218,6 +230,18 @@ TEST_F(ExperimentTest, AnExperimentThatIsTakenUpTrainsOnceAndGoesOn) {
   EXPECT_EQ(world_.calls, (Calls{"train 1", "run 2", "train 2", "evaluate 2"}));
   EXPECT_EQ(numRows(), 3u);
   EXPECT_NE(terminal_.find("resuming after trial 1"), std::string::npos) << terminal_;
+}
+
+TEST_F(ExperimentTest, GreedyRunsAreRecordedOnRequest) {
+  configuration_.experiment.trials = 1;
+  configuration_.evaluation.record = true;
+  run();
+  for (const char* name : {"evaluation_000/trial.bag", "evaluation_001/trial.bag"}) {
+    EXPECT_EQ(textOf(file(name)), "a bag") << name;
+  }
+  for (const std::vector<std::string>& bags : world_.bags_of_training) {
+    for (const std::string& bag : bags) EXPECT_EQ(bag.find("evaluation_"), std::string::npos);
+  }
 }
 
 TEST_F(ExperimentTest, AFinishedExperimentIsSummedUpAndNothingIsWritten) {

@@ -38,13 +38,13 @@ class RunFolderTest : public ::testing::Test {
   void finish(int num_trials) {
     RunFolder folder(configuration_);
     for (int trial = 0; trial < num_trials; ++trial) {
-      writeText(folder.beginTrial(trial), "a bag");
+      writeText(folder.beginRun(trial, false), "a bag");
       folder.finishTrial(toyRow(trial));
     }
   }
 
   /// Begins the first trial, which is not finished.
-  void begin() { RunFolder(configuration_).beginTrial(0); }
+  void begin() { RunFolder(configuration_).beginRun(0, false); }
 
   void expectRefused(const std::vector<std::string>& words) {
     EXPECT_TRUE(
@@ -58,7 +58,7 @@ class RunFolderTest : public ::testing::Test {
 TEST_F(RunFolderTest, ANewFolderIsMadeWithTheEffectiveConfigurationAndTheVersion) {
   configuration_.experiment.runs = file("with/parents");
   RunFolder folder(configuration_);
-  folder.beginTrial(0);
+  folder.beginRun(0, false);
   const YAML::Node saved = YAML::LoadFile(file("with/parents/config.yaml"));
   EXPECT_EQ(saved["version"].as<std::string>(), codeVersion());
   EXPECT_EQ(saved["experiment"]["seed"].as<int>(), 7);
@@ -83,7 +83,7 @@ TEST_F(RunFolderTest, AFolderIsOnlyMadeForTheFirstResult) {
   RunFolder folder(configuration_);
   folder.requireWritable();
   EXPECT_FALSE(fs::exists(scratch_.file("run")));
-  folder.beginTrial(0);
+  folder.beginRun(0, false);
   EXPECT_TRUE(fs::exists(file("config.yaml")));
 }
 
@@ -103,7 +103,7 @@ TEST_F(RunFolderTest, TrialsMayGrow) {
   configuration_.experiment.trials = 5;
   RunFolder folder(configuration_);
   EXPECT_EQ(folder.rows().size(), 2u);
-  folder.beginTrial(2);
+  folder.beginRun(2, false);
   EXPECT_EQ(YAML::LoadFile(file("config.yaml"))["experiment"]["trials"].as<int>(), 5);
 }
 
@@ -233,13 +233,13 @@ TEST_F(RunFolderTest, TheVersionThatBeganStaysInTheConfiguration) {
   config.replace(0, config.find('\n'), "version: 0.0.1 (abc)");
   writeText(file("config.yaml"), config);
   RunFolder folder(configuration_);
-  folder.beginTrial(1);
+  folder.beginRun(1, false);
   EXPECT_EQ(textOf(file("config.yaml")), config);
 }
 
 TEST_F(RunFolderTest, ASecondExperimentInTheSameFolderIsRefused) {
   RunFolder first(configuration_);
-  first.beginTrial(0);
+  first.beginRun(0, false);
   const auto before = fingerprintOf(scratch_.file("run"));
   expectRefused({scratch_.file("run"), "another experiment is running"});
   EXPECT_EQ(fingerprintOf(scratch_.file("run")), before);
@@ -248,14 +248,14 @@ TEST_F(RunFolderTest, ASecondExperimentInTheSameFolderIsRefused) {
 TEST_F(RunFolderTest, OfTwoExperimentsInOneNewFolderTheFirstThatWritesHasIt) {
   RunFolder first(configuration_);
   RunFolder second(configuration_);
-  first.beginTrial(0);
-  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { second.beginTrial(0); },
+  first.beginRun(0, false);
+  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { second.beginRun(0, false); },
                                                {scratch_.file("run"), "another experiment"}));
   auto third = std::make_unique<RunFolder>(toyConfiguration(scratch_.file("new")));
   RunFolder fourth(toyConfiguration(scratch_.file("new")));
-  third->beginTrial(0);
+  third->beginRun(0, false);
   third.reset();  // the lock is free again
-  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { fourth.beginTrial(0); },
+  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { fourth.beginRun(0, false); },
                                                {scratch_.file("new"), "was begun", "meanwhile"}));
 }
 
@@ -275,13 +275,13 @@ TEST_F(RunFolderTest, BagsOfAnEarlierTryAreKeptUnderOtherNames) {
   RunFolder folder(configuration_);
   for (const std::string attempt : {"first", "second"}) {
     std::vector<std::string> kept;
-    const std::string bag = folder.beginTrial(1, &kept);
+    const std::string bag = folder.beginRun(1, false, &kept);
     EXPECT_FALSE(fs::exists(bag) || fs::exists(bag + ".active"));
     EXPECT_EQ(kept.size(), attempt == "first" ? 0u : 2u);
     writeText(bag, attempt);
     writeText(bag + ".active", attempt + " active");
   }
-  folder.beginTrial(1);
+  folder.beginRun(1, false);
   EXPECT_EQ(textOf(file("trial_001/trial.1.bag")), "first");
   EXPECT_EQ(textOf(file("trial_001/trial.1.bag.active")), "first active");
   EXPECT_EQ(textOf(file("trial_001/trial.2.bag")), "second");
@@ -334,7 +334,7 @@ TEST_F(RunFolderTest, ATableOfAnOlderVersionGoesOnInTodaysColumns) {
       EXPECT_EQ(folder.rows()[1].version, version);
       EXPECT_EQ(folder.rows()[1].evaluation.final_error, toyRow(1).evaluation.final_error);
       EXPECT_TRUE(folder.warnings().empty());
-      writeText(folder.beginTrial(2), "a bag");
+      writeText(folder.beginRun(2, false), "a bag");
       folder.finishTrial(toyRow(2));
     }
     const RunFolder folder(configuration_);
@@ -400,7 +400,7 @@ TEST_F(RunFolderTest, RowsWithoutChecksumsAreTakenWithAWarning) {
     RunFolder folder(configuration_);
     ASSERT_EQ(folder.warnings().size(), 1u);
     EXPECT_NE(folder.warnings()[0].find("trials.csv has no checksums"), std::string::npos);
-    writeText(folder.beginTrial(2), "a bag");
+    writeText(folder.beginRun(2, false), "a bag");
     folder.finishTrial(toyRow(2));
   }
   EXPECT_TRUE(RunFolder(configuration_).warnings().empty());
@@ -433,8 +433,8 @@ TEST_F(RunFolderTest, AFolderThatCannotBeMadeOrWrittenIsNamed) {
   for (const std::string& path : {scratch_.file("plain_file"), scratch_.file("plain_file/run"),
                                   std::string("/proc/ddm"), std::string("/proc/self")}) {
     configuration_.experiment.runs = path;
-    EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { RunFolder(configuration_).beginTrial(0); },
-                                                 {"cannot", path}));
+    EXPECT_TRUE(throwsNaming<std::runtime_error>(
+        [&] { RunFolder(configuration_).beginRun(0, false); }, {"cannot", path}));
   }
   configuration_.experiment.runs = scratch_.file("plain_file/run");
   EXPECT_TRUE(throwsNaming<std::runtime_error>(
@@ -510,12 +510,12 @@ TEST_F(RunFolderTest, TheVerdictOfAnEarlierCallIsRemovedBeforeTheNextTrial) {
   {
     RunFolder folder(configuration_);
     folder.finishTrial(toyRow(0));
-    writeText(folder.beginTrial(0), "a bag");
+    writeText(folder.beginRun(0, false), "a bag");
     folder.writeSummary(1.0);
   }
   RunFolder folder(configuration_);
   ASSERT_TRUE(folder.isFinished());
-  folder.beginTrial(1);
+  folder.beginRun(1, false);
   EXPECT_FALSE(fs::exists(file("summary.yaml")));
   EXPECT_FALSE(folder.isFinished());
 }

@@ -13,7 +13,7 @@ import rosunit
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from scratch_case import ScratchCase  # noqa: E402
 
-SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "scripts", "test_report.py")
+SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "qa", "test_report.py")
 spec = importlib.util.spec_from_file_location("test_report", SCRIPT)
 test_report = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(test_report)
@@ -60,6 +60,14 @@ class TestReportTest(ScratchCase):
         self.declare("gtest-a.xml")
         self.writeCases("gtest-a.xml", [PASS % "One", PASS % "Two"])
         self.assertEqual(self.report(), (0, ["2 passed, 0 failed"]))
+
+    def test_the_slowest_tests_are_listed_first(self):
+        self.write("build/tests_run.xml", "<testsuite>%s</testsuite>" % "".join(
+            '<testcase name="test_%02d" status="run" time="%d.25"/>' % (number, number) for number in range(12)))
+        lines = test_report.slowest_tests([self.file("build")])
+        self.assertEqual(len(lines), 1 + 10)
+        self.assertEqual(lines[1].split()[:3], ["11", "s", "test_11"])
+        self.assertEqual(lines[-1].split()[2], "test_02")
 
     def test_a_failure_is_named_with_its_message(self):
         self.declare("gtest-a.xml", "fail")

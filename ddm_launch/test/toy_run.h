@@ -179,8 +179,12 @@ class ObedientWorld : public World {
     return outcome;
   }
 
-  void useModel(const std::string& path) override { calls.push_back("use " + path); }
+  bool useModel(const std::string& path) override {
+    if (has_models) calls.push_back("use " + path);
+    return has_models;
+  }
 
+  bool has_models = true;               ///< that can be saved
   size_t fails_at = 0;                  ///< number of the call that fails, from 1; 0: none
   Eigen::VectorXd state;                ///< empty: no ground truth
   std::optional<double> goal_distance;  ///< of each frame

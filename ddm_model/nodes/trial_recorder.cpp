@@ -63,8 +63,8 @@ void TrialRecorder::recordApplied(const ddm_msgs::Torque& torque) {
   changed_.notify_all();
 }
 
-/// The goal image is stamped with the trial's first image, so that the bag begins with the trial. It
-/// is written last: it may come after the first images, since it has a topic of its own.
+/// The goal image is stamped with the trial's first image, so that the bag begins with the trial.
+/// It is written last: it may come after the first images, since it has a topic of its own.
 void TrialRecorder::writeGoal(BagWriter* bag) const {
   if (goal_ != nullptr && !bag->images().empty()) bag->writeGoal(*goal_, *bag->images().begin());
 }
@@ -99,7 +99,8 @@ std::string TrialRecorder::shortcoming(const ddm_msgs::StopRecording::Request& r
   if (!complete(request)) {
     text << "of " << request.num_steps << " images and torques that are due, the bag holds "
          << bag_->images().size() << " and " << bag_->torques().size() << ", and "
-         << bag_->numFrames() << " pairs of them; whether a torque acted on the others was not reported";
+         << bag_->numFrames()
+         << " pairs of them; whether a torque acted on the others was not reported";
   } else if (bag_->numFrames() == 0) {
     text << "no torque acted in time: there is nothing to learn from in " << bag_->images().size()
          << " images";
@@ -118,7 +119,7 @@ bool TrialRecorder::stop(ddm_msgs::StopRecording::Request& request,
   const int recording = num_recordings_;
   const auto replaced = [&] { return bag_ == nullptr || num_recordings_ != recording; };
   changed_.wait_for(lock, std::chrono::duration<double>(options_.timeout),
-                          [&] { return replaced() || !error_.empty() || complete(request); });
+                    [&] { return replaced() || !error_.empty() || complete(request); });
   if (replaced()) {
     response.message = "another recording was started or stopped meanwhile";
     return true;

@@ -77,6 +77,27 @@ TEST_F(TrainFromBags, LaterConfigurationFilesWin) {
   EXPECT_TRUE(contains(model().info().config, "pca_dim: 6"));
 }
 
+TEST_F(TrainFromBags, TakesTheLimitsOfItsMotorsFromTheRobotOrThePlantAndTellsWhich) {
+  write("plant.yaml", "plant: {type: pendulum, max_torque: 3.0}\n");
+  write("robot.yaml", "robot: {max_torque: 2.0}\n");
+  write("model.yaml", "model: {max_torque: 5.0}\n");
+  const auto limitAndKey = [this](const std::string& configs) {
+    const Outcome outcome = train(configs + " a.bag");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const std::size_t begin = outcome.out.find("max_torque_from: ") + 17;
+    return std::make_pair(model().options().max_torque,
+                          outcome.out.substr(begin, outcome.out.find('\n', begin) - begin));
+  };
+  using Limits = std::vector<double>;
+  EXPECT_EQ(limitAndKey(""), std::make_pair(Limits{6.0}, std::string("the default")));
+  EXPECT_EQ(limitAndKey("--config plant.yaml"),
+            std::make_pair(Limits{3.0}, std::string("plant/max_torque")));
+  EXPECT_EQ(limitAndKey("--config plant.yaml --config robot.yaml"),
+            std::make_pair(Limits{2.0}, std::string("robot/max_torque")));
+  EXPECT_EQ(limitAndKey("--config model.yaml --config robot.yaml"),
+            std::make_pair(Limits{5.0}, std::string("model/max_torque")));
+}
+
 TEST_F(TrainFromBags, TakesTheGoalFromAnImageFile) {
   std::string pixels;
   for (int i = 0; i < 64; ++i) pixels += std::to_string(3 * i) + " ";

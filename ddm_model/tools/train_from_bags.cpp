@@ -5,8 +5,10 @@
 #include <ddm_files/plain_file.h>
 #include <ddm_images/image_codec.h>
 #include <ddm_model/model_file.h>
+#include <ddm_model/per_motor.h>
 #include <ddm_model/solver_log.h>
 #include <ddm_model/trainer.h>
+#include <ddm_params/config_blocks.h>
 #include <ddm_params/tool.h>
 #include <ros/time.h>
 #include <sensor_msgs/Image.h>
@@ -37,7 +39,8 @@ bool parse(int argc, char** argv, Arguments* arguments) {
       "                                        --out FILE BAG...\n\noptions");
   options.add_options()("config", po::value(&arguments->configs)->composing(),
                         "YAML file with blocks image, model, training, data_set; repeatable, later "
-                        "files win");
+                        "files win. The limits of the motors are model/max_torque, else those of "
+                        "a block robot or plant");
   options.add_options()("goal", po::value(&arguments->goal),
                         "goal image; else the goal_image of the bags");
   options.add_options()("seed", po::value(&arguments->seed)->default_value(0),
@@ -78,8 +81,31 @@ bool showProgress(const ddm::TrainingProgress& progress) {
   return true;
 }
 
+/// Blocks of all files. The limits of the motors are written once: `model/max_torque` is that of a
+/// robot or plant in the same files, unless they give it themselves.
+/// @param limits_from  out: the key that they come from
+YAML::Node readConfigs(const std::vector<std::string>& files, std::string* limits_from) {
+  YAML::Node blocks(YAML::NodeType::Map);
+  for (const std::string& file : files) ddm::overlay(ddm::readBlocks(file), &blocks);
+  const std::string owner =
+      ddm::hasKey(blocks, "model", "max_torque") ? "model" : ddm::ownerOfMotors(blocks);
+  *limits_from = owner.empty() ? "the default" : owner + "/max_torque";
+  const YAML::Node model = blocks["model"];
+  if (!owner.empty() && owner != "model" && (!model.IsDefined() || model.IsMap())) {
+    blocks["model"]["max_torque"] = YAML::Clone(blocks[owner]["max_torque"]);
+  }
+  return blocks;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
 void run(const Arguments& arguments) {
-  ddm::ParamReader params = ddm::ParamReader::fromFiles(arguments.configs);
+  std::string limits_from;
+  ddm::ParamReader params(readConfigs(arguments.configs, &limits_from), joined(arguments.configs));
   const ddm::ModelConfig config = ddm::readModelConfig(&params);
   params.requireValid();
   ddm::DataSet data = ddm::BagCache(config.image.size, config.data_set).read(arguments.bags);
@@ -103,8 +129,10 @@ void run(const Arguments& arguments) {
   std::cout << "model: " << arguments.out << "\nid: " << ddm::modelId(bytes)
             << "\nframes: " << data.numFrames() << "\npieces: " << data.pieces().size()
             << "\ngoal: " << (data.hasGoal() ? "yes" : "none")
-            << "\nv_r: " << result.model->info().v_r << "\nv_p: " << result.model->info().v_p
-            << "\nevaluations: " << result.evaluations << "\ntrain_s: " << result.seconds << "\n";
+            << "\nmax_torque: " << ddm::limitsText(config.model.max_torque)
+            << "\nmax_torque_from: " << limits_from << "\nv_r: " << result.model->info().v_r
+            << "\nv_p: " << result.model->info().v_p << "\nevaluations: " << result.evaluations
+            << "\ntrain_s: " << result.seconds << "\n";
 }
 
 }  // namespace

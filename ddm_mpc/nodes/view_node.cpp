@@ -169,6 +169,11 @@ FeatureOverlay ViewNode::overlay() {
   if (!seen_.empty()) overlay.current = seen_.back().feature;
   if (model_->hasGoal()) overlay.goal = model_->goalFeature();
   overlay.plan = planFeatures();
+  const bool planned = overlay.plan.cols() > 0;
+  if (planned && static_cast<int>(plan_->goal_feature.size()) == model_->featureDim()) {
+    overlay.goal = Eigen::Map<const Eigen::VectorXd>(plan_->goal_feature.data(),
+                                                     model_->featureDim());  // may not be its own
+  }
   return overlay;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/two_link.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <boost/numeric/odeint.hpp>

@@ -57,7 +57,7 @@ def find_targets(programs, only):
     targets = [Target(path) for path in sorted(glob.glob(os.path.join(programs, "ddm_*", "fuzz_*")))]
     if not targets:
         raise Failure("there is no fuzz target in %s. Remedy: bash %s, which builds them" % (
-            programs, os.path.join(CHECKOUT, "ddm_launch", "scripts", "fuzz.sh")))
+            programs, os.path.join(CHECKOUT, "ddm_launch", "qa", "fuzz.sh")))
     names = [target.name for target in targets]
     unknown = [name for name in only if name not in names]
     if unknown:

@@ -83,4 +83,14 @@ void overlay(const YAML::Node& above, YAML::Node* below) {
   }
 }
 
+bool hasKey(const YAML::Node& blocks, const std::string& block, const std::string& key) {
+  const YAML::Node values = blocks[block];
+  return values.IsDefined() && values.IsMap() && values[key].IsDefined();
+}
+
+std::string ownerOfMotors(const YAML::Node& blocks) {
+  const std::string owner = blocks["robot"].IsDefined() ? "robot" : "plant";
+  return hasKey(blocks, owner, "max_torque") ? owner : "";
+}
+
 }  // namespace ddm

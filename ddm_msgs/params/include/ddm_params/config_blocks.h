@@ -25,4 +25,11 @@ YAML::Node parseBlocks(const std::string& text, const std::string& source);
 /// and a block without a value changes nothing.
 void overlay(const YAML::Node& above, YAML::Node* below);
 
+/// Whether a block is a map that gives this key.
+bool hasKey(const YAML::Node& blocks, const std::string& block, const std::string& key);
+
+/// The block whose `max_torque` says which motors there are, for all who learn or act: `robot`,
+/// without a robot `plant`; empty if that block does not say.
+std::string ownerOfMotors(const YAML::Node& blocks);
+
 }  // namespace ddm

@@ -58,7 +58,7 @@ short_loop() {  # address|thread REPORTS
 
 # Runs tests and the loop; each file in build/sanitizer_reports is a report, which test_report.py takes for a failure.
 run_sanitized() {  # address|thread PATTERN
-  local reports suppressions=$checkout/ddm_launch/scripts/thread_suppressions.txt
+  local reports suppressions=$checkout/ddm_launch/qa/thread_suppressions.txt
   reports=$(sanitized_folder "$1")/build/sanitizer_reports
   rm -rf "$reports"
   mkdir -p "$reports"

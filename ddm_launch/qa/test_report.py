@@ -5,7 +5,7 @@
 
 Each folder holds test_results/PACKAGE/*.xml (JUnit), tests_declared.json (ctest --show-only=json-v1) and
 tests_run.xml (ctest --output-junit); one with sanitizers also sanitizer_reports/, where each file is a failure.
-Prints each failure, then "N passed, N failed"; returns 1 if any failed.
+Prints the ten slowest tests and each failure, then "N passed, N failed"; returns 1 if any failed.
 A case that ran in several builds (same package, result file and name) counts once and must pass in all of them.
 """
 import glob
@@ -102,6 +102,15 @@ def failed_tests(build_folder):
     return ends
 
 
+def slowest_tests(build_folders, count=10):
+    """Lines with the wall time and the name of the slowest tests of all builds."""
+    times = [(float(element.get("time")), element.get("name"), build_name(folder)) for folder in build_folders
+             for element in ElementTree.parse(os.path.join(folder, "tests_run.xml")).getroot().iter("testcase")
+             if element.get("time")]
+    slowest = ["%6.0f s  %s [%s]" % test for test in sorted(times, reverse=True)[:count]]
+    return ["slowest tests:"] + slowest if slowest else []
+
+
 def build_name(build_folder):
     """Its CMAKE_BUILD_TYPE, where CMake left a cache, else the folder."""
     try:
@@ -157,7 +166,7 @@ def main(build_folders):
     report = Report()
     for folder in build_folders:
         read_build(report, os.path.abspath(folder))
-    print("\n".join(report.text()))
+    print("\n".join(slowest_tests(build_folders) + report.text()))
     return 1 if report.failures else 0
 
 

@@ -2,12 +2,12 @@
 # Builds the fuzz targets with sanitizers and runs them: what reads bytes from outside is fed rubbish.
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
-. "$(dirname "${BASH_SOURCE[0]}")/workspace.sh"
+. "$(dirname "${BASH_SOURCE[0]}")/../scripts/workspace.sh"
 . "$(dirname "${BASH_SOURCE[0]}")/sanitized.sh"
 
 usage() {
   cat <<TEXT
-usage: bash fuzz.sh --out DIR [--runs N] [--only TARGET...] [--jobs N] [--seed S]
+usage: bash ddm_launch/qa/fuzz.sh --out DIR [--runs N] [--only TARGET...] [--jobs N] [--seed S]
 
 Installs the Debian packages that are missing (as root, or through sudo), builds the fuzz targets with clang into
 \$DDM_WS/debug, and runs them. The same call again goes on where it ended.
