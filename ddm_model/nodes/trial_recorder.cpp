@@ -69,6 +69,27 @@ void TrialRecorder::writeGoal(BagWriter* bag) const {
   if (goal_ != nullptr && !bag->images().empty()) bag->writeGoal(*goal_, *bag->images().begin());
 }
 
+bool TrialRecorder::start(ddm_msgs::StartRecording::Request& request,
+                          ddm_msgs::StartRecording::Response& response) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (bag_ != nullptr) ROS_WARN("a recording was not stopped: its bag stays *.active");
+  bag_.reset();
+  ++num_recordings_;
+  changed_.notify_all();  // a stop that still waits for the old one
+  error_.clear();
+  after_ = request.after;
+  unanswered_.clear();
+  try {
+    access_.requireNew(request.path);
+    bag_ = std::make_unique<BagWriter>(request.path, bag_options_);
+    response.success = true;
+  } catch (const std::exception& e) {
+    response.message = e.what();
+    ROS_ERROR_STREAM(response.message);
+  }
+  return true;
+}
+
 bool TrialRecorder::hasGoal(const ddm_msgs::StopRecording::Request& request) const {
   return request.goal.isZero() || (goal_ != nullptr && goal_->header.stamp == request.goal);
 }
