@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <yaml-cpp/yaml.h>
 
 #include <cmath>
 #include <cstdio>
@@ -10,6 +11,8 @@
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "ddm_sim/moving_tile.h"
 #include "ddm_sim/pendulum.h"
@@ -181,6 +184,22 @@ TEST_F(Simulate, WritesTheTrajectoryAndThePicturesOfTheArm) {
     const std::vector<std::uint8_t> grey(image.begin<std::uint8_t>(), image.end<std::uint8_t>());
     EXPECT_EQ(grey, plant.render(plant.state()).bytes) << path;
   }
+}
+
+TEST_F(Simulate, DescribesThePlant) {
+  const Result result = run("--plant two_link --describe", "");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const YAML::Node about = YAML::Load(result.out);
+  EXPECT_EQ(about["joints"][1]["name"].as<std::string>(), "elbow");
+  EXPECT_EQ(about["joints"][1]["kind"].as<std::string>(), "angle");
+  EXPECT_EQ(about["torque"].as<std::vector<std::string>>(),
+            (std::vector<std::string>{"shoulder_nm", "elbow_nm"}));
+  EXPECT_EQ(about["max_torque"].as<std::vector<double>>(), (std::vector<double>{4.0, 2.0}));
+  EXPECT_EQ(about["start"].as<std::vector<double>>(), std::vector<double>(4, 0.0));
+  EXPECT_NEAR(about["goal"][0].as<double>(), 3.14159265, 1e-8);
+  EXPECT_EQ(about["error_unit"].as<std::string>(), "deg");
+  EXPECT_EQ(about["tolerance"].as<double>(), 10.0);
+  EXPECT_EQ(about["dt"].as<double>(), 0.2);
 }
 
 TEST_F(Simulate, TakesALimitForEachMotor) {

@@ -19,6 +19,7 @@
 
 #include "ddm_params/param_reader.h"
 #include "ddm_sim/plant_factory.h"
+#include "plant_description.h"
 #include "torque_csv.h"
 
 namespace ddm {
@@ -54,6 +55,7 @@ struct Arguments {
   std::optional<double> angle;  ///< [rad]
   std::optional<double> rate;   ///< [rad/s]
   std::string frames;           ///< folder, empty = none
+  bool describe = false;        ///< say what the plant is instead
   std::vector<std::string> configs;
 };
 
@@ -85,6 +87,9 @@ po::options_description describedOptions() {
   add("frames", po::value<Text>()->value_name("DIR"),
       "also write one picture a row, without nuisances of the camera: DIR/frame_0000.png, ... The "
       "folder is made if need be; pictures of these names in it are replaced");
+  add("describe",
+      "print as YAML what the plant says of itself, its joints, units, limits, start, goal and "
+      "tolerance, and exit");
   add("config", po::value<std::vector<Text>>()->value_name("FILE"),
       "YAML file with overrides of the block `plant`; repeatable, later wins");
   return options;
@@ -114,6 +119,7 @@ bool parseArguments(int argc, char** argv, Arguments* arguments) {
   }
   if (given.count("plant") == 0) throw UsageError("option --plant NAME is missing");
   arguments->plant = given["plant"].as<std::string>();
+  arguments->describe = given.count("describe") != 0;
   arguments->angle = finiteOption(given, "angle");
   arguments->rate = finiteOption(given, "rate");
   if (given.count("start") != 0) {
@@ -208,6 +214,10 @@ void setStart(const Arguments& arguments, Plant* plant) {
 
 void simulate(const Arguments& arguments) {
   const std::unique_ptr<Plant> plant = configuredPlant(arguments);
+  if (arguments.describe) {
+    std::cout << describe(plant->info());
+    return;
+  }
   setStart(arguments, plant.get());
   const std::vector<Eigen::VectorXd> torques = readTorques(std::cin, plant->info().torque_names);
   if (!arguments.frames.empty()) fs::create_directories(arguments.frames);

@@ -19,8 +19,7 @@ from ddm_launch.command import find_program
 from ddm_model.plain_file import write_file
 
 LIMIT_S = 60.0
-SETTLED_STEPS = 10        # as `success` of an experiment has it ...
-TOLERANCE_DEG = 10.0      # ... by ground truth, which robot.launch never sees
+SETTLED_STEPS = 10        # as `success` of an experiment has it
 DEADLINE_MISSES = 0       # the bars
 LATENCY_P99_MS = 50.0
 
@@ -31,9 +30,20 @@ def quantile(values, q):
     return ordered[max(0, math.ceil(q * len(ordered)) - 1)] if ordered else None
 
 
-def goal_error_deg(angle):
-    """Distance of an angle [rad] to upright."""
-    return abs(math.degrees(math.remainder(angle - math.pi, 2.0 * math.pi)))
+class PlantGoal:
+    """The goal of a simulated plant, and when it is reached: by ground truth, which robot.launch never sees."""
+
+    def __init__(self, plant):
+        text = subprocess.run([find_program("simulate", "ddm_sim"), "--plant", plant, "--describe"], check=True,
+                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE).stdout
+        about = yaml.safe_load(text)
+        self.state, self.unit, self.tolerance = about["goal"], about["error_unit"], about["tolerance"]
+        self._kinds = [joint["kind"] for joint in about["joints"]]
+
+    def error(self, positions):
+        """Of the joint that is farthest from its goal: angles [deg], lengths in the plant's own unit."""
+        return max(abs(math.degrees(math.remainder(position - goal, 2.0 * math.pi))) if kind == "angle"
+                   else abs(position - goal) for kind, position, goal in zip(self._kinds, positions, self.state))
 
 
 class Load:
@@ -77,9 +87,9 @@ def call(name, kind, *values, **fields):
         raise rospy.ServiceException("%s: %s" % (name, answer.message))
 
 
-def show_goal_and_enable():
+def show_goal_and_enable(goal):
     """What a user does: shows the robot its goal, then switches the motors on."""
-    call("plant/reset", Reset, start=[math.pi, 0.0])
+    call("plant/reset", Reset, start=goal.state)
     for _ in range(3):  # the camera is a frame late, and robot_node may not have seen any yet
         rospy.wait_for_message("camera/image_raw", Image, LIMIT_S)
     call("take_goal", Trigger)
@@ -87,11 +97,12 @@ def show_goal_and_enable():
 
 
 class RobotCheck:
-    def __init__(self):
+    def __init__(self, goal):
+        self._plant_goal = goal
         self._runs = rospy.get_param("~runs")
         self._lock = threading.Lock()
         self._goal = None          # of the trial under way
-        self._truth = {}           # stamp [ns]: error [deg]
+        self._truth = {}           # stamp [ns]: error
         self._latencies_ms = []
         self._misses = 0
         self._frames = 0
@@ -108,7 +119,7 @@ class RobotCheck:
     def _on_truth(self, joints):
         with self._lock:
             if self._goal is not None:
-                self._truth[joints.header.stamp.to_nsec()] = goal_error_deg(joints.position[0])
+                self._truth[joints.header.stamp.to_nsec()] = self._plant_goal.error(joints.position)
 
     def _on_latency(self, latency):
         with self._lock:
@@ -134,8 +145,8 @@ class RobotCheck:
             if goal.evaluation:
                 since = stamps[-SETTLED_STEPS]
                 error = max(error for stamp, error in self._truth.items() if since <= stamp <= stamps[-1])
-                self._evaluations.append({"trial": goal.trial, "largest_error_deg": round(error, 2),
-                                          "reached": error <= TOLERANCE_DEG})
+                self._evaluations.append({"trial": goal.trial, "largest_error": round(error, 4),
+                                          "reached": error <= self._plant_goal.tolerance})
             write_file(os.path.join(self._runs, "robot_check.yaml"),
                        yaml.safe_dump(self._result(), sort_keys=False))
 
@@ -146,7 +157,7 @@ class RobotCheck:
                 "latency_ms": {name: round(quantile(self._latencies_ms, q), 2)
                                for name, q in (("median", 0.5), ("p99", 0.99), ("max", 1.0))},
                 "other_trainings": self._load.num_trainings if self._load else 0,
-                "evaluations": self._evaluations,
+                "error_unit": self._plant_goal.unit, "evaluations": self._evaluations,
                 "in_time": self._misses <= DEADLINE_MISSES and p99 < LATENCY_P99_MS,
                 "reached": bool(self._evaluations) and self._evaluations[-1]["reached"]}
 
@@ -157,10 +168,11 @@ class RobotCheck:
 
 def main():
     rospy.init_node("robot_check")
-    check = RobotCheck()
+    goal = PlantGoal(rospy.get_param("~plant"))
+    check = RobotCheck(goal)
     rospy.on_shutdown(check.end)
     try:
-        show_goal_and_enable()
+        show_goal_and_enable(goal)
     except (rospy.ROSException, rospy.ServiceException) as error:
         rospy.logfatal("robot_check: %s", error)
         return 1
