@@ -14,7 +14,7 @@
 #include <limits>
 #include <set>
 
-#include "method.h"
+#include "method_kinds.h"
 #include "resolution.h"
 #include "toy_run.h"
 

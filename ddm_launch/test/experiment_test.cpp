@@ -1,4 +1,4 @@
-// Tests of Algorithm 1: the order of its phases, what it asks of a world, and how it resumes.
+// Tests of Algorithm 1: the order of its phases, what it asks of a driver, and how it resumes.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiment.h"
 
@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = boost::filesystem;
 using testing::kToySteps;
-using testing::ObedientWorld;
+using testing::ObedientDriver;
 using testing::textOf;
 using testing::throwsNaming;
 using testing::toyConfiguration;
@@ -30,14 +30,14 @@ using Calls = std::vector<std::string>;
 
 class ExperimentTest : public ::testing::Test {
  protected:
-  ExperimentTest() { world_.state = Eigen::Vector2d(3.14159265358979323846, 0.0); }
+  ExperimentTest() { driver_.state = Eigen::Vector2d(3.14159265358979323846, 0.0); }
 
   void run() {
     RunFolder folder(configuration_);
     std::ostringstream out;
     Progress progress(&out, /*live=*/false, configuration_.experiment.trials);
     shown_.clear();
-    runExperiment(configuration_, &world_, &folder, &progress,
+    runExperiment(configuration_, &driver_, &folder, &progress,
                   [this](const std::vector<TrialRow>& rows) { shown_.push_back(rows.size()); });
     terminal_ = out.str();
   }
@@ -50,15 +50,15 @@ class ExperimentTest : public ::testing::Test {
 
   testing::TempFolder scratch_;
   Configuration configuration_ = toyConfiguration(scratch_.file("run"));
-  ObedientWorld world_;
+  ObedientDriver driver_;
   std::string terminal_;
   std::vector<size_t> shown_;  ///< numbers of rows
 };
 
 TEST_F(ExperimentTest, EachTrialIsRunThenLearnedFromThenEvaluated) {
   run();
-  EXPECT_EQ(world_.calls, (Calls{"run 0", "train 0", "evaluate 0", "run 1", "train 1", "evaluate 1",
-                                 "run 2", "train 2", "evaluate 2"}));
+  EXPECT_EQ(driver_.calls, (Calls{"run 0", "train 0", "evaluate 0", "run 1", "train 1",
+                                  "evaluate 1", "run 2", "train 2", "evaluate 2"}));
 }
 
 TEST_F(ExperimentTest, ShowsTheRowsAtTheStartAndAfterEachTrial) {
@@ -83,7 +83,7 @@ TEST_F(ExperimentTest, TrialsGiveOneModelAndRowMoreThanTheirNumber) {
 TEST_F(ExperimentTest, NoTrialsAreTheRandomOneAndItsModel) {
   configuration_.experiment.trials = 0;
   run();
-  EXPECT_EQ(world_.calls, (Calls{"run 0", "train 0", "evaluate 0"}));
+  EXPECT_EQ(driver_.calls, (Calls{"run 0", "train 0", "evaluate 0"}));
   EXPECT_EQ(numRows(), 1u);
 }
 
@@ -91,12 +91,12 @@ TEST_F(ExperimentTest, TheFirstTrialIsRandomTheOthersExploreAndEvaluationsAreGre
   configuration_.mpc.epsilon = 0.3;
   configuration_.mpc.hold_steps = 4;
   run();
-  ASSERT_EQ(world_.requests.size(), 6u);
-  EXPECT_EQ(world_.requests[0].epsilon, 1.0);
-  EXPECT_EQ(world_.requests[2].epsilon, 0.3);
-  EXPECT_EQ(world_.requests[4].epsilon, 0.3);
-  for (const size_t evaluation : {1, 3, 5}) EXPECT_EQ(world_.requests[evaluation].epsilon, 0.0);
-  for (const TrialRequest& request : world_.requests) {
+  ASSERT_EQ(driver_.requests.size(), 6u);
+  EXPECT_EQ(driver_.requests[0].epsilon, 1.0);
+  EXPECT_EQ(driver_.requests[2].epsilon, 0.3);
+  EXPECT_EQ(driver_.requests[4].epsilon, 0.3);
+  for (const size_t evaluation : {1, 3, 5}) EXPECT_EQ(driver_.requests[evaluation].epsilon, 0.0);
+  for (const TrialRequest& request : driver_.requests) {
     EXPECT_EQ(request.hold_steps, 4);
     EXPECT_EQ(request.num_steps, kToySteps);
   }
@@ -107,42 +107,42 @@ TEST_F(ExperimentTest, WithAModelToStartFromTheFirstTrialExploresWithIt) {
   configuration_.mpc.epsilon = 0.3;
   configuration_.experiment.trials = 0;
   run();
-  EXPECT_EQ(world_.calls, (Calls{"use /saved.ddm", "run 0", "train 0", "evaluate 0"}));
-  EXPECT_EQ(world_.requests[0].epsilon, 0.3);
-  EXPECT_EQ(world_.bags_of_training[0], (Calls{file("trial_000/trial.bag")}));
+  EXPECT_EQ(driver_.calls, (Calls{"use /saved.ddm", "run 0", "train 0", "evaluate 0"}));
+  EXPECT_EQ(driver_.requests[0].epsilon, 0.3);
+  EXPECT_EQ(driver_.bags_of_training[0], (Calls{file("trial_000/trial.bag")}));
 }
 
 TEST_F(ExperimentTest, BagsToStartFromCountAsTrialsBeforeTheFirst) {
   configuration_.start.bags = {"/a.bag", "/b.bag"};
   configuration_.experiment.trials = 0;
   run();
-  EXPECT_EQ(world_.calls, (Calls{"train 0", "run 0", "train 0", "evaluate 0"}));
-  EXPECT_LT(world_.requests[0].epsilon, 1.0);
-  EXPECT_EQ(world_.bags_of_training[0], (Calls{"/a.bag", "/b.bag"}));
-  EXPECT_EQ(world_.bags_of_training[1], (Calls{"/a.bag", "/b.bag", file("trial_000/trial.bag")}));
-  world_.calls.clear();
+  EXPECT_EQ(driver_.calls, (Calls{"train 0", "run 0", "train 0", "evaluate 0"}));
+  EXPECT_LT(driver_.requests[0].epsilon, 1.0);
+  EXPECT_EQ(driver_.bags_of_training[0], (Calls{"/a.bag", "/b.bag"}));
+  EXPECT_EQ(driver_.bags_of_training[1], (Calls{"/a.bag", "/b.bag", file("trial_000/trial.bag")}));
+  driver_.calls.clear();
   configuration_.experiment.trials = 1;  // taken up: nothing is started once more
   run();
-  EXPECT_EQ(world_.calls, (Calls{"train 0", "run 1", "train 1", "evaluate 1"}));
+  EXPECT_EQ(driver_.calls, (Calls{"train 0", "run 1", "train 1", "evaluate 1"}));
 }
 
 TEST_F(ExperimentTest, EachRunHasItsOwnIdentity) {
   run();
-  for (size_t i = 0; i < world_.requests.size(); ++i) {
-    EXPECT_EQ(world_.requests[i].id.seed, 7u);
-    EXPECT_EQ(world_.requests[i].id.trial, i / 2);
-    EXPECT_EQ(world_.requests[i].id.evaluation, i % 2 == 1);
+  for (size_t i = 0; i < driver_.requests.size(); ++i) {
+    EXPECT_EQ(driver_.requests[i].id.seed, 7u);
+    EXPECT_EQ(driver_.requests[i].id.trial, i / 2);
+    EXPECT_EQ(driver_.requests[i].id.evaluation, i % 2 == 1);
   }
 }
 
 TEST_F(ExperimentTest, EvaluationsAreNotRecordedAndNotLearnedFrom) {
   run();
-  for (const TrialRequest& request : world_.requests) {
+  for (const TrialRequest& request : driver_.requests) {
     EXPECT_EQ(request.bag.empty(), request.id.evaluation);
   }
-  ASSERT_EQ(world_.bags_of_training.size(), 3u);
-  EXPECT_EQ(world_.bags_of_training[0], (Calls{file("trial_000/trial.bag")}));
-  EXPECT_EQ(world_.bags_of_training[2],
+  ASSERT_EQ(driver_.bags_of_training.size(), 3u);
+  EXPECT_EQ(driver_.bags_of_training[0], (Calls{file("trial_000/trial.bag")}));
+  EXPECT_EQ(driver_.bags_of_training[2],
             (Calls{file("trial_000/trial.bag"), file("trial_001/trial.bag"),
                    file("trial_002/trial.bag")}));
 }
@@ -161,8 +161,8 @@ TEST_F(ExperimentTest, ARowTellsTheErrorInTheUnitOfThePlantAndItsReturn) {
   };
   testing::usePlant(testing::plantOf(traits), &configuration_);
   configuration_.experiment.trials = 0;
-  world_.state = (Eigen::VectorXd(2) << 0.75, 0.0)
-                     .finished();  // a quarter of a metre away, torques 0, 0.1, ... 2.9
+  driver_.state = (Eigen::VectorXd(2) << 0.75, 0.0)
+                      .finished();  // a quarter of a metre away, torques 0, 0.1, ... 2.9
   run();
   const TrialRow row = parseTrialsCsv(textOf(file("trials.csv")), "trials.csv").at(0);
   EXPECT_EQ(row.evaluation.final_error, 0.25);
@@ -175,34 +175,34 @@ TEST_F(ExperimentTest, AGreedyRunIsJudgedByTheGoalThatWasDrawnForIt) {
   const auto plant = testing::plantOf(testing::colourfulToy());
   testing::usePlant(plant, &configuration_);
   const std::unique_ptr<Plant> alone = plant->make();
-  world_.state = goalOf(*alone, 7, 1, /*evaluation=*/true);
+  driver_.state = goalOf(*alone, 7, 1, /*evaluation=*/true);
   run();
   const auto rows = parseTrialsCsv(textOf(file("trials.csv")), "trials.csv");
   ASSERT_EQ(rows.size(), 3u);
   for (std::uint32_t trial = 0; trial < 3; ++trial) {
     const double goal = goalOf(*alone, 7, trial, true)[0];
-    EXPECT_EQ(rows[trial].evaluation.final_error, std::abs(world_.state[0] - goal)) << trial;
+    EXPECT_EQ(rows[trial].evaluation.final_error, std::abs(driver_.state[0] - goal)) << trial;
     EXPECT_EQ(rows[trial].evaluation.success, trial == 1) << trial;
   }
 }
 
 TEST_F(ExperimentTest, WithoutGroundTruthSuccessStaysEmpty) {
   configuration_.experiment.trials = 0;
-  world_.state.resize(0);
+  driver_.state.resize(0);
   run();
   EXPECT_NE(textOf(file("trials.csv")).find("\n7,0,30,,,,"), std::string::npos);
   EXPECT_FALSE(fs::exists(file("evaluation_000/trajectory.csv")));
 }
 
 TEST_F(ExperimentTest, WithoutGroundTruthSuccessIsThatInFeatures) {
-  world_.goal_distance = 0.2;
+  driver_.goal_distance = 0.2;
   configuration_.evaluation.goal_distance = 0.3;
-  world_.state = Eigen::VectorXd::Zero(2);  // what is known to be wrong stays wrong
+  driver_.state = Eigen::VectorXd::Zero(2);  // what is known to be wrong stays wrong
   configuration_.experiment.trials = 0;
   run();
   EXPECT_NE(textOf(file("trials.csv")).find("\n7,0,30,0,0,180.0,"), std::string::npos)
       << textOf(file("trials.csv"));
-  world_.state.resize(0);
+  driver_.state.resize(0);
   configuration_.experiment.runs = scratch_.file("robot");
   run();
   const std::string rows = textOf(scratch_.file("robot/trials.csv"));
@@ -212,22 +212,22 @@ TEST_F(ExperimentTest, WithoutGroundTruthSuccessIsThatInFeatures) {
 TEST_F(ExperimentTest, AnExperimentThatIsTakenUpGoesOnWithItsLastModel) {
   configuration_.experiment.trials = 1;
   run();
-  world_.calls.clear();
+  driver_.calls.clear();
   configuration_.experiment.trials = 2;
   run();
-  EXPECT_EQ(world_.calls,
+  EXPECT_EQ(driver_.calls,
             (Calls{"use " + file("trial_001/model.ddm"), "run 2", "train 2", "evaluate 2"}));
   EXPECT_EQ(numRows(), 3u);
 }
 
 TEST_F(ExperimentTest, AnExperimentWhoseModelsCannotBeSavedTrainsOnceAndGoesOn) {
-  world_.has_models = false;
+  driver_.has_models = false;
   configuration_.experiment.trials = 1;
   run();
-  world_.calls.clear();
+  driver_.calls.clear();
   configuration_.experiment.trials = 2;
   run();
-  EXPECT_EQ(world_.calls, (Calls{"train 1", "run 2", "train 2", "evaluate 2"}));
+  EXPECT_EQ(driver_.calls, (Calls{"train 1", "run 2", "train 2", "evaluate 2"}));
   EXPECT_EQ(numRows(), 3u);
   EXPECT_NE(terminal_.find("resuming after trial 1"), std::string::npos) << terminal_;
 }
@@ -239,7 +239,7 @@ TEST_F(ExperimentTest, GreedyRunsAreRecordedOnRequest) {
   for (const char* name : {"evaluation_000/trial.bag", "evaluation_001/trial.bag"}) {
     EXPECT_EQ(textOf(file(name)), "a bag") << name;
   }
-  for (const std::vector<std::string>& bags : world_.bags_of_training) {
+  for (const std::vector<std::string>& bags : driver_.bags_of_training) {
     for (const std::string& bag : bags) EXPECT_EQ(bag.find("evaluation_"), std::string::npos);
   }
 }
@@ -247,11 +247,11 @@ TEST_F(ExperimentTest, GreedyRunsAreRecordedOnRequest) {
 TEST_F(ExperimentTest, AFinishedExperimentIsSummedUpAndNothingIsWritten) {
   run();
   const auto before = testing::fingerprintOf(scratch_.file("run"));
-  world_.calls.clear();
+  driver_.calls.clear();
   for (const int trials : {2, 1}) {
     configuration_.experiment.trials = trials;
     run();
-    EXPECT_EQ(world_.calls, Calls());
+    EXPECT_EQ(driver_.calls, Calls());
     EXPECT_NE(terminal_.find("3 models trained"), std::string::npos) << terminal_;
     EXPECT_EQ(testing::fingerprintOf(scratch_.file("run")), before);
   }
@@ -260,33 +260,33 @@ TEST_F(ExperimentTest, AFinishedExperimentIsSummedUpAndNothingIsWritten) {
 TEST_F(ExperimentTest, AnExperimentThatEndedBeforeItsVerdictGetsIt) {
   run();
   fs::remove(file("summary.yaml"));
-  world_.calls.clear();
+  driver_.calls.clear();
   run();
-  EXPECT_EQ(world_.calls, Calls());
+  EXPECT_EQ(driver_.calls, Calls());
   EXPECT_EQ(numRows(), 3u);
   EXPECT_TRUE(fs::exists(file("summary.yaml")));
 }
 
-TEST_F(ExperimentTest, AWorldThatFailsBeforeTheFirstResultLeavesTheFolderAsItWas) {
+TEST_F(ExperimentTest, ADriverThatFailsBeforeTheFirstResultLeavesTheFolderAsItWas) {
   configuration_.start.bags = {"/a.bag"};
-  world_.fails_at = 1;  // train 0
+  driver_.fails_at = 1;  // train 0
   EXPECT_THROW(run(), std::runtime_error);
   EXPECT_FALSE(fs::exists(scratch_.file("run")));
   configuration_ = toyConfiguration(scratch_.file("run"));
-  world_ = ObedientWorld();
+  driver_ = ObedientDriver();
   run();
   const auto before = testing::fingerprintOf(scratch_.file("run"));
   configuration_.experiment.trials = 3;
-  world_ = ObedientWorld();
-  world_.fails_at = 1;  // train 2
+  driver_ = ObedientDriver();
+  driver_.fails_at = 1;  // train 2
   EXPECT_THROW(run(), std::runtime_error);
   EXPECT_EQ(testing::fingerprintOf(scratch_.file("run")), before);
 }
 
 TEST_F(ExperimentTest, ATrialThatIsRunAgainSaysWhereItsBagIs) {
-  world_.fails_at = 2;  // train 0
+  driver_.fails_at = 2;  // train 0
   EXPECT_THROW(run(), std::runtime_error);
-  world_ = ObedientWorld();
+  driver_ = ObedientDriver();
   run();
   EXPECT_NE(terminal_.find(file("trial_000/trial.1.bag")), std::string::npos) << terminal_;
   EXPECT_TRUE(fs::exists(file("trial_000/trial.1.bag")));
@@ -297,22 +297,22 @@ TEST_F(ExperimentTest, AFolderThatCannotBeWrittenIsNamedBeforeAnythingRuns) {
   configuration_.experiment.runs = scratch_.file("plain_file/run");
   EXPECT_TRUE(
       throwsNaming<std::runtime_error>([this] { run(); }, {"cannot write into the folder"}));
-  EXPECT_EQ(world_.calls, Calls());
+  EXPECT_EQ(driver_.calls, Calls());
 }
 
-TEST_F(ExperimentTest, AWorldThatFailsLeavesTheFinishedTrialsAndNoVerdict) {
+TEST_F(ExperimentTest, ADriverThatFailsLeavesTheFinishedTrialsAndNoVerdict) {
   for (const size_t call : {4, 5, 6}) {  // run 1, train 1, evaluate 1
     fs::remove_all(scratch_.file("run"));
-    world_ = ObedientWorld();
-    world_.fails_at = call;
+    driver_ = ObedientDriver();
+    driver_.fails_at = call;
     EXPECT_TRUE(
         throwsNaming<std::runtime_error>([this] { run(); }, {call == 5 ? "ran away" : "camera"}));
     EXPECT_EQ(numRows(), 1u);
     EXPECT_FALSE(fs::exists(file("summary.yaml")));
-    world_ = ObedientWorld();
+    driver_ = ObedientDriver();
     run();
-    EXPECT_EQ(world_.calls[0], "train 0");
-    EXPECT_EQ(world_.calls[1], "run 1");
+    EXPECT_EQ(driver_.calls[0], "train 0");
+    EXPECT_EQ(driver_.calls[1], "run 1");
     EXPECT_EQ(numRows(), 3u);
   }
 }

@@ -12,7 +12,8 @@
 #include <cmath>
 
 #include "evaluation.h"
-#include "in_process_world.h"
+#include "in_process_driver.h"
+#include "method_kinds.h"
 #include "toy_run.h"
 
 namespace ddm {
@@ -82,11 +83,11 @@ class OracleTest : public ::testing::Test {
   }
 
   TrialOutcome greedyRun(int trial) {
-    InProcessWorld world(configuration_);
+    InProcessDriver driver(configuration_);
     TrialRequest request;
     request.id = {7, static_cast<std::uint32_t>(trial), true};
     request.num_steps = configuration_.trial.num_steps;
-    return world.runTrial(request, [](double) {});
+    return driver.runTrial(request, [](double) {});
   }
 
   testing::TempFolder scratch_;
@@ -128,8 +129,8 @@ TEST_F(OracleTest, BringsACartToTheGoalOfEachRun) {
 }
 
 TEST_F(OracleTest, LearnsNothingAndNeedsNoBag) {
-  InProcessWorld world(configuration_);
-  const TrainingOutcome outcome = world.train({"/nowhere/trial.bag"}, TrialId(), [](double) {});
+  InProcessDriver driver(configuration_);
+  const TrainingOutcome outcome = driver.train({"/nowhere/trial.bag"}, TrialId(), [](double) {});
   EXPECT_EQ(outcome.frames, 0u);
   EXPECT_TRUE(outcome.files.empty());
   EXPECT_FALSE(outcome.v_r.has_value());

@@ -119,7 +119,7 @@ class PagesTest(unittest.TestCase):
         self.assertIn(NO_ROS, done.stderr)
 
     def test_a_message_that_nobody_prints_is_noticed(self):
-        text = literals(os.path.join(pages.CHECKOUT, "ddm_launch/nodes/ros_world.cpp"))
+        text = literals(os.path.join(pages.CHECKOUT, "ddm_launch/drivers/ros_driver.cpp"))
         self.assertTrue(stands_in("service … is not offered", text))
         self.assertFalse(stands_in("service … is not granted", text))
         self.assertFalse(stands_in("is not offered … nodes do not find each other:… is not offered now", text))

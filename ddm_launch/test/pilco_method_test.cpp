@@ -15,7 +15,8 @@
 #include <sstream>
 
 #include "experiment.h"
-#include "in_process_world.h"
+#include "in_process_driver.h"
+#include "method_kinds.h"
 #include "toy_run.h"
 
 namespace ddm {
@@ -46,11 +47,11 @@ Configuration smallConfiguration(const std::string& method, const std::string& r
 }
 
 void runSmall(const Configuration& configuration) {
-  InProcessWorld world(configuration);
+  InProcessDriver driver(configuration);
   RunFolder folder(configuration);
   std::ostringstream out;
   Progress progress(&out, false, configuration.experiment.trials);
-  runExperiment(configuration, &world, &folder, &progress);
+  runExperiment(configuration, &driver, &folder, &progress);
 }
 
 std::vector<std::string> linesOf(const std::string& text) {
@@ -79,8 +80,9 @@ TEST_F(PilcoMethodTest, LostFramesAreRefused) {
   for (const std::string method : {"pilco_state", "pilco_features", "pilco_pca"}) {
     Configuration all = smallConfiguration(method, folder(method));
     all.camera.drop_rate = 0.05;
-    EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-        [&] { InProcessWorld world(all); }, {"camera/drop_rate must be 0 with PILCO", "got 0.05"}))
+    EXPECT_TRUE(
+        throwsNaming<std::invalid_argument>([&] { InProcessDriver driver(all); },
+                                            {"camera/drop_rate must be 0 with PILCO", "got 0.05"}))
         << method;
   }
 }
@@ -135,12 +137,12 @@ TEST_F(PilcoMethodTest, APolicyGoesOnFromTheLastOneWhereTheCoordinatesStay) {
   YAML::Node changed(YAML::NodeType::Map);
   writeMemory(other, &changed);
   writeText(file, YAML::Dump(changed));
-  InProcessWorld world(all);
+  InProcessDriver driver(all);
   std::vector<std::string> bags;
   for (int k = 0; k < 3; ++k) {
     bags.push_back(folder("run") + "/trial_00" + std::to_string(k) + "/trial.bag");
   }
-  const TrainingOutcome outcome = world.train(bags, {7, 2, false}, [](double) {});
+  const TrainingOutcome outcome = driver.train(bags, {7, 2, false}, [](double) {});
   const YAML::Node now = YAML::Load(outcome.files.at("pilco.yaml"));
   EXPECT_NE(now["cost_before"].as<double>(), report(2)["cost_before"].as<double>());
   EXPECT_NE(YAML::Dump(now["policy"]), YAML::Dump(report(2)["policy"]));
@@ -150,7 +152,7 @@ TEST_F(PilcoMethodTest, APolicyGoesOnFromTheLastOneWhereTheCoordinatesStay) {
   writeMemory(other, &changed);
   writeText(file, YAML::Dump(changed));
   const YAML::Node noisier =
-      YAML::Load(world.train(bags, {7, 2, false}, [](double) {}).files.at("pilco.yaml"));
+      YAML::Load(driver.train(bags, {7, 2, false}, [](double) {}).files.at("pilco.yaml"));
   EXPECT_NE(YAML::Dump(noisier["log_noise_std"]), YAML::Dump(report(2)["log_noise_std"]));
 }
 
@@ -171,7 +173,7 @@ TEST_F(PilcoMethodTest, AMissingOrDamagedMemoryIsNamed) {
   for (int k = 0; k < 3; ++k) {
     bags.push_back(folder("run") + "/trial_00" + std::to_string(k) + "/trial.bag");
   }
-  const auto train = [&] { InProcessWorld(all).train(bags, {7, 2, false}, [](double) {}); };
+  const auto train = [&] { InProcessDriver(all).train(bags, {7, 2, false}, [](double) {}); };
   PilcoMemory short_policy = readMemory(readFile(file), file);
   short_policy.policy.conservativeResize(2);
   YAML::Node changed(YAML::NodeType::Map);
@@ -312,7 +314,7 @@ TEST(Schedules, OneThatLeavesTheMotionToChanceIsRefusedWherePlansFollowIt) {
   testing::TempFolder scratch;
   Configuration all = smallConfiguration("ddm", scratch.file("run"));
   all.model.training.schedule = "v_r_only";
-  EXPECT_THROW(InProcessWorld world(all), std::invalid_argument);
+  EXPECT_THROW(InProcessDriver driver(all), std::invalid_argument);
 }
 
 TEST(FeatureObservation, AScheduleThatTrainsThePredictorIsRefused) {
@@ -320,7 +322,7 @@ TEST(FeatureObservation, AScheduleThatTrainsThePredictorIsRefused) {
   Configuration all = smallConfiguration("pilco_features", scratch.file("run"));
   all.model.training.schedule = "joint";
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { InProcessWorld world(all); }, {"training/schedule must be v_r_only", "got joint"}));
+      [&] { InProcessDriver driver(all); }, {"training/schedule must be v_r_only", "got joint"}));
 }
 
 }  // namespace

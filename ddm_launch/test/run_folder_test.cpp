@@ -456,11 +456,11 @@ TEST_F(RunFolderTest, FilesAreReplacedAsAWhole) {
 TEST_F(RunFolderTest, NothingButTheFilesOfTheContractIsLeft) {
   {
     RunFolder folder(configuration_);
-    testing::ObedientWorld world;
-    world.state = Eigen::Vector2d::Zero();
+    testing::ObedientDriver driver;
+    driver.state = Eigen::Vector2d::Zero();
     TrialRequest request;
     request.num_steps = 2;
-    const TrialOutcome outcome = world.runTrial(request, [](double) {});
+    const TrialOutcome outcome = driver.runTrial(request, [](double) {});
     folder.writeTrial(0, outcome);
     TrainingOutcome training;
     training.files["model.ddm"] = "model";

@@ -1,4 +1,4 @@
-// What the tests of an experiment share: a small configuration, rows, and a world that obeys.
+// What the tests of an experiment share: a small configuration, rows, and a driver that obeys.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "configuration.h"
+#include "driver.h"
 #include "run_folder.h"
-#include "world.h"
 
 namespace ddm {
 namespace testing {
@@ -142,7 +142,7 @@ inline std::map<std::string, std::string> fingerprintOf(const std::string& folde
 }
 
 /// Notes what is asked of it. Every greedy run ends where `state` says.
-class ObedientWorld : public World {
+class ObedientDriver : public Driver {
  public:
   TrialOutcome runTrial(const TrialRequest& request, const PhaseCallback& progress) override {
     calls.push_back((request.id.evaluation ? "evaluate " : "run ") +

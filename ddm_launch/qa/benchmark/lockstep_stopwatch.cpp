@@ -10,7 +10,7 @@
 #include <string>
 
 #include "interval_log.h"
-#include "ros_world.h"
+#include "ros_driver.h"
 
 namespace {
 
@@ -20,19 +20,19 @@ constexpr double kTimeout = 30.0;  // [s]
 void run(const ros::NodeHandle& nh, int num_frames, const std::string& out) {
   ddm::IntervalLog log;
   std::mutex mutex;
-  // RosWorld hears the ground truth anyway: one more callback, but no message that others lack.
+  // RosDriver hears the ground truth anyway: one more callback, but no message that others lack.
   const ros::Subscriber frames = ros::NodeHandle(nh).subscribe<sensor_msgs::JointState>(
       ddm::topics::kGroundTruth, kQueue, [&](const sensor_msgs::JointStateConstPtr&) {
         const std::lock_guard<std::mutex> lock(mutex);
         log.tick();
       });
-  ddm::RosWorld::Peers peers;
+  ddm::RosDriver::Peers peers;
   peers.recorder = peers.trainer = false;
-  ddm::RosWorld world(nh, kTimeout, peers);
+  ddm::RosDriver driver(nh, kTimeout, peers);
   ddm::TrialRequest request;
   request.num_steps = num_frames + ddm::IntervalLog::kEvents;
   request.epsilon = 1.0;
-  world.runTrial(request, [](double) {});
+  driver.runTrial(request, [](double) {});
   const std::lock_guard<std::mutex> lock(mutex);
   log.write(out);
 }

@@ -17,7 +17,7 @@
 #include "experiment.h"
 #include "learning_curve_image.h"
 #include "leave.h"
-#include "ros_world.h"
+#include "ros_driver.h"
 #include "start.h"
 
 namespace {
@@ -39,7 +39,7 @@ struct Node {
   ros::NodeHandle nh;
   ros::NodeHandle pnh{"~"};
   ros::Publisher curve_pub;
-  std::optional<ddm::RosWorld> world;
+  std::optional<ddm::RosDriver> driver;
 };
 
 void run(Node* node) {
@@ -58,10 +58,10 @@ void run(Node* node) {
   for (const std::string& warning : folder.warnings()) progress.note("warning: " + warning);
   node->curve_pub =
       node->nh.advertise<sensor_msgs::Image>(ddm::topics::kLearningCurveImage, 1, /*latch=*/true);
-  ddm::RosWorld::Peers peers;
+  ddm::RosDriver::Peers peers;
   if (configuration.robot) peers.reset_timeout = configuration.robot->reset_timeout;
-  node->world.emplace(node->nh, configuration.experiment.timeout, peers);
-  ddm::runExperiment(configuration, &*node->world, &folder, &progress,
+  node->driver.emplace(node->nh, configuration.experiment.timeout, peers);
+  ddm::runExperiment(configuration, &*node->driver, &folder, &progress,
                      [&](const std::vector<ddm::TrialRow>& rows) {
                        publishCurve(node->curve_pub, rows, configuration);
                      });

@@ -1,6 +1,6 @@
-// A method: what learns from trials and acts in the next one.
+// Which methods there are.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "method.h"
+#include "method_kinds.h"
 
 #include <stdexcept>
 

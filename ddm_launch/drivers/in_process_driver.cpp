@@ -1,6 +1,6 @@
-// The world in this process: plant, recorder, and who learns and acts, without a ROS master.
+// Everything in this process: plant, recorder, and who learns and acts, without a ROS master.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "in_process_world.h"
+#include "in_process_driver.h"
 
 #include <ddm_model/per_motor.h>
 #include <ddm_msgs/Torque.h>
@@ -25,7 +25,7 @@ void write(const sensor_msgs::Image& image, const Decision& decision, BagWriter*
 
 }  // namespace
 
-InProcessWorld::InProcessWorld(const Configuration& configuration)
+InProcessDriver::InProcessDriver(const Configuration& configuration)
     : configuration_(configuration),
       rig_(makePlant(*configuration.plant), configuration.camera),
       method_(configuration.method->make(configuration, rig_.plant())) {
@@ -36,7 +36,7 @@ InProcessWorld::InProcessWorld(const Configuration& configuration)
   }
 }
 
-EpsilonGreedy InProcessWorld::makePolicy(const TrialRequest& request) const {
+EpsilonGreedy InProcessDriver::makePolicy(const TrialRequest& request) const {
   EpsilonGreedy::Options options;
   options.epsilon = request.epsilon;
   options.hold_steps = request.hold_steps;
@@ -45,12 +45,12 @@ EpsilonGreedy InProcessWorld::makePolicy(const TrialRequest& request) const {
   return EpsilonGreedy(request.epsilon < 1.0 ? method_->policy() : nullptr, options, request.id);
 }
 
-std::unique_ptr<BagWriter> InProcessWorld::openBag(const TrialRequest& request) {
+std::unique_ptr<BagWriter> InProcessDriver::openBag(const TrialRequest& request) {
   if (request.bag.empty()) return nullptr;
   return std::make_unique<BagWriter>(request.bag, configuration_.model.data_set);
 }
 
-TrialOutcome InProcessWorld::runTrial(const TrialRequest& request, const PhaseCallback& progress) {
+TrialOutcome InProcessDriver::runTrial(const TrialRequest& request, const PhaseCallback& progress) {
   EpsilonGreedy policy = makePolicy(request);
   const std::unique_ptr<BagWriter> bag = openBag(request);
   TrialOutcome outcome;
@@ -75,8 +75,8 @@ TrialOutcome InProcessWorld::runTrial(const TrialRequest& request, const PhaseCa
   return outcome;
 }
 
-TrainingOutcome InProcessWorld::train(const std::vector<std::string>& bags, const TrialId& id,
-                                      const PhaseCallback& progress) {
+TrainingOutcome InProcessDriver::train(const std::vector<std::string>& bags, const TrialId& id,
+                                       const PhaseCallback& progress) {
   return method_->train(bags, id, progress);
 }
 

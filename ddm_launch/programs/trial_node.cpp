@@ -15,7 +15,7 @@
 #include "evaluation.h"
 #include "leave.h"
 #include "progress.h"
-#include "ros_world.h"
+#include "ros_driver.h"
 
 namespace {
 
@@ -69,7 +69,7 @@ void report(const ddm::Plant& plant, const ddm::TrialOutcome& outcome,
 struct Node {
   ros::NodeHandle nh;
   ros::NodeHandle pnh{"~"};
-  std::optional<ddm::RosWorld> world;
+  std::optional<ddm::RosDriver> driver;
 };
 
 void run(Node* node) {
@@ -87,13 +87,13 @@ void run(Node* node) {
   request.epsilon = options.model.empty() ? 1.0 : options.epsilon;
   request.hold_steps = mpc.hold_steps;
   request.bag = options.bag;
-  node->world.emplace(node->nh, options.timeout,
-                      ddm::RosWorld::Peers{!options.bag.empty(), /*trainer=*/false});
-  if (!options.model.empty()) node->world->useModel(options.model);
+  node->driver.emplace(node->nh, options.timeout,
+                       ddm::RosDriver::Peers{!options.bag.empty(), /*trainer=*/false});
+  if (!options.model.empty()) node->driver->useModel(options.model);
   ddm::Progress progress(&std::cout, ::isatty(STDOUT_FILENO) != 0, 0);
   progress.beginPhase(0, options.model.empty() ? "random" : "control");
   const ddm::TrialOutcome outcome =
-      node->world->runTrial(request, [&progress](double fraction) { progress.update(fraction); });
+      node->driver->runTrial(request, [&progress](double fraction) { progress.update(fraction); });
   const std::unique_ptr<ddm::Plant> judge = ddm::makePlant(*plant);
   judge->setGoal(ddm::goalOf(*judge, request.id.seed, request.id.trial, request.id.evaluation));
   report(*judge, outcome, evaluation, &progress);

@@ -1,6 +1,6 @@
-// What RosWorld hears and how long it waits; the nodes that it talks to are played by this one.
+// What RosDriver hears and how long it waits; the nodes that it talks to are played by this one.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ros_world.h"
+#include "ros_driver.h"
 
 #include <actionlib/server/simple_action_server.h>
 #include <ddm_msgs/Reset.h>
@@ -25,7 +25,7 @@ namespace {
 
 constexpr int kSteps = 2;
 
-/// Offers what a world without a trainer looks for. In simulated time that stands still, as here,
+/// Offers what a driver without a trainer looks for. In simulated time that stands still, as here,
 /// an action tells once that it is there.
 class Peers {
  public:
@@ -100,21 +100,21 @@ TrialRequest trial() {
 }
 
 /// What a trial ends with.
-std::string errorOf(RosWorld* world, const TrialRequest& request) {
+std::string errorOf(RosDriver* driver, const TrialRequest& request) {
   try {
-    world->runTrial(request, [](double) {});
+    driver->runTrial(request, [](double) {});
   } catch (const std::exception& e) {
     return e.what();
   }
   return "none";
 }
 
-TEST(RosWorldTest, DoesNotWaitForTheTimeWithoutEnd) {
+TEST(RosDriverTest, DoesNotWaitForTheTimeWithoutEnd) {
   const ros::Time now = ros::Time::now();
   ros::Time::setNow(ros::Time());
   std::string error = "none";
   try {
-    RosWorld(ros::NodeHandle(), 0.5, {/*recorder=*/false, /*trainer=*/false});
+    RosDriver(ros::NodeHandle(), 0.5, {/*recorder=*/false, /*trainer=*/false});
   } catch (const std::exception& e) {
     error = e.what();
   }
@@ -122,50 +122,50 @@ TEST(RosWorldTest, DoesNotWaitForTheTimeWithoutEnd) {
   EXPECT_EQ(error, "simulated time does not come (waited 0.5 s), nobody publishes /clock");
 }
 
-TEST(RosWorldTest, HearsOfAnActionThatTellsOnceThatItIsThere) {
+TEST(RosDriverTest, HearsOfAnActionThatTellsOnceThatItIsThere) {
   const Peers peers;
-  EXPECT_NO_THROW(RosWorld(ros::NodeHandle(), 5.0, {/*recorder=*/false, /*trainer=*/false}));
+  EXPECT_NO_THROW(RosDriver(ros::NodeHandle(), 5.0, {/*recorder=*/false, /*trainer=*/false}));
 }
 
-TEST(RosWorldTest, NamesAServiceThatDoesNotAnswer) {
+TEST(RosDriverTest, NamesAServiceThatDoesNotAnswer) {
   Peers peers;
   peers.answerAfter(60.0);
-  RosWorld world(ros::NodeHandle(), 1.0, {/*recorder=*/true, /*trainer=*/false});
+  RosDriver driver(ros::NodeHandle(), 1.0, {/*recorder=*/true, /*trainer=*/false});
   TrialRequest request = trial();
   request.bag = "/nowhere/trial.bag";
-  EXPECT_EQ(errorOf(&world, request), "service /start_recording does not answer (waited 1 s)");
+  EXPECT_EQ(errorOf(&driver, request), "service /start_recording does not answer (waited 1 s)");
 }
 
-TEST(RosWorldTest, WaitsForAResetNoLongerThanForAnythingElse) {
+TEST(RosDriverTest, WaitsForAResetNoLongerThanForAnythingElse) {
   Peers peers;
   peers.answerAfter(60.0);
-  RosWorld world(ros::NodeHandle(), 1.0, {/*recorder=*/false, /*trainer=*/false});
-  EXPECT_EQ(errorOf(&world, trial()), "service /reset does not answer (waited 1 s)");
+  RosDriver driver(ros::NodeHandle(), 1.0, {/*recorder=*/false, /*trainer=*/false});
+  EXPECT_EQ(errorOf(&driver, trial()), "service /reset does not answer (waited 1 s)");
 }
 
-TEST(RosWorldTest, ConnectsAgainAfterAServiceThatDidNotAnswer) {
+TEST(RosDriverTest, ConnectsAgainAfterAServiceThatDidNotAnswer) {
   Peers peers;
   peers.answerAfter(2.0);
-  RosWorld world(ros::NodeHandle(), 0.5, {/*recorder=*/false, /*trainer=*/false});
-  EXPECT_NE(errorOf(&world, trial()), "none");
+  RosDriver driver(ros::NodeHandle(), 0.5, {/*recorder=*/false, /*trainer=*/false});
+  EXPECT_NE(errorOf(&driver, trial()), "none");
   peers.answerAfter(0.0);
-  EXPECT_EQ(errorOf(&world, trial()), "none");
+  EXPECT_EQ(errorOf(&driver, trial()), "none");
 }
 
-TEST(RosWorldTest, LeavesARobotTheTimeThatItsResetMayTake) {
+TEST(RosDriverTest, LeavesARobotTheTimeThatItsResetMayTake) {
   Peers peers;
   peers.answerAfter(1.5);
-  RosWorld world(ros::NodeHandle(), 0.5, {/*recorder=*/false, /*trainer=*/false, 10.0});
-  EXPECT_EQ(errorOf(&world, trial()), "none");
+  RosDriver driver(ros::NodeHandle(), 0.5, {/*recorder=*/false, /*trainer=*/false, 10.0});
+  EXPECT_EQ(errorOf(&driver, trial()), "none");
 }
 
 /// A terminal that is stopped holds up who writes to it, and nobody else.
-TEST(RosWorldTest, HearsItsPeersWhileItsProgressIsHeldUp) {
+TEST(RosDriverTest, HearsItsPeersWhileItsProgressIsHeldUp) {
   Peers peers;
   peers.runUntilReleased();
-  RosWorld world(ros::NodeHandle(), 0.5, {/*recorder=*/false, /*trainer=*/false});
+  RosDriver driver(ros::NodeHandle(), 0.5, {/*recorder=*/false, /*trainer=*/false});
   std::set<std::thread::id> reporters;
-  world.runTrial(trial(), [&](double) {
+  driver.runTrial(trial(), [&](double) {
     if (reporters.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(1500));
     reporters.insert(std::this_thread::get_id());
     peers.release();
@@ -188,7 +188,7 @@ TEST(ServiceCall, LeavesAConnectionBehindThatIsNeverMade) {
 }  // namespace ddm
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "ros_world_test");
+  ros::init(argc, argv, "ros_driver_test");
   ros::NodeHandle nh;
   ros::Time::setNow(ros::Time(1.0));
   ros::AsyncSpinner spinner(2);  // callbacks of others are handled at any time

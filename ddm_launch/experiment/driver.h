@@ -1,4 +1,4 @@
-// The world that Algorithm 1 acts in: simulated in this process, or ROS nodes.
+// What runs the trials and trainings that Algorithm 1 orders: this process alone, or ROS nodes.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -44,9 +44,9 @@ struct TrainingOutcome {
 };
 
 /// Errors are std::runtime_error with what failed and what to do.
-class World {
+class Driver {
  public:
-  virtual ~World() = default;
+  virtual ~Driver() = default;
 
   /// Brings the plant to its start and runs one trial, with the last model trained.
   virtual TrialOutcome runTrial(const TrialRequest& request, const PhaseCallback& progress) = 0;

@@ -1,6 +1,6 @@
-// Tests of the world in one process: what a camera that loses frames does to a trial and its bag.
+// Tests of the driver in one process: what a camera that loses frames does to a trial and its bag.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "in_process_world.h"
+#include "in_process_driver.h"
 
 #include <ddm_bag_io/bag_reader.h>
 #include <ddm_msgs/testing/temp_folder.h>
@@ -13,6 +13,7 @@
 #include <limits>
 #include <set>
 
+#include "method_kinds.h"
 #include "toy_run.h"
 
 namespace ddm {
@@ -32,9 +33,9 @@ testing::ToyPlant::Traits counter(int last) {
   return traits;
 }
 
-class InProcessWorldTest : public ::testing::Test {
+class InProcessDriverTest : public ::testing::Test {
  protected:
-  InProcessWorldTest() : configuration_(testing::toyConfiguration("")) {
+  InProcessDriverTest() : configuration_(testing::toyConfiguration("")) {
     ParamReader reader{YAML::Node(YAML::NodeType::Map)};
     configuration_.method = methodKind("ddm").read(&reader);
     request_.id = {7, 2, false};
@@ -44,8 +45,8 @@ class InProcessWorldTest : public ::testing::Test {
   }
 
   TrialOutcome run() {
-    InProcessWorld world(configuration_);
-    return world.runTrial(request_, [](double) {});
+    InProcessDriver driver(configuration_);
+    return driver.runTrial(request_, [](double) {});
   }
 
   BagContent bag() const {
@@ -65,7 +66,7 @@ class InProcessWorldTest : public ::testing::Test {
   TrialRequest request_;
 };
 
-TEST_F(InProcessWorldTest, APerfectCameraGivesAFrameInEachStepAndOnePiece) {
+TEST_F(InProcessDriverTest, APerfectCameraGivesAFrameInEachStepAndOnePiece) {
   const TrialOutcome outcome = run();
   ASSERT_EQ(outcome.times.size(), 40u);
   for (size_t t = 0; t + 1 < 40; ++t) EXPECT_EQ(stepsAfter(outcome, t), 1) << t;
@@ -73,14 +74,14 @@ TEST_F(InProcessWorldTest, APerfectCameraGivesAFrameInEachStepAndOnePiece) {
   EXPECT_EQ(bag().data.numFrames(), 40);
 }
 
-TEST_F(InProcessWorldTest, ThePlantStaysWhereTheLastFrameShowsItAsInLockStep) {
+TEST_F(InProcessDriverTest, ThePlantStaysWhereTheLastFrameShowsItAsInLockStep) {
   testing::usePlant(testing::plantOf(counter(39)), &configuration_);
   const TrialOutcome outcome = run();
   ASSERT_EQ(outcome.states.size(), 40u);
   EXPECT_EQ(outcome.states.back()[0], 39.0);
 }
 
-TEST_F(InProcessWorldTest, ThePlantGoesOnUnderTheLastTorqueWhereAFrameIsLost) {
+TEST_F(InProcessDriverTest, ThePlantGoesOnUnderTheLastTorqueWhereAFrameIsLost) {
   configuration_.camera.drop_rate = 0.2;
   const TrialOutcome outcome = run();
   ASSERT_EQ(outcome.states.size(), 40u);  // a trial counts what is seen
@@ -99,7 +100,7 @@ TEST_F(InProcessWorldTest, ThePlantGoesOnUnderTheLastTorqueWhereAFrameIsLost) {
   EXPECT_GT(num_lost, 0);
 }
 
-TEST_F(InProcessWorldTest, NoPairOfTheBagStraddlesALostFrame) {
+TEST_F(InProcessDriverTest, NoPairOfTheBagStraddlesALostFrame) {
   configuration_.camera.drop_rate = 0.2;
   const TrialOutcome outcome = run();
   std::vector<Eigen::Index> expected = {0};  // first frames of the pieces
@@ -114,7 +115,7 @@ TEST_F(InProcessWorldTest, NoPairOfTheBagStraddlesALostFrame) {
   EXPECT_EQ(begins, expected);
 }
 
-TEST_F(InProcessWorldTest, FramesAndGoalAreThoseOfTheCameraInThisRun) {
+TEST_F(InProcessDriverTest, FramesAndGoalAreThoseOfTheCameraInThisRun) {
   configuration_.camera.noise_std = 0.05;
   configuration_.camera.brightness_drift = 0.2;
   configuration_.camera.clutter = 0.6;
@@ -150,7 +151,7 @@ testing::ToyPlant::Traits wandering() {
   return traits;
 }
 
-TEST_F(InProcessWorldTest, EachRunHasAGoalOfItsOwnInItsBagWhereThePlantDrawsOne) {
+TEST_F(InProcessDriverTest, EachRunHasAGoalOfItsOwnInItsBagWhereThePlantDrawsOne) {
   testing::usePlant(testing::plantOf(wandering()), &configuration_);
   const auto plant = makePlant(*configuration_.plant);
   std::set<Grey> goals;
@@ -165,7 +166,7 @@ TEST_F(InProcessWorldTest, EachRunHasAGoalOfItsOwnInItsBagWhereThePlantDrawsOne)
   EXPECT_EQ(goals.size(), 3u);
 }
 
-TEST_F(InProcessWorldTest, APlantWithTwoMotorsIsDrivenByBoth) {
+TEST_F(InProcessDriverTest, APlantWithTwoMotorsIsDrivenByBoth) {
   testing::usePlant(testing::plantOf("{type: two_link}"), &configuration_);
   configuration_.mpc.max_torque = {2.0};
   const TrialOutcome outcome = run();

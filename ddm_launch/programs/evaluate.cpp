@@ -21,7 +21,7 @@
 
 #include "command_line.h"
 #include "evaluation.h"
-#include "in_process_world.h"
+#include "in_process_driver.h"
 #include "saved_model.h"
 
 namespace po = boost::program_options;
@@ -88,15 +88,15 @@ Row evaluateSeed(ddm::Configuration configuration, int seed, std::uint32_t trial
   request.id = {static_cast<std::uint64_t>(seed), trial, /*evaluation=*/true};
   request.num_steps = configuration.trial.num_steps;
   request.hold_steps = configuration.mpc.hold_steps;
-  std::unique_ptr<ddm::InProcessWorld> world;
+  std::unique_ptr<ddm::InProcessDriver> driver;
   std::unique_ptr<ddm::Plant> plant;
   {
     const std::lock_guard<std::mutex> lock(
         *making);  // nobody promised that plants are made at once
-    world = std::make_unique<ddm::InProcessWorld>(configuration);
+    driver = std::make_unique<ddm::InProcessDriver>(configuration);
     plant = ddm::makePlant(*configuration.plant);
   }
-  const ddm::TrialOutcome outcome = world->runTrial(request, [](double) {});
+  const ddm::TrialOutcome outcome = driver->runTrial(request, [](double) {});
   Row row;
   row.seed = seed;
   plant->setGoal(ddm::goalOf(*plant, request.id.seed, trial, /*evaluation=*/true));

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "configuration.h"
+#include "driver.h"
 #include "evaluation.h"
 #include "results_folder.h"
-#include "world.h"
 
 namespace ddm {
 

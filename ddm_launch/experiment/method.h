@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "world.h"
+#include "driver.h"
 
 namespace ddm {
 
@@ -58,11 +58,5 @@ struct MethodKind {
   /// Reads the blocks that are its own; what is wrong with them is kept in the reader.
   std::function<std::shared_ptr<const MethodSetup>(ParamReader*)> read;
 };
-
-/// All that are built, the paper's own first.
-std::vector<MethodKind> methodKinds();
-
-/// @throws std::invalid_argument naming what there is, if there is no such method
-MethodKind methodKind(const std::string& name);
 
 }  // namespace ddm

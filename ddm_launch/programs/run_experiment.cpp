@@ -10,7 +10,7 @@
 
 #include "command_line.h"
 #include "experiment.h"
-#include "in_process_world.h"
+#include "in_process_driver.h"
 #include "start.h"
 
 namespace po = boost::program_options;
@@ -46,12 +46,12 @@ bool configure(int argc, char** argv, ddm::Configuration* configuration) {
 
 void run(ddm::Configuration configuration) {
   ddm::prepareStart(&configuration);
-  ddm::InProcessWorld world(configuration);  // first: what it refuses must not leave a folder
+  ddm::InProcessDriver driver(configuration);  // first: what it refuses must not leave a folder
   ddm::RunFolder folder(configuration);
   ddm::Progress progress(&std::cout, ::isatty(STDOUT_FILENO) != 0, configuration.experiment.trials,
                          configuration.evaluation.error_unit);
   for (const std::string& warning : folder.warnings()) progress.note("warning: " + warning);
-  ddm::runExperiment(configuration, &world, &folder, &progress);
+  ddm::runExperiment(configuration, &driver, &folder, &progress);
 }
 
 }  // namespace

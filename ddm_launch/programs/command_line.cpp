@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "command_line.h"
 
-#include "method.h"
+#include "method_kinds.h"
 
 namespace ddm {
 

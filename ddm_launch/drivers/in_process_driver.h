@@ -1,4 +1,4 @@
-// The world in this process: plant, recorder, and who learns and acts, without a ROS master.
+// Everything in this process: plant, recorder, and who learns and acts, without a ROS master.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -9,19 +9,19 @@
 #include <memory>
 
 #include "configuration.h"
+#include "driver.h"
 #include "method.h"
-#include "world.h"
 
 namespace ddm {
 
 /// With the method `ddm` it does what the nodes do in lock-step, with the same cores and the same
 /// bags in between: the same configuration and seed give the same torques.
-class InProcessWorld : public World {
+class InProcessDriver : public Driver {
  public:
-  /// @param configuration  with a method; outlives the world
+  /// @param configuration  with a method; outlives the driver
   /// @throws std::invalid_argument if the configuration asks for real time, or does not fit the
   /// method
-  explicit InProcessWorld(const Configuration& configuration);
+  explicit InProcessDriver(const Configuration& configuration);
 
   TrialOutcome runTrial(const TrialRequest& request, const PhaseCallback& progress) override;
   TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,

@@ -1,6 +1,6 @@
-// The world of ROS nodes: plant, recorder, trainer and policy behind services and actions.
+// ROS nodes as the driver: plant, recorder, trainer and policy behind services and actions.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ros_world.h"
+#include "ros_driver.h"
 
 #include <ddm_bag_io/model_message.h>
 #include <ddm_files/plain_file.h>
@@ -50,7 +50,7 @@ std::vector<std::string> loopTopics(const ros::NodeHandle& nh) {
 
 }  // namespace
 
-RosWorld::RosWorld(const ros::NodeHandle& nh, double timeout, Peers peers)
+RosDriver::RosDriver(const ros::NodeHandle& nh, double timeout, Peers peers)
     : nh_(withQueue(nh, &callbacks_, timeout)),
       timeout_(timeout),
       peers_(peers),
@@ -75,7 +75,7 @@ RosWorld::RosWorld(const ros::NodeHandle& nh, double timeout, Peers peers)
   connect();
 }
 
-void RosWorld::connect() {
+void RosDriver::connect() {
   signOfLife();
   const auto service = [this](const char* topic) {
     const std::string name = nh_.resolveName(topic);
@@ -108,14 +108,14 @@ void RosWorld::connect() {
   ROS_INFO("all nodes are there and connected");
 }
 
-void RosWorld::signOfLife() {
+void RosDriver::signOfLife() {
   const std::lock_guard<std::mutex> lock(mutex_);
   last_sign_of_life_ = ros::WallTime::now();
 }
 
 /// Waits for a condition, which is checked whenever a callback has changed something.
 /// @throws std::runtime_error if nobody gave a sign of life within the timeout, or on shutdown
-void RosWorld::waitFor(const std::function<bool()>& condition, const std::string& what) {
+void RosDriver::waitFor(const std::function<bool()>& condition, const std::string& what) {
   for (;;) {
     if (condition()) return;
     if (!ros::ok()) throw std::runtime_error(kInterrupted);
@@ -128,8 +128,8 @@ void RosWorld::waitFor(const std::function<bool()>& condition, const std::string
 }
 
 /// The same for messages: the error tells who publishes them, for which the master is asked.
-void RosWorld::waitForMessages(const std::function<bool()>& condition, const std::string& what,
-                               const ros::Subscriber& subscriber) {
+void RosDriver::waitForMessages(const std::function<bool()>& condition, const std::string& what,
+                                const ros::Subscriber& subscriber) {
   try {
     waitFor(condition, what);
   } catch (const std::exception& e) {
@@ -140,7 +140,8 @@ void RosWorld::waitForMessages(const std::function<bool()>& condition, const std
 }
 
 template <class Service>
-void RosWorld::call(const char* topic, ros::ServiceClient* client, Service* service, double limit) {
+void RosDriver::call(const char* topic, ros::ServiceClient* client, Service* service,
+                     double limit) {
   callService(nh_.resolveName(topic), client, service, limit);
   signOfLife();
 }
@@ -148,8 +149,8 @@ void RosWorld::call(const char* topic, ros::ServiceClient* client, Service* serv
 /// Sends a goal and waits for its result; feedback is a sign of life.
 /// @param fraction_of  a feedback: the fraction that is done
 template <class Client, class Goal, class FractionOf>
-auto RosWorld::execute(Client* client, const std::string& name, const Goal& goal,
-                       const FractionOf& fraction_of, const PhaseCallback& progress) {
+auto RosDriver::execute(Client* client, const std::string& name, const Goal& goal,
+                        const FractionOf& fraction_of, const PhaseCallback& progress) {
   // Callbacks may still come when this function has returned: they share what they write.
   struct Pending {
     bool done = false;
@@ -200,7 +201,7 @@ auto RosWorld::execute(Client* client, const std::string& name, const Goal& goal
 }
 
 /// A bag does not say who published what is in it: a trial counts only if one node could have.
-void RosWorld::refuseIntruders() const {
+void RosDriver::refuseIntruders() const {
   std::vector<std::string> names = loopTopics(nh_);
   names.emplace_back("/clock");
   const std::vector<std::string> shared = sharedTopics(names);
@@ -210,7 +211,7 @@ void RosWorld::refuseIntruders() const {
   throw std::runtime_error(text + "\nStop all publishers but one; the same command resumes");
 }
 
-TrialOutcome RosWorld::runTrial(const TrialRequest& request, const PhaseCallback& progress) {
+TrialOutcome RosDriver::runTrial(const TrialRequest& request, const PhaseCallback& progress) {
   if (!request.bag.empty()) startRecording(request.bag);
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -235,14 +236,14 @@ TrialOutcome RosWorld::runTrial(const TrialRequest& request, const PhaseCallback
   return outcome;
 }
 
-void RosWorld::startRecording(const std::string& bag) {
+void RosDriver::startRecording(const std::string& bag) {
   ddm_msgs::StartRecording service;
   service.request.path = bag;
   service.request.after = last_image_;
   call(topics::kStartRecording, &start_client_, &service, timeout_);
 }
 
-void RosWorld::stopRecording(int num_steps, const ros::Time& last, const ros::Time& goal) {
+void RosDriver::stopRecording(int num_steps, const ros::Time& last, const ros::Time& goal) {
   ddm_msgs::StopRecording service;
   service.request.num_steps = static_cast<std::uint32_t>(num_steps);
   service.request.last = last;
@@ -254,7 +255,7 @@ void RosWorld::stopRecording(int num_steps, const ros::Time& last, const ros::Ti
   }
 }
 
-ddm_msgs::Reset::Response RosWorld::reset(const TrialRequest& request) {
+ddm_msgs::Reset::Response RosDriver::reset(const TrialRequest& request) {
   ddm_msgs::Reset service;
   service.request.seed = request.id.seed;
   service.request.trial = request.id.trial;
@@ -264,9 +265,9 @@ ddm_msgs::Reset::Response RosWorld::reset(const TrialRequest& request) {
   return service.response;
 }
 
-ddm_msgs::RunTrialResult RosWorld::runPolicy(const TrialRequest& request,
-                                             const ddm_msgs::Reset::Response& begin,
-                                             const PhaseCallback& progress) {
+ddm_msgs::RunTrialResult RosDriver::runPolicy(const TrialRequest& request,
+                                              const ddm_msgs::Reset::Response& begin,
+                                              const PhaseCallback& progress) {
   ddm_msgs::RunTrialGoal goal;
   goal.num_steps = static_cast<std::uint32_t>(request.num_steps);
   goal.epsilon = request.epsilon;
@@ -292,7 +293,7 @@ ddm_msgs::RunTrialResult RosWorld::runPolicy(const TrialRequest& request,
 }
 
 /// State at each frame that was answered, if anybody publishes it. In real time there are others.
-void RosWorld::takeGroundTruth(const std::vector<ros::Time>& stamps, TrialOutcome* outcome) {
+void RosDriver::takeGroundTruth(const std::vector<ros::Time>& stamps, TrialOutcome* outcome) {
   if (ground_truth_sub_.getNumPublishers() == 0) return;
   std::map<ros::Time, sensor_msgs::JointState> truth;
   waitForMessages(
@@ -319,8 +320,8 @@ void RosWorld::takeGroundTruth(const std::vector<ros::Time>& stamps, TrialOutcom
   }
 }
 
-TrainingOutcome RosWorld::train(const std::vector<std::string>& bags, const TrialId& id,
-                                const PhaseCallback& progress) {
+TrainingOutcome RosDriver::train(const std::vector<std::string>& bags, const TrialId& id,
+                                 const PhaseCallback& progress) {
   ddm_msgs::TrainGoal goal;
   goal.bags = bags;
   goal.seed = id.seed;
@@ -340,7 +341,7 @@ TrainingOutcome RosWorld::train(const std::vector<std::string>& bags, const Tria
   return outcome;
 }
 
-bool RosWorld::useModel(const std::string& path) {
+bool RosDriver::useModel(const std::string& path) {
   const ddm_msgs::Model model = toMessage(deserialiseModel(readFile(path), path), ros::Time::now());
   model_pub_ = nh_.advertise<ddm_msgs::Model>(topics::kModel, 1, /*latch=*/true);
   model_pub_.publish(model);
@@ -348,7 +349,7 @@ bool RosWorld::useModel(const std::string& path) {
   return true;
 }
 
-std::string RosWorld::takeModel(const std::string& model_id) {
+std::string RosDriver::takeModel(const std::string& model_id) {
   waitForMessages(
       [&] {
         const std::lock_guard<std::mutex> lock(mutex_);

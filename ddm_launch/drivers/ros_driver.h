@@ -1,4 +1,4 @@
-// The world of ROS nodes: plant, recorder, trainer and policy behind services and actions.
+// ROS nodes as the driver: plant, recorder, trainer and policy behind services and actions.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -17,14 +17,14 @@
 #include <string>
 #include <vector>
 
-#include "world.h"
+#include "driver.h"
 
 namespace ddm {
 
 /// Orders the nodes about; computes nothing. All waits are in wall time, because simulated time
 /// stands still while a model is trained, and all end with an error that names who is silent.
 /// Handles its callbacks in threads of its own; progress is reported by the thread that waits.
-class RosWorld : public World {
+class RosDriver : public Driver {
  public:
   struct Peers {
     bool recorder = true;  ///< trials are recorded
@@ -36,9 +36,9 @@ class RosWorld : public World {
   /// Waits until the nodes are there and connected to each other.
   /// @param timeout  wall time without a sign of life [s]
   /// @throws std::runtime_error naming what is missing
-  RosWorld(const ros::NodeHandle& nh, double timeout, Peers peers);
-  RosWorld(const RosWorld&) = delete;
-  RosWorld& operator=(const RosWorld&) = delete;
+  RosDriver(const ros::NodeHandle& nh, double timeout, Peers peers);
+  RosDriver(const RosDriver&) = delete;
+  RosDriver& operator=(const RosDriver&) = delete;
 
   TrialOutcome runTrial(const TrialRequest& request, const PhaseCallback& progress) override;
   TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,

@@ -1,4 +1,4 @@
-// Algorithm 1 of the paper: adaptive MPC in feature space, in whatever world.
+// Algorithm 1 of the paper: adaptive MPC in feature space, in whatever driver.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiment.h"
 
@@ -17,9 +17,9 @@ namespace {
 /// One pass through the loop of Algorithm 1, in four phases.
 class Loop {
  public:
-  Loop(const Configuration& configuration, World* world, RunFolder* folder, Progress* progress)
+  Loop(const Configuration& configuration, Driver* driver, RunFolder* folder, Progress* progress)
       : configuration_(configuration),
-        world_(*world),
+        driver_(*driver),
         folder_(*folder),
         progress_(*progress),
         plant_(makePlant(*configuration.plant)),
@@ -29,20 +29,20 @@ class Loop {
   void start() {
     const StartOptions& start = configuration_.start;
     if (!start.model.empty()) {
-      if (!world_.useModel(start.model)) {
+      if (!driver_.useModel(start.model)) {
         throw std::logic_error("method " + configuration_.experiment.method +
                                " cannot use the model " + start.model);
       }
     } else if (!start.bags.empty()) {
       progress_.beginPhase(0, "train");
-      world_.train(start.bags, requestFor(0, /*evaluation=*/false).id, update_);
+      driver_.train(start.bags, requestFor(0, /*evaluation=*/false).id, update_);
     }
   }
 
   /// Goes on after this trial: with its model, which is trained again only where none was saved.
   void resumeAfter(int trial) {
     const std::string model = folder_.modelPath(trial);
-    if (!boost::filesystem::exists(model) || !world_.useModel(model)) train(trial);
+    if (!boost::filesystem::exists(model) || !driver_.useModel(model)) train(trial);
   }
 
   void recordTrial(int trial) {
@@ -51,21 +51,21 @@ class Loop {
     TrialRequest request = requestFor(trial, /*evaluation=*/false);
     request.epsilon = random ? 1.0 : configuration_.mpc.epsilon;
     request.bag = newBag(trial, /*evaluation=*/false);
-    folder_.writeTrial(trial, world_.runTrial(request, update_));
+    folder_.writeTrial(trial, driver_.runTrial(request, update_));
   }
 
   TrainingOutcome train(int trial) {
     progress_.beginPhase(trial, "train");
     std::vector<std::string> bags = configuration_.start.bags;
     for (int k = 0; k <= trial; ++k) bags.push_back(folder_.bagPath(k));
-    return world_.train(bags, requestFor(trial, /*evaluation=*/false).id, update_);
+    return driver_.train(bags, requestFor(trial, /*evaluation=*/false).id, update_);
   }
 
   TrialOutcome evaluateGreedily(int trial) {
     progress_.beginPhase(trial, "evaluate");
     TrialRequest request = requestFor(trial, /*evaluation=*/true);
     if (configuration_.evaluation.record) request.bag = newBag(trial, /*evaluation=*/true);
-    return world_.runTrial(request, update_);
+    return driver_.runTrial(request, update_);
   }
 
   TrialRow rowOf(int trial, const TrainingOutcome& training, const TrialOutcome& greedy) const {
@@ -111,7 +111,7 @@ class Loop {
   }
 
   const Configuration& configuration_;
-  World& world_;
+  Driver& driver_;
   RunFolder& folder_;
   Progress& progress_;
   std::unique_ptr<Plant> plant_;
@@ -126,11 +126,11 @@ std::string firstTrial(const StartOptions& start) {
 
 }  // namespace
 
-void runExperiment(const Configuration& configuration, World* world, RunFolder* folder,
+void runExperiment(const Configuration& configuration, Driver* driver, RunFolder* folder,
                    Progress* progress,
                    const std::function<void(const std::vector<TrialRow>&)>& show) {
   const auto start = std::chrono::steady_clock::now();
-  Loop loop(configuration, world, folder, progress);
+  Loop loop(configuration, driver, folder, progress);
   const ExperimentOptions& options = configuration.experiment;
   progress->note("preset " + options.preset + ", plant " + options.plant + ", seed " +
                  std::to_string(options.seed) + ", " + std::to_string(options.trials) +

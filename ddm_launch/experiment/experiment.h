@@ -1,4 +1,4 @@
-// Algorithm 1 of the paper: adaptive MPC in feature space, in whatever world.
+// Algorithm 1 of the paper: adaptive MPC in feature space, in whatever driver.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "configuration.h"
+#include "driver.h"
 #include "progress.h"
 #include "run_folder.h"
-#include "world.h"
 
 namespace ddm {
 
@@ -24,7 +24,7 @@ namespace ddm {
 /// @param show  called with the rows of all finished trials, at the start and after each trial
 /// @throws std::runtime_error with what failed; all finished trials are kept
 void runExperiment(
-    const Configuration& configuration, World* world, RunFolder* folder, Progress* progress,
+    const Configuration& configuration, Driver* driver, RunFolder* folder, Progress* progress,
     const std::function<void(const std::vector<TrialRow>&)>& show = [](const auto&) {});
 
 }  // namespace ddm

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "world.h"
+#include "driver.h"
 
 namespace ddm {
 
