@@ -43,7 +43,9 @@ TEST(MpcPolicy, PlansToTheGoalItIsGivenWhateverTheModelHas) {
     EXPECT_EQ(policy.hasGoal(), model_has_goal);
     policy.startTrial(TrialId());
     policy.observe(randomGrey(8, 3));
-    if (!model_has_goal) EXPECT_THROW(policy.plan(), std::logic_error);
+    if (!model_has_goal) {
+      EXPECT_THROW(policy.plan(), std::logic_error);
+    }
     for (const unsigned seed : {4U, 5U}) {
       policy.setGoal(randomGrey(8, seed));
       EXPECT_EQ(policy.plan().goal_feature, model->encode(randomGrey(8, seed)));
