@@ -123,7 +123,8 @@ TEST_F(ExperimentTest, BagsToStartFromCountAsTrialsBeforeTheFirst) {
   driver_.calls.clear();
   configuration_.experiment.trials = 1;  // taken up: nothing is started once more
   run();
-  EXPECT_EQ(driver_.calls, (Calls{"train 0", "run 1", "train 1", "evaluate 1"}));
+  EXPECT_EQ(driver_.calls,
+            (Calls{"use " + file("trial_000/model.ddm"), "run 1", "train 1", "evaluate 1"}));
 }
 
 TEST_F(ExperimentTest, EachRunHasItsOwnIdentity) {
@@ -278,7 +279,7 @@ TEST_F(ExperimentTest, ADriverThatFailsBeforeTheFirstResultLeavesTheFolderAsItWa
   const auto before = testing::fingerprintOf(scratch_.file("run"));
   configuration_.experiment.trials = 3;
   driver_ = ObedientDriver();
-  driver_.fails_at = 1;  // train 2
+  driver_.fails_at = 1;  // use the model of trial 2
   EXPECT_THROW(run(), std::runtime_error);
   EXPECT_EQ(testing::fingerprintOf(scratch_.file("run")), before);
 }
@@ -311,7 +312,7 @@ TEST_F(ExperimentTest, ADriverThatFailsLeavesTheFinishedTrialsAndNoVerdict) {
     EXPECT_FALSE(fs::exists(file("summary.yaml")));
     driver_ = ObedientDriver();
     run();
-    EXPECT_EQ(driver_.calls[0], "train 0");
+    EXPECT_EQ(driver_.calls[0], "use " + file("trial_000/model.ddm"));
     EXPECT_EQ(driver_.calls[1], "run 1");
     EXPECT_EQ(numRows(), 3u);
   }

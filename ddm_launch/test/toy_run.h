@@ -180,8 +180,10 @@ class ObedientDriver : public Driver {
   }
 
   bool useModel(const std::string& path) override {
-    if (has_models) calls.push_back("use " + path);
-    return has_models;
+    if (!has_models) return false;
+    calls.push_back("use " + path);
+    if (calls.size() == fails_at) throw std::runtime_error("the model is damaged");
+    return true;
   }
 
   bool has_models = true;               ///< that can be saved

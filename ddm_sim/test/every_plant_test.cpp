@@ -43,7 +43,7 @@ std::vector<Candidate> candidates() {
   for (const fs::directory_entry& entry : fs::directory_iterator(DDM_SIM_SOURCE_DIR "/config")) {
     const std::string path = entry.path().string();
     const std::string name = entry.path().stem().string();
-    if (name == "sim") continue;
+    if (name == "sim" || name == "robot") continue;  // no plants
     out.push_back({name, [path] { return makerOfFile(path); }});
   }
   std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
