@@ -78,6 +78,7 @@ run_build() {  # release|debug|thread
 start_debug_build() {
   mkdir -p "$DDM_WS/debug"
   rm -f "$DDM_WS/debug/build.code"
+  : >"$DDM_WS/debug/build.log"  # there before anybody follows it
   export checkout
   setsid bash -c "$(declare -f)"'
     lower_priority
