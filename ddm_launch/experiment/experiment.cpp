@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiment.h"
 
+#include <ddm_bag_io/bag_cache.h>
 #include <ddm_sim/plant_factory.h>
 
 #include <boost/filesystem.hpp>
@@ -39,8 +40,11 @@ class Loop {
     }
   }
 
-  /// Goes on after this trial: with its model, which is trained again only where none was saved.
+  /// Goes on after this trial: with its model, which is trained again only where none was saved. A
+  /// bag that the next training could not read is refused here, before anything moves.
   void resumeAfter(int trial) {
+    const ModelConfig& learner = configuration_.model;
+    BagCache(learner.image.size, learner.data_set).read(bagsUpTo(trial));
     const std::string model = folder_.modelPath(trial);
     if (!boost::filesystem::exists(model) || !driver_.useModel(model)) train(trial);
   }
@@ -56,9 +60,7 @@ class Loop {
 
   TrainingOutcome train(int trial) {
     progress_.beginPhase(trial, "train");
-    std::vector<std::string> bags = configuration_.start.bags;
-    for (int k = 0; k <= trial; ++k) bags.push_back(folder_.bagPath(k));
-    return driver_.train(bags, requestFor(trial, /*evaluation=*/false).id, update_);
+    return driver_.train(bagsUpTo(trial), requestFor(trial, /*evaluation=*/false).id, update_);
   }
 
   TrialOutcome evaluateGreedily(int trial) {
@@ -90,6 +92,12 @@ class Loop {
   }
 
  private:
+  std::vector<std::string> bagsUpTo(int trial) const {
+    std::vector<std::string> bags = configuration_.start.bags;
+    for (int k = 0; k <= trial; ++k) bags.push_back(folder_.bagPath(k));
+    return bags;
+  }
+
   std::string newBag(int trial, bool evaluation) {
     std::vector<std::string> kept;
     const std::string bag = folder_.beginRun(trial, evaluation, &kept);

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_bag_io/bag_writer.h>
+#include <ddm_images/image_codec.h>
+#include <ddm_msgs/Torque.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ddm_sim/plant_factory.h>
 #include <ddm_sim/testing/toy_plant.h>
@@ -141,6 +144,18 @@ inline std::map<std::string, std::string> fingerprintOf(const std::string& folde
   return found;
 }
 
+/// A bag of one black frame.
+inline void writeToyBag(const std::string& path) {
+  const int size = ImageOptions().size;
+  BagWriter bag(path, BagOptions());
+  bag.write(encodeImage(Grey(static_cast<std::size_t>(size) * size, 0), size, ros::Time(1.0), ""));
+  ddm_msgs::Torque torque;
+  torque.header.stamp = ros::Time(1.0);
+  torque.torque = {0.0};
+  bag.write(torque);
+  bag.close();
+}
+
 /// Notes what is asked of it. Every greedy run ends where `state` says.
 class ObedientDriver : public Driver {
  public:
@@ -149,7 +164,7 @@ class ObedientDriver : public Driver {
                     std::to_string(request.id.trial));
     requests.push_back(request);
     if (calls.size() == fails_at) throw std::runtime_error("the camera fell down");
-    if (!request.bag.empty()) writeText(request.bag, "a bag");
+    if (!request.bag.empty()) writeToyBag(request.bag);
     progress(1.0);
     TrialOutcome outcome;
     for (int step = 0; step < request.num_steps; ++step) {

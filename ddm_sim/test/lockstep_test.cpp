@@ -51,6 +51,7 @@ TEST_F(Lockstep, ShowsClockAndGoalButNoImageBeforeTheFirstReset) {
 TEST_F(Lockstep, ResetTellsTheStampOfTheGoalImage) {
   ASSERT_FALSE(client_->goals.empty());
   EXPECT_EQ(client_->reset(0).goal, client_->goals.back().header.stamp);
+  EXPECT_TRUE(client_->waitForImages(1));  // or it would be the next test's
 }
 
 TEST_F(Lockstep, ShowsTheGoalStateOnTheGoalImage) {

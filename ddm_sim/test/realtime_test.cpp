@@ -30,11 +30,11 @@ class Realtime : public SimNodeTest {
     });
   }
 
-  /// Waits for the next image.
+  /// Waits for the next image; its ground truth may come before or after it.
   /// @return its stamp
   static ros::Time nextImage() {
     const std::size_t seen = client_->images.size();
-    EXPECT_TRUE(client_->waitForImages(seen + 1));
+    EXPECT_TRUE(client_->waitUntil([seen] { return client_->images.size() > seen; }));
     return client_->images[seen].header.stamp;
   }
 
@@ -90,6 +90,9 @@ TEST_F(Realtime, WhatIsPublishedAsAppliedIsWhatTheMotorHadUntilTheNextImage) {
     if (stamps.size() % 3 == 0) client_->publish(stamps[stamps.size() - 2], {-torque});
     stamps.push_back(nextImage());
   }
+  ASSERT_TRUE(client_->waitUntil([&stamps] {
+    return !client_->truths.empty() && client_->truths.back().header.stamp >= stamps.back();
+  }));
   int num_acted = 0;
   for (std::size_t i = 0; i + 1 < stamps.size(); ++i) {
     const std::vector<double> applied = appliedAt(stamps[i]);
