@@ -86,8 +86,8 @@ def usage_commands(text):
 
 def program_of(command):
     """Name of the program or launch file that a command starts, or None for one of the shell."""
-    found = re.search(r"\b(?:rosrun|roslaunch(?: --wait)?|catkin_find --libexec) \w+ (figure \w+|\w[\w.]*)|scripts/(\w+\.sh)",
-                      command)
+    found = re.search(r"\b(?:rosrun|roslaunch(?: --wait)?|catkin_find --libexec) \w+ (figure \w+|\w[\w.]*)|"
+                      r"(?:scripts|qa)/(\w+\.sh)", command)
     return found and (found.group(1) or found.group(2))
 
 

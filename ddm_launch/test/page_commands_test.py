@@ -139,7 +139,7 @@ class PageCommandsTest(SharedScratchCase):
             return {"--benchmark_filter"}
         name, *words = program.split()
         path = (find_program(package.group(1), name) if package
-                else os.path.join(pages.CHECKOUT, "ddm_launch", "scripts", name))
+                else os.path.join(pages.CHECKOUT, "ddm_launch", "qa" if name == "fuzz.sh" else "scripts", name))
         code, output = call((["bash"] if name.endswith(".sh") else []) + [path] + words + ["--help"])
         assert code == 0, output
         return set(re.findall(r"--\w[\w-]*", output))
