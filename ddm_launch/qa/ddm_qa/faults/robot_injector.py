@@ -12,7 +12,7 @@ from std_msgs.msg import Float64
 
 from ddm_qa.faults.configuration import configuration
 from ddm_qa.faults.finished import Finished
-from ddm_launch.robot_check import show_goal_and_enable
+from ddm_launch.robot_check import PlantGoal, show_goal_and_enable
 
 ON_A_ROBOT = " on a robot"
 # (trial, whether it is the evaluation after it), by phase without ON_A_ROBOT.
@@ -132,7 +132,7 @@ def main():
     limit = rospy.get_param("~slack")
     if not injector.fault.startswith("exceed"):  # which is seen at once: nothing has to stay away first
         limit += 2.0 * configuration()["robot"]["dt"]
-    show_goal_and_enable()
+    show_goal_and_enable(PlantGoal("pendulum"))
     rospy.spin()
     injector.end(limit)
     return 0
