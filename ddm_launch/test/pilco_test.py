@@ -34,8 +34,8 @@ class PilcoTest(ScratchCase):
             self.assertIn(method + ": PILCO on ", output)
 
     def test_a_method_that_does_not_fit_the_plant_is_refused(self):
-        self.assertRefused(1, ["plant/type moving_tile", "method pilco_features"], "--method", "pilco_state", "--plant",
-                           "moving_tile", "--out", self.out)
+        self.assertRefused(1, ["method pilco_features"], "--method", "pilco_state", "--plant", "moving_tile",
+                           "--out", self.out)
         joint = self.write("joint.yaml", "training: {schedule: joint}\n")
         self.assertRefused(1, ["training/schedule must be v_r_only", "got joint"], "--method", "pilco_features",
                            "--config", joint, *self.debug(trials=0))
