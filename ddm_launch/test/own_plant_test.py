@@ -70,6 +70,12 @@ class OwnPlantTest(BothDriversCase):
         self.assertEqual(list(plant), PLANT_KEYS)
         self.assertEqual((plant["type"], plant["friction"]), ("ddm_cart/Cart", 2.0))
 
+    def test_a_sweep_finds_the_plant_in_the_workspace_that_is_sourced(self):
+        code, output = call([find_program("ddm_launch", "sweep"), "--preset", "debug", "--plant", "ddm_cart/cart",
+                             "--seeds", "1:2", "--trials", "0", "--out", self.out])
+        self.assertEqual(code, 0, output)
+        self.assertEqual(read_rows(self.out, "sweep.csv")[1][:3], ["1", "0", "30"])
+
     def test_simulate_knows_the_plant(self):
         with open(self.write("torques.csv", "force_n\n2\n2\n")) as stream:
             text = subprocess.check_output([find_program("ddm_sim", "simulate"), "--plant", "ddm_cart/cart", "--start",

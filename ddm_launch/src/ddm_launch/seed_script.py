@@ -76,9 +76,13 @@ class SeedProgram:
 
 
 def find_setup(program):
-    """The setup.bash of the workspace that holds this program, which other hosts source first."""
+    """The setup.bash that each seed sources first, on other hosts too.
+
+    That of the topmost workspace that is sourced here: it may hold plants that the workspace of the program does not
+    know. Where none is, that of the program.
+    """
     prefix = os.path.dirname(os.path.dirname(os.path.dirname(program)))  # PREFIX/lib/ddm_launch/PROGRAM
-    for folder in [prefix] + os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep):
+    for folder in os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep) + [prefix]:
         path = os.path.join(folder, "setup.bash")
         if folder and os.path.isfile(path):
             return path
