@@ -126,4 +126,6 @@ def script_of(text):
 
 
 def test_path(test):
-    return os.path.join(os.path.dirname(os.path.abspath(__file__)), test)
+    """Of a test of this package, or of the robot side in ddm_sim."""
+    paths = [os.path.join(pages.CHECKOUT, package, "test", test) for package in ("ddm_launch", "ddm_sim")]
+    return next(path for path in paths if os.path.isfile(path))
