@@ -25,8 +25,15 @@ inline std::string repaired(std::string bytes) {
   return bytes;
 }
 
-/// Version 2 of the format, which serialiseModel() writes; version 1 is only read.
-inline bool isOfThisVersion(const std::string& bytes) { return bytes.size() > 8 && bytes[8] == 2; }
+/// Whether what was read and written again is bit for bit as it was. Not looked at where it was of
+/// another version of the format; of an ensemble, which older programs wrote, only the first model
+/// is kept, and the last number written is how many others there are.
+inline bool comesBack(const std::string& read, const std::string& written) {
+  constexpr std::size_t kVersionAt = 8, kContentAt = 24, kNumOthers = 4;
+  if (read[kVersionAt] != written[kVersionAt]) return true;
+  const std::size_t size = written.size() - kContentAt - kNumOthers;
+  return read.compare(kContentAt, size, written, kContentAt, size) == 0;
+}
 
 }  // namespace testing
 }  // namespace ddm

@@ -49,15 +49,27 @@ const std::map<std::string, MakePlugin>& ownPlants() {
   return plants;
 }
 
+std::vector<std::string> ownTypes() {
+  std::vector<std::string> types;
+  for (const auto& plant : ownPlants()) types.push_back(plant.first);
+  return types;
+}
+
 std::shared_ptr<PlantPlugin> makePlugin(const std::string& type) {
   const auto own = ownPlants().find(type);
   if (own != ownPlants().end()) return own->second();
+  if (type.find('/') == std::string::npos) {
+    throw std::invalid_argument(
+        "plant/type must be a plant of ddm_sim or PACKAGE/CLASS of another "
+        "package, got \"" +
+        type + "\": there are " + joined(ownTypes()));
+  }
   // Never destroyed: the plants that it has loaded, and their code, live until the program ends.
   static auto* const loader =
       new pluginlib::ClassLoader<PlantPlugin>("ddm_sim", "ddm::PlantPlugin");
   if (!loader->isClassAvailable(type)) {
     std::vector<std::string> known = loader->getDeclaredClasses();
-    for (const auto& plant : ownPlants()) known.push_back(plant.first);
+    for (const std::string& own_type : ownTypes()) known.push_back(own_type);
     std::sort(known.begin(), known.end());
     throw std::invalid_argument("plant/type must be a plant of this workspace, got \"" + type +
                                 "\": there are " + joined(known) +
