@@ -1,12 +1,15 @@
 // resolve: the configuration of a launch as one text, from the arguments of the launch.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_params/config_blocks.h>
+#include <ddm_params/param_value.h>
 #include <ddm_params/tool.h>
 #include <ddm_plant_plugin/plant_config.h>
+#include <ddm_sim/plant_factory.h>
 
 #include <boost/filesystem.hpp>
 #include <cstdio>
 #include <iostream>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -59,12 +62,14 @@ void setCrop(const std::string& text, Arguments* arguments) {
 
 /// The robot is a stand-in: this plant, simulated.
 void setMotors(const std::string& plant, Arguments* arguments) {
-  const YAML::Node blocks = readBlocks(plantFile(plant));
-  const YAML::Node block = blocks["plant"];
-  if (!block.IsDefined() || !block.IsMap() || !block["max_torque"].IsDefined()) {
-    throw po::error("--motors-of " + plant + ": " + plantFile(plant) + " has no plant/max_torque");
-  }
-  arguments->values["robot"]["max_torque"] = block["max_torque"];
+  ParamReader reader = ParamReader::fromFiles({plantFile(plant)});
+  const std::shared_ptr<const PlantPlugin> plugin = readPlant(&reader);
+  reader.requireValid();
+  const Eigen::VectorXd limits = makePlant(*plugin)->info().max_torque;
+  arguments->values["robot"]["max_torque"] =
+      limits.size() == 1
+          ? valueToYaml(limits[0])
+          : valueToYaml(std::vector<double>(limits.data(), limits.data() + limits.size()));
 }
 
 /// Command line without the options that have an empty value: launch files pass an argument that

@@ -37,6 +37,12 @@ class ResolveTest(ScratchCase):
         self.assertEqual(blocks["show"]["frame_rate"], 2.0)
         self.assertEqual(blocks["trial"]["num_steps"], 30)  # of the preset
 
+    def test_a_stand_in_robot_has_the_motors_of_its_plant(self):
+        for plant, limits in (("pendulum", 6.0), ("moving_tile", [5.0, 5.0]), ("two_link", [4.0, 2.0])):
+            blocks = self.resolve("--motors-of", plant)
+            self.assertEqual(blocks["robot"]["max_torque"], limits, plant)
+            self.assertEqual(blocks["model"]["max_torque"], limits, plant)
+
     def test_paths_are_those_of_the_folder_where_it_was_called(self):
         blocks = self.resolve("--runs", "runs/one", "--model", "m.ddm", "--bags", "a.bag", "/b.bag",
                               "--set", "robot/goal_file=goal.png")
