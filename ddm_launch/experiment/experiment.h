@@ -1,4 +1,4 @@
-// Algorithm 1 of the paper: adaptive MPC in feature space, in whatever driver.
+// Algorithm 1 of the paper: adaptive MPC in feature space, whoever runs its trials.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
