@@ -3,8 +3,11 @@
 #include "closed_loop.h"
 
 #include <ddm_images/image_codec.h>
+#include <ddm_model/per_motor.h>
 
 #include <cmath>
+#include <string>
+#include <utility>
 
 namespace ddm {
 namespace {
@@ -19,17 +22,30 @@ ros::Time stampOf(const Rig& rig) {
 }  // namespace
 
 void runClosedLoop(Rig* rig, EpsilonGreedy* policy, const TrialId& id, int image_size,
-                   int num_frames, const std::function<void(const ClosedLoopFrame&)>& take) {
+                   int num_frames, const TakeFrame& take) {
   Picture picture = rig->reset(id.seed, id.trial, id.evaluation);
   policy->setGoal(decodeImage(imageMessage(rig->goalImage(), stampOf(*rig)), image_size));
+  const std::string optical_frame = opticalFrame(rig->plant().cameraModel());
   ClosedLoopFrame frame;
   for (frame.index = 0; frame.index < num_frames; ++frame.index) {
     if (frame.index > 0) picture = rig->stepUntilSeen(frame.decision.torque);
-    frame.image = imageMessage(picture, stampOf(*rig));
+    frame.image = imageMessage(picture, stampOf(*rig), optical_frame);
     frame.grey = decodeImage(frame.image, image_size);
     frame.decision = policy->decide(frame.grey);
     take(frame);
   }
+}
+
+void runClosedLoop(Rig* rig, std::shared_ptr<Policy> policy, const TrialRequest& request,
+                   const Configuration& configuration, const TakeFrame& take) {
+  EpsilonGreedy::Options options;
+  options.epsilon = request.epsilon;
+  options.hold_steps = request.hold_steps;
+  options.max_torque =
+      perMotor(configuration.mpc.max_torque, rig->plant().torqueDim(), "mpc/max_torque");
+  EpsilonGreedy explorer(request.epsilon < 1.0 ? std::move(policy) : nullptr, options, request.id);
+  runClosedLoop(rig, &explorer, request.id, configuration.model.image.size, request.num_steps,
+                take);
 }
 
 }  // namespace ddm

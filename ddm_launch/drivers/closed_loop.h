@@ -8,6 +8,10 @@
 #include <sensor_msgs/Image.h>
 
 #include <functional>
+#include <memory>
+
+#include "configuration.h"
+#include "driver.h"
 
 namespace ddm {
 
@@ -19,11 +23,19 @@ struct ClosedLoopFrame {
   Decision decision;
 };
 
+using TakeFrame = std::function<void(const ClosedLoopFrame&)>;
+
 /// Runs `num_frames` frames from the start of the run `id` on, towards the goal of that run. Time
 /// goes on where a frame is lost.
 /// @param image_size  `image/size` [pixels]
 /// @param take        called for each frame before its torque acts; the last torque does not act
 void runClosedLoop(Rig* rig, EpsilonGreedy* policy, const TrialId& id, int image_size,
-                   int num_frames, const std::function<void(const ClosedLoopFrame&)>& take);
+                   int num_frames, const TakeFrame& take);
+
+/// The same for a trial of an experiment, with its exploration.
+/// @param policy  may be null where the trial is random
+/// @throws std::invalid_argument if it is null where it is needed
+void runClosedLoop(Rig* rig, std::shared_ptr<Policy> policy, const TrialRequest& request,
+                   const Configuration& configuration, const TakeFrame& take);
 
 }  // namespace ddm

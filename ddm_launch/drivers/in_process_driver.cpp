@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "in_process_driver.h"
 
-#include <ddm_model/per_motor.h>
+#include <ddm_bag_io/bag_writer.h>
 #include <ddm_msgs/Torque.h>
 #include <ddm_sim/plant_factory.h>
 
 #include <stdexcept>
 
 #include "closed_loop.h"
+#include "method_kinds.h"
 
 namespace ddm {
 namespace {
@@ -28,7 +29,7 @@ void write(const sensor_msgs::Image& image, const Decision& decision, BagWriter*
 InProcessDriver::InProcessDriver(const Configuration& configuration)
     : configuration_(configuration),
       rig_(makePlant(*configuration.plant), configuration.camera),
-      method_(configuration.method->make(configuration, rig_.plant())) {
+      method_(methodKind(configuration.experiment.method).make(configuration, rig_.plant())) {
   if (!configuration.sim.lockstep) {
     throw std::invalid_argument(
         "sim/lockstep must be true where everything runs in one process: use experiment.launch for "
@@ -36,48 +37,31 @@ InProcessDriver::InProcessDriver(const Configuration& configuration)
   }
 }
 
-EpsilonGreedy InProcessDriver::makePolicy(const TrialRequest& request) const {
-  EpsilonGreedy::Options options;
-  options.epsilon = request.epsilon;
-  options.hold_steps = request.hold_steps;
-  options.max_torque =
-      perMotor(configuration_.mpc.max_torque, rig_.plant().torqueDim(), "mpc/max_torque");
-  return EpsilonGreedy(request.epsilon < 1.0 ? method_->policy() : nullptr, options, request.id);
-}
-
-std::unique_ptr<BagWriter> InProcessDriver::openBag(const TrialRequest& request) {
-  if (request.bag.empty()) return nullptr;
-  return std::make_unique<BagWriter>(request.bag, configuration_.model.data_set);
-}
-
 TrialOutcome InProcessDriver::runTrial(const TrialRequest& request, const PhaseCallback& progress) {
-  EpsilonGreedy policy = makePolicy(request);
-  const std::unique_ptr<BagWriter> bag = openBag(request);
+  std::unique_ptr<BagWriter> bag;
+  if (!request.bag.empty()) {
+    bag = std::make_unique<BagWriter>(request.bag, configuration_.model.data_set);
+  }
   TrialOutcome outcome;
-  runClosedLoop(&rig_, &policy, request.id, configuration_.model.image.size, request.num_steps,
-                [&](const ClosedLoopFrame& frame) {
-                  const Decision& decision = frame.decision;
-                  outcome.times.push_back(rig_.time());
-                  outcome.states.push_back(rig_.plant().state());
-                  outcome.torques.push_back(decision.torque);
-                  outcome.exploratory.push_back(decision.exploratory);
-                  if (decision.goal_distance)
-                    outcome.goal_distances.push_back(*decision.goal_distance);
-                  if (decision.solve_time) outcome.solve_times.push_back(*decision.solve_time);
-                  if (bag != nullptr && frame.index == 0) {
-                    const ros::Time begin = frame.image.header.stamp;
-                    bag->writeGoal(imageMessage(rig_.goalImage(), begin), begin);
-                  }
-                  if (bag != nullptr) write(frame.image, decision, bag.get());
-                  progress((frame.index + 1.0) / request.num_steps);
-                });
+  const auto take = [&](const ClosedLoopFrame& frame) {
+    const Decision& decision = frame.decision;
+    outcome.times.push_back(rig_.time());
+    outcome.states.push_back(rig_.plant().state());
+    outcome.torques.push_back(decision.torque);
+    outcome.exploratory.push_back(decision.exploratory);
+    if (decision.goal_distance) outcome.goal_distances.push_back(*decision.goal_distance);
+    if (decision.solve_time) outcome.solve_times.push_back(*decision.solve_time);
+    if (bag != nullptr && frame.index == 0) {
+      const ros::Time begin = frame.image.header.stamp;
+      const std::string& frame_id = frame.image.header.frame_id;
+      bag->writeGoal(imageMessage(rig_.goalImage(), begin, frame_id), begin);
+    }
+    if (bag != nullptr) write(frame.image, decision, bag.get());
+    progress((frame.index + 1.0) / request.num_steps);
+  };
+  runClosedLoop(&rig_, method_->policy(), request, configuration_, take);
   if (bag != nullptr) bag->close();
   return outcome;
-}
-
-TrainingOutcome InProcessDriver::train(const std::vector<std::string>& bags, const TrialId& id,
-                                       const PhaseCallback& progress) {
-  return method_->train(bags, id, progress);
 }
 
 }  // namespace ddm

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_bag_io/bag_writer.h>
-#include <ddm_mpc/epsilon_greedy.h>
 #include <ddm_sim/rig.h>
 
 #include <memory>
@@ -25,13 +23,12 @@ class InProcessDriver : public Driver {
 
   TrialOutcome runTrial(const TrialRequest& request, const PhaseCallback& progress) override;
   TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,
-                        const PhaseCallback& progress) override;
+                        const PhaseCallback& progress) override {
+    return method_->train(bags, id, progress);
+  }
   bool useModel(const std::string& path) override { return method_->useModel(path); }
 
  private:
-  EpsilonGreedy makePolicy(const TrialRequest& request) const;
-  std::unique_ptr<BagWriter> openBag(const TrialRequest& request);
-
   const Configuration& configuration_;
   Rig rig_;
   std::unique_ptr<Method> method_;

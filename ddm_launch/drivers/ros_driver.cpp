@@ -3,25 +3,22 @@
 #include "ros_driver.h"
 
 #include <ddm_bag_io/model_message.h>
-#include <ddm_files/plain_file.h>
-#include <ddm_model/model_file.h>
 #include <ddm_msgs/StartRecording.h>
 #include <ddm_msgs/StopRecording.h>
 #include <ddm_msgs/topics.h>
 #include <ddm_node/topic_peers.h>
+#include <ddm_node/waiting.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <chrono>
 #include <map>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
-#include "connections.h"
-#include "service_call.h"
-#include "simulated_time.h"
+#include "start.h"
 
 namespace ddm {
 namespace {
@@ -81,28 +78,25 @@ void RosDriver::connect() {
     const std::string name = nh_.resolveName(topic);
     const auto exists = [name] { return ros::service::exists(name, /*print_failure=*/false); };
     waitFor([&] { return answerWithin(timeout_, exists).value_or(false); },
-            "service " + name + " is not offered");
+            [&] { return "service " + name + " is not offered"; });
+  };
+  const auto action = [this](const auto& client, const char* topic) {
+    waitFor([&] { return client.isServerConnected(); },
+            [&] { return "action " + nh_.resolveName(topic) + " is not offered"; });
   };
   service(topics::kReset);
   if (peers_.recorder) service(topics::kStartRecording);
-  waitFor([this] { return trial_client_.isServerConnected(); },
-          "action " + nh_.resolveName(topics::kRunTrial) + " is not offered");
-  if (peers_.trainer) {
-    waitFor([this] { return train_client_.isServerConnected(); },
-            "action " + nh_.resolveName(topics::kTrain) + " is not offered");
-  }
+  action(trial_client_, topics::kRunTrial);
+  if (peers_.trainer) action(train_client_, topics::kTrain);
   std::vector<std::string> missing;
   const auto connected = [&] {
     missing = missingConnections(loopTopics(nh_));
     return missing.empty();
   };
-  try {
-    waitFor(connected, "");
-  } catch (const std::exception&) {
-    std::string text = "nodes do not find each other:";
-    for (const std::string& connection : missing) text += "\n - " + connection;
-    throw std::runtime_error(text + "\nCheck ROS_HOSTNAME or ROS_IP on each machine");
-  }
+  waitFor(connected, [&] {
+    return "nodes do not find each other: check ROS_HOSTNAME or ROS_IP on each machine\n - " +
+           boost::algorithm::join(missing, "\n - ");
+  });
   // Before a process logs its first line roscpp asks the master for a parameter: one that is
   // stopped later would keep the process from telling it.
   ROS_INFO("all nodes are there and connected");
@@ -114,35 +108,24 @@ void RosDriver::signOfLife() {
 }
 
 /// Waits for a condition, which is checked whenever a callback has changed something.
+/// @param what  says what is missing: without the lock, since it may ask the master
 /// @throws std::runtime_error if nobody gave a sign of life within the timeout, or on shutdown
-void RosDriver::waitFor(const std::function<bool()>& condition, const std::string& what) {
-  for (;;) {
-    if (condition()) return;
+void RosDriver::waitFor(const std::function<bool()>& condition,
+                        const std::function<std::string()>& what) {
+  while (!condition()) {
     if (!ros::ok()) throw std::runtime_error(kInterrupted);
     std::unique_lock<std::mutex> lock(mutex_);
     if ((ros::WallTime::now() - last_sign_of_life_).toSec() > timeout_) {
-      throw std::runtime_error(what + waited(timeout_));
+      lock.unlock();
+      throw std::runtime_error(what() + waited(timeout_));
     }
     changed_.wait_for(lock, kLook);
   }
 }
 
-/// The same for messages: the error tells who publishes them, for which the master is asked.
-void RosDriver::waitForMessages(const std::function<bool()>& condition, const std::string& what,
-                                const ros::Subscriber& subscriber) {
-  try {
-    waitFor(condition, what);
-  } catch (const std::exception& e) {
-    if (!ros::ok()) throw;
-    throw std::runtime_error(std::string(e.what()) + ", " +
-                             describePublishers(subscriber.getTopic()));
-  }
-}
-
 template <class Service>
-void RosDriver::call(const char* topic, ros::ServiceClient* client, Service* service,
-                     double limit) {
-  callService(nh_.resolveName(topic), client, service, limit);
+void RosDriver::call(const char* topic, Service* service, double limit) {
+  callService(nh_.resolveName(topic), &service_clients_[topic], service, limit);
   signOfLife();
 }
 
@@ -183,7 +166,7 @@ auto RosDriver::execute(Client* client, const std::string& name, const Goal& goa
   client->sendGoal(goal, on_done, typename Client::SimpleActiveCallback(), on_feedback);
   spinner_.start();
   try {
-    waitFor(is_done, "action " + name + " shows no sign of life");
+    waitFor(is_done, [&] { return "action " + name + " shows no sign of life"; });
   } catch (const std::exception&) {
     client->cancelGoal();
     throw;
@@ -206,9 +189,10 @@ void RosDriver::refuseIntruders() const {
   names.emplace_back("/clock");
   const std::vector<std::string> shared = sharedTopics(names);
   if (shared.empty()) return;
-  std::string text = "the trial is not used, since more than one node may have had a part in it:";
-  for (const std::string& topic : shared) text += "\n - " + topic;
-  throw std::runtime_error(text + "\nStop all publishers but one; the same command resumes");
+  throw std::runtime_error(
+      "the trial is not used, since more than one node may have had a part in it: stop all "
+      "publishers but one; the same command resumes\n - " +
+      boost::algorithm::join(shared, "\n - "));
 }
 
 TrialOutcome RosDriver::runTrial(const TrialRequest& request, const PhaseCallback& progress) {
@@ -240,7 +224,7 @@ void RosDriver::startRecording(const std::string& bag) {
   ddm_msgs::StartRecording service;
   service.request.path = bag;
   service.request.after = last_image_;
-  call(topics::kStartRecording, &start_client_, &service, timeout_);
+  call(topics::kStartRecording, &service, timeout_);
 }
 
 void RosDriver::stopRecording(int num_steps, const ros::Time& last, const ros::Time& goal) {
@@ -248,7 +232,7 @@ void RosDriver::stopRecording(int num_steps, const ros::Time& last, const ros::T
   service.request.num_steps = static_cast<std::uint32_t>(num_steps);
   service.request.last = last;
   service.request.goal = goal;
-  call(topics::kStopRecording, &stop_client_, &service, timeout_);
+  call(topics::kStopRecording, &service, timeout_);
   if (service.response.pairs < service.request.num_steps) {
     ROS_WARN("%u of %d images had their torque in time: only these are learned from",
              service.response.pairs, num_steps);
@@ -261,7 +245,7 @@ ddm_msgs::Reset::Response RosDriver::reset(const TrialRequest& request) {
   service.request.trial = request.id.trial;
   service.request.evaluation = request.id.evaluation;
   service.request.num_steps = static_cast<std::uint32_t>(request.num_steps);
-  call(topics::kReset, &reset_client_, &service, timeout_ + peers_.reset_timeout);
+  call(topics::kReset, &service, timeout_ + peers_.reset_timeout);
   return service.response;
 }
 
@@ -296,7 +280,7 @@ ddm_msgs::RunTrialResult RosDriver::runPolicy(const TrialRequest& request,
 void RosDriver::takeGroundTruth(const std::vector<ros::Time>& stamps, TrialOutcome* outcome) {
   if (ground_truth_sub_.getNumPublishers() == 0) return;
   std::map<ros::Time, sensor_msgs::JointState> truth;
-  waitForMessages(
+  waitFor(
       [&] {
         const std::lock_guard<std::mutex> lock(mutex_);
         awaits_ground_truth_ = true;
@@ -305,7 +289,10 @@ void RosDriver::takeGroundTruth(const std::vector<ros::Time>& stamps, TrialOutco
         return std::all_of(stamps.begin(), stamps.end(),
                            [&](const ros::Time& stamp) { return truth.count(stamp) > 0; });
       },
-      "ground truth of the trial is incomplete", ground_truth_sub_);
+      [&] {
+        return "ground truth of the trial is incomplete, " +
+               describePublishers(ground_truth_sub_.getTopic());
+      });
   const std::lock_guard<std::mutex> lock(mutex_);
   awaits_ground_truth_ = false;
   for (const ros::Time& stamp : stamps) {
@@ -342,7 +329,7 @@ TrainingOutcome RosDriver::train(const std::vector<std::string>& bags, const Tri
 }
 
 bool RosDriver::useModel(const std::string& path) {
-  const ddm_msgs::Model model = toMessage(deserialiseModel(readFile(path), path), ros::Time::now());
+  const ddm_msgs::Model model = toMessage(*readModel(path), ros::Time::now());
   model_pub_ = nh_.advertise<ddm_msgs::Model>(topics::kModel, 1, /*latch=*/true);
   model_pub_.publish(model);
   model_id_ = model.id;
@@ -350,12 +337,14 @@ bool RosDriver::useModel(const std::string& path) {
 }
 
 std::string RosDriver::takeModel(const std::string& model_id) {
-  waitForMessages(
+  waitFor(
       [&] {
         const std::lock_guard<std::mutex> lock(mutex_);
         return model_ != nullptr && model_->id == model_id;
       },
-      "model " + model_id + " did not come", model_sub_);
+      [&] {
+        return "model " + model_id + " did not come, " + describePublishers(model_sub_.getTopic());
+      });
   const std::lock_guard<std::mutex> lock(mutex_);
   return std::string(model_->data.begin(), model_->data.end());
 }

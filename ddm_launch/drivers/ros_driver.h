@@ -13,6 +13,7 @@
 
 #include <condition_variable>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -62,12 +63,10 @@ class RosDriver : public Driver {
   auto execute(Client* client, const std::string& name, const Goal& goal,
                const FractionOf& fraction_of, const PhaseCallback& progress);
   template <class Service>
-  void call(const char* topic, ros::ServiceClient* client, Service* service, double limit);
+  void call(const char* topic, Service* service, double limit);
   void refuseIntruders() const;
   void signOfLife();
-  void waitFor(const std::function<bool()>& condition, const std::string& what);
-  void waitForMessages(const std::function<bool()>& condition, const std::string& what,
-                       const ros::Subscriber& subscriber);
+  void waitFor(const std::function<bool()>& condition, const std::function<std::string()>& what);
 
   ros::CallbackQueue callbacks_;
   ros::NodeHandle nh_;  // with that queue
@@ -85,9 +84,7 @@ class RosDriver : public Driver {
 
   actionlib::SimpleActionClient<ddm_msgs::RunTrialAction> trial_client_;
   actionlib::SimpleActionClient<ddm_msgs::TrainAction> train_client_;
-  ros::ServiceClient reset_client_;  // connected by the first call
-  ros::ServiceClient start_client_;
-  ros::ServiceClient stop_client_;
+  std::map<std::string, ros::ServiceClient> service_clients_;  // by topic, since the first call
   ros::Subscriber ground_truth_sub_;
   ros::Subscriber model_sub_;
   ros::Publisher model_pub_;   // of a saved model

@@ -6,52 +6,10 @@
 #include <ddm_model/schedule.h>
 #include <ddm_sim/plant_factory.h>
 
-#include <algorithm>
 #include <sstream>
 #include <stdexcept>
 
-#include "method.h"
-
 namespace ddm {
-namespace {
-
-/// What no block can see by itself.
-std::vector<std::string> contradictions(const Configuration& all) {
-  std::vector<std::string> out;
-  const auto require = [&out](bool ok, const std::string& rule, const auto& value) {
-    if (ok) return;
-    std::ostringstream text;
-    text << rule << ", got " << value;
-    out.push_back(text.str());
-  };
-  const std::string motor = all.robot ? "robot/max_torque" : "plant/max_torque";
-  const Eigen::VectorXd& of_plant = all.plant_info.max_torque;
-  const std::vector<double> limits =
-      all.robot ? all.robot->max_torque
-                : std::vector<double>(of_plant.data(), of_plant.data() + of_plant.size());
-  require(within(all.mpc.max_torque, limits),
-          "mpc/max_torque must be at most " + motor + ", beyond which the motor saturates",
-          limitsText(all.mpc.max_torque));
-  require(within(all.mpc.max_torque, all.model.model.max_torque),
-          "mpc/max_torque must be at most model/max_torque, which scales what f sees",
-          limitsText(all.mpc.max_torque));
-  require(all.mpc.time_budget <= (all.robot ? all.robot->dt : all.plant_info.dt),
-          std::string("mpc/time_budget must be at most ") + (all.robot ? "robot/dt" : "plant/dt") +
-              ", when the next image comes",
-          all.mpc.time_budget);
-  require(all.evaluation.settled_steps_strict <= all.trial.num_steps,
-          "evaluation/settled_steps_strict must be at most trial/num_steps",
-          all.evaluation.settled_steps_strict);
-  require(all.trial.num_steps > all.model.model.pca_dim,
-          "trial/num_steps must be more than model/pca_dim: the first model has one trial to learn "
-          "from",
-          all.trial.num_steps);
-  require(all.trial.num_steps > all.model.model.order,
-          "trial/num_steps must be more than model/order", all.trial.num_steps);
-  return out;
-}
-
-}  // namespace
 
 Configuration readEachBlock(ParamReader* reader) {
   Configuration all;
@@ -71,10 +29,40 @@ Configuration readEachBlock(ParamReader* reader) {
   return all;
 }
 
-void requireConsistent(const Configuration& configuration) {
-  std::string problems;
-  for (const std::string& problem : contradictions(configuration)) problems += "\n - " + problem;
-  if (!problems.empty()) throw std::invalid_argument("invalid configuration:" + problems);
+void requireConsistent(const Configuration& all) {
+  std::ostringstream problems;
+  const auto require = [&problems](bool ok, const std::string& rule, const auto& value) {
+    if (!ok) problems << "\n - " << rule << ", got " << value;
+  };
+  const std::string owner = all.robot ? "robot" : "plant";
+  const Eigen::VectorXd& of_plant = all.plant_info.max_torque;
+  const std::vector<double> limits =
+      all.robot ? all.robot->max_torque
+                : std::vector<double>(of_plant.data(), of_plant.data() + of_plant.size());
+  const std::string torques = limitsText(all.mpc.max_torque);
+  const ModelOptions& model = all.model.model;
+  const int num_steps = all.trial.num_steps;
+  require(
+      within(all.mpc.max_torque, limits),
+      "mpc/max_torque must be at most " + owner + "/max_torque, beyond which the motor saturates",
+      torques);
+  require(within(all.mpc.max_torque, model.max_torque),
+          "mpc/max_torque must be at most model/max_torque, which scales what f sees", torques);
+  require(all.mpc.time_budget <= (all.robot ? all.robot->dt : all.plant_info.dt),
+          "mpc/time_budget must be at most " + owner + "/dt, when the next image comes",
+          all.mpc.time_budget);
+  require(all.evaluation.settled_steps_strict <= all.evaluation.stepsWith(all.trial),
+          "evaluation/settled_steps_strict must be at most trial/num_steps, or "
+          "evaluation/num_steps where that is given",
+          all.evaluation.settled_steps_strict);
+  require(num_steps > model.pca_dim,
+          "trial/num_steps must be more than model/pca_dim: the first model has one trial to learn "
+          "from",
+          num_steps);
+  require(num_steps > model.order, "trial/num_steps must be more than model/order", num_steps);
+  if (problems.tellp() > 0) {
+    throw std::invalid_argument("invalid configuration:" + problems.str());
+  }
 }
 
 Configuration readConfiguration(ParamReader* reader) {
@@ -96,15 +84,14 @@ YAML::Node toYaml(const Configuration& configuration) {
   if (!configuration.start.empty()) out["start"] = toYaml(configuration.start);
   out["trial"] = toYaml(configuration.trial);
   out["evaluation"] = toYaml(configuration.evaluation);
+  if (configuration.evaluation.num_steps == 0) out["evaluation"].remove("num_steps");
   out["plant"] = configuration.plant->block();
   out["camera"] = toYaml(configuration.camera);
   out["sim"] = toYaml(configuration.sim);
   for (const auto& block : toYaml(configuration.model)) out[block.first] = block.second;
   out["mpc"] = toYaml(configuration.mpc);
   if (configuration.robot) out["robot"] = toYaml(*configuration.robot);
-  if (configuration.method != nullptr) {
-    for (const auto& block : configuration.method->blocks()) out[block.first] = block.second;
-  }
+  for (const auto& block : configuration.method_blocks) out[block.first] = block.second;
   return out;
 }
 

@@ -19,8 +19,6 @@
 
 namespace ddm {
 
-class MethodSetup;
-
 struct Configuration {
   ExperimentOptions experiment;
   StartOptions start;
@@ -32,8 +30,8 @@ struct Configuration {
   SimOptions sim;
   ModelConfig model;
   MpcOptions mpc;
-  std::optional<RobotOptions> robot;          ///< empty: a simulated plant
-  std::shared_ptr<const MethodSetup> method;  ///< null: the nodes, whose method is ddm
+  std::optional<RobotOptions> robot;  ///< empty: a simulated plant
+  YAML::Node method_blocks;           ///< those that experiment/method alone reads, by name
 };
 
 /// Reads all blocks and checks each.
@@ -51,8 +49,8 @@ Configuration readConfiguration(ParamReader* reader);
 /// @throws std::invalid_argument if the schedule leaves f random, which no plan can follow
 void requireLearnedPrediction(const TrainingOptions& training);
 
-/// All blocks by name, in the order above, `start` only where it says something, those of the
-/// method last.
+/// All blocks by name, in the order above, `start` and evaluation/num_steps only where they say
+/// something, those of the method last.
 YAML::Node toYaml(const Configuration& configuration);
 
 }  // namespace ddm

@@ -1,39 +1,37 @@
-// Headers and numbers of CSV files.
+// Lines and cells of CSV files.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "csv_text.h"
+
+#include <ddm_params/param_value.h>
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <boost/lexical_cast.hpp>
 #include <cmath>
-#include <cstdio>
 #include <sstream>
 #include <stdexcept>
 
 namespace ddm {
 
-std::string csvHeader(const std::string& first, const std::vector<std::string>& names) {
-  std::string text = first;
-  for (const std::string& name : names) text += "," + name;
-  return text;
+std::string csvCell(double value) { return formatDouble(value); }
+
+std::string csvCell(const std::optional<double>& value) { return value ? csvCell(*value) : ""; }
+
+std::string csvCell(const Eigen::VectorXd& values) {
+  std::ostringstream text;
+  text.precision(17);
+  for (Eigen::Index i = 0; i < values.size(); ++i) text << (i == 0 ? "" : ",") << values[i];
+  return text.str();
 }
 
-std::string csvValues(const Eigen::VectorXd& row) {
-  std::string text;
-  for (Eigen::Index i = 0; i < row.size(); ++i) {
-    char value[32];
-    std::snprintf(value, sizeof(value), ",%.17g", row[i]);
-    text += value;
-  }
-  return text;
-}
+std::string csvCell(const std::vector<std::string>& names) { return boost::join(names, ","); }
 
 void parseCsv(const std::string& text, const std::string& header, const std::string& source,
               const std::function<void(const std::vector<std::string>& cells)>& take) {
   std::istringstream in(text);
   std::string line;
-  if (!std::getline(in, line) || line != header) {
-    throw std::runtime_error(source + ", line 1: must be " + header);
+  if (!std::getline(in, line) || line + "\n" != header) {
+    throw std::runtime_error(source + ", line 1: must be " + boost::trim_right_copy(header));
   }
   const auto num_columns = std::count(header.begin(), header.end(), ',') + 1;
   for (int number = 2; std::getline(in, line); ++number) {
@@ -61,9 +59,14 @@ double csvNumber(const std::string& cell) {
   return value;
 }
 
-std::vector<std::string> featureNames(int feature_dim) {
+bool csvFlag(const std::string& cell) {
+  if (cell != "0" && cell != "1") throw std::runtime_error("'" + cell + "' must be 0 or 1");
+  return cell == "1";
+}
+
+std::vector<std::string> featureNames(int feature_dim, const std::string& name) {
   std::vector<std::string> names;
-  for (int i = 1; i <= feature_dim; ++i) names.push_back("z_" + std::to_string(i));
+  for (int i = 1; i <= feature_dim; ++i) names.push_back(name + "_" + std::to_string(i));
   return names;
 }
 

@@ -43,21 +43,25 @@ struct TrainingOutcome {
   std::uint32_t evaluations = 0;
 };
 
-/// Errors are std::runtime_error with what failed and what to do.
-class Driver {
+/// Who learns. Errors are std::runtime_error with what failed and what to do.
+class Learner {
  public:
-  virtual ~Driver() = default;
+  virtual ~Learner() = default;
 
-  /// Brings the plant to its start and runs one trial, with the last model trained.
-  virtual TrialOutcome runTrial(const TrialRequest& request, const PhaseCallback& progress) = 0;
-
-  /// Trains on all bags and keeps the model for the trials to come.
+  /// Trains on all bags and keeps the model for the trials to come. What an earlier training
+  /// left is in the folders of the bags.
   virtual TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,
                                 const PhaseCallback& progress) = 0;
 
   /// Acts by a saved model in the trials to come, until one is trained.
   /// @return false if it acts by what cannot be saved: nothing has changed
-  virtual bool useModel(const std::string& path) = 0;
+  virtual bool useModel(const std::string& /*path*/) { return false; }
+};
+
+class Driver : public Learner {
+ public:
+  /// Brings the plant to its start and runs one trial, with the last model trained.
+  virtual TrialOutcome runTrial(const TrialRequest& request, const PhaseCallback& progress) = 0;
 };
 
 }  // namespace ddm

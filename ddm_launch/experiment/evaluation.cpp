@@ -30,19 +30,38 @@ Evaluation settled(const std::vector<double>& errors, double tolerance,
   return evaluation;
 }
 
+/// Time steps between a frame and the next one; 1 after the last.
+int stepsAfter(std::size_t frame, const std::vector<double>& times, double dt) {
+  if (frame + 1 >= times.size()) return 1;
+  return std::max(1, static_cast<int>(std::lround((times[frame + 1] - times[frame]) / dt)));
+}
+
+/// @return as Evaluation::total_reward
+std::optional<double> totalReward(const Plant& plant, const std::vector<Eigen::VectorXd>& states,
+                                  const std::vector<Eigen::VectorXd>& torques,
+                                  const std::vector<double>& times) {
+  std::optional<double> sum;
+  auto steps_left = static_cast<int>(states.size());
+  for (std::size_t t = 0; t < states.size() && t < torques.size() && steps_left > 0; ++t) {
+    const int num_steps = std::min(stepsAfter(t, times, plant.info().dt), steps_left);
+    const std::optional<double> reward = plant.stepReward(states[t], torques[t], num_steps);
+    if (reward) sum = sum.value_or(0.0) + *reward;
+    steps_left -= num_steps;
+  }
+  return sum;
+}
+
 }  // namespace
 
 Evaluation evaluate(const Plant& plant, const std::vector<Eigen::VectorXd>& states,
-                    const std::vector<Eigen::VectorXd>& torques, const EvaluationOptions& options) {
+                    const std::vector<Eigen::VectorXd>& torques, const EvaluationOptions& options,
+                    const std::vector<double>& times) {
   if (states.empty()) return Evaluation();
   std::vector<double> errors;
   for (const Eigen::VectorXd& state : states) errors.push_back(plant.goalError(state));
   Evaluation evaluation = settled(errors, options.tolerance, options);
   evaluation.final_error = errors.back();
-  for (std::size_t t = 0; t < states.size() && t < torques.size(); ++t) {
-    const std::optional<double> reward = plant.reward(states[t], torques[t]);
-    if (reward) evaluation.total_reward = evaluation.total_reward.value_or(0.0) + *reward;
-  }
+  evaluation.total_reward = totalReward(plant, states, torques, times);
   return evaluation;
 }
 

@@ -20,7 +20,10 @@ struct Evaluation {
   bool success_strict = false;  ///< the last settled_steps_strict frames within it
   /// Plant::goalError() at the last frame; empty without ground truth.
   std::optional<double> final_error;
-  /// Sum of the plant's rewards; empty without ground truth, or if the plant has none.
+  /// Sum of Plant::stepReward() over as many steps as there are frames, from the first frame on:
+  /// those between two frames count whether the camera showed them or not, and a run that took
+  /// longer because frames were lost earns no more for it. Empty without ground truth, or if the
+  /// plant has none.
   std::optional<double> total_reward;
 };
 
@@ -28,9 +31,11 @@ struct Evaluation {
 /// @param states   the plant's state at each frame; empty: no ground truth
 /// @param torques  one for each frame
 /// @param options  completed by those of the plant
+/// @param times    of the frames [s], each torque acts until the next one; empty: none was lost
 /// @throws std::invalid_argument if there are fewer frames than settled_steps_strict
 Evaluation evaluate(const Plant& plant, const std::vector<Eigen::VectorXd>& states,
-                    const std::vector<Eigen::VectorXd>& torques, const EvaluationOptions& options);
+                    const std::vector<Eigen::VectorXd>& torques, const EvaluationOptions& options,
+                    const std::vector<double>& times = {});
 
 /// The same by the features that the policy saw, where nobody tells the true state.
 /// @param goal_distances  of each frame, see Policy::goalDistance(); empty: nothing is known

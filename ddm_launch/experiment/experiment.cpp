@@ -9,7 +9,6 @@
 #include <chrono>
 #include <stdexcept>
 
-#include "code_version.h"
 #include "evaluation.h"
 
 namespace ddm {
@@ -36,7 +35,7 @@ class Loop {
       }
     } else if (!start.bags.empty()) {
       progress_.beginPhase(0, "train");
-      driver_.train(start.bags, requestFor(0, /*evaluation=*/false).id, update_);
+      driver_.train(start.bags, requestFor(configuration_, 0, /*evaluation=*/false).id, update_);
     }
   }
 
@@ -52,43 +51,36 @@ class Loop {
   void recordTrial(int trial) {
     const bool random = trial == 0 && configuration_.start.empty();
     progress_.beginPhase(trial, random ? "random" : "explore");
-    TrialRequest request = requestFor(trial, /*evaluation=*/false);
+    TrialRequest request = requestFor(configuration_, trial, /*evaluation=*/false);
     request.epsilon = random ? 1.0 : configuration_.mpc.epsilon;
     request.bag = newBag(trial, /*evaluation=*/false);
-    folder_.writeTrial(trial, driver_.runTrial(request, update_));
+    folder_.writeRun(trial, /*evaluation=*/false, driver_.runTrial(request, update_));
   }
 
   TrainingOutcome train(int trial) {
     progress_.beginPhase(trial, "train");
-    return driver_.train(bagsUpTo(trial), requestFor(trial, /*evaluation=*/false).id, update_);
+    return driver_.train(bagsUpTo(trial),
+                         requestFor(configuration_, trial, /*evaluation=*/false).id, update_);
   }
 
   TrialOutcome evaluateGreedily(int trial) {
     progress_.beginPhase(trial, "evaluate");
-    TrialRequest request = requestFor(trial, /*evaluation=*/true);
+    TrialRequest request = requestFor(configuration_, trial, /*evaluation=*/true);
     if (configuration_.evaluation.record) request.bag = newBag(trial, /*evaluation=*/true);
     return driver_.runTrial(request, update_);
   }
 
-  TrialRow rowOf(int trial, const TrainingOutcome& training, const TrialOutcome& greedy) const {
-    TrialRow row;
-    row.seed = configuration_.experiment.seed;
-    row.trial = trial;
+  void finish(int trial, const TrainingOutcome& training, const TrialOutcome& greedy) {
+    TrialRow row = rowOf(requestFor(configuration_, trial, /*evaluation=*/true).id, greedy,
+                         configuration_.evaluation, plant_.get());
     row.frames = training.frames;
-    plant_->setGoal(goalOf(*plant_, static_cast<std::uint64_t>(row.seed),
-                           static_cast<std::uint32_t>(trial), /*evaluation=*/true));
-    row.evaluation =
-        greedy.states.empty()
-            ? evaluateFeatures(greedy.goal_distances, configuration_.evaluation)
-            : evaluate(*plant_, greedy.states, greedy.torques, configuration_.evaluation);
     row.v_r = training.v_r;
     row.v_p = training.v_p;
     row.train_s = training.seconds;
     row.train_evaluations = training.evaluations;
-    row.plan_ms_median = 1e3 * quantile(greedy.solve_times, 0.5);
-    row.plan_ms_p99 = 1e3 * quantile(greedy.solve_times, 0.99);
     row.version = codeVersion();
-    return row;
+    folder_.finishTrial(row);
+    progress_.finishTrial(folder_.rows());
   }
 
  private:
@@ -106,16 +98,6 @@ class Loop {
                      name);
     }
     return bag;
-  }
-
-  TrialRequest requestFor(int trial, bool evaluation) const {
-    TrialRequest request;
-    request.id.seed = static_cast<std::uint64_t>(configuration_.experiment.seed);
-    request.id.trial = static_cast<std::uint32_t>(trial);
-    request.id.evaluation = evaluation;
-    request.num_steps = configuration_.trial.num_steps;
-    request.hold_steps = configuration_.mpc.hold_steps;
-    return request;
   }
 
   const Configuration& configuration_;
@@ -140,13 +122,13 @@ void runExperiment(const Configuration& configuration, Driver* driver, RunFolder
   const auto start = std::chrono::steady_clock::now();
   Loop loop(configuration, driver, folder, progress);
   const ExperimentOptions& options = configuration.experiment;
+  for (const std::string& warning : folder->warnings()) progress->note("warning: " + warning);
   progress->note("preset " + options.preset + ", plant " + options.plant + ", seed " +
                  std::to_string(options.seed) + ", " + std::to_string(options.trials) +
                  " trials after " + firstTrial(configuration.start));
   const int num_finished = static_cast<int>(folder->rows().size());
   show(folder->rows());
   const bool all_done = num_finished > configuration.experiment.trials;
-  if (!all_done) folder->requireWritable();
   if (num_finished > 0) {
     progress->note("resuming after trial " + std::to_string(num_finished - 1));
     if (!all_done) loop.resumeAfter(num_finished - 1);
@@ -158,15 +140,39 @@ void runExperiment(const Configuration& configuration, Driver* driver, RunFolder
     const TrainingOutcome training = loop.train(trial);
     folder->writeTraining(trial, training);
     const TrialOutcome greedy = loop.evaluateGreedily(trial);
-    folder->writeEvaluation(trial, greedy);
-    folder->finishTrial(loop.rowOf(trial, training, greedy));
-    progress->finishTrial(folder->rows());
+    folder->writeRun(trial, /*evaluation=*/true, greedy);
+    loop.finish(trial, training, greedy);
     show(folder->rows());
   }
   const double wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!all_done || !folder->isFinished()) folder->writeSummary(wall_s);
   progress->summary(folder->rows(), folder->path(), wall_s);
+}
+
+TrialRequest requestFor(const Configuration& configuration, int trial, bool evaluation) {
+  TrialRequest request;
+  request.id.seed = static_cast<std::uint64_t>(configuration.experiment.seed);
+  request.id.trial = static_cast<std::uint32_t>(trial);
+  request.id.evaluation = evaluation;
+  request.num_steps = evaluation ? configuration.evaluation.stepsWith(configuration.trial)
+                                 : configuration.trial.num_steps;
+  request.hold_steps = configuration.mpc.hold_steps;
+  return request;
+}
+
+TrialRow rowOf(const TrialId& id, const TrialOutcome& greedy, const EvaluationOptions& options,
+               Plant* plant) {
+  TrialRow row;
+  row.seed = static_cast<int>(id.seed);
+  row.trial = static_cast<int>(id.trial);
+  plant->setGoal(goalOf(*plant, id.seed, id.trial, id.evaluation));
+  row.evaluation = greedy.states.empty()
+                       ? evaluateFeatures(greedy.goal_distances, options)
+                       : evaluate(*plant, greedy.states, greedy.torques, options, greedy.times);
+  row.plan_ms_median = 1e3 * quantile(greedy.solve_times, 0.5);
+  row.plan_ms_p99 = 1e3 * quantile(greedy.solve_times, 0.99);
+  return row;
 }
 
 }  // namespace ddm

@@ -63,8 +63,9 @@ struct TrialOptions {
   std::vector<std::string> problems() const;
 };
 
-/// Block `evaluation`: when a greedy run is a success.
+/// Block `evaluation`: how long a greedy run lasts, and when it is a success.
 struct EvaluationOptions {
+  int num_steps = 0;              ///< its frames [-]; 0: the plant's own, else those of a trial
   double tolerance = 0.0;         ///< largest error [error_unit]; 0: the plant's own
   std::string error_unit;         ///< unit of the plant's error; empty: whatever it is
   int settled_steps = 10;         ///< last frames that must be within it: `success` [-]
@@ -74,6 +75,7 @@ struct EvaluationOptions {
 
   template <class Visitor>
   void visit(Visitor& visitor) {
+    visitor("num_steps", num_steps);
     visitor("tolerance", tolerance);
     visitor("error_unit", error_unit);
     visitor("settled_steps", settled_steps);
@@ -83,24 +85,13 @@ struct EvaluationOptions {
   }
   std::vector<std::string> problems() const;
 
+  int stepsWith(const TrialOptions& trial) const {
+    return num_steps > 0 ? num_steps : trial.num_steps;
+  }
+
   /// Fills in what the plant says.
   /// @throws std::invalid_argument if the error of this plant has another unit
   void complete(const PlantInfo& plant);
-};
-
-/// Block `prediction`: what prediction_experiment does.
-struct PredictionOptions {
-  int training_frames = 501;  ///< frames to learn from [-]
-  int held_out_frames = 100;  ///< frames after them to predict [-]
-  int max_steps = 8;          ///< longest prediction, steps [-]
-
-  template <class Visitor>
-  void visit(Visitor& visitor) {
-    visitor("training_frames", training_frames);
-    visitor("held_out_frames", held_out_frames);
-    visitor("max_steps", max_steps);
-  }
-  std::vector<std::string> problems() const;
 };
 
 }  // namespace ddm

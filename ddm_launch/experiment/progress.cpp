@@ -2,12 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "progress.h"
 
+#include <unistd.h>
+
 #include <algorithm>
-#include <cstdio>
+#include <boost/format.hpp>
+#include <iostream>
 #include <utility>
 
 namespace ddm {
 namespace {
+
+using boost::format;
 
 constexpr int kBarWidth = 24;
 constexpr std::chrono::milliseconds kRedrawPeriod(50);
@@ -17,20 +22,17 @@ int countSuccesses(const std::vector<TrialRow>& rows) {
       rows.begin(), rows.end(), [](const TrialRow& row) { return row.evaluation.success; }));
 }
 
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof(text), pattern, values...);
-  return text;
-}
-
 std::string verdictOf(const Evaluation& evaluation, const std::string& unit) {
+  if (!evaluation.known) return "no ground truth";
   if (!evaluation.final_error) return evaluation.success ? "success" : "no success";
-  return format("error %5.3g %s%s", *evaluation.final_error, unit.c_str(),
-                evaluation.success ? "  success" : "");
+  return str(format("error %5.3g %s%s") % *evaluation.final_error % unit %
+             (evaluation.success ? "  success" : ""));
 }
 
 }  // namespace
+
+Progress::Progress(int num_trials, std::string error_unit)
+    : Progress(&std::cout, ::isatty(STDOUT_FILENO) != 0, num_trials, std::move(error_unit)) {}
 
 Progress::Progress(std::ostream* out, bool live, int num_trials, std::string error_unit)
     : out_(out), live_(live), num_trials_(num_trials), error_unit_(std::move(error_unit)) {}
@@ -56,9 +58,8 @@ void Progress::draw(double fraction) {
   last_drawn_ = std::chrono::steady_clock::now();
   const int filled = static_cast<int>(kBarWidth * std::min(1.0, std::max(0.0, fraction)));
   const std::string bar = std::string(filled, '#') + std::string(kBarWidth - filled, '.');
-  *out_ << "\r\033[K"
-        << format("trial %2d/%d  %-10s [%s] %3.0f %%  %s", trial_, num_trials_, phase_.c_str(),
-                  bar.c_str(), 100.0 * fraction, success_so_far_.c_str())
+  *out_ << format("\r\033[Ktrial %2d/%d  %-10s [%s] %3.0f %%  %s") % trial_ % num_trials_ % phase_ %
+               bar % (100.0 * fraction) % success_so_far_
         << std::flush;
 }
 
@@ -69,18 +70,14 @@ void Progress::wipe() {
 void Progress::finishTrial(const std::vector<TrialRow>& rows) {
   wipe();
   const TrialRow& row = rows.back();
-  std::string verdict = "no ground truth";
   if (row.evaluation.known) {
-    verdict = verdictOf(row.evaluation, error_unit_);
-    success_so_far_ =
-        format("success %d of %d", countSuccesses(rows), static_cast<int>(rows.size()));
+    success_so_far_ = str(format("success %d of %d") % countSuccesses(rows) % rows.size());
   }
   // No more than 80 columns: a line that wraps is hard to read, and cannot be wiped.
-  const std::string training = row.v_r && row.v_p
-                                   ? format("V_R %8.3g  V_P %8.3g", *row.v_r, *row.v_p)
-                                   : format("trained in %6.1f s", row.train_s);
-  *out_ << format("trial %2d/%d  %5u frames  %s  %s", row.trial, num_trials_, row.frames,
-                  training.c_str(), verdict.c_str())
+  const format training = row.v_r && row.v_p ? format("V_R %8.3g  V_P %8.3g") % *row.v_r % *row.v_p
+                                             : format("trained in %6.1f s") % row.train_s;
+  *out_ << format("trial %2d/%d  %5u frames  %s  %s") % row.trial % num_trials_ % row.frames %
+               training % verdictOf(row.evaluation, error_unit_)
         << std::endl;
 }
 
@@ -100,7 +97,7 @@ void Progress::summary(const std::vector<TrialRow>& rows, const std::string& fol
     if (first != nullptr) *out_ << ", the first one after " << first->frames << " frames";
     *out_ << "\n";
   }
-  *out_ << format("%.1f s of training in all; this call took %.1f s\n", train_s, wall_s)
+  *out_ << format("%.1f s of training in all; this call took %.1f s\n") % train_s % wall_s
         << "results: " << folder << "/trials.csv" << std::endl;
 }
 

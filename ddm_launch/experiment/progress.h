@@ -15,6 +15,9 @@ namespace ddm {
 /// finished trial.
 class Progress {
  public:
+  /// On the standard output.
+  explicit Progress(int num_trials = 0, std::string error_unit = "");
+
   /// @param live        out is a terminal: draw the moving line
   /// @param num_trials  epsilon-greedy trials of the whole experiment
   /// @param error_unit  of the plant's error

@@ -7,9 +7,12 @@
 #include <ros/package.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <boost/filesystem.hpp>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
 namespace ddm {
@@ -31,21 +34,18 @@ std::string packageFolder(const std::string& package) {
   return path;
 }
 
-/// FOLDER/NAME.yaml
+/// ddm_launch/config/FOLDER/NAME.yaml
 /// @throws std::invalid_argument naming those that exist, if there is no such file
 std::string chooseFile(const std::string& folder, const std::string& name,
                        const std::string& kind) {
-  std::vector<std::string> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  const std::string path = packageFolder("ddm_launch") + "/config/" + folder;
+  std::set<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
+    if (entry.path().extension() == ".yaml") names.insert(entry.path().stem().string());
   }
-  std::sort(names.begin(), names.end());
-  if (std::find(names.begin(), names.end(), name) != names.end()) {
-    return folder + "/" + name + ".yaml";
-  }
-  std::string known;
-  for (const std::string& other : names) known += (known.empty() ? "" : ", ") + other;
-  throw std::invalid_argument("unknown " + kind + " '" + name + "': there are " + known);
+  if (names.count(name) > 0) return path + "/" + name + ".yaml";
+  throw std::invalid_argument("unknown " + kind + " '" + name + "': there are " +
+                              boost::algorithm::join(names, ", "));
 }
 
 std::vector<std::string> manuals() {
@@ -58,27 +58,29 @@ std::vector<std::string> manuals() {
           launch + "/pilco.yaml"};
 }
 
-/// A name in the block `experiment`, if it is there.
-std::optional<std::string> nameIn(const YAML::Node& blocks, const std::string& key) {
-  const YAML::Node experiment = blocks["experiment"];
-  if (!experiment.IsDefined() || !experiment.IsMap()) return {};
-  const YAML::Node name = experiment[key];
-  if (!name.IsDefined() || !name.IsScalar()) return {};
-  return name.Scalar();
+/// BLOCK/KEY, if it is there and has this type.
+template <class Value>
+std::optional<Value> valueAt(const YAML::Node& blocks, const std::string& block,
+                             const std::string& key) {
+  Value value{};
+  if (!hasKey(blocks, block, key) || !parseValue(blocks[block][key], &value)) return std::nullopt;
+  return value;
 }
 
 /// Preset, plant or method: the last layer that names it decides.
 std::string chosen(const std::string& key, const std::vector<Layer>& layers) {
   std::string name;
-  for (const Layer& layer : layers) name = nameIn(layer.blocks, key).value_or(name);
+  for (const Layer& layer : layers) {
+    name = valueAt<std::string>(layer.blocks, "experiment", key).value_or(name);
+  }
   return name;
 }
 
 /// A saved configuration holds every value of its plant: with another plant's name it would be a
 /// mixture of the two.
 void requirePlant(const std::string& plant, const Layer& config) {
-  const std::string theirs = nameIn(config.blocks, "plant").value_or(plant);
-  if (theirs == plant || !config.blocks["plant"].IsDefined()) return;
+  const std::string theirs = chosen("plant", {config});
+  if (theirs.empty() || theirs == plant || !config.blocks["plant"].IsDefined()) return;
   throw std::invalid_argument(config.file + " describes the plant " + theirs + ", not " + plant +
                               ": name that plant or none, or leave the file out and choose preset "
                               "and values yourself");
@@ -89,16 +91,12 @@ void requirePlant(const std::string& plant, const Layer& config) {
 void requireNuisance(const std::string& name, const Layer& config) {
   if (!config.blocks["version"].IsDefined()) return;
   const std::string file = nuisanceFile(name);
-  for (const auto& block : readBlocks(file)) {
-    const YAML::Node saved = config.blocks[block.first.Scalar()];
-    if (!saved.IsDefined() || !saved.IsMap()) continue;
+  const YAML::Node nuisance = readBlocks(file);
+  for (const auto& block : nuisance) {
     for (const auto& entry : block.second) {
-      double here = 0.0, there = 0.0;
-      const YAML::Node value = saved[entry.first.Scalar()];
-      if (!value.IsDefined() || !parseValue(value, &there) || !parseValue(entry.second, &here) ||
-          here == there) {
-        continue;
-      }
+      const std::string block_name = block.first.Scalar(), key = entry.first.Scalar();
+      const auto there = valueAt<double>(config.blocks, block_name, key);
+      if (!there || there == valueAt<double>(nuisance, block_name, key)) continue;
       throw std::invalid_argument(
           config.file + " describes an experiment without the nuisance " + name +
           ": leave the nuisance out, or give its file after that one, " + file);
@@ -108,12 +106,12 @@ void requireNuisance(const std::string& name, const Layer& config) {
 
 /// A file that is given instead of another one has another checksum.
 void forgetChecksums(const YAML::Node& values, YAML::Node* blocks) {
-  const YAML::Node start = values["start"];
-  if (!start.IsDefined() || !start.IsMap()) return;
-  YAML::Node below = (*blocks)["start"];
-  if (!below.IsDefined() || !below.IsMap()) return;
-  if (start["model"].IsDefined()) below.remove("model_id");
-  if (start["bags"].IsDefined()) below.remove("bag_ids");
+  if (hasKey(values, "start", "model") && hasKey(*blocks, "start", "model_id")) {
+    (*blocks)["start"].remove("model_id");
+  }
+  if (hasKey(values, "start", "bags") && hasKey(*blocks, "start", "bag_ids")) {
+    (*blocks)["start"].remove("bag_ids");
+  }
 }
 
 /// Whether the user, the preset, the plant or another layer above the manuals gives BLOCK/KEY.
@@ -126,6 +124,23 @@ void follow(const std::string& block, const std::string& key, const YAML::Node& 
   if (!values.IsDefined() || values.IsMap()) (*blocks)[block][key] = YAML::Clone(value);
 }
 
+/// A plant may know its motors where the YAML does not say all: how many they are, and in a model file
+/// their limits. Whoever reads the plant after this reports what is wrong with it.
+void askPlantForMotors(YAML::Node* blocks) {
+  const bool known = !ownerOfMotors(*blocks).empty() && !hasKey(*blocks, "plant", "model");
+  if ((*blocks)["robot"].IsDefined() || known) return;
+  ParamReader reader(*blocks, "");
+  std::shared_ptr<const PlantPlugin> plant;
+  try {
+    plant = readPlant(&reader);
+  } catch (const std::exception&) {
+    return;
+  }
+  if (!reader.problems().empty()) return;
+  const YAML::Node limits = plant->block()["max_torque"];
+  if (limits.IsDefined()) follow("plant", "max_torque", limits, blocks);
+}
+
 /// What a learner must know about its motors is written once: `max_torque` of the block `robot`,
 /// without a robot of the block `plant`. A list has one entry per motor.
 /// @throws std::invalid_argument if another number of motors is given
@@ -136,33 +151,26 @@ void shareMotors(const Given& given, YAML::Node* blocks) {
   for (const std::string learner : {"model", "mpc"}) {
     if (!given(learner, "max_torque")) follow(learner, "max_torque", limits, blocks);
   }
-  if (owner == "plant" && !limits.IsSequence())
-    return;  // one number holds for all motors of a plant
+  if (owner == "plant" && !limits.IsSequence()) return;  // one number holds for all its motors
   const int num_motors = limits.IsSequence() ? static_cast<int>(limits.size()) : 1;
   if (!given("controller", "torque_dim")) {
     follow("controller", "torque_dim", valueToYaml(num_motors), blocks);
     return;
   }
-  int torque_dim = num_motors;
-  parseValue((*blocks)["controller"]["torque_dim"], &torque_dim);  // else the reader refuses it
-  if (torque_dim == num_motors) return;
+  const auto torque_dim = valueAt<int>(*blocks, "controller", "torque_dim");
+  if (!torque_dim || torque_dim == num_motors) return;  // the reader refuses anything else
   throw std::invalid_argument("controller/torque_dim must be the number of motors in " + owner +
                               "/max_torque, " + std::to_string(num_motors) + ", got " +
-                              std::to_string(torque_dim) + ": leave it out");
+                              std::to_string(*torque_dim) + ": leave it out");
 }
 
 /// In real time a plan has to be there before the next image.
 void boundPlanning(const Given& given, YAML::Node* blocks) {
-  if (given("mpc", "time_budget")) return;
   const bool robot = (*blocks)["robot"].IsDefined();
-  bool lockstep = true;
-  if (hasKey(*blocks, "sim", "lockstep")) parseValue((*blocks)["sim"]["lockstep"], &lockstep);
-  const char* const clock = robot ? "robot" : "plant";
-  double dt = 0.0;
-  if ((!robot && lockstep) || !hasKey(*blocks, clock, "dt")) return;
-  if (parseValue((*blocks)[clock]["dt"], &dt)) {
-    follow("mpc", "time_budget", valueToYaml(0.5 * dt), blocks);
-  }
+  const bool lockstep = valueAt<bool>(*blocks, "sim", "lockstep").value_or(true);
+  if (given("mpc", "time_budget") || (!robot && lockstep)) return;
+  const auto dt = valueAt<double>(*blocks, robot ? "robot" : "plant", "dt");
+  if (dt) follow("mpc", "time_budget", valueToYaml(0.5 * *dt), blocks);
 }
 
 }  // namespace
@@ -182,7 +190,8 @@ ResolvedConfiguration resolve(const Arguments& arguments) {
   naming.insert(naming.end(), configs.begin(), configs.end());
   naming.push_back({"", values});
   const std::string plant = chosen("plant", naming);
-  std::vector<std::string> files = {presetFile(chosen("preset", naming)), plantFile(plant)};
+  std::vector<std::string> files = {chooseFile("presets", chosen("preset", naming), "preset"),
+                                    plantFile(plant)};
   const std::string of_method = methodFile(chosen("method", naming));
   if (!of_method.empty()) files.push_back(of_method);
   for (const std::string& name : arguments.nuisances) files.push_back(nuisanceFile(name));
@@ -206,17 +215,14 @@ ResolvedConfiguration resolve(const Arguments& arguments) {
     return std::any_of(layers.begin() + num_manuals, layers.end(),
                        [&](const Layer& layer) { return hasKey(layer.blocks, block, key); });
   };
+  askPlantForMotors(&resolved.blocks);
   shareMotors(given, &resolved.blocks);
   boundPlanning(given, &resolved.blocks);
   return resolved;
 }
 
-std::string presetFile(const std::string& preset) {
-  return chooseFile(packageFolder("ddm_launch") + "/config/presets", preset, "preset");
-}
-
 std::string nuisanceFile(const std::string& name) {
-  return chooseFile(packageFolder("ddm_launch") + "/config/nuisances", name, "nuisance");
+  return chooseFile("nuisances", name, "nuisance");
 }
 
 std::string methodFile(const std::string& method) {

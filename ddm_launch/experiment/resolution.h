@@ -38,7 +38,7 @@ struct ResolvedConfiguration {
 ///   defaults, preset, plant, method, nuisances, configs, values
 ///
 /// Where nothing above the defaults gives them, model/max_torque and mpc/max_torque are max_torque
-/// of the robot, without a robot of the plant; controller/torque_dim is the number of motors that
+/// of the robot, without a robot of the plant, which a model file may hold; controller/torque_dim is the number of motors that
 /// it lists; and in real time mpc/time_budget is half a time step. Preset, plant and method are
 /// those that `experiment` names in values, else in the last of the configs that names them, else
 /// in the defaults. A file that names its plant and has a block `plant` describes that plant, so it
@@ -49,10 +49,6 @@ struct ResolvedConfiguration {
 ///         is not the number of motors
 /// @throws std::runtime_error or std::invalid_argument as readBlocks(), for a file
 ResolvedConfiguration resolve(const Arguments& arguments);
-
-/// ddm_launch/config/presets/NAME.yaml
-/// @throws std::invalid_argument naming those that exist, if there is no such preset
-std::string presetFile(const std::string& preset);
 
 /// ddm_launch/config/nuisances/NAME.yaml: something that is wrong with the camera's images.
 /// @throws std::invalid_argument naming those that exist, if there is no such nuisance

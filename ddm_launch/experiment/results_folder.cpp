@@ -3,6 +3,9 @@
 #include "results_folder.h"
 
 #include <ddm_files/plain_file.h>
+#include <ddm_params/config_blocks.h>
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <boost/filesystem.hpp>
@@ -11,8 +14,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "code_version.h"
 #include "saved_configuration.h"
+#include "version.h"
 
 namespace ddm {
 namespace {
@@ -27,13 +30,34 @@ void makeFolders(const std::string& path) {
   }
 }
 
+/// Holds an existing folder while the result lives, or until the process ends, however it ends. The
+/// lock is on the folder itself and leaves no file in it.
+std::shared_ptr<const int> lockFolder(const std::string& folder) {
+  const std::shared_ptr<const int> descriptor(
+      new int(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)), [](const int* opened) {
+        ::close(*opened);
+        delete opened;
+      });
+  if (*descriptor < 0) {
+    throw std::runtime_error("cannot open the folder " + folder + ": " + std::strerror(errno));
+  }
+  if (::flock(*descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
+  if (errno == EWOULDBLOCK) {
+    throw std::runtime_error("another experiment is running in the folder " + folder +
+                             ": wait for it, or use another folder");
+  }
+  throw std::runtime_error("cannot lock the folder " + folder + ": " + std::strerror(errno));
+}
+
 }  // namespace
+
+std::string codeVersion() { return DDM_CODE_VERSION; }
 
 ResultsFolder::ResultsFolder(std::string path, YAML::Node configuration)
     : path_(std::move(path)), configuration_(std::move(configuration)) {
   if (path_.empty()) throw std::runtime_error("no folder was given for the results");
   if (!fs::exists(path_)) return;
-  lock_ = std::make_unique<FolderLock>(path_);
+  lock_ = lockFolder(path_);
   if (fs::exists(path_ + "/config.yaml")) {
     compareWith(path_ + "/config.yaml");
   } else if (fs::exists(path_ + "/trials.csv")) {
@@ -42,41 +66,30 @@ ResultsFolder::ResultsFolder(std::string path, YAML::Node configuration)
 }
 
 void ResultsFolder::compareWith(const std::string& file) {
-  SavedConfiguration there;
+  YAML::Node there;
   try {
-    there = readConfigurationText(readFile(file), file);
+    there = readBlocks(file);
   } catch (const std::exception& e) {
     throw std::runtime_error(file + " cannot be read (" + e.what() + "): use another folder");
   }
   const std::string differences =
-      differencesOf(there.values, keysOf(configuration_), fs::exists(path_ + "/trials.csv"));
+      differencesOf(there, configuration_, fs::exists(path_ + "/trials.csv"));
   if (!differences.empty()) {
     throw std::runtime_error("the folder " + path_ +
                              " holds another experiment, use another folder:" + differences);
   }
-  version_ = there.version;
-  if (there.version != codeVersion()) {
-    warnings_.push_back("the folder " + path_ + " was begun by version " + there.version +
-                        " of the code, this is " + codeVersion() +
-                        ": its results may not be comparable");
+  version_ = there["version"].IsDefined() ? there["version"].Scalar() : "?";
+  if (version_ != codeVersion()) {
+    warn("the folder " + path_ + " was begun by version " + version_ + " of the code, this is " +
+         codeVersion() + ": its results may not be comparable");
   }
-}
-
-void ResultsFolder::requireWritable() const {
-  fs::path folder = fs::absolute(path_);
-  while (!fs::exists(folder) && folder.has_parent_path()) folder = folder.parent_path();
-  const bool is_folder = fs::is_directory(folder);
-  if (is_folder && ::access(folder.c_str(), W_OK | X_OK) == 0) return;
-  const int error = is_folder ? errno : ENOTDIR;
-  throw std::runtime_error("cannot write into the folder " + path_ + ": " + folder.string() + ": " +
-                           std::strerror(error));
 }
 
 void ResultsFolder::begin() {
   if (begun_) return;
   if (lock_ == nullptr) {
     makeFolders(path_);
-    lock_ = std::make_unique<FolderLock>(path_);
+    lock_ = lockFolder(path_);
     if (fs::exists(path_ + "/config.yaml")) {
       throw std::runtime_error("another experiment was begun in the folder " + path_ +
                                " meanwhile: use another folder");
@@ -85,10 +98,8 @@ void ResultsFolder::begin() {
   YAML::Node versioned(YAML::NodeType::Map);
   versioned["version"] = version_;
   for (const auto& block : configuration_) versioned[block.first] = block.second;
-  const std::string file = path_ + "/config.yaml";
-  const std::string text = YAML::Dump(versioned) + "\n";
   fs::remove(path_ + "/summary.yaml");
-  if (!fs::exists(file) || readFile(file) != text) writeFileAtomically(file, text);
+  writeFileAtomically(path_ + "/config.yaml", YAML::Dump(versioned) + "\n");
   begun_ = true;
 }
 

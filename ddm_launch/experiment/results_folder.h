@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "code_version.h"
-#include "folder_lock.h"
-
 namespace ddm {
+
+/// Version of the package and commit that are running, "0.1.0 (1a2b3c4)".
+std::string codeVersion();
 
 /// Holds config.yaml, the effective configuration and the version of the code that began, and in
 /// the end summary.yaml. All files appear under their names only when they are complete.
@@ -30,10 +30,7 @@ class ResultsFolder {
   const std::string& path() const { return path_; }
   /// Things a user should know about a folder that is used again.
   const std::vector<std::string>& warnings() const { return warnings_; }
-
-  /// For programs that compute long before they write; changes nothing.
-  /// @throws std::runtime_error with path and reason if nothing can be written there
-  void requireWritable() const;
+  void warn(const std::string& text) { warnings_.push_back(text); }
 
   /// Makes the folder, keeps the configuration with the version that began, and takes back an
   /// earlier summary. Called by all that writes: before the first result, and no sooner, since a
@@ -61,7 +58,7 @@ class ResultsFolder {
   std::string path_;
   YAML::Node configuration_;
   std::string version_ = codeVersion();  // of the code that began
-  std::unique_ptr<FolderLock> lock_;     // null: the folder is not there yet
+  std::shared_ptr<const int> lock_;      // null: the folder is not there yet
   bool begun_ = false;
   std::vector<std::string> warnings_;
 };

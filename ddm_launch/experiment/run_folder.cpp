@@ -6,12 +6,11 @@
 #include <ddm_params/param_value.h>
 
 #include <boost/filesystem.hpp>
-#include <cstdio>
+#include <boost/format.hpp>
 #include <stdexcept>
 
-#include "torques_csv.h"
-#include "trajectory_csv.h"
-#include "trials_checksums.h"
+#include "csv_text.h"
+#include "run_csv.h"
 #include "trials_csv.h"
 
 namespace ddm {
@@ -21,12 +20,6 @@ namespace fs = boost::filesystem;
 
 constexpr char kRows[] = "trials.csv";
 constexpr char kChecksums[] = ".trials.crc32";
-
-std::string numbered(const std::string& name, int trial) {
-  char number[16];
-  std::snprintf(number, sizeof(number), "_%03d", trial);
-  return name + number;
-}
 
 /// Gives a file of an earlier try another name: "trial.bag" is "trial.1.bag" then, or
 /// "trial.2.bag".
@@ -43,8 +36,13 @@ std::string keep(const std::string& stem, const std::string& ending) {
 
 }  // namespace
 
+std::string runName(int trial, bool evaluation) {
+  return boost::str(boost::format("%s_%03d") % (evaluation ? "evaluation" : "trial") % trial);
+}
+
 RunFolder::RunFolder(const Configuration& configuration)
-    : configuration_(configuration), folder_(configuration.experiment.runs, toYaml(configuration)) {
+    : ResultsFolder(configuration.experiment.runs, toYaml(configuration)),
+      configuration_(configuration) {
   readRows(path() + "/" + kRows);
 }
 
@@ -67,8 +65,7 @@ void RunFolder::readRows(const std::string& file) {
   }
   const std::string checksums = path() + "/" + kChecksums;
   if (!fs::exists(checksums)) {
-    warnings_.push_back(file + " has no checksums beside it (" + kChecksums +
-                        "): it is taken as it is");
+    warn(file + " has no checksums beside it (" + kChecksums + "): it is taken as it is");
   } else if (!isUnchanged(text, rows_.size(), readFile(checksums))) {
     throw std::runtime_error(
         file + " is not as it was written: it does not match its checksum in " + checksums +
@@ -77,23 +74,17 @@ void RunFolder::readRows(const std::string& file) {
   }
 }
 
-std::vector<std::string> RunFolder::warnings() const {
-  std::vector<std::string> all = folder_.warnings();
-  all.insert(all.end(), warnings_.begin(), warnings_.end());
-  return all;
-}
-
 std::string RunFolder::bagPath(int trial) const {
-  return path() + "/" + numbered("trial", trial) + "/trial.bag";
+  return path() + "/" + runName(trial, /*evaluation=*/false) + "/trial.bag";
 }
 
 std::string RunFolder::modelPath(int trial) const {
-  return path() + "/" + numbered("trial", trial) + "/model.ddm";
+  return path() + "/" + runName(trial, /*evaluation=*/false) + "/model.ddm";
 }
 
 std::string RunFolder::beginRun(int trial, bool evaluation, std::vector<std::string>* kept) {
-  const std::string folder = numbered(evaluation ? "evaluation" : "trial", trial);
-  folder_.makeFolder(folder);
+  const std::string folder = runName(trial, evaluation);
+  makeFolder(folder);
   const std::string stem = path() + "/" + folder + "/trial";
   for (const char* ending : {".bag", ".bag.active"}) {
     const std::string kept_as = keep(stem, ending);
@@ -102,46 +93,33 @@ std::string RunFolder::beginRun(int trial, bool evaluation, std::vector<std::str
   return stem + ".bag";
 }
 
-void RunFolder::writeTrial(int trial, const TrialOutcome& outcome) {
-  writeRun(numbered("trial", trial), outcome);
-}
-
 void RunFolder::writeTraining(int trial, const TrainingOutcome& outcome) {
   for (const auto& file : outcome.files) {
-    folder_.write(numbered("trial", trial) + "/" + file.first, file.second);
+    write(runName(trial, /*evaluation=*/false) + "/" + file.first, file.second);
   }
 }
 
-void RunFolder::writeEvaluation(int trial, const TrialOutcome& outcome) {
-  writeRun(numbered("evaluation", trial), outcome);
-}
-
-void RunFolder::writeRun(const std::string& folder, const TrialOutcome& outcome) {
-  folder_.write(folder + "/torques.csv", formatTorquesCsv({outcome.torques, outcome.exploratory},
-                                                          configuration_.plant_info.torque_names));
+void RunFolder::writeRun(int trial, bool evaluation, const TrialOutcome& outcome) {
+  const PlantInfo& plant = configuration_.plant_info;
+  const std::string folder = runName(trial, evaluation);
+  write(folder + "/torques.csv",
+        formatTorquesCsv({outcome.torques, outcome.exploratory}, plant.torque_names));
   if (!outcome.states.empty()) {
-    folder_.write(
-        folder + "/trajectory.csv",
-        formatTrajectoryCsv(outcome.times, outcome.states, configuration_.plant_info.state_names));
-  } else if (!outcome.goal_distances.empty()) {
-    writeGoalDistances(folder, outcome.goal_distances);
+    write(folder + "/trajectory.csv",
+          formatTrajectoryCsv(outcome.times, outcome.states, plant.state_names));
+  } else if (!outcome.goal_distances.empty()) {  // what a run without ground truth is judged by
+    std::string text = csvLine("step", "goal_distance");
+    for (size_t step = 0; step < outcome.goal_distances.size(); ++step) {
+      text += csvLine(step, outcome.goal_distances[step]);
+    }
+    write(folder + "/goal_distance.csv", text);
   }
-}
-
-/// What a run without ground truth is judged by.
-void RunFolder::writeGoalDistances(const std::string& folder,
-                                   const std::vector<double>& distances) {
-  std::string text = "step,goal_distance\n";
-  for (size_t step = 0; step < distances.size(); ++step) {
-    text += std::to_string(step) + "," + formatDouble(distances[step]) + "\n";
-  }
-  folder_.write(folder + "/goal_distance.csv", text);
 }
 
 void RunFolder::finishTrial(const TrialRow& row) {
   rows_.push_back(row);
-  folder_.write(kChecksums, formatTrialsChecksums(rows_));  // first, see trials_checksums.h
-  folder_.write(kRows, formatTrialsCsv(rows_));
+  write(kChecksums, formatTrialsChecksums(rows_));  // first, see formatTrialsChecksums()
+  write(kRows, formatTrialsCsv(rows_));
 }
 
 void RunFolder::writeSummary(double wall_s) {
@@ -167,7 +145,7 @@ void RunFolder::writeSummary(double wall_s) {
   }
   summary["train_s"] = valueToYaml(train_s);
   summary["wall_s"] = valueToYaml(wall_s);
-  folder_.finish(summary);
+  finish(summary);
 }
 
 }  // namespace ddm

@@ -29,6 +29,9 @@ struct TrialRow {
   std::string version = "?";  ///< of the code that produced the row; "?": not known
 };
 
+/// Folder of a run within that of its experiment: "trial_007", "evaluation_007" of the greedy run.
+std::string runName(int trial, bool evaluation);
+
 ///   config.yaml                          effective configuration, version of the code that began
 ///   trials.csv                           one row per finished trial
 ///   .trials.crc32                        its checksums
@@ -37,7 +40,7 @@ struct TrialRow {
 ///   evaluation_NNN/goal_distance.csv     instead of the trajectory, where nobody tells it
 ///   trial_NNN/trial.K.bag[.active]       of the K-th try that was not finished
 ///   summary.yaml                         written last: the verdict
-class RunFolder {
+class RunFolder : public ResultsFolder {
  public:
   /// Looks at the folder, which need not exist, and changes nothing: the first that is written
   /// makes it. If it is there, no other process gets it while this object lives.
@@ -45,41 +48,30 @@ class RunFolder {
   ///         keys that differ are named) or files that make no sense
   explicit RunFolder(const Configuration& configuration);
 
-  const std::string& path() const { return folder_.path(); }
-  /// Things a user should know about a folder that is used again.
-  std::vector<std::string> warnings() const;
   /// Rows of the trials finished so far.
   const std::vector<TrialRow>& rows() const { return rows_; }
 
   std::string bagPath(int trial) const;
   /// Where a training leaves its model, if it can be saved.
   std::string modelPath(int trial) const;
-  /// @throws std::runtime_error if nothing can be written there; changes nothing
-  void requireWritable() const { folder_.requireWritable(); }
   /// Makes the folder of a run of a trial that has not been finished. Bags of an earlier try,
   /// complete or not, are kept under other names: they may be all that is left of it.
   /// @param evaluation  its greedy run
   /// @param kept        (optional) out: their new names are added
   /// @return            path of its bag, where nothing is
   std::string beginRun(int trial, bool evaluation, std::vector<std::string>* kept = nullptr);
-  void writeTrial(int trial, const TrialOutcome& outcome);
+  /// @param evaluation  its greedy run
+  void writeRun(int trial, bool evaluation, const TrialOutcome& outcome);
   void writeTraining(int trial, const TrainingOutcome& outcome);
-  void writeEvaluation(int trial, const TrialOutcome& outcome);
   /// Ends a trial: from here on it is never run again.
   void finishTrial(const TrialRow& row);
-  /// Whether summary.yaml has the verdict on all rows.
-  bool isFinished() const { return folder_.isFinished(); }
   void writeSummary(double wall_s);
 
  private:
   void readRows(const std::string& file);
-  void writeRun(const std::string& folder, const TrialOutcome& outcome);
-  void writeGoalDistances(const std::string& folder, const std::vector<double>& distances);
 
   Configuration configuration_;
-  ResultsFolder folder_;
   std::vector<TrialRow> rows_;
-  std::vector<std::string> warnings_;
 };
 
 }  // namespace ddm

@@ -5,6 +5,7 @@
 #include <ddm_bag_io/bag_reader.h>
 #include <ddm_files/plain_file.h>
 #include <ddm_model/model_file.h>
+#include <ddm_mpc/mpc_policy.h>
 #include <ddm_sim/plant_factory.h>
 
 #include <boost/filesystem.hpp>
@@ -12,8 +13,6 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
-
-#include "saved_model.h"
 
 namespace ddm {
 namespace {
@@ -31,51 +30,54 @@ void identify(std::string* path, std::string* id) {
   *id = here;
 }
 
-/// What the trials to come will be like.
-struct Trials {
-  int torque_dim;
-  std::string camera;  ///< as BagContent::camera
-  double dt;
-  std::string whose;  ///< "the plant", "the robot"
-};
-
-/// A robot's images come from robot_node, at the model's size.
-Trials trialsOf(const Configuration& configuration, const Plant& plant) {
-  const auto camera = [](int width, int height, const char* encoding) {
-    return std::to_string(width) + "x" + std::to_string(height) + " " + encoding;
-  };
-  if (configuration.robot) {
-    const RobotOptions& robot = *configuration.robot;
-    const int size = configuration.model.image.size;
-    return {robot.numMotors(), camera(size, size, "mono8"), robot.dt, "the robot"};
-  }
-  const Picture picture = plant.render(plant.state());
-  return {plant.torqueDim(),
-          camera(picture.width, picture.height, picture.channels == 1 ? "mono8" : "rgb8"),
-          plant.info().dt, "the plant"};
-}
-
-void requireFits(const std::string& path, const Configuration& configuration,
-                 const Trials& trials) {
-  const BagContent bag =
-      readBag(path, configuration.model.image.size, configuration.model.data_set);
+/// A bag must have been recorded on such a plant or robot, whose images come at the model's size.
+void requireFits(const std::string& path, const Configuration& configuration, const Plant& plant) {
+  const bool robot = configuration.robot.has_value();
+  const int size = configuration.model.image.size;
+  const Picture picture = robot ? Picture{size, size, 1, {}, {}} : plant.render(plant.state());
+  const std::string camera = std::to_string(picture.width) + "x" + std::to_string(picture.height) +
+                             (picture.channels == 1 ? " mono8" : " rgb8");
+  const int torque_dim = robot ? configuration.robot->numMotors() : plant.torqueDim();
+  const double dt = robot ? configuration.robot->dt : plant.info().dt;
+  const BagContent bag = readBag(path, size, configuration.model.data_set);
   const auto require = [&](bool ok, const std::string& what, const auto& has, const auto& wants) {
     if (ok) return;
     std::ostringstream text;
-    text << "bag " << path << " does not fit " << trials.whose << ": " << what << ": " << has
-         << " in the bag, " << wants << " in the trials to come; leave the bag out, or choose what "
-         << "it was recorded on";
+    text << "bag " << path << " does not fit the " << (robot ? "robot" : "plant") << ": " << what
+         << ": " << has << " in the bag, " << wants << " in the trials to come; leave the bag out, "
+         << "or choose what it was recorded on";
     throw std::invalid_argument(text.str());
   };
-  require(bag.data.torqueDim() == trials.torque_dim, "torques a frame", bag.data.torqueDim(),
-          trials.torque_dim);
-  require(bag.camera == trials.camera, "images", bag.camera, trials.camera);
-  const bool same_rate =
-      bag.interval == 0.0 || std::abs(bag.interval - trials.dt) <= kRateTolerance * trials.dt;
-  require(same_rate, "seconds between frames (dt)", bag.interval, trials.dt);
+  require(bag.data.torqueDim() == torque_dim, "torques a frame", bag.data.torqueDim(), torque_dim);
+  require(bag.camera == camera, "images", bag.camera, camera);
+  const bool same_rate = bag.interval == 0.0 || std::abs(bag.interval - dt) <= kRateTolerance * dt;
+  require(same_rate, "seconds between frames (dt)", bag.interval, dt);
 }
 
 }  // namespace
+
+std::shared_ptr<const Ddm> readModel(const std::string& path) {
+  return std::make_shared<const Ddm>(deserialiseModel(readFile(path), path));
+}
+
+void requireModelFits(const std::shared_ptr<const Ddm>& model, const std::string& source,
+                      const Configuration& configuration) {
+  const auto requireEqual = [&source](const std::string& what, int ours, const std::string& of,
+                                      int theirs, const std::string& remedy) {
+    if (ours == theirs) return;
+    throw std::invalid_argument("model " + source + " has " + what + " " + std::to_string(ours) +
+                                ", " + of + " " + std::to_string(theirs) + ": " + remedy);
+  };
+  requireEqual("images of size", model->imageSize(), "image/size is",
+               configuration.model.image.size, "set image/size to the model's");
+  requireEqual("a number of torques of", model->torqueDim(), "the plant",
+               configuration.plant_info.torqueDim(), "choose the plant that it was trained on");
+  try {
+    MpcPolicy(model, configuration.mpc);
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument("model " + source + ": " + e.what());
+  }
+}
 
 void prepareStart(Configuration* configuration) {
   StartOptions& start = configuration->start;
@@ -87,7 +89,7 @@ void prepareStart(Configuration* configuration) {
   const std::unique_ptr<Plant> plant = makePlant(*configuration->plant);
   if (!start.model.empty()) {
     identify(&start.model, &start.model_id);
-    makeModelPolicy(readModel(start.model), start.model, *configuration, *plant);
+    requireModelFits(readModel(start.model), start.model, *configuration);
   }
   if (start.bag_ids.empty()) start.bag_ids.resize(start.bags.size());
   if (start.bag_ids.size() != start.bags.size()) {
@@ -100,7 +102,7 @@ void prepareStart(Configuration* configuration) {
     if (!seen.insert(start.bags[i]).second) {
       throw std::invalid_argument("bag " + start.bags[i] + " is given twice: it would count twice");
     }
-    requireFits(start.bags[i], *configuration, trialsOf(*configuration, *plant));
+    requireFits(start.bags[i], *configuration, *plant);
   }
 }
 

@@ -2,9 +2,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_model/ddm.h>
+
+#include <memory>
+#include <string>
+
 #include "configuration.h"
 
 namespace ddm {
+
+/// @throws std::runtime_error with the path and the fault
+std::shared_ptr<const Ddm> readModel(const std::string& path);
+
+/// @param source  file of the model, for messages
+/// @throws std::invalid_argument if model, configuration and plant do not fit together
+void requireModelFits(const std::shared_ptr<const Ddm>& model, const std::string& source,
+                      const Configuration& configuration);
 
 /// Completes the block `start` of a configuration: absolute paths, and ids of the files' contents,
 /// so that nobody resumes with other files. Nothing to do where it is empty.

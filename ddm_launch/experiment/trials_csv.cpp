@@ -1,12 +1,13 @@
-// trials.csv: one row per finished trial.
+// trials.csv: one row per finished trial, and the checksums that show when it was changed.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "trials_csv.h"
 
-#include <ddm_params/param_value.h>
+#include <ddm_model/model_file.h>
 
+#include <boost/algorithm/string.hpp>
+#include <boost/format.hpp>
 #include <boost/lexical_cast.hpp>
-#include <cstdio>
-#include <sstream>
+#include <cstring>
 #include <stdexcept>
 
 #include "csv_text.h"
@@ -16,7 +17,7 @@ namespace {
 
 constexpr char kHeader[] =
     "seed,trial,frames,success,success_strict,final_error,v_r,v_p,train_s,train_evaluations,"
-    "plan_ms_median,plan_ms_p99,version,return";
+    "plan_ms_median,plan_ms_p99,version,return\n";
 
 /// Headers of older versions, and the cells that their rows lack.
 struct OldTable {
@@ -25,17 +26,13 @@ struct OldTable {
 };
 constexpr OldTable kOldTables[] = {
     {"seed,trial,frames,success,success_strict,final_error_deg,v_r,v_p,train_s,train_evaluations,"
-     "plan_ms_median,plan_ms_p99,version",
+     "plan_ms_median,plan_ms_p99,version\n",
      ","},
     {"seed,trial,frames,success,success_strict,final_error_deg,v_r,v_p,train_s,train_evaluations,"
-     "plan_ms_median,plan_ms_p99",
+     "plan_ms_median,plan_ms_p99\n",
      ",?,"}};
 
-std::string milliseconds(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.3f", value);
-  return text;
-}
+std::string milliseconds(double value) { return boost::str(boost::format("%.3f") % value); }
 
 /// lexical_cast alone would make a huge number of "-1".
 std::uint32_t count(const std::string& text) {
@@ -50,17 +47,10 @@ double duration(const std::string& text) {
   return value;
 }
 
-bool flag(const std::string& text) {
-  if (text != "0" && text != "1") throw std::runtime_error("'" + text + "' must be 0 or 1");
-  return text == "1";
-}
-
 std::optional<double> optionalNumber(const std::string& text) {
   if (text.empty()) return std::nullopt;
   return csvNumber(text);
 }
-
-std::string format(const std::optional<double>& value) { return value ? formatDouble(*value) : ""; }
 
 TrialRow parseRow(const std::vector<std::string>& columns) {
   TrialRow row;
@@ -69,8 +59,8 @@ TrialRow parseRow(const std::vector<std::string>& columns) {
   row.frames = count(columns[2]);
   row.evaluation.known = !columns[3].empty();
   if (row.evaluation.known) {
-    row.evaluation.success = flag(columns[3]);
-    row.evaluation.success_strict = flag(columns[4]);
+    row.evaluation.success = csvFlag(columns[3]);
+    row.evaluation.success_strict = csvFlag(columns[4]);
     row.evaluation.final_error = optionalNumber(columns[5]);
     row.evaluation.total_reward = optionalNumber(columns[13]);
   } else if (!columns[4].empty() || !columns[5].empty() || !columns[13].empty()) {
@@ -94,34 +84,24 @@ TrialRow parseRow(const std::vector<std::string>& columns) {
 }  // namespace
 
 std::string formatTrialsCsv(const std::vector<TrialRow>& rows) {
-  std::ostringstream out;
-  out << kHeader << "\n";
+  std::string text = kHeader;
   for (const TrialRow& row : rows) {
-    out << row.seed << "," << row.trial << "," << row.frames << ",";
-    if (row.evaluation.known) {
-      out << row.evaluation.success << "," << row.evaluation.success_strict << ","
-          << format(row.evaluation.final_error);
-    } else {
-      out << ",,";
-    }
-    out << "," << format(row.v_r) << "," << format(row.v_p) << "," << milliseconds(row.train_s)
-        << "," << row.train_evaluations << "," << milliseconds(row.plan_ms_median) << ","
-        << milliseconds(row.plan_ms_p99) << "," << row.version << ","
-        << format(row.evaluation.total_reward) << "\n";
+    const Evaluation& evaluation = row.evaluation;
+    const auto flag = [&](bool value) { return evaluation.known ? csvCell(value) : ""; };
+    text +=
+        csvLine(row.seed, row.trial, row.frames, flag(evaluation.success),
+                flag(evaluation.success_strict), evaluation.final_error, row.v_r, row.v_p,
+                milliseconds(row.train_s), row.train_evaluations, milliseconds(row.plan_ms_median),
+                milliseconds(row.plan_ms_p99), row.version, evaluation.total_reward);
   }
-  return out.str();
+  return text;
 }
 
 std::string inTodaysColumns(const std::string& text) {
   for (const OldTable& old : kOldTables) {
-    const std::string old_header = std::string(old.header) + "\n";
-    if (text.compare(0, old_header.size(), old_header) != 0) continue;
-    std::string out = std::string(kHeader) + "\n";
-    for (size_t i = old_header.size(); i < text.size(); ++i) {
-      if (text[i] == '\n') out += old.missing_cells;
-      out += text[i];
-    }
-    return out;
+    if (!boost::starts_with(text, old.header)) continue;
+    const std::string rows = text.substr(std::strlen(old.header));
+    return kHeader + boost::replace_all_copy(rows, "\n", std::string(old.missing_cells) + "\n");
   }
   return text;
 }
@@ -131,6 +111,24 @@ std::vector<TrialRow> parseTrialsCsv(const std::string& text, const std::string&
   parseCsv(inTodaysColumns(text), kHeader, source,
            [&rows](const std::vector<std::string>& cells) { rows.push_back(parseRow(cells)); });
   return rows;
+}
+
+std::string formatTrialsChecksums(const std::vector<TrialRow>& rows) {
+  std::string lines;
+  std::vector<TrialRow> first;
+  for (const TrialRow& row : rows) {
+    first.push_back(row);
+    lines += checksum(formatTrialsCsv(first)) + "\n";
+  }
+  return lines;
+}
+
+bool isUnchanged(const std::string& trials_csv, size_t num_rows, const std::string& checksums) {
+  std::vector<std::string> lines;
+  boost::split(lines, checksums, boost::is_any_of("\n"));
+  if (num_rows == 0) return true;
+  return lines.size() >= num_rows && (lines[num_rows - 1] == checksum(trials_csv) ||
+                                      lines[num_rows - 1] == checksum(inTodaysColumns(trials_csv)));
 }
 
 }  // namespace ddm

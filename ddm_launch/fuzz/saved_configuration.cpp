@@ -3,18 +3,19 @@
 #include "saved_configuration.h"
 
 #include <ddm_msgs/testing/fuzzing.h>
+#include <ddm_params/config_blocks.h>
+#include <ddm_params/renamed_keys.h>
 
 using ddm::testing::require;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
-  ddm::SavedConfiguration saved;
-  const auto read = [&] { saved = ddm::readConfigurationText(text, "config.yaml"); };
+  YAML::Node saved;
+  const auto read = [&] { saved = ddm::withTodaysKeys(ddm::parseBlocks(text, "config.yaml")); };
   if (!ddm::testing::accepts<std::invalid_argument>(read)) return 0;
-  require(ddm::differencesOf(saved.values, saved.values, true).empty(),
-          "nothing differs from itself");
-  ddm::ConfigurationValues other = saved.values;
-  other["mpc/horizon"] = "a value that no file has";
-  require(!ddm::differencesOf(saved.values, other, true).empty(), "another value is a difference");
+  require(ddm::differencesOf(saved, saved, true).empty(), "nothing differs from itself");
+  YAML::Node other = YAML::Clone(saved);
+  other["mpc"] = YAML::Load("{horizon: a value that no file has}");
+  require(!ddm::differencesOf(saved, other, true).empty(), "another value is a difference");
   return 0;
 }

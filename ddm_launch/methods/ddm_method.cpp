@@ -1,22 +1,46 @@
 // The paper's method: deep dynamical model and MPC in its feature space.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_method.h"
-
+#include <ddm_bag_io/bag_cache.h>
 #include <ddm_model/model_file.h>
 #include <ddm_model/trainer.h>
 #include <ddm_mpc/mpc_policy.h>
 
 #include <stdexcept>
 
-#include "saved_model.h"
+#include "method_kinds.h"
+#include "start.h"
 
 namespace ddm {
+namespace {
 
-DdmMethod::DdmMethod(const Configuration& configuration, const Plant& /*plant*/)
-    : configuration_(configuration),
-      bags_(configuration.model.image.size, configuration.model.data_set) {
-  requireLearnedPrediction(configuration.model.training);
-}
+/// Does what model_node and mpc_node do.
+class DdmMethod : public Method {
+ public:
+  explicit DdmMethod(const Configuration& configuration)
+      : configuration_(configuration),
+        bags_(configuration.model.image.size, configuration.model.data_set) {
+    requireLearnedPrediction(configuration.model.training);
+  }
+
+  /// @throws std::runtime_error if a bag cannot be read or the training comes to nothing
+  TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,
+                        const PhaseCallback& progress) override;
+
+  std::shared_ptr<Policy> policy() const override {
+    if (model_ == nullptr) return nullptr;
+    return std::make_shared<MpcPolicy>(model_, configuration_.mpc);
+  }
+
+  bool useModel(const std::string& path) override {
+    model_ = readModel(path);
+    return true;
+  }
+
+ private:
+  const Configuration& configuration_;
+  BagCache bags_;
+  std::shared_ptr<const Ddm> model_;
+};
 
 TrainingOutcome DdmMethod::train(const std::vector<std::string>& bags, const TrialId& id,
                                  const PhaseCallback& progress) {
@@ -42,14 +66,10 @@ TrainingOutcome DdmMethod::train(const std::vector<std::string>& bags, const Tri
   return outcome;
 }
 
-std::shared_ptr<Policy> DdmMethod::policy() const {
-  if (model_ == nullptr) return nullptr;
-  return std::make_shared<MpcPolicy>(model_, configuration_.mpc);
-}
+}  // namespace
 
-bool DdmMethod::useModel(const std::string& path) {
-  model_ = readModel(path);
-  return true;
+std::unique_ptr<Method> makeDdmMethod(const Configuration& configuration, const Plant& /*plant*/) {
+  return std::make_unique<DdmMethod>(configuration);
 }
 
 }  // namespace ddm

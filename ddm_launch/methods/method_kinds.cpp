@@ -4,37 +4,16 @@
 
 #include <stdexcept>
 
-#include "configuration.h"
-#include "ddm_method.h"
-#include "oracle_method.h"
-#include "pilco/pilco_methods.h"
 #include "resolution.h"
 
 namespace ddm {
-namespace {
-
-/// A method that the common blocks suffice.
-template <class AnyMethod>
-class PlainSetup : public MethodSetup {
- public:
-  YAML::Node blocks() const override { return YAML::Node(YAML::NodeType::Map); }
-  std::unique_ptr<Method> make(const Configuration& configuration,
-                               const Plant& plant) const override {
-    return std::make_unique<AnyMethod>(configuration, plant);
-  }
-};
-
-template <class AnyMethod>
-MethodKind plainKind(const std::string& name, const std::string& about) {
-  return {name, about, [](ParamReader*) { return std::make_shared<PlainSetup<AnyMethod>>(); }};
-}
-
-}  // namespace
 
 std::vector<MethodKind> methodKinds() {
+  const auto no_blocks = [](ParamReader*) { return YAML::Node(); };
   std::vector<MethodKind> kinds = {
-      plainKind<DdmMethod>("ddm", "the paper's (default)"),
-      plainKind<OracleMethod>("oracle", "plans with the same planner on the true plant and state")};
+      {"ddm", "the paper's (default)", no_blocks, makeDdmMethod},
+      {"oracle", "plans with the same planner on the true plant and state", no_blocks,
+       makeOracleMethod}};
   for (MethodKind& kind : pilcoMethods()) kinds.push_back(std::move(kind));
   return kinds;
 }
@@ -50,6 +29,15 @@ MethodKind methodKind(const std::string& name) {
         "method " + name + " is not in this build: build with -DDDM_PILCO=ON, there are " + known);
   }
   throw std::invalid_argument("unknown method '" + name + "': there are " + known);
+}
+
+Configuration readWithMethod(ParamReader* reader) {
+  ParamReader ahead = *reader;  // a copy: its problems are reported with all others
+  const std::string name = ahead.read<ExperimentOptions>("experiment").method;
+  const YAML::Node blocks = methodKind(name).readBlocks(reader);
+  Configuration configuration = readConfiguration(reader);
+  configuration.method_blocks = blocks;
+  return configuration;
 }
 
 }  // namespace ddm

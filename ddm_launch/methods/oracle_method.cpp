@@ -8,6 +8,8 @@
 
 #include <utility>
 
+#include "method_kinds.h"
+
 namespace ddm {
 namespace {
 
@@ -56,6 +58,26 @@ class OraclePolicy : public Policy {
   std::mt19937_64 rng_;
 };
 
+/// Plans with the planner of the DDM; learns nothing, so that its rows in trials.csv have 0 frames.
+class OracleMethod : public Method {
+ public:
+  OracleMethod(const Configuration& configuration, const Plant& plant)
+      : configuration_(configuration), plant_(plant) {}
+
+  TrainingOutcome train(const std::vector<std::string>& /*bags*/, const TrialId& /*id*/,
+                        const PhaseCallback& progress) override {
+    progress(1.0);
+    return {};
+  }
+  std::shared_ptr<Policy> policy() const override {
+    return std::make_shared<OraclePolicy>(configuration_, plant_);
+  }
+
+ private:
+  const Configuration& configuration_;
+  const Plant& plant_;
+};
+
 }  // namespace
 
 OraclePlanCost::OraclePlanCost(std::unique_ptr<Plant> plant, int horizon, double control_weight)
@@ -102,14 +124,8 @@ void OraclePlanCost::backward(const Eigen::Ref<const Eigen::MatrixXd>& U,
   }
 }
 
-TrainingOutcome OracleMethod::train(const std::vector<std::string>& /*bags*/, const TrialId& /*id*/,
-                                    const PhaseCallback& progress) {
-  progress(1.0);
-  return {};
-}
-
-std::shared_ptr<Policy> OracleMethod::policy() const {
-  return std::make_shared<OraclePolicy>(configuration_, plant_);
+std::unique_ptr<Method> makeOracleMethod(const Configuration& configuration, const Plant& plant) {
+  return std::make_unique<OracleMethod>(configuration, plant);
 }
 
 }  // namespace ddm

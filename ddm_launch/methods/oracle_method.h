@@ -3,13 +3,9 @@
 #pragma once
 
 #include <ddm_mpc/plan_cost.h>
+#include <ddm_sim/plant.h>
 
 #include <memory>
-#include <string>
-#include <vector>
-
-#include "configuration.h"
-#include "method.h"
 
 namespace ddm {
 
@@ -48,21 +44,6 @@ class OraclePlanCost : public PlanCost {
   Eigen::VectorXd state_;
   Eigen::MatrixXd states_;     // state_0 ... state_K
   Eigen::MatrixXd positions_;  // p_0 ... p_K
-};
-
-/// Plans with the planner of the DDM; learns nothing, so that its rows in trials.csv have 0 frames.
-class OracleMethod : public Method {
- public:
-  OracleMethod(const Configuration& configuration, const Plant& plant)
-      : configuration_(configuration), plant_(plant) {}
-
-  TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,
-                        const PhaseCallback& progress) override;
-  std::shared_ptr<Policy> policy() const override;
-
- private:
-  const Configuration& configuration_;
-  const Plant& plant_;
 };
 
 }  // namespace ddm

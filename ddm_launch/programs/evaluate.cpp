@@ -12,17 +12,19 @@
 #include <boost/filesystem.hpp>
 #include <cmath>
 #include <cstdio>
+#include <future>
 #include <iostream>
 #include <mutex>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "command_line.h"
-#include "evaluation.h"
+#include "csv_text.h"
+#include "experiment.h"
 #include "in_process_driver.h"
-#include "saved_model.h"
+#include "method_kinds.h"
+#include "start.h"
 
 namespace po = boost::program_options;
 
@@ -43,13 +45,6 @@ struct Request {
   int jobs = 1;
 };
 
-struct Row {
-  int seed = 0;
-  ddm::Evaluation evaluation;
-  double plan_ms_median = 0.0;
-  double plan_ms_p99 = 0.0;
-};
-
 /// "A:B", B excluded, as the seeds of a sweep.
 void parseSeeds(const std::string& text, Request* request) {
   char rest = 0;
@@ -63,6 +58,7 @@ void parseSeeds(const std::string& text, Request* request) {
 /// @return false where --help was asked for and has been printed
 bool configure(int argc, char** argv, Request* request, ddm::Configuration* configuration) {
   ddm::Arguments arguments;
+  arguments.set("experiment/method", std::string("ddm"));  // who acts by such a model
   std::string seeds;
   const int num_cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   po::options_description options = ddm::configurationOptions(kAbout, &arguments);
@@ -82,85 +78,67 @@ bool configure(int argc, char** argv, Request* request, ddm::Configuration* conf
   return true;
 }
 
-Row evaluateSeed(ddm::Configuration configuration, int seed, std::uint32_t trial,
-                 std::mutex* making) {
-  ddm::TrialRequest request;
-  request.id = {static_cast<std::uint64_t>(seed), trial, /*evaluation=*/true};
-  request.num_steps = configuration.trial.num_steps;
-  request.hold_steps = configuration.mpc.hold_steps;
-  std::unique_ptr<ddm::InProcessDriver> driver;
-  std::unique_ptr<ddm::Plant> plant;
-  {
-    const std::lock_guard<std::mutex> lock(
-        *making);  // nobody promised that plants are made at once
-    driver = std::make_unique<ddm::InProcessDriver>(configuration);
-    plant = ddm::makePlant(*configuration.plant);
-  }
-  const ddm::TrialOutcome outcome = driver->runTrial(request, [](double) {});
-  Row row;
-  row.seed = seed;
-  plant->setGoal(ddm::goalOf(*plant, request.id.seed, trial, /*evaluation=*/true));
-  row.evaluation = ddm::evaluate(*plant, outcome.states, outcome.torques, configuration.evaluation);
-  row.plan_ms_median = 1e3 * ddm::quantile(outcome.solve_times, 0.5);
-  row.plan_ms_p99 = 1e3 * ddm::quantile(outcome.solve_times, 0.99);
-  return row;
+/// @param making  held while plants are made: nobody promised that several can be made at once
+ddm::TrialRow evaluateSeed(ddm::Configuration configuration, const std::string& model, int seed,
+                           int trial, std::mutex* making) {
+  configuration.experiment.seed = seed;
+  const ddm::TrialRequest request = ddm::requestFor(configuration, trial, /*evaluation=*/true);
+  std::unique_lock<std::mutex> lock(*making);
+  ddm::InProcessDriver driver(configuration);
+  const std::unique_ptr<ddm::Plant> plant = ddm::makePlant(*configuration.plant);
+  lock.unlock();
+  driver.useModel(model);
+  const ddm::TrialOutcome outcome = driver.runTrial(request, [](double) {});
+  return ddm::rowOf(request.id, outcome, configuration.evaluation, plant.get());
 }
 
 /// All seeds, several at a time. The first error ends it.
-std::vector<Row> evaluateAll(const ddm::Configuration& configuration, const Request& request,
-                             std::uint32_t trial) {
-  std::vector<Row> rows(static_cast<size_t>(request.end_seed - request.first_seed));
-  std::atomic<size_t> next{0};
+std::vector<ddm::TrialRow> evaluateAll(const ddm::Configuration& configuration,
+                                       const Request& request, int trial) {
+  std::vector<ddm::TrialRow> rows(static_cast<size_t>(request.end_seed - request.first_seed));
+  std::atomic<int> next{request.first_seed};
   std::mutex mutex;
-  std::string error;
   size_t num_done = 0;
   const bool live = ::isatty(STDERR_FILENO) != 0;
   const auto work = [&] {
-    for (size_t i = next++; i < rows.size(); i = next++) {
+    for (int seed = next++; seed < request.end_seed; seed = next++) {
       try {
-        rows[i] =
-            evaluateSeed(configuration, request.first_seed + static_cast<int>(i), trial, &mutex);
-      } catch (const std::exception& e) {
-        const std::lock_guard<std::mutex> lock(mutex);
-        error = e.what();
-        next = rows.size();
-        return;
+        rows[static_cast<size_t>(seed - request.first_seed)] =
+            evaluateSeed(configuration, request.model, seed, trial, &mutex);
+      } catch (...) {
+        next = request.end_seed;
+        throw;
       }
       const std::lock_guard<std::mutex> lock(mutex);
       ++num_done;
       if (live) std::cerr << "\r" << num_done << " of " << rows.size() << " runs" << std::flush;
     }
   };
-  std::vector<std::thread> threads;
-  for (int i = 0; i < request.jobs; ++i) threads.emplace_back(work);
-  for (std::thread& thread : threads) thread.join();
+  std::vector<std::future<void>> workers;
+  for (int i = 0; i < request.jobs; ++i) workers.push_back(std::async(std::launch::async, work));
+  for (std::future<void>& worker : workers) worker.get();
   if (live) std::cerr << "\n";
-  if (!error.empty()) throw std::runtime_error(error);
   return rows;
 }
 
 /// Enough digits for a rate or a time.
 double rounded(double value) { return std::round(1e4 * value) / 1e4; }
 
-std::string csvOf(const std::vector<Row>& rows) {
-  std::ostringstream out;
-  out << "seed,success,success_strict,final_error,plan_ms_median,plan_ms_p99,return\n";
-  for (const Row& row : rows) {
-    const ddm::Evaluation& evaluation = row.evaluation;
-    out << row.seed << "," << evaluation.success << "," << evaluation.success_strict << ","
-        << ddm::formatDouble(evaluation.final_error.value()) << ","
-        << ddm::formatDouble(rounded(row.plan_ms_median)) << ","
-        << ddm::formatDouble(rounded(row.plan_ms_p99)) << ","
-        << (evaluation.total_reward ? ddm::formatDouble(*evaluation.total_reward) : "") << "\n";
+std::string csvOf(const std::vector<ddm::TrialRow>& rows) {
+  std::string text = "seed,success,success_strict,final_error,plan_ms_median,plan_ms_p99,return\n";
+  for (const ddm::TrialRow& row : rows) {
+    text += ddm::csvLine(row.seed, row.evaluation.success, row.evaluation.success_strict,
+                         row.evaluation.final_error, rounded(row.plan_ms_median),
+                         rounded(row.plan_ms_p99), row.evaluation.total_reward);
   }
-  return out.str();
+  return text;
 }
 
 /// A rate with the interval that it does not speak against.
-void addRate(const std::vector<Row>& rows, const std::string& name, bool ddm::Evaluation::*measure,
-             YAML::Node* summary) {
+void addRate(const std::vector<ddm::TrialRow>& rows, const std::string& name,
+             bool ddm::Evaluation::*measure, YAML::Node* summary) {
   int successes = 0;
-  for (const Row& row : rows) successes += row.evaluation.*measure ? 1 : 0;
+  for (const ddm::TrialRow& row : rows) successes += row.evaluation.*measure ? 1 : 0;
   const auto n = static_cast<int>(rows.size());
   const auto interval = ddm::wilsonInterval(successes, n);
   (*summary)[name] = std::to_string(successes) + " of " + std::to_string(n);
@@ -174,11 +152,12 @@ void run(const Request& request, ddm::Configuration configuration) {
   // What the model is, it says itself; how it is used, the configuration.
   configuration.model.image.size = model->imageSize();
   configuration.model.model = model->options();
-  configuration.method = std::make_shared<ddm::SavedModelSetup>(model, request.model);
   const std::string& folder = request.out;
   std::cerr << "model " << request.model << " on " << configuration.experiment.plant
             << ", mpc of preset " << configuration.experiment.preset << "\n";
-  const std::vector<Row> rows = evaluateAll(configuration, request, model->info().trial);
+  ddm::requireModelFits(model, request.model, configuration);
+  const std::vector<ddm::TrialRow> rows =
+      evaluateAll(configuration, request, static_cast<int>(model->info().trial));
   YAML::Node summary(YAML::NodeType::Map);
   summary["model"] = request.model;
   summary["id"] = ddm::modelId(ddm::readFile(request.model));
@@ -188,7 +167,7 @@ void run(const Request& request, ddm::Configuration configuration) {
   addRate(rows, "success", &ddm::Evaluation::success, &summary);
   addRate(rows, "success_strict", &ddm::Evaluation::success_strict, &summary);
   std::vector<double> errors, returns;
-  for (const Row& row : rows) {
+  for (const ddm::TrialRow& row : rows) {
     errors.push_back(row.evaluation.final_error.value());
     if (row.evaluation.total_reward) returns.push_back(*row.evaluation.total_reward);
   }

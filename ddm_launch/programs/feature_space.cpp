@@ -3,19 +3,13 @@
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_files/plain_file.h>
 #include <ddm_model/long_term_prediction.h>
-#include <ddm_model/model_file.h>
-#include <ddm_model/per_motor.h>
 #include <ddm_model/solver_log.h>
-#include <ddm_mpc/epsilon_greedy.h>
 #include <ddm_mpc/mpc_policy.h>
-#include <ddm_params/param_value.h>
 #include <ddm_params/tool.h>
 #include <ddm_sim/plant_factory.h>
 #include <ddm_sim/rig.h>
 #include <ros/time.h>
 
-#include <cmath>
-#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
@@ -25,7 +19,9 @@
 #include "closed_loop.h"
 #include "configuration.h"
 #include "csv_text.h"
-#include "torques_csv.h"
+#include "experiment.h"
+#include "run_csv.h"
+#include "start.h"
 
 namespace ddm {
 namespace {
@@ -65,52 +61,39 @@ bool parse(int argc, char** argv, Arguments* arguments) {
   return true;
 }
 
-std::string subfolder(const Arguments& arguments, const std::string& kind, int trial) {
-  char number[16];
-  std::snprintf(number, sizeof(number), "_%03d", trial);
-  return arguments.run + "/" + kind + number;
-}
-
 DataSet experience(const Arguments& arguments, const Configuration& all) {
   std::vector<std::string> bags;
-  for (int k = 0; k <= arguments.trial; ++k)
-    bags.push_back(subfolder(arguments, "trial", k) + "/trial.bag");
-  BagCache cache(all.model.image.size, all.model.data_set);
-  return cache.read(bags);
+  for (int k = 0; k <= arguments.trial; ++k) {
+    bags.push_back(arguments.run + "/" + runName(k, /*evaluation=*/false) + "/trial.bag");
+  }
+  return BagCache(all.model.image.size, all.model.data_set).read(bags);
 }
 
 /// The plan at one step of the greedy evaluation, which is run again up to there.
 /// @throws std::runtime_error if there is no such step or plan, or the torques are not the recorded
 Plan planAt(const Arguments& arguments, const Configuration& all,
-            std::shared_ptr<const Ddm> model) {
-  TrialId id;
-  id.seed = static_cast<std::uint64_t>(all.experiment.seed);
-  id.trial = static_cast<std::uint32_t>(arguments.trial);
-  id.evaluation = true;
-  Rig rig(makePlant(*all.plant), all.camera);
-  EpsilonGreedy::Options options;
-  options.epsilon = 0.0;
-  options.max_torque = perMotor(all.mpc.max_torque, rig.plant().torqueDim(), "mpc/max_torque");
-  EpsilonGreedy policy(std::make_shared<MpcPolicy>(std::move(model), all.mpc), options, id);
-  const std::string file = subfolder(arguments, "evaluation", arguments.trial) + "/torques.csv";
+            const std::shared_ptr<const Ddm>& model) {
+  const std::string file =
+      arguments.run + "/" + runName(arguments.trial, /*evaluation=*/true) + "/torques.csv";
   const std::vector<Eigen::VectorXd> recorded =
       parseTorquesCsv(readFile(file), all.plant_info.torque_names, file).torques;
   if (arguments.step >= static_cast<int>(recorded.size())) {
     throw std::runtime_error("--step must be less than the " + std::to_string(recorded.size()) +
                              " steps of " + file + ", got " + std::to_string(arguments.step));
   }
+  TrialRequest request = requestFor(all, arguments.trial, /*evaluation=*/true);
+  request.num_steps = arguments.step + 1;
+  Rig rig(makePlant(*all.plant), all.camera);
   Plan plan;
-  runClosedLoop(
-      &rig, &policy, id, all.model.image.size, arguments.step + 1,
-      [&](const ClosedLoopFrame& frame) {
-        const Decision& decision = frame.decision;
-        const Eigen::VectorXd& torque = recorded[static_cast<size_t>(frame.index)];
-        if ((decision.torque - torque).cwiseAbs().maxCoeff() > 1e-9) {
-          throw std::runtime_error(file + ": the torque of step " + std::to_string(frame.index) +
-                                   " is another here: use the machine and build that made the run");
-        }
-        plan = *decision.plan;
-      });
+  const auto take = [&](const ClosedLoopFrame& frame) {
+    const Eigen::VectorXd& torque = recorded[static_cast<size_t>(frame.index)];
+    if ((frame.decision.torque - torque).cwiseAbs().maxCoeff() > 1e-9) {
+      throw std::runtime_error(file + ": the torque of step " + std::to_string(frame.index) +
+                               " is another here: use the machine and build that made the run");
+    }
+    plan = *frame.decision.plan;
+  };
+  runClosedLoop(&rig, std::make_shared<MpcPolicy>(model, all.mpc), request, all, take);
   if (plan.status == PlanStatus::kFailed) {
     throw std::runtime_error("there is no plan at step " + std::to_string(arguments.step) + ": " +
                              plan.message);
@@ -118,27 +101,20 @@ Plan planAt(const Arguments& arguments, const Configuration& all,
   return plan;
 }
 
-std::string row(const std::string& kind, Eigen::Index step,
-                const Eigen::Ref<const Eigen::VectorXd>& z) {
-  std::string text = kind + "," + std::to_string(step);
-  for (Eigen::Index i = 0; i < z.size(); ++i) text += "," + formatDouble(z[i]);
-  return text + "\n";
-}
-
 void run(const Arguments& arguments) {
   ParamReader reader = ParamReader::fromFiles({arguments.run + "/config.yaml"});
   const Configuration all = readConfiguration(&reader);
-  const std::string file = subfolder(arguments, "trial", arguments.trial) + "/model.ddm";
-  const auto model = std::make_shared<const Ddm>(deserialiseModel(readFile(file), file));
+  const std::shared_ptr<const Ddm> model = readModel(
+      arguments.run + "/" + runName(arguments.trial, /*evaluation=*/false) + "/model.ddm");
   const Eigen::MatrixXd Z = encodeAll(*model, experience(arguments, all));
   const Plan plan = planAt(arguments, all, model);
 
-  std::string text = csvHeader("kind,step", featureNames(model->featureDim())) + "\n";
-  for (Eigen::Index i = 0; i < Z.cols(); ++i) text += row("experience", i, Z.col(i));
-  text += row("current", arguments.step, plan.features.col(0));
-  text += row("goal", 0, plan.goal_feature);
+  std::string text = csvLine("kind", "step", featureNames(model->featureDim()));
+  for (Eigen::Index i = 0; i < Z.cols(); ++i) text += csvLine("experience", i, Z.col(i));
+  text += csvLine("current", arguments.step, plan.features.col(0));
+  text += csvLine("goal", 0, plan.goal_feature);
   for (Eigen::Index k = 1; k < plan.features.cols(); ++k) {
-    text += row("plan", arguments.step + k, plan.features.col(k));
+    text += csvLine("plan", arguments.step + k, plan.features.col(k));
   }
   writeFileAtomically(arguments.out, text);
   std::cout << "wrote " << arguments.out << "\n";

@@ -5,37 +5,30 @@
 #include <ddm_bag_io/model_message.h>
 #include <ddm_files/plain_file.h>
 #include <ddm_images/image_codec.h>
-#include <ddm_model/model_file.h>
 #include <ddm_msgs/RunTrialAction.h>
 #include <ddm_msgs/Torque.h>
+#include <ddm_msgs/option_checks.h>
 #include <ddm_msgs/topics.h>
-#include <ddm_node/node_params.h>
-#include <ddm_params/param_reader.h>
-#include <ddm_params/param_value.h>
+#include <ddm_node/run_node.h>
+#include <ddm_node/topic_peers.h>
+#include <ddm_node/waiting.h>
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
-#include <unistd.h>
 
-#include <chrono>
 #include <cmath>
-#include <condition_variable>
-#include <cstdlib>
-#include <iostream>
-#include <mutex>
-#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 
-#include "connections.h"
 #include "csv_text.h"
 #include "progress.h"
-#include "simulated_time.h"
+#include "start.h"
 
 namespace {
 
 constexpr char kRecorded[] = "replay/torque";
 constexpr char kProposed[] = "replay/proposed_torque";
-const ros::WallDuration kLook(0.02);  // how often conditions without a callback are looked at
+const ros::WallDuration kLook(0.02);  // how often conditions without a callback are checked
 
 /// Block `replay`.
 struct ReplayOptions {
@@ -54,15 +47,12 @@ struct ReplayOptions {
     visitor("timeout", timeout);
   }
   std::vector<std::string> problems() const {
-    std::vector<std::string> out_problems;
-    const auto require = [&out_problems](bool ok, const std::string& rule, double value) {
-      if (!ok) out_problems.push_back("replay/" + rule + ", got " + std::to_string(value));
-    };
-    if (bag.empty()) out_problems.push_back("replay/bag must be a bag, got nothing");
-    if (model.empty()) out_problems.push_back("replay/model must be a model file, got nothing");
-    require(rate >= 0.0 && rate <= 1000.0, "rate must lie in [0, 1000]", rate);
-    require(timeout > 0.0 && timeout <= 3600.0, "timeout must lie in (0, 3600]", timeout);
-    return out_problems;
+    ddm::OptionChecks checks("replay");
+    checks.require(!bag.empty(), "bag", "be a bag", "nothing");
+    checks.require(!model.empty(), "model", "be a model file", "nothing");
+    checks.require(rate >= 0.0 && rate <= 1000.0, "rate", "lie in [0, 1000]", rate);
+    checks.require(timeout > 0.0 && timeout <= 3600.0, "timeout", "lie in (0, 3600]", timeout);
+    return checks.problems();
   }
 };
 
@@ -76,7 +66,8 @@ class Replay {
         image_pub_(nh.advertise<sensor_msgs::Image>(ddm::topics::kImage, 1)),
         model_pub_(nh.advertise<ddm_msgs::Model>(ddm::topics::kModel, 1, /*latch=*/true)),
         recorded_pub_(nh.advertise<ddm_msgs::Torque>(kRecorded, 1)),
-        proposed_sub_(nh.subscribe(kProposed, 1, &Replay::onProposed, this)) {
+        proposed_sub_(nh.subscribe<ddm_msgs::Torque>(
+            kProposed, 1, [this](const ddm_msgs::TorqueConstPtr& torque) { answer_ = torque; })) {
     const ddm_msgs::Model message = ddm::toMessage(model, ros::Time::now());
     model_id_ = message.id;
     model_pub_.publish(message);
@@ -112,24 +103,13 @@ class Replay {
     torque.torque.assign(recorded.data(), recorded.data() + recorded.size());
     image_pub_.publish(ddm::encodeImage(grey, size, stamp, "camera"));
     recorded_pub_.publish(torque);
-    waitFor(
-        [this, stamp] {
-          const std::lock_guard<std::mutex> lock(mutex_);
-          return answer_ && answer_->header.stamp == stamp;
-        },
-        "mpc_node does not answer");
-    const std::lock_guard<std::mutex> lock(mutex_);
+    waitFor([this, stamp] { return answer_ != nullptr && answer_->header.stamp == stamp; },
+            "mpc_node does not answer");
     return Eigen::Map<const Eigen::VectorXd>(answer_->torque.data(),
                                              static_cast<Eigen::Index>(answer_->torque.size()));
   }
 
  private:
-  void onProposed(const ddm_msgs::TorqueConstPtr& torque) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    answer_ = *torque;
-    changed_.notify_all();
-  }
-
   /// @throws std::runtime_error after the timeout, if mpc_node gives the trial up, or on shutdown
   template <class Condition>
   void waitFor(const Condition& condition, const std::string& what) {
@@ -140,17 +120,14 @@ class Replay {
         throw std::runtime_error("mpc_node: " + trial_client_.getState().getText());
       }
       if ((ros::WallTime::now() - begin).toSec() > options_.timeout) {
-        throw std::runtime_error(what + " (waited " + std::to_string(options_.timeout) + " s)");
+        throw std::runtime_error(what + ddm::waited(options_.timeout));
       }
-      std::unique_lock<std::mutex> lock(mutex_);
-      changed_.wait_for(lock, std::chrono::nanoseconds(kLook.toNSec()));
+      ros::getGlobalCallbackQueue()->callAvailable(kLook);
     }
   }
 
   const ReplayOptions& options_;
-  std::mutex mutex_;  // guards answer_
-  std::condition_variable changed_;
-  std::optional<ddm_msgs::Torque> answer_;
+  ddm_msgs::TorqueConstPtr answer_;
   std::string model_id_;
   bool trial_begun_ = false;
   actionlib::SimpleActionClient<ddm_msgs::RunTrialAction> trial_client_;
@@ -162,12 +139,6 @@ class Replay {
 
 double rms(const Eigen::MatrixXd& values) {
   return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
-}
-
-std::string columns(const std::string& name, int count) {
-  std::string text;
-  for (int i = 1; i <= count; ++i) text += "," + name + "_" + std::to_string(i);
-  return text;
 }
 
 /// Plays all frames.
@@ -199,30 +170,28 @@ Eigen::MatrixXd play(const ddm::BagContent& bag, double rate, Replay* replay,
 void writeCsv(const ddm::BagContent& bag, const Eigen::MatrixXd& proposed,
               const std::string& path) {
   const ddm::DataSet& data = bag.data;
-  std::string text = "frame,piece,time_s" + columns("recorded", data.torqueDim()) +
-                     columns("proposed", data.torqueDim()) + "\n";
+  std::string text =
+      ddm::csvLine("frame", "piece", "time_s", ddm::featureNames(data.torqueDim(), "recorded"),
+                   ddm::featureNames(data.torqueDim(), "proposed"));
   for (size_t p = 0; p < data.pieces().size(); ++p) {
     const ddm::Piece& piece = data.pieces()[p];
     for (Eigen::Index frame = piece.begin; frame < piece.begin + piece.size; ++frame) {
-      text += std::to_string(frame) + "," + std::to_string(p) + "," +
-              ddm::formatDouble(bag.times[static_cast<size_t>(frame)]) +
-              ddm::csvValues(data.torques().col(frame)) + ddm::csvValues(proposed.col(frame)) +
-              "\n";
+      text += ddm::csvLine(frame, p, bag.times[static_cast<size_t>(frame)],
+                           data.torques().col(frame), proposed.col(frame));
     }
   }
   ddm::writeFileAtomically(path, text);
 }
 
-void run(const ros::NodeHandle& nh, const ros::NodeHandle& pnh) {
-  ddm::ParamReader params(ddm::nodeParams(pnh), pnh.getNamespace());
-  const auto options = params.read<ReplayOptions>("replay");
-  const auto topics = params.read<ddm::BagOptions>("data_set");
-  params.requireValid();
-  const ddm::Ddm model = ddm::deserialiseModel(ddm::readFile(options.model), options.model);
-  const ddm::BagContent bag = ddm::readBag(options.bag, model.imageSize(), topics);
+void run(const ros::NodeHandle& nh, ddm::ParamReader* params) {
+  const auto options = params->read<ReplayOptions>("replay");
+  const auto topics = params->read<ddm::BagOptions>("data_set");
+  params->requireValid();
+  const std::shared_ptr<const ddm::Ddm> model = ddm::readModel(options.model);
+  const ddm::BagContent bag = ddm::readBag(options.bag, model->imageSize(), topics);
   ddm::waitForSimulatedTime(options.timeout);
-  Replay replay(nh, options, model);
-  ddm::Progress progress(&std::cout, ::isatty(STDOUT_FILENO) != 0, 0);
+  Replay replay(nh, options, *model);
+  ddm::Progress progress;
   progress.beginPhase(0, "replay");
   const Eigen::MatrixXd proposed = play(bag, options.rate, &replay, &progress);
   std::ostringstream summary;
@@ -238,16 +207,6 @@ void run(const ros::NodeHandle& nh, const ros::NodeHandle& pnh) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "replay_node");
-  const ros::NodeHandle nh;
-  const ros::NodeHandle pnh("~");  // outside the try: its destructor shuts the log down
-  ros::AsyncSpinner spinner(2);
-  spinner.start();
-  try {
-    run(nh, pnh);
-  } catch (const std::exception& e) {
-    ROS_FATAL_STREAM("replay: " << e.what());
-    return EXIT_FAILURE;
-  }
-  return EXIT_SUCCESS;
+  return ddm::runNode("replay_node", argc, argv,
+                      [](auto nh, auto, ddm::ParamReader* params) { run(nh, params); });
 }

@@ -1,8 +1,6 @@
 // resolve: the configuration of a launch as one text, from the arguments of the launch.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_params/config_blocks.h>
-#include <ddm_params/param_value.h>
-#include <ddm_params/tool.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ddm_sim/plant_factory.h>
 
@@ -13,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "command_line.h"
 #include "configuration.h"
-#include "resolution.h"
 
 namespace ddm {
 namespace {
@@ -22,11 +20,10 @@ namespace {
 namespace po = boost::program_options;
 
 constexpr char kAbout[] =
-    "Prints the configuration that arguments and files make up, as YAML. The launch files set it "
-    "as\n"
-    "the parameter `configuration`, which all their nodes read. An option with an empty value\n"
+    "Prints the configuration that arguments and files make up, as YAML. The launch files set it\n"
+    "as the parameter `configuration`, which all their nodes read. An option with an empty value\n"
     "counts as not given. Relative paths start at the current folder.\n\n"
-    "usage: rosrun ddm_launch resolve --preset paper --plant pendulum --config my.yaml\n\noptions";
+    "usage: rosrun ddm_launch resolve --preset paper --plant pendulum --config my.yaml";
 
 struct Request {
   Arguments arguments;
@@ -66,68 +63,50 @@ void setMotors(const std::string& plant, Arguments* arguments) {
   const std::shared_ptr<const PlantPlugin> plugin = readPlant(&reader);
   reader.requireValid();
   const Eigen::VectorXd limits = makePlant(*plugin)->info().max_torque;
-  arguments->values["robot"]["max_torque"] =
-      limits.size() == 1
-          ? valueToYaml(limits[0])
-          : valueToYaml(std::vector<double>(limits.data(), limits.data() + limits.size()));
+  arguments->set("robot/max_torque",
+                 std::vector<double>(limits.data(), limits.data() + limits.size()));
 }
 
 /// Command line without the options that have an empty value: launch files pass an argument that
 /// was not given like that.
-std::vector<std::string> givenWords(int argc, char** argv) {
-  std::vector<std::string> words(argv + 1, argv + argc);
-  std::vector<std::string> given;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    const bool option = words[i].rfind("--", 0) == 0 && words[i] != "--help";
-    const bool empty =
-        i + 1 == words.size() || words[i + 1].empty() || words[i + 1].rfind("--", 0) == 0;
-    if (words[i].empty() || (option && empty)) continue;
-    given.push_back(words[i]);
+std::vector<char*> givenWords(int argc, char** argv) {
+  const auto isOption = [](const std::string& word) { return word.rfind("--", 0) == 0; };
+  std::vector<char*> given = {argv[0]};
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const std::string next = i + 1 < argc ? argv[i + 1] : "";
+    const bool lacks_value = isOption(word) && word != "--help" && (next.empty() || isOption(next));
+    if (!word.empty() && !lacks_value) given.push_back(argv[i]);
   }
   return given;
 }
 
 /// @return false where --help was asked for and has been printed
 bool configure(int argc, char** argv, Request* request) {
+  using Text = std::string;
+  using Texts = std::vector<std::string>;
   Arguments* const arguments = &request->arguments;
-  const auto text = [arguments](const std::string& key) {
-    return po::value<std::string>()->notifier(
-        [=](const std::string& value) { arguments->set(key, value); });
+  const auto call = [arguments](void (*set)(const Text&, Arguments*)) {
+    return po::value<Text>()->notifier([=](const Text& text) { set(text, arguments); });
   };
-  po::options_description options(kAbout);
+  po::options_description options = configurationOptions(kAbout, arguments);
   auto add = options.add_options();
-  add("preset", text("experiment/preset"), "name in ddm_launch/config/presets");
-  add("plant", text("experiment/plant"), "name in ddm_sim/config, or PACKAGE/NAME");
-  add("nuisance", po::value(&arguments->nuisances)->composing(),
-      "name in ddm_launch/config/nuisances; repeatable");
-  add("config", po::value(&arguments->configs)->composing(),
-      "YAML file with overrides; repeatable, later files win");
-  add("runs", text("experiment/runs"), "folder of an experiment");
-  add("model", text("start/model"), "saved model that trial 0 explores with");
-  add("bags",
-      po::value<std::vector<std::string>>()->multitoken()->notifier(
-          [=](const std::vector<std::string>& bags) { arguments->set("start/bags", bags); }),
+  add("runs", given<Text>("experiment/runs", arguments), "folder of an experiment");
+  add("model", given<Text>("start/model", arguments), "saved model that trial 0 explores with");
+  add("bags", given<Texts>("start/bags", arguments)->multitoken(),
       "bags that count as trials before trial 0");
-  add("crop", po::value<std::string>()->notifier([=](const std::string& crop) {
-    setCrop(crop, arguments);
-  }),
-      "X,Y,WIDTH,HEIGHT: the part of a robot's camera image that counts");
-  add("motors-of", po::value<std::string>()->notifier([=](const std::string& plant) {
-    setMotors(plant, arguments);
-  }),
+  add("crop", call(setCrop), "X,Y,WIDTH,HEIGHT: the part of a robot's camera image that counts");
+  add("motors-of", call(setMotors),
       "plant whose motors the robot has: robot/max_torque is that of its file");
-  add("set",
-      po::value<std::vector<std::string>>()->composing()->notifier(
-          [=](const std::vector<std::string>& all) {
-            for (const std::string& one : all) setValue(one, arguments);
-          }),
+  const auto set_all = [arguments](const Texts& all) {
+    for (const Text& one : all) setValue(one, arguments);
+  };
+  add("set", po::value<Texts>()->composing()->notifier(set_all),
       "BLOCK/KEY=VALUE, wins over all files; repeatable");
   add("access", po::value(&request->access)->multitoken(),
       "folders and bags that requests to the nodes may name, with those of the experiment");
   add("print", po::value(&request->print), "BLOCK/KEY: print this value alone");
-  const std::vector<std::string> given = givenWords(argc, argv);
-  std::vector<char*> words = {argv[0]};
-  for (const std::string& word : given) words.push_back(const_cast<char*>(word.c_str()));
+  std::vector<char*> words = givenWords(argc, argv);
   return parseCommandLine(static_cast<int>(words.size()), words.data(), options);
 }
 
@@ -159,6 +138,10 @@ void run(const Request& request) {
   makeAbsolute(blocks["experiment"]["runs"]);
   makeAbsolute(blocks["start"]["model"]);
   for (YAML::Node bag : blocks["start"]["bags"]) makeAbsolute(bag);
+  const YAML::Node plant = all.plant->block();  // has absolute paths
+  for (const std::string key : {"model", "background_pictures"}) {
+    if (hasKey(blocks, "plant", key) && plant[key].IsDefined()) blocks["plant"][key] = plant[key];
+  }
   if (all.robot) makeAbsolute(blocks["robot"]["goal_file"]);
   std::vector<std::string> access = request.access;
   if (experiment) access.push_back(blocks["experiment"]["runs"].Scalar());

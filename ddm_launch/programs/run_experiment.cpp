@@ -2,15 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_model/solver_log.h>
 #include <ros/time.h>
-#include <unistd.h>
 
-#include <iostream>
 #include <string>
 #include <vector>
 
 #include "command_line.h"
 #include "experiment.h"
 #include "in_process_driver.h"
+#include "method_kinds.h"
 #include "start.h"
 
 namespace po = boost::program_options;
@@ -28,16 +27,17 @@ constexpr char kAbout[] =
 bool configure(int argc, char** argv, ddm::Configuration* configuration) {
   ddm::Arguments arguments;
   po::options_description options = ddm::commonOptions(kAbout, &arguments);
-  options.add_options()("trials", ddm::given<int>("experiment/trials", &arguments),
-                        "epsilon-greedy trials after the random one; otherwise as in the files, "
-                        "or 15");
-  ddm::addMethodOption(&options, &arguments);
-  options.add_options()("model", ddm::given<std::string>("start/model", &arguments),
-                        "saved model that trial 0 explores with, instead of random torques");
-  options.add_options()(
-      "bags", ddm::given<std::vector<std::string>>("start/bags", &arguments)->multitoken(),
-      "bags that count as trials before trial 0: every training learns from them; "
-      "without --model trial 0 explores with the model trained on them");
+  std::string methods = "who learns and acts:";
+  for (const auto& kind : ddm::methodKinds()) methods += "\n" + kind.name + ": " + kind.about;
+  auto add = options.add_options();
+  add("trials", ddm::given<int>("experiment/trials", &arguments),
+      "epsilon-greedy trials after the random one; otherwise as in the files, or 15");
+  add("method", ddm::given<std::string>("experiment/method", &arguments), methods.c_str());
+  add("model", ddm::given<std::string>("start/model", &arguments),
+      "saved model that trial 0 explores with, instead of random torques");
+  add("bags", ddm::given<std::vector<std::string>>("start/bags", &arguments)->multitoken(),
+      "bags that count as trials before trial 0: every training learns from them; without --model "
+      "trial 0 explores with the model trained on them");
   if (!ddm::parseCommandLine(argc, argv, options)) return false;
   ddm::ParamReader reader = ddm::resolve(arguments).reader();
   *configuration = ddm::readWithMethod(&reader);
@@ -48,9 +48,7 @@ void run(ddm::Configuration configuration) {
   ddm::prepareStart(&configuration);
   ddm::InProcessDriver driver(configuration);  // first: what it refuses must not leave a folder
   ddm::RunFolder folder(configuration);
-  ddm::Progress progress(&std::cout, ::isatty(STDOUT_FILENO) != 0, configuration.experiment.trials,
-                         configuration.evaluation.error_unit);
-  for (const std::string& warning : folder.warnings()) progress.note("warning: " + warning);
+  ddm::Progress progress(configuration.experiment.trials, configuration.evaluation.error_unit);
   ddm::runExperiment(configuration, &driver, &folder, &progress);
 }
 

@@ -1,19 +1,15 @@
 // trial_node: one trial with the real nodes, random or with a saved model, recorded or not.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_mpc/mpc_options.h>
-#include <ddm_node/node_params.h>
-#include <ddm_params/param_reader.h>
+#include <ddm_msgs/option_checks.h>
+#include <ddm_node/run_node.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ddm_sim/plant_factory.h>
-#include <unistd.h>
 
-#include <cstdlib>
-#include <iostream>
 #include <memory>
 #include <optional>
 
-#include "evaluation.h"
-#include "leave.h"
+#include "experiment.h"
 #include "progress.h"
 #include "ros_driver.h"
 
@@ -38,48 +34,23 @@ struct RunOptions {
     visitor("timeout", timeout);
   }
   std::vector<std::string> problems() const {
-    std::vector<std::string> out;
-    if (!(epsilon >= 0.0 && epsilon <= 1.0)) {
-      out.push_back("run/epsilon must lie in [0, 1], got " + std::to_string(epsilon));
-    }
-    if (num_steps < 1) {
-      out.push_back("run/num_steps must be >= 1, got " + std::to_string(num_steps));
-    }
-    if (seed < 0) out.push_back("run/seed must be >= 0, got " + std::to_string(seed));
-    if (!(timeout > 0.0)) {
-      out.push_back("run/timeout must be > 0, got " + std::to_string(timeout));
-    }
-    return out;
+    ddm::OptionChecks checks("run");
+    checks.require(epsilon >= 0.0 && epsilon <= 1.0, "epsilon", "lie in [0, 1]", epsilon);
+    checks.require(num_steps >= 1, "num_steps", "be >= 1", num_steps);
+    checks.require(seed >= 0, "seed", "be >= 0", seed);
+    checks.requirePositive("timeout", timeout);
+    return checks.problems();
   }
 };
 
-void report(const ddm::Plant& plant, const ddm::TrialOutcome& outcome,
-            ddm::EvaluationOptions options, ddm::Progress* progress) {
-  options.complete(plant.info());
-  const bool enough = static_cast<int>(outcome.states.size()) >= options.settled_steps_strict;
-  progress->note(std::to_string(outcome.torques.size()) + " torques");
-  if (!enough) return;
-  const ddm::Evaluation evaluation = ddm::evaluate(plant, outcome.states, outcome.torques, options);
-  progress->note("final error " + std::to_string(*evaluation.final_error) + " " +
-                 options.error_unit + ": " +
-                 (evaluation.success ? "the goal was reached" : "the goal was not reached"));
-}
-
-/// What it has of ROS: outlives the error that ends it.
-struct Node {
-  ros::NodeHandle nh;
-  ros::NodeHandle pnh{"~"};
-  std::optional<ddm::RosDriver> driver;
-};
-
-void run(Node* node) {
-  const ros::NodeHandle& pnh = node->pnh;
-  ddm::ParamReader params(ddm::nodeParams(pnh), pnh.getNamespace());
-  const auto options = params.read<RunOptions>("run");
-  const auto plant = ddm::readPlant(&params);
-  const auto evaluation = params.read<ddm::EvaluationOptions>("evaluation");
-  const auto mpc = params.read<ddm::MpcOptions>("mpc");
-  params.requireValid();
+/// @param driver  outlives an error: to end it takes a master that answers
+void run(const ros::NodeHandle& nh, ddm::ParamReader* params,
+         std::optional<ddm::RosDriver>* driver) {
+  const auto options = params->read<RunOptions>("run");
+  const auto plant = ddm::readPlant(params);
+  auto evaluation = params->read<ddm::EvaluationOptions>("evaluation");
+  const auto mpc = params->read<ddm::MpcOptions>("mpc");
+  params->requireValid();
 
   ddm::TrialRequest request;
   request.id.seed = static_cast<std::uint64_t>(options.seed);
@@ -87,31 +58,31 @@ void run(Node* node) {
   request.epsilon = options.model.empty() ? 1.0 : options.epsilon;
   request.hold_steps = mpc.hold_steps;
   request.bag = options.bag;
-  node->driver.emplace(node->nh, options.timeout,
-                       ddm::RosDriver::Peers{!options.bag.empty(), /*trainer=*/false});
-  if (!options.model.empty()) node->driver->useModel(options.model);
-  ddm::Progress progress(&std::cout, ::isatty(STDOUT_FILENO) != 0, 0);
+  driver->emplace(nh, options.timeout,
+                  ddm::RosDriver::Peers{!options.bag.empty(), /*trainer=*/false});
+  if (!options.model.empty()) (*driver)->useModel(options.model);
+  ddm::Progress progress;
   progress.beginPhase(0, options.model.empty() ? "random" : "control");
   const ddm::TrialOutcome outcome =
-      node->driver->runTrial(request, [&progress](double fraction) { progress.update(fraction); });
-  const std::unique_ptr<ddm::Plant> judge = ddm::makePlant(*plant);
-  judge->setGoal(ddm::goalOf(*judge, request.id.seed, request.id.trial, request.id.evaluation));
-  report(*judge, outcome, evaluation, &progress);
+      (*driver)->runTrial(request, [&progress](double fraction) { progress.update(fraction); });
+  progress.note(std::to_string(outcome.torques.size()) + " torques");
+  if (static_cast<int>(outcome.states.size()) >= evaluation.settled_steps_strict) {
+    const std::unique_ptr<ddm::Plant> judge = ddm::makePlant(*plant);
+    evaluation.complete(judge->info());
+    const ddm::Evaluation verdict =
+        ddm::rowOf(request.id, outcome, evaluation, judge.get()).evaluation;
+    progress.note("final error " + std::to_string(*verdict.final_error) + " " +
+                  evaluation.error_unit + ": " +
+                  (verdict.success ? "the goal was reached" : "the goal was not reached"));
+  }
   if (!options.bag.empty()) progress.note("recorded: " + options.bag);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "trial_node");
-  Node node;  // outside the try: its destructor shuts the log down
-  int code = EXIT_SUCCESS;
-  try {
-    run(&node);
-  } catch (const std::exception& e) {
-    ROS_FATAL_STREAM("trial: " << e.what());
-    code = EXIT_FAILURE;
-  }
-  ddm::leaveWithin10s(code);
-  return code;
+  std::optional<ddm::RosDriver> driver;
+  return ddm::runNode("trial_node", argc, argv, [&driver](auto nh, auto, ddm::ParamReader* params) {
+    run(nh, params, &driver);
+  });
 }

@@ -5,29 +5,35 @@ loop_programs=(sim_node mpc_node view_node trial_recorder model_node experiment_
 threaded_programs=(
   model_node_test mpc_node_stop_test mpc_node_test refused_params_test replay_node robot_node train_from_bags trial_recorder_test
 )
-gtests='^_ctest_[a-z_]+_gtest_'
+# What computes and what reads bytes from outside; `test.sh --debug` adds the other gtests, which take long to compile.
+gtest_programs=(
+  ddm_bag_io_test ddm_files_test ddm_images_test ddm_model_config_test ddm_model_test ddm_mpc_test ddm_msgs_test
+  ddm_node_test ddm_params_test ddm_robot_test
+)
 threaded_tests='^_ctest_ddm_[a-z]+_rostest_test_(model_node|mpc_node|replay|robot_node|trial_recorder)\.test$'
 
-# Where the build with a sanitizer is. Argument: address or thread, as for DDM_SANITIZE.
+# Where the build with a sanitizer is. Argument: address or thread, as for DDM_SANITIZE, or fuzz, which is address with
+# what libFuzzer needs, and of everything.
 sanitized_folder() {
   case $1 in
     address) echo "$DDM_WS/debug" ;;
+    fuzz) echo "$DDM_WS/fuzz" ;;
     thread) echo "$DDM_WS/thread" ;;
   esac
 }
 
 # Portable instruction set, because reports shall be the same on all machines; -O1, because Eigen without any
-# optimisation takes minutes for what Release does in seconds. The baseline PILCO has no threads.
-build_sanitized() {  # address|thread TARGET...
-  local folder fuzz=OFF pilco=OFF jobs
+# optimisation takes minutes for what Release does in seconds.
+build_sanitized() {  # address|thread|fuzz TARGET...
+  local folder sanitizer=$1 everything=OFF jobs
   folder=$(sanitized_folder "$1")
-  [[ $1 == thread ]] || fuzz=ON pilco=ON
+  [[ $1 != fuzz ]] || sanitizer=address everything=ON
   read -ra jobs < <(job_flags)
   mkdir -p "$folder"
   local configure=(catkin_make -C "$DDM_WS" --build "$folder/build" "${jobs[@]}"
     -DCATKIN_DEVEL_PREFIX="$folder/devel" -DCMAKE_INSTALL_PREFIX="$folder/install" -DCMAKE_CXX_COMPILER=clang++
     -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-O1 -gline-tables-only' -DDDM_NATIVE=OFF -DDDM_WERROR=ON
-    -DDDM_SANITIZE="$1" -DDDM_FUZZ=$fuzz -DDDM_PILCO=$pilco)
+    -DDDM_SANITIZE=$sanitizer -DDDM_FUZZ=$everything -DDDM_PILCO=$everything "${unity_flags[@]}")
   "${configure[@]}" "${@:2}" || return
   # as in build_release
   if ! grep -q "PYTHONPATH=.*$folder/devel/lib" "$folder/build/catkin_generated/setup_cached.sh"; then
@@ -36,7 +42,7 @@ build_sanitized() {  # address|thread TARGET...
 }
 
 # A short experiment by each driver and evaluations side by side. What does not reach its end is a report, too.
-short_loop() {  # address|thread REPORTS
+short_loop() {  # address|thread|fuzz REPORTS
   local folder out
   folder=$(sanitized_folder "$1")
   out=$folder/loop
@@ -47,7 +53,7 @@ short_loop() {  # address|thread REPORTS
   set -u
   local port programs=$folder/devel/lib/ddm_launch
   port=$(PYTHONPATH=$PYTHONPATH:$checkout/ddm_launch/qa /usr/bin/python3 -c \
-    'from ddm_qa.programs import free_port; print(free_port())')
+    'from ddm_qa.processes import free_port; print(free_port())')
   "$programs/run_experiment" --preset debug --trials 1 --out "$out/process" </dev/null >"$out/process.log" 2>&1 &&
     "$programs/evaluate" --preset debug --model "$out/process/trial_001/model.ddm" --seeds 0:8 --jobs 4 \
       --out "$out/evaluate" </dev/null >"$out/evaluate.log" 2>&1 || cat "$out"/*.log >"$2/one_process"
@@ -57,7 +63,7 @@ short_loop() {  # address|thread REPORTS
 }
 
 # Runs tests and the loop; each file in build/sanitizer_reports is a report, which test_report.py takes for a failure.
-run_sanitized() {  # address|thread PATTERN
+run_sanitized() {  # address|thread|fuzz PATTERN
   local reports suppressions=$checkout/ddm_launch/qa/thread_suppressions.txt
   reports=$(sanitized_folder "$1")/build/sanitizer_reports
   rm -rf "$reports"
@@ -78,14 +84,14 @@ run_sanitized() {  # address|thread PATTERN
 # Runs the fuzz targets; arguments are those of fuzz.sh.
 run_fuzzing() {
   PYTHONPATH=$checkout/ddm_launch/src:$checkout/ddm_model/src /usr/bin/python3 "$checkout/ddm_launch/qa/scripts/fuzzing" \
-    --programs "$(sanitized_folder address)/devel/lib" "$@"
+    --programs "$(sanitized_folder fuzz)/devel/lib" "$@"
 }
 
 # From the committed seeds on, always the same draws. A finding is told by the result file.
 fuzz_shortly() {
   local out result
-  out=$(sanitized_folder address)/fuzzing
-  result=$(sanitized_folder address)/build/test_results/ddm_launch/fuzzing.xml
+  out=$(sanitized_folder fuzz)/fuzzing
+  result=$(sanitized_folder fuzz)/build/test_results/ddm_launch/fuzzing.xml
   rm -rf "$out" "$result"
   run_fuzzing --runs 1000 --seed 1 --out "$out" --junit "$result" || [[ -f $result ]]
 }

@@ -24,16 +24,11 @@ class Report:
     """Verdicts by case: a case is (package, result file, name)."""
 
     def __init__(self):
-        self.passed = set()
-        self.skipped = set()
+        self.passed, self.skipped = set(), set()
         self.failures = {}  # case -> list of messages
 
     def fail(self, case, message):
         self.failures.setdefault(case, []).append(message.strip())
-
-    def counts(self):
-        """(passed, failed)."""
-        return len(self.passed - set(self.failures)), len(self.failures)
 
     def text(self):
         lines = []
@@ -42,7 +37,7 @@ class Report:
             for message in self.failures[case]:
                 lines += ["        " + line for line in message.splitlines()[:40]]
         lines += ["skipped %s: %s (%s)" % (c[0], c[2], c[1]) for c in sorted(self.skipped - self.passed)]
-        return lines + ["%d passed, %d failed" % self.counts()]
+        return lines + ["%d passed, %d failed" % (len(self.passed - set(self.failures)), len(self.failures))]
 
 
 def read_results(report, path, build):
@@ -53,30 +48,27 @@ def read_results(report, path, build):
     except ElementTree.ParseError as error:
         report.fail((package, name, "the result file"), "[%s] cannot be read: %s" % (build, error))
         return 1, []
-    failed, wrapped, found = 0, [], 0
-    for element in root.iter("testcase"):
-        found += 1
+    failed, wrapped = 0, []
+    cases = list(root.iter("testcase"))
+    for element in cases:
         case = (package, name, "%s.%s" % (element.get("classname"), element.get("name")))
         problems = element.findall("failure") + element.findall("error")
+        for problem in problems:
+            report.fail(case, "[%s] %s" % (build, problem.text or problem.get("message") or "no message"))
+        failed += bool(problems)
         if element.get("classname") == ROSTEST_WRAPPER:
             wrapped.append(element.get("name")[len("test"):])
-        if problems:
-            failed += 1
-            for problem in problems:
-                report.fail(case, "[%s] %s" % (build, problem.text or problem.get("message") or "no message"))
         elif element.find("skipped") is not None or element.get("status") == "notrun":
             report.skipped.add(case)
-        elif element.get("classname") != ROSTEST_WRAPPER:
+        elif not problems:
             report.passed.add(case)
     # rosunit leaves a failed subTest out of the cases, but not out of the sum
     declared = sum(int(root.get(key) or 0) for key in ("failures", "errors"))
     if declared > failed:
-        failed = declared
         report.fail((package, name, "sub-tests"), "[%s] %d failed: see the log of this test" % (build, declared))
-    if found == 0:
-        failed += 1
+    if not cases:
         report.fail((package, name, "the result file"), "[%s] holds no test case" % build)
-    return failed, wrapped
+    return max(declared, failed, not cases), wrapped
 
 
 def declared_tests(build_folder):
@@ -85,28 +77,26 @@ def declared_tests(build_folder):
         tests = json.load(stream)["tests"]
     results = {}
     for test in tests:
-        files = [word for word in test.get("command", []) if word.endswith(".xml") and "/test_results/" in word]
-        if files:
-            results[test["name"]] = files[0]
+        for word in test.get("command", []):
+            if word.endswith(".xml") and "/test_results/" in word:
+                results.setdefault(test["name"], word)  # later words are commands, which also end with the file
     return results
+
+
+def ctest_cases(build_folder):
+    return ElementTree.parse(os.path.join(build_folder, "tests_run.xml")).getroot().iter("testcase")
 
 
 def failed_tests(build_folder):
     """{name of each ctest test that did not pass: how it ended}."""
-    root = ElementTree.parse(os.path.join(build_folder, "tests_run.xml")).getroot()
-    ends = {}
-    for element in root.iter("testcase"):
-        if element.get("status") != "run":
-            problem = element.find("failure")
-            ends[element.get("name")] = (problem is not None and problem.get("message")) or "exit code not 0"
-    return ends
+    return {element.get("name"): element.find("failure").get("message") if element.find("failure") is not None
+            else "exit code not 0" for element in ctest_cases(build_folder) if element.get("status") != "run"}
 
 
 def slowest_tests(build_folders, count=10):
     """Lines with the wall time and the name of the slowest tests of all builds."""
     times = [(float(element.get("time")), element.get("name"), build_name(folder)) for folder in build_folders
-             for element in ElementTree.parse(os.path.join(folder, "tests_run.xml")).getroot().iter("testcase")
-             if element.get("time")]
+             for element in ctest_cases(folder) if element.get("time")]
     slowest = ["%6.0f s  %s [%s]" % test for test in sorted(times, reverse=True)[:count]]
     return ["slowest tests:"] + slowest if slowest else []
 
@@ -140,20 +130,16 @@ def read_build(report, build_folder):
         if not os.path.basename(path).startswith("MISSING-"):  # told below, with the reason
             found[os.path.abspath(path)] = read_results(report, path, build)
     read_sanitizer_reports(report, build_folder, build)
-    ended_badly = failed_tests(build_folder)
-    declared = declared_tests(build_folder)
+    ended_badly, declared = failed_tests(build_folder), declared_tests(build_folder)
     for test, path in sorted(declared.items()):
-        package, name = os.path.basename(os.path.dirname(path)), os.path.basename(path)
-        case = (package, name, "the program")
-        end = ended_badly.get(test)
-        if os.path.abspath(path) not in found:
+        folder, name = os.path.split(os.path.abspath(path))
+        case, end = (os.path.basename(folder), name, "the program"), ended_badly.get(test)
+        if os.path.join(folder, name) not in found:
             report.fail(case, "[%s] left no results (%s): see its output above" % (build, end or "it ended well"))
             continue
-        failures, wrapped = found[os.path.abspath(path)]
-        for program in wrapped:
-            own = os.path.join(os.path.dirname(os.path.abspath(path)), "rosunit-%s.xml" % program)
-            failures += found.get(own, (0, []))[0]
-        if end and failures == 0:
+        failures, wrapped = found[os.path.join(folder, name)]
+        failures += sum(found.get(os.path.join(folder, "rosunit-%s.xml" % program), (0, []))[0] for program in wrapped)
+        if end and not failures:
             report.fail(case, "[%s] failed (%s) although no case did: see its output above" % (build, end))
     if not declared:
         report.fail((build, "tests_declared.json", "the build"), "declares no test")

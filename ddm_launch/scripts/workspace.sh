@@ -23,10 +23,12 @@ packages_to_run=(
   # ROS in C++
   ros-std-srvs libstd-srvs-dev python3-std-srvs
   libroscpp-dev libactionlib-dev librosbag-dev libroslz4-dev libcv-bridge-dev libimage-transport-dev libroslib-dev
-  libdiagnostic-updater-dev libdynamic-reconfigure-config-init-mutex-dev pluginlib-dev
+  libdiagnostic-updater-dev libdynamic-reconfigure-config-init-mutex-dev pluginlib-dev libtf2-ros-dev
   # libraries
   libopencv-imgproc-dev libopencv-imgcodecs-dev libeigen3-dev libceres-dev libyaml-cpp-dev libbz2-dev
   libboost-dev libboost-program-options-dev libboost-filesystem-dev libbenchmark-dev
+  # plants of model files: their physics, and their pictures without a screen
+  libmujoco-dev libegl-dev libegl1 libgl1-mesa-dri
   # tests
   libgtest-dev librostest-dev python3-rostest python3-rosunit
   # ROS in Python and its command line tools
@@ -38,16 +40,6 @@ packages_to_run=(
   rviz python3-matplotlib python3-numpy python3-pil python3-tqdm python3-yaml
   # sweeps
   parallel
-)
-
-# What only the tests need: linters, the check of .rosinstall, sanitizers with symbols in their reports, a screen for
-# rviz, and other machines, played by this one.
-packages_to_test=(
-  catkin-lint catkin-tools clang-format python3-wstool git
-  clang libclang-rt-dev llvm
-  xvfb imagemagick
-  openssh-client openssh-server iproute2 nftables
-  slurmctld slurmd slurm-client munge
 )
 
 # Debian's own tools and libraries come first, whatever Python or ROS environment the caller has active.
@@ -111,22 +103,7 @@ Remedy: have an administrator run, then call this script again:
   fi
 }
 
-# Runs a command as root while no package may start a service (Debian policy 9.11.1: policy-rc.d), and disables those
-# that came with it: the tests start daemons of their own, and nobody asked for an sshd.
-without_services='
-policy=${POLICY_RC_D:-/usr/sbin/policy-rc.d}
-if [ ! -e "$policy" ]; then
-  printf "#!/bin/sh\nexit 101\n" >"$policy" && chmod 755 "$policy"
-  trap '"'"'rm -f "$policy"'"'"' EXIT
-fi
-units=
-for unit in munge slurmctld slurmd ssh; do
-  [ -e /lib/systemd/system/$unit.service ] || units="$units $unit"
-done
-"$@" || exit
-for unit in $units; do
-  [ ! -e /lib/systemd/system/$unit.service ] || ! command -v systemctl >/dev/null || systemctl disable $unit
-done'
+around_apt=()  # a command that runs apt-get: qa/packages.sh sets it
 
 # Installs what is missing of its arguments; asks for no password and no network when nothing is.
 install_packages() {
@@ -139,9 +116,7 @@ install_packages() {
   echo "Installing ${#missing[@]} missing Debian packages: ${missing[*]}"
   # one command, so that whoever lacks the rights can hand it on as it is printed; waits for another apt to end
   local apt='apt-get -o DPkg::Lock::Timeout=300'
-  local guard=()
-  [[ ! "${missing[*]}" =~ munge|slurm|openssh-server ]] || guard=(sh -c "$without_services" sh)
-  as_root "install packages" env DEBIAN_FRONTEND=noninteractive "${guard[@]}" sh -c \
+  as_root "install packages" env DEBIAN_FRONTEND=noninteractive "${around_apt[@]}" sh -c \
     "$apt update && $apt install -y --no-install-recommends ${missing[*]}" </dev/null ||
     fail "the packages could not be installed: see apt-get's lines above.
 Remedy: check the network and /etc/apt, then call this script again."
@@ -186,10 +161,13 @@ job_flags() {
   echo "-j$((cores < memory ? cores : memory))"
 }
 
+# From nothing, a target is built fastest from all its sources at once: most of the time goes into headers.
+unity_flags=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0)
+
 # The Release build, in $DDM_WS/build and $DDM_WS/devel. Arguments: make targets, or none for all programs.
 # demo.sh and test.sh must pass the same flags, or each would rebuild what the other built.
 build_release() {
-  local flags=(-DCMAKE_BUILD_TYPE=Release -DDDM_NATIVE=ON -DDDM_WERROR=OFF) jobs
+  local flags=(-DCMAKE_BUILD_TYPE=Release -DDDM_NATIVE=ON -DDDM_WERROR=OFF "${unity_flags[@]}") jobs
   [[ -z ${CI:-} ]] || flags[2]=-DDDM_WERROR=ON
   read -ra jobs < <(job_flags)
   catkin_make -C "$DDM_WS" "${jobs[@]}" "${flags[@]}" "$@" || return

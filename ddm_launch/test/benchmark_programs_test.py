@@ -55,6 +55,21 @@ class BenchmarkProgramsTest(ScratchCase):
         for value in (pca_us, objective_us, memory_mb):
             self.assertGreater(float(value), 0.0)
 
+    def test_rendering_time_gives_a_row_for_the_learner_and_none_for_people_where_there_is_no_view(self):
+        code, output = call([find_program("ddm_launch", "rendering_time"), "pendulum", "moving_tile"], 60.0)
+        self.assertEqual(code, 0, output)
+        header, *rows = [line.split(",") for line in output.strip().splitlines()]
+        self.assertEqual(header, ["plant", "picture", "median_ms", "p99_ms", "cpu_median_ms", "first_ms"])
+        self.assertEqual([row[:2] for row in rows], [["pendulum", "learner"], ["moving_tile", "learner"]])
+        for row in rows:
+            self.assertGreater(float(row[2]), 0.0)
+            self.assertGreaterEqual(float(row[3]), float(row[2]))
+
+    def test_rendering_time_names_a_plant_that_is_not_there(self):
+        code, output = call([find_program("ddm_launch", "rendering_time"), "pendulumm"], 60.0)
+        self.assertEqual(code, 1)
+        self.assertIn("pendulumm", output)
+
 
 if __name__ == "__main__":
     rosunit.unitrun("ddm_launch", "benchmark_programs", BenchmarkProgramsTest)

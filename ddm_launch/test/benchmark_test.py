@@ -12,7 +12,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import rooms  # noqa: E402, F401
 from ddm_launch.command import Failure  # noqa: E402
 from ddm_qa import benchmark  # noqa: E402
-from ddm_qa.programs import Programs  # noqa: E402
+from ddm_qa.processes import Programs  # noqa: E402
 from processes import call_main  # noqa: E402
 from run_files import read_rows, read_yaml  # noqa: E402
 from scratch_case import ScratchCase  # noqa: E402

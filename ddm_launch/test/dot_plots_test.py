@@ -9,7 +9,7 @@ import rosunit
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import rooms  # noqa: E402, F401
 from ddm_study import ablation_compared, nuisances_compared, reproduce_efficient  # noqa: E402
-from ddm_study.dot_plot import draw_dots  # noqa: E402
+from ddm_study.dot_plot import draw_figure_of_dots  # noqa: E402
 from ddm_launch.figure_style import COLUMN_WIDTH, new_figure  # noqa: E402
 import figure_case  # noqa: E402
 
@@ -109,8 +109,7 @@ class DotPlotsTest(figure_case.FigureCase):
         names, series, frames = nuisances_compared.read_series(self.writeNuisances())
         self.assertEqual((names, frames), (["none", "thin rod"], [500]))
         with new_figure(COLUMN_WIDTH, 3.0) as figure:
-            axes = figure.add_subplot(1, 1, 1)
-            draw_dots(axes, names, series)
+            axes = draw_figure_of_dots(figure, names, series, 2)
             self.assertEqual([x for x, _ in figure_case.drawn_points(axes, "success")], [1.0, 0.5])
             self.assertEqual([x for x, _ in figure_case.drawn_points(axes, "success_strict")], [0.9, 0.0])
             for (left, right), expected in zip(bars(axes, "success") + bars(axes, "success_strict"),
@@ -140,7 +139,7 @@ class DotPlotsTest(figure_case.FigureCase):
 
     def test_missing_tables_are_named_with_the_remedy(self):
         for module in (ablation_compared, nuisances_compared):
-            self.assertRefused(module, ["missing.csv"], "missing.csv", "reproduce_efficient writes it")
+            self.assertRefused(module, ["missing.csv"], "missing.csv", "rosrun ddm_launch reproduce_efficient")
 
 
 if __name__ == "__main__":

@@ -49,11 +49,12 @@ class EfficientReproductionTest(ScratchCase):
             self.assertEqual(package == "ddm_sim", names[-1].startswith("pendulum"), names)
             return os.path.join(self.scratch if names[0] == "config" else PACKAGE, *names)
 
-        for module in (step_runner, reproduce_efficient):
-            for name, stand_in in (("find_program", find_program), ("package_path", package_path)):
-                patch = mock.patch.object(module, name, stand_in)
-                patch.start()
-                self.addCleanup(patch.stop)
+        for module, name, stand_in in ((step_runner, "find_program", find_program),
+                                       (step_runner, "package_path", package_path),
+                                       (reproduce_efficient, "package_path", package_path)):
+            patch = mock.patch.object(module, name, stand_in)
+            patch.start()
+            self.addCleanup(patch.stop)
 
     def writeConfig(self, name, text):
         self.write("config/%s.yaml" % name, text)
@@ -302,7 +303,7 @@ class EfficientReproductionTest(ScratchCase):
             open(os.path.join(self.out, folder, "trials.csv"), "w").close()
         reproduction = reproduce_efficient.EfficientReproduction(argparse.Namespace(
             preset="efficient", out=self.out, jobs=None, seeds=range(2), pilco_seeds=0, only=["gravity"]))
-        self.assertEqual([word.split("=")[0] for word in reproduction.gravity().figure()[2:4]],
+        self.assertEqual([word.split("=")[0] for word in reproduction.gravity().figures()["gravity"][2:4]],
                          ["efficient_gravity", "oracle"])
 
     def test_a_preset_that_is_not_there_is_told_before_anything_runs(self):

@@ -11,7 +11,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import rooms  # noqa: E402, F401
 from ddm_launch.command import Failure  # noqa: E402
 from ddm_launch.run_folder import read_sweep  # noqa: E402
-from ddm_study import efficient_bars, efficient_tables  # noqa: E402
+from ddm_study import efficient_tables  # noqa: E402
 import figure_case  # noqa: E402
 from run_files import COLUMNS  # noqa: E402
 
@@ -154,7 +154,7 @@ class EfficientTablesTest(figure_case.FigureCase):
                                                      ("oracle", 0, 6, 1.0)])
 
     def bars(self):
-        return {row[0]: row[2:] for row in efficient_bars.write_bars(self.scratch)}
+        return {row[0]: row[2:] for row in efficient_tables.write_bars(self.scratch)}
 
     def writeHeadline(self, success, seeds=50, trials=16, strict=None):
         path = self.writeTrials("trials.csv", range(seeds), trials, success, strict)

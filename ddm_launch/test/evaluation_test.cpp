@@ -135,21 +135,63 @@ TEST(EvaluationOfLengths, CountsTheCartWithinItsMetres) {
   EXPECT_NEAR(at(-1.5).final_error.value(), 2.5, 1e-12);
 }
 
-TEST(EvaluationOfRewards, AddsUpWhatThePlantSaysOfEachStateAndItsTorque) {
-  const testing::ToyPlant plant(testing::colourfulToy());  // -x^2 - v^2 - 0.1 u^2
+TEST(EvaluationOfRewards, AddsUpWhatThePlantSaysOfEachStepAndTheTorqueThatActs) {
+  const testing::ToyPlant plant(testing::colourfulToy());  // -x^2 - v^2 - 0.1 u^2, both + 0.1 u
   States states, torques;
   double expected = 0.0;
   for (int t = 0; t < 30; ++t) {
-    states.emplace_back(Eigen::Vector2d(0.1 * t, -0.2));
-    torques.emplace_back(Eigen::VectorXd::Constant(1, 0.3 * t));
-    expected -= 0.01 * t * t + 0.04 + 0.1 * 0.09 * t * t;
+    const double u = 0.2 * t, x = 0.1 * t, v = -0.2;
+    states.emplace_back(Eigen::Vector2d(x, v));
+    torques.emplace_back(Eigen::VectorXd::Constant(1, u));
+    expected -= std::pow(x + 0.1 * u, 2) + std::pow(v + 0.1 * u, 2) + 0.1 * u * u;
   }
   const EvaluationOptions options = optionsFor(plant);
   EXPECT_NEAR(evaluate(plant, states, torques, options).total_reward.value(), expected, 1e-9);
-  torques.back() *= -1.0;
-  EXPECT_NEAR(evaluate(plant, states, torques, options).total_reward.value(), expected, 1e-9);
-  torques[7] *= 2.0;
-  EXPECT_LT(evaluate(plant, states, torques, options).total_reward.value(), expected - 1e-3);
+  torques.back() *= 6.0 / 5.8;
+  const double saturated = evaluate(plant, states, torques, options).total_reward.value();
+  EXPECT_LT(saturated, expected - 1e-3);
+  torques.back() *= 2.0;  // beyond its limit the motor does the same
+  EXPECT_NEAR(evaluate(plant, states, torques, options).total_reward.value(), saturated, 1e-9);
+}
+
+TEST(EvaluationOfRewards, CountsTheStepsOfLostFramesAndNoMoreStepsThanARunHas) {
+  testing::ToyPlant plant(testing::colourfulToy());
+  const std::vector<int> steps = {1, 3, 1, 2};  // from each frame to the next
+  States states, torques;
+  std::vector<double> times;
+  double expected = 0.0, time = 0.4;
+  int num_steps = 0;
+  for (int t = 0; t < 30; ++t) {
+    const Eigen::VectorXd u = Eigen::VectorXd::Constant(1, t % 2 == 0 ? 0.4 : -0.3);
+    states.push_back(plant.state());
+    torques.push_back(u);
+    times.push_back(time);
+    for (int i = 0; i < steps[static_cast<std::size_t>(t % 4)]; ++i) {
+      if (num_steps++ < 30) expected += plant.stepReward(plant.state(), u).value();
+      plant.step(u);
+      time += plant.info().dt;
+    }
+  }
+  const EvaluationOptions options = optionsFor(plant);
+  EXPECT_NEAR(evaluate(plant, states, torques, options, times).total_reward.value(), expected,
+              1e-9);
+  const double without = evaluate(plant, states, torques, options).total_reward.value();
+  EXPECT_GT(std::abs(without - expected), 1e-3);
+}
+
+TEST(EvaluationOptions, LastAsLongAsThePlantSaysAndElseAsATrial) {
+  PlantInfo info = testing::toyInfo();
+  TrialOptions trial;
+  trial.num_steps = 60;
+  EvaluationOptions options;
+  options.complete(info);
+  EXPECT_EQ(options.stepsWith(trial), 60);
+  info.evaluation_steps = 200;
+  options.complete(info);
+  EXPECT_EQ(options.stepsWith(trial), 200);
+  options.num_steps = 7;
+  options.complete(info);
+  EXPECT_EQ(options.stepsWith(trial), 7);
 }
 
 TEST(EvaluationOptions, AreCompletedByThePlant) {

@@ -8,11 +8,12 @@ import sys
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch import feature_plane  # noqa: E402
 from ddm_launch.command import Failure  # noqa: E402
 from ddm_launch.figure_style import COLUMN_WIDTH, PAGE_WIDTH, new_figure  # noqa: E402
 from ddm_model.feature_grid import BRIGHTEST, DARKEST, FeatureGrid  # noqa: E402
 import figure_case  # noqa: E402
+import rooms  # noqa: E402, F401
+from ddm_study import feature_plane  # noqa: E402
 
 HEADER = "frame,set,x_px,y_px,z_1,z_2"
 ROWS = ("0,training,1,1,-1.0,0.0", "1,training,1,1,1.0,0.5", "2,held_out,1,1,0.0,0.25")
@@ -39,7 +40,7 @@ class FeaturePlaneTest(figure_case.FigureCase):
         grid = FeatureGrid((-1.0, -1.0), (1.0, 1.0))
         with new_figure(COLUMN_WIDTH, 3.0) as figure:
             axes = figure.add_subplot(1, 1, 1)
-            grid.draw(axes, figure_case.GreyDecoder(""))
+            grid.draw(axes, figure_case.GreyDecoder("").decode(grid.features))
             picture = axes.images[0].get_array()
             self.assertEqual(tuple(axes.images[0].get_extent()), grid.extent)
         self.assertEqual(picture.shape, (72, 72))
@@ -80,7 +81,7 @@ class FeaturePlaneTest(figure_case.FigureCase):
         with self.assertRaisesRegex(Failure, "column set.*validation"):
             feature_plane.read_features(self.scratch)
         self.writeLines("features.csv", HEADER + ",z_3", "0,training,1,1,0,0,0")
-        with self.assertRaisesRegex(Failure, "more than two numbers"):
+        with self.assertRaisesRegex(Failure, "features.csv .*two"):
             feature_plane.read_features(self.scratch)
 
     def test_a_configuration_without_schedule_is_refused(self):

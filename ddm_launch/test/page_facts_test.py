@@ -36,8 +36,9 @@ def documented(page, node):
         if "default" in table[0] or "colour" in table[0] or "status" in table[0] or "state" in table[0]:
             continue
         for row in table[1:]:
-            if row[-1].startswith(("real time only", "several motors", "only where joints have limits")):
-                continue  # the nodes here are in lock-step and have one motor without limits
+            if row[-1].startswith(("real time only", "several motors", "only where joints have limits",
+                                   "plants of a model file")):
+                continue  # the nodes here are in lock-step and have one motor without limits, a drawn plant
             kind = row[0] or kind
             cell = row[0] if row[0].startswith("`") else row[1] if kind != "parameters" else ""
             names.update(pages.code_spans(cell))
@@ -60,7 +61,7 @@ def offered(node, namespace):
         names -= {"%s/%s" % (action, topic) for topic in ACTION_TOPICS}
         names.add(action)
     names = {name for name in names if not name.endswith("/set_parameters")}  # of dynamic_reconfigure
-    return {name for name in names if not re.match("(camera/image_raw|goal_image)/", name)}
+    return {name for name in names if not re.match("(camera/image_raw|camera_view/image_raw|goal_image)/", name)}
 
 
 def parameter_rows(page, heading):

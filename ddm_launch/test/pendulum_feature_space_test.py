@@ -7,10 +7,11 @@ import sys
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch import pendulum_feature_space  # noqa: E402
 from ddm_launch.command import Failure  # noqa: E402
 from ddm_launch.figure_style import COLUMN_WIDTH, new_figure  # noqa: E402
 import figure_case  # noqa: E402
+import rooms  # noqa: E402, F401
+from ddm_study import pendulum_feature_space  # noqa: E402
 
 HEADER = "kind,step,z_1,z_2"
 ROWS = ["experience,0,0.5,0.5", "experience,1,-0.5,0.5", "current,7,0.1,0.2", "goal,,0.9,0.8",
@@ -59,7 +60,7 @@ class PendulumFeatureSpaceTest(figure_case.FigureCase):
 
     def test_a_file_or_model_that_is_missing_is_named(self):
         self.assertRefused(pendulum_feature_space, ["missing.csv", "--model", "m.ddm"], "missing.csv",
-                           "feature_space writes it")
+                           "rosrun ddm_launch feature_space")
         path = self.writeLines("space.csv", HEADER, *ROWS)
         self.assertRefused(pendulum_feature_space, [path, "--model", "no.ddm"], "no.ddm")
 

@@ -37,7 +37,7 @@ class PilcoTest(ScratchCase):
         self.assertRefused(1, ["method pilco_features"], "--method", "pilco_state", "--plant", "moving_tile",
                            "--out", self.out)
         joint = self.write("joint.yaml", "training: {schedule: joint}\n")
-        self.assertRefused(1, ["training/schedule must be v_r_only", "got joint"], "--method", "pilco_features",
+        self.assertRefused(1, ["training/schedule", "v_r_only", "got joint"], "--method", "pilco_features",
                            "--config", joint, *self.debug(trials=0))
         self.assertFalse(os.path.exists(self.out))
 

@@ -111,7 +111,7 @@ class PredictionExperimentTest(SharedScratchCase):
         self.assertNotEqual(read_bytes(self.out, "model.ddm"), read_bytes(self.reference, "model.ddm"))
         code, output = self.predict("--nuisance", "drops", "--out", self.file("drops"))
         self.assertEqual(code, 2)
-        self.assertIn("camera/drop_rate must be 0", output)
+        self.assertIn("camera/drop_rate", output)
         self.assertIn("got 0.05", output)
 
     def test_refuses_the_folder_of_another_experiment_and_leaves_it_as_it_is(self):
@@ -122,7 +122,7 @@ class PredictionExperimentTest(SharedScratchCase):
         self.assertEqual({name: read_bytes(self.reference, name) for name in FILES}, before)
 
     def test_refuses_wrong_options_with_code_2(self):
-        for words, arguments in ((("'--out' is required but missing",), ()), (("trials",), ("--out", "x", "--trials", "3"))):
+        for words, arguments in ((("'--out'",), ()), (("trials",), ("--out", "x", "--trials", "3"))):
             code, output = self.predict(*arguments)
             self.assertEqual(code, 2, output)
             for word in words:
@@ -130,15 +130,15 @@ class PredictionExperimentTest(SharedScratchCase):
         config = self.write("wrong.yaml", "prediction: {held_out_frames: 0, max_stps: 3}\ntraining: {schedule: both}\n")
         code, output = self.predict("--config", config, "--out", self.out)
         self.assertEqual(code, 2)
-        for word in ("prediction/held_out_frames", "max_stps", "did you mean max_steps", "training/schedule",
+        for word in ("prediction/held_out_frames", "max_stps", "max_steps?", "training/schedule",
                      "got both"):
             self.assertIn(word, output)
         self.write("wrong.yaml",
                    "prediction: {held_out_frames: 9, training_frames: 10}\nexperiment: {method: oracle}\n")
         code, output = self.predict("--config", config, "--out", self.out)
         self.assertEqual(code, 2)
-        for word in ("at least prediction/max_steps + model/order = 10, got 9", "prediction/training_frames", "got 10",
-                     "experiment/method must be ddm, got oracle"):
+        for word in ("prediction/max_steps + model/order = 10", "got 9", "prediction/training_frames", "got 10",
+                     "experiment/method", "got oracle"):
             self.assertIn(word, output)
         self.assertFalse(os.path.exists(self.out))
 
@@ -168,7 +168,7 @@ class PredictionExperimentTest(SharedScratchCase):
         self.assertEqual([row[1] for row in rows[-5:]], ["3", "4", "5", "6", "7"])
         code, output = call([program, run, "--trial", 1, "--step", 30, "--out", out])
         self.assertEqual(code, 1)
-        self.assertIn("less than the 30 steps", output)
+        self.assertIn("30 steps", output)
         torques = os.path.join(run, "evaluation_001", "torques.csv")
         with open(torques) as stream:
             lines = stream.read().splitlines()
@@ -176,7 +176,7 @@ class PredictionExperimentTest(SharedScratchCase):
             stream.write("\n".join([lines[0], "0,1.25,0"] + lines[2:]) + "\n")
         code, output = call([program, run, "--trial", 1, "--step", 2, "--out", out])
         self.assertEqual(code, 1)
-        self.assertIn("the torque of step 0 is another here", output)
+        self.assertRegex(output, "torques.csv: .*step 0 ")
         code, output = call([program, run, "--trial", 7, "--step", 2, "--out", out])
         self.assertEqual(code, 1)
         self.assertIn("trial_007/model.ddm", output)

@@ -6,8 +6,7 @@ import io
 import roslib.packages
 
 import rooms  # noqa: F401
-from ddm_qa.processes import Process, line_by_line, start_roslaunch  # noqa: F401
-from ddm_qa.programs import free_port  # noqa: F401
+from ddm_qa.processes import Process, free_port, line_by_line, start_roslaunch  # noqa: F401
 
 
 def find_program(package, name):
@@ -22,6 +21,13 @@ def call(command, limit_s=60.0, **kwargs):
     """Runs a program to its end. Returns (exit code, output)."""
     process = Process(command, **kwargs)
     return process.waitForEnd(limit_s), process.output
+
+
+def has_mujoco():
+    """Whether ddm_sim was built with MuJoCo, which Ubuntu 20.04 does not have."""
+    code, output = call([find_program("ddm_sim", "simulate"), "--plant", "mujoco_pendulum", "--describe"])
+    assert code == 0 or "libmujoco-dev" in output, output
+    return code == 0
 
 
 def call_main(main, *arguments):

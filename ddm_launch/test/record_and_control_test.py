@@ -15,7 +15,7 @@ from scratch_case import SharedScratchCase  # noqa: E402
 
 DEBUG = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "config", "presets", "debug.yaml")
 STEPS = 30
-VERDICT = r"final error \d+\.\d+ deg: the goal was (not )?reached"
+VERDICT = r"final error \d+\.\d+ deg: .*reached"
 
 
 def train(out, *bags):

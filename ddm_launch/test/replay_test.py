@@ -81,7 +81,8 @@ class ReplayTest(SharedScratchCase):
         code, output = call([find_program("ddm_launch", "replay_node"), "_replay/bag:=" + self.bag,
                              "_replay/model:=" + self.model, "_replay/timeout:=0.5"])
         self.assertEqual(code, 1, output)
-        self.assertIn("simulated time does not come (waited 0.5 s), nobody publishes /clock", output)
+        for word in ("0.5 s", "nobody", "/clock"):
+            self.assertIn(word, output)
 
     def test_a_bag_of_another_robot_is_refused(self):
         code, output = call([find_program("ddm_model", "train_from_bags"), "--config", DEBUG, "--config",

@@ -102,7 +102,7 @@ class ReproducePaperTest(ScratchCase):
         open(self.path("pilco.csv"), "w").close()
         code, output = call(self.command() + ["--without-pilco"])
         self.assertEqual(code, 1)
-        self.assertIn("leave out --without-pilco", output)
+        self.assertIn("--without-pilco", output)
         self.assertEqual(os.listdir(self.path("runs")) if os.path.exists(self.path("runs")) else [], [])
 
     def test_wrong_options_end_with_code_2(self):

@@ -147,6 +147,16 @@ TEST_F(Resolution, ALearnerKnowsTheMotorsOfItsPlant) {
   EXPECT_EQ(learnersMotors(given_), (Motors{"4.0", "1", "1"}));
 }
 
+TEST_F(Resolution, ALearnerKnowsTheMotorsOfAPlantWhoseFileDoesNotNameThem) {
+  given_.set("experiment/plant", file("plain.yaml", "plant: {type: two_link}\n"));
+  const std::vector<std::string> motors = {"[4.0, 2.0]", "[4.0, 2.0]", "2"};
+  EXPECT_EQ(learnersMotors(given_), motors);
+  given_.configs = {file("none.yaml", "plant: {max_torque: []}\n")};
+  EXPECT_EQ(learnersMotors(given_)[2], "1") << "for the reader to refuse";
+  given_.configs = {file("bad.yaml", "plant: {no_key: 1}\n")};
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { read(); }, {"plant/no_key"}));
+}
+
 TEST_F(Resolution, WhereThereIsARobotItsMotorsDecide) {
   using Motors = std::vector<std::string>;
   given_.set("experiment/plant", std::string("pendulum_gravity"));
@@ -188,7 +198,7 @@ TEST_F(Resolution, ASavedCameraDoesNotSwallowANuisance) {
   EXPECT_EQ(read().camera.delay, 1);
   given_.nuisances = {"delay", "noise"};
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [this] { read(); }, {config, "without the nuisance noise", nuisanceFile("noise")}));
+      [this] { read(); }, {config, "nuisance noise", nuisanceFile("noise")}));
   given_.configs = {config, nuisanceFile("noise")};
   given_.nuisances.clear();
   EXPECT_EQ(read().camera.noise_std, 0.1);

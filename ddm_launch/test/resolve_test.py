@@ -4,11 +4,12 @@
 import os
 import sys
 
+import roslib.packages
 import rosunit
 import yaml
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import call, find_program  # noqa: E402
+from processes import call, find_program, has_mujoco  # noqa: E402
 from scratch_case import ScratchCase  # noqa: E402
 
 
@@ -51,6 +52,27 @@ class ResolveTest(ScratchCase):
         self.assertEqual((blocks["start"]["model"], blocks["start"]["bags"]), (self.file("m.ddm"), bags))
         self.assertEqual(blocks["robot"]["goal_file"], self.file("goal.png"))
         self.assertEqual(blocks["access"]["bags"], [self.file("runs/one")] + bags)
+
+    def test_a_model_file_is_found_from_any_folder_and_brings_its_motors(self):
+        if not has_mujoco():
+            self.skipTest("ddm_sim was built without MuJoCo")
+        with open(os.path.join(roslib.packages.get_pkg_dir("ddm_sim"), "models", "arm.urdf")) as urdf:
+            self.write("robot.urdf", urdf.read())
+        os.makedirs(self.file("here"))
+        plant = {"type": "mujoco", "model": "robot.urdf", "motors": ["shoulder", "elbow"], "max_torque": [1.0, 0.4],
+                 "dt": 0.2, "tolerance": 10.0, "camera_position": [0.0, -0.3, 1.6], "camera_look_at": [0.0, 0.0, 0.0]}
+        for model in ("robot.urdf", "here/../robot.urdf", self.file("robot.urdf")):
+            self.write("robot.yaml", yaml.dump({"plant": dict(plant, model=model)}))
+            self.assertEqual(self.resolve("--plant", "robot.yaml")["plant"]["model"], self.file("robot.urdf"))
+        mjcf = {"plant": {"type": "mujoco", "model": "package://ddm_sim/models/suite_reacher.xml", "dt": 0.1,
+                          "tolerance": 5.0, "camera": "fixed"}}
+        for limits in ({}, {"max_torque": []}, {"max_torque": 0.05}):
+            mjcf["plant"].update(limits)
+            self.write("mjcf.yaml", yaml.dump(mjcf))
+            blocks = self.resolve("--plant", "./mjcf.yaml")
+            self.assertEqual(blocks["plant"]["model"], mjcf["plant"]["model"])
+            self.assertEqual([blocks[block]["max_torque"] for block in ("model", "mpc")], [[0.05, 0.05]] * 2)
+            self.assertEqual(blocks["controller"]["torque_dim"], 2)
 
     def test_bags_that_a_file_starts_from_may_be_read_by_the_nodes(self):
         self.write("start.yaml", "start: {bags: [/a.bag]}\n")

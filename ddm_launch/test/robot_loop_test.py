@@ -38,11 +38,11 @@ class RobotLoopTest(ScratchCase):
         launch = start_roslaunch(self.scratch, *arguments, "crop:=100,20,440,440", "goal_distance:=0.5",
                                  port=0)  # on the master of this test
         self.addCleanup(launch.stop)
-        launch.waitForText("the motors follow the controller", LIMIT_S)
+        launch.waitForText("motors follow", LIMIT_S)
         self.assertTrue(rospy.ServiceProxy("enable", SetBool)(False).success)
         launch.waitForEnd(LIMIT_S)
-        self.assertIn("the motors were stopped in a trial: it is cancelled", launch.output)
-        self.assertIn("the same command resumes", launch.output)
+        self.assertIn("cancelled", launch.output)
+        self.assertIn("resumes", launch.output)
         self.assertNotIn("summary.yaml", files_in(self.out))
 
         _, output = roslaunch(self.scratch, *arguments, limit_s=LIMIT_S)

@@ -7,7 +7,9 @@
 #include <ddm_msgs/RunTrialAction.h>
 #include <ddm_msgs/StartRecording.h>
 #include <ddm_msgs/StopRecording.h>
+#include <ddm_msgs/testing/expect_error.h>
 #include <ddm_msgs/topics.h>
+#include <ddm_node/waiting.h>
 #include <gtest/gtest.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
@@ -17,8 +19,6 @@
 #include <future>
 #include <set>
 #include <thread>
-
-#include "service_call.h"
 
 namespace ddm {
 namespace {
@@ -119,7 +119,7 @@ TEST(RosDriverTest, DoesNotWaitForTheTimeWithoutEnd) {
     error = e.what();
   }
   ros::Time::setNow(now);
-  EXPECT_EQ(error, "simulated time does not come (waited 0.5 s), nobody publishes /clock");
+  EXPECT_TRUE(testing::names(error, {"0.5 s", "nobody", "/clock"}));
 }
 
 TEST(RosDriverTest, HearsOfAnActionThatTellsOnceThatItIsThere) {
@@ -133,14 +133,14 @@ TEST(RosDriverTest, NamesAServiceThatDoesNotAnswer) {
   RosDriver driver(ros::NodeHandle(), 1.0, {/*recorder=*/true, /*trainer=*/false});
   TrialRequest request = trial();
   request.bag = "/nowhere/trial.bag";
-  EXPECT_EQ(errorOf(&driver, request), "service /start_recording does not answer (waited 1 s)");
+  EXPECT_TRUE(testing::names(errorOf(&driver, request), {"/start_recording", "answer", " 1 s"}));
 }
 
 TEST(RosDriverTest, WaitsForAResetNoLongerThanForAnythingElse) {
   Peers peers;
   peers.answerAfter(60.0);
   RosDriver driver(ros::NodeHandle(), 1.0, {/*recorder=*/false, /*trainer=*/false});
-  EXPECT_EQ(errorOf(&driver, trial()), "service /reset does not answer (waited 1 s)");
+  EXPECT_TRUE(testing::names(errorOf(&driver, trial()), {"/reset", "answer", " 1 s"}));
 }
 
 TEST(RosDriverTest, ConnectsAgainAfterAServiceThatDidNotAnswer) {

@@ -103,7 +103,7 @@ class RunExperimentTest(SharedScratchCase):
     def test_trials_that_grow_give_the_same_as_all_at_once(self):
         self.assertRuns(*self.debug(trials=0))
         output = self.assertRuns(*self.debug())
-        self.assertIn("resuming after trial 0", output)
+        self.assertIn("after trial 0", output)
         self.assertEqual(differences(self.reference, self.out, expected_files(TRIALS)), [])
 
     def test_a_run_that_was_killed_goes_on_as_if_nothing_had_happened(self):
@@ -150,7 +150,7 @@ class RunExperimentTest(SharedScratchCase):
         out = ["--out", self.out]
         for words, arguments in (
                 (["--nonsense"], out + ["--nonsense"]),
-                (["'--out' is required but missing"], ["--preset", "debug"]),
+                (["'--out'"], ["--preset", "debug"]),
                 (["unknown preset 'papier'", "debug, efficient, efficient_gravity, paper"], out + ["--preset", "papier"]),
                 (["unknown plant 'sim'", "pendulum, pendulum_gravity"], out + ["--plant", "sim"]),
                 (["unknown nuisance 'fog'", "drops, noise"], out + ["--nuisance", "noise", "--nuisance", "fog"]),
@@ -169,7 +169,7 @@ class RunExperimentTest(SharedScratchCase):
 
     def test_a_bad_configuration_is_refused_with_all_its_problems(self):
         bad = self.write("bad.yaml", "mpc: {horzion: 3, epsilon: 1.5}\nplant: {dt: fast}\ntrial: {num_steps: 0}\n")
-        self.assertRefused(2, ["mpc/horzion", "did you mean horizon", "mpc/epsilon", "1.5", "plant/dt", "fast",
+        self.assertRefused(2, ["mpc/horzion", "horizon?", "mpc/epsilon", "1.5", "plant/dt", "fast",
                                "trial/num_steps", bad], "--config", bad, "--out", self.out)
         self.assertFalse(os.path.exists(self.out))
 
@@ -224,7 +224,7 @@ class RunExperimentTest(SharedScratchCase):
         first = Process([find_program("ddm_launch", "run_experiment")] + self.debug(999))
         self.addCleanup(first.stop)
         first.waitForText("trial  0/999", 30.0)
-        self.assertRefused(1, ["another experiment is running", self.out], *self.debug(999))
+        self.assertRefused(1, ["is running", self.out], *self.debug(999))
         self.assertTrue(first.isRunning())
 
     def test_a_bag_that_is_damaged_is_named(self):

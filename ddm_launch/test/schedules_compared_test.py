@@ -86,7 +86,7 @@ class SchedulesComparedTest(figure_case.FigureCase):
                      "pendulum_predictions/joint_random_init/predictions.csv"):
             whole = self.file(path)
             os.rename(whole, whole + ".away")
-            self.assertRefused(schedules_compared, [self.scratch], whole, "reproduce_paper writes it")
+            self.assertRefused(schedules_compared, [self.scratch], whole, "rosrun ddm_launch reproduce_paper")
             os.rename(whole + ".away", whole)
 
     def test_a_seed_that_is_there_twice_is_refused(self):

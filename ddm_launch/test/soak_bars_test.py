@@ -8,8 +8,7 @@ import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import rooms  # noqa: E402, F401
-from ddm_qa.soak_bars import Sample, judge  # noqa: E402
-from ddm_qa.soak_frames import count_recorded, count_seen  # noqa: E402
+from ddm_qa.soak_bars import Sample, count_recorded, count_seen, judge  # noqa: E402
 from ddm_qa.soak import write_results  # noqa: E402
 from run_files import read_rows  # noqa: E402
 from scratch_case import ScratchCase  # noqa: E402

@@ -9,7 +9,7 @@ import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import rooms  # noqa: E402, F401
-from ddm_qa.soak_frames import count_frames  # noqa: E402
+from ddm_qa.soak_bars import count_frames  # noqa: E402
 from processes import call, find_program  # noqa: E402
 from run_files import read_bytes, read_rows  # noqa: E402
 from scratch_case import ScratchCase  # noqa: E402

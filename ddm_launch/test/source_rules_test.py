@@ -105,7 +105,7 @@ class SourceRulesTest(unittest.TestCase):
 
     def test_each_argument_of_a_launch_file_has_a_word_for_roslaunch_ros_args(self):
         without = []
-        for path in glob.glob(os.path.join(CHECKOUT, "*", "launch", "*.launch")):
+        for path in glob.glob(os.path.join(CHECKOUT, "*", "**", "launch", "*.launch"), recursive=True):
             for argument in xml.etree.ElementTree.parse(path).getroot().findall("arg"):
                 if argument.get("value") is None and not argument.get("doc"):
                     without.append((os.path.basename(path), argument.get("name")))

@@ -107,18 +107,18 @@ class StartTest(SharedScratchCase):
     def test_bags_and_models_of_another_plant_are_refused(self):
         bag = self.bags[0]
         fast = self.write("fast.yaml", "plant: {dt: 0.1}\n")
-        self.assertRefused(["bag " + bag, "does not fit the plant", "(dt): 0.2 in the bag, 0.1 in"], "--config", fast, "--bags", bag)
+        self.assertRefused(["bag " + bag, "the plant", "(dt): 0.2 ", ", 0.1 "], "--config", fast, "--bags", bag)
         small = self.write("small.yaml", "plant: {picture_size: 40}\n")
-        self.assertRefused(["bag " + bag, "images: 51x51 mono8 in the bag, 40x40 mono8 in"], "--config", small, "--bags", bag)
+        self.assertRefused(["bag " + bag, "images: 51x51 mono8 ", ", 40x40 mono8 "], "--config", small, "--bags", bag)
         tile = ["--plant", "moving_tile"]
-        self.assertRefused(["bag " + bag, "torques a frame: 1 in the bag, 2 in"], "--bags", bag, *tile)
-        self.assertRefused(["model " + self.model, "torques of 1, the plant 2"], "--model", self.model, *tile)
+        self.assertRefused(["bag " + bag, "torques", ": 1 ", ", 2 "], "--bags", bag, *tile)
+        self.assertRefused(["model " + self.model, "torques of 1", "plant 2"], "--model", self.model, *tile)
         coarse = self.write("coarse.yaml", "image: {size: 40}\n")
-        self.assertRefused(["images of size 51, image/size is 40"], "--config", coarse, "--model", self.model)
+        self.assertRefused(["size 51", "image/size is 40"], "--config", coarse, "--model", self.model)
 
     def test_files_and_methods_that_cannot_be_started_from_are_refused(self):
         self.assertRefused(["missing.bag"], "--bags", self.file("missing.bag"))
-        self.assertRefused(["is not a DDM model"], "--model", self.bags[0])
+        self.assertRefused([self.bags[0], "DDMMODEL"], "--model", self.bags[0])
         self.assertRefused(["given twice"], "--bags", self.bags[0], self.bags[0])
         self.assertRefused(["method oracle", "only ddm"], "--method", "oracle", "--model", self.model)
 
@@ -163,15 +163,16 @@ class StartTest(SharedScratchCase):
 
     def test_evaluate_refuses_what_does_not_fit(self):
         for code, words, arguments in (
-                (2, "--seeds must be A:B with 0 <= A < B (B is excluded), got '3'", ["--seeds", "3"]),
-                (2, "got '3:3'", ["--seeds", "3:3"]),
-                (2, "got '-1:3'", ["--seeds=-1:3"]),
-                (2, "--jobs must be >= 1, got 0", ["--seeds", "0:1", "--jobs", "0"]),
-                (2, "unknown plant 'robot'", ["--seeds", "0:1", "--plant", "robot"]),
-                (1, "torques of 1, the plant 2", ["--seeds", "0:1", "--plant", "moving_tile"])):
+                (2, ["--seeds", "A:B", "got '3'"], ["--seeds", "3"]),
+                (2, ["got '3:3'"], ["--seeds", "3:3"]),
+                (2, ["got '-1:3'"], ["--seeds=-1:3"]),
+                (2, ["--jobs", ">= 1", "got 0"], ["--seeds", "0:1", "--jobs", "0"]),
+                (2, ["unknown plant 'robot'"], ["--seeds", "0:1", "--plant", "robot"]),
+                (1, ["torques of 1", "plant 2"], ["--seeds", "0:1", "--plant", "moving_tile"])):
             actual, output = self.evaluate(*arguments)
             self.assertEqual(actual, code, output)
-            self.assertIn(words, output)
+            for word in words:
+                self.assertIn(word, output)
         self.assertFalse(os.path.exists(os.path.join(self.out, "evaluation.csv")))
 
 

@@ -152,7 +152,7 @@ class SuccessRateTest(figure_case.FigureCase):
             success_rate.read_curve("mine", path)
 
     def test_files_that_are_missing_are_named(self):
-        self.assertRefused(success_rate, ["mine=missing.csv"], "missing.csv", "give a trials.csv or sweep.csv")
+        self.assertRefused(success_rate, ["mine=missing.csv"], "missing.csv", "sweep.csv")
         self.assertRefused(success_rate, ["mine=" + self.writeSweep(), "--published", "no.csv"], "no.csv",
                            "results/published/success_rate.csv")
 

@@ -25,6 +25,11 @@ SKIP = '<testcase classname="Mlp" name="%s" status="run"><skipped message="no"/>
 WRAPPER = '<testcase classname="rostest.runner.RosTest" name="test%s"/>'
 
 
+def command(result):
+    """As catkin declares it: the file, then a program that writes it."""
+    return ["env.sh", "run_tests.py", result, "--return-code", "program --gtest_output=xml:" + result]
+
+
 class TestReportTest(ScratchCase):
     def setUp(self):
         super().setUp()
@@ -48,7 +53,7 @@ class TestReportTest(ScratchCase):
             names = ["_ctest_" + file_name for file_name, _ in tests]
             with open(os.path.join(folder, "tests_declared.json"), "w") as stream:
                 results = os.path.join(folder, "test_results", "ddm_model")
-                json.dump({"tests": [{"name": name, "command": ["env.sh", os.path.join(results, file_name)]}
+                json.dump({"tests": [{"name": name, "command": command(os.path.join(results, file_name))}
                                      for name, (file_name, _) in zip(names, tests)]}, stream)
             self.write(os.path.join(build, "tests_run.xml"), "<testsuite>%s</testsuite>" % "".join(
                 '<testcase name="%s" status="%s"/>' % (name, end) for name, (_, end) in zip(names, tests)))
@@ -122,7 +127,7 @@ class TestReportTest(ScratchCase):
         self.writeCases("gtest-a.xml", [PASS % "One"])
         code, lines = self.report()
         self.assertEqual((code, lines[-1]), (1, "1 passed, 1 failed"))
-        self.assertIn("although no case did", lines[1])
+        self.assertIn("no case", lines[1])
 
     def test_failures_that_only_the_sum_knows_fail(self):
         self.declare("rosunit-a.xml", "fail")

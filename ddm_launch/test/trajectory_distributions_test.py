@@ -85,19 +85,19 @@ class TrajectoryDistributionsTest(figure_case.FigureCase):
 
     def test_files_that_make_no_sense_are_refused(self):
         self.assertRefused(trajectory_distributions, ["missing.csv"], "missing.csv", "reproduce_paper")
-        for lines, part in (((["0,0,125,guessed,0,0,0,0"]), "kind must hold one of predicted, evaluation, trial, got "
-                             "'guessed'"),
-                            (rows(0, 0, "predicted", 1.0), "angle_std_rad must be >= 0, got None"),
-                            (rows(0, 0, "predicted", 1.0, -0.1), "angle_std_rad must be >= 0, got -0.1"),
-                            (policy(0, 0) + policy(0, 0), "seed 0, frames 125, kind predicted, step 0")):
+        for lines, *parts in ((["0,0,125,guessed,0,0,0,0"], "column kind", "predicted, evaluation, trial", "'guessed'"),
+                              (rows(0, 0, "predicted", 1.0), "column angle_std_rad", ">= 0", "got None"),
+                              (rows(0, 0, "predicted", 1.0, -0.1), "column angle_std_rad", ">= 0", "got -0.1"),
+                              (policy(0, 0) + policy(0, 0), "seed 0, frames 125, kind predicted, step 0")):
             path = self.writeLines("angles.csv", HEADER, *lines)
-            self.assertRefused(trajectory_distributions, [path], path, part)
+            self.assertRefused(trajectory_distributions, [path], path, *parts)
 
     def test_a_time_that_is_none_ends_with_code_2(self):
         for text in ("0", "-1", "nan", "inf", "long"):
             code, output = self.callMain(trajectory_distributions, "angles.csv", "--seconds=" + text)
             self.assertEqual(code, 2)
-            self.assertIn("must be a time > 0 [s], got '%s'" % text, output)
+            for part in ("--seconds", "> 0 [s]", "got '%s'" % text):
+                self.assertIn(part, output)
 
 
 if __name__ == "__main__":

@@ -200,7 +200,7 @@ TEST(TrialsCsv, AFileThatIsCutShortIsRefused) {
                                                {"trials.csv, line 3"}));
   EXPECT_TRUE(throwsNaming<std::runtime_error>(
       [&] { parseTrialsCsv(text.substr(0, text.size() - 1), "trials.csv"); },
-      {"trials.csv, line 3", "has no end"}));
+      {"trials.csv, line 3", "no end"}));
   for (const std::string old : {kInDegrees, kWithoutVersions}) {
     EXPECT_TRUE(throwsNaming<std::runtime_error>(
         [&] { parseTrialsCsv(old.substr(0, old.size() - 1), "trials.csv"); },

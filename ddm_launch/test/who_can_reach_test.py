@@ -12,7 +12,7 @@ import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import rooms  # noqa: E402, F401
-from ddm_qa.programs import on_this_machine  # noqa: E402
+from ddm_qa.processes import on_this_machine  # noqa: E402
 from namespaces import Network, nft_rule, why_no_nft  # noqa: E402
 from processes import Process, free_port, line_by_line  # noqa: E402
 from run_files import expected_files, files_in  # noqa: E402

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "trial_recorder.h"
 
+#include <ddm_msgs/option_checks.h>
 #include <ddm_msgs/topics.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <iterator>
 #include <sstream>
 
@@ -18,8 +18,9 @@ constexpr int kQueue = 1000;  // a slow disk must not cost a frame
 }  // namespace
 
 std::vector<std::string> RecorderOptions::problems() const {
-  if (timeout > 0.0 && std::isfinite(timeout)) return {};
-  return {"recorder/timeout must be > 0, got " + std::to_string(timeout)};
+  OptionChecks recorder("recorder");
+  recorder.requirePositive("timeout", timeout);
+  return recorder.problems();
 }
 
 TrialRecorder::TrialRecorder(ros::NodeHandle nh, const BagOptions& bag, const BagAccess& access,

@@ -30,12 +30,24 @@ struct Polynomial<double> {
       -8.2679958173371501883e-6};
 };
 
+/// p(s) by Horner's rule, from term k on. A recursion of templates: with a loop of 22 terms inside
+/// it, the loop over values would not be vectorised.
+template <class Scalar, int k = 0>
+inline Scalar polynomial(Scalar s) {
+  constexpr int kNumTerms = sizeof(Polynomial<Scalar>::kTerms) / sizeof(Scalar);
+  if constexpr (k + 1 == kNumTerms) {
+    return Polynomial<Scalar>::kTerms[k];
+  } else {
+    return polynomial<Scalar, k + 1>(s) * s + Polynomial<Scalar>::kTerms[k];
+  }
+}
+
 // Branches are written as selections of values that exist anyway: only then does the loop
 // vectorise.
 template <class Scalar>
-void arctanOf(const Scalar* x, Scalar* y, Scalar* slope, Eigen::Index n) {
-  constexpr int kNumTerms = sizeof(Polynomial<Scalar>::kTerms) / sizeof(Scalar);
+void arctanOf(Scalar* __restrict x, Scalar* __restrict slope, Eigen::Index n) {
   const Scalar half_pi = static_cast<Scalar>(1.57079632679489661923);
+  for (Eigen::Index i = 0; i < n; ++i) slope[i] = Scalar(1) / (Scalar(1) + x[i] * x[i]);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Scalar value = x[i];
     const Scalar magnitude = std::abs(value);
@@ -43,17 +55,13 @@ void arctanOf(const Scalar* x, Scalar* y, Scalar* slope, Eigen::Index n) {
     const Scalar numerator = steep ? Scalar(-1) : magnitude;
     const Scalar denominator = steep ? magnitude : Scalar(1);
     const Scalar r = numerator / denominator;
-    const Scalar s = r * r;
-    Scalar p = Polynomial<Scalar>::kTerms[kNumTerms - 1];
-    for (int k = kNumTerms - 2; k >= 0; --k) p = p * s + Polynomial<Scalar>::kTerms[k];
-    slope[i] = Scalar(1) / (Scalar(1) + value * value);
-    y[i] = std::copysign((steep ? half_pi : Scalar(0)) + r * p, value);
+    x[i] = std::copysign((steep ? half_pi : Scalar(0)) + r * polynomial(r * r), value);
   }
 }
 
 }  // namespace
 
-void arctan(const float* x, float* y, float* slope, Eigen::Index n) { arctanOf(x, y, slope, n); }
-void arctan(const double* x, double* y, double* slope, Eigen::Index n) { arctanOf(x, y, slope, n); }
+void arctan(float* x, float* slope, Eigen::Index n) { arctanOf(x, slope, n); }
+void arctan(double* x, double* slope, Eigen::Index n) { arctanOf(x, slope, n); }
 
 }  // namespace ddm

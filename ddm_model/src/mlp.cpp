@@ -86,7 +86,7 @@ void Mlp<Scalar>::forward(const Scalar* theta, Tape* tape) const {
     a.leftCols(n).colwise() = biases(theta, layer);
     a.leftCols(n).noalias() += weights(theta, layer) * tape->activations[layer].leftCols(n);
     const bool linear = layer + 1 == numLayers() && output_ == Output::kLinear;
-    if (!linear) arctan(a.data(), a.data(), slope.data(), a.rows() * n);
+    if (!linear) arctan(a.data(), slope.data(), a.rows() * n);
   }
 }
 

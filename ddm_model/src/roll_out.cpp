@@ -20,23 +20,24 @@ void RollOut<Scalar>::reserve(Eigen::Index num_targets, int num_steps) {
   regressors_.resize(f_.regressorDim(), targets);
 }
 
-/// h_n of the step that predicts the frame `step` after each target.
+/// h_n of the step that predicts the frame `step` after each target. Plain loops: the blocks have a
+/// few numbers each, and a plan spends a sixth of its time here if they are Eigen's.
 template <class Scalar>
 void RollOut<Scalar>::fillRegressors(const Eigen::Ref<const Matrix>& Z,
                                      const Eigen::Ref<const Eigen::MatrixXd>& U,
                                      const Targets& targets, int step) {
   const Eigen::Index last_torque = U.cols() - 1;
   for (Eigen::Index i = 0; i < targets.size(); ++i) {
+    Scalar* h = &regressors_.coeffRef(0, i);
     for (int lag = 0; lag < f_.order(); ++lag) {  // eq. (2)
       const Eigen::Index frame = targets[i] + step - 1 - lag;
-      auto z = regressors_.col(i).segment(f_.featureRow(lag), f_.featureDim());
-      if (lag < step) {
-        z = predicted_[step - 1 - lag].col(i);
-      } else {
-        z = Z.col(frame);
+      const Scalar* z =
+          lag < step ? &predicted_[step - 1 - lag].coeffRef(0, i) : &Z.coeffRef(0, frame);
+      h = std::copy_n(z, f_.featureDim(), h);
+      for (int motor = 0; motor < f_.torqueDim(); ++motor) {
+        const double u = U(motor, std::min(frame, last_torque)) / f_.maxTorque()[motor];
+        *h++ = static_cast<Scalar>(u);
       }
-      regressors_.col(i).segment(f_.torqueRow(lag), f_.torqueDim()) =
-          U.col(std::min(frame, last_torque)).cwiseQuotient(f_.maxTorque()).template cast<Scalar>();
     }
   }
 }
@@ -59,19 +60,21 @@ void RollOut<Scalar>::backward(const Scalar* theta_p, const Targets& targets, in
                                Scalar* d_theta_p, Matrix* d_Z, Eigen::MatrixXd* d_U) {
   f_.backward(theta_p, &tapes_[step], dPredicted(step), d_theta_p, &d_regressors_);
   for (Eigen::Index i = 0; i < targets.size(); ++i) {
+    const Scalar* d_h = &d_regressors_.coeffRef(0, i);
     for (int lag = 0; lag < f_.order(); ++lag) {
       const Eigen::Index frame = targets[i] + step - 1 - lag;
-      const auto d_z = d_regressors_.col(i).segment(f_.featureRow(lag), f_.featureDim());
+      Scalar* d_z = nullptr;
       if (lag < step) {
-        d_predicted_[step - 1 - lag].col(i) += d_z;
+        d_z = &d_predicted_[step - 1 - lag].coeffRef(0, i);
       } else if (d_Z != nullptr) {
-        d_Z->col(frame) += d_z;
+        d_z = &d_Z->coeffRef(0, frame);
       }
-      if (d_U != nullptr) {
-        d_U->col(frame) += d_regressors_.col(i)
-                               .segment(f_.torqueRow(lag), f_.torqueDim())
-                               .template cast<double>()
-                               .cwiseQuotient(f_.maxTorque());
+      for (int j = 0; j < f_.featureDim(); ++j, ++d_h) {
+        if (d_z != nullptr) d_z[j] += *d_h;
+      }
+      for (int motor = 0; motor < f_.torqueDim(); ++motor, ++d_h) {
+        if (d_U != nullptr)
+          (*d_U)(motor, frame) += static_cast<double>(*d_h) / f_.maxTorque()[motor];
       }
     }
   }

@@ -3,6 +3,7 @@
 #include "ddm_model/schedule.h"
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <stdexcept>
 #include <utility>
 
@@ -59,12 +60,11 @@ Schedule makeSchedule(const TrainingOptions& training) {
 }
 
 Schedule makeSchedule(const std::string& name) {
-  std::string known;
   for (const Named& named : schedules()) {
     if (named.first == name) return named.second;
-    known += (known.empty() ? "" : ", ") + named.first;
   }
-  throw std::invalid_argument("unknown schedule '" + name + "': there are " + known);
+  throw std::invalid_argument("unknown schedule '" + name + "': there are " +
+                              boost::algorithm::join(scheduleNames(), ", "));
 }
 
 }  // namespace ddm

@@ -102,7 +102,7 @@ TEST_F(BagCacheTest, NamesTheBagThatIsMissingAndRefusesAnEmptyList) {
         cache_.read({path, missing});
       },
       {missing, "No such file"}));
-  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { cache_.read({}); }, {"no bag was given"}));
+  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { cache_.read({}); }, {"no bag"}));
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ TEST(Ddm, KnowsTheFeatureOfItsGoal) {
 TEST(Ddm, WithoutAGoalImageSaysSo) {
   const Ddm model = toyModel(/*with_goal=*/false);
   EXPECT_FALSE(model.hasGoal());
-  EXPECT_TRUE(throwsNaming<std::logic_error>([&] { model.goalFeature(); }, {"no goal image"}));
+  EXPECT_TRUE(throwsNaming<std::logic_error>([&] { model.goalFeature(); }, {"goal image"}));
 }
 
 TEST(Ddm, HandsOutThePredictorsParameters) {
@@ -96,7 +96,7 @@ TEST(Ddm, RefusesPartsThatDoNotFit) {
   const auto refuses = [](const std::function<void(Parts*)>& spoil) {
     Parts parts;
     spoil(&parts);
-    return throwsNaming<std::invalid_argument>([&] { parts.model(); }, {"do not fit"});
+    return throwsNaming<std::invalid_argument>([&] { parts.model(); }, {"sizes", "goal image"});
   };
   EXPECT_NO_THROW(Parts().model());
   EXPECT_TRUE(refuses([](Parts* parts) { parts->image_size = 9; }));

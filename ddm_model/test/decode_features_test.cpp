@@ -8,6 +8,7 @@
 
 #include "ddm_files/plain_file.h"
 #include "ddm_model/model_file.h"
+#include "ddm_msgs/testing/expect_error.h"
 #include "ddm_msgs/testing/temp_folder.h"
 #include "subprocess.h"
 #include "toy_data.h"
@@ -31,10 +32,10 @@ class DecodeFeatures : public ::testing::Test {
     return testing::run("( cd " + folder_.file("") + " && " + DDM_MODEL_DECODE_FEATURES + " " +
                         arguments + " < features.csv )");
   }
-  void expectRefused(const std::string& csv, const std::string& part) const {
+  void expectRefused(const std::string& csv, const std::vector<std::string>& parts) const {
     const Outcome outcome = run("toy.ddm --frames pictures", csv);
     EXPECT_EQ(outcome.exit_code, 1) << csv;
-    EXPECT_TRUE(contains(outcome.err, part)) << outcome.err;
+    EXPECT_TRUE(testing::names(outcome.err, parts)) << csv;
     EXPECT_FALSE(fs::exists(path("pictures"))) << csv;
   }
 
@@ -64,15 +65,15 @@ TEST_F(DecodeFeatures, TakesLinesThatEndInCrLfAndBlankLinesAtTheEnd) {
 }
 
 TEST_F(DecodeFeatures, RefusesFeaturesItCannotUseAndNamesTheLine) {
-  expectRefused("", "line 1: must be the header z_1,z_2, got ''");
-  expectRefused("z_1,z_2,z_3\n0,0,0\n", "line 1: must be the header z_1,z_2, got 'z_1,z_2,z_3'");
-  expectRefused("0,0\n", "line 1: must be the header");
-  expectRefused("z_1,z_2\n", "line 2: must be a feature");
-  expectRefused("z_1,z_2\n0,0\n0\n", "line 3: must be 2 finite number(s), comma between, got '0'");
-  expectRefused("z_1,z_2\n0,0,0\n", "line 2");
-  expectRefused("z_1,z_2\n0,0\n\n0,0\n", "line 3");
+  expectRefused("", {"line 1: ", "header z_1,z_2,", "got \"\""});
+  expectRefused("z_1,z_2,z_3\n0,0,0\n", {"line 1: ", "header z_1,z_2,", "got \"z_1,z_2,z_3\""});
+  expectRefused("0,0\n", {"line 1: ", "header z_1,z_2,", "got \"0,0\""});
+  expectRefused("z_1,z_2\n", {"line 2: ", "no feature"});
+  expectRefused("z_1,z_2\n0,0\n0\n", {"line 3: ", " 2 ", "z_1,z_2", "got \"0\""});
+  expectRefused("z_1,z_2\n0,0,0\n", {"line 2"});
+  expectRefused("z_1,z_2\n0,0\n\n0,0\n", {"line 3"});
   for (const char* word : {"nan", "inf", "1e999", "0x1p0", "1.5m", "--1", ""}) {
-    expectRefused(std::string("z_1,z_2\n0,") + word + "\n", "line 2");
+    expectRefused(std::string("z_1,z_2\n0,") + word + "\n", {"line 2"});
   }
 }
 
@@ -90,7 +91,7 @@ TEST_F(DecodeFeatures, NamesAPictureThatCannotBeWritten) {
   fs::create_directories(path("pictures/frame_0000.png"));
   const Outcome outcome = run("toy.ddm --frames pictures", "z_1,z_2\n0,0\n");
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_TRUE(contains(outcome.err, "pictures/frame_0000.png cannot be written")) << outcome.err;
+  EXPECT_TRUE(testing::names(outcome.err, {"pictures/frame_0000.png", "written"}));
 }
 
 TEST_F(DecodeFeatures, ExplainsItself) {
@@ -107,9 +108,9 @@ TEST_F(DecodeFeatures, RefusesACommandLineThatMakesNoSense) {
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
     EXPECT_TRUE(contains(outcome.err, part) && contains(outcome.err, "--help")) << outcome.err;
   };
-  refused("toy.ddm", "--frames DIR is missing");
-  refused("--frames pictures", "one MODEL.ddm must be given, got 0");
-  refused("toy.ddm toy.ddm --frames pictures", "got 2");
+  refused("toy.ddm", "--frames DIR");
+  refused("--frames pictures", "model");
+  refused("toy.ddm toy.ddm --frames pictures", "too many");
   refused("toy.ddm --frames pictures --nonsense 1", "nonsense");
   EXPECT_FALSE(fs::exists(path("pictures")));
 }

@@ -2,6 +2,7 @@
 # inspect as a user calls it: model and bags in, a report and its numbers out.
 # SPDX-License-Identifier: BSD-3-Clause
 import base64
+import errno
 import html.parser
 import io
 import os
@@ -14,7 +15,6 @@ import rosunit
 import yaml
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_model.model_data import read_columns  # noqa: E402
 import toy_robot  # noqa: E402
 
 WITH_BAGS = ["Principal components", "Reconstructions", "A prediction: typical", "A prediction: worst", "Error by step",
@@ -84,7 +84,7 @@ class InspectionTest(toy_robot.ToyRobotCase):
         self.assertEqual(self.code, 0, self.words)
         self.assertEqual([name for name, ok in self.verdict(self.report).items() if not ok], [], self.words)
         page = Page(os.path.join(self.report, "report.html"))
-        self.assertIn("All 14 checks passed.", page.text)
+        self.assertRegex(page.text, r"\b14\b[^.]* passed")
         self.assertNotIn("what to do", page.text)
         self.assertEqual(list(page.images), WITH_BAGS)
         for title in WITH_BAGS:
@@ -97,15 +97,15 @@ class InspectionTest(toy_robot.ToyRobotCase):
         self.assertNotIn("script", page.tags)
 
     def test_the_numbers_behind_it_are_there(self):
-        errors = read_columns(os.path.join(self.report, "prediction_errors.csv"))
+        errors = toy_robot.read_table(os.path.join(self.report, "prediction_errors.csv"))
         self.assertEqual(list(errors["steps"]), [1, 2, 3, 4, 5, 6])
         self.assertEqual(errors["num_predictions"][0], 200 - 1 - 6)
         self.assertTrue(np.all(errors["rmse"] < errors["rmse_repeat"]))
         self.assertTrue(np.all(errors["rmse"] < errors["rmse_mean_torque"]))
-        frames = read_columns(os.path.join(self.report, "features.csv"))
+        frames = toy_robot.read_table(os.path.join(self.report, "features.csv"))
         self.assertEqual(len(frames["z_1"]), 200)
         self.assertTrue(np.all(frames["pca_rms"] <= frames["mean_rms"]))
-        share = read_columns(os.path.join(self.report, "spectrum.csv"))["share"]
+        share = toy_robot.read_table(os.path.join(self.report, "spectrum.csv"))["share"]
         kept = 1.0 - np.sum(frames["pca_rms"] ** 2) / np.sum(frames["mean_rms"] ** 2)
         self.assertAlmostEqual(np.sum(share), kept, places=4)
 
@@ -125,7 +125,7 @@ class InspectionTest(toy_robot.ToyRobotCase):
             stream.write("data_set: {image_topic: eye}\n")
         page = self.inspect("--config", self.file("names.yaml"), self.file("lazy.bag"))
         self.assertIn("what to do", page.text)
-        self.assertIn("Record trials with random torques over the motor's whole range", page.text)
+        self.assertIn("Record trials", page.text)
         self.assertFalse(self.verdict(self.out)["Torques are excited"])
         self.assertRegex(self.output, r"FAILED +Torques are excited")
 
@@ -133,7 +133,7 @@ class InspectionTest(toy_robot.ToyRobotCase):
         page = self.inspect()
         self.assertEqual(list(page.images), ["Principal components", "Feature plane"])
         self.assertIn("400 frames", page.text)
-        self.assertIn("No bag was given", page.text)
+        self.assertIn("No bag", page.text)
         self.assertFalse(os.path.exists(os.path.join(self.out, "bags.csv")))
 
     def test_a_single_feature_and_a_bag_too_short_to_predict_are_drawn_as_far_as_they_go(self):
@@ -147,18 +147,18 @@ class InspectionTest(toy_robot.ToyRobotCase):
 
     def test_what_cannot_be_read_is_named(self):
         self.assertRefused(["missing.bag"], "--model", self.model, self.unseen, self.file("missing.bag"))
-        self.assertRefused(["is not a DDM model"], "--model", self.unseen)
-        self.assertRefused(["--steps must lie in [1, 1000], got 0"], "--model", self.model, "--steps", 0, code=2)
+        self.assertRefused([self.unseen, "DDMMODEL"], "--model", self.unseen)
+        self.assertRefused(["--steps", "[1, 1000]", "got 0"], "--model", self.model, "--steps", 0, code=2)
 
     def test_what_cannot_be_written_is_named_and_there_is_no_report(self):
         os.makedirs(os.path.join(self.out, "verdict.yaml"))
-        self.assertRefused(["inspect: cannot write %s: it is not a regular file\n" % os.path.join(self.out, "verdict.yaml")],
+        self.assertRefused(["inspect: ", os.path.join(self.out, "verdict.yaml"), "regular file"],
                            "--model", self.model)
         self.out = self.file("small")
         limits = resource.getrlimit(resource.RLIMIT_FSIZE)
         self.addCleanup(resource.setrlimit, resource.RLIMIT_FSIZE, limits)
         resource.setrlimit(resource.RLIMIT_FSIZE, (50000, limits[1]))
-        self.assertRefused(["inspect: cannot write %s: File too large\n" % os.path.join(self.out, "report.html")],
+        self.assertRefused(["inspect: ", os.path.join(self.out, "report.html"), os.strerror(errno.EFBIG)],
                            "--model", self.model)
         self.assertEqual(sorted(os.listdir(self.out)), ["model.yaml", "verdict.yaml"])
 

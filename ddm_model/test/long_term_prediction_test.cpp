@@ -99,7 +99,7 @@ TEST(RollOut, ReachesFromTheFirstPossibleFrameToTheLast) {
   EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { model.rollOut(Z, data.torques(), 0, 1); },
                                                   {"frame 0", "1 frames before"}));
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { model.rollOut(Z.leftCols(9), data.torques(), 1, 1); }, {"do not fit"}));
+      [&] { model.rollOut(Z.leftCols(9), data.torques(), 1, 1); }, {"roll-out", "features"}));
 }
 
 TEST(PredictionErrors, AreTheRootMeanSquareOverAllPredictionsAndPixels) {
@@ -184,7 +184,7 @@ TEST(PredictionErrors, RefusesDataWithoutALongEnoughPiece) {
       [&] { predictionErrors(model, testing::toyTrial(5, 1), 4); },
       {"1 frames before", "4 after"}));
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { predictionErrors(model, testing::toyTrial(9, 1), 0); }, {"steps must be >= 1"}));
+      [&] { predictionErrors(model, testing::toyTrial(9, 1), 0); }, {"steps", ">= 1"}));
 }
 
 }  // namespace

@@ -166,7 +166,7 @@ TEST(Mlp, RandomWeightsHaveTheSpreadOfTheirFanInAndNoBias) {
 
 TEST(Mlp, RefusesShapesThatAreNoNetwork) {
   EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>([] { Net({4}, Net::Output::kLinear); },
-                                                           {"an input and an output width"}));
+                                                           {"input", "output"}));
   EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
       [] {
         Net({4, 0, 2}, Net::Output::kLinear);

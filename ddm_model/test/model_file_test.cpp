@@ -158,19 +158,18 @@ TEST(ModelFile, AnyByteThatIsDamagedIsNoticed) {
 }
 
 TEST(ModelFile, BytesAfterTheEndAreRefused) {
-  EXPECT_TRUE(isRefused(serialiseModel(toyModel()) + '\0', {"cut short or has grown"}));
+  EXPECT_TRUE(isRefused(serialiseModel(toyModel()) + '\0', {"grown"}));
 }
 
 TEST(ModelFile, AnotherVersionIsRefusedWithBothVersionsAndTheRemedy) {
   std::string bytes = serialiseModel(toyModel());
   bytes[kVersionAt] = 4;
-  EXPECT_TRUE(isRefused(bytes, {"format version 4", "reads versions 1 to 3", "train it again"}));
+  EXPECT_TRUE(isRefused(bytes, {"version 4", "1 to 3", "train it"}));
 }
 
 TEST(ModelFile, WhatIsNoModelIsRefused) {
-  EXPECT_TRUE(isRefused("", {"not a DDM model"}));
-  EXPECT_TRUE(
-      isRefused("# a text file, and longer than the header of a model\n", {"not a DDM model"}));
+  EXPECT_TRUE(isRefused("", {"DDMMODEL"}));
+  EXPECT_TRUE(isRefused("# a text file, and longer than the header of a model\n", {"DDMMODEL"}));
   EXPECT_TRUE(isRefused("DDMMODEL", {"cut short"}));
 }
 
@@ -182,10 +181,10 @@ TEST(ModelFile, ContentThatMakesNoSenseIsRefusedThoughItsChecksumFits) {
     return sealed(changed);
   };
   EXPECT_EQ(withNumber(0, 6), bytes);  // pca_dim comes first: nothing has changed
-  EXPECT_TRUE(isRefused(withNumber(0, 7), {"makes no sense", "PCA"}));
-  EXPECT_TRUE(isRefused(withNumber(0, -1), {"makes no sense", "model/pca_dim"}));
-  EXPECT_TRUE(isRefused(withNumber(8, 0), {"makes no sense", "model/order"}));
-  EXPECT_TRUE(isRefused(withNumber(12, 0x7fffffff), {"makes no sense", "longer than the file"}));
+  EXPECT_TRUE(isRefused(withNumber(0, 7), {"no sense", "PCA"}));
+  EXPECT_TRUE(isRefused(withNumber(0, -1), {"no sense", "model/pca_dim"}));
+  EXPECT_TRUE(isRefused(withNumber(8, 0), {"no sense", "model/order"}));
+  EXPECT_TRUE(isRefused(withNumber(12, 0x7fffffff), {"no sense", "longer"}));
 }
 
 TEST(ModelFile, NoContentWhateverItIsDoesMoreThanBeRefused) {

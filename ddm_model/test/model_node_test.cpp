@@ -100,7 +100,7 @@ TEST_F(ModelNodeTest, TrainsAndPublishesTheWholeModelLatched) {
   EXPECT_EQ(result->v_p, model.info().v_p);
   EXPECT_GT(result->evaluations, 0U);
   EXPECT_GT(result->train_time, 0.0);
-  EXPECT_TRUE(reports("model_node", DiagnosticStatus::OK, "trial 4: trained in "));
+  EXPECT_TRUE(reports("model_node", DiagnosticStatus::OK, "trial 4: trained"));
 }
 
 TEST_F(ModelNodeTest, TheSameSeedGivesTheSameModel) {
@@ -135,7 +135,7 @@ TEST_F(ModelNodeTest, AbortsWhereABagIsOutsideOfItsFolder) {
 
 TEST_F(ModelNodeTest, AbortsWhereThereIsTooLittleToLearnFrom) {
   EXPECT_EQ(client_.sendGoalAndWait(goal({}), kLimit), State::ABORTED);
-  EXPECT_TRUE(contains(client_.getState().getText(), "no bag was given"));
+  EXPECT_TRUE(contains(client_.getState().getText(), "no bag"));
   testing::writeTrial(folder_.file("short.bag"), testing::toyTrial(4, 1));
   EXPECT_EQ(client_.sendGoalAndWait(goal({"short.bag"}), kLimit), State::ABORTED);
   EXPECT_TRUE(contains(client_.getState().getText(), "model/pca_dim"));
@@ -181,9 +181,8 @@ TEST_F(ModelNodeTest, AFailureIsNotTakenForACancellation) {
                    [&failing] { failing.cancelGoal(); });  // while the bag is read
   ASSERT_TRUE(failing.waitForResult(kLimit));
   EXPECT_EQ(failing.getState(), State::ABORTED);
-  EXPECT_TRUE(contains(failing.getState().getText(), "did not lower the objective"))
-      << failing.getState().getText();
-  EXPECT_TRUE(reports("failing/model_node", DiagnosticStatus::ERROR, "did not lower"));
+  EXPECT_TRUE(contains(failing.getState().getText(), "objective")) << failing.getState().getText();
+  EXPECT_TRUE(reports("failing/model_node", DiagnosticStatus::ERROR, "objective"));
 }
 
 TEST_F(ModelNodeTest, RefusesToStartWithParametersThatAreWrong) {
@@ -193,8 +192,9 @@ TEST_F(ModelNodeTest, RefusesToStartWithParametersThatAreWrong) {
       testing::run("timeout 20 " DDM_MODEL_NODE " __name:=wrong_model_node");
   EXPECT_EQ(outcome.exit_code, 1);
   const std::string text = outcome.out + outcome.err;
-  EXPECT_TRUE(contains(text, "training/max_iteratoins")) << text;
-  EXPECT_TRUE(contains(text, "model/order must lie in [1, 50], got 0")) << text;
+  for (const char* part : {"training/max_iteratoins", "model/order", "[1, 50]", "got 0"}) {
+    EXPECT_TRUE(contains(text, part)) << part << " is not in: " << text;
+  }
 }
 
 }  // namespace

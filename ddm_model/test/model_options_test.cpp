@@ -6,10 +6,11 @@
 
 #include <limits>
 
+#include "ddm_msgs/testing/not_finite.h"
+
 namespace ddm {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
 /// Whether exactly one problem is found, about `key`, with the value that was given.

@@ -238,8 +238,8 @@ TEST(Pca, RefusesMoreComponentsThanPixels) {
 TEST(Pca, RefusesImagesThatAreAllTheSame) {
   DataSet data(4, 1);
   for (int t = 0; t < 10; ++t) data.append(Grey(16, 77), Eigen::VectorXd::Zero(1), false);
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { fitPca(data, 3, 1.0); },
-                                                  {"all 10 images are the same"}));
+  EXPECT_TRUE(
+      throwsNaming<std::invalid_argument>([&] { fitPca(data, 3, 1.0); }, {"10 images", "same"}));
 }
 
 }  // namespace

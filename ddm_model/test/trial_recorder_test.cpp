@@ -143,8 +143,9 @@ TEST_F(TrialRecorderTest, RefusesATrialWithAMissingTorqueAndKeepsWhatThereIs) {
   publishImage(4);
   const auto response = stop(5);
   EXPECT_FALSE(response.success);
-  EXPECT_TRUE(contains(response.message, "of 5 images and torques")) << response.message;
-  EXPECT_TRUE(contains(response.message, "5 and 4, and 4 pairs")) << response.message;
+  for (const char* part : {"of 5 ", "5 and 4", "4 pairs"}) {
+    EXPECT_TRUE(contains(response.message, part)) << response.message;
+  }
   EXPECT_FALSE(fs::exists(path_));
   EXPECT_TRUE(fs::exists(path_ + ".active"));
 }
@@ -197,7 +198,8 @@ TEST_F(TrialRecorderTest, RefusesATrialInWhichNoTorqueActed) {
   }
   const auto response = stop(3, /*last=*/2);
   EXPECT_FALSE(response.success);
-  EXPECT_TRUE(contains(response.message, "no torque acted in time")) << response.message;
+  EXPECT_TRUE(contains(response.message, "no torque")) << response.message;
+  EXPECT_TRUE(contains(response.message, "3 images")) << response.message;
   EXPECT_FALSE(fs::exists(path_));
 }
 
@@ -230,7 +232,7 @@ TEST_F(TrialRecorderTest, StopsWithWhateverThereIsWhereNoNumberIsDue) {
 TEST_F(TrialRecorderTest, RefusesToStopWhatWasNotStarted) {
   const auto response = stop(3);
   EXPECT_FALSE(response.success);
-  EXPECT_TRUE(contains(response.message, "nothing is being recorded"));
+  EXPECT_TRUE(contains(response.message, "nothing")) << response.message;
 }
 
 TEST_F(TrialRecorderTest, RefusesAPathThatCannotBeWritten) {

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # The verdict: each rule is broken by the fault that it is for, and by no other.
 # SPDX-License-Identifier: BSD-3-Clause
+import re
 import unittest
 
 import numpy as np
@@ -106,7 +107,7 @@ class VerdictTest(unittest.TestCase):
 
     def test_good_bags_and_a_good_model_pass(self):
         self.assertEqual(self.failed(GoodData()), [])
-        self.assertEqual(verdict.summary(verdict.verdict(GoodData())), "All 14 checks passed.")
+        self.assertRegex(verdict.summary(verdict.verdict(GoodData())), r"\b14\b.* passed")
 
     def test_each_fault_breaks_its_rule_and_no_other(self):
         for spoil, name in FAULTS.items():
@@ -126,27 +127,30 @@ class VerdictTest(unittest.TestCase):
     def test_figures_are_those_of_the_data(self):
         data = GoodData()
         loses_torques(data)
-        figures = {check.name: check.figure for check in verdict.verdict(data)}
-        self.assertIn("20 of 420 images (4.76 %)", figures["Images have their torques"])
-        self.assertIn("at best 0.35 times the error of repeating, in the first 5 step(s); 1 step ahead 0.035 grey, "
-                      "repeating 0.1; predictions are the better ones up to 13 of 15",
-                      figures["Predictions beat repeating the last frame"])
-        self.assertIn("1.27 times as much 5 step(s) ahead", figures["The model heeds the torque"])
-        self.assertIn("keep 96 %", figures["Enough components, for such images"])
+        figures = {check.name: re.findall(r"[\d.]*\d", check.figure) for check in verdict.verdict(data)}
+        self.assertEqual(figures["Images have their torques"], ["20", "420", "4.76"])
+        self.assertEqual(figures["Predictions beat repeating the last frame"],
+                         ["0.35", "5", "1", "0.035", "0.1", "13", "15"])
+        self.assertEqual(figures["The model heeds the torque"], ["1.27", "5"])
+        self.assertEqual(figures["Enough components, for such images"][-1], "96")
 
     def test_the_summary_says_what_to_do_first(self):
         data = GoodData()
         guesses(data)
         hardly_moves(data)
-        text = verdict.summary(verdict.verdict(data))
-        self.assertTrue(text.startswith("2 of 14 checks failed. Do first: Torques are excited: Record trials"), text)
+        checks = verdict.verdict(data)
+        text = verdict.summary(checks)
+        self.assertTrue(text.startswith("2 of 14 "), text)
+        remedy = next(check.remedy for check in checks if check.name == "Torques are excited")
+        self.assertTrue(text.endswith("Torques are excited: " + remedy), text)
 
     def test_what_could_not_be_predicted_is_not_known(self):
         data = GoodData()
         data.errors = {name: np.zeros(0) for name in data.errors}
         unknown = [check.name for check in verdict.verdict(data) if check.ok is None]
         self.assertEqual(unknown, ["Predictions beat repeating the last frame", "The model heeds the torque"])
-        self.assertIn("2 of 14 checks could not be made", verdict.summary(verdict.verdict(data)))
+        self.assertEqual(self.failed(data), [])
+        self.assertIn("2 of 14 ", verdict.summary(verdict.verdict(data)))
 
     def test_a_model_alone_is_judged_by_what_it_says_of_itself(self):
         data = GoodData()

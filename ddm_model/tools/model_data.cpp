@@ -1,27 +1,29 @@
-// model_data: a model, and what it makes of bags, as files for inspect and export.
+// model_data: a model, and what it makes of bags, as arrays and YAML for inspect and export.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_bag_io/bag_reader.h>
 #include <ddm_bag_io/model_config.h>
-#include <ddm_files/plain_file.h>
+#include <ddm_model/long_term_prediction.h>
 #include <ddm_model/model_file.h>
+#include <ddm_model/per_motor.h>
 #include <ddm_params/param_value.h>
 #include <ddm_params/tool.h>
 #include <ros/time.h>
+#include <unistd.h>
 
-#include <filesystem>
+#include <algorithm>
 #include <iostream>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "bag_measurements.h"
-#include "model_arrays.h"
-#include "npy_file.h"
+#include "array_folder.h"
 
-namespace fs = std::filesystem;
 namespace po = boost::program_options;
 
+namespace ddm {
 namespace {
 
-constexpr int kGrid = 9;  // decoded images along each axis of the feature plane, as in the paper
+constexpr Eigen::Index kMaxStarts = 1000;  // predictions of each length: seconds, not minutes
 
 struct Arguments {
   std::string model;
@@ -34,7 +36,7 @@ struct Arguments {
 /// @return false where --help was asked for and has been printed
 bool parse(int argc, char** argv, Arguments* arguments) {
   po::options_description options(
-      "Writes a model, and what it makes of bags, as CSV, YAML and NumPy files: what\n"
+      "Writes a model, and what it makes of bags, as YAML and NumPy files: what\n"
       "`rosrun ddm_model inspect` and `rosrun ddm_model export` show to people.\n\n"
       "usage: rosrun ddm_model model_data --model FILE --out DIR [--steps K] [--config FILE]...\n"
       "                                   [BAG...]\n\noptions");
@@ -49,7 +51,7 @@ bool parse(int argc, char** argv, Arguments* arguments) {
   unnamed.add_options()("bag", po::value(&arguments->bags));
   po::positional_options_description names;
   names.add("bag", -1);
-  if (!ddm::parseCommandLine(argc, argv, options, unnamed, names)) return false;
+  if (!parseCommandLine(argc, argv, options, unnamed, names)) return false;
   if (arguments->model.empty()) throw po::error("--model FILE is missing: say which model");
   if (arguments->out.empty()) throw po::error("--out DIR is missing: say where the files go");
   if (arguments->steps < 1 || arguments->steps > 1000) {
@@ -58,89 +60,195 @@ bool parse(int argc, char** argv, Arguments* arguments) {
   return true;
 }
 
-std::string factsOf(const ddm::Ddm& model, const std::string& id) {
+/// Says what is done, and on a terminal how far.
+std::function<void(double)> progress(const std::string& what) {
+  const bool live = ::isatty(STDERR_FILENO) != 0;
+  std::cerr << what << (live ? "" : "\n") << std::flush;
+  return [what, live, shown = -1](double fraction) mutable {
+    const int percent = static_cast<int>(100.0 * fraction);
+    if (!live || percent == shown) return;
+    shown = percent;
+    std::cerr << "\r" << what << "  " << percent << " %" << (percent == 100 ? "\n" : "")
+              << std::flush;
+  };
+}
+
+std::string factsOf(const Ddm& model, const std::string& id) {
   YAML::Node facts(YAML::NodeType::Map);
-  const ddm::ModelInfo& info = model.info();
+  const ModelInfo& info = model.info();
   facts["id"] = id;
   facts["seed"] = std::to_string(info.seed);
   facts["trial"] = std::to_string(info.trial);
   facts["frames"] = std::to_string(info.frames);
-  facts["v_r"] = ddm::formatDouble(info.v_r);
-  facts["v_p"] = ddm::formatDouble(info.v_p);
-  facts["feature_spread"] = ddm::formatDouble(info.feature_spread);
+  facts["v_r"] = formatDouble(info.v_r);
+  facts["v_p"] = formatDouble(info.v_p);
+  facts["feature_spread"] = formatDouble(info.feature_spread);
   facts["image_size"] = std::to_string(model.imageSize());
   facts["torque_dim"] = std::to_string(model.torqueDim());
   facts["goal"] = model.hasGoal() ? "true" : "false";
-  facts["options"] = ddm::toYaml(model.options());
+  facts["options"] = toYaml(model.options());
   facts["config"] = info.config;
   return YAML::Dump(facts) + "\n";
 }
 
-/// The smallest range that holds these values and a margin of a twentieth; not quite a point.
-std::pair<double, double> rangeOf(const Eigen::VectorXd& values) {
-  const double margin = std::max(0.05 * (values.maxCoeff() - values.minCoeff()), 0.02);
-  return {values.minCoeff() - margin, values.maxCoeff() + margin};
+void writeNetwork(const Mlp<double>& network, const double* theta, const std::string& name,
+                  const ArrayFolder& out) {
+  for (int layer = 0; layer < network.numLayers(); ++layer) {
+    const std::string number = std::to_string(layer + 1);
+    out.write(name + "_W" + number, Eigen::MatrixXd(network.weights(theta, layer)));
+    out.write(name + "_b" + number, Eigen::VectorXd(network.biases(theta, layer)));
+  }
 }
 
-/// Images decoded at 9 x 9 points over the features (without bags: over what the paper shows), as
-/// one reads: z_1 to the right, z_2 upwards. One feature gives a row. Those from the third on have
-/// the goal's value.
-void writePlane(const ddm::Ddm& model, const Eigen::MatrixXd& Z, const std::string& folder) {
-  const auto range = [&Z](int i) {
-    return Z.cols() > 0 ? rangeOf(Z.row(i).transpose()) : std::make_pair(-1.0, 1.0);
-  };
-  const auto at = [](const std::pair<double, double>& ends, int k) {
-    return ends.first + (ends.second - ends.first) * k / (kGrid - 1);
-  };
-  Eigen::VectorXd z =
-      model.hasGoal() ? model.goalFeature() : Eigen::VectorXd::Zero(model.featureDim());
-  const int rows = z.size() > 1 ? kGrid : 1;
-  std::vector<std::uint8_t> pixels;
-  std::string text = "feature,low,high\n";
-  for (int i = 0; i < std::min<int>(2, static_cast<int>(z.size())); ++i) {
-    text += std::to_string(i + 1) + "," + ddm::formatDouble(range(i).first) + "," +
-            ddm::formatDouble(range(i).second) + "\n";
+/// Everything that the model computes with, under the names in the README.
+void writeModel(const Ddm& model, const ArrayFolder& out) {
+  const ModelOptions& options = model.options();
+  out.writeNumber("image_size", std::int64_t{model.imageSize()});
+  out.writeNumber("feature_dim", std::int64_t{options.feature_dim});
+  out.writeNumber("torque_dim", std::int64_t{model.torqueDim()});
+  out.writeNumber("order", std::int64_t{options.order});
+  if (options.max_torque.size() == 1) {
+    out.writeNumber("max_torque", options.max_torque[0]);
+  } else {
+    out.write("max_torque", perMotor(options.max_torque, model.torqueDim(), "model/max_torque"));
   }
-  for (int row = 0; row < rows; ++row) {
-    if (rows > 1) z[1] = at(range(1), kGrid - 1 - row);
-    for (int column = 0; column < kGrid; ++column) {
-      z[0] = at(range(0), column);
-      const ddm::Grey grey = model.decode(z);
-      pixels.insert(pixels.end(), grey.begin(), grey.end());
+  out.writeNumber("residual", std::int64_t{options.residual ? 1 : 0});
+  out.writeNumber("increments", std::int64_t{options.increments ? 1 : 0});
+  out.write("pca_mean", model.pca().mean);
+  out.write("pca_basis", model.pca().basis);
+  out.write("pca_variance", model.pca().variance);
+  out.writeNumber("pca_scale", static_cast<double>(model.pca().scale));
+  const Networks<double> networks(options, model.torqueDim());
+  const double* theta = model.theta().data();
+  writeNetwork(networks.encoder(), networks.encoderOf(theta), "encoder", out);
+  writeNetwork(networks.decoder(), networks.decoderOf(theta), "decoder", out);
+  writeNetwork(networks.f(), networks.predictorOf(theta), "f", out);
+  if (!model.hasGoal()) return;
+  DataSet goal(model.imageSize(), model.torqueDim());
+  goal.setGoal(model.goal());
+  out.write("goal", Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>(goal.pixels(0, 1).col(0)));
+  out.write("goal_feature", model.goalFeature());
+}
+
+/// All bags as one data set. What was found in each is in bags.yaml.
+DataSet readBags(const Ddm& model, const Arguments& arguments, const BagOptions& topics,
+                 const ArrayFolder& out) {
+  DataSet data(model.imageSize(), model.torqueDim());
+  const auto show = progress("reading " + std::to_string(arguments.bags.size()) + " bag(s)");
+  YAML::Node bags(YAML::NodeType::Sequence);
+  std::vector<double> times;
+  for (const std::string& path : arguments.bags) {
+    const BagContent content = readBag(path, model.imageSize(), topics);
+    if (content.data.torqueDim() != model.torqueDim()) {
+      throw std::runtime_error("bag " + path + ": has " + std::to_string(content.data.torqueDim()) +
+                               " torque(s) a frame, the model has " +
+                               std::to_string(model.torqueDim()) + ": it is of another robot");
     }
+    YAML::Node bag;
+    bag["bag"] = path;
+    bag["camera"] = content.camera;
+    bag["frames"] = content.data.numFrames();
+    bag["pieces"] = content.data.pieces().size();
+    bag["images_without_torque"] = content.num_images_without_torque;
+    bag["torques_without_image"] = content.num_torques_without_image;
+    bag["interval_s"] = formatDouble(content.interval);
+    bag["goal"] = content.data.hasGoal() ? 1 : 0;
+    bags.push_back(bag);
+    data.append(content.data);
+    times.insert(times.end(), content.times.begin(), content.times.end());
+    show(static_cast<double>(bags.size()) / static_cast<double>(arguments.bags.size()));
   }
-  const Eigen::Index size = model.imageSize();
-  ddm::writeFileAtomically(folder + "/plane.csv", text);
-  ddm::writeFileAtomically(
-      folder + "/arrays/plane.npy",
-      ddm::npyBytes("|u1", {rows * kGrid, size, size}, false, pixels.data(), pixels.size()));
+  writeFileAtomically(arguments.out + "/bags.yaml", YAML::Dump(bags) + "\n");
+  out.write("times", Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
+                         times.data(), static_cast<Eigen::Index>(times.size()))));
+  return data;
+}
+
+/// @return the decoded image of each feature  [D x N]
+GreyMatrix decodeAll(const Ddm& model, const Eigen::MatrixXd& Z) {
+  GreyMatrix images(model.pca().mean.size(), Z.cols());
+  for (Eigen::Index i = 0; i < Z.cols(); ++i) {
+    const Grey grey = model.decode(Z.col(i));
+    std::copy(grey.begin(), grey.end(), images.col(i).data());
+  }
+  return images;
+}
+
+/// The predictions that are in the middle, and worst, of all by the distance of the feature
+/// predicted last to that of the image that came.
+void writeNotable(const Ddm& model, const DataSet& data, const Eigen::MatrixXd& Z,
+                  const std::vector<Eigen::Index>& starts, int num_steps, const ArrayFolder& out) {
+  std::vector<std::pair<double, Eigen::Index>> ranked;
+  for (const Eigen::Index frame : starts) {
+    const Eigen::MatrixXd path = model.rollOut(Z, data.torques(), frame, num_steps);
+    ranked.emplace_back((path.rightCols(1) - Z.col(frame + num_steps)).norm(), frame);
+  }
+  std::sort(ranked.begin(), ranked.end());
+  const auto write = [&](const std::string& kind, Eigen::Index frame) {
+    const Eigen::MatrixXd path = model.rollOut(Z, data.torques(), frame, num_steps);
+    out.writeNumber(kind + "_frame", std::int64_t{frame});
+    out.write(kind + "_features", path);
+    out.write(kind + "_images", decodeAll(model, path));
+  };
+  write("typical", ranked[ranked.size() / 2].second);
+  write("worst", ranked.back().second);
+}
+
+/// A row for each column of prediction_errors.csv, a column for each number of steps.
+void writePredictions(const Ddm& model, const DataSet& data, const Eigen::MatrixXd& Z,
+                      int max_steps, const ArrayFolder& out) {
+  int num_steps = max_steps;  // shorter where all pieces are
+  while (num_steps > 0 && predictionStarts(model, data, num_steps).empty()) --num_steps;
+  Eigen::MatrixXd errors(5, num_steps);
+  if (num_steps > 0) {
+    const std::vector<Eigen::Index> starts =
+        thinnedOut(predictionStarts(model, data, num_steps), kMaxStarts);
+    const auto show = progress("predicting " + std::to_string(num_steps) + " step(s) from " +
+                               std::to_string(starts.size()) + " frames");
+    for (const PredictionError& error : predictionErrors(model, data, starts, num_steps, show)) {
+      errors.col(error.steps - 1) << error.steps, static_cast<double>(error.num_predictions),
+          error.rmse, error.rmse_repeat, error.rmse_mean_torque;
+    }
+    writeNotable(model, data, Z, starts, num_steps, out);
+  }
+  out.write("prediction_errors", errors);
+}
+
+void writeFrames(const Ddm& model, const DataSet& data, const Eigen::MatrixXd& Z,
+                 const ArrayFolder& out) {
+  Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1> piece_sizes(data.pieces().size());
+  for (size_t i = 0; i < data.pieces().size(); ++i) piece_sizes[i] = data.pieces()[i].size;
+  out.write("piece_sizes", piece_sizes);
+  out.write("torques", Eigen::MatrixXd(data.torques()));
+  out.write("features", Z);
+  out.write("images", data.pixels(0, data.numFrames()));
+  out.write("reconstructions", decodeAll(model, Z));
 }
 
 void run(const Arguments& arguments) {
-  ddm::ParamReader params = ddm::ParamReader::fromFiles(arguments.configs);
-  const auto topics = params.read<ddm::BagOptions>("data_set");
+  ParamReader params = ParamReader::fromFiles(arguments.configs);
+  const auto topics = params.read<BagOptions>("data_set");
   params.requireValid();
-  const std::string bytes = ddm::readFile(arguments.model);
-  const ddm::Ddm model = ddm::deserialiseModel(bytes, arguments.model);
-  const std::string& folder = arguments.out;
-  fs::create_directories(folder + "/model");
-  fs::create_directories(folder + "/arrays");
-  Eigen::MatrixXd Z(model.featureDim(), 0);
+  const std::string bytes = readFile(arguments.model);
+  const Ddm model = deserialiseModel(bytes, arguments.model);
+  writeModel(model, ArrayFolder(arguments.out + "/model"));
   if (!arguments.bags.empty()) {
-    Z = ddm::measureBags(model, arguments.bags, topics, arguments.steps, folder);
+    const ArrayFolder out(arguments.out + "/bags");
+    const DataSet data = readBags(model, arguments, topics, out);
+    const Eigen::MatrixXd Z = encodeAll(model, data);
+    writeFrames(model, data, Z, out);
+    writePredictions(model, data, Z, arguments.steps, out);
   }
-  for (const auto& array : ddm::modelArrays(model)) {
-    ddm::writeFileAtomically(folder + "/model/" + array.first + ".npy", array.second);
-  }
-  writePlane(model, Z, folder);
-  ddm::writeFileAtomically(folder + "/model.yaml", factsOf(model, ddm::modelId(bytes)));
+  writeFileAtomically(arguments.out + "/model.yaml", factsOf(model, modelId(bytes)));
 }
 
 }  // namespace
+}  // namespace ddm
 
 int main(int argc, char** argv) {
   ros::Time::init();
-  Arguments arguments;
+  ddm::Arguments arguments;
   return ddm::runTool(
-      "model_data", [&] { return parse(argc, argv, &arguments); }, [&] { run(arguments); });
+      "model_data", [&] { return ddm::parse(argc, argv, &arguments); },
+      [&] { ddm::run(arguments); });
 }

@@ -4,6 +4,7 @@
 #include <ddm_bag_io/model_config.h>
 #include <ddm_files/plain_file.h>
 #include <ddm_images/image_codec.h>
+#include <ddm_images/picture_file.h>
 #include <ddm_model/model_file.h>
 #include <ddm_model/per_motor.h>
 #include <ddm_model/solver_log.h>
@@ -11,11 +12,10 @@
 #include <ddm_params/config_blocks.h>
 #include <ddm_params/tool.h>
 #include <ros/time.h>
-#include <sensor_msgs/Image.h>
 #include <unistd.h>
 
+#include <boost/algorithm/string/join.hpp>
 #include <iostream>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
 
@@ -59,20 +59,6 @@ bool parse(int argc, char** argv, Arguments* arguments) {
   return true;
 }
 
-ddm::Grey readGoal(const std::string& path, int image_size) {
-  const cv::Mat picture = cv::imread(path, cv::IMREAD_GRAYSCALE);
-  if (picture.empty()) {
-    throw std::runtime_error("goal image " + path + ": cannot be read as an image");
-  }
-  sensor_msgs::Image image;
-  image.width = picture.cols;
-  image.height = picture.rows;
-  image.encoding = "mono8";
-  image.step = static_cast<std::uint32_t>(picture.step);
-  image.data.assign(picture.datastart, picture.dataend);
-  return ddm::decodeImage(image, image_size);
-}
-
 bool showProgress(const ddm::TrainingProgress& progress) {
   if (::isatty(STDERR_FILENO) != 0 && progress.iteration % 10 == 0) {
     std::cerr << "\riteration " << progress.iteration << "  V_R " << progress.v_r << "  V_P "
@@ -83,12 +69,18 @@ bool showProgress(const ddm::TrainingProgress& progress) {
 
 /// Blocks of all files. The limits of the motors are written once: `model/max_torque` is that of a
 /// robot or plant in the same files, unless they give it themselves.
+/// @throws std::invalid_argument if only a model file could say
 /// @param limits_from  out: the key that they come from
 YAML::Node readConfigs(const std::vector<std::string>& files, std::string* limits_from) {
   YAML::Node blocks(YAML::NodeType::Map);
   for (const std::string& file : files) ddm::overlay(ddm::readBlocks(file), &blocks);
   const std::string owner =
       ddm::hasKey(blocks, "model", "max_torque") ? "model" : ddm::ownerOfMotors(blocks);
+  if (owner.empty() && ddm::hasKey(blocks, "plant", "model")) {
+    throw std::invalid_argument(
+        "plant/max_torque must be given here, since this program does not read the model file " +
+        blocks["plant"]["model"].as<std::string>() + ": `simulate --describe` prints it");
+  }
   *limits_from = owner.empty() ? "the default" : owner + "/max_torque";
   const YAML::Node model = blocks["model"];
   if (!owner.empty() && owner != "model" && (!model.IsDefined() || model.IsMap())) {
@@ -97,19 +89,15 @@ YAML::Node readConfigs(const std::vector<std::string>& files, std::string* limit
   return blocks;
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 void run(const Arguments& arguments) {
   std::string limits_from;
-  ddm::ParamReader params(readConfigs(arguments.configs, &limits_from), joined(arguments.configs));
+  ddm::ParamReader params(readConfigs(arguments.configs, &limits_from),
+                          boost::algorithm::join(arguments.configs, ", "));
   const ddm::ModelConfig config = ddm::readModelConfig(&params);
   params.requireValid();
   ddm::DataSet data = ddm::BagCache(config.image.size, config.data_set).read(arguments.bags);
-  if (!arguments.goal.empty()) data.setGoal(readGoal(arguments.goal, config.image.size));
+  if (!arguments.goal.empty())
+    data.setGoal(ddm::decodeImage(ddm::readPicture(arguments.goal), config.image.size));
   if (!data.hasGoal()) {
     std::cerr << "no --goal and no goal_image in the bags: the model can predict, but not be "
                  "planned with\n";

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cmath>
+#include <ddm_msgs/option_checks.h>
+
 #include <string>
 #include <vector>
 
@@ -19,15 +20,10 @@ struct ControllerOptions {
     visitor("timeout", timeout);
   }
   std::vector<std::string> problems() const {
-    std::vector<std::string> out;
-    if (!(torque_dim >= 1 && torque_dim <= 1000)) {
-      out.push_back("controller/torque_dim must lie in [1, 1000], got " +
-                    std::to_string(torque_dim));
-    }
-    if (!(timeout > 0.0 && std::isfinite(timeout))) {
-      out.push_back("controller/timeout must be > 0, got " + std::to_string(timeout));
-    }
-    return out;
+    OptionChecks controller("controller");
+    controller.requireWithin("torque_dim", torque_dim, 1, 1000);
+    controller.requirePositive("timeout", timeout);
+    return controller.problems();
   }
 };
 

@@ -11,10 +11,10 @@ namespace {
 
 using visualization_msgs::Marker;
 
-constexpr int kPointsPerImage = 12;  // along each side
-constexpr double kSmallDot = 0.025;  // diameters, in features
-constexpr double kPlanDot = 0.04;
-constexpr double kLargeDot = 0.12;
+constexpr int kPointsPerImage = 12;     // along each side
+constexpr double kSmallSphere = 0.025;  // diameters, in features
+constexpr double kPlanSphere = 0.04;
+constexpr double kLargeSphere = 0.12;
 constexpr double kLine = 0.015;
 constexpr double kLetter = 0.14;
 constexpr double kBehind = 0.01;    // images are drawn below their plane, so that dots stay visible
@@ -89,14 +89,15 @@ visualization_msgs::MarkerArray overlayMarkers(const FeatureOverlay& overlay,
   namespace colours = feature_colours;
   visualization_msgs::MarkerArray out;
   out.markers = {
-      withPoints(marker("experience", Marker::SPHERE_LIST, colours::kExperience, kSmallDot, stamp),
-                 overlay.experience),
+      withPoints(
+          marker("experience", Marker::SPHERE_LIST, colours::kExperience, kSmallSphere, stamp),
+          overlay.experience),
       withPoints(marker("plan", Marker::LINE_STRIP, colours::kPlan, kLine, stamp), overlay.plan),
-      withPoints(marker("plan", Marker::SPHERE_LIST, colours::kPlan, kPlanDot, stamp),
+      withPoints(marker("plan", Marker::SPHERE_LIST, colours::kPlan, kPlanSphere, stamp),
                  overlay.plan),
-      withPoints(marker("goal", Marker::SPHERE_LIST, colours::kGoal, kLargeDot, stamp),
+      withPoints(marker("goal", Marker::SPHERE_LIST, colours::kGoal, kLargeSphere, stamp),
                  overlay.goal),
-      withPoints(marker("current", Marker::SPHERE_LIST, colours::kCurrent, kLargeDot, stamp),
+      withPoints(marker("current", Marker::SPHERE_LIST, colours::kCurrent, kLargeSphere, stamp),
                  overlay.current)};
   out.markers[2].id = 1;  // the dots of the plan, beside its line
   return out;

@@ -18,10 +18,10 @@ using feature_colours::kExperience;
 using feature_colours::kGoal;
 using feature_colours::kPlan;
 
-constexpr int kSmallDot = 2;
-constexpr int kPlanDot = 3;
-constexpr int kLargeDot = 6;
-constexpr double kFarthest = 10.0;  // well outside, and small enough for OpenCV's integers
+constexpr int kSmallRadius = 2;
+constexpr int kPlanRadius = 3;
+constexpr int kLargeRadius = 6;
+constexpr double kFarthestDot = 10.0;  // well outside, and small enough for OpenCV's integers
 
 /// The outline keeps a dot visible on black, on white and on other dots.
 void drawDot(const cv::Point& at, int radius, const cv::Scalar& colour, cv::Mat* picture) {
@@ -72,29 +72,28 @@ FeaturePlane::FeaturePlane(const Ddm& model)
 
 cv::Point FeaturePlane::pixelOf(const Eigen::Ref<const Eigen::VectorXd>& z) {
   const auto offset = [](double value) {
-    return static_cast<int>(std::lround(kUnit * std::min(kFarthest, std::max(-kFarthest, value))));
+    return static_cast<int>(
+        std::lround(kUnit * std::min(kFarthestDot, std::max(-kFarthestDot, value))));
   };
   return {kWidth / 2 + offset(z[0]), kWidth / 2 - (z.size() > 1 ? offset(z[1]) : 0)};
 }
 
 cv::Mat FeaturePlane::draw(const FeatureOverlay& overlay) const {
   cv::Mat picture = grid_.clone();
+  const auto drawDots = [&picture](const Eigen::MatrixXd& Z, int radius, const cv::Scalar& colour) {
+    for (Eigen::Index i = 0; i < Z.cols(); ++i)
+      drawDot(pixelOf(Z.col(i)), radius, colour, &picture);
+  };
   for (Eigen::Index i = 0; i < overlay.experience.cols(); ++i) {
-    cv::circle(picture, pixelOf(overlay.experience.col(i)), kSmallDot, kExperience, cv::FILLED);
+    cv::circle(picture, pixelOf(overlay.experience.col(i)), kSmallRadius, kExperience, cv::FILLED);
   }
   for (Eigen::Index k = 1; k < overlay.plan.cols(); ++k) {
     cv::line(picture, pixelOf(overlay.plan.col(k - 1)), pixelOf(overlay.plan.col(k)), kPlan, 2,
              cv::LINE_AA);
   }
-  for (Eigen::Index k = 0; k < overlay.plan.cols(); ++k) {
-    drawDot(pixelOf(overlay.plan.col(k)), kPlanDot, kPlan, &picture);
-  }
-  for (Eigen::Index i = 0; i < overlay.goal.cols(); ++i) {
-    drawDot(pixelOf(overlay.goal.col(i)), kLargeDot, kGoal, &picture);
-  }
-  for (Eigen::Index i = 0; i < overlay.current.cols(); ++i) {
-    drawDot(pixelOf(overlay.current.col(i)), kLargeDot, kCurrent, &picture);
-  }
+  drawDots(overlay.plan, kPlanRadius, kPlan);
+  drawDots(overlay.goal, kLargeRadius, kGoal);
+  drawDots(overlay.current, kLargeRadius, kCurrent);
   return picture;
 }
 

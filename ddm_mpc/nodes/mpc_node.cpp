@@ -87,13 +87,12 @@ bool MpcNode::stop() {
 }
 
 void MpcNode::onGoal() {
+  // Whoever sees the goal accepted may send an image at once: it waits here until there is a trial to answer it.
+  std::unique_lock<std::mutex> lock(mutex_);
   goal_ = server_.acceptNewGoal();
   health_.expect(ControlHealth::Expected::kModel);
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    last_progress_ = ros::SteadyTime::now();
-  }
-  beginIfReady();
+  last_progress_ = ros::SteadyTime::now();
+  beginIfReady(std::move(lock));
 }
 
 void MpcNode::onPreempt() {
@@ -115,7 +114,7 @@ void MpcNode::onModel(const ddm_msgs::ModelConstPtr& message) {
     ROS_ERROR_STREAM("model refused: " << e.what());
     return;
   }
-  beginIfReady();
+  beginIfReady(std::unique_lock<std::mutex>(mutex_));
 }
 
 void MpcNode::onGoalImage(const sensor_msgs::ImageConstPtr& image) {
@@ -125,30 +124,30 @@ void MpcNode::onGoalImage(const sensor_msgs::ImageConstPtr& image) {
     ROS_ERROR_STREAM("goal image refused: " << e.what());
     return;
   }
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    goal_image_ = image;
-    goal_changed_ = true;
-  }
-  beginIfReady();
+  std::unique_lock<std::mutex> lock(mutex_);
+  goal_image_ = image;
+  goal_changed_ = true;
+  beginIfReady(std::move(lock));
 }
 
 /// Starts the trial once its model and its goal image are there.
-void MpcNode::beginIfReady() {
+/// @param lock  of mutex_
+void MpcNode::beginIfReady(std::unique_lock<std::mutex> lock) {
   if (goal_ == nullptr || trial_ != nullptr) return;
   if (!goal_->model_id.empty() && goal_->model_id != model_id_) return;
+  if (!goalImageIsThere()) return;
   try {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (!goalImageIsThere()) return;
     trial_ = std::make_shared<TrialRun>(*goal_, goal_->model_id.empty() ? nullptr : model_,
                                         goal_image_, image_size_, mpc_, controller_);
     turned_ = true;
     goal_changed_ = false;
     last_progress_ = ros::SteadyTime::now();
   } catch (const std::exception& e) {
+    lock.unlock();
     abort(std::string("trial refused: ") + e.what());
     return;
   }
+  lock.unlock();
   fed_back_ = 0;
   health_.expect(ControlHealth::Expected::kImage);
   // In lock-step the first image may have come before the goal; there will be no second one.

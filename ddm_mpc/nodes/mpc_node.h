@@ -66,7 +66,7 @@ class MpcNode {
   void onTick();
   void onTurn(const MpcOptions& mpc);
   void onFinish();
-  void beginIfReady();
+  void beginIfReady(std::unique_lock<std::mutex> lock);
   bool goalImageIsThere() const;
   void publishFeedback();
   std::string describeSilence();

@@ -2,12 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_model/solver_log.h>
 #include <ddm_node/end_signals.h>
-#include <ddm_node/node_params.h>
+#include <ddm_node/run_node.h>
 #include <ddm_params/image_options.h>
-#include <ddm_params/param_reader.h>
 #include <ros/callback_queue.h>
-
-#include <cstdlib>
 
 #include "mpc_node.h"
 
@@ -16,30 +13,24 @@ namespace {
 const ros::WallDuration kLook(0.05);
 const ros::WallDuration kFlush(0.1);  // for the last message to leave
 
+void run(const ros::NodeHandle& nh, const ros::NodeHandle& pnh, ddm::ParamReader* params) {
+  params->ignore("image_transport");    // read by image_transport itself
+  params->ignore("diagnostic_period");  // and by diagnostic_updater
+  const auto image = params->read<ddm::ImageOptions>("image");
+  const auto mpc = params->read<ddm::MpcOptions>("mpc");
+  const auto controller = params->read<ddm::ControllerOptions>("controller");
+  params->requireValid();
+  ROS_INFO_STREAM("mpc_node runs with\n" << ddm::toYaml(mpc) << "\n" << ddm::toYaml(controller));
+  ddm::MpcNode node(nh, pnh, image.size, mpc, controller);
+  ddm::catchEndSignals();  // not before: a node that waits for a master must still end
+  while (ros::ok() && !ddm::endRequested()) ros::getGlobalCallbackQueue()->callAvailable(kLook);
+  if (node.stop()) kFlush.sleep();
+  ros::shutdown();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "mpc_node", ros::init_options::NoSigintHandler);
-  ros::NodeHandle nh;
-  ros::NodeHandle pnh("~");  // outside the try: its destructor shuts the log down
   ddm::silenceSolverLog();
-  try {
-    ddm::ParamReader params(ddm::nodeParams(pnh), pnh.getNamespace());
-    params.ignore("image_transport");    // read by image_transport itself
-    params.ignore("diagnostic_period");  // and by diagnostic_updater
-    const auto image = params.read<ddm::ImageOptions>("image");
-    const auto mpc = params.read<ddm::MpcOptions>("mpc");
-    const auto controller = params.read<ddm::ControllerOptions>("controller");
-    params.requireValid();
-    ROS_INFO_STREAM("mpc_node runs with\n" << ddm::toYaml(mpc) << "\n" << ddm::toYaml(controller));
-    ddm::MpcNode node(nh, pnh, image.size, mpc, controller);
-    ddm::catchEndSignals();  // not before: a node that waits for a master must still end
-    while (ros::ok() && !ddm::endRequested()) ros::getGlobalCallbackQueue()->callAvailable(kLook);
-    if (node.stop()) kFlush.sleep();
-    ros::shutdown();
-  } catch (const std::exception& e) {
-    ROS_FATAL_STREAM("mpc_node: " << e.what());
-    return EXIT_FAILURE;
-  }
-  return EXIT_SUCCESS;
+  return ddm::runNode("mpc_node", argc, argv, run, ros::init_options::NoSigintHandler);
 }

@@ -12,13 +12,13 @@
 #include <vector>
 
 #include "controller_options.h"
+#include "ddm_msgs/testing/not_finite.h"
 #include "manual.h"
 
 namespace ddm {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const char kManual[] = DDM_MPC_SOURCE_DIR "/config/mpc.yaml";
 
 /// The one problem of the options after `spoil` names the key.

@@ -10,13 +10,12 @@
 #include <functional>
 #include <limits>
 
+#include "ddm_msgs/testing/not_finite.h"
 #include "model_planner.h"
 #include "random_model.h"
 
 namespace ddm {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Options with which the solver goes on until it is there.
 MpcOptions exactOptions() {

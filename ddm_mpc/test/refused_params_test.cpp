@@ -18,7 +18,7 @@ TEST_F(NodeParams, MpcNodeReportsTheProblemsOfAllBlocksAtOnce) {
 
 TEST_F(NodeParams, MpcNodeRefusesAMisspeltKey) {
   ros::param::set("/bad_node/mpc/horzion", 15);
-  expectRefused(DDM_MPC_NODE, {"mpc/horzion", "did you mean horizon?"});
+  expectRefused(DDM_MPC_NODE, {"mpc/horzion", "horizon?"});
 }
 
 TEST_F(NodeParams, MpcNodeRefusesAMisspeltBlock) {

@@ -8,6 +8,7 @@
 
 #include <cstring>
 
+#include "ddm_msgs/testing/expect_error.h"
 #include "ddm_msgs/testing/seed_files.h"
 
 namespace ddm {
@@ -49,7 +50,7 @@ TEST(MessageBytes, AMessageCutShortAnywhereOrTooLongIsRefused) {
     EXPECT_NE(messageOf(bytes.substr(0, size)), "accepted") << size;
   }
   EXPECT_EQ(messageOf(bytes), "accepted");
-  EXPECT_EQ(messageOf(bytes + "xy"), "has 2 byte(s) after its end");
+  EXPECT_TRUE(testing::names(messageOf(bytes + "xy"), {"2 byte"}));
 }
 
 TEST(MessageBytes, AnArrayThatIsAnnouncedButNotThereIsRefusedWithBothSizes) {
@@ -57,8 +58,7 @@ TEST(MessageBytes, AnArrayThatIsAnnouncedButNotThereIsRefusedWithBothSizes) {
   const std::size_t count_at = bytes.size() - 1 - 2 * sizeof(double) - 4;
   const std::uint32_t huge = 0xffffffffU;
   std::memcpy(&bytes[count_at], &huge, sizeof(huge));
-  EXPECT_EQ(messageOf(bytes),
-            "announces 4294967295 elements of 8 byte(s), and 17 byte(s) are there");
+  EXPECT_TRUE(testing::names(messageOf(bytes), {"4294967295", "8 byte", "17 byte"}));
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "ddm_sim/sim_options.h"
-#include "show_options.h"
 #include "sim_node.h"
 
 namespace ddm {

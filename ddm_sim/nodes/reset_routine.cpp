@@ -13,8 +13,8 @@
 namespace ddm {
 namespace {
 
-const ros::WallDuration kLook(0.05);
-constexpr int kLook_ms = 50;
+const ros::WallDuration kPoll(0.05);
+constexpr int kPoll_ms = 50;
 
 bool timeIsLeft(const ros::SteadyTime& deadline) {
   return ros::ok() && ros::SteadyTime::now() < deadline;
@@ -25,9 +25,9 @@ bool timeIsLeft(const ros::SteadyTime& deadline) {
 bool enterWasPressed() {
   pollfd terminal{STDIN_FILENO, POLLIN, 0};
   char line[256];
-  if (::isatty(STDIN_FILENO) != 0 && ::poll(&terminal, 1, kLook_ms) == 0) return false;
+  if (::isatty(STDIN_FILENO) != 0 && ::poll(&terminal, 1, kPoll_ms) == 0) return false;
   if ((terminal.revents & POLLIN) != 0 && ::read(STDIN_FILENO, line, sizeof(line)) > 0) return true;
-  kLook.sleep();  // no terminal, or one that has gone: it would not make us wait
+  kPoll.sleep();  // no terminal, or one that has gone: it would not make us wait
   return false;
 }
 
@@ -47,13 +47,13 @@ std::string ResetRoutine::callService(const ros::SteadyTime& deadline) {
   ros::ServiceClient client = nh_.serviceClient<std_srvs::Trigger>(service_, /*persistent=*/true);
   while (!client.exists()) {
     if (!timeIsLeft(deadline)) return "service " + service_ + " is not offered";
-    kLook.sleep();
+    kPoll.sleep();
     client = nh_.serviceClient<std_srvs::Trigger>(service_, /*persistent=*/true);
   }
   std_srvs::Trigger trigger;
   std::future<bool> answer =
       std::async(std::launch::async, [&client, &trigger] { return client.call(trigger); });
-  while (answer.wait_for(std::chrono::milliseconds(kLook_ms)) != std::future_status::ready) {
+  while (answer.wait_for(std::chrono::milliseconds(kPoll_ms)) != std::future_status::ready) {
     if (timeIsLeft(deadline)) continue;
     client.shutdown();
     answer.wait();

@@ -4,6 +4,7 @@
 
 #include <actionlib_msgs/GoalID.h>
 #include <ddm_images/image_codec.h>
+#include <ddm_images/picture_file.h>
 #include <ddm_msgs/topics.h>
 #include <ddm_node/topic_peers.h>
 #include <std_msgs/Float64.h>
@@ -11,10 +12,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 #include <stdexcept>
-
-#include "goal_picture.h"
 
 namespace ddm {
 namespace {
@@ -23,7 +23,7 @@ constexpr int kQueue = 10;
 constexpr int kAppliedQueue = 1000;              // a recorder that is slow must not lose one
 constexpr std::chrono::seconds kFreshCamera(1);  // one that is silent for longer is not there
 constexpr double kStepTolerance = 0.1;           // of dt
-const ros::WallDuration kLook(0.1);
+const ros::WallDuration kWatchPeriod(0.1);
 const ros::WallDuration kRemindPeriod(10.0);
 const ros::WallDuration kDiagnosisPeriod(1.0);
 
@@ -229,12 +229,12 @@ bool RobotNode::onEnable(std_srvs::SetBool::Request& request,
 
 void RobotNode::loadGoal() {
   if (options_.goal_file.empty()) return;
-  if (!goalPictureExists(options_.goal_file)) {
+  if (!std::filesystem::exists(options_.goal_file)) {
     ROS_WARN_STREAM("there is no picture " << options_.goal_file
                                            << " yet: service take_goal writes it");
     return;
   }
-  const sensor_msgs::Image picture = readGoalPicture(options_.goal_file);
+  const sensor_msgs::Image picture = readPicture(options_.goal_file);
   publishGoal(encodeImage(decodeImage(picture, image_size_), image_size_, ros::Time::now(), ""));
 }
 
@@ -256,7 +256,7 @@ bool RobotNode::onTakeGoal(std_srvs::Trigger::Request& /*request*/,
   }
   try {
     const sensor_msgs::Image goal = shown(*frame_);
-    if (!options_.goal_file.empty()) writeGoalPicture(options_.goal_file, goal);
+    if (!options_.goal_file.empty()) writePicture(options_.goal_file, goal);
     publishGoal(goal);
     response.success = true;
     response.message = "the goal is what the camera sees now" +
@@ -328,7 +328,7 @@ std::string RobotNode::waitUntilThere(const ros::SteadyTime& deadline, bool moto
       last_told = now;
       ROS_WARN_STREAM("the trial waits: " << what);
     }
-    kLook.sleep();
+    kWatchPeriod.sleep();
   }
 }
 

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim_node.h"
 
+#include <ddm_plant_plugin/picture_message.h>
+#include <image_transport/image_transport.h>
+#include <rosgraph_msgs/Clock.h>
+
 #include <algorithm>
 #include <sstream>
 #include <stdexcept>
@@ -10,13 +14,14 @@
 #include "ddm_msgs/topics.h"
 #include "ddm_node/topic_peers.h"
 #include "ddm_sim/few_numbers.h"
+#include "joint_state.h"
 
 namespace ddm {
 namespace {
 
 constexpr int kQueueSize = 10;
-constexpr int kAppliedQueueSize = 1000;  // a recorder that is slow must not lose one
-constexpr double kRubbish = 1000.0;      // times max_torque: no command, but an error
+constexpr int kLongQueueSize = 1000;  // a recorder that is slow must not lose one
+constexpr double kRubbish = 1000.0;   // times max_torque: no command, but an error
 
 Eigen::VectorXd toEigen(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
@@ -26,8 +31,14 @@ Eigen::VectorXd toEigen(const std::vector<double>& values) {
 
 SimNode::SimNode(ros::NodeHandle nh, std::unique_ptr<Rig> rig, bool clock)
     : rig_(std::move(rig)),
-      publisher_(nh, rig_->plant(), clock),
-      applied_pub_(nh.advertise<ddm_msgs::Torque>(topics::kAppliedTorque, kAppliedQueueSize)) {
+      frame_(opticalFrame(plant().cameraModel())),
+      goal_pub_(nh.advertise<sensor_msgs::Image>(topics::kGoalImage, 1, /*latch=*/true)),
+      ground_truth_pub_(
+          nh.advertise<sensor_msgs::JointState>(topics::kGroundTruth, kLongQueueSize)),
+      applied_pub_(nh.advertise<ddm_msgs::Torque>(topics::kAppliedTorque, kLongQueueSize)),
+      image_pub_(image_transport::ImageTransport(nh).advertise(topics::kImage, kQueueSize)),
+      view_(nh, plant()) {
+  if (clock) clock_pub_ = nh.advertise<rosgraph_msgs::Clock>("/clock", 1, /*latch=*/true);
   torque_sub_ = nh.subscribe(topics::kTorque, kQueueSize, &SimNode::onTorque, this,
                              ros::TransportHints().tcpNoDelay());
   // Last: whoever sees the service finds everything else in place.
@@ -45,8 +56,23 @@ bool SimNode::advance(const Eigen::VectorXd& torque) {
 }
 
 bool SimNode::publishFrame(const ros::Time& stamp) {
-  if (seen_) publisher_.publishFrame(rig_->applied(), *seen_, stamp);
-  return seen_.has_value();
+  if (!seen_) return false;
+  image_pub_.publish(imageMessage(*seen_, stamp, frame_));
+  untold_.push_back(jointStateOf(plant(), rig_->applied()));
+  untold_.back().header.stamp = stamp;
+  view_.publish(*seen_, stamp);  // last: whoever plans does not wait for what people see
+  return true;
+}
+
+void SimNode::publishGroundTruth() {
+  for (const sensor_msgs::JointState& joints : untold_) ground_truth_pub_.publish(joints);
+  untold_.clear();
+}
+
+void SimNode::publishClock(const ros::Time& stamp) const {
+  rosgraph_msgs::Clock clock;
+  clock.clock = stamp;
+  clock_pub_.publish(clock);
 }
 
 void SimNode::publishApplied(ddm_msgs::Torque answer) const {
@@ -63,7 +89,7 @@ void SimNode::publishGoal(const ros::Time& stamp) {
   if (image.bytes == goal_image_.bytes) return;
   goal_image_ = std::move(image);
   goal_stamp_ = stamp;
-  publisher_.publishGoal(goal_image_, stamp);
+  goal_pub_.publish(imageMessage(goal_image_, stamp, frame_));
 }
 
 bool SimNode::onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Response& response) {

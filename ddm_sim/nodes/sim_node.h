@@ -4,15 +4,18 @@
 
 #include <ddm_msgs/Reset.h>
 #include <ddm_msgs/Torque.h>
+#include <image_transport/publisher.h>
 #include <ros/ros.h>
+#include <sensor_msgs/JointState.h>
 
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "ddm_sim/rig.h"
-#include "sim_publisher.h"
+#include "view_publisher.h"
 
 namespace ddm {
 
@@ -25,6 +28,8 @@ class SimNode {
   SimNode& operator=(const SimNode&) = delete;
 
  protected:
+  /// @param nh     its namespace holds the topics
+  /// @param clock  also publish /clock: true in lock-step only
   SimNode(ros::NodeHandle nh, std::unique_ptr<Rig> rig, bool clock);
 
   /// One time step.
@@ -35,8 +40,9 @@ class SimNode {
   /// @return false if the camera has lost the frame: there will be nothing of it
   bool publishFrame(const ros::Time& stamp);
 
-  /// Ground truth of the frames since the last call.
-  void publishGroundTruth() { publisher_.publishGroundTruth(); }
+  /// Ground truth of the frames since the last call. Not much later than the frames: that of each
+  /// is kept in memory.
+  void publishGroundTruth();
 
   /// What acted as the answer to an image: this torque, as far as the motor can do it. To be called
   /// once for each image that was shown.
@@ -46,7 +52,9 @@ class SimNode {
   /// The goal of this run, unless it looks like the last one: who waits for it knows its stamp from
   /// the answer to `reset`.
   void publishGoal(const ros::Time& stamp);
-  void publishClock(const ros::Time& stamp) const { publisher_.publishClock(stamp); }
+
+  /// Simulated time. Must not run backwards.
+  void publishClock(const ros::Time& stamp) const;
 
   const Plant& plant() const { return rig_->plant(); }
   std::string torqueTopic() const { return torque_sub_.getTopic(); }
@@ -68,11 +76,17 @@ class SimNode {
   virtual void torqueRefused(const ros::Time& stamp, const std::string& reason) = 0;
 
   std::unique_ptr<Rig> rig_;
-  std::optional<Picture> seen_;  ///< the frame of this time step; empty: lost
-  Picture goal_image_;           ///< as published last
-  ros::Time goal_stamp_;         ///< of goal_image_
-  SimPublisher publisher_;
+  std::optional<Picture> seen_;                  ///< the frame of this time step; empty: lost
+  Picture goal_image_;                           ///< as published last
+  ros::Time goal_stamp_;                         ///< of goal_image_
+  std::vector<sensor_msgs::JointState> untold_;  ///< of frames since the last publishGroundTruth()
+  std::string frame_;                            ///< of the images, in tf
+  ros::Publisher clock_pub_;
+  ros::Publisher goal_pub_;
+  ros::Publisher ground_truth_pub_;
   ros::Publisher applied_pub_;
+  image_transport::Publisher image_pub_;
+  ViewPublisher view_;
   ros::ServiceServer reset_server_;
   ros::Subscriber torque_sub_;
 };

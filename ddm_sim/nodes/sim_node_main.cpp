@@ -1,16 +1,11 @@
 // sim_node: a simulated plant with a camera and a motor.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_node/run_node.h>
 #include <ddm_plant_plugin/plant_config.h>
-#include <ros/ros.h>
-#include <yaml-cpp/yaml.h>
 
-#include <cstdlib>
-#include <exception>
 #include <memory>
 #include <utility>
 
-#include "ddm_node/node_params.h"
-#include "ddm_params/param_reader.h"
 #include "ddm_sim/plant_factory.h"
 #include "ddm_sim/rig.h"
 #include "ddm_sim/sim_options.h"
@@ -18,16 +13,12 @@
 #include "realtime_sim.h"
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "sim_node");
-  ros::NodeHandle nh;
-  ros::NodeHandle pnh("~");  // outside the try: its destructor shuts the log down
-  try {
-    ddm::ParamReader params(ddm::nodeParams(pnh), pnh.getNamespace());
-    const auto plant = ddm::readPlant(&params);
-    const auto camera = params.read<ddm::CameraOptions>("camera");
-    const auto sim = params.read<ddm::SimOptions>("sim");
-    const auto show = params.read<ddm::ShowOptions>("show");
-    params.requireValid();
+  return ddm::runNode("sim_node", argc, argv, [](auto nh, auto, ddm::ParamReader* params) {
+    const auto plant = ddm::readPlant(params);
+    const auto camera = params->read<ddm::CameraOptions>("camera");
+    const auto sim = params->read<ddm::SimOptions>("sim");
+    const auto show = params->read<ddm::ShowOptions>("show");
+    params->requireValid();
 
     YAML::Node effective;
     effective["plant"] = plant->block();
@@ -44,9 +35,5 @@ int main(int argc, char** argv) {
       node = std::make_unique<ddm::RealtimeSim>(nh, std::move(rig));
     }
     ros::spin();
-  } catch (const std::exception& e) {
-    ROS_FATAL_STREAM("sim_node: " << e.what());
-    return EXIT_FAILURE;
-  }
-  return EXIT_SUCCESS;
+  });
 }

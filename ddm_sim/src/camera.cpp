@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/camera.h"
 
+#include <ddm_msgs/option_checks.h>
 #include <ddm_msgs/random_stream.h>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-
-#include "ddm_sim/option_checks.h"
 
 namespace ddm {
 namespace {
@@ -81,15 +80,14 @@ std::vector<double> drawClutter(int width, int height, const CameraOptions& opti
 
 std::vector<std::string> CameraOptions::problems() const {
   OptionChecks camera("camera");
-  camera.require(noise_std >= 0.0 && noise_std <= 1.0, "noise_std", "lie in [0, 1]", noise_std);
-  camera.require(brightness_drift >= 0.0 && brightness_drift < 1.0, "brightness_drift",
-                 "lie in [0, 1)", brightness_drift);
+  camera.requireWithin("noise_std", noise_std, 0.0, 1.0);
+  camera.requireFraction("brightness_drift", brightness_drift);
   camera.requirePositive("brightness_period", brightness_period);
-  camera.require(clutter >= 0.0 && clutter <= 1.0, "clutter", "lie in [0, 1]", clutter);
-  camera.require(clutter_seed >= 0, "clutter_seed", "be >= 0", clutter_seed);
-  camera.require(delay >= 0 && delay <= 1000, "delay", "lie in [0, 1000] frames", delay);
+  camera.requireWithin("clutter", clutter, 0.0, 1.0);
+  camera.requireAtLeast("clutter_seed", clutter_seed, 0);
+  camera.requireWithin("delay", delay, 0, 1000);
   // A reader of bags takes the median interval for the time step: most frames must follow directly.
-  camera.require(drop_rate >= 0.0 && drop_rate <= 0.3, "drop_rate", "lie in [0, 0.3]", drop_rate);
+  camera.requireWithin("drop_rate", drop_rate, 0.0, 0.3);
   return camera.problems();
 }
 
@@ -131,7 +129,8 @@ Picture Camera::expose(const Picture& picture, double brightness, std::mt19937_6
   if (brightness == 1.0 && !cluttered && options_.noise_std == 0.0) return out;
   if (cluttered && picture.cover.empty()) {
     throw std::invalid_argument(
-        "camera/clutter must be 0 where the plant's picture does not say what it covers");
+        "camera/clutter must be 0 where the plant's picture does not say what it covers; a scene "
+        "that a model file describes has nuisances of its own, such as plant/colour_shift");
   }
   if (cluttered && clutter_.size() != picture.numPixels()) {
     clutter_ = drawClutter(picture.width, picture.height, options_);

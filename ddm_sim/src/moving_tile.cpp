@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/moving_tile.h"
 
-#include <cmath>
+#include <ddm_msgs/option_checks.h>
 
-#include "ddm_sim/option_checks.h"
+#include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace ddm {
 namespace {
@@ -27,12 +29,39 @@ PlantInfo infoOf(const MovingTileOptions& options) {
   return info;
 }
 
+/// Fraction of the window of each pixel of a line, [j + 1/2 - softness / 2, j + 1/2 + softness /
+/// 2], that [middle - width / 2, middle + width / 2] covers.
+std::vector<double> coverage(int size, double middle, double width, double softness) {
+  const double first = middle - width / 2;
+  const double last = middle + width / 2;
+  const double margin = (softness - 1.0) / 2;  // of the window around the pixel
+  std::vector<double> out(size);
+  for (int j = 0; j < size; ++j) {
+    const double overlap = std::min(last, j + 1.0 + margin) - std::max(first, j - margin);
+    out[j] = std::max(0.0, overlap) / softness;
+  }
+  return out;
+}
+
 /// `position` folded back into [lowest, highest] at both ends: a triangle wave.
 double reflected(double position, double lowest, double highest) {
   return lowest + std::abs(std::remainder(position - lowest, 2 * (highest - lowest)));
 }
 
 }  // namespace
+
+Picture drawTile(int size, double width, double softness, const Eigen::Vector2d& centre) {
+  const std::vector<double> columns = coverage(size, centre.x(), width, softness);
+  const std::vector<double> rows = coverage(size, centre.y(), width, softness);
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(static_cast<std::size_t>(size) * size);
+  for (const double row : rows) {
+    for (const double column : columns) {
+      bytes.push_back(static_cast<std::uint8_t>(255.0 * row * column + 0.5));
+    }
+  }
+  return brightOnBlack(size, std::move(bytes));
+}
 
 std::vector<std::string> MovingTileOptions::problems() const {
   OptionChecks plant("plant");
@@ -48,9 +77,9 @@ std::vector<std::string> MovingTileOptions::problems() const {
 
 MovingTile::MovingTile(const MovingTileOptions& options)
     : Plant(infoOf(checked(options))),
+      options_(options),
       lowest_(options.tile_width / 2),
-      highest_(options.picture_size - options.tile_width / 2),
-      renderer_(options.picture_size, options.tile_width, options.tile_softness) {}
+      highest_(options.picture_size - options.tile_width / 2) {}
 
 Eigen::VectorXd MovingTile::advance(const Eigen::VectorXd& state,
                                     const Eigen::VectorXd& torque) const {
@@ -63,6 +92,8 @@ double MovingTile::distance(const Eigen::VectorXd& state, const Eigen::VectorXd&
   return (state - goal).stableNorm();
 }
 
-Picture MovingTile::draw(const Eigen::VectorXd& state) const { return renderer_.render(state); }
+Picture MovingTile::draw(const Eigen::VectorXd& state) const {
+  return drawTile(options_.picture_size, options_.tile_width, options_.tile_softness, state);
+}
 
 }  // namespace ddm

@@ -62,9 +62,18 @@ Eigen::VectorXd Plant::drawStart(std::mt19937_64& engine) const {
 
 Eigen::VectorXd Plant::drawGoal(std::mt19937_64& /*engine*/) const { return info_.goal; }
 
-Eigen::VectorXd Plant::step(const Eigen::VectorXd& torque) {
+Eigen::VectorXd Plant::goalAt(const Eigen::VectorXd& target) const {
+  throw std::invalid_argument("plant: this one has no target, got " + fewNumbers(target) +
+                              ": its goal is " + fewNumbers(info_.goal));
+}
+
+Eigen::VectorXd Plant::saturated(const Eigen::VectorXd& torque) const {
   requireFinite("torque", torque, torqueDim());
-  const Eigen::VectorXd applied = torque.cwiseMax(-info_.max_torque).cwiseMin(info_.max_torque);
+  return torque.cwiseMax(-info_.max_torque).cwiseMin(info_.max_torque);
+}
+
+Eigen::VectorXd Plant::step(const Eigen::VectorXd& torque) {
+  const Eigen::VectorXd applied = saturated(torque);
   const Eigen::VectorXd next = advance(state_, applied);
   if (next.size() != state_.size()) {
     throw std::logic_error("plant: advance() must return " + std::to_string(state_.size()) +
@@ -91,11 +100,33 @@ std::optional<double> Plant::reward(const Eigen::VectorXd& /*state*/,
   return std::nullopt;
 }
 
+std::optional<double> Plant::stepReward(const Eigen::VectorXd& state, const Eigen::VectorXd& torque,
+                                        int num_steps) const {
+  requireFinite("state", state, stateDim());
+  const Eigen::VectorXd applied = saturated(torque);
+  if (!reward(state, applied)) return std::nullopt;
+  Eigen::VectorXd from = state;
+  double sum = rewardOfStep(from, applied);
+  for (int i = 1; i < num_steps; ++i) {
+    from = advance(from, applied);
+    sum += rewardOfStep(from, applied);
+  }
+  return sum;
+}
+
+double Plant::rewardOfStep(const Eigen::VectorXd& state, const Eigen::VectorXd& torque) const {
+  return reward(advance(state, torque), torque).value();
+}
+
 Picture Plant::render(const Eigen::VectorXd& state) const {
   requireFinite("state", state, stateDim());
   Picture picture = draw(state);
   requirePicture(picture);
   return picture;
+}
+
+Picture Plant::view(const Eigen::VectorXd& /*state*/) const {
+  throw std::logic_error("plant: this one has no view for people");
 }
 
 Eigen::VectorXd Plant::visiblePosition(const Eigen::VectorXd& state) const {

@@ -17,10 +17,9 @@ std::vector<std::string> PlantOptions::problems() const {
   };
   each(max_torque, "max_torque", "be > 0 and finite", isPositive);
   // Stamps count whole nanoseconds, and no camera can keep a step below a millisecond.
-  plant.require(dt >= 1e-3 && dt <= 10.0, "dt", "lie in [0.001, 10] s", dt);
+  plant.requireWithin("dt", dt, 1e-3, 10.0);
   each(start_std, "start_std", "be >= 0 and finite", isNotNegative);
-  plant.require(picture_size >= 4 && picture_size <= 1024, "picture_size",
-                "lie in [4, 1024] pixels", picture_size);
+  plant.requireWithin("picture_size", picture_size, 4, 1024);
   return plant.problems();
 }
 

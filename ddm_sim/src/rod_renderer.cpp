@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/rod_renderer.h"
 
+#include <ddm_msgs/option_checks.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
-
-#include "ddm_sim/option_checks.h"
 
 namespace ddm {
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/two_link.h"
 
+#include <ddm_msgs/option_checks.h>
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -9,7 +11,6 @@
 #include <cmath>
 
 #include "ddm_sim/angles.h"
-#include "ddm_sim/option_checks.h"
 
 namespace ddm {
 namespace {

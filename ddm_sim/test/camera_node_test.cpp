@@ -91,16 +91,16 @@ TEST_F(LockstepCamera, ShowsTheFramesOfTheLibraryAndGoesOnUnderTheLastTorqueWher
 TEST_F(RealtimeCamera, ShowsTheFramesOfTheLibraryAndNothingWhereOneIsLost) {
   constexpr std::size_t kFrames = 20;
   const ros::Time start = client_.reset(0, kStart, kSeed, kTrial).start;
-  const auto begins = [&start](const auto& message) { return message.header.stamp == start; };
-  std::size_t first = 0;
+  // each list by itself: of the frames before, one topic may have been connected earlier than the other
+  const auto dropEarlier = [&start](auto* messages) {
+    const auto isEarlier = [&start](const auto& message) { return message.header.stamp < start; };
+    messages->erase(std::remove_if(messages->begin(), messages->end(), isEarlier), messages->end());
+    return messages->size() >= kFrames;
+  };
   ASSERT_TRUE(client_.waitUntil([&] {
-    const auto begin = client_.images.begin();
-    const auto end = client_.images.end();
-    first = static_cast<std::size_t>(std::find_if(begin, end, begins) - begin);
-    return client_.images.size() >= first + kFrames && client_.truths.size() >= first + kFrames;
+    const bool all_images = dropEarlier(&client_.images);
+    return dropEarlier(&client_.truths) && all_images;
   }));
-  client_.images.erase(client_.images.begin(), client_.images.begin() + first);
-  client_.truths.erase(client_.truths.begin(), client_.truths.begin() + first);
   int num_lost = 0;
   for (std::size_t t = 0; t < kFrames;) {
     if (const auto seen = photograph()) {

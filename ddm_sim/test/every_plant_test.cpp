@@ -37,6 +37,11 @@ std::shared_ptr<const PlantMaker> makerOfFile(const std::string& path) {
   return maker;
 }
 
+std::string typeIn(const std::string& path) {
+  return YAML::LoadFile(path)["plant"]["type"].as<std::string>(
+      "pendulum");  // as where none is given
+}
+
 /// All plants that the folder config/ describes, and toys for what those do not do.
 std::vector<Candidate> candidates() {
   std::vector<Candidate> out;
@@ -44,6 +49,7 @@ std::vector<Candidate> candidates() {
     const std::string path = entry.path().string();
     const std::string name = entry.path().stem().string();
     if (name == "sim" || name == "robot") continue;  // no plants
+    if (!DDM_HAS_MUJOCO && typeIn(path) == "mujoco") continue;
     out.push_back({name, [path] { return makerOfFile(path); }});
   }
   std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
@@ -139,7 +145,8 @@ TEST_P(EveryPlantTest, SaturatesEachMotorByItself) {
 
 TEST_P(EveryPlantTest, MovesUnderEachMotorAndStaysWhereItIsWithoutATorqueAtTheStart) {
   plant_->step(Eigen::VectorXd::Zero(plant_->torqueDim()));
-  EXPECT_EQ(plant_->state(), info().start);
+  // The sine of pi, where some hang, is 1e-16.
+  EXPECT_LE((plant_->state() - info().start).lpNorm<Eigen::Infinity>(), 1e-12);
   for (Eigen::Index motor = 0; motor < plant_->torqueDim(); ++motor) {
     plant_->setState(info().start);
     plant_->step(info().max_torque[motor] * Eigen::VectorXd::Unit(plant_->torqueDim(), motor));
@@ -149,7 +156,9 @@ TEST_P(EveryPlantTest, MovesUnderEachMotorAndStaysWhereItIsWithoutATorqueAtTheSt
 
 TEST_P(EveryPlantTest, HasReachedItsGoalThereAndNotAtTheStart) {
   EXPECT_LE(plant_->goalError(info().goal), 1e-9 * info().tolerance);
-  EXPECT_GT(plant_->goalError(info().start), info().tolerance);
+  if (info().start != info().goal) {  // what is to be balanced starts there
+    EXPECT_GT(plant_->goalError(info().start), info().tolerance);
+  }
   EXPECT_FALSE(info().error_unit.empty());
   for (const Eigen::VectorXd& state : states()) {
     const double error = plant_->goalError(state);
@@ -211,6 +220,10 @@ TEST_P(EveryPlantTest, ShowsPicturesOfOneSizeWithACoverOfAtLeastTheirBrightness)
     ASSERT_EQ(picture.height, first.height);
     ASSERT_EQ(picture.channels, first.channels);
     ASSERT_EQ(picture.bytes.size(), picture.numBytes());
+    if (maker_->type() == "mujoco") {  // the scene has its own background
+      ASSERT_TRUE(picture.cover.empty());
+      continue;
+    }
     ASSERT_EQ(picture.cover.size(), picture.numPixels());  // ours all know it, see camera/clutter
     for (std::size_t i = 0; i < picture.bytes.size(); ++i) {
       const std::size_t pixel = i / static_cast<std::size_t>(picture.channels);
@@ -229,12 +242,14 @@ TEST_P(EveryPlantTest, IsSeenAtAsManyCoordinatesInEachState) {
   }
 }
 
-TEST_P(EveryPlantTest, HasNoRewardOrAFiniteOneForEachStep) {
+TEST_P(EveryPlantTest, HasNoRewardOrAFiniteOneForEachFrameAndStep) {
   const bool has_reward = plant_->reward(info().start, info().max_torque).has_value();
   for (const Eigen::VectorXd& state : states()) {
-    const std::optional<double> reward = plant_->reward(state, -info().max_torque);
-    ASSERT_EQ(reward.has_value(), has_reward);
-    ASSERT_TRUE(std::isfinite(reward.value_or(0.0)));
+    for (const auto& reward : {plant_->reward(state, -info().max_torque),
+                               plant_->stepReward(state, -info().max_torque)}) {
+      ASSERT_EQ(reward.has_value(), has_reward);
+      ASSERT_TRUE(std::isfinite(reward.value_or(0.0)));
+    }
   }
 }
 
@@ -264,6 +279,7 @@ TEST(EveryPlant, OfThisPackageIsTested) {
     EXPECT_EQ(std::count(types.begin(), types.end(), type), type == std::string("pendulum") ? 2 : 1)
         << type;
   }
+  EXPECT_EQ(std::count(types.begin(), types.end(), "mujoco"), DDM_HAS_MUJOCO ? 8 : 0);
 }
 
 }  // namespace

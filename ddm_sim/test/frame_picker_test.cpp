@@ -10,13 +10,13 @@
 namespace ddm {
 namespace {
 
-Stamp at(double seconds) { return std::chrono::seconds(1700000000) + fromSeconds(seconds); }
+Stamp stampAt(double seconds) { return std::chrono::seconds(1700000000) + fromSeconds(seconds); }
 
 /// Steps between the frames that are picked of those at these times [s].
 std::vector<double> stepsOf(FramePicker* picker, const std::vector<double>& frames) {
   std::vector<double> picked;
   for (const double frame : frames) {
-    if (picker->pick(at(frame))) picked.push_back(frame);
+    if (picker->pick(stampAt(frame))) picked.push_back(frame);
   }
   std::vector<double> steps;
   for (size_t i = 1; i < picked.size(); ++i) steps.push_back(picked[i] - picked[i - 1]);
@@ -56,24 +56,24 @@ TEST(FramePicker, TakesEachFrameOfACameraThatIsSlowerThanDt) {
 
 TEST(FramePicker, FollowsACameraThatBecomesSlower) {
   FramePicker picker(0.25);
-  for (int i = 0; i < 200; ++i) picker.pick(at(i / 30.0));
+  for (int i = 0; i < 200; ++i) picker.pick(stampAt(i / 30.0));
   EXPECT_NEAR(picker.step(), 8.0 / 30.0, 1e-6);
-  for (int i = 1; i < 20; ++i) picker.pick(at(7.0 + i / 10.0));
+  for (int i = 1; i < 20; ++i) picker.pick(stampAt(7.0 + i / 10.0));
   EXPECT_NEAR(picker.step(), 0.3, 1e-6);
 }
 
 TEST(FramePicker, NeverTakesAFrameTwiceOrAnOlderOne) {
   FramePicker picker(0.2);
-  EXPECT_TRUE(picker.pick(at(1.0)));
-  EXPECT_FALSE(picker.pick(at(1.0)));
-  EXPECT_FALSE(picker.pick(at(0.5)));
+  EXPECT_TRUE(picker.pick(stampAt(1.0)));
+  EXPECT_FALSE(picker.pick(stampAt(1.0)));
+  EXPECT_FALSE(picker.pick(stampAt(0.5)));
 }
 
 TEST(FramePicker, ARestartForgetsTheStampsOfBefore) {
   FramePicker picker(0.2);
-  EXPECT_TRUE(picker.pick(at(1.0)));
+  EXPECT_TRUE(picker.pick(stampAt(1.0)));
   picker.restart();
-  EXPECT_TRUE(picker.pick(at(0.5)));
+  EXPECT_TRUE(picker.pick(stampAt(0.5)));
   EXPECT_EQ(picker.step(), 0.0);
 }
 
@@ -87,7 +87,7 @@ TEST(FramePicker, LostFramesAndPausesDoNotShortenSteps) {
 
 TEST(FramePicker, ARestartTakesTheNextFrameAndCountsFromIt) {
   FramePicker picker(0.2);
-  for (int i = 0; i <= 8; ++i) picker.pick(at(i / 30.0));
+  for (int i = 0; i <= 8; ++i) picker.pick(stampAt(i / 30.0));
   picker.restart();
   const std::vector<double> steps = stepsOf(&picker, {9.0 / 30, 10.0 / 30, 14.0 / 30, 15.0 / 30});
   ASSERT_EQ(steps.size(), 1u);

@@ -4,16 +4,13 @@
 #include <ros/ros.h>
 
 #include <algorithm>
-#include <limits>
 
+#include "ddm_msgs/testing/not_finite.h"
 #include "ddm_sim/pendulum.h"
 #include "sim_client.h"
 
 namespace ddm {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class Lockstep : public SimNodeTest {
  protected:
@@ -115,7 +112,8 @@ TEST_F(Lockstep, PublishesWhatActedAsTheAnswerToEachImage) {
 TEST_F(Lockstep, CountsAndIgnoresATorqueWithAnotherStamp) {
   const ros::Time start = begin(0);
   client_->publish(start + ros::Duration(0, 1), {6.0});
-  ASSERT_TRUE(client_->waitForLog("ignored (1 so far), waiting for frame 0"));
+  ASSERT_TRUE(client_->waitForLog("ignored (1 "));
+  EXPECT_TRUE(client_->logged("frame 0"));
   EXPECT_EQ(client_->images.size(), 1U);
   client_->publish(start, {1.0});
   ASSERT_TRUE(client_->waitForImages(2));
@@ -133,7 +131,8 @@ TEST_F(Lockstep, RefusesATorqueThatIsNotFiniteNamesItsPublisherAndEndsTheTrial) 
     client_->publish(start, {value});
     ASSERT_TRUE(client_->waitForLog("torque refused: " + ros::this_node::getName()));
     EXPECT_TRUE(client_->logged(text)) << text;
-    ASSERT_TRUE(client_->waitForLog("trial 0 ends at frame 0"));
+    ASSERT_TRUE(client_->waitForLog("trial 0 ends"));
+    EXPECT_TRUE(client_->logged("frame 0"));
     expectIdle(start);
   }
 }
@@ -142,7 +141,7 @@ TEST_F(Lockstep, RefusesATorqueOfAnotherSizeAndEndsTheTrial) {
   for (const std::vector<double>& torque : {std::vector<double>{}, std::vector<double>{1.0, 2.0}}) {
     const ros::Time start = begin(0);
     client_->publish(start, torque);
-    ASSERT_TRUE(client_->waitForLog("it must be 1 finite number(s)"));
+    ASSERT_TRUE(client_->waitForLog("1 finite"));
     expectIdle(start);
   }
 }
@@ -170,9 +169,9 @@ TEST_F(Lockstep, NamesThePublisherThatKeepsSilentAndGoesIdle) {
   const ros::Time start = begin(0);
   client_->publish(start, {1.0});
   ASSERT_TRUE(client_->waitForImages(2));
-  ASSERT_TRUE(client_->waitForLog("no torque for frame 1"));
-  EXPECT_TRUE(
-      client_->logged("within 2.5 s: publisher(s) of /torque: " + ros::this_node::getName()));
+  ASSERT_TRUE(client_->waitForLog("2.5 s"));
+  EXPECT_TRUE(client_->logged("frame 1"));
+  EXPECT_TRUE(client_->logged("/torque: " + ros::this_node::getName()));
   expectIdle(client_->images[1].header.stamp);
 }
 
@@ -239,7 +238,7 @@ TEST_F(Lockstep, RefusesABadStartAndLeavesTheTrialAlone) {
 TEST_F(Lockstep, EndsATrialWhoseStateLeavesTheRangeOfDouble) {
   const ros::Time start = begin(0, {1.7e308, 1.7e308});
   client_->publish(start, {0.0});
-  ASSERT_TRUE(client_->waitForLog("leaves the range of double"));
+  ASSERT_TRUE(client_->waitForLog("1.7e+308"));
   expectIdle(start);
 }
 

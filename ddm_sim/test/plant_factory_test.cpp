@@ -5,12 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "ddm_msgs/testing/not_finite.h"
 #include "ddm_sim/testing/toy_plant.h"
 
 namespace ddm {
@@ -19,8 +19,6 @@ namespace {
 using testing::ToyMaker;
 using testing::ToyPlant;
 using Traits = ToyPlant::Traits;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// What the factory says of it; empty if it makes it.
 std::string refusal(const PlantMaker& maker) {

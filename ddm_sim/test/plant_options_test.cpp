@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <set>
 #include <stdexcept>
@@ -14,6 +13,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "ddm_msgs/testing/not_finite.h"
 #include "ddm_params/param_reader.h"
 #include "ddm_plant_plugin/plant_config.h"
 #include "ddm_sim/camera_options.h"
@@ -22,13 +22,10 @@
 #include "ddm_sim/plant_factory.h"
 #include "ddm_sim/sim_options.h"
 #include "ddm_sim/two_link.h"
-#include "show_options.h"
 
 namespace ddm {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const std::string kConfig = std::string(DDM_SIM_SOURCE_DIR) + "/config/";
 
 template <class Options>

@@ -5,19 +5,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <set>
 #include <stdexcept>
 
+#include "ddm_msgs/testing/not_finite.h"
 #include "ddm_sim/pendulum.h"
 #include "ddm_sim/testing/toy_plant.h"
 
 namespace ddm {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using testing::ToyPlant;
 
@@ -153,6 +150,23 @@ TEST(Plant, HasNoRewardUnlessItSaysSo) {
   EXPECT_FALSE(pendulum()->reward(Eigen::Vector2d::Zero(), torque(1.0)));
   const ToyPlant plant(testing::colourfulToy());
   EXPECT_DOUBLE_EQ(plant.reward(Eigen::Vector2d(1.0, 2.0), torque(2.0)).value(), -5.4);
+}
+
+TEST(Plant, IsRewardedAfterAStepUnderTheTorqueThatActed) {
+  EXPECT_FALSE(pendulum()->stepReward(Eigen::Vector2d::Zero(), torque(1.0)));
+  const ToyPlant plant(testing::colourfulToy());  // moves by 0.1 u
+  const Eigen::Vector2d state(1.0, 2.0);
+  EXPECT_DOUBLE_EQ(plant.stepReward(state, torque(2.0)).value(), -(1.44 + 4.84 + 0.4));
+  EXPECT_EQ(plant.stepReward(state, torque(60.0)), plant.stepReward(state, torque(6.0)));
+  const Eigen::VectorXd next = state.array() + 0.2;  // where this torque leads
+  EXPECT_DOUBLE_EQ(
+      plant.stepReward(state, torque(2.0), 2).value(),
+      plant.stepReward(state, torque(2.0)).value() + plant.stepReward(next, torque(2.0)).value());
+  EXPECT_THROW(plant.stepReward(state, Eigen::Vector2d::Zero()), std::invalid_argument);
+}
+
+TEST(Plant, RefusesATargetUnlessItHasSuch) {
+  EXPECT_THROW(pendulum()->goalAt(Eigen::Vector2d(0.1, 0.1)), std::invalid_argument);
 }
 
 TEST(Plant, RefusesAPictureThatIsNotWhatItsSizeSays) {

@@ -39,9 +39,9 @@ PendulumOptions quickPendulum() {
   return options;
 }
 
-std::unique_ptr<Plant> pendulum() { return std::make_unique<Pendulum>(quickPendulum()); }
+std::unique_ptr<Plant> quickPlant() { return std::make_unique<Pendulum>(quickPendulum()); }
 
-Eigen::VectorXd torque(double value) { return Eigen::VectorXd::Constant(1, value); }
+Eigen::VectorXd torqueOf(double value) { return Eigen::VectorXd::Constant(1, value); }
 
 /// Plant and camera, moved by hand.
 struct ByHand {
@@ -55,20 +55,20 @@ struct ByHand {
     return look();
   }
   std::optional<Picture> step(double value) {
-    plant.step(torque(value));
+    plant.step(torqueOf(value));
     return look();
   }
   std::optional<Picture> look() { return camera.photograph(plant.render(plant.state())); }
 };
 
 TEST(Rig, ShowsInEachStepWhatPlantAndCameraShowByHand) {
-  Rig rig(pendulum(), allFaults());
+  Rig rig(quickPlant(), allFaults());
   ByHand by_hand;
   EXPECT_EQ(rig.reset(kSeed, kTrial, true).bytes, by_hand.begin()->bytes);
   int num_lost = 0;
   for (int t = 1; t <= 60; ++t) {
     const double value = 4.0 * std::sin(t);
-    const std::optional<Picture> seen = rig.step(torque(value));
+    const std::optional<Picture> seen = rig.step(torqueOf(value));
     const std::optional<Picture> expected = by_hand.step(value);
     ASSERT_EQ(seen.has_value(), expected.has_value()) << t;
     if (seen) {
@@ -83,14 +83,14 @@ TEST(Rig, ShowsInEachStepWhatPlantAndCameraShowByHand) {
 }
 
 TEST(Rig, GoesOnUnderTheSameTorqueUntilAFrameIsSeenAndCountsTheLostOnes) {
-  Rig rig(pendulum(), allFaults());
+  Rig rig(quickPlant(), allFaults());
   ByHand by_hand;
   rig.reset(kSeed, kTrial, true);
   by_hand.begin();
   std::uint64_t steps = 0;
   for (int frame = 1; frame <= 40; ++frame) {
     const double value = frame % 2 == 0 ? 4.0 : -1.0;
-    const Picture seen = rig.stepUntilSeen(torque(value));
+    const Picture seen = rig.stepUntilSeen(torqueOf(value));
     std::optional<Picture> expected;
     while (!expected) {
       expected = by_hand.step(value);
@@ -105,24 +105,24 @@ TEST(Rig, GoesOnUnderTheSameTorqueUntilAFrameIsSeenAndCountsTheLostOnes) {
 }
 
 TEST(Rig, BeginsARunAtTheDrawnStartWithoutTorqueAtTimeZero) {
-  Rig rig(pendulum(), CameraOptions());
+  Rig rig(quickPlant(), CameraOptions());
   const Picture first = rig.reset(kSeed, kTrial, false);
   std::mt19937_64 starts = startStream(kSeed, kTrial, false);
   const Eigen::VectorXd start = rig.plant().drawStart(starts);
   EXPECT_EQ(rig.plant().state(), start);
-  rig.step(torque(100.0));
-  EXPECT_EQ(rig.applied(), torque(6.0));  // as it acted
+  rig.step(torqueOf(100.0));
+  EXPECT_EQ(rig.applied(), torqueOf(6.0));  // as it acted
   EXPECT_EQ(rig.numSteps(), 1U);
   EXPECT_EQ(rig.time(), 0.1);
   EXPECT_EQ(rig.reset(kSeed, kTrial, false).bytes, first.bytes);
   EXPECT_EQ(rig.plant().state(), start);
-  EXPECT_EQ(rig.applied(), torque(0.0));
+  EXPECT_EQ(rig.applied(), torqueOf(0.0));
   EXPECT_EQ(rig.numSteps(), 0U);
   EXPECT_EQ(rig.time(), 0.0);
 }
 
 TEST(Rig, BeginsARunAtAGivenStartDigitByDigitWithTheFramesOfThatRun) {
-  Rig rig(pendulum(), allFaults());
+  Rig rig(quickPlant(), allFaults());
   const Eigen::Vector2d start(0.1 + 0.2, -1e-17);
   const Picture first = rig.reset(kSeed, kTrial, true, start);
   EXPECT_EQ(rig.plant().state(), start);
@@ -139,7 +139,7 @@ TEST(Rig, ChangesNothingWhereAStartIsRefused) {
   Rig undisturbed(std::make_unique<ToyPlant>(traits), allFaults());
   for (Rig* each : {&rig, &undisturbed}) {
     each->reset(kSeed, kTrial, true);
-    each->stepUntilSeen(torque(2.0));
+    each->stepUntilSeen(torqueOf(2.0));
   }
   EXPECT_THROW(rig.reset(1, 1, false, Eigen::VectorXd::Zero(3)), std::invalid_argument);
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -149,8 +149,8 @@ TEST(Rig, ChangesNothingWhereAStartIsRefused) {
   EXPECT_EQ(rig.numSteps(), undisturbed.numSteps());
   EXPECT_EQ(rig.applied(), undisturbed.applied());
   for (int t = 0; t < 20; ++t) {
-    const std::optional<Picture> expected = undisturbed.step(torque(1.0));
-    const std::optional<Picture> seen = rig.step(torque(1.0));
+    const std::optional<Picture> expected = undisturbed.step(torqueOf(1.0));
+    const std::optional<Picture> seen = rig.step(torqueOf(1.0));
     ASSERT_EQ(seen.has_value(), expected.has_value());
     if (!seen) continue;
     ASSERT_EQ(seen->bytes, expected->bytes);
@@ -158,19 +158,19 @@ TEST(Rig, ChangesNothingWhereAStartIsRefused) {
 }
 
 TEST(Rig, ChangesNothingWhereATorqueIsRefused) {
-  Rig rig(pendulum(), allFaults());
-  Rig undisturbed(pendulum(), allFaults());
+  Rig rig(quickPlant(), allFaults());
+  Rig undisturbed(quickPlant(), allFaults());
   for (Rig* each : {&rig, &undisturbed}) {
     each->reset(kSeed, kTrial, true);
-    each->step(torque(2.0));
+    each->step(torqueOf(2.0));
   }
   EXPECT_THROW(rig.step(Eigen::VectorXd::Zero(2)), std::invalid_argument);
   EXPECT_THROW(rig.stepUntilSeen(Eigen::VectorXd::Zero(0)), std::invalid_argument);
   EXPECT_EQ(rig.numSteps(), 1U);
-  EXPECT_EQ(rig.applied(), torque(2.0));
+  EXPECT_EQ(rig.applied(), torqueOf(2.0));
   for (int t = 0; t < 20; ++t) {
-    const Picture expected = undisturbed.stepUntilSeen(torque(1.0));
-    ASSERT_EQ(rig.stepUntilSeen(torque(1.0)).bytes, expected.bytes);
+    const Picture expected = undisturbed.stepUntilSeen(torqueOf(1.0));
+    ASSERT_EQ(rig.stepUntilSeen(torqueOf(1.0)).bytes, expected.bytes);
   }
 }
 
@@ -182,8 +182,8 @@ TEST(Rig, StaysAtTheLastStateWhereThePlantHasNoNext) {
   };
   Rig rig(std::make_unique<ToyPlant>(traits), CameraOptions());
   rig.reset(0, 0, false, Eigen::Vector2d(0.0, 0.0));
-  for (int t = 0; t < 3; ++t) rig.stepUntilSeen(torque(1.0));
-  EXPECT_THROW(rig.stepUntilSeen(torque(1.0)), std::range_error);
+  for (int t = 0; t < 3; ++t) rig.stepUntilSeen(torqueOf(1.0));
+  EXPECT_THROW(rig.stepUntilSeen(torqueOf(1.0)), std::range_error);
   EXPECT_EQ(rig.plant().state(), Eigen::Vector2d(3.0, 3.0));
   EXPECT_EQ(rig.numSteps(), 3U);
 }
@@ -214,22 +214,23 @@ TEST(Rig, DrawsAGoalForEachRunAndShowsItOnTheGoalImage) {
 }
 
 TEST(Rig, TakesTheGoalImageWithTheFaultsOfTheCameraButChangesNoPhotograph) {
-  Rig rig(pendulum(), allFaults());
-  Rig undisturbed(pendulum(), allFaults());
+  Rig rig(quickPlant(), allFaults());
+  Rig undisturbed(quickPlant(), allFaults());
   ByHand by_hand;
   rig.reset(kSeed, kTrial, true);
   undisturbed.reset(kSeed, kTrial, true);
   const Picture goal = by_hand.camera.photographGoal(by_hand.plant.render(by_hand.plant.goal()));
   for (int t = 0; t < 20; ++t) {
     EXPECT_EQ(rig.goalImage().bytes, goal.bytes);
-    EXPECT_EQ(rig.stepUntilSeen(torque(1.0)).bytes, undisturbed.stepUntilSeen(torque(1.0)).bytes);
+    EXPECT_EQ(rig.stepUntilSeen(torqueOf(1.0)).bytes,
+              undisturbed.stepUntilSeen(torqueOf(1.0)).bytes);
   }
 }
 
 TEST(Rig, RefusesACameraWithProblems) {
   CameraOptions options;
   options.delay = -1;
-  EXPECT_THROW(Rig(pendulum(), options), std::invalid_argument);
+  EXPECT_THROW(Rig(quickPlant(), options), std::invalid_argument);
 }
 
 }  // namespace

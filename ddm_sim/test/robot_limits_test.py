@@ -80,7 +80,9 @@ class RobotLimitsTest(RobotCase):
         self.joints.reporting = False
         self.robot.waitForEffort(0.0)
         refused = self.robot.enable(True)
-        self.assertIn("has not reported joint arm", refused.message)
+        self.assertFalse(refused.success)
+        for word in ("joint_states", "joint arm", "0.2 s"):
+            self.assertIn(word, refused.message)
         self.assertEqual(self.robot.cancels.messages, [])
         self.joints.reporting = True
         self.robot.waitForEffort(2.0)

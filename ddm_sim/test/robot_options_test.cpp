@@ -7,6 +7,8 @@
 
 #include <limits>
 
+#include "ddm_msgs/testing/expect_error.h"
+
 namespace ddm {
 namespace {
 
@@ -45,7 +47,8 @@ TEST(RobotOptions, EachKeyHasItsRule) {
     return problems.size() == 1 ? problems[0] : std::to_string(problems.size()) + " problems";
   };
   EXPECT_EQ(problem([](RobotOptions*) {}), "0 problems");
-  EXPECT_EQ(problem([](auto* o) { o->dt = 0.0; }), "robot/dt must lie in [0.001, 10], got 0");
+  EXPECT_TRUE(
+      testing::names(problem([](auto* o) { o->dt = 0.0; }), {"robot/dt", "[0.001, 10]", "got 0"}));
   for (const double bad : {-1.0, nan}) {
     EXPECT_NE(problem([&](auto* o) { o->dt = bad; }).find("robot/dt"), std::string::npos);
     for (const std::vector<double>& torques : {std::vector<double>{bad}, {1.0, bad}}) {
@@ -73,16 +76,16 @@ TEST(RobotOptions, EachKeyHasItsRule) {
               std::string::npos);
   }
   EXPECT_NE(problem([](auto* o) { o->joints = {"arm"}; }).find("robot/joints"), std::string::npos);
-  EXPECT_NE(problem([](auto* o) {
-              o->joints = {"elbow", "wrist"};
-              o->speed_limit = {1.0};
-            }).find("as many entries as robot/joints"),
-            std::string::npos);
-  EXPECT_NE(problem([](auto* o) {
-              o->position_limits = {{0.0, 1.0}, {0.0, 1.0}};
-              o->speed_limit = {1.0};
-            }).find("as many entries as robot/position_limits"),
-            std::string::npos);
+  EXPECT_TRUE(testing::names(problem([](auto* o) {
+                               o->joints = {"elbow", "wrist"};
+                               o->speed_limit = {1.0};
+                             }),
+                             {"robot/speed_limit", "robot/joints, 2", "got 1"}));
+  EXPECT_TRUE(testing::names(problem([](auto* o) {
+                               o->position_limits = {{0.0, 1.0}, {0.0, 1.0}};
+                               o->speed_limit = {1.0};
+                             }),
+                             {"robot/speed_limit", "robot/position_limits, 2", "got 1"}));
   EXPECT_EQ(problem([](auto* o) {
               o->joints = {"arm"};
               o->position_limits = {{-2.0, std::numeric_limits<double>::infinity()}};

@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import pty
+import re
 import sys
 import threading
 
@@ -32,9 +33,9 @@ class RobotResetTest(RobotCase):
         wait_until(lambda: robot.takeGoal().success, "a camera")
         wait_until(lambda: robot.goals.messages, "the goal")
         robot.camera.left = 0
-        robot.process.waitForText("Bring the robot to its start", LIMIT_S)
+        robot.process.waitForText("/reset_done", LIMIT_S)
         self.assertTrue(robot.resetDone().success)
-        robot.process.waitForText("the trial waits: the motors are off", LIMIT_S)
+        wait_until(lambda: re.search("waits: .*motors", robot.process.output), "a word on the motors")
         self.assertTrue(robot.enable(True).success)
         reset = answer()
         self.assertTrue(reset.success, reset.message)
@@ -59,8 +60,8 @@ class RobotResetTest(RobotCase):
         self.assertTrue(robot.enable(True).success)
         os.write(ours, b"typed before\n")
         answer = robot.reset()
-        robot.process.waitForText("press Enter here", LIMIT_S)
-        self.assertEqual(robot.process.output.count("the trial waits"), 0)
+        robot.process.waitForText("Enter", LIMIT_S)
+        self.assertNotIn("waits: ", robot.process.output)
         os.write(ours, b"\n")
         self.assertTrue(answer().success)
 
@@ -84,16 +85,16 @@ class RobotResetTest(RobotCase):
 
     def test_what_does_not_come_in_time_is_named(self):
         robot = self.start("_robot/reset_service:=go_home", "_robot/reset_timeout:=1.5")
-        self.assertIn("no goal image", robot.reset()().message)
+        self.assertIn("take_goal", robot.reset()().message)
         self.assertTrue(robot.takeGoal().success)
-        self.assertIn("service /go_home is not offered", robot.reset()().message)
+        self.assertRegex(robot.reset()().message, "/go_home .*offered")
         self.offer("go_home", lambda _: TriggerResponse(success=False, message="the arm is stuck"))
         wait_until(lambda: "the arm is stuck" in robot.reset()().message, "the reason")
         robot.camera.age_s = 5.0
-        wait_until(lambda: "this machine's clock" in robot.reset()().message, "the reason")
+        wait_until(lambda: "machine" in robot.reset()().message, "the reason")
         robot.camera.showing = False
-        wait_until(lambda: "no image from the camera" in robot.reset()().message, "the reason")
-        self.assertIn("no image on", robot.takeGoal().message)
+        wait_until(lambda: "camera/source" in robot.reset()().message, "the reason")
+        self.assertIn("camera/source", robot.takeGoal().message)
 
     def test_a_service_that_hangs_does_not_hang_the_reset(self):
         robot = self.start("_robot/reset_service:=go_home", "_robot/reset_timeout:=1.5")
@@ -109,8 +110,8 @@ class RobotResetTest(RobotCase):
         self.offer("go_home", hang)
         first = robot.reset()
         self.assertTrue(called.wait(LIMIT_S))
-        self.assertIn("another reset is under way", robot.reset()().message)
-        self.assertIn("service /go_home does not answer", first().message)
+        self.assertIn("another reset", robot.reset()().message)
+        self.assertRegex(first().message, "/go_home .*answer")
 
     def assertRefused(self, words, *arguments):
         if rospy.has_param("/refused"):

@@ -202,6 +202,72 @@ TEST_F(Simulate, DescribesThePlant) {
   EXPECT_EQ(about["dt"].as<double>(), 0.2);
 }
 
+#if DDM_HAS_MUJOCO
+TEST_F(Simulate, WritesTheRewardOfEachRowWhereThePlantHasOne) {
+  const Result result = run("--plant suite_pendulum --start 0.13,0", "torque_nm\n0\n0\n");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto table = rows(result.out, "step,time_s,angle_rad,rate_rad_per_s,reward", 5);
+  ASSERT_EQ(table.size(), 3U);
+  EXPECT_EQ(table[0][4], 1.0);  // within 8 degrees, 0.14 rad
+  EXPECT_GT(table[1][2], 0.14);
+  EXPECT_EQ(table[1][4], 0.0);
+}
+
+TEST_F(Simulate, RewardsTheReacherAtItsTarget) {
+  const std::string torques = "shoulder_nm,wrist_nm\n0,0\n";
+  const char* const header =
+      "step,time_s,shoulder_rad,wrist_rad,shoulder_rad_per_s,wrist_rad_per_s,reward";
+  const auto rewardAt = [&](const std::string& target) {
+    const Result result =
+        run("--plant suite_reacher_hard --start 0.5,0,0,0 --target " + target, torques);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return rows(result.out, header, 7).at(1).at(6);
+  };
+  EXPECT_EQ(rewardAt("0.1907,0.1080"), 1.0);  // 20 mm inwards along the straight arm
+  EXPECT_EQ(rewardAt("0.1843,0.1007"), 0.0);  // 30 mm
+  EXPECT_EQ(run("--plant suite_reacher --target 0.3,0.1", torques).exit_code, 2);
+  EXPECT_EQ(run("--plant suite_reacher --target 0.1", torques).exit_code, 2);
+  EXPECT_EQ(run("--plant suite_reacher --target 0.1,nan", torques).exit_code, 2);
+  EXPECT_EQ(run("--plant suite_pendulum --target 0.1,0.1", "torque_nm\n0\n").exit_code, 2);
+}
+
+TEST_F(Simulate, WritesTheSameBytesInEachProcess) {
+  const std::string torques = "shoulder_nm,wrist_nm\n0.05,-0.02\n0,0.05\n-0.05,0.01\n";
+  const std::string options = "--plant suite_reacher --start 0.1,2.7,0,3 --frames ";
+  const std::string folder = folder_.string();
+  const Result first = run(options + folder + "/first", torques);
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_EQ(run(options + folder + "/second", torques).out, first.out);
+  for (const char* picture : {"frame_0000.png", "frame_0003.png"}) {
+    EXPECT_FALSE(contents(folder_ / "first" / picture).empty());
+    EXPECT_EQ(contents(folder_ / "first" / picture), contents(folder_ / "second" / picture));
+  }
+}
+
+TEST_F(Simulate, DescribesAModelFile) {
+  const Result result = run("--plant suite_cartpole --describe", "");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const YAML::Node about = YAML::Load(result.out);
+  EXPECT_EQ(about["torque"][0].as<std::string>(), "force_n");
+  EXPECT_EQ(about["joints"][0]["kind"].as<std::string>(), "length");
+  EXPECT_EQ(about["evaluation_steps"].as<int>(), 200);
+}
+
+TEST_F(Simulate, TakesThePlantOfAFile) {
+  std::ofstream(folder_ / "robot.yaml") << "plant: {type: mujoco, model: " DDM_SIM_SOURCE_DIR
+                                           "/models/suite_pendulum.xml, tolerance: 5}";
+  const Result result = run("--plant " + folder_.string() + "/robot.yaml", "pendulum_nm\n0\n");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(rows(result.out, "step,time_s,pendulum_rad,pendulum_rad_per_s").size(), 2U);
+}
+#else
+TEST_F(Simulate, SaysWhatIsMissingForAModelFile) {
+  const Result result = run("--plant suite_pendulum", "torque_nm\n");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(contains(result.err, "libmujoco-dev")) << result.err;
+}
+#endif
+
 TEST_F(Simulate, TakesALimitForEachMotor) {
   const std::string path = (folder_ / "limits.yaml").string();
   std::ofstream(path) << "plant: {max_torque: [1.5, 2.5]}\n";
@@ -228,7 +294,9 @@ TEST_F(Simulate, RefusesAnAngleOfAPlantThatHasNone) {
 TEST_F(Simulate, RefusesTheTorquesOfAnotherPlant) {
   const Result result = run("--plant moving_tile", "torque_nm\n1\n");
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(contains(result.err, "line 1: must be the header dx_px,dy_px")) << result.err;
+  for (const char* part : {"line 1: ", "dx_px,dy_px"}) {
+    EXPECT_TRUE(contains(result.err, part)) << result.err;
+  }
   EXPECT_EQ(result.out, "");
 }
 
@@ -283,8 +351,9 @@ TEST_F(Simulate, ListsTheKnownPlantsWhenThePlantIsUnknown) {
   for (const char* plant : {"cart", "sim", "../config/pendulum", "''"}) {
     const Result result = run(std::string("--plant ") + plant, "torque_nm\n");
     EXPECT_EQ(result.exit_code, 2) << plant;
-    EXPECT_TRUE(contains(result.err, "moving_tile, pendulum, pendulum_gravity, two_link"))
-        << result.err;
+    for (const char* known : {"moving_tile, ", "pendulum, pendulum_gravity, ", "two_link"}) {
+      EXPECT_TRUE(contains(result.err, known)) << result.err;
+    }
     EXPECT_EQ(result.out, "");
   }
 }

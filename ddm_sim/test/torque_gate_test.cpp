@@ -210,7 +210,7 @@ TEST_F(TorqueGateTest, ASecondPublisherStopsTheMotorsAndMustBeGoneBeforeTheyAreA
   gate_.setPublishers(2);
   EXPECT_EQ(gate_.state(), State::kStopped);
   EXPECT_EQ(effort(21), 0.0);
-  EXPECT_NE(gate_.arm(at(0)).find("2 nodes publish torques"), std::string::npos);
+  EXPECT_NE(gate_.arm(at(0)).find("2 nodes"), std::string::npos);
   EXPECT_FALSE(gate_.armed());
   gate_.setPublishers(1);
   EXPECT_FALSE(gate_.armed());

@@ -1,35 +1,33 @@
 // simulate: moves a plant under given torques, without a master. Torques in, trajectory out.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_images/picture_file.h>
+#include <ddm_plant_plugin/picture_message.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ros/package.h>
 
 #include <algorithm>
-#include <boost/program_options.hpp>
+#include <boost/optional.hpp>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "ddm_params/number_csv.h"
 #include "ddm_params/param_reader.h"
+#include "ddm_params/param_value.h"
+#include "ddm_params/tool.h"
 #include "ddm_sim/plant_factory.h"
-#include "plant_description.h"
-#include "torque_csv.h"
 
 namespace ddm {
 namespace {
 
 namespace fs = std::filesystem;
 namespace po = boost::program_options;
-
-constexpr int kExitData = 1;
-constexpr int kExitUsage = 2;
 
 constexpr char kAbout[] =
     "Moves a plant under given torques.\n\n"
@@ -39,111 +37,70 @@ constexpr char kAbout[] =
     "        max_torque saturates, as the motor does.\n"
     "Output: a header, then N + 1 rows; row 0 is the start. The header is\n"
     "        step,time_s,angle_rad,rate_rad_per_s for a pendulum, whose angle is not wrapped, and\n"
-    "        step,time_s,x_px,y_px for a moving tile. Nothing is written if any of the input is\n"
-    "        wrong.\n"
+    "        step,time_s,x_px,y_px for a moving tile; a plant with a reward also has `reward`, of\n"
+    "        this state under the torque of the row before (row 0: none). Nothing is written if "
+    "any of the "
+    "input\n"
+    "        is wrong.\n"
     "Exit:   0 done, 1 bad data, 2 bad options.\n\n"
     "Options";
 
-/// Wrong use of the command line, as opposed to wrong data.
-struct UsageError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
 struct Arguments {
   std::string plant;
-  std::string start;            ///< whole start state, empty = not given
-  std::optional<double> angle;  ///< [rad]
-  std::optional<double> rate;   ///< [rad/s]
-  std::string frames;           ///< folder, empty = none
-  bool describe = false;        ///< say what the plant is instead
+  boost::optional<std::string> start;   ///< whole start state
+  boost::optional<std::string> angle;   ///< [rad]
+  boost::optional<std::string> rate;    ///< [rad/s]
+  boost::optional<std::string> target;  ///< place to reach
+  std::string frames;                   ///< folder, empty = none
+  bool describe = false;                ///< say what the plant is instead
   std::vector<std::string> configs;
 };
 
-/// @return nothing if the user did not give it
-std::optional<double> finiteOption(const po::variables_map& given, const std::string& name) {
-  if (given[name].defaulted()) return std::nullopt;
-  double value = 0.0;
-  const auto& text = given[name].as<std::string>();
-  if (!parseNumber(text, &value)) {
-    throw UsageError("option --" + name + " must be a finite number, got \"" + text + "\"");
-  }
-  return value;
-}
-
-po::options_description describedOptions() {
-  using Text = std::string;
+/// @return false if only help was asked for, and printed
+/// @throws po::error for wrong use
+bool parse(int argc, char** argv, Arguments* arguments) {
   po::options_description options(kAbout);
   auto add = options.add_options();
-  add("help", "print this and exit");
-  add("plant", po::value<Text>()->value_name("NAME"),
+  add("plant", po::value(&arguments->plant)->required()->value_name("NAME"),
       "a file config/NAME.yaml of this package; PACKAGE/NAME: of another one");
-  add("start", po::value<Text>()->value_name("V1,V2,..."),
+  add("start", po::value(&arguments->start)->value_name("V1,V2,..."),
       "start state, taken exactly: the columns of the output after time_s; without it a pendulum "
       "hangs at rest and a tile is in the middle");
-  add("angle", po::value<Text>()->value_name("RAD")->default_value("0"),
+  add("angle", po::value(&arguments->angle)->value_name("RAD"),
       "pendulum: start angle [rad], taken exactly; 0 hangs, counter-clockwise is positive");
-  add("rate", po::value<Text>()->value_name("RAD_PER_S")->default_value("0"),
+  add("rate", po::value(&arguments->rate)->value_name("RAD_PER_S"),
       "pendulum: start rate [rad/s], taken exactly");
-  add("frames", po::value<Text>()->value_name("DIR"),
+  add("target", po::value(&arguments->target)->value_name("X,Y"),
+      "place to reach, on which the reward depends, for plants that draw one in each trial [m]; "
+      "without it the goal is the one of the plant's file");
+  add("frames", po::value(&arguments->frames)->value_name("DIR"),
       "also write one picture a row, without nuisances of the camera: DIR/frame_0000.png, ... The "
       "folder is made if need be; pictures of these names in it are replaced");
-  add("describe",
+  add("describe", po::bool_switch(&arguments->describe),
       "print as YAML what the plant says of itself, its joints, units, limits, start, goal and "
       "tolerance, and exit");
-  add("config", po::value<std::vector<Text>>()->value_name("FILE"),
+  add("config", po::value(&arguments->configs)->value_name("FILE")->composing(),
       "YAML file with overrides of the block `plant`; repeatable, later wins");
-  return options;
-}
-
-/// @return false if only help was asked for, and printed
-bool parseArguments(int argc, char** argv, Arguments* arguments) {
-  const po::options_description options = describedOptions();
-  po::variables_map given;
-  try {
-    // No short options and no abbreviations: a word like -0.5 is then a value and never an option.
-    namespace style = po::command_line_style;
-    constexpr int kStyle = style::allow_long | style::long_allow_adjacent | style::long_allow_next;
-    const po::parsed_options parsed =
-        po::command_line_parser(argc, argv).options(options).style(kStyle).run();
-    for (const po::option& option : parsed.options) {
-      if (option.position_key < 0) continue;  // a word that belongs to an option
-      throw UsageError("unexpected \"" + option.value.front() + "\"; each value needs its option");
-    }
-    po::store(parsed, given);
-  } catch (const po::error& e) {
-    throw UsageError(e.what());
-  }
-  if (given.count("help") != 0) {
-    std::cout << options;
-    return false;
-  }
-  if (given.count("plant") == 0) throw UsageError("option --plant NAME is missing");
-  arguments->plant = given["plant"].as<std::string>();
-  arguments->describe = given.count("describe") != 0;
-  arguments->angle = finiteOption(given, "angle");
-  arguments->rate = finiteOption(given, "rate");
-  if (given.count("start") != 0) {
-    if (arguments->angle || arguments->rate) {
-      throw UsageError("option --start gives the whole state; leave --angle and --rate out");
-    }
-    arguments->start = given["start"].as<std::string>();
-    if (arguments->start.empty()) throw UsageError("option --start must not be empty");
-  }
-  if (given.count("frames") != 0) arguments->frames = given["frames"].as<std::string>();
-  if (given.count("config") != 0) {
-    arguments->configs = given["config"].as<std::vector<std::string>>();
-  }
-  return true;
+  std::vector<std::string> words;
+  po::options_description unnamed;
+  unnamed.add_options()("word", po::value(&words));
+  po::positional_options_description names;
+  // No short options and no abbreviations: a word like -0.5 is then a value and never an option.
+  namespace style = po::command_line_style;
+  constexpr int kStyle = style::allow_long | style::long_allow_adjacent | style::long_allow_next;
+  if (!parseCommandLine(argc, argv, options, unnamed, names.add("word", -1), kStyle)) return false;
+  if (words.empty()) return true;
+  throw po::error("unexpected \"" + words.front() + "\"; each value needs its option");
 }
 
 /// The files that describe camera and plant, then the user's own.
-/// @throws UsageError with the known plants if there is none of this name
+/// @throws po::error with the known plants if there is none of this name
 std::vector<std::string> configFiles(const Arguments& arguments) {
   std::vector<std::string> files{ros::package::getPath("ddm_sim") + "/config/sim.yaml"};
   try {
     files.push_back(plantFile(arguments.plant));
   } catch (const std::invalid_argument& e) {
-    throw UsageError(std::string("option --plant: ") + e.what());
+    throw po::error(std::string("option --plant: ") + e.what());
   }
   files.insert(files.end(), arguments.configs.begin(), arguments.configs.end());
   return files;
@@ -157,23 +114,14 @@ std::unique_ptr<Plant> configuredPlant(const Arguments& arguments) {
 }
 
 void writeFrame(const Plant& plant, const std::string& folder, std::size_t row) {
-  Picture picture = plant.render(plant.state());
   char name[32];
   std::snprintf(name, sizeof(name), "frame_%04zu.png", row);
-  const std::string path = (fs::path(folder) / name).string();
-  const int type = picture.channels == 1 ? CV_8UC1 : CV_8UC3;
-  cv::Mat image(picture.height, picture.width, type, picture.bytes.data());
-  if (picture.channels == 3) cv::cvtColor(image, image, cv::COLOR_RGB2BGR);
-  bool written = false;
-  try {
-    written = cv::imwrite(path, image);
-  } catch (const cv::Exception&) {  // the path below says more than its text
-  }
-  if (!written)
-    throw std::runtime_error(path + " cannot be written; check the folder and its disk");
+  writePicture((fs::path(folder) / name).string(),
+               imageMessage(plant.render(plant.state()), ros::Time()));
 }
 
-std::string csvRow(const Plant& plant, std::size_t row) {
+/// @param reward  empty: the plant has none
+std::string csvRow(const Plant& plant, std::size_t row, const std::optional<double>& reward) {
   const auto number = [](double value) {
     char text[32];
     std::snprintf(text, sizeof(text), "%.17g", value);
@@ -181,35 +129,85 @@ std::string csvRow(const Plant& plant, std::size_t row) {
   };
   std::string text = std::to_string(row) + number(static_cast<double>(row) * plant.info().dt);
   for (Eigen::Index i = 0; i < plant.state().size(); ++i) text += number(plant.state()[i]);
+  if (reward) text += number(*reward);
   return text + "\n";
 }
 
 /// Sets the component `name` of the state, if a value was given for it by `option`.
-void setComponent(const std::string& option, const std::optional<double>& value,
+void setComponent(const std::string& option, const boost::optional<std::string>& text,
                   const std::string& name, Plant* plant) {
-  if (!value) return;
+  if (!text) return;
+  double value = 0.0;
+  if (!parseNumber(*text, &value)) {
+    throw po::error("option " + option + " must be a finite number, got \"" + *text + "\"");
+  }
   const std::vector<std::string> names = plant->info().state_names;
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) {
-    throw UsageError("option " + option + " is for a pendulum; the state of this plant is " +
-                     joinedByCommas(names) + ", use --start");
+    throw po::error("option " + option + " is for a pendulum; the state of this plant is " +
+                    boost::join(names, ",") + ", use --start");
   }
   Eigen::VectorXd state = plant->state();
-  state[found - names.begin()] = *value;
+  state[found - names.begin()] = value;
   plant->setState(state);
 }
 
 void setStart(const Arguments& arguments, Plant* plant) {
   setComponent("--angle", arguments.angle, "angle_rad", plant);
   setComponent("--rate", arguments.rate, "rate_rad_per_s", plant);
-  if (arguments.start.empty()) return;
+  if (!arguments.start) return;
+  if (arguments.angle || arguments.rate) {
+    throw po::error("option --start gives the whole state; leave --angle and --rate out");
+  }
   Eigen::VectorXd state;
-  if (!parseNumbers(arguments.start, plant->stateDim(), &state)) {
-    throw UsageError("option --start must be " + std::to_string(plant->stateDim()) +
-                     " finite number(s) (" + joinedByCommas(plant->info().state_names) +
-                     "), got \"" + arguments.start + "\"");
+  if (!parseNumbers(*arguments.start, plant->stateDim(), &state)) {
+    throw po::error("option --start must be " + std::to_string(plant->stateDim()) +
+                    " finite number(s) (" + boost::join(plant->info().state_names, ",") +
+                    "), got \"" + *arguments.start + "\"");
   }
   plant->setState(state);
+}
+
+void setTarget(const Arguments& arguments, Plant* plant) {
+  if (!arguments.target) return;
+  const auto size = 1 + std::count(arguments.target->begin(), arguments.target->end(), ',');
+  Eigen::VectorXd target;
+  if (!parseNumbers(*arguments.target, size, &target)) {
+    throw po::error("option --target must be finite numbers, got \"" + *arguments.target + "\"");
+  }
+  try {
+    plant->setGoal(plant->goalAt(target));
+  } catch (const std::invalid_argument& e) {
+    throw po::error(std::string("option --target: ") + e.what());
+  }
+}
+
+YAML::Node numbers(const Eigen::VectorXd& values) {
+  return valueToYaml(std::vector<double>(values.data(), values.data() + values.size()));
+}
+
+/// What a plant says of itself, as YAML. Numbers are in the units that the names in `state` and
+/// `torque` end with.
+std::string describe(const PlantInfo& info) {
+  YAML::Node about;
+  for (const Joint& joint : info.joints) {
+    YAML::Node entry;
+    entry.SetStyle(YAML::EmitterStyle::Flow);
+    entry["name"] = joint.name;
+    entry["kind"] = joint.kind == JointKind::kAngle ? "angle" : "length";
+    about["joints"].push_back(entry);
+  }
+  about["state"] = valueToYaml(info.state_names);
+  about["torque"] = valueToYaml(info.torque_names);
+  about["max_torque"] = numbers(info.max_torque);
+  about["dt"] = valueToYaml(info.dt);
+  about["start"] = numbers(info.start);
+  about["start_std"] = numbers(info.start_std);
+  about["goal"] = numbers(info.goal);
+  about["error_unit"] = info.error_unit;
+  about["tolerance"] = valueToYaml(info.tolerance);
+  if (info.evaluation_steps > 0) about["evaluation_steps"] = info.evaluation_steps;
+  return YAML::Dump(about) + "\n";
 }
 
 void simulate(const Arguments& arguments) {
@@ -219,13 +217,21 @@ void simulate(const Arguments& arguments) {
     return;
   }
   setStart(arguments, plant.get());
-  const std::vector<Eigen::VectorXd> torques = readTorques(std::cin, plant->info().torque_names);
+  setTarget(arguments, plant.get());
+  const std::vector<Eigen::VectorXd> torques =
+      readNumbers(std::cin, plant->info().torque_names, "a torque");
   if (!arguments.frames.empty()) fs::create_directories(arguments.frames);
 
-  std::string trajectory = "step,time_s," + joinedByCommas(plant->info().state_names) + "\n";
+  std::optional<double> reward =
+      plant->reward(plant->state(), Eigen::VectorXd::Zero(plant->torqueDim()));
+  std::string trajectory =
+      "step,time_s," + boost::join(plant->info().state_names, ",") + (reward ? ",reward\n" : "\n");
   for (std::size_t row = 0; row <= torques.size(); ++row) {
-    if (row > 0) plant->step(torques[row - 1]);
-    trajectory += csvRow(*plant, row);
+    if (row > 0) {
+      const Eigen::VectorXd applied = plant->step(torques[row - 1]);
+      reward = plant->reward(plant->state(), applied);
+    }
+    trajectory += csvRow(*plant, row, reward);
     if (!arguments.frames.empty()) writeFrame(*plant, arguments.frames, row);
   }
   std::cout << trajectory << std::flush;
@@ -238,13 +244,13 @@ void simulate(const Arguments& arguments) {
 int main(int argc, char** argv) {
   try {
     ddm::Arguments arguments;
-    if (ddm::parseArguments(argc, argv, &arguments)) ddm::simulate(arguments);
-  } catch (const ddm::UsageError& e) {
+    if (ddm::parse(argc, argv, &arguments)) ddm::simulate(arguments);
+  } catch (const boost::program_options::error& e) {  // not of the data
     std::cerr << "simulate: " << e.what() << "\nsimulate --help lists the options\n";
-    return ddm::kExitUsage;
+    return ddm::kUsageError;
   } catch (const std::exception& e) {
     std::cerr << "simulate: " << e.what() << '\n';
-    return ddm::kExitData;
+    return EXIT_FAILURE;
   }
   return EXIT_SUCCESS;
 }

@@ -11,7 +11,7 @@ namespace ddm {
 namespace {
 
 /// A matrix as a list of its columns.
-YAML::Node toYaml(const Eigen::MatrixXd& matrix) {
+YAML::Node matrixToYaml(const Eigen::MatrixXd& matrix) {
   YAML::Node out(YAML::NodeType::Sequence);
   for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
     YAML::Node column(YAML::NodeType::Sequence);
@@ -54,11 +54,11 @@ Eigen::VectorXd vectorOf(const YAML::Node& memory, const std::string& key, size_
 }  // namespace
 
 void writeMemory(const PilcoMemory& memory, YAML::Node* out) {
-  (*out)["policy"] = toYaml(memory.policy);
-  (*out)["log_length_scales"] = toYaml(memory.gps.hyperparameters.log_length_scales);
-  (*out)["log_signal_std"] = toYaml(memory.gps.hyperparameters.log_signal_std);
-  (*out)["log_noise_std"] = toYaml(memory.gps.hyperparameters.log_noise_std);
-  (*out)["inducing"] = toYaml(memory.gps.inducing);
+  (*out)["policy"] = matrixToYaml(memory.policy);
+  (*out)["log_length_scales"] = matrixToYaml(memory.gps.hyperparameters.log_length_scales);
+  (*out)["log_signal_std"] = matrixToYaml(memory.gps.hyperparameters.log_signal_std);
+  (*out)["log_noise_std"] = matrixToYaml(memory.gps.hyperparameters.log_noise_std);
+  (*out)["inducing"] = matrixToYaml(memory.gps.inducing);
 }
 
 PilcoMemory readMemory(const std::string& text, const std::string& source) {
@@ -67,9 +67,9 @@ PilcoMemory readMemory(const std::string& text, const std::string& source) {
     if (!root.IsMap()) throw std::runtime_error("must be a map");
     PilcoMemory memory;
     memory.policy = vectorOf(root, "policy", text.size());
-    memory.gps.hyperparameters.log_length_scales = matrixOf(root, "log_length_scales", text.size());
-    memory.gps.hyperparameters.log_signal_std = vectorOf(root, "log_signal_std", text.size());
-    memory.gps.hyperparameters.log_noise_std = vectorOf(root, "log_noise_std", text.size());
+    memory.gps.hyperparameters = {matrixOf(root, "log_length_scales", text.size()),
+                                  vectorOf(root, "log_signal_std", text.size()),
+                                  vectorOf(root, "log_noise_std", text.size())};
     memory.gps.inducing = matrixOf(root, "inducing", text.size());
     return memory;
   } catch (const std::exception& e) {

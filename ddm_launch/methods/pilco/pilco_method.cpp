@@ -6,6 +6,8 @@
 #include <ddm_model/per_motor.h>
 #include <ddm_msgs/random_stream.h>
 #include <ddm_params/param_value.h>
+#include <ddm_pilco/messages.h>
+#include <ddm_pilco/rbf_policy.h>
 #include <ddm_sim/plant.h>
 
 #include <algorithm>
@@ -17,7 +19,6 @@
 
 #include "csv_text.h"
 #include "pilco_policy.h"
-#include "policy_start.h"
 
 namespace ddm {
 namespace {
@@ -60,8 +61,6 @@ Transitions transitions(const DataSet& data, const Eigen::MatrixXd& X,
   }
   return out;
 }
-
-std::string cell(double value) { return "," + formatDouble(value); }
 
 }  // namespace
 
@@ -141,17 +140,19 @@ pilco::LongTermCost PilcoMethod::improvePolicy(pilco::Propagation dynamics, cons
   const Clock::time_point start = Clock::now();
   const pilco::Augmentation features = dynamics.features();
   const int torque_dim = dynamics.controlDim();
-  policy_ = makePilcoPolicy(features.outputDim(), pilco_.pilco.num_centres,
-                            perMotor(configuration_.mpc.max_torque, torque_dim, "mpc/max_torque"));
+  const int num_centres = pilco_.pilco.num_centres;
+  policy_ = std::make_shared<pilco::SquashedPolicy>(
+      std::make_unique<pilco::RbfPolicy>(features.outputDim(), torque_dim, num_centres),
+      perMotor(configuration_.mpc.max_torque, torque_dim, "mpc/max_torque"));
   const auto drawStart = [&] {
-    return drawPolicyStart(task, features, pilco_.pilco.num_centres, torque_dim, &training->rng);
+    return drawPolicyStart(task, features, num_centres, torque_dim, &training->rng);
   };
   Eigen::VectorXd& parameters = training->memory.policy;
   if (parameters.size() == 0) parameters = drawStart();
   if (parameters.size() != policy_->numParameters()) {
-    throw std::runtime_error(memoryFile(bags) + ": policy must have " +
-                             std::to_string(policy_->numParameters()) + " parameters, got " +
-                             std::to_string(parameters.size()) + ": use another run folder");
+    throw std::runtime_error(pilco::message(memoryFile(bags), ": policy must have ",
+                                            policy_->numParameters(), " parameters, got ",
+                                            parameters.size(), ": use another run folder"));
   }
   pilco::LongTermCost cost(std::move(dynamics), task.cost, policy_.get(), task.start,
                            pilco_.pilco.horizon);
@@ -166,46 +167,49 @@ pilco::LongTermCost PilcoMethod::improvePolicy(pilco::Propagation dynamics, cons
         },
         parameters, pilco_.policy_search);
   };
-  pilco::PolicySearchResult result = search();
-  const bool afresh = !result.ok;
+  Minimum result = search();
+  const bool afresh = result.reason == MinimumReason::kStartFailed;
   if (afresh) {
     parameters = drawStart();
     result = search();
   }
-  if (!result.ok) {  // more data may mend it
-    result.cost_before = std::nan("");
-    result.cost_after = std::nan("");
+  if (result.reason == MinimumReason::kStartFailed) {  // more data may mend it
+    result.initial_cost = result.cost = std::nan("");
     result.message = "a first policy is kept, since its cost is not finite either";
   }
-  parameters = result.parameters;
+  parameters = result.x;
   cost.evaluate(parameters);  // sets the policy, and the prediction that is kept
 
   YAML::Node& report = training->report;
   report["policy_search_s"] = valueToYaml(secondsSince(start));
   report["iterations"] = result.iterations;
   report["evaluations"] = result.evaluations;
-  report["cost_before"] = valueToYaml(result.cost_before);
-  report["cost_after"] = valueToYaml(result.cost_after);
+  report["cost_before"] = valueToYaml(result.initial_cost);
+  report["cost_after"] = valueToYaml(result.cost);
   report["message"] =
       (afresh ? "started afresh, the last policy's cost is not finite; " : "") + result.message;
   return cost;
 }
 
 std::string PilcoMethod::predictionCsv(const pilco::LongTermCost& cost) const {
-  std::string text = "step,time_s";
+  std::vector<std::string> columns;
   for (const std::string& name : observation_->names()) {
-    text += "," + name + "_mean," + name + "_std";
+    for (const char* measure : {"_mean", "_std"}) columns.push_back(name + measure);
   }
-  text += ",cost_mean,cost_std\n";
+  std::string text = csvLine("step", "time_s", columns, "cost_mean", "cost_std");
   const std::vector<double> cost_std = cost.costStandardDeviations();
   for (size_t step = 0; step < cost.states().size(); ++step) {
     const pilco::Gaussian& state = cost.states()[step];
-    text += std::to_string(step) + cell(static_cast<double>(step) * configuration_.plant_info.dt);
+    std::vector<std::string> cells;
     for (Eigen::Index i = 0; i < state.mean.size(); ++i) {
-      text += cell(state.mean[i]) + cell(std::sqrt(std::max(0.0, state.covariance(i, i))));
+      cells.push_back(csvCell(state.mean[i]));
+      cells.push_back(csvCell(std::sqrt(std::max(0.0, state.covariance(i, i)))));
     }
-    text += step == 0 ? ",," : cell(cost.costs()[step - 1]) + cell(cost_std[step - 1]);
-    text += "\n";
+    const auto of_step = [step](const std::vector<double>& values) {
+      return step == 0 ? std::string() : csvCell(values[step - 1]);
+    };
+    text += csvLine(step, static_cast<double>(step) * configuration_.plant_info.dt, cells,
+                    of_step(cost.costs()), of_step(cost_std));
   }
   return text;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_msgs/option_checks.h>
 #include <ddm_pilco/gp_training.h>
 #include <ddm_pilco/policy_search.h>
 #include <ddm_pilco/sparse_gp.h>
@@ -33,7 +34,16 @@ struct PilcoOptions {
     visitor("noisy_policy_input", noisy_policy_input);
   }
   /// Everything wrong with these values, in words a user can act on. Empty means valid.
-  std::vector<std::string> problems() const;
+  std::vector<std::string> problems() const {
+    OptionChecks pilco("pilco");
+    pilco.requireWithin("horizon", horizon, 1, 100000);
+    pilco.requireWithin("num_centres", num_centres, 1, 1000);
+    pilco.requirePositive("cost_width", cost_width);
+    pilco.requireNotNegative("start_std", start_std);
+    pilco.requireNotNegative("rate_noise", rate_noise);
+    pilco.requireNotNegative("angle_noise", angle_noise);
+    return pilco.problems();
+  }
 };
 
 /// All blocks that PILCO alone reads.

@@ -1,4 +1,4 @@
-// A policy that PILCO has learned, acting on an observation.
+// The policy that PILCO searches, on an observation, and where its first search starts.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -7,6 +7,7 @@
 #include <ddm_pilco/trigonometric.h>
 
 #include <memory>
+#include <random>
 #include <vector>
 
 #include "observation.h"
@@ -32,5 +33,11 @@ class PilcoPolicy : public Policy {
   pilco::Augmentation features_;
   Eigen::VectorXd x_;
 };
+
+/// Parameters of the RBF policy of PILCO's first trial: centres drawn from the features of the
+/// start distribution, which is taken as Gaussian, small random targets, length-scales of the task.
+/// @param features  of the task's state
+Eigen::VectorXd drawPolicyStart(const PilcoTask& task, const pilco::Augmentation& features,
+                                int num_centres, int torque_dim, std::mt19937_64* rng);
 
 }  // namespace ddm

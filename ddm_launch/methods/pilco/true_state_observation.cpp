@@ -4,13 +4,13 @@
 
 #include <ddm_files/plain_file.h>
 #include <ddm_msgs/random_stream.h>
+#include <ddm_pilco/messages.h>
 
 #include <boost/filesystem.hpp>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
-#include "trajectory_csv.h"
+#include "run_csv.h"
 
 namespace ddm {
 namespace {
@@ -35,15 +35,13 @@ bool isPendulum(const Plant& plant) {
 
 TrueStateObservation::TrueStateObservation(const Plant& plant, const PilcoOptions& options)
     : plant_(plant), options_(options) {
-  if (isPendulum(plant)) return;
-  std::ostringstream text;
-  text
-      << "PILCO on the true state is for one joint with angle and rate whose goal is the angle pi; "
-         "this plant has "
-      << plant.info().joints.size() << " joint(s), " << plant.stateDim()
-      << " state component(s) and the goal [" << plant.info().goal.transpose()
-      << "]: use method pilco_features or pilco_pca";
-  throw std::invalid_argument(text.str());
+  pilco::require(
+      isPendulum(plant),
+      "PILCO on the true state is for one joint with angle and rate whose goal is the angle pi; "
+      "this plant has ",
+      plant.info().joints.size(), " joint(s), ", plant.stateDim(),
+      " state component(s) and the goal [", plant.info().goal.transpose(),
+      "]: use method pilco_features or pilco_pca");
 }
 
 std::vector<std::string> TrueStateObservation::names() const {
@@ -62,9 +60,9 @@ Eigen::MatrixXd TrueStateObservation::learn(const std::vector<std::string>& bags
         parseTrajectoryCsv(readFile(file), plant_.info().state_names, file);
     const Eigen::Index due = trial < data.pieces().size() ? data.pieces()[trial].size : 0;
     if (states.cols() != due) {
-      throw std::runtime_error(
-          file + " must have the " + std::to_string(due) + " frames of the bag beside it, got " +
-          std::to_string(states.cols()) + ": the run folder is damaged, use another");
+      throw std::runtime_error(pilco::message(file, " must have the ", due,
+                                              " frames of the bag beside it, got ", states.cols(),
+                                              ": the run folder is damaged, use another"));
     }
     startTrial({id.seed, static_cast<std::uint32_t>(trial), false});
     for (Eigen::Index i = 0; i < states.cols(); ++i) X.col(frame++) = measure(states.col(i));

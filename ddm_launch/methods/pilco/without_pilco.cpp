@@ -1,6 +1,6 @@
 // No baselines: what a build without PILCO links.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pilco_methods.h"
+#include "method_kinds.h"
 
 namespace ddm {
 

@@ -2,9 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_files/plain_file.h>
+#include <ddm_params/param_value.h>
+
 #include <chrono>
+#include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "evaluation.h"
 
 namespace ddm {
 
@@ -14,11 +20,23 @@ class IntervalLog {
   static constexpr int kEvents = 100;
 
   /// An event is now. The first kEvents do not count: connections and caches are new.
-  void tick();
+  void tick() {
+    if (++num_events_ % kEvents != 0) return;
+    const auto now = std::chrono::steady_clock::now();
+    const std::chrono::duration<double, std::micro> interval = now - last_;
+    if (num_events_ > kEvents) intervals_us_.push_back(interval.count() / kEvents);
+    last_ = now;
+  }
   int numEvents() const { return num_events_; }
-  /// `{median_us: ..., p99_us: ..., count: ...}`, which appears at once and whole.
+
+  /// `{median_us: ..., p99_us: ...}`, which appears at once and whole.
   /// @throws std::runtime_error if there is nothing to tell, or the file cannot be written
-  void write(const std::string& path) const;
+  void write(const std::string& path) const {
+    if (intervals_us_.empty()) throw std::runtime_error("no round trip was timed");
+    writeFileAtomically(path, "{median_us: " + formatDouble(quantile(intervals_us_, 0.5)) +
+                                  ", p99_us: " + formatDouble(quantile(intervals_us_, 0.99)) +
+                                  "}\n");
+  }
 
  private:
   int num_events_ = 0;

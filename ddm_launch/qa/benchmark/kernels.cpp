@@ -5,6 +5,7 @@
 #include <ddm_files/plain_file.h>
 #include <ddm_model/initialisation.h>
 #include <ddm_model/model_file.h>
+#include <ddm_model/networks.h>
 #include <ddm_model/objective.h>
 #include <ddm_model/solver_log.h>
 #include <ddm_model/trainer.h>
@@ -19,10 +20,11 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "configuration.h"
 #include "evaluation.h"
-#include "matrix_products.h"
 #include "run_folder.h"
 
 namespace ddm {
@@ -75,6 +77,54 @@ void measure(const std::string& name, int num_calls, const std::function<void()>
       ->ComputeStatistics("p99", percentile99)
       ->Unit(benchmark::kMicrosecond);
 }
+
+/// W a, delta a^T and W^T delta of each layer of g^-1, g and f, on random matrices: what no
+/// implementation of an objective with its gradient leaves out, and nothing else. The decoder has
+/// twice the samples, the images' features and the predicted.
+class MatrixProducts {
+ public:
+  /// @param block  so many of the samples go through all networks before the next ones do
+  MatrixProducts(const Networks<float>& networks, Eigen::Index num_samples, Eigen::Index block)
+      : num_blocks_((num_samples + block - 1) / block) {
+    add(networks.encoder(), block, false);  // nothing is learned before the images
+    add(networks.f(), block, true);
+    add(networks.decoder(), 2 * block, true);
+  }
+
+  void run() {
+    for (Eigen::Index block = 0; block < num_blocks_; ++block) {
+      for (Layer& layer : layers_) layer.outputs.noalias() = layer.weights * layer.inputs;
+      for (Layer& layer : layers_) {
+        layer.d_weights.noalias() += layer.d_outputs * layer.inputs.transpose();
+        if (!layer.needs_d_inputs) continue;
+        layer.d_inputs.noalias() = layer.weights.transpose() * layer.d_outputs;
+      }
+    }
+  }
+
+ private:
+  struct Layer {
+    Eigen::MatrixXf weights, d_weights;  // [outputs x inputs]
+    Eigen::MatrixXf inputs, d_inputs;    // [inputs x samples]
+    Eigen::MatrixXf outputs, d_outputs;  // [outputs x samples]
+    bool needs_d_inputs = true;
+  };
+
+  void add(const Mlp<float>& net, Eigen::Index samples, bool needs_d_inputs) {
+    for (size_t l = 1; l < net.widths().size(); ++l) {
+      const int inputs = net.widths()[l - 1], outputs = net.widths()[l];
+      Layer layer;
+      layer.weights = layer.d_weights = Eigen::MatrixXf::Random(outputs, inputs);
+      layer.inputs = layer.d_inputs = Eigen::MatrixXf::Random(inputs, samples);
+      layer.outputs = layer.d_outputs = Eigen::MatrixXf::Random(outputs, samples);
+      layer.needs_d_inputs = needs_d_inputs || l > 1;
+      layers_.push_back(std::move(layer));
+    }
+  }
+
+  Eigen::Index num_blocks_;
+  std::vector<Layer> layers_;
+};
 
 void measureObjective(const Experience& experience) {
   const auto networks = std::make_shared<const Networks<float>>(experience.model->options(),

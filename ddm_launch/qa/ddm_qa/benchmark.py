@@ -1,6 +1,5 @@
 # Times what users wait for, and what they would use instead, in one table.
 # SPDX-License-Identifier: BSD-3-Clause
-import argparse
 import importlib.util
 import json
 import os
@@ -11,11 +10,11 @@ import tempfile
 from tqdm import tqdm
 import yaml
 
-from ddm_launch.command import Failure, find_program, package_path, processor, run_program
+from ddm_launch.command import Failure, find_program, package_path, processor, program_parser, run_program
 from ddm_launch.settings import read_yaml
 from ddm_launch.tables import write_csv
 from ddm_model.plain_file import write_file
-from ddm_qa.programs import Programs
+from ddm_qa.processes import Programs
 
 COLUMNS = ["name", "median_us", "p99_us", "peer_median_us"]
 BUDGET_COLUMNS = ["preset", "load", "budget_ms", "plans", "cut_short", "median_ms", "p99_ms", "p999_ms", "max_ms",
@@ -59,10 +58,22 @@ class Benchmark:
         self.plan_iterations = None
         self.budgets = []  # rows of planning_budget.csv
 
+    def keep_wall_time(self, name, run):
+        summary = read_yaml(os.path.join(run, "summary.yaml"))
+        if summary.get("finished") is not True:
+            raise Failure("%s: the experiment did not finish" % name)
+        self.rows[name] = [1e6 * summary["wall_s"], "", ""]
+
     def experiment(self):
         self.programs.call("experiment", [find_program("run_experiment"), "--preset", "paper", "--plant", "pendulum",
                                           "--seed", "0", "--trials", str(TRIALS), "--out", self.run])
-        self.rows["experiment"] = [1e6 * read_yaml(os.path.join(self.run, "summary.yaml"))["wall_s"], "", ""]
+        self.keep_wall_time("experiment", self.run)
+
+    def ros_experiment(self):
+        run = os.path.join(self.scratch, "ros_experiment")
+        self.programs.roslaunch("ros_experiment", "ddm_launch", "experiment.launch", "preset:=paper",
+                                "plant:=pendulum", "seed:=0", "trials:=%d" % TRIALS, "runs:=" + run)
+        self.keep_wall_time("ros_experiment", run)
 
     def kernels(self):
         report = os.path.join(self.scratch, "kernels.json")
@@ -75,8 +86,7 @@ class Benchmark:
             if row.get("error_occurred"):
                 raise Failure("kernels: %s: %s" % (row["name"], row.get("error_message", "failed")))
             name = row["run_name"].split("/iterations")[0]
-            if row.get("aggregate_name") in ("median", "p99"):
-                times.setdefault(name, {})[row["aggregate_name"]] = row["real_time"]
+            times.setdefault(name, {})[row.get("aggregate_name")] = row["real_time"]
             if name == "plan" and row.get("aggregate_name") == "mean":
                 self.plan_iterations = row["plan_iterations"]
         times["matrix_products"] = min((found for name, found in times.items() if name.startswith("matrix_products/")),
@@ -114,15 +124,6 @@ class Benchmark:
                                                              "--plans", str(NUM_PLANS)] + load)
                 self.budgets.append(row.strip().split(","))
 
-    def ros_experiment(self):
-        run = os.path.join(self.scratch, "ros_experiment")
-        self.programs.roslaunch("ros_experiment", "ddm_launch", "experiment.launch", "preset:=paper",
-                                "plant:=pendulum", "seed:=0", "trials:=%d" % TRIALS, "runs:=" + run)
-        summary = read_yaml(os.path.join(run, "summary.yaml"))
-        if summary.get("finished") is not True:
-            raise Failure("ros_experiment: the experiment of the nodes did not finish")
-        self.rows["ros_experiment"] = [1e6 * summary["wall_s"], "", ""]
-
     def work(self):
         steps = [("experiment", self.experiment), ("kernels", self.kernels)]
         steps += [("PyTorch", self.peer)] if self.peers else []
@@ -149,8 +150,7 @@ class Benchmark:
 
 
 def main(arguments=None):
-    parser = argparse.ArgumentParser(prog="benchmark", description=ABOUT, epilog=EPILOG,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = program_parser("benchmark", ABOUT, EPILOG)
     parser.add_argument("--peers", action="store_true", help="also time PyTorch, which must be installed")
     parser.add_argument("--out", default="speed", metavar="DIR", help="default speed")
     options = parser.parse_args(arguments)

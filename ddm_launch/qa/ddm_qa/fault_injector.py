@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The moment is exact: the injector sees each reset, image and torque before it arrives, and holds it until its fault
 is done. Only a training is hit wherever it is when its first progress is heard. What the experiment has finished at that
-moment is written next to the report. In real time the report also says what the motor has done since."""
+moment is in the report. In real time that also says what the motor has done since."""
 import copy
 import os
 import signal
@@ -19,21 +19,14 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Image, JointState
 
 from ddm_launch.command import find_program
-from ddm_qa.faults import intruder, robot_injector
-from ddm_qa.faults.configuration import configuration
-from ddm_qa.faults.finished import Finished
-from ddm_qa.faults.motor import MotorWatch
-from ddm_qa.faults.order import OrderWatch
-from ddm_qa.faults.pairs import write_acted
-from ddm_qa.node_processes import pid_of
+from ddm_qa.faults import intruder
+from ddm_qa.faults.injection import FRAME, Injection, configuration
+from ddm_qa.faults.robot import ON_A_ROBOT, RobotInjection
+from ddm_qa.faults.watches import MotorWatch, OrderWatch
+from ddm_qa.processes import pid_of
 
-# (trial, whether it is the evaluation after it). `recording` is when the last torque has been sent: the bag is closed.
-# In real time they are those words and REAL_TIME.
-RUN_OF_PHASE = {"random trial": (0, False), "exploring trial": (1, False), "recording": (1, False),
-                "evaluation": (1, True)}
-REAL_TIME = " in real time"
-TRAINED_TRIAL = 1  # of the phase `training`
-FRAME = 7          # of a trial or evaluation
+REAL_TIME = " in real time"  # end of a phase
+TRAINED_TRIAL = 1            # of the phase `training`
 LATE_S = 1.0
 QUEUE = 100
 
@@ -42,30 +35,24 @@ STOPS = {"pause": 0.6, "oversleep": 1.25, "hold": float("inf")}
 LIMITS = {"sim_node": ("controller", "timeout"), "mpc_node": ("sim", "watchdog")}
 OTHER_LIMIT = ("experiment", "timeout")
 
+# What an image or a torque has that is not as it should be.
+ALTERED = {
+    "nan": lambda torque: {"torque": [float("nan")]}, "inf": lambda torque: {"torque": [float("inf")]},
+    "1e300": lambda torque: {"torque": [1e300]}, "none": lambda torque: {"torque": []},
+    "twice": lambda torque: {"torque": list(torque.torque) * 2},
+    "size": lambda image: dict(dict.fromkeys(("width", "height", "step"), image.width // 2),
+                               data=image.data[:(image.width // 2) ** 2]),
+    "encoding": lambda image: {"encoding": "rgb8", "step": 3 * image.step, "data": 3 * image.data},
+    "unknown": lambda image: {"encoding": "smell"},
+    "cut": lambda image: {"data": image.data[:len(image.data) // 2]},
+    "unstamped": lambda image: {"header": type(image.header)(frame_id=image.header.frame_id)}}
+
 
 def altered(message, how):
-    """An image or a torque as it should not be."""
-    message = copy.deepcopy(message)
-    if how in ("nan", "inf", "1e300"):
-        message.torque = [float(how)]
-    elif how == "none":
-        message.torque = []
-    elif how == "twice":
-        message.torque = list(message.torque) * 2
-    elif how == "size":
-        message.width = message.height = message.step = message.width // 2
-        message.data = message.data[:message.width * message.height]
-    elif how == "encoding":
-        message.encoding, message.step, message.data = "rgb8", 3 * message.step, 3 * message.data
-    elif how == "unknown":
-        message.encoding = "smell"
-    elif how == "cut":
-        message.data = message.data[:len(message.data) // 2]
-    elif how == "unstamped":
-        message.header.stamp = rospy.Time()
-    else:
-        raise ValueError("no such alteration: " + how)
-    return message
+    result = copy.deepcopy(message)
+    for field, value in ALTERED[how](message).items():
+        setattr(result, field, value)
+    return result
 
 
 def late(message):
@@ -89,24 +76,18 @@ def has_ended(pid):
         return True
 
 
-def later(seconds, signal_name, pid):
-    """Sends a signal, even if this process has ended by then."""
-    subprocess.Popen(["sh", "-c", "sleep %g; kill -%s %d" % (seconds, signal_name, pid)], start_new_session=True)
-
-
-class Injector:
+class Injector(Injection):
     def __init__(self):
-        phase = rospy.get_param("~phase")
-        self.real_time, self.phase = phase.endswith(REAL_TIME), phase.replace(REAL_TIME, "")
-        self.verb, self.what, self.how = (rospy.get_param("~fault").split() + ["", ""])[:3]
-        self.report, self.runs = rospy.get_param("~report"), rospy.get_param("~runs")
+        super().__init__(REAL_TIME)
+        self.real_time = rospy.get_param("~phase").endswith(REAL_TIME)
+        self.verb, self.what, self.how = (self.fault.split() + ["", ""])[:3]
         self.lock = threading.Lock()
-        self.run, self.frame, self.num_steps, self.stamp = None, -1, 0, None
+        self.num_steps, self.stamp = 0, None
         self.last, self.muted = {}, None  # topic: the message before; topic that is no longer passed on
         self.held = None                  # the first one of two messages that change places
         self.acted = []                   # (stamp of an image [ns], torque that acted before it)
         self.motor = OrderWatch() if self.verb == "swap" else MotorWatch(stays_off=self.verb in ("alter", "publish"))
-        self.trained, self.pid, self.experiment_pid, self.killed, self.done = -1, None, None, False, False
+        self.trained, self.pid, self.experiment_pid, self.killed = -1, None, None, False
         self.intruder = None
         if self.verb == "publish":
             self.intruder = subprocess.Popen(
@@ -150,9 +131,8 @@ class Injector:
     def is_due(self):
         """Whether the frame on show is the one of the phase."""
         frame = self.num_steps - 1 if self.phase == "recording" else FRAME
-        if RUN_OF_PHASE.get(self.phase) != self.run:
-            return False
-        return self.frame >= frame if self.real_time else self.frame == frame  # whose torque may have been late
+        # in real time the torque of that frame may have been late
+        return self.is_in_phase() and (self.frame >= frame if self.real_time else self.frame == frame)
 
     def on_image(self, image):
         with self.lock:
@@ -177,22 +157,19 @@ class Injector:
         self.wait_for_end()
         before, self.last[topic] = self.last.get(topic), message
         messages = [message]
-        if self.verb == "swap" and self.what == topic and not self.done and (due or self.held):
-            messages = self.swapped(message)
-        elif due and self.what == topic and self.verb in MESSAGE_FAULTS and not self.done:
-            self.motor.fault_begins(time.time(), self.stamp.to_sec())
-            messages = MESSAGE_FAULTS[self.verb](message, before, self.how)
-            self.tell()
+        if self.what == topic and not self.done:
+            if self.verb == "swap" and (due or self.held):
+                messages = self.swapped(message)
+            elif due and self.verb in MESSAGE_FAULTS:
+                self.motor.fault_begins(time.time(), self.stamp.to_sec())
+                messages = MESSAGE_FAULTS[self.verb](message, before, self.how)
+                self.tell()
         if topic == self.muted:
             return
         for each in messages:
             if topic == "torque":
                 self.motor.torque_passes(time.time(), each.header.stamp.to_sec())
-            try:
-                publisher.publish(each)
-            except rospy.ROSException:
-                if not rospy.core.is_shutdown_requested():  # in real time the plant goes on while this node ends
-                    raise
+            self.publish(publisher, each)
 
     def swapped(self, message):
         """Holds a message; returns it behind the next one. Two equal torques would not show their order."""
@@ -220,36 +197,22 @@ class Injector:
                 return
             self.done = True
             self.motor.fault_begins(time.time(), self.stamp.to_sec())
-        said = ""
         if self.verb == "kill":
             self.tell()  # first: this node ends with the other
             self.killed = True
             os.kill(self.pid, signal.SIGKILL)
             return
-        if self.verb in STOPS:
-            block, key = LIMITS.get(self.what, OTHER_LIMIT)
-            limit = configuration()[block][key]  # first: it comes from the master, which may be the one to stop
-            os.kill(self.pid, signal.SIGSTOP)
-            if self.verb != "hold":
-                later(STOPS[self.verb] * limit, "CONT", self.pid)
-        elif self.verb == "lose":
-            self.lose()
-        elif self.verb == "mute":
-            self.muted = self.what
-        elif self.verb == "fill":
-            said = self.fill_disk()
-        elif self.verb == "publish":
-            self.intruder.stdin.write("now\n")
-            self.intruder.stdin.flush()
-            said = self.intruder.stdout.readline()
-        elif self.verb == "begin":  # a second experiment in the same folder
-            said = subprocess.run([find_program("run_experiment"), "--preset", "debug", "--out", self.runs],
-                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True).stdout
-        else:
-            raise ValueError("no such fault: " + self.verb)
-        self.tell(said)
+        self.tell((self.stop if self.verb in STOPS else getattr(self, "do_" + self.verb))() or "")
 
-    def lose(self):
+    def stop(self):
+        block, key = LIMITS.get(self.what, OTHER_LIMIT)
+        limit = configuration()[block][key]  # first: it comes from the master, which may be the one to stop
+        os.kill(self.pid, signal.SIGSTOP)
+        if self.verb != "hold":  # goes on even if this process has ended by then
+            subprocess.Popen(["sh", "-c", "sleep %g; kill -CONT %d" % (STOPS[self.verb] * limit, self.pid)],
+                             start_new_session=True)
+
+    def do_lose(self):
         """Kills a node where no roslaunch sees it, as on another machine: the others must notice. roslaunch, which has
         started all of them, sleeps until the experiment has ended."""
         roslaunch = os.getppid()
@@ -262,7 +225,10 @@ class Injector:
             os.kill(roslaunch, signal.SIGCONT)
         threading.Thread(target=wake, daemon=True).start()
 
-    def fill_disk(self):
+    def do_mute(self):
+        self.muted = self.what
+
+    def do_fill(self):
         with open(os.path.join(self.runs, "filler"), "wb", buffering=0) as stream:
             try:
                 while True:
@@ -270,23 +236,25 @@ class Injector:
             except OSError as error:
                 return str(error)
 
-    def tell(self, said=""):
-        self.done = True
-        Finished.of(self.runs).write(os.path.dirname(self.report))
-        with open(self.report, "w") as stream:
-            stream.write(said + "\n")
+    def do_publish(self):
+        self.intruder.stdin.write("now\n")
+        self.intruder.stdin.flush()
+        return self.intruder.stdout.readline()
+
+    def do_begin(self):
+        """A second experiment in the same folder."""
+        return subprocess.run([find_program("run_experiment"), "--preset", "debug", "--out", self.runs],
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True).stdout
+
+    def spin(self):
+        rospy.spin()
+        if self.done and self.real_time:
+            self.add_to_report(motor=self.motor.verdict(), acted=sorted(self.acted))
+        if self.intruder:
+            self.intruder.stdin.close()  # it ends, too
 
 
 def main():
     rospy.init_node("fault_injector")
-    if rospy.get_param("~phase").endswith(robot_injector.ON_A_ROBOT):
-        return robot_injector.main()
-    injector = Injector()
-    rospy.spin()
-    if injector.done and injector.real_time:
-        with open(injector.report, "a") as stream:
-            stream.write("motor: %s\n" % injector.motor.verdict())
-        write_acted(injector.acted, os.path.dirname(injector.report))
-    if injector.intruder:
-        injector.intruder.stdin.close()  # it ends, too
+    (RobotInjection if rospy.get_param("~phase").endswith(ON_A_ROBOT) else Injector)().spin()
     return 0

@@ -1,16 +1,15 @@
 # The fault table: every case of cases.py, several at a time, as DIR/faults.csv.
 # SPDX-License-Identifier: BSD-3-Clause
-import argparse
-import concurrent.futures
 import os
 import time
 
 from tqdm import tqdm
 
-from ddm_launch.command import Failure, run_program
+from ddm_launch.command import Failure, number, program_parser, run_program
 from ddm_launch.tables import write_csv
 from ddm_qa.faults.cases import CASES
 from ddm_qa.faults.run import FaultBench
+from ddm_qa.processes import side_by_side
 
 COLUMNS = ["case", "phase", "fault", "expected", "observed", "passed"]
 
@@ -29,66 +28,44 @@ def selected(subset, only):
     return [case for case in cases if not only or any(word in case.name for word in only)]
 
 
-def run_all(bench, cases, jobs):
-    """{case name: what was observed}, with progress."""
-    observed = {}
-    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        futures = {pool.submit(bench.run, case): case for case in cases}
-        try:
-            for future in tqdm(concurrent.futures.as_completed(futures), total=len(cases), unit="case",
-                               dynamic_ncols=True, disable=None):
-                case = futures[future]
-                observed[case.name] = future.result()
-                if observed[case.name] != case.expected:
-                    tqdm.write("failed: %s: expected '%s', got '%s'" % (case.name, case.expected, observed[case.name]))
-        except BaseException:
-            for future in futures:
-                future.cancel()
-            bench.stop()
-            raise
-    return observed
-
-
 def table(cases, observed):
     """Rows of COLUMNS."""
     return [[case.name, case.phase, case.fault, case.expected, observed[case.name],
              int(observed[case.name] == case.expected)] for case in cases]
 
 
-def run(arguments):
-    start = time.monotonic()
-    out = os.path.abspath(arguments.out)
-    cases = selected(arguments.subset, arguments.only)
+def run(options):
+    start, observed, out = time.monotonic(), {}, os.path.abspath(options.out)
+    cases = selected(options.subset, options.only)
     if not cases:
-        raise Failure("no case has one of these words in its name: %s" % ", ".join(arguments.only))
+        raise Failure("no case has one of these words in its name: %s" % ", ".join(options.only))
     skipped = [case for case in cases if case.root and os.geteuid() != 0]
     cases = [case for case in cases if case not in skipped]
     if skipped:
         print("SKIPPED, because these need root to mount file systems:\n - %s" % "\n - ".join(
             case.name for case in skipped))
-    bench = FaultBench(out, arguments.patience)
+    bench = FaultBench(out, options.patience)
     bench.make_reference()
-    observed = run_all(bench, cases, arguments.jobs)
-    write_csv(os.path.join(out, "faults.csv"), COLUMNS, table(cases, observed))
-    failed = [case for case in cases if observed[case.name] != case.expected]
+    for case, result in side_by_side(bench.run, cases, options.jobs, bench.stop, "case"):
+        observed[case.name] = result
+        if result != case.expected:
+            tqdm.write("failed: %s: expected '%s', got '%s'" % (case.name, case.expected, result))
+    rows = table(cases, observed)
+    write_csv(os.path.join(out, "faults.csv"), COLUMNS, rows)
+    num_passed = sum(row[-1] for row in rows)
     print("table: %s (%.0f s)" % (os.path.join(out, "faults.csv"), time.monotonic() - start))
-    print("%d passed, %d failed" % (len(cases) - len(failed), len(failed)))
-    return 1 if failed else 0
+    print("%d passed, %d failed" % (num_passed, len(rows) - num_passed))
+    return 0 if num_passed == len(rows) else 1
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="fault_table", description=ABOUT, epilog=EPILOG,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = program_parser("fault_table", ABOUT, EPILOG)
     parser.add_argument("--out", required=True, metavar="DIR", help="folder for table and logs")
     parser.add_argument("--subset", choices=["all", "quick"], default="all", help="quick: some of each class")
     parser.add_argument("--only", nargs="+", default=[], metavar="WORDS", help="cases whose names have one of these")
-    parser.add_argument("--jobs", type=int, default=3, metavar="N",
+    parser.add_argument("--jobs", type=number(int, 1), default=3, metavar="N",
                         help="cases at a time, which wait more than they compute (default: %(default)s)")
-    parser.add_argument("--patience", type=float, default=1.0, metavar="X",
+    parser.add_argument("--patience", type=number(float, 0.01), default=1.0, metavar="X",
                         help="all time limits times this, for slow machines (default: %(default)s)")
-    arguments = parser.parse_args()
-    if not arguments.patience > 0.0:
-        parser.error("--patience must be > 0, got %g" % arguments.patience)
-    if arguments.jobs < 1:
-        parser.error("--jobs must be >= 1, got %d" % arguments.jobs)
-    return run_program("fault_table", lambda: run(arguments))
+    options = parser.parse_args()
+    return run_program("fault_table", lambda: run(options))

@@ -1,19 +1,18 @@
 # How time and memory of learning grow with frames and pixels: a table, a figure, and the trainer's own peak.
 # SPDX-License-Identifier: BSD-3-Clause
-import argparse
-import math
 import os
 import tempfile
 
+import numpy as np
 from tqdm import tqdm
 import yaml
 
-from ddm_launch.command import Failure, find_program, package_path, processor, run_program
+from ddm_launch.command import Failure, find_program, package_path, processor, program_parser, run_program
 from ddm_launch.figure_style import BLUE, COLUMN_WIDTH, VERMILLION, new_figure, save
 from ddm_launch.settings import read_yaml
 from ddm_launch.tables import read_csv
 from ddm_model.plain_file import write_file
-from ddm_qa.programs import Programs
+from ddm_qa.processes import Programs
 
 COLUMNS = "frames,size_px,pca_us,objective_gradient_us,peak_memory_mb"
 FRAMES, SIZES = (1000, 3000, 10000, 30000, 100000), (51, 71, 101, 142, 201)
@@ -41,29 +40,25 @@ def write_table(out, programs, progress):
 
 
 def read_table(path):
-    """Lists (frames, size, PCA [us], objective [us]) of the rows that grow in frames, and in pixels."""
+    """Arrays [rows x columns] of the rows that grow in frames, and in pixels."""
     names = COLUMNS.split(",")
-    rows = [[row[name] for name in names[:4]] for row in read_csv(path, dict.fromkeys(names, float), REMEDY)]
-    return [row for row in rows if row[0] != NUM_FRAMES], [row for row in rows if row[0] == NUM_FRAMES]
+    rows = np.array([[row[name] for name in names] for row in read_csv(path, dict.fromkeys(names, float), REMEDY)])
+    in_frames = rows[:, 0] != NUM_FRAMES
+    return rows[in_frames], rows[~in_frames]
 
 
 def exponent(xs, ys):
     """Slope of log y over log x by least squares."""
-    xs, ys = [math.log(x) for x in xs], [math.log(y) for y in ys]
-    mean_x, mean_y = sum(xs) / len(xs), sum(ys) / len(ys)
-    return (sum((x - mean_x) * (y - mean_y) for x, y in zip(xs, ys)) / sum((x - mean_x) ** 2 for x in xs))
+    return float(np.polyfit(np.log(xs), np.log(ys), 1)[0])
 
 
 def draw(path, out):
     by_frames, by_size = read_table(path)
     with new_figure(COLUMN_WIDTH, 1.9) as figure:
         left, right = figure.subplots(1, 2, sharey=True)
-        for axes, rows, xs in ((left, by_frames, [row[0] for row in by_frames]),
-                               (right, by_size, [row[1] ** 2 for row in by_size])):
-            axes.plot(xs, [1e-6 * row[2] for row in rows], color=VERMILLION, marker="s", label="PCA")
-            axes.plot(xs, [1e-6 * row[3] for row in rows], color=BLUE, marker="o", label="objective, gradient")
-            axes.set_xscale("log")
-            axes.set_yscale("log")
+        for axes, rows, xs in ((left, by_frames, by_frames[:, 0]), (right, by_size, by_size[:, 1] ** 2)):
+            axes.loglog(xs, 1e-6 * rows[:, 2], color=VERMILLION, marker="s", label="PCA")
+            axes.loglog(xs, 1e-6 * rows[:, 3], color=BLUE, marker="o", label="objective, gradient")
             axes.grid(True)
         left.set_xlabel("frames of 51 x 51 pixels")
         right.set_xlabel("pixels, %d frames" % NUM_FRAMES)
@@ -97,15 +92,14 @@ def make(out):
     table = os.path.join(out, "growth.csv")
     draw(table, os.path.join(out, "growth.png"))
     by_frames, _ = read_table(table)
-    found = {"exponent": round(exponent([row[0] for row in by_frames], [row[3] for row in by_frames]), 3),
+    found = {"exponent": round(exponent(by_frames[:, 0], by_frames[:, 3]), 3),
              "model_node_peak_memory_mb": round(memory_mb, 1), "cpu": processor()}
     write_file(os.path.join(out, "growth.yaml"), yaml.safe_dump(found, sort_keys=False))
     return found
 
 
 def main(arguments=None):
-    parser = argparse.ArgumentParser(prog="growth", description=ABOUT, epilog=EPILOG,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = program_parser("growth", ABOUT, EPILOG)
     parser.add_argument("--out", default="speed", metavar="DIR", help="default speed")
     options = parser.parse_args(arguments)
 

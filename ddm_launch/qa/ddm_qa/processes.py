@@ -1,11 +1,50 @@
-# Programs whose output is read while they run, and launches with masters of their own; every wait has a limit.
+# Programs whose output is read while they run or at their end, and launches with masters of their own. All have a limit.
 # SPDX-License-Identifier: BSD-3-Clause
+import concurrent.futures
 import os
+import re
 import signal
+import socket
 import subprocess
 import threading
+import urllib.parse
+import xmlrpc.client
 
-from ddm_qa.programs import free_port, on_this_machine
+from tqdm import tqdm
+
+from ddm_launch.command import Failure
+
+LIMIT_S = 900.0  # of what Programs calls
+
+
+def side_by_side(work, items, jobs, stop, unit):
+    """Yields (item, work(item)) when it is there, `jobs` at a time, with a bar. An exception calls stop() first."""
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        futures = {pool.submit(work, item): item for item in items}
+        try:
+            for future in tqdm(concurrent.futures.as_completed(futures), total=len(futures), unit=unit,
+                               dynamic_ncols=True, disable=None):
+                yield futures[future], future.result()
+        except BaseException:
+            for future in futures:
+                future.cancel()
+            stop()
+            raise
+
+
+def free_port():
+    with socket.socket() as sock:
+        sock.bind(("localhost", 0))
+        return sock.getsockname()[1]
+
+
+def on_this_machine(environment):
+    """The environment for a ROS master and nodes that only this machine can reach: ROS_IP=127.0.0.1. One that names an
+    address (ROS_IP, ROS_HOSTNAME) or a master on another machine is left as it is."""
+    host = urllib.parse.urlparse(environment.get("ROS_MASTER_URI", "http://localhost")).hostname
+    if environment.get("ROS_IP") or environment.get("ROS_HOSTNAME") or host not in ("localhost", "127.0.0.1"):
+        return environment
+    return dict(environment, ROS_IP="127.0.0.1")
 
 
 def line_by_line():
@@ -18,21 +57,20 @@ class Process:
 
     def __init__(self, command, environment=None, folder=None, output=subprocess.PIPE, terminal=subprocess.DEVNULL):
         self._changed = threading.Condition()
-        self._text = ""
-        self._ended = False
+        self._text, self._ended, self._reader = "", False, None
         self._process = subprocess.Popen(
             [str(word) for word in command], env=environment or line_by_line(), cwd=folder, stdin=terminal,
             stdout=output, stderr=subprocess.STDOUT)
         if output == subprocess.PIPE:
-            self._reader = threading.Thread(target=self._read, args=(self._process.stdout,), daemon=True)
+            self._reader = threading.Thread(target=self._read, daemon=True)
             self._reader.start()
 
-    def _read(self, stream):
-        for line in iter(stream.readline, b""):
-            with self._changed:
-                self._text += line.decode(errors="replace")
-                self._changed.notify_all()
-        stream.close()
+    def _read(self):
+        with self._process.stdout as stream:
+            for line in stream:
+                with self._changed:
+                    self._text += line.decode(errors="replace")
+                    self._changed.notify_all()
         with self._changed:
             self._ended = True
             self._changed.notify_all()
@@ -43,17 +81,15 @@ class Process:
 
     @property
     def output(self):
-        with self._changed:
-            return self._text
+        return self._text
 
     def waitForText(self, text, limit_s):
         """Returns as soon as the output holds this text; fails if the program ends or time runs out before."""
         with self._changed:
             self._changed.wait_for(lambda: text in self._text or self._ended, limit_s)
-            if text in self._text:
-                return
-        self.stop()
-        raise TimeoutError("'%s' did not come within %g s:\n%s" % (text, limit_s, self.output))
+        if text not in self._text:
+            self.stop()
+            raise TimeoutError("'%s' did not come within %g s:\n%s" % (text, limit_s, self.output))
 
     def waitForEnd(self, limit_s):
         """The exit code."""
@@ -62,7 +98,7 @@ class Process:
         except subprocess.TimeoutExpired:
             self.stop()
             raise TimeoutError("not at its end after %g s:\n%s" % (limit_s, self.output))
-        if hasattr(self, "_reader"):
+        if self._reader:
             self._reader.join(10.0)
         return code
 
@@ -70,8 +106,7 @@ class Process:
         return self._process.poll() is None
 
     def send(self, signal_number):
-        if self.isRunning():
-            self._process.send_signal(signal_number)
+        self._process.send_signal(signal_number)  # nothing if it has ended
 
     def stop(self, limit_s=20.0):
         """Ends the program, the hard way if need be."""
@@ -94,3 +129,43 @@ def start_roslaunch(log_folder, *arguments, port=None, folder=None, options=(), 
         environment.pop("ROS_MASTER_URI", None)
     return Process(["roslaunch", *options] + own_master + ["ddm_launch"] + list(arguments),
                    on_this_machine(environment), folder)
+
+
+class Programs:
+    """What is timed: runs programs to their end, one at a time, on one core each and with masters of their own."""
+
+    def __init__(self, scratch):
+        """scratch: folder for the logs of nodes."""
+        self.scratch = scratch
+
+    def call(self, what, command, **variables):
+        """Returns what a program printed. variables: of its environment. Raises Failure with its last words."""
+        environment = on_this_machine(dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", **variables))
+        try:
+            done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                  universal_newlines=True, timeout=LIMIT_S, env=environment)
+        except subprocess.TimeoutExpired:
+            raise Failure("%s: '%s' has not ended within %g s" % (what, " ".join(command), LIMIT_S)) from None
+        if done.returncode != 0:
+            raise Failure("%s: '%s' failed with code %d:\n%s" % (
+                what, " ".join(command), done.returncode, (done.stderr or done.stdout)[-2000:].strip()))
+        return done.stdout
+
+    def roslaunch(self, what, *arguments):
+        """roslaunch returns 0 whatever happens: what its nodes leave behind is the verdict."""
+        port = free_port()
+        self.call(what, ["roslaunch", "-p", str(port)] + list(arguments), ROS_HOME=os.path.join(self.scratch, "ros"),
+                  ROS_MASTER_URI="http://localhost:%d" % port)
+
+
+def pid_of(master, node):
+    """Process of a node on this machine, or of `master` itself. master: a rosgraph.Master."""
+    if node == "master":
+        return master.getPid()
+    return xmlrpc.client.ServerProxy(master.lookupNode("/" + node.lstrip("/"))).getPid(master.caller_id)[2]
+
+
+def memory_kb(pid, field):
+    """A field of /proc/PID/status, such as VmRSS, the resident memory, or VmHWM, its peak [kB]."""
+    with open("/proc/%d/status" % pid) as stream:
+        return int(re.search(field + r":\s+(\d+) kB", stream.read()).group(1))

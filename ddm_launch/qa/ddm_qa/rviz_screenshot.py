@@ -66,14 +66,12 @@ class VirtualScreen:
 def screenshot(after_trial, seconds, arguments):
     """Pixels of the whole window, so many seconds after this trial, or a little later: when no display is blank."""
     with tempfile.TemporaryDirectory() as scratch, VirtualScreen() as screen:
-        runs = os.path.join(scratch, "run")
+        runs, end = os.path.join(scratch, "run"), None
         launch = start_roslaunch(os.path.join(scratch, "ros"), "experiment.launch", "rviz:=true", "runs:=" + runs,
                                  *arguments, variables=screen.environment)
         try:
-            end = None
-            while True:
-                if not launch.isRunning():
-                    raise Failure("the experiment ended too early:\n" + launch.output[-2000:])
+            while launch.isRunning():
+                time.sleep(0.1)
                 if end is None and num_finished(runs) > after_trial:
                     time.sleep(seconds)
                     end = time.monotonic() + LIMIT_S
@@ -85,7 +83,7 @@ def screenshot(after_trial, seconds, arguments):
                     if time.monotonic() > end:
                         raise Failure("rviz does not show within %g s: %s. Its last words:\n%s" % (
                             LIMIT_S, ", ".join(blank), launch.output[-2000:]))
-                time.sleep(0.1)
+            raise Failure("the experiment ended too early:\n" + launch.output[-2000:])
         finally:
             launch.stop()
 

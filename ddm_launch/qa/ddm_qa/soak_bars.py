@@ -1,11 +1,19 @@
-# What a soak must reach, judged by its samples and frames.
+# What a soak must reach: memory and open files of its processes, and the frames that were lost.
 # SPDX-License-Identifier: BSD-3-Clause
+"""A frame is lost if the camera did not show it, if it did not arrive, or if no torque answered it. The first shows in
+the stamps, which are dt apart, the second in the sequence numbers that the publisher gives, the third in the torques."""
 import collections
+import os
+
+import rosbag
+
+from ddm_launch.run_folder import Trajectory, read_setting
 
 # Of a node after a trial. time_s: since the launch.
 Sample = collections.namedtuple("Sample", "run node trial time_s rss_kb open_files")
 # One row of bars.csv; passed: 0 or 1.
 Bar = collections.namedtuple("Bar", "run bar measured passed")
+FRAME_COLUMNS = ["run", "trial", "part", "due", "published", "recorded", "answered", "lost"]
 
 GROWTH = 0.05  # of resident memory, since the first tenth of the trials: trial 30 of 300
 
@@ -28,34 +36,72 @@ def after(samples, trial):
     return next(sample for sample in samples if sample.trial >= trial)
 
 
-def memory_bar(run, node, samples, last):
-    first, end = after(samples, reference_trial(last)), samples[-1]
-    growth = end.rss_kb / first.rss_kb - 1.0
-    measured = "%.1f MB after trial %d, %.1f MB after trial %d: %+.1f %%" % (
-        first.rss_kb / 1024.0, first.trial, end.rss_kb / 1024.0, end.trial, 100.0 * growth)
-    return Bar(run, "resident memory of %s" % node, measured, int(end.trial == last and growth <= GROWTH))
-
-
-def open_files_bar(run, node, samples, last):
-    """A bag or a connection may be open just then: the most in the last tenth must have been there in the second."""
-    tenth = reference_trial(last)
-    early = max(sample.open_files for sample in samples if tenth <= sample.trial <= 2 * tenth)
-    late = max(sample.open_files for sample in samples if sample.trial >= last - tenth)
-    measured = "at most %d in trials %d to %d, %d in trials %d to %d" % (early, tenth, 2 * tenth, late, last - tenth,
-                                                                         last)
-    return Bar(run, "open files of %s" % node, measured, int(late <= early))
-
-
-def frames_bar(run, frames):
-    due = sum(max(row["due"], row["published"] or 0) for row in frames)
-    lost = sum(row["lost"] for row in frames)
-    return Bar(run, "lost frames", "%d of %d" % (lost, due), int(bool(frames) and lost == 0))
-
-
 def judge(run, last, samples, frames):
     """All bars of a run. last: number of its last trial; samples, frames: of this run."""
-    bars = []
+    bars, tenth = [], reference_trial(last)
     for node, of_node in by_node(samples).items():
-        bars.append(memory_bar(run, node, of_node, last))
-        bars.append(open_files_bar(run, node, of_node, last))
-    return bars + [frames_bar(run, frames)]
+        first, end = after(of_node, tenth), of_node[-1]
+        growth = end.rss_kb / first.rss_kb - 1.0
+        bars.append(Bar(run, "resident memory of %s" % node, "%.1f MB after trial %d, %.1f MB after trial %d: %+.1f %%" % (
+            first.rss_kb / 1024.0, first.trial, end.rss_kb / 1024.0, end.trial, 100.0 * growth),
+                        int(end.trial == last and growth <= GROWTH)))
+        # A bag or a connection may be open just then: the most in the last tenth must have been there in the second.
+        early = max(sample.open_files for sample in of_node if tenth <= sample.trial <= 2 * tenth)
+        late = max(sample.open_files for sample in of_node if sample.trial >= last - tenth)
+        bars.append(Bar(run, "open files of %s" % node, "at most %d in trials %d to %d, %d in trials %d to %d" % (
+            early, tenth, 2 * tenth, late, last - tenth, last), int(late <= early)))
+    due = sum(max(row["due"], row["published"] or 0) for row in frames)
+    lost = sum(row["lost"] for row in frames)
+    return bars + [Bar(run, "lost frames", "%d of %d" % (lost, due), int(bool(frames) and lost == 0))]
+
+
+def frames_between(seconds, dt):
+    """Number of frames from one to another, both counted."""
+    return int(round(seconds / dt)) + 1
+
+
+def count_recorded(images, torques, dt, num_steps):
+    """images: (sequence number, stamp [ns]) of each, torques: stamps. Counts from the first to the last image that has
+    a torque: in real time the camera also shows frames before and after a trial."""
+    answered = [number for number, (_, stamp) in enumerate(images) if stamp in torques]
+    if not answered:
+        return {"due": num_steps, "published": 0, "recorded": 0, "answered": 0, "lost": num_steps}
+    images = images[answered[0]:answered[-1] + 1]
+    (first, start), (last, end) = images[0], images[-1]
+    due = max(num_steps, frames_between(1e-9 * (end - start), dt))
+    published = last - first + 1
+    return {"due": due, "published": published, "recorded": len(images), "answered": len(answered),
+            "lost": max(due, published) - len(answered)}
+
+
+def count_seen(times, dt, num_steps):
+    """Of an evaluation, which is not recorded. times: of the frames that were answered [s]."""
+    due = max(num_steps, frames_between(times[-1] - times[0], dt))
+    return {"due": due, "published": "", "recorded": "", "answered": len(times), "lost": due - len(times)}
+
+
+def read_trial(path):
+    """Images and torques of a bag, as count_recorded() wants them."""
+    images, torques = [], set()
+    with rosbag.Bag(path) as bag:
+        for topic, message, _ in bag.read_messages(["camera/image_raw", "torque"]):
+            stamp = message.header.stamp.to_nsec()
+            if topic == "torque":
+                torques.add(stamp)
+            else:
+                images.append((message.header.seq, stamp))
+    return images, torques
+
+
+def count_frames(run, folder, num_trials):
+    """Rows of FRAME_COLUMNS, as dictionaries, about the first trials of a run folder and their evaluations."""
+    dt = float(read_setting(folder, "plant", "dt", "time between two images"))
+    num_steps = int(read_setting(folder, "trial", "num_steps", "frames of a trial"))
+    rows = []
+    for trial in range(num_trials):
+        recorded = read_trial(os.path.join(folder, "trial_%03d" % trial, "trial.bag"))
+        times = Trajectory(os.path.join(folder, "evaluation_%03d" % trial)).time_s
+        for part, counts in (("trial", count_recorded(*recorded, dt, num_steps)),
+                             ("evaluation", count_seen(times, dt, num_steps))):
+            rows.append(dict(counts, run=run, trial=trial, part=part))
+    return rows

@@ -166,7 +166,6 @@ def minimise(parameters, function, iterations, rank):
         return value
 
     solver.step(closure)
-    return solver.state[solver._params[0]]["n_iter"]
 
 
 def times_us(call, num_calls):

@@ -1,5 +1,6 @@
 # Means over experiments, with their standard errors and confidence intervals.
 # SPDX-License-Identifier: BSD-3-Clause
+import itertools
 import math
 import statistics
 
@@ -12,14 +13,12 @@ def success_rates(runs, measure="success"):
     n runs is sqrt(p (1 - p) / (n - 1)), as in the paper's Fig. 8; 0 for a single run.
     """
     by_frames = {}
-    for trials in runs:
-        for trial in trials:
-            if getattr(trial, measure) is not None:
-                by_frames.setdefault(trial.frames, []).append(getattr(trial, measure))
+    for trial in itertools.chain(*runs):
+        if getattr(trial, measure) is not None:
+            by_frames.setdefault(trial.frames, []).append(getattr(trial, measure))
     rows = []
     for frames, successes in sorted(by_frames.items()):
-        n = len(successes)
-        rate = sum(successes) / n
+        n, rate = len(successes), sum(successes) / len(successes)
         rows.append((frames, rate, math.sqrt(rate * (1.0 - rate) / (n - 1)) if n > 1 else 0.0, n))
     return rows
 
@@ -40,8 +39,5 @@ def wilson_interval(rate, n, confidence=0.95):
 
 def mean_and_error(values):
     """Mean of these numbers and its standard error, s / sqrt(n) with the sample's s; 0 for a single number."""
-    n = len(values)
-    mean = math.fsum(values) / n
-    if n == 1:
-        return mean, 0.0
-    return mean, math.sqrt(math.fsum((value - mean) ** 2 for value in values) / (n - 1) / n)
+    mean = math.fsum(values) / len(values)
+    return mean, statistics.stdev(values, mean) / math.sqrt(len(values)) if len(values) > 1 else 0.0

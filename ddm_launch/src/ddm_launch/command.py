@@ -1,5 +1,7 @@
 # What the programs of ddm_launch share: how they fail, and where other programs and files are.
 # SPDX-License-Identifier: BSD-3-Clause
+import argparse
+import math
 import os
 import platform
 import sys
@@ -26,6 +28,26 @@ def run_program(name, work):
         message, code = error, getattr(error, "exit_code", 1)
     print("%s: %s" % (name, message), file=sys.stderr)
     return code
+
+
+def program_parser(name, about, epilog=None, **more):
+    """Whose help keeps the lines of both texts."""
+    return argparse.ArgumentParser(prog=name, description=about, epilog=epilog,
+                                   formatter_class=argparse.RawDescriptionHelpFormatter, **more)
+
+
+def number(kind, least, most=math.inf):
+    """A type of argument: whole numbers (int) or any (float), from `least` to `most`."""
+    def parse(text):
+        try:
+            value = kind(text)
+        except ValueError:
+            value = math.nan
+        if not least <= value <= most:
+            raise argparse.ArgumentTypeError("must be a %s >= %g%s, got '%s'" % (
+                "whole number" if kind is int else "number", least, "" if most == math.inf else " and <= %g" % most, text))
+        return value
+    return parse
 
 
 def find_program(name, package="ddm_launch"):

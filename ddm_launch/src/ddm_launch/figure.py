@@ -3,8 +3,7 @@
 import argparse
 import sys
 
-from ddm_launch import (feature_plane, film_strip, learning_curve, pendulum_feature_space, prediction_strip,
-                        success_rate)
+from ddm_launch import film_strip, learning_curve, success_rate
 from ddm_launch.command import run_program
 
 
@@ -36,4 +35,4 @@ def program(name, about, figures):
 
 
 main = program("figure", "Draws a figure; `figure FIGURE --help` lists its options.",
-               (film_strip, learning_curve, success_rate, pendulum_feature_space, feature_plane, prediction_strip))
+               (film_strip, learning_curve, success_rate))

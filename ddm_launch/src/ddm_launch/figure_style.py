@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import contextlib
 import io
-import os
 
 import matplotlib
 matplotlib.use("Agg")  # no display needed
@@ -29,24 +28,19 @@ SETTINGS = {"font.size": 8, "axes.titlesize": 8, "axes.labelsize": 8, "xtick.lab
 
 
 @contextlib.contextmanager
-def new_figure(width, height):
+def new_figure(width, height, settings=SETTINGS, dpi=DPI):
     """A figure of this size [in], closed at the end of the `with`."""
-    with plt.rc_context(SETTINGS):
-        figure = plt.figure(figsize=(width, height), dpi=DPI, constrained_layout=True)
+    with plt.rc_context(settings):
+        figure = plt.figure(figsize=(width, height), dpi=dpi, constrained_layout=True)
         try:
             yield figure
         finally:
             plt.close(figure)
 
 
-@contextlib.contextmanager
 def new_screen_figure(width, height):
-    """A figure in matplotlib's own style, closed at the end of the `with`."""
-    figure = plt.figure(figsize=(width, height), constrained_layout=True)
-    try:
-        yield figure
-    finally:
-        plt.close(figure)
+    """A figure in matplotlib's own style."""
+    return new_figure(width, height, settings={}, dpi=150)
 
 
 def require_png(out):
@@ -64,7 +58,7 @@ def save(figure, out):
     figure.canvas.draw()
     picture = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB")
     picture = picture.quantize(256)  # about half as large; only the colours of smoothed edges move, and not visibly
-    save_picture(picture, out, "PNG", optimize=True, dpi=(DPI, DPI))
+    save_picture(picture, out, "PNG", optimize=True, dpi=(figure.dpi, figure.dpi))
 
 
 def panel_above_legend(figure):
@@ -80,21 +74,15 @@ def add_legend(figure, place, handles, labels, **options):
     axes.legend(handles, labels, loc="center", frameon=False, **options)
 
 
+def show_image(axes, image, **options):
+    """A grey image without ticks."""
+    axes.imshow(image, cmap="gray", vmin=0, vmax=255, **options)
+    axes.set_xticks([])
+    axes.set_yticks([])
+
+
 def save_picture(picture, out, file_format, **options):
     """Writes a PIL image. Raises OSError if the file cannot be written."""
     stream = io.BytesIO()
     picture.save(stream, format=file_format, **options)
-    write_file(out, stream.getvalue())
-
-
-def save_for_screen(figure, out):
-    """Writes a figure as the suffix of the name says, PNG if it has none.
-
-    Raises Failure for a suffix that matplotlib does not know, OSError if the file cannot be written.
-    """
-    stream = io.BytesIO()
-    try:
-        figure.savefig(stream, dpi=150, format=os.path.splitext(out)[1][1:].lower() or "png")
-    except ValueError as error:
-        raise Failure(str(error)) from None
     write_file(out, stream.getvalue())

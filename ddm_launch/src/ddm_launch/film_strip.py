@@ -5,7 +5,7 @@ import math
 from matplotlib import font_manager
 from PIL import Image, ImageDraw, ImageFont
 
-from ddm_launch.figure_style import BLUE, GREY, new_screen_figure, save_for_screen, save_picture
+from ddm_launch.figure_style import BLUE, GREY, new_screen_figure, save, save_picture, show_image
 from ddm_launch.images import Camera
 from ddm_launch.run_folder import Evaluation, read_trials
 
@@ -40,6 +40,10 @@ def default_trial(trials):
     return successes[-1] if successes else trials[-1].trial
 
 
+def shoot(camera, evaluation, step):
+    return camera.shoot(evaluation.angle_rad[step], evaluation.rate_rad_per_s[step])
+
+
 def draw_strip(evaluation, end, camera, out):
     """Images above, the torque over the same time below."""
     steps = steps_to_show(end, len(evaluation.time_s))
@@ -49,10 +53,7 @@ def draw_strip(evaluation, end, camera, out):
         grid = figure.add_gridspec(2, len(steps), height_ratios=[1.0, 1.1])
         for column, step in enumerate(steps):
             axes = figure.add_subplot(grid[0, column])
-            axes.imshow(camera.shoot(evaluation.angle_rad[step], evaluation.rate_rad_per_s[step]), cmap="gray",
-                        vmin=0, vmax=255)
-            axes.set_xticks([])
-            axes.set_yticks([])
+            show_image(axes, shoot(camera, evaluation, step))
             axes.set_title("%.1f s" % evaluation.time_s[step], fontsize=10)
         axes = figure.add_subplot(grid[1, :])
         edges = evaluation.time_s[:last + 1] + [evaluation.time_s[last] + period]
@@ -64,7 +65,7 @@ def draw_strip(evaluation, end, camera, out):
         axes.set_xlim(edges[0], edges[-1])
         axes.set_xlabel("time [s]")
         axes.set_ylabel("torque [N m]")
-        save_for_screen(figure, out)
+        save(figure, out)
 
 
 def draw_animation(evaluation, end, camera, out):
@@ -75,7 +76,7 @@ def draw_animation(evaluation, end, camera, out):
     pictures = []
     for step in range(end + 1):
         torque = evaluation.torque_nm[step]
-        image = camera.shoot(evaluation.angle_rad[step], evaluation.rate_rad_per_s[step])
+        image = shoot(camera, evaluation, step)
         picture = Image.new("RGB", (size, size + footer), "white")
         picture.paste(image.resize((size, size), Image.NEAREST), (0, 0))
         pen = ImageDraw.Draw(picture)

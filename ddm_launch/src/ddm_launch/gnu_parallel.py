@@ -1,11 +1,11 @@
 # Engine of a sweep: GNU parallel, on this machine or over ssh.
 # SPDX-License-Identifier: BSD-3-Clause
+import contextlib
 import os
 import shlex
 import shutil
 import signal
 import subprocess
-import tempfile
 
 from ddm_launch.command import Failure
 from ddm_launch.seed_script import DIE_WITH_PARENT
@@ -46,22 +46,13 @@ class GnuParallel:
         """
         environment = dict(os.environ, PARALLEL_SHELL="/bin/bash",
                            PARALLEL_SSH=" ".join(DIE_WITH_PARENT + [os.environ.get("PARALLEL_SSH", "ssh")]))
+        process = subprocess.Popen(self._command(folder) + [":::"] + [str(seed) for seed in seeds],
+                                   stdin=subprocess.DEVNULL, env=environment)
         try:
-            with tempfile.TemporaryFile("w+") as arguments:
-                arguments.write("".join("%d\n" % seed for seed in seeds))
-                arguments.seek(0)
-                process = subprocess.Popen(self._command(folder), stdin=arguments, env=environment)
-        except OSError as error:
-            if error.filename:
-                raise
-            raise Failure("cannot write the list of seeds into %s: %s" % (tempfile.gettempdir(), error.strerror))
-        try:
-            while True:
-                try:
+            while process.poll() is None:
+                with contextlib.suppress(subprocess.TimeoutExpired):
                     process.wait(POLL_S)
-                    return
-                except subprocess.TimeoutExpired:
-                    tick()
+                tick()
         except BaseException:
             process.send_signal(signal.SIGINT)  # of all signals the one that makes every version end its jobs
             process.wait()

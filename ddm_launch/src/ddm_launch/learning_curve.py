@@ -2,24 +2,30 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from ddm_launch.averages import success_rates
 from ddm_launch.command import Failure
-from ddm_launch.figure_style import BLUE, GREY, VERMILLION, new_screen_figure, save_for_screen
+from ddm_launch.figure_style import BLUE, GREY, VERMILLION, new_screen_figure, save
 from ddm_launch.run_folder import read_goal, read_trials
 
 ABOUT = "One run folder: final error after each trial; several: success rate. The latter with its standard error."
 
 
 def draw_one(axes, trials, goal):
-    """Final error of the greedy policy over the frames learned from, each point marked with its success."""
-    known = [trial for trial in trials if trial.final_error is not None]
-    if not known:
-        raise Failure("trials.csv has no final error in any row: there is nothing to draw")
-    axes.plot([t.frames for t in known], [t.final_error for t in known], color=GREY, linewidth=1, zorder=1)
+    """Final error of the greedy policy over the frames learned from, each point marked with its success. Where no final
+    error is known, as on a robot, successes stand at 1 and the others at 0."""
+    known = [(trial, trial.final_error) for trial in trials if trial.final_error is not None]
+    judged = known or [(trial, float(trial.success)) for trial in trials if trial.success is not None]
+    if not judged:
+        raise Failure("trials.csv has neither final error nor success in any row: there is nothing to draw")
+    axes.plot([t.frames for t, _ in judged], [y for _, y in judged], color=GREY, linewidth=1, zorder=1)
     for success, marker, colour, label in ((True, "o", BLUE, "success"), (False, "X", VERMILLION, "no success"),
                                            (None, "D", GREY, "success not known")):
-        points = [t for t in known if t.success is success]
+        points = [(t.frames, y) for t, y in judged if t.success is success]
         if points:
-            axes.scatter([t.frames for t in points], [t.final_error for t in points], marker=marker, s=70,
-                         color=colour, edgecolors="white", linewidths=0.8, zorder=2, label=label)
+            axes.scatter(*zip(*points), marker=marker, s=70, color=colour, edgecolors="white", linewidths=0.8, zorder=2,
+                         label=label)
+    if not known:
+        axes.set_ylim(-0.2, 1.2)
+        axes.set_ylabel("success [-]")
+        return
     axes.axhline(goal.tolerance, color=GREY, linewidth=1, linestyle="--", zorder=0)
     if goal.unit == "deg":
         axes.set_ylim(-6, 186)
@@ -60,4 +66,4 @@ def draw(options):
         axes.grid(True, color="#dddddd", linewidth=0.6)
         axes.set_axisbelow(True)
         axes.legend(loc="best")
-        save_for_screen(figure, options.out)
+        save(figure, options.out)

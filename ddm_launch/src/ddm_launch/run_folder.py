@@ -99,18 +99,17 @@ class Trajectory:
     def __init__(self, folder):
         columns = ["time_s", "angle_rad", "rate_rad_per_s"]
         rows = read_csv(os.path.join(folder, "trajectory.csv"), dict.fromkeys(columns, float))
-        self.time_s, self.angle_rad, self.rate_rad_per_s = ([row[column] for row in rows] for column in columns)
-        self.time_s = [time_s - self.time_s[0] for time_s in self.time_s]
+        self.time_s = [row["time_s"] - rows[0]["time_s"] for row in rows]
+        self.angle_rad, self.rate_rad_per_s = ([row[column] for row in rows] for column in columns[1:])
 
 
 class Evaluation(Trajectory):
     """One greedy run: frame k was shown at time_s[k], then torque_nm[k] acted."""
 
     def __init__(self, folder, trial):
-        self.folder = os.path.join(folder, "evaluation_%03d" % trial)
-        super().__init__(self.folder)
-        rows = read_csv(os.path.join(self.folder, "torques.csv"), {"torque_nm": float})
-        self.torque_nm = [row["torque_nm"] for row in rows]
+        path = os.path.join(folder, "evaluation_%03d" % trial)
+        super().__init__(path)
+        self.torque_nm = [row["torque_nm"] for row in read_csv(os.path.join(path, "torques.csv"), {"torque_nm": float})]
         if len(self.time_s) < 2 or len(self.torque_nm) != len(self.time_s):
             raise Failure("%s: trajectory.csv must have at least two rows and torques.csv as many, got %d and %d"
-                          % (self.folder, len(self.time_s), len(self.torque_nm)))
+                          % (path, len(self.time_s), len(self.torque_nm)))

@@ -62,30 +62,25 @@ def cancel(job):
         time.sleep(0.2)
 
 
-class JobNumber:
+def job_file(folder):
     """DIR/slurm_job: the job array in the hands of Slurm, which goes on when the sweep that sent it is killed."""
+    return os.path.join(folder.path, "slurm_job")
 
-    def __init__(self, folder):
-        self.path = os.path.join(folder.path, "slurm_job")
 
-    def keep(self, job):
-        write_file(self.path, job + "\n")
-
-    def forget(self):
-        with contextlib.suppress(FileNotFoundError):
-            os.remove(self.path)
+def forget(folder):
+    with contextlib.suppress(FileNotFoundError):
+        os.remove(job_file(folder))
 
 
 def end_left_over(folder):
     """Ends the job array that a killed sweep has left in this folder. Returns its number, or None."""
-    number = JobNumber(folder)
-    if not os.path.exists(number.path):
+    if not os.path.exists(job_file(folder)):
         return None
     require_commands()
-    with open(number.path) as stream:
+    with open(job_file(folder)) as stream:
         job = stream.read().strip()
     cancel(job)
-    number.forget()
+    forget(folder)
     return job
 
 
@@ -115,37 +110,34 @@ class SlurmArray:
 
         An exception out of tick(), or out of a signal handler, cancels the job first.
         """
-        job, number = None, JobNumber(folder)
+        job = None
         try:
             with held_back():  # a job without a number could not be ended
                 job = self._submit(folder, seeds)
-                number.keep(job)
+                write_file(job_file(folder), job + "\n")
             if not self.terminal:
                 print("Slurm job %s" % job, flush=True)
             self._wait(job, tick)
         except BaseException:
             if job is not None:
                 cancel(job)
-                number.forget()
+                forget(folder)
             raise
         finally:
             if self.terminal:
                 sys.stderr.write("\n")
-        number.forget()
+        forget(folder)
 
     def _wait(self, job, tick):
         pause_s = 0.5
         while True:
-            states = task_states(job)
-            self._show(job, states, tick())
+            states, text = task_states(job), tick()
+            if self.terminal:
+                counts = "Slurm does not answer" if states is None else ", ".join(
+                    "%d %s" % (count, state.lower()) for state, count in sorted(states.items()))
+                sys.stderr.write("\r\033[KSlurm job %s: %s finished%s" % (job, text, counts and "; " + counts))
+                sys.stderr.flush()
             if states == collections.Counter():
                 return
             time.sleep(pause_s)
             pause_s = min(5.0, 1.2 * pause_s)  # the end of a short sweep is seen soon, a long one asks seldom
-
-    def _show(self, job, states, text):
-        if self.terminal:
-            counts = "Slurm does not answer" if states is None else ", ".join(
-                "%d %s" % (count, state.lower()) for state, count in sorted(states.items()))
-            sys.stderr.write("\r\033[KSlurm job %s: %s finished%s" % (job, text, counts and "; " + counts))
-            sys.stderr.flush()

@@ -1,6 +1,7 @@
 # Draws success rates over the frames learned from, next to the curves of the paper's Fig. 8.
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
+import copy
 import math
 
 from matplotlib.colors import to_rgb
@@ -32,19 +33,17 @@ class Curve:
     None: not known."""
 
     def __init__(self, name, remark, frames, rates, errors, band=None):
-        self.name, self.remark, self.frames, self.rates, self.errors = name, remark, frames, rates, errors
-        self.band = band
-
-    @property
-    def label(self):
-        return "%s (%s)" % (self.name, self.remark)
+        self.name, self.label = name, "%s (%s)" % (name, remark)
+        self.frames, self.rates, self.errors, self.band = frames, rates, errors, band
 
     def spread_to(self, last_frames):
         """This curve; one that learns from no frames (the oracle) as a level line up to last_frames."""
         if self.frames != [0]:
             return self
-        return Curve(self.name, self.remark, [0, last_frames], 2 * self.rates, self.errors and 2 * self.errors,
-                     self.band and [2 * edge for edge in self.band])
+        level = copy.copy(self)
+        level.frames, level.rates, level.errors = [0, last_frames], 2 * self.rates, self.errors and 2 * self.errors
+        level.band = self.band and [2 * edge for edge in self.band]
+        return level
 
 
 def read_curve(name, path, wilson=False):
@@ -56,12 +55,10 @@ def read_curve(name, path, wilson=False):
     rows = success_rates(runs.values())
     if not rows:
         raise Failure("%s: the success is not known in any row: there is nothing to draw" % path)
-    remark = "%d seed%s" % (len(runs), "" if len(runs) == 1 else "s")
-    frames, rates, errors, counts = (list(column) for column in zip(*rows))
-    if not wilson:
-        return Curve(name, remark, frames, rates, errors)
-    lows, highs = zip(*map(wilson_interval, rates, counts))
-    return Curve(name, remark, frames, rates, None, [list(lows), list(highs)])
+    frames, rates, errors, counts = map(list, zip(*rows))
+    band = [list(edge) for edge in zip(*map(wilson_interval, rates, counts))] if wilson else None
+    return Curve(name, "%d seed%s" % (len(runs), "" if len(runs) == 1 else "s"), frames, rates,
+                 None if wilson else errors, band)
 
 
 def read_published(path):
@@ -69,11 +66,10 @@ def read_published(path):
     columns = [name for method in METHODS for name in method[3:] if name]
     rows = read_csv(path, dict.fromkeys(["frames"] + columns, float),
                     "it is results/published/success_rate.csv of ddm_launch")
-
-    def column(name):
-        return [row[name] for row in rows] if name else None
-
-    return [Curve(name, "paper", column("frames"), column(rate), column(error)) for name, _, _, rate, error in METHODS]
+    frames, *series = ([row[name] for row in rows] if name else None
+                       for name in ["frames"] + [name for method in METHODS for name in method[3:]])
+    return [Curve(method[0], "paper", frames, rates, errors)
+            for method, rates, errors in zip(METHODS, series[::2], series[1::2])]
 
 
 def styles(names):

@@ -6,7 +6,7 @@ import re
 import sys
 import time
 
-from ddm_launch.command import run_program
+from ddm_launch.command import number, program_parser, run_program
 from ddm_launch.gnu_parallel import GnuParallel
 from ddm_launch.interruption import Interrupted
 from ddm_launch.seed_script import TABLES, SeedProgram
@@ -55,22 +55,16 @@ def seed_range(text):
     return seeds
 
 
-def positive(text):
-    if not re.match(r"[1-9]\d{0,5}$", text):
-        raise argparse.ArgumentTypeError("must be a whole number >= 1, got '%s'" % text)
-    return int(text)
-
-
 def make_parser():
-    parser = argparse.ArgumentParser(
-        prog="sweep", description=ABOUT, epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False, usage="rosrun ddm_launch sweep --seeds A:B --out DIR [options] [-- options of the program]")
+    parser = program_parser(
+        "sweep", ABOUT, EPILOG, allow_abbrev=False,
+        usage="rosrun ddm_launch sweep --seeds A:B --out DIR [options] [-- options of the program]")
     parser.add_argument("--preset", default="paper", help="name in ddm_launch/config/presets; default paper")
     parser.add_argument("--plant", default="pendulum", help="name in ddm_sim/config; default pendulum")
     parser.add_argument("--seeds", type=seed_range, required=True, metavar="A:B", help="seeds A ... B - 1")
     parser.add_argument("--trials", type=int, metavar="T", help="of run_experiment; default 15")
     parser.add_argument("--out", required=True, metavar="DIR", help="folder for the results")
-    parser.add_argument("--jobs", type=positive, metavar="N",
+    parser.add_argument("--jobs", type=number(int, 1), metavar="N",
                         help="seeds at a time on each host, default one per core; with --slurm in all, default any")
     parser.add_argument("--hosts", metavar="FILE", help="spread over ssh hosts")
     parser.add_argument("--slurm", action="store_true", help="run as a Slurm job array")
@@ -98,33 +92,6 @@ def parse(arguments):
     return options, more
 
 
-class Progress:
-    """Tells which seeds finish: a line for each; nothing on a terminal, where the engine has a line of its own."""
-
-    def __init__(self, folder, seeds, pending, terminal):
-        self.folder, self.num_seeds, self.pending, self.terminal = folder, len(seeds), list(pending), terminal
-
-    def update(self):
-        """Returns how far the sweep is, in words."""
-        finished = [seed for seed in self.pending if self.folder.is_finished(seed)]
-        for seed in finished:
-            self.pending.remove(seed)
-            if not self.terminal:
-                print("seed %d finished (%s)" % (seed, self.text()), flush=True)
-        return self.text()
-
-    def text(self):
-        return "%d of %d" % (self.num_seeds - len(self.pending), self.num_seeds)
-
-
-def mean_success(last_rows):
-    """", mean success at the last trial 0.75" of the rows that know it, or nothing."""
-    known = [row["success"] for row in last_rows if row.get("success")]
-    if not known:
-        return ""
-    return ", mean success at the last trial %.2f" % (sum(float(value) for value in known) / len(known))
-
-
 def report(folder, seeds, start):
     """Collects, says how it went, and returns whether all seeds are finished."""
     last_rows, problems = folder.collect(seeds)
@@ -137,8 +104,10 @@ def report(folder, seeds, start):
     if len(versions) > 1:
         print("sweep: warning: the seeds come from %d versions of the code, they may not be comparable: %s"
               % (len(versions), ", ".join(versions)), file=sys.stderr)
+    known = [float(row["success"]) for row in last_rows.values() if row.get("success")]
     print("%d of %d seeds finished%s; this call took %.1f s" % (
-        len(last_rows), len(seeds), mean_success(last_rows.values()), time.monotonic() - start))
+        len(last_rows), len(seeds), ", mean success at the last trial %.2f" % (sum(known) / len(known)) if known else "",
+        time.monotonic() - start))
     if last_rows:
         print("results: %s" % folder.table)
     return not problems
@@ -154,9 +123,17 @@ def run(engine, folder, seeds, terminal):
         folder.program.name, folder.program.preset, folder.program.plant, len(pending), len(seeds)), flush=True)
     if pending:
         folder.prepare(pending)
-        progress = Progress(folder, seeds, pending, terminal and sys.stdout.isatty())
-        engine.run(folder, pending, progress.update)
-        progress.update()
+
+        def tell():
+            """A line for each seed that finishes; none on a terminal, where the engine has a line of its own. Returns how
+            far the sweep is, in words."""
+            for seed in [seed for seed in pending if folder.is_finished(seed)]:
+                pending.remove(seed)
+                if not (terminal and sys.stdout.isatty()):
+                    print("seed %d finished (%d of %d)" % (seed, len(seeds) - len(pending), len(seeds)), flush=True)
+            return "%d of %d" % (len(seeds) - len(pending), len(seeds))
+        engine.run(folder, list(pending), tell)
+        tell()
 
 
 def sweep(options, more):

@@ -1,5 +1,6 @@
 # The folder of a sweep: which seeds are finished, and the rows of all of them in one table.
 # SPDX-License-Identifier: BSD-3-Clause
+import contextlib
 import csv
 import fcntl
 import os
@@ -36,23 +37,21 @@ class SweepFolder:
     def __init__(self, path, program):
         """Makes the folder, or opens that of the same sweep. Raises Failure if it holds another one."""
         self.path, self.program = os.path.abspath(path), program
+        self.script, self.table, self.joblog = (
+            os.path.join(self.path, name) for name in ("run_seed.sh", "sweep.csv", "joblog.tsv"))
         try:
             os.makedirs(os.path.join(self.path, "logs"), exist_ok=True)
             self._lock = open(os.path.join(self.path, ".lock"), "a")
         except OSError as error:
-            raise Failure("cannot write into the folder %s (%s): choose another with --out"
-                             % (self.path, error.strerror))
-        try:
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            self._lock.close()
-            raise Failure("another sweep is running in the folder %s: wait for it, or use another folder"
-                             % self.path)
-        try:
+            raise Failure("cannot write into the folder %s (%s): choose another with --out" % (self.path, error.strerror))
+        with contextlib.ExitStack() as stack:
+            stack.callback(self._lock.close)
+            try:
+                fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                raise Failure("another sweep is running in the folder %s: wait for it, or use another folder" % self.path)
             self._compare()
-        except Failure:
-            self._lock.close()
-            raise
+            stack.pop_all()
 
     def __enter__(self):
         return self
@@ -64,25 +63,13 @@ class SweepFolder:
         path = os.path.join(self.path, "sweep.yaml")
         here = {"program": self.program.name, "preset": self.program.preset, "plant": self.program.plant,
                 "options": self.program.options}
-        if os.path.exists(path):
-            found = differences(read_yaml(path), here)
-            if found:
-                raise Failure("the folder %s holds another sweep, use another folder:\n - %s"
-                                 % (self.path, "\n - ".join(found)))
-        else:
+        if not os.path.exists(path):
             write_file(path, yaml.safe_dump(here, sort_keys=False))
-
-    @property
-    def script(self):
-        return os.path.join(self.path, "run_seed.sh")
-
-    @property
-    def table(self):
-        return os.path.join(self.path, "sweep.csv")
-
-    @property
-    def joblog(self):
-        return os.path.join(self.path, "joblog.tsv")
+            return
+        found = differences(read_yaml(path), here)
+        if found:
+            raise Failure("the folder %s holds another sweep, use another folder:\n - %s"
+                          % (self.path, "\n - ".join(found)))
 
     def seed_folder(self, seed):
         return os.path.join(self.path, "seed_%04d" % seed)
@@ -101,7 +88,7 @@ class SweepFolder:
         """Writes the script that runs a seed; what earlier calls said about these seeds is forgotten."""
         write_file(self.script, self.program.script(self.path))
         for seed in seeds:
-            if os.path.exists(self.log(seed)):
+            with contextlib.suppress(FileNotFoundError):
                 os.remove(self.log(seed))
 
     def last_words(self, seed):
@@ -111,23 +98,10 @@ class SweepFolder:
                 lines = [line.strip() for line in stream if line.strip()]
         except OSError:
             return "it was not started"
-        return "%s (%s)" % (lines[-1] if lines else self._silence(seed), self.log(seed))
-
-    def _silence(self, seed):
-        """What is known of a seed whose log is empty."""
-        code = self._exit_code(seed)
-        words = "it said nothing" if code is None else "it said nothing, exit code %s" % code
-        return words + (", is the disk full?" if shutil.disk_usage(self.path).free < FULL_BYTES else "")
-
-    def _exit_code(self, seed):
-        """From GNU parallel's job log; None where it has none, as with Slurm."""
-        try:
-            with open(self.joblog, errors="replace", newline="") as stream:
-                jobs = list(csv.DictReader(stream, delimiter="\t", quoting=csv.QUOTE_NONE))
-        except (OSError, csv.Error):
-            return None
-        codes = [job.get("Exitval") for job in jobs if (job.get("Command") or "").endswith(" %d" % seed)]
-        return codes[-1] if codes else None
+        if lines:
+            return "%s (%s)" % (lines[-1], self.log(seed))
+        is_full = shutil.disk_usage(self.path).free < FULL_BYTES
+        return "it said nothing%s (%s)" % (", is the disk full?" if is_full else "", self.log(seed))
 
     def collect(self, seeds):
         """Writes sweep.csv over the finished ones of these seeds; removes it if there are none.
@@ -140,22 +114,23 @@ class SweepFolder:
                 problems[seed] = self.last_words(seed)
                 continue
             try:
-                header, rows, last_row = self._read_table(seed)
+                header, rows = self._read_table(seed)
                 first = first or (seed, header)
                 self._require_equal(first, seed, header)
             except Failure as error:
                 problems[seed] = str(error)
                 continue
             lines += rows
-            last_rows[seed] = last_row
+            last_rows[seed] = next(csv.DictReader([header, rows[-1]]))
         if first:
             write_file(self.table, "\n".join([first[1]] + lines) + "\n")
-        elif os.path.exists(self.table):
-            os.remove(self.table)
+        else:
+            with contextlib.suppress(FileNotFoundError):
+                os.remove(self.table)
         return last_rows, problems
 
     def _read_table(self, seed):
-        """(header line, lines, last line as a dictionary) of a finished seed, up to the trial asked for."""
+        """(header line, lines) of a finished seed, up to the trial asked for."""
         path = os.path.join(self.seed_folder(seed), self.program.table)
         try:
             with open(path, newline="") as stream:
@@ -167,7 +142,7 @@ class SweepFolder:
         if not 1 <= count <= len(rows) or any(row.get("seed") != str(seed) for row in rows):
             raise Failure("%s must hold %s rows of seed %d: remove the folder, and the seed is run again"
                              % (path, "some" if self.program.trials is None else count, seed))
-        return lines[0], lines[1:count + 1], rows[count - 1]
+        return lines[0], lines[1:count + 1]
 
     def _require_equal(self, first, seed, header):
         """A table is about one experiment: same columns, same configuration as the first finished seed."""
@@ -185,7 +160,7 @@ class SweepFolder:
         found = set()
         for seed in seeds:
             begun = str(read_yaml(os.path.join(self.seed_folder(seed), "config.yaml")).get("version"))
-            header, lines, _ = self._read_table(seed)
+            header, lines = self._read_table(seed)
             rows = csv.DictReader([header] + lines)
             found.update(begun if row.get("version", "?") == "?" else row["version"] for row in rows)
         return sorted(found)

@@ -9,21 +9,18 @@ from ddm_launch.command import Failure
 from ddm_model.plain_file import write_file
 
 
-def unreadable(path, error, remedy="is its folder a run folder?"):
+def unreadable(path, error, remedy=None):
     """The exception to raise for a file that cannot be read at all."""
     reason = getattr(error, "strerror", None) or error
-    return Failure("%s cannot be read (%s): %s" % (path, reason, remedy))
+    return Failure("%s cannot be read (%s): %s" % (path, reason, remedy or "is its folder a run folder?"))
 
 
-def finite(text):
-    value = float(text)
-    if not math.isfinite(value):
+def convert(text, kind):
+    if kind not in (float, int):
+        return kind(text)
+    if not math.isfinite(float(text)):
         raise ValueError
-    return value
-
-
-def whole(text):
-    return int(finite(text))
+    return kind(float(text))
 
 
 def optional(kind):
@@ -31,45 +28,49 @@ def optional(kind):
     return lambda text: convert(text, kind) if (text or "").strip() else None
 
 
-def convert(text, kind):
-    return {float: finite, int: whole}.get(kind, kind)(text)
-
-
 def read_csv(path, columns, remedy=None, once=(), renamed=None):
     """The rows of a CSV file as dictionaries.
 
     columns: those that must be there; as {name: kind} their cells are converted by kind: str, int, float (finite) or a
     function of the text that raises ValueError. remedy: what to do if the file is missing, unless it is a run's.
-    once: columns whose cells name a row. renamed: {name of a column in older files: today's}. Raises Failure if the file is missing, lacks a column, has no row, names a row
-    twice, or if a cell cannot be converted.
+    once: columns whose cells name a row. renamed: {name of a column in older files: today's}. Raises Failure if the file
+    is missing, lacks a column, has no row, names a row twice, or if a cell cannot be converted.
     """
     try:
         with open(path, newline="") as stream:
             reader = csv.DictReader(stream)
-            header = [(renamed or {}).get(name, name) for name in reader.fieldnames or []]
-            reader.fieldnames = header
+            header = reader.fieldnames = [(renamed or {}).get(name, name) for name in reader.fieldnames or []]
             rows = list(reader)
     except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise unreadable(path, error, remedy) if remedy else unreadable(path, error)
+        raise unreadable(path, error, remedy)
     missing = [column for column in columns if column not in header]
     if missing:
         raise Failure("%s has no column %s, only: %s" % (path, ", ".join(missing), ", ".join(header)))
     if not rows:
         raise Failure("%s has no row yet: %s" % (path, remedy or "wait for the first trial"))
-    for name, kind in columns.items() if isinstance(columns, dict) else ():
-        for row in rows:
+    seen = set()
+    for row in rows:
+        for name, kind in columns.items() if isinstance(columns, dict) else ():
             try:
                 row[name] = convert(row[name], kind)
             except (TypeError, ValueError):
                 raise Failure("%s: column %s must hold numbers, got '%s'" % (path, name, row[name])) from None
-    seen = set()
-    for row in rows if once else ():
-        name = tuple(row[column] for column in once)
-        if name in seen:
+        named = tuple(row[column] for column in once)
+        if once and named in seen:
             raise Failure("%s has two rows of %s: give each once" % (path, ", ".join(
-                "%s %s" % item for item in zip(once, name))))
-        seen.add(name)
+                "%s %s" % item for item in zip(once, named))))
+        seen.add(named)
     return rows
+
+
+def grouped(path, rows, column, names):
+    """{name: its rows} of the names that a column may hold."""
+    groups = {name: [] for name in names}
+    for row in rows:
+        if row[column] not in groups:
+            raise Failure("%s: column %s must hold one of %s, got '%s'" % (path, column, ", ".join(names), row[column]))
+        groups[row[column]].append(row)
+    return groups
 
 
 def write_csv(path, header, rows):

@@ -14,6 +14,7 @@ ABOUT = ("The angle over time in greedy evaluations. One panel per number of fra
 COLUMNS = 5  # panels in a row
 MOST_TURNS = 2.3  # the panels show at most +- this many half turns [pi rad]; few trajectories leave them
 TARGET = "#c8c8c8"  # light enough that lines on it stand out
+STYLES = {False: (VERMILLION, (0, (3, 1))), True: (BLUE, "-")}  # success: colour, line; those that succeed are on top
 
 
 class Trajectory:
@@ -21,31 +22,30 @@ class Trajectory:
 
     def __init__(self, success):
         self.success = success
-        self.time_s = []
-        self.angle_rad = []
+        self.time_s, self.angle_rad = [], []
 
     @property
     def end_s(self):
         """When the last torque has acted."""
-        last_step = self.time_s[-1] - self.time_s[-2] if len(self.time_s) > 1 else 0.0
-        return self.time_s[-1] + last_step
+        return self.time_s[-1] + (self.time_s[-1] - self.time_s[-2] if len(self.time_s) > 1 else 0.0)
 
 
 def read_trajectories(path):
     """All trajectories of a file, as {frames learned from: {seed: Trajectory}}; both keys ascend."""
     keys = {"frames": int, "seed": int, "step": int, "time_s": float, "angle_rad": float, "success": float}
     rows = read_csv(path, keys, "rosrun ddm_launch reproduce_paper writes it", once=("seed", "frames", "step"))
-    trials = {}
+    trials, start_s = {}, 0.0
     for row in sorted(rows, key=lambda row: (row["frames"], row["seed"], row["step"])):
-        of_trial = trials.setdefault(row["frames"], {})
-        trajectory = of_trial.setdefault(row["seed"], Trajectory(row["success"] > 0.5))
-        trajectory.time_s.append(row["time_s"])
+        trajectory = trials.setdefault(row["frames"], {}).setdefault(row["seed"], Trajectory(row["success"] > 0.5))
+        if not trajectory.time_s:
+            start_s = row["time_s"]
+        trajectory.time_s.append(row["time_s"] - start_s)
         trajectory.angle_rad.append(row["angle_rad"])
-    for trajectories in trials.values():
-        for trajectory in trajectories.values():
-            start = trajectory.time_s[0]
-            trajectory.time_s = [time_s - start for time_s in trajectory.time_s]
     return trials
+
+
+def half_turns(angles_rad):
+    return [angle / math.pi for angle in angles_rad]
 
 
 def half_turns_text(count):
@@ -58,15 +58,27 @@ def angle_reach(angles):
     return min(MOST_TURNS, max(1.3, 1.05 * max(abs(angle) for angle in angles) / math.pi))
 
 
-def set_angle_axis(axes, reach, labelled):
-    """The vertical axis of a panel in half turns, with all targets; its labels only where asked for."""
-    for target in range(-3, 4, 2):  # all of them upright
-        axes.axhspan(target - SUCCESS_LIMIT_RAD / math.pi, target + SUCCESS_LIMIT_RAD / math.pi, color=TARGET,
-                     linewidth=0, zorder=0)
-    axes.set_ylim(-reach, reach)
-    ticks = [count for count in range(-3, 4) if abs(count) < reach]
-    axes.set_yticks(ticks)
-    axes.set_yticklabels([half_turns_text(count) for count in ticks] if labelled else [])
+def angle_panels(figure, num_rows, num_columns, count, reach, end_s):
+    """(axes of so many panels over time, the place for a legend below them). Angles are in half turns, with all targets;
+    axes are labelled where no panel is to the left or below."""
+    grid = figure.add_gridspec(num_rows + 1, num_columns, height_ratios=[1.0] * num_rows + [0.001])
+    ticks = [turns for turns in range(-3, 4) if abs(turns) < reach]
+    panels = [figure.add_subplot(grid[divmod(k, num_columns)]) for k in range(count)]
+    for k, axes in enumerate(panels):
+        for target in range(-3, 4, 2):  # all of them upright
+            axes.axhspan(target - SUCCESS_LIMIT_RAD / math.pi, target + SUCCESS_LIMIT_RAD / math.pi, color=TARGET,
+                         linewidth=0, zorder=0)
+        axes.set_xlim(0.0, end_s)
+        axes.set_ylim(-reach, reach)
+        axes.set_yticks(ticks)
+        axes.set_yticklabels([] if k % num_columns else [half_turns_text(turns) for turns in ticks])
+        if k % num_columns == 0:
+            axes.set_ylabel("angle [rad]")
+        if k + num_columns < count:
+            axes.tick_params(labelbottom=False)
+        else:
+            axes.set_xlabel("time [s]")
+    return panels, grid[num_rows, :]
 
 
 def target_handle():
@@ -74,41 +86,22 @@ def target_handle():
     return Patch(color=TARGET), "target: within %.0f° of $\\pm\\pi$" % math.degrees(SUCCESS_LIMIT_RAD)
 
 
-def draw_panel(axes, trajectories, frames):
-    """All seeds after so many frames, those that succeed drawn last; how many do is written above."""
-    for success, colour, style, width in ((False, VERMILLION, (0, (3, 1)), 0.7), (True, BLUE, "-", 0.7)):
-        for trajectory in trajectories.values():
-            if trajectory.success is success:
-                axes.plot(trajectory.time_s, [angle / math.pi for angle in trajectory.angle_rad], color=colour,
-                          linestyle=style, linewidth=width, alpha=0.8)
-    count = sum(trajectory.success for trajectory in trajectories.values())
-    axes.set_title("%d frames: %d of %d" % (frames, count, len(trajectories)), pad=3)
-
-
 def draw_all(figure, trials):
     """One panel per trial, all with the same axes, and a legend below."""
-    reach = angle_reach(angle for panel in trials.values() for trajectory in panel.values()
-                        for angle in trajectory.angle_rad)
-    end = max(trajectory.end_s for panel in trials.values() for trajectory in panel.values())
+    runs = [run for panel in trials.values() for run in panel.values()]
     num_columns = min(COLUMNS, len(trials))
-    num_rows = math.ceil(len(trials) / num_columns)
-    grid = figure.add_gridspec(num_rows + 1, num_columns, height_ratios=[1.0] * num_rows + [0.001])
-    for k, (frames, trajectories) in enumerate(trials.items()):
-        row, column = divmod(k, num_columns)
-        axes = figure.add_subplot(grid[row, column])
-        set_angle_axis(axes, reach, column == 0)
-        draw_panel(axes, trajectories, frames)
-        axes.set_xlim(0.0, round(end, 6))
-        if column == 0:
-            axes.set_ylabel("angle [rad]")
-        if k + num_columns < len(trials):
-            axes.set_xticklabels([])
-        else:
-            axes.set_xlabel("time [s]")
+    panels, place = angle_panels(figure, math.ceil(len(trials) / num_columns), num_columns, len(trials),
+                                 angle_reach(angle for run in runs for angle in run.angle_rad),
+                                 round(max(run.end_s for run in runs), 6))
+    for axes, (frames, of_seeds) in zip(panels, trials.items()):
+        for run in sorted(of_seeds.values(), key=lambda run: run.success):
+            colour, style = STYLES[run.success]
+            axes.plot(run.time_s, half_turns(run.angle_rad), color=colour, linestyle=style, linewidth=0.7, alpha=0.8)
+        axes.set_title("%d frames: %d of %d" % (frames, sum(run.success for run in of_seeds.values()), len(of_seeds)),
+                       pad=3)
     target, target_label = target_handle()
-    add_legend(figure, grid[num_rows, :],
-               [Line2D([], [], color=BLUE), Line2D([], [], color=VERMILLION, linestyle=(0, (3, 1))), target],
-               ["success (counted above)", "none", target_label], ncol=3)
+    add_legend(figure, place, [Line2D([], [], color=colour, linestyle=style) for colour, style in (
+        STYLES[True], STYLES[False])] + [target], ["success (counted above)", "none", target_label], ncol=3)
 
 
 def add_arguments(parser):

@@ -12,15 +12,9 @@ Series = collections.namedtuple("Series", "label colour marker values lows highs
 
 
 def draw_figure_of_dots(figure, names, series, num_columns):
-    """The dots above a legend. Returns the axes."""
+    """The dots above a legend. names: of the rows, from top to bottom; the dots of a row are below each other, the first
+    series on top. Returns the axes."""
     axes, place = panel_above_legend(figure)
-    draw_dots(axes, names, series)
-    add_legend(figure, place, *axes.get_legend_handles_labels(), ncol=num_columns, columnspacing=1.2, handletextpad=0.4)
-    return axes
-
-
-def draw_dots(axes, names, series):
-    """names: of the rows, from top to bottom. The dots of a row are below each other, the first series on top."""
     for k, each in enumerate(series):
         shift = SPREAD * (k - 0.5 * (len(series) - 1))
         errors = [[value - low for value, low in zip(each.values, each.lows)],
@@ -32,3 +26,5 @@ def draw_dots(axes, names, series):
     axes.set_ylim(len(names) - 0.5, -0.5)
     axes.tick_params(axis="y", length=0)
     axes.grid(True, axis="x")
+    add_legend(figure, place, *axes.get_legend_handles_labels(), ncol=num_columns, columnspacing=1.2, handletextpad=0.4)
+    return axes

@@ -1,5 +1,6 @@
-# Tables of reproduce_efficient: success with intervals, what each ingredient is worth, times, and what the bars say.
+# Tables of reproduce_efficient: success with intervals, what each ingredient is worth, times, and what these must reach.
 # SPDX-License-Identifier: BSD-3-Clause
+import collections
 import os
 import statistics
 
@@ -7,13 +8,23 @@ from ddm_launch.averages import mean_and_error, success_rates, wilson_interval
 from ddm_launch.command import Failure
 from ddm_launch.run_folder import read_sweep
 from ddm_launch.settings import read_yaml
-from ddm_launch.tables import read_csv, write_csv
+from ddm_launch.tables import optional, read_csv, write_csv
+from ddm_study.paper_tables import verdict
 
 REMEDY = "rosrun ddm_launch reproduce_efficient writes it"
 INTERVALS = ["success", "low", "high", "success_strict", "strict_low", "strict_high"]
 PRESET = "preset"  # folder of the ablation's reference
 GRAVITY = (("ddm", "gravity/trials.csv"), ("pilco_state", "gravity/pilco_state/trials.csv"),
            ("oracle", "gravity/oracle/trials.csv"))  # method, table
+
+# The bars. With fewer seeds there is no verdict.
+SEEDS, FEW_SEEDS = 50, 20
+FIRST_FRAMES, LATER_FRAMES, GRAVITY_FRAMES, NUISANCE_FRAMES = 100, (200, 1600), (1500, 2000), 500
+TRIAL_FRAMES = 100
+LEAST_FIRST, LEAST_MEAN, LEAST_LATER, MOST_UNSETTLED = 0.86, 0.99, 0.96, 0.04
+LEAST_GRAVITY_MEAN, LEAST_GRAVITY, LEAST_NUISANCE = 0.9, 0.8, 0.9
+MOST_EXPERIMENT_S, MOST_PLAN_MS = 120.0, 20.0
+ROUNDING = 1e-9  # rates are quotients of small whole numbers, and bars decimal fractions
 
 
 def interval_cells(row):
@@ -55,8 +66,8 @@ def mean_success(runs, frames):
     """{seed: mean success over these frames} of the seeds that know it at all of them."""
     means = {}
     for seed, trials in runs.items():
-        values = {trial.frames: float(trial.success) for trial in trials if trial.success is not None}
-        if all(count in values for count in frames):
+        values = {trial.frames: trial.success for trial in trials if trial.success is not None}
+        if values.keys() >= set(frames):
             means[seed] = sum(values[count] for count in frames) / len(frames)
     return means
 
@@ -70,34 +81,22 @@ def variant_rows(folder, part, labels):
     """
     rows, variants = [], {name: read_runs(folder, "ablation" if name == PRESET else part, name, "trials.csv")
                           for name in labels}
-    preset = variants[PRESET]
     frames = sorted(set.intersection(*({row[0] for row in success_rates(runs.values())}
                                        for runs in variants.values())))
     if not frames:
-        raise Failure("%s: no number of frames is known of %s and the preset itself: run each with as many "
-                             "frames a trial" % (os.path.join(folder, part), ", ".join(
-                                 name for name in labels if name != PRESET)))
-    groups = [[count] for count in frames] + [some for some in (frames, frames[1:]) if len(some) > 1]
+        raise Failure("%s: no number of frames is known of %s and the preset itself: run each with as many frames a "
+                      "trial" % (os.path.join(folder, part), ", ".join(name for name in labels if name != PRESET)))
     for variant, label in labels.items():
-        runs = variants[variant]
-        for group in groups:
-            values, reference = mean_success(runs, group), mean_success(preset, group)
+        for group in [[count] for count in frames] + [some for some in (frames, frames[1:]) if len(some) > 1]:
+            text = " to ".join(map(str, group if len(group) == 1 else (group[0], group[-1])))
+            values, reference = mean_success(variants[variant], group), mean_success(variants[PRESET], group)
             seeds = sorted(set(values) & set(reference))
             if not seeds:
-                raise Failure("no seed has %s frames of both %s and the preset itself: run the same seeds with "
-                                     "each" % (frames_text(group), variant))
-            rows.append((variant, label, frames_text(group), len(seeds)) +
-                        mean_and_error([values[seed] for seed in seeds]) +
+                raise Failure("no seed has %s frames of both %s and the preset itself: run the same seeds with each"
+                              % (text, variant))
+            rows.append((variant, label, text, len(seeds)) + mean_and_error([values[seed] for seed in seeds]) +
                         mean_and_error([values[seed] - reference[seed] for seed in seeds]))
     return rows
-
-
-def frames_text(frames):
-    return "%d" % frames[0] if len(frames) == 1 else "%d to %d" % (frames[0], frames[-1])
-
-
-def nuisance_table(folder, name):
-    return os.path.join(folder, "nuisances", name, "trials.csv")
 
 
 def nuisance_rows(folder, names):
@@ -108,18 +107,18 @@ def nuisance_rows(folder, names):
     """
     rows, seeds = [], set()
     for name in names:
-        runs = read_sweep(nuisance_table(folder, name), REMEDY)
+        path = os.path.join(folder, "nuisances", name, "trials.csv")
+        runs = read_sweep(path, REMEDY)
         known = success_rows(runs)
         if not known:
-            raise Failure("%s must say of some trial whether it was a success, column success is empty: use a "
-                                 "plant with an angle" % nuisance_table(folder, name))
+            raise Failure("%s must say of some trial whether it was a success, column success is empty: use a plant "
+                          "with an angle" % path)
+        frames = rows[0][1] if rows else known[-1][0]
+        if known[-1][0] != frames:
+            raise Failure("%s must end at %d frames as that of %s, got %d: make it again with as many trials"
+                          % (path, frames, rows[0][0], known[-1][0]))
         rows.append((name,) + known[-1])
         seeds |= set(runs)
-    frames = rows[0][1]
-    for name, last, *_ in rows:
-        if last != frames:
-            raise Failure("%s must end at %d frames as that of %s, got %d: make it again with as many trials"
-                                 % (nuisance_table(folder, name), frames, rows[0][0], last))
     if os.path.exists(os.path.join(folder, "trials.csv")):
         runs = {seed: trials for seed, trials in read_runs(folder, "trials.csv").items() if seed in seeds}
         rows[:0] = [("none",) + row for row in success_rows(runs) if row[0] == frames]
@@ -153,3 +152,77 @@ def write_gravity(folder):
 def write_nuisances(folder, names):
     write_csv(os.path.join(folder, "nuisances.csv"), ["nuisance", "frames", "runs"] + INTERVALS,
               nuisance_rows(folder, names))
+
+
+class Rate(collections.namedtuple("Rate", "frames runs success low high strict name")):
+    """A row of a table with success rates and their intervals; name: of its method or nuisance."""
+
+    def __str__(self):
+        return "%.2f [%.2f, %.2f] of %d" % (self.success, self.low, self.high, self.runs)
+
+
+def read_rates(folder, name):
+    """The rows of a table; none if there is no such table."""
+    path = os.path.join(folder, name)
+    columns = {"frames": int, "runs": int, "success": float, "low": float, "high": float, "success_strict": float}
+    return [Rate(*(row[column] for column in columns), name=row.get("method") or row.get("nuisance"))
+            for row in read_csv(path, columns, REMEDY)] if os.path.exists(path) else []
+
+
+def at_least(point, least, value, here, known):
+    return point, ">= %.2f" % least, here, value >= least - ROUNDING if known else None
+
+
+def level_bars(what, rates, frames, least_mean, least, num_runs):
+    """Bars for mean and lowest point of a curve over a range of frames; none if it has no point there."""
+    part = [rate for rate in rates if frames[0] <= rate.frames <= frames[1]]
+    if not part:
+        return []
+    known = ([rate.frames for rate in part] == list(range(frames[0], frames[1] + 1, TRIAL_FRAMES)) and
+             all(rate.runs >= num_runs for rate in part))
+    mean, lowest = sum(rate.success for rate in part) / len(part), min(part, key=lambda rate: rate.success)
+    where = "%s, %d to %d frames" % ((what,) + frames)
+    return [at_least("mean " + where, least_mean, mean, "%.3f" % mean, known),
+            at_least("lowest " + where, least, lowest.success, "%s at %d frames" % (lowest, lowest.frames), known)]
+
+
+def headline_bars(folder):
+    rates = read_rates(folder, "success_rate.csv")
+    rows = [at_least("success, %d frames" % FIRST_FRAMES, LEAST_FIRST, rate.success, str(rate), rate.runs >= SEEDS)
+            for rate in rates if rate.frames == FIRST_FRAMES]
+    rows += level_bars("success", rates, LATER_FRAMES, LEAST_MEAN, LEAST_LATER, SEEDS)
+    if rates:
+        worst = max(rates, key=lambda rate: rate.success - rate.strict)
+        unsettled = worst.success - worst.strict
+        rows.append(("success minus success_strict, largest", "<= %.2f" % MOST_UNSETTLED,
+                     "%.2f at %d frames" % (unsettled, worst.frames),
+                     unsettled <= MOST_UNSETTLED + ROUNDING if worst.runs >= SEEDS else None))
+    return rows
+
+
+def time_bars(folder):
+    path = os.path.join(folder, "times.csv")
+    if not os.path.exists(path):
+        return []
+    rows = read_csv(path, {"seed": str, "wall_s": optional(float), "plan_ms_p99": float}, REMEDY)
+    num_timed = sum(row["seed"].isdigit() and row["wall_s"] is not None for row in rows)
+    largest, bars = rows[-1], []
+    if num_timed:
+        bars.append(("whole experiment, largest of %d seeds" % num_timed, "< %g s" % MOST_EXPERIMENT_S,
+                     "%.1f s" % largest["wall_s"],
+                     largest["wall_s"] < MOST_EXPERIMENT_S if num_timed >= SEEDS else None))
+    return bars + [("plan, 99 % of a greedy run, largest", "< %g ms" % MOST_PLAN_MS, "%.1f ms" % largest["plan_ms_p99"],
+                    largest["plan_ms_p99"] < MOST_PLAN_MS if len(rows) - 2 >= SEEDS else None)]
+
+
+def write_bars(folder):
+    """Writes bars.csv about the tables that are there. Returns its rows (point, bar, here, yes | no | n/a)."""
+    gravity = [rate for rate in read_rates(folder, "gravity.csv") if rate.name == "ddm"]
+    bars = headline_bars(folder) + time_bars(folder) + level_bars(
+        "success with gravity", gravity, GRAVITY_FRAMES, LEAST_GRAVITY_MEAN, LEAST_GRAVITY, FEW_SEEDS)
+    bars += [at_least("nuisance %s: success, %d frames" % (rate.name, rate.frames), LEAST_NUISANCE, rate.success, str(rate),
+                      rate.runs >= FEW_SEEDS and rate.frames == NUISANCE_FRAMES)
+             for rate in read_rates(folder, "nuisances.csv") if rate.name != "none"]
+    rows = [(point, bar, here, verdict(holds)) for point, bar, here, holds in bars]
+    write_csv(os.path.join(folder, "bars.csv"), ["point", "bar", "here", "holds"], rows)
+    return rows

@@ -37,35 +37,27 @@ def success_table(trials, published):
 
 def late_success(runs):
     """{seed: mean success over LATE_FRAMES} of {seed: list of Trial}; seeds without such frames are left out."""
-    means = {}
-    for seed, trials in runs.items():
-        late = [float(trial.success) for trial in trials
-                if trial.success is not None and LATE_FRAMES[0] <= trial.frames <= LATE_FRAMES[1]]
-        if late:
-            means[seed] = sum(late) / len(late)
-    return means
-
-
-def measures(folder):
-    """{measure: {schedule: {seed: value}}} over the seeds that all schedules have."""
-    out = {"pendulum_success_900_1500": {name: late_success(runs) for name, runs in read_success(folder).items()}}
-    for plant in ("tile", "pendulum"):
-        of_plant = read_predictions(os.path.join(folder, plant + "_predictions"))
-        for measure, value in (("error_ratio_1", lambda steps: steps[1].ratio),
-                               ("error_ratio_8", lambda steps: steps[8].ratio),
-                               ("position_r2", lambda steps: steps[1].position_r2)):
-            out["%s_%s" % (plant, measure)] = {
-                name: {seed: value(steps) for seed, steps in by_seed.items()} for name, by_seed in of_plant.items()}
-    return out
+    late = {seed: [trial.success for trial in trials
+                   if trial.success is not None and LATE_FRAMES[0] <= trial.frames <= LATE_FRAMES[1]]
+            for seed, trials in runs.items()}
+    return {seed: sum(values) / len(values) for seed, values in late.items() if values}
 
 
 def schedule_table(folder):
     """Rows (measure, schedule, seeds, mean, standard error, mean difference to joint, its standard error).
 
-    Differences are paired by seed.
+    Only of the seeds that all schedules have; differences are paired by seed.
     """
+    measures = {"pendulum_success_900_1500": {name: late_success(runs) for name, runs in read_success(folder).items()}}
+    for plant in ("tile", "pendulum"):
+        of_plant = read_predictions(os.path.join(folder, plant + "_predictions"))
+        for measure, value in (("error_ratio_1", lambda steps: steps[1].ratio),
+                               ("error_ratio_8", lambda steps: steps[8].ratio),
+                               ("position_r2", lambda steps: steps[1].position_r2)):
+            measures["%s_%s" % (plant, measure)] = {
+                name: {seed: value(steps) for seed, steps in by_seed.items()} for name, by_seed in of_plant.items()}
     rows = []
-    for measure, by_schedule in measures(folder).items():
+    for measure, by_schedule in measures.items():
         for schedule in SCHEDULES:
             values, joint = by_schedule[schedule], by_schedule["joint"]
             if values:

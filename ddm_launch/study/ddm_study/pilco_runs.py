@@ -34,7 +34,7 @@ def search_rows(folders):
             for seed, folder in folders.items() for trial in read_trials(folder)]
 
 
-def read_predicted_angle(folder, trial):
+def predicted_angle(folder, trial):
     """Rows (time, mean, standard deviation) of the angle, as predicted after this trial [s, rad, rad]."""
     columns = ["time_s", "angle_rad_mean", "angle_rad_std"]
     rows = read_csv(os.path.join(folder, "trial_%03d" % trial, "prediction.csv"), dict.fromkeys(columns, float),
@@ -42,10 +42,10 @@ def read_predicted_angle(folder, trial):
     return [[row[column] for column in columns] for row in rows]
 
 
-def actual_angle(folder):
-    """The same of one run, which has no standard deviation."""
-    run = Trajectory(folder)
-    return [(time_s, angle_rad, None) for time_s, angle_rad in zip(run.time_s, run.angle_rad)]
+def actual_angle(folder, run, trial):
+    """The same of a run, which has no standard deviation."""
+    trajectory = Trajectory(os.path.join(folder, "%s_%03d" % (run, trial)))
+    return [(time_s, angle_rad, None) for time_s, angle_rad in zip(trajectory.time_s, trajectory.angle_rad)]
 
 
 def distribution_rows(folders, trials):
@@ -58,10 +58,10 @@ def distribution_rows(folders, trials):
     for seed, folder in folders.items():
         frames = {trial.trial: trial.frames for trial in read_trials(folder)}
         for trial in (trial for trial in trials if trial in frames):
-            runs = [(PREDICTED, read_predicted_angle(folder, trial)),
-                    (EVALUATION, actual_angle(os.path.join(folder, "evaluation_%03d" % trial)))]
+            runs = [(PREDICTED, predicted_angle(folder, trial)),
+                    (EVALUATION, actual_angle(folder, "evaluation", trial))]
             if trial + 1 in frames:
-                runs.append((TRIAL, actual_angle(os.path.join(folder, "trial_%03d" % (trial + 1)))))
+                runs.append((TRIAL, actual_angle(folder, "trial", trial + 1)))
             for kind, angles in runs:
                 for step, (time_s, angle_rad, deviation) in enumerate(angles):
                     rows.append((seed, trial, frames[trial], kind, step, "%.3f" % time_s, "%.4f" % angle_rad,

@@ -22,19 +22,6 @@ BAR_TIME_S = 30.0 * 60.0
 REMEDY = "rosrun ddm_launch reproduce_paper writes it"
 
 
-class Count:
-    """How often the policies `first` to `last` succeeded: their greedy runs over all seeds together."""
-
-    def __init__(self, runs, first=1, last=math.inf):
-        trials = [trial for by_seed in runs.values() for trial in by_seed
-                  if first <= trial.trial + 1 <= last and trial.success is not None]
-        self.successes, self.runs = sum(trial.success for trial in trials), len(trials)
-        self.frames = sorted({trial.frames for trial in trials})
-
-    def __str__(self):
-        return "%d of %d" % (self.successes, self.runs)
-
-
 def of_authors(first, last):
     """(successes, runs) of the authors' policies `first` to `last`, on the true state."""
     counts = AUTHORS_SUCCESSES[first - 1:last]
@@ -49,25 +36,35 @@ def read_runs(folder, name):
     return read_sweep(os.path.join(folder, name, "trials.csv"), REMEDY)
 
 
+def greedy_runs(runs, first=1, last=math.inf):
+    """The trials whose policies are `first` to `last` and whose success is known, of all seeds together."""
+    return [trial for by_seed in runs.values() for trial in by_seed
+            if first <= trial.trial + 1 <= last and trial.success is not None]
+
+
+def num_successes(trials):
+    return sum(trial.success for trial in trials)
+
+
 def success_rows(folder, names):
     """Rows (method, policies, frames, successes, runs, authors' successes, authors' runs): each policy, then groups."""
     rows = []
     for name in names:
         runs = read_runs(folder, name)
         num_policies = 1 + max(trial.trial for trials in runs.values() for trial in trials)
-        groups = [(first, last) for first, last in GROUPS if first < last <= num_policies]
-        for first, last in [(k, k) for k in range(1, num_policies + 1)] + groups:
-            count = Count(runs, first, last)
-            if count.runs:
+        groups = [(k, k) for k in range(1, num_policies + 1)]
+        for first, last in groups + [group for group in GROUPS if group[0] < group[1] <= num_policies]:
+            trials = greedy_runs(runs, first, last)
+            if trials:
+                frames = sorted(trial.frames for trial in trials)
                 comparable = name in ON_THE_STATE and last <= len(AUTHORS_SUCCESSES)
-                authors = of_authors(first, last) if comparable else ("", "")
-                rows.append((name, range_text(first, last), range_text(count.frames[0], count.frames[-1]),
-                             count.successes, count.runs) + authors)
+                rows.append((name, range_text(first, last), range_text(frames[0], frames[-1]), num_successes(trials),
+                             len(trials)) + (of_authors(first, last) if comparable else ("", "")))
     return rows
 
 
 def times_by_seed(path, column):
-    """{seed: [time of trial 0, 1, ...]} and the frames of each trial, of a table with one row per seed and trial.
+    """(the times of each seed, trial after trial; the frames of each trial) of a table with a row per seed and trial.
 
     Raises Failure if a seed lacks a trial that others have.
     """
@@ -75,19 +72,19 @@ def times_by_seed(path, column):
     for row in read_csv(path, {"seed": int, "trial": int, "frames": int, column: float}, REMEDY):
         times.setdefault(row["seed"], {})[row["trial"]] = row[column]
         frames[row["trial"]] = row["frames"]
-    trials = sorted(frames)
+    trials = range(len(frames))
     for seed, by_trial in times.items():
-        if sorted(by_trial) != list(range(len(trials))):
+        if sorted(by_trial) != list(trials):
             raise Failure("%s: seed %d must have the trials 0 to %d, once each: run it to its end" % (
-                path, seed, trials[-1]))
-    return {seed: [by_trial[k] for k in trials] for seed, by_trial in times.items()}, [frames[k] for k in trials]
+                path, seed, max(frames)))
+    return [[by_trial[k] for k in trials] for by_trial in times.values()], [frames[k] for k in trials]
 
 
 def total_seconds(folder, name):
-    """(number of policies, their frames, seconds by seed) of learning the first policies, at most NUM_TIMED."""
+    """(number of policies, their frames, seconds of each seed) of learning the first policies, at most NUM_TIMED."""
     seconds, frames = times_by_seed(os.path.join(folder, name, "trials.csv"), "train_s")
     count = min(NUM_TIMED, len(frames))
-    return count, frames[count - 1], [sum(of_seed[:count]) for of_seed in seconds.values()]
+    return count, frames[count - 1], [sum(of_seed[:count]) for of_seed in seconds]
 
 
 def time_rows(folder, names):
@@ -104,47 +101,37 @@ def time_rows(folder, names):
                                     ("policy_search.csv", "policy_search_s", "of it policy search")):
             seconds, frames = times_by_seed(os.path.join(folder, name, table), column)
             for trial in sorted({0, count - 1}):
-                add(what, frames[trial], [of_seed[trial] for of_seed in seconds.values()], "s", table)
+                add(what, frames[trial], [of_seed[trial] for of_seed in seconds], "s", table)
         add("training of the first %d policies" % count, total_frames, [total / 60.0 for total in totals], "min")
-        by_seed, _ = times_by_seed(os.path.join(folder, name, "trials.csv"), "plan_ms_median")
-        add("control, median of a greedy run", "all", [value for of_seed in by_seed.values() for value in of_seed], "ms")
+        plan_ms, _ = times_by_seed(os.path.join(folder, name, "trials.csv"), "plan_ms_median")
+        add("control, median of a greedy run", "all", sum(plan_ms, []), "ms")
     if names:
         rows.append(("PILCO on the state, policies 2 to 10 of the authors", 125 * NUM_TIMED) + AUTHORS_HOURS +
                     ("h", AUTHORS + " (times of the files, %d seeds at once)" % AUTHORS_SEEDS))
     return rows
 
 
-def bar_rows(folder):
-    """Rows (point, bar, here, True | False | None) of PILCO on the state, full GP."""
-    runs, rows = read_runs(folder, "pilco_state"), []
-    for (first, last), bar in zip(GROUPS, (BAR_FIRST, BAR_LATER)):
-        authors, of_runs = of_authors(first, last)
-        count = Count(runs, first, last)
-        rows.append(("PILCO, state: successes of policy " + range_text(first, last),
-                     ">= %d of %d (authors: %d)" % (bar, of_runs, authors), str(count),
-                     count.successes >= bar if count.runs == of_runs else None))
-    count, _, totals = total_seconds(folder, "pilco_state")
-    rows.append(("PILCO, state: time to policy %d, largest of %d seeds" % (count, len(totals)),
-                 "< %g min (authors: 3 to 10 h)" % (BAR_TIME_S / 60.0), minutes_text(totals),
-                 max(totals) < BAR_TIME_S if (count, len(totals)) == (NUM_TIMED, AUTHORS_SEEDS) else None))
-    return rows
-
-
-def minutes_text(seconds):
-    return "%.1f min (median %.1f)" % (max(seconds) / 60.0, statistics.median(seconds) / 60.0)
-
-
 def agreement_rows(folder, names):
-    """Rows as of bar_rows(); what is only reported has no verdict."""
-    rows = bar_rows(folder) if "pilco_state" in names else []
+    """Rows (point, bar, here, True | False | None); only PILCO on the state, full GP, has bars and verdicts."""
+    rows = []
     for name in names:
-        if name == "pilco_state":
-            continue
-        runs = read_runs(folder, name)
-        num_policies, _, totals = total_seconds(folder, name)
-        rows.append(("%s: successes of all policies" % LABELS[name],
-                     "reported" if name in ON_THE_STATE else "reported (paper: 0)", str(Count(runs)), None))
-        rows.append(("%s: time to policy %d, largest of %d seed%s" % (
-            LABELS[name], num_policies, len(runs), "" if len(runs) == 1 else "s"), "reported", minutes_text(totals),
-                     None))
+        runs, label, has_bars = read_runs(folder, name), LABELS[name], name == "pilco_state"
+        for (first, last), bar in zip(GROUPS if has_bars else (), (BAR_FIRST, BAR_LATER)):
+            authors, of_runs = of_authors(first, last)
+            trials = greedy_runs(runs, first, last)
+            rows.append(("%s: successes of policy %s" % (label, range_text(first, last)),
+                         ">= %d of %d (authors: %d)" % (bar, of_runs, authors),
+                         "%d of %d" % (num_successes(trials), len(trials)),
+                         num_successes(trials) >= bar if len(trials) == of_runs else None))
+        if not has_bars:
+            trials = greedy_runs(runs)
+            rows.append((label + ": successes of all policies",
+                         "reported" if name in ON_THE_STATE else "reported (paper: 0)",
+                         "%d of %d" % (num_successes(trials), len(trials)), None))
+        count, _, totals = total_seconds(folder, name)
+        known = has_bars and (count, len(totals)) == (NUM_TIMED, AUTHORS_SEEDS)
+        rows.append(("%s: time to policy %d, largest of %d seed%s" % (label, count, len(totals), "s" * (len(totals) > 1)),
+                     "< %g min (authors: 3 to 10 h)" % (BAR_TIME_S / 60.0) if has_bars else "reported",
+                     "%.1f min (median %.1f)" % (max(totals) / 60.0, statistics.median(totals) / 60.0),
+                     max(totals) < BAR_TIME_S if known else None))
     return rows

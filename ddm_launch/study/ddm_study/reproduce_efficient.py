@@ -1,16 +1,13 @@
 # Runs the experiments about data-efficiency and turns them into tables and figures, with one command.
 # SPDX-License-Identifier: BSD-3-Clause
-import argparse
-import collections
 import os
-import re
 
-from ddm_launch.command import Failure, find_program, package_path
+from ddm_launch.command import Failure, number, package_path, program_parser
 from ddm_launch.settings import flat, read_yaml
-from ddm_launch.sweep import positive, seed_range
-from ddm_study.efficient_bars import write_bars
-from ddm_study.efficient_tables import PRESET, write_gravity, write_nuisances, write_success, write_variants
-from ddm_study.step_runner import StepRunner, SweepStep, require_pilco_in_build, verdict_lines
+from ddm_launch.sweep import seed_range
+from ddm_study.efficient_tables import (PRESET, write_bars, write_gravity, write_nuisances, write_success,
+                                        write_variants)
+from ddm_study.step_runner import Part, StepRunner, SweepStep, verdict_lines
 
 PARTS = ("efficient", "ablation", "tried", "gravity", "nuisances")
 VARIANTS = {"ablation": "ablations", "tried": "tried"}  # part: folder of config/ with variants of the preset
@@ -33,15 +30,10 @@ parts (--only), in this order, and what they leave in DIR:
   gravity      gravity/trials.csv of the preset `efficient_gravity`, gravity/oracle/ and gravity/pilco_state/,
                gravity.csv, gravity.png
   nuisances    nuisances/NAME/trials.csv, nuisances.csv, nuisances.png: under each file of config/nuisances
+               that is not one of a scene
 bars.csv holds what the results must reach and whether they do, machine.yaml how each step was made, runs/ and logs/
 everything that the programs left. A step whose files have changed since it was made is refused. The columns are explained
 in ddm_launch's README."""
-
-
-def count(text):
-    if not re.match(r"\d{1,6}$", text):
-        raise argparse.ArgumentTypeError("must be a whole number >= 0, got '%s'" % text)
-    return int(text)
 
 
 def yaml_names(folder):
@@ -65,10 +57,6 @@ def label_of(path):
     return label
 
 
-# steps: its sweeps. write_tables(). figure: the command that draws what is kept, made when all is there.
-Part = collections.namedtuple("Part", "steps write_tables figure")
-
-
 class EfficientReproduction(StepRunner):
     """Each of PARTS is a method that returns a Part."""
 
@@ -80,25 +68,8 @@ class EfficientReproduction(StepRunner):
         self.options, self.few_seeds = options, options.seeds[:NUM_FEW_SEEDS]
         self.variants = {}  # {part: {name: path}}
 
-    def work(self):
-        parts = {name: getattr(self, name)() for name in PARTS if name in self.options.only}
-        self.require_files(parts)
-        if "gravity" in parts:
-            self.require_pilco()
-        with self.progress(sum(len(step.seeds) for part in parts.values() for step in part.steps) + 2 * len(parts)) as bar:
-            for name, part in parts.items():
-                for step in part.steps:
-                    self.run_sweep(step, bar)
-                bar.set_description(name + ": tables")
-                part.write_tables()
-                bar.update(1)
-                self.draw({"figure_of_" + name: part.figure()}, bar)
-            bar.set_description("done")
-        return self.idle_variants() + verdict_lines(write_bars(self.out))
-
-    def require_files(self, parts):
-        """Before hours have passed: all parts must have their presets and other files."""
-        missing = {}  # part: paths
+    def parts(self):
+        parts, missing = {name: getattr(self, name)() for name in PARTS if name in self.options.only}, {}
         for name, part in parts.items():
             paths = {path for step in part.steps for path in step.files().values() if not os.path.isfile(path)}
             if paths:
@@ -109,18 +80,16 @@ class EfficientReproduction(StepRunner):
                 "; ".join("the part %s needs %s, which is not there" % (name, " and ".join(paths))
                           for name, paths in missing.items()),
                 "leave it out with --only %s" % " ".join(rest) if rest else "name another --preset"))
+        if "gravity" in parts:
+            self.require_pilco(PILCO_TABLE, self.options.pilco_seeds > 0, "--pilco-seeds 0")
+        return parts
 
-    def require_pilco(self):
-        """Before hours have passed: PILCO must be there where it is wanted, and no results of it where it is not."""
-        if self.options.pilco_seeds:
-            require_pilco_in_build("--pilco-seeds 0")
-        elif os.path.exists(self.path(PILCO_TABLE)):
-            raise Failure("%s holds results of PILCO, which --pilco-seeds 0 leaves out: remove it, leave out that "
-                          "option, or use another --out" % self.path(PILCO_TABLE))
+    def verdict(self):
+        return self.idle_variants() + verdict_lines(write_bars(self.out))
 
     def step(self, name, folder, seeds, trials, more=(), preset=None, plant="pendulum", limit_s=None):
         words = ["--preset", preset or self.preset, "--plant", plant, "--trials", str(trials)]
-        return SweepStep(name, os.path.join(folder, "trials.csv"), seeds, words, list(more), limit_s)
+        return SweepStep(name, os.path.join(folder, "trials.csv"), seeds, words, more, limit_s)
 
     def efficient(self):
         step = self.step("efficient", "", self.options.seeds, TRIALS)
@@ -129,31 +98,27 @@ class EfficientReproduction(StepRunner):
             self.keep_config(step, "config.yaml")
             write_success(self.out, step.folder(self.out), self.resumed(step))
 
-        def figure():
-            curves = [(self.preset, self.path("trials.csv")),
-                      ("DDM + MPC", package_path("results", "paper", "trials.csv"))]
-            return self.success_figure("success_rate", curves) + [
-                "--published", package_path("results", "published", "success_rate.csv")]
-        return Part([step], write_tables, figure)
-
-    def variant_step(self, part, name, trials, more=()):
-        return self.step("%s_%s" % (part, name), os.path.join(part, name), self.options.ablation_seeds, trials, more)
+        return Part([step], write_tables, lambda: self.success_figure(
+            "success_rate", [(self.preset, self.path("trials.csv")),
+                             ("DDM + MPC", package_path("results", "paper", "trials.csv"))],
+            ["--published", package_path("results", "published", "success_rate.csv")]))
 
     def reference_step(self):
         """The preset itself, which variants are compared with."""
         return self.variant_step("ablation", PRESET, ABLATION_TRIALS)
 
+    def variant_step(self, part, name, trials, more=()):
+        return self.step("%s_%s" % (part, name), os.path.join(part, name), self.options.ablation_seeds, trials, more)
+
     def ablation(self, part="ablation", trials=ABLATION_TRIALS):
-        paths = yaml_names(VARIANTS[part])
+        paths = self.variants[part] = yaml_names(VARIANTS[part])
         if PRESET in paths:
             raise Failure("%s: the name is that of the reference, the preset itself: rename the file" % paths[PRESET])
-        self.variants[part] = paths
         labels = dict({PRESET: FULL_LABEL}, **{name: label_of(path) for name, path in paths.items()})
         steps = [self.reference_step()] + [self.variant_step(part, name, trials, ["--config", path])
                                            for name, path in paths.items()]
-        return Part(steps, lambda: write_variants(self.out, part, labels), lambda: [
-            find_program("study_figure"), "ablation_compared", self.path(part + ".csv"), "--out",
-            self.path(part + ".png")])
+        return Part(steps, lambda: write_variants(self.out, part, labels), lambda: {
+            part: self.figure("study_figure", "ablation_compared", [self.path(part + ".csv")], part)})
 
     def tried(self):
         return self.ablation("tried", TRIED_TRIALS)
@@ -173,27 +138,23 @@ class EfficientReproduction(StepRunner):
         def write_tables():
             self.keep_config(steps[0], "gravity/config.yaml")
             write_gravity(self.out)
+
         return Part(steps, write_tables, lambda: self.success_figure("gravity", [
             (self.gravity_preset, self.path("gravity", "trials.csv")),
             ("PILCO, state, sparse GP", self.path(PILCO_TABLE)),
             ("oracle", self.path("gravity", "oracle", "trials.csv"))]))
 
     def nuisances(self):
-        names = list(yaml_names("nuisances"))
+        names = [name for name in yaml_names("nuisances") if not name.startswith("scene_")]  # the plant has no scene
         steps = [self.step("nuisance_" + name, os.path.join("nuisances", name), self.few_seeds, NUISANCE_TRIALS,
                            ["--nuisance", name]) for name in names]
-        return Part(steps, lambda: write_nuisances(self.out, names), lambda: [
-            find_program("study_figure"), "nuisances_compared", self.path("nuisances.csv"), "--out",
-            self.path("nuisances.png")])
+        return Part(steps, lambda: write_nuisances(self.out, names), lambda: {
+            "nuisances": self.figure("study_figure", "nuisances_compared", [self.path("nuisances.csv")], "nuisances")})
 
-    def keep_config(self, step, name):
-        self.keep(os.path.join(step.seed_folder(self.out, step.seeds[0]), "config.yaml"), name)
-
-    def success_figure(self, name, curves):
-        """The command that draws those of the curves (label, path) that are there."""
-        return ([find_program("figure"), "success_rate"] +
-                ["%s=%s" % curve for curve in curves if os.path.exists(curve[1])] +
-                ["--wilson", "--out", self.path(name + ".png")])
+    def success_figure(self, name, curves, more=()):
+        """Of those of the curves (label, path) that are there."""
+        return {name: self.figure("figure", "success_rate", [
+            "%s=%s" % curve for curve in curves if os.path.exists(curve[1])] + ["--wilson"] + list(more), name)}
 
     def idle_variants(self):
         """Lines about those that change nothing of the preset: there is nothing to compare."""
@@ -208,8 +169,7 @@ class EfficientReproduction(StepRunner):
 
 
 def main(arguments=None):
-    parser = argparse.ArgumentParser(prog="reproduce_efficient", description=ABOUT, epilog=EPILOG,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = program_parser("reproduce_efficient", ABOUT, EPILOG)
     parser.add_argument("--seeds", type=seed_range, default=range(100, 150), metavar="A:B",
                         help="seeds A ... B - 1, default 100:150; the first %d of them with gravity and under each "
                         "nuisance" % NUM_FEW_SEEDS)
@@ -221,10 +181,10 @@ def main(arguments=None):
     parser.add_argument("--preset", default="efficient",
                         help="default efficient, and efficient_gravity with gravity; debug is for a quick look at the "
                         "path")
-    parser.add_argument("--pilco-seeds", type=count, default=4, metavar="N",
+    parser.add_argument("--pilco-seeds", type=number(int, 0), default=4, metavar="N",
                         help="PILCO with gravity has the first N seeds, default 4; 0: without PILCO")
-    parser.add_argument("--pilco-minutes", type=positive, default=240, metavar="M",
+    parser.add_argument("--pilco-minutes", type=number(int, 1), default=240, metavar="M",
                         help="end PILCO after M minutes in all, default 240: then it has the rows of the trials that "
                         "are finished, and fewer seeds at more frames")
-    parser.add_argument("--jobs", type=positive, metavar="N", help="seeds at a time; default one per core")
+    parser.add_argument("--jobs", type=number(int, 1), metavar="N", help="seeds at a time; default one per core")
     return EfficientReproduction(parser.parse_args(arguments)).run()

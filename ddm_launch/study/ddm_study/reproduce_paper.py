@@ -1,16 +1,14 @@
 # Runs the paper's experiments and turns them into tables and figures, with one command.
 # SPDX-License-Identifier: BSD-3-Clause
-import argparse
 import os
 
-from ddm_launch.command import Failure, find_program, package_path
+from ddm_launch.command import find_program, number, package_path, program_parser
 from ddm_launch.run_folder import Evaluation, read_trials
-from ddm_launch.sweep import positive
 from ddm_launch.tables import write_csv
 from ddm_study import pilco_runs, pilco_tables
 from ddm_study.paper_tables import write_tables
 from ddm_study.schedules import SCHEDULES
-from ddm_study.step_runner import StepRunner, SweepStep, require_pilco_in_build, verdict_lines
+from ddm_study.step_runner import Part, StepRunner, SweepStep, verdict_lines
 
 NUM_ANGLE_SEEDS = 16  # as in the paper's Fig. 7
 NUM_SCHEDULE_SEEDS = 25  # of each schedule but the paper's own
@@ -40,39 +38,38 @@ agreement.csv: what holds of the paper's claims. machine.yaml: how each step was
 programs left, which the figures do not need."""
 
 
-def schedule_options(schedule):
-    return [] if schedule == "joint" else ["--config", package_path("config", "schedules", schedule + ".yaml")]
+def config_option(*names):
+    return ["--config", package_path("config", *names)]
 
 
-def pilco_steps(preset, num_seeds):
-    """The sweeps of PILCO."""
+def sweep_steps(preset, num_seeds, configs, with_pilco):
+    """All sweeps, the paper's own first, PILCO's, the long ones, last. configs: words that come last in each."""
     steps = []
-    for name, method, most_seeds, trials, config in PILCO:
-        words = ["--preset", preset, "--plant", "pendulum", "--trials", str(trials)]
-        more = ["--method", method] + (["--config", package_path("config", config)] if config else [])
-        steps.append(SweepStep(name, name + "/trials.csv", range(min(num_seeds, most_seeds)), words, more))
-    return steps
 
+    def add(name, table, most_seeds, words, more=()):
+        steps.append(SweepStep(name, table, range(min(num_seeds, most_seeds)), ["--preset", preset] + words,
+                               more + configs))
 
-def sweep_steps(preset, num_seeds):
-    """All sweeps but PILCO's, the paper's own first."""
-    pendulum = ["--preset", preset, "--plant", "pendulum", "--trials", str(TRIALS)]
-    steps = [SweepStep("joint", "trials.csv", range(num_seeds), pendulum),
-             SweepStep("oracle", "oracle/trials.csv", range(num_seeds), pendulum, ["--method", "oracle"])]
+    def add_trials(name, folder, most_seeds, trials, more):
+        add(name, os.path.join(folder, "trials.csv"), most_seeds, ["--plant", "pendulum", "--trials", str(trials)], more)
+
+    def add_predictions(name, folder, plant, more):
+        add(name, folder + "/predictions.csv", NUM_PREDICTION_SEEDS,
+            ["--program", "prediction_experiment", "--plant", plant], more)
+
+    options = {schedule: [] if schedule == "joint" else config_option("schedules", schedule + ".yaml")
+               for schedule in SCHEDULES}
+    add_trials("joint", "", num_seeds, TRIALS, [])
+    add_trials("oracle", "oracle", num_seeds, TRIALS, ["--method", "oracle"])
     for schedule in SCHEDULES[1:]:
-        steps.append(SweepStep(schedule, schedule + "/trials.csv", range(min(num_seeds, NUM_SCHEDULE_SEEDS)),
-                               pendulum, schedule_options(schedule)))
-    def predictions(name, table, plant, more=()):
-        words = ["--program", "prediction_experiment", "--preset", preset, "--plant", plant]
-        steps.append(SweepStep(name, table, range(min(num_seeds, NUM_PREDICTION_SEEDS)), words, more))
-
-    predictions("tile", "tile/predictions.csv", "moving_tile")
-    # One start each: the best of several would be a random one of most schedules.
-    single_start = ["--config", package_path("config", "single_start.yaml")]
+        add_trials(schedule, schedule, NUM_SCHEDULE_SEEDS, TRIALS, options[schedule])
+    add_predictions("tile", "tile", "moving_tile", [])
     for plant, folder in (("moving_tile", "tile_predictions"), ("pendulum", "pendulum_predictions")):
-        for schedule in SCHEDULES:
-            predictions("%s_%s" % (folder, schedule), "%s/%s/predictions.csv" % (folder, schedule), plant,
-                        single_start + schedule_options(schedule))
+        for schedule in SCHEDULES:  # one start each: the best of several would be a random one of most schedules
+            add_predictions("%s_%s" % (folder, schedule), "%s/%s" % (folder, schedule), plant,
+                            config_option("single_start.yaml") + options[schedule])
+    for name, method, most_seeds, trials, config in PILCO if with_pilco else ():
+        add_trials(name, name, most_seeds, trials, ["--method", method] + (config_option(config) if config else []))
     return steps
 
 
@@ -80,40 +77,29 @@ class Reproduction(StepRunner):
     def __init__(self, options):
         super().__init__("reproduce_paper", options.out, {"preset": options.preset}, options.jobs)
         configs = [word for path in options.config for word in ("--config", os.path.abspath(path))]
-        self.pilco = [] if options.without_pilco else pilco_steps(options.preset, options.seeds)
-        self.steps = sweep_steps(options.preset, options.seeds) + self.pilco  # the long ones last
-        for step in self.steps:
-            step.more = list(step.more) + configs
+        self.steps = sweep_steps(options.preset, options.seeds, configs, not options.without_pilco)
         self.by_name = {step.name: step for step in self.steps}
+        self.pilco = [self.by_name[row[0]] for row in PILCO if row[0] in self.by_name]
+        self.agreement = []
 
-    def work(self):
-        self.require_pilco()
-        with self.progress(sum(len(step.seeds) for step in self.steps) + len(self.figure_commands()) + 1) as bar:
-            for step in self.steps:
-                self.run_sweep(step, bar)
-            bar.set_description("tables")
-            self.collect()
-            agreement = write_tables(self.out, package_path("results", "published", "success_rate.csv"),
-                                     [step.name for step in self.pilco])
-            bar.update(1)
-            self.draw(self.figure_commands(), bar)
-        return verdict_lines(agreement)
+    def parts(self):
+        self.require_pilco("pilco.csv", bool(self.pilco), "--without-pilco")
+        return {"paper": Part(self.steps, self.write_tables, self.figure_commands)}
 
-    def require_pilco(self):
-        """Before hours have passed: PILCO must be there where it is wanted, and no results of it where it is not."""
-        if not self.pilco:
-            if os.path.exists(self.path("pilco.csv")):
-                raise Failure("%s holds results of PILCO, which tables without it would contradict: leave out "
-                              "--without-pilco, or use another folder" % self.out)
-            return
-        require_pilco_in_build("--without-pilco")
+    def verdict(self):
+        return verdict_lines(self.agreement)
+
+    def write_tables(self):
+        self.collect()
+        self.agreement = write_tables(self.out, package_path("results", "published", "success_rate.csv"),
+                                      [step.name for step in self.pilco])
 
     def collect(self):
         """What the figures need of single runs."""
         joint = self.by_name["joint"]
         self.write_angles(joint)
         folder = joint.seed_folder(self.out, FIGURE_SEED)
-        self.keep(os.path.join(folder, "config.yaml"), "config.yaml")
+        self.keep_config(joint, "config.yaml")
         trial = PAPER_TRIALS[-1]
         self.keep(os.path.join(folder, "trial_%03d" % trial, "model.ddm"), "pendulum/model.ddm")
         self.call("feature_space", [find_program("feature_space"), folder, "--trial", str(trial), "--step",
@@ -127,7 +113,7 @@ class Reproduction(StepRunner):
 
     def collect_pilco(self):
         for step in self.pilco:
-            self.keep(os.path.join(step.seed_folder(self.out, FIGURE_SEED), "config.yaml"), step.name + "/config.yaml")
+            self.keep_config(step, step.name + "/config.yaml")
             write_csv(self.path(step.name, "policy_search.csv"), ["seed", "trial", "frames"] + pilco_runs.SEARCH_KEYS,
                       pilco_runs.search_rows(step.seed_folders(self.out)))
         folders = self.by_name["pilco_state"].seed_folders(self.out, NUM_DISTRIBUTION_SEEDS)
@@ -154,24 +140,22 @@ class Reproduction(StepRunner):
         methods.append(("oracle", "oracle/trials.csv"))
         product = {
             "success_rate": ["%s=%s" % (label, self.path(table)) for label, table in methods] +
-            ["--published", package_path("results", "published", "success_rate.csv")],
-            "pendulum_feature_space": [self.path("pendulum", "feature_space.csv"), "--model",
-                                       self.path("pendulum", "model.ddm")],
-            "prediction_strip": [self.path("tile")],
-            "feature_plane": [self.path("tile"), self.path("tile_predictions", "sequential")]}
-        study = {"angle_trajectories": [self.path("angle_trajectories.csv")], "schedules_compared": [self.out]}
+            ["--published", package_path("results", "published", "success_rate.csv")]}
+        study = {"angle_trajectories": [self.path("angle_trajectories.csv")], "schedules_compared": [self.out],
+                 "pendulum_feature_space": [self.path("pendulum", "feature_space.csv"), "--model",
+                                            self.path("pendulum", "model.ddm")],
+                 "prediction_strip": [self.path("tile")],
+                 "feature_plane": [self.path("tile"), self.path("tile_predictions", "sequential")]}
         if self.pilco:
             study["trajectory_distributions"] = [self.path("trajectory_distributions.csv"), "--seconds",
                                                  str(DISTRIBUTION_SECONDS)]
-        return {name: [find_program(program), name] + words + ["--out", self.path(name + ".png")]
-                for program, figures in (("figure", product), ("study_figure", study))
-                for name, words in figures.items()}
+        return {name: self.figure(program, name, words)
+                for program, figures in (("figure", product), ("study_figure", study)) for name, words in figures.items()}
 
 
 def main(arguments=None):
-    parser = argparse.ArgumentParser(prog="reproduce_paper", description=ABOUT, epilog=EPILOG,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seeds", type=positive, default=50, metavar="N",
+    parser = program_parser("reproduce_paper", ABOUT, EPILOG)
+    parser.add_argument("--seeds", type=number(int, 1), default=50, metavar="N",
                         help="seeds 0 ... N - 1 of the paper's experiment, default 50; at most %d of each other "
                         "schedule, %d of each prediction experiment, and %s of PILCO" % (
                             NUM_SCHEDULE_SEEDS, NUM_PREDICTION_SEEDS, ", ".join(str(row[2]) for row in PILCO)))
@@ -180,5 +164,5 @@ def main(arguments=None):
     parser.add_argument("--without-pilco", action="store_true", help="leave out PILCO, which takes hours")
     parser.add_argument("--config", action="append", default=[], metavar="FILE",
                         help="YAML file with overrides for all experiments; repeatable, later files win")
-    parser.add_argument("--jobs", type=positive, metavar="N", help="seeds at a time; default one per core")
+    parser.add_argument("--jobs", type=number(int, 1), metavar="N", help="seeds at a time; default one per core")
     return Reproduction(parser.parse_args(arguments)).run()

@@ -1,6 +1,7 @@
 # Walks through the steps of a reproduction: sweeps that resume, figures, and machine.yaml about both.
 # SPDX-License-Identifier: BSD-3-Clause
-"""What reproduce_paper and reproduce_efficient share. Each is a StepRunner that says what to run (work())."""
+"""What reproduce_paper and reproduce_efficient share. Each is a StepRunner that says what to run: its parts()."""
+import collections
 import os
 import platform
 import shutil
@@ -25,16 +26,6 @@ METHODS_WITHOUT_FILE = ("ddm", "oracle")
 POLL_S = 0.2
 
 
-def require_pilco_in_build(without):
-    """Asks run_experiment for a run where none can be: it ends with code 2 if it does not know the method.
-
-    without: the option that leaves PILCO out.
-    """
-    asked = [find_program("run_experiment"), "--preset", "debug", "--method", "pilco_state", "--out", os.devnull]
-    if subprocess.call(asked, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) == 2:
-        raise Failure("PILCO is not in this build of run_experiment: build with -DDDM_PILCO=ON, or say %s" % without)
-
-
 class SweepStep:
     """Many seeds of one program; their rows end in TABLE.
 
@@ -44,13 +35,13 @@ class SweepStep:
     """
 
     def __init__(self, name, table, seeds, words, more=(), limit_s=None):
-        self.name, self.table, self.seeds, self.words, self.more = name, table, seeds, words, more
+        self.name, self.table, self.seeds, self.words, self.more = name, table, seeds, list(words), list(more)
         self.limit_s = limit_s
 
     def command(self, out, jobs):
         return ([find_program("sweep"), "--seeds", "%d:%d" % (self.seeds[0], self.seeds[-1] + 1), "--out",
                  self.folder(out)] + self.words + (["--jobs", str(jobs)] if jobs else []) +
-                (["--"] + list(self.more) if self.more else []))
+                (["--"] + self.more if self.more else []))
 
     def folder(self, out):
         return os.path.join(out, "runs", self.name)
@@ -58,7 +49,7 @@ class SweepStep:
     def seed_folder(self, out, seed):
         return os.path.join(self.folder(out), "seed_%04d" % seed)
 
-    def seed_folders(self, out, most_seeds=sys.maxsize):
+    def seed_folders(self, out, most_seeds=None):
         """{seed: its run folder} of the first seeds."""
         return {seed: self.seed_folder(out, seed) for seed in self.seeds[:most_seeds]}
 
@@ -69,7 +60,7 @@ class SweepStep:
     def files(self):
         """{kind and name: path} of the files that this step names. Those of --config are counted: a later one
         overrides an earlier one, and two may have the same name."""
-        words, files, num_configs = list(self.words) + list(self.more), {}, 0
+        words, files, num_configs = self.words + self.more, {}, 0
         for option, value in zip(words, words[1:]):
             if option == "--config":
                 num_configs += 1
@@ -82,6 +73,10 @@ class SweepStep:
     def settings(self):
         """What these files say."""
         return {name: read_yaml(path) for name, path in self.files().items()}
+
+
+# steps: its sweeps. write_tables(). figures(): {name: command that draws what is kept}, asked when all is there.
+Part = collections.namedtuple("Part", "steps write_tables figures")
 
 
 class StepRunner:
@@ -97,39 +92,74 @@ class StepRunner:
         self.name, self.out, self.about, self.jobs = name, os.path.abspath(out), about, jobs
         self.measured = {}  # step: what machine.yaml has of it
 
-    def work(self):
-        """Makes everything, and returns the lines to print in the end."""
+    def parts(self):
+        """{name: Part}, in the order in which to make them. Raises Failure if something is missing for one."""
+        raise NotImplementedError
+
+    def verdict(self):
+        """The lines to print in the end."""
         raise NotImplementedError
 
     def run(self):
         """Returns the exit code."""
-        def work():
-            start = time.monotonic()
-            os.makedirs(self.path("logs"), exist_ok=True)
-            self.measured = read_yaml(self.path("machine.yaml")).get("steps") or {}
-            try:
-                lines = self.work()
-            except Interrupted:
-                print("%s: the same command resumes" % self.name, file=sys.stderr)
-                raise
-            print("\n".join(lines + ["results: %s (%.0f s)" % (self.out, time.monotonic() - start)]))
-            versions = sorted({step["version"] for step in self.measured.values()})
-            if len(versions) > 1:
-                print("%s: note: the steps come from %d versions of the code: %s" % (
-                    self.name, len(versions), ", ".join(versions)), file=sys.stderr)
-        return run_program(self.name, work)
+        return run_program(self.name, self.work)
+
+    def work(self):
+        start = time.monotonic()
+        os.makedirs(self.path("logs"), exist_ok=True)
+        self.measured = read_yaml(self.path("machine.yaml")).get("steps") or {}
+        parts = self.parts()
+        total = sum(len(step.seeds) for part in parts.values() for step in part.steps) + 2 * len(parts)
+        try:
+            # a step of the bar is a finished seed, the tables, or the figures
+            with tqdm(total=total, unit="step", dynamic_ncols=True, disable=None, smoothing=0.05) as bar:
+                for name, part in parts.items():
+                    for step in part.steps:
+                        self.run_sweep(step, bar)
+                    bar.set_description(name + ": tables")
+                    part.write_tables()
+                    bar.update(1)
+                    bar.set_description(name + ": figures")
+                    for figure, command in part.figures().items():
+                        self.call("figure_of_" + figure, command)
+                    bar.update(1)
+        except Interrupted:
+            print("%s: the same command resumes" % self.name, file=sys.stderr)
+            raise
+        print("\n".join(self.verdict() + ["results: %s (%.0f s)" % (self.out, time.monotonic() - start)]))
+        versions = sorted({step["version"] for step in self.measured.values()})
+        if len(versions) > 1:
+            print("%s: note: the steps come from %d versions of the code: %s" % (
+                self.name, len(versions), ", ".join(versions)), file=sys.stderr)
+
+    def require_pilco(self, table, is_wanted, without):
+        """Before hours have passed: PILCO must be there where it is wanted, and no results of it where it is not.
+
+        without: the option that leaves it out.
+        """
+        if not is_wanted and os.path.exists(self.path(table)):
+            raise Failure("%s holds results of PILCO, which %s leaves out: remove it, leave out that option, or use "
+                          "another --out" % (self.path(table), without))
+        # It ends with code 2 if it does not know the method, and with 1 where no run can be.
+        asked = [find_program("run_experiment"), "--preset", "debug", "--method", "pilco_state", "--out", os.devnull]
+        if is_wanted and subprocess.call(asked, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                         stderr=subprocess.DEVNULL) == 2:
+            raise Failure("PILCO is not in this build of run_experiment: build with -DDDM_PILCO=ON, or say %s" % without)
 
     def path(self, *names):
         return os.path.join(self.out, *names)
 
-    def progress(self, total):
-        """The bar: a step of it is a finished seed, a figure, or the tables."""
-        return tqdm(total=total, unit="step", dynamic_ncols=True, disable=None, smoothing=0.05)
+    def figure(self, program, kind, words, name=None):
+        """The command that draws a figure of this kind into OUT/NAME.png."""
+        return [find_program(program), kind] + words + ["--out", self.path((name or kind) + ".png")]
 
     def keep(self, source, name):
         """Copies a result to where it is kept."""
         os.makedirs(os.path.dirname(self.path(name)), exist_ok=True)
         shutil.copyfile(source, self.path(name))
+
+    def keep_config(self, step, name):
+        self.keep(os.path.join(step.seed_folder(self.out, step.seeds[0]), "config.yaml"), name)
 
     def run_sweep(self, step, bar):
         """Runs the seeds that are not finished, moves the bar by each that is, and keeps the table."""
@@ -163,13 +193,12 @@ class StepRunner:
         before = step.finished(self.out)
         resumed = [seed for seed, folder in step.seed_folders(self.out).items()
                    if seed not in before and num_finished(folder) > 0]
-        start, is_up, error = time.monotonic(), False, None
+        start, is_up, ended = time.monotonic(), False, 0
         log = self.path("logs", step.name + ".log")
         with open(log, "w") as stream:
             process = subprocess.Popen(step.command(self.out, self.jobs), stdin=subprocess.DEVNULL, stdout=stream,
                                        stderr=subprocess.STDOUT)
         try:
-            ended, status, usage = 0, None, None
             while not ended:
                 time.sleep(POLL_S)
                 show()
@@ -177,19 +206,17 @@ class StepRunner:
                     is_up = True
                     os.kill(process.pid, signal.SIGINT)
                 ended, status, usage = os.wait4(process.pid, os.WNOHANG)
-        except BaseException as caught:
-            error = caught
-            os.kill(process.pid, signal.SIGINT)
-            _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.WEXITSTATUS(status) if os.WIFEXITED(status) else -os.WTERMSIG(status)
-        num_run = len(step.finished(self.out, before))
-        if num_run or left_s is not None:
-            self.add_measurement(step, num_run, time.monotonic() - start, usage.ru_maxrss / 1024.0, resumed)
-        if error:
-            raise error
-        if process.returncode != 0 and not is_up:
+        finally:
+            if not ended:
+                os.kill(process.pid, signal.SIGINT)
+                _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = status  # it has been waited for
+            num_run = len(step.finished(self.out, before))
+            if num_run or left_s is not None:
+                self.add_measurement(step, num_run, time.monotonic() - start, usage.ru_maxrss / 1024.0, resumed)
+        if status != 0 and not is_up:
             raise Failure("%s: not all seeds are finished, see %s; the same command resumes" % (step.name, log))
-        return process.returncode == 0
+        return status == 0
 
     def require_settings(self, step):
         """A sweep does not look at finished seeds again: they must not come from files that have changed since."""
@@ -209,7 +236,7 @@ class StepRunner:
     def keep_finished_trials(self, step):
         """The table of a sweep whose time was up: of each seed as many trials as it has. Without any there is no
         table, nor one of seeds that have been removed."""
-        lines = []
+        lines, table = [], self.path(step.table)
         for folder in step.seed_folders(self.out).values():
             path = os.path.join(folder, "trials.csv")
             if os.path.exists(path):
@@ -217,10 +244,10 @@ class StepRunner:
                     header, *rows = in_todays_columns(stream.read().splitlines())
                 lines += rows if lines else [header] + rows
         if lines:
-            os.makedirs(os.path.dirname(self.path(step.table)), exist_ok=True)
-            write_file(self.path(step.table), "\n".join(lines) + "\n")
-        elif os.path.exists(self.path(step.table)):
-            os.remove(self.path(step.table))
+            os.makedirs(os.path.dirname(table), exist_ok=True)
+            write_file(table, "\n".join(lines) + "\n")
+        elif os.path.exists(table):
+            os.remove(table)
 
     def add_measurement(self, step, num_run, wall_s, peak_memory_mb, resumed):
         """Keeps what a call took. Calls add up; seeds that an interruption cut short count with their time alone."""
@@ -249,13 +276,6 @@ class StepRunner:
             code = subprocess.call(command, stdin=subprocess.DEVNULL, stdout=stream, stderr=subprocess.STDOUT)
         if code != 0:
             raise Failure("%s: '%s' failed with code %d, see %s" % (name, " ".join(command), code, log))
-
-    def draw(self, figures, bar):
-        """figures: {name: command}."""
-        for name, command in figures.items():
-            bar.set_description(name)
-            self.call(name, command)
-            bar.update(1)
 
 
 def verdict_lines(rows):

@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 from ddm_launch.command import Failure
 from ddm_launch.figure_style import BLUE, ORANGE, PAGE_WIDTH, SKY, VERMILLION, add_legend, new_figure, save
 from ddm_launch.tables import optional, read_csv
-from ddm_study.angle_trajectories import angle_reach, set_angle_axis, target_handle
+from ddm_study.angle_trajectories import angle_panels, angle_reach, half_turns, target_handle
 from ddm_study.pilco_runs import DISTRIBUTION_COLUMNS, EVALUATION, PREDICTED, TRIAL
 
 ABOUT = ("The angle that PILCO predicted for each policy, and what that policy did. The distribution when the policy was "
@@ -30,8 +30,8 @@ class Angles:
 
     def edge(self, sign):
         """The upper (1) or lower (-1) edge of the band [rad]."""
-        return [angle + sign * NUM_DEVIATIONS * deviation for angle, deviation in zip(self.angle_rad,
-                                                                                      self.deviation_rad)]
+        return [angle + sign * NUM_DEVIATIONS * deviation
+                for angle, deviation in zip(self.angle_rad, self.deviation_rad)]
 
 
 def read_distributions(path):
@@ -53,14 +53,10 @@ def read_distributions(path):
     return seeds
 
 
-def half_turns(angles_rad):
-    return [angle / math.pi for angle in angles_rad]
-
-
-def draw_panel(axes, runs):
+def draw_policy(axes, runs):
     """Prediction and actual runs of one policy. runs: {kind: Angles}."""
-    if PREDICTED in runs:
-        predicted = runs[PREDICTED]
+    predicted = runs.get(PREDICTED)
+    if predicted:
         axes.fill_between(predicted.time_s, half_turns(predicted.edge(-1)), half_turns(predicted.edge(1)), color=SKY,
                           alpha=0.5, linewidth=0)
         axes.plot(predicted.time_s, half_turns(predicted.angle_rad), color=BLUE, linewidth=0.8)
@@ -74,32 +70,25 @@ def draw_all(figure, seeds, seconds):
 
     seconds: where the axes end; None: with the longest run.
     """
-    columns = sorted({frames for panels in seeds.values() for frames in panels})
-    runs = [run for panels in seeds.values() for kinds in panels.values() for run in kinds.values()]
-    end = seconds or max(run.time_s[-1] for run in runs)
+    columns = sorted({frames for policies in seeds.values() for frames in policies})
+    runs = [run for policies in seeds.values() for kinds in policies.values() for run in kinds.values()]
+    end_s = seconds or max(run.time_s[-1] for run in runs)
     reach = angle_reach(edge for run in runs for sign in (-1, 1)
-                        for time_s, edge in zip(run.time_s, run.edge(sign)) if time_s <= end)
-    grid = figure.add_gridspec(len(seeds) + 1, len(columns), height_ratios=[1.0] * len(seeds) + [0.001])
-    for row, (seed, panels) in enumerate(seeds.items()):
-        for column, frames in enumerate(columns):
-            axes = figure.add_subplot(grid[row, column])
-            set_angle_axis(axes, reach, column == 0)
-            draw_panel(axes, panels.get(frames, {}))
-            axes.set_xlim(0.0, end)
-            axes.xaxis.set_major_locator(MaxNLocator(nbins=3, steps=[1, 2, 5, 10]))
-            if column == 0:
-                axes.set_ylabel("seed %d\nangle [rad]" % seed)
-            if row == 0:
-                axes.set_title("%d frames" % frames, pad=3)
-            if row + 1 < len(seeds):
-                axes.set_xticklabels([])
-            else:
-                axes.set_xlabel("time [s]")
+                        for time_s, edge in zip(run.time_s, run.edge(sign)) if time_s <= end_s)
+    panels, place = angle_panels(figure, len(seeds), len(columns), len(seeds) * len(columns), reach, end_s)
+    for k, axes in enumerate(panels):
+        seed, frames = list(seeds)[k // len(columns)], columns[k % len(columns)]
+        draw_policy(axes, seeds[seed].get(frames, {}))
+        axes.xaxis.set_major_locator(MaxNLocator(nbins=3, steps=[1, 2, 5, 10]))
+        if k % len(columns) == 0:
+            axes.set_ylabel("seed %d\nangle [rad]" % seed)
+        if k < len(columns):
+            axes.set_title("%d frames" % frames, pad=3)
     handles = [(Line2D([], [], color=BLUE), "predicted mean"),
                (Patch(color=SKY, alpha=0.5), "$\\pm %g\\sigma$" % NUM_DEVIATIONS)]
     handles += [(Line2D([], [], color=colour, linestyle=line), label) for _, colour, line, label in ACTUAL]
     handles.append(target_handle())
-    add_legend(figure, grid[len(seeds), :], *zip(*handles), ncol=len(handles), columnspacing=1.2)
+    add_legend(figure, place, *zip(*handles), ncol=len(handles), columnspacing=1.2)
 
 
 def positive_seconds(text):

@@ -3,6 +3,7 @@
 #include "bag_file.h"
 
 #include <cstring>
+#include <sstream>
 #include <stdexcept>
 
 #include "bag_chunk.h"
@@ -24,10 +25,10 @@ enum class Kind : std::uint8_t {
 
 [[noreturn]] void refuse(const std::string& what) { throw std::runtime_error(what + kRemedy); }
 
-/// The file from some position on.
-class FileBytes {
+/// A file, or what a record of it holds, from some position on.
+class Bytes {
  public:
-  FileBytes(std::istream* in, std::uint64_t position, std::uint64_t end)
+  Bytes(std::istream* in, std::uint64_t position, std::uint64_t end)
       : in_(in), at_(position), end_(end) {
     in_->clear();
     in_->seekg(static_cast<std::streamoff>(position));
@@ -61,23 +62,6 @@ class FileBytes {
   std::uint64_t end_;
 };
 
-/// Bytes in memory.
-class TextBytes {
- public:
-  explicit TextBytes(const std::string& text) : text_(text) {}
-
-  bool done() const { return at_ == text_.size(); }
-  std::string take(std::uint32_t size) {
-    if (size > text_.size() - at_) refuse("a record is longer than what it lies in");
-    at_ += size;
-    return text_.substr(at_ - size, size);
-  }
-
- private:
-  const std::string& text_;
-  std::size_t at_ = 0;
-};
-
 template <class Number>
 Number numberOf(const std::string& bytes) {
   if (bytes.size() != sizeof(Number))
@@ -87,16 +71,14 @@ Number numberOf(const std::string& bytes) {
   return value;
 }
 
-template <class Bytes>
-std::uint32_t takeSize(Bytes* bytes) {
-  return numberOf<std::uint32_t>(bytes->take(4));
-}
+std::uint32_t takeSize(Bytes* bytes) { return numberOf<std::uint32_t>(bytes->take(4)); }
 
 /// NAME=VALUE, each with its size before it.
 class Fields {
  public:
   explicit Fields(const std::string& text) {
-    TextBytes bytes(text);
+    std::istringstream in(text);
+    Bytes bytes(&in, 0, text.size());
     while (!bytes.done()) {
       const std::string field = bytes.take(takeSize(&bytes));
       const std::size_t sign = field.find('=');
@@ -134,7 +116,7 @@ BagFile::BagFile(std::istream* in) : in_(in) {
   const auto end = static_cast<std::streamoff>(in_->tellg());
   if (end < 0) refuse("cannot be read");
   size_ = static_cast<std::uint64_t>(end);
-  FileBytes front(in_, 0, size_);
+  Bytes front(in_, 0, size_);
   if (front.take(sizeof(kMagic) - 1) != kMagic) refuse("does not begin as a bag of format 2.0");
   const Fields header(front.take(takeSize(&front)));
   if (header.kind() != Kind::kBagHeader) refuse("has no header");
@@ -146,7 +128,7 @@ BagFile::BagFile(std::istream* in) : in_(in) {
   if (index_ < first_ || index_ > size_) refuse("its index is not in the file");
 
   std::uint32_t num_chunks = 0;
-  FileBytes bytes(in_, index_, size_);
+  Bytes bytes(in_, index_, size_);
   while (!bytes.done()) {
     const Fields fields(bytes.take(takeSize(&bytes)));
     const std::uint32_t size = takeSize(&bytes);
@@ -167,7 +149,8 @@ BagFile::BagFile(std::istream* in) : in_(in) {
 
 void BagFile::forEachMessage(const TakeMessage& take) {
   const auto takeChunk = [&](const std::string& chunk) {
-    TextBytes bytes(chunk);
+    std::istringstream in(chunk);
+    Bytes bytes(&in, 0, chunk.size());
     while (!bytes.done()) {
       const Fields fields(bytes.take(takeSize(&bytes)));
       const std::string data = bytes.take(takeSize(&bytes));
@@ -179,7 +162,7 @@ void BagFile::forEachMessage(const TakeMessage& take) {
     }
   };
   std::uint32_t num_chunks = 0;
-  FileBytes bytes(in_, first_, index_);
+  Bytes bytes(in_, first_, index_);
   while (!bytes.done()) {
     const Fields fields(bytes.take(takeSize(&bytes)));
     const std::uint32_t size = takeSize(&bytes);

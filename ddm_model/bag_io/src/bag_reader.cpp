@@ -4,7 +4,10 @@
 
 #include <ddm_files/plain_file.h>
 #include <ddm_msgs/message_bytes.h>
+#include <ddm_msgs/option_checks.h>
 
+#include <boost/algorithm/string/join.hpp>
+#include <boost/algorithm/string/predicate.hpp>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -12,7 +15,6 @@
 #include <set>
 #include <stdexcept>
 
-#include "bag_bytes.h"
 #include "bag_file.h"
 #include "trial_messages.h"
 
@@ -20,10 +22,6 @@ namespace ddm {
 namespace {
 
 using Connections = std::map<std::uint32_t, BagConnection>;
-
-bool endsWith(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
 
 std::string absolute(const std::string& topic) {
   return !topic.empty() && topic.front() == '/' ? topic : "/" + topic;
@@ -37,7 +35,9 @@ std::string findTopic(const Connections& connections, const std::string& name,
   bool exact = false;
   for (const auto& entry : connections) {
     const bool is_exact = absolute(entry.second.topic) == absolute(name);
-    if (!is_exact && (exact || !endsWith(absolute(entry.second.topic), absolute(name)))) continue;
+    if (!is_exact &&
+        (exact || !boost::algorithm::ends_with(absolute(entry.second.topic), absolute(name))))
+      continue;
     if (is_exact && !exact) found.clear();
     exact = is_exact;
     found.insert(entry.second.topic);
@@ -63,10 +63,8 @@ std::string requireTopic(const Connections& connections, const std::string& name
   for (const auto& entry : connections) {
     topics.insert(entry.second.topic);
   }
-  std::string there;
-  for (const std::string& other : topics) there += " " + other;
-  throw std::runtime_error("no topic " + name +
-                           " (it holds:" + (there.empty() ? " nothing" : there) +
+  throw std::runtime_error("no topic " + name + " (it holds: " +
+                           (topics.empty() ? "nothing" : boost::algorithm::join(topics, " ")) +
                            "): record it, or set data_set/" + key);
 }
 
@@ -87,16 +85,15 @@ Message messageOf(const BagConnection& connection, const std::string& bytes) {
 }  // namespace
 
 std::vector<std::string> BagOptions::problems() const {
-  std::vector<std::string> out;
-  const auto require = [&out](const std::string& topic, const std::string& key) {
-    if (topic.empty() || topic.back() == '/') {
-      out.push_back("data_set/" + key + " must be the name of a topic, got '" + topic + "'");
-    }
+  OptionChecks data_set("data_set");
+  const auto requireTopicName = [&data_set](const std::string& key, const std::string& topic) {
+    data_set.require(!topic.empty() && topic.back() != '/', key, "be the name of a topic",
+                     "'" + topic + "'");
   };
-  require(image_topic, "image_topic");
-  require(torque_topic, "torque_topic");
-  require(goal_topic, "goal_topic");
-  return out;
+  requireTopicName("image_topic", image_topic);
+  requireTopicName("torque_topic", torque_topic);
+  requireTopicName("goal_topic", goal_topic);
+  return data_set.problems();
 }
 
 BagContent readBagBytes(std::istream* in, int image_size, const BagOptions& options) {
@@ -121,7 +118,7 @@ BagContent readBagBytes(std::istream* in, int image_size, const BagOptions& opti
 }
 
 BagContent readBag(const std::string& path, int image_size, const BagOptions& options) {
-  if (endsWith(path, ".active")) {
+  if (boost::algorithm::ends_with(path, ".active")) {
     throw std::runtime_error(
         "bag " + path +
         ": its recording was not completed; `rosbag reindex` recovers what was "

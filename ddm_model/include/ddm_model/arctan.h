@@ -6,7 +6,7 @@
 
 namespace ddm {
 
-/// y_i = atan(x_i) and slope_i = 1 / (1 + x_i^2), for arrays that the compiler can vectorise.
+/// x_i becomes atan(x_i), slope_i = 1 / (1 + x_i^2), in a loop that the compiler can vectorise.
 ///
 ///   |x| <= 1:  atan(x) = x p(x^2)          |x| > 1:  atan(x) = sign(x) pi/2 + r p(r^2),  r = -1/x
 ///
@@ -14,10 +14,9 @@ namespace ddm {
 /// (double). Error against the exact value: at most 3e-7 (float) and 5e-16 (double). NaN stays NaN,
 /// +-inf becomes +-pi/2 with slope 0.
 ///
-/// @param x      n values; x == y is allowed
-/// @param y      out: n values [rad]
-/// @param slope  out: n values; must not overlap the others
-void arctan(const float* x, float* y, float* slope, Eigen::Index n);
-void arctan(const double* x, double* y, double* slope, Eigen::Index n);
+/// @param x      in: n values; out: their arctan [rad]
+/// @param slope  out: n values; must not overlap x
+void arctan(float* x, float* slope, Eigen::Index n);
+void arctan(double* x, double* slope, Eigen::Index n);
 
 }  // namespace ddm

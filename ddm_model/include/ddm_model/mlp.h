@@ -88,6 +88,14 @@ class Mlp {
   Eigen::Index num_params_ = 0;
 };
 
+/// Widths of a network with these hidden layers, input first.
+inline std::vector<int> layerWidths(int first, const std::vector<int>& hidden, int last) {
+  std::vector<int> widths = {first};
+  widths.insert(widths.end(), hidden.begin(), hidden.end());
+  widths.push_back(last);
+  return widths;
+}
+
 /// Random parameters: weights N(0, gain^2 / fan-in), biases 0. (Fixed for a given libstdc++.)
 /// @param theta  out: parameters  [P]
 template <class Scalar>

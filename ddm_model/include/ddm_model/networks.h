@@ -2,24 +2,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ddm_model/auto_encoder.h"
 #include "ddm_model/prediction_model.h"
 
 namespace ddm {
 
 /// g^-1, g and f, and their places in the one flat vector theta = [theta_E, theta_D, theta_P].
+///
+///   z = g^-1(score; theta_E)  every layer through arctan, the feature too (paper, Sec. 2.1)
+///   score_hat = g(z; theta_D) hidden layers through arctan, the output linear
 template <class Scalar>
 struct Networks {
-  AutoEncoder<Scalar> auto_encoder;
   PredictionModel<Scalar> prediction_model;
 
   /// @throws std::invalid_argument if a width is < 1, or max_torque is for other motors
   Networks(const ModelOptions& options, int torque_dim)
-      : auto_encoder(options), prediction_model(options, torque_dim) {}
+      : prediction_model(options, torque_dim),
+        encoder_(layerWidths(options.pca_dim, options.encoder_widths, options.feature_dim),
+                 Mlp<Scalar>::Output::kArctan),
+        decoder_(layerWidths(options.feature_dim, options.decoder_widths, options.pca_dim),
+                 Mlp<Scalar>::Output::kLinear) {}
 
   Eigen::Index numParams() const { return predictorOffset() + f().numParams(); }
-  const Mlp<Scalar>& encoder() const { return auto_encoder.encoder; }
-  const Mlp<Scalar>& decoder() const { return auto_encoder.decoder; }
+  const Mlp<Scalar>& encoder() const { return encoder_; }
+  const Mlp<Scalar>& decoder() const { return decoder_; }
   const Mlp<Scalar>& f() const { return prediction_model.network(); }
 
   /// Start of theta_E, theta_D and theta_P in theta (const or not).
@@ -38,6 +43,9 @@ struct Networks {
 
  private:
   Eigen::Index predictorOffset() const { return encoder().numParams() + decoder().numParams(); }
+
+  Mlp<Scalar> encoder_;  // g^-1: pca_dim ... feature_dim
+  Mlp<Scalar> decoder_;  // g:    feature_dim ... pca_dim
 };
 
 }  // namespace ddm

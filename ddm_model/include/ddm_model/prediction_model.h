@@ -17,9 +17,8 @@ namespace ddm {
 ///
 /// with u in units of max_torque; RollOut makes h_n. f is a network with a linear output layer, or,
 /// with model/residual, z_t plus such a network: what does not move is then predicted without
-/// learning. With model/increments the network is told of the past as z_t, z_t - z_{t-1}, z_{t-1} -
-/// z_{t-2},
-/// ...: features of successive images are almost equal, and the motion lies in what is left.
+/// learning. With model/increments the network sees z_t, z_t - z_{t-1}, z_{t-1} - z_{t-2}, ...
+/// instead: features of successive images are almost equal, and their differences are the motion.
 template <class Scalar>
 class PredictionModel {
  public:
@@ -33,7 +32,9 @@ class PredictionModel {
         residual_(options.residual),
         increments_(options.increments),
         max_torque_(perMotor(options.max_torque, torque_dim, "model/max_torque")),
-        network_(layers(options, torque_dim), Mlp<Scalar>::Output::kLinear) {}
+        network_(layerWidths(options.order * (options.feature_dim + torque_dim),
+                             options.predictor_widths, options.feature_dim),
+                 Mlp<Scalar>::Output::kLinear) {}
 
   int featureDim() const { return feature_dim_; }
   int torqueDim() const { return torque_dim_; }
@@ -52,8 +53,7 @@ class PredictionModel {
   const Mlp<Scalar>& network() const { return network_; }
 
   /// @param theta_p     parameters of f                                                      [P_f]
-  /// @param regressors  one h_n per column; afterwards what the network saw      [regressorDim() x
-  /// N]
+  /// @param regressors  one h_n per column; out: input of the network        [regressorDim() x N]
   /// @param tape        out: record for backward()
   /// @param predicted   out: z_{t+1}, of this size already                      [feature_dim x N]
   void forward(const Scalar* theta_p, Eigen::Ref<Matrix> regressors,
@@ -86,13 +86,6 @@ class PredictionModel {
   template <class Regressors>
   auto features(int lag, Regressors& regressors) const {
     return regressors.middleRows(featureRow(lag), feature_dim_);
-  }
-
-  static std::vector<int> layers(const ModelOptions& options, int torque_dim) {
-    std::vector<int> widths = {options.order * (options.feature_dim + torque_dim)};
-    widths.insert(widths.end(), options.predictor_widths.begin(), options.predictor_widths.end());
-    widths.push_back(options.feature_dim);
-    return widths;
   }
 
   int feature_dim_;

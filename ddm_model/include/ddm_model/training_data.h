@@ -18,6 +18,8 @@ struct TrainingData {
   std::vector<Piece> pieces;  ///< no prediction straddles two of them
 };
 
-TrainingData<float> makeTrainingData(const DataSet& data, const Pca& pca);
+inline TrainingData<float> makeTrainingData(const DataSet& data, const Pca& pca) {
+  return {pca.project(data), data.torques(), data.pieces()};
+}
 
 }  // namespace ddm

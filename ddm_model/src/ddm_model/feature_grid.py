@@ -30,9 +30,9 @@ class FeatureGrid:
         half_2 = (self.z_2[1] - self.z_2[0]) / 2.0
         return self.z_1[0] - half_1, self.z_1[-1] + half_1, self.z_2[0] - half_2, self.z_2[-1] + half_2
 
-    def draw(self, axes, decoder):
-        """Draws the decoded images. The scales of the axes differ if the ranges do: the images stay square."""
-        images = [np.asarray(image) for image in decoder.decode(self.features)]
+    def draw(self, axes, images):
+        """Draws the images of the features. The scales of the axes differ if the ranges do: the images stay square."""
+        images = [np.asarray(image) for image in images]
         rows = [np.hstack(images[GRID * row:GRID * (row + 1)]) for row in range(GRID)]
         levels = np.vstack(rows) // (256 // LEVELS) / (LEVELS - 1.0)
         mosaic = DARKEST + (BRIGHTEST - DARKEST) * levels

@@ -1,6 +1,8 @@
 # Is the model any good, and if not, what to do? A report of a model and of what it makes of bags.
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
+import csv
+import io
 import os
 import sys
 import tempfile
@@ -9,11 +11,17 @@ import yaml
 
 from ddm_model import report, report_figures
 from ddm_model.plain_file import write_file
-from ddm_model.model_data import ModelData, ModelDataError, write_model_data
+from ddm_model.model_data import Decoder, ModelData, ModelDataError, write_model_data
 from ddm_model.verdict import summary, verdict
 
-# In DIR beside the report; without bags there are fewer.
-KEPT = ("model.yaml", "bags.csv", "features.csv", "spectrum.csv", "prediction_errors.csv", "predicted_features.csv")
+
+def write_table(path, columns):
+    """columns: {name: values}."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows(zip(*columns.values()))
+    write_file(path, text.getvalue())
 
 
 def facts_table(data, model):
@@ -47,7 +55,7 @@ def bags_table(data):
     return report.table([name.replace("_s", " [s]").replace("_", " ") for name in names], rows)
 
 
-def figures_of(data):
+def figures_of(data, model):
     """(title, function that draws, caption), in the order of the report."""
     out = [("Principal components", lambda: report_figures.draw_spectrum(data),
             "How much each component matters. A curve that has not come down at its right end asks for more of them.")]
@@ -55,7 +63,7 @@ def figures_of(data):
         out.append(("Reconstructions", lambda: report_figures.draw_reconstructions(data),
                     "Images, what the principal components keep of them, and what the features do."))
         for kind, words in (("typical", "in the middle"), ("worst", "at the end")):
-            if kind + "_prediction" in data.pictures:
+            if kind in data.predictions:
                 out.append(("A prediction: %s" % kind, lambda kind=kind: report_figures.draw_prediction(data, kind),
                             "Steps ahead above each picture. Of all predictions this one is %s of the order by error; "
                             "only the first picture was seen, and the torques." % words))
@@ -63,7 +71,7 @@ def figures_of(data):
             out.append(("Error by step", lambda: report_figures.draw_errors(data),
                         "Over %d predictions of each length. Predictions must stay below the grey curve to be of use."
                         % data.errors["num_predictions"][0]))
-    out.append(("Feature plane", lambda: report_figures.draw_plane(data),
+    out.append(("Feature plane", lambda: report_figures.draw_plane(data, Decoder(model, data.beyond_plane)),
                 "Images that the model decodes at 9 x 9 features, and where the frames lie. Neighbouring images must "
                 "look alike, and motions be paths without jumps."))
     if data.bags is not None:
@@ -83,7 +91,7 @@ def build_page(data, model, say):
     sections += ["<h2>Facts</h2>", facts_table(data, model)]
     if data.bags is not None:
         sections += ["<p></p>", bags_table(data)]
-    drawn = figures_of(data)
+    drawn = figures_of(data, model)
     for i, (title, draw, caption) in enumerate(drawn):
         say("drawing %d of %d: %s" % (i + 1, len(drawn), title))
         sections.append(report.figure(title, report_figures.as_data_uri(draw()), caption))
@@ -100,10 +108,10 @@ def inspect(model, bags, out, options):
         data = ModelData(folder)
         page, checks = build_page(data, model, lambda text: print(text, file=sys.stderr))
         os.makedirs(out, exist_ok=True)
-        for name in KEPT:
-            if os.path.exists(os.path.join(folder, name)):
-                with open(os.path.join(folder, name), "rb") as stream:
-                    write_file(os.path.join(out, name), stream.read())
+        with open(os.path.join(folder, "model.yaml"), "rb") as stream:
+            write_file(os.path.join(out, "model.yaml"), stream.read())
+        for name, columns in data.tables.items():
+            write_table(os.path.join(out, name), columns)
     write_file(os.path.join(out, "verdict.yaml"),
                yaml.safe_dump([dict(check._asdict()) for check in checks], sort_keys=False))
     write_file(os.path.join(out, "report.html"), page)

@@ -9,12 +9,14 @@ import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.ticker import MaxNLocator  # noqa: E402
 import numpy as np  # noqa: E402
 
-from ddm_model.feature_grid import FeatureGrid  # noqa: E402
+from ddm_model.feature_grid import GRID, FeatureGrid  # noqa: E402
+from ddm_model.model_data import kept_by_pca  # noqa: E402
 
 # From the Okabe-Ito set: told apart by colour-blind readers, and dashes and shapes differ too.
 BLUE, VERMILLION, YELLOW, GREY, LIGHT = "#0072B2", "#D55E00", "#F0E442", "#666666", "#dddddd"
 WIDTH = 9.0  # [in]
 MAX_COLUMNS = 16  # pictures side by side
+RECONSTRUCTIONS = 8
 
 
 def as_data_uri(figure):
@@ -68,18 +70,20 @@ def draw_rows(rows, labels, columns):
 
 
 def draw_reconstructions(data):
-    pictures = data.pictures["reconstructions"]
-    rows = [pictures[k::3] for k in range(3)]
-    names = ["%d" % (i * len(data.features) // len(rows[0])) for i in range(len(rows[0]))]
-    return draw_rows(rows, ["image", "PCA", "features"], ["frame " + name for name in names])
+    shown = np.unique(np.arange(RECONSTRUCTIONS) * len(data.images) // RECONSTRUCTIONS)
+    images = data.images[shown]
+    kept = kept_by_pca(data.model, images.reshape(len(shown), -1) / 255.0)[1].reshape(images.shape)
+    return draw_rows([images, 255.0 * kept, data.reconstructions[shown]], ["image", "PCA", "features"],
+                     ["frame %d" % frame for frame in shown])
 
 
 def draw_prediction(data, kind):
     """What came, what was predicted, and the last frame repeated, from 0 steps ahead on."""
-    pictures = data.pictures[kind + "_prediction"]
-    truth, predicted = pictures[0::2], pictures[1::2]
-    shown = np.unique(np.linspace(0, len(truth) - 1, min(len(truth), MAX_COLUMNS)).round().astype(int))
-    return draw_rows([truth[shown], predicted[shown], truth[np.zeros_like(shown)]],
+    prediction = data.predictions[kind]
+    steps = len(prediction.images)
+    shown = np.unique(np.linspace(0, steps - 1, min(steps, MAX_COLUMNS)).round().astype(int))
+    return draw_rows([data.images[prediction.frame + shown], prediction.images[shown],
+                      data.images[prediction.frame + 0 * shown]],
                      ["truth", "predicted", "repeated"], ["%d" % k for k in shown])
 
 
@@ -97,23 +101,24 @@ def draw_errors(data):
     return figure
 
 
-class DrawnImages:
-    """Stands for a decoder where the images are there already."""
+def plane_range(data):
+    """The smallest ranges that hold the first two features of all frames, and a margin; without bags what the paper
+    shows."""
+    if data.features is None:
+        return np.full(2, -1.0), np.full(2, 1.0)
+    features = data.features[:, :2]
+    margin = np.maximum(0.05 * np.ptp(features, axis=0), 0.02)  # not quite a point
+    return features.min(axis=0) - margin, features.max(axis=0) + margin
 
-    def __init__(self, images):
-        self.images = images
 
-    def decode(self, _features):
-        return self.images
-
-
-def draw_plane(data):
+def draw_plane(data, decoder):
     """Decoded images over the range of the features, and the features of all frames."""
-    images = data.pictures["plane"]
-    if len(data.plane_low) < 2:
-        return draw_line(data)
+    low, high = plane_range(data)
+    if int(data.options["feature_dim"]) < 2:
+        return draw_line(data, decoder, low[0], high[0])
     figure, axes = plt.subplots(figsize=(WIDTH, 6.2), constrained_layout=True)
-    FeatureGrid(data.plane_low, data.plane_high).draw(axes, DrawnImages(images))
+    grid = FeatureGrid(low, high)
+    grid.draw(axes, decoder.decode(grid.features))
     if data.features is not None:
         axes.scatter(data.features[:, 0], data.features[:, 1], s=9, color=YELLOW, edgecolors="black",
                      linewidths=0.25, label="frames of these bags", zorder=2)
@@ -125,13 +130,12 @@ def draw_plane(data):
     return figure
 
 
-def draw_line(data):
+def draw_line(data, decoder, low, high):
     """A model with one feature: decoded images along it, and how often the frames have it."""
     figure, axes = plt.subplots(2, 1, figsize=(WIDTH, 2.6), constrained_layout=True, sharex=True)
-    step = (data.plane_high[0] - data.plane_low[0]) / (len(data.pictures["plane"]) - 1)
-    extent = (data.plane_low[0] - step / 2, data.plane_high[0] + step / 2, 0.0, step)
-    axes[0].imshow(np.hstack(list(data.pictures["plane"])), cmap="gray", vmin=0, vmax=255, extent=extent,
-                   aspect="auto")
+    features, step = np.linspace(low, high, GRID, retstep=True)
+    axes[0].imshow(np.hstack(list(decoder.decode(features))), cmap="gray", vmin=0, vmax=255,
+                   extent=(low - step / 2, high + step / 2, 0.0, step), aspect="auto")
     axes[0].set_yticks([])
     if data.features is not None:
         axes[1].hist(data.features[:, 0], bins=40, color=BLUE)

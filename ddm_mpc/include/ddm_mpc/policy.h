@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <utility>
 
 #include "ddm_mpc/planner.h"
 
@@ -20,7 +21,13 @@ struct Answer {
 };
 
 /// The answer of a policy that plans.
-Answer answerWith(Plan plan);
+inline Answer answerWith(Plan plan) {
+  Answer answer;
+  answer.torque = plan.torques.col(0);
+  answer.solve_time = plan.solve_time;
+  answer.plan = std::move(plan);
+  return answer;
+}
 
 /// Called in turn for each frame: observe(y_t), answer() unless something else decides, apply(u_t).
 class Policy {

@@ -5,8 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace ddm {
-namespace pilco {
+namespace ddm::pilco {
 namespace {
 
 /// Written with the vector extensions that GCC and Clang share, because Eigen is bound to one
@@ -170,5 +169,4 @@ void exponentialSums(const ExponentialMatrix& matrix, ExponentialSums* sums) {
   runAsBuilt(matrix, sums);
 }
 
-}  // namespace pilco
-}  // namespace ddm
+}  // namespace ddm::pilco

@@ -2,24 +2,52 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_pilco/gp_training.h"
 
-#include <ddm_model/minimise.h>
+#include <ddm_msgs/option_checks.h>
 
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
+#include <utility>
 
-#include "ddm_pilco/squared_exponential.h"
-#include "gp_data.h"
-#include "option_rules.h"
+#include "ddm_pilco/messages.h"
 
-namespace ddm {
-namespace pilco {
+namespace ddm::pilco {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLogTwoPi = 1.8378770664093453;
+
+/// @param samples  one per column
+void requireFinite(const Eigen::MatrixXd& samples, const char* name) {
+  for (Eigen::Index i = 0; i < samples.cols(); ++i) {
+    for (Eigen::Index d = 0; d < samples.rows(); ++d) {
+      require(std::isfinite(samples(d, i)), name, " ", d + 1, " of point ", i + 1, " of ",
+              samples.cols(), " must be a finite number, got ", samples(d, i));
+    }
+  }
+}
+
+void requireVaried(const Eigen::MatrixXd& samples, const char* name) {
+  const Eigen::VectorXd spread = sampleStd(samples);
+  for (Eigen::Index d = 0; d < samples.rows(); ++d) {
+    require(std::isfinite(spread[d]), name, " ", d + 1,
+            " is too large: its variance is beyond double precision");
+    // The extremes, as the spread of equal numbers may be a rounding error.
+    require(spread[d] > 0.0 && samples.row(d).minCoeff() < samples.row(d).maxCoeff(), name, " ",
+            d + 1, " is ", samples(d, 0), " in all ", samples.cols(),
+            " points: nothing can be learnt from it. Leave it out, or record data in which it "
+            "changes; a feature of images: learn fewer of them");
+  }
+}
+
+/// Finite data of at least two points, and no input or target that is the same in all of them.
+void requireVariedData(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets) {
+  requireFiniteData(inputs, targets);
+  require(inputs.cols() >= 2, "training a GP needs at least 2 points, got 1");
+  requireVaried(inputs, "input");
+  requireVaried(targets.transpose(), "target");
+}
 
 /// A = K + sn^2 I and its factor, for one output.
 struct Covariance {
@@ -82,10 +110,9 @@ struct OutputProblem {
   const std::function<void()>& on_evaluation;
 
   double operator()(const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) const {
-    const double value = negativeLogLikelihood(inputs, targets, theta, gradient) +
-                         curb(theta, input_std, options, gradient);
+    const double plain = negativeLogLikelihood(inputs, targets, theta, gradient);
     if (on_evaluation) on_evaluation();
-    return value;
+    return plain + curb(theta, input_std, options, gradient);
   }
 };
 
@@ -108,17 +135,39 @@ void setTheta(const Eigen::VectorXd& theta, Eigen::Index output, Hyperparameters
 }  // namespace
 
 std::vector<std::string> GpTrainingOptions::problems() const {
-  OptionRules rules("gp");
-  rules.require(max_iterations >= 0, "max_iterations must be >= 0", max_iterations);
-  rules.require(training_points == 0 || training_points >= 2, "training_points must be 0 or >= 2",
-                training_points);
-  rules.require(length_scale_limit > 1.0 && std::isfinite(length_scale_limit),
-                "length_scale_limit must be > 1", length_scale_limit);
-  rules.require(signal_to_noise_limit > 1.0 && std::isfinite(signal_to_noise_limit),
-                "signal_to_noise_limit must be > 1", signal_to_noise_limit);
-  rules.require(curb_power >= 2 && curb_power % 2 == 0, "curb_power must be even and >= 2",
-                curb_power);
-  return rules.problems();
+  OptionChecks gp("gp");
+  gp.requireAtLeast("max_iterations", max_iterations, 0);
+  gp.require(training_points == 0 || training_points >= 2, "training_points", "be 0 or >= 2",
+             training_points);
+  gp.require(length_scale_limit > 1.0 && std::isfinite(length_scale_limit), "length_scale_limit",
+             "be > 1 and finite", length_scale_limit);
+  gp.require(signal_to_noise_limit > 1.0 && std::isfinite(signal_to_noise_limit),
+             "signal_to_noise_limit", "be > 1 and finite", signal_to_noise_limit);
+  gp.require(curb_power >= 2 && curb_power % 2 == 0, "curb_power", "be even and >= 2", curb_power);
+  return gp.problems();
+}
+
+void requireFiniteData(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets) {
+  require(inputs.size() > 0 && targets.size() > 0, "a GP needs data, got ", inputs.cols(),
+          " points with ", inputs.rows(), " inputs and ", targets.cols(), " targets");
+  require(inputs.cols() == targets.rows(), "inputs and targets must be of the same points, got ",
+          inputs.cols(), " and ", targets.rows());
+  requireFinite(inputs, "input");
+  requireFinite(targets.transpose(), "target");
+}
+
+void requireHyperparameters(const Hyperparameters& hyperparameters, Eigen::Index input_dim,
+                            Eigen::Index output_dim) {
+  const Eigen::MatrixXd& scales = hyperparameters.log_length_scales;
+  const Eigen::VectorXd& signal = hyperparameters.log_signal_std;
+  const Eigen::VectorXd& noise = hyperparameters.log_noise_std;
+  require(scales.rows() == input_dim && scales.cols() == output_dim &&
+              signal.size() == output_dim && noise.size() == output_dim,
+          "the hyper-parameters must be for ", input_dim, " inputs and ", output_dim,
+          " outputs, got length-scales for ", scales.rows(), " and ", scales.cols(), ", ",
+          signal.size(), " signal stds and ", noise.size(), " noise stds");
+  require(scales.allFinite() && signal.allFinite() && noise.allFinite(),
+          "the hyper-parameters must be finite numbers");
 }
 
 double negativeLogLikelihood(const Eigen::MatrixXd& inputs, const Eigen::VectorXd& targets,
@@ -156,10 +205,8 @@ double curb(const Eigen::VectorXd& theta, const Eigen::VectorXd& input_std,
 }
 
 Eigen::VectorXd sampleStd(const Eigen::MatrixXd& samples) {
-  if (samples.cols() < 2) {
-    throw std::invalid_argument("a standard deviation needs at least 2 samples, got " +
-                                std::to_string(samples.cols()));
-  }
+  require(samples.cols() >= 2, "a standard deviation needs at least 2 samples, got ",
+          samples.cols());
   const Eigen::MatrixXd centred = samples.colwise() - samples.rowwise().mean();
   return (centred.rowwise().squaredNorm() / static_cast<double>(samples.cols() - 1)).cwiseSqrt();
 }
@@ -194,8 +241,8 @@ GpFit makeGpModel(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
     const Covariance covariance(inputs, thetaOf(hyperparameters, a));
     if (!covariance.positiveDefinite()) {
       fit.model = GpModel();
-      fit.message = "the covariance of output " + std::to_string(a + 1) +
-                    " is not positive definite: its noise std must be larger";
+      fit.message = message("the covariance of output ", a + 1,
+                            " is not positive definite: its noise std must be larger");
       return fit;
     }
     fit.model.beta.col(a) = covariance.factor.solve(targets.col(a));
@@ -205,54 +252,43 @@ GpFit makeGpModel(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
   return fit;
 }
 
+void GpFit::addMessage(const std::string& text) {
+  if (!text.empty()) message += (message.empty() ? "" : "; ") + text;
+}
+
 GpFit trainGp(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
               const GpTrainingOptions& options, const Hyperparameters* start,
               const std::function<void()>& on_evaluation) {
-  const std::vector<std::string> problems = options.problems();
-  if (!problems.empty()) throw std::invalid_argument(problems.front());
+  requireNone(options.problems());
   const Hyperparameters initial = initialHyperparameters(inputs, targets);
   if (start != nullptr) requireHyperparameters(*start, inputs.rows(), targets.cols());
   const Eigen::VectorXd input_std = sampleStd(inputs);
 
   Hyperparameters trained = initial;
-  std::string message;
-  std::vector<OutputTraining> outputs;
-  const auto say = [&message](int output, const std::string& text) {
-    message +=
-        (message.empty() ? "" : "; ") + ("output " + std::to_string(output + 1) + ": ") + text;
-  };
+  GpFit training;
   for (int a = 0; a < targets.cols(); ++a) {
+    const auto say = [&training, a](const std::string& text) {
+      training.addMessage(message("output ", a + 1, ": ", text));
+    };
     const OutputProblem problem{inputs, targets.col(a), input_std, options, on_evaluation};
     Minimum minimum = trainOutput(problem, thetaOf(start != nullptr ? *start : initial, a));
     if (minimum.reason == MinimumReason::kStartFailed && start != nullptr) {
-      say(a, "the previous hyper-parameters cannot be evaluated, trained anew");
+      say("the previous hyper-parameters cannot be evaluated, trained anew");
       minimum = trainOutput(problem, thetaOf(initial, a));
     }
     if (minimum.reason == MinimumReason::kStartFailed) {
-      GpFit failed;
-      say(a, "the likelihood cannot be evaluated at the start of the training");
-      failed.message = message;
-      failed.outputs = outputs;
-      return failed;
+      say("the likelihood cannot be evaluated at the start of the training");
+      return training;
     }
-    OutputTraining training;
-    training.initial_cost = minimum.initial_cost;
-    training.final_cost = minimum.cost;
-    training.gradient_norm = minimum.gradient.norm();
-    training.iterations = minimum.iterations;
-    training.evaluations = minimum.evaluations;
-    outputs.push_back(training);
-    if (!minimum.improved() && !minimum.converged()) {
-      say(a, "kept at the start, " + minimum.message);
-    }
+    training.outputs.push_back(minimum);
+    if (!minimum.improved() && !minimum.converged()) say("kept at the start, " + minimum.message);
     setTheta(minimum.x, a, &trained);
   }
   GpFit fit = makeGpModel(inputs, targets, trained);
-  fit.outputs = outputs;
-  if (!fit.message.empty()) message += (message.empty() ? "" : "; ") + fit.message;
-  fit.message = message;
-  return fit;
+  training.ok = fit.ok;
+  training.model = std::move(fit.model);
+  training.addMessage(fit.message);
+  return training;
 }
 
-}  // namespace pilco
-}  // namespace ddm
+}  // namespace ddm::pilco

@@ -4,18 +4,11 @@
 
 #include <cmath>
 #include <limits>
-#include <sstream>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
-namespace ddm {
-namespace pilco {
-namespace {
+#include "ddm_pilco/messages.h"
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
+namespace ddm::pilco {
 
 LongTermCost::LongTermCost(Propagation dynamics, StateCost cost, Policy* policy,
                            Gaussian initial_state, int horizon)
@@ -24,25 +17,17 @@ LongTermCost::LongTermCost(Propagation dynamics, StateCost cost, Policy* policy,
       policy_(policy),
       horizon_(horizon),
       states_{std::move(initial_state)} {
-  if (horizon < 1) {
-    throw std::invalid_argument("long-term cost: the horizon must be >= 1, got " +
-                                std::to_string(horizon));
-  }
-  if (policy == nullptr) throw std::invalid_argument("long-term cost: a policy is missing");
+  require(horizon >= 1, "long-term cost: the horizon must be >= 1, got ", horizon);
+  require(policy != nullptr, "long-term cost: a policy is missing");
   dynamics_.requireFit(*policy);
-  if (cost_.inputDim() != dynamics_.stateDim()) {
-    throw std::invalid_argument("long-term cost: the cost must be for a state of " +
-                                std::to_string(dynamics_.stateDim()) + " entries, got one for " +
-                                std::to_string(cost_.inputDim()));
-  }
-  requireSize(states_.front(), dynamics_.stateDim(), "long-term cost");
+  require(cost_.inputDim() == dynamics_.stateDim(),
+          "long-term cost: the cost must be for a state of ", dynamics_.stateDim(),
+          " entries, got one for ", cost_.inputDim());
   const Gaussian& start = states_.front();
-  if (!start.mean.allFinite() || !start.covariance.allFinite()) {
-    std::ostringstream text;
-    text << "long-term cost: the initial state must be finite, got mean [" << start.mean.transpose()
-         << "] and variances [" << start.covariance.diagonal().transpose() << "]";
-    throw std::invalid_argument(text.str());
-  }
+  requireSize(start, dynamics_.stateDim(), "long-term cost");
+  require(start.mean.allFinite() && start.covariance.allFinite(),
+          "long-term cost: the initial state must be finite, got mean [", start.mean.transpose(),
+          "] and variances [", start.covariance.diagonal().transpose(), "]");
 }
 
 /// False where the prediction leaves the finite numbers.
@@ -64,6 +49,7 @@ bool LongTermCost::predict(bool record) {
 }
 
 double LongTermCost::evaluate(const Eigen::VectorXd& parameters, Eigen::VectorXd* gradient) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   policy_->setParameters(parameters);
   const bool finite = predict(gradient != nullptr);
   if (gradient != nullptr) {
@@ -93,5 +79,4 @@ std::vector<double> LongTermCost::costStandardDeviations() const {
   return out;
 }
 
-}  // namespace pilco
-}  // namespace ddm
+}  // namespace ddm::pilco

@@ -2,15 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_pilco/propagation.h"
 
-#include <stdexcept>
-#include <string>
 #include <utility>
 
-namespace ddm {
-namespace pilco {
-namespace {
+#include "ddm_pilco/messages.h"
 
-Gaussian marginal(const Moments& moments) { return Gaussian{moments.mean, moments.covariance}; }
+namespace ddm::pilco {
+namespace {
 
 /// N([f, u]) from the moments of f and those of u given f.
 Gaussian joint(const Moments& features, const Moments& control) {
@@ -32,22 +29,14 @@ Propagation::Propagation(GpModel dynamics, const PropagationOptions& options)
     : state_dim_(dynamics.outputDim()),
       features_(replaceAngles(state_dim_, options.angles)),
       dynamics_(std::move(dynamics)),
-      noisy_policy_input_(options.noisy_policy_input) {
-  if (controlDim() < 1) {
-    throw std::invalid_argument("propagation: the dynamics GP must have the " +
-                                std::to_string(featureDim()) +
-                                " features of the state and at least one control as inputs, got " +
-                                std::to_string(dynamics_.model().inputDim()));
-  }
+      options_(options) {
+  require(controlDim() >= 1, "propagation: the dynamics GP must have the ", featureDim(),
+          " features of the state and at least one control as inputs, got ",
+          dynamics_.model().inputDim());
+  if (!options.noisy_policy_input) return;
   const Eigen::VectorXd& log_noise_std = dynamics_.model().hyperparameters.log_noise_std;
-  if (noisy_policy_input_ && log_noise_std.size() != state_dim_) {
-    throw std::invalid_argument("propagation: there must be a noise std for each of the " +
-                                std::to_string(state_dim_) + " outputs of the GP, got " +
-                                std::to_string(log_noise_std.size()));
-  }
-  measurement_variance_ = noisy_policy_input_
-                              ? Eigen::VectorXd(0.5 * (2.0 * log_noise_std.array()).exp())
-                              : Eigen::VectorXd(Eigen::VectorXd::Zero(state_dim_));
+  requireShape(log_noise_std, state_dim_, 1, "propagation: the noise stds of the GP's outputs");
+  measurement_variance_ = 0.5 * (2.0 * log_noise_std.array()).exp();
 }
 
 /// The state as the policy sees it.
@@ -58,11 +47,9 @@ Gaussian Propagation::policyState(const Gaussian& state) const {
 }
 
 void Propagation::requireFit(const Policy& policy) const {
-  if (policy.inputDim() == featureDim() && policy.outputDim() == controlDim()) return;
-  throw std::invalid_argument("propagation: the policy must have " + std::to_string(featureDim()) +
-                              " features and " + std::to_string(controlDim()) + " controls, got " +
-                              std::to_string(policy.inputDim()) + " and " +
-                              std::to_string(policy.outputDim()));
+  require(policy.inputDim() == featureDim() && policy.outputDim() == controlDim(),
+          "propagation: the policy must have ", featureDim(), " features and ", controlDim(),
+          " controls, got ", policy.inputDim(), " and ", policy.outputDim());
 }
 
 Gaussian Propagation::step(Policy* policy, const Gaussian& state, Tape* tape) {
@@ -70,7 +57,7 @@ Gaussian Propagation::step(Policy* policy, const Gaussian& state, Tape* tape) {
   requireFit(*policy);
   const Moments features = features_.predict(state);
   const Gaussian policy_input =
-      marginal(noisy_policy_input_ ? features_.predict(policyState(state)) : features);
+      marginal(options_.noisy_policy_input ? features_.predict(policyState(state)) : features);
   const Moments control = policy->predict(policy_input);
   const Moments delta =
       dynamics_.predict(joint(features, control), tape != nullptr ? &tape->dynamics : nullptr);
@@ -125,8 +112,8 @@ Gaussian Propagation::backward(Policy* policy, const Tape& tape, const Gaussian&
     d_state.mean += part.mean;
     d_state.covariance += part.covariance;
   };
-  if (noisy_policy_input_) {
-    add(features_.backward(policyState(tape.state),
+  if (options_.noisy_policy_input) {
+    add(features_.backward(options_.published_gradient ? tape.state : policyState(tape.state),
                            Moments{d_policy_input.mean, d_policy_input.covariance,
                                    Eigen::MatrixXd::Zero(state_dim_, num_features)}));
   } else {
@@ -138,5 +125,4 @@ Gaussian Propagation::backward(Policy* policy, const Tape& tape, const Gaussian&
   return d_state;
 }
 
-}  // namespace pilco
-}  // namespace ddm
+}  // namespace ddm::pilco

@@ -4,25 +4,18 @@
 
 #include <cmath>
 #include <limits>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
-#include "ddm_pilco/squared_exponential.h"
+#include "ddm_pilco/messages.h"
 
-namespace ddm {
-namespace pilco {
-namespace {
+namespace ddm::pilco {
 
 using ConstMap = Eigen::Map<const Eigen::MatrixXd>;
 
-}  // namespace
-
 RbfPolicy::RbfPolicy(int input_dim, int output_dim, int num_centres)
     : input_dim_(input_dim), output_dim_(output_dim), num_centres_(num_centres) {
-  if (input_dim < 1 || output_dim < 1 || num_centres < 1) {
-    throw std::invalid_argument("rbf policy: inputs, outputs and centres must be >= 1");
-  }
+  require(input_dim >= 1 && output_dim >= 1 && num_centres >= 1,
+          "rbf policy: inputs, outputs and centres must be >= 1");
   setParameters(Eigen::VectorXd::Zero(input_dim * output_dim + num_centres * input_dim +
                                       num_centres * output_dim));
 }
@@ -30,10 +23,9 @@ RbfPolicy::RbfPolicy(int input_dim, int output_dim, int num_centres)
 Eigen::VectorXd RbfPolicy::packParameters(const Eigen::MatrixXd& log_length_scales,
                                           const Eigen::MatrixXd& centres,
                                           const Eigen::MatrixXd& targets) {
-  if (centres.rows() != log_length_scales.rows() || centres.cols() != targets.rows() ||
-      targets.cols() != log_length_scales.cols()) {
-    throw std::invalid_argument("rbf policy: length-scales, centres and targets do not fit");
-  }
+  require(centres.rows() == log_length_scales.rows() && centres.cols() == targets.rows() &&
+              targets.cols() == log_length_scales.cols(),
+          "rbf policy: length-scales, centres and targets do not fit");
   const Eigen::MatrixXd by_coordinate = centres.transpose();
   Eigen::VectorXd parameters(log_length_scales.size() + centres.size() + targets.size());
   parameters << Eigen::Map<const Eigen::VectorXd>(log_length_scales.data(),
@@ -45,11 +37,8 @@ Eigen::VectorXd RbfPolicy::packParameters(const Eigen::MatrixXd& log_length_scal
 
 void RbfPolicy::setParameters(const Eigen::VectorXd& parameters) {
   const int num_scales = input_dim_ * output_dim_;
-  const int expected = num_scales + num_centres_ * (input_dim_ + output_dim_);
-  if (parameters.size() != expected) {
-    throw std::invalid_argument("rbf policy: there must be " + std::to_string(expected) +
-                                " parameters, got " + std::to_string(parameters.size()));
-  }
+  requireShape(parameters, num_scales + num_centres_ * (input_dim_ + output_dim_), 1,
+               "rbf policy: the parameters");
   parameters_ = parameters;
   const double* const data = parameters_.data();
   const ConstMap centres(data + num_scales, num_centres_, input_dim_);
@@ -90,9 +79,7 @@ Gaussian RbfPolicy::backward(const Gaussian& input, const Moments& d_output,
   GpMoments::Tape tape;
   network_->predict(input, &tape);
   if (d_parameters != nullptr) {
-    if (d_parameters->size() != parameters_.size()) {
-      throw std::invalid_argument("rbf policy: the gradient has another size than the parameters");
-    }
+    requireShape(*d_parameters, parameters_.size(), 1, "rbf policy: the gradient");
     GpGradient d_network{Eigen::MatrixXd::Zero(input_dim_, num_centres_),
                          Eigen::MatrixXd::Zero(num_centres_, output_dim_),
                          Eigen::MatrixXd::Zero(input_dim_, output_dim_)};
@@ -128,5 +115,4 @@ void RbfPolicy::addThroughBeta(GpGradient* d_network, Eigen::MatrixXd* d_targets
   }
 }
 
-}  // namespace pilco
-}  // namespace ddm
+}  // namespace ddm::pilco

@@ -2,22 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_pilco/sparse_gp.h"
 
-#include <ddm_model/minimise.h>
+#include <ddm_msgs/option_checks.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <stdexcept>
 #include <utility>
 
-#include "ddm_pilco/squared_exponential.h"
-#include "gp_data.h"
-#include "option_rules.h"
+#include "ddm_pilco/messages.h"
 
-namespace ddm {
-namespace pilco {
+namespace ddm::pilco {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -105,37 +101,39 @@ void requireInducing(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& inp
                      const Eigen::MatrixXd& targets, const Hyperparameters& hyperparameters) {
   requireFiniteData(inputs, targets);
   requireHyperparameters(hyperparameters, inputs.rows(), targets.cols());
-  if (inducing.rows() != inputs.rows() || inducing.cols() < 1) {
-    throw std::invalid_argument(
-        "inducing inputs must be points of " + std::to_string(inputs.rows()) + " entries, got " +
-        std::to_string(inducing.cols()) + " of " + std::to_string(inducing.rows()));
-  }
-  if (!inducing.allFinite()) throw std::invalid_argument("inducing inputs must be finite numbers");
+  require(inducing.rows() == inputs.rows() && inducing.cols() >= 1,
+          "inducing inputs must be points of ", inputs.rows(), " entries, got ", inducing.cols(),
+          " of ", inducing.rows());
+  require(inducing.allFinite(), "inducing inputs must be finite numbers");
 }
 
 /// `count` different numbers of 0 ... n - 1 in random order.
 /// @throws std::invalid_argument if there are fewer
-std::vector<int> randomIndices(Eigen::Index n, int count, std::mt19937_64* rng) {
-  if (count < 1 || count > n) {
-    throw std::invalid_argument("cannot draw " + std::to_string(count) + " of " +
-                                std::to_string(n) + " points");
-  }
-  std::vector<int> order(static_cast<std::size_t>(n));
+std::vector<Eigen::Index> randomIndices(Eigen::Index n, int count, std::mt19937_64* rng) {
+  require(count >= 1 && count <= n, "cannot draw ", count, " of ", n, " points");
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(n));
   std::iota(order.begin(), order.end(), 0);
   std::shuffle(order.begin(), order.end(), *rng);  // results are fixed for libstdc++
   order.resize(static_cast<std::size_t>(count));
   return order;
 }
 
+Eigen::MatrixXd columnsOf(const Eigen::MatrixXd& matrix, const std::vector<Eigen::Index>& indices) {
+  Eigen::MatrixXd out(matrix.rows(), indices.size());
+  Eigen::Index next = 0;
+  for (const Eigen::Index i : indices) out.col(next++) = matrix.col(i);
+  return out;
+}
+
 }  // namespace
 
 std::vector<std::string> SparseGpOptions::problems() const {
-  OptionRules rules("sparse_gp");
-  rules.require(max_points >= 1, "max_points must be >= 1", max_points);
-  rules.require(first_iterations >= 0, "first_iterations must be >= 0", first_iterations);
-  rules.require(max_iterations >= 0, "max_iterations must be >= 0", max_iterations);
-  rules.require(ridge > 0.0 && std::isfinite(ridge), "ridge must be > 0", ridge);
-  return rules.problems();
+  OptionChecks sparse_gp("sparse_gp");
+  sparse_gp.requireAtLeast("max_points", max_points, 1);
+  sparse_gp.requireAtLeast("first_iterations", first_iterations, 0);
+  sparse_gp.requireAtLeast("max_iterations", max_iterations, 0);
+  sparse_gp.requirePositive("ridge", ridge);
+  return sparse_gp.problems();
 }
 
 double sparseNegativeLogLikelihood(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& inputs,
@@ -168,8 +166,9 @@ GpFit makeSparseGpModel(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& 
     const Fitc fitc(inducing, inputs, thetaOf(hyperparameters, a), ridge);
     if (!fitc.positive_definite) {
       fit.model = GpModel();
-      fit.message = "the sparse covariance of output " + std::to_string(a + 1) +
-                    " is not positive definite: its noise std or sparse_gp/ridge must be larger";
+      fit.message =
+          message("the sparse covariance of output ", a + 1,
+                  " is not positive definite: its noise std or sparse_gp/ridge must be larger");
       return fit;
     }
     fit.model.beta.col(a) = fitc.beta(targets.col(a));
@@ -183,10 +182,7 @@ GpFit makeSparseGpModel(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& 
 }
 
 Eigen::MatrixXd randomSubset(const Eigen::MatrixXd& inputs, int count, std::mt19937_64* rng) {
-  const std::vector<int> drawn = randomIndices(inputs.cols(), count, rng);
-  Eigen::MatrixXd out(inputs.rows(), count);
-  for (int i = 0; i < count; ++i) out.col(i) = inputs.col(drawn[static_cast<std::size_t>(i)]);
-  return out;
+  return columnsOf(inputs, randomIndices(inputs.cols(), count, rng));
 }
 
 GpFit trainSparseGp(const Eigen::MatrixXd& start, const Eigen::MatrixXd& inputs,
@@ -217,14 +213,7 @@ GpFit trainSparseGp(const Eigen::MatrixXd& start, const Eigen::MatrixXd& inputs,
   const Eigen::MatrixXd inducing =
       Eigen::Map<const Eigen::MatrixXd>(minimum.x.data(), start.rows(), start.cols());
   GpFit fit = makeSparseGpModel(inducing, inputs, targets, hyperparameters, ridge);
-  OutputTraining training;
-  training.initial_cost = minimum.initial_cost;
-  training.final_cost = minimum.cost;
-  training.gradient_norm =
-      minimum.reason == MinimumReason::kStartFailed ? kNaN : minimum.gradient.norm();
-  training.iterations = minimum.iterations;
-  training.evaluations = minimum.evaluations;
-  fit.outputs.push_back(training);
+  fit.outputs.push_back(minimum);
   if (fit.ok && !minimum.improved() && !minimum.converged()) {
     fit.message = "inducing inputs kept at the start, " + minimum.message;
   }
@@ -233,12 +222,7 @@ GpFit trainSparseGp(const Eigen::MatrixXd& start, const Eigen::MatrixXd& inputs,
 
 GpLearner::GpLearner(const GpTrainingOptions& training, const SparseGpOptions& sparse,
                      GpLearnerState state)
-    : training_(training), sparse_(sparse), state_(std::move(state)) {
-  std::vector<std::string> problems = training.problems();
-  const std::vector<std::string> more = sparse.problems();
-  problems.insert(problems.end(), more.begin(), more.end());
-  if (!problems.empty()) throw std::invalid_argument(problems.front());
-}
+    : training_(checked(training)), sparse_(checked(sparse)), state_(std::move(state)) {}
 
 /// The full GP. Where it will be replaced by a sparse one, its hyper-parameters are all that
 /// counts.
@@ -250,14 +234,9 @@ GpFit GpLearner::trainFull(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd&
   if (count == 0 || inputs.cols() <= count) {
     return trainGp(inputs, targets, training_, start, on_evaluation);
   }
-  const std::vector<int> drawn = randomIndices(inputs.cols(), count, rng);
-  Eigen::MatrixXd few_inputs(inputs.rows(), count);
-  Eigen::MatrixXd few_targets(count, targets.cols());
-  for (int i = 0; i < count; ++i) {
-    few_inputs.col(i) = inputs.col(drawn[static_cast<std::size_t>(i)]);
-    few_targets.row(i) = targets.row(drawn[static_cast<std::size_t>(i)]);
-  }
-  GpFit few = trainGp(few_inputs, few_targets, training_, start, on_evaluation);
+  const std::vector<Eigen::Index> drawn = randomIndices(inputs.cols(), count, rng);
+  GpFit few = trainGp(columnsOf(inputs, drawn), columnsOf(targets.transpose(), drawn).transpose(),
+                      training_, start, on_evaluation);
   if (!few.ok || inputs.cols() > sparse_.max_points) return few;
   GpFit full = makeGpModel(inputs, targets, few.model.hyperparameters);
   full.outputs = few.outputs;
@@ -282,13 +261,11 @@ GpFit GpLearner::learn(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& tar
                             sparse_.ridge, on_evaluation);
   state_.hyperparameters = full.model.hyperparameters;
   if (fit.ok) state_.inducing = fit.model.inputs;
+  full.ok = fit.ok;
+  full.model = std::move(fit.model);
   full.outputs.insert(full.outputs.end(), fit.outputs.begin(), fit.outputs.end());
-  fit.outputs = full.outputs;
-  if (!full.message.empty()) {
-    fit.message = full.message + (fit.message.empty() ? "" : "; ") + fit.message;
-  }
-  return fit;
+  full.addMessage(fit.message);
+  return full;
 }
 
-}  // namespace pilco
-}  // namespace ddm
+}  // namespace ddm::pilco

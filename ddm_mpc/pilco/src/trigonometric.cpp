@@ -1,31 +1,49 @@
-// Features of a state with angles: chosen entries, then sine and cosine of the angles; moments.
+// Moments of sines and cosines of Gaussian angles, and features of a state with angles.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_pilco/trigonometric.h"
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
-#include "ddm_pilco/sine_covariance.h"
+#include "ddm_pilco/messages.h"
 
-namespace ddm {
-namespace pilco {
+namespace ddm::pilco {
 namespace {
+
+/// exp(-v) (exp(c) - 1): exact for small c, and finite where exp(c) alone is not.
+double scaledGrowth(double v, double c) {
+  return std::abs(c) < 1.0 ? std::exp(-v) * std::expm1(c) : std::exp(c - v) - std::exp(-v);
+}
 
 constexpr double kHalfPi = 1.57079632679489661923;
 
 void requireIndices(const std::vector<int>& indices, int dim) {
   for (const int index : indices) {
-    if (index < 0 || index >= dim) {
-      throw std::invalid_argument("augmentation: an index must lie in 0 ... " +
-                                  std::to_string(dim - 1) + ", got " + std::to_string(index));
-    }
+    require(index >= 0 && index < dim, "augmentation: an index must lie in 0 ... ", dim - 1,
+            ", got ", index);
   }
 }
 
 }  // namespace
+
+double sineCovariance(double mean_a, double mean_b, double variance_a, double variance_b,
+                      double covariance, SineCovarianceGradient* gradient) {
+  const double half_sum = 0.5 * (variance_a + variance_b);
+  const double p = scaledGrowth(half_sum, covariance);
+  const double r = scaledGrowth(half_sum, -covariance);
+  const double difference = mean_a - mean_b;
+  const double sum = mean_a + mean_b;
+  const double value = 0.5 * (p * std::cos(difference) - r * std::cos(sum));
+  if (gradient != nullptr) {
+    gradient->mean_a = 0.5 * (-p * std::sin(difference) + r * std::sin(sum));
+    gradient->mean_b = 0.5 * (p * std::sin(difference) + r * std::sin(sum));
+    gradient->variance = -0.5 * value;
+    gradient->covariance = 0.5 * (std::exp(covariance - half_sum) * std::cos(difference) +
+                                  std::exp(-covariance - half_sum) * std::cos(sum));
+  }
+  return value;
+}
 
 Augmentation::Augmentation(int input_dim, std::vector<int> kept, std::vector<int> angles,
                            std::vector<double> scales)
@@ -36,18 +54,16 @@ Augmentation::Augmentation(int input_dim, std::vector<int> kept, std::vector<int
   requireIndices(kept_, input_dim);
   requireIndices(angles_, input_dim);
   if (scales_.empty()) scales_.assign(angles_.size(), 1.0);
-  if (scales_.size() != angles_.size()) {
-    throw std::invalid_argument("augmentation: there must be as many scales as angles, got " +
-                                std::to_string(scales_.size()) + " and " +
-                                std::to_string(angles_.size()));
-  }
-  if (outputDim() < 1) throw std::invalid_argument("augmentation: there must be an output");
+  require(scales_.size() == angles_.size(),
+          "augmentation: there must be as many scales as angles, got ", scales_.size(), " and ",
+          angles_.size());
+  require(outputDim() >= 1, "augmentation: there must be an output");
 }
 
 int Augmentation::outputDim() const { return static_cast<int>(kept_.size() + 2 * angles_.size()); }
 
 Eigen::VectorXd Augmentation::value(const Eigen::VectorXd& x) const {
-  return predict(Gaussian{x, Eigen::MatrixXd::Zero(x.size(), x.size())}).mean;
+  return predict(known(x)).mean;
 }
 
 Moments Augmentation::predict(const Gaussian& input) const {
@@ -135,8 +151,8 @@ Gaussian Augmentation::backward(const Gaussian& input, const Moments& d_output) 
       const double weight = (p == q ? 1.0 : 2.0) * d_covariance(p, q) * scales_[a] * scales_[b];
       d_input.mean[i] += weight * gradient.mean_a;
       d_input.mean[j] += weight * gradient.mean_b;
-      d_input.covariance(i, i) += weight * gradient.variance_a;
-      d_input.covariance(j, j) += weight * gradient.variance_b;
+      d_input.covariance(i, i) += weight * gradient.variance;
+      d_input.covariance(j, j) += weight * gradient.variance;
       d_input.covariance(i, j) += weight * gradient.covariance;
     }
   }
@@ -152,5 +168,4 @@ Augmentation replaceAngles(int input_dim, const std::vector<int>& angles) {
   return Augmentation(input_dim, kept, angles);
 }
 
-}  // namespace pilco
-}  // namespace ddm
+}  // namespace ddm::pilco

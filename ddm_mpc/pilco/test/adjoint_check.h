@@ -24,9 +24,9 @@ inline double innerProduct(const Moments& a, const Moments& b) {
 /// Weights of all entries of M, S and V. Those of S are not symmetric: an adjoint must not rely on
 /// that.
 inline Moments randomMoments(int input_dim, int output_dim, std::mt19937_64& random) {
-  return Moments{randomMatrix(output_dim, 1, 1.0, random),
-                 randomMatrix(output_dim, output_dim, 1.0, random),
-                 randomMatrix(input_dim, output_dim, 1.0, random)};
+  return Moments{normalMatrix(output_dim, 1, 1.0, random),
+                 normalMatrix(output_dim, output_dim, 1.0, random),
+                 normalMatrix(input_dim, output_dim, 1.0, random)};
 }
 
 /// m and all entries of s one after the other; s is read as the symmetric part.

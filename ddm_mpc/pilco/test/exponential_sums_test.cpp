@@ -23,14 +23,14 @@ Problem randomProblem(int dim, int n, double scale, std::mt19937_64& random) {
   const int rows = paddedRows(n);
   const auto padded = [&](int cols) {
     Eigen::MatrixXd values = Eigen::MatrixXd::Zero(rows, cols);
-    values.topRows(n) = randomMatrix(n, cols, scale, random);
+    values.topRows(n) = normalMatrix(n, cols, scale, random);
     return values;
   };
   problem.matrix.f = padded(1);
   problem.matrix.u = padded(dim);
-  problem.matrix.g = randomMatrix(n, 1, scale, random);
-  problem.matrix.v = randomMatrix(dim, n, 1.0, random);
-  problem.matrix.column_weights = randomMatrix(n, 1, 1.0, random);
+  problem.matrix.g = normalMatrix(n, 1, scale, random);
+  problem.matrix.v = normalMatrix(dim, n, 1.0, random);
+  problem.matrix.column_weights = normalMatrix(n, 1, 1.0, random);
   problem.weights = padded(n);
   return problem;
 }

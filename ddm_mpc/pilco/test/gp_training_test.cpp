@@ -13,18 +13,18 @@
 #include "ddm_model/testing/random_matrix.h"
 #include "ddm_model/testing/vector_of.h"
 #include "ddm_msgs/testing/expect_error.h"
-#include "ddm_pilco/squared_exponential.h"
+#include "ddm_msgs/testing/not_finite.h"
+#include "ddm_pilco/gp_model.h"
 
 namespace ddm {
 namespace pilco {
 namespace {
 
 using ::ddm::testing::gradientMatches;
+using ::ddm::testing::names;
 using ::ddm::testing::randomMatrix;
 using ::ddm::testing::throwsNaming;
 using ::ddm::testing::vectorOf;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// A smooth function of three inputs, the last of which does not matter, with noise of std 0.05.
 struct Toy {
@@ -164,8 +164,7 @@ TEST(MakeGpModel, NamesTheOutputThatIsNotPositiveDefinite) {
   hyperparameters.log_noise_std[1] = -40.0;
   const GpFit fit = makeGpModel(toy.inputs, toy.targets, hyperparameters);
   EXPECT_FALSE(fit.ok);
-  EXPECT_NE(std::string::npos, fit.message.find("output 2 is not positive definite"))
-      << fit.message;
+  EXPECT_TRUE(names(fit.message, {"output 2", "positive definite"}));
   EXPECT_EQ(0, fit.model.numPoints());
 }
 
@@ -176,8 +175,8 @@ TEST(TrainGp, EndsAtAnOptimumThatKnowsNoiseAndRelevance) {
   EXPECT_EQ("", fit.message);
   ASSERT_EQ(2u, fit.outputs.size());
   for (int output = 0; output < 2; ++output) {
-    EXPECT_LT(fit.outputs[output].final_cost, fit.outputs[output].initial_cost - 1.0);
-    EXPECT_LT(fit.outputs[output].gradient_norm, 1e-4);
+    EXPECT_LT(fit.outputs[output].cost, fit.outputs[output].initial_cost - 1.0);
+    EXPECT_LT(fit.outputs[output].gradient.norm(), 1e-4);
     EXPECT_LE(fit.outputs[output].iterations, 300);
     EXPECT_GE(fit.outputs[output].evaluations, fit.outputs[output].iterations);
     EXPECT_NEAR(0.05, std::exp(fit.model.hyperparameters.log_noise_std[output]), 0.02);
@@ -186,7 +185,7 @@ TEST(TrainGp, EndsAtAnOptimumThatKnowsNoiseAndRelevance) {
   const Eigen::VectorXd theta = thetaOf(fit.model.hyperparameters, 1);
   const double expected = negativeLogLikelihood(toy.inputs, toy.targets.col(1), theta) +
                           curb(theta, sampleStd(toy.inputs), GpTrainingOptions());
-  EXPECT_NEAR(expected, fit.outputs[1].final_cost, 1e-9 * std::abs(expected));
+  EXPECT_NEAR(expected, fit.outputs[1].cost, 1e-9 * std::abs(expected));
 }
 
 TEST(TrainGp, GoesOnFromThePreviousOptimum) {
@@ -196,8 +195,8 @@ TEST(TrainGp, GoesOnFromThePreviousOptimum) {
   const GpFit again = trainGp(toy.inputs, toy.targets, GpTrainingOptions(), &optimum);
   ASSERT_TRUE(again.ok) << again.message;
   for (int output = 0; output < 2; ++output) {
-    EXPECT_EQ(first.outputs[output].final_cost, again.outputs[output].initial_cost);
-    EXPECT_LE(again.outputs[output].final_cost, again.outputs[output].initial_cost);
+    EXPECT_EQ(first.outputs[output].cost, again.outputs[output].initial_cost);
+    EXPECT_LE(again.outputs[output].cost, again.outputs[output].initial_cost);
     EXPECT_LT(again.outputs[output].iterations, first.outputs[output].iterations);
   }
 }
@@ -209,7 +208,7 @@ TEST(TrainGp, KeepsTheLimitOfIterations) {
   const GpFit fit = trainGp(toy.inputs, toy.targets, options);
   ASSERT_TRUE(fit.ok);
   EXPECT_EQ(3, fit.outputs[0].iterations);
-  EXPECT_LT(fit.outputs[0].final_cost, fit.outputs[0].initial_cost);
+  EXPECT_LT(fit.outputs[0].cost, fit.outputs[0].initial_cost);
 }
 
 TEST(TrainGp, KeepsTheNoiseOfNoiselessDataAtTheCurb) {
@@ -229,7 +228,7 @@ TEST(TrainGp, CopesWithRepeatedPoints) {
   const GpFit fit = trainGp(inputs, targets, GpTrainingOptions());
   ASSERT_TRUE(fit.ok) << fit.message;
   EXPECT_TRUE(fit.model.beta.allFinite());
-  EXPECT_LT(fit.outputs[0].final_cost, fit.outputs[0].initial_cost);
+  EXPECT_LT(fit.outputs[0].cost, fit.outputs[0].initial_cost);
 }
 
 TEST(TrainGp, TrainsAnewAndSaysSoWhereThePreviousOptimumCannotBeEvaluated) {
@@ -239,8 +238,7 @@ TEST(TrainGp, TrainsAnewAndSaysSoWhereThePreviousOptimumCannotBeEvaluated) {
   bad.log_noise_std[1] = -40.0;
   const GpFit fit = trainGp(toy.inputs, toy.targets, GpTrainingOptions(), &bad);
   ASSERT_TRUE(fit.ok) << fit.message;
-  EXPECT_EQ("output 2: the previous hyper-parameters cannot be evaluated, trained anew",
-            fit.message);
+  EXPECT_TRUE(names(fit.message, {"output 2: ", "previous hyper-parameters"}));
 }
 
 TEST(TrainGp, TellsThatTheLikelihoodCannotBeEvaluatedAtAll) {
@@ -248,8 +246,7 @@ TEST(TrainGp, TellsThatTheLikelihoodCannotBeEvaluatedAtAll) {
   toy.targets.col(1) *= 1e-161;  // its noise variance is below what double can tell from 0
   const GpFit fit = trainGp(toy.inputs, toy.targets, GpTrainingOptions());
   EXPECT_FALSE(fit.ok);
-  EXPECT_EQ("output 2: the likelihood cannot be evaluated at the start of the training",
-            fit.message);
+  EXPECT_TRUE(names(fit.message, {"output 2: ", "likelihood"}));
   EXPECT_EQ(0, fit.model.numPoints());
 }
 
@@ -273,9 +270,8 @@ TEST(TrainGp, RefusesDataItCannotLearnFromAndNamesThem) {
   const Toy toy(10);
   Eigen::MatrixXd changed = toy.inputs;
   changed.row(2).setConstant(0.1);
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      training(changed, toy.targets),
-      {"input 3 is 0.1", "all 10 points", "Leave it out", "feature of images"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training(changed, toy.targets),
+                                                  {"input 3 is 0.1", "all 10 points", "images"}));
   changed = toy.targets;
   changed.col(0).setZero();
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(training(toy.inputs, changed),
@@ -283,11 +279,11 @@ TEST(TrainGp, RefusesDataItCannotLearnFromAndNamesThem) {
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(training(toy.inputs, 1e200 * toy.targets),
                                                   {"target 1", "too large"}));
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      training(toy.inputs.leftCols(1), toy.targets.topRows(1)), {"at least 2 points, got 1"}));
+      training(toy.inputs.leftCols(1), toy.targets.topRows(1)), {" 2 points", "got 1"}));
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
       training(toy.inputs.leftCols(0), toy.targets.topRows(0)), {"needs data, got 0 points"}));
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(training(toy.inputs, toy.targets.topRows(9)),
-                                                  {"same points, got 10 and 9"}));
+                                                  {"got 10 and 9"}));
 }
 
 TEST(TrainGp, RefusesHyperparametersOfAnotherSizeOrNotFinite) {
@@ -295,18 +291,16 @@ TEST(TrainGp, RefusesHyperparametersOfAnotherSizeOrNotFinite) {
   Hyperparameters start = initialHyperparameters(toy.inputs, toy.targets);
   start.log_signal_std[1] = kNaN;
   const auto training = [&] { trainGp(toy.inputs, toy.targets, GpTrainingOptions(), &start); };
-  EXPECT_TRUE(
-      throwsNaming<std::invalid_argument>(training, {"signal std for output 2", "finite", "nan"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training, {"hyper-parameters", "finite"}));
   start = initialHyperparameters(toy.inputs, toy.targets);
   start.log_noise_std[0] = kNaN;
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training, {"noise std for output 1"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training, {"hyper-parameters", "finite"}));
   start = initialHyperparameters(toy.inputs, toy.targets);
   start.log_length_scales(2, 1) = kNaN;
-  EXPECT_TRUE(
-      throwsNaming<std::invalid_argument>(training, {"length-scale of input 3 for output 2"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training, {"hyper-parameters", "finite"}));
   start.log_signal_std.setZero(3);
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      training, {"for 3 inputs and 2 outputs", "3 signal stds and 2 noise stds"}));
+      training, {"3 inputs", "2 outputs", "3 signal", "2 noise"}));
 }
 
 TEST(GpTrainingOptions, AllProblemsAreReportedAndNaNIsOne) {
@@ -317,7 +311,7 @@ TEST(GpTrainingOptions, AllProblemsAreReportedAndNaNIsOne) {
   options.signal_to_noise_limit = 1.0;
   options.curb_power = 3;
   ASSERT_EQ(4u, options.problems().size());
-  EXPECT_EQ("gp/max_iterations must be >= 0, got -1", options.problems()[0]);
+  EXPECT_TRUE(names(options.problems()[0], {"gp/max_iterations", ">= 0", "got -1"}));
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
       [&] { trainGp(Toy(9).inputs, Toy(9).targets, options); }, {"gp/max_iterations"}));
 }

@@ -13,10 +13,10 @@
 #include "adjoint_check.h"
 #include "ddm_model/testing/vector_of.h"
 #include "ddm_msgs/testing/expect_error.h"
-#include "ddm_pilco/linear_policy.h"
 #include "ddm_pilco/rbf_policy.h"
 #include "ddm_pilco/squashed_policy.h"
 #include "gp_sampler.h"
+#include "linear_policy.h"
 #include "monte_carlo.h"
 #include "random_gp.h"
 
@@ -35,9 +35,9 @@ struct Pendulum {
     options.angles = {1};
     options.noisy_policy_input = noisy;
     auto rbf = std::make_unique<RbfPolicy>(3, 1, 5);
-    rbf->setParameters(RbfPolicy::packParameters(randomMatrix(3, 1, 0.2, random),
-                                                 randomMatrix(3, 5, 1.0, random),
-                                                 randomMatrix(5, 1, 0.3, random)));
+    rbf->setParameters(RbfPolicy::packParameters(normalMatrix(3, 1, 0.2, random),
+                                                 normalMatrix(3, 5, 1.0, random),
+                                                 normalMatrix(5, 1, 0.3, random)));
     policy = std::make_unique<SquashedPolicy>(std::move(rbf), Eigen::VectorXd::Constant(1, 2.0));
     start = randomGaussian(2, 2, 0.2, random);
   }
@@ -62,7 +62,7 @@ struct Pendulum {
   PropagationOptions options;
   options.noisy_policy_input = noisy;
   LinearPolicy policy(2, 1);
-  const Eigen::VectorXd w = randomMatrix(3, 1, 0.7, random);
+  const Eigen::VectorXd w = normalMatrix(3, 1, 0.7, random);
   policy.setParameters(w);
   const Gaussian state = randomGaussian(2, 2, 0.6, random);
   const Gaussian next = Propagation(model, options).step(&policy, state);
@@ -197,7 +197,7 @@ TEST(LongTermCost, GradientMatchesDifferencesWithoutAnglesAndForTwoControls) {
   GpModel model = randomGp(5, 3, 10, true, random);
   model.beta *= 0.3;
   auto rbf = std::make_unique<RbfPolicy>(3, 2, 4);
-  rbf->setParameters(randomMatrix(rbf->numParameters(), 1, 0.4, random));
+  rbf->setParameters(normalMatrix(rbf->numParameters(), 1, 0.4, random));
   SquashedPolicy policy(std::move(rbf), vectorOf({1.0, 2.0}));
   const StateCost state_cost(
       Augmentation(3, {0, 1, 2}, {}),
@@ -269,7 +269,7 @@ TEST(LongTermCost, RefusesProblemsThatDoNotFit) {
       Augmentation(3, {0}, {}),
       SaturatingCost(Eigen::VectorXd::Zero(1), Eigen::MatrixXd::Identity(1, 1)));
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { make(policy, of_three, pendulum.start, 1); }, {"2 entries, got one for 3"}));
+      [&] { make(policy, of_three, pendulum.start, 1); }, {"state of 2", " 3"}));
   Gaussian start = pendulum.start;
   start.mean[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { make(policy, pendulumCost(), start, 1); },

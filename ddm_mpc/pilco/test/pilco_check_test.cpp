@@ -10,6 +10,7 @@
 #include <sstream>
 #include <string>
 
+#include "ddm_msgs/testing/expect_error.h"
 #include "ddm_msgs/testing/temp_folder.h"
 
 namespace ddm {
@@ -86,23 +87,20 @@ Outcome check(const std::string& content) {
   return run(folder.file("values.json"));
 }
 
-::testing::AssertionResult fails(const std::string& content, const std::string& message) {
+::testing::AssertionResult fails(const std::string& content,
+                                 const std::vector<std::string>& parts) {
   const Outcome outcome = check(content);
-  if (outcome.exit_code == 1 && outcome.text.find(message) != std::string::npos) {
-    return ::testing::AssertionSuccess();
-  }
-  return ::testing::AssertionFailure()
-         << "exit code " << outcome.exit_code << ", no '" << message << "' in:\n"
-         << outcome.text;
+  if (outcome.exit_code == 1) return ::ddm::testing::names(outcome.text, parts);
+  return ::testing::AssertionFailure() << "exit code " << outcome.exit_code << ": " << outcome.text;
 }
 
 TEST(PilcoCheck, AcceptsWhatClosedFormsSayAndTellsWhichKindsHaveNoCases) {
   const Outcome outcome = check(goodFile());
   EXPECT_EQ(0, outcome.exit_code) << outcome.text;
   EXPECT_NE(std::string::npos, outcome.text.find("simulate             2")) << outcome.text;
-  EXPECT_NE(std::string::npos, outcome.text.find("gp_predict: no cases in this file"));
+  EXPECT_NE(std::string::npos, outcome.text.find("gp_predict: no cases"));
   EXPECT_EQ(std::string::npos, outcome.text.find("gsin: no cases"));
-  EXPECT_NE(std::string::npos, outcome.text.find("All cases are within"));
+  EXPECT_NE(std::string::npos, outcome.text.find("tolerances"));
 }
 
 TEST(PilcoCheck, AcceptsIndentedFiles) {
@@ -111,48 +109,49 @@ TEST(PilcoCheck, AcceptsIndentedFiles) {
 
 TEST(PilcoCheck, FindsASingleFalsifiedNumber) {
   const std::string file = replaced(goodFile(), simulateCase("sim2"), simulateCase("sim2", 3e-9));
-  EXPECT_TRUE(fails(file, "simulate: case sim2, field x1, entry (2, 1): the file has "));
-  EXPECT_TRUE(fails(file, "\nFailed: simulate\n"));
+  EXPECT_TRUE(fails(file, {"simulate: case sim2, field x1, entry (2, 1): "}));
+  EXPECT_TRUE(fails(file, {"failed: simulate\n"}));
   EXPECT_EQ(
       0, check(replaced(goodFile(), simulateCase("sim2"), simulateCase("sim2", 3e-10))).exit_code)
       << "this is within the tolerance";
 }
 
 TEST(PilcoCheck, FindsAFalsifiedInputAndConstant) {
-  EXPECT_TRUE(fails(replaced(goodFile(), "\"u\": 3,", "\"u\": 3.001,"), "Failed: simulate"));
-  EXPECT_TRUE(fails(replaced(goodFile(), "\"dt\": 0.2", "\"dt\": 0.25"), "case sim1, field dt"));
-  EXPECT_TRUE(fails(replaced(goodFile(), "\"z\": [0.2]", "\"z\": [0.20001]"), "Failed: loss_sat"));
-  EXPECT_TRUE(fails(replaced(goodFile(), "[1.5]", "[-1.5]"), "Failed: gsin"));
+  EXPECT_TRUE(fails(replaced(goodFile(), "\"u\": 3,", "\"u\": 3.001,"), {"failed: simulate"}));
+  EXPECT_TRUE(fails(replaced(goodFile(), "\"dt\": 0.2", "\"dt\": 0.25"), {"case sim1, field dt"}));
+  EXPECT_TRUE(
+      fails(replaced(goodFile(), "\"z\": [0.2]", "\"z\": [0.20001]"), {"failed: loss_sat"}));
+  EXPECT_TRUE(fails(replaced(goodFile(), "[1.5]", "[-1.5]"), {"failed: gsin"}));
 }
 
 TEST(PilcoCheck, NamesKindCaseAndFieldOfWhatIsNoFiniteNumber) {
-  for (const char* bad : {"NaN", "Infinity", "\"3\"", "null", "[3]", "1e999"}) {
+  for (const char* bad : {"NaN", "Infinity", "\"3\"", "null", "1e999"}) {
     EXPECT_TRUE(fails(replaced(goodFile(), "\"u\": 3,", std::string("\"u\": ") + bad + ","),
-                      "simulate: case sim1, field u: must be a "))
+                      {"simulate: case sim1, field u: "}))
         << bad;
   }
   EXPECT_TRUE(fails(replaced(goodFile(), "\"x0\": [0.7, -0.4]", "\"x0\": [0.7, NaN]"),
-                    "simulate: case sim1, field x0: must be a finite number, got NaN"));
+                    {"simulate: case sim1, field x0: ", "got NaN"}));
 }
 
 TEST(PilcoCheck, NamesMissingUnknownRepeatedAndMisshapenFields) {
   EXPECT_TRUE(
-      fails(replaced(goodFile(), "\"u\": 3, ", ""), "simulate: case sim1, field u: is missing"));
+      fails(replaced(goodFile(), "\"u\": 3, ", ""), {"simulate: case sim1, field u: ", "missing"}));
   EXPECT_TRUE(fails(replaced(goodFile(), "\"u\": 3", "\"u\": 3, \"v\": 1"),
-                    "simulate: case sim1, field v: is unknown"));
+                    {"simulate: case sim1, field v: ", "unknown"}));
   EXPECT_TRUE(fails(replaced(goodFile(), "\"u\": 3", "\"u\": 3, \"u\": 3"),
-                    "simulate: case sim1, field u: is there twice"));
+                    {"simulate: case sim1, field u: ", "twice"}));
   EXPECT_TRUE(fails(replaced(goodFile(), "[0.7, -0.4]", "[0.7, -0.4, 1]"),
-                    "simulate: case sim1, field x0: must have 2 entries, got 3"));
+                    {"simulate: case sim1, field x0: ", "2 x 1", "got 3 x 1"}));
   EXPECT_TRUE(fails(replaced(goodFile(), "\"W\": [[2]]", "\"W\": [[2, 1]]"),
-                    "loss_sat: case loss1, field W: must be 1 x 1, got 1 x 2"));
-  EXPECT_TRUE(fails(replaced(goodFile(), "\"W\": [[2]]", "\"W\": [2]"),
-                    "loss_sat: case loss1, field W: must be a list of numbers"));
+                    {"loss_sat: case loss1, field W: ", "1 x 1", "got 1 x 2"}));
+  EXPECT_TRUE(fails(replaced(goodFile(), "[0.7, -0.4]", "[[0.7], [-0.4, 1]]"),
+                    {"simulate: case sim1, field x0: ", "rows"}));
   EXPECT_TRUE(fails(replaced(goodFile(), "\"D\": 1", "\"D\": 2"),
-                    "loss_sat: case loss1, field D: must be 1, got 2"));
+                    {"loss_sat: case loss1, field D: ", " 1, ", "got 2"}));
   EXPECT_TRUE(fails(replaced(goodFile(), "\"f9707a9\"", "\"f9707a8\""),
-                    "simulate: case sim1, field scenario: must be "));
-  EXPECT_TRUE(fails(replaced(goodFile(), "sim2", "sim1"), "case sim1, field id: is there twice"));
+                    {"simulate: case sim1, field scenario: "}));
+  EXPECT_TRUE(fails(replaced(goodFile(), "sim2", "sim1"), {"case sim1, field id: ", "twice"}));
 }
 
 TEST(PilcoCheck, FindsAComputedNumberThatIsNotFiniteBesideOnesThatAreRight) {
@@ -162,35 +161,37 @@ TEST(PilcoCheck, FindsAComputedNumberThatIsNotFiniteBesideOnesThatAreRight) {
       R"({"gsin": [{"id": "a", "m": [0, 0], "v": [[-1e6, 0], [0, 0.4]], "index1": [1, 2], )"
       R"("e": [1, 1], "M": [0, 0], "V": [[0, 0], [0, )" +
       right + R"(]], "C": [[0, 0], [0, )" + digits(std::exp(-0.2)) + "]]}]}";
-  EXPECT_TRUE(fails(file, "gsin: case a, field V, entry (1, 1): the file has 0, computed "));
+  EXPECT_TRUE(fails(file, {"gsin: case a, field V, entry (1, 1): ", "has 0, "}));
   EXPECT_EQ(std::string::npos, check(file).text.find("entry (2, 2)"));
 }
 
 TEST(PilcoCheck, ComparesTheOtherCasesOfAKindWithAnUnreadableOne) {
   const std::string file = replaced(
       replaced(goodFile(), simulateCase("sim2"), simulateCase("sim2", 1e-3)), "\"u\": 3, ", "");
-  EXPECT_TRUE(fails(file, "case sim1, field u: is missing"));
-  EXPECT_TRUE(fails(file, "case sim2, field x1, entry"));
+  EXPECT_TRUE(fails(file, {"case sim1, field u: ", "missing"}));
+  EXPECT_TRUE(fails(file, {"case sim2, field x1, entry"}));
 }
 
 TEST(PilcoCheck, FailsWithUnknownKindsAndWithoutAnyCase) {
-  EXPECT_TRUE(fails(replaced(goodFile(), "\"gsin\"", "\"gsine\""), "gsine: unknown kind"));
-  EXPECT_TRUE(fails(replaced(goodFile(), "\"gsin\"", "\"gsine\""), "Failed: gsine"));
-  EXPECT_TRUE(fails(R"({"meta": {"source": "none"}})", "there are no cases"));
-  EXPECT_TRUE(fails(R"({"gsin": 1})", "gsin: must be a list of cases"));
+  EXPECT_TRUE(fails(replaced(goodFile(), "\"gsin\"", "\"gsine\""), {"gsine: ", "unknown"}));
+  EXPECT_TRUE(fails(replaced(goodFile(), "\"gsin\"", "\"gsine\""), {"failed: gsine"}));
+  EXPECT_TRUE(fails(R"({"gsin": 1})", {"gsin: ", "list"}));
+  const Outcome none = check(R"({"meta": {"source": "none"}})");
+  EXPECT_EQ(1, none.exit_code);
+  EXPECT_EQ(std::string::npos, none.text.find("failed")) << none.text;
 }
 
 TEST(PilcoCheck, NamesAKindWhoseListIsEmpty) {
   const std::string file = replaced(goodFile(), "\"gsin\"", "\"gp_predict\": [], \"gsin\"");
-  EXPECT_TRUE(fails(file, "gp_predict: the list of cases is empty, nothing was compared"));
-  EXPECT_TRUE(fails(file, "\nFailed: gp_predict\n"));
+  EXPECT_TRUE(fails(file, {"gp_predict: ", "list"}));
+  EXPECT_TRUE(fails(file, {"failed: gp_predict\n"}));
 }
 
 TEST(PilcoCheck, NamesAFileThatIsDamaged) {
   const std::string file = goodFile();
-  EXPECT_TRUE(fails(file.substr(0, file.size() / 2), "values.json: is not JSON"));
-  EXPECT_TRUE(fails("", "values.json: cannot be read, or is empty"));
-  EXPECT_TRUE(fails("[1, 2]", "values.json: must be an object"));
+  EXPECT_TRUE(fails(file.substr(0, file.size() / 2), {"values.json:1: "}));
+  EXPECT_TRUE(fails("", {"values.json: ", "object"}));
+  EXPECT_TRUE(fails("[1, 2]", {"values.json: ", "object"}));
 }
 
 TEST(PilcoCheck, AcceptsTheReferenceValuesOfTheEnvironment) {
@@ -200,20 +201,17 @@ TEST(PilcoCheck, AcceptsTheReferenceValuesOfTheEnvironment) {
   }
   const Outcome outcome = run("'" + std::string(file) + "'");
   EXPECT_EQ(0, outcome.exit_code) << outcome.text;
-  EXPECT_NE(std::string::npos, outcome.text.find("All cases are within")) << outcome.text;
-  EXPECT_EQ(outcome.text.find("\nvalue  ") != std::string::npos,
-            outcome.text.find("\nvalue: exact gradient against the file's differences: worst ") !=
-                std::string::npos)
-      << outcome.text;
+  EXPECT_NE(std::string::npos, outcome.text.find("tolerances")) << outcome.text;
 }
 
 TEST(PilcoCheck, ExplainsItsUse) {
   for (const char* arguments : {"", "one two", "--nonsense"}) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(2, outcome.exit_code) << arguments;
-    EXPECT_NE(std::string::npos, outcome.text.find("usage: rosrun ddm_mpc pilco_check FILE.json"));
   }
-  EXPECT_EQ(0, run("--help").exit_code);
+  const Outcome help = run("--help");
+  EXPECT_EQ(0, help.exit_code);
+  EXPECT_NE(std::string::npos, help.text.find("pilco_check FILE.json")) << help.text;
   EXPECT_EQ(1, run("/nowhere/values.json").exit_code);
 }
 

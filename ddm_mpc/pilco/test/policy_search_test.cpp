@@ -5,19 +5,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "ddm_model/testing/vector_of.h"
 #include "ddm_msgs/testing/expect_error.h"
+#include "ddm_msgs/testing/not_finite.h"
 
 namespace ddm {
 namespace pilco {
 namespace {
 
+using ::ddm::testing::names;
 using ::ddm::testing::throwsNaming;
 using ::ddm::testing::vectorOf;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// A cost that saturates like the expected costs do; its minimum 0 is at (2, 2, 2).
 double saturating(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
@@ -29,12 +28,11 @@ double saturating(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
 
 TEST(PolicySearch, FindsTheBestParametersAndReportsBothCosts) {
   const Eigen::VectorXd start = vectorOf({0.0, 4.0, 1.0});
-  const PolicySearchResult result = searchPolicy(saturating, start, PolicySearchOptions());
-  EXPECT_TRUE(result.ok);
-  EXPECT_TRUE(result.improved);
-  EXPECT_EQ(saturating(start, nullptr), result.cost_before);
-  EXPECT_EQ(saturating(result.parameters, nullptr), result.cost_after);
-  EXPECT_LT((result.parameters.array() - 2.0).abs().maxCoeff(), 1e-3);
+  const Minimum result = searchPolicy(saturating, start, PolicySearchOptions());
+  EXPECT_TRUE(result.improved());
+  EXPECT_EQ(saturating(start, nullptr), result.initial_cost);
+  EXPECT_EQ(saturating(result.x, nullptr), result.cost);
+  EXPECT_LT((result.x.array() - 2.0).abs().maxCoeff(), 1e-3);
   EXPECT_GT(result.iterations, 0);
   EXPECT_GE(result.evaluations, result.iterations);
   EXPECT_EQ("converged", result.message);
@@ -47,9 +45,9 @@ TEST(PolicySearch, KeepsItsLimits) {
   EXPECT_EQ(1, searchPolicy(saturating, start, options).iterations);
   options.max_iterations = 75;
   options.max_evaluations = 2;
-  const PolicySearchResult result = searchPolicy(saturating, start, options);
+  const Minimum result = searchPolicy(saturating, start, options);
   EXPECT_EQ(2, result.evaluations);
-  EXPECT_EQ("limit of evaluations reached", result.message);
+  EXPECT_EQ(MinimumReason::kEvaluationLimit, result.reason);
 }
 
 TEST(PolicySearch, SurvivesAPolicyWhosePredictionDiverges) {
@@ -57,19 +55,18 @@ TEST(PolicySearch, SurvivesAPolicyWhosePredictionDiverges) {
     const double value = saturating(x, gradient);
     return x[0] > 2.0 ? kNaN : value;
   };
-  const PolicySearchResult result =
-      searchPolicy(diverging, vectorOf({0.0, 4.0, 1.0}), PolicySearchOptions());
-  EXPECT_TRUE(result.improved);
-  EXPECT_LT(result.cost_after, 0.1 * result.cost_before) << result.message;
+  const Minimum result = searchPolicy(diverging, vectorOf({0.0, 4.0, 1.0}), PolicySearchOptions());
+  EXPECT_TRUE(result.improved());
+  EXPECT_LT(result.cost, 0.1 * result.initial_cost) << result.message;
 }
 
 TEST(PolicySearch, KeepsAPolicyThatCannotBeEvaluated) {
   const auto nowhere = [](const Eigen::VectorXd&, Eigen::VectorXd*) { return kNaN; };
   const Eigen::VectorXd start = vectorOf({1.0, 2.0, 3.0});
-  const PolicySearchResult result = searchPolicy(nowhere, start, PolicySearchOptions());
-  EXPECT_FALSE(result.ok);
-  EXPECT_FALSE(result.improved);
-  EXPECT_EQ(start, result.parameters);
+  const Minimum result = searchPolicy(nowhere, start, PolicySearchOptions());
+  EXPECT_EQ(MinimumReason::kStartFailed, result.reason);
+  EXPECT_FALSE(result.improved());
+  EXPECT_EQ(start, result.x);
   EXPECT_NE("", result.message);
 }
 
@@ -80,7 +77,7 @@ TEST(PolicySearchOptions, AllProblemsAreReportedAndNaNIsOne) {
   options.max_evaluations = 0;
   options.function_tolerance = kNaN;
   ASSERT_EQ(3u, options.problems().size());
-  EXPECT_EQ("policy_search/max_evaluations must be >= 1, got 0", options.problems()[1]);
+  EXPECT_TRUE(names(options.problems()[1], {"policy_search/max_evaluations", ">= 1", "got 0"}));
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
       [&] { searchPolicy(saturating, Eigen::VectorXd::Zero(3), options); }, {"policy_search/"}));
 }

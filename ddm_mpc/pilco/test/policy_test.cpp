@@ -13,9 +13,9 @@
 
 #include "adjoint_check.h"
 #include "ddm_model/testing/vector_of.h"
-#include "ddm_pilco/linear_policy.h"
 #include "ddm_pilco/rbf_policy.h"
 #include "ddm_pilco/squashed_policy.h"
+#include "linear_policy.h"
 #include "monte_carlo.h"
 #include "random_gp.h"
 
@@ -28,15 +28,15 @@ using ::ddm::testing::vectorOf;
 std::unique_ptr<RbfPolicy> randomRbfPolicy(int dim, int controls, int centres,
                                            std::mt19937_64& random) {
   auto policy = std::make_unique<RbfPolicy>(dim, controls, centres);
-  policy->setParameters(RbfPolicy::packParameters(randomMatrix(dim, controls, 0.2, random),
-                                                  randomMatrix(dim, centres, 1.0, random),
-                                                  randomMatrix(centres, controls, 0.5, random)));
+  policy->setParameters(RbfPolicy::packParameters(normalMatrix(dim, controls, 0.2, random),
+                                                  normalMatrix(dim, centres, 1.0, random),
+                                                  normalMatrix(centres, controls, 0.5, random)));
   return policy;
 }
 
 std::unique_ptr<LinearPolicy> randomLinearPolicy(int dim, int controls, std::mt19937_64& random) {
   auto policy = std::make_unique<LinearPolicy>(dim, controls);
-  policy->setParameters(randomMatrix(policy->numParameters(), 1, 0.7, random));
+  policy->setParameters(normalMatrix(policy->numParameters(), 1, 0.7, random));
   return policy;
 }
 
@@ -63,9 +63,9 @@ void expectAdjointsMatch(Policy* policy, const Gaussian& input, std::mt19937_64&
 
 TEST(RbfPolicy, IsTheSumOfItsBasisFunctions) {
   std::mt19937_64 random(1);
-  const Eigen::MatrixXd scales = randomMatrix(2, 1, 0.3, random);
-  const Eigen::MatrixXd centres = randomMatrix(2, 4, 1.0, random);
-  const Eigen::MatrixXd targets = randomMatrix(4, 1, 1.0, random);
+  const Eigen::MatrixXd scales = normalMatrix(2, 1, 0.3, random);
+  const Eigen::MatrixXd centres = normalMatrix(2, 4, 1.0, random);
+  const Eigen::MatrixXd targets = normalMatrix(4, 1, 1.0, random);
   RbfPolicy policy(2, 1, 4);
   policy.setParameters(RbfPolicy::packParameters(scales, centres, targets));
   const auto k = [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
@@ -107,10 +107,10 @@ TEST(RbfPolicy, AdjointMatchesDifferencesForOneAndTwoControls) {
 
 TEST(RbfPolicy, AdjointMatchesDifferencesWhereTwoCentresCoincide) {
   std::mt19937_64 random(3);
-  Eigen::MatrixXd centres = randomMatrix(2, 4, 1.0, random);
+  Eigen::MatrixXd centres = normalMatrix(2, 4, 1.0, random);
   centres.col(1) = centres.col(0);
   RbfPolicy policy(2, 1, 4);
-  policy.setParameters(RbfPolicy::packParameters(randomMatrix(2, 1, 0.2, random), centres,
+  policy.setParameters(RbfPolicy::packParameters(normalMatrix(2, 1, 0.2, random), centres,
                                                  vectorOf({0.5, 0.5, -0.3, 0.2})));
   // K is nearly singular: differences with steps of 7e-4 would not resolve the ridge of 1e-4.
   const Gaussian input = randomGaussian(2, 2, 0.5, random);
@@ -229,10 +229,10 @@ TEST(SquashedPolicy, NeverCommandsMoreThanItsBoundHoweverLargeTheTargets) {
   std::mt19937_64 random(9);
   auto rbf = std::make_unique<RbfPolicy>(2, 1, 6);
   rbf->setParameters(RbfPolicy::packParameters(
-      Eigen::VectorXd::Zero(2), randomMatrix(2, 6, 1.0, random), randomMatrix(6, 1, 50.0, random)));
+      Eigen::VectorXd::Zero(2), normalMatrix(2, 6, 1.0, random), normalMatrix(6, 1, 50.0, random)));
   SquashedPolicy policy(std::move(rbf), Eigen::VectorXd::Constant(1, 2.5));
   for (int i = 0; i < 1000; ++i) {
-    EXPECT_LE(std::abs(policy.control(randomMatrix(2, 1, 1.0, random))[0]), 2.5);
+    EXPECT_LE(std::abs(policy.control(normalMatrix(2, 1, 1.0, random))[0]), 2.5);
   }
 }
 

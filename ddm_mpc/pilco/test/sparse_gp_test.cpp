@@ -14,22 +14,23 @@
 #include "ddm_model/testing/random_matrix.h"
 #include "ddm_model/testing/vector_of.h"
 #include "ddm_msgs/testing/expect_error.h"
-#include "ddm_pilco/squared_exponential.h"
+#include "ddm_msgs/testing/not_finite.h"
+#include "ddm_pilco/gp_model.h"
 
 namespace ddm {
 namespace pilco {
 namespace {
 
 using ::ddm::testing::gradientMatches;
+using ::ddm::testing::names;
 using ::ddm::testing::randomMatrix;
 using ::ddm::testing::throwsNaming;
 using ::ddm::testing::vectorOf;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRidge = 1e-6;
 
-struct Toy {
-  explicit Toy(int n) : inputs(randomMatrix(2, n, 1)), targets(n, 2) {
+struct SparseToy {
+  explicit SparseToy(int n) : inputs(randomMatrix(2, n, 1)), targets(n, 2) {
     const Eigen::ArrayXd x = inputs.row(0), y = inputs.row(1);
     targets.col(0) = (1.5 * x).sin() + 0.5 * y;
     targets.col(1) = (x + y).cos();
@@ -46,7 +47,7 @@ struct Toy {
 
 /// Matrices of one output as the formulas have them, inverted outright.
 struct PlainFitc {
-  PlainFitc(const Toy& toy, const Eigen::MatrixXd& inducing, int output) {
+  PlainFitc(const SparseToy& toy, const Eigen::MatrixXd& inducing, int output) {
     const Eigen::VectorXd theta = thetaOf(toy.hyperparameters, output);
     const Eigen::VectorXd l = theta.head(2).array().exp();
     const double sf = std::exp(theta[2]);
@@ -63,7 +64,7 @@ struct PlainFitc {
 };
 
 TEST(SparseLikelihood, IsThatOfAMultivariateNormalSummedOverOutputs) {
-  const Toy toy(12);
+  const SparseToy toy(12);
   const Eigen::MatrixXd inducing = randomMatrix(2, 4, 3);
   double expected = 0.0;
   for (int output = 0; output < 2; ++output) {
@@ -79,7 +80,7 @@ TEST(SparseLikelihood, IsThatOfAMultivariateNormalSummedOverOutputs) {
 }
 
 TEST(SparseLikelihood, IsThatOfTheFullGpWhereAllInputsAreInducing) {
-  const Toy toy(12);
+  const SparseToy toy(12);
   double full = 0.0;
   for (int output = 0; output < 2; ++output) {
     full += negativeLogLikelihood(toy.inputs, toy.targets.col(output),
@@ -92,7 +93,7 @@ TEST(SparseLikelihood, IsThatOfTheFullGpWhereAllInputsAreInducing) {
 }
 
 TEST(SparseLikelihood, GradientInTheInducingInputsMatchesDifferences) {
-  const Toy toy(15);
+  const SparseToy toy(15);
   const Eigen::MatrixXd inducing = randomMatrix(2, 5, 3);
   const auto f = [&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
     const Eigen::MatrixXd z = Eigen::Map<const Eigen::MatrixXd>(x.data(), 2, 5);
@@ -107,7 +108,7 @@ TEST(SparseLikelihood, GradientInTheInducingInputsMatchesDifferences) {
 }
 
 TEST(SparseLikelihood, IsInfiniteWherePositiveDefinitenessIsLost) {
-  const Toy toy(10);
+  const SparseToy toy(10);
   const Eigen::MatrixXd same = Eigen::MatrixXd::Ones(2, 4);
   Eigen::MatrixXd gradient;
   EXPECT_EQ(std::numeric_limits<double>::infinity(),
@@ -121,7 +122,7 @@ TEST(SparseLikelihood, IsInfiniteWherePositiveDefinitenessIsLost) {
 }
 
 TEST(SparseGpModel, HasTheMatricesOfTheFormulas) {
-  const Toy toy(14);
+  const SparseToy toy(14);
   const Eigen::MatrixXd inducing = randomMatrix(2, 5, 3);
   const GpFit fit =
       makeSparseGpModel(inducing, toy.inputs, toy.targets, toy.hyperparameters, kRidge);
@@ -142,7 +143,7 @@ TEST(SparseGpModel, HasTheMatricesOfTheFormulas) {
 }
 
 TEST(SparseGpModel, NamesTheOutputThatIsNotPositiveDefinite) {
-  Toy toy(14);
+  SparseToy toy(14);
   toy.hyperparameters.log_signal_std[1] = 400.0;  // its square is beyond double
   const GpFit fit =
       makeSparseGpModel(toy.inputs, toy.inputs, toy.targets, toy.hyperparameters, kRidge);
@@ -166,7 +167,7 @@ TEST(RandomSubset, DrawsDifferentPointsTheSameForTheSameSeed) {
 }
 
 TEST(TrainSparseGp, ImprovesOnTheRandomSubset) {
-  const Toy toy(60);
+  const SparseToy toy(60);
   std::mt19937_64 rng(1);
   const Eigen::MatrixXd start = randomSubset(toy.inputs, 8, &rng);
   const GpFit fit = trainSparseGp(start, toy.inputs, toy.targets, toy.hyperparameters, 50, kRidge);
@@ -175,14 +176,14 @@ TEST(TrainSparseGp, ImprovesOnTheRandomSubset) {
   EXPECT_EQ(
       sparseNegativeLogLikelihood(start, toy.inputs, toy.targets, toy.hyperparameters, kRidge),
       fit.outputs[0].initial_cost);
-  EXPECT_LT(fit.outputs[0].final_cost, fit.outputs[0].initial_cost - 1.0);
-  EXPECT_EQ(fit.outputs[0].final_cost,
+  EXPECT_LT(fit.outputs[0].cost, fit.outputs[0].initial_cost - 1.0);
+  EXPECT_EQ(fit.outputs[0].cost,
             sparseNegativeLogLikelihood(fit.model.inputs, toy.inputs, toy.targets,
                                         toy.hyperparameters, kRidge));
 }
 
 TEST(TrainSparseGp, TellsWhereTheStartCannotBeEvaluated) {
-  Toy toy(20);
+  SparseToy toy(20);
   toy.hyperparameters.log_signal_std[0] = 400.0;
   const GpFit fit = trainSparseGp(toy.inputs.leftCols(5), toy.inputs, toy.targets,
                                   toy.hyperparameters, 50, kRidge);
@@ -191,7 +192,7 @@ TEST(TrainSparseGp, TellsWhereTheStartCannotBeEvaluated) {
 }
 
 TEST(TrainSparseGp, RefusesInducingInputsThatDoNotFit) {
-  const Toy toy(20);
+  const SparseToy toy(20);
   const auto training = [&](const Eigen::MatrixXd& start) {
     return [&toy, start] {
       trainSparseGp(start, toy.inputs, toy.targets, toy.hyperparameters, 5, kRidge);
@@ -204,7 +205,7 @@ TEST(TrainSparseGp, RefusesInducingInputsThatDoNotFit) {
 }
 
 TEST(GpLearner, CopesWithRepeatedPointsInBothGps) {
-  const Toy toy(20);
+  const SparseToy toy(20);
   SparseGpOptions sparse;
   sparse.first_iterations = 20;
   for (const int max_points : {100, 30}) {  // full GP; sparse, with repeated inducing inputs
@@ -220,26 +221,26 @@ TEST(GpLearner, CopesWithRepeatedPointsInBothGps) {
 }
 
 TEST(GpLearner, RefusesNaNInTheDataAndStaysUsable) {
-  const Toy toy(30);
+  const SparseToy toy(30);
   Eigen::MatrixXd inputs = toy.inputs, targets = toy.targets;
   inputs(1, 4) = kNaN;
   targets(28, 0) = kNaN;
   GpLearner learner(GpTrainingOptions{}, SparseGpOptions{});
   std::mt19937_64 rng(1);
   EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { learner.learn(inputs, toy.targets, &rng); },
-                                                  {"input 2 of point 5 of 30", "nan"}));
+                                                  {"input 2", "point 5 of 30", "nan"}));
   EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { learner.learn(toy.inputs, targets, &rng); },
-                                                  {"target 1 of point 29 of 30", "nan"}));
+                                                  {"target 1", "point 29 of 30", "nan"}));
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
       [&] {
         makeSparseGpModel(toy.inputs.leftCols(5), inputs, toy.targets, toy.hyperparameters, kRidge);
       },
-      {"input 2 of point 5 of 30", "nan"}));
+      {"input 2", "point 5 of 30", "nan"}));
   EXPECT_TRUE(learner.learn(toy.inputs, toy.targets, &rng).ok);
 }
 
 TEST(GpLearner, UsesInducingInputsOnlyBeyondTheSetSize) {
-  const Toy toy(40);
+  const SparseToy toy(40);
   SparseGpOptions sparse;
   sparse.max_points = 10;
   sparse.first_iterations = 20;
@@ -268,15 +269,15 @@ TEST(GpLearner, UsesInducingInputsOnlyBeyondTheSetSize) {
 }
 
 TEST(GpLearner, StartsFromItsLastOptimum) {
-  const Toy toy(30);
+  const SparseToy toy(30);
   GpLearner learner(GpTrainingOptions{}, SparseGpOptions{});
   std::mt19937_64 rng(1);
   const GpFit first = learner.learn(toy.inputs, toy.targets, &rng);
   const GpFit again = learner.learn(toy.inputs, toy.targets, &rng);
   ASSERT_TRUE(first.ok && again.ok) << first.message << again.message;
   for (int output = 0; output < 2; ++output) {
-    EXPECT_LT(first.outputs[output].final_cost, first.outputs[output].initial_cost);
-    EXPECT_EQ(first.outputs[output].final_cost, again.outputs[output].initial_cost);
+    EXPECT_LT(first.outputs[output].cost, first.outputs[output].initial_cost);
+    EXPECT_EQ(first.outputs[output].cost, again.outputs[output].initial_cost);
   }
 }
 
@@ -290,7 +291,7 @@ void expectSameModel(const GpModel& expected, const GpModel& got) {
 }
 
 TEST(GpLearner, AnotherGoesOnFromItsStateToTheSameBytes) {
-  const Toy toy(40);
+  const SparseToy toy(40);
   SparseGpOptions sparse;
   sparse.first_iterations = 20;
   sparse.max_iterations = 5;
@@ -320,7 +321,7 @@ TEST(GpLearner, AnotherGoesOnFromItsStateToTheSameBytes) {
 }
 
 TEST(GpLearner, RefusesAStateOfOtherInputsAndKeepsItAsItWas) {
-  const Toy toy(30);
+  const SparseToy toy(30);
   SparseGpOptions sparse;
   sparse.max_points = 10;
   GpLearnerState state;
@@ -333,7 +334,7 @@ TEST(GpLearner, RefusesAStateOfOtherInputsAndKeepsItAsItWas) {
 }
 
 TEST(GpLearner, LearnsHyperparametersFromSomePointsAndPredictsWithAll) {
-  const Toy toy(60);
+  const SparseToy toy(60);
   GpTrainingOptions training;
   training.training_points = 40;
   SparseGpOptions sparse;
@@ -360,7 +361,7 @@ TEST(GpLearner, LearnsHyperparametersFromSomePointsAndPredictsWithAll) {
 }
 
 TEST(GpLearner, CallsBackAfterEachEvaluationOfAnObjective) {
-  const Toy toy(20);
+  const SparseToy toy(20);
   SparseGpOptions sparse;
   sparse.max_points = 10;
   sparse.first_iterations = 5;
@@ -370,7 +371,7 @@ TEST(GpLearner, CallsBackAfterEachEvaluationOfAnObjective) {
   const GpFit fit = learner.learn(toy.inputs, toy.targets, &rng, [&calls] { ++calls; });
   ASSERT_EQ(3u, fit.outputs.size()) << fit.message;
   int evaluations = 0;
-  for (const OutputTraining& output : fit.outputs) {
+  for (const Minimum& output : fit.outputs) {
     EXPECT_GT(output.evaluations, 1);
     evaluations += output.evaluations;
   }
@@ -385,7 +386,7 @@ TEST(SparseGpOptions, AllProblemsAreReportedAndNaNIsOne) {
   options.max_iterations = -1;
   options.ridge = kNaN;
   ASSERT_EQ(4u, options.problems().size());
-  EXPECT_EQ("sparse_gp/max_points must be >= 1, got 0", options.problems()[0]);
+  EXPECT_TRUE(names(options.problems()[0], {"sparse_gp/max_points", ">= 1", "got 0"}));
   EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { GpLearner(GpTrainingOptions(), options); },
                                                   {"sparse_gp/max_points"}));
 }

@@ -1,7 +1,5 @@
 // Tests of the squashing: range, samples, derivatives, refusals.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_pilco/squashing.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,6 +9,7 @@
 
 #include "adjoint_check.h"
 #include "ddm_model/testing/vector_of.h"
+#include "ddm_pilco/squashed_policy.h"
 #include "monte_carlo.h"
 #include "random_gp.h"
 

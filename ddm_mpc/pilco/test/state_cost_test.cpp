@@ -37,14 +37,14 @@ template <class Cost>
 }
 
 Eigen::MatrixXd randomWeight(int dim, int rank, std::mt19937_64& random) {
-  const Eigen::MatrixXd root = randomMatrix(dim, rank, 0.7, random);
+  const Eigen::MatrixXd root = normalMatrix(dim, rank, 0.7, random);
   return root * root.transpose();
 }
 
 TEST(SaturatingCost, HasExpectationAndVarianceOfAMillionSamples) {
   std::mt19937_64 random(1);
   for (const int rank : {3, 1}) {
-    const Eigen::VectorXd z = randomMatrix(3, 1, 0.5, random);
+    const Eigen::VectorXd z = normalMatrix(3, 1, 0.5, random);
     const Eigen::MatrixXd W = randomWeight(3, rank, random);
     const SaturatingCost cost(z, W);
     const Gaussian input = randomGaussian(3, 3, 0.8, random);
@@ -52,7 +52,7 @@ TEST(SaturatingCost, HasExpectationAndVarianceOfAMillionSamples) {
     const Eigen::MatrixXd root = squareRoot(input.covariance);
     SampleMean mean, square;
     for (int i = 0; i < 1000000; ++i) {
-      const Eigen::VectorXd d = input.mean + root * randomMatrix(3, 1, 1.0, random) - z;
+      const Eigen::VectorXd d = input.mean + root * normalMatrix(3, 1, 1.0, random) - z;
       const double c = 1.0 - std::exp(-0.5 * d.dot(W * d));
       mean.add(c);
       square.add((c - expected) * (c - expected));
@@ -66,7 +66,7 @@ TEST(SaturatingCost, GradientMatchesDifferencesAlsoForSingularWeightAndCovarianc
   std::mt19937_64 random(2);
   for (const int rank : {3, 1, 0}) {
     for (const int weight_rank : {3, 1}) {
-      const SaturatingCost cost(randomMatrix(3, 1, 0.5, random),
+      const SaturatingCost cost(normalMatrix(3, 1, 0.5, random),
                                 randomWeight(3, weight_rank, random));
       EXPECT_TRUE(costGradientMatches(cost, randomGaussian(3, rank, 0.6, random)))
           << "rank " << rank << ", weight of rank " << weight_rank;
@@ -97,10 +97,10 @@ TEST(SaturatingCost, RefusesWeightsAndInputsThatDoNotFit) {
 
 TEST(PendulumCost, MeasuresTheDistanceOfTheTipFromTheUprightTip) {
   const StateCost cost = pendulumCost(1.0, 0.5);
-  EXPECT_NEAR(cost.value(vectorOf({3.0, kPi})), 0.0, 1e-15);
-  EXPECT_NEAR(cost.value(vectorOf({0.0, 0.0})), 1.0 - std::exp(-8.0), 1e-15);
-  EXPECT_NEAR(cost.value(vectorOf({0.0, kPi / 2.0})), 1.0 - std::exp(-4.0), 1e-15);
-  EXPECT_NEAR(cost.value(vectorOf({0.0, -kPi})), 0.0, 1e-15);
+  EXPECT_NEAR(cost.expected(known(vectorOf({3.0, kPi}))), 0.0, 1e-15);
+  EXPECT_NEAR(cost.expected(known(vectorOf({0.0, 0.0}))), 1.0 - std::exp(-8.0), 1e-15);
+  EXPECT_NEAR(cost.expected(known(vectorOf({0.0, kPi / 2.0}))), 1.0 - std::exp(-4.0), 1e-15);
+  EXPECT_NEAR(cost.expected(known(vectorOf({0.0, -kPi}))), 0.0, 1e-15);
 }
 
 TEST(PendulumCost, GradientMatchesDifferences) {

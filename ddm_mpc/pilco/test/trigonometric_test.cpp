@@ -10,7 +10,6 @@
 
 #include "adjoint_check.h"
 #include "ddm_model/testing/vector_of.h"
-#include "ddm_pilco/sine_covariance.h"
 #include "monte_carlo.h"
 #include "random_gp.h"
 

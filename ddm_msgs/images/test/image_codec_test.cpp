@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "ddm_msgs/testing/expect_error.h"
+
 namespace ddm {
 namespace {
 
@@ -55,9 +57,8 @@ std::string refusal(const sensor_msgs::Image& image, int size = 2) {
   return "accepted";
 }
 
-void expectRefusal(const sensor_msgs::Image& image, const std::string& reason) {
-  const std::string what = refusal(image);
-  EXPECT_NE(what.find(reason), std::string::npos) << what;
+void expectRefusal(const sensor_msgs::Image& image, const std::vector<std::string>& parts) {
+  EXPECT_TRUE(testing::names(refusal(image), parts));
 }
 
 TEST(ImageCodec, ReturnsAMono8ImageOfTheRightSizeByteForByte) {
@@ -184,13 +185,13 @@ TEST(ImageCodec, RefusesFloatsThatAreNoGreyValue) {
   const double inf = std::numeric_limits<double>::infinity();
   for (const double bad : {nan, inf, -inf, -0.001, 1.001, 255.0}) {
     expectRefusal(makeImage<float>("32FC1", 2, 2, {0, 0, static_cast<float>(bad), 0}),
-                  "row 1, column 0");
-    expectRefusal(makeImage<double>("64FC1", 2, 2, {0, bad, 0, 0}), "row 0, column 1");
+                  {"row 1, column 0"});
+    expectRefusal(makeImage<double>("64FC1", 2, 2, {0, bad, 0, 0}), {"row 0, column 1"});
   }
 }
 
 TEST(ImageCodec, RefusesABadFloatOutsideTheCentralSquareToo) {
-  expectRefusal(makeImage<float>("32FC1", 4, 2, {2, 0, 0, 0, 0, 0, 0, 0}), "row 0, column 0");
+  expectRefusal(makeImage<float>("32FC1", 4, 2, {2, 0, 0, 0, 0, 0, 0, 0}), {"row 0, column 0"});
 }
 
 TEST(ImageCodec, DemosaicsEveryBayerPattern) {
@@ -239,42 +240,41 @@ TEST(ImageCodec, RefusesAnUnknownEncodingAndNamesTheKnownOnes) {
   for (const char* encoding : {"", "mono12", "16SC1", "8UC2", "32FC3", "MONO8", "jpeg"}) {
     sensor_msgs::Image image = makeRamp(2, 2);
     image.encoding = encoding;
-    expectRefusal(image, "unknown encoding '" + std::string(encoding) + "', known are");
-    expectRefusal(image, "bayer_rggb8");
+    expectRefusal(image, {"encoding", "'" + std::string(encoding) + "'", "bayer_rggb8"});
   }
 }
 
 TEST(ImageCodec, RefusesAnImageWithoutPixels) {
   sensor_msgs::Image image = makeRamp(2, 2);
   image.width = 0;
-  expectRefusal(image, "width and height must lie in [1, 16384]");
+  expectRefusal(image, {"width", "[1, 16384]", "0 x 2"});
   image = makeRamp(2, 2);
   image.height = 0;
-  expectRefusal(image, "width and height must lie in [1, 16384]");
-  expectRefusal(sensor_msgs::Image(), "image: ");
+  expectRefusal(image, {"height", "[1, 16384]", "2 x 0"});
+  expectRefusal(sensor_msgs::Image(), {"image: "});
 }
 
 TEST(ImageCodec, RefusesAbsurdDimensionsBeforeItMultipliesThem) {
   sensor_msgs::Image image = makeRamp(2, 2);
   image.width = image.height = image.step = std::numeric_limits<std::uint32_t>::max();
-  expectRefusal(image, "width and height must lie in [1, 16384]");
+  expectRefusal(image, {"width", "[1, 16384]", "4294967295 x 4294967295"});
   image = makeRamp(2, 2);
   image.height = 16385;
-  expectRefusal(image, "width and height must lie in [1, 16384]");
+  expectRefusal(image, {"height", "[1, 16384]", "2 x 16385"});
 }
 
 TEST(ImageCodec, RefusesAStepShorterThanARow) {
   sensor_msgs::Image image = makeUniform<std::uint8_t>("rgb8", 2, 2, {1, 2, 3});
   image.step = 5;
   image.data.resize(10);
-  expectRefusal(image, "step must be at least 6 bytes");
+  expectRefusal(image, {"step", "6 bytes", "got 5"});
 }
 
 TEST(ImageCodec, RefusesDataThatDoesNotFillItsRows) {
   for (const std::size_t bytes : {0, 3, 5}) {
     sensor_msgs::Image image = makeRamp(2, 2);
     image.data.resize(bytes);
-    expectRefusal(image, "data must hold step * height = 4 bytes");
+    expectRefusal(image, {"data", " 4 bytes", "got " + std::to_string(bytes)});
   }
 }
 
@@ -282,16 +282,16 @@ TEST(ImageCodec, RefusesAStepThatOverflowsThirtyTwoBits) {
   sensor_msgs::Image image = makeRamp(2, 2);
   image.step = 0x80000000u;  // times a height of 2: zero, in 32 bits
   image.data.clear();
-  expectRefusal(image, "data must hold step * height = 4294967296 bytes");
+  expectRefusal(image, {"data", "4294967296 bytes", "got 0"});
 }
 
 TEST(ImageCodec, RefusesBigEndianPixelsOfSeveralBytes) {
   sensor_msgs::Image image = makeUniform<std::uint16_t>("mono16", 2, 2, {1});
   image.is_bigendian = 1;
-  expectRefusal(image, "big-endian");
+  expectRefusal(image, {"big-endian"});
   image = makeUniform<float>("32FC1", 2, 2, {0.5f});
   image.is_bigendian = 1;
-  expectRefusal(image, "big-endian");
+  expectRefusal(image, {"big-endian"});
 }
 
 TEST(ImageCodec, IgnoresTheByteOrderOfSingleBytes) {
@@ -301,19 +301,17 @@ TEST(ImageCodec, IgnoresTheByteOrderOfSingleBytes) {
 }
 
 TEST(ImageCodec, RefusesAMosaicSmallerThanItsFilter) {
-  expectRefusal(makeUniform<std::uint8_t>("bayer_rggb8", 2, 4, {1}), "at least 3 x 3");
+  expectRefusal(makeUniform<std::uint8_t>("bayer_rggb8", 2, 4, {1}), {"3 x 3", "got 2 x 4"});
 }
 
 TEST(ImageCodec, RefusesAnOddWidthOfYuv422) {
-  expectRefusal(makeUniform<std::uint8_t>("yuv422", 3, 2, {128, 1}), "even width");
+  expectRefusal(makeUniform<std::uint8_t>("yuv422", 3, 2, {128, 1}), {"even width", "got 3 x 2"});
 }
 
 TEST(ImageCodec, RefusesASizeOutOfRange) {
   for (const int size : {0, -1, 16385}) {
-    const std::string what = refusal(makeRamp(2, 2), size);
-    EXPECT_NE(what.find("size must lie in [1, 16384], got " + std::to_string(size)),
-              std::string::npos)
-        << what;
+    EXPECT_TRUE(testing::names(refusal(makeRamp(2, 2), size),
+                               {"size", "[1, 16384]", "got " + std::to_string(size)}));
   }
 }
 
@@ -338,8 +336,7 @@ TEST(ImageCodec, RefusesACropThatReachesBeyondTheImage) {
       decodeImage(image, 2, crop);
       ADD_FAILURE() << crop.x << ", " << crop.y << " was accepted";
     } catch (const std::invalid_argument& e) {
-      EXPECT_NE(std::string(e.what()).find("must lie within the image's 6 x 5"), std::string::npos)
-          << e.what();
+      EXPECT_TRUE(testing::names(e.what(), {"crop", "column " + std::to_string(crop.x), "6 x 5"}));
     }
   }
 }

@@ -26,7 +26,8 @@ enum class StreamRole : std::uint32_t {
   kNoise = 8,           ///< of pixels
   kGoalNoise = 9,       ///< of the goal image's pixels
   kClutter = 10,        ///< background
-  kGoal = 11            ///< goals
+  kGoal = 11,           ///< goals
+  kScene = 12           ///< nuisances in the scene: camera, colours, lights
 };
 
 /// An engine fixed by run and role. (Distributions are fixed for a given libstdc++ only.)

@@ -6,8 +6,13 @@ namespace ddm {
 namespace topics {
 
 constexpr char kImage[] = "camera/image_raw";  ///< sensor_msgs/Image
-constexpr char kGoalImage[] = "goal_image";    ///< sensor_msgs/Image, latched
-constexpr char kTorque[] = "torque";           ///< ddm_msgs/Torque
+constexpr char kImageInfo[] =
+    "camera/camera_info";  ///< sensor_msgs/CameraInfo, latched: where the camera has a lens
+constexpr char kView[] =
+    "camera_view/image_raw";  ///< sensor_msgs/Image for people: large, drawn while subscribed
+constexpr char kViewInfo[] = "camera_view/camera_info";  ///< sensor_msgs/CameraInfo, latched
+constexpr char kGoalImage[] = "goal_image";              ///< sensor_msgs/Image, latched
+constexpr char kTorque[] = "torque";                     ///< ddm_msgs/Torque
 constexpr char kAppliedTorque[] =
     "applied_torque";  ///< ddm_msgs/Torque: what acted as the answer to each image, if anything
 constexpr char kEffortCommand[] = "effort_command";  ///< std_msgs/Float64 [N m]: one motor
@@ -23,7 +28,8 @@ constexpr char kPredictionImage[] =
 constexpr char kFeatureSpaceImage[] =
     "feature_space_image";  ///< sensor_msgs/Image: what the model thinks
 constexpr char kFeatureSpaceMarkers[] =
-    "feature_space_markers";  ///< visualization_msgs/MarkerArray: the same
+    "feature_space_markers";          ///< visualization_msgs/MarkerArray: the same
+constexpr char kTrials[] = "trials";  ///< std_msgs/String, latched: trials.csv and its goal
 constexpr char kLearningCurveImage[] =
     "learning_curve_image";  ///< sensor_msgs/Image, latched: what each model could do
 

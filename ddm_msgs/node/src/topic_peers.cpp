@@ -1,22 +1,82 @@
-// Who is at the other end of a topic, for messages that name the silent side.
+// Who is at the other end of a topic, and whether they have found each other.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_node/topic_peers.h"
 
+#include <ros/console.h>
 #include <ros/master.h>
+#include <ros/network.h>
 #include <ros/this_node.h>
+#include <ros/xmlrpc_manager.h>
+
+#include <boost/algorithm/string/join.hpp>
+#include <map>
+#include <set>
 
 #include "ddm_node/call_within.h"
 
 namespace ddm {
 namespace {
 
-constexpr std::chrono::seconds kMasterLimit(5);
+using NodesByTopic = std::map<std::string, std::set<std::string>>;
+using Connections = std::set<std::pair<std::string, std::string>>;  // topic, subscriber
+
+constexpr std::chrono::seconds kLimit(5);  // who was stopped never answers
+
+/// Who publishes and who subscribes, as the master knows it; empty if it does not answer.
+std::optional<std::pair<NodesByTopic, NodesByTopic>> publishersAndSubscribers() {
+  std::optional<XmlRpc::XmlRpcValue> state = askMaster("getSystemState", ros::this_node::getName());
+  if (!state) return std::nullopt;
+  const auto nodesByTopic = [](XmlRpc::XmlRpcValue& list) {
+    NodesByTopic out;
+    for (int i = 0; i < list.size(); ++i) {
+      XmlRpc::XmlRpcValue& nodes = list[i][1];
+      for (int j = 0; j < nodes.size(); ++j) {
+        out[static_cast<std::string>(list[i][0])].insert(static_cast<std::string>(nodes[j]));
+      }
+    }
+    return out;
+  };
+  return std::make_pair(nodesByTopic((*state)[0]), nodesByTopic((*state)[1]));
+}
+
+/// Outgoing connections of the node at this address; empty if it does not answer.
+Connections outgoingConnectionsAt(const std::string& host, std::uint32_t port) {
+  Connections out;
+  XmlRpc::XmlRpcValue caller, response;
+  caller[0] = ros::this_node::getName();
+  // The path alone: a node in Python does not know the page "http://...".
+  XmlRpc::XmlRpcClient* const client =
+      ros::XMLRPCManager::instance()->getXMLRPCClient(host, static_cast<int>(port), "/");
+  if (client == nullptr) return out;
+  if (client->execute("getBusInfo", caller, response) && response.size() == 3) {
+    for (int i = 0; i < response[2].size(); ++i) {
+      // id, destination, direction, transport, topic
+      XmlRpc::XmlRpcValue& connection = response[2][i];
+      if (static_cast<std::string>(connection[2]) != "o") continue;
+      out.emplace(static_cast<std::string>(connection[4]), static_cast<std::string>(connection[1]));
+    }
+  }
+  ros::XMLRPCManager::instance()->releaseXMLRPCClient(client);
+  return out;
+}
+
+Connections outgoingConnections(const std::string& node) {
+  XmlRpc::XmlRpcValue request;
+  request[0] = ros::this_node::getName();
+  request[1] = node;
+  std::optional<XmlRpc::XmlRpcValue> uri = askMaster("lookupNode", request);
+  std::string host;
+  std::uint32_t port = 0;
+  if (!uri || !ros::network::splitURI(static_cast<std::string>(*uri), host, port)) return {};
+  return callWithin(kLimit, [host, port] { return outgoingConnectionsAt(host, port); })
+      .value_or(Connections());
+}
 
 }  // namespace
 
 std::optional<XmlRpc::XmlRpcValue> askMaster(const std::string& method,
                                              const XmlRpc::XmlRpcValue& request) {
-  const auto answer = callWithin(kMasterLimit, [method, request] {
+  const auto answer = callWithin(kLimit, [method, request] {
     XmlRpc::XmlRpcValue response;
     std::optional<XmlRpc::XmlRpcValue> payload(std::in_place);
     if (!ros::master::execute(method, request, response, *payload, /*wait_for_master=*/false)) {
@@ -28,18 +88,43 @@ std::optional<XmlRpc::XmlRpcValue> askMaster(const std::string& method,
 }
 
 std::string describePublishers(const std::string& topic) {
-  std::optional<XmlRpc::XmlRpcValue> system_state =
-      askMaster("getSystemState", ros::this_node::getName());
-  if (!system_state) return "the ROS master does not answer";
-  std::string names;
-  XmlRpc::XmlRpcValue& published = (*system_state)[0];
-  for (int i = 0; i < published.size(); ++i) {
-    if (static_cast<std::string>(published[i][0]) != topic) continue;
-    for (int j = 0; j < published[i][1].size(); ++j) {
-      names += (names.empty() ? "" : ", ") + static_cast<std::string>(published[i][1][j]);
+  auto nodes = publishersAndSubscribers();
+  if (!nodes) return "the ROS master does not answer";
+  const std::set<std::string>& publishers = nodes->first[topic];
+  if (publishers.empty()) return "nobody publishes " + topic;
+  return "publisher(s) of " + topic + ": " + boost::algorithm::join(publishers, ", ");
+}
+
+std::vector<std::string> missingConnections(const std::vector<std::string>& topics) {
+  auto nodes = publishersAndSubscribers();
+  if (!nodes) return {"the ROS master does not answer"};
+  std::vector<std::string> missing;
+  for (const std::string& topic : topics) {
+    for (const std::string& publisher : nodes->first[topic]) {
+      const Connections connections = outgoingConnections(publisher);
+      for (const std::string& subscriber : nodes->second[topic]) {
+        if (connections.count({topic, subscriber}) > 0) continue;
+        missing.push_back(publisher + " -> " + subscriber + " on " + topic);
+      }
     }
   }
-  return names.empty() ? "nobody publishes " + topic : "publisher(s) of " + topic + ": " + names;
+  return missing;
+}
+
+std::vector<std::string> sharedTopics(const std::vector<std::string>& topics) {
+  auto nodes = publishersAndSubscribers();
+  if (!nodes) {
+    ROS_WARN("the ROS master does not answer: nodes that know each other go on, nobody new comes");
+    return {};
+  }
+  std::vector<std::string> shared;
+  for (const std::string& topic : topics) {
+    std::set<std::string>& publishers = nodes->first[topic];
+    publishers.erase(ros::this_node::getName());
+    if (publishers.size() < 2) continue;
+    shared.push_back(topic + ": " + boost::algorithm::join(publishers, ", "));
+  }
+  return shared;
 }
 
 }  // namespace ddm

@@ -27,5 +27,18 @@ TEST(CallWithin, PassesExceptionsOn) {
   EXPECT_THROW(callWithin(std::chrono::minutes(1), fail), std::runtime_error);
 }
 
+TEST(CallWithin, IsEndedByACheckThatThrows) {
+  std::promise<int> never;
+  const std::shared_future<int> future = never.get_future().share();
+  int num_checks = 0;
+  const auto third_time = [&num_checks] {
+    if (++num_checks == 3) throw std::runtime_error("shutdown");
+  };
+  EXPECT_THROW(callWithin(
+                   std::chrono::minutes(1), [future] { return future.get(); }, third_time),
+               std::runtime_error);
+  never.set_value(0);
+}
+
 }  // namespace
 }  // namespace ddm

@@ -37,17 +37,13 @@ std::string readText(const std::string& path) {
   if (std::filesystem::is_directory(path, ignored) || !in) {
     throw std::runtime_error("cannot read the configuration file " + path);
   }
-  std::string text;
-  char piece[4096];
-  while (in.read(piece, sizeof(piece)) || in.gcount() > 0) {
-    text.append(piece, static_cast<std::size_t>(in.gcount()));
-    if (text.size() > kMaxBytes) {
-      throw std::runtime_error(path + " has more than " + std::to_string(kMaxBytes) +
-                               " bytes: it is no configuration file");
-    }
-  }
+  std::string text(kMaxBytes + 1, '\0');
+  in.read(&text[0], static_cast<std::streamsize>(text.size()));
   if (in.bad()) throw std::runtime_error("cannot read the configuration file " + path);
-  return text;
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  if (text.size() <= kMaxBytes) return text;
+  throw std::runtime_error(path + " has more than " + std::to_string(kMaxBytes) +
+                           " bytes: it is not a configuration file");
 }
 
 }  // namespace
@@ -90,7 +86,9 @@ bool hasKey(const YAML::Node& blocks, const std::string& block, const std::strin
 
 std::string ownerOfMotors(const YAML::Node& blocks) {
   const std::string owner = blocks["robot"].IsDefined() ? "robot" : "plant";
-  return hasKey(blocks, owner, "max_torque") ? owner : "";
+  if (!hasKey(blocks, owner, "max_torque")) return "";
+  const YAML::Node limits = blocks[owner]["max_torque"];
+  return limits.IsSequence() && limits.size() == 0 ? "" : owner;
 }
 
 }  // namespace ddm

@@ -113,7 +113,7 @@ void ParamReader::reportUnknownKeys(const std::string& block, const YAML::Node& 
 }
 
 void ParamReader::reportWrongType(const std::string& path, const YAML::Node& value,
-                                  const char* expected) {
+                                  const std::string& expected) {
   report(path + " must be " + expected + ", got " + oneLine(value));
 }
 

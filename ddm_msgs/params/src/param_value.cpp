@@ -9,7 +9,6 @@
 #include <limits>
 #include <locale>
 #include <sstream>
-#include <utility>
 
 namespace ddm {
 namespace {
@@ -58,27 +57,6 @@ bool parseScalar(const YAML::Node& node, Value* value) {
   return node.IsScalar() && parseText(node.Scalar(), value);
 }
 
-template <class Value>
-bool parseList(const YAML::Node& node, std::vector<Value>* value) {
-  if (!node.IsSequence()) return false;
-  std::vector<Value> parsed;
-  for (const YAML::Node& element : node) {
-    Value entry{};
-    if (!parseValue(element, &entry)) return false;
-    parsed.push_back(entry);
-  }
-  *value = std::move(parsed);
-  return true;
-}
-
-template <class Value>
-YAML::Node listToYaml(const std::vector<Value>& values) {
-  YAML::Node out(YAML::NodeType::Sequence);
-  for (const Value& value : values) out.push_back(valueToYaml(value));
-  out.SetStyle(YAML::EmitterStyle::Flow);
-  return out;
-}
-
 }  // namespace
 
 std::string formatDouble(double value) {
@@ -114,52 +92,19 @@ bool parseValue(const YAML::Node& node, std::string* value) {
   return true;
 }
 
-bool parseValue(const YAML::Node& node, std::vector<int>* value) { return parseList(node, value); }
-
 bool parseValue(const YAML::Node& node, std::vector<double>* value) {
   double number = 0.0;
-  if (!parseScalar(node, &number)) return parseList(node, value);
+  if (!parseScalar(node, &number)) return parseValue<double>(node, value);
   *value = {number};
   return true;
-}
-
-bool parseValue(const YAML::Node& node, std::vector<std::string>* value) {
-  return parseList(node, value);
-}
-
-bool parseValue(const YAML::Node& node, std::vector<std::vector<double>>* value) {
-  if (!node.IsSequence()) return false;
-  for (const YAML::Node& element : node) {
-    if (!element.IsSequence()) return false;
-  }
-  return parseList(node, value);
-}
-
-const char* expectedType(const int*) { return "an integer (32 bit)"; }
-const char* expectedType(const double*) { return "a number"; }
-const char* expectedType(const bool*) { return "true or false"; }
-const char* expectedType(const std::string*) { return "a text"; }
-const char* expectedType(const std::vector<int>*) { return "a list of integers (32 bit)"; }
-const char* expectedType(const std::vector<double>*) { return "a number or a list of numbers"; }
-const char* expectedType(const std::vector<std::string>*) { return "a list of texts"; }
-const char* expectedType(const std::vector<std::vector<double>>*) {
-  return "a list of lists of numbers";
 }
 
 YAML::Node valueToYaml(int value) { return YAML::Node(std::to_string(value)); }
 YAML::Node valueToYaml(double value) { return YAML::Node(formatDouble(value)); }
 YAML::Node valueToYaml(bool value) { return YAML::Node(value ? "true" : "false"); }
 YAML::Node valueToYaml(const std::string& value) { return YAML::Node(value); }
-YAML::Node valueToYaml(const std::vector<int>& value) { return listToYaml(value); }
 YAML::Node valueToYaml(const std::vector<double>& value) {
-  return value.size() == 1 ? valueToYaml(value[0]) : listToYaml(value);
-}
-YAML::Node valueToYaml(const std::vector<std::string>& value) { return listToYaml(value); }
-YAML::Node valueToYaml(const std::vector<std::vector<double>>& value) {
-  YAML::Node out(YAML::NodeType::Sequence);
-  for (const std::vector<double>& entry : value) out.push_back(listToYaml(entry));
-  out.SetStyle(YAML::EmitterStyle::Flow);
-  return out;
+  return value.size() == 1 ? valueToYaml(value[0]) : valueToYaml<double>(value);
 }
 
 }  // namespace ddm

@@ -5,6 +5,7 @@
 #include <yaml-cpp/eventhandler.h>
 
 #include <algorithm>
+#include <boost/locale/utf.hpp>
 #include <cstdint>
 #include <sstream>
 #include <stdexcept>
@@ -12,6 +13,8 @@
 
 namespace ddm {
 namespace {
+
+namespace utf = boost::locale::utf;
 
 constexpr std::size_t kMaxLevels = 20;
 
@@ -23,23 +26,10 @@ constexpr std::size_t kMaxLevels = 20;
 /// Whether yaml-cpp writes a text as it has read it: it replaces what is not UTF-8, and codes that
 /// stand for no character.
 bool isText(const std::string& text) {
-  constexpr std::uint32_t kSmallest[] = {0, 0, 0x80, 0x800, 0x10000};
-  for (std::size_t at = 0; at < text.size();) {
-    const auto lead = static_cast<unsigned char>(text[at]);
-    std::size_t length = 1;
-    if (lead >= 0x80)
-      length = lead >> 5 == 0x06 ? 2 : lead >> 4 == 0x0e ? 3 : lead >> 3 == 0x1e ? 4 : 0;
-    if (length == 0 || length > text.size() - at) return false;
-    std::uint32_t code = length == 1 ? lead : lead & (0x7fU >> length);
-    for (std::size_t i = 1; i < length; ++i) {
-      const auto next = static_cast<unsigned char>(text[at + i]);
-      if (next >> 6 != 0x02) return false;
-      code = code << 6 | (next & 0x3fU);
-    }
-    const bool surrogate = code >= 0xd800 && code <= 0xdfff;
+  for (auto at = text.begin(); at != text.end();) {
+    const std::uint32_t code = utf::utf_traits<char>::decode(at, text.end());
     const bool no_character = (code >= 0xfdd0 && code <= 0xfdef) || (code & 0xfffe) == 0xfffe;
-    if (code < kSmallest[length] || code > 0x10ffff || surrogate || no_character) return false;
-    at += length;
+    if (!utf::is_valid_codepoint(code) || no_character) return false;
   }
   return true;
 }

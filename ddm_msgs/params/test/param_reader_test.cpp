@@ -4,15 +4,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <string>
 #include <tuple>
-#include <utility>
 #include <vector>
 
+#include "ddm_msgs/testing/expect_error.h"
 #include "ddm_msgs/testing/temp_folder.h"
 
 namespace ddm {
@@ -138,34 +139,38 @@ TEST(ParamReader, ReadsEveryTypeOfKey) {
 TEST(ParamReader, ReportsAnUnknownKeyWithTheNearestAndAllKnownOnes) {
   const auto problems = mpcProblems("mpc: {horzion: 20}");
   ASSERT_EQ(problems.size(), 1u);
-  EXPECT_EQ(problems[0],
-            "unknown key mpc/horzion (did you mean horizon? known keys: horizon, epsilon, "
-            "warm_start, goal_image, starts, start_scale)");
+  EXPECT_TRUE(testing::names(problems[0],
+                             {"mpc/horzion", "horizon?",
+                              "horizon, epsilon, warm_start, goal_image, starts, start_scale"}));
 }
 
 TEST(ParamReader, SuggestsNothingForAKeyThatIsFarFromAll) {
   const auto problems = mpcProblems("mpc: {colour: red}");
   ASSERT_EQ(problems.size(), 1u);
-  EXPECT_TRUE(contains(problems[0], "unknown key mpc/colour (known keys: horizon"));
+  EXPECT_TRUE(testing::names(problems[0], {"mpc/colour", "horizon, epsilon"}));
+  EXPECT_FALSE(contains(problems[0], "?"));
 }
 
 TEST(ParamReader, ReportsAWrongTypeWithKeyTypeAndValueOnceAndKeepsTheDefault) {
   ParamReader reader = readerOf("mpc: {horizon: 15.5}");
   EXPECT_EQ(reader.read<MpcOptions>("mpc").horizon, 15);
-  EXPECT_EQ(reader.problems(),
-            std::vector<std::string>({"mpc/horizon must be an integer (32 bit), got 15.5"}));
+  ASSERT_EQ(reader.problems().size(), 1u);
+  EXPECT_TRUE(testing::names(reader.problems()[0], {"mpc/horizon", "integer", "got 15.5"}));
 }
 
 TEST(ParamReader, NamesTheExpectedTypeOfEveryKey) {
-  EXPECT_EQ(
-      mpcProblems("mpc: {horizon: ~, epsilon: high, warm_start: yes, goal_image: [], "
-                  "starts: [1, 2.5], start_scale: {a: 1}}"),
-      std::vector<std::string>(
-          {"mpc/horizon must be an integer (32 bit), got nothing",
-           "mpc/epsilon must be a number, got high",
-           "mpc/warm_start must be true or false, got yes", "mpc/goal_image must be a text, got []",
-           "mpc/starts must be a list of integers (32 bit), got [1, 2.5]",
-           "mpc/start_scale must be a number or a list of numbers, got {a: 1}"}));
+  const auto problems = mpcProblems(
+      "mpc: {horizon: ~, epsilon: high, warm_start: yes, goal_image: [], "
+      "starts: [1, 2.5], start_scale: {a: 1}}");
+  const std::vector<std::vector<std::string>> parts = {
+      {"mpc/horizon", "integer", "got nothing"},
+      {"mpc/epsilon", "number", "got high"},
+      {"mpc/warm_start", "true", "got yes"},
+      {"mpc/goal_image", "text", "got []"},
+      {"mpc/starts", "list", "integer", "got [1, 2.5]"},
+      {"mpc/start_scale", "number", "list", "got {a: 1}"}};
+  ASSERT_EQ(problems.size(), parts.size());
+  for (size_t i = 0; i < parts.size(); ++i) EXPECT_TRUE(testing::names(problems[i], parts[i]));
 }
 
 TEST(ParamReader, ShortensALongWrongValue) {
@@ -175,8 +180,9 @@ TEST(ParamReader, ShortensALongWrongValue) {
 }
 
 TEST(ParamReader, PutsAWrongValueOfSeveralLinesInOne) {
-  EXPECT_EQ(mpcProblems("mpc: {horizon: \"1\\n2\\e[0m\"}"),
-            std::vector<std::string>({"mpc/horizon must be an integer (32 bit), got 1 2 [0m"}));
+  const auto problems = mpcProblems("mpc: {horizon: \"1\\n2\\e[0m\"}");
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_TRUE(testing::names(problems[0], {"mpc/horizon", "got 1 2 [0m"}));
 }
 
 TEST(ParamReader, LeavesNaNToTheRulesOfTheOptions) {
@@ -185,10 +191,11 @@ TEST(ParamReader, LeavesNaNToTheRulesOfTheOptions) {
 }
 
 TEST(ParamReader, ReportsABlockThatIsNoMap) {
-  EXPECT_EQ(mpcProblems("mpc: 5"),
-            std::vector<std::string>({"mpc must be a block of keys, got 5"}));
-  EXPECT_EQ(mpcProblems("mpc: [1]"),
-            std::vector<std::string>({"mpc must be a block of keys, got [1]"}));
+  for (const std::string value : {"5", "[1]"}) {
+    const auto problems = mpcProblems("mpc: " + value);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_TRUE(testing::names(problems[0], {"mpc", "got " + value}));
+  }
 }
 
 TEST(ParamReader, TellsWhichBlocksAreGiven) {
@@ -200,7 +207,7 @@ TEST(ParamReader, TellsWhichBlocksAreGiven) {
 TEST(ParamReader, ReportsAnUnknownBlockWithTheNearest) {
   const auto problems = mpcProblems("mpcc: {horizon: 3}");
   ASSERT_EQ(problems.size(), 1u);
-  EXPECT_TRUE(contains(problems[0], "unknown block mpcc (did you mean mpc? known blocks: "));
+  EXPECT_TRUE(testing::names(problems[0], {" mpcc ", " mpc?"}));
 }
 
 TEST(ParamReader, LeavesBlocksAloneThatPackagesOfAnySourcedWorkspaceHaveRegistered) {
@@ -247,13 +254,11 @@ TEST(ParamReader, ThrowsAllProblemsOfAllBlocksAtOnce) {
   reader.read<MpcOptions>("mpc");
   reader.read<TrialOptions>("trial");
   const auto message = messageOf<std::invalid_argument>([&reader] { reader.requireValid(); });
-  EXPECT_EQ(message.find("invalid configuration (my.yaml):\n - "), 0u) << message;
-  for (const char* problem :
-       {"\n - mpc/horizon must be >= 1, got 0", "\n - mpc/epsilon must lie in [0, 1], got 1.5",
-        "\n - unknown key mpc/horzion (",
-        "\n - trial/num_steps must be an integer (32 bit), got many", "\n - unknown block foo ("}) {
-    EXPECT_TRUE(contains(message, problem)) << message;
-  }
+  EXPECT_TRUE(
+      testing::names(message, {"(my.yaml):\n - ", "\n - mpc/horizon must be >= 1, got 0",
+                               "\n - mpc/epsilon must lie in [0, 1], got 1.5", " mpc/horzion (",
+                               "\n - trial/num_steps ", "got many", "block foo ("}));
+  EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 5) << message;
 }
 
 TEST(ParamReader, LeavesTheSourceOutOfTheMessageIfThereIsNone) {
@@ -346,31 +351,33 @@ TEST(ParamReaderFiles, NamesTheFilesInItsMessage) {
 
 TEST(ParamReaderFiles, RefusesAMissingFileAndAFolder) {
   for (const std::string& path : {std::string("/no/such/file.yaml"), ::testing::TempDir()}) {
-    EXPECT_EQ(messageOf<std::runtime_error>([&path] { ParamReader::fromFiles({path}); }),
-              "cannot read the configuration file " + path);
+    EXPECT_TRUE(testing::throwsNaming<std::runtime_error>(
+        [&path] { ParamReader::fromFiles({path}); }, {"read", path}));
   }
 }
 
 TEST(ParamReaderFiles, RefusesAFileThatIsTooLargeToBeAConfiguration) {
   const ScratchFile file("large.yaml", "#" + std::string(1000000, 'x'));
-  EXPECT_EQ(messageOf<std::runtime_error>([&file] { ParamReader::fromFiles({file.path()}); }),
-            file.path() + " has more than 1000000 bytes: it is no configuration file");
+  EXPECT_TRUE(testing::throwsNaming<std::runtime_error>(
+      [&file] { ParamReader::fromFiles({file.path()}); }, {file.path(), "1000000 bytes"}));
 }
 
 TEST(ParamReaderFiles, RefusesBadFilesWithPathAndLine) {
-  const std::vector<std::pair<std::string, std::string>> cases = {
-      {"mpc:\n  horizon: [1, 2\ntrial: {\n", ":3: not valid YAML"},
-      {"\n- mpc\n- trial\n", ":2: expected a map of blocks, got"},
-      {"just text", ":1: expected a map of blocks, got just text"},
-      {"mpc: {horizon: 1}\n---\nmpc: {horizon: 2}\n", ":2: only one YAML document"},
-      {"mpc: {horizon: 1}\ntrial:\nmpc: {horizon: 2}\n", ":3: 'mpc' is given twice"},
-      {"mpc:\n  horizon: 1\n  epsilon: 0\n  horizon: 2\n", ":4: 'horizon' is given twice"},
-      {"mpc: {[1, 2]: 3}\n", ":1: a key must be a plain name"}};
-  for (const auto& bad : cases) {
-    const ScratchFile file("bad.yaml", bad.first);
-    const auto message =
-        messageOf<std::invalid_argument>([&file] { ParamReader::fromFiles({file.path()}); });
-    EXPECT_TRUE(contains(message, file.path() + bad.second)) << message << "\n" << bad.first;
+  struct Case {
+    std::string yaml, line, part;
+  };
+  for (const Case& bad :
+       std::vector<Case>{{"mpc:\n  horizon: [1, 2\ntrial: {\n", ":3: ", "valid YAML"},
+                         {"\n- mpc\n- trial\n", ":2: ", " map "},
+                         {"just text", ":1: ", "got just text"},
+                         {"mpc: {horizon: 1}\n---\nmpc: {horizon: 2}\n", ":2: ", "document"},
+                         {"mpc: {horizon: 1}\ntrial:\nmpc: {horizon: 2}\n", ":3: ", "'mpc'"},
+                         {"mpc:\n  horizon: 1\n  epsilon: 0\n  horizon: 2\n", ":4: ", "'horizon'"},
+                         {"mpc: {[1, 2]: 3}\n", ":1: ", "plain name"}}) {
+    const ScratchFile file("bad.yaml", bad.yaml);
+    EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
+        [&file] { ParamReader::fromFiles({file.path()}); }, {file.path() + bad.line, bad.part}))
+        << bad.yaml;
   }
 }
 

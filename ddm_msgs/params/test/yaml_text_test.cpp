@@ -6,6 +6,8 @@
 
 #include <stdexcept>
 
+#include "ddm_msgs/testing/expect_error.h"
+
 namespace ddm {
 namespace {
 
@@ -31,7 +33,7 @@ TEST(YamlText, ADocumentIsRead) {
 
 TEST(YamlText, MoreThanTwentyLevelsAreRefused) {
   EXPECT_EQ(refusalOf(lists(19)), "accepted");  // the map is the twentieth
-  EXPECT_EQ(refusalOf(lists(20)), "FILE:1: at most 20 lists and maps may lie in each other");
+  EXPECT_TRUE(testing::names(refusalOf(lists(20)), {"FILE:1: ", " 20 "}));
   for (const std::string level : {"[", "{a: ", "- ", "? "}) {
     std::string text;
     for (int i = 0; i < 10000; ++i) text += level;
@@ -40,8 +42,8 @@ TEST(YamlText, MoreThanTwentyLevelsAreRefused) {
 }
 
 TEST(YamlText, WhatContainsItselfIsRefused) {
-  EXPECT_EQ(refusalOf("a:\n  &x [1, *x]\n"), "FILE:2: a list or map contains itself");
-  EXPECT_EQ(refusalOf("a: &x {b: [*x]}\n"), "FILE:1: a list or map contains itself");
+  EXPECT_TRUE(testing::names(refusalOf("a:\n  &x [1, *x]\n"), {"FILE:2: ", "itself"}));
+  EXPECT_TRUE(testing::names(refusalOf("a: &x {b: [*x]}\n"), {"FILE:1: ", "itself"}));
 }
 
 TEST(YamlText, TextThatWouldNotBeWrittenAsItWasReadIsRefused) {
@@ -53,14 +55,15 @@ TEST(YamlText, TextThatWouldNotBeWrittenAsItWasReadIsRefused) {
   for (const std::string text :
        {"caf\xe9", "\xbf\xbf", "\xc3", "\xc0\x80", "\xe0\x80\x80", "\xed\xa0\x80", "\xef\xbf\xbe",
         "\xf4\x90\x80\x80", "\xf8\x88\x80\x80\x80", "\\uFDD0"}) {
-    EXPECT_EQ(refusalOf("b: 1\na: \"" + text + "\""), "FILE:2: a name or value is not valid UTF-8");
-    EXPECT_EQ(refusalOf("b: 1\n\"" + text + "\": 1"), "FILE:2: a name or value is not valid UTF-8");
+    for (const std::string& yaml : {"a: \"" + text + "\"", "\"" + text + "\": 1"}) {
+      EXPECT_TRUE(testing::names(refusalOf("b: 1\n" + yaml), {"FILE:2: ", "UTF-8"}));
+    }
   }
 }
 
 TEST(YamlText, WhatIsNoYamlIsRefusedWithItsLine) {
   EXPECT_NE(refusalOf("a: 1\nb: [\n").find("FILE:"), std::string::npos);
-  EXPECT_EQ(refusalOf("a: 1\n---\nb: 2\n"), "FILE:2: only one YAML document is allowed in a file");
+  EXPECT_TRUE(testing::names(refusalOf("a: 1\n---\nb: 2\n"), {"FILE:2: ", "document"}));
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include "ddm_sim/plant.h"
 #include "ddm_sim/plant_options.h"
-#include "ddm_sim/tile_renderer.h"
 
 namespace ddm {
 
@@ -25,6 +24,22 @@ struct MovingTileOptions : PlantOptions {
   /// Everything wrong with these values, in words a user can act on. Empty means valid.
   std::vector<std::string> problems() const;
 };
+
+/// Draws y, the image of the moving tile: a white square on black, a little out of focus.
+///
+///   grey(i, j) = c(i - y) c(j - x),   c(d) = |[d + 1/2 - s/2, d + 1/2 + s/2] n [-w/2, w/2]| / s
+///
+/// with row i and column j counted from 0 at the upper left, so that the picture spans [0, size] in
+/// both directions: each pixel shows the mean over a window of s x s pixels around its centre. Grey
+/// falls from 1 to 0 over s pixels at the edges; s = 1 is the exact area of the pixel under the
+/// tile. Nothing is sampled, and the image is a continuous function of the position. What lies
+/// outside the picture is cut off.
+/// Deviation: the paper does not describe its renderer; this one is ours.
+/// @param size      width and height of the image, >= 1 [pixels]
+/// @param width     w, width and height of the tile, > 0 [pixels]
+/// @param softness  s, width of its edges, >= 1 [pixels]
+/// @param centre    (x, y), x to the right and y downwards [pixels], finite       [2 x 1]
+Picture drawTile(int size, double width, double softness, const Eigen::Vector2d& centre);
 
 /// Tile with the state (x, y), its centre in the picture [pixels], and two inputs.
 ///
@@ -53,9 +68,9 @@ class MovingTile : public Plant {
   Picture draw(const Eigen::VectorXd& state) const override;
   Eigen::VectorXd locate(const Eigen::VectorXd& state) const override { return state; }
 
+  MovingTileOptions options_;
   double lowest_;   ///< w / 2, least coordinate of the centre [pixels]
   double highest_;  ///< size - w / 2, its greatest [pixels]
-  TileRenderer renderer_;
 };
 
 }  // namespace ddm

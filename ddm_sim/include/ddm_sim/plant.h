@@ -7,6 +7,7 @@
 #include <optional>
 #include <random>
 
+#include "ddm_sim/camera_model.h"
 #include "ddm_sim/picture.h"
 #include "ddm_sim/plant_info.h"
 
@@ -67,16 +68,40 @@ class Plant {
   /// @throws std::invalid_argument as setState()
   double goalError(const Eigen::VectorXd& state) const;
 
-  /// Reward of the step that starts in `state`, for reports; nothing learns from it. Empty: the
-  /// plant has none.
-  /// @param torque  as applied                                                  [torqueDim() x 1]
+  /// The goal of a run that is to reach this place, for plants that draw their goals as such: a
+  /// target, from which the state to reach follows. Does not set it.
+  /// @param target  what and in which unit is the plant's own: the reacher has x, y [m]
+  /// @throws std::invalid_argument if this plant has no targets, or cannot reach this one
+  virtual Eigen::VectorXd goalAt(const Eigen::VectorXd& target) const;
+
+  /// Reward of one frame of the physics, for reports; nothing learns from it. Empty: the plant has
+  /// none.
+  /// @param state   that the frame has led to                                    [stateDim() x 1]
+  /// @param torque  as it was applied in this frame                             [torqueDim() x 1]
   virtual std::optional<double> reward(const Eigen::VectorXd& state,
                                        const Eigen::VectorXd& torque) const;
+
+  /// Sum of the rewards of all frames of the steps that start in `state`, under one torque.
+  /// @param torque     as for step()                                            [torqueDim() x 1]
+  /// @param num_steps  more than one where frames that a camera would have seen are lost
+  /// @throws as step()
+  std::optional<double> stepReward(const Eigen::VectorXd& state, const Eigen::VectorXd& torque,
+                                   int num_steps = 1) const;
 
   /// What a perfect camera sees of `state`; always of the same size.
   /// @throws std::invalid_argument as setState()
   /// @throws std::logic_error if draw() returns another number of bytes than its size says
   Picture render(const Eigen::VectorXd& state) const;
+
+  /// The camera of render() now; empty: it is none that a lens could be.
+  virtual std::optional<CameraModel> cameraModel() const { return std::nullopt; }
+
+  /// The camera of view(); empty: there is no view.
+  virtual std::optional<CameraModel> viewModel() const { return std::nullopt; }
+
+  /// A large picture of `state` for people, where viewModel() says that there is one.
+  /// @throws std::invalid_argument as setState(); std::logic_error if there is none
+  virtual Picture view(const Eigen::VectorXd& state) const;
 
   /// Where the moving parts are in the picture: what a learner can know of `state` from one image.
   /// Origin, directions and unit are the plant's own: the pendulum gives the tip of its rod [m].
@@ -91,9 +116,14 @@ class Plant {
   /// The physics: the state dt after `state`. Sizes and finiteness are checked, torque saturated.
   virtual Eigen::VectorXd advance(const Eigen::VectorXd& state,
                                   const Eigen::VectorXd& torque) const = 0;
+
+  /// stepReward() of a plant with rewards: by default that of one frame, which the step is.
+  virtual double rewardOfStep(const Eigen::VectorXd& state, const Eigen::VectorXd& torque) const;
   virtual double distance(const Eigen::VectorXd& state, const Eigen::VectorXd& goal) const = 0;
   virtual Picture draw(const Eigen::VectorXd& state) const = 0;
   virtual Eigen::VectorXd locate(const Eigen::VectorXd& state) const = 0;
+
+  Eigen::VectorXd saturated(const Eigen::VectorXd& torque) const;
 
   PlantInfo info_;
   Eigen::VectorXd state_;

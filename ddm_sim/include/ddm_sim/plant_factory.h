@@ -18,6 +18,9 @@ class PlantMaker {
 
   /// @throws std::invalid_argument if the options do not fit together
   virtual std::unique_ptr<Plant> make() const = 0;
+
+  /// False where the first picture is costly: makePlant() then looks at none of them.
+  virtual bool drawsCheaply() const { return true; }
 };
 
 /// A plant in the middle of its start states. It is moved for a few steps beside a second one, so

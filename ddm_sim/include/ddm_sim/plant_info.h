@@ -30,6 +30,7 @@ struct PlantInfo {
   Eigen::VectorXd goal;        ///< state to reach and hold                    [stateDim() x 1]
   std::string error_unit;      ///< unit of Plant::goalError(): "deg", "m", "px"
   double tolerance = 0.0;      ///< the goal is reached where goalError() is at most this
+  int evaluation_steps = 0;    ///< time steps of a greedy run; 0: as many as a trial has
 
   int stateDim() const { return static_cast<int>(state_names.size()); }
   int torqueDim() const { return static_cast<int>(torque_names.size()); }

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_msgs/option_checks.h>
+
 #include <Eigen/Core>
 #include <string>
 #include <vector>
-
-#include "ddm_sim/option_checks.h"
 
 namespace ddm {
 

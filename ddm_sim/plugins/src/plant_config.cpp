@@ -8,6 +8,7 @@
 #include <ros/package.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -16,10 +17,14 @@
 #include <stdexcept>
 #include <vector>
 
+#include "mujoco_plugin.h"
+
 namespace ddm {
 namespace {
 
 namespace fs = std::filesystem;
+
+using boost::algorithm::join;
 
 /// `plant/type` alone, which decides what other keys there are.
 struct TypeOption {
@@ -32,18 +37,13 @@ struct TypeOption {
   std::vector<std::string> problems() const { return {}; }
 };
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
-  return out;
-}
-
 using MakePlugin = std::function<std::shared_ptr<PlantPlugin>()>;
 
 /// The plants of this package, by `plant/type`.
 const std::map<std::string, MakePlugin>& ownPlants() {
   static const std::map<std::string, MakePlugin> plants = {
       {"moving_tile", std::make_shared<PlantPluginOf<MovingTile, MovingTileOptions>>},
+      {"mujoco", makeMujocoPlugin},
       {"pendulum", std::make_shared<PlantPluginOf<Pendulum, PendulumOptions>>},
       {"two_link", std::make_shared<PlantPluginOf<TwoLink, TwoLinkOptions>>}};
   return plants;
@@ -62,7 +62,7 @@ std::shared_ptr<PlantPlugin> makePlugin(const std::string& type) {
     throw std::invalid_argument(
         "plant/type must be a plant of ddm_sim or PACKAGE/CLASS of another "
         "package, got \"" +
-        type + "\": there are " + joined(ownTypes()));
+        type + "\": there are " + join(ownTypes(), ", "));
   }
   // Never destroyed: the plants that it has loaded, and their code, live until the program ends.
   static auto* const loader =
@@ -72,7 +72,7 @@ std::shared_ptr<PlantPlugin> makePlugin(const std::string& type) {
     for (const std::string& own_type : ownTypes()) known.push_back(own_type);
     std::sort(known.begin(), known.end());
     throw std::invalid_argument("plant/type must be a plant of this workspace, got \"" + type +
-                                "\": there are " + joined(known) +
+                                "\": there are " + join(known, ", ") +
                                 "; source the setup.bash of the workspace that holds it");
   }
   try {
@@ -112,18 +112,20 @@ std::shared_ptr<const PlantPlugin> readPlant(ParamReader* reader) {
 }
 
 std::string plantFile(const std::string& name) {
+  if (fs::path(name).extension() == ".yaml" && fs::is_regular_file(name)) return name;
   const std::string::size_type slash = name.find('/');
   const bool ours = slash == std::string::npos;
   const std::string package = ours ? "ddm_sim" : name.substr(0, slash);
   const std::string plant = ours ? name : name.substr(slash + 1);
-  std::string problem = "unknown plant '" + name + "': there are " + joined(plantsOf("ddm_sim"));
+  std::string problem = "unknown plant '" + name + "': there are " +
+                        join(plantsOf("ddm_sim"), ", ") + "; or a file that ends in .yaml";
   try {
     const std::vector<std::string> there = plantsOf(package);
     if (std::find(there.begin(), there.end(), plant) != there.end()) {
       return ros::package::getPath(package) + "/config/" + plant + ".yaml";
     }
     if (!ours) {
-      problem += ", and in package " + package + " " + (there.empty() ? "none" : joined(there));
+      problem += ", and in package " + package + " " + (there.empty() ? "none" : join(there, ", "));
     }
   } catch (const std::invalid_argument& e) {
     problem += std::string("; ") + e.what();

@@ -8,8 +8,6 @@
 
 namespace ddm {
 
-constexpr std::chrono::milliseconds JointLimits::kSilence;
-
 JointLimits::JointLimits(const RobotOptions& options) : named_(!options.joints.empty()) {
   const std::size_t count = std::max(options.position_limits.size(), options.speed_limit.size());
   for (std::size_t i = 0; i < count; ++i) {

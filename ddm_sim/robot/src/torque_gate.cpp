@@ -9,14 +9,6 @@
 namespace ddm {
 namespace {
 
-std::string textOf(const std::vector<double>& torque) {
-  std::ostringstream out;
-  out << "[";
-  for (const double value : torque) out << (out.tellp() > 1 ? ", " : "") << value;
-  out << "]";
-  return out.str();
-}
-
 bool allFinite(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(),
                      [](double value) { return std::isfinite(value); });
@@ -101,7 +93,7 @@ bool TorqueGate::takeTorque(SteadyTime now, Stamp stamp, const std::vector<doubl
   if (!armed()) return false;
   if (torque.size() != max_torque_.size() || !allFinite(torque)) {
     stop("a torque must be " + std::to_string(max_torque_.size()) +
-         " finite number(s) [N m], one for each motor, got " + textOf(torque));
+         " finite number(s) [N m], one for each motor, got " + listText(torque));
     return false;
   }
   if (state_ == State::kResetting || !joints_.silence(now).empty()) return false;

@@ -10,6 +10,7 @@ from ddm_qa.faults.damage import damage
 from ddm_qa.faults.finished import Finished, digest, digests
 from ddm_qa.run_comparison import files_in, read_bytes
 
+BAG, ACTIVE = "new.bag", "new.bag.active"
 WRITTEN_BYTES = 1 << 20
 WRITE_AGAIN_AND_AGAIN = """
 import sys
@@ -23,21 +24,16 @@ for _ in range(200):
 def facts(bench, case, folder, log):
     """What was observed, in the words of cases.py. The folder becomes a copy of an experiment that is not finished."""
     shutil.copytree(bench.begun, folder, dirs_exist_ok=True)
-    if case.fault == "two writers":
-        return write_at_once(folder, log)
-    if case.fault == "unfinished bag":
-        return record_over(bench, case, folder, log)
-    if case.fault == "unfinished trial":
-        return run_over(bench, case, folder, log)
     if case.fault.endswith("model.ddm"):
-        return act(bench, case, folder, log)
-    return run_experiment(bench, case, folder, log)
+        return record(bench, case, folder, log)
+    return {"two writers": write_at_once, "unfinished bag": record, "unfinished trial": run_over}.get(
+        case.fault, run_experiment)(bench, case, folder, log)
 
 
 def run_experiment(bench, case, folder, log):
     """The command must refuse to go on, change nothing, and go on where the fault is taken away."""
     before = Finished.of(folder)
-    restore = disturb(case, folder)
+    restore = disturb(bench, case, folder)
     there = digests(folder)
     seed = bench.seed + 1 if case.fault == "other seed" else bench.seed
     output = bench.launch_experiment(bench.reference, folder, seed)  # logs go elsewhere: the folder may be read-only
@@ -51,10 +47,14 @@ def run_experiment(bench, case, folder, log):
     return observed + bench.resume(case, folder, before, log)
 
 
-def disturb(case, folder):
+def disturb(bench, case, folder):
     """Returns a function that takes the fault away."""
     if case.fault == "other seed":
         return lambda: None
+    if case.fault == "unfinished bag":
+        path = os.path.join(folder, ACTIVE)
+        write(path, unfinished(bench))
+        return lambda: os.path.exists(path) and os.remove(path)
     if case.fault == "read-only folder":
         subprocess.run(["mount", "-o", "remount,ro", folder], check=True)
         return lambda: subprocess.run(["mount", "-o", "remount,rw", folder], check=True)
@@ -67,41 +67,37 @@ def write(path, content):
         stream.write(content)
 
 
-def record(bench, folder, log, *arguments):
-    """One short trial. Returns its output and whether there is a bag of it, complete or not."""
-    bag = os.path.join(folder, "new.bag")
-    output = bench.launch(folder, "record.launch", ["preset:=debug", "num_steps:=10", "bag:=" + bag, *arguments])
-    log.write(output)
-    return output, [name for name in ("new.bag", "new.bag.active") if name in os.listdir(folder)]
-
-
-def act(bench, case, folder, log):
-    """A launch that cannot use its model must leave no bag; with the model as it was, the same launch leaves one."""
-    path, content = damage(case.fault, folder)
-    output, bags = record(bench, folder, log, "model:=" + path)
-    observed = ["acted" if bags else "refused"] + bench.words(case, output)
-    write(path, content)
-    _, bags = record(bench, folder, log, "model:=" + path)
-    return observed + ["acts when restored" if bags == ["new.bag"] else "does not act when restored"]
-
-
 def unfinished(bench):
     """What is left of a bag whose recorder was killed."""
     content = read_bytes(bench.begun, "trial_000", "trial.bag")
     return content[:len(content) // 2]
 
 
-def record_over(bench, case, folder, log):
-    """A bag that was not completed is refused as long as it is there, and stays as it is."""
-    active = os.path.join(folder, "new.bag.active")
-    write(active, unfinished(bench))
-    output, bags = record(bench, folder, log)
-    observed = ["acted" if "new.bag" in bags else "refused"] + bench.words(case, output)
-    observed.append("kept" if bags == ["new.bag.active"] and read_bytes(active) == unfinished(bench) else "not kept")
-    if os.path.exists(active):
-        os.remove(active)
-    _, bags = record(bench, folder, log)
-    return observed + ["acts when restored" if bags == ["new.bag"] else "does not act when restored"]
+def record(bench, case, folder, log):
+    """The launch of a short trial that cannot use its model, or would write over an unfinished bag, must leave no bag;
+    with the fault taken away, the same launch leaves one."""
+    arguments = ["preset:=debug", "num_steps:=10", "bag:=" + os.path.join(folder, BAG)]
+    if case.fault != "unfinished bag":
+        arguments.append("model:=" + os.path.join(folder, "trial_000", "model.ddm"))
+
+    def bags():
+        return [name for name in (BAG, ACTIVE) if name in os.listdir(folder)]
+
+    def launch():
+        """Its output, and the bags that are there then, complete or not."""
+        output = bench.launch(folder, "record.launch", arguments)
+        log.write(output)
+        return output, bags()
+
+    restore = disturb(bench, case, folder)
+    before = bags()
+    output, after = launch()
+    observed = ["refused" if after == before else "acted"] + bench.words(case, output)
+    if before:
+        kept = after == before and read_bytes(folder, ACTIVE) == unfinished(bench)
+        observed.append("kept" if kept else "not kept")
+    restore()
+    return observed + ["acts when restored" if launch()[1] == [BAG] else "does not act when restored"]
 
 
 def run_over(bench, case, folder, log):
@@ -113,7 +109,7 @@ def run_over(bench, case, folder, log):
     return [bench.verdict(folder), "kept" if kept else "not kept", bench.compared(folder)]
 
 
-def write_at_once(folder, log):
+def write_at_once(_, __, folder, log):
     """Two programs write one file again and again: at any time it must be that of the one or of the other."""
     path = os.path.join(folder, "shared.txt")
     wholes = [letter.encode() * WRITTEN_BYTES for letter in "ab"]

@@ -1,6 +1,7 @@
 # What can happen to an experiment, and what must come of it.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
+import itertools
 
 # Outcomes. finished: summary.yaml says so. ended: the launch ended by itself, without a verdict. named: the output has
 # the case's words. undamaged: what was finished before the fault, at least one trial, is there, byte by byte, after the
@@ -28,12 +29,14 @@ ENDS_WITH_ZERO = "ended, named, zero, undamaged, resumes"
 # name: unique. phase, fault: words for fault_injector, or for damage.py where phase is `at rest`. words: what the
 # output must have. quick: also in the small subset. root: needs root, to mount a small or a read-only file system.
 Case = collections.namedtuple("Case", "name phase fault expected words quick root")
+FAULTS_OF_ROOT = ("read-only folder", "fill disk")
 
 NODES = ("sim_node", "mpc_node", "trial_recorder", "model_node", "experiment_node", "master")
 AT_REST, REAL_TIME, ON_A_ROBOT = "at rest", " in real time", " on a robot"  # the latter two: ends of names
 FIRST, EXPLORING, RECORDING, TRAINING, EVALUATION = PHASES = (
     "random trial", "exploring trial", "recording", "training", "evaluation")
 RUNS = (EXPLORING, EVALUATION)
+NO_TORQUES = "nan|inf|none|twice|1e300"
 QUICK = set("""
 kill sim_node in random trial|kill trial_recorder in recording|kill mpc_node in evaluation
 pause mpc_node in exploring trial|kill master in evaluation
@@ -49,132 +52,106 @@ future image in exploring trial on a robot
 """.replace("\n", "|").split("|")) - {""}
 
 
-def case(fault, phase, expected, *words, root=False):
-    name = "%s %s" % (fault, phase if phase == AT_REST else "in " + phase)
-    return Case(name, phase, fault, expected, words, name in QUICK, root)
+def cases(phases, *rows):
+    """A case for each phase and row (fault, expected, words of the output); the fault `a|b c` stands for `a c` and `b c`."""
+    for phase in phases:
+        for alternatives, expected, *words in rows:
+            for parts in itertools.product(*(part.split("|") for part in alternatives.split())):
+                fault = " ".join(parts)
+                name = "%s %s" % (fault, phase if phase == AT_REST else "in " + phase)
+                yield Case(name, phase, fault, expected, tuple(words), name in QUICK, fault in FAULTS_OF_ROOT)
 
 
 def processes():
     for node in NODES:
-        for phase in PHASES:
-            yield case("kill " + node, phase, KILLED_IN_FIRST_TRIAL if phase == FIRST else KILLED)
-            if phase != FIRST:
-                yield case("pause " + node, phase, RECOVERS)
+        yield from cases([FIRST], ("kill " + node, KILLED_IN_FIRST_TRIAL))
+        yield from cases(PHASES[1:], ("kill " + node, KILLED), ("pause " + node, RECOVERS))
 
 
 def missed():
     """A node that dies out of roslaunch's sight, is stopped for longer than anybody waits, or for good: those who wait
     for it say so."""
     for verb in ("lose", "oversleep", "hold"):
-        for phase in RUNS:
-            yield case(verb + " sim_node", phase, ENDS, "no image after step", "action /run_trial")
-            yield case(verb + " mpc_node", phase, ENDS, "no torque for frame", "action /run_trial")
-        yield case(verb + " trial_recorder", EXPLORING, ENDS, "service /stop_recording does not answer")
-        yield case(verb + " model_node", TRAINING, ENDS, "action /train shows no sign of life")
-    yield case("lose sim_node", RECORDING, ENDS, "service /stop_recording")  # nobody says whether the last torque acted
-    yield case("lose sim_node", TRAINING, ENDS, "service /reset does not answer")
-    for phase in (RECORDING, TRAINING):
-        yield case("lose mpc_node", phase, ENDS, "action /run_trial shows no sign of life")
+        yield from cases(RUNS, (verb + " sim_node", ENDS, "no image after step", "action /run_trial"),
+                         (verb + " mpc_node", ENDS, "no torque for frame", "action /run_trial"))
+        yield from cases([EXPLORING], (verb + " trial_recorder", ENDS, "service /stop_recording does not answer"))
+        yield from cases([TRAINING], (verb + " model_node", ENDS, "action /train shows no sign of life"))
+    # nobody says whether the last torque acted
+    yield from cases([RECORDING], ("lose sim_node", ENDS, "service /stop_recording"))
+    yield from cases([TRAINING], ("lose sim_node", ENDS, "service /reset does not answer"))
+    yield from cases([RECORDING, TRAINING], ("lose mpc_node", ENDS, "action /run_trial shows no sign of life"))
     # A node that knows others needs no master: the experiment takes longer, since each of its questions has a limit.
-    for phase in RUNS + (TRAINING,):
-        yield case("hold master", phase, NOTICED, "the ROS master does not answer")
+    yield from cases(RUNS + (TRAINING,), ("hold master", NOTICED, "the ROS master does not answer"))
 
 
-def transport():
-    for phase in RUNS:
-        yield case("drop image", phase, ENDS, "no torque for frame 7 ", "/fault_injector")
-        yield case("drop torque", phase, ENDS, "no torque for frame 7 ", "/fault_injector")
-        for verb in ("double", "late", "repeat"):
-            for what in ("image", "torque"):
-                yield case("%s %s" % (verb, what), phase, RECOVERS)
-
-
-def intruders():
-    for phase in RUNS:
-        yield case("publish torque", phase, ENDS, "/intruder")
-        yield case("publish image", phase, ENDS, "/intruder")
-        yield case("publish model", phase, ENDS, "/intruder")
-        yield case("publish clock", phase, ENDS, "/intruder")
-
-
-def clocks():
-    """No node waits for time to pass."""
-    for phase in RUNS:
-        yield case("mute clock", phase, RECOVERS)
+def messages():
+    yield from cases(RUNS, ("drop image|torque", ENDS, "no torque for frame 7 ", "/fault_injector"),
+                     ("double|late|repeat image|torque", RECOVERS))
+    yield from cases(RUNS, ("publish torque|image|model|clock", ENDS, "/intruder"))
+    yield from cases(RUNS, ("mute clock", RECOVERS))  # no node waits for time to pass
 
 
 def real_time():
     """The plant does not wait: whatever happens, the motor must stop by itself, and no torque that came too late or
     never reached it may be learned from."""
     for run in RUNS:
-        phase, learns = run + REAL_TIME, ", learned what acted" if run == EXPLORING else ""
-        # As good as dead, to the plant; when it is killed roslaunch ends the plant, too, and there is nothing to see.
-        yield case("hold mpc_node", phase, ENDS_WITH_ZERO, "action /run_trial shows no sign of life")
-        yield case("pause mpc_node", phase, GOES_ON_AFTER_ZERO + learns)
-        yield case("mute image", phase, ENDS_WITH_ZERO, "no image after step", "/fault_injector")
-        yield case("mute torque", phase, GOES_ON_AFTER_ZERO + learns)  # a motor that hears nothing says nothing
-        for what in ("image", "torque"):
-            yield case("late " + what, phase, GOES_ON_AFTER_ZERO + learns)
-            yield case("swap " + what, phase, GOES_ON_IN_ORDER + learns)
-        for how in ("nan", "inf", "none", "twice", "1e300"):
-            yield case("alter torque " + how, phase, ENDS_WITH_ZERO, "torque refused", "/fault_injector")
-        yield case("publish torque", phase, ENDS_WITH_ZERO, "torque refused", "/intruder")
-
-
-def planning():
-    """Plans that would go on for minutes."""
-    phase = "every run" + REAL_TIME
-    yield case("long plans", phase, "ended, named", "no plan for step 1", "mpc/time_budget")
-    yield case("long plans with a budget", phase, "finished, in time")
+        learns = ", learned what acted" if run == EXPLORING else ""
+        yield from cases(
+            [run + REAL_TIME],
+            # For the plant it is as good as dead. If it were killed, roslaunch would end the plant as well.
+            ("hold mpc_node", ENDS_WITH_ZERO, "action /run_trial shows no sign of life"),
+            ("pause mpc_node", GOES_ON_AFTER_ZERO + learns),
+            ("mute image", ENDS_WITH_ZERO, "no image after step", "/fault_injector"),
+            ("mute torque", GOES_ON_AFTER_ZERO + learns),  # a motor that hears nothing says nothing
+            ("late image", GOES_ON_AFTER_ZERO + learns), ("swap image", GOES_ON_IN_ORDER + learns),
+            ("late torque", GOES_ON_AFTER_ZERO + learns), ("swap torque", GOES_ON_IN_ORDER + learns),
+            ("alter torque " + NO_TORQUES, ENDS_WITH_ZERO, "torque refused", "/fault_injector"),
+            ("publish torque", ENDS_WITH_ZERO, "torque refused", "/intruder"))
+    yield from cases(["every run" + REAL_TIME],  # plans that would go on for minutes
+                     ("long plans", "ended, named", "no plan for step 1", "mpc/time_budget"),
+                     ("long plans with a budget", "finished, in time"))
 
 
 def robot():
     """A wrong clock, or a joint beyond its limits, must bring zero torque within two dt and 50 ms."""
-    for phase in [run + ON_A_ROBOT for run in RUNS]:
-        yield case("future image", phase, ENDS_WITH_ZERO, "no image after step")  # and then silence
-        yield case("set clock forward", phase, GOES_ON_NAMED_AFTER_ZERO, "the camera's clock has jumped forward")
-        yield case("set clock back", phase, GOES_ON_NAMED_AFTER_ZERO, "before the one that came before it")
-        yield case("exceed position", phase, ENDS_WITH_ZERO, "robot/position_limits", "was cancelled")
-        yield case("exceed speed", phase, ENDS_WITH_ZERO, "robot/speed_limit", "was cancelled")
+    return cases([run + ON_A_ROBOT for run in RUNS],
+                 ("future image", ENDS_WITH_ZERO, "no image after step"),  # and then silence
+                 ("set clock forward", GOES_ON_NAMED_AFTER_ZERO, "the camera's clock has jumped forward"),
+                 ("set clock back", GOES_ON_NAMED_AFTER_ZERO, "before the one that came before it"),
+                 ("exceed position", ENDS_WITH_ZERO, "robot/position_limits", "was cancelled"),
+                 ("exceed speed", ENDS_WITH_ZERO, "robot/speed_limit", "was cancelled"))
 
 
 def values():
-    for phase in RUNS:
-        for how in ("nan", "inf", "none", "twice", "1e300"):
-            yield case("alter torque " + how, phase, ENDS, "torque refused", "/fault_injector")
-        yield case("alter image size", phase, ENDS, "the images change from 51x51 mono8 to 25x25 mono8")
-        yield case("alter image encoding", phase, ENDS, "the images change from 51x51 mono8 to 51x51 rgb8")
-    yield case("alter image unknown", EXPLORING, ENDS, "the images change from 51x51 mono8 to 51x51 smell")
-    yield case("alter image cut", EXPLORING, ENDS, "image refused", "data must hold")
-    yield case("alter image unstamped", EXPLORING, ENDS, "image refused", "it has no stamp")
+    change = "the images change from 51x51 mono8 to "
+    yield from cases(RUNS, ("alter torque " + NO_TORQUES, ENDS, "torque refused", "/fault_injector"),
+                     ("alter image size", ENDS, change + "25x25 mono8"),
+                     ("alter image encoding", ENDS, change + "51x51 rgb8"))
+    yield from cases([EXPLORING], ("alter image unknown", ENDS, change + "51x51 smell"),
+                     ("alter image cut", ENDS, "image refused", "data must hold"),
+                     ("alter image unstamped", ENDS, "image refused", "it has no stamp"))
 
 
 def files():
-    for record in ("version", "header", "chunk", "index", "connection", "chunk_info"):
-        yield case("cut %s of trial.bag" % record, AT_REST, STAYS, "trial_000/trial.bag")
-    yield case("flip chunk of trial.bag", AT_REST, STAYS, "trial_000/trial.bag")
-    yield case("remove trial.bag", AT_REST, STAYS, "trial_000/trial.bag is missing", "put it back")
-    yield case("flip end of trials.csv", AT_REST, STAYS, "trials.csv is not as it was written")
-    yield case("flip head of trials.csv", AT_REST, STAYS, "trials.csv, line 1")
-    yield case("flip digit of trials.csv", AT_REST, STAYS, "trials.csv is not as it was written")
-    yield case("flip config.yaml", AT_REST, STAYS, "use another folder")
-    yield case("flip model.ddm", AT_REST, REFUSED, "model.ddm", "is damaged (wrong checksum)")
-    yield case("flip head of model.ddm", AT_REST, REFUSED, "model.ddm")
-    yield case("cut model.ddm", AT_REST, REFUSED, "model.ddm")
-    yield case("read-only folder", AT_REST, STAYS, "cannot write into the folder", root=True)
-    for phase in PHASES:
-        yield case("fill disk", phase, ENDS_IN_FIRST_TRIAL if phase == FIRST else ENDS, "cannot",
-                   "No space left on device", root=True)
+    yield from cases([AT_REST],
+                     ("cut version|header|chunk|index|connection|chunk_info of trial.bag", STAYS, "trial_000/trial.bag"),
+                     ("flip chunk of trial.bag", STAYS, "trial_000/trial.bag"),
+                     ("remove trial.bag", STAYS, "trial_000/trial.bag is missing", "put it back"),
+                     ("flip end of trials.csv", STAYS, "trials.csv is not as it was written"),
+                     ("flip head of trials.csv", STAYS, "trials.csv, line 1"),
+                     ("flip digit of trials.csv", STAYS, "trials.csv is not as it was written"),
+                     ("flip config.yaml", STAYS, "use another folder"),
+                     ("flip model.ddm", REFUSED, "model.ddm", "is damaged (wrong checksum)"),
+                     ("flip head of model.ddm", REFUSED, "model.ddm"),
+                     ("cut model.ddm", REFUSED, "model.ddm"),
+                     ("read-only folder", STAYS, "cannot write into the folder"))
+    full = ("cannot", "No space left on device")
+    yield from cases([FIRST], ("fill disk", ENDS_IN_FIRST_TRIAL, *full))
+    yield from cases(PHASES[1:], ("fill disk", ENDS, *full))
+    yield from cases([AT_REST], ("other seed", STAYS, "holds another experiment", "experiment/seed"),
+                     ("unfinished bag", REFUSED_AND_KEPT, "new.bag.active", "rosbag reindex"),
+                     ("unfinished trial", "finished, kept, equal"), ("two writers", "one is whole"))
+    yield from cases([EXPLORING, FIRST], ("begin experiment", NOTICED, "another experiment is running in the folder"))
 
 
-def folders():
-    yield case("other seed", AT_REST, STAYS, "holds another experiment", "experiment/seed")
-    yield case("unfinished bag", AT_REST, REFUSED_AND_KEPT, "new.bag.active", "rosbag reindex")
-    yield case("unfinished trial", AT_REST, "finished, kept, equal")
-    yield case("two writers", AT_REST, "one is whole")
-    yield case("begin experiment", "exploring trial", NOTICED, "another experiment is running in the folder")
-    yield case("begin experiment", "random trial", NOTICED, "another experiment is running in the folder")
-
-
-CASES = [each for group in (processes, missed, transport, intruders, clocks, real_time, planning, robot, values, files,
-                                        folders) for each in group()]
+CASES = [case for group in (processes, missed, messages, real_time, robot, values, files) for case in group()]

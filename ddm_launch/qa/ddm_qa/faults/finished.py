@@ -1,13 +1,12 @@
 # What is in a run folder at some moment, to see later that nothing of it was lost or changed.
 # SPDX-License-Identifier: BSD-3-Clause
+import collections
 import hashlib
-import json
 import os
 
 from ddm_qa.run_comparison import files_in, read_bytes
 from ddm_launch.run_folder import num_finished
 
-FILE = "finished.json"
 TABLE = "trials.csv"
 
 
@@ -27,11 +26,8 @@ def head_of_table(folder, num_rows):
     return digest(b"".join(read_bytes(folder, TABLE).splitlines(keepends=True)[:num_rows + 1]))
 
 
-class Finished:
+class Finished(collections.namedtuple("Finished", "num_trials files")):
     """All files of finished trials, and their rows in the table of trials."""
-
-    def __init__(self, num_trials, files):
-        self.num_trials, self.files = num_trials, files
 
     @classmethod
     def of(cls, folder):
@@ -44,12 +40,3 @@ class Finished:
         """Names of what is not there any more, or not as it was."""
         now = dict(digests(folder), **{TABLE: head_of_table(folder, self.num_trials)})
         return sorted(name for name, value in self.files.items() if now.get(name) != value)
-
-    def write(self, folder):
-        with open(os.path.join(folder, FILE), "w") as stream:
-            json.dump([self.num_trials, self.files], stream)
-
-    @classmethod
-    def read(cls, folder):
-        with open(os.path.join(folder, FILE)) as stream:
-            return cls(*json.load(stream))

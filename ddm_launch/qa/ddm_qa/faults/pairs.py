@@ -1,25 +1,15 @@
 # Whether the bag of a trial in real time pairs an image with the torque that acted after it, or with none.
 # SPDX-License-Identifier: BSD-3-Clause
 import bisect
-import json
-import os
 
 import rosbag
 
-FILE = "acted.json"
 FEWEST = 5  # pairs that a bag must have, and images without a pair that a fault must have left
 
 
-def write_acted(acted, folder):
-    """acted: (stamp of an image [ns], torque that acted before it) of all frames."""
-    with open(os.path.join(folder, FILE), "w") as stream:
-        json.dump(sorted(acted), stream)
-
-
-def verdict(bag_path, folder):
-    """`learned what acted`, or what was seen instead."""
-    with open(os.path.join(folder, FILE)) as stream:
-        acted = json.load(stream)
+def verdict(bag_path, acted):
+    """`learned what acted`, or what was seen instead. acted: (stamp of an image [ns], torque that acted before it) of all
+    frames, in order."""
     stamps = [stamp for stamp, _ in acted]
     images, torques = set(), {}
     with rosbag.Bag(bag_path) as bag:

@@ -1,6 +1,7 @@
 # Runs an experiment with a fault, then the same command without one, and tells what came of it.
 # SPDX-License-Identifier: BSD-3-Clause
 import contextlib
+import json
 import os
 import re
 import shutil
@@ -11,6 +12,7 @@ import rosbag
 
 from ddm_launch.command import Failure
 from ddm_launch.run_folder import is_finished
+from ddm_model.plain_file import write_file
 from ddm_qa.faults import at_rest, pairs
 from ddm_qa.faults.cases import AT_REST, ON_A_ROBOT, REAL_TIME
 from ddm_qa.faults.finished import Finished
@@ -40,14 +42,6 @@ DISK_BYTES = 2 * 1024 * 1024
 COMPARED = [name for name in expected_files(TRIALS) if not name.endswith((".bag", "config.yaml"))]
 
 
-def is_on_robot(case):
-    return case.phase.endswith(ON_A_ROBOT)
-
-
-def is_real_time(case):
-    return case.phase.endswith(REAL_TIME) or is_on_robot(case)
-
-
 @contextlib.contextmanager
 def small_disk(folder):
     """A file system of its own for a folder, which can be full or read-only. Needs root."""
@@ -72,16 +66,10 @@ class FaultBench:
     def __init__(self, out, patience=1.0):
         """patience: what all time limits are multiplied by."""
         self.out, self.limit_s, self.slack_s = out, LIMIT_S * patience, SLACK_S * patience
-        self.config, self.real_time_config, self.robot_config = (
-            os.path.join(out, name) for name in ("config.yaml", "real_time.yaml", "robot.yaml"))
+        self.config = CONFIG.format(node_s=NODE_S * patience, experiment_s=EXPERIMENT_S * patience)
         self.reference, self.begun = os.path.join(out, "reference", "run"), os.path.join(out, "begun")
         self.launches = []
         os.makedirs(os.path.join(out, "logs"), exist_ok=True)
-        config = CONFIG.format(node_s=NODE_S * patience, experiment_s=EXPERIMENT_S * patience)
-        for path, text in ((self.config, config), (self.real_time_config, config + REAL_TIME_CONFIG),
-                           (self.robot_config, config + ROBOT_CONFIG)):
-            with open(path, "w") as stream:
-                stream.write(text)
 
     def make_reference(self):
         """Raises Failure if even the undisturbed experiment does not finish."""
@@ -98,32 +86,30 @@ class FaultBench:
         with open(os.path.join(self.begun, "trials.csv"), "wb") as stream:
             stream.writelines(rows[:2])
 
-    def arguments(self, folder, seed=SEED, **more):
-        """Of a launch of the experiment in this folder."""
-        values = dict({"preset": "debug", "seed": seed, "trials": TRIALS, "runs": folder, "config": self.config}, **more)
-        return ["%s:=%s" % item for item in values.items()]
-
-    def launch_experiment(self, beside, folder, seed=SEED):
-        """Without a fault, in lock-step. beside: the logs of its nodes go next to this folder."""
-        return self.launch(beside, "experiment.launch", self.arguments(folder, seed))
+    def launch_experiment(self, beside, folder, seed=SEED, launch_file="experiment.launch", config="", **more):
+        """Without a fault, in lock-step, unless `more` arguments say otherwise. beside: the logs of its nodes go next to
+        this folder. config: more of it."""
+        path = os.path.join(os.path.dirname(beside), "config.yaml")
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        write_file(path, self.config + config)  # whole, since several cases may read it
+        values = dict({"preset": "debug", "seed": seed, "trials": TRIALS, "runs": folder, "config": path}, **more)
+        return self.launch(beside, launch_file, ["%s:=%s" % item for item in values.items()])
 
     def launch_case(self, case, folder, fault=NO_FAULT):
         """Runs the experiment of a case, with a fault if there is one."""
         injection = {"phase": case.phase, "fault": fault, "report": self.report(folder)}
-        if is_on_robot(case):
-            return self.launch(folder, "fault_robot.launch", self.arguments(
-                folder, config=self.robot_config, slack=self.slack_s, **injection))
-        if is_real_time(case):
-            injection.update(real_time="true", config=self.real_time_config)
-        if fault != NO_FAULT:
-            return self.launch(folder, "fault.launch", self.arguments(folder, **dict({"real_time": "false"}, **injection)))
-        for name in ("phase", "fault", "report"):
-            del injection[name]
-        return self.launch(folder, "experiment.launch", self.arguments(folder, **injection))
+        if case.phase.endswith(ON_A_ROBOT):
+            return self.launch_experiment(folder, folder, launch_file="fault_robot.launch", config=ROBOT_CONFIG,
+                                          slack=self.slack_s, **injection)
+        real_time = case.phase.endswith(REAL_TIME)
+        config, mode = REAL_TIME_CONFIG if real_time else "", {"real_time": "true" if real_time else "false"}
+        if fault in CONFIGS or fault == NO_FAULT:
+            return self.launch_experiment(folder, folder, config=config + CONFIGS.get(fault, ""), **mode)
+        return self.launch_experiment(folder, folder, launch_file="fault.launch", config=config, **mode, **injection)
 
     @staticmethod
     def report(folder):
-        return os.path.join(os.path.dirname(folder), "report.txt")
+        return os.path.join(os.path.dirname(folder), "report.json")
 
     def launch(self, folder, launch_file, arguments):
         """Runs a launch to its end. Returns its output; raises TimeoutError if it does not end."""
@@ -159,8 +145,6 @@ class FaultBench:
         try:
             if case.phase == AT_REST:
                 return at_rest.facts(self, case, folder, log)
-            if case.fault in CONFIGS:
-                return self.configure(case, folder, log)
             return self.disturb(case, folder, log)
         except TimeoutError as error:
             log.write(str(error))
@@ -185,43 +169,36 @@ class FaultBench:
         found = differences(self.reference, folder, COMPARED) if is_finished(folder) else ["no verdict"]
         return "differs: " + " ".join(found) if found else "equal"
 
-    def configure(self, case, folder, log):
-        """The fault is in the configuration."""
-        os.makedirs(os.path.dirname(folder))
-        path = os.path.join(os.path.dirname(folder), "config.yaml")
-        with open(self.real_time_config) as stream, open(path, "w") as out:
-            out.write(stream.read() + CONFIGS[case.fault])
-        output = self.launch(folder, "experiment.launch", self.arguments(folder, config=path, real_time="true"))
-        log.write(output)
-        facts = [self.verdict(folder)] + self.words(case, output)
-        if "in time" in case.expected and is_finished(folder):
-            header, *rows = read_rows(folder, "trials.csv")
-            slowest = max(float(row[header.index("plan_ms_median")]) for row in rows)
-            facts.append("in time" if slowest < 1e3 * REAL_TIME_DT_S else "plans took %g ms" % slowest)
-        return facts
-
     def disturb(self, case, folder, log):
         output = self.launch_case(case, folder, case.fault)
         log.write(output)
+        if case.fault in CONFIGS:
+            return [self.verdict(folder)] + self.words(case, output) + (
+                [self.speed(folder)] if "in time" in case.expected and is_finished(folder) else [])
         if not os.path.exists(self.report(folder)):
             return ["not injected"]
-        with open(self.report(folder)) as stream:
-            said = stream.read()
-        log.write(said)
-        facts = [self.verdict(folder)] + self.words(case, output + said)
-        if is_real_time(case):
-            facts += re.findall("^motor: (.*)$", said, re.MULTILINE) or ["the motor was not watched"]
+        report = json.loads(read_bytes(self.report(folder)))
+        log.write(report["said"])
+        facts = [self.verdict(folder)] + self.words(case, output + report["said"])
+        if case.phase.endswith((REAL_TIME, ON_A_ROBOT)):
+            facts.append(report.get("motor", "the motor was not watched"))
         if "learned" in case.expected:
             bag = os.path.join(folder, "trial_001", "trial.bag")
-            facts.append(pairs.verdict(bag, os.path.dirname(folder)) if os.path.exists(bag) else "no bag")
+            facts.append(pairs.verdict(bag, report["acted"]) if os.path.exists(bag) else "no bag")
         if "resumes" in case.expected:
             filler = os.path.join(folder, "filler")
             if os.path.exists(filler):
                 os.remove(filler)
-            facts += self.resume(case, folder, Finished.read(os.path.dirname(folder)), log)
+            facts += self.resume(case, folder, Finished(*report["finished"]), log)
         elif "equal" in case.expected:
             facts.append(self.compared(folder))
         return facts
+
+    @staticmethod
+    def speed(folder):
+        header, *rows = read_rows(folder, "trials.csv")
+        slowest_ms = max(float(row[header.index("plan_ms_median")]) for row in rows)
+        return "in time" if slowest_ms < 1e3 * REAL_TIME_DT_S else "plans took %g ms" % slowest_ms
 
     def resume(self, case, folder, before, log):
         """The same command again. before: what was finished before the fault."""
@@ -231,7 +208,7 @@ class FaultBench:
         facts = []
         if "undamaged" in case.expected:
             damaged += before.lost(folder)
-            if not is_real_time(case):  # in which no two experiments are equal
+            if not case.phase.endswith((REAL_TIME, ON_A_ROBOT)):  # in which no two experiments are equal
                 damaged += differences(self.reference, folder, [name for name in COMPARED if name in before.files])
             facts.append("damaged: " + " ".join(sorted(set(damaged))) if damaged else
                          "undamaged" if before.files else "nothing to compare")

@@ -4,6 +4,7 @@
 
 #include <ddm_model/data_set.h>
 
+#include <istream>
 #include <string>
 #include <vector>
 
@@ -28,9 +29,12 @@ struct BagContent {
 /// found under its name or under any namespace. The goal image is the last on its topic.
 /// @param image_size  images are converted to image_size x image_size grey values
 /// @throws std::runtime_error naming the bag, the fault and the remedy: unreadable, cut short,
-/// still
-///         active, without a topic, a topic of another type, images that change size or encoding,
-///         torques that are not finite or change dimension, no image with a torque
+///         still active, without a topic, a topic of another type, images that change size or
+///         encoding, torques that are not finite or change dimension, no image with a torque
 BagContent readBag(const std::string& path, int image_size, const BagOptions& options);
+
+/// The same from any stream; messages do not name it.
+/// @param in  binary, can be positioned
+BagContent readBagBytes(std::istream* in, int image_size, const BagOptions& options);
 
 }  // namespace ddm

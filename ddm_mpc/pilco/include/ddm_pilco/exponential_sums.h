@@ -4,8 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace ddm {
-namespace pilco {
+namespace ddm::pilco {
 
 /// Rows are padded to a multiple of this, so that a column is a whole number of vector registers.
 constexpr int kRowPadding = 8;
@@ -40,5 +39,4 @@ struct ExponentialSums {
 /// @pre sizes as above (checked by eigen_assert, i.e. in debug builds only)
 void exponentialSums(const ExponentialMatrix& matrix, ExponentialSums* sums);
 
-}  // namespace pilco
-}  // namespace ddm
+}  // namespace ddm::pilco

@@ -9,8 +9,7 @@
 #include "ddm_pilco/gp_model.h"
 #include "ddm_pilco/moments.h"
 
-namespace ddm {
-namespace pilco {
+namespace ddm::pilco {
 
 /// Derivatives of a scalar J in what a GP without model uncertainty consists of.
 struct GpGradient {
@@ -48,7 +47,7 @@ class GpMoments {
     Eigen::VectorXd mean;                           ///< M                          [E]
   };
 
-  /// @throws std::invalid_argument if the shapes of the model do not fit each other
+  /// @pre the shapes of the model fit each other (checked by eigen_assert)
   explicit GpMoments(GpModel model);
 
   const GpModel& model() const { return model_; }
@@ -67,7 +66,7 @@ class GpMoments {
 
   /// Vector-Jacobian product in the model itself. Meant for policies: the matrix Q is formed.
   /// @param d_model  dJ/d inputs, beta, log length-scales are ADDED to it
-  /// @throws std::invalid_argument if the model has model uncertainty, or for wrong sizes
+  /// @throws std::invalid_argument if the model has model uncertainty
   void backwardToModel(const Tape& tape, const Moments& d_output, GpGradient* d_model) const;
 
  private:
@@ -100,5 +99,4 @@ class GpMoments {
   ExponentialSums sums_;
 };
 
-}  // namespace pilco
-}  // namespace ddm
+}  // namespace ddm::pilco

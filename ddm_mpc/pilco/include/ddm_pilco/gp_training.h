@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_model/minimise.h>
+
 #include <Eigen/Core>
 #include <functional>
 #include <string>
@@ -9,8 +11,7 @@
 
 #include "ddm_pilco/gp_model.h"
 
-namespace ddm {
-namespace pilco {
+namespace ddm::pilco {
 
 /// Block `gp`: training of one GP for each output. Defaults are those of the published PILCO code.
 struct GpTrainingOptions {
@@ -31,6 +32,18 @@ struct GpTrainingOptions {
   /// Everything wrong with these values, in words a user can act on. Empty means valid.
   std::vector<std::string> problems() const;
 };
+
+/// A line search takes about two evaluations; one that takes many more is lost in rounding errors.
+/// Limit for minimisations whose evaluations are costly.
+constexpr int kEvaluationsPerIteration = 3;
+
+/// @throws std::invalid_argument that names the first thing wrong with inputs [D x n] and targets
+///         [n x E]: no data, sizes that do not fit, NaN or infinity (with its place)
+void requireFiniteData(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets);
+
+/// @throws std::invalid_argument unless these are finite and for so many inputs and outputs
+void requireHyperparameters(const Hyperparameters& hyperparameters, Eigen::Index input_dim,
+                            Eigen::Index output_dim);
 
 /// Negative log marginal likelihood of one output, in the log parameters
 /// theta = [log l_1 ... log l_D, log sf, log sn]:
@@ -73,21 +86,14 @@ Eigen::VectorXd thetaOf(const Hyperparameters& hyperparameters, int output);
 Hyperparameters initialHyperparameters(const Eigen::MatrixXd& inputs,
                                        const Eigen::MatrixXd& targets);
 
-/// How the training of one output went.
-struct OutputTraining {
-  double initial_cost = 0.0;   ///< negative log likelihood with curb, at the start
-  double final_cost = 0.0;     ///< the same at the hyper-parameters that are returned
-  double gradient_norm = 0.0;  ///< there, Euclidean
-  int iterations = 0;
-  int evaluations = 0;
-};
-
 /// GPs, or why there are none.
 struct GpFit {
-  bool ok = false;                      ///< whether `model` can be used
-  GpModel model;                        ///< empty if not
-  std::vector<OutputTraining> outputs;  ///< one for each output that was trained
-  std::string message;                  ///< what failed, or was noteworthy; empty: all went well
+  bool ok = false;               ///< whether `model` can be used
+  GpModel model;                 ///< empty if not
+  std::vector<Minimum> outputs;  ///< how it went: one for each output that was trained
+  std::string message;           ///< what failed, or was noteworthy; empty: all went well
+
+  void addMessage(const std::string& text);
 };
 
 /// The GP of these hyper-parameters: beta = A^-1 y and A^-1 for each output.
@@ -113,5 +119,4 @@ GpFit trainGp(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
               const GpTrainingOptions& options, const Hyperparameters* start = nullptr,
               const std::function<void()>& on_evaluation = nullptr);
 
-}  // namespace pilco
-}  // namespace ddm
+}  // namespace ddm::pilco

@@ -10,8 +10,7 @@
 #include "ddm_pilco/propagation.h"
 #include "ddm_pilco/state_cost.h"
 
-namespace ddm {
-namespace pilco {
+namespace ddm::pilco {
 
 /// J(theta) = sum_{t=1..H} E[c(x_t)] (Deisenroth and Rasmussen, 2011). x_0 is given and not
 /// counted. The gradient goes backwards through the steps.
@@ -54,5 +53,4 @@ class LongTermCost {
   std::vector<Propagation::Tape> tapes_;
 };
 
-}  // namespace pilco
-}  // namespace ddm
+}  // namespace ddm::pilco

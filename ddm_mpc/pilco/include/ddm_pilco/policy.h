@@ -6,8 +6,7 @@
 
 #include "ddm_pilco/moments.h"
 
-namespace ddm {
-namespace pilco {
+namespace ddm::pilco {
 
 /// A map from features of the state to controls of any size, with parameters in one flat vector.
 class Policy {
@@ -35,5 +34,4 @@ class Policy {
                             Eigen::VectorXd* d_parameters) = 0;
 };
 
-}  // namespace pilco
-}  // namespace ddm
+}  // namespace ddm::pilco

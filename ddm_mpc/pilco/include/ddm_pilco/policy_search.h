@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace ddm {
-namespace pilco {
+namespace ddm::pilco {
 
 /// Block `policy_search`. Defaults are those of the published PILCO code.
 struct PolicySearchOptions {
@@ -27,24 +26,12 @@ struct PolicySearchOptions {
   std::vector<std::string> problems() const;
 };
 
-struct PolicySearchResult {
-  bool ok = false;             ///< whether the cost could be evaluated at the start
-  bool improved = false;       ///< cost_after < cost_before
-  Eigen::VectorXd parameters;  ///< the best found; the start's if there are none better
-  double cost_before = 0.0;    ///< J at the start
-  double cost_after = 0.0;     ///< J of `parameters`
-  int iterations = 0;          ///< line searches
-  int evaluations = 0;         ///< of J with its gradient
-  std::string message;         ///< why the search ended, in words
-};
-
 /// Minimises J(parameters) by BFGS from `start`. A policy for which J is not finite (a predicted
 /// distribution that grows without bound) makes the line search take a shorter step.
 /// @param cost   J, with its gradient
 /// @param start  parameters of the last trial's policy                                     [P]
 /// @throws std::invalid_argument if the options are invalid, or the start is empty or not finite
-PolicySearchResult searchPolicy(const DifferentiableFunction& cost, const Eigen::VectorXd& start,
-                                const PolicySearchOptions& options);
+Minimum searchPolicy(const DifferentiableFunction& cost, const Eigen::VectorXd& start,
+                     const PolicySearchOptions& options);
 
-}  // namespace pilco
-}  // namespace ddm
+}  // namespace ddm::pilco

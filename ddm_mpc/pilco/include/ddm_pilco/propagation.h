@@ -9,8 +9,7 @@
 #include "ddm_pilco/policy.h"
 #include "ddm_pilco/trigonometric.h"
 
-namespace ddm {
-namespace pilco {
+namespace ddm::pilco {
 
 /// What the state means to the dynamics GP and the policy.
 struct PropagationOptions {
@@ -19,6 +18,8 @@ struct PropagationOptions {
   /// is added to the state's variance at the input of the policy. Half, because the GP learned it
   /// from differences of two measurements.
   bool noisy_policy_input = false;
+  /// Differentiate as the published program does: what the policy sees as if it had no noise.
+  bool published_gradient = false;
 };
 
 /// p(x_t) = N(m, s)  ->  p(x_{t+1}) (Deisenroth, Fox and Rasmussen, 2015, Sec. 3.2):
@@ -59,7 +60,7 @@ class Propagation {
   /// @throws std::invalid_argument if the sizes of policy or state do not fit
   Gaussian step(Policy* policy, const Gaussian& state, Tape* tape = nullptr);
 
-  /// Vector-Jacobian product of step(), exact also with noisy_policy_input.
+  /// Vector-Jacobian product of step(), exact, unless published_gradient is asked for.
   /// @param d_next        dJ/dm', dJ/ds'
   /// @param d_parameters  (optional) dJ/d parameters of the policy is ADDED to it
   /// @return              dJ/dm, dJ/ds (symmetric)
@@ -72,9 +73,8 @@ class Propagation {
   int state_dim_;
   Augmentation features_;
   GpMoments dynamics_;
-  bool noisy_policy_input_;
-  Eigen::VectorXd measurement_variance_;  // [D]
+  PropagationOptions options_;
+  Eigen::VectorXd measurement_variance_;  // of what the policy sees, where it is noisy [D]
 };
 
-}  // namespace pilco
-}  // namespace ddm
+}  // namespace ddm::pilco

@@ -10,8 +10,7 @@
 #include "ddm_pilco/gp_moments.h"
 #include "ddm_pilco/policy.h"
 
-namespace ddm {
-namespace pilco {
+namespace ddm::pilco {
 
 /// pi(x) = sum_i beta_i k(c_i, x),  beta = (K + 0.01^2 I)^-1 targets, with the squared-exponential
 /// k of signal standard deviation 1 (Deisenroth, 2010: an RBF network as the mean of a GP).
@@ -61,5 +60,4 @@ class RbfPolicy : public Policy {
   std::unique_ptr<GpMoments> network_;
 };
 
-}  // namespace pilco
-}  // namespace ddm
+}  // namespace ddm::pilco

@@ -10,8 +10,7 @@
 
 #include "ddm_pilco/gp_training.h"
 
-namespace ddm {
-namespace pilco {
+namespace ddm::pilco {
 
 /// Block `sparse_gp`.
 struct SparseGpOptions {
@@ -108,5 +107,4 @@ class GpLearner {
   GpLearnerState state_;
 };
 
-}  // namespace pilco
-}  // namespace ddm
+}  // namespace ddm::pilco

@@ -1,4 +1,4 @@
-// Features of a state with angles: chosen entries, then sine and cosine of the angles; moments.
+// Moments of sines and cosines of Gaussian angles, and features of a state with angles.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -7,8 +7,24 @@
 
 #include "ddm_pilco/moments.h"
 
-namespace ddm {
-namespace pilco {
+namespace ddm::pilco {
+
+struct SineCovarianceGradient {
+  double mean_a = 0.0;
+  double mean_b = 0.0;
+  double variance = 0.0;  ///< in either variance
+  double covariance = 0.0;
+};
+
+/// cov(sin a, sin b) for a ~ N(m_a, v_a), b ~ N(m_b, v_b), cov(a, b) = c:
+///
+///   (p cos(m_a - m_b) - r cos(m_a + m_b)) / 2,   p = q (e^c - 1),  r = q (e^-c - 1),
+///   q = exp(-(v_a + v_b) / 2)
+///
+/// A cosine is a sine whose mean is pi/2 greater. For a = b, c is the variance.
+/// @param gradient  (optional) out; the five arguments count as independent
+double sineCovariance(double mean_a, double mean_b, double variance_a, double variance_b,
+                      double covariance, SineCovarianceGradient* gradient = nullptr);
 
 /// y = [x_kept, e_1 sin x_i1, e_1 cos x_i1, e_2 sin x_i2, e_2 cos x_i2, ...] for x ~ N(m, s)
 /// (Deisenroth, 2010, Appendix A.1). With v the variance of an angle:
@@ -53,5 +69,4 @@ class Augmentation {
 /// and the policy see of a state.
 Augmentation replaceAngles(int input_dim, const std::vector<int>& angles);
 
-}  // namespace pilco
-}  // namespace ddm
+}  // namespace ddm::pilco

@@ -1,4 +1,4 @@
-// Errors of a given type whose text a user can act on.
+// Texts and errors that name what a user can act on, in whatever words.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,6 +12,17 @@
 namespace ddm {
 namespace testing {
 
+/// Whether a text has all the parts.
+inline ::testing::AssertionResult names(const std::string& text,
+                                        const std::vector<std::string>& parts) {
+  for (const std::string& part : parts) {
+    if (text.find(part) == std::string::npos) {
+      return ::testing::AssertionFailure() << "no '" << part << "' in: " << text;
+    }
+  }
+  return ::testing::AssertionSuccess();
+}
+
 /// Whether `action` throws this type, with all the parts in its message.
 template <class Error>
 ::testing::AssertionResult throwsNaming(const std::function<void()>& action,
@@ -19,12 +30,7 @@ template <class Error>
   try {
     action();
   } catch (const Error& e) {
-    for (const std::string& part : parts) {
-      if (std::string(e.what()).find(part) == std::string::npos) {
-        return ::testing::AssertionFailure() << "no '" << part << "' in: " << e.what();
-      }
-    }
-    return ::testing::AssertionSuccess();
+    return names(e.what(), parts);
   } catch (const std::exception& e) {
     return ::testing::AssertionFailure() << "another type of error: " << e.what();
   }

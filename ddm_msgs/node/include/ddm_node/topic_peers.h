@@ -1,4 +1,4 @@
-// Who is at the other end of a topic, for messages that name the silent side.
+// Who is at the other end of a topic, and whether they have found each other.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace ddm {
 
@@ -18,5 +19,16 @@ std::optional<XmlRpc::XmlRpcValue> askMaster(const std::string& method,
 /// "publisher(s) of /torque: /mpc_node" or "nobody publishes /torque", as the master knows it.
 /// @param topic  resolved name
 std::string describePublishers(const std::string& topic);
+
+/// Asks each publisher of the topics for its connections. Messages are safe only from the moment
+/// the publisher has made the connection; the subscriber counts the publisher before that.
+/// @param topics  resolved names
+/// @return "/sim_node -> /mpc_node on /camera/image_raw" for each connection that is still missing
+std::vector<std::string> missingConnections(const std::vector<std::string>& topics);
+
+/// @param topics  resolved names
+/// @return "/torque: /intruder, /mpc_node" for each topic that more than one node publishes, this
+/// one, which knows what it publishes, not counted
+std::vector<std::string> sharedTopics(const std::vector<std::string>& topics);
 
 }  // namespace ddm

@@ -29,7 +29,7 @@ void overlay(const YAML::Node& above, YAML::Node* below);
 bool hasKey(const YAML::Node& blocks, const std::string& block, const std::string& key);
 
 /// The block whose `max_torque` says which motors there are, for all who learn or act: `robot`,
-/// without a robot `plant`; empty if that block does not say.
+/// without a robot `plant`; empty if that block does not say, or has an empty list.
 std::string ownerOfMotors(const YAML::Node& blocks);
 
 }  // namespace ddm

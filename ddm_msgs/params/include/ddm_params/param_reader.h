@@ -72,7 +72,8 @@ class ParamReader {
   YAML::Node openBlock(const std::string& block);
   void reportUnknownKeys(const std::string& block, const YAML::Node& values,
                          const std::vector<std::string>& known_keys);
-  void reportWrongType(const std::string& path, const YAML::Node& value, const char* expected);
+  void reportWrongType(const std::string& path, const YAML::Node& value,
+                       const std::string& expected);
   void report(const std::string& problem);
 
   YAML::Node root_;

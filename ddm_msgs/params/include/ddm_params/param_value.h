@@ -5,6 +5,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace ddm {
@@ -21,20 +22,32 @@ bool parseValue(const YAML::Node& node, int* value);
 bool parseValue(const YAML::Node& node, double* value);
 bool parseValue(const YAML::Node& node, bool* value);
 bool parseValue(const YAML::Node& node, std::string* value);
-bool parseValue(const YAML::Node& node, std::vector<int>* value);
 bool parseValue(const YAML::Node& node, std::vector<double>* value);
-bool parseValue(const YAML::Node& node, std::vector<std::string>* value);
-bool parseValue(const YAML::Node& node, std::vector<std::vector<double>>* value);
+template <class Value>
+bool parseValue(const YAML::Node& node, std::vector<Value>* value) {
+  if (!node.IsSequence()) return false;
+  std::vector<Value> parsed;
+  for (const YAML::Node& element : node) {
+    Value entry{};
+    if (!parseValue(element, &entry)) return false;
+    parsed.push_back(entry);
+  }
+  *value = std::move(parsed);
+  return true;
+}
 
 /// What a value of this type must be, to end the sentence "key must be ...".
-const char* expectedType(const int*);
-const char* expectedType(const double*);
-const char* expectedType(const bool*);
-const char* expectedType(const std::string*);
-const char* expectedType(const std::vector<int>*);
-const char* expectedType(const std::vector<double>*);
-const char* expectedType(const std::vector<std::string>*);
-const char* expectedType(const std::vector<std::vector<double>>*);
+inline std::string expectedType(const int*) { return "an integer (32 bit)"; }
+inline std::string expectedType(const double*) { return "a number"; }
+inline std::string expectedType(const bool*) { return "true or false"; }
+inline std::string expectedType(const std::string*) { return "a text"; }
+inline std::string expectedType(const std::vector<double>*) {
+  return "a number or a list of numbers";
+}
+template <class Value>
+std::string expectedType(const std::vector<Value>*) {
+  return "a list, each entry " + expectedType(static_cast<const Value*>(nullptr));
+}
 
 /// One value as YAML; lists in flow style, a list of numbers with one entry as the number.
 /// parseValue() reads back exactly the same.
@@ -42,9 +55,13 @@ YAML::Node valueToYaml(int value);
 YAML::Node valueToYaml(double value);
 YAML::Node valueToYaml(bool value);
 YAML::Node valueToYaml(const std::string& value);
-YAML::Node valueToYaml(const std::vector<int>& value);
 YAML::Node valueToYaml(const std::vector<double>& value);
-YAML::Node valueToYaml(const std::vector<std::string>& value);
-YAML::Node valueToYaml(const std::vector<std::vector<double>>& value);
+template <class Value>
+YAML::Node valueToYaml(const std::vector<Value>& values) {
+  YAML::Node out(YAML::NodeType::Sequence);
+  for (const Value& value : values) out.push_back(valueToYaml(value));
+  out.SetStyle(YAML::EmitterStyle::Flow);
+  return out;
+}
 
 }  // namespace ddm

@@ -15,18 +15,21 @@ constexpr int kUsageError = 2;  ///< exit code
 /// @param options     what --help shows; --help itself is added
 /// @param positional  arguments that belong to no option, if there are any
 /// @param names       their name, of one or of many
+/// @param style       how options may be written
 /// @return false where --help was asked for and has been printed
 /// @throws boost::program_options::error for options that are unknown, wrong or missing
 inline bool parseCommandLine(
     int argc, char** argv, boost::program_options::options_description options,
     const boost::program_options::options_description& positional = {},
-    const boost::program_options::positional_options_description& names = {}) {
+    const boost::program_options::positional_options_description& names = {},
+    int style = boost::program_options::command_line_style::default_style) {
   namespace po = boost::program_options;
   options.add_options()("help,h", "show this text");
   po::options_description all(options);
   all.add(positional);
   po::variables_map values;
-  po::store(po::command_line_parser(argc, argv).options(all).positional(names).run(), values);
+  po::command_line_parser parser(argc, argv);
+  po::store(parser.options(all).positional(names).style(style).run(), values);
   if (values.count("help") > 0) {
     std::cout << options << "\n";
     return false;

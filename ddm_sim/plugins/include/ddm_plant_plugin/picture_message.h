@@ -3,16 +3,26 @@
 #pragma once
 
 #include <ddm_sim/picture.h>
+#include <ddm_sim/plant.h>
 #include <ros/time.h>
 #include <sensor_msgs/Image.h>
 
+#include <optional>
+#include <string>
+
 namespace ddm {
 
-/// mono8 or rgb8, without padding, in the frame "camera".
-inline sensor_msgs::Image imageMessage(const Picture& picture, const ros::Time& stamp) {
+/// NAME_optical_frame, as cameras are called in ROS; "camera" for a picture without a real one.
+inline std::string opticalFrame(const std::optional<CameraModel>& camera) {
+  return camera ? camera->name + "_optical_frame" : "camera";
+}
+
+/// mono8 or rgb8, without padding.
+inline sensor_msgs::Image imageMessage(const Picture& picture, const ros::Time& stamp,
+                                       const std::string& frame = "camera") {
   sensor_msgs::Image image;
   image.header.stamp = stamp;
-  image.header.frame_id = "camera";
+  image.header.frame_id = frame;
   image.width = static_cast<std::uint32_t>(picture.width);
   image.height = static_cast<std::uint32_t>(picture.height);
   image.encoding = picture.channels == 1 ? "mono8" : "rgb8";

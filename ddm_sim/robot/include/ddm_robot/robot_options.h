@@ -2,10 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_msgs/option_checks.h>
+
 #include <string>
 #include <vector>
 
 namespace ddm {
+
+/// "[1, 2]", for messages.
+std::string listText(const std::vector<double>& values);
 
 /// Block `robot`.
 struct RobotOptions {
@@ -47,8 +52,8 @@ struct RobotOptions {
   std::vector<std::string> problems() const;
 
  private:
-  std::vector<std::string> problemsOfMotors() const;
-  std::vector<std::string> problemsOfLimits() const;
+  void checkMotors(OptionChecks* robot) const;
+  void checkLimits(OptionChecks* robot) const;
 };
 
 }  // namespace ddm

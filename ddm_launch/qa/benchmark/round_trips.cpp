@@ -1,0 +1,110 @@
+// round_trips: what times the loop, and two nodes that only send its messages to and fro. ~role is
+// `lockstep`, `camera` or `controller`. SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_images/image_codec.h>
+#include <ddm_msgs/Torque.h>
+#include <ddm_msgs/topics.h>
+#include <ros/ros.h>
+#include <sensor_msgs/Image.h>
+#include <sensor_msgs/JointState.h>
+
+#include <cstdlib>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "interval_log.h"
+#include "ros_driver.h"
+
+namespace {
+
+constexpr int kImageSize = 51;
+constexpr int kQueue = 1000;
+constexpr double kTimeout = 30.0;  // [s]
+const ros::TransportHints kNoDelay = ros::TransportHints().tcpNoDelay();
+
+/// Has the real nodes run one random trial, and times frame after frame.
+void timeLockstep(const ros::NodeHandle& nh, int num_events, ddm::IntervalLog* log) {
+  ros::AsyncSpinner spinner(1);
+  spinner.start();
+  std::mutex mutex;
+  // RosDriver hears the ground truth anyway: one more callback, but no message that others lack.
+  const ros::Subscriber frames = ros::NodeHandle(nh).subscribe<sensor_msgs::JointState>(
+      ddm::topics::kGroundTruth, kQueue, [&](const sensor_msgs::JointStateConstPtr&) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        log->tick();
+      });
+  ddm::RosDriver::Peers peers;
+  peers.recorder = peers.trainer = false;
+  ddm::RosDriver driver(nh, kTimeout, peers);
+  ddm::TrialRequest request;
+  request.num_steps = num_events;
+  request.epsilon = 1.0;
+  driver.runTrial(request, [](double) {});
+  spinner.stop();
+}
+
+/// Publishes an image as soon as the last one has its torque, and times that.
+void timeBareCamera(ros::NodeHandle* nh, int num_events, ddm::IntervalLog* log) {
+  const std::vector<std::uint8_t> grey(kImageSize * kImageSize, 100);
+  const ros::Publisher images = nh->advertise<sensor_msgs::Image>(ddm::topics::kImage, kQueue);
+  ros::Time stamp(1, 0);
+  const auto show = [&] {
+    stamp += ros::Duration(0.2);
+    images.publish(ddm::encodeImage(grey, kImageSize, stamp, "camera"));
+  };
+  const auto on_torque = [&](const ddm_msgs::TorqueConstPtr& torque) {
+    if (torque->header.stamp != stamp) return;
+    log->tick();
+    if (log->numEvents() < num_events) return show();
+    ros::shutdown();
+  };
+  const ros::Subscriber torques = nh->subscribe<ddm_msgs::Torque>(
+      ddm::topics::kTorque, kQueue, on_torque, ros::VoidConstPtr(), kNoDelay);
+  const ros::WallTimer start = nh->createWallTimer(ros::WallDuration(0.05), [&](const auto&) {
+    if (stamp == ros::Time(1, 0) && images.getNumSubscribers() && torques.getNumPublishers())
+      show();
+  });
+  ros::spin();
+}
+
+void answer(ros::NodeHandle* nh) {
+  const ros::Publisher torques = nh->advertise<ddm_msgs::Torque>(ddm::topics::kTorque, kQueue);
+  const auto on_image = [&torques](const sensor_msgs::ImageConstPtr& image) {
+    ddm_msgs::Torque torque;
+    torque.header.stamp = image->header.stamp;
+    torque.torque = {1.0};
+    torques.publish(torque);
+  };
+  const ros::Subscriber images = nh->subscribe<sensor_msgs::Image>(
+      ddm::topics::kImage, kQueue, on_image, ros::VoidConstPtr(), kNoDelay);
+  ros::spin();
+}
+
+void run() {
+  ros::NodeHandle nh;
+  ros::NodeHandle private_nh("~");
+  const std::string role = private_nh.param<std::string>("role", "lockstep");
+  if (role == "controller") return answer(&nh);
+  const int num_events = private_nh.param("num_frames", 3000) + ddm::IntervalLog::kEvents;
+  ddm::IntervalLog log;
+  if (role == "camera") {
+    timeBareCamera(&nh, num_events, &log);
+  } else {
+    timeLockstep(nh, num_events, &log);
+  }
+  log.write(private_nh.param<std::string>("out", ""));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "round_trips");
+  try {
+    run();
+  } catch (const std::exception& error) {
+    ROS_FATAL_STREAM("round_trips: " << error.what());
+    return EXIT_FAILURE;
+  }
+  return EXIT_SUCCESS;
+}

@@ -1,0 +1,76 @@
+# fault_injector on a robot: stands between its sensors and robot_node, does one thing wrong, and watches the motor.
+# SPDX-License-Identifier: BSD-3-Clause
+"""It also plays the robot's user, who shows the goal and enables the motors."""
+import time
+
+from ddm_msgs.msg import RunTrialActionGoal, Torque
+import rospy
+from sensor_msgs.msg import Image, JointState
+from std_msgs.msg import Float64
+
+from ddm_qa.faults.injection import FRAME, Injection, configuration
+from ddm_qa.faults.watches import Effort
+from ddm_qa.robot_check import PlantGoal, show_goal_and_enable
+
+ON_A_ROBOT = " on a robot"  # end of a phase
+HOUR = rospy.Duration(3600)
+CLOCK_IS_WRONG_S = 1.5
+BEYOND = 1.0e4  # position and speed [rad, rad/s]
+QUEUE = 1000
+IMAGE_BYTES = 1 << 24  # a camera's image is larger than what rospy reads at once
+
+
+class RobotInjection(Injection):
+    def __init__(self):
+        super().__init__(ON_A_ROBOT)
+        self.effort, self.ends = Effort(), 0.0
+        self.images = rospy.Publisher("faults/image_raw", Image, queue_size=2, tcp_nodelay=True)
+        self.joints = rospy.Publisher("faults/joint_states", JointState, queue_size=QUEUE, tcp_nodelay=True)
+        rospy.Subscriber("effort_command", Float64, self.effort.take, queue_size=QUEUE, tcp_nodelay=True)
+        rospy.Subscriber("run_trial/goal", RunTrialActionGoal, self.on_goal, queue_size=QUEUE)
+        rospy.Subscriber("torque", Torque, self.on_torque, queue_size=QUEUE)
+        rospy.Subscriber("plant/ground_truth/joint_states", JointState, self.on_joints, queue_size=QUEUE)
+        rospy.Subscriber("stand_in/image_raw", Image, self.on_image, queue_size=2, buff_size=IMAGE_BYTES)
+
+    def on_goal(self, message):
+        self.run, self.frame = (message.goal.trial, message.goal.evaluation), 0
+
+    def on_torque(self, _):
+        self.frame += 1
+
+    def is_due(self):
+        return not self.done and self.is_in_phase() and self.frame >= FRAME and self.effort.acts()
+
+    def on_image(self, image):
+        if self.fault == "future image":
+            if self.done:
+                return
+            if self.is_due():
+                image.header.stamp += HOUR
+                self.begin()
+        elif self.fault.startswith("set clock"):
+            if self.is_due():
+                self.ends = time.monotonic() + CLOCK_IS_WRONG_S
+                self.begin(CLOCK_IS_WRONG_S)
+            if time.monotonic() < self.ends:
+                image.header.stamp += HOUR if self.fault.endswith("forward") else -HOUR
+        self.publish(self.images, image)
+
+    def on_joints(self, joints):
+        if self.fault.startswith("exceed") and self.is_due():
+            setattr(joints, "position" if self.fault == "exceed position" else "velocity", [BEYOND])
+            self.begin()
+        self.publish(self.joints, joints)
+
+    def begin(self, lasts=float("inf")):
+        self.effort.fault_begins(lasts)
+        self.tell()
+
+    def spin(self):
+        limit = rospy.get_param("~slack")
+        if not self.fault.startswith("exceed"):  # which is seen at once: nothing has to stay away first
+            limit += 2.0 * configuration()["robot"]["dt"]
+        show_goal_and_enable(PlantGoal("pendulum"))
+        rospy.spin()
+        if self.done:
+            self.add_to_report(motor=self.effort.verdict(limit))

@@ -1,0 +1,163 @@
+# Plays the user of robot.launch on a stand-in robot, and measures whether torques came in time and it reached its goal.
+# SPDX-License-Identifier: BSD-3-Clause
+import glob
+import math
+import os
+import subprocess
+import tempfile
+import threading
+
+from ddm_msgs.msg import RunTrialActionGoal, RunTrialActionResult
+from ddm_msgs.srv import Reset
+import rospy
+from sensor_msgs.msg import Image, JointState
+from std_msgs.msg import Float64, UInt32
+from std_srvs.srv import SetBool, Trigger
+import yaml
+
+from ddm_launch.command import find_program
+from ddm_model.plain_file import write_file
+
+LIMIT_S = 60.0
+SETTLED_STEPS = 10        # as `success` of an experiment has it
+DEADLINE_MISSES = 0       # the bars
+LATENCY_P99_MS = 50.0
+
+
+def quantile(values, q):
+    """By nearest rank."""
+    return sorted(values)[max(0, math.ceil(q * len(values)) - 1)]
+
+
+class PlantGoal:
+    """The goal of a simulated plant, and when it is reached: by ground truth, which robot.launch never sees."""
+
+    def __init__(self, plant):
+        text = subprocess.run([find_program("simulate", "ddm_sim"), "--plant", plant, "--describe"], check=True,
+                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE).stdout
+        about = yaml.safe_load(text)
+        self.state, self.unit, self.tolerance = about["goal"], about["error_unit"], about["tolerance"]
+        self._kinds = [joint["kind"] for joint in about["joints"]]
+
+    def error(self, positions):
+        """Of the joint that is farthest from its goal: angles [deg], lengths in the plant's own unit."""
+        return max(abs(math.degrees(math.remainder(position - goal, 2.0 * math.pi))) if kind == "angle"
+                   else abs(position - goal) for kind, position, goal in zip(self._kinds, positions, self.state))
+
+
+class Load:
+    """Trains on the bags so far again and again, in a process of its own."""
+
+    def __init__(self, runs, preset_file):
+        self.num_trainings, self._process = 0, None
+        self._thread = threading.Thread(target=self._work, args=(runs, preset_file), daemon=True)
+        self._thread.start()
+
+    def _work(self, runs, preset_file):
+        with tempfile.TemporaryDirectory() as scratch:
+            command = [find_program("train_from_bags", "ddm_model"), "--config", preset_file,
+                       "--out", os.path.join(scratch, "model.ddm")]
+            while not rospy.is_shutdown():
+                bags = sorted(glob.glob(os.path.join(runs, "trial_*", "trial.bag")))
+                if not bags:
+                    rospy.sleep(0.5)
+                    continue
+                self._process = subprocess.Popen(
+                    command + bags, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                    env=dict(os.environ, OMP_NUM_THREADS="1"))
+                code = self._process.wait()
+                self.num_trainings += code == 0
+                if code != 0 and not rospy.is_shutdown():
+                    rospy.logwarn_throttle(60.0, "robot_check: the other training ended with code %d", code)
+
+    def end(self):
+        if self._process is not None:
+            self._process.kill()
+        self._thread.join(5.0)
+
+
+def call(name, kind, *values, **fields):
+    """Calls a service that answers with success and message. Raises rospy.ServiceException where it does not succeed."""
+    rospy.wait_for_service(name, LIMIT_S)
+    answer = rospy.ServiceProxy(name, kind)(*values, **fields)
+    if not answer.success:
+        raise rospy.ServiceException("%s: %s" % (name, answer.message))
+
+
+def show_goal_and_enable(goal):
+    """What a user does: shows the robot its goal, then switches the motors on."""
+    call("plant/reset", Reset, start=goal.state)
+    for _ in range(3):  # the camera is a frame late, and robot_node may not have seen any yet
+        rospy.wait_for_message("camera/image_raw", Image, LIMIT_S)
+    call("take_goal", Trigger)
+    call("enable", SetBool, True)
+
+
+class RobotCheck:
+    def __init__(self, goal):
+        self._plant_goal, self._runs = goal, rospy.get_param("~runs")
+        self._lock = threading.Lock()
+        self._goal, self._truth = None, {}  # of the trial under way; stamp [ns]: error
+        self._latencies_ms, self._misses = [], 0
+        self._frames, self._control_s, self._evaluations = 0, 0.0, []
+        self.load = Load(self._runs, rospy.get_param("~preset_file")) if rospy.get_param("~load") else None
+        for name, kind, callback in (("plant/ground_truth/joint_states", JointState, self._on_truth),
+                                     ("latency", Float64, self._on_latency),
+                                     ("deadline_misses", UInt32, self._on_misses),
+                                     ("run_trial/goal", RunTrialActionGoal, self._on_goal),
+                                     ("run_trial/result", RunTrialActionResult, self._on_result)):
+            rospy.Subscriber(name, kind, callback, queue_size=1000)
+
+    def _on_truth(self, joints):
+        with self._lock:
+            if self._goal is not None:
+                self._truth[joints.header.stamp.to_nsec()] = self._plant_goal.error(joints.position)
+
+    def _on_latency(self, latency):
+        self._latencies_ms.append(1e3 * latency.data)
+
+    def _on_misses(self, misses):
+        self._misses = misses.data
+
+    def _on_goal(self, message):
+        with self._lock:
+            self._goal, self._truth = message.goal, {}
+
+    def _on_result(self, message):
+        with self._lock:
+            goal, truth, self._goal = self._goal, self._truth, None
+        stamps = [stamp.to_nsec() for stamp in message.result.stamp]
+        if goal is None or len(stamps) < SETTLED_STEPS:
+            return
+        self._frames += len(stamps)
+        self._control_s += 1e-9 * (stamps[-1] - stamps[0])
+        if goal.evaluation:
+            error = max(error for stamp, error in truth.items() if stamps[-SETTLED_STEPS] <= stamp <= stamps[-1])
+            self._evaluations.append({"trial": goal.trial, "largest_error": round(error, 4),
+                                      "reached": error <= self._plant_goal.tolerance})
+        write_file(os.path.join(self._runs, "robot_check.yaml"), yaml.safe_dump(self._result(), sort_keys=False))
+
+    def _result(self):
+        median, p99, largest = (quantile(self._latencies_ms, q) for q in (0.5, 0.99, 1.0))
+        return {"frames": self._frames, "control_minutes": round(self._control_s / 60.0, 2),
+                "deadline_misses": self._misses,
+                "latency_ms": {"median": round(median, 2), "p99": round(p99, 2), "max": round(largest, 2)},
+                "other_trainings": self.load.num_trainings if self.load else 0,
+                "error_unit": self._plant_goal.unit, "evaluations": self._evaluations,
+                "in_time": self._misses <= DEADLINE_MISSES and p99 < LATENCY_P99_MS,
+                "reached": bool(self._evaluations) and self._evaluations[-1]["reached"]}
+
+
+def main():
+    rospy.init_node("robot_check")
+    goal = PlantGoal(rospy.get_param("~plant"))
+    check = RobotCheck(goal)
+    if check.load:
+        rospy.on_shutdown(check.load.end)
+    try:
+        show_goal_and_enable(goal)
+    except (rospy.ROSException, rospy.ServiceException) as error:
+        rospy.logfatal("robot_check: %s", error)
+        return 1
+    rospy.spin()
+    return 0

@@ -1,0 +1,34 @@
+// Limits for what ROS would wait for without end: services and simulated time.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_node/waiting.h"
+
+#include <chrono>
+#include <sstream>
+#include <utility>
+
+#include "ddm_node/call_within.h"
+#include "ddm_node/topic_peers.h"
+
+namespace ddm {
+
+std::string waited(double limit) {
+  std::ostringstream text;
+  text << " (waited " << limit << " s)";
+  return text.str();
+}
+
+std::optional<bool> answerWithin(double limit, std::function<bool()> function) {
+  return callWithin(std::chrono::duration<double>(limit), std::move(function), [] {
+    if (!ros::ok()) throw std::runtime_error(kInterrupted);
+  });
+}
+
+void waitForSimulatedTime(double limit) {
+  if (ros::Time::waitForValid(ros::WallDuration(limit)) || !ros::ok()) return;
+  std::ostringstream text;
+  text << "simulated time does not come (waited " << limit << " s), "
+       << describePublishers("/clock");
+  throw std::runtime_error(text.str());
+}
+
+}  // namespace ddm

@@ -1,0 +1,79 @@
+// Numbers on the command line and on the standard input of a tool: CSV text.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <boost/algorithm/string.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <istream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "ddm_params/yaml_text.h"
+
+namespace ddm {
+
+/// A finite decimal number and nothing else: no hexadecimal, no nan, no inf, no unit behind it.
+/// Blanks around it are allowed.
+/// @return false, with `value` unchanged, if `text` is anything else
+inline bool parseNumber(const std::string& text, double* value) {
+  const std::string word = boost::trim_copy(text);
+  // strtod also takes nan, inf and hexadecimal; their letters are kept out here.
+  if (word.empty() || word.find_first_not_of("+-.0123456789eE") != std::string::npos) return false;
+  char* end = nullptr;
+  const double number = std::strtod(word.c_str(), &end);
+  if (*end != '\0' || !std::isfinite(number)) return false;
+  *value = number;
+  return true;
+}
+
+/// Finite decimal numbers with commas between them; each as parseNumber() takes it.
+/// @return false, with `values` unchanged, if there are not exactly `count` or one is anything else
+inline bool parseNumbers(const std::string& text, Eigen::Index count, Eigen::VectorXd* values) {
+  std::vector<std::string> words;
+  boost::split(words, text, boost::is_any_of(","));
+  if (static_cast<Eigen::Index>(words.size()) != count) return false;
+  Eigen::VectorXd numbers(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    if (!parseNumber(words[i], &numbers[i])) return false;
+  }
+  *values = numbers;
+  return true;
+}
+
+/// The standard input of a tool: a header, then a row of finite numbers in each line. Lines may end
+/// in CR LF, and empty lines at the end do not count.
+/// @param names  of the columns; joined by commas, the header that must stand there
+/// @param what   a row is, "a torque", for messages
+/// @return rows, each [names.size() x 1]                                [lines after the header]
+/// @throws std::runtime_error with the number of the line, what stands there and the rule
+inline std::vector<Eigen::VectorXd> readNumbers(std::istream& input,
+                                                const std::vector<std::string>& names,
+                                                const std::string& what) {
+  const auto size = static_cast<Eigen::Index>(names.size());
+  const std::string header = boost::join(names, ",");
+  const std::string rule = what + " must be " + std::to_string(size) +
+                           (size == 1 ? " finite number (" : " finite numbers (") + header + ")";
+  const auto fail = [](std::size_t line, const std::string& must, const std::string& got) {
+    throw std::runtime_error("standard input, line " + std::to_string(line) + ": " + must +
+                             ", got \"" + (got.empty() ? "" : oneLine(YAML::Node(got))) + "\"");
+  };
+  std::string text;
+  std::getline(input, text);
+  boost::trim(text);
+  if (text != header) fail(1, "must be the header " + header, text);
+  std::vector<Eigen::VectorXd> rows;
+  for (std::size_t line = 2; std::getline(input, text); ++line) {
+    boost::trim(text);
+    if (text.empty() && (input >> std::ws).eof()) break;  // empty lines at the end
+    Eigen::VectorXd row;
+    if (!parseNumbers(text, size, &row)) fail(line, rule, text);
+    rows.push_back(row);
+  }
+  if (input.bad()) throw std::runtime_error("standard input cannot be read to its end");
+  return rows;
+}
+
+}  // namespace ddm

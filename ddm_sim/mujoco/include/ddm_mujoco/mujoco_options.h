@@ -1,0 +1,87 @@
+// A plant that a model file describes: the keys of its YAML block `plant:`.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ddm_mujoco/render_options.h"
+#include "ddm_sim/plant_options.h"
+
+namespace ddm {
+
+/// What a model file cannot say. Lists of the state have a number for each joint, or one for each
+/// joint and then one for each rate; those of motors have one for each motor.
+struct MujocoOptions : PlantOptions {
+  std::string model;         ///< MJCF or URDF: a path, or package://PACKAGE/PATH
+  std::string model_digest;  ///< of the model and all files that it names; filled in
+
+  std::vector<std::string> motors;  ///< joints that have one; empty: the actuators of the file
+  std::vector<double> gear;         ///< torque at the joint for one of the motor; empty: 1 for all
+
+  std::vector<double> start;          ///< middle of the starts [rad, m]; empty: pose 0 of the file
+  std::vector<double> start_uniform;  ///< half-width of a uniform part of the start; empty: none
+  std::vector<double> goal;           ///< state to reach and hold [rad, m]; empty: all zero
+  std::string goal_site;  ///< site or body that a drawn goal brings to a point of the x-y plane
+  std::vector<double> goal_distance;       ///< least and largest distance of that point from 0 [m]
+  std::vector<std::string> error_joints;   ///< joints whose error counts; empty: all
+  std::vector<std::string> error_sites;    ///< or sites and bodies, whose distance counts
+  double tolerance = 0.0;                  ///< largest error at the goal [deg or m]
+  std::vector<std::string> visible_sites;  ///< seen by who plans on the truth; empty: all bodies
+
+  std::vector<std::string> state_names;   ///< columns; empty: by joint and unit
+  std::vector<std::string> torque_names;  ///< columns; empty: by joint and unit
+  std::string reward;                     ///< one of rewards.h; empty: none
+  int episode_frames = 0;                 ///< physics frames of a greedy run; 0: those of a trial
+
+  RenderOptions look;
+  SceneOptions scene;
+
+  MujocoOptions() {
+    type = "mujoco";
+    max_torque.clear();  // those of the file
+  }
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    PlantOptions::visit(visitor);
+    visitor("model", model);
+    visitor("model_digest", model_digest);
+    visitor("motors", motors);
+    visitor("gear", gear);
+    visitor("start", start);
+    visitor("start_uniform", start_uniform);
+    visitor("goal", goal);
+    visitor("goal_site", goal_site);
+    visitor("goal_distance", goal_distance);
+    visitor("error_joints", error_joints);
+    visitor("error_sites", error_sites);
+    visitor("tolerance", tolerance);
+    visitor("visible_sites", visible_sites);
+    visitor("state_names", state_names);
+    visitor("torque_names", torque_names);
+    visitor("reward", reward);
+    visitor("episode_frames", episode_frames);
+    visitor("camera", look.camera);
+    visitor("camera_position", look.position);
+    visitor("camera_look_at", look.look_at);
+    visitor("camera_field_of_view", look.field_of_view);
+    visitor("colour", look.colour);
+    visitor("shadows", look.shadows);
+    visitor("reflections", look.reflections);
+    visitor("samples", look.samples);
+    visitor("supersampling", look.supersampling);
+    visitor("camera_shift", scene.camera_shift);
+    visitor("colour_shift", scene.colour_shift);
+    visitor("light_shift", scene.light_shift);
+    visitor("background", scene.background);
+    visitor("background_pictures", scene.background_pictures);
+    visitor("scene_seed", scene.seed);
+  }
+
+  /// Everything wrong with these values, in words a user can act on. Empty means valid. What does
+  /// not fit the model file, MujocoPlant finds.
+  std::vector<std::string> problems() const;
+};
+
+}  // namespace ddm

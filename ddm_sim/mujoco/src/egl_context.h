@@ -1,0 +1,45 @@
+// OpenGL without a screen: an EGL context on no surface.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <EGL/egl.h>
+
+namespace ddm {
+
+/// A context of its own, current on a thread only while a Current is alive there. OpenGL calls
+/// on a thread without a context do nothing and report nothing, so nothing else makes it current.
+class EglContext {
+ public:
+  /// @throws std::runtime_error naming the step that failed, and what helps
+  EglContext();
+  ~EglContext();
+  EglContext(const EglContext&) = delete;
+  EglContext& operator=(const EglContext&) = delete;
+
+  /// Makes a context current on this thread, and gives the one before back at the end.
+  class Current {
+   public:
+    /// @throws std::runtime_error if another thread holds the context
+    explicit Current(const EglContext& context);
+    ~Current();
+    Current(const Current&) = delete;
+    Current& operator=(const Current&) = delete;
+
+   private:
+    EGLDisplay display_;
+    EGLDisplay display_before_;
+    EGLContext context_before_;
+    EGLSurface draw_before_;
+    EGLSurface read_before_;
+  };
+
+  /// Largest side of a picture that this driver can draw [pixels].
+  /// @pre this context is current
+  int maxSize() const;
+
+ private:
+  EGLDisplay display_;
+  EGLContext context_;
+};
+
+}  // namespace ddm

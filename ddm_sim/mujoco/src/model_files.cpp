@@ -1,0 +1,110 @@
+// The files that make up a model.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "model_files.h"
+
+#include <boost/crc.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <set>
+#include <stdexcept>
+#include <vector>
+
+#include "urdf.h"
+
+namespace ddm {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Values of the attributes of elements, where both names match.
+std::vector<std::string> attributes(const std::string& text, const std::string& element,
+                                    const std::string& name) {
+  const std::regex tag("<(?:" + element + ")\\s[^<>]{1,10000}>");
+  const std::regex attribute("\\b(?:" + name + ")\\s*=\\s*[\"']([^\"']{1,1000})[\"']");
+  const std::sregex_iterator end;
+  std::vector<std::string> values;
+  for (std::sregex_iterator match(text.begin(), text.end(), tag); match != end; ++match) {
+    const std::string inside = match->str();
+    for (std::sregex_iterator value(inside.begin(), inside.end(), attribute); value != end;
+         ++value) {
+      values.push_back((*value)[1]);
+    }
+  }
+  return values;
+}
+
+/// Finds files as MuJoCo does: beside the model, or in its folders of meshes and textures.
+class Collector {
+ public:
+  Collector(const fs::path& folder, const FindPackage& find_package)
+      : folder_(folder), find_package_(find_package), folders_({folder}) {}
+
+  void add(const fs::path& file) {
+    if (!seen_.insert(file.lexically_normal().string()).second) return;
+    const std::string bytes = readModelFile(file.string());
+    crc_.process_bytes(bytes.data(), bytes.size());
+    if (file.extension() != ".xml" && file.extension() != ".urdf") return;
+    const std::string text = withoutPackageUris(bytes, find_package_);
+    for (const std::string& more : attributes(text, "compiler", "meshdir|texturedir|assetdir")) {
+      folders_.insert(folder_ / more);
+    }
+    for (const std::string& name :
+         attributes(text, "include|mesh|texture|hfield|skin", "file\\w*")) {
+      names_.insert(name);
+    }
+    addNamed();
+  }
+
+  ModelFiles files() const {
+    char digest[32];
+    std::snprintf(digest, sizeof(digest), "crc32-%08x", crc_.checksum());  // no reader's number
+    std::string missing;
+    for (const std::string& name : names_) {
+      if (pathsOf(name).empty()) missing += (missing.empty() ? "" : ", ") + name;
+    }
+    return {digest, missing};
+  }
+
+ private:
+  std::set<std::string> pathsOf(const std::string& name) const {
+    std::set<std::string> paths;
+    for (const fs::path& folder : folders_) {
+      if (fs::is_regular_file(folder / name)) paths.insert((folder / name).string());
+    }
+    return paths;
+  }
+
+  void addNamed() {
+    const std::set<std::string> names = names_;  // adding a file adds its names
+    for (const std::string& name : names) {
+      for (const std::string& path : pathsOf(name)) add(path);
+    }
+  }
+
+  fs::path folder_;
+  const FindPackage& find_package_;
+  std::set<fs::path> folders_;   // of the model, its meshes and textures
+  std::set<std::string> names_;  // as the texts have them
+  std::set<std::string> seen_;
+  boost::crc_32_type crc_;
+};
+
+}  // namespace
+
+std::string readModelFile(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  if (!in || in.bad()) throw std::invalid_argument(path + " cannot be read");
+  return bytes;
+}
+
+ModelFiles filesOf(const std::string& path, const FindPackage& find_package) {
+  Collector files(fs::absolute(path).parent_path(), find_package);
+  files.add(fs::absolute(path));
+  return files.files();
+}
+
+}  // namespace ddm

@@ -1,0 +1,114 @@
+// The motors of a model: which joints, how strong.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motors.h"
+
+#include <ddm_msgs/option_checks.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace ddm {
+namespace {
+
+std::string text(double number) {
+  std::ostringstream out;
+  out << number;
+  return out.str();
+}
+
+/// Actuator `i` of the file, if its torque is nothing but a multiple of its control.
+Motor actuator(const MujocoModel& model, int i) {
+  const mjModel& m = model.get();
+  const bool plain = m.actuator_trntype[i] == mjTRN_JOINT && m.actuator_dyntype[i] == mjDYN_NONE &&
+                     m.actuator_gaintype[i] == mjGAIN_FIXED &&
+                     m.actuator_biastype[i] == mjBIAS_NONE;
+  const double strength = plain ? m.actuator_gear[6 * i] * m.actuator_gainprm[mjNGAIN * i] : 0.0;
+  if (strength == 0.0) {
+    throw std::invalid_argument("actuator " + model.name(mjOBJ_ACTUATOR, i) + " of " + model.uri() +
+                                " must be a <motor> of a joint: make it one, or list the joints "
+                                "that have a motor in plant/motors");
+  }
+  Motor motor;
+  motor.joint = m.actuator_trnid[2 * i];
+  double limit = std::numeric_limits<double>::infinity();
+  const auto bound = [&limit](const mjtNum* range, double unit) {
+    limit = std::min({limit, std::abs(range[0]) * unit, std::abs(range[1]) * unit});
+  };
+  if (m.actuator_ctrllimited[i]) bound(&m.actuator_ctrlrange[2 * i], std::abs(strength));
+  if (m.actuator_forcelimited[i]) {
+    bound(&m.actuator_forcerange[2 * i], std::abs(m.actuator_gear[6 * i]));
+  }
+  motor.limit = std::isfinite(limit) ? limit : 0.0;
+  return motor;
+}
+
+std::string nameOf(const MujocoModel& model, const Motor& motor) {
+  return model.name(mjOBJ_JOINT, motor.joint);
+}
+
+void requireDifferentJoints(const MujocoModel& model, const std::vector<Motor>& motors) {
+  for (auto motor = motors.begin(); motor != motors.end(); ++motor) {
+    const auto same = [motor](const Motor& other) { return other.joint == motor->joint; };
+    if (std::none_of(motors.begin(), motor, same)) continue;
+    throw std::invalid_argument("plant/motors must differ, got two for the joint " +
+                                nameOf(model, *motor) + " of " + model.uri());
+  }
+}
+
+}  // namespace
+
+std::vector<Motor> motorsOf(const MujocoModel& model, const MujocoOptions& options) {
+  std::vector<Motor> motors;
+  if (options.motors.empty()) {
+    for (int i = 0; i < model.get().nu; ++i) motors.push_back(actuator(model, i));
+  }
+  for (std::size_t i = 0; i < options.motors.size(); ++i) {
+    Motor motor;
+    motor.joint = model.id(mjOBJ_JOINT, options.motors[i], "plant/motors");
+    if (!options.gear.empty()) motor.gear = options.gear.at(i);
+    motor.limit = model.effortLimit(options.motors[i]) / std::abs(motor.gear);
+    motors.push_back(motor);
+  }
+  if (motors.empty()) {
+    std::string joints;
+    for (const std::string& joint : model.names(mjOBJ_JOINT)) {
+      joints += (joints.empty() ? "" : ", ") + joint;
+    }
+    throw std::invalid_argument("plant/motors must list the joints that have a motor, since " +
+                                model.uri() + " has none: there are " + joints);
+  }
+  requireDifferentJoints(model, motors);
+  return motors;
+}
+
+std::vector<double> limitsOf(const MujocoModel& model, const MujocoOptions& options) {
+  const std::vector<Motor> motors = motorsOf(model, options);
+  const std::vector<double>& given = options.max_torque;
+  if (given.size() > 1 && given.size() != motors.size()) {
+    throw std::invalid_argument("plant/max_torque must be one number, or one for each of the " +
+                                std::to_string(motors.size()) + " motors, got " +
+                                std::to_string(given.size()));
+  }
+  std::vector<double> limits;
+  for (std::size_t i = 0; i < motors.size(); ++i) {
+    const double limit = given.empty() ? motors[i].limit : given[given.size() == 1 ? 0 : i];
+    const std::string joint = nameOf(model, motors[i]);
+    if (limit == 0.0) {
+      throw std::invalid_argument(
+          "plant/max_torque must be given, because " + model.uri() +
+          " has no limit for the motor of the joint " + joint +
+          ": write it there, or give the joint an effort (URDF) or the motor a ctrlrange (MJCF)");
+    }
+    if (motors[i].limit > 0.0 && limit > motors[i].limit * (1.0 + 1e-9)) {
+      throw std::invalid_argument("plant/max_torque must be at most what " + model.uri() +
+                                  " allows, " + text(motors[i].limit) + " at the joint " + joint +
+                                  ", got " + text(limit));
+    }
+    limits.push_back(limit);
+  }
+  return limits;
+}
+
+}  // namespace ddm

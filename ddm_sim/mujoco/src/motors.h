@@ -1,0 +1,26 @@
+// The motors of a model: which joints, how strong.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "ddm_mujoco/mujoco_model.h"
+#include "ddm_mujoco/mujoco_options.h"
+
+namespace ddm {
+
+struct Motor {
+  int joint = 0;       ///< that it turns or shifts
+  double gear = 1.0;   ///< torque at the joint for one of the motor
+  double limit = 0.0;  ///< of its torque by the file [N m or N]; 0: the file does not say
+};
+
+/// Those of `motors`, or the actuators of the file in its order.
+/// @throws std::invalid_argument naming what is not a motor of a hinge or slide, or what is missing
+std::vector<Motor> motorsOf(const MujocoModel& model, const MujocoOptions& options);
+
+/// The bound of each motor: `max_torque`, or the limits of the file.
+/// @throws std::invalid_argument naming a joint that has none, or whose motor is weaker
+std::vector<double> limitsOf(const MujocoModel& model, const MujocoOptions& options);
+
+}  // namespace ddm

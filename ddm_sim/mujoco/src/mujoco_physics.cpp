@@ -1,0 +1,199 @@
+// Moves a model: states in, states out.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mujoco_physics.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "ddm_sim/angles.h"
+#include "ddm_sim/few_numbers.h"
+
+namespace ddm {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// @throws std::runtime_error if there is not enough memory
+mjData* workspaceOf(const MujocoModel& model) {
+  try {
+    if (mjData* const data = mj_makeData(&model.get())) return data;
+  } catch (const std::runtime_error&) {  // said below
+  }
+  throw std::runtime_error("not enough memory for " + model.uri() + ", whose workspace has " +
+                           std::to_string(model.get().nstack / 131072) +
+                           " MB: give it a smaller <size nstack, njmax, nconmax>");
+}
+
+void requirePositionsAndRates(const MujocoModel& model) {
+  const mjModel& m = model.get();
+  for (int i = 0; i < m.njnt; ++i) {
+    if (m.jnt_type[i] == mjJNT_HINGE || m.jnt_type[i] == mjJNT_SLIDE) continue;
+    throw std::invalid_argument("plant/model must have hinges and slides alone, got the " +
+                                std::string(m.jnt_type[i] == mjJNT_FREE ? "free" : "ball") +
+                                " joint " + model.name(mjOBJ_JOINT, i) + " of " + model.uri() +
+                                ": fix that body, or move it by hinges and slides");
+  }
+  if (m.njnt == 0) {
+    throw std::invalid_argument("plant/model must have a joint, got none in " + model.uri());
+  }
+}
+
+}  // namespace
+
+MujocoPhysics::MujocoPhysics(std::shared_ptr<const MujocoModel> model, std::vector<Motor> motors)
+    : model_(std::move(model)),
+      motors_(std::move(motors)),
+      data_(workspaceOf(*model_), mj_deleteData) {
+  requirePositionsAndRates(*model_);
+}
+
+/// Everything that the next frame depends on. Setting these costs a hundredth of mj_resetData().
+void MujocoPhysics::set(const Eigen::VectorXd& state) const {
+  const int n = numJoints();
+  mjData* const data = data_.get();
+  std::copy_n(state.data(), n, data->qpos);
+  std::copy_n(state.data() + n, n, data->qvel);
+  std::fill_n(data->qacc_warmstart, n, 0.0);
+  std::fill_n(data->qfrc_applied, n, 0.0);
+  std::fill_n(data->ctrl, model_->get().nu, 0.0);
+  std::fill_n(data->act, model_->get().na, 0.0);
+  data->time = 0.0;
+  data->pstack = 0;  // an error may have left it in use
+  for (mjWarningStat& warning : data->warning) warning.number = 0;
+}
+
+void MujocoPhysics::requireStable(int frame, const Eigen::VectorXd& state) const {
+  for (int i = 0; i < mjNWARNING; ++i) {
+    const mjWarningStat& warning = data_->warning[i];
+    if (warning.number == 0) continue;
+    takeMujocoWarnings();
+    std::ostringstream text;
+    text << "plant: the simulation of " << model_->uri() << " is unstable, MuJoCo says \""
+         << mju_warningText(i, warning.lastinfo) << "\" in frame " << frame + 1
+         << " of the step from the state " << fewNumbers(state)
+         << ": use a smaller timestep, more damping or armature, or a smaller plant/max_torque";
+    throw std::range_error(text.str());
+  }
+}
+
+Eigen::MatrixXd MujocoPhysics::frames(const Eigen::VectorXd& state, const Eigen::VectorXd& torque,
+                                      int num_frames) const {
+  const int n = numJoints();
+  Eigen::MatrixXd states(2 * n, num_frames);
+  set(state);
+  for (std::size_t i = 0; i < motors_.size(); ++i) {
+    data_->qfrc_applied[motors_[i].joint] = motors_[i].gear * torque[static_cast<Eigen::Index>(i)];
+  }
+  for (int frame = 0; frame < num_frames; ++frame) {
+    mj_step(&model_->get(), data_.get());
+    requireStable(frame, state);  // MuJoCo has begun anew at its first pose if it is not
+    std::copy_n(data_->qpos, n, states.col(frame).data());
+    std::copy_n(data_->qvel, n, states.col(frame).data() + n);
+  }
+  return states;
+}
+
+const mjData& MujocoPhysics::placed(const Eigen::VectorXd& state) const {
+  set(state);
+  mj_kinematics(&model_->get(), data_.get());
+  mj_comPos(&model_->get(), data_.get());
+  mj_camlight(&model_->get(), data_.get());
+  mj_tendon(&model_->get(), data_.get());
+  return *data_;
+}
+
+const mjtNum* MujocoPhysics::at(const Place& place) const {
+  return (place.type == mjOBJ_SITE ? data_->site_xpos : data_->xipos) + 3 * place.id;
+}
+
+Eigen::VectorXd MujocoPhysics::places(const std::vector<Place>& places,
+                                      const Eigen::VectorXd& state) const {
+  placed(state);
+  Eigen::VectorXd out(3 * static_cast<Eigen::Index>(places.size()));
+  for (std::size_t i = 0; i < places.size(); ++i) std::copy_n(at(places[i]), 3, out.data() + 3 * i);
+  return out;
+}
+
+void MujocoPhysics::showTarget(const Eigen::Vector2d& point) const {
+  const int body = mj_name2id(&model_->get(), mjOBJ_BODY, "target");
+  const int target = body < 0 ? -1 : model_->get().body_mocapid[body];
+  if (target >= 0) std::copy_n(point.data(), 2, data_->mocap_pos + 3 * target);
+}
+
+Eigen::VectorXd MujocoPhysics::bodies(const Eigen::VectorXd& state) const {
+  const mjModel& m = model_->get();
+  const mjData& data = placed(state);
+  std::vector<double> out;
+  for (int i = 1; i < m.nbody; ++i) {
+    if (m.body_dofnum[m.body_weldid[i]] == 0) continue;  // stands still
+    out.insert(out.end(), data.xipos + 3 * i, data.xipos + 3 * i + 3);
+  }
+  return Eigen::Map<const Eigen::VectorXd>(out.data(), static_cast<Eigen::Index>(out.size()));
+}
+
+bool MujocoPhysics::withinRanges(const Eigen::VectorXd& state) const {
+  const mjModel& m = model_->get();
+  for (int i = 0; i < m.njnt; ++i) {
+    if (!m.jnt_limited[i]) continue;
+    if (state[i] < m.jnt_range[2 * i] || state[i] > m.jnt_range[2 * i + 1]) return false;
+  }
+  return true;
+}
+
+/// Gauss-Newton, with steps of at most 1 rad or m.
+/// @param state  in: where to begin; out: solution
+bool MujocoPhysics::approach(const Place& place, const Eigen::Vector2d& point,
+                             Eigen::VectorXd* state) const {
+  constexpr int kIterations = 100;
+  constexpr double kReached = 1e-14;
+  constexpr double kDamping = 1e-12;  // far below a link's length squared
+  const mjModel& m = model_->get();
+  const int n = m.nv;
+  RowMajor jacobian(3, n);
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    placed(*state);
+    const Eigen::Vector2d missing = point - Eigen::Map<const Eigen::Vector2d>(at(place));
+    if (missing.norm() <= kReached) return withinRanges(*state);
+    const auto jacobian_of = place.type == mjOBJ_SITE ? mj_jacSite : mj_jacBodyCom;
+    jacobian_of(&m, data_.get(), jacobian.data(), nullptr, place.id);
+    const Eigen::MatrixXd J = jacobian.topRows(2);
+    const Eigen::Matrix2d JJ = J * J.transpose() + kDamping * Eigen::Matrix2d::Identity();
+    Eigen::VectorXd change = J.transpose() * JJ.inverse() * missing;
+    change /= std::max(1.0, change.lpNorm<Eigen::Infinity>());
+    state->head(n) += change;
+    for (int i = 0; i < n; ++i) {
+      if (m.jnt_type[i] == mjJNT_HINGE) (*state)[i] = std::remainder((*state)[i], 2.0 * kPi);
+    }
+  }
+  return false;
+}
+
+Eigen::VectorXd MujocoPhysics::reach(const Place& place, const Eigen::Vector2d& point,
+                                     const Eigen::VectorXd& guess) const {
+  constexpr int kTries = 100;
+  const mjModel& m = model_->get();
+  std::mt19937_64 engine(0);  // the pose depends on the point alone
+  for (int i = 0; i < kTries; ++i) {
+    Eigen::VectorXd state = guess;
+    state.tail(m.nv).setZero();
+    for (int joint = 0; i > 0 && joint < m.njnt; ++joint) {
+      const mjtNum* const range = m.jnt_range + 2 * joint;
+      const bool limited = m.jnt_limited[joint];
+      std::uniform_real_distribution<double> uniform(limited ? range[0] : -kPi,
+                                                     limited ? range[1] : kPi);
+      state[joint] = uniform(engine);
+    }
+    if (approach(place, point, &state)) return state;
+  }
+  std::ostringstream text;
+  text << "the target must be within reach of " << model_->name(place.type, place.id) << " of "
+       << model_->uri() << ", got " << fewNumbers(point);
+  throw std::invalid_argument(text.str());
+}
+
+}  // namespace ddm

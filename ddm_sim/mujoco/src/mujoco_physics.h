@@ -1,0 +1,61 @@
+// Moves a model: states in, states out.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "ddm_mujoco/mujoco_model.h"
+#include "motors.h"
+
+namespace ddm {
+
+/// A model with a workspace of its own; for one thread at a time. What it returns depends on its
+/// arguments alone.
+class MujocoPhysics {
+ public:
+  /// @throws std::invalid_argument naming a joint that is neither hinge nor slide, or something else
+  ///         whose state is more than positions and rates
+  MujocoPhysics(std::shared_ptr<const MujocoModel> model, std::vector<Motor> motors);
+
+  int numJoints() const { return model_->get().njnt; }
+
+  /// The states after each of `num_frames` frames under a constant torque.
+  /// @param torque  of each motor                                                      [m x 1]
+  /// @return        one state per column                                     [2 nq x num_frames]
+  /// @throws std::range_error with MuJoCo's reason if the simulation is unstable
+  Eigen::MatrixXd frames(const Eigen::VectorXd& state, const Eigen::VectorXd& torque,
+                         int num_frames) const;
+
+  /// The model in this state, as far as positions go: bodies, sites, cameras and lights.
+  const mjData& placed(const Eigen::VectorXd& state) const;
+
+  /// Where these are in the world [m].                                              [3 n x 1]
+  Eigen::VectorXd places(const std::vector<Place>& places, const Eigen::VectorXd& state) const;
+
+  /// Moves the mocap body `target`, which people may see, if the model has one: nothing else
+  /// depends on it.
+  void showTarget(const Eigen::Vector2d& point) const;
+
+  /// Centres of mass of all bodies that a joint can move [m].                       [3 n x 1]
+  Eigen::VectorXd bodies(const Eigen::VectorXd& state) const;
+
+  /// A state at rest that brings a place to this point of the x-y plane; near `guess` if it can be.
+  /// @throws std::invalid_argument if there is none within the ranges of the joints
+  Eigen::VectorXd reach(const Place& place, const Eigen::Vector2d& point,
+                        const Eigen::VectorXd& guess) const;
+
+ private:
+  const mjtNum* at(const Place& place) const;
+  void set(const Eigen::VectorXd& state) const;
+  void requireStable(int frame, const Eigen::VectorXd& state) const;
+  bool approach(const Place& place, const Eigen::Vector2d& point, Eigen::VectorXd* state) const;
+  bool withinRanges(const Eigen::VectorXd& state) const;
+
+  std::shared_ptr<const MujocoModel> model_;
+  std::vector<Motor> motors_;
+  std::unique_ptr<mjData, void (*)(mjData*)> data_;
+};
+
+}  // namespace ddm

@@ -1,0 +1,297 @@
+// A plant that a model file describes, moved by MuJoCo.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_mujoco/mujoco_plant.h"
+
+#include <ddm_msgs/option_checks.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "ddm_sim/angles.h"
+#include "ddm_sim/few_numbers.h"
+#include "motors.h"
+#include "mujoco_physics.h"
+
+namespace ddm {
+namespace {
+
+bool isHinge(const MujocoModel& model, int joint) {
+  return model.get().jnt_type[joint] == mjJNT_HINGE;
+}
+
+[[noreturn]] void refuse(const std::string& key, const std::string& rule, const std::string& got) {
+  throw std::invalid_argument("plant/" + key + " must " + rule + ", got " + got);
+}
+
+/// A state from numbers that may leave out the rates, which are 0 then.
+/// @param numbers  none: all 0
+Eigen::VectorXd stateOf(const std::vector<double>& numbers, int num_joints, const char* key) {
+  Eigen::VectorXd state = Eigen::VectorXd::Zero(2 * num_joints);
+  const auto count = static_cast<Eigen::Index>(numbers.size());
+  if (count != 0 && count != num_joints && count != 2 * num_joints) {
+    refuse(key,
+           "have a number for each of the " + std::to_string(num_joints) +
+               " joints, or one for each and then one for each rate",
+           std::to_string(count));
+  }
+  std::copy(numbers.begin(), numbers.end(), state.data());
+  return state;
+}
+
+/// Frames of the physics in one time step.
+int framesOf(const MujocoModel& model, double dt) {
+  const double step = model.get().opt.timestep;
+  const double frames = std::max(1.0, std::round(dt / step));
+  if (std::abs(frames * step - dt) <= 1e-9 * dt) return static_cast<int>(frames);
+  std::ostringstream rule, got;
+  rule << "be a whole multiple of the timestep of " << model.uri() << ", " << step << " s";
+  got << dt << ": the nearest is " << frames * step;
+  refuse("dt", rule.str(), got.str());
+}
+
+std::vector<std::string> stateNames(const MujocoModel& model, const MujocoOptions& options) {
+  if (!options.state_names.empty()) return options.state_names;
+  std::vector<std::string> names;
+  for (const char* rate : {"", "_per_s"}) {
+    for (int i = 0; i < model.get().njnt; ++i) {
+      names.push_back(model.name(mjOBJ_JOINT, i) + (isHinge(model, i) ? "_rad" : "_m") + rate);
+    }
+  }
+  return names;
+}
+
+std::vector<std::string> torqueNames(const MujocoModel& model, const MujocoOptions& options) {
+  if (!options.torque_names.empty()) return options.torque_names;
+  std::vector<std::string> names;
+  for (const Motor& motor : motorsOf(model, options)) {
+    names.push_back(model.name(mjOBJ_JOINT, motor.joint) +
+                    (isHinge(model, motor.joint) ? "_nm" : "_n"));
+  }
+  return names;
+}
+
+/// The joints whose error counts; none where that of sites does.
+std::vector<int> errorJoints(const MujocoModel& model, const MujocoOptions& options) {
+  std::vector<int> joints;
+  if (!options.error_sites.empty()) return joints;
+  for (const std::string& name : options.error_joints) {
+    joints.push_back(model.id(mjOBJ_JOINT, name, "plant/error_joints"));
+  }
+  for (int i = 0; options.error_joints.empty() && i < model.get().njnt; ++i) joints.push_back(i);
+  const auto as_first = [&](int i) { return isHinge(model, i) == isHinge(model, joints[0]); };
+  if (std::all_of(joints.begin(), joints.end(), as_first)) return joints;
+  refuse("error_joints", "be hinges or slides alone, whose errors have one unit",
+         "both: list some of them, or sites or links in plant/error_sites");
+}
+
+int evaluationSteps(const MujocoOptions& options, int frames) {
+  if (options.episode_frames % frames != 0) {
+    refuse("episode_frames",
+           "be whole time steps of plant/dt, which is " + std::to_string(frames) + " frames",
+           std::to_string(options.episode_frames));
+  }
+  return options.episode_frames / frames;
+}
+
+/// @pre the options have no problems of their own
+PlantInfo infoOf(const MujocoModel& model, const MujocoOptions& options) {
+  const mjModel& m = model.get();
+  const int n = m.njnt;
+  PlantInfo info;
+  for (int i = 0; i < n; ++i) {
+    info.joints.push_back(
+        {model.name(mjOBJ_JOINT, i), isHinge(model, i) ? JointKind::kAngle : JointKind::kLength});
+  }
+  info.state_names = stateNames(model, options);
+  if (info.stateDim() != 2 * n) {
+    refuse("state_names", "have a name for each joint and then one for each rate",
+           std::to_string(info.stateDim()));
+  }
+  info.torque_names = torqueNames(model, options);
+  const std::vector<double> limits = limitsOf(model, options);
+  if (info.torque_names.size() != limits.size()) {
+    refuse("torque_names", "have a name for each motor", std::to_string(info.torqueDim()));
+  }
+  info.max_torque = forEach(limits, info.torqueDim(), "plant/max_torque");
+  info.dt = options.dt;
+  info.start = stateOf(options.start, n, "start");
+  if (options.start.empty()) std::copy_n(m.qpos0, n, info.start.data());
+  const Eigen::ArrayXd normal = forEach(options.start_std, 2 * n, "plant/start_std");
+  const Eigen::ArrayXd uniform = stateOf(options.start_uniform, n, "start_uniform");
+  info.start_std = (uniform == 0.0).select(normal, (normal.square() + uniform.square() / 3).sqrt());
+  info.goal = stateOf(options.goal, n, "goal");
+  const std::vector<int> joints = errorJoints(model, options);
+  info.error_unit = !joints.empty() && isHinge(model, joints[0]) ? "deg" : "m";
+  info.tolerance = options.tolerance;
+  info.evaluation_steps = evaluationSteps(options, framesOf(model, options.dt));
+  return info;
+}
+
+std::vector<std::string> nameIn(const std::string& name) {
+  return name.empty() ? std::vector<std::string>() : std::vector<std::string>{name};
+}
+
+std::unique_ptr<Renderer> pictureOf(const MujocoModel& model, const MujocoOptions& options) {
+  RenderOptions look = options.look;
+  look.width = look.height = options.picture_size;
+  return std::make_unique<Renderer>(model.share(), look, options.scene);
+}
+
+/// The same scene as the learner's, through the same camera.
+std::unique_ptr<Renderer> viewOf(const MujocoModel& model, const MujocoOptions& options) {
+  RenderOptions look = options.look;
+  look.width = 640;
+  look.height = 480;
+  look.colour = look.shadows = look.reflections = look.for_people = true;
+  look.samples = 4;
+  look.supersampling = 1;
+  return std::make_unique<Renderer>(model.share(), look, options.scene);
+}
+
+const Reward* rewardOf(const MujocoOptions& options, const PlantInfo& info) {
+  for (const Reward& reward : rewards()) {
+    if (reward.name != options.reward) continue;
+    const int joints = static_cast<int>(info.joints.size());
+    if (reward.num_joints == joints && reward.num_motors == info.torqueDim()) return &reward;
+    refuse("reward",
+           "be one for " + std::to_string(joints) + " joints and " +
+               std::to_string(info.torqueDim()) + " motors",
+           reward.name + ", which is for " + std::to_string(reward.num_joints) + " and " +
+               std::to_string(reward.num_motors));
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+MujocoPlant::MujocoPlant(std::shared_ptr<const MujocoModel> model, const MujocoOptions& options)
+    : Plant((checked(options), MujocoPhysics(model, {}), infoOf(*model, options))),
+      model_(std::move(model)),
+      physics_(std::make_unique<MujocoPhysics>(model_, motorsOf(*model_, options))),
+      num_frames_(framesOf(*model_, options.dt)),
+      start_normal_(forEach(options.start_std, stateDim(), "plant/start_std")),
+      start_uniform_(stateOf(options.start_uniform, physics_->numJoints(), "start_uniform")),
+      error_joints_(errorJoints(*model_, options)),
+      error_sites_(places(options.error_sites, "plant/error_sites")),
+      visible_sites_(places(options.visible_sites, "plant/visible_sites")),
+      goal_site_(places(nameIn(options.goal_site), "plant/goal_site")),
+      goal_distance_(options.goal_distance),
+      picture_(pictureOf(*model_, options)),
+      view_(viewOf(*model_, options)),
+      reward_(rewardOf(options, info())),
+      reward_scale_(info().max_torque) {
+  const std::vector<Motor> motors = motorsOf(*model_, options);
+  for (std::size_t i = 0; i < motors.size(); ++i) {
+    if (motors[i].limit > 0.0) reward_scale_[static_cast<Eigen::Index>(i)] = motors[i].limit;
+  }
+}
+
+MujocoPlant::~MujocoPlant() = default;
+
+std::vector<Place> MujocoPlant::places(const std::vector<std::string>& names,
+                                       const std::string& key) const {
+  std::vector<Place> out;
+  for (const std::string& name : names) out.push_back(model_->place(name, key));
+  return out;
+}
+
+Eigen::VectorXd MujocoPlant::drawStart(std::mt19937_64& engine) const {
+  std::normal_distribution<double> normal;
+  Eigen::VectorXd start = info().start;
+  for (Eigen::Index i = 0; i < start.size(); ++i) {
+    std::uniform_real_distribution<double> uniform(-start_uniform_[i], start_uniform_[i]);
+    start[i] += start_normal_[i] * normal(engine);
+    start[i] += uniform(engine);
+  }
+  return start;
+}
+
+Eigen::VectorXd MujocoPlant::drawGoal(std::mt19937_64& engine) const {
+  if (goal_site_.empty()) return info().goal;
+  const double angle = std::uniform_real_distribution<double>(0.0, 2.0 * kPi)(engine);
+  const double distance =
+      std::uniform_real_distribution<double>(goal_distance_[0], goal_distance_[1])(engine);
+  return goalAt(distance * Eigen::Vector2d(std::sin(angle), std::cos(angle)));
+}
+
+Eigen::VectorXd MujocoPlant::goalAt(const Eigen::VectorXd& target) const {
+  if (goal_site_.empty()) return Plant::goalAt(target);
+  if (target.size() != 2 || !target.allFinite()) {
+    throw std::invalid_argument("plant: the target must be two finite numbers, x and y [m], got " +
+                                fewNumbers(target));
+  }
+  return physics_->reach(goal_site_[0], target, info().goal);
+}
+
+std::optional<double> MujocoPlant::reward(const Eigen::VectorXd& state,
+                                          const Eigen::VectorXd& torque) const {
+  if (reward_ == nullptr) return std::nullopt;
+  return reward_->value({state, torque.cwiseQuotient(reward_scale_), goal()});
+}
+
+Eigen::VectorXd MujocoPlant::advance(const Eigen::VectorXd& state,
+                                     const Eigen::VectorXd& torque) const {
+  return physics_->frames(state, torque, num_frames_).rightCols(1);
+}
+
+double MujocoPlant::rewardOfStep(const Eigen::VectorXd& state,
+                                 const Eigen::VectorXd& torque) const {
+  const Eigen::MatrixXd states = physics_->frames(state, torque, num_frames_);
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < states.cols(); ++i) sum += *reward(states.col(i), torque);
+  return sum;
+}
+
+double MujocoPlant::distance(const Eigen::VectorXd& state, const Eigen::VectorXd& goal) const {
+  double error = 0.0;
+  for (const int i : error_joints_) {
+    error = std::max(error, isHinge(*model_, i) ? degreesBetween(state[i], goal[i])
+                                                : std::abs(state[i] - goal[i]));
+  }
+  if (error_sites_.empty()) return error;
+  const Eigen::VectorXd apart =
+      physics_->places(error_sites_, state) - physics_->places(error_sites_, goal);
+  for (Eigen::Index i = 0; i < apart.size(); i += 3) {
+    error = std::max(error, apart.segment<3>(i).norm());
+  }
+  return error;
+}
+
+Picture MujocoPlant::draw(const Eigen::VectorXd& state) const {
+  return picture_->draw(physics_->placed(state));
+}
+
+std::optional<CameraModel> MujocoPlant::cameraModel() const {
+  return picture_->camera(physics_->placed(state()));
+}
+
+std::optional<CameraModel> MujocoPlant::viewModel() const {
+  return view_->camera(physics_->placed(state()));
+}
+
+Picture MujocoPlant::view(const Eigen::VectorXd& state) const {
+  if (!goal_site_.empty()) physics_->showTarget(physics_->places(goal_site_, goal()).head(2));
+  return view_->draw(physics_->placed(state));
+}
+
+Eigen::VectorXd MujocoPlant::locate(const Eigen::VectorXd& state) const {
+  return visible_sites_.empty() ? physics_->bodies(state) : physics_->places(visible_sites_, state);
+}
+
+MujocoOptions completed(MujocoOptions options, const MujocoModel& model) {
+  if (!options.model_digest.empty() && options.model_digest != model.digest()) {
+    refuse("model_digest",
+           "be that of " + model.uri() + " and the files that it names, " + model.digest(),
+           options.model_digest +
+               ": one of them has changed since this configuration was saved; put it back, or "
+               "begin anew without this key");
+  }
+  options.model_digest = model.digest();
+  options.max_torque = limitsOf(model, options);
+  return options;
+}
+
+}  // namespace ddm

@@ -1,0 +1,279 @@
+// Draws the scene of a MuJoCo model without a screen.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_mujoco/renderer.h"
+
+#include <ddm_msgs/option_checks.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <mutex>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ddm_mujoco/mujoco_model.h"
+#include "egl_context.h"
+#include "scene.h"
+
+namespace ddm {
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+constexpr int kMaxDecor = 1000;  // drawn things that are not geoms: sites, tendons, joints
+constexpr int kNoCamera = -1;
+
+/// @return index of the camera, kNoCamera for one that the options place
+int findCamera(const mjModel& model, const RenderOptions& options) {
+  if (!options.position.empty()) return kNoCamera;
+  if (options.camera.empty() && model.ncam > 0) return 0;
+  const int index = mj_name2id(&model, mjOBJ_CAMERA, options.camera.c_str());
+  if (index >= 0) return index;
+  if (options.camera.empty()) {
+    throw std::invalid_argument(
+        "the model has no camera: give plant/camera_position and plant/camera_look_at");
+  }
+  std::vector<std::string> names;
+  for (int i = 0; i < model.ncam; ++i) {
+    const char* name = mj_id2name(&model, mjOBJ_CAMERA, i);
+    if (name != nullptr) names.emplace_back(name);
+  }
+  throw std::invalid_argument("plant/camera must be a camera of the model, got \"" +
+                              options.camera + "\": " + suggestion(options.camera, names));
+}
+
+/// A camera that stands at `position`; its picture's upper edge is up, or +y where it looks down.
+mjvCamera placed(const std::vector<double>& position, const std::vector<double>& look_at) {
+  mjvCamera camera;
+  mjv_defaultCamera(&camera);
+  camera.type = mjCAMERA_FREE;
+  mjtNum ahead[3];
+  mju_sub3(ahead, look_at.data(), position.data());
+  mju_copy3(camera.lookat, look_at.data());
+  camera.distance = mju_normalize3(ahead);
+  const bool vertical = ahead[0] == 0.0 && ahead[1] == 0.0;
+  camera.azimuth = vertical ? 90.0 : std::atan2(ahead[1], ahead[0]) / kDegree;
+  camera.elevation = std::asin(std::clamp(ahead[2], -1.0, 1.0)) / kDegree;
+  return camera;
+}
+
+/// Colours of a picture that was drawn `factor` times larger and upside down, averaged.
+Picture averaged(const std::vector<std::uint8_t>& drawn, int width, int height, int factor) {
+  Picture picture;
+  picture.width = width;
+  picture.height = height;
+  picture.channels = 3;
+  picture.bytes.resize(picture.numBytes());
+  const std::size_t row_bytes = std::size_t{3} * static_cast<std::size_t>(width * factor);
+  const int count = factor * factor;
+  auto byte = picture.bytes.begin();
+  for (int row = 0; row < height; ++row) {
+    const int lowest = (height - 1 - row) * factor;
+    for (int column = 0; column < width; ++column) {
+      int sum[3] = {0, 0, 0};
+      for (int i = 0; i < factor; ++i) {
+        const std::uint8_t* from = drawn.data() + static_cast<std::size_t>(lowest + i) * row_bytes +
+                                   std::size_t{3} * static_cast<std::size_t>(column * factor);
+        for (int k = 0; k < 3 * factor; ++k) sum[k % 3] += from[k];
+      }
+      for (const int channel : sum) {
+        *byte++ = static_cast<std::uint8_t>((channel + count / 2) / count);
+      }
+    }
+  }
+  return picture;
+}
+
+}  // namespace
+
+Picture greyOf(const Picture& picture) {
+  if (picture.channels == 1) return picture;
+  Picture grey = picture;
+  grey.channels = 1;
+  grey.bytes.resize(grey.numBytes());
+  const std::uint8_t* from = picture.bytes.data();
+  for (std::uint8_t& byte : grey.bytes) {
+    byte = static_cast<std::uint8_t>((9798 * from[0] + 19235 * from[1] + 3735 * from[2] + 16384) >>
+                                     15);
+    from += 3;
+  }
+  return grey;
+}
+
+class Renderer::Implementation {
+ public:
+  Implementation(std::shared_ptr<const mjModel> model, const RenderOptions& options,
+                 const SceneOptions& scene)
+      : options_(options), scene_(std::move(model), scene) {
+    mjModel& look = scene_.appearance();
+    look.vis.global.offwidth = options_.width * options_.supersampling;
+    look.vis.global.offheight = options_.height * options_.supersampling;
+    look.vis.quality.offsamples = options_.samples;
+    const int index = findCamera(look, options_);
+    if (index == kNoCamera) {
+      look.vis.global.fovy = static_cast<float>(options_.field_of_view);
+      camera_ = placed(options_.position, options_.look_at);
+    } else {
+      mjv_defaultCamera(&camera_);
+      camera_.type = mjCAMERA_FIXED;
+      camera_.fixedcamid = index;
+    }
+    mjv_defaultOption(&shown_);
+    if (options_.for_people) {
+      shown_.geomgroup[RenderOptions::kPeopleGroup] = 1;
+      shown_.sitegroup[RenderOptions::kPeopleGroup] = 1;
+    }
+    mjv_defaultScene(&drawn_);
+    mjv_makeScene(&look, &drawn_, look.ngeom + kMaxDecor);
+    drawn_.flags[mjRND_SHADOW] = options_.shadows ? 1 : 0;
+    drawn_.flags[mjRND_REFLECTION] = options_.reflections ? 1 : 0;
+    mjr_defaultContext(&gpu_);
+  }
+
+  ~Implementation() {
+    if (context_) {
+      try {
+        const EglContext::Current current(*context_);
+        mjr_freeContext(&gpu_);
+      } catch (const std::runtime_error&) {
+        // What is left goes with the context.
+      }
+    }
+    mjv_freeScene(&drawn_);
+  }
+
+  Implementation(const Implementation&) = delete;
+  Implementation& operator=(const Implementation&) = delete;
+
+  Picture draw(const mjData& data) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!context_) openContext();
+    const EglContext::Current current(*context_);
+    updateScene(data);
+    const mjrRect all = {0, 0, gpu_.offWidth, gpu_.offHeight};
+    mjr_render(all, &drawn_, &gpu_);
+    pixels_.resize(std::size_t{3} * static_cast<std::size_t>(all.width) *
+                   static_cast<std::size_t>(all.height));
+    mjr_readPixels(pixels_.data(), nullptr, all, &gpu_);
+    requireNoError("drawing");
+    const Picture colour =
+        averaged(pixels_, options_.width, options_.height, options_.supersampling);
+    return options_.colour ? colour : greyOf(colour);
+  }
+
+  CameraModel camera(const mjData& data) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    updateScene(data);
+    const mjModel& look = scene_.appearance();
+    const mjvGLCamera camera = mjv_averageCamera(&drawn_.camera[0], &drawn_.camera[1]);
+    const Eigen::Vector3f forward = Eigen::Map<const Eigen::Vector3f>(camera.forward);
+    const Eigen::Vector3f down = -Eigen::Map<const Eigen::Vector3f>(camera.up);
+    const int index = camera_.fixedcamid;
+    CameraModel out;
+    out.name = nameOfCamera();
+    out.width = options_.width;
+    out.height = options_.height;
+    out.fovy = kDegree * (index < 0 ? options_.field_of_view : look.cam_fovy[index]);
+    out.fixed = index < 0 || (look.cam_mode[index] == mjCAMLIGHT_FIXED &&
+                              look.body_weldid[look.cam_bodyid[index]] == 0);
+    out.position = Eigen::Map<const Eigen::Vector3f>(camera.pos).cast<double>();
+    out.rotation << down.cross(forward).cast<double>(), down.cast<double>(), forward.cast<double>();
+    return out;
+  }
+
+ private:
+  std::string nameOfCamera() const {
+    const char* name = camera_.fixedcamid < 0
+                           ? nullptr
+                           : mj_id2name(&scene_.appearance(), mjOBJ_CAMERA, camera_.fixedcamid);
+    return name == nullptr ? "camera" : name;
+  }
+
+  void updateScene(const mjData& data) {
+    // mjv_updateScene() reads data, and writes its own buffers; its signature does not say so.
+    mjv_updateScene(&scene_.appearance(), const_cast<mjData*>(&data), &shown_, nullptr, &camera_,
+                    mjCAT_ALL, &drawn_);
+    scene_.moveCamera(&drawn_.camera[0]);
+    scene_.moveCamera(&drawn_.camera[1]);
+    scene_.changeLights(&drawn_);
+  }
+
+  void openContext() {
+    auto context = std::make_unique<EglContext>();
+    const EglContext::Current current(*context);
+    const mjModel& look = scene_.appearance();
+    const int side = std::max(look.vis.global.offwidth, look.vis.global.offheight);
+    if (side > context->maxSize()) {
+      throw std::runtime_error("a picture with a side of " + std::to_string(side) +
+                               " pixels, supersampling included, is too large for this OpenGL "
+                               "driver, which can draw " +
+                               std::to_string(context->maxSize()));
+    }
+    makeGpuContext();
+    mjr_setBuffer(mjFB_OFFSCREEN, &gpu_);
+    if (gpu_.currentBuffer != mjFB_OFFSCREEN) {
+      throw std::runtime_error("this OpenGL driver cannot draw without a screen");
+    }
+    requireNoError("making the textures and the picture");
+    context_ = std::move(context);
+  }
+
+  /// Textures, meshes, shadow map and picture on the graphics side.
+  void makeGpuContext() {
+    static std::mutex loading;  // MuJoCo keeps what it finds of OpenGL in global variables
+    const std::lock_guard<std::mutex> lock(loading);
+    const mjModel& look = scene_.appearance();
+    mjr_defaultContext(&gpu_);
+    try {
+      mjr_makeContext(&look, &gpu_, mjFONTSCALE_50);
+    } catch (const std::runtime_error& e) {
+      std::ostringstream message;
+      message << "OpenGL cannot draw pictures of " << look.vis.global.offwidth << " x "
+              << look.vis.global.offheight << " pixels, supersampling included, with "
+              << look.vis.quality.offsamples << " samples and a shadow map of "
+              << look.vis.quality.shadowsize << ": " << e.what()
+              << "; free some memory, or make them smaller";
+      throw std::runtime_error(message.str());
+    }
+  }
+
+  static void requireNoError(const char* what) {
+    const int error = mjr_getError();
+    if (error == 0) return;
+    std::ostringstream message;
+    message << what << " of a MuJoCo model failed, OpenGL error 0x" << std::hex << error
+            << (error == 0x505 ? ": out of memory" : "");
+    throw std::runtime_error(message.str());
+  }
+
+  RenderOptions options_;
+  Scene scene_;
+  mjvCamera camera_;
+  mjvOption shown_;
+  mjvScene drawn_;
+  mjrContext gpu_;
+  std::unique_ptr<EglContext> context_;  ///< with gpu_ in it; none: nothing has been drawn yet
+  std::vector<std::uint8_t> pixels_;     ///< as drawn, kept for the next time
+  std::mutex mutex_;
+};
+
+Renderer::Renderer(std::shared_ptr<const mjModel> model, const RenderOptions& options,
+                   const SceneOptions& scene) {
+  std::vector<std::string> problems = options.problems("plant");
+  const std::vector<std::string> others = scene.problems("plant");
+  problems.insert(problems.end(), others.begin(), others.end());
+  requireNone(problems);
+  implementation_ = std::make_unique<Implementation>(std::move(model), options, scene);
+}
+
+Renderer::~Renderer() = default;
+
+Picture Renderer::draw(const mjData& data) { return implementation_->draw(data); }
+
+CameraModel Renderer::camera(const mjData& data) const { return implementation_->camera(data); }
+
+}  // namespace ddm

@@ -1,0 +1,75 @@
+// Rewards of standard tasks, by name.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_mujoco/rewards.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ddm_sim/angles.h"
+
+namespace ddm {
+namespace {
+
+/// 1 within `bound` of 0, then 0.1^(d^2), d the distance to the bound in units of `margin`.
+double tolerance(double x, double bound, double margin) {
+  const double d = std::max(0.0, std::abs(x) - bound) / margin;
+  return std::pow(0.1, d * d);
+}
+
+double pendulumSwingup(const RewardInputs& in) {
+  return std::cos(in.state[0]) >= std::cos(8.0 * kPi / 180.0) ? 1.0 : 0.0;
+}
+
+double cartpoleSmooth(const RewardInputs& in) {
+  const double x = in.state[0], angle = in.state[1], rate = in.state[3], u = in.control[0];
+  const double upright = (1.0 + std::cos(angle)) / 2.0;
+  const double small_control = (4.0 + std::max(0.0, 1.0 - u * u)) / 5.0;
+  const double slow = (1.0 + tolerance(rate, 0.0, 5.0)) / 2.0;
+  const double centred = (1.0 + tolerance(x, 0.0, 2.0)) / 2.0;
+  return upright * small_control * slow * centred;
+}
+
+double cartpoleSparse(const RewardInputs& in) {
+  return std::abs(in.state[0]) <= 0.25 && std::cos(in.state[1]) >= 0.995 ? 1.0 : 0.0;
+}
+
+/// Of the reacher, whose links are 0.12 m long [m].
+Eigen::Vector2d finger(const Eigen::VectorXd& state) {
+  const double first = state[0], second = state[0] + state[1];
+  return 0.12 *
+         Eigen::Vector2d(std::cos(first) + std::cos(second), std::sin(first) + std::sin(second));
+}
+
+/// The finger has a radius of 0.01 m, the target one of kMillimetres.
+template <int kMillimetres>
+double reacher(const RewardInputs& in) {
+  const double reached = 1e-3 * kMillimetres + 0.01;
+  return (finger(in.state) - finger(in.goal)).norm() <= reached ? 1.0 : 0.0;
+}
+
+/// Of the tip of the acrobot to 2 m above its shoulder, links of 1 m [m].
+double acrobotDistance(const Eigen::VectorXd& state) {
+  const double first = state[0], second = state[0] + state[1];
+  return std::hypot(std::sin(first) + std::sin(second), 2.0 - std::cos(first) - std::cos(second));
+}
+
+double acrobotSmooth(const RewardInputs& in) {
+  return tolerance(acrobotDistance(in.state), 0.2, 1.0);
+}
+
+double acrobotSparse(const RewardInputs& in) {
+  return acrobotDistance(in.state) <= 0.2 ? 1.0 : 0.0;
+}
+
+}  // namespace
+
+const std::vector<Reward>& rewards() {
+  static const std::vector<Reward> all = {
+      {"acrobot_smooth", 2, 1, acrobotSmooth},     {"acrobot_sparse", 2, 1, acrobotSparse},
+      {"cartpole_smooth", 2, 1, cartpoleSmooth},   {"cartpole_sparse", 2, 1, cartpoleSparse},
+      {"pendulum_swingup", 1, 1, pendulumSwingup}, {"reacher_easy", 2, 2, reacher<50>},
+      {"reacher_hard", 2, 2, reacher<15>}};
+  return all;
+}
+
+}  // namespace ddm

@@ -1,0 +1,104 @@
+// Tests of drawing in processes of their own: equal bytes, and a name for each failure.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_msgs/testing/temp_folder.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+// A sanitizer reserves terabytes of addresses: under a limit of them no program starts.
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define DDM_SANITIZED 1
+#endif
+#endif
+
+namespace ddm {
+namespace {
+
+struct Outcome {
+  int code = -1;
+  std::string out;
+  std::string err;
+};
+
+class DrawingProcessesTest : public ::testing::Test {
+ protected:
+  /// @param setting    shell words in front of the command: assignments, or `ulimit ...;`
+  /// @param arguments  after the scene: ANGLE SIZE SAMPLES [nothing]
+  Outcome draw(const std::string& setting, const std::string& arguments) {
+    const std::string out = folder_.file("out");
+    const std::string err = folder_.file("err");
+    const std::string command = setting + " " DDM_MUJOCO_DRAW_ONCE " " DDM_MUJOCO_TEST_SCENE " " +
+                                arguments + " > '" + out + "' 2> '" + err + "'";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, textOf(out), textOf(err)};
+  }
+
+  static void expectNamed(const Outcome& outcome, const std::string& part) {
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+  }
+
+ private:
+  static std::string textOf(const std::string& path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+  }
+
+  testing::TempFolder folder_;
+};
+
+TEST_F(DrawingProcessesTest, GiveTheSameBytes) {
+  const Outcome first = draw("", "0.4 51 4");
+  ASSERT_EQ(first.code, 0) << first.err;
+  EXPECT_EQ(first.out.size(), std::size_t{2 * 3 * 51 * 51});
+  for (const char* setting : {"", "LP_NUM_THREADS=0", "LP_NUM_THREADS=1", "LP_NUM_THREADS=3"}) {
+    EXPECT_EQ(draw(setting, "0.4 51 4").out, first.out) << setting;
+  }
+  EXPECT_NE(draw("", "0.5 51 4").out, first.out);
+}
+
+TEST_F(DrawingProcessesTest, NeedNoScreen) {
+  const Outcome outcome = draw("unset DISPLAY WAYLAND_DISPLAY XDG_RUNTIME_DIR;", "0.4 51 0");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(draw("DISPLAY=:99", "0.4 51 0").out, outcome.out);
+}
+
+TEST_F(DrawingProcessesTest, NameEglWhereItIsMissing) {
+  const char* const no_vendor = "__EGL_VENDOR_LIBRARY_FILENAMES=/dev/null";
+  expectNamed(draw(no_vendor, "0 51 0"), "eglGetPlatformDisplayEXT");
+  expectNamed(draw(no_vendor, "0 51 0"), "libgl1-mesa-dri");
+  expectNamed(draw("LIBGL_DRIVERS_PATH=/nowhere GALLIUM_DRIVER=nothing", "0 51 0"),
+              "eglInitialize");
+}
+
+TEST_F(DrawingProcessesTest, NeedNoEglWhereNothingIsDrawn) {
+  const Outcome outcome = draw("__EGL_VENDOR_LIBRARY_FILENAMES=/dev/null", "0 51 0 nothing");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+}
+
+TEST_F(DrawingProcessesTest, NameADriverThatIsTooOld) {
+  expectNamed(draw("MESA_GL_VERSION_OVERRIDE=1.1", "0 51 0"), "OpenGL version");
+}
+
+TEST_F(DrawingProcessesTest, NameAPictureThatMemoryDoesNotHold) {
+#ifdef DDM_SANITIZED
+  GTEST_SKIP() << "memory cannot be limited under a sanitizer";
+#endif
+  const Outcome outcome = draw("ulimit -v 800000;", "0 4096 4");
+  expectNamed(outcome, "4096 x 4096");
+  expectNamed(outcome, "memory");
+}
+
+TEST_F(DrawingProcessesTest, NameAPictureThatIsTooLarge) {
+  expectNamed(draw("", "0 4097 0"), "plant/supersampling");
+}
+
+}  // namespace
+}  // namespace ddm

@@ -1,0 +1,113 @@
+// A folder with model files of a test.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "ddm_mujoco/mujoco_model.h"
+#include "ddm_mujoco/mujoco_plant.h"
+
+namespace ddm {
+namespace testing {
+
+/// Of the only package that there is, `robots`.
+class ModelFolder {
+ public:
+  ModelFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "models_XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    folder_ = name;
+  }
+  ~ModelFolder() { std::filesystem::remove_all(folder_); }
+  ModelFolder(const ModelFolder&) = delete;
+  ModelFolder& operator=(const ModelFolder&) = delete;
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories((folder_ / name).parent_path());
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+
+  std::shared_ptr<const MujocoModel> load(const std::string& uri) const {
+    return std::make_shared<MujocoModel>(uri, [this](const std::string& package) {
+      return package == "robots" ? folder_.string() : std::string();
+    });
+  }
+
+  std::shared_ptr<const MujocoModel> loadText(const std::string& text,
+                                              const std::string& name = "model.xml") const {
+    return load(write(name, text));
+  }
+
+  std::string path() const { return folder_.string(); }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// An arm of two links in the plane, 0.2 and 0.1 m, with a motor in each joint.
+inline std::string armText(const std::string& more = "") {
+  return R"(<mujoco><option timestep="0.01" gravity="0 0 0"/>
+    <worldbody>
+      <camera name="above" pos="0 0 1"/>
+      <body><joint name="shoulder" axis="0 0 1" damping="0.1"/>
+        <geom type="capsule" fromto="0 0 0 0.2 0 0" size="0.01" contype="0" conaffinity="0"/>
+        <body pos="0.2 0 0"><joint name="elbow" axis="0 0 1" damping="0.1" limited="true" range="-150 150"/>
+          <geom type="capsule" fromto="0 0 0 0.1 0 0" size="0.01" contype="0" conaffinity="0"/>
+          <site name="tip" pos="0.1 0 0"/>
+        </body></body>
+    </worldbody>
+    <actuator>
+      <motor name="first" joint="shoulder" gear="2" ctrllimited="true" ctrlrange="-0.5 0.5"/>
+      <motor name="second" joint="elbow" gear="0.4" ctrllimited="true" ctrlrange="-1 2"/>
+    </actuator>)" +
+         more + "</mujoco>";
+}
+
+/// The same as URDF, without a word on motors but the effort of the elbow.
+inline std::string armUrdf(const std::string& mesh = "") {
+  const std::string shape =
+      mesh.empty() ? "<box size='0.1 0.1 0.1'/>" : "<mesh filename='" + mesh + "'/>";
+  const std::string inertial =
+      "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/>"
+      "</inertial>";
+  return "<robot name='arm'><link name='base'><visual><geometry>" + shape +
+         "</geometry></visual></link><link name='upper'>" + inertial +
+         "<visual><geometry><sphere radius='0.1'/></geometry></visual></link><link name='lower'>" +
+         inertial +
+         "</link><joint name='shoulder' type='continuous'><parent link='base'/><child "
+         "link='upper'/><axis xyz='0 0 1'/></joint><joint name='elbow' type='revolute'><parent "
+         "link='upper'/><child link='lower'/><axis xyz='0 0 1'/><limit lower='-2' upper='2' "
+         "effort='3' velocity='1'/></joint></robot>";
+}
+
+/// Valid for both.
+inline MujocoOptions armOptions() {
+  MujocoOptions options;
+  options.model = "arm";
+  options.dt = 0.05;
+  options.goal = {1.0, 0.5};
+  options.tolerance = 10.0;
+  return options;
+}
+
+/// What `make` says when it refuses; empty if it does not.
+template <class Make>
+std::string refusalOf(const Make& make) {
+  try {
+    make();
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "";
+}
+
+}  // namespace testing
+}  // namespace ddm

@@ -1,0 +1,206 @@
+// Tests of model files: what is read, what is refused by name, what a digest covers.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_mujoco/mujoco_model.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "model_folder.h"
+
+namespace ddm {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::armText;
+using testing::armUrdf;
+using testing::ModelFolder;
+using testing::refusalOf;
+
+/// A tetrahedron.
+constexpr char kMesh[] =
+    "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+class MujocoModelTest : public ::testing::Test {
+ protected:
+  /// What is said of it has the words.
+  ::testing::AssertionResult isRefused(const std::string& uri,
+                                       const std::vector<std::string>& words) const {
+    const std::string text = refusalOf([&] { folder_.load(uri); });
+    for (const std::string& word : words) {
+      if (text.find(word) == std::string::npos) {
+        return ::testing::AssertionFailure() << word << " is not in: " << text;
+      }
+    }
+    return ::testing::AssertionSuccess();
+  }
+
+  ModelFolder folder_;
+};
+
+TEST_F(MujocoModelTest, ReadsJointsAndSitesOfAnMjcf) {
+  const auto model = folder_.loadText(armText());
+  EXPECT_EQ(model->names(mjOBJ_JOINT), (std::vector<std::string>{"shoulder", "elbow"}));
+  EXPECT_EQ(model->id(mjOBJ_SITE, "tip", "plant/error_sites"), 0);
+}
+
+TEST_F(MujocoModelTest, FindsPackages) {
+  folder_.write("models/arm.xml", armText());
+  EXPECT_EQ(folder_.load("package://robots/models/arm.xml")->get().njnt, 2);
+  EXPECT_TRUE(isRefused("package://robotz/models/arm.xml", {"plant/model", "robotz"}));
+}
+
+TEST_F(MujocoModelTest, NamesAFileThatIsMissingAndTheNearestOne) {
+  folder_.write("robot_arm.xml", armText());
+  EXPECT_TRUE(isRefused(folder_.path() + "/robot_amr.xml",
+                        {"plant/model", "robot_amr.xml", "robot_arm.xml?"}));
+  EXPECT_TRUE(isRefused("/nowhere/arm.xml", {"plant/model", "/nowhere/arm.xml"}));
+  EXPECT_TRUE(isRefused(folder_.path(), {"plant/model", folder_.path()}));
+  EXPECT_TRUE(isRefused("", {"plant/model"}));
+}
+
+TEST_F(MujocoModelTest, NamesTheLineOfABrokenFile) {
+  EXPECT_TRUE(isRefused(folder_.write("a.xml", "<mujoco>\n<worldbody>\n</mujoco>"),
+                        {"plant/model", "a.xml", "Line number=2"}));
+  EXPECT_TRUE(isRefused(folder_.write("b.xml", "<mujoco>\n<world/>\n</mujoco>"),
+                        {"plant/model", "b.xml", "world", "line"}));
+  EXPECT_TRUE(isRefused(folder_.write("c.urdf", "<robot name='x'><link></robot>"),
+                        {"plant/model", "c.urdf", "line 1"}));
+  EXPECT_TRUE(isRefused(folder_.write("empty.xml", ""), {"plant/model", "empty.xml"}));
+}
+
+TEST_F(MujocoModelTest, NamesAMissingIncludeMeshOrTexture) {
+  EXPECT_TRUE(isRefused(folder_.write("a.xml", armText("<include file='look.xml'/>")),
+                        {"plant/model", "look.xml"}));
+  EXPECT_TRUE(
+      isRefused(folder_.write("b.xml", armText("<asset><mesh name='m' file='hand.stl'/></asset>")),
+                {"plant/model", "hand.stl"}));
+  EXPECT_TRUE(isRefused(
+      folder_.write("c.xml",
+                    armText("<asset><texture name='t' type='2d' file='oak.png'/></asset>")),
+      {"plant/model", "oak.png"}));
+}
+
+TEST_F(MujocoModelTest, ReadsAUrdfWithItsVisualShapesAndLimits) {
+  const auto model = folder_.loadText(armUrdf(), "arm.urdf");
+  EXPECT_EQ(model->names(mjOBJ_JOINT), (std::vector<std::string>{"shoulder", "elbow"}));
+  EXPECT_EQ(model->get().ngeom, 2);
+  EXPECT_EQ(model->effortLimit("elbow"), 3.0);
+  EXPECT_EQ(model->effortLimit("shoulder"), 0.0);
+}
+
+TEST_F(MujocoModelTest, FindsTheMeshesOfAUrdfInPackagesAndBesideIt) {
+  folder_.write("meshes/base.obj", kMesh);
+  for (const char* mesh : {"package://robots/meshes/base.obj", "../meshes/base.obj"}) {
+    const auto model = folder_.loadText(armUrdf(mesh), "urdf/arm.urdf");
+    EXPECT_EQ(model->get().nmesh, 1) << mesh;
+    EXPECT_EQ(model->get().ngeom, 2) << mesh;
+  }
+  EXPECT_TRUE(isRefused(folder_.write("urdf/b.urdf", armUrdf("package://robots/meshes/b.obj")),
+                        {"plant/model", "meshes/b.obj"}));
+  EXPECT_TRUE(isRefused(folder_.write("urdf/c.urdf", armUrdf("package://hands/meshes/b.obj")),
+                        {"plant/model", "package hands"}));
+}
+
+TEST_F(MujocoModelTest, SaysWhatHelpsWithXacroWithOtherMeshesAndWithoutInertia) {
+  std::string xacro = armUrdf();
+  xacro.replace(xacro.find("value='1'"), 9, "value='${mass}'");
+  EXPECT_TRUE(isRefused(folder_.write("a.urdf", xacro), {"plant/model", "xacro FILE"}));
+  folder_.write("base.dae", "<COLLADA/>");
+  EXPECT_TRUE(isRefused(folder_.write("b.urdf", armUrdf("base.dae")), {"base.dae", "STL"}));
+  std::string text = armUrdf();
+  const auto begin = text.find("<inertial>");
+  text.erase(begin, text.find("</inertial>") + 11 - begin);
+  EXPECT_TRUE(isRefused(folder_.write("c.urdf", text), {"plant/model", "<inertial>"}));
+}
+
+TEST_F(MujocoModelTest, HasLightAndNoContactsForAUrdf) {
+  const auto urdf = folder_.loadText(armUrdf(), "arm.urdf");
+  const mjModel& model = urdf->get();
+  EXPECT_NE(model.opt.disableflags & mjDSBL_CONTACT, 0);
+  EXPECT_EQ(model.vis.headlight.diffuse[0], 0.6F);
+  EXPECT_EQ(folder_.loadText(armText())->get().opt.disableflags & mjDSBL_CONTACT, 0);
+}
+
+TEST_F(MujocoModelTest, DrawsNoCollisionShapeOfAUrdfOverAVisualOne) {
+  const std::string cylinder =
+      "<collision><geometry><cylinder radius='0.2' length='1'/></geometry></collision>";
+  const auto drawnCylinders = [this](const std::string& text) {
+    const auto urdf = folder_.loadText(text, "arm.urdf");
+    const mjModel& model = urdf->get();
+    int drawn = 0;
+    for (int i = 0; i < model.ngeom; ++i) {
+      drawn += model.geom_type[i] == mjGEOM_CYLINDER && model.geom_group[i] < 3 ? 1 : 0;
+    }
+    EXPECT_EQ(model.ngeom, 3);
+    return drawn;
+  };
+  std::string of_the_seen_link = armUrdf();
+  of_the_seen_link.insert(of_the_seen_link.rfind("<visual>"), cylinder);
+  EXPECT_EQ(drawnCylinders(of_the_seen_link), 0);
+  std::string of_the_bare_link = armUrdf();
+  of_the_bare_link.insert(of_the_bare_link.rfind("</link>"), cylinder);
+  EXPECT_EQ(drawnCylinders(of_the_bare_link), 1);
+}
+
+TEST_F(MujocoModelTest, FindsPlacesAmongSitesAndBodies) {
+  const auto arm = folder_.loadText(armText());
+  EXPECT_EQ(arm->place("tip", "plant/error_sites").type, mjOBJ_SITE);
+  EXPECT_EQ(folder_.loadText(armUrdf(), "arm.urdf")->place("lower", "plant/error_sites").type,
+            mjOBJ_BODY);
+  const std::string text = refusalOf([&] { arm->place("top", "plant/error_sites"); });
+  EXPECT_NE(text.find("tip?"), std::string::npos) << text;
+}
+
+TEST_F(MujocoModelTest, LeavesAMujocoBlockOfAUrdfAsItIs) {
+  std::string text = armUrdf();
+  text.insert(text.rfind("</robot>"),
+              "<mujoco><compiler discardvisual='true'/><option timestep='0.004'/></mujoco>");
+  const auto model = folder_.loadText(text, "arm.urdf");
+  EXPECT_EQ(model->get().ngeom, 0);
+  EXPECT_EQ(model->get().opt.timestep, 0.004);
+}
+
+TEST_F(MujocoModelTest, HasADigestOfAllFilesThatItNames) {
+  folder_.write("assets/base.obj", kMesh);
+  folder_.write("look.xml", "<mujocoinclude><visual/></mujocoinclude>");
+  const std::string text = armText(
+      "<include file=\"look.xml\"/><compiler meshdir='assets'/>"
+      "<asset><mesh name='m' file='base.obj'/></asset>");
+  const std::string digest = folder_.loadText(text)->digest();
+  EXPECT_EQ(folder_.loadText(text)->digest(), digest);
+  EXPECT_NE(folder_.loadText(text + "<!-- another word -->")->digest(), digest);
+  folder_.write("look.xml", "<mujocoinclude><visual/><size/></mujocoinclude>");
+  const std::string with_size = folder_.loadText(text)->digest();
+  EXPECT_NE(with_size, digest);
+  folder_.write("assets/base.obj", std::string(kMesh) + "# painted\n");
+  EXPECT_NE(folder_.loadText(text)->digest(), with_size);
+}
+
+TEST_F(MujocoModelTest, SuggestsTheNearestNameAndAllOthers) {
+  const auto model = folder_.loadText(armText());
+  const std::string near = refusalOf([&] { model->id(mjOBJ_JOINT, "sholder", "plant/motors"); });
+  for (const char* word : {"plant/motors", "sholder", "shoulder?", "elbow"}) {
+    EXPECT_NE(near.find(word), std::string::npos) << word << " is not in: " << near;
+  }
+  const std::string far = refusalOf([&] { model->id(mjOBJ_JOINT, "knee", "plant/motors"); });
+  EXPECT_EQ(far.find('?'), std::string::npos) << far;
+  EXPECT_NE(far.find("shoulder, elbow"), std::string::npos) << far;
+}
+
+TEST_F(MujocoModelTest, ThrowsWhatMujocoCallsAnErrorAndLeavesNoLogBehind) {
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_.path());
+  installMujocoHandlers();
+  EXPECT_THROW(mju_error("on purpose"), std::runtime_error);
+  mju_warning("a hint");
+  EXPECT_EQ(takeMujocoWarnings(), "a hint");
+  EXPECT_EQ(takeMujocoWarnings(), "");
+  EXPECT_FALSE(fs::exists("MUJOCO_LOG.TXT"));
+  fs::current_path(before);
+}
+
+}  // namespace
+}  // namespace ddm

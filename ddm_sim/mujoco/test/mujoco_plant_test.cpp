@@ -1,0 +1,452 @@
+// Tests of plants that a model file describes: motion, motors, starts, goals, and what is refused.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_mujoco/mujoco_plant.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <memory>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ddm_sim/angles.h"
+#include "ddm_sim/pendulum.h"
+#include "model_folder.h"
+
+namespace ddm {
+namespace {
+
+using testing::armOptions;
+using testing::armText;
+using testing::armUrdf;
+using testing::ModelFolder;
+using testing::refusalOf;
+using Names = std::vector<std::string>;
+
+std::unique_ptr<MujocoPlant> plantOf(const std::string& text, const MujocoOptions& options,
+                                     const std::string& name = "model.xml") {
+  const ModelFolder folder;
+  return std::make_unique<MujocoPlant>(folder.loadText(text, name), options);
+}
+
+std::unique_ptr<MujocoPlant> arm(const MujocoOptions& options = armOptions()) {
+  return plantOf(armText(), options);
+}
+
+MujocoOptions urdfOptions() {
+  MujocoOptions options = armOptions();
+  options.motors = {"elbow", "shoulder"};
+  options.max_torque = {2.0, 1.0};
+  options.look.position = {0.0, 0.0, 2.0};
+  options.look.look_at = {0.0, 0.1, 0.0};
+  return options;
+}
+
+TEST(MujocoPlant, HasTheColumnsLimitsAndJointsOfItsFile) {
+  const PlantInfo info = arm()->info();
+  EXPECT_EQ(info.state_names,
+            (Names{"shoulder_rad", "elbow_rad", "shoulder_rad_per_s", "elbow_rad_per_s"}));
+  EXPECT_EQ(info.torque_names, (Names{"shoulder_nm", "elbow_nm"}));
+  EXPECT_EQ(info.joints[1].name, "elbow");
+  EXPECT_DOUBLE_EQ(info.max_torque[0], 1.0);  // gear times ctrlrange
+  EXPECT_DOUBLE_EQ(info.max_torque[1], 0.4);  // the weaker side
+  EXPECT_EQ(info.error_unit, "deg");
+  EXPECT_EQ(info.goal, Eigen::Vector4d(1.0, 0.5, 0.0, 0.0));
+}
+
+TEST(MujocoPlant, HasTheColumnsAndUnitsOfItsOptions) {
+  MujocoOptions options = armOptions();
+  options.state_names = {"a_rad", "b_rad", "a_rate", "b_rate"};
+  options.torque_names = {"a_nm", "b_nm"};
+  options.error_sites = {"tip"};
+  EXPECT_EQ(arm(options)->info().state_names, options.state_names);
+  EXPECT_EQ(arm(options)->info().torque_names, options.torque_names);
+  EXPECT_EQ(arm(options)->info().error_unit, "m");
+}
+
+TEST(MujocoPlant, MovesThePapersPendulumAsTheClosedFormDoes) {
+  MujocoOptions options;
+  options.model = "pendulum";
+  options.tolerance = 10.0;
+  const ModelFolder none;
+  const auto model = none.load(DDM_SIM_SOURCE_DIR "/models/mujoco_pendulum.xml");
+  MujocoPlant plant(model, options);
+  Pendulum closed_form{PendulumOptions()};
+  const Eigen::Vector2d start(0.1, -0.05);
+  plant.setState(start);
+  closed_form.setState(start);
+  std::mt19937_64 engine(3);
+  std::uniform_real_distribution<double> torque(-6.0, 6.0);
+  for (int t = 0; t < 100; ++t) {
+    const Eigen::VectorXd u = Eigen::VectorXd::Constant(1, torque(engine));
+    plant.step(u);
+    closed_form.step(u);
+    const double apart = (plant.state() - closed_form.state()).lpNorm<Eigen::Infinity>();
+    ASSERT_LE(apart, 1e-7) << t;
+  }
+}
+
+TEST(MujocoPlant, TurnsTheJointsOfAUrdfInTheOrderOfItsMotorsByTheirGears) {
+  MujocoOptions options = urdfOptions();
+  const auto plain = plantOf(armUrdf(), options, "arm.urdf");
+  EXPECT_EQ(plain->info().torque_names, (Names{"elbow_nm", "shoulder_nm"}));
+  plain->step(Eigen::Vector2d(0.5, 0.0));
+  EXPECT_GT(plain->state()[1], 0.0);  // the elbow is the second joint
+  options.gear = {-2.0, 1.0};
+  options.max_torque = {1.0, 1.0};
+  const auto geared = plantOf(armUrdf(), options, "arm.urdf");
+  geared->step(Eigen::Vector2d(-0.25, 0.0));
+  EXPECT_EQ(geared->state(), plain->state());
+}
+
+TEST(MujocoPlant, TakesTheEffortOfAUrdfForTheLimitOfTheMotor) {
+  MujocoOptions options = urdfOptions();
+  options.motors = {"elbow"};
+  options.max_torque.clear();
+  const ModelFolder folder;
+  const auto model = folder.loadText(armUrdf(), "arm.urdf");
+  EXPECT_EQ(MujocoPlant(model, options).info().max_torque[0], 3.0);
+  EXPECT_EQ(completed(options, *model).max_torque, std::vector<double>{3.0});
+  options.gear = {-2.0};
+  EXPECT_EQ(MujocoPlant(model, options).info().max_torque[0], 1.5);
+}
+
+TEST(MujocoPlant, EndsAnUnstableTrialAndIsAsGoodAsNewAfterwards) {
+  // A rate that ten frames of this damping multiply beyond all bounds.
+  const std::string text = R"(<mujoco><option timestep="0.1" integrator="RK4" gravity="0 0 0"/>
+    <worldbody><camera pos="0 0 1"/><body><joint name="hinge" damping="1000"/><geom size="0.1" mass="0.01"/></body></worldbody>
+    <actuator><motor joint="hinge" ctrllimited="true" ctrlrange="-1 1"/></actuator></mujoco>)";
+  MujocoOptions options;
+  options.model = "stiff";
+  options.dt = 1.0;
+  options.tolerance = 1.0;
+  const ModelFolder folder;
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  const auto plant = std::make_unique<MujocoPlant>(folder.loadText(text), options);
+  const Eigen::Vector2d start(0.5, 3.0);
+  plant->setState(start);
+  try {
+    plant->step(Eigen::VectorXd::Zero(1));
+    ADD_FAILURE() << "it should not reach " << plant->state().transpose();
+  } catch (const std::range_error& e) {
+    EXPECT_NE(std::string(e.what()).find("unstable"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("timestep"), std::string::npos) << e.what();
+  }
+  EXPECT_EQ(plant->state(), start);
+  EXPECT_FALSE(std::filesystem::exists("MUJOCO_LOG.TXT"));
+  std::filesystem::current_path(before);
+  plant->setState(Eigen::Vector2d(0.25, 0.0));
+  plant->step(Eigen::VectorXd::Zero(1));
+  EXPECT_EQ(plant->state(), Eigen::Vector2d(0.25, 0.0));
+}
+
+TEST(MujocoPlant, DrawsStartsFromNormalAndUniformParts) {
+  MujocoOptions options = armOptions();
+  options.start = {0.5, -0.25};
+  options.start_std = {0.0, 0.0, 0.0, 0.1};
+  options.start_uniform = {kPi, 0.1};
+  const auto plant = arm(options);
+  EXPECT_EQ(plant->info().start, Eigen::Vector4d(0.5, -0.25, 0.0, 0.0));
+  EXPECT_DOUBLE_EQ(plant->info().start_std[0], kPi / std::sqrt(3.0));
+  std::mt19937_64 engine(1);
+  double widest = 0.0;
+  for (int i = 0; i < 1000; ++i) {
+    const Eigen::VectorXd start = plant->drawStart(engine);
+    ASSERT_LE(std::abs(start[0] - 0.5), kPi);
+    ASSERT_LE(std::abs(start[1] + 0.25), 0.1);
+    ASSERT_EQ(start[2], 0.0);
+    widest = std::max(widest, std::abs(start[0] - 0.5));
+  }
+  EXPECT_GT(widest, 0.98 * kPi);
+}
+
+TEST(MujocoPlant, DrawsGoalsThatBringTheSiteToARingWithinTheRangesOfTheJoints) {
+  MujocoOptions options = armOptions();
+  options.goal_site = "tip";
+  options.goal_distance = {0.15, 0.25};
+  options.error_sites = options.visible_sites = {"tip"};
+  options.tolerance = 0.01;
+  const auto plant = arm(options);
+  std::mt19937_64 engine(2);
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (int i = 0; i < 300; ++i) {
+    const Eigen::VectorXd goal = plant->drawGoal(engine);
+    const Eigen::Vector2d tip = plant->visiblePosition(goal).head(2);
+    ASSERT_GE(tip.norm(), 0.15 - 1e-12);
+    ASSERT_LE(tip.norm(), 0.25 + 1e-12);
+    ASSERT_LE(std::abs(goal[1]), 150.0 * kPi / 180.0);
+    ASSERT_EQ(goal.tail(2), Eigen::Vector2d(0.0, 0.0));
+    mean += tip / 300;
+  }
+  EXPECT_LT(mean.norm(), 0.05);  // on all sides
+}
+
+TEST(MujocoPlant, ReachesATargetExactlyOrRefusesIt) {
+  MujocoOptions options = armOptions();
+  options.goal_site = "tip";
+  options.goal_distance = {0.15, 0.25};
+  options.visible_sites = {"tip"};
+  const auto plant = arm(options);
+  for (const Eigen::Vector2d& target :
+       {Eigen::Vector2d(0.2, 0.1), Eigen::Vector2d(-0.15, 0.0), Eigen::Vector2d(0.0, -0.29)}) {
+    const Eigen::VectorXd goal = plant->goalAt(target);
+    EXPECT_LE((plant->visiblePosition(goal).head(2) - target).norm(), 1e-13);
+    EXPECT_EQ(plant->goalAt(target), goal);
+  }
+  EXPECT_NE(refusalOf([&] { plant->goalAt(Eigen::Vector2d(0.25, 0.25)); }).find("reach"),
+            std::string::npos);
+  EXPECT_THROW(plant->goalAt(Eigen::Vector3d(0.1, 0.1, 0.1)), std::invalid_argument);
+  EXPECT_THROW(arm()->goalAt(Eigen::Vector2d(0.1, 0.1)), std::invalid_argument);
+}
+
+TEST(MujocoPlant, ShowsTheTargetToPeopleAlone) {
+  MujocoOptions options = armOptions();
+  options.goal_site = "tip";
+  options.goal_distance = {0.15, 0.25};
+  const std::string ball = R"(<worldbody><body name="target" mocap="true">
+      <geom size="0.03" contype="0" conaffinity="0" group="4"/></body></worldbody>)";
+  const auto plant = plantOf(armText(ball), options);
+  const Eigen::VectorXd state = plant->state();
+  const Picture view = plant->view(state), picture = plant->render(state);
+  EXPECT_EQ(view.width, 640);
+  EXPECT_EQ(plant->viewModel()->height, 480);
+  EXPECT_EQ(plant->cameraModel()->width, 51);
+  plant->setGoal(plant->goalAt(Eigen::Vector2d(-0.2, 0.1)));
+  EXPECT_NE(plant->view(state).bytes, view.bytes);
+  EXPECT_EQ(plant->render(state).bytes, picture.bytes);
+}
+
+TEST(MujocoPlant, MeasuresTheErrorOfTheJointsOrSitesThatCount) {
+  const Eigen::Vector4d state(1.0 + 2.0 * kPi, 0.5 + 0.2, 9.0, 9.0);
+  EXPECT_NEAR(arm()->goalError(state), 0.2 * 180.0 / kPi, 1e-9);
+  MujocoOptions options = armOptions();
+  options.error_joints = {"shoulder"};
+  EXPECT_NEAR(arm(options)->goalError(state), 0.0, 1e-9);
+  options.error_joints.clear();
+  options.error_sites = {"tip"};
+  EXPECT_NEAR(arm(options)->goalError(state), 2.0 * 0.1 * std::sin(0.1), 1e-12);
+}
+
+TEST(MujocoPlant, TakesTheCentreOfMassOfALinkForItsPlace) {
+  std::string urdf = armUrdf();
+  urdf.insert(urdf.rfind("<mass"), "<origin xyz='0.1 0 0'/>");  // 0.1 m from both joints
+  MujocoOptions options = urdfOptions();
+  options.error_sites = options.visible_sites = {"lower"};
+  options.goal_site = "lower";
+  options.goal_distance = {0.1, 0.1};
+  const auto plant = plantOf(urdf, options, "arm.urdf");
+  EXPECT_NEAR(plant->goalError(Eigen::Vector4d(1.0, 0.5 + 0.2, 0.0, 0.0)),
+              2.0 * 0.1 * std::sin(0.1), 1e-12);
+  const Eigen::Vector2d target(0.06, -0.08);
+  EXPECT_LE((plant->visiblePosition(plant->goalAt(target)).head(2) - target).norm(), 1e-13);
+}
+
+TEST(MujocoPlant, IsRewardedForEachFrameOfAStep) {
+  MujocoOptions options = armOptions();
+  EXPECT_FALSE(arm(options)->reward(Eigen::Vector4d::Zero(), Eigen::Vector2d::Zero()));
+  options.reward = "reacher_easy";
+  options.episode_frames = 1000;
+  options.dt = 0.2;  // 20 frames
+  const auto plant = arm(options);
+  EXPECT_EQ(plant->info().evaluation_steps, 50);
+  const Eigen::Vector2d none(0.0, 0.0);
+  EXPECT_EQ(plant->reward(plant->info().goal, none), 1.0);
+  EXPECT_EQ(plant->reward(Eigen::Vector4d(-2.0, 0.0, 0.0, 0.0), none), 0.0);
+  EXPECT_EQ(plant->stepReward(plant->info().goal, none), 20.0);
+  const double part = plant->stepReward(plant->info().goal, Eigen::Vector2d(1.0, 0.0)).value();
+  EXPECT_GT(part, 0.0);
+  EXPECT_LT(part, 20.0);
+}
+
+TEST(MujocoPlant, MovesAndLooksTheSameInEachOfSeveralThreads) {
+  const ModelFolder folder;
+  const auto model = folder.loadText(armText());
+  const auto run = [&model] {
+    MujocoPlant plant(model, armOptions());
+    std::vector<std::uint8_t> bytes;
+    for (int t = 0; t < 40; ++t) {
+      plant.step(Eigen::Vector2d(std::sin(t), std::cos(t)));
+      const Picture picture = plant.render(plant.state());
+      bytes.insert(bytes.end(), picture.bytes.begin(), picture.bytes.end());
+    }
+    return std::make_pair(plant.state(), bytes);
+  };
+  const auto alone = run();
+  std::vector<std::future<std::pair<Eigen::VectorXd, std::vector<std::uint8_t>>>> others;
+  for (int i = 0; i < 4; ++i) others.push_back(std::async(std::launch::async, run));
+  for (auto& other : others) EXPECT_TRUE(other.get() == alone);
+}
+
+struct Flaw {
+  const char* name;
+  std::function<std::unique_ptr<MujocoPlant>()> make;
+  std::vector<std::string> words;  ///< that the refusal must have
+};
+
+void PrintTo(const Flaw& flaw, std::ostream* out) { *out << flaw.name; }
+
+class MujocoPlantFlawTest : public ::testing::TestWithParam<Flaw> {};
+
+TEST_P(MujocoPlantFlawTest, IsRefusedByName) {
+  const std::string text = refusalOf(GetParam().make);
+  for (const std::string& word : GetParam().words) {
+    EXPECT_NE(text.find(word), std::string::npos) << word << " is not in: " << text;
+  }
+}
+
+/// The arm with one option that is wrong.
+std::function<std::unique_ptr<MujocoPlant>()> armWith(
+    const std::function<void(MujocoOptions*)>& spoil) {
+  return [spoil] {
+    MujocoOptions options = armOptions();
+    spoil(&options);
+    return arm(options);
+  };
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+std::vector<Flaw> options() {
+  using O = MujocoOptions;
+  return {
+      {"UnknownMotor",
+       armWith([](O* o) { o->motors = {"elbw"}; }),
+       {"plant/motors", "elbw", "elbow?"}},
+      {"TwoMotorsOfOneJoint",
+       armWith([](O* o) {
+         o->motors = {"elbow", "elbow"};
+       }),
+       {"plant/motors", "elbow"}},
+      {"UnknownErrorJoint",
+       armWith([](O* o) { o->error_joints = {"knee"}; }),
+       {"plant/error_joints", "knee", "shoulder, elbow"}},
+      {"UnknownErrorSite",
+       armWith([](O* o) { o->error_sites = {"top"}; }),
+       {"plant/error_sites", "top", "tip?"}},
+      {"UnknownVisibleSite",
+       armWith([](O* o) { o->visible_sites = {"top"}; }),
+       {"plant/visible_sites", "top", "tip"}},
+      {"UnknownGoalSite",
+       armWith([](O* o) {
+         o->goal_site = "top";
+         o->goal_distance = {0.1, 0.2};
+       }),
+       {"plant/goal_site", "top", "tip"}},
+      {"UnknownCamera", armWith([](O* o) { o->look.camera = "abowe"; }), {"abowe", "above"}},
+      {"UnknownReward",
+       armWith([](O* o) { o->reward = "reacher_esay"; }),
+       {"plant/reward", "reacher_esay", "reacher_easy?"}},
+      {"RewardOfAnotherPlant",
+       armWith([](O* o) { o->reward = "pendulum_swingup"; }),
+       {"plant/reward", "pendulum_swingup", "2 joints"}},
+      {"TimeStepIsNoMultiple",
+       armWith([](O* o) { o->dt = 0.125; }),
+       {"plant/dt", "0.01", "0.125", "nearest"}},
+      {"TimeStepIsShorterThanAFrame",
+       armWith([](O* o) { o->dt = 0.004; }),
+       {"plant/dt", "0.01", "0.004"}},
+      {"EpisodeIsNoMultiple",
+       armWith([](O* o) { o->episode_frames = 1001; }),
+       {"plant/episode_frames", "1001"}},
+      {"LimitBeyondTheMotor",
+       armWith([](O* o) {
+         o->max_torque = {1.0, 0.5};
+       }),
+       {"plant/max_torque", "elbow", "0.4", "0.5"}},
+      {"AnotherNumberOfLimits",
+       armWith([](O* o) {
+         o->max_torque = {0.1, 0.1, 0.1};
+       }),
+       {"plant/max_torque", "2", "3"}},
+      {"AnotherNumberOfStarts",
+       armWith([](O* o) {
+         o->start = {0, 0, 0};
+       }),
+       {"plant/start", "3"}},
+      {"AnotherNumberOfGoals", armWith([](O* o) { o->goal = {0}; }), {"plant/goal", "1"}},
+      {"AnotherNumberOfSpreads",
+       armWith([](O* o) { o->start_uniform = {1}; }),
+       {"plant/start_uniform", "1"}},
+      {"AnotherNumberOfColumns",
+       armWith([](O* o) {
+         o->state_names = {"a", "b"};
+       }),
+       {"plant/state_names", "2"}},
+      {"NoTolerance", armWith([](O* o) { o->tolerance = 0.0; }), {"plant/tolerance"}},
+      {"GearWithoutMotors", armWith([](O* o) { o->gear = {2.0}; }), {"plant/gear"}},
+  };
+}
+
+std::vector<Flaw> files() {
+  const auto fileWith = [](const std::string& from, const std::string& to) {
+    return [=] { return plantOf(replaced(armText(), from, to), armOptions()); };
+  };
+  const auto urdfWith = [](const std::function<void(MujocoOptions*)>& spoil) {
+    return [spoil] {
+      MujocoOptions options = urdfOptions();
+      spoil(&options);
+      return plantOf(armUrdf(), options, "arm.urdf");
+    };
+  };
+  return {
+      {"UrdfWithoutMotors",
+       urdfWith([](MujocoOptions* o) { o->motors.clear(); }),
+       {"plant/motors", "shoulder, elbow"}},
+      {"JointWithoutALimit",
+       urdfWith([](MujocoOptions* o) { o->max_torque.clear(); }),
+       {"plant/max_torque", "shoulder", "effort"}},
+      {"UrdfWithoutACamera",
+       urdfWith([](MujocoOptions* o) {
+         o->look.position.clear();
+         o->look.look_at.clear();
+       }),
+       {"camera"}},
+      {"MotorWithoutALimit",
+       fileWith("gear=\"2\" ctrllimited=\"true\" ctrlrange=\"-0.5 0.5\"", "gear=\"2\""),
+       {"plant/max_torque", "shoulder", "ctrlrange"}},
+      {"PositionServo",
+       fileWith("<motor name=\"first\" joint=\"shoulder\" gear=\"2\"",
+                "<position name=\"first\" joint=\"shoulder\""),
+       {"actuator first", "motor", "plant/motors"}},
+      {"FreeJoint",
+       fileWith("<worldbody>",
+                "<worldbody><body><freejoint name=\"loose\"/><geom size=\"0.1\"/></body>"),
+       {"plant/model", "free joint", "loose"}},
+      {"BallJoint", fileWith("axis=\"0 0 1\" damping=\"0.1\"/>", "type=\"ball\"/>"), {"shoulder"}},
+      {"SlideBesideHinge",
+       fileWith("axis=\"0 0 1\" damping=\"0.1\"/>", "type=\"slide\"/>"),
+       {"plant/error_joints", "plant/error_sites"}},
+  };
+}
+
+std::string flawName(const ::testing::TestParamInfo<Flaw>& info) { return info.param.name; }
+
+INSTANTIATE_TEST_SUITE_P(Options, MujocoPlantFlawTest, ::testing::ValuesIn(options()), flawName);
+INSTANTIATE_TEST_SUITE_P(Files, MujocoPlantFlawTest, ::testing::ValuesIn(files()), flawName);
+
+TEST(MujocoOptions, AreCompletedByLimitsAndDigestAndRefuseThatOfAnotherFile) {
+  const ModelFolder folder;
+  const auto model = folder.loadText(armText());
+  const MujocoOptions options = completed(armOptions(), *model);
+  EXPECT_EQ(options.max_torque, (std::vector<double>{1.0, 0.4}));
+  EXPECT_EQ(options.model_digest, model->digest());
+  EXPECT_EQ(completed(options, *model).model_digest, model->digest());
+  const auto changed = folder.loadText(armText("<!-- stronger -->"));
+  const std::string text = refusalOf([&] { completed(options, *changed); });
+  for (const std::string& word :
+       {std::string("plant/model_digest"), model->digest(), changed->digest(), changed->uri()}) {
+    EXPECT_NE(text.find(word), std::string::npos) << word << " is not in: " << text;
+  }
+}
+
+}  // namespace
+}  // namespace ddm

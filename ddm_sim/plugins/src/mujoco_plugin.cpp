@@ -1,0 +1,53 @@
+// The plant `mujoco` as a configuration describes it.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mujoco_plugin.h"
+
+#include <ddm_mujoco/mujoco_plant.h>
+#include <ros/package.h>
+
+#include <filesystem>
+#include <string>
+
+namespace ddm {
+namespace {
+
+/// As seen from any folder: nodes run in another one than the user, and an experiment may be taken
+/// up from another one.
+std::string absolute(const std::string& path) {
+  if (path.empty() || path.rfind("package://", 0) == 0) return path;
+  return std::filesystem::absolute(path).lexically_normal().string();
+}
+
+/// Reads the model file once: all plants are of that model, whatever happens to the file.
+class MujocoPlugin : public PlantPlugin {
+ public:
+  std::string type() const override { return "mujoco"; }
+
+  void read(ParamReader* reader) override {
+    options_ = reader->read<MujocoOptions>("plant");
+    if (!options_.problems().empty()) return;  // the reader has them
+    options_.model = absolute(options_.model);
+    for (std::string& picture : options_.scene.background_pictures) picture = absolute(picture);
+    model_ = std::make_shared<MujocoModel>(
+        options_.model, [](const std::string& package) { return ros::package::getPath(package); });
+    options_ = completed(options_, *model_);
+  }
+
+  YAML::Node block() const override { return toYaml(options_); }
+
+  std::unique_ptr<Plant> make() const override {
+    return std::make_unique<MujocoPlant>(model_, options_);
+  }
+
+  bool drawsCheaply() const override { return false; }
+
+ private:
+  MujocoOptions options_;
+  std::shared_ptr<const MujocoModel> model_;
+};
+
+}  // namespace
+
+std::shared_ptr<PlantPlugin> makeMujocoPlugin() { return std::make_shared<MujocoPlugin>(); }
+
+}  // namespace ddm
