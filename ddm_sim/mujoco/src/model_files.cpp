@@ -19,6 +19,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::string digestOf(const boost::crc_32_type& crc) {
+  char digest[32];
+  std::snprintf(digest, sizeof(digest), "crc32-%08x", crc.checksum());  // no reader's number
+  return digest;
+}
+
 /// Values of the attributes of elements, where both names match.
 std::vector<std::string> attributes(const std::string& text, const std::string& element,
                                     const std::string& name) {
@@ -59,13 +65,11 @@ class Collector {
   }
 
   ModelFiles files() const {
-    char digest[32];
-    std::snprintf(digest, sizeof(digest), "crc32-%08x", crc_.checksum());  // no reader's number
     std::string missing;
     for (const std::string& name : names_) {
       if (pathsOf(name).empty()) missing += (missing.empty() ? "" : ", ") + name;
     }
-    return {digest, missing};
+    return {digestOf(crc_), missing};
   }
 
  private:
@@ -105,6 +109,17 @@ ModelFiles filesOf(const std::string& path, const FindPackage& find_package) {
   Collector files(fs::absolute(path).parent_path(), find_package);
   files.add(fs::absolute(path));
   return files.files();
+}
+
+std::string digestWith(const std::string& digest, const std::vector<std::string>& paths) {
+  if (paths.empty()) return digest;
+  boost::crc_32_type crc;
+  crc.process_bytes(digest.data(), digest.size());
+  for (const std::string& path : paths) {
+    const std::string bytes = readModelFile(path);
+    crc.process_bytes(bytes.data(), bytes.size());
+  }
+  return digestOf(crc);
 }
 
 }  // namespace ddm

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "ddm_mujoco/mujoco_model.h"
 
@@ -20,5 +21,10 @@ struct ModelFiles {
 /// A model file and all files that it names: includes, meshes, textures.
 /// @throws std::invalid_argument as readModelFile(), for one of them
 ModelFiles filesOf(const std::string& path, const FindPackage& find_package);
+
+/// A digest that covers more files, such as pictures that a configuration names.
+/// @return the digest itself where there are none
+/// @throws std::invalid_argument as readModelFile(), for one of them
+std::string digestWith(const std::string& digest, const std::vector<std::string>& paths);
 
 }  // namespace ddm

@@ -12,6 +12,7 @@
 
 #include "ddm_sim/angles.h"
 #include "ddm_sim/few_numbers.h"
+#include "model_files.h"
 #include "motors.h"
 #include "mujoco_physics.h"
 
@@ -282,14 +283,19 @@ Eigen::VectorXd MujocoPlant::locate(const Eigen::VectorXd& state) const {
 }
 
 MujocoOptions completed(MujocoOptions options, const MujocoModel& model) {
-  if (!options.model_digest.empty() && options.model_digest != model.digest()) {
-    refuse("model_digest",
-           "be that of " + model.uri() + " and the files that it names, " + model.digest(),
-           options.model_digest +
-               ": one of them has changed since this configuration was saved; put it back, or "
-               "begin anew without this key");
+  std::string digest;
+  try {
+    digest = digestWith(model.digest(), options.scene.background_pictures);
+  } catch (const std::invalid_argument& e) {
+    refuse("background_pictures", "be files that can be read", e.what());
   }
-  options.model_digest = model.digest();
+  if (!options.model_digest.empty() && options.model_digest != digest) {
+    refuse("model_digest", "be that of " + model.uri() + " and the files that it names, " + digest,
+           options.model_digest +
+               ": one of them, or of plant/background_pictures, has changed since this "
+               "configuration was saved; put it back, or begin anew without this key");
+  }
+  options.model_digest = digest;
   options.max_torque = limitsOf(model, options);
   return options;
 }

@@ -14,7 +14,7 @@ namespace ddm {
 /// joint and then one for each rate; those of motors have one for each motor.
 struct MujocoOptions : PlantOptions {
   std::string model;         ///< MJCF or URDF: a path, or package://PACKAGE/PATH
-  std::string model_digest;  ///< of the model and all files that it names; filled in
+  std::string model_digest;  ///< of the model and all files that are named; filled in
 
   std::vector<std::string> motors;  ///< joints that have one; empty: the actuators of the file
   std::vector<double> gear;         ///< torque at the joint for one of the motor; empty: 1 for all

@@ -71,8 +71,10 @@ class MujocoPlant : public Plant {
   Eigen::VectorXd reward_scale_;       // torque of each motor that is a control of 1
 };
 
-/// The options with what the file says where they are silent: limits of motors and digest.
-/// @throws std::invalid_argument if the digest is that of another file, or as MujocoPlant
+/// The options with what the files say where they are silent: limits of motors, and the digest of model and
+/// pictures.
+/// @throws std::invalid_argument if the digest is that of other files, a picture cannot be read, or as
+///         MujocoPlant
 MujocoOptions completed(MujocoOptions options, const MujocoModel& model);
 
 }  // namespace ddm
