@@ -16,8 +16,7 @@ namespace {
 
 constexpr char kMagic[] = "DDMMODEL";
 constexpr size_t kMagicSize = sizeof(kMagic) - 1;
-constexpr std::uint32_t kVersion = 3;
-constexpr std::uint32_t kOneLimit = 2;  // the version of a model with one max_torque for all motors
+constexpr std::uint32_t kVersion = 4;
 constexpr size_t kHeaderSize = kMagicSize + 4 + 8 + 4;
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "model files are little-endian");
@@ -102,11 +101,8 @@ void writeOptions(const ModelOptions& options, Writer* out) {
   widths(options.predictor_widths);
   out->number<std::uint8_t>(options.residual ? 1 : 0);
   out->number<std::uint8_t>(options.increments ? 1 : 0);
-  if (options.max_torque.size() == 1) {
-    out->number<double>(options.max_torque[0]);
-  } else {
-    out->array(options.max_torque.data(), options.max_torque.size());
-  }
+  out->array(options.max_torque.data(), options.max_torque.size());
+  out->number<double>(options.blur);
 }
 
 ModelOptions readOptions(std::uint32_t version, Reader* in) {
@@ -124,12 +120,14 @@ ModelOptions readOptions(std::uint32_t version, Reader* in) {
   options.residual = version > 1 && in->flag();
   options.increments = version > 1 && in->flag();
   options.max_torque =
-      version > kOneLimit ? in->array<double>() : std::vector<double>{in->number<double>()};
+      version > 2 ? in->array<double>() : std::vector<double>{in->number<double>()};
+  if (version > 3) options.blur = in->number<double>();
   for (const std::string& problem : options.problems()) throw std::runtime_error(problem);
   return options;
 }
 
-ModelInfo readInfo(std::uint32_t version, Reader* in) {
+/// @param state_dim  rows of landmarks
+ModelInfo readInfo(std::uint32_t version, size_t state_dim, Reader* in) {
   ModelInfo info;
   info.seed = in->number<std::uint64_t>();
   info.trial = in->number<std::uint32_t>();
@@ -137,9 +135,17 @@ ModelInfo readInfo(std::uint32_t version, Reader* in) {
   info.v_r = in->number<double>();
   info.v_p = in->number<double>();
   if (version > 1) info.feature_spread = in->number<double>();
+  if (version > 3) {
+    const std::vector<float> landmarks = in->array<float>();
+    if (landmarks.size() % state_dim != 0) throw std::runtime_error("its landmarks are no states");
+    info.landmarks =
+        Eigen::Map<const Eigen::MatrixXf>(landmarks.data(), static_cast<Eigen::Index>(state_dim),
+                                          static_cast<Eigen::Index>(landmarks.size() / state_dim));
+  }
   info.config = in->text();
-  if (!std::isfinite(info.v_r) || !std::isfinite(info.v_p) || !std::isfinite(info.feature_spread)) {
-    throw std::runtime_error("its errors and the spread of its features must be finite");
+  if (!std::isfinite(info.v_r) || !std::isfinite(info.v_p) || !std::isfinite(info.feature_spread) ||
+      !info.landmarks.allFinite()) {
+    throw std::runtime_error("its errors, landmarks and the spread of its features must be finite");
   }
   return info;
 }
@@ -150,8 +156,11 @@ Ddm readContent(std::uint32_t version, Reader* in) {
   const int torque_dim = in->number<std::int32_t>();
   if (image_size < 1 || image_size > 16384) throw std::runtime_error("its image size is absurd");
   if (torque_dim < 1 || torque_dim > 1000) throw std::runtime_error("its torque size is absurd");
-  ModelInfo info = readInfo(version, in);
+  const auto state_dim = static_cast<size_t>(options.order) * options.feature_dim +
+                         static_cast<size_t>(options.order - 1) * torque_dim;
+  ModelInfo info = readInfo(version, state_dim, in);
   Pca pca;
+  pca.blur = Blur(image_size, options.blur);
   pca.scale = in->number<float>();
   const std::vector<float> mean = in->array<float>();
   const std::vector<float> basis = in->array<float>();
@@ -172,10 +181,10 @@ Ddm readContent(std::uint32_t version, Reader* in) {
              std::move(info));
 }
 
-/// The first model of what may once have been an ensemble.
+/// The model, in versions 2 and 3 the first of what may once have been an ensemble.
 Ddm readFirst(std::uint32_t version, Reader* in) {
   Ddm model = readContent(version, in);
-  const auto others = version > 1 ? in->number<std::uint32_t>() : 0U;
+  const auto others = version == 2 || version == 3 ? in->number<std::uint32_t>() : 0U;
   for (std::uint32_t i = 0; i < others; ++i) readContent(version, in);
   if (in->left() > 0) throw std::runtime_error("there are bytes after its content");
   return model;
@@ -191,6 +200,7 @@ void writeContent(const Ddm& model, Writer* out) {
   out->number<double>(model.info().v_r);
   out->number<double>(model.info().v_p);
   out->number<double>(model.info().feature_spread);
+  out->array(model.info().landmarks.data(), static_cast<size_t>(model.info().landmarks.size()));
   out->array(model.info().config.data(), model.info().config.size());
   out->number<float>(model.pca().scale);
   out->array(model.pca().mean.data(), model.pca().mean.size());
@@ -205,10 +215,9 @@ void writeContent(const Ddm& model, Writer* out) {
 std::string serialiseModel(const Ddm& model) {
   Writer content;
   writeContent(model, &content);
-  content.number<std::uint32_t>(0);  // other models of an ensemble
 
   Writer header;
-  header.number<std::uint32_t>(model.options().max_torque.size() == 1 ? kOneLimit : kVersion);
+  header.number<std::uint32_t>(kVersion);
   header.number<std::uint64_t>(content.bytes().size());
   header.number<std::uint32_t>(crc32(content.bytes().data(), content.bytes().size()));
   return kMagic + header.bytes() + content.bytes();

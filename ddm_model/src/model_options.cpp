@@ -17,6 +17,7 @@ std::vector<std::string> ModelOptions::problems() const {
   const auto requireWidths = [&model](const std::string& key, const std::vector<int>& widths) {
     for (const int width : widths) model.requireWithin(key, width, 1, 4096);
   };
+  model.requireWithin("blur", blur, 0.0, 100.0);
   model.requireWithin("pca_dim", pca_dim, 1, 1000);
   model.requireWithin("feature_dim", feature_dim, 1, 100);
   model.requireWithin("order", order, 1, 50);

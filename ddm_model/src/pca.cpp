@@ -24,26 +24,28 @@ Eigen::MatrixXf orthonormalised(const Eigen::MatrixXf& columns) {
   return qr.householderQ() * Eigen::MatrixXf::Identity(columns.rows(), columns.cols());
 }
 
-Eigen::MatrixXf centred(const Eigen::Ref<const GreyMatrix>& pixels, const Eigen::VectorXf& mean) {
-  return (pixels.cast<float>() / kWhite).colwise() - mean;
-}
-
-/// All images of a data set, the goal last, as bytes k less their mean: a matrix K of floats [D x
-/// M] that is never there as a whole, only a block of columns at a time.
+/// All images of a data set, the goal last, as bytes k less their mean, blurred: a matrix K of floats
+/// [D x M] that is never there as a whole, only a block of columns at a time. The blur is linear: it
+/// is applied to the few columns that K is multiplied with.
 class CentredImages {
  public:
-  explicit CentredImages(const DataSet& data) : data_(data) {
+  CentredImages(const DataSet& data, const Blur& blur) : data_(data), blur_(blur) {
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(data.numPixels());
     for (Eigen::Index i = 0; i < data.numImages(); ++i) sum += bytes(i).cast<double>();
     mean_ = (sum / static_cast<double>(data.numImages())).cast<float>();
   }
 
-  /// [D]
-  const Eigen::VectorXf& mean() const { return mean_; }
+  /// Of the blurred images.  [D]
+  Eigen::VectorXf mean() const {
+    Eigen::MatrixXf mean = mean_;
+    blur_.apply(&mean);
+    return mean;
+  }
 
   /// @param columns  [D x k]
   /// @return         K K^T columns / M  [D x k]
-  Eigen::MatrixXf covarianceTimes(const Eigen::MatrixXf& columns) const {
+  Eigen::MatrixXf covarianceTimes(Eigen::MatrixXf columns) const {
+    blur_.applyTransposed(&columns);
     Eigen::MatrixXf product = Eigen::MatrixXf::Zero(data_.numPixels(), columns.cols());
     Eigen::MatrixXf block(data_.numPixels(), std::min(kBlock, data_.numImages()));
     Eigen::MatrixXf scores(block.cols(), columns.cols());
@@ -55,6 +57,7 @@ class CentredImages {
       scores.topRows(size).noalias() = block.leftCols(size).transpose() * columns;
       product.noalias() += block.leftCols(size) * scores.topRows(size);
     }
+    blur_.apply(&product);
     return product / static_cast<float>(data_.numImages());
   }
 
@@ -64,13 +67,16 @@ class CentredImages {
   }
 
   const DataSet& data_;
-  Eigen::VectorXf mean_;
+  const Blur& blur_;
+  Eigen::VectorXf mean_;  // of the images as they are
 };
 
 }  // namespace
 
 Eigen::MatrixXf Pca::project(const Eigen::Ref<const GreyMatrix>& pixels) const {
-  return scale * (basis.transpose() * centred(pixels, mean));
+  Eigen::MatrixXf images = pixels.cast<float>() / kWhite;
+  blur.apply(&images);
+  return scale * (basis.transpose() * (images.colwise() - mean));
 }
 
 Eigen::VectorXf Pca::project(const Grey& grey) const {
@@ -91,7 +97,7 @@ Eigen::MatrixXf Pca::reconstruct(const Eigen::Ref<const Eigen::MatrixXf>& scores
   return (basis * (scores / scale)).colwise() + mean;
 }
 
-Pca fitPca(const DataSet& data, int dim, double score_std) {
+Pca fitPca(const DataSet& data, int dim, double score_std, const Blur& blur) {
   const Eigen::Index num_images = data.numImages();
   if (data.numPixels() < dim) {
     throw std::invalid_argument("PCA to model/pca_dim = " + std::to_string(dim) + " of images of " +
@@ -103,8 +109,9 @@ Pca fitPca(const DataSet& data, int dim, double score_std) {
                                 std::to_string(num_images) +
                                 ": record more frames or lower model/pca_dim");
   }
-  const CentredImages images(data);
+  const CentredImages images(data, blur);
   Pca pca;
+  pca.blur = blur;
   pca.mean = images.mean() / kWhite;
 
   const Eigen::Index subspace = std::min<Eigen::Index>(

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "ddm_model/initialisation.h"
+#include "ddm_model/landmarks.h"
 #include "ddm_model/objective.h"
 #include "ddm_model/pca.h"
 #include "ddm_model/schedule.h"
@@ -20,6 +21,8 @@ namespace ddm {
 namespace {
 
 using Value = JointObjective<float>::Value;
+
+constexpr Eigen::Index kMaxLandmarks = 1000;
 
 /// @return what turns [score^2] into [grey^2]
 double squaredScale(const Pca& pca) { return 1.0 / (static_cast<double>(pca.scale) * pca.scale); }
@@ -110,7 +113,8 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
   const auto began = std::chrono::steady_clock::now();
   const Networks<float> networks(model, data.torqueDim());
   const Networks<double> initial_networks(model, data.torqueDim());
-  const Pca pca = fitPca(data, model.pca_dim, training.score_std);
+  const Pca pca =
+      fitPca(data, model.pca_dim, training.score_std, Blur(data.imageSize(), model.blur));
   TrainingData<float> training_data = makeTrainingData(data, pca);
   const Eigen::MatrixXd scores = training_data.scores.cast<double>();
   JointObjective<float> objective(networks, std::move(training_data));
@@ -149,6 +153,7 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
     info.v_r = squaredScale(pca) * value.v_r;
     info.v_p = squaredScale(pca) * value.v_p;
     info.feature_spread = objective.featureSpread();
+    info.landmarks = landmarkStates(objective.features(), data, model.order, kMaxLandmarks);
     result.model.emplace(model, data.imageSize(), data.torqueDim(), pca, best.theta, data.goal(),
                          info);
   }

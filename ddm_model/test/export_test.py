@@ -83,8 +83,8 @@ class ExportTest(toy_robot.ToyRobotCase):
     def test_the_readme_encodes_decodes_and_predicts_as_the_model_does(self):
         self.assertComputesTheSame("")
 
-    def test_so_it_does_with_changes_increments_and_a_longer_past(self):
-        self.assertComputesTheSame(", residual: true, increments: true, order: 3, predictor_widths: [5, 3]")
+    def test_so_it_does_with_blur_changes_increments_and_a_longer_past(self):
+        self.assertComputesTheSame(", blur: 1.5, residual: true, increments: true, order: 3, predictor_widths: [5, 3]")
 
     def test_the_goal_and_its_feature_are_exported(self):
         arrays = self.export(toy_robot.train(self.scratch, [self.bag]))["model"]

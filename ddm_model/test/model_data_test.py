@@ -9,7 +9,8 @@ import rosunit
 
 from ddm_model.model_data import image_errors
 
-NUM_IMAGES, NUM_PIXELS = 40, 12
+NUM_IMAGES, SIZE = 40, 4
+NUM_PIXELS = SIZE * SIZE
 
 
 class ImageErrorsTest(unittest.TestCase):
@@ -19,7 +20,8 @@ class ImageErrorsTest(unittest.TestCase):
         self.reconstructions = random.randint(0, 256, self.images.shape).astype(np.uint8)
         y = self.images / 255.0
         basis = np.linalg.svd(y - y.mean(axis=0))[2][:3].T
-        self.model = {"pca_mean": y.mean(axis=0).astype(np.float32), "pca_basis": basis.astype(np.float32)}
+        self.model = {"image_size": SIZE, "blur": np.eye(SIZE), "pca_mean": y.mean(axis=0).astype(np.float32),
+                      "pca_basis": basis.astype(np.float32)}
 
     def errors(self):
         return image_errors(self.model, self.images, self.reconstructions)
@@ -38,6 +40,11 @@ class ImageErrorsTest(unittest.TestCase):
         self.assertAlmostEqual(np.sum(errors.share) + lost, 1.0, places=5)
         self.assertGreater(lost, 1e-4)  # or the sum above says little
         self.assertTrue(np.all(np.diff(errors.share) <= 1e-9))
+
+    def test_images_are_compared_as_the_model_sees_them(self):
+        self.model["blur"] = np.full((SIZE, SIZE), 1.0 / SIZE)  # each pixel is the mean of all
+        self.images[:], self.reconstructions[:] = np.tile([0, 102], NUM_PIXELS // 2), 51
+        np.testing.assert_allclose(self.errors().reconstruction_rms, 0.0, atol=1e-12)
 
     def test_variation_is_that_of_the_images_around_their_own_mean(self):
         self.images[:] = self.images[0]

@@ -5,7 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <limits>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "ddm_msgs/testing/expect_error.h"
 #include "toy_data.h"
@@ -73,69 +76,98 @@ TEST(ModelFile, KeepsTheFormOfF) {
   }
 }
 
-TEST(ModelFile, KeepsALimitForEachMotorAndIsVersionTwoWhereThereIsOneForAll) {
+TEST(ModelFile, KeepsALimitForEachMotorBlurAndLandmarks) {
   const Ddm one = toyModel();
   ModelOptions options = one.options();
-  const auto model = [&] {
-    const Eigen::Index num_params = Networks<double>(options, 2).numParams();
-    return Ddm(options, one.imageSize(), 2, one.pca(), testing::randomMatrix(num_params, 1, 4),
-               one.goal(), one.info());
-  };
-  EXPECT_EQ(serialiseModel(model())[kVersionAt], 2);
   options.max_torque = {4.0, 2.0};
-  const std::string bytes = serialiseModel(model());
-  EXPECT_EQ(bytes[kVersionAt], 3);
+  options.blur = 1.5;
+  ModelInfo info = one.info();
+  info.landmarks = testing::randomMatrix(2 * 2 + 2, 9, 5).cast<float>();
+  Pca pca = one.pca();
+  pca.blur = Blur(one.imageSize(), options.blur);
+  const Eigen::Index num_params = Networks<double>(options, 2).numParams();
+  const Ddm model(options, one.imageSize(), 2, pca, testing::randomMatrix(num_params, 1, 4),
+                  one.goal(), info);
+  const std::string bytes = serialiseModel(model);
   const Ddm back = deserialiseModel(bytes, "memory");
   EXPECT_EQ(back.options().max_torque, options.max_torque);
   EXPECT_EQ(back.predictionModel().maxTorque(), Eigen::Vector2d(4.0, 2.0));
+  EXPECT_EQ(back.options().blur, options.blur);
+  EXPECT_EQ(back.info().landmarks, info.landmarks);
+  EXPECT_EQ(back.encode(testing::toyImage(0.5)), model.encode(testing::toyImage(0.5)));
   EXPECT_EQ(serialiseModel(back), bytes);
 }
 
-TEST(ModelFile, ReadsTheFirstModelOfAnOldEnsemble) {
+/// The bytes of a number or of a row of them.
+template <class Number>
+std::string bytesOf(const std::vector<Number>& numbers) {
+  return std::string(reinterpret_cast<const char*>(numbers.data()),
+                     numbers.size() * sizeof(Number));
+}
+
+/// A model as an older version of the format has it, which knew less of it: what is cut out is found
+/// by values that occur nowhere else.
+std::string olderFile(char version, ModelOptions options) {
   const Ddm model = toyModel();
-  std::string bytes = serialiseModel(model);
+  ModelInfo info = model.info();
+  options.blur = 0.125;
+  info.feature_spread = 0.0625;
+  info.landmarks = Eigen::MatrixXf::Constant(5, 1, 0.75F);
+  const Eigen::Index num_params = Networks<double>(options, 1).numParams();
+  std::string bytes =
+      serialiseModel(Ddm(options, model.imageSize(), 1, model.pca(),
+                         testing::randomMatrix(num_params, 1, 4), model.goal(), info));
+  const auto cut = [&bytes](const std::string& pattern, size_t before = 0) {
+    const size_t at = bytes.find(pattern, kContentAt);
+    EXPECT_NE(at, std::string::npos);
+    bytes.erase(at - before, before + pattern.size());
+    return at - before;
+  };
+  cut(bytesOf<double>({options.blur}));
+  cut(bytesOf<float>({0.75F, 0.75F, 0.75F, 0.75F, 0.75F}), sizeof(std::uint64_t));
+  const std::string limit = bytesOf<double>(options.max_torque);
+  if (version < 3) bytes.insert(cut(limit, sizeof(std::uint64_t)), limit);
+  if (version < 2) {
+    cut(bytesOf<double>({info.feature_spread}));
+    bytes.erase(bytes.find(limit, kContentAt) - 2, 2);  // the flags of f
+  } else {
+    bytes += bytesOf<std::uint32_t>({0});  // no other models of an ensemble
+  }
+  bytes[kVersionAt] = version;
+  return bytes;
+}
+
+/// With size and checksum as they must be.
+std::string sealedAnew(std::string bytes) {
+  const std::uint64_t size = bytes.size() - kContentAt;
+  std::memcpy(&bytes[kVersionAt + 4], &size, sizeof(size));
+  return sealed(bytes);
+}
+
+TEST(ModelFile, ReadsOlderVersions) {
+  ModelOptions options = toyModel().options();
+  options.max_torque = {2.625};
+  for (const char version : {1, 2, 3}) {
+    options.residual = version > 1;
+    const Ddm back = deserialiseModel(sealedAnew(olderFile(version, options)), "memory");
+    EXPECT_EQ(back.options().max_torque, options.max_torque);
+    EXPECT_EQ(back.options().residual, options.residual);
+    EXPECT_EQ(back.options().blur, 0.0);
+    EXPECT_EQ(back.info().feature_spread, version > 1 ? 0.0625 : 0.0);
+    EXPECT_EQ(back.info().landmarks.size(), 0);
+    EXPECT_EQ(back.info().config, toyModel().info().config);
+    EXPECT_EQ(back.goal(), toyModel().goal());
+    EXPECT_EQ(back.theta(), testing::randomMatrix(back.theta().size(), 1, 4));
+  }
+}
+
+TEST(ModelFile, ReadsTheFirstModelOfAnOldEnsemble) {
+  std::string bytes = olderFile(2, toyModel().options());
+  const Ddm alone = deserialiseModel(sealedAnew(bytes), "memory");
   const std::string content = bytes.substr(kContentAt, bytes.size() - kContentAt - 4);
   bytes[bytes.size() - 4] = 1;  // one other model
-  bytes += content;
-  const std::uint64_t size = bytes.size() - kContentAt;
-  std::memcpy(&bytes[kVersionAt + 4], &size, sizeof(size));
-  EXPECT_EQ(serialiseModel(deserialiseModel(sealed(bytes), "memory")), serialiseModel(model));
-}
-
-/// Where two texts of equal size differ first.
-size_t firstDifference(const std::string& a, const std::string& b, size_t from) {
-  while (a[from] == b[from]) ++from;
-  return from;
-}
-
-TEST(ModelFile, ReadsVersionOne) {
-  const Ddm model = toyModel();
-  const auto variant = [&model](bool residual, double spread) {
-    ModelOptions options = model.options();
-    options.residual = residual;
-    ModelInfo info = model.info();
-    info.feature_spread = spread;
-    return serialiseModel(Ddm(options, model.imageSize(), model.torqueDim(), model.pca(),
-                              model.theta(), model.goal(), info));
-  };
-  double no_byte_zero;
-  const std::uint64_t pattern = 0x3f01020304050607;
-  std::memcpy(&no_byte_zero, &pattern, sizeof(pattern));
-  std::string bytes = variant(false, 0.0);
-  const size_t flags = firstDifference(bytes, variant(true, 0.0), kContentAt);
-  const size_t spread = firstDifference(bytes, variant(false, no_byte_zero), kContentAt);
-  bytes.erase(bytes.size() - 4);  // the number of other models
-  bytes.erase(spread, 8);
-  bytes.erase(flags, 2);
-  const std::uint64_t size = bytes.size() - kContentAt;
-  std::memcpy(&bytes[kVersionAt + 4], &size, sizeof(size));
-  bytes[kVersionAt] = 1;
-  const Ddm back = deserialiseModel(sealed(bytes), "memory");
-  EXPECT_EQ(back.theta(), model.theta());
-  EXPECT_EQ(back.goal(), model.goal());
-  EXPECT_EQ(back.info().config, model.info().config);
-  EXPECT_FALSE(back.options().residual || back.options().increments);
-  EXPECT_EQ(back.info().feature_spread, 0.0);
+  const Ddm first = deserialiseModel(sealedAnew(bytes + content), "memory");
+  EXPECT_EQ(serialiseModel(first), serialiseModel(alone));
 }
 
 TEST(ModelFile, CutShortAnywhereIsRefused) {
@@ -163,8 +195,8 @@ TEST(ModelFile, BytesAfterTheEndAreRefused) {
 
 TEST(ModelFile, AnotherVersionIsRefusedWithBothVersionsAndTheRemedy) {
   std::string bytes = serialiseModel(toyModel());
-  bytes[kVersionAt] = 4;
-  EXPECT_TRUE(isRefused(bytes, {"version 4", "1 to 3", "train it"}));
+  bytes[kVersionAt] = 5;
+  EXPECT_TRUE(isRefused(bytes, {"version 5", "1 to 4", "train it"}));
 }
 
 TEST(ModelFile, WhatIsNoModelIsRefused) {
@@ -185,6 +217,19 @@ TEST(ModelFile, ContentThatMakesNoSenseIsRefusedThoughItsChecksumFits) {
   EXPECT_TRUE(isRefused(withNumber(0, -1), {"no sense", "model/pca_dim"}));
   EXPECT_TRUE(isRefused(withNumber(8, 0), {"no sense", "model/order"}));
   EXPECT_TRUE(isRefused(withNumber(12, 0x7fffffff), {"no sense", "longer"}));
+}
+
+TEST(ModelFile, LandmarksThatAreNoStatesAreRefused) {
+  const Ddm model = toyModel();
+  ModelInfo info = model.info();
+  const auto bytes = [&] {
+    return serialiseModel(
+        Ddm(model.options(), model.imageSize(), 1, model.pca(), model.theta(), model.goal(), info));
+  };
+  info.landmarks = Eigen::MatrixXf::Ones(3, 1);
+  EXPECT_TRUE(isRefused(bytes(), {"no sense", "landmarks"}));
+  info.landmarks = Eigen::MatrixXf::Constant(5, 1, std::numeric_limits<float>::infinity());
+  EXPECT_TRUE(isRefused(bytes(), {"no sense", "landmarks"}));
 }
 
 TEST(ModelFile, NoContentWhateverItIsDoesMoreThanBeRefused) {

@@ -216,6 +216,22 @@ TEST(Pca, TheGoalImageIsPartOfTheData) {
   EXPECT_LT(error(with), 0.2F * error(without));
 }
 
+TEST(Pca, SeesImagesThroughTheBlur) {
+  const DataSet data = twoBlobs(80, 12, 3);
+  const Blur blur(12, 1.5);
+  Eigen::MatrixXf images = data.pixels(0, data.numImages()).cast<float>() / 255.0F;
+  blur.apply(&images);
+  const Eigen::VectorXf mean = images.rowwise().mean();
+  const Eigen::MatrixXd centred = (images.colwise() - mean).cast<double>();
+  const Eigen::BDCSVD<Eigen::MatrixXd> svd(centred, Eigen::ComputeThinU);
+  const Pca pca = fitPca(data, 6, 1.0, blur);
+  EXPECT_LT((pca.mean - mean).cwiseAbs().maxCoeff(), 1e-5F);
+  EXPECT_GT(smallestCosine(pca.basis.cast<double>(), svd.matrixU().leftCols(6)), 1.0 - 1e-5);
+  const Eigen::MatrixXf scores = pca.project(data);
+  EXPECT_LT((scores - pca.scale * pca.basis.transpose() * centred.cast<float>()).norm(),
+            1e-4F * scores.norm());
+}
+
 TEST(Pca, IsDeterministic) {
   const DataSet data = testing::toyTrial(60, 1);
   const Pca a = fitPca(data, 6, 1.0), b = fitPca(data, 6, 1.0);

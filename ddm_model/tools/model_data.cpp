@@ -114,6 +114,9 @@ void writeModel(const Ddm& model, const ArrayFolder& out) {
   }
   out.writeNumber("residual", std::int64_t{options.residual ? 1 : 0});
   out.writeNumber("increments", std::int64_t{options.increments ? 1 : 0});
+  const Eigen::MatrixXf& G = model.pca().blur.matrix();
+  out.write("blur",
+            G.size() > 0 ? G : Eigen::MatrixXf::Identity(model.imageSize(), model.imageSize()));
   out.write("pca_mean", model.pca().mean);
   out.write("pca_basis", model.pca().basis);
   out.write("pca_variance", model.pca().variance);

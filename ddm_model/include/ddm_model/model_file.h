@@ -13,10 +13,10 @@ namespace ddm {
 ///   "DDMMODEL" | format version, uint32 | size of the content, uint64 | CRC-32 of the content |
 ///   content
 ///
-/// Version 2 is of models with one max_torque for all motors, version 3 has a list with one for
-/// each in its place. Both may hold the other models of an ensemble, which older programs trained:
-/// they are read over. Version 1, which is still read, has neither those nor the flags of f and the
-/// spread of features.
+/// Versions 1 to 3 are still read. Version 4 added blur and landmarks. Version 3 had a max_torque for each motor;
+/// before, there was one for all. Versions 2 and 3 may hold the other models of an ensemble, which
+/// older programs trained: they are read over. Version 1 has neither those nor the flags of f and
+/// the spread of features.
 std::string serialiseModel(const Ddm& model);
 
 /// The inverse. Sizes are checked against what is there before memory is taken.

@@ -9,6 +9,7 @@ namespace ddm {
 
 /// Block `model`: the architecture. Defaults are the paper's.
 struct ModelOptions {
+  double blur = 0.0;                              ///< images are seen through, std [pixels]
   int pca_dim = 50;                               ///< input of the encoder [-]
   int feature_dim = 2;                            ///< dim z [-]
   int order = 2;                                  ///< n, features and torques that f sees [-]
@@ -21,6 +22,7 @@ struct ModelOptions {
 
   template <class Visitor>
   void visit(Visitor& visitor) {
+    visitor("blur", blur);
     visitor("pca_dim", pca_dim);
     visitor("feature_dim", feature_dim);
     visitor("order", order);

@@ -60,6 +60,8 @@ class JointObjective {
   /// @return all values, whatever `terms` leaves out
   Value evaluate(const Vector& theta, Vector* d_theta, const Terms& terms = Terms());
 
+  /// @return features of all images at the last evaluate()  [feature_dim x M]
+  const Matrix& features() const { return features_; }
   /// @return root of the mean squared distance of the last evaluate()'s features to their mean
   double featureSpread() const {
     return std::sqrt(static_cast<double>(

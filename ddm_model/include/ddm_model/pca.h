@@ -5,17 +5,19 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "ddm_model/blur.h"
 #include "ddm_model/data_set.h"
 
 namespace ddm {
 
 /// Orthonormal basis of the leading principal components.
 ///
-///   score = scale * basis^T (y - mean),      y_hat = mean + basis * score / scale
+///   score = scale * basis^T (blur(y) - mean),      y_hat = mean + basis * score / scale
 ///
 /// One common scale for all scores keeps the geometry of the pixels.
 struct Pca {
-  Eigen::VectorXf mean;      ///< mean image                                [D]
+  Blur blur;                 ///< through which images are seen
+  Eigen::VectorXf mean;      ///< mean image, blurred                       [D]
   Eigen::MatrixXf basis;     ///< orthonormal columns, leading one first    [D x pca_dim]
   Eigen::VectorXd variance;  ///< variance along each column [grey^2]    [pca_dim]
   float scale = 1.0F;        ///< 1 / grey
@@ -32,7 +34,7 @@ struct Pca {
   Eigen::MatrixXf project(const DataSet& data) const;
 
   /// @param scores  [pca_dim x N]
-  /// @return        images, not clamped to [0, 1]  [D x N]
+  /// @return        blurred images, not clamped to [0, 1]  [D x N]
   Eigen::MatrixXf reconstruct(const Eigen::Ref<const Eigen::MatrixXf>& scores) const;
 };
 
@@ -46,7 +48,8 @@ struct Pca {
 /// @param data       at least dim + 1 images
 /// @param dim        number of components
 /// @param score_std  standard deviation of the leading score; fixes the scale
+/// @param blur       through which all images are seen
 /// @throws std::invalid_argument if there are too few images or they are all the same
-Pca fitPca(const DataSet& data, int dim, double score_std);
+Pca fitPca(const DataSet& data, int dim, double score_std, const Blur& blur = Blur());
 
 }  // namespace ddm

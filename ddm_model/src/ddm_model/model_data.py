@@ -59,13 +59,19 @@ def read_arrays(folder, mmap_mode=None):
             for name in sorted(os.listdir(folder)) if name.endswith(".npy")}
 
 
+def blurred(model, y):
+    """Images y [N x D] as the model sees them."""
+    size = int(model["image_size"])
+    return np.einsum("ir,nrc,jc->nij", model["blur"], y.reshape(-1, size, size), model["blur"]).reshape(y.shape)
+
+
 def kept_by_pca(model, y):
     """Coordinates along the principal components [grey] of images y [N x D], and the images with those alone."""
     coordinates = (y - model["pca_mean"]) @ model["pca_basis"]
     return coordinates, model["pca_mean"] + coordinates @ model["pca_basis"].T
 
 
-# mean_rms, pca_rms, reconstruction_rms: distance of each image to the model's mean image, to what the principal
+# mean_rms, pca_rms, reconstruction_rms: distance of each image, blurred, to the model's mean image, to what the principal
 # components keep of it, to its reconstruction, root mean square over pixels [grey]  [N]. share: mean square of the
 # images along each component over that of the whole images [-]  [pca_dim]. variation: root mean square over all pixels
 # and images of their distance to the mean of these very images [grey].
@@ -75,10 +81,10 @@ ImageErrors = collections.namedtuple("ImageErrors", "mean_rms pca_rms reconstruc
 def image_errors(model, images, reconstructions):
     """images, reconstructions: grey values k = 255 y  [N x D]."""
     squares, component_squares = [], 0.0
-    own_mean = images.mean(axis=0) / 255.0
+    own_mean = blurred(model, images.mean(axis=0) / 255.0)
     block = max(1, BLOCK_BYTES // (8 * images.shape[1]))
     for begin in range(0, len(images), block):
-        y, y_hat = images[begin:begin + block] / 255.0, reconstructions[begin:begin + block] / 255.0
+        y, y_hat = blurred(model, images[begin:begin + block] / 255.0), reconstructions[begin:begin + block] / 255.0
         coordinates, kept = kept_by_pca(model, y)
         squares.append([np.mean(np.square(y - other), axis=1) for other in (model["pca_mean"], kept, y_hat, own_mean)])
         component_squares = component_squares + np.sum(np.square(coordinates), axis=0)
