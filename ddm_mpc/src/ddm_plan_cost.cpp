@@ -2,14 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/ddm_plan_cost.h"
 
+#include <algorithm>
+#include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace ddm {
 
-DdmPlanCost::DdmPlanCost(const Ddm& model, int horizon, double control_weight)
+DdmPlanCost::DdmPlanCost(const Ddm& model, int horizon, double control_weight,
+                         std::optional<TimeToGoal> time_to_goal)
     : f_(model.predictionModel()),
       theta_p_(model.thetaP()),
       control_weight_(control_weight),
+      time_to_goal_(std::move(time_to_goal)),
       roll_out_(f_) {
   setHorizon(horizon);
 }
@@ -21,6 +26,15 @@ void DdmPlanCost::setHorizon(int horizon) {
   torques_.setZero(f_.torqueDim(), f_.order() - 1 + horizon);
 }
 
+void DdmPlanCost::setGoal(const Eigen::VectorXd& goal_feature) {
+  if (goal_feature.size() != f_.featureDim()) {
+    throw std::invalid_argument("plan cost: the goal feature does not fit the model");
+  }
+  if (goal_feature_.size() > 0 && goal_feature_ == goal_feature) return;
+  goal_feature_ = goal_feature;
+  if (time_to_goal_) time_to_goal_->setGoal(goal_feature);
+}
+
 void DdmPlanCost::setProblem(const History& x, const Eigen::VectorXd& goal_feature,
                              const Eigen::VectorXd& offset) {
   if (x.empty() || x.features().rows() != f_.featureDim() || x.features().cols() != f_.order() ||
@@ -30,31 +44,83 @@ void DdmPlanCost::setProblem(const History& x, const Eigen::VectorXd& goal_featu
   }
   features_ = x.features().rowwise().reverse();
   torques_.leftCols(f_.order() - 1) = x.torques().rowwise().reverse();
-  goal_feature_ = goal_feature;
+  setGoal(goal_feature);
   offset_ = offset;
+}
+
+void DdmPlanCost::rollOut(const Eigen::Ref<const Eigen::MatrixXd>& U, int num_steps) {
+  const Eigen::Index target = f_.order();  // z_1 follows the n features that were seen
+  torques_.rightCols(horizon_) = U;
+  roll_out_.forward(theta_p_, features_, torques_, RollOut<double>::Targets(&target, 1), num_steps,
+                    &offset_);
+}
+
+/// z_0, or a predicted feature.
+Eigen::VectorXd DdmPlanCost::featureAfter(int num_steps) const {
+  if (num_steps == 0) return features_.rightCols(1);
+  return roll_out_.predicted(num_steps - 1);
+}
+
+/// @param step      0 is the first
+/// @param gradient  out: by the feature it leads to; null: not wanted
+double DdmPlanCost::stepCost(int step, Eigen::VectorXd* gradient) const {
+  const auto z = roll_out_.predicted(step);
+  if (time_to_goal_) return time_to_goal_->away(z, gradient);
+  if (gradient != nullptr) *gradient = 2.0 * (z - goal_feature_);
+  return (z - goal_feature_).squaredNorm();  // eq. (9)
 }
 
 double DdmPlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) {
   eigen_assert(U.rows() == f_.torqueDim() && U.cols() == horizon_);
-  const Eigen::Index target = f_.order();  // z_1 follows the n features that were seen
-  const RollOut<double>::Targets targets(&target, 1);
-  torques_.rightCols(horizon_) = U;
-  roll_out_.forward(theta_p_, features_, torques_, targets, horizon_, &offset_);
+  rollOut(U, horizon_);
   double cost = control_weight_ * U.squaredNorm();
-  for (int step = 0; step < horizon_; ++step) {
-    cost += (roll_out_.predicted(step) - goal_feature_).squaredNorm();  // eq. (9)
+  for (int step = 0; step < horizon_; ++step) cost += stepCost(step, nullptr);
+  Eigen::VectorXd d_last, d_before;
+  if (time_to_goal_) {
+    cost += time_to_goal_->value(featureAfter(horizon_), featureAfter(horizon_ - 1),
+                                 d_U == nullptr ? nullptr : &d_last, &d_before);
   }
   if (d_U == nullptr) return cost;
 
   d_torques_.setZero(torques_.rows(), torques_.cols());
   d_torques_.rightCols(horizon_) = 2.0 * control_weight_ * U;
   for (int step = 0; step < horizon_; ++step) roll_out_.dPredicted(step).setZero();
+  if (time_to_goal_) {
+    roll_out_.dPredicted(horizon_ - 1) += d_last;
+    if (horizon_ > 1) roll_out_.dPredicted(horizon_ - 2) += d_before;
+  }
+  const Eigen::Index target = f_.order();
+  const RollOut<double>::Targets targets(&target, 1);
   for (int step = horizon_ - 1; step >= 0; --step) {
-    roll_out_.dPredicted(step) += 2.0 * (roll_out_.predicted(step) - goal_feature_);
+    stepCost(step, &d_step_);
+    roll_out_.dPredicted(step) += d_step_;
     roll_out_.backward(theta_p_, targets, step, nullptr, nullptr, &d_torques_);
   }
   *d_U = d_torques_.rightCols(horizon_);
   return cost;
+}
+
+std::optional<Eigen::MatrixXd> DdmPlanCost::proposal() {
+  if (!time_to_goal_) return std::nullopt;
+  Eigen::MatrixXd U = Eigen::MatrixXd::Zero(f_.torqueDim(), horizon_);
+  for (int begin = 0; begin < horizon_; begin += TimeToGoal::kHoldSteps) {
+    const int end = std::min(begin + TimeToGoal::kHoldSteps, horizon_);
+    double least = std::numeric_limits<double>::infinity();
+    Eigen::MatrixXd best = U;
+    for (Eigen::Index i = 0; i < time_to_goal_->torques().cols(); ++i) {
+      U.middleCols(begin, end - begin).colwise() = time_to_goal_->torques().col(i);
+      rollOut(U, end);
+      double cost =
+          time_to_goal_->value(featureAfter(end), featureAfter(end - 1), nullptr, nullptr);
+      for (int step = begin; step < end; ++step) cost += stepCost(step, nullptr);
+      if (cost < least) {
+        least = cost;
+        best = U;
+      }
+    }
+    U = best;
+  }
+  return U;
 }
 
 Eigen::MatrixXd DdmPlanCost::predictedFeatures() const {

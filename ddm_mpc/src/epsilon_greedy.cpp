@@ -50,8 +50,12 @@ Decision EpsilonGreedy::decide(const Grey& grey) {
       for (Eigen::Index i = 0; i < held_torque_.size(); ++i) {
         const double limit = options_.max_torque[i];
         held_torque_[i] = std::uniform_real_distribution<double>(-limit, limit)(rng_);
+        if (options_.bang_bang) held_torque_[i] = std::copysign(limit, held_torque_[i]);
       }
       held_steps_left_ = options_.hold_steps;
+      if (options_.bang_bang) {
+        held_steps_left_ = std::uniform_int_distribution<int>(1, options_.hold_steps)(rng_);
+      }
     }
   }
   if (held_steps_left_ > 0) {

@@ -21,6 +21,17 @@ std::shared_ptr<const Ddm> usable(std::shared_ptr<const Ddm> model, const MpcOpt
   return model;
 }
 
+std::optional<TimeToGoal> timeToGoal(const Ddm& model, const MpcOptions& options) {
+  if (options.cost != "time") return std::nullopt;
+  if (model.info().landmarks.cols() < 2) {
+    throw std::invalid_argument(
+        "mpc/cost time needs a model with landmarks, and this one, of an older version, has none: "
+        "train it "
+        "again from its bags, or set mpc/cost to distance");
+  }
+  return TimeToGoal(model, perMotor(options.max_torque, model.torqueDim(), "mpc/max_torque"));
+}
+
 }  // namespace
 
 MpcPolicy::MpcPolicy(std::shared_ptr<const Ddm> model, const MpcOptions& options)
@@ -30,8 +41,10 @@ MpcPolicy::MpcPolicy(std::shared_ptr<const Ddm> model, const MpcOptions& options
       z_ref_(model_->hasGoal() ? model_->goalFeature() : Eigen::VectorXd()),
       x_(model_->options().order, model_->featureDim(), model_->torqueDim()),
       offset_(Eigen::VectorXd::Zero(model_->featureDim())),
-      cost_(*model_, options.horizon, options.control_weight),
-      planner_(&cost_, options) {}
+      cost_(*model_, options.horizon, options.control_weight, timeToGoal(*model_, options)),
+      planner_(&cost_, options) {
+  if (hasGoal()) cost_.setGoal(z_ref_);
+}
 
 void MpcPolicy::startTrial(const TrialId& id) {
   x_.clear();

@@ -9,11 +9,14 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <utility>
 
 namespace ddm {
 namespace {
 
+constexpr int kProposal = -1;       // a start before the others
+constexpr double kMaxShare = 0.95;  // of the largest torque that a start begins with
 constexpr double kMaxV = 3.0;  // tanh(3) = 0.995: a start beyond it would hardly feel a gradient
 
 /// J as a function of v, with u = max_torque tanh(v).
@@ -52,6 +55,12 @@ Planner::Planner(PlanCost* cost, const MpcOptions& options)
       cost_(*cost),
       max_torque_(perMotor(options.max_torque, cost->torqueDim(), "mpc/max_torque")) {}
 
+/// The variables v of torques that may lie at their bounds.
+Eigen::MatrixXd Planner::unbounded(const Eigen::MatrixXd& torques) const {
+  const Eigen::ArrayXXd share = torques.array().colwise() / max_torque_.array();
+  return share.max(-kMaxShare).min(kMaxShare).unaryExpr([](double x) { return std::atanh(x); });
+}
+
 /// Unbounded variables that start number `start` begins with.
 Eigen::MatrixXd Planner::startOf(int start, std::mt19937_64* rng) const {
   const int dim = cost_.torqueDim();
@@ -65,7 +74,7 @@ Eigen::MatrixXd Planner::startOf(int start, std::mt19937_64* rng) const {
   if (start <= 1 && (start == 0 || last_v_.size() > 0)) return Eigen::MatrixXd::Zero(dim, K);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   Eigen::VectorXd level(dim);
-  for (int i = 0; i < dim; ++i) level[i] = std::atanh(0.95 * uniform(*rng));
+  for (int i = 0; i < dim; ++i) level[i] = std::atanh(kMaxShare * uniform(*rng));
   return level.replicate(1, K);
 }
 
@@ -88,8 +97,9 @@ Plan Planner::solve(std::mt19937_64* rng, const std::function<bool()>& stop) {
   Plan plan;
   plan.goal_feature = cost_.goalFeature();
   Minimum best;
-  for (int start = 0; start < options_.num_starts && !stopped; ++start) {
-    const Eigen::MatrixXd v = startOf(start, rng);
+  const std::optional<Eigen::MatrixXd> proposal = cost_.proposal();
+  for (int start = proposal ? kProposal : 0; start < options_.num_starts && !stopped; ++start) {
+    const Eigen::MatrixXd v = start == kProposal ? unbounded(*proposal) : startOf(start, rng);
     Minimum minimum =
         minimise(std::ref(cost), Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()), solver);
     plan.iterations += minimum.iterations;

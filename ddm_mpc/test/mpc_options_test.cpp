@@ -46,6 +46,11 @@ TEST(MpcOptions, RefuseIntegersOutOfRange) {
   }
 }
 
+TEST(MpcOptions, RefuseWordsThatMeanNothing) {
+  expectProblem<MpcOptions>("mpc/cost", [](MpcOptions* o) { o->cost = "energy"; });
+  expectProblem<MpcOptions>("mpc/exploration", [](MpcOptions* o) { o->exploration = "random"; });
+}
+
 TEST(MpcOptions, RefuseNumbersOutOfRangeNanIncluded) {
   for (const double bad : {-0.1, kNan, kInfinity}) {
     expectProblem<MpcOptions>("mpc/control_weight",

@@ -114,6 +114,14 @@ TEST(MpcPolicy, PlansTheSameWhenItIsTurnedToWhatItHasAlready) {
   }
 }
 
+TEST(MpcPolicy, PlansByTimeOnlyWithAModelThatHasLandmarksAndNamesTheRemedies) {
+  MpcOptions options;
+  options.cost = "time";
+  EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
+      [&options] { MpcPolicy policy(sharedModel(), options); },
+      {"mpc/cost time", "landmarks", "train it again", "distance"}));
+}
+
 TEST(MpcPolicy, PlansFromTheEncodedImageToTheGoalOfTheModel) {
   const auto model = sharedModel();
   MpcPolicy policy(model, MpcOptions());

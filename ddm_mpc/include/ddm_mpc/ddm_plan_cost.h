@@ -7,14 +7,20 @@
 #include <ddm_model/roll_out.h>
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "ddm_mpc/plan_cost.h"
+#include "ddm_mpc/time_to_goal.h"
 
 namespace ddm {
 
 /// J(U) of eq. (9), with features as f predicts them from the current state x_0 (eq. 8) on:
 ///
 ///   z_{k+1} = f(z_k, u_k, z_{k-1}, u_{k-1}) + offset
+///
+/// or, with a TimeToGoal, with its cost of a step and what is left to go after the last one:
+///
+///   J(U) = sum_{k=1}^{K} away(z_k) + lambda |u_{k-1}|^2 + V(x_K)
 ///
 /// The offset is what recent predictions were wrong by (0 in the paper): the same error in every
 /// step, as offset-free model predictive control assumes it (Pannocchia and Rawlings, AIChE J.
@@ -24,12 +30,17 @@ class DdmPlanCost : public PlanCost {
   /// @param model           outlives the cost
   /// @param horizon         K, steps
   /// @param control_weight  lambda [(N m)^-2]
-  DdmPlanCost(const Ddm& model, int horizon, double control_weight);
+  DdmPlanCost(const Ddm& model, int horizon, double control_weight,
+              std::optional<TimeToGoal> time_to_goal = std::nullopt);
 
   /// Other values for the plans to come; setProblem comes first.
   /// @throws std::invalid_argument if the horizon is < 1
   void setHorizon(int horizon);
   void setControlWeight(double control_weight) { control_weight_ = control_weight; }
+
+  /// The feature to plan to. Takes a while with a TimeToGoal, unless it is the last one.
+  /// @throws std::invalid_argument for a wrong size
+  void setGoal(const Eigen::VectorXd& goal_feature);
 
   /// The state to plan from, the feature to plan to, and the offset.
   /// @throws std::invalid_argument for a wrong size or an empty history
@@ -41,22 +52,31 @@ class DdmPlanCost : public PlanCost {
   }
 
   double evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) override;
+  /// Of the torques that TimeToGoal compares, those that are best for its next steps, then for those
+  /// after them, and so on.
+  std::optional<Eigen::MatrixXd> proposal() override;
   Eigen::MatrixXd predictedFeatures() const override;
   Eigen::VectorXd goalFeature() const override { return goal_feature_; }
   int horizon() const override { return horizon_; }
   int torqueDim() const override { return f_.torqueDim(); }
 
  private:
+  void rollOut(const Eigen::Ref<const Eigen::MatrixXd>& U, int num_steps);
+  Eigen::VectorXd featureAfter(int num_steps) const;
+  double stepCost(int step, Eigen::VectorXd* gradient) const;
+
   const PredictionModel<double>& f_;
   const double* theta_p_;
   int horizon_ = 0;
   double control_weight_;
+  std::optional<TimeToGoal> time_to_goal_;
   Eigen::VectorXd goal_feature_;
   Eigen::VectorXd offset_;
   RollOut<double> roll_out_;
   Eigen::MatrixXd features_;   // z_{-n+1} ... z_0                          [feature_dim x n]
   Eigen::MatrixXd torques_;    // u_{-n+1} ... u_{K-1} [N m]     [torque_dim x (n - 1 + K)]
   Eigen::MatrixXd d_torques_;  // dJ/du of these
+  Eigen::VectorXd d_step_;     // d stepCost / dz  [feature_dim]
 };
 
 }  // namespace ddm

@@ -19,14 +19,16 @@ struct Decision {
   std::optional<double> goal_distance;  ///< see Policy::goalDistance()
 };
 
-/// With probability epsilon a torque uniform in +-max_torque, held for hold_steps steps; otherwise
-/// the policy's answer (paper, Sec. 3.2). epsilon = 1 is the random trial, 0 the
-/// greedy one. Exploration has a random stream of its own.
+/// With probability epsilon a random torque, otherwise the policy's answer (paper, Sec. 3.2). epsilon
+/// = 1 is the random trial, 0 the greedy one. A random torque is uniform in +-max_torque and held for
+/// hold_steps steps; where it is bang-bang, it is one of +-max_torque, held for 1 ... hold_steps
+/// steps, drawn too. Exploration has a random stream of its own.
 class EpsilonGreedy {
  public:
   struct Options {
-    double epsilon = 0.2;                                            ///< [-]
-    int hold_steps = 1;                                              ///< [-]
+    double epsilon = 0.2;    ///< [-]
+    bool bang_bang = false;  ///< one of +-max_torque, not anything in between
+    int hold_steps = 1;  ///< how long a random torque is held, at most where it is bang-bang [-]
     Eigen::VectorXd max_torque = Eigen::VectorXd::Constant(1, 6.0);  ///< of each motor [N m]
   };
 

@@ -44,7 +44,10 @@ class MpcPolicy : public Policy {
   void setStop(std::function<bool()> stop) { stop_ = std::move(stop); }
 
   void startTrial(const TrialId& id) override;
-  void setGoal(const Grey& goal) override { z_ref_ = model_->encode(goal); }
+  void setGoal(const Grey& goal) override {
+    z_ref_ = model_->encode(goal);
+    cost_.setGoal(z_ref_);
+  }
   bool hasGoal() const { return z_ref_.size() > 0; }
   void observe(const Grey& grey) override;
   /// |z - z_ref| in units of the features' spread; nothing if the model does not know the spread,

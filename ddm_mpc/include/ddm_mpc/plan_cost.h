@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 namespace ddm {
 
@@ -22,6 +23,9 @@ class PlanCost {
   /// @param d_U  out: dJ/dU; null: not wanted [1/(N m)]   [torqueDim() x horizon()]
   /// @return     J(U)
   virtual double evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) = 0;
+
+  /// Torques that are worth starting a search from; nothing where none are known [N m]
+  virtual std::optional<Eigen::MatrixXd> proposal() { return std::nullopt; }
 
   /// z_0 and the features predicted in the last evaluate()  [feature_dim x (K + 1)]
   virtual Eigen::MatrixXd predictedFeatures() const = 0;

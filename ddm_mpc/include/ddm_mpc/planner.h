@@ -33,8 +33,8 @@ struct Plan {
   double solve_time = 0.0;       ///< wall time [s]
 };
 
-/// Minimises J(U) by BFGS (paper, Sec. 3.1) and keeps the best of several starts: the last plan
-/// moved on by one step, then no torque, then constant torques drawn at random. The bound holds by
+/// Minimises J(U) by BFGS (paper, Sec. 3.1) and keeps the best of several starts: what the cost
+/// proposes, if it does, the last plan moved on by one step, then no torque, then constant torques drawn at random. The bound holds by
 /// construction, u = max_torque tanh(v): clipping afterwards would bias the plan.
 class Planner {
  public:
@@ -53,6 +53,7 @@ class Planner {
   Plan solve(std::mt19937_64* rng, const std::function<bool()>& stop = {});
 
  private:
+  Eigen::MatrixXd unbounded(const Eigen::MatrixXd& torques) const;
   Eigen::MatrixXd startOf(int start, std::mt19937_64* rng) const;
 
   MpcOptions options_;

@@ -1,0 +1,78 @@
+// Time to the goal: value iteration of the learned model over landmarks of its experience.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ddm_model/ddm.h>
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace ddm {
+
+/// How long the way to the goal is, where |z - z_ref| does not tell: a weak motor has to swing a rod away from
+/// the goal before it gets there. A step away from the goal costs up to 1, as in PILCO (Deisenroth and
+/// Rasmussen, ICML 2011),
+///
+///   away(z) = 1 - exp(-|z - z_ref|^2 / (2 sigma^2))
+///
+/// and V is the discounted sum of these over the steps to come, under the best torques. It is computed for
+/// the landmarks x_i of the model, states that were seen, by predictions of f under each of the torques
+/// -max, 0, max of each motor, held for two steps, and smoothed in between by a kernel (Ormoneit and Sen,
+/// Machine Learning 2002, whose averages make the iteration converge):
+///
+///   V_i = min_u  away(z_{i,1}) + gamma away(z_{i,2}) + gamma^2 V(x_{i,2})
+///   V(x) = (w_0 V_max + sum_i w_i V_i) / (w_0 + sum_i w_i),   w_i = exp(-|p(x) - p(x_i)|^2 / (2 h^2))
+///
+/// p(x) = (z_t, z_t - z_{t-1}), both in units of their spread. h is how far landmarks are apart; what lies
+/// farther than 3 h from all of them counts as if the goal were never reached from there, V_max.
+class TimeToGoal {
+ public:
+  static constexpr int kHoldSteps = 2;
+
+  /// @param model       has landmarks; is not needed afterwards
+  /// @param max_torque  of each motor [N m]
+  TimeToGoal(const Ddm& model, const Eigen::VectorXd& max_torque);
+
+  /// Computes V.
+  /// @param z_ref  feature of the goal  [feature_dim]
+  void setGoal(const Eigen::VectorXd& z_ref);
+  const Eigen::VectorXd& goal() const { return z_ref_; }
+
+  /// @param gradient  out: d away / dz; null: not wanted  [feature_dim]
+  double away(const Eigen::Ref<const Eigen::VectorXd>& z, Eigen::VectorXd* gradient) const;
+
+  /// V of the state with the last two features.
+  /// @param z         z_t      [feature_dim]
+  /// @param before    z_{t-1}  [feature_dim]
+  /// @param d_z       out: dV/dz_t, and with it d_before: dV/dz_{t-1}; null: not wanted
+  double value(const Eigen::Ref<const Eigen::VectorXd>& z,
+               const Eigen::Ref<const Eigen::VectorXd>& before, Eigen::VectorXd* d_z,
+               Eigen::VectorXd* d_before) const;
+
+  /// The torques that are compared, one set per column [N m]  [torque_dim x 3^torque_dim]
+  const Eigen::MatrixXd& torques() const { return torques_; }
+
+ private:
+  /// Where a landmark is after kHoldSteps under one set of torques.
+  struct Outcome {
+    Eigen::MatrixXd path;         // features of these steps  [feature_dim x kHoldSteps]
+    std::vector<int> landmarks;   // near its end
+    std::vector<double> weights;  // theirs in V; what is missing to 1 is the weight of V_max
+  };
+
+  Eigen::VectorXd pointOf(const Eigen::Ref<const Eigen::VectorXd>& z,
+                          const Eigen::Ref<const Eigen::VectorXd>& before) const;
+  Eigen::ArrayXd kernel(const Eigen::VectorXd& point) const;
+  Outcome outcomeOf(const Eigen::MatrixXd& path, const Eigen::VectorXd& start) const;
+
+  Eigen::MatrixXd torques_;
+  double spread_ = 1.0;                         // of features
+  double change_spread_ = 1.0;                  // of their changes from one frame to the next
+  double h_ = 1.0;                              // in units of both
+  Eigen::MatrixXd points_;                      // p(x_i)  [2 feature_dim x M]
+  std::vector<std::vector<Outcome>> outcomes_;  // of each landmark, one for each set of torques
+  Eigen::VectorXd z_ref_;
+  Eigen::ArrayXd values_;  // V_i  [M]
+};
+
+}  // namespace ddm

@@ -1,0 +1,191 @@
+// Time to the goal: value iteration of the learned model over landmarks of its experience.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_mpc/time_to_goal.h"
+
+#include <ddm_model/roll_out.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ddm {
+namespace {
+
+constexpr double kGamma = 0.99;                  // 100 steps ahead still count a third
+constexpr double kWorst = 1.0 / (1.0 - kGamma);  // V_max: never at the goal
+constexpr double kWidth = 0.5;                   // sigma in units of the features' spread
+constexpr double kSmallestWeight = 1e-4;         // of a landmark that still counts
+constexpr int kMaxSweeps = 1000;
+constexpr double kTolerance = 1e-3;                  // largest change of a V_i in the last sweep
+const double kUnknown = std::exp(-0.5 * 3.0 * 3.0);  // w_0: a landmark 3 h away weighs as much
+
+/// All combinations of -max, 0 and max.
+Eigen::MatrixXd combinations(const Eigen::VectorXd& max_torque) {
+  Eigen::Index count = 1;
+  for (Eigen::Index motor = 0; motor < max_torque.size(); ++motor) count *= 3;
+  Eigen::MatrixXd torques(max_torque.size(), count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    Eigen::Index digits = i;
+    for (Eigen::Index motor = 0; motor < max_torque.size(); ++motor, digits /= 3) {
+      torques(motor, i) = static_cast<double>(digits % 3 - 1) * max_torque[motor];
+    }
+  }
+  return torques;
+}
+
+/// Mean distance of a point to the nearest other one.
+double spacing(const Eigen::MatrixXd& points) {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    Eigen::RowVectorXd distances = (points.colwise() - points.col(i)).colwise().norm();
+    distances[i] = std::numeric_limits<double>::infinity();
+    sum += distances.minCoeff();
+  }
+  return sum / static_cast<double>(points.cols());
+}
+
+/// What all landmarks come to under the same torques.
+/// @param X  landmarks, see ModelInfo  [state_dim x M]
+/// @param u  [N m]                     [torque_dim]
+/// @return   features of each step     [feature_dim x M] each
+std::vector<Eigen::MatrixXd> predictions(const Ddm& model, const Eigen::MatrixXd& X,
+                                         const Eigen::VectorXd& u, int num_steps) {
+  const Eigen::Index dim = model.featureDim(), motors = model.torqueDim(), M = X.cols();
+  const Eigen::Index n = model.options().order;
+  const Eigen::Index length = n + num_steps;  // frames of a landmark in Z and U, oldest first
+  Eigen::MatrixXd Z = Eigen::MatrixXd::Zero(dim, M * length);
+  Eigen::MatrixXd U = u.replicate(1, M * length);
+  Eigen::Matrix<Eigen::Index, Eigen::Dynamic, 1> targets(M);
+  for (Eigen::Index i = 0; i < M; ++i) {
+    const Eigen::Index last = i * length + n - 1;
+    for (Eigen::Index lag = 0; lag < n; ++lag) Z.col(last - lag) = X.col(i).segment(lag * dim, dim);
+    for (Eigen::Index lag = 0; lag < n - 1; ++lag) {
+      U.col(last - 1 - lag) = X.col(i).segment(n * dim + lag * motors, motors);
+    }
+    targets[i] = last + 1;
+  }
+  RollOut<double> roll_out(model.predictionModel());
+  roll_out.forward(model.thetaP(), Z, U, RollOut<double>::Targets(targets.data(), M), num_steps);
+  std::vector<Eigen::MatrixXd> steps;
+  for (int step = 0; step < num_steps; ++step) steps.push_back(roll_out.predicted(step));
+  return steps;
+}
+
+}  // namespace
+
+TimeToGoal::TimeToGoal(const Ddm& model, const Eigen::VectorXd& max_torque)
+    : torques_(combinations(max_torque)) {
+  const Eigen::MatrixXd X = model.info().landmarks.cast<double>();
+  const Eigen::Index dim = model.featureDim(), M = X.cols();
+  const Eigen::MatrixXd Z = X.topRows(dim);
+  const Eigen::MatrixXd changes = model.options().order > 1
+                                      ? Eigen::MatrixXd(Z - X.middleRows(dim, dim))
+                                      : Eigen::MatrixXd::Zero(dim, M);
+  const double smallest = std::numeric_limits<double>::min();  // where nothing moved
+  spread_ = std::max((Z.colwise() - Z.rowwise().mean()).norm() / std::sqrt(M), smallest);
+  change_spread_ = std::max(changes.norm() / std::sqrt(M), smallest);
+  points_.resize(2 * dim, M);
+  points_ << Z / spread_, changes / change_spread_;
+  h_ = spacing(points_);
+  outcomes_.resize(static_cast<size_t>(M));
+  for (Eigen::Index i = 0; i < torques_.cols(); ++i) {
+    const auto steps = predictions(model, X, torques_.col(i), kHoldSteps);
+    Eigen::MatrixXd path(dim, kHoldSteps);
+    for (Eigen::Index landmark = 0; landmark < M; ++landmark) {
+      for (int step = 0; step < kHoldSteps; ++step) path.col(step) = steps[step].col(landmark);
+      outcomes_[static_cast<size_t>(landmark)].push_back(outcomeOf(path, Z.col(landmark)));
+    }
+  }
+}
+
+Eigen::VectorXd TimeToGoal::pointOf(const Eigen::Ref<const Eigen::VectorXd>& z,
+                                    const Eigen::Ref<const Eigen::VectorXd>& before) const {
+  Eigen::VectorXd point(2 * z.size());
+  point << z / spread_, (z - before) / change_spread_;
+  return point;
+}
+
+Eigen::ArrayXd TimeToGoal::kernel(const Eigen::VectorXd& point) const {
+  const Eigen::ArrayXd squared =
+      (points_.colwise() - point).colwise().squaredNorm().transpose().array();
+  return (squared * (-0.5 / (h_ * h_))).exp();
+}
+
+TimeToGoal::Outcome TimeToGoal::outcomeOf(const Eigen::MatrixXd& path,
+                                          const Eigen::VectorXd& start) const {
+  Outcome outcome{path, {}, {}};
+  const Eigen::VectorXd before = kHoldSteps > 1 ? path.col(kHoldSteps - 2) : start;
+  const Eigen::ArrayXd weights = kernel(pointOf(path.col(kHoldSteps - 1), before));
+  double sum = kUnknown;
+  for (Eigen::Index j = 0; j < weights.size(); ++j) {
+    if (!(weights[j] > kSmallestWeight)) continue;
+    outcome.landmarks.push_back(static_cast<int>(j));
+    outcome.weights.push_back(weights[j]);
+    sum += weights[j];
+  }
+  for (double& weight : outcome.weights) weight /= sum;
+  return outcome;
+}
+
+void TimeToGoal::setGoal(const Eigen::VectorXd& z_ref) {
+  z_ref_ = z_ref;
+  const auto costOf = [this](const Outcome& outcome) {
+    double cost = 0.0, discount = 1.0;
+    for (int step = 0; step < kHoldSteps; ++step, discount *= kGamma) {
+      cost += discount * away(outcome.path.col(step), nullptr);
+    }
+    return cost;
+  };
+  std::vector<std::vector<double>> costs;
+  for (const std::vector<Outcome>& outcomes : outcomes_) {
+    costs.emplace_back();
+    for (const Outcome& outcome : outcomes) costs.back().push_back(costOf(outcome));
+  }
+  const double discount = std::pow(kGamma, kHoldSteps);
+  values_.setConstant(points_.cols(), kWorst);
+  double change = std::numeric_limits<double>::infinity();
+  for (int sweep = 0; sweep < kMaxSweeps && change > kTolerance; ++sweep) {
+    change = 0.0;
+    for (size_t i = 0; i < outcomes_.size(); ++i) {
+      double best = kWorst;
+      for (size_t k = 0; k < outcomes_[i].size(); ++k) {
+        const Outcome& outcome = outcomes_[i][k];
+        double gain = 0.0;  // on V_max
+        for (size_t j = 0; j < outcome.landmarks.size(); ++j) {
+          gain += outcome.weights[j] * (kWorst - values_[outcome.landmarks[j]]);
+        }
+        best = std::min(best, costs[i][k] + discount * (kWorst - gain));
+      }
+      double& value = values_[static_cast<Eigen::Index>(i)];
+      change = std::max(change, std::abs(best - value));
+      value = best;
+    }
+  }
+}
+
+double TimeToGoal::away(const Eigen::Ref<const Eigen::VectorXd>& z,
+                        Eigen::VectorXd* gradient) const {
+  const double sigma = kWidth * spread_;
+  const double near = std::exp(-0.5 * (z - z_ref_).squaredNorm() / (sigma * sigma));
+  if (gradient != nullptr) *gradient = (near / (sigma * sigma)) * (z - z_ref_);
+  return 1.0 - near;
+}
+
+double TimeToGoal::value(const Eigen::Ref<const Eigen::VectorXd>& z,
+                         const Eigen::Ref<const Eigen::VectorXd>& before, Eigen::VectorXd* d_z,
+                         Eigen::VectorXd* d_before) const {
+  const Eigen::VectorXd point = pointOf(z, before);
+  const Eigen::ArrayXd weights = kernel(point);
+  const double sum = kUnknown + weights.sum();
+  const double value = (kUnknown * kWorst + (weights * values_).sum()) / sum;
+  if (d_z != nullptr) {
+    // dw_i/dp = w_i (p_i - p) / h^2
+    const Eigen::VectorXd share = weights * (values_ - value) / (sum * h_ * h_);
+    const Eigen::VectorXd d_point = points_ * share - point * share.sum();
+    *d_before = -d_point.tail(z.size()) / change_spread_;
+    *d_z = d_point.head(z.size()) / spread_ - *d_before;
+  }
+  return value;
+}
+
+}  // namespace ddm

@@ -1,0 +1,191 @@
+// Tests of the time to the goal: that it grows with the way there, along what was seen.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_mpc/time_to_goal.h"
+
+#include <ddm_model/testing/gradient_check.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "ddm_mpc/ddm_plan_cost.h"
+#include "ddm_mpc/planner.h"
+#include "random_model.h"
+
+namespace ddm {
+namespace {
+
+constexpr double kStep = 0.1;  // what a torque of 1 N m moves a feature by
+
+/// Two features, each pushed by a motor of its own: z_{t+1} = z_t + kStep u_t. Its landmarks are at
+/// these features, at rest and moving by a step in each direction.
+/// @param places  [2 x N]
+Ddm pushedModel(const Eigen::MatrixXd& places) {
+  RandomModelOptions options;
+  options.torque_dim = 2;
+  options.model.max_torque = {1.0};
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2, 8);  // h = z_t, u_t, z_{t-1}, u_{t-1}
+  A.leftCols(2).setIdentity();
+  A.middleCols(2, 2) = kStep * Eigen::Matrix2d::Identity();
+  const Ddm model = linearModel(options, A, Eigen::VectorXd::Zero(2));
+  ModelInfo info;
+  info.landmarks.resize(6, 9 * places.cols());  // z_t, z_{t-1}, u_{t-1}
+  Eigen::Index column = 0;
+  for (Eigen::Index i = 0; i < places.cols(); ++i) {
+    for (const double x : {-1.0, 0.0, 1.0}) {
+      for (const double y : {-1.0, 0.0, 1.0}) {
+        const Eigen::Vector2d u(x, y);
+        info.landmarks.col(column++) << places.col(i).cast<float>(),
+            (places.col(i) - kStep * u).cast<float>(), u.cast<float>();
+      }
+    }
+  }
+  return Ddm(model.options(), model.imageSize(), 2, model.pca(), model.theta(), model.goal(), info);
+}
+
+/// Along x from -1 to 1.
+Eigen::MatrixXd line() {
+  Eigen::MatrixXd places = Eigen::MatrixXd::Zero(2, 21);
+  places.row(0).setLinSpaced(21, -1.0, 1.0);
+  return places;
+}
+
+/// Three sides of a square, from (0, 0) to (1, 0), to (1, 1), to (0, 1).
+Eigen::MatrixXd horseshoe() {
+  Eigen::MatrixXd places(2, 31);
+  for (int i = 0; i <= 10; ++i) {
+    places.col(i) << 0.1 * i, 0.0;
+    places.col(10 + i) << 1.0, 0.1 * i;
+    places.col(20 + i) << 1.0 - 0.1 * i, 1.0;
+  }
+  return places;
+}
+
+TimeToGoal timeTo(const Eigen::Vector2d& goal, const Ddm& model) {
+  TimeToGoal time(model, Eigen::Vector2d::Ones());
+  time.setGoal(goal);
+  return time;
+}
+
+double valueAtRest(const TimeToGoal& time, const Eigen::Vector2d& z) {
+  return time.value(z, z, nullptr, nullptr);
+}
+
+TEST(TimeToGoal, ComparesEveryCombinationOfTorques) {
+  const TimeToGoal time(pushedModel(line()), Eigen::Vector2d(2.0, 0.5));
+  ASSERT_EQ(time.torques().cols(), 9);
+  for (Eigen::Index i = 0; i < 9; ++i) {
+    EXPECT_TRUE(std::abs(time.torques()(0, i)) == 2.0 || time.torques()(0, i) == 0.0);
+    EXPECT_TRUE(std::abs(time.torques()(1, i)) == 0.5 || time.torques()(1, i) == 0.0);
+    for (Eigen::Index j = 0; j < i; ++j) EXPECT_NE(time.torques().col(i), time.torques().col(j));
+  }
+}
+
+TEST(TimeToGoal, AStepCostsNothingAtTheGoalAndOneFarAway) {
+  const TimeToGoal time = timeTo({0.5, 0.0}, pushedModel(line()));
+  EXPECT_EQ(time.away(Eigen::Vector2d(0.5, 0.0), nullptr), 0.0);
+  EXPECT_NEAR(time.away(Eigen::Vector2d(-1.0, 0.0), nullptr), 1.0, 0.01);
+}
+
+TEST(TimeToGoal, GrowsWithTheStepsThatTheModelNeeds) {
+  const TimeToGoal time = timeTo({1.0, 0.0}, pushedModel(line()));
+  for (double x = -0.9; x < 0.55; x += 0.1) {
+    EXPECT_GT(valueAtRest(time, {x - 0.1, 0.0}), valueAtRest(time, {x, 0.0}) + 0.3) << x;
+  }
+}
+
+TEST(TimeToGoal, GoesAroundAGapWhereNothingWasSeen) {
+  const TimeToGoal time = timeTo({0.0, 0.0}, pushedModel(horseshoe()));
+  // the other end is nearer to the goal than the corner is, but the way leads through the corner
+  EXPECT_GT(valueAtRest(time, {0.0, 1.0}), valueAtRest(time, {1.0, 1.0}) + 3.0);
+  EXPECT_GT(valueAtRest(time, {1.0, 1.0}), valueAtRest(time, {1.0, 0.0}) + 3.0);
+}
+
+TEST(TimeToGoal, ExpectsTheWorstWhereNothingWasSeen) {
+  const TimeToGoal time = timeTo({0.0, 0.0}, pushedModel(line()));
+  EXPECT_GT(valueAtRest(time, {0.0, 3.0}), 99.0);
+  EXPECT_LT(valueAtRest(time, {1.0, 0.0}), 60.0);
+}
+
+TEST(TimeToGoal, TakesAnotherGoal) {
+  TimeToGoal turned = timeTo({1.0, 0.0}, pushedModel(line()));
+  turned.setGoal(Eigen::Vector2d(-1.0, 0.0));
+  const TimeToGoal fresh = timeTo({-1.0, 0.0}, pushedModel(line()));
+  for (const double x : {-1.0, -0.3, 0.8}) {
+    EXPECT_EQ(valueAtRest(turned, {x, 0.0}), valueAtRest(fresh, {x, 0.0}));
+  }
+}
+
+TEST(TimeToGoal, GradientsMatchFiniteDifferences) {
+  const TimeToGoal time = timeTo({0.2, 0.1}, pushedModel(horseshoe()));
+  const auto value = [&time](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+    Eigen::VectorXd d_z, d_before;
+    const double v =
+        time.value(x.head(2), x.tail(2), gradient != nullptr ? &d_z : nullptr, &d_before);
+    if (gradient != nullptr) *gradient << d_z, d_before;
+    return v;
+  };
+  EXPECT_TRUE(testing::gradientMatches(value, Eigen::Vector4d(0.93, 0.41, 0.96, 0.33), 1e-5));
+  const auto away = [&time](const Eigen::VectorXd& z, Eigen::VectorXd* gradient) {
+    return time.away(z, gradient);
+  };
+  EXPECT_TRUE(testing::gradientMatches(away, Eigen::Vector2d(0.4, 0.3), 1e-6));
+}
+
+class PlansWithTimeToGoal : public ::testing::Test {
+ protected:
+  static constexpr int kHorizon = 7;
+
+  /// At rest at z.
+  History restingAt(const Eigen::Vector2d& z) const {
+    History x(2, 2, 2);
+    x.observe(z);
+    return x;
+  }
+
+  const Ddm model_ = pushedModel(horseshoe());
+  DdmPlanCost cost_{model_, kHorizon, 0.01, TimeToGoal(model_, Eigen::Vector2d::Ones())};
+};
+
+TEST_F(PlansWithTimeToGoal, TheGradientMatchesFiniteDifferences) {
+  cost_.setProblem(restingAt({0.9, 0.95}), Eigen::Vector2d(0.1, 0.0));
+  const auto f = [&](const Eigen::VectorXd& u, Eigen::VectorXd* gradient) {
+    const Eigen::Map<const Eigen::MatrixXd> U(u.data(), 2, kHorizon);
+    Eigen::MatrixXd d_U;
+    const double value = cost_.evaluate(U, gradient != nullptr ? &d_U : nullptr);
+    if (gradient != nullptr) *gradient = Eigen::Map<const Eigen::VectorXd>(d_U.data(), d_U.size());
+    return value;
+  };
+  EXPECT_TRUE(testing::gradientMatches(f, 0.3 * testing::randomMatrix(2 * kHorizon, 1, 3), 1e-5));
+}
+
+TEST_F(PlansWithTimeToGoal, TheProposalLeadsOnAndIsHeldForTwoSteps) {
+  cost_.setProblem(restingAt({0.5, 1.0}), Eigen::Vector2d(0.5, 0.0));
+  const Eigen::MatrixXd U = cost_.proposal().value();
+  ASSERT_EQ(U.cols(), kHorizon);
+  EXPECT_EQ(U.col(0), U.col(1));
+  EXPECT_EQ(U(0, 0), 1.0) << "to the corner, not across the gap";
+  EXPECT_LT(cost_.evaluate(U, nullptr),
+            cost_.evaluate(Eigen::MatrixXd::Zero(2, kHorizon), nullptr));
+}
+
+TEST_F(PlansWithTimeToGoal, ThePlannerIsNoWorseThanTheProposal) {
+  cost_.setProblem(restingAt({0.5, 1.0}), Eigen::Vector2d(0.5, 0.0));
+  MpcOptions options;
+  options.max_torque = {1.0};
+  options.horizon = kHorizon;
+  std::mt19937_64 rng(1);
+  Planner planner(&cost_, options);
+  const Plan plan = planner.solve(&rng);
+  EXPECT_LE(plan.cost, cost_.evaluate(0.95 * cost_.proposal().value(), nullptr));
+  EXPECT_GT(plan.torques(0, 0), 0.0);
+}
+
+TEST(PlansWithDistance, HaveNoProposal) {
+  const Ddm model = pushedModel(line());
+  DdmPlanCost cost(model, 3, 0.01);
+  EXPECT_FALSE(cost.proposal().has_value());
+}
+
+}  // namespace
+}  // namespace ddm
