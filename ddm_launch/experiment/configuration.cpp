@@ -55,10 +55,11 @@ void requireConsistent(const Configuration& all) {
           "evaluation/settled_steps_strict must be at most trial/num_steps, or "
           "evaluation/num_steps where that is given",
           all.evaluation.settled_steps_strict);
-  require(num_steps > model.pca_dim,
-          "trial/num_steps must be more than model/pca_dim: the first model has one trial to learn "
+  require(num_steps * all.trial.episodes > model.pca_dim,
+          "trial/num_steps times trial/episodes must be more than model/pca_dim: the first model "
+          "has one trial to learn "
           "from",
-          num_steps);
+          num_steps * all.trial.episodes);
   require(num_steps > model.order, "trial/num_steps must be more than model/order", num_steps);
   if (problems.tellp() > 0) {
     throw std::invalid_argument("invalid configuration:" + problems.str());

@@ -51,10 +51,17 @@ class Loop {
   void recordTrial(int trial) {
     const bool random = trial == 0 && configuration_.start.empty();
     progress_.beginPhase(trial, random ? "random" : "explore");
-    TrialRequest request = requestFor(configuration_, trial, /*evaluation=*/false);
-    request.epsilon = random ? 1.0 : configuration_.mpc.epsilon;
-    request.bag = newBag(trial, /*evaluation=*/false);
-    folder_.writeRun(trial, /*evaluation=*/false, driver_.runTrial(request, update_));
+    const int episodes = configuration_.trial.episodes;
+    for (int episode = 0; episode < episodes; ++episode) {
+      TrialRequest request = requestFor(configuration_, trial, /*evaluation=*/false);
+      request.id.trial = static_cast<std::uint32_t>(trial * episodes + episode);  // its own draws
+      request.epsilon = random ? 1.0 : configuration_.mpc.epsilon;
+      request.bag = newBag({trial, /*evaluation=*/false, episode});
+      const auto update = [&](double fraction) {
+        progress_.update((episode + fraction) / episodes);
+      };
+      folder_.writeRun({trial, /*evaluation=*/false, episode}, driver_.runTrial(request, update));
+    }
   }
 
   TrainingOutcome train(int trial) {
@@ -66,7 +73,7 @@ class Loop {
   TrialOutcome evaluateGreedily(int trial) {
     progress_.beginPhase(trial, "evaluate");
     TrialRequest request = requestFor(configuration_, trial, /*evaluation=*/true);
-    if (configuration_.evaluation.record) request.bag = newBag(trial, /*evaluation=*/true);
+    if (configuration_.evaluation.record) request.bag = newBag({trial, /*evaluation=*/true});
     return driver_.runTrial(request, update_);
   }
 
@@ -86,15 +93,19 @@ class Loop {
  private:
   std::vector<std::string> bagsUpTo(int trial) const {
     std::vector<std::string> bags = configuration_.start.bags;
-    for (int k = 0; k <= trial; ++k) bags.push_back(folder_.bagPath(k));
+    for (int k = 0; k <= trial; ++k) {
+      for (int episode = 0; episode < configuration_.trial.episodes; ++episode) {
+        bags.push_back(folder_.bagPath(k, episode));
+      }
+    }
     return bags;
   }
 
-  std::string newBag(int trial, bool evaluation) {
+  std::string newBag(const RunId& run) {
     std::vector<std::string> kept;
-    const std::string bag = folder_.beginRun(trial, evaluation, &kept);
+    const std::string bag = folder_.beginRun(run, &kept);
     for (const std::string& name : kept) {
-      progress_.note("trial " + std::to_string(trial) + " was begun before, kept its bag as " +
+      progress_.note("trial " + std::to_string(run.trial) + " was begun before, kept its bag as " +
                      name);
     }
     return bag;
@@ -140,7 +151,7 @@ void runExperiment(const Configuration& configuration, Driver* driver, RunFolder
     const TrainingOutcome training = loop.train(trial);
     folder->writeTraining(trial, training);
     const TrialOutcome greedy = loop.evaluateGreedily(trial);
-    folder->writeRun(trial, /*evaluation=*/true, greedy);
+    folder->writeRun({trial, /*evaluation=*/true}, greedy);
     loop.finish(trial, training, greedy);
     show(folder->rows());
   }

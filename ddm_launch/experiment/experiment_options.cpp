@@ -20,6 +20,7 @@ std::vector<std::string> TrialOptions::problems() const {
   OptionChecks checks("trial");
   checks.require(num_steps >= 1 && num_steps <= 1000000, "num_steps", "lie in [1, 1000000]",
                  num_steps);
+  checks.require(episodes >= 1 && episodes <= 1000, "episodes", "lie in [1, 1000]", episodes);
   return checks.problems();
 }
 

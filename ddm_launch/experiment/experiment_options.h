@@ -54,11 +54,13 @@ struct StartOptions {
 
 /// Block `trial`.
 struct TrialOptions {
-  int num_steps = 100;  ///< frames, and so torques, of one trial [-]
+  int num_steps = 100;  ///< frames, and so torques, of one episode [-]
+  int episodes = 1;     ///< runs from fresh starts that make up one trial [-]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
     visitor("num_steps", num_steps);
+    visitor("episodes", episodes);
   }
   std::vector<std::string> problems() const;
 };

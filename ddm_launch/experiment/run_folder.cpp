@@ -36,8 +36,11 @@ std::string keep(const std::string& stem, const std::string& ending) {
 
 }  // namespace
 
-std::string runName(int trial, bool evaluation) {
-  return boost::str(boost::format("%s_%03d") % (evaluation ? "evaluation" : "trial") % trial);
+std::string runName(const RunId& run) {
+  std::string name =
+      boost::str(boost::format("%s_%03d") % (run.evaluation ? "evaluation" : "trial") % run.trial);
+  if (run.episode > 0) name += boost::str(boost::format("/episode_%03d") % run.episode);
+  return name;
 }
 
 RunFolder::RunFolder(const Configuration& configuration)
@@ -56,11 +59,12 @@ void RunFolder::readRows(const std::string& file) {
           file + ": row " + std::to_string(i + 1) + " must be trial " + std::to_string(i) +
           " of seed " + std::to_string(configuration_.experiment.seed) + ": use another folder");
     }
-    if (!fs::exists(bagPath(static_cast<int>(i)))) {
-      throw std::runtime_error(
-          bagPath(static_cast<int>(i)) +
-          " is missing, though trials.csv says that the trial is finished: put "
-          "it back, or use another folder");
+    for (int episode = 0; episode < configuration_.trial.episodes; ++episode) {
+      const std::string bag = bagPath(static_cast<int>(i), episode);
+      if (fs::exists(bag)) continue;
+      throw std::runtime_error(bag +
+                               " is missing, though trials.csv says that the trial is finished: "
+                               "put it back, or use another folder");
     }
   }
   const std::string checksums = path() + "/" + kChecksums;
@@ -74,16 +78,16 @@ void RunFolder::readRows(const std::string& file) {
   }
 }
 
-std::string RunFolder::bagPath(int trial) const {
-  return path() + "/" + runName(trial, /*evaluation=*/false) + "/trial.bag";
+std::string RunFolder::bagPath(int trial, int episode) const {
+  return path() + "/" + runName({trial, /*evaluation=*/false, episode}) + "/trial.bag";
 }
 
 std::string RunFolder::modelPath(int trial) const {
-  return path() + "/" + runName(trial, /*evaluation=*/false) + "/model.ddm";
+  return path() + "/" + runName({trial}) + "/model.ddm";
 }
 
-std::string RunFolder::beginRun(int trial, bool evaluation, std::vector<std::string>* kept) {
-  const std::string folder = runName(trial, evaluation);
+std::string RunFolder::beginRun(const RunId& run, std::vector<std::string>* kept) {
+  const std::string folder = runName(run);
   makeFolder(folder);
   const std::string stem = path() + "/" + folder + "/trial";
   for (const char* ending : {".bag", ".bag.active"}) {
@@ -95,13 +99,13 @@ std::string RunFolder::beginRun(int trial, bool evaluation, std::vector<std::str
 
 void RunFolder::writeTraining(int trial, const TrainingOutcome& outcome) {
   for (const auto& file : outcome.files) {
-    write(runName(trial, /*evaluation=*/false) + "/" + file.first, file.second);
+    write(runName({trial}) + "/" + file.first, file.second);
   }
 }
 
-void RunFolder::writeRun(int trial, bool evaluation, const TrialOutcome& outcome) {
+void RunFolder::writeRun(const RunId& run, const TrialOutcome& outcome) {
   const PlantInfo& plant = configuration_.plant_info;
-  const std::string folder = runName(trial, evaluation);
+  const std::string folder = runName(run);
   write(folder + "/torques.csv",
         formatTorquesCsv({outcome.torques, outcome.exploratory}, plant.torque_names));
   if (!outcome.states.empty()) {

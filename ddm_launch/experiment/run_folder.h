@@ -29,8 +29,16 @@ struct TrialRow {
   std::string version = "?";  ///< of the code that produced the row; "?": not known
 };
 
-/// Folder of a run within that of its experiment: "trial_007", "evaluation_007" of the greedy run.
-std::string runName(int trial, bool evaluation);
+/// One run of the plant from a start.
+struct RunId {
+  int trial = 0;
+  bool evaluation = false;  ///< the greedy run after the trial
+  int episode = 0;          ///< of the trial
+};
+
+/// Folder of a run within that of its experiment: "trial_007", "evaluation_007" of the greedy run,
+/// "trial_007/episode_001" of the second episode.
+std::string runName(const RunId& run);
 
 ///   config.yaml                          effective configuration, version of the code that began
 ///   trials.csv                           one row per finished trial
@@ -38,6 +46,7 @@ std::string runName(int trial, bool evaluation);
 ///   trial_NNN/{trial.bag,torques.csv,trajectory.csv} and the files of the training, model.ddm
 ///   evaluation_NNN/{torques.csv,trajectory.csv}, and trial.bag with evaluation/record
 ///   evaluation_NNN/goal_distance.csv     instead of the trajectory, where nobody tells it
+///   trial_NNN/episode_EEE/               the same of its second, third, ... episode, where it has them
 ///   trial_NNN/trial.K.bag[.active]       of the K-th try that was not finished
 ///   summary.yaml                         written last: the verdict
 class RunFolder : public ResultsFolder {
@@ -51,17 +60,15 @@ class RunFolder : public ResultsFolder {
   /// Rows of the trials finished so far.
   const std::vector<TrialRow>& rows() const { return rows_; }
 
-  std::string bagPath(int trial) const;
+  std::string bagPath(int trial, int episode = 0) const;
   /// Where a training leaves its model, if it can be saved.
   std::string modelPath(int trial) const;
   /// Makes the folder of a run of a trial that has not been finished. Bags of an earlier try,
   /// complete or not, are kept under other names: they may be all that is left of it.
-  /// @param evaluation  its greedy run
-  /// @param kept        (optional) out: their new names are added
-  /// @return            path of its bag, where nothing is
-  std::string beginRun(int trial, bool evaluation, std::vector<std::string>* kept = nullptr);
-  /// @param evaluation  its greedy run
-  void writeRun(int trial, bool evaluation, const TrialOutcome& outcome);
+  /// @param kept  (optional) out: their new names are added
+  /// @return      path of its bag, where nothing is
+  std::string beginRun(const RunId& run, std::vector<std::string>* kept = nullptr);
+  void writeRun(const RunId& run, const TrialOutcome& outcome);
   void writeTraining(int trial, const TrainingOutcome& outcome);
   /// Ends a trial: from here on it is never run again.
   void finishTrial(const TrialRow& row);

@@ -64,7 +64,10 @@ bool parse(int argc, char** argv, Arguments* arguments) {
 DataSet experience(const Arguments& arguments, const Configuration& all) {
   std::vector<std::string> bags;
   for (int k = 0; k <= arguments.trial; ++k) {
-    bags.push_back(arguments.run + "/" + runName(k, /*evaluation=*/false) + "/trial.bag");
+    for (int episode = 0; episode < all.trial.episodes; ++episode) {
+      bags.push_back(arguments.run + "/" + runName({k, /*evaluation=*/false, episode}) +
+                     "/trial.bag");
+    }
   }
   return BagCache(all.model.image.size, all.model.data_set).read(bags);
 }
@@ -74,7 +77,7 @@ DataSet experience(const Arguments& arguments, const Configuration& all) {
 Plan planAt(const Arguments& arguments, const Configuration& all,
             const std::shared_ptr<const Ddm>& model) {
   const std::string file =
-      arguments.run + "/" + runName(arguments.trial, /*evaluation=*/true) + "/torques.csv";
+      arguments.run + "/" + runName({arguments.trial, /*evaluation=*/true}) + "/torques.csv";
   const std::vector<Eigen::VectorXd> recorded =
       parseTorquesCsv(readFile(file), all.plant_info.torque_names, file).torques;
   if (arguments.step >= static_cast<int>(recorded.size())) {
@@ -104,8 +107,8 @@ Plan planAt(const Arguments& arguments, const Configuration& all,
 void run(const Arguments& arguments) {
   ParamReader reader = ParamReader::fromFiles({arguments.run + "/config.yaml"});
   const Configuration all = readConfiguration(&reader);
-  const std::shared_ptr<const Ddm> model = readModel(
-      arguments.run + "/" + runName(arguments.trial, /*evaluation=*/false) + "/model.ddm");
+  const std::shared_ptr<const Ddm> model =
+      readModel(arguments.run + "/" + runName({arguments.trial}) + "/model.ddm");
   const Eigen::MatrixXd Z = encodeAll(*model, experience(arguments, all));
   const Plan plan = planAt(arguments, all, model);
 

@@ -263,6 +263,7 @@ TEST(Configuration, WhatContradictsIsRefused) {
       {"trial: {num_steps: 60}\nevaluation: {settled_steps_strict: 61}",
        {"evaluation/settled_steps_strict", "trial/num_steps", "got 61"}},
       {"trial: {num_steps: 50}", {"trial/num_steps", "model/pca_dim", "got 50"}},
+      {"trial: {num_steps: 25, episodes: 2}", {"trial/episodes", "model/pca_dim", "got 50"}},
       {"trial: {num_steps: 30}\nmodel: {pca_dim: 10, order: 30}",
        {"trial/num_steps", "model/order", "got 30"}}};
   for (const auto& contradiction : contradictions) {
@@ -339,6 +340,24 @@ TEST(Configuration, EveryFileForTheOracleIsThatOfAPlantAndSetsThePlannerAlone) {
     EXPECT_EQ(keysOf(YAML::LoadFile(file)), (std::set<std::string>{"mpc"})) << name;
     ParamReader reader = ParamReader::fromFiles({file});
     reader.read<MpcOptions>("mpc");
+    EXPECT_EQ(reader.problems(), std::vector<std::string>()) << name;
+  }
+}
+
+TEST(Configuration, EveryFileForATaskIsThatOfAPlantAndFitsPresetEfficient) {
+  const std::string folder = DDM_LAUNCH_SOURCE_DIR "/config/tasks/";
+  const std::vector<std::string> names = namesIn(folder);
+  EXPECT_GE(names.size(), 1U);
+  for (const std::string& name : names) {
+    EXPECT_NO_THROW(plantFile(name));
+    const YAML::Node file = YAML::LoadFile(folder + name + ".yaml");
+    EXPECT_FALSE(file["plant"].IsDefined()) << name << ": the plant's own file has it";
+    ParamReader reader = ParamReader::fromFiles(
+        {DDM_LAUNCH_SOURCE_DIR "/config/presets/efficient.yaml", folder + name + ".yaml"});
+    reader.read<ModelOptions>("model");
+    reader.read<TrainingOptions>("training");
+    reader.read<MpcOptions>("mpc");
+    reader.read<TrialOptions>("trial");
     EXPECT_EQ(reader.problems(), std::vector<std::string>()) << name;
   }
 }

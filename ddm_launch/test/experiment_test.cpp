@@ -139,6 +139,24 @@ TEST_F(ExperimentTest, EachRunHasItsOwnIdentity) {
   }
 }
 
+TEST_F(ExperimentTest, ATrialOfSeveralEpisodesIsThatManyRunsWithDrawsAndBagsOfTheirOwn) {
+  configuration_.trial.episodes = 2;
+  configuration_.experiment.trials = 1;
+  run();
+  EXPECT_EQ(driver_.calls, (Calls{"run 0", "run 1", "train 0", "evaluate 0", "run 2", "run 3",
+                                  "train 1", "evaluate 1"}));
+  const Calls first = {file("trial_000/trial.bag"), file("trial_000/episode_001/trial.bag")};
+  EXPECT_EQ(driver_.bags_of_training[0], first);
+  EXPECT_EQ(driver_.bags_of_training[1], (Calls{first[0], first[1], file("trial_001/trial.bag"),
+                                                file("trial_001/episode_001/trial.bag")}));
+  for (const std::string& bag : driver_.bags_of_training[1]) {
+    EXPECT_TRUE(fs::exists(fs::path(bag).parent_path() / "torques.csv")) << bag;
+  }
+  configuration_.experiment.trials = 2;
+  fs::remove(first[1]);
+  EXPECT_TRUE(throwsNaming<std::runtime_error>([this] { run(); }, {first[1], "missing"}));
+}
+
 TEST_F(ExperimentTest, EvaluationsAreNotRecordedAndNotLearnedFrom) {
   run();
   for (const TrialRequest& request : driver_.requests) {

@@ -38,13 +38,13 @@ class RunFolderTest : public ::testing::Test {
   void finish(int num_trials) {
     RunFolder folder(configuration_);
     for (int trial = 0; trial < num_trials; ++trial) {
-      writeText(folder.beginRun(trial, false), "a bag");
+      writeText(folder.beginRun({trial}), "a bag");
       folder.finishTrial(toyRow(trial));
     }
   }
 
   /// Begins the first trial, which is not finished.
-  void begin() { RunFolder(configuration_).beginRun(0, false); }
+  void begin() { RunFolder(configuration_).beginRun({0}); }
 
   void expectRefused(const std::vector<std::string>& words) {
     EXPECT_TRUE(
@@ -58,7 +58,7 @@ class RunFolderTest : public ::testing::Test {
 TEST_F(RunFolderTest, ANewFolderIsMadeWithTheEffectiveConfigurationAndTheVersion) {
   configuration_.experiment.runs = file("with/parents");
   RunFolder folder(configuration_);
-  folder.beginRun(0, false);
+  folder.beginRun({0});
   const YAML::Node saved = YAML::LoadFile(file("with/parents/config.yaml"));
   EXPECT_EQ(saved["version"].as<std::string>(), codeVersion());
   EXPECT_EQ(saved["experiment"]["seed"].as<int>(), 7);
@@ -82,7 +82,7 @@ TEST_F(RunFolderTest, AFolderIsOnlyMadeForTheFirstResult) {
   EXPECT_FALSE(fs::exists(scratch_.file("run")));
   RunFolder folder(configuration_);
   EXPECT_FALSE(fs::exists(scratch_.file("run")));
-  folder.beginRun(0, false);
+  folder.beginRun({0});
   EXPECT_TRUE(fs::exists(file("config.yaml")));
 }
 
@@ -101,7 +101,7 @@ TEST_F(RunFolderTest, TrialsMayGrow) {
   configuration_.experiment.trials = 5;
   RunFolder folder(configuration_);
   EXPECT_EQ(folder.rows().size(), 2u);
-  folder.beginRun(2, false);
+  folder.beginRun({2});
   EXPECT_EQ(YAML::LoadFile(file("config.yaml"))["experiment"]["trials"].as<int>(), 5);
 }
 
@@ -255,13 +255,13 @@ TEST_F(RunFolderTest, TheVersionThatBeganStaysInTheConfiguration) {
   config.replace(0, config.find('\n'), "version: 0.0.1 (abc)");
   writeText(file("config.yaml"), config);
   RunFolder folder(configuration_);
-  folder.beginRun(1, false);
+  folder.beginRun({1});
   EXPECT_EQ(textOf(file("config.yaml")), config);
 }
 
 TEST_F(RunFolderTest, ASecondExperimentInTheSameFolderIsRefused) {
   RunFolder first(configuration_);
-  first.beginRun(0, false);
+  first.beginRun({0});
   const auto before = fingerprintOf(scratch_.file("run"));
   expectRefused({scratch_.file("run"), "is running"});
   EXPECT_EQ(fingerprintOf(scratch_.file("run")), before);
@@ -270,14 +270,14 @@ TEST_F(RunFolderTest, ASecondExperimentInTheSameFolderIsRefused) {
 TEST_F(RunFolderTest, OfTwoExperimentsInOneNewFolderTheFirstThatWritesHasIt) {
   RunFolder first(configuration_);
   RunFolder second(configuration_);
-  first.beginRun(0, false);
-  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { second.beginRun(0, false); },
+  first.beginRun({0});
+  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { second.beginRun({0}); },
                                                {scratch_.file("run"), "another experiment"}));
   auto third = std::make_unique<RunFolder>(toyConfiguration(scratch_.file("new")));
   RunFolder fourth(toyConfiguration(scratch_.file("new")));
-  third->beginRun(0, false);
+  third->beginRun({0});
   third.reset();  // the lock is free again
-  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { fourth.beginRun(0, false); },
+  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { fourth.beginRun({0}); },
                                                {scratch_.file("new"), "was begun", "meanwhile"}));
 }
 
@@ -297,13 +297,13 @@ TEST_F(RunFolderTest, BagsOfAnEarlierTryAreKeptUnderOtherNames) {
   RunFolder folder(configuration_);
   for (const std::string attempt : {"first", "second"}) {
     std::vector<std::string> kept;
-    const std::string bag = folder.beginRun(1, false, &kept);
+    const std::string bag = folder.beginRun({1}, &kept);
     EXPECT_FALSE(fs::exists(bag) || fs::exists(bag + ".active"));
     EXPECT_EQ(kept.size(), attempt == "first" ? 0u : 2u);
     writeText(bag, attempt);
     writeText(bag + ".active", attempt + " active");
   }
-  folder.beginRun(1, false);
+  folder.beginRun({1});
   EXPECT_EQ(textOf(file("trial_001/trial.1.bag")), "first");
   EXPECT_EQ(textOf(file("trial_001/trial.1.bag.active")), "first active");
   EXPECT_EQ(textOf(file("trial_001/trial.2.bag")), "second");
@@ -356,7 +356,7 @@ TEST_F(RunFolderTest, ATableOfAnOlderVersionGoesOnInTodaysColumns) {
       EXPECT_EQ(folder.rows()[1].version, version);
       EXPECT_EQ(folder.rows()[1].evaluation.final_error, toyRow(1).evaluation.final_error);
       EXPECT_TRUE(folder.warnings().empty());
-      writeText(folder.beginRun(2, false), "a bag");
+      writeText(folder.beginRun({2}), "a bag");
       folder.finishTrial(toyRow(2));
     }
     const RunFolder folder(configuration_);
@@ -422,7 +422,7 @@ TEST_F(RunFolderTest, RowsWithoutChecksumsAreTakenWithAWarning) {
     RunFolder folder(configuration_);
     ASSERT_EQ(folder.warnings().size(), 1u);
     EXPECT_NE(folder.warnings()[0].find(".trials.crc32"), std::string::npos);
-    writeText(folder.beginRun(2, false), "a bag");
+    writeText(folder.beginRun({2}), "a bag");
     folder.finishTrial(toyRow(2));
   }
   EXPECT_TRUE(RunFolder(configuration_).warnings().empty());
@@ -455,8 +455,8 @@ TEST_F(RunFolderTest, AFolderThatCannotBeMadeOrWrittenIsNamed) {
   for (const std::string& path : {scratch_.file("plain_file"), scratch_.file("plain_file/run"),
                                   std::string("/proc/ddm"), std::string("/proc/self")}) {
     configuration_.experiment.runs = path;
-    EXPECT_TRUE(throwsNaming<std::runtime_error>(
-        [&] { RunFolder(configuration_).beginRun(0, false); }, {"cannot", path}));
+    EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { RunFolder(configuration_).beginRun({0}); },
+                                                 {"cannot", path}));
   }
 }
 
@@ -479,11 +479,11 @@ TEST_F(RunFolderTest, NothingButTheFilesOfTheContractIsLeft) {
     TrialRequest request;
     request.num_steps = 2;
     const TrialOutcome outcome = driver.runTrial(request, [](double) {});
-    folder.writeRun(0, /*evaluation=*/false, outcome);
+    folder.writeRun({0, /*evaluation=*/false}, outcome);
     TrainingOutcome training;
     training.files["model.ddm"] = "model";
     folder.writeTraining(0, training);
-    folder.writeRun(0, /*evaluation=*/true, outcome);
+    folder.writeRun({0, /*evaluation=*/true}, outcome);
     folder.finishTrial(toyRow(0));
     folder.writeSummary(1.0);
   }
@@ -506,11 +506,11 @@ TEST_F(RunFolderTest, DistancesInFeaturesAreWrittenWhereTheTrueStateIsNotKnown) 
   outcome.torques = {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Zero(1)};
   outcome.exploratory = {false, false};
   outcome.goal_distances = {1.5, 0.1};
-  folder.writeRun(0, /*evaluation=*/true, outcome);
+  folder.writeRun({0, /*evaluation=*/true}, outcome);
   EXPECT_EQ(textOf(file("evaluation_000/goal_distance.csv")), "step,goal_distance\n0,1.5\n1,0.1\n");
   outcome.states = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
   outcome.times = {0.0, 0.2};
-  folder.writeRun(1, /*evaluation=*/true, outcome);
+  folder.writeRun({1, /*evaluation=*/true}, outcome);
   EXPECT_FALSE(fs::exists(file("evaluation_001/goal_distance.csv")));
 }
 
@@ -519,7 +519,7 @@ TEST_F(RunFolderTest, TorquesAreWrittenWith17Digits) {
   TrialOutcome outcome;
   outcome.torques = {Eigen::VectorXd::Constant(1, 0.1), Eigen::VectorXd::Constant(1, -6.0)};
   outcome.exploratory = {true, false};
-  folder.writeRun(3, /*evaluation=*/false, outcome);
+  folder.writeRun({3, /*evaluation=*/false}, outcome);
   EXPECT_EQ(textOf(file("trial_003/torques.csv")),
             "step,torque_nm,exploratory\n0,0.10000000000000001,1\n1,-6,0\n");
 }
@@ -528,12 +528,12 @@ TEST_F(RunFolderTest, TheVerdictOfAnEarlierCallIsRemovedBeforeTheNextTrial) {
   {
     RunFolder folder(configuration_);
     folder.finishTrial(toyRow(0));
-    writeText(folder.beginRun(0, false), "a bag");
+    writeText(folder.beginRun({0}), "a bag");
     folder.writeSummary(1.0);
   }
   RunFolder folder(configuration_);
   ASSERT_TRUE(folder.isFinished());
-  folder.beginRun(1, false);
+  folder.beginRun({1});
   EXPECT_FALSE(fs::exists(file("summary.yaml")));
   EXPECT_FALSE(folder.isFinished());
 }

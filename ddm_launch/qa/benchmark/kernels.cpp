@@ -146,8 +146,10 @@ void measureObjective(const Experience& experience) {
 void measureTraining(const Experience& experience) {
   const ModelConfig& config = experience.configuration.model;
   measure("pca", 30, [&experience, &config]() {
-    benchmark::DoNotOptimize(
-        fitPca(experience.data, config.model.pca_dim, config.training.score_std).scale);
+    benchmark::DoNotOptimize(fitPca(experience.data, config.model.pca_dim,
+                                    config.training.score_std,
+                                    Blur(experience.data.imageSize(), config.model.blur))
+                                 .scale);
   });
   TrainingOptions training = config.training;
   training.max_iterations = kRetrainIterations;
