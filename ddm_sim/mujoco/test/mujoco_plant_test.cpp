@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "ddm_msgs/testing/expect_error.h"
 #include "ddm_sim/angles.h"
 #include "ddm_sim/pendulum.h"
 #include "model_folder.h"
