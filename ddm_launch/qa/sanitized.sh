@@ -1,7 +1,7 @@
 # Debug builds with the sanitizers of clang, and what runs on them. Sourced by test.sh, after workspace.sh.
 # SPDX-License-Identifier: BSD-3-Clause
 
-loop_programs=(sim_node mpc_node view_node trial_recorder model_node experiment_node run_experiment evaluate)
+loop_programs=(resolve sim_node mpc_node view_node trial_recorder model_node experiment_node run_experiment evaluate)
 threaded_programs=(
   model_node_test mpc_node_stop_test mpc_node_test refused_params_test replay_node robot_node train_from_bags trial_recorder_test
 )
