@@ -25,7 +25,7 @@ GIVEN = {"ddm_launch/README.md": ["monday.ddm", "monday/a.bag", "a.bag", "b.bag"
          "ddm_model/README.md": ["robot.model", "monday.bag", "my_robot.yaml", "upright.png", "trial_000.bag",
                                  "trial_001.bag"],
          "ddm_launch/results/published/README.md": ["trials.csv", "success_rate.csv"]}
-NEED_MUJOCO = ["ddm_launch/results/tasks/README.md", "doc/your_plant.md"]
+NEED_MUJOCO = ["ddm_launch/results/README.md", "ddm_launch/results/tasks/README.md", "doc/your_plant.md"]
 
 
 def setup_file():

@@ -23,7 +23,7 @@ LAUNCHERS = ["roslaunch", "rosmaster"]
 LISTENS, UDP = "0A", "07"  # states in /proc/net
 LOOPBACK, ANY = "0100007F", "00000000"  # addresses in /proc/net
 LIMIT_S = 60.0
-TRIALS = 6
+TRIALS = 15  # longer than a probe takes
 HINDRANCE = why_no_nft()
 
 # Prints the TCP ports, of those given, that take a connection; then sends a datagram to each UDP port.
