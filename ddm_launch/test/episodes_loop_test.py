@@ -1,0 +1,44 @@
+#!/usr/bin/python3
+# Episodes, time to the goal, bang-bang torques and blur: the nodes and run_experiment give the same.
+# SPDX-License-Identifier: BSD-3-Clause
+import os
+import sys
+
+import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from both_drivers_case import BothDriversCase  # noqa: E402
+from run_files import read_rows  # noqa: E402
+
+TRIALS = 1
+CONFIG = """\
+model: {blur: 1.0}
+mpc: {cost: time, exploration: bang_bang}
+trial: {episodes: 2}
+"""
+
+
+class EpisodesLoopTest(BothDriversCase):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.runBothDrivers(4, TRIALS, {"preset": "debug", "plant": "pendulum"}, CONFIG)
+
+    def test_both_finish_with_equal_files(self):
+        self.assertAllFilesAreEqual()
+        self.assertEqualFiles(["trial_%03d/episode_001/%s" % (k, name) for k in range(TRIALS + 1)
+                               for name in ("torques.csv", "trajectory.csv")])
+
+    def test_a_model_learns_from_both_episodes_which_begin_in_different_states(self):
+        self.assertEqual([row[2] for row in read_rows(self.nodes, "trials.csv")[1:]], ["60", "120"])
+        starts = {tuple(read_rows(self.nodes, "trial_%03d" % k, *episode, "trajectory.csv")[1][2:])
+                  for k in range(TRIALS + 1) for episode in ((), ("episode_001",))}
+        self.assertEqual(len(starts), 2 * (TRIALS + 1))
+
+    def test_random_torques_are_the_limits(self):
+        for row in read_rows(self.nodes, "trial_000", "episode_001", "torques.csv")[1:]:
+            self.assertEqual((abs(float(row[1])), row[2]), (6.0, "1"))
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("ddm_launch", "episodes_loop_test", EpisodesLoopTest)
