@@ -1,14 +1,54 @@
-# What the programs of ddm_launch share: how they fail, and where other programs and files are.
+# What the programs of ddm_launch share: how they fail, how a signal ends them, and where other programs and files are.
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
+import contextlib
 import math
 import os
 import platform
+import signal
 import sys
 
 import roslib.packages
 
-from ddm_launch.interruption import Interrupted, raised_as_exception
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+class Interrupted(BaseException):
+    """A signal asks to end. Not an Exception: nothing but the program itself may handle it."""
+
+    def __init__(self, number):
+        super().__init__("interrupted by %s" % signal.Signals(number).name)
+        self.number = number
+
+
+@contextlib.contextmanager
+def raised_as_exception():
+    """Within, the first signal raises Interrupted in the main thread; those after it are ignored, so that the ending
+    that it begins comes to its end."""
+    def on_signal(number, _):
+        for each in SIGNALS:
+            signal.signal(each, signal.SIG_IGN)
+        raise Interrupted(number)
+
+    before = {number: signal.getsignal(number) for number in SIGNALS}
+    for number in SIGNALS:
+        if number != signal.SIGHUP or before[number] != signal.SIG_IGN:  # under nohup a lost terminal is not a reason
+            signal.signal(number, on_signal)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+@contextlib.contextmanager
+def held_back():
+    """Within, signals wait: for what must not be cut in two."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 class Failure(Exception):

@@ -9,8 +9,7 @@ import subprocess
 import sys
 import time
 
-from ddm_launch.command import Failure
-from ddm_launch.interruption import held_back
+from ddm_launch.command import Failure, held_back
 from ddm_model.plain_file import write_file
 
 END_LIMIT_S = 120.0  # Slurm itself kills what does not end by KillWait, 30 s by default

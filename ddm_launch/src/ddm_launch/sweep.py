@@ -6,9 +6,8 @@ import re
 import sys
 import time
 
-from ddm_launch.command import number, program_parser, run_program
+from ddm_launch.command import Interrupted, number, program_parser, run_program
 from ddm_launch.gnu_parallel import GnuParallel
-from ddm_launch.interruption import Interrupted
 from ddm_launch.seed_script import TABLES, SeedProgram
 from ddm_launch.slurm import SlurmArray, end_left_over
 from ddm_launch.sweep_folder import SweepFolder

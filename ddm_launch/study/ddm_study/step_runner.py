@@ -13,8 +13,7 @@ import time
 from tqdm import tqdm
 import yaml
 
-from ddm_launch.command import Failure, find_program, package_path, processor, run_program
-from ddm_launch.interruption import Interrupted
+from ddm_launch.command import Failure, Interrupted, find_program, package_path, processor, run_program
 from ddm_launch.run_folder import in_todays_columns, is_finished, num_finished
 from ddm_launch.settings import differences, read_yaml
 from ddm_model.plain_file import write_file
