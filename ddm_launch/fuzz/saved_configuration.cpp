@@ -4,7 +4,6 @@
 
 #include <ddm_msgs/testing/fuzzing.h>
 #include <ddm_params/config_blocks.h>
-#include <ddm_params/renamed_keys.h>
 
 using ddm::testing::require;
 

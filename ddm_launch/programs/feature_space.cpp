@@ -50,11 +50,8 @@ bool parse(int argc, char** argv, Arguments* arguments) {
   options.add_options()("step", po::value(&arguments->step)->required(),
                         "step of the evaluation whose plan is wanted, from 0");
   options.add_options()("out", po::value(&arguments->out)->required(), "CSV file to write");
-  po::options_description unnamed;
-  unnamed.add_options()("run", po::value(&arguments->run)->required());
-  po::positional_options_description names;
-  names.add("run", 1);
-  if (!parseCommandLine(argc, argv, options, unnamed, names)) return false;
+  const Positional run{"run", po::value(&arguments->run)->required(), 1};
+  if (!parseCommandLine(argc, argv, options, run)) return false;
   if (arguments->trial < 0 || arguments->trial > 999 || arguments->step < 0) {
     throw po::error("--trial must lie in [0, 999] and --step be >= 0");
   }

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_files/plain_file.h>
 #include <ddm_images/image_codec.h>
-#include <ddm_images/picture_file.h>
 #include <ddm_model/model_file.h>
 #include <ddm_params/number_csv.h>
 #include <ddm_params/tool.h>
@@ -39,11 +38,8 @@ bool parse(int argc, char** argv, Arguments* arguments) {
   options.add_options()("frames", po::value(&arguments->frames)->value_name("DIR"),
                         "folder of the pictures. It is made if need be; pictures of these names "
                         "in it are replaced");
-  po::options_description unnamed;
-  unnamed.add_options()("model", po::value(&arguments->model)->required());
-  po::positional_options_description names;
-  names.add("model", 1);
-  if (!ddm::parseCommandLine(argc, argv, options, unnamed, names)) return false;
+  const ddm::Positional model{"model", po::value(&arguments->model)->required(), 1};
+  if (!ddm::parseCommandLine(argc, argv, options, model)) return false;
   if (arguments->frames.empty()) {
     throw po::error("--frames DIR is missing: say where the pictures go");
   }

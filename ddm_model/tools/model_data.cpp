@@ -47,11 +47,8 @@ bool parse(int argc, char** argv, Arguments* arguments) {
                         "longest prediction");
   options.add_options()("config", po::value(&arguments->configs)->composing()->value_name("FILE"),
                         "YAML file whose block data_set names the topics; repeatable");
-  po::options_description unnamed;
-  unnamed.add_options()("bag", po::value(&arguments->bags));
-  po::positional_options_description names;
-  names.add("bag", -1);
-  if (!parseCommandLine(argc, argv, options, unnamed, names)) return false;
+  const Positional bags{"bag", po::value(&arguments->bags), -1};
+  if (!parseCommandLine(argc, argv, options, bags)) return false;
   if (arguments->model.empty()) throw po::error("--model FILE is missing: say which model");
   if (arguments->out.empty()) throw po::error("--out DIR is missing: say where the files go");
   if (arguments->steps < 1 || arguments->steps > 1000) {

@@ -4,7 +4,6 @@
 #include <ddm_bag_io/model_config.h>
 #include <ddm_files/plain_file.h>
 #include <ddm_images/image_codec.h>
-#include <ddm_images/picture_file.h>
 #include <ddm_model/model_file.h>
 #include <ddm_model/per_motor.h>
 #include <ddm_model/solver_log.h>
@@ -46,11 +45,8 @@ bool parse(int argc, char** argv, Arguments* arguments) {
   options.add_options()("seed", po::value(&arguments->seed)->default_value(0),
                         "seed of the initial parameters");
   options.add_options()("out", po::value(&arguments->out), "model file to write");
-  po::options_description unnamed;
-  unnamed.add_options()("bag", po::value(&arguments->bags));
-  po::positional_options_description names;
-  names.add("bag", -1);
-  if (!ddm::parseCommandLine(argc, argv, options, unnamed, names)) return false;
+  const ddm::Positional bags{"bag", po::value(&arguments->bags), -1};
+  if (!ddm::parseCommandLine(argc, argv, options, bags)) return false;
   if (arguments->out.empty()) throw po::error("--out FILE is missing: say where the model goes");
   if (arguments->seed < 0) {
     throw po::error("--seed must be >= 0, got " + std::to_string(arguments->seed));

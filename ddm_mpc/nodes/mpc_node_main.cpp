@@ -1,7 +1,6 @@
 // mpc_node: parameters, then the node.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_model/solver_log.h>
-#include <ddm_node/end_signals.h>
 #include <ddm_node/run_node.h>
 #include <ddm_params/image_options.h>
 #include <ros/callback_queue.h>

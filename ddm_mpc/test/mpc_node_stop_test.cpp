@@ -1,6 +1,6 @@
 // Tests of how mpc_node stops two motors, and that it does so while a plan is computed.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_node/call_within.h>
+#include <ddm_node/waiting.h>
 #include <dynamic_reconfigure/Reconfigure.h>
 #include <gtest/gtest.h>
 #include <std_msgs/Float64MultiArray.h>

@@ -4,7 +4,6 @@
 
 #include <actionlib_msgs/GoalID.h>
 #include <ddm_images/image_codec.h>
-#include <ddm_images/picture_file.h>
 #include <ddm_msgs/topics.h>
 #include <ddm_node/topic_peers.h>
 #include <std_msgs/Float64.h>

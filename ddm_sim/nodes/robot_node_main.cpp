@@ -1,6 +1,5 @@
 // robot_node: parameters, then the node.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_node/end_signals.h>
 #include <ddm_node/run_node.h>
 #include <ddm_params/image_options.h>
 

@@ -1,6 +1,6 @@
 // simulate: moves a plant under given torques, without a master. Torques in, trajectory out.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_images/picture_file.h>
+#include <ddm_images/image_codec.h>
 #include <ddm_plant_plugin/picture_message.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ros/package.h>
@@ -82,13 +82,11 @@ bool parse(int argc, char** argv, Arguments* arguments) {
   add("config", po::value(&arguments->configs)->value_name("FILE")->composing(),
       "YAML file with overrides of the block `plant`; repeatable, later wins");
   std::vector<std::string> words;
-  po::options_description unnamed;
-  unnamed.add_options()("word", po::value(&words));
-  po::positional_options_description names;
+  const Positional unnamed{"word", po::value(&words), -1};
   // No short options and no abbreviations: a word like -0.5 is then a value and never an option.
   namespace style = po::command_line_style;
   constexpr int kStyle = style::allow_long | style::long_allow_adjacent | style::long_allow_next;
-  if (!parseCommandLine(argc, argv, options, unnamed, names.add("word", -1), kStyle)) return false;
+  if (!parseCommandLine(argc, argv, options, unnamed, kStyle)) return false;
   if (words.empty()) return true;
   throw po::error("unexpected \"" + words.front() + "\"; each value needs its option");
 }

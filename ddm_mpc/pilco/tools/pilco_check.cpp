@@ -102,10 +102,7 @@ bool parse(int argc, char** argv, std::string* path) {
       "Compares all cases of a file of reference values with what is computed here.\n\n"
       "usage: rosrun ddm_mpc pilco_check FILE.json\n\n"
       "Exit code 0: all within their tolerances; 1: the kinds that are not are named; 2: usage");
-  po::options_description unnamed;
-  unnamed.add_options()("file", po::value(path)->required());
-  po::positional_options_description names;
-  return parseCommandLine(argc, argv, options, unnamed, names.add("file", 1));
+  return parseCommandLine(argc, argv, options, Positional{"file", po::value(path)->required(), 1});
 }
 
 }  // namespace

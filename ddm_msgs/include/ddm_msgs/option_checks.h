@@ -1,9 +1,10 @@
-// Collects what is wrong with the values of a block.
+// Collects what is wrong with the values of a block, and finds the name that was meant.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -18,6 +19,35 @@ inline bool isPositive(double value) {
 }
 inline bool isNotNegative(double value) {
   return value >= 0.0 && value <= std::numeric_limits<double>::max();
+}
+
+/// Number of characters to insert, delete or replace to turn one word into the other.
+inline std::size_t editDistance(const std::string& from, const std::string& to) {
+  std::vector<std::size_t> row(to.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= from.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= to.size(); ++j) {
+      const std::size_t replaced = diagonal + (from[i - 1] == to[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+/// The known name that was meant by one that is not known; empty if none is nearer than `limit`.
+template <class Names>
+std::string nearestName(const std::string& name, const Names& known, std::size_t limit) {
+  std::string nearest;
+  for (const std::string& candidate : known) {
+    const std::size_t distance = editDistance(name, candidate);
+    if (distance >= limit) continue;
+    limit = distance;
+    nearest = candidate;
+  }
+  return nearest;
 }
 
 /// Collects the problems of one block, each as "block/key must <rule>, got <value>".

@@ -12,7 +12,7 @@
 #include <map>
 #include <set>
 
-#include "ddm_node/call_within.h"
+#include "ddm_node/waiting.h"
 
 namespace ddm {
 namespace {

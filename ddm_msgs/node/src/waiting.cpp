@@ -6,7 +6,6 @@
 #include <sstream>
 #include <utility>
 
-#include "ddm_node/call_within.h"
 #include "ddm_node/topic_peers.h"
 
 namespace ddm {

@@ -1,10 +1,10 @@
 // Tests of calls with a limit.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_node/call_within.h"
-
 #include <gtest/gtest.h>
 
 #include <stdexcept>
+
+#include "ddm_node/waiting.h"
 
 namespace ddm {
 namespace {

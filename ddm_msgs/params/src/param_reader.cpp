@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_params/param_reader.h"
 
+#include <ddm_msgs/option_checks.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -34,35 +36,13 @@ std::set<std::string> registeredBlocks() {
   return blocks;
 }
 
-/// Number of characters to insert, delete or replace to turn one word into the other.
-std::size_t editDistance(const std::string& from, const std::string& to) {
-  std::vector<std::size_t> row(to.size() + 1);
-  for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= from.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= to.size(); ++j) {
-      const std::size_t replaced = diagonal + (from[i - 1] == to[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row.back();
-}
-
 /// " (did you mean horizon? known keys: horizon, epsilon)"
 template <class Names>
 std::string hint(const std::string& name, const char* kind, const Names& known) {
-  std::string list, nearest;
-  std::size_t nearest_distance = std::min<std::size_t>(3, (name.size() + 1) / 2);
-  for (const std::string& candidate : known) {
-    list += (list.empty() ? "" : ", ") + candidate;
-    const std::size_t distance = editDistance(name, candidate);
-    if (distance < nearest_distance) {
-      nearest_distance = distance;
-      nearest = candidate;
-    }
-  }
+  std::string list;
+  for (const std::string& one : known) list += (list.empty() ? "" : ", ") + one;
+  const std::size_t limit = std::min<std::size_t>(3, (name.size() + 1) / 2);
+  const std::string nearest = nearestName(name, known, limit);
   const std::string question = nearest.empty() ? "" : "did you mean " + nearest + "? ";
   return " (" + question + "known " + kind + ": " + list + ")";
 }

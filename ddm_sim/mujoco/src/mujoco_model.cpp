@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/mujoco_model.h"
 
+#include <ddm_msgs/option_checks.h>
+
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
-#include <numeric>
 #include <set>
 #include <stdexcept>
 
@@ -100,21 +101,6 @@ std::shared_ptr<const mjModel> compileUrdf(const std::string& path, const std::s
   std::fill_n(model->vis.headlight.diffuse, 3, 0.6F);
   std::fill_n(model->vis.headlight.specular, 3, 0.1F);
   return model;
-}
-
-std::size_t editDistance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
 }
 
 int countOf(const mjModel& model, mjtObj type) {
@@ -219,12 +205,8 @@ std::string suggestion(const std::string& name, const std::vector<std::string>& 
   if (known.empty()) return "there is none";
   std::string all;
   for (const std::string& one : known) all += (all.empty() ? "" : ", ") + one;
-  const auto nearest =
-      std::min_element(known.begin(), known.end(), [&name](const auto& a, const auto& b) {
-        return editDistance(name, a) < editDistance(name, b);
-      });
-  const bool near = editDistance(name, *nearest) <= std::max<std::size_t>(2, name.size() / 3);
-  return (near ? "did you mean " + *nearest + "? There are " : "there are ") + all;
+  const std::string near = nearestName(name, known, std::max<std::size_t>(3, name.size() / 3 + 1));
+  return (near.empty() ? "there are " : "did you mean " + near + "? There are ") + all;
 }
 
 }  // namespace ddm

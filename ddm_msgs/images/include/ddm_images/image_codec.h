@@ -1,4 +1,4 @@
-// Image codec: any camera image in, the grey values of the paper's y out.
+// Images: as camera messages, as the grey values of the paper's y, as pictures in files.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -51,5 +51,13 @@ std::vector<std::uint8_t> decodeImage(const sensor_msgs::Image& image, int size,
 /// @throws std::invalid_argument if the size is out of range or `grey` has another length
 sensor_msgs::Image encodeImage(const std::vector<std::uint8_t>& grey, int size,
                                const ros::Time& stamp, const std::string& frame_id);
+
+/// The picture in grey, as large as it is; any format that OpenCV reads.
+/// @throws std::invalid_argument with the path if it is none
+sensor_msgs::Image readPicture(const std::string& path);
+
+/// @param image  mono8 or rgb8; the format is that of the path's suffix
+/// @throws std::runtime_error with the path
+void writePicture(const std::string& path, const sensor_msgs::Image& image);
 
 }  // namespace ddm

@@ -5,28 +5,37 @@
 #include <boost/program_options.hpp>
 #include <cstdlib>
 #include <iostream>
+#include <optional>
 #include <string>
 
 namespace ddm {
 
 constexpr int kUsageError = 2;  ///< exit code
 
+/// Arguments that belong to no option.
+struct Positional {
+  const char* name;
+  const boost::program_options::value_semantic* value;
+  int max_count;  ///< -1: as many as there are
+};
+
 /// Reads the command line into the variables that the options were given.
-/// @param options     what --help shows; --help itself is added
-/// @param positional  arguments that belong to no option, if there are any
-/// @param names       their name, of one or of many
-/// @param style       how options may be written
+/// @param options  what --help shows; --help itself is added
+/// @param style    how options may be written
 /// @return false where --help was asked for and has been printed
 /// @throws boost::program_options::error for options that are unknown, wrong or missing
 inline bool parseCommandLine(
     int argc, char** argv, boost::program_options::options_description options,
-    const boost::program_options::options_description& positional = {},
-    const boost::program_options::positional_options_description& names = {},
+    const std::optional<Positional>& positional = std::nullopt,
     int style = boost::program_options::command_line_style::default_style) {
   namespace po = boost::program_options;
   options.add_options()("help,h", "show this text");
   po::options_description all(options);
-  all.add(positional);
+  po::positional_options_description names;
+  if (positional) {
+    all.add_options()(positional->name, positional->value);
+    names.add(positional->name, positional->max_count);
+  }
   po::variables_map values;
   po::command_line_parser parser(argc, argv);
   po::store(parser.options(all).positional(names).style(style).run(), values);
