@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "trial_recorder.h"
 
-#include <ddm_msgs/option_checks.h>
 #include <ddm_msgs/topics.h>
+#include <ddm_node/run_node.h>
 
 #include <algorithm>
 #include <chrono>
@@ -16,12 +16,6 @@ namespace {
 constexpr int kQueue = 1000;  // a slow disk must not cost a frame
 
 }  // namespace
-
-std::vector<std::string> RecorderOptions::problems() const {
-  OptionChecks recorder("recorder");
-  recorder.requirePositive("timeout", timeout);
-  return recorder.problems();
-}
 
 TrialRecorder::TrialRecorder(ros::NodeHandle nh, const BagOptions& bag, const BagAccess& access,
                              const RecorderOptions& options)
@@ -164,3 +158,14 @@ bool TrialRecorder::stop(ddm_msgs::StopRecording::Request& request,
 }
 
 }  // namespace ddm
+
+int main(int argc, char** argv) {
+  return ddm::runNode("trial_recorder", argc, argv, [](auto nh, auto, ddm::ParamReader* params) {
+    const auto bag = params->read<ddm::BagOptions>("data_set");
+    const auto access = params->read<ddm::BagAccess>("access");
+    const auto options = params->read<ddm::RecorderOptions>("recorder");
+    params->requireValid();
+    ddm::TrialRecorder recorder(nh, bag, access, options);
+    ros::MultiThreadedSpinner(2).spin();
+  });
+}

@@ -6,6 +6,7 @@
 #include <ddm_bag_io/bag_writer.h>
 #include <ddm_msgs/StartRecording.h>
 #include <ddm_msgs/StopRecording.h>
+#include <ddm_msgs/option_checks.h>
 #include <image_transport/image_transport.h>
 #include <ros/ros.h>
 
@@ -14,6 +15,7 @@
 #include <mutex>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace ddm {
 
@@ -25,7 +27,11 @@ struct RecorderOptions {
   void visit(Visitor& visitor) {
     visitor("timeout", timeout);
   }
-  std::vector<std::string> problems() const;
+  std::vector<std::string> problems() const {
+    OptionChecks recorder("recorder");
+    recorder.requirePositive("timeout", timeout);
+    return recorder.problems();
+  }
 };
 
 /// Services `start_recording` and `stop_recording`; writes images, the goal image, and the torques

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_bag_io/bag_options.h>
+#include <ddm_bag_io/bag_reader.h>
 #include <ddm_images/image_codec.h>
 #include <ddm_msgs/Torque.h>
 #include <rosbag/bag.h>

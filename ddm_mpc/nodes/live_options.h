@@ -7,6 +7,7 @@
 #include <ros/ros.h>
 
 #include <functional>
+#include <utility>
 
 #include "ddm_mpc/mpc_options.h"
 
@@ -22,14 +23,59 @@ class LiveOptions {
 
   /// @param nh       namespace of the block `mpc`
   /// @param options  values in force, valid
-  LiveOptions(const ros::NodeHandle& nh, const MpcOptions& options, Callback on_change);
+  LiveOptions(const ros::NodeHandle& nh, const MpcOptions& options, Callback on_change)
+      : options_(options), on_change_(std::move(on_change)), server_(withParameters(nh, options)) {
+    server_.setCallback([this](MpcConfig& config, std::uint32_t) { onRequest(&config); });
+  }
 
  private:
-  void onRequest(ddm_mpc::MpcConfig* config);
+  using MpcConfig = ddm_mpc::MpcConfig;
+
+  static void write(const MpcOptions& options, MpcConfig* config) {
+    config->epsilon = options.epsilon;
+    config->control_weight = options.control_weight;
+    config->horizon = options.horizon;
+  }
+
+  /// The server takes its first values from the parameters, and its own defaults where one is
+  /// missing or a text (as rosparam reads 1e-2): so they are written there first.
+  static ros::NodeHandle withParameters(const ros::NodeHandle& nh, const MpcOptions& options) {
+    MpcConfig config = MpcConfig::__getDefault__();
+    write(options, &config);
+    config.__toServer__(nh);
+    return nh;
+  }
+
+  template <class Value>
+  static void tell(const char* key, Value before, Value after, Value min, Value max) {
+    if (before == after) return;
+    ROS_INFO_STREAM("mpc/" << key << " is " << after << " from the next image on, was " << before
+                           << " (range " << min << " to " << max << ")");
+  }
+
+  void onRequest(MpcConfig* config) {
+    MpcOptions turned = options_;
+    turned.epsilon = config->epsilon;
+    turned.control_weight = config->control_weight;
+    turned.horizon = config->horizon;
+    const std::vector<std::string> problems = turned.problems();
+    if (!problems.empty()) {
+      for (const std::string& problem : problems) ROS_WARN_STREAM("nothing turned: " << problem);
+      write(options_, config);
+      return;
+    }
+    const MpcConfig min = MpcConfig::__getMin__(), max = MpcConfig::__getMax__();
+    tell("epsilon", options_.epsilon, turned.epsilon, min.epsilon, max.epsilon);
+    tell("control_weight", options_.control_weight, turned.control_weight, min.control_weight,
+         max.control_weight);
+    tell("horizon", options_.horizon, turned.horizon, min.horizon, max.horizon);
+    options_ = turned;
+    on_change_(options_);
+  }
 
   MpcOptions options_;
   Callback on_change_;
-  dynamic_reconfigure::Server<ddm_mpc::MpcConfig> server_;
+  dynamic_reconfigure::Server<MpcConfig> server_;
 };
 
 }  // namespace ddm

@@ -4,10 +4,14 @@
 
 #include <ddm_images/image_codec.h>
 #include <ddm_model/model_file.h>
+#include <ddm_model/solver_log.h>
 #include <ddm_msgs/Plan.h>
 #include <ddm_msgs/Torque.h>
 #include <ddm_msgs/topics.h>
+#include <ddm_node/run_node.h>
 #include <ddm_node/topic_peers.h>
+#include <ddm_params/image_options.h>
+#include <ros/callback_queue.h>
 
 #include <algorithm>
 #include <chrono>
@@ -357,3 +361,30 @@ void MpcNode::abort(const std::string& reason) {
 }
 
 }  // namespace ddm
+
+namespace {
+
+const ros::WallDuration kLook(0.05);
+const ros::WallDuration kFlush(0.1);  // for the last message to leave
+
+void run(const ros::NodeHandle& nh, const ros::NodeHandle& pnh, ddm::ParamReader* params) {
+  params->ignore("image_transport");    // read by image_transport itself
+  params->ignore("diagnostic_period");  // and by diagnostic_updater
+  const auto image = params->read<ddm::ImageOptions>("image");
+  const auto mpc = params->read<ddm::MpcOptions>("mpc");
+  const auto controller = params->read<ddm::ControllerOptions>("controller");
+  params->requireValid();
+  ROS_INFO_STREAM("mpc_node runs with\n" << ddm::toYaml(mpc) << "\n" << ddm::toYaml(controller));
+  ddm::MpcNode node(nh, pnh, image.size, mpc, controller);
+  ddm::catchEndSignals();  // not before: a node that waits for a master must still end
+  while (ros::ok() && !ddm::endRequested()) ros::getGlobalCallbackQueue()->callAvailable(kLook);
+  if (node.stop()) kFlush.sleep();
+  ros::shutdown();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ddm::silenceSolverLog();
+  return ddm::runNode("mpc_node", argc, argv, run, ros::init_options::NoSigintHandler);
+}

@@ -5,6 +5,7 @@
 #include <ddm_msgs/PlanScalars.h>
 
 #include <Eigen/Core>
+#include <limits>
 
 #include "ddm_mpc/planner.h"
 
@@ -13,7 +14,23 @@ namespace ddm {
 /// Looks at the plans of a trial in turn: what one predicts, the next one finds to be so or not.
 class PlanScalars {
  public:
-  ddm_msgs::PlanScalars of(const ros::Time& stamp, const Plan& plan);
+  ddm_msgs::PlanScalars of(const ros::Time& stamp, const Plan& plan) {
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    ddm_msgs::PlanScalars out;
+    out.header.stamp = stamp;
+    out.goal_distance = out.prediction_error = kUnknown;
+    out.cost = plan.cost;
+    out.solve_time = plan.solve_time;
+    if (plan.status == PlanStatus::kFailed) {
+      forget();
+      return out;
+    }
+    const Eigen::VectorXd z = plan.features.col(0);
+    out.goal_distance = (z - plan.goal_feature).norm();
+    if (predicted_.size() > 0) out.prediction_error = (z - predicted_).norm();
+    predicted_ = plan.features.col(1);
+    return out;
+  }
 
   /// The next image is not what the last plan was for.
   void forget() { predicted_.resize(0); }

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_images/image_codec.h>
 #include <ddm_model/ddm.h>
+#include <ddm_model/per_motor.h>
 #include <ddm_msgs/RunTrialAction.h>
 #include <sensor_msgs/Image.h>
 
@@ -10,6 +12,7 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "controller_options.h"
@@ -29,7 +32,23 @@ class TrialRun {
   /// @throws std::invalid_argument if goal, model and options do not fit together
   TrialRun(const ddm_msgs::RunTrialGoal& goal, std::shared_ptr<const Ddm> model,
            const sensor_msgs::ImageConstPtr& goal_image, int image_size, const MpcOptions& mpc,
-           const ControllerOptions& controller);
+           const ControllerOptions& controller)
+      : num_steps_(goal.num_steps),
+        image_size_(image_size),
+        evaluation_(goal.evaluation != 0),
+        greedy_(makePolicy(std::move(model), image_size, mpc, controller)),
+        policy_(greedy_, explorationOf(goal, mpc, controller),
+                TrialId{goal.seed, goal.trial, evaluation_}) {
+    if (greedy_ != nullptr) greedy_->setStop([this] { return ended(); });
+    if (goal_image != nullptr) setGoal(*goal_image);
+    if (greedy_ != nullptr && !greedy_->hasGoal()) {
+      throw std::invalid_argument(
+          "there is no goal image to plan to: publish one on goal_image, or "
+          "train the model with one");
+    }
+    if (num_steps_ < 1) throw std::invalid_argument("num_steps must be >= 1, got 0");
+    if (!goal.start.isZero()) last_stamp_ = goal.start - ros::Duration(0, 1);
+  }
 
   /// @param arrival  of the image: mpc/time_budget begins there
   /// @return the decision, or nothing for an image that is not the next of this trial: one from
@@ -38,18 +57,53 @@ class TrialRun {
   ///         size or encoding differs from those before
   std::optional<Decision> decide(
       const sensor_msgs::Image& image,
-      std::chrono::steady_clock::time_point arrival = std::chrono::steady_clock::now());
+      std::chrono::steady_clock::time_point arrival = std::chrono::steady_clock::now()) {
+    if (image.header.stamp.isZero()) {
+      throw std::invalid_argument(
+          "it has no stamp, which pairs it with its torque: set it in the camera driver");
+    }
+    if (image.header.stamp <= last_stamp_) return std::nullopt;
+    const std::string camera =
+        std::to_string(image.width) + "x" + std::to_string(image.height) + " " + image.encoding;
+    if (camera_.empty()) camera_ = camera;
+    if (camera != camera_) {
+      throw std::invalid_argument("the images change from " + camera_ + " to " + camera);
+    }
+    if (greedy_ != nullptr) greedy_->setArrival(arrival);
+    Decision decision = policy_.decide(decodeImage(image, image_size_));
+    last_stamp_ = image.header.stamp;
+    return decision;
+  }
 
   /// From the next image on, plans with these, and explores with this epsilon instead of the
   /// goal's. A random trial plans nothing, and an evaluation does not explore.
-  void turn(const MpcOptions& mpc, const std::optional<double>& epsilon);
+  void turn(const MpcOptions& mpc, const std::optional<double>& epsilon) {
+    if (greedy_ == nullptr) return;
+    greedy_->setHorizon(mpc.horizon);
+    greedy_->setControlWeight(mpc.control_weight);
+    if (epsilon && !evaluation_) policy_.setEpsilon(*epsilon);
+  }
 
   /// From the next image on, plans to this goal.
   /// @throws std::invalid_argument for an image that cannot be used; nothing has changed
-  void setGoal(const sensor_msgs::Image& goal);
+  void setGoal(const sensor_msgs::Image& goal) { policy_.setGoal(decodeImage(goal, image_size_)); }
 
   /// Adds a decision that was published to the result.
-  void collect(const ros::Time& stamp, const Decision& decision);
+  void collect(const ros::Time& stamp, const Decision& decision) {
+    ++result_.num_steps;
+    result_.last = stamp;
+    result_.stamp.push_back(stamp);
+    for (Eigen::Index i = 0; i < decision.torque.size(); ++i) {
+      result_.torque.push_back(decision.torque[i]);
+    }
+    result_.exploratory.push_back(decision.exploratory);
+    if (decision.goal_distance) result_.goal_distance.push_back(*decision.goal_distance);
+    if (decision.exploratory) ++result_.num_exploratory;
+    if (!decision.plan) return;
+    result_.solve_time.push_back(decision.plan->solve_time);
+    if (decision.plan->status == PlanStatus::kFailed) ++result_.num_failed_plans;
+    if (decision.plan->status == PlanStatus::kTimeLimit) ++result_.num_cut_plans;
+  }
 
   /// No image is answered from here on. From any thread: a decide() under way ends its search, and
   /// what it returns no longer counts.
@@ -60,6 +114,31 @@ class TrialRun {
   const ddm_msgs::RunTrialResult& result() const { return result_; }
 
  private:
+  static std::shared_ptr<MpcPolicy> makePolicy(std::shared_ptr<const Ddm> model, int image_size,
+                                               const MpcOptions& mpc,
+                                               const ControllerOptions& controller) {
+    if (model == nullptr) return nullptr;
+    if (model->imageSize() != image_size || model->torqueDim() != controller.torque_dim) {
+      throw std::invalid_argument(
+          "the model has images of size " + std::to_string(model->imageSize()) + " and " +
+          std::to_string(model->torqueDim()) + " torque(s), this node has image/size " +
+          std::to_string(image_size) + " and controller/torque_dim " +
+          std::to_string(controller.torque_dim) + ": start both with the same configuration");
+    }
+    return std::make_shared<MpcPolicy>(std::move(model), mpc);
+  }
+
+  static EpsilonGreedy::Options explorationOf(const ddm_msgs::RunTrialGoal& goal,
+                                              const MpcOptions& mpc,
+                                              const ControllerOptions& controller) {
+    EpsilonGreedy::Options options;
+    options.epsilon = goal.epsilon;
+    options.bang_bang = mpc.exploration == "bang_bang";
+    options.hold_steps = static_cast<int>(goal.hold_steps);
+    options.max_torque = perMotor(mpc.max_torque, controller.torque_dim, "mpc/max_torque");
+    return options;
+  }
+
   std::uint32_t num_steps_;
   int image_size_;
   bool evaluation_;

@@ -5,6 +5,10 @@
 #include <sensor_msgs/JointState.h>
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <boost/algorithm/string/predicate.hpp>
+#include <string>
+#include <vector>
 
 #include "ddm_sim/plant.h"
 
@@ -20,6 +24,24 @@ namespace ddm {
 /// So position, then velocity, are always the plant's state.
 /// @param applied  torque of the step that led to the state                   [torqueDim() x 1]
 /// @return         without a stamp
-sensor_msgs::JointState jointStateOf(const Plant& plant, const Eigen::VectorXd& applied);
+inline sensor_msgs::JointState jointStateOf(const Plant& plant, const Eigen::VectorXd& applied) {
+  const auto toVector = [](const auto& values) {
+    return std::vector<double>(values.data(), values.data() + values.size());
+  };
+  sensor_msgs::JointState out;
+  for (const Joint& joint : plant.info().joints) out.name.push_back(joint.name);
+  const std::vector<std::string>& components = plant.info().state_names;
+  const auto rest = components.begin() + static_cast<std::ptrdiff_t>(out.name.size());
+  const bool has_rates = components.size() == 2 * out.name.size() &&
+                         std::all_of(rest, components.end(), [](const std::string& name) {
+                           return boost::algorithm::ends_with(name, "_per_s");
+                         });
+  if (!has_rates) out.name.insert(out.name.end(), rest, components.end());
+  const auto num_names = static_cast<Eigen::Index>(out.name.size());
+  out.position = toVector(plant.state().head(num_names));
+  out.velocity = toVector(plant.state().tail(plant.stateDim() - num_names));
+  if (applied.size() == num_names) out.effort = toVector(applied);
+  return out;
+}
 
 }  // namespace ddm

@@ -2,10 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_msgs/topics.h>
+#include <poll.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
+#include <termios.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <chrono>
+#include <future>
 #include <string>
 
 namespace ddm {
@@ -14,19 +20,81 @@ namespace ddm {
 class ResetRoutine {
  public:
   /// @param service  std_srvs/Trigger that brings the robot to its start; empty: a person does
-  ResetRoutine(ros::NodeHandle nh, const std::string& service);
+  ResetRoutine(ros::NodeHandle nh, const std::string& service)
+      : nh_(nh),
+        service_(service.empty() ? "" : nh.resolveName(service)),
+        done_server_(nh_.advertiseService(topics::kResetDone, &ResetRoutine::onDone, this)) {}
 
   /// Brings the robot to its start. Blocks until it is there, or until the deadline.
   /// @return what went wrong; empty: nothing
-  std::string run(const ros::SteadyTime& deadline);
+  std::string run(const ros::SteadyTime& deadline) {
+    return byService() ? callService(deadline) : askPerson(deadline);
+  }
 
   bool byService() const { return !service_.empty(); }
 
  private:
-  std::string callService(const ros::SteadyTime& deadline);
-  std::string askPerson(const ros::SteadyTime& deadline);
-  bool onDone(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  static bool timeIsLeft(const ros::SteadyTime& deadline) {
+    return ros::ok() && ros::SteadyTime::now() < deadline;
+  }
 
+  /// Waits a moment for a line on the terminal.
+  /// @return whether there is one
+  bool enterWasPressed() const {
+    pollfd terminal{STDIN_FILENO, POLLIN, 0};
+    char line[256];
+    if (::isatty(STDIN_FILENO) != 0 && ::poll(&terminal, 1, kPoll_ms) == 0) return false;
+    if ((terminal.revents & POLLIN) != 0 && ::read(STDIN_FILENO, line, sizeof(line)) > 0) {
+      return true;
+    }
+    poll_.sleep();  // no terminal, or one that has gone: it would not make us wait
+    return false;
+  }
+
+  std::string callService(const ros::SteadyTime& deadline) {
+    // Persistent, because only then does shutdown() below end a call.
+    ros::ServiceClient client = nh_.serviceClient<std_srvs::Trigger>(service_, /*persistent=*/true);
+    while (!client.exists()) {
+      if (!timeIsLeft(deadline)) return "service " + service_ + " is not offered";
+      poll_.sleep();
+      client = nh_.serviceClient<std_srvs::Trigger>(service_, /*persistent=*/true);
+    }
+    std_srvs::Trigger trigger;
+    std::future<bool> answer =
+        std::async(std::launch::async, [&client, &trigger] { return client.call(trigger); });
+    while (answer.wait_for(std::chrono::milliseconds(kPoll_ms)) != std::future_status::ready) {
+      if (timeIsLeft(deadline)) continue;
+      client.shutdown();
+      answer.wait();
+      return "service " + service_ + " does not answer";
+    }
+    if (!answer.get()) return "service " + service_ + " failed";
+    if (!trigger.response.success) return "service " + service_ + ": " + trigger.response.message;
+    return "";
+  }
+
+  std::string askPerson(const ros::SteadyTime& deadline) {
+    done_ = false;
+    asking_ = true;
+    ::tcflush(STDIN_FILENO, TCIFLUSH);  // what was typed before is no answer
+    ROS_WARN_STREAM("Bring the robot to its start. Then press Enter here, or: rosservice call "
+                    << done_server_.getService());
+    while (timeIsLeft(deadline) && !done_) {
+      if (enterWasPressed()) done_ = true;
+    }
+    asking_ = false;
+    return done_ ? "" : "nobody said that the robot is at its start";
+  }
+
+  bool onDone(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigger::Response& response) {
+    response.success = asking_;
+    response.message = asking_ ? "the trial may begin" : "nobody waits for it";
+    done_ = true;
+    return true;
+  }
+
+  static constexpr int kPoll_ms = 50;
+  const ros::WallDuration poll_{1e-3 * kPoll_ms};
   ros::NodeHandle nh_;
   std::string service_;
   std::atomic<bool> asking_{false};

@@ -5,6 +5,9 @@
 #include <ddm_msgs/option_checks.h>
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -29,12 +32,33 @@ struct PlantOptions {
   }
 
   /// Everything wrong with these values, in words a user can act on. Empty means valid.
-  std::vector<std::string> problems() const;
+  std::vector<std::string> problems() const {
+    OptionChecks plant("plant");
+    const auto each = [&plant](const std::vector<double>& numbers, const char* key,
+                               const char* rule, bool (*ok)(double)) {
+      plant.require(!numbers.empty(), key, "have at least one number", "none");
+      for (const double number : numbers) plant.require(ok(number), key, rule, number);
+    };
+    each(max_torque, "max_torque", "be > 0 and finite", isPositive);
+    // Stamps count whole nanoseconds, and no camera can keep a step below a millisecond.
+    plant.requireWithin("dt", dt, 1e-3, 10.0);
+    each(start_std, "start_std", "be >= 0 and finite", isNotNegative);
+    plant.requireWithin("picture_size", picture_size, 4, 1024);
+    return plant.problems();
+  }
 };
 
 /// A number for each of `count` components.
 /// @param name  of the option, for the message
 /// @throws std::invalid_argument if there is neither one number nor one for each
-Eigen::VectorXd forEach(const std::vector<double>& numbers, int count, const std::string& name);
+inline Eigen::VectorXd forEach(const std::vector<double>& numbers, int count,
+                               const std::string& name) {
+  if (numbers.size() == 1) return Eigen::VectorXd::Constant(count, numbers.front());
+  if (static_cast<int>(numbers.size()) == count) {
+    return Eigen::Map<const Eigen::VectorXd>(numbers.data(), count);
+  }
+  throw std::invalid_argument(name + " must be one number or a list of " + std::to_string(count) +
+                              ", got " + std::to_string(numbers.size()));
+}
 
 }  // namespace ddm

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "ddm_sim/camera.h"
 #include "ddm_sim/plant.h"
@@ -16,7 +17,10 @@ namespace ddm {
 class Rig {
  public:
   /// @throws std::invalid_argument with all problems of the options
-  Rig(std::unique_ptr<Plant> plant, const CameraOptions& camera);
+  Rig(std::unique_ptr<Plant> plant, const CameraOptions& camera)
+      : plant_(std::move(plant)),
+        camera_(camera, plant_->info().dt),
+        applied_(Eigen::VectorXd::Zero(plant_->torqueDim())) {}
 
   /// Start and goal of a run, and its first photograph, which is never lost.
   /// @param seed        seed of the experiment
@@ -25,23 +29,40 @@ class Rig {
   /// @param start       (optional) this state, digit by digit, instead of a drawn one
   /// @throws std::invalid_argument if the start is not a state; nothing has changed
   Picture reset(std::uint64_t seed, std::uint32_t trial, bool evaluation,
-                const std::optional<Eigen::VectorXd>& start = {});
+                const std::optional<Eigen::VectorXd>& start = {}) {
+    std::mt19937_64 starts = startStream(seed, trial, evaluation);
+    plant_->setState(start ? *start : plant_->drawStart(starts));
+    plant_->setGoal(goalOf(*plant_, seed, trial, evaluation));
+    camera_.begin(seed, trial, evaluation);
+    num_steps_ = 0;
+    applied_.setZero();
+    return *camera_.photograph(plant_->render(plant_->state()));
+  }
 
   /// One time step under a constant torque.
   /// @return what the camera shows now, or nothing if that frame is lost
   /// @throws as Plant::step(); nothing has changed
-  std::optional<Picture> step(const Eigen::VectorXd& torque);
+  std::optional<Picture> step(const Eigen::VectorXd& torque) {
+    applied_ = plant_->step(torque);
+    ++num_steps_;
+    return camera_.photograph(plant_->render(plant_->state()));
+  }
 
   /// Time steps under a constant torque until a frame is seen.
   /// @throws as Plant::step(), at the state that was reached
-  Picture stepUntilSeen(const Eigen::VectorXd& torque);
+  Picture stepUntilSeen(const Eigen::VectorXd& torque) {
+    for (;;) {
+      if (std::optional<Picture> picture = step(torque)) return *std::move(picture);
+    }
+  }
 
   /// The goal of this run as the camera sees it.
   Picture goalImage() { return camera_.photographGoal(plant_->render(plant_->goal())); }
 
   const Plant& plant() const { return *plant_; }
-  std::uint64_t numSteps() const { return num_steps_; }        ///< since the reset
-  double time() const;                                         ///< since the reset [s]
+  std::uint64_t numSteps() const { return num_steps_; }  ///< since the reset
+  double time() const { return static_cast<double>(num_steps_) * plant_->info().dt; }
+  ///< since the reset [s]
   const Eigen::VectorXd& applied() const { return applied_; }  ///< torque of the last step, or zero
 
  private:

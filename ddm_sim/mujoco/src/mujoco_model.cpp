@@ -11,7 +11,6 @@
 #include <stdexcept>
 
 #include "model_files.h"
-#include "urdf.h"
 
 namespace ddm {
 namespace {

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "ddm_bag_io/bag_options.h"
 #include "ddm_bag_io/bag_reader.h"
 
 namespace ddm {

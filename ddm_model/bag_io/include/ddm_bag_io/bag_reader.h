@@ -8,9 +8,23 @@
 #include <string>
 #include <vector>
 
-#include "ddm_bag_io/bag_options.h"
-
 namespace ddm {
+
+/// Block `data_set`.
+struct BagOptions {
+  std::string image_topic = "camera/image_raw";  ///< sensor_msgs/Image
+  std::string torque_topic = "torque";           ///< ddm_msgs/Torque
+  std::string goal_topic = "goal_image";         ///< sensor_msgs/Image, may be missing in the bag
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("image_topic", image_topic);
+    visitor("torque_topic", torque_topic);
+    visitor("goal_topic", goal_topic);
+  }
+  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  std::vector<std::string> problems() const;
+};
 
 /// A bag and what was found in it.
 struct BagContent {

@@ -10,7 +10,7 @@
 #include <set>
 #include <string>
 
-#include "ddm_bag_io/bag_options.h"
+#include "ddm_bag_io/bag_reader.h"
 
 namespace ddm {
 

@@ -8,7 +8,7 @@
 
 #include <string>
 
-#include "ddm_bag_io/bag_options.h"
+#include "ddm_bag_io/bag_reader.h"
 
 namespace ddm {
 
@@ -21,12 +21,26 @@ struct ModelConfig {
 };
 
 /// Reads the four blocks; call reader->requireValid() when all blocks are read.
-ModelConfig readModelConfig(ParamReader* reader);
+inline ModelConfig readModelConfig(ParamReader* reader) {
+  ModelConfig config;
+  config.image = reader->read<ImageOptions>("image");
+  config.model = reader->read<ModelOptions>("model");
+  config.training = reader->read<TrainingOptions>("training");
+  config.data_set = reader->read<BagOptions>("data_set");
+  return config;
+}
 
 /// The four blocks as a YAML tree.
-YAML::Node toYaml(const ModelConfig& config);
+inline YAML::Node toYaml(const ModelConfig& config) {
+  YAML::Node out(YAML::NodeType::Map);
+  out["image"] = toYaml(config.image);
+  out["model"] = toYaml(config.model);
+  out["training"] = toYaml(config.training);
+  out["data_set"] = toYaml(config.data_set);
+  return out;
+}
 
 /// The four blocks as YAML text, kept in each model.
-std::string toText(const ModelConfig& config);
+inline std::string toText(const ModelConfig& config) { return YAML::Dump(toYaml(config)) + "\n"; }
 
 }  // namespace ddm

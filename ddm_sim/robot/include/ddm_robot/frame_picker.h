@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <deque>
 #include <optional>
 
@@ -21,15 +23,38 @@ class FramePicker {
 
   /// To be called for each frame.
   /// @return whether to act on it; never for one that is not newer than all since restart()
-  bool pick(Stamp stamp);
+  bool pick(Stamp stamp) {
+    const bool first = !last_frame_;
+    if (!first) {
+      if (stamp <= *last_frame_) return false;
+      intervals_.push_back(toSeconds(stamp - *last_frame_));
+      if (intervals_.size() > kNumIntervals) intervals_.pop_front();
+      period_ = median(intervals_);
+    }
+    last_frame_ = stamp;
+    if (!first && toSeconds(stamp - last_pick_) < dt_ - 0.5 * period_) return false;
+    last_pick_ = stamp;
+    return true;
+  }
 
   /// The next frame will be picked, whatever its stamp.
-  void restart();
+  void restart() { last_frame_.reset(); }
 
   /// Time between frames that are picked, as far as it is known [s]; 0: not yet.
-  double step() const;
+  double step() const {
+    return period_ == 0.0 ? 0.0 : std::max(1.0, std::round(dt_ / period_)) * period_;
+  }
 
  private:
+  static constexpr std::size_t kNumIntervals = 9;
+
+  /// The lower of two middle ones.
+  static double median(std::deque<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  }
+
   double dt_;
   std::optional<Stamp> last_frame_;  // empty: none since restart()
   Stamp last_pick_{0};
