@@ -12,7 +12,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "check/kinds.h"
+#include "check/case.h"
 #include "ddm_pilco/messages.h"
 
 namespace ddm::pilco::check {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <ddm_model/minimise.h>
+#include <ddm_msgs/option_checks.h>
 
 #include <Eigen/Core>
 #include <string>
@@ -23,7 +24,13 @@ struct PolicySearchOptions {
     visitor("function_tolerance", function_tolerance);
   }
   /// Everything wrong with these values, in words a user can act on. Empty means valid.
-  std::vector<std::string> problems() const;
+  std::vector<std::string> problems() const {
+    OptionChecks search("policy_search");
+    search.requireAtLeast("max_iterations", max_iterations, 0);
+    search.requireAtLeast("max_evaluations", max_evaluations, 1);
+    search.requireFraction("function_tolerance", function_tolerance);
+    return search.problems();
+  }
 };
 
 /// Minimises J(parameters) by BFGS from `start`. A policy for which J is not finite (a predicted
@@ -31,7 +38,14 @@ struct PolicySearchOptions {
 /// @param cost   J, with its gradient
 /// @param start  parameters of the last trial's policy                                     [P]
 /// @throws std::invalid_argument if the options are invalid, or the start is empty or not finite
-Minimum searchPolicy(const DifferentiableFunction& cost, const Eigen::VectorXd& start,
-                     const PolicySearchOptions& options);
+inline Minimum searchPolicy(const DifferentiableFunction& cost, const Eigen::VectorXd& start,
+                            const PolicySearchOptions& options) {
+  requireNone(options.problems());
+  MinimiseOptions solver;
+  solver.max_iterations = options.max_iterations;
+  solver.max_evaluations = options.max_evaluations;
+  solver.function_tolerance = options.function_tolerance;
+  return minimise(cost, start, solver);
+}
 
 }  // namespace ddm::pilco

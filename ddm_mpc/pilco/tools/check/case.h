@@ -5,12 +5,17 @@
 #include <yaml-cpp/yaml.h>
 
 #include <Eigen/Core>
+#include <functional>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "ddm_pilco/gp_model.h"
+#include "ddm_pilco/gp_training.h"
+#include "ddm_pilco/rbf_policy.h"
+#include "ddm_pilco/squashed_policy.h"
 
 namespace ddm::pilco::check {
 
@@ -80,5 +85,63 @@ class Case {
   std::set<std::string> read_;
   KindResult* result_;
 };
+
+constexpr Tolerance kClosedForm = absolute(1e-12);
+
+/// What a file calls mean, covariance and gain of an output, in this order.
+struct MomentField {
+  std::string name;
+  Tolerance tolerance;
+};
+using MomentFields = std::vector<MomentField>;
+
+void compareMoments(Case* reference, const MomentFields& fields, const Moments& computed);
+
+/// Compares the derivatives of these fields in mean m and covariance of the input, where the file
+/// has them. They are vectorised by columns.
+/// @param covariance  what the file calls the covariance of the input
+/// @param backward    dJ/d outputs -> dJ/d input
+void compareJacobians(Case* reference, const MomentFields& fields, const std::string& covariance,
+                      int dim, int output_dim,
+                      const std::function<Gaussian(const Moments&)>& backward);
+
+struct GpData {
+  Eigen::MatrixXd inputs;   ///< [D x n]
+  Eigen::MatrixXd targets;  ///< [n x E]
+};
+
+/// The fields X and Y.
+GpData readGpData(Case* reference);
+
+/// Rows: log length-scales, log signal std, log noise std. One column for each output.
+Hyperparameters readHyperparameters(Case* reference, const std::string& field, const GpData& data);
+Eigen::MatrixXd toMatrix(const Hyperparameters& hyperparameters);
+
+/// @throws std::invalid_argument where `loghyp` makes the covariance lose positive definiteness
+GpModel usable(const GpFit& fit);
+
+/// The GP of the data and the field loghyp.
+GpModel readModel(Case* reference, const GpData& data);
+
+/// Compares the field loghyp_init, and trains from there.
+GpFit trainFromStart(Case* reference, const GpData& data);
+
+/// Parameters of an RBF policy from their parts.
+/// @param group  that the fields are in, with a slash
+Eigen::VectorXd readParameters(Case* reference, int dim, int controls,
+                               const std::string& group = "");
+std::unique_ptr<RbfPolicy> readRbfPolicy(Case* reference, int dim, int controls);
+
+/// Computes one case and compares all of its fields.
+using Check = void (*)(Case* reference);
+
+/// By the names that the kinds have in a file.
+const std::map<std::string, Check>& kinds();
+
+// Those of the pendulum, in pendulum_kinds.cpp.
+void checkSimulation(Case* reference);
+void checkPropagation(Case* reference);
+void checkValue(Case* reference);
+void checkAuthors(Case* reference);
 
 }  // namespace ddm::pilco::check

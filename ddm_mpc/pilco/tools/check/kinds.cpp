@@ -1,12 +1,10 @@
 // pilco_check: what is computed from the fields of each kind of cases, and how near it must come.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "check/kinds.h"
-
 #include <memory>
 #include <utility>
 #include <vector>
 
-#include "check/fields.h"
+#include "check/case.h"
 #include "ddm_pilco/gp_moments.h"
 #include "ddm_pilco/sparse_gp.h"
 #include "ddm_pilco/state_cost.h"

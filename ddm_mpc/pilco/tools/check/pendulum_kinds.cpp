@@ -5,8 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "check/fields.h"
-#include "check/kinds.h"
+#include "check/case.h"
 #include "ddm_pilco/long_term_cost.h"
 
 namespace ddm::pilco::check {
