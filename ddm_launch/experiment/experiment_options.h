@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_msgs/option_checks.h>
 #include <ddm_sim/plant_info.h>
 
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -13,7 +15,7 @@ namespace ddm {
 struct ExperimentOptions {
   std::string preset = "paper";    ///< name of the preset
   std::string plant = "pendulum";  ///< name of the plant
-  std::string method = "ddm";      ///< who learns and acts, see method.h
+  std::string method = "ddm";      ///< who learns and acts, see method_kinds.h
   int seed = 0;                    ///< fixes every random draw
   int trials = 15;                 ///< epsilon-greedy trials after the random one [-]
   std::string runs;                ///< folder for everything that the experiment leaves behind
@@ -30,7 +32,13 @@ struct ExperimentOptions {
     visitor("timeout", timeout);
   }
   /// Everything wrong with these values, in words a user can act on. Empty means valid.
-  std::vector<std::string> problems() const;
+  std::vector<std::string> problems() const {
+    OptionChecks checks("experiment");
+    checks.requireAtLeast("seed", seed, 0);
+    checks.requireWithin("trials", trials, 0, 999);
+    checks.requirePositive("timeout", timeout);
+    return checks.problems();
+  }
 };
 
 /// Block `start`: what an experiment begins with instead of nothing. Completed by prepareStart().
@@ -62,7 +70,12 @@ struct TrialOptions {
     visitor("num_steps", num_steps);
     visitor("episodes", episodes);
   }
-  std::vector<std::string> problems() const;
+  std::vector<std::string> problems() const {
+    OptionChecks checks("trial");
+    checks.requireWithin("num_steps", num_steps, 1, 1000000);
+    checks.requireWithin("episodes", episodes, 1, 1000);
+    return checks.problems();
+  }
 };
 
 /// Block `evaluation`: how long a greedy run lasts, and when it is a success.
@@ -85,7 +98,16 @@ struct EvaluationOptions {
     visitor("goal_distance", goal_distance);
     visitor("record", record);
   }
-  std::vector<std::string> problems() const;
+  std::vector<std::string> problems() const {
+    OptionChecks checks("evaluation");
+    checks.requireWithin("num_steps", num_steps, 0, 1000000);
+    checks.requireNotNegative("tolerance", tolerance);
+    checks.requireAtLeast("settled_steps", settled_steps, 1);
+    checks.require(settled_steps_strict >= settled_steps, "settled_steps_strict",
+                   "be >= evaluation/settled_steps", settled_steps_strict);
+    checks.requireNotNegative("goal_distance", goal_distance);
+    return checks.problems();
+  }
 
   int stepsWith(const TrialOptions& trial) const {
     return num_steps > 0 ? num_steps : trial.num_steps;
@@ -93,7 +115,16 @@ struct EvaluationOptions {
 
   /// Fills in what the plant says.
   /// @throws std::invalid_argument if the error of this plant has another unit
-  void complete(const PlantInfo& plant);
+  void complete(const PlantInfo& plant) {
+    if (!error_unit.empty() && error_unit != plant.error_unit) {
+      throw std::invalid_argument("evaluation/error_unit must be that of the plant, " +
+                                  plant.error_unit + ", got " + error_unit +
+                                  ": leave it out, and give evaluation/tolerance in that unit");
+    }
+    error_unit = plant.error_unit;
+    if (tolerance == 0.0) tolerance = plant.tolerance;
+    if (num_steps == 0) num_steps = plant.evaluation_steps;
+  }
 };
 
 }  // namespace ddm

@@ -4,6 +4,7 @@
 
 #include <ddm_params/param_reader.h>
 #include <ddm_params/param_value.h>
+#include <ddm_params/tool.h>
 #include <yaml-cpp/yaml.h>
 
 #include <string>
@@ -56,5 +57,22 @@ std::string nuisanceFile(const std::string& name);
 
 /// ddm_launch/config/methods/NAME.yaml: values that a method needs; empty if it has no file.
 std::string methodFile(const std::string& method);
+
+/// A value of the command line that becomes that of `key` ("block/key") if the user gives it. There
+/// are no defaults here: those are in the files.
+template <class Value>
+boost::program_options::typed_value<Value>* given(const std::string& key, Arguments* arguments) {
+  return boost::program_options::value<Value>()->notifier(
+      [key, arguments](const Value& value) { arguments->set(key, value); });
+}
+
+/// The options that choose the files of a configuration.
+/// @param about  text above the list of options
+boost::program_options::options_description configurationOptions(const std::string& about,
+                                                                 Arguments* arguments);
+
+/// The same, --seed and --out.
+boost::program_options::options_description commonOptions(const std::string& about,
+                                                          Arguments* arguments);
 
 }  // namespace ddm

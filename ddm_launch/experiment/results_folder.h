@@ -10,6 +10,12 @@
 
 namespace ddm {
 
+/// The differences with which an experiment must not go on, a line each; empty: none. What is
+/// chosen by looking at the robot (crop and goal) may change until the first trial is finished.
+/// @param there  blocks by name, with today's keys; anything that is not a block is left out
+/// @param here   likewise
+std::string differencesOf(const YAML::Node& there, const YAML::Node& here, bool trial_finished);
+
 /// Version of the package and commit that are running, "0.1.0 (1a2b3c4)".
 std::string codeVersion();
 

@@ -10,7 +10,6 @@
 #include <stdexcept>
 
 #include "csv_text.h"
-#include "run_csv.h"
 #include "trials_csv.h"
 
 namespace ddm {

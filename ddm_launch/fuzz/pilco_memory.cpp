@@ -1,8 +1,8 @@
 // Fuzz target: pilco.yaml of a trial, from which the next training goes on.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pilco/pilco_memory.h"
-
 #include <ddm_msgs/testing/fuzzing.h>
+
+#include "pilco/pilco_method.h"
 
 using ddm::testing::require;
 

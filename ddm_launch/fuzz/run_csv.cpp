@@ -1,8 +1,8 @@
 // Fuzz target: torques.csv and trajectory.csv of a run.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "run_csv.h"
-
 #include <ddm_msgs/testing/fuzzing.h>
+
+#include "csv_text.h"
 
 using ddm::testing::accepts;
 using ddm::testing::require;

@@ -1,9 +1,9 @@
 // Fuzz target: config.yaml of a folder that shall be used again.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "saved_configuration.h"
-
 #include <ddm_msgs/testing/fuzzing.h>
 #include <ddm_params/config_blocks.h>
+
+#include "results_folder.h"
 
 using ddm::testing::require;
 

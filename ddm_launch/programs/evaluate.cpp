@@ -19,11 +19,11 @@
 #include <thread>
 #include <vector>
 
-#include "command_line.h"
 #include "csv_text.h"
 #include "experiment.h"
 #include "in_process_driver.h"
 #include "method_kinds.h"
+#include "resolution.h"
 #include "start.h"
 
 namespace po = boost::program_options;

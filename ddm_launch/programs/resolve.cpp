@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "command_line.h"
 #include "configuration.h"
+#include "resolution.h"
 
 namespace ddm {
 namespace {

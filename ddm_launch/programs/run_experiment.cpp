@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "command_line.h"
 #include "experiment.h"
 #include "in_process_driver.h"
 #include "method_kinds.h"
+#include "resolution.h"
 #include "start.h"
 
 namespace po = boost::program_options;

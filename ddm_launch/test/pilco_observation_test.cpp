@@ -8,11 +8,9 @@
 #include <boost/filesystem.hpp>
 #include <cmath>
 
-#include "pilco/image_observations.h"
-#include "pilco/observation.h"
+#include "csv_text.h"
+#include "pilco/observations.h"
 #include "pilco/pilco_policy.h"
-#include "pilco/true_state_observation.h"
-#include "run_csv.h"
 #include "toy_run.h"
 
 namespace ddm {

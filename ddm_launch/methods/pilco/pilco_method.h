@@ -4,19 +4,34 @@
 
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_pilco/long_term_cost.h>
+#include <ddm_pilco/sparse_gp.h>
 #include <ddm_pilco/squashed_policy.h>
+#include <yaml-cpp/yaml.h>
 
+#include <Eigen/Core>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "configuration.h"
-#include "method.h"
-#include "observation.h"
-#include "pilco_memory.h"
-#include "pilco_options.h"
+#include "method_kinds.h"
+#include "observations.h"
 
 namespace ddm {
+
+/// Where the next training starts: the last policy and the last optimum of the GPs.
+struct PilcoMemory {
+  Eigen::VectorXd policy;     ///< parameters; empty: none yet
+  pilco::GpLearnerState gps;  ///< empty: none yet
+};
+
+/// As keys that writeMemory() adds and readMemory() takes, all digits kept.
+void writeMemory(const PilcoMemory& memory, YAML::Node* out);
+
+/// @param text    YAML that holds those keys
+/// @param source  file, for messages
+/// @throws std::runtime_error with source and fault
+PilcoMemory readMemory(const std::string& text, const std::string& source);
 
 /// After each trial: GPs of the dynamics from all data, then the policy that minimises the expected
 /// cost over the horizon (Deisenroth and Rasmussen, 2011, Alg. 1). Training k goes on from the

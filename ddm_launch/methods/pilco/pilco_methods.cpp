@@ -5,10 +5,9 @@
 #include <memory>
 
 #include "configuration.h"
-#include "image_observations.h"
 #include "method_kinds.h"
+#include "observations.h"
 #include "pilco_method.h"
-#include "true_state_observation.h"
 
 namespace ddm {
 namespace {

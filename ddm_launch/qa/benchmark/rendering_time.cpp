@@ -1,19 +1,20 @@
 // rendering_time PLANT...: how long pictures take, those for the learner and those for people.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_params/param_reader.h>
+#include <ddm_params/tool.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ddm_sim/plant_factory.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
-#include <exception>
 #include <functional>
 #include <memory>
 #include <random>
+#include <stdexcept>
 #include <vector>
+
+#include "evaluation.h"
 
 namespace ddm {
 namespace {
@@ -32,11 +33,6 @@ Times timesOf(const std::function<void()>& work) {
   work();
   const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - begin;
   return {wall.count(), 1e3 * static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC};
-}
-
-double quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
 /// Prints a row: the first picture, with all that is made for it, then the others.
@@ -68,16 +64,15 @@ void measurePlant(const char* name) {
 }  // namespace ddm
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    std::fprintf(stderr, "usage: rosrun ddm_launch rendering_time PLANT...\n");
-    return 2;
-  }
-  try {
-    std::printf("plant,picture,median_ms,p99_ms,cpu_median_ms,first_ms\n");
-    for (int i = 1; i < argc; ++i) ddm::measurePlant(argv[i]);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "rendering_time: %s\n", e.what());
-    return EXIT_FAILURE;
-  }
-  return EXIT_SUCCESS;
+  return ddm::runTool(
+      "rendering_time",
+      [&] {
+        if (argc < 2)
+          throw std::invalid_argument("usage: rosrun ddm_launch rendering_time PLANT...");
+        return true;
+      },
+      [&] {
+        std::printf("plant,picture,median_ms,p99_ms,cpu_median_ms,first_ms\n");
+        for (int i = 1; i < argc; ++i) ddm::measurePlant(argv[i]);
+      });
 }

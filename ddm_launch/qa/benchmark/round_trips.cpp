@@ -1,19 +1,22 @@
 // round_trips: what times the loop, and two nodes that only send its messages to and fro. ~role is
 // `lockstep`, `camera` or `controller`. SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_files/plain_file.h>
 #include <ddm_images/image_codec.h>
 #include <ddm_msgs/Torque.h>
 #include <ddm_msgs/topics.h>
+#include <ddm_params/param_value.h>
 #include <ros/ros.h>
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/JointState.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <mutex>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "interval_log.h"
+#include "evaluation.h"
 #include "ros_driver.h"
 
 namespace {
@@ -23,8 +26,38 @@ constexpr int kQueue = 1000;
 constexpr double kTimeout = 30.0;  // [s]
 const ros::TransportHints kNoDelay = ros::TransportHints().tcpNoDelay();
 
+/// Events may be heard of several at a time, so an interval is the mean over kEvents of them.
+class IntervalLog {
+ public:
+  static constexpr int kEvents = 100;
+
+  /// An event is now. The first kEvents do not count: connections and caches are new.
+  void tick() {
+    if (++num_events_ % kEvents != 0) return;
+    const auto now = std::chrono::steady_clock::now();
+    const std::chrono::duration<double, std::micro> interval = now - last_;
+    if (num_events_ > kEvents) intervals_us_.push_back(interval.count() / kEvents);
+    last_ = now;
+  }
+  int numEvents() const { return num_events_; }
+
+  /// `{median_us: ..., p99_us: ...}`, which appears at once and whole.
+  /// @throws std::runtime_error if there is nothing to tell, or the file cannot be written
+  void write(const std::string& path) const {
+    if (intervals_us_.empty()) throw std::runtime_error("no round trip was timed");
+    ddm::writeFileAtomically(
+        path, "{median_us: " + ddm::formatDouble(ddm::quantile(intervals_us_, 0.5)) +
+                  ", p99_us: " + ddm::formatDouble(ddm::quantile(intervals_us_, 0.99)) + "}\n");
+  }
+
+ private:
+  int num_events_ = 0;
+  std::chrono::steady_clock::time_point last_;
+  std::vector<double> intervals_us_;
+};
+
 /// Has the real nodes run one random trial, and times frame after frame.
-void timeLockstep(const ros::NodeHandle& nh, int num_events, ddm::IntervalLog* log) {
+void timeLockstep(const ros::NodeHandle& nh, int num_events, IntervalLog* log) {
   ros::AsyncSpinner spinner(1);
   spinner.start();
   std::mutex mutex;
@@ -45,7 +78,7 @@ void timeLockstep(const ros::NodeHandle& nh, int num_events, ddm::IntervalLog* l
 }
 
 /// Publishes an image as soon as the last one has its torque, and times that.
-void timeBareCamera(ros::NodeHandle* nh, int num_events, ddm::IntervalLog* log) {
+void timeBareCamera(ros::NodeHandle* nh, int num_events, IntervalLog* log) {
   const std::vector<std::uint8_t> grey(kImageSize * kImageSize, 100);
   const ros::Publisher images = nh->advertise<sensor_msgs::Image>(ddm::topics::kImage, kQueue);
   ros::Time stamp(1, 0);
@@ -86,8 +119,8 @@ void run() {
   ros::NodeHandle private_nh("~");
   const std::string role = private_nh.param<std::string>("role", "lockstep");
   if (role == "controller") return answer(&nh);
-  const int num_events = private_nh.param("num_frames", 3000) + ddm::IntervalLog::kEvents;
-  ddm::IntervalLog log;
+  const int num_events = private_nh.param("num_frames", 3000) + IntervalLog::kEvents;
+  IntervalLog log;
   if (role == "camera") {
     timeBareCamera(&nh, num_events, &log);
   } else {

@@ -15,14 +15,14 @@
 #include <string>
 #include <vector>
 
-#include "closed_loop.h"
-#include "command_line.h"
 #include "csv_text.h"
 #include "experiment.h"
+#include "in_process_driver.h"
 #include "method_kinds.h"
 #include "prediction_options.h"
 #include "progress.h"
 #include "quadratic_fit.h"
+#include "resolution.h"
 #include "results_folder.h"
 
 namespace ddm {

@@ -1,0 +1,201 @@
+// What PILCO takes for the state: the seam between its mathematics and true state or images.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ddm_model/data_set.h>
+#include <ddm_model/ddm.h>
+#include <ddm_model/pca.h>
+#include <ddm_mpc/policy.h>
+#include <ddm_msgs/option_checks.h>
+#include <ddm_pilco/gp_training.h>
+#include <ddm_pilco/moments.h>
+#include <ddm_pilco/policy_search.h>
+#include <ddm_pilco/sparse_gp.h>
+#include <ddm_pilco/state_cost.h>
+#include <ddm_sim/plant.h>
+
+#include <Eigen/Core>
+#include <map>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "configuration.h"
+#include "driver.h"
+
+namespace ddm {
+
+/// Block `pilco`: the task, and what the policy looks like. Defaults are those of the published
+/// runs.
+struct PilcoOptions {
+  int horizon = 125;               ///< H, predicted steps [-]
+  int num_centres = 30;            ///< of the RBF policy [-]
+  double cost_width = 0.5;         ///< of the saturating cost, in units of the spread [-]
+  double start_std = 0.1;          ///< images: spread of the start, in units of the spread [-]
+  double rate_noise = 0.1;         ///< true state: measurement noise, standard deviation [rad/s]
+  double angle_noise = 0.01;       ///< the same [rad]
+  bool noisy_policy_input = true;  ///< predictions count with the noise that the policy will see
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("horizon", horizon);
+    visitor("num_centres", num_centres);
+    visitor("cost_width", cost_width);
+    visitor("start_std", start_std);
+    visitor("rate_noise", rate_noise);
+    visitor("angle_noise", angle_noise);
+    visitor("noisy_policy_input", noisy_policy_input);
+  }
+  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  std::vector<std::string> problems() const {
+    OptionChecks pilco("pilco");
+    pilco.requireWithin("horizon", horizon, 1, 100000);
+    pilco.requireWithin("num_centres", num_centres, 1, 1000);
+    pilco.requirePositive("cost_width", cost_width);
+    pilco.requireNotNegative("start_std", start_std);
+    pilco.requireNotNegative("rate_noise", rate_noise);
+    pilco.requireNotNegative("angle_noise", angle_noise);
+    return pilco.problems();
+  }
+};
+
+/// All blocks that PILCO alone reads.
+struct PilcoConfig {
+  PilcoOptions pilco;
+  pilco::GpTrainingOptions gp;
+  pilco::SparseGpOptions sparse_gp;
+  pilco::PolicySearchOptions policy_search;
+};
+
+/// What is to be learned, in the coordinates of an observation.
+struct PilcoTask {
+  std::vector<int> angles;               ///< entries that are angles [rad]
+  pilco::Gaussian start;                 ///< p(x_0)
+  pilco::StateCost cost;                 ///< c
+  Eigen::VectorXd policy_length_scales;  ///< of the first policy, one for each of its inputs
+};
+
+/// Turns what happens into the state x that PILCO learns from and acts on.
+class Observation {
+ public:
+  virtual ~Observation() = default;
+
+  /// Names of the entries of x with their units, as the headers of CSV files have them.
+  virtual std::vector<std::string> names() const = 0;
+
+  /// Learns to observe, where there is something to learn, and observes all that is recorded.
+  /// @param bags  of all trials, the random one first
+  /// @param data  what they hold
+  /// @return      x of each frame of `data`                                 [names().size() x N]
+  /// @throws std::runtime_error naming what is missing or failed
+  virtual Eigen::MatrixXd learn(const std::vector<std::string>& bags, const DataSet& data,
+                                const TrialId& id) = 0;
+
+  /// The coordinates of x are the same after each learn(): what was learned in them stays true.
+  virtual bool keepsCoordinates() const = 0;
+
+  /// After learn().
+  virtual PilcoTask task() const = 0;
+
+  /// What learn() leaves to be kept: content by name of a file.
+  virtual std::map<std::string, std::string> files() const { return {}; }
+
+  virtual void startTrial(const TrialId& id) = 0;
+
+  /// Called once for each frame of a trial, in turn.
+  /// @param grey  the image just seen
+  /// @return      x
+  virtual Eigen::VectorXd observe(const Grey& grey) = 0;
+};
+
+/// x = (rate, angle) + noise of a pendulum, the angle not wrapped. The only code where the true
+/// state meets a policy.
+///
+/// The noise of a trial is a stream of its own, so that learning from a recorded trial meets the
+/// very measurements that the policy acted on in it.
+class TrueStateObservation : public Observation {
+ public:
+  /// @param plant  the one that is controlled, outlives the observation
+  /// @throws std::invalid_argument if the plant is not one joint with angle and rate, or if its
+  ///         goal is not upright, at pi
+  TrueStateObservation(const Plant& plant, const PilcoOptions& options);
+
+  std::vector<std::string> names() const override;
+  /// Reads trajectory.csv beside each bag: bags hold no true state.
+  Eigen::MatrixXd learn(const std::vector<std::string>& bags, const DataSet& data,
+                        const TrialId& id) override;
+  bool keepsCoordinates() const override { return true; }
+  PilcoTask task() const override;
+  void startTrial(const TrialId& id) override;
+  Eigen::VectorXd observe(const Grey& grey) override;
+
+ private:
+  Eigen::VectorXd measure(const Eigen::VectorXd& state);
+
+  const Plant& plant_;
+  PilcoOptions options_;
+  std::mt19937_64 noise_;
+};
+
+/// Goal: that of the goal image. Spread: root of the mean squared distance to the mean of all
+/// frames (the length of a pendulum, if x were the tip of one that turns all the way round).
+///
+///   c(x) = 1 - exp(-|x - goal|^2 / (2 (cost_width spread)^2))
+///   p(x_0): mean and scatter of the first frames of all trials, counted together with one more
+///           frame at the distance start_std * spread
+///
+/// @param X     x of all frames                                                         [D x N]
+/// @param goal  x of the goal image                                                         [D]
+/// @throws std::runtime_error if all frames are the same
+PilcoTask imageTask(const Eigen::MatrixXd& X, const std::vector<Piece>& pieces,
+                    const Eigen::VectorXd& goal, const PilcoOptions& options);
+
+/// Learned anew from all data after each trial, so its coordinates change.
+class ImageObservation : public Observation {
+ public:
+  ImageObservation(const ModelConfig& model, const PilcoOptions& options)
+      : config_(model), options_(options) {}
+
+  bool keepsCoordinates() const override { return false; }
+  PilcoTask task() const override { return *task_; }
+  void startTrial(const TrialId& /*id*/) override {}
+
+ protected:
+  ModelConfig config_;
+  PilcoOptions options_;
+  std::optional<PilcoTask> task_;  ///< learn() sets it
+};
+
+/// x = z = g^-1(y), 2-D features of one image. The auto-encoder minimises V_R alone
+/// (training/schedule v_r_only).
+class FeatureObservation : public ImageObservation {
+ public:
+  /// @throws std::invalid_argument if training/schedule trains more than the auto-encoder
+  FeatureObservation(const ModelConfig& model, const PilcoOptions& options);
+
+  std::vector<std::string> names() const override;
+  Eigen::MatrixXd learn(const std::vector<std::string>& bags, const DataSet& data,
+                        const TrialId& id) override;
+  std::map<std::string, std::string> files() const override;
+  Eigen::VectorXd observe(const Grey& grey) override { return model_->encode(grey); }
+
+ private:
+  std::optional<Ddm> model_;
+};
+
+/// x = PCA scores of one image, model/pca_dim of them (paper, Sec. 4.2: 20).
+class PcaObservation : public ImageObservation {
+ public:
+  using ImageObservation::ImageObservation;
+
+  std::vector<std::string> names() const override;
+  Eigen::MatrixXd learn(const std::vector<std::string>& bags, const DataSet& data,
+                        const TrialId& id) override;
+  Eigen::VectorXd observe(const Grey& grey) override { return pca_.project(grey).cast<double>(); }
+
+ private:
+  Pca pca_;
+};
+
+}  // namespace ddm
