@@ -13,10 +13,10 @@ DdmPlanCost::DdmPlanCost(const Ddm& model, int horizon, double control_weight,
                          std::optional<TimeToGoal> time_to_goal)
     : f_(model.predictionModel()),
       theta_p_(model.thetaP()),
-      control_weight_(control_weight),
       time_to_goal_(std::move(time_to_goal)),
       roll_out_(f_) {
   setHorizon(horizon);
+  setControlWeight(control_weight);
 }
 
 void DdmPlanCost::setHorizon(int horizon) {
@@ -24,6 +24,11 @@ void DdmPlanCost::setHorizon(int horizon) {
   horizon_ = horizon;
   roll_out_.reserve(/*num_targets=*/1, horizon);
   torques_.setZero(f_.torqueDim(), f_.order() - 1 + horizon);
+}
+
+void DdmPlanCost::setControlWeight(double control_weight) {
+  price_.setConstant(f_.torqueDim(), control_weight);
+  if (time_to_goal_) price_ /= f_.maxTorque().array().square();
 }
 
 void DdmPlanCost::setGoal(const Eigen::VectorXd& goal_feature) {
@@ -73,7 +78,7 @@ double DdmPlanCost::stepCost(int step, Eigen::VectorXd* gradient) const {
 double DdmPlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) {
   eigen_assert(U.rows() == f_.torqueDim() && U.cols() == horizon_);
   rollOut(U, horizon_);
-  double cost = control_weight_ * U.squaredNorm();
+  double cost = (price_ * U.rowwise().squaredNorm().array()).sum();
   for (int step = 0; step < horizon_; ++step) cost += stepCost(step, nullptr);
   Eigen::VectorXd d_last, d_before;
   if (time_to_goal_) {
@@ -83,7 +88,7 @@ double DdmPlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::
   if (d_U == nullptr) return cost;
 
   d_torques_.setZero(torques_.rows(), torques_.cols());
-  d_torques_.rightCols(horizon_) = 2.0 * control_weight_ * U;
+  d_torques_.rightCols(horizon_) = 2.0 * price_.matrix().asDiagonal() * U;
   for (int step = 0; step < horizon_; ++step) roll_out_.dPredicted(step).setZero();
   if (time_to_goal_) {
     roll_out_.dPredicted(horizon_ - 1) += d_last;

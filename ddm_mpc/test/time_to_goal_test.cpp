@@ -20,10 +20,10 @@ constexpr double kStep = 0.1;  // what a torque of 1 N m moves a feature by
 /// Two features, each pushed by a motor of its own: z_{t+1} = z_t + kStep u_t. Its landmarks are at
 /// these features, at rest and moving by a step in each direction.
 /// @param places  [2 x N]
-Ddm pushedModel(const Eigen::MatrixXd& places) {
+Ddm pushedModel(const Eigen::MatrixXd& places, const std::vector<double>& max_torque = {1.0}) {
   RandomModelOptions options;
   options.torque_dim = 2;
-  options.model.max_torque = {1.0};
+  options.model.max_torque = max_torque;
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2, 8);  // h = z_t, u_t, z_{t-1}, u_{t-1}
   A.leftCols(2).setIdentity();
   A.middleCols(2, 2) = kStep * Eigen::Matrix2d::Identity();
@@ -157,6 +157,21 @@ TEST_F(PlansWithTimeToGoal, TheGradientMatchesFiniteDifferences) {
     return value;
   };
   EXPECT_TRUE(testing::gradientMatches(f, 0.3 * testing::randomMatrix(2 * kHorizon, 1, 3), 1e-5));
+}
+
+TEST(PlanWithTimeToGoal, PricesEachTorqueByItsShareOfTheLargest) {
+  const Eigen::Vector2d max_torque(2.0, 0.5);
+  const Ddm model = pushedModel(horseshoe(), {2.0, 0.5});
+  History x(2, 2, 2);
+  x.observe(Eigen::Vector2d(0.5, 0.0));
+  Eigen::MatrixXd U(2, 1);
+  U << 1.0, 0.5;  // half of what there is, and all
+  const auto costOf = [&](double control_weight) {
+    DdmPlanCost cost(model, 1, control_weight, TimeToGoal(model, max_torque));
+    cost.setProblem(x, Eigen::Vector2d(0.1, 0.0));
+    return cost.evaluate(U, nullptr);
+  };
+  EXPECT_NEAR(costOf(0.3) - costOf(0.0), 0.3 * (0.25 + 1.0), 1e-12);
 }
 
 TEST_F(PlansWithTimeToGoal, TheProposalLeadsOnAndIsHeldForTwoSteps) {

@@ -20,7 +20,7 @@ namespace ddm {
 ///
 /// or, with a TimeToGoal, with its cost of a step and what is left to go after the last one:
 ///
-///   J(U) = sum_{k=1}^{K} away(z_k) + lambda |u_{k-1}|^2 + V(x_K)
+///   J(U) = sum_{k=1}^{K} away(z_k) + lambda |u_{k-1} / max_torque|^2 + V(x_K)
 ///
 /// The offset is what recent predictions were wrong by (0 in the paper): the same error in every
 /// step, as offset-free model predictive control assumes it (Pannocchia and Rawlings, AIChE J.
@@ -29,14 +29,14 @@ class DdmPlanCost : public PlanCost {
  public:
   /// @param model           outlives the cost
   /// @param horizon         K, steps
-  /// @param control_weight  lambda [(N m)^-2]
+  /// @param control_weight  lambda [(N m)^-2], with a TimeToGoal [-]
   DdmPlanCost(const Ddm& model, int horizon, double control_weight,
               std::optional<TimeToGoal> time_to_goal = std::nullopt);
 
   /// Other values for the plans to come; setProblem comes first.
   /// @throws std::invalid_argument if the horizon is < 1
   void setHorizon(int horizon);
-  void setControlWeight(double control_weight) { control_weight_ = control_weight; }
+  void setControlWeight(double control_weight);
 
   /// The feature to plan to. Takes a while with a TimeToGoal, unless it is the last one.
   /// @throws std::invalid_argument for a wrong size
@@ -68,7 +68,7 @@ class DdmPlanCost : public PlanCost {
   const PredictionModel<double>& f_;
   const double* theta_p_;
   int horizon_ = 0;
-  double control_weight_;
+  Eigen::ArrayXd price_;  // of a squared torque, by motor [(N m)^-2]
   std::optional<TimeToGoal> time_to_goal_;
   Eigen::VectorXd goal_feature_;
   Eigen::VectorXd offset_;
