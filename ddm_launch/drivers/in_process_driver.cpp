@@ -3,27 +3,16 @@
 #include "in_process_driver.h"
 
 #include <ddm_bag_io/bag_writer.h>
-#include <ddm_images/image_codec.h>
-#include <ddm_model/per_motor.h>
 #include <ddm_msgs/Torque.h>
 #include <ddm_sim/plant_factory.h>
 
-#include <cmath>
 #include <stdexcept>
-#include <string>
-#include <utility>
 
+#include "closed_loop.h"
 #include "method_kinds.h"
 
 namespace ddm {
 namespace {
-
-/// Stamp of a frame of a trial that begins at one second, like sim_node's first.
-ros::Time stampOf(const Rig& rig) {
-  const auto step_ns = static_cast<std::uint64_t>(std::llround(rig.plant().info().dt * 1e9));
-  return ros::Time(1, 0) +
-         ros::Duration().fromNSec(static_cast<std::int64_t>(rig.numSteps() * step_ns));
-}
 
 /// An image and the torque that answers it.
 void write(const sensor_msgs::Image& image, const Decision& decision, BagWriter* bag) {
@@ -36,34 +25,6 @@ void write(const sensor_msgs::Image& image, const Decision& decision, BagWriter*
 }
 
 }  // namespace
-
-void runClosedLoop(Rig* rig, EpsilonGreedy* policy, const TrialId& id, int image_size,
-                   int num_frames, const TakeFrame& take) {
-  Picture picture = rig->reset(id.seed, id.trial, id.evaluation);
-  policy->setGoal(decodeImage(imageMessage(rig->goalImage(), stampOf(*rig)), image_size));
-  const std::string optical_frame = opticalFrame(rig->plant().cameraModel());
-  ClosedLoopFrame frame;
-  for (frame.index = 0; frame.index < num_frames; ++frame.index) {
-    if (frame.index > 0) picture = rig->stepUntilSeen(frame.decision.torque);
-    frame.image = imageMessage(picture, stampOf(*rig), optical_frame);
-    frame.grey = decodeImage(frame.image, image_size);
-    frame.decision = policy->decide(frame.grey);
-    take(frame);
-  }
-}
-
-void runClosedLoop(Rig* rig, std::shared_ptr<Policy> policy, const TrialRequest& request,
-                   const Configuration& configuration, const TakeFrame& take) {
-  EpsilonGreedy::Options options;
-  options.epsilon = request.epsilon;
-  options.bang_bang = configuration.mpc.exploration == "bang_bang";
-  options.hold_steps = request.hold_steps;
-  options.max_torque =
-      perMotor(configuration.mpc.max_torque, rig->plant().torqueDim(), "mpc/max_torque");
-  EpsilonGreedy explorer(request.epsilon < 1.0 ? std::move(policy) : nullptr, options, request.id);
-  runClosedLoop(rig, &explorer, request.id, configuration.model.image.size, request.num_steps,
-                take);
-}
 
 InProcessDriver::InProcessDriver(const Configuration& configuration)
     : configuration_(configuration),

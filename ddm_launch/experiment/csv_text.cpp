@@ -1,4 +1,4 @@
-// Lines and cells of CSV files, and those of a run: torques.csv and trajectory.csv.
+// Lines and cells of CSV files.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "csv_text.h"
 
@@ -6,39 +6,12 @@
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
-#include <boost/format.hpp>
 #include <boost/lexical_cast.hpp>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
 
 namespace ddm {
-namespace {
-
-std::string torquesHeader(const std::vector<std::string>& names) {
-  return csvLine("step", names, "exploratory");
-}
-
-std::string trajectoryHeader(const std::vector<std::string>& names) {
-  return csvLine("step", "time_s", names);
-}
-
-void requireStep(const std::string& cell, std::size_t step) {
-  if (cell == std::to_string(step)) return;
-  throw std::runtime_error("must be step " + std::to_string(step) + ", got " + cell);
-}
-
-/// The numbers in some cells of a row.
-Eigen::VectorXd numbersOf(const std::vector<std::string>& cells, std::size_t begin,
-                          std::size_t count) {
-  Eigen::VectorXd numbers(static_cast<Eigen::Index>(count));
-  for (std::size_t i = 0; i < count; ++i) {
-    numbers[static_cast<Eigen::Index>(i)] = csvNumber(cells[begin + i]);
-  }
-  return numbers;
-}
-
-}  // namespace
 
 std::string csvCell(double value) { return formatDouble(value); }
 
@@ -95,48 +68,6 @@ std::vector<std::string> featureNames(int feature_dim, const std::string& name) 
   std::vector<std::string> names;
   for (int i = 1; i <= feature_dim; ++i) names.push_back(name + "_" + std::to_string(i));
   return names;
-}
-
-std::string formatTorquesCsv(const TorqueRows& rows, const std::vector<std::string>& names) {
-  std::string text = torquesHeader(names);
-  for (std::size_t step = 0; step < rows.torques.size(); ++step) {
-    text += csvLine(step, rows.torques[step], bool(rows.exploratory[step]));
-  }
-  return text;
-}
-
-TorqueRows parseTorquesCsv(const std::string& text, const std::vector<std::string>& names,
-                           const std::string& source) {
-  TorqueRows rows;
-  parseCsv(text, torquesHeader(names), source, [&](const std::vector<std::string>& cells) {
-    requireStep(cells[0], rows.torques.size());
-    rows.torques.push_back(numbersOf(cells, 1, names.size()));
-    rows.exploratory.push_back(csvFlag(cells.back()));
-  });
-  return rows;
-}
-
-std::string formatTrajectoryCsv(const std::vector<double>& times,
-                                const std::vector<Eigen::VectorXd>& states,
-                                const std::vector<std::string>& names) {
-  std::string text = trajectoryHeader(names);
-  for (std::size_t step = 0; step < states.size(); ++step) {
-    const std::string time = boost::str(boost::format("%.9g") % times[step]);
-    text += csvLine(step, time, states[step]);
-  }
-  return text;
-}
-
-Eigen::MatrixXd parseTrajectoryCsv(const std::string& text, const std::vector<std::string>& names,
-                                   const std::string& source) {
-  Eigen::MatrixXd states(static_cast<Eigen::Index>(names.size()), 0);
-  parseCsv(text, trajectoryHeader(names), source, [&](const std::vector<std::string>& cells) {
-    requireStep(cells[0], static_cast<std::size_t>(states.cols()));
-    csvNumber(cells[1]);
-    states.conservativeResize(Eigen::NoChange, states.cols() + 1);
-    states.rightCols(1) = numbersOf(cells, 2, names.size());
-  });
-  return states;
 }
 
 }  // namespace ddm

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "csv_text.h"
+#include "run_csv.h"
 #include "trials_csv.h"
 
 namespace ddm {

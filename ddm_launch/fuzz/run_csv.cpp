@@ -1,8 +1,8 @@
 // Fuzz target: torques.csv and trajectory.csv of a run.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_msgs/testing/fuzzing.h>
+#include "run_csv.h"
 
-#include "csv_text.h"
+#include <ddm_msgs/testing/fuzzing.h>
 
 using ddm::testing::accepts;
 using ddm::testing::require;

@@ -16,10 +16,11 @@
 #include <string>
 #include <vector>
 
+#include "closed_loop.h"
 #include "configuration.h"
 #include "csv_text.h"
 #include "experiment.h"
-#include "in_process_driver.h"
+#include "run_csv.h"
 #include "start.h"
 
 namespace ddm {

@@ -1,13 +1,13 @@
 // Tests of the closed loop in one process: which goal the policy is shown.
 // SPDX-License-Identifier: BSD-3-Clause
+#include "closed_loop.h"
+
 #include <ddm_sim/testing/toy_plant.h>
 #include <gtest/gtest.h>
 
 #include <memory>
 #include <random>
 #include <vector>
-
-#include "in_process_driver.h"
 
 namespace ddm {
 namespace {

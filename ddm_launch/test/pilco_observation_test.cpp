@@ -8,9 +8,9 @@
 #include <boost/filesystem.hpp>
 #include <cmath>
 
-#include "csv_text.h"
 #include "pilco/observations.h"
 #include "pilco/pilco_policy.h"
+#include "run_csv.h"
 #include "toy_run.h"
 
 namespace ddm {

@@ -1,11 +1,11 @@
 // Tests of torques.csv and trajectory.csv: what is written is read back, what is damaged is refused.
 // SPDX-License-Identifier: BSD-3-Clause
+#include "run_csv.h"
+
 #include <ddm_msgs/testing/expect_error.h>
 #include <gtest/gtest.h>
 
 #include <utility>
-
-#include "csv_text.h"
 
 namespace ddm {
 namespace {

@@ -5,9 +5,7 @@
 #include <actionlib_msgs/GoalID.h>
 #include <ddm_images/image_codec.h>
 #include <ddm_msgs/topics.h>
-#include <ddm_node/run_node.h>
 #include <ddm_node/topic_peers.h>
-#include <ddm_params/image_options.h>
 #include <std_msgs/Float64.h>
 #include <std_msgs/UInt32.h>
 
@@ -373,31 +371,3 @@ void RobotNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
 }
 
 }  // namespace ddm
-
-namespace {
-
-const ros::WallDuration kLook(0.05);
-const ros::WallDuration kFlush(0.1);  // for the last message to leave
-
-void run(const ros::NodeHandle& nh, const ros::NodeHandle& pnh, ddm::ParamReader* params) {
-  ddm::catchEndSignals();
-  params->ignore("image_transport");    // read by image_transport itself
-  params->ignore("diagnostic_period");  // read by diagnostic_updater itself
-  const auto image = params->read<ddm::ImageOptions>("image");
-  const auto robot = params->read<ddm::RobotOptions>("robot");
-  params->requireValid();
-  ROS_INFO_STREAM("robot_node runs with\n" << ddm::toYaml(robot));
-  ddm::RobotNode node(nh, pnh, image.size, robot);
-  ros::AsyncSpinner spinner(4);  // a reset waits in one of them
-  spinner.start();
-  while (ros::ok() && !ddm::endRequested()) kLook.sleep();
-  node.stopMotors("this node ends");
-  kFlush.sleep();
-  ros::shutdown();  // a reset that waits gives up, so that the spinner can end
-}
-
-}  // namespace
-
-int main(int argc, char** argv) {
-  return ddm::runNode("robot_node", argc, argv, run, ros::init_options::NoSigintHandler);
-}

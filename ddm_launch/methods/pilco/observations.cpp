@@ -15,6 +15,7 @@
 #include <stdexcept>
 
 #include "csv_text.h"
+#include "run_csv.h"
 
 namespace ddm {
 namespace {

@@ -6,11 +6,7 @@
 #include <ddm_model/ddm.h>
 #include <ddm_model/pca.h>
 #include <ddm_mpc/policy.h>
-#include <ddm_msgs/option_checks.h>
-#include <ddm_pilco/gp_training.h>
 #include <ddm_pilco/moments.h>
-#include <ddm_pilco/policy_search.h>
-#include <ddm_pilco/sparse_gp.h>
 #include <ddm_pilco/state_cost.h>
 #include <ddm_sim/plant.h>
 
@@ -23,50 +19,9 @@
 
 #include "configuration.h"
 #include "driver.h"
+#include "pilco_options.h"
 
 namespace ddm {
-
-/// Block `pilco`: the task, and what the policy looks like. Defaults are those of the published
-/// runs.
-struct PilcoOptions {
-  int horizon = 125;               ///< H, predicted steps [-]
-  int num_centres = 30;            ///< of the RBF policy [-]
-  double cost_width = 0.5;         ///< of the saturating cost, in units of the spread [-]
-  double start_std = 0.1;          ///< images: spread of the start, in units of the spread [-]
-  double rate_noise = 0.1;         ///< true state: measurement noise, standard deviation [rad/s]
-  double angle_noise = 0.01;       ///< the same [rad]
-  bool noisy_policy_input = true;  ///< predictions count with the noise that the policy will see
-
-  template <class Visitor>
-  void visit(Visitor& visitor) {
-    visitor("horizon", horizon);
-    visitor("num_centres", num_centres);
-    visitor("cost_width", cost_width);
-    visitor("start_std", start_std);
-    visitor("rate_noise", rate_noise);
-    visitor("angle_noise", angle_noise);
-    visitor("noisy_policy_input", noisy_policy_input);
-  }
-  /// Everything wrong with these values, in words a user can act on. Empty means valid.
-  std::vector<std::string> problems() const {
-    OptionChecks pilco("pilco");
-    pilco.requireWithin("horizon", horizon, 1, 100000);
-    pilco.requireWithin("num_centres", num_centres, 1, 1000);
-    pilco.requirePositive("cost_width", cost_width);
-    pilco.requireNotNegative("start_std", start_std);
-    pilco.requireNotNegative("rate_noise", rate_noise);
-    pilco.requireNotNegative("angle_noise", angle_noise);
-    return pilco.problems();
-  }
-};
-
-/// All blocks that PILCO alone reads.
-struct PilcoConfig {
-  PilcoOptions pilco;
-  pilco::GpTrainingOptions gp;
-  pilco::SparseGpOptions sparse_gp;
-  pilco::PolicySearchOptions policy_search;
-};
 
 /// What is to be learned, in the coordinates of an observation.
 struct PilcoTask {

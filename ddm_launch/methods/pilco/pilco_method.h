@@ -14,8 +14,9 @@
 #include <vector>
 
 #include "configuration.h"
-#include "method_kinds.h"
+#include "method.h"
 #include "observations.h"
+#include "pilco_options.h"
 
 namespace ddm {
 

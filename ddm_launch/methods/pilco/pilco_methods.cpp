@@ -8,6 +8,7 @@
 #include "method_kinds.h"
 #include "observations.h"
 #include "pilco_method.h"
+#include "pilco_options.h"
 
 namespace ddm {
 namespace {

@@ -20,8 +20,8 @@
 #include <string>
 #include <vector>
 
+#include "closed_loop.h"
 #include "evaluation.h"
-#include "in_process_driver.h"
 
 namespace ddm {
 namespace {

@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
+#include "closed_loop.h"
 #include "csv_text.h"
 #include "experiment.h"
-#include "in_process_driver.h"
 #include "method_kinds.h"
 #include "prediction_options.h"
 #include "progress.h"

@@ -1,0 +1,34 @@
+// robot_node: parameters, then the node.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_node/run_node.h>
+#include <ddm_params/image_options.h>
+
+#include "robot_node.h"
+
+namespace {
+
+const ros::WallDuration kLook(0.05);
+const ros::WallDuration kFlush(0.1);  // for the last message to leave
+
+void run(const ros::NodeHandle& nh, const ros::NodeHandle& pnh, ddm::ParamReader* params) {
+  ddm::catchEndSignals();
+  params->ignore("image_transport");    // read by image_transport itself
+  params->ignore("diagnostic_period");  // read by diagnostic_updater itself
+  const auto image = params->read<ddm::ImageOptions>("image");
+  const auto robot = params->read<ddm::RobotOptions>("robot");
+  params->requireValid();
+  ROS_INFO_STREAM("robot_node runs with\n" << ddm::toYaml(robot));
+  ddm::RobotNode node(nh, pnh, image.size, robot);
+  ros::AsyncSpinner spinner(4);  // a reset waits in one of them
+  spinner.start();
+  while (ros::ok() && !ddm::endRequested()) kLook.sleep();
+  node.stopMotors("this node ends");
+  kFlush.sleep();
+  ros::shutdown();  // a reset that waits gives up, so that the spinner can end
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return ddm::runNode("robot_node", argc, argv, run, ros::init_options::NoSigintHandler);
+}
