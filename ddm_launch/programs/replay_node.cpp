@@ -7,11 +7,11 @@
 #include <ddm_images/image_codec.h>
 #include <ddm_msgs/RunTrialAction.h>
 #include <ddm_msgs/Torque.h>
-#include <ddm_msgs/option_checks.h>
 #include <ddm_msgs/topics.h>
 #include <ddm_node/run_node.h>
 #include <ddm_node/topic_peers.h>
 #include <ddm_node/waiting.h>
+#include <ddm_params/option_checks.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
 

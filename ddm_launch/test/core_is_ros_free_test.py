@@ -19,7 +19,7 @@ CORES = {"ddm_files": ("ddm_msgs", "files/include", "files/src"),
 if "pilco:=OFF" in sys.argv:
     del CORES["ddm_pilco"]
 ROS_INCLUDE = re.compile(
-    r'^\s*#\s*include\s*[<"](?!ddm_msgs/(?:option_checks|random_stream)\.h)((?:ros|xmlrpcpp|\w+_msgs|actionlib|cv_bridge|image_transport|dynamic_reconfigure'
+    r'^\s*#\s*include\s*[<"](?!ddm_msgs/random_stream\.h)((?:ros|xmlrpcpp|\w+_msgs|actionlib|cv_bridge|image_transport|dynamic_reconfigure'
     r'|diagnostic_updater|nodelet|pluginlib|class_loader|tf2?(?:_ros)?|ros\w+|ddm_bag_io'
     r'|ddm_images|ddm_node|ddm_plant_plugin)/[^>"]+)', re.MULTILINE)
 ROS_LIBRARY = re.compile(
@@ -76,11 +76,18 @@ class CoreIsRosFreeTest(unittest.TestCase):
                 self.assertEqual(rosIncludes(path), [], path)
 
     def test_headers_of_ddm_msgs_that_cores_may_include_include_the_standard_library_alone(self):
-        for name in ("option_checks.h", "random_stream.h"):
-            header = os.path.join(rospkg.RosPack().get_path("ddm_msgs"), "include", "ddm_msgs", name)
+        for name in ("include/ddm_msgs/random_stream.h", "params/include/ddm_params/option_checks.h"):
+            header = os.path.join(rospkg.RosPack().get_path("ddm_msgs"), name)
             with open(header) as stream:
                 for include in re.findall(r"#include (.+)", stream.read()):
                     self.assertRegex(include, "^<[a-z]+>$", name)
+
+    def test_cores_include_of_ddm_params_only_the_header_that_needs_no_library(self):
+        for library in set(CORES) - {"ddm_params"}:
+            for path in sourceFiles(library):
+                with open(path) as stream:
+                    used = set(re.findall(r'#include [<"](ddm_params/[^>"]+)', stream.read()))
+                self.assertLessEqual(used, {"ddm_params/option_checks.h"}, path)
 
     def test_cores_link_no_library_of_ros(self):
         for name in CORES:

@@ -3,7 +3,7 @@
 #include "ddm_mpc/mpc_options.h"
 
 #include <ddm_model/per_motor.h>
-#include <ddm_msgs/option_checks.h>
+#include <ddm_params/option_checks.h>
 
 namespace ddm {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_msgs/option_checks.h>
+#include <ddm_params/option_checks.h>
 #include <ddm_pilco/gp_training.h>
 #include <ddm_pilco/policy_search.h>
 #include <ddm_pilco/sparse_gp.h>

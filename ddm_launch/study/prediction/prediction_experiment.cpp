@@ -4,7 +4,7 @@
 #include <ddm_model/model_file.h>
 #include <ddm_model/solver_log.h>
 #include <ddm_model/trainer.h>
-#include <ddm_msgs/option_checks.h>
+#include <ddm_params/option_checks.h>
 #include <ddm_params/param_value.h>
 #include <ddm_sim/plant_factory.h>
 #include <ddm_sim/rig.h>

@@ -4,7 +4,7 @@
 
 #include <ddm_files/plain_file.h>
 #include <ddm_msgs/message_bytes.h>
-#include <ddm_msgs/option_checks.h>
+#include <ddm_params/option_checks.h>
 
 #include <boost/algorithm/string/join.hpp>
 #include <boost/algorithm/string/predicate.hpp>

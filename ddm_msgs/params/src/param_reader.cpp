@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_params/param_reader.h"
 
-#include <ddm_msgs/option_checks.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -13,6 +11,7 @@
 #include <utility>
 
 #include "ddm_params/config_blocks.h"
+#include "ddm_params/option_checks.h"
 #include "ddm_params/yaml_text.h"
 
 namespace ddm {

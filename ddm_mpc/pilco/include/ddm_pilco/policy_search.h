@@ -3,7 +3,7 @@
 #pragma once
 
 #include <ddm_model/minimise.h>
-#include <ddm_msgs/option_checks.h>
+#include <ddm_params/option_checks.h>
 
 #include <Eigen/Core>
 #include <string>
