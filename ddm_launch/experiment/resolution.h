@@ -58,8 +58,8 @@ std::string nuisanceFile(const std::string& name);
 /// ddm_launch/config/methods/NAME.yaml: values that a method needs; empty if it has no file.
 std::string methodFile(const std::string& method);
 
-/// A value of the command line that becomes that of `key` ("block/key") if the user gives it. There
-/// are no defaults here: those are in the files.
+/// A command line option whose value overrides `key` ("block/key"). It has no default: the
+/// configuration files hold the defaults.
 template <class Value>
 boost::program_options::typed_value<Value>* given(const std::string& key, Arguments* arguments) {
   return boost::program_options::value<Value>()->notifier(

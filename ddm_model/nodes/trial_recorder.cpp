@@ -110,13 +110,22 @@ bool TrialRecorder::complete(const ddm_msgs::StopRecording::Request& request) co
 /// Why the bag is not that of the trial; empty: it is.
 std::string TrialRecorder::shortcoming(const ddm_msgs::StopRecording::Request& request) const {
   if (request.num_steps == 0) return "";
-  if (!hasGoal(request)) return "the goal image of the trial did not come";
   std::ostringstream text;
-  if (!complete(request)) {
+  if (!hasGoal(request)) {
+    text << "no goal image with stamp " << request.goal << " came on " << goal_sub_.getTopic()
+         << " within recorder/timeout = " << options_.timeout << " s, ";
+    if (goal_ == nullptr) {
+      text << "nor any other";
+    } else {
+      text << "the last one has stamp " << goal_->header.stamp;
+    }
+    text << ": publish it with the stamp that reset answers";
+  } else if (!complete(request)) {
     text << "of " << request.num_steps << " images and torques that are due, the bag holds "
          << bag_->images().size() << " and " << bag_->torques().size() << ", and "
-         << bag_->numFrames()
-         << " pairs of them; whether a torque acted on the others was not reported";
+         << bag_->numFrames() << " pairs of them after recorder/timeout = " << options_.timeout
+         << " s; whether a torque acted on the others was not reported: publish "
+         << torque_sub_.getTopic() << " for each image";
   } else if (bag_->numFrames() == 0) {
     text << "no torque acted in time: there is nothing to learn from in " << bag_->images().size()
          << " images";
@@ -128,7 +137,7 @@ bool TrialRecorder::stop(ddm_msgs::StopRecording::Request& request,
                          ddm_msgs::StopRecording::Response& response) {
   std::unique_lock<std::mutex> lock(mutex_);
   if (bag_ == nullptr) {
-    response.message = "nothing is being recorded";
+    response.message = "nothing is being recorded: call start_recording first";
     return true;
   }
   // Other services run while this one waits: afterwards the recording may be another one.

@@ -9,6 +9,31 @@
 #include "ddm_model/roll_out.h"
 
 namespace ddm {
+namespace {
+
+constexpr char kRemedy[] = "; train it again";
+
+void requireSize(const std::string& number, Eigen::Index size, Eigen::Index due) {
+  if (size == due) return;
+  throw std::invalid_argument("model: the number of " + number + " must be " + std::to_string(due) +
+                              ", got " + std::to_string(size) + kRemedy);
+}
+
+template <class Values>
+void requireFinite(const std::string& name, const Values& values) {
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    if (std::isfinite(values.data()[i])) continue;
+    throw std::invalid_argument("model: " + name + " must be finite, number " + std::to_string(i) +
+                                " is " + std::to_string(values.data()[i]) + kRemedy);
+  }
+}
+
+/// [rows x columns], for messages.
+std::string shape(Eigen::Index rows, Eigen::Index cols) {
+  return "[" + std::to_string(rows) + " x " + std::to_string(cols) + "]";
+}
+
+}  // namespace
 
 Ddm::Ddm(ModelOptions options, int image_size, int torque_dim, Pca pca, Eigen::VectorXd theta,
          Grey goal, ModelInfo info)
@@ -20,19 +45,24 @@ Ddm::Ddm(ModelOptions options, int image_size, int torque_dim, Pca pca, Eigen::V
       goal_(std::move(goal)),
       info_(std::move(info)) {
   const Eigen::Index num_pixels = static_cast<Eigen::Index>(image_size_) * image_size_;
-  if (pca_.mean.size() != num_pixels || pca_.basis.rows() != num_pixels ||
-      pca_.basis.cols() != options_.pca_dim || theta_.size() != networks_.numParams() ||
-      (!goal_.empty() && static_cast<Eigen::Index>(goal_.size()) != num_pixels)) {
-    throw std::invalid_argument("model: sizes of PCA, parameters or goal image do not fit");
+  requireSize("pixels of the mean image", pca_.mean.size(), num_pixels);
+  requireSize("rows of the PCA basis", pca_.basis.rows(), num_pixels);
+  requireSize("columns of the PCA basis", pca_.basis.cols(), options_.pca_dim);
+  requireSize("parameters", theta_.size(), networks_.numParams());
+  if (hasGoal()) {
+    requireSize("pixels of the goal image", static_cast<Eigen::Index>(goal_.size()), num_pixels);
   }
-  if (!theta_.allFinite() || !pca_.basis.allFinite() || !pca_.mean.allFinite() ||
-      !pca_.variance.allFinite() || !(pca_.scale > 0.0F) || !std::isfinite(pca_.scale)) {
-    throw std::invalid_argument("model: holds values that are not finite");
+  requireFinite("parameters", theta_);
+  requireFinite("PCA basis", pca_.basis);
+  requireFinite("mean image", pca_.mean);
+  requireFinite("PCA variances", pca_.variance);
+  if (!(pca_.scale > 0.0F) || !std::isfinite(pca_.scale)) {
+    throw std::invalid_argument("model: the scale of PCA must be > 0 and finite, got " +
+                                std::to_string(pca_.scale) + kRemedy);
   }
   if (hasGoal()) goal_feature_ = encode(goal_);
-  if (!goal_feature_.allFinite()) {  // finite parameters may be too large to compute with
-    throw std::invalid_argument("model: the feature of its goal image is not finite");
-  }
+  // Finite parameters may be too large to compute with.
+  requireFinite("feature of the goal image", goal_feature_);
 }
 
 Eigen::VectorXd Ddm::encode(const Grey& grey) const {
@@ -62,9 +92,14 @@ Grey Ddm::decode(const Eigen::VectorXd& z) const {
 Eigen::VectorXd Ddm::predict(const History& x, const Eigen::VectorXd& u) const {
   const PredictionModel<double>& f = predictionModel();
   const Eigen::Index n = f.order();
-  if (x.empty() || x.features().rows() != f.featureDim() || x.features().cols() != n ||
+  if (x.empty()) throw std::invalid_argument("prediction: the history is empty: observe() first");
+  if (x.features().rows() != f.featureDim() || x.features().cols() != n ||
       x.torques().rows() != f.torqueDim() || u.size() != f.torqueDim()) {
-    throw std::invalid_argument("prediction: history or torque do not fit the model");
+    throw std::invalid_argument(
+        "prediction: the model takes features " + shape(f.featureDim(), n) + ", torques " +
+        shape(f.torqueDim(), n - 1) + " and " + std::to_string(f.torqueDim()) +
+        " new torque(s), got " + shape(x.features().rows(), x.features().cols()) + ", " +
+        shape(x.torques().rows(), x.torques().cols()) + " and " + std::to_string(u.size()));
   }
   Eigen::MatrixXd torques(f.torqueDim(), n);
   torques.leftCols(n - 1) = x.torques().rowwise().reverse();
@@ -78,7 +113,10 @@ Eigen::MatrixXd Ddm::rollOut(const Eigen::MatrixXd& Z,
   const PredictionModel<double>& f = predictionModel();
   const Eigen::Index n = f.order();
   if (Z.rows() != f.featureDim() || torques.rows() != f.torqueDim() || torques.cols() != Z.cols()) {
-    throw std::invalid_argument("roll-out: features or torques do not fit the model");
+    throw std::invalid_argument(
+        "roll-out: the model takes features " + shape(f.featureDim(), Z.cols()) + " and torques " +
+        shape(f.torqueDim(), Z.cols()) + ", got " + shape(Z.rows(), Z.cols()) + " and " +
+        shape(torques.rows(), torques.cols()));
   }
   if (num_steps < 0 || frame < n - 1 || frame >= Z.cols() || frame + num_steps > Z.cols()) {
     throw std::invalid_argument("roll-out: frame " + std::to_string(frame) + " needs " +

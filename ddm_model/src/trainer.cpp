@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <string>
 
 #include "ddm_model/initialisation.h"
@@ -81,7 +82,11 @@ bool runStages(const Schedule& schedule, const TrainingOptions& training,
       return false;
     }
     if (!minimum.improved()) {
-      result->message = "training did not lower the objective: " + minimum.message;
+      std::ostringstream text;
+      text << "training did not lower the objective: stage " << i + 1 << " of " << num_stages
+           << " stays at " << minimum.initial_cost << " (" << minimum.message
+           << "); check the bags, or leave the block training at its defaults";
+      result->message = text.str();
       return false;
     }
   }

@@ -75,17 +75,18 @@ TEST_F(BagDamage, SizesAreComparedWithWhatIsThereBeforeMemoryIsTaken) {
     return damaged;
   };
   writeBytes(with(std::string("\x09\0\0\0size=", 9), 0xffffffffU));
-  EXPECT_TRUE(isRefused({"more than 268435456 bytes"}));
+  EXPECT_TRUE(isRefused({"announces 4294967295 bytes", "at most 268435456"}));
   writeBytes(with(std::string("\x09\0\0\0size=", 9), 0x0fffffffU));
   EXPECT_TRUE(isRefused({"announces 268435455"}));
   writeBytes(with("#ROSBAG V2.0\n", 0xffffffffU));
   EXPECT_TRUE(isRefused({"4294967295 bytes", "byte 17"}));
   writeBytes(with("index_pos=", 0xffffffffU));
-  EXPECT_TRUE(isRefused({"index", " file"}));
+  EXPECT_TRUE(isRefused(
+      {"index at byte 4294967295", "end of the file at " + std::to_string(bytes.size())}));
   writeBytes(with("index_pos=", 0));
   EXPECT_TRUE(isRefused({"not closed", "rosbag reindex"}));
   writeBytes(with("chunk_count=", 1000));
-  EXPECT_TRUE(isRefused({"index", "complete"}));
+  EXPECT_TRUE(isRefused({"announces 3 connections and 1000 chunks", "index lists 3 and 1"}));
 }
 
 TEST_F(BagDamage, EachCompressionIsReadAndItsDamageNoticed) {
@@ -116,6 +117,39 @@ TEST_F(BagDamage, EachCompressionIsReadAndItsDamageNoticed) {
     }
     EXPECT_GE(noticed, compression == rosbag::compression::LZ4 ? 12 : 9);
   }
+}
+
+TEST_F(BagDamage, RecordsThatMakeNoSenseAreNamed) {
+  {
+    rosbag::Bag bag(path_, rosbag::bagmode::Write);  // uncompressed: no checksum
+    bag.write("camera/image_raw", ros::Time(1.0), imageMessage(1.0, toyImage(0.5)));
+    bag.write("torque", ros::Time(1.0), torqueMessage(1.0, {2.0}));
+  }
+  const std::string bytes = readFile(path_);
+  const auto with = [&bytes](size_t at, char value) {
+    std::string damaged = bytes;
+    damaged[at] = value;
+    return damaged;
+  };
+  const size_t message = bytes.find("op=\x02");
+  const size_t chunk = bytes.find("op=\x05");
+  const size_t in_index = bytes.rfind("op=");
+  ASSERT_LT(message, in_index);
+  ASSERT_LT(chunk, message);
+  writeBytes(with(message + 3, 77));
+  EXPECT_TRUE(isRefused({"in a chunk has the unknown op 77", "copy"}));
+  writeBytes(with(chunk + 3, 77));
+  EXPECT_TRUE(isRefused({"among its chunks has the unknown op 77", "copy"}));
+  writeBytes(with(in_index + 3, 77));
+  EXPECT_TRUE(isRefused({"in its index has the unknown op 77", "copy"}));
+  writeBytes(with(chunk + 3, 4));  // the chunk passes for an index, which is skipped
+  EXPECT_TRUE(isRefused({"announces 1 chunks, it holds 0", "copy"}));
+  writeBytes(with(bytes.rfind("conn=", message) + 5, 77));
+  EXPECT_TRUE(isRefused({"connection 77", "its index does not list", "copy"}));
+  writeBytes(with(bytes.find("compression=none") + 12, 'x'));
+  EXPECT_TRUE(isRefused({"compression 'xone'", "none, lz4 and bz2", "copy"}));
+  writeBytes(with(bytes.find("size=", chunk) + 5, 1));
+  EXPECT_TRUE(isRefused({"it announces ", "copy"}));
 }
 
 TEST_F(BagDamage, WhatIsNoBagIsRefused) {

@@ -93,33 +93,42 @@ TEST(Ddm, RefusesAnImageOfAnotherSize) {
 }
 
 TEST(Ddm, RefusesPartsThatDoNotFit) {
-  const auto refuses = [](const std::function<void(Parts*)>& spoil) {
+  const auto refuses = [](const std::function<void(Parts*)>& spoil, const std::string& fault) {
     Parts parts;
     spoil(&parts);
-    return throwsNaming<std::invalid_argument>([&] { parts.model(); }, {"sizes", "goal image"});
+    return throwsNaming<std::invalid_argument>([&] { parts.model(); }, {fault, "train it again"});
   };
   EXPECT_NO_THROW(Parts().model());
-  EXPECT_TRUE(refuses([](Parts* parts) { parts->image_size = 9; }));
-  EXPECT_TRUE(refuses([](Parts* parts) { parts->torque_dim = 2; }));
-  EXPECT_TRUE(refuses([](Parts* parts) { parts->options.feature_dim = 3; }));
-  EXPECT_TRUE(refuses([](Parts* parts) { parts->options.pca_dim = 5; }));
-  EXPECT_TRUE(refuses([](Parts* parts) { parts->pca.mean.conservativeResize(63); }));
-  EXPECT_TRUE(refuses([](Parts* parts) { parts->theta.conservativeResize(10); }));
-  EXPECT_TRUE(refuses([](Parts* parts) { parts->goal.pop_back(); }));
+  EXPECT_TRUE(refuses([](Parts* parts) { parts->image_size = 9; },
+                      "pixels of the mean image must be 81, got 64"));
+  EXPECT_TRUE(refuses([](Parts* parts) { parts->torque_dim = 2; }, "number of parameters"));
+  EXPECT_TRUE(refuses([](Parts* parts) { parts->options.feature_dim = 3; }, "parameters"));
+  EXPECT_TRUE(refuses([](Parts* parts) { parts->options.pca_dim = 5; },
+                      "columns of the PCA basis must be 5, got "));
+  EXPECT_TRUE(refuses([](Parts* parts) { parts->pca.mean.conservativeResize(63); },
+                      "mean image must be 64, got 63"));
+  EXPECT_TRUE(refuses([](Parts* parts) { parts->theta.conservativeResize(10); }, ", got 10"));
+  EXPECT_TRUE(refuses([](Parts* parts) { parts->goal.pop_back(); },
+                      "pixels of the goal image must be 64, got 63"));
 }
 
 TEST(Ddm, RefusesValuesThatAreNotFinite) {
-  const auto refuses = [](const std::function<void(Parts*)>& spoil) {
+  const auto refuses = [](const std::function<void(Parts*)>& spoil, const std::string& fault) {
     Parts parts;
     spoil(&parts);
-    return throwsNaming<std::invalid_argument>([&] { parts.model(); }, {"not finite"});
+    return throwsNaming<std::invalid_argument>([&] { parts.model(); }, {fault, "train it again"});
   };
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_TRUE(refuses([&](Parts* parts) { parts->theta[5] = nan; }));
-  EXPECT_TRUE(refuses([&](Parts* parts) { parts->pca.mean[5] = nan; }));
-  EXPECT_TRUE(refuses([&](Parts* parts) { parts->pca.basis(3, 3) = nan; }));
-  EXPECT_TRUE(refuses([&](Parts* parts) { parts->pca.scale = nan; }));
-  EXPECT_TRUE(refuses([&](Parts* parts) { parts->pca.scale = 0.0F; }));
+  EXPECT_TRUE(refuses([&](Parts* parts) { parts->theta[5] = nan; },
+                      "parameters must be finite, number 5 is nan"));
+  EXPECT_TRUE(refuses([&](Parts* parts) { parts->pca.mean[5] = nan; },
+                      "mean image must be finite, number 5"));
+  EXPECT_TRUE(
+      refuses([&](Parts* parts) { parts->pca.basis(3, 3) = nan; }, "PCA basis must be finite"));
+  EXPECT_TRUE(refuses([&](Parts* parts) { parts->pca.scale = nan; },
+                      "scale of PCA must be > 0 and finite"));
+  EXPECT_TRUE(refuses([&](Parts* parts) { parts->pca.scale = 0.0F; },
+                      "scale of PCA must be > 0 and finite, got 0"));
 }
 
 }  // namespace

@@ -67,13 +67,17 @@ TEST(Predict, IsTheFirstStepOfARollOut) {
   const DataSet data = testing::toyTrial(6, 1);
   const Eigen::MatrixXd Z = encodeAll(model, data);
   History x(2, model.featureDim(), 1);
-  EXPECT_THROW(model.predict(x, data.torques().col(0)), std::invalid_argument);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { model.predict(x, data.torques().col(0)); },
+                                                  {"history is empty", "observe()"}));
   for (Eigen::Index t = 0; t < 4; ++t) {
     if (t > 0) x.apply(data.torques().col(t - 1));
     x.observe(Z.col(t));
   }
   EXPECT_TRUE(model.predict(x, data.torques().col(3))
                   .isApprox(model.rollOut(Z, data.torques(), 3, 1).col(1), 1e-14));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [&] { model.predict(x, Eigen::Vector2d::Zero()); },
+      {"features [2 x 2], torques [1 x 1] and 1 new torque(s)", "and 2"}));
   EXPECT_FALSE(model.predict(x, data.torques().col(2))
                    .isApprox(model.rollOut(Z, data.torques(), 3, 1).col(1), 1e-6));
 }
@@ -99,7 +103,8 @@ TEST(RollOut, ReachesFromTheFirstPossibleFrameToTheLast) {
   EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { model.rollOut(Z, data.torques(), 0, 1); },
                                                   {"frame 0", "1 frames before"}));
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { model.rollOut(Z.leftCols(9), data.torques(), 1, 1); }, {"roll-out", "features"}));
+      [&] { model.rollOut(Z.leftCols(9), data.torques(), 1, 1); },
+      {"features [2 x 9] and torques [1 x 9], got [2 x 9] and [1 x 10]"}));
 }
 
 TEST(PredictionErrors, AreTheRootMeanSquareOverAllPredictionsAndPixels) {

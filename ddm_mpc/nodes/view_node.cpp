@@ -47,9 +47,9 @@ void requireDrawable(const ddm_msgs::Plan& plan) {
   }
 }
 
-/// Publishes `prediction_image`, `feature_space_image` and `feature_space_markers`, at most ten
-/// times a second each and only while somebody looks. Whatever cannot be shown is left out with a
-/// warning: a picture is no reason to end.
+/// Publishes `prediction_image`, `feature_space_image` and `feature_space_markers`, each at most ten
+/// times a second and only while it has a subscriber. If something cannot be shown, the node warns,
+/// leaves it out and goes on.
 class ViewNode {
  public:
   /// @param image_size  size that images are brought to, the model's

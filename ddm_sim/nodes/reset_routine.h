@@ -55,7 +55,10 @@ class ResetRoutine {
     // Persistent, because only then does shutdown() below end a call.
     ros::ServiceClient client = nh_.serviceClient<std_srvs::Trigger>(service_, /*persistent=*/true);
     while (!client.exists()) {
-      if (!timeIsLeft(deadline)) return "service " + service_ + " is not offered";
+      if (!timeIsLeft(deadline)) {
+        return "service " + service_ +
+               " is not offered: start its node, or correct robot/reset_service";
+      }
       poll_.sleep();
       client = nh_.serviceClient<std_srvs::Trigger>(service_, /*persistent=*/true);
     }
@@ -66,29 +69,39 @@ class ResetRoutine {
       if (timeIsLeft(deadline)) continue;
       client.shutdown();
       answer.wait();
-      return "service " + service_ + " does not answer";
+      return "service " + service_ +
+             " does not answer: look at its node, or set a longer robot/reset_timeout";
     }
-    if (!answer.get()) return "service " + service_ + " failed";
-    if (!trigger.response.success) return "service " + service_ + ": " + trigger.response.message;
-    return "";
+    if (!answer.get()) {
+      return "service " + service_ + " ended without an answer: look at the output of its node";
+    }
+    if (trigger.response.success) return "";
+    if (trigger.response.message.empty()) {
+      return "service " + service_ + " failed without a message: look at the output of its node";
+    }
+    return "service " + service_ + ": " + trigger.response.message;
   }
 
   std::string askPerson(const ros::SteadyTime& deadline) {
     done_ = false;
     asking_ = true;
-    ::tcflush(STDIN_FILENO, TCIFLUSH);  // what was typed before is no answer
+    ::tcflush(STDIN_FILENO, TCIFLUSH);  // ignore lines typed before the question
     ROS_WARN_STREAM("Bring the robot to its start. Then press Enter here, or: rosservice call "
                     << done_server_.getService());
     while (timeIsLeft(deadline) && !done_) {
       if (enterWasPressed()) done_ = true;
     }
     asking_ = false;
-    return done_ ? "" : "nobody said that the robot is at its start";
+    if (done_) return "";
+    return "nobody said in time that the robot is at its start: press Enter at the terminal of "
+           "robot_node or call " +
+           done_server_.getService() + ", or set a longer robot/reset_timeout";
   }
 
   bool onDone(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigger::Response& response) {
     response.success = asking_;
-    response.message = asking_ ? "the trial may begin" : "nobody waits for it";
+    response.message =
+        asking_ ? "the trial may begin" : "no reset waits for the robot: begin a trial first";
     done_ = true;
     return true;
   }

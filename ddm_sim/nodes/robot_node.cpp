@@ -270,7 +270,7 @@ bool RobotNode::onReset(ddm_msgs::Reset::Request& /*request*/,
                         ddm_msgs::Reset::Response& response) {
   const std::unique_lock<std::mutex> only(one_reset_, std::try_to_lock);
   if (!only) {
-    response.message = "another reset is under way";
+    response.message = "another reset is under way: wait for its end";
     return true;
   }
   const ros::SteadyTime deadline =

@@ -65,6 +65,11 @@ class RobotResetTest(RobotCase):
         os.write(ours, b"\n")
         self.assertTrue(answer().success)
 
+    def test_a_start_that_nobody_confirms_is_named_with_the_remedy(self):
+        robot = self.start("_robot/reset_timeout:=1.5")
+        wait_until(lambda: robot.takeGoal().success, "a camera")
+        self.assertRegex(robot.reset()().message, "nobody .*Enter .*/reset_done, .*robot/reset_timeout")
+
     def test_the_service_of_the_user_has_the_motor_to_itself(self):
         robot = self.start("_robot/reset_service:=go_home", "_robot/reset_timeout:=3.0")
         wait_until(lambda: robot.takeGoal().success, "a camera")
@@ -87,8 +92,11 @@ class RobotResetTest(RobotCase):
         robot = self.start("_robot/reset_service:=go_home", "_robot/reset_timeout:=1.5")
         self.assertIn("take_goal", robot.reset()().message)
         self.assertTrue(robot.takeGoal().success)
-        self.assertRegex(robot.reset()().message, "/go_home .*offered")
-        self.offer("go_home", lambda _: TriggerResponse(success=False, message="the arm is stuck"))
+        self.assertRegex(robot.reset()().message, "/go_home .*offered.*robot/reset_service")
+        reasons = [""]
+        self.offer("go_home", lambda _: TriggerResponse(success=False, message=reasons[0]))
+        wait_until(lambda: "/go_home failed without a message" in robot.reset()().message, "the failure")
+        reasons[0] = "the arm is stuck"
         wait_until(lambda: "the arm is stuck" in robot.reset()().message, "the reason")
         robot.camera.age_s = 5.0
         wait_until(lambda: "machine" in robot.reset()().message, "the reason")

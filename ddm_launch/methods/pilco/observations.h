@@ -77,7 +77,7 @@ class TrueStateObservation : public Observation {
   TrueStateObservation(const Plant& plant, const PilcoOptions& options);
 
   std::vector<std::string> names() const override;
-  /// Reads trajectory.csv beside each bag: bags hold no true state.
+  /// Reads the true state from trajectory.csv next to each bag. Bags do not contain it.
   Eigen::MatrixXd learn(const std::vector<std::string>& bags, const DataSet& data,
                         const TrialId& id) override;
   bool keepsCoordinates() const override { return true; }

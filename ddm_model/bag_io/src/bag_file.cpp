@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
 #include <sstream>
 #include <stdexcept>
 
@@ -99,6 +100,10 @@ class Fields {
     return numberOf<Number>(text(name));
   }
   Kind kind() const { return static_cast<Kind>(number<std::uint8_t>("op")); }
+  [[noreturn]] void refuseKind(const std::string& place) const {
+    refuse("a record " + place + " has the unknown op " +
+           std::to_string(number<std::uint8_t>("op")));
+  }
 
  private:
   std::map<std::string, std::string> fields_;
@@ -116,23 +121,22 @@ constexpr std::size_t kBz2Piece = 65536;
 
 std::string fromLz4(std::string data, std::uint32_t size) {
   if (size > kLz4Ratio * data.size()) {
-    throw std::runtime_error("a chunk of " + std::to_string(data.size()) +
-                             " bytes of LZ4 announces " + std::to_string(size));
+    refuse("a chunk of " + std::to_string(data.size()) + " bytes of LZ4 announces " +
+           std::to_string(size));
   }
   std::string out(size, '\0');
   unsigned written = size;
   const int result =
       roslz4_buffToBuffDecompress(&data[0], static_cast<unsigned>(data.size()), &out[0], &written);
-  if (result != ROSLZ4_OK || written != size) throw std::runtime_error("a chunk of LZ4 is damaged");
+  if (result != ROSLZ4_OK || written != size) refuse("a chunk of LZ4 is damaged");
   return out;
 }
 
-/// Little can stand for much in BZ2, so memory is taken as it is filled.
+/// A few bytes of BZ2 may stand for many, so memory is taken as it is filled.
+/// @throws std::bad_alloc without enough of it
 std::string fromBz2(std::string data, std::uint32_t size) {
   bz_stream stream{};
-  if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) {
-    throw std::runtime_error("there is no memory for a chunk of BZ2");
-  }
+  if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) throw std::bad_alloc();
   stream.next_in = &data[0];
   stream.avail_in = static_cast<unsigned>(data.size());
   std::string out;
@@ -156,7 +160,7 @@ std::string fromBz2(std::string data, std::uint32_t size) {
   }
   const bool whole = result == BZ_STREAM_END && stream.avail_in == 0;
   BZ2_bzDecompressEnd(&stream);
-  if (!whole || out.size() != size) throw std::runtime_error("a chunk of BZ2 is damaged");
+  if (!whole || out.size() != size) refuse("a chunk of BZ2 is damaged");
   return out;
 }
 
@@ -167,14 +171,18 @@ std::string fromBz2(std::string data, std::uint32_t size) {
 std::string decompressChunk(const std::string& compression, const std::string& data,
                             std::uint32_t size) {
   if (size > kMaxChunk) {
-    throw std::runtime_error("a chunk has more than " + std::to_string(kMaxChunk) + " bytes");
+    refuse("a chunk announces " + std::to_string(size) + " bytes, at most " +
+           std::to_string(kMaxChunk) + " are allowed");
   }
   if (compression == "lz4") return fromLz4(data, size);
   if (compression == "bz2") return fromBz2(data, size);
   if (compression != "none") {
-    throw std::runtime_error("a chunk has an unknown compression '" + compression + "'");
+    refuse("a chunk has the compression '" + compression + "', known are none, lz4 and bz2");
   }
-  if (data.size() != size) throw std::runtime_error("a chunk has another size than it announces");
+  if (data.size() != size) {
+    refuse("a chunk has " + std::to_string(data.size()) + " bytes, it announces " +
+           std::to_string(size));
+  }
   return data;
 }
 
@@ -195,7 +203,11 @@ BagFile::BagFile(std::istream* in) : in_(in) {
   index_ = header.number<std::uint64_t>("index_pos");
   num_chunks_ = header.number<std::uint32_t>("chunk_count");
   if (index_ == 0) throw std::runtime_error("was not closed; run `rosbag reindex` on it");
-  if (index_ < first_ || index_ > size_) refuse("its index is not in the file");
+  if (index_ < first_ || index_ > size_) {
+    refuse("its header puts the index at byte " + std::to_string(index_) +
+           ", it must lie between byte " + std::to_string(first_) + " and the end of the file at " +
+           std::to_string(size_));
+  }
 
   std::uint32_t num_chunks = 0;
   Bytes bytes(in_, index_, size_);
@@ -208,12 +220,14 @@ BagFile::BagFile(std::istream* in) : in_(in) {
       bytes.skip(size);
       ++num_chunks;
     } else {
-      refuse("an unknown record is in its index");
+      fields.refuseKind("in its index");
     }
   }
-  if (connections_.size() != header.number<std::uint32_t>("conn_count") ||
-      num_chunks != num_chunks_) {
-    refuse("its index is not complete");
+  const auto num_connections = header.number<std::uint32_t>("conn_count");
+  if (connections_.size() != num_connections || num_chunks != num_chunks_) {
+    refuse("its header announces " + std::to_string(num_connections) + " connections and " +
+           std::to_string(num_chunks_) + " chunks, its index lists " +
+           std::to_string(connections_.size()) + " and " + std::to_string(num_chunks));
   }
 }
 
@@ -225,9 +239,13 @@ void BagFile::forEachMessage(const TakeMessage& take) {
       const Fields fields(bytes.take(takeSize(&bytes)));
       const std::string data = bytes.take(takeSize(&bytes));
       if (fields.kind() == Kind::kConnection) continue;  // they are in the index, too
-      if (fields.kind() != Kind::kMessage) refuse("an unknown record is in a chunk");
-      const auto connection = connections_.find(fields.number<std::uint32_t>("conn"));
-      if (connection == connections_.end()) refuse("a message is of an unknown topic");
+      if (fields.kind() != Kind::kMessage) fields.refuseKind("in a chunk");
+      const auto number = fields.number<std::uint32_t>("conn");
+      const auto connection = connections_.find(number);
+      if (connection == connections_.end()) {
+        refuse("a message is of connection " + std::to_string(number) +
+               ", which its index does not list");
+      }
       take(connection->second, data);
     }
   };
@@ -238,22 +256,28 @@ void BagFile::forEachMessage(const TakeMessage& take) {
     const std::uint32_t size = takeSize(&bytes);
     if (fields.kind() == Kind::kChunk) {
       const std::string data = bytes.take(size);
+      const std::string& compression = fields.text("compression");
+      const auto chunk_size = fields.number<std::uint32_t>("size");
       std::string chunk;
       try {
-        chunk =
-            decompressChunk(fields.text("compression"), data, fields.number<std::uint32_t>("size"));
-      } catch (const std::exception& e) {
-        refuse(e.what());
+        chunk = decompressChunk(compression, data, chunk_size);
+      } catch (const std::bad_alloc&) {
+        throw std::runtime_error("not enough memory for a chunk (" + compression + ") of " +
+                                 std::to_string(chunk_size) +
+                                 " bytes: end other programs, then read it again");
       }
       takeChunk(chunk);
       ++num_chunks;
     } else if (fields.kind() == Kind::kIndex) {
       bytes.skip(size);
     } else {
-      refuse("an unknown record is among its chunks");
+      fields.refuseKind("among its chunks");
     }
   }
-  if (num_chunks != num_chunks_) refuse("its chunks are not complete");
+  if (num_chunks != num_chunks_) {
+    refuse("its header announces " + std::to_string(num_chunks_) + " chunks, it holds " +
+           std::to_string(num_chunks));
+  }
 }
 
 }  // namespace ddm
