@@ -34,6 +34,13 @@ Mlp<Scalar>::Mlp(std::vector<int> widths, Output output)
 }
 
 template <class Scalar>
+LayerFactors<Scalar> Mlp<Scalar>::zeroFactors() const {
+  LayerFactors<Scalar> factors;
+  for (size_t l = 1; l < widths_.size(); ++l) factors.emplace_back(widths_[l - 1], widths_[l]);
+  return factors;
+}
+
+template <class Scalar>
 Eigen::Map<typename Mlp<Scalar>::Matrix> Mlp<Scalar>::weights(Scalar* theta, int layer) const {
   return {theta + offsets_[layer], widths_[layer + 1], widths_[layer]};
 }
@@ -107,6 +114,9 @@ void Mlp<Scalar>::backward(const Scalar* theta, Tape* tape,
     if (d_theta != nullptr) {
       weights(d_theta, layer).noalias() += delta * tape->activations[layer].leftCols(n).transpose();
       biases(d_theta, layer).noalias() += delta * tape->ones.head(n);
+    }
+    if (tape->factors != nullptr) {
+      (*tape->factors)[layer].add(tape->activations[layer].leftCols(n), delta);
     }
     if (layer > 0) {
       // a_layer has served its purpose: its memory takes the error that arrives there.

@@ -33,7 +33,8 @@ std::vector<std::string> TrainingOptions::problems() const {
   const std::vector<std::string> schedules = scheduleNames();
   training.require(std::find(schedules.begin(), schedules.end(), schedule) != schedules.end(),
                    "schedule", "be one of: " + boost::algorithm::join(schedules, ", "), schedule);
-  training.require(solver == "lbfgs" || solver == "bfgs", "solver", "be lbfgs or bfgs", solver);
+  training.require(solver == "lbfgs" || solver == "kfac" || solver == "bfgs", "solver",
+                   "be lbfgs, kfac or bfgs", solver);
   training.requireWithin("num_starts", num_starts, 1, 1000);
   training.requireWithin("selection_steps", selection_steps, 0, 1000);
   training.requireWithin("pca_starts", pca_starts, 0, 1000);

@@ -125,6 +125,45 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::evaluate(const Ve
   return value;
 }
 
+template <class Scalar>
+LayerFactors<Scalar> JointObjective<Scalar>::factors(const Vector& theta, const Terms& terms,
+                                                     std::mt19937_64* rng) {
+  reserve(terms.prediction_steps);
+  LayerFactors<Scalar> encoder = networks_.encoder().zeroFactors();
+  LayerFactors<Scalar> decoder = networks_.decoder().zeroFactors();
+  LayerFactors<Scalar> f = networks_.f().zeroFactors();
+  const auto collect = [this](LayerFactors<Scalar>* of_encoder, LayerFactors<Scalar>* of_decoder,
+                              LayerFactors<Scalar>* of_f) {
+    for (auto& tape : encoder_tapes_) tape.factors = of_encoder;
+    decoder_tape_.factors = of_decoder;
+    roll_out_.collect(of_f);
+  };
+  collect(&encoder, &decoder, &f);
+  error_rng_ = rng;
+  Vector d_theta;
+  evaluate(theta, &d_theta, terms);
+  error_rng_ = nullptr;
+  collect(nullptr, nullptr, nullptr);
+  encoder.insert(encoder.end(), decoder.begin(), decoder.end());
+  encoder.insert(encoder.end(), f.begin(), f.end());
+  for (KroneckerFactors<Scalar>& layer : encoder) layer.errors *= static_cast<Scalar>(weight_);
+  return encoder;
+}
+
+/// Random signs instead of residuals, for factors(). Where there is nothing to compare with it stays 0.
+template <class Scalar>
+void JointObjective<Scalar>::drawErrors(Eigen::Index num_images, Eigen::Index columns,
+                                        Scalar step_weight) {
+  for (Eigen::Index i = 0; i < columns; ++i) {
+    if (residual_.col(i).isZero(0)) continue;
+    // Its square is what V counts: the derivative of V / 2 takes another root of the weight.
+    const Scalar size = i < num_images ? Scalar(1) : 1 / std::sqrt(step_weight);
+    for (Eigen::Index row = 0; row < residual_.rows(); ++row) {
+      residual_(row, i) = ((*error_rng_)() & 1) != 0 ? size : -size;
+    }
+  }
+}
+
 /// V_W
 template <class Scalar>
 double JointObjective<Scalar>::squaredWeights(const Scalar* theta) const {
@@ -206,6 +245,7 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::decodeBlock(const
       static_cast<double>(step_weight * residual_.middleCols(size, steps * count).squaredNorm());
   if (d_theta == nullptr) return value;
 
+  if (error_rng_ != nullptr) drawErrors(size, columns, step_weight);
   // From here on derivatives are those of V / 2: evaluate() doubles them.
   if (!terms.v_r) residual_.leftCols(size).setZero();
   if (!terms.v_p) {

@@ -1,33 +1,48 @@
-// One stage of a training schedule, minimised by BFGS or L-BFGS.
+// One stage of a training schedule, minimised by BFGS, or by L-BFGS, preconditioned or not.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "stage_minimisation.h"
 
+#include <algorithm>
 #include <limits>
+#include <optional>
+#include <random>
+#include <utility>
+
+#include "preconditioner.h"
 
 namespace ddm {
 namespace {
 
-/// Where the parameters that a stage may change lie in theta.
+/// Steps of L-BFGS after which the Kronecker factors are computed anew. They and their roots take about as long as
+/// three steps.
+constexpr int kRefresh = 50;
+
+/// Where the parameters that a stage may change lie in theta, and which layers they belong to.
 struct Range {
   Eigen::Index begin;
   Eigen::Index size;
+  int first_layer;
+  int num_layers;
 };
 
 Range freeParameters(const Networks<float>& networks, Stage::Free free) {
   const Eigen::Index num_params = networks.numParams();
   const Eigen::Index num_auto_encoder = num_params - networks.f().numParams();
+  const int layers_of_f = networks.f().numLayers();
+  const int layers_of_auto_encoder =
+      networks.encoder().numLayers() + networks.decoder().numLayers();
   switch (free) {
     case Stage::Free::kAutoEncoder:
-      return {0, num_auto_encoder};
+      return {0, num_auto_encoder, 0, layers_of_auto_encoder};
     case Stage::Free::kPredictor:
-      return {num_auto_encoder, num_params - num_auto_encoder};
+      return {num_auto_encoder, num_params - num_auto_encoder, layers_of_auto_encoder, layers_of_f};
     case Stage::Free::kAll:
       break;
   }
-  return {0, num_params};
+  return {0, num_params, 0, layers_of_auto_encoder + layers_of_f};
 }
 
-/// The scaled objective of one stage in float32, as a function of the free parameters.
+/// The scaled objective of one stage in float32, as a function of the free parameters or of coordinates for them.
 class StageObjective {
  public:
   using Value = JointObjective<float>::Value;
@@ -35,15 +50,21 @@ class StageObjective {
   /// @param theta  all parameters; gives the values of those that are not free
   StageObjective(JointObjective<float>* objective, const Terms& terms, Range free,
                  const Eigen::VectorXd& theta)
-      : objective_(*objective), terms_(terms), free_(free), theta_(theta.cast<float>()) {}
+      : objective_(*objective),
+        terms_(terms),
+        free_(free),
+        theta_(theta.cast<float>()),
+        origin_(freeOf(theta_)) {}
 
-  double operator()(const Eigen::VectorXd& free, Eigen::VectorXd* gradient) {
-    theta_.segment(free_.begin, free_.size) = free.cast<float>();
+  double operator()(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+    freeOf(theta_) = parametersAt(x);
     const Value value =
         objective_.evaluate(theta_, gradient != nullptr ? &d_theta_ : nullptr, terms_);
     const double cost = objective_.weight() * value.of(terms_);
     if (gradient != nullptr) {
-      *gradient = objective_.weight() * d_theta_.segment(free_.begin, free_.size).cast<double>();
+      Eigen::VectorXf slope = freeOf(d_theta_);
+      if (preconditioner_) slope = (*preconditioner_)(slope);
+      *gradient = objective_.weight() * slope.cast<double>();
     }
     if (cost < lowest_) {
       lowest_ = cost;
@@ -52,15 +73,36 @@ class StageObjective {
     return cost;
   }
 
+  /// Takes coordinates for the parameters that suit the objective at x, which becomes their origin.
+  void precondition(const Eigen::VectorXd& x, std::mt19937_64* rng) {
+    origin_ = parametersAt(x);
+    freeOf(theta_) = origin_;
+    LayerFactors<float> factors = objective_.factors(theta_, terms_, rng);
+    const auto first = factors.begin() + free_.first_layer;
+    preconditioner_.emplace(LayerFactors<float>(first, first + free_.num_layers));
+  }
+
+  /// @return free parameters  [size of the range]
+  Eigen::VectorXf parametersAt(const Eigen::VectorXd& x) const {
+    if (!preconditioner_) return x.cast<float>();
+    return origin_ + (*preconditioner_)(x.cast<float>());
+  }
+
   /// V_R and V_P where the cost was lowest.
   const Value& best() const { return best_; }
 
  private:
+  Eigen::VectorBlock<Eigen::VectorXf> freeOf(Eigen::VectorXf& theta) const {
+    return theta.segment(free_.begin, free_.size);
+  }
+
   JointObjective<float>& objective_;
   Terms terms_;
   Range free_;
   Eigen::VectorXf theta_;
   Eigen::VectorXf d_theta_;
+  Eigen::VectorXf origin_;
+  std::optional<Preconditioner> preconditioner_;  // none: the parameters themselves
   double lowest_ = std::numeric_limits<double>::infinity();
   Value best_;
 };
@@ -76,18 +118,36 @@ Minimum minimiseStage(const Stage& stage, const TrainingOptions& training,
                       Eigen::VectorXd* theta, const StageCallback& callback) {
   const Range free = freeParameters(networks, stage.free);
   StageObjective function(objective, stage.terms, free, *theta);
+  const bool kfac = training.solver == "kfac";
+  std::mt19937_64 rng(1);  // of signs, see JointObjective::factors()
+  const int cap = iterationCap(stage, training);
   MinimiseOptions options;
   options.lbfgs_rank = training.solver == "bfgs" ? 0 : training.lbfgs_rank;
-  options.max_iterations = iterationCap(stage, training);
   options.function_tolerance = training.function_tolerance;
   options.gradient_tolerance = 1e-9;
+  Minimum total;
   if (callback) {
-    options.on_iteration = [&](const Minimum& so_far) { return callback(so_far, function.best()); };
+    options.on_iteration = [&](Minimum so_far) {
+      so_far.iterations += total.iterations;
+      return callback(so_far, function.best());
+    };
   }
-  const Minimum minimum =
-      minimise(std::ref(function), theta->segment(free.begin, free.size), options);
-  theta->segment(free.begin, free.size) = minimum.x;
-  return minimum;
+  Eigen::VectorXd x = theta->segment(free.begin, free.size);
+  do {
+    if (kfac) {
+      function.precondition(x, &rng);
+      x.setZero();
+    }
+    options.max_iterations = kfac ? std::min(kRefresh, cap - total.iterations) : cap;
+    Minimum minimum = minimise(std::ref(function), x, options);
+    x = minimum.x;
+    if (total.evaluations > 0) minimum.initial_cost = total.initial_cost;
+    minimum.iterations += total.iterations;
+    minimum.evaluations += total.evaluations;
+    total = std::move(minimum);
+  } while (total.reason == MinimumReason::kIterationLimit && total.iterations < cap);
+  theta->segment(free.begin, free.size) = function.parametersAt(x).cast<double>();
+  return total;
 }
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// One stage of a training schedule, minimised by BFGS or L-BFGS.
+// One stage of a training schedule, minimised by BFGS, or by L-BFGS, preconditioned or not.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

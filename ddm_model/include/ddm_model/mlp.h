@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+#include "ddm_model/kronecker_factors.h"
+
 namespace ddm {
 
 /// Fully connected network (paper, Sec. 2.1).
@@ -14,7 +16,7 @@ namespace ddm {
 ///   a_0 = input,   a_l = atan(W_l a_{l-1} + b_l) for l < L,   a_L = W_L a_{L-1} + b_L, or its atan
 ///
 /// Samples are columns. The parameters live in a flat vector owned by the caller, so that the joint
-/// objective V_R + V_P is a plain function of theta and the solver needs to know no layers.
+/// objective V_R + V_P is a plain function of theta; of the solvers only kfac knows layers.
 /// Scalar is float for training and double for planning and for the gradient tests.
 template <class Scalar>
 class Mlp {
@@ -33,6 +35,8 @@ class Mlp {
     std::vector<Matrix>
         slopes;   ///< da_l/d(W_l a_{l-1} + b_l) for l = 1 ... L, each [width_l x >= N]
     Vector ones;  ///< [>= N], whose product with errors sums them over samples
+    LayerFactors<Scalar>* factors =
+        nullptr;  ///< backward() adds its own to these; null: not wanted
 
     /// @return a_L  [width_L x N]
     typename Matrix::ColsBlockXpr output() { return activations.back().leftCols(num_samples); }
@@ -49,6 +53,9 @@ class Mlp {
   int outputDim() const { return widths_.back(); }
   /// @return P, the number of parameters: W_1 (column-major), b_1, ..., W_L, b_L
   Eigen::Index numParams() const { return num_params_; }
+
+  /// @return factors of all layers that nothing was added to yet
+  LayerFactors<Scalar> zeroFactors() const;
 
   /// Views of one layer (0 is the first) inside a parameter vector.
   Eigen::Map<Matrix> weights(Scalar* theta, int layer) const;

@@ -39,7 +39,7 @@ struct ModelOptions {
 /// Block `training`.
 struct TrainingOptions {
   std::string schedule = "joint";  ///< what is minimised over what, see scheduleNames()
-  std::string solver = "lbfgs";    ///< "lbfgs" or "bfgs"
+  std::string solver = "lbfgs";    ///< "lbfgs", "kfac" or "bfgs"
   int num_starts = 1;              ///< trainings, of which the best is kept [-]
   int pca_starts = 1;              ///< how many of them start from PCA, the rest at random [-]
   int selection_steps = 0;         ///< by predictions so many steps ahead; 0: by what is minimised

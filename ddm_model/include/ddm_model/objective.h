@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "ddm_model/networks.h"
@@ -60,6 +61,10 @@ class JointObjective {
   /// @return all values, whatever `terms` leaves out
   Value evaluate(const Vector& theta, Vector* d_theta, const Terms& terms = Terms());
 
+  /// Kronecker factors of all layers in the order of theta, for the squares in w times `terms`; its weight decay is
+  /// left out. The errors are drawn: signs of equal probability.
+  LayerFactors<Scalar> factors(const Vector& theta, const Terms& terms, std::mt19937_64* rng);
+
   /// @return features of all images at the last evaluate()  [feature_dim x M]
   const Matrix& features() const { return features_; }
   /// @return root of the mean squared distance of the last evaluate()'s features to their mean
@@ -79,6 +84,7 @@ class JointObjective {
   void backwardThroughEncoder(const Scalar* theta, Eigen::Index block, Scalar* d_theta);
   Value decodeBlock(const Scalar* theta, Eigen::Index block, const Terms& terms, Scalar* d_theta);
   void reserve(int num_steps);
+  void drawErrors(Eigen::Index num_images, Eigen::Index columns, Scalar step_weight);
 
   Eigen::Index blocksOf(Eigen::Index frames) const;
   Eigen::Index blockBegin(Eigen::Index block) const;
@@ -99,6 +105,7 @@ class JointObjective {
   RollOut<Scalar> roll_out_;  // of the block's targets
   Matrix d_codes_;   // dV/dz: of the block, then of the predicted z of its targets, step by step
   Matrix residual_;  // of their decoded scores
+  std::mt19937_64* error_rng_ = nullptr;  // not null: errors are drawn, see factors()
 };
 
 extern template class JointObjective<float>;

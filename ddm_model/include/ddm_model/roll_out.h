@@ -32,6 +32,11 @@ class RollOut {
   /// Takes the memory for so many targets and steps at once.
   void reserve(Eigen::Index num_targets, int num_steps);
 
+  /// backward() adds the Kronecker factors of f to these from now on; null: no more.
+  void collect(LayerFactors<Scalar>* factors) {
+    for (typename Mlp<Scalar>::Tape& tape : tapes_) tape.factors = factors;
+  }
+
   /// Predicts. predicted() holds the result.
   /// @param theta_p  parameters of f                                                     [P_f]
   /// @param Z        features of all frames before the last target   [feature_dim x >= target]

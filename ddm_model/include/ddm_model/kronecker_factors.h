@@ -1,0 +1,46 @@
+// Kronecker factors of the Gauss-Newton matrix of a network's layers.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace ddm {
+
+/// What stands in for the curvature of a sum of squares in the weights and biases of one layer (K-FAC, Martens
+/// and Grosse, ICML 2015, eq. 5):
+///
+///   d^2 V / d[W b]^2  ~  (sum_i a_i a_i') (x) (sum_i e_i e_i') / N
+///
+/// a: the layer's inputs and a 1, e: errors that arrive at its outputs when the network's own are independent and of
+/// variance 1.
+template <class Scalar>
+struct KroneckerFactors {
+  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+
+  Matrix inputs;                 ///< sum_i a_i a_i'  [width_in + 1 x width_in + 1]
+  Matrix errors;                 ///< sum_i e_i e_i'        [width_out x width_out]
+  Eigen::Index num_samples = 0;  ///< N
+
+  KroneckerFactors(Eigen::Index width_in, Eigen::Index width_out)
+      : inputs(Matrix::Zero(width_in + 1, width_in + 1)),
+        errors(Matrix::Zero(width_out, width_out)) {}
+
+  /// @param a  inputs of the layer, without the 1   [width_in x N]
+  /// @param e  errors at its outputs               [width_out x N]
+  void add(const Eigen::Ref<const Matrix>& a, const Eigen::Ref<const Matrix>& e) {
+    const Eigen::Index width = a.rows();
+    inputs.topLeftCorner(width, width).noalias() += a * a.transpose();
+    inputs.col(width).head(width) += a.rowwise().sum();
+    inputs.row(width).head(width) = inputs.col(width).head(width).transpose();
+    inputs(width, width) += static_cast<Scalar>(a.cols());
+    errors.noalias() += e * e.transpose();
+    num_samples += a.cols();
+  }
+};
+
+/// Of all layers of a network, or of several, in the order of their parameters.
+template <class Scalar>
+using LayerFactors = std::vector<KroneckerFactors<Scalar>>;
+
+}  // namespace ddm
