@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kGamma = 0.99;                  // 100 steps ahead still count a third
 constexpr double kWorst = 1.0 / (1.0 - kGamma);  // V_max: never at the goal
-constexpr double kWidth = 0.5;                   // sigma in units of the features' spread
+constexpr double kWidth = 0.25;                  // sigma in units of the features' spread
+constexpr double kSmoothness = 1.4;              // h in units of how far landmarks are apart
 constexpr double kSmallestWeight = 1e-4;         // of a landmark that still counts
 constexpr int kMaxSweeps = 1000;
 constexpr double kTolerance = 1e-3;                  // largest change of a V_i in the last sweep
@@ -86,7 +87,7 @@ TimeToGoal::TimeToGoal(const Ddm& model, const Eigen::VectorXd& max_torque)
   change_spread_ = std::max(changes.norm() / std::sqrt(M), smallest);
   points_.resize(2 * dim, M);
   points_ << Z / spread_, changes / change_spread_;
-  h_ = spacing(points_);
+  h_ = kSmoothness * spacing(points_);
   outcomes_.resize(static_cast<size_t>(M));
   for (Eigen::Index i = 0; i < torques_.cols(); ++i) {
     const auto steps = predictions(model, X, torques_.col(i), kHoldSteps);

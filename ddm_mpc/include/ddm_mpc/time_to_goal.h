@@ -17,17 +17,17 @@ namespace ddm {
 ///
 /// and V is the discounted sum of these over the steps to come, under the best torques. It is computed for
 /// the landmarks x_i of the model, states that were seen, by predictions of f under each of the torques
-/// -max, 0, max of each motor, held for two steps, and smoothed in between by a kernel (Ormoneit and Sen,
+/// -max, 0, max of each motor, held for m = 4 steps, and smoothed in between by a kernel (Ormoneit and Sen,
 /// Machine Learning 2002, whose averages make the iteration converge):
 ///
-///   V_i = min_u  away(z_{i,1}) + gamma away(z_{i,2}) + gamma^2 V(x_{i,2})
+///   V_i = min_u  sum_{j=1..m} gamma^(j-1) away(z_{i,j}) + gamma^m V(x_{i,m})
 ///   V(x) = (w_0 V_max + sum_i w_i V_i) / (w_0 + sum_i w_i),   w_i = exp(-|p(x) - p(x_i)|^2 / (2 h^2))
 ///
-/// p(x) = (z_t, z_t - z_{t-1}), both in units of their spread. h is how far landmarks are apart; what lies
+/// p(x) = (z_t, z_t - z_{t-1}), both in units of their spread. h is 1.4 times how far landmarks are apart; what lies
 /// farther than 3 h from all of them counts as if the goal were never reached from there, V_max.
 class TimeToGoal {
  public:
-  static constexpr int kHoldSteps = 2;
+  static constexpr int kHoldSteps = 4;  ///< m
 
   /// @param model       has landmarks; is not needed afterwards
   /// @param max_torque  of each motor [N m]
