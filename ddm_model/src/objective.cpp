@@ -150,13 +150,13 @@ LayerFactors<Scalar> JointObjective<Scalar>::factors(const Vector& theta, const 
   return encoder;
 }
 
-/// Random signs instead of residuals, for factors(). Where there is nothing to compare with it stays 0.
+/// Replaces residuals by random signs, for factors(). Targets beyond a piece keep their 0.
 template <class Scalar>
 void JointObjective<Scalar>::drawErrors(Eigen::Index num_images, Eigen::Index columns,
                                         Scalar step_weight) {
   for (Eigen::Index i = 0; i < columns; ++i) {
     if (residual_.col(i).isZero(0)) continue;
-    // Its square is what V counts: the derivative of V / 2 takes another root of the weight.
+    // V counts the square with step_weight, which decodeBlock() multiplies by afterwards.
     const Scalar size = i < num_images ? Scalar(1) : 1 / std::sqrt(step_weight);
     for (Eigen::Index row = 0; row < residual_.rows(); ++row) {
       residual_(row, i) = ((*error_rng_)() & 1) != 0 ? size : -size;

@@ -7,8 +7,8 @@
 namespace ddm {
 namespace {
 
-/// d. From 0.01 to 0.3 training is about equally fast; without it directions that nothing was seen of yet take steps
-/// without bound.
+/// d. Training is about equally fast from 0.01 to 0.3. Without damping, directions that have shown no curvature yet
+/// would take unbounded steps.
 constexpr double kDamping = 0.03;
 
 /// The damped matrix to the power of -1/2; the identity where all is 0.

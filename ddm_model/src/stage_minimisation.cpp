@@ -13,8 +13,7 @@
 namespace ddm {
 namespace {
 
-/// Steps of L-BFGS after which the Kronecker factors are computed anew. They and their roots take about as long as
-/// three steps.
+/// Iterations of L-BFGS after which the Kronecker factors are computed again. Every 25 to 100 does equally well.
 constexpr int kRefresh = 50;
 
 /// Where the parameters that a stage may change lie in theta, and which layers they belong to.

@@ -117,7 +117,7 @@ TEST_F(FactorsOfTheObjective, CountEachScoreAsTheObjectiveDoes) {
     Terms terms;
     terms.prediction_steps = steps;
     const LayerFactors<double> all = factors(terms);
-    // Of k predictions each counts 1/k, and of the last target in a piece there is no second one.
+    // Each of the k predictions counts 1/k. The last target of a piece has only the first of them.
     const double count = 151.0 + (steps == 1 ? 146.0 : (146.0 + 144.0) / 2.0);
     for (Eigen::Index i = 0; i < 4; ++i) {
       EXPECT_NEAR(all[3].errors(i, i), weight_ * count, 1e-9 * weight_ * count) << steps;

@@ -7,13 +7,13 @@
 
 namespace ddm {
 
-/// What stands in for the curvature of a sum of squares in the weights and biases of one layer (K-FAC, Martens
-/// and Grosse, ICML 2015, eq. 5):
+/// Approximates the Gauss-Newton matrix of one layer by a Kronecker product (K-FAC: Martens and Grosse,
+/// ICML 2015). For the layer's weights W and biases b and a sum of squares V,
 ///
 ///   d^2 V / d[W b]^2  ~  (sum_i a_i a_i') (x) (sum_i e_i e_i') / N
 ///
-/// a: the layer's inputs and a 1, e: errors that arrive at its outputs when the network's own are independent and of
-/// variance 1.
+/// a_i are the layer's inputs for sample i, followed by a 1. e_i are the derivatives by the layer's outputs,
+/// back-propagated from independent errors of variance 1 at the outputs of the whole network.
 template <class Scalar>
 struct KroneckerFactors {
   using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;

@@ -61,8 +61,8 @@ class JointObjective {
   /// @return all values, whatever `terms` leaves out
   Value evaluate(const Vector& theta, Vector* d_theta, const Terms& terms = Terms());
 
-  /// Kronecker factors of all layers in the order of theta, for the squares in w times `terms`; its weight decay is
-  /// left out. The errors are drawn: signs of equal probability.
+  /// Kronecker factors of all layers, in the order of theta, of w times `terms` without its weight decay.
+  /// @param rng  draws the errors at the outputs: +1 or -1 with equal probability
   LayerFactors<Scalar> factors(const Vector& theta, const Terms& terms, std::mt19937_64* rng);
 
   /// @return features of all images at the last evaluate()  [feature_dim x M]
