@@ -37,6 +37,7 @@ std::vector<std::string> TrainingOptions::problems() const {
                    "be lbfgs, kfac or bfgs", solver);
   training.requireWithin("num_starts", num_starts, 1, 1000);
   training.requireWithin("selection_steps", selection_steps, 0, 1000);
+  training.requireWithin("selection_iterations", selection_iterations, 0, 1000000);
   training.requireWithin("pca_starts", pca_starts, 0, 1000);
   training.requireWithin("prediction_steps", prediction_steps, 1, 100);
   training.requireAtLeast("warm_up_iterations", warm_up_iterations, 0);
@@ -44,6 +45,9 @@ std::vector<std::string> TrainingOptions::problems() const {
   training.require(selection_steps <= 0 || num_starts > 1, "selection_steps",
                    "be 0 where training/num_starts is 1: there is nothing to choose from",
                    selection_steps);
+  training.require(selection_iterations <= 0 || num_starts > 1, "selection_iterations",
+                   "be 0 where training/num_starts is 1: there is nothing to choose from",
+                   selection_iterations);
   if (schedule == "v_r_only") {
     training.require(selection_steps == 0 && prediction_steps == 1, "selection_steps",
                      "be 0 and prediction_steps 1 where nothing is predicted: training/schedule",

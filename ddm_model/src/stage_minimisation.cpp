@@ -108,10 +108,6 @@ class StageObjective {
 
 }  // namespace
 
-int iterationCap(const Stage& stage, const TrainingOptions& training) {
-  return stage.warm_up ? training.warm_up_iterations : training.max_iterations;
-}
-
 Minimum minimiseStage(const Stage& stage, const TrainingOptions& training,
                       const Networks<float>& networks, JointObjective<float>* objective,
                       Eigen::VectorXd* theta, const StageCallback& callback) {
@@ -119,7 +115,7 @@ Minimum minimiseStage(const Stage& stage, const TrainingOptions& training,
   StageObjective function(objective, stage.terms, free, *theta);
   const bool kfac = training.solver == "kfac";
   std::mt19937_64 rng(1);  // of signs, see JointObjective::factors()
-  const int cap = iterationCap(stage, training);
+  const int cap = stage.max_iterations;
   MinimiseOptions options;
   options.lbfgs_rank = training.solver == "bfgs" ? 0 : training.lbfgs_rank;
   options.function_tolerance = training.function_tolerance;

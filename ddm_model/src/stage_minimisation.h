@@ -15,9 +15,6 @@ namespace ddm {
 using StageCallback =
     std::function<bool(const Minimum& so_far, const JointObjective<float>::Value& value)>;
 
-/// @return cap on the iterations of a stage
-int iterationCap(const Stage& stage, const TrainingOptions& training);
-
 /// Minimises w times the terms of the stage over the parameters that it leaves free.
 /// @param theta     in: all parameters, out: with the free ones at the minimum     [P]
 /// @param callback  may be empty

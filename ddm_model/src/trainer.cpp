@@ -7,8 +7,11 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "ddm_model/initialisation.h"
 #include "ddm_model/landmarks.h"
@@ -28,62 +31,78 @@ constexpr Eigen::Index kMaxLandmarks = 1000;
 /// @return what turns [score^2] into [grey^2]
 double squaredScale(const Pca& pca) { return 1.0 / (static_cast<double>(pca.scale) * pca.scale); }
 
+/// @return cap on the iterations of all stages together
+int iterationCap(const std::vector<Stage>& stages) {
+  return std::accumulate(stages.begin(), stages.end(), 0,
+                         [](int sum, const Stage& stage) { return sum + stage.max_iterations; });
+}
+
 /// All starts and stages as one progress.
 class Progress {
  public:
-  Progress(const TrainingCallback& callback, double num_stages, const Pca& pca)
-      : callback_(callback), share_(1.0 / num_stages), squared_scale_(squaredScale(pca)) {}
+  Progress(const TrainingCallback& callback, const Schedule& schedule, int num_starts,
+           const Pca& pca)
+      : callback_(callback),
+        cap_(static_cast<double>(num_starts) * iterationCap(schedule.stages) +
+             (schedule.finish ? schedule.finish->max_iterations : 0)),
+        squared_scale_(squaredScale(pca)) {}
 
-  /// @param stage       number of the stage, counted over all starts
+  /// The next stage.
   /// @param cap         on its iterations
   /// @param iterations  of all stages before
   /// @return            what is to be called while it is minimised
-  StageCallback ofStage(size_t stage, int cap, int iterations) const {
+  StageCallback ofStage(int cap, int iterations) {
+    const double before = caps_before_;
+    caps_before_ += cap;
     if (!callback_) return nullptr;
-    return [this, stage, cap, iterations](const Minimum& so_far, const Value& value) {
+    return [this, before, iterations](const Minimum& so_far, const Value& value) {
       TrainingProgress progress;
       progress.iteration = iterations + so_far.iterations;
       progress.v_r = squared_scale_ * value.v_r;
       progress.v_p = squared_scale_ * value.v_p;
       progress.gradient_norm = so_far.gradient.lpNorm<Eigen::Infinity>();
-      progress.fraction_done =
-          share_ * (static_cast<double>(stage) + static_cast<double>(so_far.iterations) / cap);
+      progress.fraction_done = (before + so_far.iterations) / cap_;
       return callback_(progress);
     };
   }
 
  private:
   const TrainingCallback& callback_;
-  double share_;  // of one stage in the whole training
+  double cap_;  // on the iterations of the whole training
+  double caps_before_ = 0.0;
   double squared_scale_;
 };
 
-/// Minimises the stages one after the other.
-/// @param start   number of the start
+/// Minimises one stage.
 /// @param theta   in: initial parameters, out: the minimum
-/// @param result  out: message; iterations and evaluations are added
+/// @param result  out: message, cancelled; iterations and evaluations are added
+Minimum runStage(const Stage& stage, const TrainingOptions& training,
+                 const Networks<float>& networks, Progress* progress,
+                 JointObjective<float>* objective, Eigen::VectorXd* theta, TrainingResult* result) {
+  Minimum minimum = minimiseStage(stage, training, networks, objective, theta,
+                                  progress->ofStage(stage.max_iterations, result->iterations));
+  result->message = minimum.message;
+  result->iterations += minimum.iterations;
+  result->evaluations += minimum.evaluations;
+  if (minimum.reason == MinimumReason::kStopped) {
+    result->message = "training was cancelled";
+    result->cancelled = true;
+  }
+  return minimum;
+}
+
+/// Minimises the stages one after the other.
 /// @return false if there is no usable minimum; the message says why
-bool runStages(const Schedule& schedule, const TrainingOptions& training,
-               const Networks<float>& networks, int start, const Progress& progress,
+bool runStages(const std::vector<Stage>& stages, const TrainingOptions& training,
+               const Networks<float>& networks, Progress* progress,
                JointObjective<float>* objective, Eigen::VectorXd* theta, TrainingResult* result) {
-  const size_t num_stages = schedule.stages.size();
-  for (size_t i = 0; i < num_stages; ++i) {
-    const Stage& stage = schedule.stages[i];
+  for (size_t i = 0; i < stages.size(); ++i) {
     const Minimum minimum =
-        minimiseStage(stage, training, networks, objective, theta,
-                      progress.ofStage(start * num_stages + i, iterationCap(stage, training),
-                                       result->iterations));
-    result->message = minimum.message;
-    result->iterations += minimum.iterations;
-    result->evaluations += minimum.evaluations;
-    if (minimum.reason == MinimumReason::kStopped) {
-      result->message = "training was cancelled";
-      result->cancelled = true;
-      return false;
-    }
+        runStage(stages[i], training, networks, progress, objective, theta, result);
+    if (result->cancelled) return false;
     if (!minimum.improved()) {
       std::ostringstream text;
-      text << "training did not lower the objective: stage " << i + 1 << " of " << num_stages
+      text << "training did not lower the objective: stage " << i + 1 << " of " << stages.size()
            << " stays at " << minimum.initial_cost << " (" << minimum.message
            << "); check the bags, or leave the block training at its defaults";
       result->message = text.str();
@@ -127,8 +146,7 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
   const auto cost = [&objective](const Eigen::VectorXd& theta, const Terms& terms) {
     return objective.weight() * objective.evaluate(theta.cast<float>(), nullptr, terms).of(terms);
   };
-  const Progress progress(callback,
-                          static_cast<double>(schedule.stages.size()) * training.num_starts, pca);
+  Progress progress(callback, schedule, training.num_starts, pca);
   std::mt19937_64 rng = randomStream({info.seed, info.trial}, StreamRole::kInitialisation);
 
   TrainingResult result;
@@ -138,7 +156,7 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
     candidate.theta = initialTheta(initial_networks, scores, training,
                                    schedule.pca_start && start < training.pca_starts, &rng);
     candidate.initial_cost = cost(candidate.theta, schedule.terms());
-    if (!runStages(schedule, training, networks, start, progress, &objective, &candidate.theta,
+    if (!runStages(schedule.stages, training, networks, &progress, &objective, &candidate.theta,
                    &result)) {
       continue;
     }
@@ -148,6 +166,10 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
     }
     candidate.message = result.message;
     if (candidate.error < best.error) best = std::move(candidate);
+  }
+  if (best.theta.size() > 0 && !result.cancelled && schedule.finish) {
+    runStage(*schedule.finish, training, networks, &progress, &objective, &best.theta, &result);
+    best.message = result.message;
   }
   if (best.theta.size() > 0 && !result.cancelled) {
     result.message = best.message;

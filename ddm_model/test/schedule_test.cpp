@@ -57,12 +57,15 @@ TEST(Schedule, TellsTheTermsThatAnyStageMinimises) {
 
 TEST(Schedule, PredictionsOfSeveralStepsAreWarmedUpByOne) {
   TrainingOptions training;
+  training.warm_up_iterations = 70;
+  training.max_iterations = 900;
   EXPECT_EQ(makeSchedule(training).stages.size(), 1u);
   training.prediction_steps = 5;
   training.weight_decay = 2.0;
   const Schedule joint = makeSchedule(training);
   ASSERT_EQ(joint.stages.size(), 2u);
-  EXPECT_TRUE(joint.stages[0].warm_up && !joint.stages[1].warm_up);
+  EXPECT_EQ(joint.stages[0].max_iterations, 70);
+  EXPECT_EQ(joint.stages[1].max_iterations, 900);
   EXPECT_EQ(joint.stages[0].terms.prediction_steps, 1);
   EXPECT_EQ(joint.stages[1].terms.prediction_steps, 5);
   EXPECT_EQ(joint.terms().prediction_steps, 5);
@@ -71,10 +74,27 @@ TEST(Schedule, PredictionsOfSeveralStepsAreWarmedUpByOne) {
   training.schedule = "sequential";
   const Schedule sequential = makeSchedule(training);
   ASSERT_EQ(sequential.stages.size(), 3u);  // the auto-encoder predicts nothing
-  EXPECT_FALSE(sequential.stages[0].warm_up);
-  EXPECT_TRUE(sequential.stages[1].warm_up);
+  EXPECT_EQ(sequential.stages[0].max_iterations, 900);
+  EXPECT_EQ(sequential.stages[1].max_iterations, 70);
   training.warm_up_iterations = 0;
   EXPECT_EQ(makeSchedule(training).stages.size(), 2u);
+}
+
+TEST(Schedule, TheRestAfterTheChoiceIsForTheBestStartAlone) {
+  TrainingOptions training;
+  training.max_iterations = 900;
+  training.prediction_steps = 5;
+  EXPECT_FALSE(makeSchedule(training).finish);
+  training.num_starts = 4;
+  training.selection_iterations = 200;
+  const Schedule schedule = makeSchedule(training);
+  EXPECT_EQ(schedule.stages.back().max_iterations, 200);
+  ASSERT_TRUE(schedule.finish);
+  EXPECT_EQ(schedule.finish->max_iterations, 700);
+  EXPECT_EQ(schedule.finish->terms.prediction_steps, 5);
+  training.selection_iterations = 900;
+  EXPECT_FALSE(makeSchedule(training).finish);
+  EXPECT_EQ(makeSchedule(training).stages.back().max_iterations, 900);
 }
 
 TEST(Schedule, RefusesAnUnknownName) {

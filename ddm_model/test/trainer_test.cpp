@@ -218,6 +218,26 @@ TEST_F(Trainer, ChoosesAmongStartsByWhatIsAskedFor) {
   EXPECT_NE(run().model->theta(), by_prediction.theta());
 }
 
+TEST_F(Trainer, TheChosenStartAloneGoesOn) {
+  training_.num_starts = 5;
+  training_.pca_starts = 5;
+  training_.function_tolerance = 0.0;
+  training_.max_iterations = 40;
+  const TrainingResult all = run();
+  training_.selection_iterations = 10;
+  double last = 0.0;
+  const TrainingResult early = run([&](const TrainingProgress& progress) {
+    EXPECT_GE(progress.fraction_done, last);
+    last = progress.fraction_done;
+    return true;
+  });
+  EXPECT_EQ(all.iterations, 5 * 40);
+  EXPECT_EQ(early.iterations, 5 * 10 + 30);
+  EXPECT_DOUBLE_EQ(last, 1.0);
+  training_.max_iterations = 10;
+  EXPECT_LT(early.final_cost, run().final_cost);
+}
+
 TEST_F(Trainer, PredictionsOfSeveralStepsGetBetterWhereTheyAreMinimised) {
   training_.max_iterations = 200;
   const double one = predictionErrors(run().model.value(), data_, 6).back().rmse;

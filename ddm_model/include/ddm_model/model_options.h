@@ -43,10 +43,11 @@ struct TrainingOptions {
   int num_starts = 1;              ///< trainings, of which the best is kept [-]
   int pca_starts = 1;              ///< how many of them start from PCA, the rest at random [-]
   int selection_steps = 0;         ///< by predictions so many steps ahead; 0: by what is minimised
-  int max_iterations = 500;        ///< cap on the iterations of the solver, each stage [-]
-  int prediction_steps = 1;        ///< V_P: predictions up to so many steps ahead [-]
-  int warm_up_iterations = 100;    ///< cap on those with one step first, if more are asked for [-]
-  double weight_decay = 0.0;       ///< weight of V_W, the squared weights [score^2]
+  int selection_iterations = 0;  ///< after so many of each start's last stage; 0: when all are done
+  int max_iterations = 500;      ///< cap on the iterations of the solver, each stage [-]
+  int prediction_steps = 1;      ///< V_P: predictions up to so many steps ahead [-]
+  int warm_up_iterations = 100;  ///< cap on those with one step first, if more are asked for [-]
+  double weight_decay = 0.0;     ///< weight of V_W, the squared weights [score^2]
   double function_tolerance = 1e-6;  ///< stop when V changes by less than this fraction [-]
   int lbfgs_rank = 20;               ///< pairs that L-BFGS remembers [-]
   double score_std = 1.0;            ///< spread of the leading PCA score at the encoder's input [-]
@@ -60,6 +61,7 @@ struct TrainingOptions {
     visitor("num_starts", num_starts);
     visitor("pca_starts", pca_starts);
     visitor("selection_steps", selection_steps);
+    visitor("selection_iterations", selection_iterations);
     visitor("max_iterations", max_iterations);
     visitor("prediction_steps", prediction_steps);
     visitor("warm_up_iterations", warm_up_iterations);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,13 +24,14 @@ struct Stage {
 
   Terms terms;
   Free free = Free::kAll;
-  bool warm_up = false;  ///< prepares the next stage: training/warm_up_iterations is its cap
+  int max_iterations = 0;  ///< cap on the iterations of the solver
 };
 
 /// How theta is found.
 struct Schedule {
-  bool pca_start = true;      ///< auto-encoder starts from layer-wise PCA; false: at random
-  std::vector<Stage> stages;  ///< at least one
+  bool pca_start = true;        ///< auto-encoder starts from layer-wise PCA; false: at random
+  std::vector<Stage> stages;    ///< at least one; each start goes through them
+  std::optional<Stage> finish;  ///< for the start that is chosen, alone
 
   /// The terms that any stage minimises.
   Terms terms() const;
@@ -45,11 +47,13 @@ struct Schedule {
 ///   joint_random_init  as joint, without the PCA start
 std::vector<std::string> scheduleNames();
 
-/// The schedule training/schedule with what else `training` says of V_P and V_W. Where predictions
-/// of more than one step are asked for, each stage with V_P is warmed up by one with a single step:
-/// long predictions of an untrained f have no useful gradient.
+/// The schedule training/schedule with what else `training` says of V_P, V_W and iterations. Where
+/// predictions of more than one step are asked for, each stage with V_P is warmed up by one with a
+/// single step: long predictions of an untrained f have no useful gradient. Where starts are chosen
+/// before they are done, `finish` is the rest of the last stage.
 Schedule makeSchedule(const TrainingOptions& training);
 
+/// The same without iterations.
 /// @param name  one of scheduleNames()
 /// @throws std::invalid_argument naming the known ones
 Schedule makeSchedule(const std::string& name);

@@ -18,7 +18,7 @@ struct TrainingProgress {
   double v_r = 0.0;            ///< [grey^2]
   double v_p = 0.0;            ///< [grey^2]
   double gradient_norm = 0.0;  ///< largest entry of the scaled objective's gradient
-  double fraction_done = 0.0;  ///< iterations over their cap, all stages alike
+  double fraction_done = 0.0;  ///< iterations over their caps, of all starts and stages
 };
 
 /// Called after each iteration; false ends the training without a model.
