@@ -137,7 +137,7 @@ class PredictionExperimentTest(SharedScratchCase):
                    "prediction: {held_out_frames: 9, training_frames: 10}\nexperiment: {method: oracle}\n")
         code, output = self.predict("--config", config, "--out", self.out)
         self.assertEqual(code, 2)
-        for word in ("prediction/max_steps + model/order = 10", "got 9", "prediction/training_frames", "got 10",
+        for word in ("prediction/max_steps + model/order", "= 10", "got 9", "prediction/training_frames", "got 10",
                      "experiment/method", "got oracle"):
             self.assertIn(word, output)
         self.assertFalse(os.path.exists(self.out))

@@ -91,7 +91,7 @@ Grey Ddm::decode(const Eigen::VectorXd& z) const {
 
 Eigen::VectorXd Ddm::predict(const History& x, const Eigen::VectorXd& u) const {
   const PredictionModel<double>& f = predictionModel();
-  const Eigen::Index n = f.order();
+  const Eigen::Index n = f.memory();
   if (x.empty()) throw std::invalid_argument("prediction: the history is empty: observe() first");
   if (x.features().rows() != f.featureDim() || x.features().cols() != n ||
       x.torques().rows() != f.torqueDim() || u.size() != f.torqueDim()) {
@@ -111,7 +111,7 @@ Eigen::MatrixXd Ddm::rollOut(const Eigen::MatrixXd& Z,
                              const Eigen::Ref<const Eigen::MatrixXd>& torques, Eigen::Index frame,
                              int num_steps) const {
   const PredictionModel<double>& f = predictionModel();
-  const Eigen::Index n = f.order();
+  const Eigen::Index n = f.memory();
   if (Z.rows() != f.featureDim() || torques.rows() != f.torqueDim() || torques.cols() != Z.cols()) {
     throw std::invalid_argument(
         "roll-out: the model takes features " + shape(f.featureDim(), Z.cols()) + " and torques " +

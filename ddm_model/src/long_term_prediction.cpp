@@ -33,7 +33,7 @@ Eigen::MatrixXd encodeAll(const Ddm& model, const DataSet& data) {
 std::vector<Eigen::Index> predictionStarts(const Ddm& model, const DataSet& data, int num_steps) {
   std::vector<Eigen::Index> starts;
   for (const Piece& piece : data.pieces()) {
-    for (Eigen::Index i = model.options().order - 1; i + num_steps < piece.size; ++i) {
+    for (Eigen::Index i = model.options().memory() - 1; i + num_steps < piece.size; ++i) {
       starts.push_back(piece.begin + i);
     }
   }
@@ -55,7 +55,7 @@ std::vector<PredictionError> predictionErrors(const Ddm& model, const DataSet& d
   if (max_steps < 1) throw std::invalid_argument("predictions: steps must be >= 1");
   if (starts.empty()) {
     throw std::invalid_argument(
-        "predictions: no frame has " + std::to_string(model.options().order - 1) +
+        "predictions: no frame has " + std::to_string(model.options().memory() - 1) +
         " frames before it and " + std::to_string(max_steps) + " after it without a gap");
   }
   const Eigen::MatrixXd Z = encodeAll(model, data);

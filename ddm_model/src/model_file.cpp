@@ -16,7 +16,7 @@ namespace {
 
 constexpr char kMagic[] = "DDMMODEL";
 constexpr size_t kMagicSize = sizeof(kMagic) - 1;
-constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kVersion = 5;
 constexpr size_t kHeaderSize = kMagicSize + 4 + 8 + 4;
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "model files are little-endian");
@@ -103,6 +103,7 @@ void writeOptions(const ModelOptions& options, Writer* out) {
   out->number<std::uint8_t>(options.increments ? 1 : 0);
   out->array(options.max_torque.data(), options.max_torque.size());
   out->number<double>(options.blur);
+  out->number<std::int32_t>(options.delay);
 }
 
 ModelOptions readOptions(std::uint32_t version, Reader* in) {
@@ -122,6 +123,7 @@ ModelOptions readOptions(std::uint32_t version, Reader* in) {
   options.max_torque =
       version > 2 ? in->array<double>() : std::vector<double>{in->number<double>()};
   if (version > 3) options.blur = in->number<double>();
+  if (version > 4) options.delay = in->number<std::int32_t>();
   for (const std::string& problem : options.problems()) throw std::runtime_error(problem);
   return options;
 }
@@ -156,8 +158,8 @@ Ddm readContent(std::uint32_t version, Reader* in) {
   const int torque_dim = in->number<std::int32_t>();
   if (image_size < 1 || image_size > 16384) throw std::runtime_error("its image size is absurd");
   if (torque_dim < 1 || torque_dim > 1000) throw std::runtime_error("its torque size is absurd");
-  const auto state_dim = static_cast<size_t>(options.order) * options.feature_dim +
-                         static_cast<size_t>(options.order - 1) * torque_dim;
+  const auto state_dim = static_cast<size_t>(options.memory()) * options.feature_dim +
+                         static_cast<size_t>(options.memory() - 1) * torque_dim;
   ModelInfo info = readInfo(version, state_dim, in);
   Pca pca;
   pca.blur = Blur(image_size, options.blur);

@@ -21,6 +21,7 @@ std::vector<std::string> ModelOptions::problems() const {
   model.requireWithin("pca_dim", pca_dim, 1, 1000);
   model.requireWithin("feature_dim", feature_dim, 1, 100);
   model.requireWithin("order", order, 1, 50);
+  model.requireWithin("delay", delay, 0, 50);
   requireWidths("encoder_widths", encoder_widths);
   requireWidths("decoder_widths", decoder_widths);
   requireWidths("predictor_widths", predictor_widths);
@@ -36,17 +37,19 @@ std::vector<std::string> TrainingOptions::problems() const {
   training.require(solver == "lbfgs" || solver == "kfac" || solver == "bfgs", "solver",
                    "be lbfgs, kfac or bfgs", solver);
   training.requireWithin("num_starts", num_starts, 1, 1000);
+  training.requireWithin("max_delay", max_delay, 0, 50);
   training.requireWithin("selection_steps", selection_steps, 0, 1000);
   training.requireWithin("selection_iterations", selection_iterations, 0, 1000000);
   training.requireWithin("pca_starts", pca_starts, 0, 1000);
   training.requireWithin("prediction_steps", prediction_steps, 1, 100);
   training.requireAtLeast("warm_up_iterations", warm_up_iterations, 0);
   training.requireNotNegative("weight_decay", weight_decay);
-  training.require(selection_steps <= 0 || num_starts > 1, "selection_steps",
-                   "be 0 where training/num_starts is 1: there is nothing to choose from",
-                   selection_steps);
-  training.require(selection_iterations <= 0 || num_starts > 1, "selection_iterations",
-                   "be 0 where training/num_starts is 1: there is nothing to choose from",
+  const bool choice = num_starts > 1 || max_delay > 0;
+  const std::string no_choice =
+      "be 0 where training/num_starts is 1 and training/max_delay 0: there is nothing to choose "
+      "from";
+  training.require(selection_steps <= 0 || choice, "selection_steps", no_choice, selection_steps);
+  training.require(selection_iterations <= 0 || choice, "selection_iterations", no_choice,
                    selection_iterations);
   if (schedule == "v_r_only") {
     training.require(selection_steps == 0 && prediction_steps == 1, "selection_steps",

@@ -45,7 +45,7 @@ JointObjective<Scalar>::JointObjective(const Networks<Scalar>& networks, Trainin
     if (piece.begin < 0 || piece.begin + piece.size > data_.torques.cols()) {
       throw std::invalid_argument("objective: a piece reaches beyond the frames");
     }
-    for (Eigen::Index i = f.order(); i < piece.size; ++i) {
+    for (Eigen::Index i = f.memory(); i < piece.size; ++i) {
       targets_.push_back(piece.begin + i);
       piece_end_.push_back(piece.begin + piece.size);
     }
@@ -53,8 +53,8 @@ JointObjective<Scalar>::JointObjective(const Networks<Scalar>& networks, Trainin
   if (targets_.empty()) {
     throw std::invalid_argument(
         "no prediction can be learned: each piece of the data (frames without a gap, each with its "
-        "torque) needs more than model/order = " +
-        std::to_string(f.order()) + " frames");
+        "torque) needs more than model/order + model/delay = " +
+        std::to_string(f.memory()) + " frames");
   }
   weight_ = 1.0 / std::max(1e-30, static_cast<double>(data_.scores.squaredNorm()));
 

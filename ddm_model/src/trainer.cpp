@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <sstream>
 #include <string>
@@ -121,13 +122,61 @@ Terms selectionTerms(const Schedule& schedule, const TrainingOptions& training) 
   return terms;
 }
 
+/// What is minimised for one model/delay.
+struct Problem {
+  Problem(ModelOptions model, int torque_dim, const TrainingData<float>& data)
+      : options(std::move(model)), networks(options, torque_dim), objective(networks, data) {}
+
+  ModelOptions options;
+  Networks<float> networks;
+  JointObjective<float> objective;
+
+  /// w times the terms.
+  double cost(const Eigen::VectorXd& theta, const Terms& terms) {
+    return objective.weight() * objective.evaluate(theta.cast<float>(), nullptr, terms).of(terms);
+  }
+};
+
+/// One for each delay that is tried.
+std::vector<std::unique_ptr<Problem>> makeProblems(ModelOptions model,
+                                                   const TrainingOptions& training, int torque_dim,
+                                                   const TrainingData<float>& data) {
+  std::vector<std::unique_ptr<Problem>> problems;
+  const int last = largestDelay(model, training);
+  for (; model.delay <= last; ++model.delay) {
+    problems.push_back(std::make_unique<Problem>(model, torque_dim, data));
+  }
+  return problems;
+}
+
 /// What one start came to.
 struct Candidate {
+  Problem* problem = nullptr;
   Eigen::VectorXd theta;  ///< empty: nothing usable
   double initial_cost = 0.0;
-  double error = std::numeric_limits<double>::infinity();  ///< less is better
+  double error = std::numeric_limits<double>::infinity();  ///< of a prediction; less is better
   std::string message;                                     ///< how the solver ended
 };
+
+/// One start for one delay, all stages.
+/// @param result  as of runStage()
+Candidate run(Problem* problem, Eigen::VectorXd initial_theta, const Schedule& schedule,
+              const TrainingOptions& training, Progress* progress, TrainingResult* result) {
+  Candidate candidate{problem, std::move(initial_theta)};
+  candidate.initial_cost = problem->cost(candidate.theta, schedule.terms());
+  if (!runStages(schedule.stages, training, problem->networks, progress, &problem->objective,
+                 &candidate.theta, result)) {
+    return {};
+  }
+  // A longer delay leaves fewer predictions to learn from.
+  candidate.error = problem->cost(candidate.theta, selectionTerms(schedule, training)) /
+                    static_cast<double>(problem->objective.numPredictions());
+  if (!std::isfinite(candidate.error)) {  // a roll-out that grows without bound
+    candidate.error = std::numeric_limits<double>::max();
+  }
+  candidate.message = result->message;
+  return candidate;
+}
 
 }  // namespace
 
@@ -135,53 +184,47 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
                      const TrainingOptions& training, ModelInfo info,
                      const TrainingCallback& callback) {
   const auto began = std::chrono::steady_clock::now();
-  const Networks<float> networks(model, data.torqueDim());
   const Networks<double> initial_networks(model, data.torqueDim());
   const Pca pca =
       fitPca(data, model.pca_dim, training.score_std, Blur(data.imageSize(), model.blur));
-  TrainingData<float> training_data = makeTrainingData(data, pca);
+  const TrainingData<float> training_data = makeTrainingData(data, pca);
+  const auto problems = makeProblems(model, training, data.torqueDim(), training_data);
   const Eigen::MatrixXd scores = training_data.scores.cast<double>();
-  JointObjective<float> objective(networks, std::move(training_data));
   const Schedule schedule = makeSchedule(training);
-  const auto cost = [&objective](const Eigen::VectorXd& theta, const Terms& terms) {
-    return objective.weight() * objective.evaluate(theta.cast<float>(), nullptr, terms).of(terms);
-  };
-  Progress progress(callback, schedule, training.num_starts, pca);
+  Progress progress(callback, schedule, training.num_starts * static_cast<int>(problems.size()),
+                    pca);
   std::mt19937_64 rng = randomStream({info.seed, info.trial}, StreamRole::kInitialisation);
 
   TrainingResult result;
   Candidate best;
   for (int start = 0; start < training.num_starts && !result.cancelled; ++start) {
-    Candidate candidate;
-    candidate.theta = initialTheta(initial_networks, scores, training,
-                                   schedule.pca_start && start < training.pca_starts, &rng);
-    candidate.initial_cost = cost(candidate.theta, schedule.terms());
-    if (!runStages(schedule.stages, training, networks, &progress, &objective, &candidate.theta,
-                   &result)) {
-      continue;
+    const Eigen::VectorXd initial_theta =
+        initialTheta(initial_networks, scores, training,
+                     schedule.pca_start && start < training.pca_starts, &rng);
+    for (size_t i = 0; i < problems.size() && !result.cancelled; ++i) {
+      Candidate candidate =
+          run(problems[i].get(), initial_theta, schedule, training, &progress, &result);
+      if (candidate.error < best.error) best = std::move(candidate);
     }
-    candidate.error = cost(candidate.theta, selectionTerms(schedule, training));
-    if (!std::isfinite(candidate.error)) {  // a roll-out that grows without bound
-      candidate.error = std::numeric_limits<double>::max();
-    }
-    candidate.message = result.message;
-    if (candidate.error < best.error) best = std::move(candidate);
   }
   if (best.theta.size() > 0 && !result.cancelled && schedule.finish) {
-    runStage(*schedule.finish, training, networks, &progress, &objective, &best.theta, &result);
+    runStage(*schedule.finish, training, best.problem->networks, &progress,
+             &best.problem->objective, &best.theta, &result);
     best.message = result.message;
   }
   if (best.theta.size() > 0 && !result.cancelled) {
     result.message = best.message;
     result.initial_cost = best.initial_cost;
-    result.final_cost = cost(best.theta, schedule.terms());
+    result.final_cost = best.problem->cost(best.theta, schedule.terms());
+    JointObjective<float>& objective = best.problem->objective;
+    const ModelOptions& options = best.problem->options;
     const Value value = objective.evaluate(best.theta.cast<float>(), nullptr);
     info.frames = static_cast<std::uint32_t>(data.numFrames());
     info.v_r = squaredScale(pca) * value.v_r;
     info.v_p = squaredScale(pca) * value.v_p;
     info.feature_spread = objective.featureSpread();
-    info.landmarks = landmarkStates(objective.features(), data, model.order, kMaxLandmarks);
-    result.model.emplace(model, data.imageSize(), data.torqueDim(), pca, best.theta, data.goal(),
+    info.landmarks = landmarkStates(objective.features(), data, options.memory(), kMaxLandmarks);
+    result.model.emplace(options, data.imageSize(), data.torqueDim(), pca, best.theta, data.goal(),
                          info);
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();

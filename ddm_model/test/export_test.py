@@ -57,13 +57,13 @@ class ExportTest(toy_robot.ToyRobotCase):
     def assertPredicts(self, ours, truth):
         rows = toy_robot.read_table(self.file("predicted_features.csv"))
         self.assertEqual(len(rows["frame"]), 2 * 5)
-        n = int(ours["model"]["order"])
+        n, delay = int(ours["model"]["order"]), int(ours["model"]["delay"])
         for kind in ("typical", "worst"):
             predicted = rows[rows["kind"] == kind]
             frame = predicted["frame"][0]
             Z = [truth[:, [frame - lag]] for lag in range(n)]
             for k in range(4):
-                U = [self.torques[frame + k - lag].reshape(1, 1) for lag in range(n)]
+                U = [self.torques[frame + k - lag].reshape(1, 1) for lag in range(n + delay)]
                 Z = [ours["predict"](Z, U)] + Z[:-1]
                 np.testing.assert_allclose(Z[0][:, 0], features_in(predicted)[:, k + 1], rtol=0.0, atol=1e-5)
 
@@ -85,6 +85,9 @@ class ExportTest(toy_robot.ToyRobotCase):
 
     def test_so_it_does_with_blur_changes_increments_and_a_longer_past(self):
         self.assertComputesTheSame(", blur: 1.5, residual: true, increments: true, order: 3, predictor_widths: [5, 3]")
+
+    def test_so_it_does_where_images_are_late(self):
+        self.assertComputesTheSame(", increments: true, delay: 1")
 
     def test_the_goal_and_its_feature_are_exported(self):
         arrays = self.export(toy_robot.train(self.scratch, [self.bag]))["model"]

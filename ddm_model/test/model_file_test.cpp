@@ -76,13 +76,14 @@ TEST(ModelFile, KeepsTheFormOfF) {
   }
 }
 
-TEST(ModelFile, KeepsALimitForEachMotorBlurAndLandmarks) {
+TEST(ModelFile, KeepsALimitForEachMotorBlurDelayAndLandmarks) {
   const Ddm one = toyModel();
   ModelOptions options = one.options();
   options.max_torque = {4.0, 2.0};
   options.blur = 1.5;
+  options.delay = 1;
   ModelInfo info = one.info();
-  info.landmarks = testing::randomMatrix(2 * 2 + 2, 9, 5).cast<float>();
+  info.landmarks = testing::randomMatrix(3 * 2 + 2 * 2, 9, 5).cast<float>();
   Pca pca = one.pca();
   pca.blur = Blur(one.imageSize(), options.blur);
   const Eigen::Index num_params = Networks<double>(options, 2).numParams();
@@ -93,6 +94,7 @@ TEST(ModelFile, KeepsALimitForEachMotorBlurAndLandmarks) {
   EXPECT_EQ(back.options().max_torque, options.max_torque);
   EXPECT_EQ(back.predictionModel().maxTorque(), Eigen::Vector2d(4.0, 2.0));
   EXPECT_EQ(back.options().blur, options.blur);
+  EXPECT_EQ(back.options().delay, 1);
   EXPECT_EQ(back.info().landmarks, info.landmarks);
   EXPECT_EQ(back.encode(testing::toyImage(0.5)), model.encode(testing::toyImage(0.5)));
   EXPECT_EQ(serialiseModel(back), bytes);
@@ -123,14 +125,18 @@ std::string olderFile(char version, ModelOptions options) {
     bytes.erase(at - before, before + pattern.size());
     return at - before;
   };
-  cut(bytesOf<double>({options.blur}));
-  cut(bytesOf<float>({0.75F, 0.75F, 0.75F, 0.75F, 0.75F}), sizeof(std::uint64_t));
+  const std::string blur = bytesOf<double>({options.blur});
+  bytes.erase(bytes.find(blur, kContentAt) + blur.size(), sizeof(std::int32_t));  // the delay
+  if (version < 4) {
+    cut(blur);
+    cut(bytesOf<float>({0.75F, 0.75F, 0.75F, 0.75F, 0.75F}), sizeof(std::uint64_t));
+  }
   const std::string limit = bytesOf<double>(options.max_torque);
   if (version < 3) bytes.insert(cut(limit, sizeof(std::uint64_t)), limit);
   if (version < 2) {
     cut(bytesOf<double>({info.feature_spread}));
     bytes.erase(bytes.find(limit, kContentAt) - 2, 2);  // the flags of f
-  } else {
+  } else if (version < 4) {
     bytes += bytesOf<std::uint32_t>({0});  // no other models of an ensemble
   }
   bytes[kVersionAt] = version;
@@ -147,14 +153,15 @@ std::string sealedAnew(std::string bytes) {
 TEST(ModelFile, ReadsOlderVersions) {
   ModelOptions options = toyModel().options();
   options.max_torque = {2.625};
-  for (const char version : {1, 2, 3}) {
+  for (const char version : {1, 2, 3, 4}) {
     options.residual = version > 1;
     const Ddm back = deserialiseModel(sealedAnew(olderFile(version, options)), "memory");
     EXPECT_EQ(back.options().max_torque, options.max_torque);
     EXPECT_EQ(back.options().residual, options.residual);
-    EXPECT_EQ(back.options().blur, 0.0);
+    EXPECT_EQ(back.options().blur, version > 3 ? 0.125 : 0.0);
+    EXPECT_EQ(back.options().delay, 0);
     EXPECT_EQ(back.info().feature_spread, version > 1 ? 0.0625 : 0.0);
-    EXPECT_EQ(back.info().landmarks.size(), 0);
+    EXPECT_EQ(back.info().landmarks.size(), version > 3 ? 5 : 0);
     EXPECT_EQ(back.info().config, toyModel().info().config);
     EXPECT_EQ(back.goal(), toyModel().goal());
     EXPECT_EQ(back.theta(), testing::randomMatrix(back.theta().size(), 1, 4));
@@ -195,8 +202,8 @@ TEST(ModelFile, BytesAfterTheEndAreRefused) {
 
 TEST(ModelFile, AnotherVersionIsRefusedWithBothVersionsAndTheRemedy) {
   std::string bytes = serialiseModel(toyModel());
-  bytes[kVersionAt] = 5;
-  EXPECT_TRUE(isRefused(bytes, {"version 5", "1 to 4", "train it"}));
+  bytes[kVersionAt] = 6;
+  EXPECT_TRUE(isRefused(bytes, {"version 6", "1 to 5", "train it"}));
 }
 
 TEST(ModelFile, WhatIsNoModelIsRefused) {

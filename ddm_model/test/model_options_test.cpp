@@ -51,6 +51,8 @@ TEST(ModelOptions, RefusesEachKeyOutOfRangeWithItsNameAndValue) {
   EXPECT_TRUE(refuses(with(&ModelOptions::feature_dim, 101), "model/feature_dim", "101"));
   EXPECT_TRUE(refuses(with(&ModelOptions::order, 0), "model/order", "0"));
   EXPECT_TRUE(refuses(with(&ModelOptions::order, 51), "model/order", "51"));
+  EXPECT_TRUE(refuses(with(&ModelOptions::delay, -1), "model/delay", "-1"));
+  EXPECT_TRUE(refuses(with(&ModelOptions::delay, 51), "model/delay", "51"));
   const std::vector<int> zero = {4, 0}, huge = {4097, 4};
   EXPECT_TRUE(refuses(with(&ModelOptions::encoder_widths, zero), "model/encoder_widths", "0"));
   EXPECT_TRUE(refuses(with(&ModelOptions::decoder_widths, huge), "model/decoder_widths", "4097"));

@@ -361,7 +361,7 @@ TEST(JointObjective, RefusesDataInWhichNoPieceIsLongEnough) {
       [&] {
         JointObjective<double>(nets, randomData(4, 1, 6, true, {{0, 2}, {2, 2}, {4, 1}}));
       },
-      {"model/order = 2"}));
+      {"model/order", "= 2 frames"}));
 }
 
 TEST(JointObjective, RefusesDataOfAnotherShape) {

@@ -14,17 +14,18 @@ using testing::randomMatrix;
 
 constexpr int kFrames = 12;
 constexpr int kSteps = 4;
-const std::vector<Eigen::Index> kTargets = {3, 5, 8};
+const std::vector<Eigen::Index> kTargets = {4, 5, 8};
 
 RollOut<double>::Targets targets() { return {kTargets.data(), 3}; }
 
-/// n, and whether f sees and predicts differences of features.
-class RollOutOfEachForm : public ::testing::TestWithParam<std::tuple<int, bool>> {
+/// n, d, and whether f sees and predicts differences of features.
+class RollOutOfEachForm : public ::testing::TestWithParam<std::tuple<int, int, bool>> {
  protected:
   static ModelOptions options() {
     ModelOptions options;
     options.order = std::get<0>(GetParam());
-    options.residual = options.increments = std::get<1>(GetParam());
+    options.delay = std::get<1>(GetParam());
+    options.residual = options.increments = std::get<2>(GetParam());
     options.max_torque = {1.5, 0.5};
     return options;
   }
@@ -38,7 +39,8 @@ class RollOutOfEachForm : public ::testing::TestWithParam<std::tuple<int, bool>>
         Eigen::VectorXd z = path.col(frame - 1 - lag);
         if (options().increments && lag > 0) z = path.col(frame - lag) - z;
         h.segment(4 * lag, 2) = z;
-        h.segment(4 * lag + 2, 2) << U_(0, frame - 1 - lag) / 1.5, U_(1, frame - 1 - lag) / 0.5;
+        const Eigen::Vector2d u = U_.col(frame - 1 - lag - f_.delay());
+        h.segment(4 * lag + 2, 2) << u[0] / 1.5, u[1] / 0.5;
       }
       Mlp<double>::Tape tape;
       f_.network().forward(theta_p_.data(), h, &tape);
@@ -117,8 +119,9 @@ TEST_P(RollOutOfEachForm, IsTheSameAfterALargerOne) {
   EXPECT_TRUE(used.predicted(1).isApprox(fresh.predicted(1), 1e-14));
 }
 
-INSTANTIATE_TEST_SUITE_P(OrdersAndForms, RollOutOfEachForm,
-                         ::testing::Combine(::testing::Values(1, 2, 3), ::testing::Bool()));
+INSTANTIATE_TEST_SUITE_P(OrdersDelaysAndForms, RollOutOfEachForm,
+                         ::testing::Combine(::testing::Values(1, 2, 3), ::testing::Values(0, 1),
+                                            ::testing::Bool()));
 
 }  // namespace
 }  // namespace ddm

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -216,6 +217,34 @@ TEST_F(Trainer, ChoosesAmongStartsByWhatIsAskedFor) {
             by_cost.info().v_p + by_cost.info().v_r);
   training_.selection_steps = 8;
   EXPECT_NE(run().model->theta(), by_prediction.theta());
+}
+
+/// One trial whose images are late.
+DataSet lateTrial(unsigned seed, int delay) {
+  const DataSet punctual = testing::toyTrial(40, seed);
+  DataSet late(punctual.imageSize(), 1);
+  for (int t = 0; t < punctual.numFrames(); ++t) {
+    late.append(punctual.image(std::max(t - delay, 0)), punctual.torques().col(t), t == 0);
+  }
+  return late;
+}
+
+TEST_F(Trainer, FindsHowManyFramesLateTheImagesAre) {
+  model_.order = 1;  // two torques could be that of now and that of a frame ago
+  training_.max_delay = 2;
+  training_.selection_steps = 2;
+  training_.max_iterations = 60;
+  for (int delay = 0; delay <= 2; ++delay) {
+    data_ = lateTrial(1, delay);
+    const TrainingResult result = run();
+    ASSERT_TRUE(result.model) << result.message;
+    EXPECT_EQ(result.model->options().delay, delay);
+  }
+}
+
+TEST_F(Trainer, KeepsTheDelayItIsGivenWhereNoOtherIsTried) {
+  model_.delay = 1;
+  EXPECT_EQ(run().model->options().delay, 1);
 }
 
 TEST_F(Trainer, TheChosenStartAloneGoesOn) {

@@ -104,6 +104,7 @@ void writeModel(const Ddm& model, const ArrayFolder& out) {
   out.writeNumber("feature_dim", std::int64_t{options.feature_dim});
   out.writeNumber("torque_dim", std::int64_t{model.torqueDim()});
   out.writeNumber("order", std::int64_t{options.order});
+  out.writeNumber("delay", std::int64_t{options.delay});
   if (options.max_torque.size() == 1) {
     out.writeNumber("max_torque", options.max_torque[0]);
   } else {

@@ -23,7 +23,7 @@ void DdmPlanCost::setHorizon(int horizon) {
   if (horizon < 1) throw std::invalid_argument("plan cost: horizon must be >= 1");
   horizon_ = horizon;
   roll_out_.reserve(/*num_targets=*/1, horizon);
-  torques_.setZero(f_.torqueDim(), f_.order() - 1 + horizon);
+  torques_.setZero(f_.torqueDim(), f_.memory() - 1 + horizon);
 }
 
 void DdmPlanCost::setControlWeight(double control_weight) {
@@ -42,19 +42,19 @@ void DdmPlanCost::setGoal(const Eigen::VectorXd& goal_feature) {
 
 void DdmPlanCost::setProblem(const History& x, const Eigen::VectorXd& goal_feature,
                              const Eigen::VectorXd& offset) {
-  if (x.empty() || x.features().rows() != f_.featureDim() || x.features().cols() != f_.order() ||
+  if (x.empty() || x.features().rows() != f_.featureDim() || x.features().cols() != f_.memory() ||
       x.torques().rows() != f_.torqueDim() || goal_feature.size() != f_.featureDim() ||
       offset.size() != f_.featureDim()) {
     throw std::invalid_argument("plan cost: history, goal feature or offset do not fit the model");
   }
   features_ = x.features().rowwise().reverse();
-  torques_.leftCols(f_.order() - 1) = x.torques().rowwise().reverse();
+  torques_.leftCols(f_.memory() - 1) = x.torques().rowwise().reverse();
   setGoal(goal_feature);
   offset_ = offset;
 }
 
 void DdmPlanCost::rollOut(const Eigen::Ref<const Eigen::MatrixXd>& U, int num_steps) {
-  const Eigen::Index target = f_.order();  // z_1 follows the n features that were seen
+  const Eigen::Index target = f_.memory();  // z_1 follows the features that were seen
   torques_.rightCols(horizon_) = U;
   roll_out_.forward(theta_p_, features_, torques_, RollOut<double>::Targets(&target, 1), num_steps,
                     &offset_);
@@ -94,7 +94,7 @@ double DdmPlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::
     roll_out_.dPredicted(horizon_ - 1) += d_last;
     if (horizon_ > 1) roll_out_.dPredicted(horizon_ - 2) += d_before;
   }
-  const Eigen::Index target = f_.order();
+  const Eigen::Index target = f_.memory();
   const RollOut<double>::Targets targets(&target, 1);
   for (int step = horizon_ - 1; step >= 0; --step) {
     stepCost(step, &d_step_);

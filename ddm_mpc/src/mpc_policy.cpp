@@ -39,7 +39,7 @@ MpcPolicy::MpcPolicy(std::shared_ptr<const Ddm> model, const MpcOptions& options
       offset_gain_(options.offset_gain),
       time_budget_(options.time_budget),
       z_ref_(model_->hasGoal() ? model_->goalFeature() : Eigen::VectorXd()),
-      x_(model_->options().order, model_->featureDim(), model_->torqueDim()),
+      x_(model_->options().memory(), model_->featureDim(), model_->torqueDim()),
       offset_(Eigen::VectorXd::Zero(model_->featureDim())),
       cost_(*model_, options.horizon, options.control_weight, timeToGoal(*model_, options)),
       planner_(&cost_, options) {

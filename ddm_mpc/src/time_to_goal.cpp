@@ -52,7 +52,7 @@ double spacing(const Eigen::MatrixXd& points) {
 std::vector<Eigen::MatrixXd> predictions(const Ddm& model, const Eigen::MatrixXd& X,
                                          const Eigen::VectorXd& u, int num_steps) {
   const Eigen::Index dim = model.featureDim(), motors = model.torqueDim(), M = X.cols();
-  const Eigen::Index n = model.options().order;
+  const Eigen::Index n = model.options().memory();
   const Eigen::Index length = n + num_steps;  // frames of a landmark in Z and U, oldest first
   Eigen::MatrixXd Z = Eigen::MatrixXd::Zero(dim, M * length);
   Eigen::MatrixXd U = u.replicate(1, M * length);
@@ -79,7 +79,7 @@ TimeToGoal::TimeToGoal(const Ddm& model, const Eigen::VectorXd& max_torque)
   const Eigen::MatrixXd X = model.info().landmarks.cast<double>();
   const Eigen::Index dim = model.featureDim(), M = X.cols();
   const Eigen::MatrixXd Z = X.topRows(dim);
-  const Eigen::MatrixXd changes = model.options().order > 1
+  const Eigen::MatrixXd changes = model.options().memory() > 1
                                       ? Eigen::MatrixXd(Z - X.middleRows(dim, dim))
                                       : Eigen::MatrixXd::Zero(dim, M);
   const double smallest = std::numeric_limits<double>::min();  // where nothing moved

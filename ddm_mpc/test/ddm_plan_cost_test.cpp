@@ -32,8 +32,9 @@ double slowCost(const Ddm& model, const History& x, const Eigen::VectorXd& goal,
     std::vector<double> h;
     for (int lag = 0; lag < model.options().order; ++lag) {
       for (const double z : features[lag]) h.push_back(z);
-      for (Eigen::Index i = 0; i < torques[lag].size(); ++i) {
-        h.push_back(torques[lag][i] / model.predictionModel().maxTorque()[i]);
+      const Eigen::VectorXd& torque = torques[lag + model.options().delay];
+      for (Eigen::Index i = 0; i < torque.size(); ++i) {
+        h.push_back(torque[i] / model.predictionModel().maxTorque()[i]);
       }
     }
     Mlp<double>::Tape tape;
@@ -46,13 +47,14 @@ double slowCost(const Ddm& model, const History& x, const Eigen::VectorXd& goal,
   return cost;
 }
 
-/// order, torque_dim, horizon
-class DdmPlanCostShapes : public ::testing::TestWithParam<std::tuple<int, int, int>> {
+/// order, torque_dim, horizon, delay
+class DdmPlanCostShapes : public ::testing::TestWithParam<std::tuple<int, int, int, int>> {
  protected:
   static RandomModelOptions modelOptions() {
     RandomModelOptions options;
     options.model.order = std::get<0>(GetParam());
     options.torque_dim = std::get<1>(GetParam());
+    options.model.delay = std::get<3>(GetParam());
     if (options.torque_dim == 2) options.model.max_torque = {4.0, 2.0};
     options.gain = 0.7;
     return options;
@@ -116,9 +118,10 @@ TEST(DdmPlanCost, GradientMatchesDifferencesForEveryFormOfFAndWithAnOffset) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(OrdersTorquesHorizons, DdmPlanCostShapes,
+INSTANTIATE_TEST_SUITE_P(OrdersTorquesHorizonsDelays, DdmPlanCostShapes,
                          ::testing::Combine(::testing::Values(1, 2, 3), ::testing::Values(1, 2),
-                                            ::testing::Values(1, 2, 3, 7, 15)));
+                                            ::testing::Values(1, 2, 3, 7, 15),
+                                            ::testing::Values(0, 2)));
 
 TEST(DdmPlanCost, ForgetsTheLastProblem) {
   const Ddm model = randomModel({});

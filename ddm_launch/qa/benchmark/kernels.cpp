@@ -213,7 +213,7 @@ void measurePlans(const Experience& experience) {
   const Ddm& model = *experience.model;
   const MpcOptions& mpc = experience.configuration.mpc;
   const auto cost = std::make_shared<DdmPlanCost>(model, mpc.horizon, mpc.control_weight);
-  History x(model.options().order, model.featureDim(), model.torqueDim());
+  History x(model.options().memory(), model.featureDim(), model.torqueDim());
   x.observe(model.encode(experience.data.image(0)));
   cost->setProblem(x, model.goalFeature());
   const Eigen::MatrixXd U = Eigen::MatrixXd::Constant(model.torqueDim(), mpc.horizon, 0.5);

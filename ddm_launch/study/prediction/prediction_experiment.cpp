@@ -85,8 +85,8 @@ std::string featuresCsv(const PlantInfo& plant, const Recording& recording,
 /// The prediction from the middle of the held-out frames, of those that have a full history.
 std::string stripCsv(const PlantInfo& plant, const Recording& recording, const Ddm& model,
                      const Eigen::MatrixXd& Z, int max_steps) {
-  const Eigen::Index order = model.options().order;
-  const Eigen::Index frame = order - 1 + (recording.held_out.numFrames() - max_steps - order) / 2;
+  const Eigen::Index memory = model.options().memory();
+  const Eigen::Index frame = memory - 1 + (recording.held_out.numFrames() - max_steps - memory) / 2;
   const Eigen::Index begin = recording.training.numFrames() + frame;
   const Eigen::MatrixXd predicted = model.rollOut(Z.rightCols(recording.held_out.numFrames()),
                                                   recording.held_out.torques(), frame, max_steps);
@@ -164,14 +164,14 @@ void requireFit(const Experiment& experiment) {
   const Configuration& all = experiment.configuration;
   const PredictionOptions& prediction = experiment.prediction;
   const ModelOptions& model = all.model.model;
+  const int memory = model.order + largestDelay(model, all.model.training);
   OptionChecks checks("prediction");
-  checks.require(prediction.held_out_frames >= prediction.max_steps + model.order,
-                 "held_out_frames",
-                 "be at least prediction/max_steps + model/order = " +
-                     std::to_string(prediction.max_steps + model.order),
+  checks.require(prediction.held_out_frames >= prediction.max_steps + memory, "held_out_frames",
+                 "be at least prediction/max_steps + model/order + the delay = " +
+                     std::to_string(prediction.max_steps + memory),
                  prediction.held_out_frames);
-  checks.require(prediction.training_frames > std::max(model.pca_dim, model.order),
-                 "training_frames", "be more than model/pca_dim and model/order",
+  checks.require(prediction.training_frames > std::max(model.pca_dim, memory), "training_frames",
+                 "be more than model/pca_dim, and model/order + the delay",
                  prediction.training_frames);
   OptionChecks camera("camera");
   camera.require(all.camera.drop_rate == 0.0, "drop_rate",

@@ -8,16 +8,18 @@
 namespace ddm {
 
 /// x_t = [z_t, ..., z_{t-n+1}, u_{t-1}, ..., u_{t-n+1}] (paper, eq. 8). At the start of a trial
-/// the first feature stands for those before it, with torque 0: the plant is taken to be at rest.
+/// the first feature stands for those before it, with torque 0: the plant is taken to be at rest. Where
+/// images are d frames late, both reach back d frames more.
 class History {
  public:
+  /// @param memory  n + d, see ModelOptions
   /// @throws std::invalid_argument if one is < 1
-  History(int order, int feature_dim, int torque_dim) {
-    if (order < 1 || feature_dim < 1 || torque_dim < 1) {
-      throw std::invalid_argument("history: order and dimensions must be >= 1");
+  History(int memory, int feature_dim, int torque_dim) {
+    if (memory < 1 || feature_dim < 1 || torque_dim < 1) {
+      throw std::invalid_argument("history: memory and dimensions must be >= 1");
     }
-    features_.setZero(feature_dim, order);
-    torques_.setZero(torque_dim, order - 1);
+    features_.setZero(feature_dim, memory);
+    torques_.setZero(torque_dim, memory - 1);
   }
 
   /// Forgets everything: the next feature is the first of a trial.
@@ -49,9 +51,9 @@ class History {
   }
 
   bool empty() const { return empty_; }
-  /// z_t, z_{t-1}, ...: the newest first  [feature_dim x n]
+  /// z_t, z_{t-1}, ...: the newest first  [feature_dim x (n + d)]
   const Eigen::MatrixXd& features() const { return features_; }
-  /// u_{t-1}, u_{t-2}, ...: the newest first [N m]  [torque_dim x (n - 1)]
+  /// u_{t-1}, u_{t-2}, ...: the newest first [N m]  [torque_dim x (n + d - 1)]
   const Eigen::MatrixXd& torques() const { return torques_; }
 
  private:

@@ -21,10 +21,10 @@ std::vector<Eigen::Index> farthestPoints(const Eigen::Ref<const Eigen::MatrixXf>
 /// of their spread.
 /// @param Z          features of all frames, others may follow           [feature_dim x >= N]
 /// @param data       torques and pieces of the frames
-/// @param order      n
+/// @param memory     n + d, the frames of a state
 /// @param max_count  of landmarks
-/// @return           z_t ... z_{t-n+1}, then u_{t-1} ... u_{t-n+1} [N m], in each column
+/// @return           z_t ... z_{t-n-d+1}, then u_{t-1} ... u_{t-n-d+1} [N m], in each column
 Eigen::MatrixXf landmarkStates(const Eigen::Ref<const Eigen::MatrixXf>& Z, const DataSet& data,
-                               int order, Eigen::Index max_count);
+                               int memory, Eigen::Index max_count);
 
 }  // namespace ddm

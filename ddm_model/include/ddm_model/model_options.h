@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ struct ModelOptions {
   int pca_dim = 50;                               ///< input of the encoder [-]
   int feature_dim = 2;                            ///< dim z [-]
   int order = 2;                                  ///< n, features and torques that f sees [-]
+  int delay = 0;                                  ///< d, how late an image shows a torque [frames]
   std::vector<int> encoder_widths = {25, 12, 6};  ///< hidden layers of g^-1
   std::vector<int> decoder_widths = {6, 12, 25};  ///< hidden layers of g
   std::vector<int> predictor_widths = {4};        ///< hidden layers of f
@@ -26,6 +28,7 @@ struct ModelOptions {
     visitor("pca_dim", pca_dim);
     visitor("feature_dim", feature_dim);
     visitor("order", order);
+    visitor("delay", delay);
     visitor("encoder_widths", encoder_widths);
     visitor("decoder_widths", decoder_widths);
     visitor("predictor_widths", predictor_widths);
@@ -33,6 +36,8 @@ struct ModelOptions {
     visitor("increments", increments);
     visitor("max_torque", max_torque);
   }
+  /// Frames that f looks back: n + d.
+  int memory() const { return order + delay; }
   std::vector<std::string> problems() const;
 };
 
@@ -42,6 +47,7 @@ struct TrainingOptions {
   std::string solver = "lbfgs";    ///< "lbfgs", "kfac" or "bfgs"
   int num_starts = 1;              ///< trainings, of which the best is kept [-]
   int pca_starts = 1;              ///< how many of them start from PCA, the rest at random [-]
+  int max_delay = 0;               ///< largest model/delay that is tried [frames]
   int selection_steps = 0;         ///< by predictions so many steps ahead; 0: by what is minimised
   int selection_iterations = 0;  ///< after so many of each start's last stage; 0: when all are done
   int max_iterations = 500;      ///< cap on the iterations of the solver, each stage [-]
@@ -60,6 +66,7 @@ struct TrainingOptions {
     visitor("solver", solver);
     visitor("num_starts", num_starts);
     visitor("pca_starts", pca_starts);
+    visitor("max_delay", max_delay);
     visitor("selection_steps", selection_steps);
     visitor("selection_iterations", selection_iterations);
     visitor("max_iterations", max_iterations);
@@ -74,5 +81,10 @@ struct TrainingOptions {
   }
   std::vector<std::string> problems() const;
 };
+
+/// The largest delay that is tried.
+inline int largestDelay(const ModelOptions& model, const TrainingOptions& training) {
+  return std::max(model.delay, training.max_delay);
+}
 
 }  // namespace ddm

@@ -13,9 +13,10 @@ namespace ddm {
 
 /// One-step prediction in feature space (paper, eq. 2), without its parameters.
 ///
-///   z_{t+1} = f(h_n; theta_P),   h_n = [z_t, u_t, z_{t-1}, u_{t-1}, ..., z_{t-n+1}, u_{t-n+1}]
+///   z_{t+1} = f(h_n; theta_P),   h_n = [z_t, u_{t-d}, z_{t-1}, u_{t-1-d}, ..., z_{t-n+1}, u_{t-n+1-d}]
 ///
-/// with u in units of max_torque; RollOut makes h_n. f is a network with a linear output layer, or,
+/// with u in units of max_torque; RollOut makes h_n. d is the dead time of the camera, model/delay, 0 in
+/// the paper: an image that is d frames late shows a torque d frames later. f is a network with a linear output layer, or,
 /// with model/residual, z_t plus such a network: what does not move is then predicted without
 /// learning. With model/increments the network sees z_t, z_t - z_{t-1}, z_{t-1} - z_{t-2}, ...
 /// instead: features of successive images are almost equal, and their differences are the motion.
@@ -29,6 +30,7 @@ class PredictionModel {
       : feature_dim_(options.feature_dim),
         torque_dim_(torque_dim),
         order_(options.order),
+        delay_(options.delay),
         residual_(options.residual),
         increments_(options.increments),
         max_torque_(perMotor(options.max_torque, torque_dim, "model/max_torque")),
@@ -40,6 +42,10 @@ class PredictionModel {
   int torqueDim() const { return torque_dim_; }
   /// @return n
   int order() const { return order_; }
+  /// @return d
+  int delay() const { return delay_; }
+  /// @return n + d, the frames from the oldest that h_n needs to the current one
+  int memory() const { return order_ + delay_; }
   /// What f sees as 1 [N m]  [torque_dim]
   const Eigen::VectorXd& maxTorque() const { return max_torque_; }
   /// @return n (feature_dim + torque_dim), the size of h_n
@@ -91,6 +97,7 @@ class PredictionModel {
   int feature_dim_;
   int torque_dim_;
   int order_;
+  int delay_;
   bool residual_;
   bool increments_;
   Eigen::VectorXd max_torque_;

@@ -13,7 +13,7 @@ namespace ddm {
 /// frame are given, those of the frame after it, the target, and of the frames that follow are
 /// predicted,
 ///
-///   z_{t+1} = f(h_n) + offset,   h_n = [z_t, u_t, ..., z_{t-n+1}, u_{t-n+1}]              eq. (2)
+///   z_{t+1} = f(h_n) + offset,   h_n = [z_t, u_{t-d}, ..., z_{t-n+1}, u_{t-n+1-d}]        eq. (2)
 ///
 /// where a feature in h_n is the predicted one from the target on. Any number of targets is
 /// predicted at once; each has its own column. Holds the record of the forward pass that the
@@ -23,7 +23,7 @@ class RollOut {
  public:
   using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
   using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
-  /// Frames that are predicted first, n or larger; refers to the caller's.
+  /// Frames that are predicted first, n + d or larger; refers to the caller's.
   using Targets = Eigen::Map<const Eigen::Matrix<Eigen::Index, Eigen::Dynamic, 1>>;
 
   /// @param f  outlives the roll-out

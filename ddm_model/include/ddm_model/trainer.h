@@ -37,7 +37,8 @@ struct TrainingResult {
 };
 
 /// Trains a model from scratch on all data (a warm start from the last optimum gets stuck) by the
-/// schedule of `training`, from num_starts starts, and keeps the best.
+/// schedule of `training`, from num_starts starts with each delay that is tried, and keeps the best.
+/// Its model/delay is in the model's options.
 /// @param info  seed, trial and config are kept; frames, V_R, V_P and the spread are filled in
 /// @throws std::invalid_argument if the data are too few for the options, or all the same
 TrainingResult train(const DataSet& data, const ModelOptions& model,

@@ -38,6 +38,7 @@ def facts_table(data, model):
             facts["image_size"], facts["image_size"], options["pca_dim"])),
         ("features, torques", "%s, %s; the last %s of each predict the next" % (
             options["feature_dim"], facts["torque_dim"], options["order"])),
+        ("delay", "%s frame(s): an image shows what the torque of so many frames before it did" % options["delay"]),
         ("hidden layers", "; ".join(widths)),
         ("f", "residual: %s, increments: %s, torques in units of %s N m" % (
             options["residual"], options["increments"], options["max_torque"])),

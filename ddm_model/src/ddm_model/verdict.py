@@ -177,7 +177,7 @@ def check_prediction(data):
                      np.min(ratios[:near]), near, data.errors["rmse"][0], data.errors["rmse_repeat"][0], ahead,
                      len(ratios)), rule,
                  "More and better excited data first. Then training/prediction_steps 4 with residual and increments "
-                 "(as preset efficient), more starts, or model/order 3 if the camera is late.")
+                 "(as preset efficient), more starts, or training/max_delay 1 if the camera may be late.")
 
 
 def check_torque_effect(data):
