@@ -40,7 +40,6 @@ void runClosedLoop(Rig* rig, std::shared_ptr<Policy> policy, const TrialRequest&
                    const Configuration& configuration, const TakeFrame& take) {
   EpsilonGreedy::Options options;
   options.epsilon = request.epsilon;
-  options.bang_bang = configuration.mpc.exploration == "bang_bang";
   options.hold_steps = request.hold_steps;
   options.max_torque =
       perMotor(configuration.mpc.max_torque, rig->plant().torqueDim(), "mpc/max_torque");

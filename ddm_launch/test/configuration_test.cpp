@@ -117,7 +117,7 @@ TEST(Configuration, ThePaperPresetHoldsTheNumbersOfThePaper) {
 TEST(Configuration, APresetThatDoesNotExistIsRefusedWithThoseThatDo) {
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
       [] { resolve(arguments("papier", "pendulum")); },
-      {"unknown preset 'papier'", "debug, efficient, efficient_gravity, paper"}));
+      {"unknown preset 'papier'", "debug, efficient, paper"}));
 }
 
 TEST(Configuration, APlantThatDoesNotExistIsRefusedWithThoseThatDo) {
@@ -146,6 +146,10 @@ TEST(Configuration, AMethodIsGivenItsFileIfItHasOne) {
     Arguments given = arguments("paper", "pendulum");
     given.set("experiment/method", name);
     const Configuration all = read(given);
+    if (name == "oracle") {
+      EXPECT_EQ(all.mpc.cost, "distance");
+      continue;
+    }
     EXPECT_EQ(all.trial.num_steps, 125) << name;
     EXPECT_EQ(all.mpc.epsilon, 0.0) << name;
   }
@@ -340,24 +344,6 @@ TEST(Configuration, EveryFileForTheOracleIsThatOfAPlantAndSetsThePlannerAlone) {
     EXPECT_EQ(keysOf(YAML::LoadFile(file)), (std::set<std::string>{"mpc"})) << name;
     ParamReader reader = ParamReader::fromFiles({file});
     reader.read<MpcOptions>("mpc");
-    EXPECT_EQ(reader.problems(), std::vector<std::string>()) << name;
-  }
-}
-
-TEST(Configuration, EveryFileForATaskIsThatOfAPlantAndFitsPresetEfficient) {
-  const std::string folder = DDM_LAUNCH_SOURCE_DIR "/config/tasks/";
-  const std::vector<std::string> names = namesIn(folder);
-  EXPECT_GE(names.size(), 1U);
-  for (const std::string& name : names) {
-    EXPECT_NO_THROW(plantFile(name));
-    const YAML::Node file = YAML::LoadFile(folder + name + ".yaml");
-    EXPECT_FALSE(file["plant"].IsDefined()) << name << ": the plant's own file has it";
-    ParamReader reader = ParamReader::fromFiles(
-        {DDM_LAUNCH_SOURCE_DIR "/config/presets/efficient.yaml", folder + name + ".yaml"});
-    reader.read<ModelOptions>("model");
-    reader.read<TrainingOptions>("training");
-    reader.read<MpcOptions>("mpc");
-    reader.read<TrialOptions>("trial");
     EXPECT_EQ(reader.problems(), std::vector<std::string>()) << name;
   }
 }

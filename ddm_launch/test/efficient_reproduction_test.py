@@ -28,9 +28,10 @@ class EfficientReproductionTest(ScratchCase):
     def setUp(self):
         super().setUp()
         for name, text in (("presets/efficient", "model: {residual: true}\n"),
-                           ("presets/efficient_gravity", "model: {residual: true}\n"),
                            ("methods/pilco_state", "trial: {num_steps: 125}\n"),
+                           ("methods/oracle", "mpc: {horizon: 15}\n"),
                            ("pendulum", "plant: {length: 1.0}\n"), ("pendulum_gravity", "plant: {gravity: 9.82}\n"),
+                           *((plant, "plant: {dt: 0.1}\n") for plant in reproduce_efficient.TASKS),
                            ("ablations/widths", "# Narrow.\n\nmodel: {%s}\n" % WIDTHS),
                            ("ablations/residual", "# Without residual.\n\nmodel: {residual: false, %s}\n" % WIDTHS),
                            ("tried/starts", "# 8 starts.\n\ntraining: {num_starts: 8}\n"),
@@ -46,7 +47,8 @@ class EfficientReproductionTest(ScratchCase):
                 name, os.path.join(PACKAGE, "scripts", name))
 
         def package_path(*names, package="ddm_launch"):
-            self.assertEqual(package == "ddm_sim", names[-1].startswith("pendulum"), names)
+            plants = ("pendulum", "pendulum_gravity") + tuple(reproduce_efficient.TASKS)
+            self.assertEqual(package == "ddm_sim", names[-1][:-len(".yaml")] in plants, names)
             return os.path.join(self.scratch if names[0] == "config" else PACKAGE, *names)
 
         for module, name, stand_in in ((step_runner, "find_program", find_program),
@@ -117,7 +119,7 @@ class EfficientReproductionTest(ScratchCase):
             "tried_starts": ("tried/starts/trials.csv", None, words + "1 -- --config /config/tried/starts.yaml")})
 
     def test_gravity_has_the_oracle_and_pilco_beside_it(self):
-        words = " --preset efficient_gravity --plant pendulum_gravity --trials "
+        words = " --preset efficient --plant pendulum_gravity --trials "
         self.assertEqual(self.steps("gravity", "--pilco-seeds", "3", "--pilco-minutes", "30"), {
             "gravity": ("gravity/trials.csv", None, "--seeds 100:120" + words + "19"),
             "gravity_oracle": ("gravity/oracle/trials.csv", None,
@@ -130,6 +132,11 @@ class EfficientReproductionTest(ScratchCase):
         self.assertEqual(self.steps("nuisances"), {
             "nuisance_noise": ("nuisances/noise/trials.csv", None, words + "noise"),
             "nuisance_thin_rod": ("nuisances/thin_rod/trials.csv", None, words + "thin_rod")})
+
+    def test_each_task_is_a_plant_of_its_own(self):
+        words = "--seeds 100:120 --preset efficient --plant "
+        self.assertEqual(self.steps("tasks")["task_two_link"], (
+            "tasks/two_link/trials.csv", None, words + "two_link --trials 19"))
 
     def test_all_parts_leave_their_tables_and_figures(self):
         output = self.assertWorks()
@@ -148,15 +155,17 @@ class EfficientReproductionTest(ScratchCase):
         self.assertEqual([row[:3] for row in self.rows("tried.csv")], [
             [name, label, frames] for name, label in (("preset", "Full preset"), ("starts", "8 starts"))
             for frames in ("100", "200", "100 to 200")])
+        self.assertEqual([row[:5] for row in self.rows("tasks.csv") if row[0] == "two_link"][:2], [
+            ["two_link", "100", "10", "20", "0.5"], ["two_link", "200", "20", "20", "1"]])
         for name in ("success_rate", "ablation", "tried", "gravity", "nuisances"):
             self.assertEqual(read_bytes(self.out, name + ".png")[:4], b"\x89PNG", name)
         for folder in ("", "gravity"):
             self.assertEqual(read_yaml(self.out, folder, "config.yaml")["version"], "made up")
         machine = read_yaml(self.out, "machine.yaml")
-        self.assertEqual((machine["preset"], machine["gravity_preset"]), ("efficient", "efficient_gravity"))
+        self.assertEqual(machine["preset"], "efficient")
         self.assertEqual({name: step["seeds_run"] for name, step in machine["steps"].items()}, {
             "efficient": 25, "ablation_preset": 4, "ablation_residual": 4, "ablation_widths": 4, "tried_starts": 4, "gravity": 20,
-            "gravity_oracle": 20, "gravity_pilco_state": 4, "nuisance_noise": 20, "nuisance_thin_rod": 20})
+            "gravity_oracle": 20, "gravity_pilco_state": 4, "nuisance_noise": 20, "nuisance_thin_rod": 20, **{"task_" + plant: 20 for plant in reproduce_efficient.TASKS}})
         self.assertRegex(output, r"(?m)^no .*nuisance noise.*\[0.00, 0.16\]")
 
     def test_an_ablation_that_changes_nothing_is_told(self):
@@ -304,17 +313,11 @@ class EfficientReproductionTest(ScratchCase):
         reproduction = reproduce_efficient.EfficientReproduction(argparse.Namespace(
             preset="efficient", out=self.out, jobs=None, seeds=range(2), pilco_seeds=0, only=["gravity"]))
         self.assertEqual([word.split("=")[0] for word in reproduction.gravity().figures()["gravity"][2:4]],
-                         ["efficient_gravity", "oracle"])
-
-    def test_a_preset_that_is_not_there_is_told_before_anything_runs(self):
-        path = self.file("config", "presets", "efficient_gravity.yaml")
-        os.remove(path)
-        self.assertFails(["gravity", path, "--only efficient ablation tried nuisances"])
-        self.assertFalse(os.path.exists(os.path.join(self.out, "runs")))
-        self.assertWorks("--only", "efficient")
+                         ["efficient", "oracle"])
 
     def test_a_method_a_plant_or_a_nuisance_that_is_not_there_is_told_before_anything_runs(self):
-        for name, part in (("methods/pilco_state", "gravity"), ("pendulum_gravity", "gravity"),
+        for name, part in (("methods/pilco_state", "gravity"), ("methods/oracle", "gravity"),
+                           ("pendulum_gravity", "gravity"),
                            ("pendulum", "nuisances")):
             path = self.file("config", name + ".yaml")
             os.rename(path, path + ".away")

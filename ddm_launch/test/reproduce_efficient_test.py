@@ -8,7 +8,7 @@ import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import rooms  # noqa: E402, F401
-from ddm_study.reproduce_efficient import VARIANTS, yaml_names  # noqa: E402
+from ddm_study.reproduce_efficient import TASKS, VARIANTS, yaml_names  # noqa: E402
 from processes import call, find_program, run_experiment  # noqa: E402
 from run_files import COLUMNS, read_rows, read_yaml  # noqa: E402
 from scratch_case import ScratchCase  # noqa: E402
@@ -24,9 +24,11 @@ class ReproduceEfficientTest(ScratchCase):
         for path in [path for part in VARIANTS.values() for path in yaml_names(part).values()]:
             self.assertAccepts("--preset", "efficient", "--config", path)
 
-    def test_run_experiment_accepts_the_preset_for_gravity_with_each_method(self):
+    def test_run_experiment_accepts_the_preset_for_gravity_with_each_method_and_for_each_task(self):
         for method in ("ddm", "oracle"):
-            self.assertAccepts("--preset", "efficient_gravity", "--plant", "pendulum_gravity", "--method", method)
+            self.assertAccepts("--preset", "efficient", "--plant", "pendulum_gravity", "--method", method)
+        for plant in TASKS:
+            self.assertAccepts("--preset", "efficient", "--plant", plant)
 
     def test_headline_and_ablation_come_to_tables_and_figures(self):
         code, output = call([find_program("ddm_launch", "reproduce_efficient"), "--preset", "debug", "--seeds",

@@ -151,7 +151,7 @@ class RunExperimentTest(SharedScratchCase):
         for words, arguments in (
                 (["--nonsense"], out + ["--nonsense"]),
                 (["'--out'"], ["--preset", "debug"]),
-                (["unknown preset 'papier'", "debug, efficient, efficient_gravity, paper"], out + ["--preset", "papier"]),
+                (["unknown preset 'papier'", "debug, efficient, paper"], out + ["--preset", "papier"]),
                 (["unknown plant 'sim'", "pendulum, pendulum_gravity"], out + ["--plant", "sim"]),
                 (["unknown nuisance 'fog'", "drops, noise"], out + ["--nuisance", "noise", "--nuisance", "fog"]),
                 (["unknown method 'pilko'", "ddm, oracle"], out + ["--method", "pilko"]),

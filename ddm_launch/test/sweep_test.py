@@ -259,7 +259,7 @@ class SweepTest(SharedScratchCase):
                 (["--jobs", "whole number >= 1, got '0'"], known + ["--jobs", 0]),
                 (["--hosts", "/no/hosts"], known + ["--hosts", "/no/hosts"]),
                 (["--hosts and --slurm"], known + ["--hosts", __file__, "--slurm"]),
-                (["unknown preset 'papier'", "efficient, efficient_gravity, paper"], known + ["--preset", "papier"]),
+                (["unknown preset 'papier'", "efficient, paper"], known + ["--preset", "papier"]),
                 (["unknown plant 'sim'"], known + ["--plant", "sim"]),
                 (["nonsense"], known + ["--nonsense"]),
                 (["nonsense"], known + ["--", "--nonsense"]),

@@ -133,7 +133,6 @@ class TrialRun {
                                               const ControllerOptions& controller) {
     EpsilonGreedy::Options options;
     options.epsilon = goal.epsilon;
-    options.bang_bang = mpc.exploration == "bang_bang";
     options.hold_steps = static_cast<int>(goal.hold_steps);
     options.max_torque = perMotor(mpc.max_torque, controller.torque_dim, "mpc/max_torque");
     return options;

@@ -3,6 +3,7 @@
 #include "ddm_mpc/ddm_plan_cost.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -28,7 +29,8 @@ void DdmPlanCost::setHorizon(int horizon) {
 
 void DdmPlanCost::setControlWeight(double control_weight) {
   price_.setConstant(f_.torqueDim(), control_weight);
-  if (time_to_goal_) price_ /= f_.maxTorque().array().square();
+  if (!time_to_goal_) return;
+  price_ /= 2.0 * TimeToGoal::kWidth * TimeToGoal::kWidth * f_.maxTorque().array().square();
 }
 
 void DdmPlanCost::setGoal(const Eigen::VectorXd& goal_feature) {
@@ -66,20 +68,32 @@ Eigen::VectorXd DdmPlanCost::featureAfter(int num_steps) const {
   return roll_out_.predicted(num_steps - 1);
 }
 
-/// @param step      0 is the first
-/// @param gradient  out: by the feature it leads to; null: not wanted
-double DdmPlanCost::stepCost(int step, Eigen::VectorXd* gradient) const {
+/// @param step  0 is the first
+/// @param d_z   out: by the feature it leads to; null: not wanted                [feature_dim]
+/// @param d_u   out: by its torque; null: not wanted [1/(N m)]                   [torque_dim]
+double DdmPlanCost::stepCost(int step, const Eigen::Ref<const Eigen::VectorXd>& u,
+                             Eigen::VectorXd* d_z, Eigen::VectorXd* d_u) const {
   const auto z = roll_out_.predicted(step);
-  if (time_to_goal_) return time_to_goal_->away(z, gradient);
-  if (gradient != nullptr) *gradient = 2.0 * (z - goal_feature_);
-  return (z - goal_feature_).squaredNorm();  // eq. (9)
+  const double effort = (price_ * u.array().square()).sum();
+  if (d_u != nullptr) *d_u = 2.0 * price_ * u.array();
+  if (!time_to_goal_) {  // eq. (9)
+    if (d_z != nullptr) *d_z = 2.0 * (z - goal_feature_);
+    return (z - goal_feature_).squaredNorm() + effort;
+  }
+  const double near = 1.0 - time_to_goal_->away(z, d_z);
+  const double gentle = std::exp(-effort);
+  if (d_z != nullptr) *d_z *= gentle;
+  if (d_u != nullptr) *d_u *= near * gentle;
+  return 1.0 - near * gentle;
 }
 
 double DdmPlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) {
   eigen_assert(U.rows() == f_.torqueDim() && U.cols() == horizon_);
   rollOut(U, horizon_);
-  double cost = (price_ * U.rowwise().squaredNorm().array()).sum();
-  for (int step = 0; step < horizon_; ++step) cost += stepCost(step, nullptr);
+  double cost = 0.0;
+  for (int step = 0; step < horizon_; ++step) {
+    cost += stepCost(step, U.col(step), nullptr, nullptr);
+  }
   Eigen::VectorXd d_last, d_before;
   if (time_to_goal_) {
     cost += time_to_goal_->value(featureAfter(horizon_), featureAfter(horizon_ - 1),
@@ -88,7 +102,6 @@ double DdmPlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::
   if (d_U == nullptr) return cost;
 
   d_torques_.setZero(torques_.rows(), torques_.cols());
-  d_torques_.rightCols(horizon_) = 2.0 * price_.matrix().asDiagonal() * U;
   for (int step = 0; step < horizon_; ++step) roll_out_.dPredicted(step).setZero();
   if (time_to_goal_) {
     roll_out_.dPredicted(horizon_ - 1) += d_last;
@@ -97,8 +110,9 @@ double DdmPlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::
   const Eigen::Index target = f_.memory();
   const RollOut<double>::Targets targets(&target, 1);
   for (int step = horizon_ - 1; step >= 0; --step) {
-    stepCost(step, &d_step_);
+    stepCost(step, U.col(step), &d_step_, &d_torque_);
     roll_out_.dPredicted(step) += d_step_;
+    d_torques_.col(f_.memory() - 1 + step) += d_torque_;
     roll_out_.backward(theta_p_, targets, step, nullptr, nullptr, &d_torques_);
   }
   *d_U = d_torques_.rightCols(horizon_);
@@ -117,7 +131,9 @@ std::optional<Eigen::MatrixXd> DdmPlanCost::proposal() {
       rollOut(U, end);
       double cost =
           time_to_goal_->value(featureAfter(end), featureAfter(end - 1), nullptr, nullptr);
-      for (int step = begin; step < end; ++step) cost += stepCost(step, nullptr);
+      for (int step = begin; step < end; ++step) {
+        cost += stepCost(step, U.col(step), nullptr, nullptr);
+      }
       if (cost < least) {
         least = cost;
         best = U;

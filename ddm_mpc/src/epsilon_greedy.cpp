@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/epsilon_greedy.h"
 
-#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -50,12 +49,8 @@ Decision EpsilonGreedy::decide(const Grey& grey) {
       for (Eigen::Index i = 0; i < held_torque_.size(); ++i) {
         const double limit = options_.max_torque[i];
         held_torque_[i] = std::uniform_real_distribution<double>(-limit, limit)(rng_);
-        if (options_.bang_bang) held_torque_[i] = std::copysign(limit, held_torque_[i]);
       }
       held_steps_left_ = options_.hold_steps;
-      if (options_.bang_bang) {
-        held_steps_left_ = std::uniform_int_distribution<int>(1, options_.hold_steps)(rng_);
-      }
     }
   }
   if (held_steps_left_ > 0) {

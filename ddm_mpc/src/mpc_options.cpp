@@ -15,8 +15,6 @@ std::vector<std::string> MpcOptions::problems() const {
   mpc.requireWithin("offset_gain", offset_gain, 0.0, 1.0);
   mpc.require(areLimits(max_torque), "max_torque", "be > 0 and finite", limitsText(max_torque));
   mpc.requireWithin("epsilon", epsilon, 0.0, 1.0);
-  mpc.require(exploration == "uniform" || exploration == "bang_bang", "exploration",
-              "be uniform or bang_bang", exploration);
   mpc.requireAtLeast("hold_steps", hold_steps, 1);
   mpc.requireWithin("num_starts", num_starts, 1, 1000);
   mpc.requireAtLeast("max_iterations", max_iterations, 1);

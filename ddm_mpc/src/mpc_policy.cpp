@@ -51,6 +51,7 @@ void MpcPolicy::startTrial(const TrialId& id) {
   offset_.setZero();
   predicted_.resize(0);
   planner_.clear();
+  cost_.setExploring(!id.evaluation);
   rng_ = randomStream(id, StreamRole::kPlannerStarts);
 }
 

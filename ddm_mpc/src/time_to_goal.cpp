@@ -13,9 +13,9 @@ namespace {
 
 constexpr double kGamma = 0.99;                  // 100 steps ahead still count a third
 constexpr double kWorst = 1.0 / (1.0 - kGamma);  // V_max: never at the goal
-constexpr double kWidth = 0.25;                  // sigma in units of the features' spread
-constexpr double kSmoothness = 1.4;              // h in units of how far landmarks are apart
-constexpr double kSmallestWeight = 1e-4;         // of a landmark that still counts
+constexpr double kOptimism = 0.8;         // V_0 in units of V_max while the plant is explored
+constexpr double kSmoothness = 1.4;       // h in units of how far landmarks are apart
+constexpr double kSmallestWeight = 1e-4;  // of a landmark that still counts
 constexpr int kMaxSweeps = 1000;
 constexpr double kTolerance = 1e-3;                  // largest change of a V_i in the last sweep
 const double kUnknown = std::exp(-0.5 * 3.0 * 3.0);  // w_0: a landmark 3 h away weighs as much
@@ -128,6 +128,15 @@ TimeToGoal::Outcome TimeToGoal::outcomeOf(const Eigen::MatrixXd& path,
   return outcome;
 }
 
+/// V_0
+double TimeToGoal::unknownValue() const { return exploring_ ? kOptimism * kWorst : kWorst; }
+
+void TimeToGoal::setExploring(bool exploring) {
+  if (exploring == exploring_) return;
+  exploring_ = exploring;
+  if (z_ref_.size() > 0) setGoal(Eigen::VectorXd(z_ref_));
+}
+
 void TimeToGoal::setGoal(const Eigen::VectorXd& z_ref) {
   z_ref_ = z_ref;
   const auto costOf = [this](const Outcome& outcome) {
@@ -142,7 +151,7 @@ void TimeToGoal::setGoal(const Eigen::VectorXd& z_ref) {
     costs.emplace_back();
     for (const Outcome& outcome : outcomes) costs.back().push_back(costOf(outcome));
   }
-  const double discount = std::pow(kGamma, kHoldSteps);
+  const double discount = std::pow(kGamma, kHoldSteps), unknown = unknownValue();
   values_.setConstant(points_.cols(), kWorst);
   double change = std::numeric_limits<double>::infinity();
   for (int sweep = 0; sweep < kMaxSweeps && change > kTolerance; ++sweep) {
@@ -151,11 +160,11 @@ void TimeToGoal::setGoal(const Eigen::VectorXd& z_ref) {
       double best = kWorst;
       for (size_t k = 0; k < outcomes_[i].size(); ++k) {
         const Outcome& outcome = outcomes_[i][k];
-        double gain = 0.0;  // on V_max
+        double gain = 0.0;  // on V_0
         for (size_t j = 0; j < outcome.landmarks.size(); ++j) {
-          gain += outcome.weights[j] * (kWorst - values_[outcome.landmarks[j]]);
+          gain += outcome.weights[j] * (unknown - values_[outcome.landmarks[j]]);
         }
-        best = std::min(best, costs[i][k] + discount * (kWorst - gain));
+        best = std::min(best, costs[i][k] + discount * (unknown - gain));
       }
       double& value = values_[static_cast<Eigen::Index>(i)];
       change = std::max(change, std::abs(best - value));
@@ -178,7 +187,7 @@ double TimeToGoal::value(const Eigen::Ref<const Eigen::VectorXd>& z,
   const Eigen::VectorXd point = pointOf(z, before);
   const Eigen::ArrayXd weights = kernel(point);
   const double sum = kUnknown + weights.sum();
-  const double value = (kUnknown * kWorst + (weights * values_).sum()) / sum;
+  const double value = (kUnknown * unknownValue() + (weights * values_).sum()) / sum;
   if (d_z != nullptr) {
     // dw_i/dp = w_i (p_i - p) / h^2
     const Eigen::VectorXd share = weights * (values_ - value) / (sum * h_ * h_);

@@ -139,42 +139,6 @@ TEST(EpsilonGreedy, GoesBackToPlansAfterAHeldTorque) {
   EXPECT_GT(num_runs, 10);
 }
 
-TEST(EpsilonGreedy, HoldsATorqueForAsManyStepsAsItDrawsWhereItIsBangBang) {
-  constexpr int kHoldSteps = 4, kNumMotors = 40;  // two draws in a row are never the same
-  EpsilonGreedy::Options options = explore(1.0, kHoldSteps);
-  options.bang_bang = true;
-  options.max_torque.setOnes(kNumMotors);
-  EpsilonGreedy policy(nullptr, options, TrialId());
-  std::vector<int> lengths = {1};
-  const std::vector<Decision> decisions = decide(&policy, 4000);
-  for (size_t step = 1; step < decisions.size(); ++step) {
-    if (decisions[step].torque == decisions[step - 1].torque) {
-      ++lengths.back();
-    } else {
-      lengths.push_back(1);
-    }
-  }
-  const double expected = static_cast<double>(lengths.size()) / kHoldSteps;
-  for (int length = 1; length <= kHoldSteps; ++length) {
-    const auto count = std::count(lengths.begin(), lengths.end(), length);
-    EXPECT_NEAR(static_cast<double>(count), expected, 4.0 * std::sqrt(expected)) << length;
-  }
-  EXPECT_LE(*std::max_element(lengths.begin(), lengths.end()), kHoldSteps);
-}
-
-TEST(EpsilonGreedy, DrawsOnlyTheLimitsWhereItIsBangBang) {
-  EpsilonGreedy::Options options = explore(1.0);
-  options.max_torque = Eigen::Vector2d(6.0, 0.5);
-  options.bang_bang = true;
-  EpsilonGreedy policy(nullptr, options, TrialId());
-  Eigen::Vector4i seen = Eigen::Vector4i::Zero();
-  for (const Decision& decision : decide(&policy, 400)) {
-    ASSERT_EQ(decision.torque.cwiseAbs(), options.max_torque);
-    ++seen[(decision.torque[0] > 0.0 ? 2 : 0) + (decision.torque[1] > 0.0 ? 1 : 0)];
-  }
-  EXPECT_GT(seen.minCoeff(), 60) << "each motor has a sign of its own";
-}
-
 TEST(EpsilonGreedy, DrawsEachMotorsTorqueByItself) {
   EpsilonGreedy::Options options = explore(1.0);
   options.max_torque = (Eigen::VectorXd(3) << 6.0, 1.0, 0.01).finished();

@@ -48,7 +48,6 @@ TEST(MpcOptions, RefuseIntegersOutOfRange) {
 
 TEST(MpcOptions, RefuseWordsThatMeanNothing) {
   expectProblem<MpcOptions>("mpc/cost", [](MpcOptions* o) { o->cost = "energy"; });
-  expectProblem<MpcOptions>("mpc/exploration", [](MpcOptions* o) { o->exploration = "random"; });
 }
 
 TEST(MpcOptions, RefuseNumbersOutOfRangeNanIncluded) {

@@ -113,6 +113,16 @@ TEST(TimeToGoal, ExpectsTheWorstWhereNothingWasSeen) {
   EXPECT_LT(valueAtRest(time, {1.0, 0.0}), 60.0);
 }
 
+TEST(TimeToGoal, HopesForMoreWhileThePlantIsExplored) {
+  TimeToGoal time = timeTo({0.0, 0.0}, pushedModel(line()));
+  const double known = valueAtRest(time, {1.0, 0.0});
+  time.setExploring(true);
+  EXPECT_NEAR(valueAtRest(time, {0.0, 3.0}), 80.0, 0.8);
+  EXPECT_LT(valueAtRest(time, {1.0, 0.0}), known);
+  time.setExploring(false);
+  EXPECT_EQ(valueAtRest(time, {1.0, 0.0}), known);
+}
+
 TEST(TimeToGoal, TakesAnotherGoal) {
   TimeToGoal turned = timeTo({1.0, 0.0}, pushedModel(line()));
   turned.setGoal(Eigen::Vector2d(-1.0, 0.0));
@@ -150,11 +160,10 @@ class PlansWithTimeToGoal : public ::testing::Test {
   }
 
   const Ddm model_ = pushedModel(horseshoe());
-  DdmPlanCost cost_{model_, kHorizon, 0.01, TimeToGoal(model_, Eigen::Vector2d::Ones())};
+  DdmPlanCost cost_{model_, kHorizon, 0.1, TimeToGoal(model_, Eigen::Vector2d::Ones())};
 };
 
-TEST_F(PlansWithTimeToGoal, TheGradientMatchesFiniteDifferences) {
-  cost_.setProblem(restingAt({0.9, 0.95}), Eigen::Vector2d(0.1, 0.0));
+TEST_F(PlansWithTimeToGoal, TheGradientMatchesFiniteDifferencesFarFromTheGoalAndNearIt) {
   const auto f = [&](const Eigen::VectorXd& u, Eigen::VectorXd* gradient) {
     const Eigen::Map<const Eigen::MatrixXd> U(u.data(), 2, kHorizon);
     Eigen::MatrixXd d_U;
@@ -162,22 +171,34 @@ TEST_F(PlansWithTimeToGoal, TheGradientMatchesFiniteDifferences) {
     if (gradient != nullptr) *gradient = Eigen::Map<const Eigen::VectorXd>(d_U.data(), d_U.size());
     return value;
   };
-  EXPECT_TRUE(testing::gradientMatches(f, 0.3 * testing::randomMatrix(2 * kHorizon, 1, 3), 1e-5));
+  const Eigen::VectorXd u = 0.3 * testing::randomMatrix(2 * kHorizon, 1, 3);
+  cost_.setProblem(restingAt({0.9, 0.95}), Eigen::Vector2d(0.1, 0.0));
+  EXPECT_TRUE(testing::gradientMatches(f, u, 1e-5));
+  cost_.setProblem(restingAt({0.2, 0.0}), Eigen::Vector2d(0.1, 0.0));
+  EXPECT_TRUE(testing::gradientMatches(f, u, 1e-5));
 }
 
-TEST(PlanWithTimeToGoal, PricesEachTorqueByItsShareOfTheLargest) {
+TEST(PlanWithTimeToGoal, PricesEachTorqueAtTheGoalByItsShareOfTheLargest) {
   const Eigen::Vector2d max_torque(2.0, 0.5);
   const Ddm model = pushedModel(horseshoe(), {2.0, 0.5});
-  History x(2, 2, 2);
-  x.observe(Eigen::Vector2d(0.5, 0.0));
   Eigen::MatrixXd U(2, 1);
   U << 1.0, 0.5;  // half of what there is, and all
-  const auto costOf = [&](double control_weight) {
-    DdmPlanCost cost(model, 1, control_weight, TimeToGoal(model, max_torque));
-    cost.setProblem(x, Eigen::Vector2d(0.1, 0.0));
-    return cost.evaluate(U, nullptr);
+  TimeToGoal time(model, max_torque);
+  const auto costOfStep = [&](double control_weight, double x) {
+    const Eigen::Vector2d z(x, 0.0), goal(0.1, 0.0);
+    History history(2, 2, 2);
+    history.observe(z);
+    DdmPlanCost cost(model, 1, control_weight, time);
+    cost.setProblem(history, goal);
+    time.setGoal(goal);
+    const double whole = cost.evaluate(U, nullptr);
+    return whole - time.value(cost.predictedFeatures().col(1), z, nullptr, nullptr);
   };
-  EXPECT_NEAR(costOf(0.3) - costOf(0.0), 0.3 * (0.25 + 1.0), 1e-12);
+  constexpr double kWidth = 0.25;
+  const double price = 0.3 * (0.25 + 1.0) / (2.0 * kWidth * kWidth);
+  EXPECT_LT(costOfStep(0.0, 0.1), 0.5) << "at the goal";
+  EXPECT_NEAR(1.0 - costOfStep(0.3, 0.1), (1.0 - costOfStep(0.0, 0.1)) * std::exp(-price), 1e-12);
+  EXPECT_NEAR(costOfStep(0.3, 1.0), costOfStep(0.0, 1.0), 1e-3) << "far from it";
 }
 
 TEST_F(PlansWithTimeToGoal, TheProposalLeadsOnAndIsHeldForFourSteps) {

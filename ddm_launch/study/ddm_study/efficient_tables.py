@@ -131,6 +131,27 @@ def gravity_rows(folder):
             for row in success_rows(read_runs(folder, table))]
 
 
+def task_rows(folder, names):
+    """Rows (task, frames, robot time [s], runs, success, its interval, mean return); empty where a task has no reward."""
+    rows = []
+    for name in names:
+        path = os.path.join(folder, "tasks", name)
+        returns = {}
+        for row in read_csv(os.path.join(path, "trials.csv"), {"frames": int, "return": optional(float)}, REMEDY):
+            if row["return"] is not None:
+                returns.setdefault(row["frames"], []).append(row["return"])
+        dt = float(read_yaml(os.path.join(path, "config.yaml"))["plant"]["dt"])
+        for frames, rate, _, runs in success_rates(read_sweep(os.path.join(path, "trials.csv"), REMEDY).values()):
+            mean = statistics.mean(returns[frames]) if frames in returns else ""
+            rows.append((name, frames, frames * dt, runs, rate) + wilson_interval(rate, runs) + (mean,))
+    return rows
+
+
+def write_tasks(folder, names):
+    write_csv(os.path.join(folder, "tasks.csv"),
+              ["task", "frames", "robot_s", "runs", "success", "low", "high", "mean_return"], task_rows(folder, names))
+
+
 def write_success(folder, sweep_folder, resumed=()):
     trials = os.path.join(folder, "trials.csv")
     write_csv(os.path.join(folder, "success_rate.csv"), ["frames", "runs"] + INTERVALS,

@@ -5,32 +5,35 @@ import os
 from ddm_launch.command import Failure, number, package_path, program_parser
 from ddm_launch.settings import flat, read_yaml
 from ddm_launch.sweep import seed_range
-from ddm_study.efficient_tables import (PRESET, write_bars, write_gravity, write_nuisances, write_success,
+from ddm_study.efficient_tables import (PRESET, write_bars, write_gravity, write_nuisances, write_success, write_tasks,
                                         write_variants)
 from ddm_study.step_runner import Part, StepRunner, SweepStep, verdict_lines
 
-PARTS = ("efficient", "ablation", "tried", "gravity", "nuisances")
+PARTS = ("efficient", "ablation", "tried", "gravity", "nuisances", "tasks")
 VARIANTS = {"ablation": "ablations", "tried": "tried"}  # part: folder of config/ with variants of the preset
 TRIALS, ABLATION_TRIALS, TRIED_TRIALS, GRAVITY_TRIALS, NUISANCE_TRIALS = 15, 5, 1, 19, 4
 PILCO_TABLE = "gravity/pilco_state/trials.csv"
 PILCO_TRIALS = 15  # of 125 frames: 2000 as the others
 NUM_FEW_SEEDS = 20  # with gravity, and of each nuisance
 FULL_LABEL = "Full preset"
+# plant: trials after the first; of 100 images, those of the suite of 400
+TASKS = {"two_link": 19, "suite_pendulum": 9, "suite_reacher": 9}
 
 ABOUT = """\
 Makes the results about data-efficiency: the preset `efficient` on the pendulum next to the paper's curves, what each of
-its ingredients is worth, what else was tried, the swing-up with gravity, and nuisances of the camera, with tables and
-figures. All of it takes hours; the same command resumes, and --only chooses parts."""
+its ingredients is worth, what else was tried, the swing-up with gravity, nuisances of the camera, and harder tasks, with
+tables and figures. All of it takes hours; the same command resumes, and --only chooses parts."""
 
 EPILOG = """\
 parts (--only), in this order, and what they leave in DIR:
   efficient    trials.csv, config.yaml, success_rate.csv, times.csv, success_rate.png
   ablation     ablation/NAME/trials.csv, ablation.csv, ablation.png: without what each file of config/ablations takes away
   tried        tried/NAME/trials.csv, tried.csv, tried.png: with what each file of config/tried changes, to 200 frames
-  gravity      gravity/trials.csv of the preset `efficient_gravity`, gravity/oracle/ and gravity/pilco_state/,
+  gravity      gravity/trials.csv of the plant `pendulum_gravity`, gravity/oracle/ and gravity/pilco_state/,
                gravity.csv, gravity.png
   nuisances    nuisances/NAME/trials.csv, nuisances.csv, nuisances.png: under each file of config/nuisances
                that is not one of a scene
+  tasks        tasks/PLANT/trials.csv of harder plants: two_link, suite_pendulum, suite_reacher; tasks.csv
 bars.csv holds what the results must reach and whether they do, machine.yaml how each step was made, runs/ and logs/
 everything that the programs left. A step whose files have changed since it was made is refused. The columns are explained
 in ddm_launch's README."""
@@ -62,9 +65,7 @@ class EfficientReproduction(StepRunner):
 
     def __init__(self, options):
         self.preset = options.preset
-        self.gravity_preset = "efficient_gravity" if options.preset == "efficient" else options.preset
-        super().__init__("reproduce_efficient", options.out,
-                         {"preset": self.preset, "gravity_preset": self.gravity_preset}, options.jobs)
+        super().__init__("reproduce_efficient", options.out, {"preset": self.preset}, options.jobs)
         self.options, self.few_seeds = options, options.seeds[:NUM_FEW_SEEDS]
         self.variants = {}  # {part: {name: path}}
 
@@ -87,8 +88,8 @@ class EfficientReproduction(StepRunner):
     def verdict(self):
         return self.idle_variants() + verdict_lines(write_bars(self.out))
 
-    def step(self, name, folder, seeds, trials, more=(), preset=None, plant="pendulum", limit_s=None):
-        words = ["--preset", preset or self.preset, "--plant", plant, "--trials", str(trials)]
+    def step(self, name, folder, seeds, trials, more=(), plant="pendulum", limit_s=None):
+        words = ["--preset", self.preset, "--plant", plant, "--trials", str(trials)]
         return SweepStep(name, os.path.join(folder, "trials.csv"), seeds, words, more, limit_s)
 
     def efficient(self):
@@ -125,7 +126,7 @@ class EfficientReproduction(StepRunner):
 
     def gravity(self):
         def step(name, folder, seeds, trials, more=(), limit_s=None):
-            return self.step(name, folder, seeds, trials, more, self.gravity_preset, "pendulum_gravity", limit_s)
+            return self.step(name, folder, seeds, trials, more, "pendulum_gravity", limit_s)
 
         steps = [step("gravity", "gravity", self.few_seeds, GRAVITY_TRIALS),
                  step("gravity_oracle", "gravity/oracle", self.few_seeds, GRAVITY_TRIALS, ["--method", "oracle"])]
@@ -140,7 +141,7 @@ class EfficientReproduction(StepRunner):
             write_gravity(self.out)
 
         return Part(steps, write_tables, lambda: self.success_figure("gravity", [
-            (self.gravity_preset, self.path("gravity", "trials.csv")),
+            (self.preset, self.path("gravity", "trials.csv")),
             ("PILCO, state, sparse GP", self.path(PILCO_TABLE)),
             ("oracle", self.path("gravity", "oracle", "trials.csv"))]))
 
@@ -150,6 +151,17 @@ class EfficientReproduction(StepRunner):
                            ["--nuisance", name]) for name in names]
         return Part(steps, lambda: write_nuisances(self.out, names), lambda: {
             "nuisances": self.figure("study_figure", "nuisances_compared", [self.path("nuisances.csv")], "nuisances")})
+
+    def tasks(self):
+        steps = {plant: self.step("task_" + plant, os.path.join("tasks", plant), self.few_seeds, trials, plant=plant)
+                 for plant, trials in TASKS.items()}
+
+        def write_tables():
+            for plant, step in steps.items():
+                self.keep_config(step, os.path.join("tasks", plant, "config.yaml"))
+            write_tasks(self.out, list(steps))
+
+        return Part(list(steps.values()), write_tables, dict)
 
     def success_figure(self, name, curves, more=()):
         """Of those of the curves (label, path) that are there."""
@@ -170,17 +182,16 @@ class EfficientReproduction(StepRunner):
 
 def main(arguments=None):
     parser = program_parser("reproduce_efficient", ABOUT, EPILOG)
-    parser.add_argument("--seeds", type=seed_range, default=range(100, 150), metavar="A:B",
-                        help="seeds A ... B - 1, default 100:150; the first %d of them with gravity and under each "
-                        "nuisance" % NUM_FEW_SEEDS)
+    parser.add_argument("--seeds", type=seed_range, default=range(300, 350), metavar="A:B",
+                        help="seeds A ... B - 1, default 300:350; the first %d of them with gravity, under each "
+                        "nuisance, and of each task" % NUM_FEW_SEEDS)
     parser.add_argument("--ablation-seeds", type=seed_range, default=range(0, 50), metavar="A:B",
                         help="of the ablation and of what was tried, default 0:50: those that the preset was chosen on")
     parser.add_argument("--out", default="efficient_results", metavar="DIR", help="default efficient_results")
     parser.add_argument("--only", nargs="+", choices=PARTS, default=PARTS, metavar="PART",
                         help="make only these parts: %s" % ", ".join(PARTS))
     parser.add_argument("--preset", default="efficient",
-                        help="default efficient, and efficient_gravity with gravity; debug is for a quick look at the "
-                        "path")
+                        help="default efficient; debug is for a quick look at the path")
     parser.add_argument("--pilco-seeds", type=number(int, 0), default=4, metavar="N",
                         help="PILCO with gravity has the first N seeds, default 4; 0: without PILCO")
     parser.add_argument("--pilco-minutes", type=number(int, 1), default=240, metavar="M",

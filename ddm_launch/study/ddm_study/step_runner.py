@@ -21,7 +21,7 @@ from ddm_model.plain_file import write_file
 # Where the file NAME.yaml lies that an option names: package, folder of its config/.
 FOLDERS = {"--preset": ("ddm_launch", "presets"), "--method": ("ddm_launch", "methods"),
            "--nuisance": ("ddm_launch", "nuisances"), "--plant": ("ddm_sim", "")}
-METHODS_WITHOUT_FILE = ("ddm", "oracle")
+METHODS_WITHOUT_FILE = ("ddm",)
 POLL_S = 0.2
 
 

@@ -18,9 +18,12 @@ namespace ddm {
 ///
 ///   z_{k+1} = f(z_k, u_k, z_{k-1}, u_{k-1}) + offset
 ///
-/// or, with a TimeToGoal, with its cost of a step and what is left to go after the last one:
+/// or, with a TimeToGoal, with a cost of a step that saturates, and what is left to go after the last one:
 ///
-///   J(U) = sum_{k=1}^{K} away(z_k) + lambda |u_{k-1} / max_torque|^2 + V(x_K)
+///   J(U) = sum_{k=1}^{K} [1 - exp(-(|z_k - z_ref|^2 / s^2 + lambda |u_{k-1} / max_torque|^2) / (2 w^2))] + V(x_K)
+///
+/// with the spread s of the features and the w of TimeToGoal. A step far from the goal costs 1 whatever its
+/// torque; at the goal, torque makes it cost up to 1.
 ///
 /// The offset is what recent predictions were wrong by (0 in the paper): the same error in every
 /// step, as offset-free model predictive control assumes it (Pannocchia and Rawlings, AIChE J.
@@ -29,7 +32,7 @@ class DdmPlanCost : public PlanCost {
  public:
   /// @param model           outlives the cost
   /// @param horizon         K, steps
-  /// @param control_weight  lambda [(N m)^-2], with a TimeToGoal [-]
+  /// @param control_weight  lambda [(N m)^-2], with a TimeToGoal [-]: of a torque of max_torque
   DdmPlanCost(const Ddm& model, int horizon, double control_weight,
               std::optional<TimeToGoal> time_to_goal = std::nullopt);
 
@@ -37,6 +40,11 @@ class DdmPlanCost : public PlanCost {
   /// @throws std::invalid_argument if the horizon is < 1
   void setHorizon(int horizon);
   void setControlWeight(double control_weight);
+
+  /// With a TimeToGoal: see there. Takes a while if it changes.
+  void setExploring(bool exploring) {
+    if (time_to_goal_) time_to_goal_->setExploring(exploring);
+  }
 
   /// The feature to plan to. Takes a while with a TimeToGoal, unless it is the last one.
   /// @throws std::invalid_argument for a wrong size
@@ -63,7 +71,8 @@ class DdmPlanCost : public PlanCost {
  private:
   void rollOut(const Eigen::Ref<const Eigen::MatrixXd>& U, int num_steps);
   Eigen::VectorXd featureAfter(int num_steps) const;
-  double stepCost(int step, Eigen::VectorXd* gradient) const;
+  double stepCost(int step, const Eigen::Ref<const Eigen::VectorXd>& u, Eigen::VectorXd* d_z,
+                  Eigen::VectorXd* d_u) const;
 
   const PredictionModel<double>& f_;
   const double* theta_p_;
@@ -76,7 +85,8 @@ class DdmPlanCost : public PlanCost {
   Eigen::MatrixXd features_;   // z_{-n+1} ... z_0                          [feature_dim x n]
   Eigen::MatrixXd torques_;    // u_{-n+1} ... u_{K-1} [N m]     [torque_dim x (n - 1 + K)]
   Eigen::MatrixXd d_torques_;  // dJ/du of these
-  Eigen::VectorXd d_step_;     // d stepCost / dz  [feature_dim]
+  Eigen::VectorXd d_step_;     // d stepCost / dz                           [feature_dim]
+  Eigen::VectorXd d_torque_;   // d stepCost / du                           [torque_dim]
 };
 
 }  // namespace ddm

@@ -21,14 +21,12 @@ struct Decision {
 
 /// With probability epsilon a random torque, otherwise the policy's answer (paper, Sec. 3.2). epsilon
 /// = 1 is the random trial, 0 the greedy one. A random torque is uniform in +-max_torque and held for
-/// hold_steps steps; where it is bang-bang, it is one of +-max_torque, held for 1 ... hold_steps
-/// steps, drawn too. Exploration has a random stream of its own.
+/// hold_steps steps. Exploration has a random stream of its own.
 class EpsilonGreedy {
  public:
   struct Options {
-    double epsilon = 0.2;    ///< [-]
-    bool bang_bang = false;  ///< one of +-max_torque, not anything in between
-    int hold_steps = 1;  ///< how long a random torque is held, at most where it is bang-bang [-]
+    double epsilon = 0.2;  ///< [-]
+    int hold_steps = 1;    ///< how long a random torque is held [-]
     Eigen::VectorXd max_torque = Eigen::VectorXd::Constant(1, 6.0);  ///< of each motor [N m]
   };
 

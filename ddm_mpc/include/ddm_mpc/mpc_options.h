@@ -15,7 +15,6 @@ struct MpcOptions {
   double offset_gain = 0.0;       ///< share of a prediction error that corrects later ones [-]
   std::vector<double> max_torque = {6.0};  ///< bound on |u|; one, or one per motor [N m]
   double epsilon = 0.2;                    ///< probability of a uniformly random torque [-]
-  std::string exploration = "uniform";     ///< random torques: "uniform" or "bang_bang"
   int hold_steps = 1;                      ///< steps for which a random torque is held [-]
   int num_starts = 3;                      ///< initial plans that the solver starts from [-]
   int max_iterations = 40;                 ///< cap on the BFGS iterations of each start [-]
@@ -30,7 +29,6 @@ struct MpcOptions {
     visitor("offset_gain", offset_gain);
     visitor("max_torque", max_torque);
     visitor("epsilon", epsilon);
-    visitor("exploration", exploration);
     visitor("hold_steps", hold_steps);
     visitor("num_starts", num_starts);
     visitor("max_iterations", max_iterations);

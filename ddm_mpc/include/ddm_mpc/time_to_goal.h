@@ -13,21 +13,26 @@ namespace ddm {
 /// the goal before it gets there. A step away from the goal costs up to 1, as in PILCO (Deisenroth and
 /// Rasmussen, ICML 2011),
 ///
-///   away(z) = 1 - exp(-|z - z_ref|^2 / (2 sigma^2))
+///   away(z) = 1 - exp(-|z - z_ref|^2 / (2 w^2 s^2))
 ///
+/// with the spread s of the features and w = 1/4,
 /// and V is the discounted sum of these over the steps to come, under the best torques. It is computed for
 /// the landmarks x_i of the model, states that were seen, by predictions of f under each of the torques
 /// -max, 0, max of each motor, held for m = 4 steps, and smoothed in between by a kernel (Ormoneit and Sen,
 /// Machine Learning 2002, whose averages make the iteration converge):
 ///
 ///   V_i = min_u  sum_{j=1..m} gamma^(j-1) away(z_{i,j}) + gamma^m V(x_{i,m})
-///   V(x) = (w_0 V_max + sum_i w_i V_i) / (w_0 + sum_i w_i),   w_i = exp(-|p(x) - p(x_i)|^2 / (2 h^2))
+///   V(x) = (w_0 V_0 + sum_i w_i V_i) / (w_0 + sum_i w_i),   w_i = exp(-|p(x) - p(x_i)|^2 / (2 h^2))
 ///
-/// p(x) = (z_t, z_t - z_{t-1}), both in units of their spread. h is 1.4 times how far landmarks are apart; what lies
-/// farther than 3 h from all of them counts as if the goal were never reached from there, V_max.
+/// p(x) = (z_t, z_t - z_{t-1}), both in units of their spread. h is 1.4 times how far landmarks are apart. V_0 is what
+/// counts farther than 3 h from all of them, where nothing was seen: the goal is never reached from there,
+/// V_0 = V_max = 1 / (1 - gamma); or, in trials that are learned from, it is 160 steps away, V_0 = 0.8 V_max. So where no
+/// way to the goal is known, plans lead to what was not seen yet, as in R-max (Brafman and Tennenholtz, JMLR 2002), and
+/// where one is known, they keep to it.
 class TimeToGoal {
  public:
-  static constexpr int kHoldSteps = 4;  ///< m
+  static constexpr int kHoldSteps = 4;    ///< m
+  static constexpr double kWidth = 0.25;  ///< w
 
   /// @param model       has landmarks; is not needed afterwards
   /// @param max_torque  of each motor [N m]
@@ -37,6 +42,8 @@ class TimeToGoal {
   /// @param z_ref  feature of the goal  [feature_dim]
   void setGoal(const Eigen::VectorXd& z_ref);
   const Eigen::VectorXd& goal() const { return z_ref_; }
+  /// Computes V anew if this changes V_0 and there is a goal.
+  void setExploring(bool exploring);
 
   /// @param gradient  out: d away / dz; null: not wanted  [feature_dim]
   double away(const Eigen::Ref<const Eigen::VectorXd>& z, Eigen::VectorXd* gradient) const;
@@ -57,13 +64,14 @@ class TimeToGoal {
   struct Outcome {
     Eigen::MatrixXd path;         // features of these steps  [feature_dim x kHoldSteps]
     std::vector<int> landmarks;   // near its end
-    std::vector<double> weights;  // theirs in V; what is missing to 1 is the weight of V_max
+    std::vector<double> weights;  // theirs in V; what is missing to 1 is the weight of V_0
   };
 
   Eigen::VectorXd pointOf(const Eigen::Ref<const Eigen::VectorXd>& z,
                           const Eigen::Ref<const Eigen::VectorXd>& before) const;
   Eigen::ArrayXd kernel(const Eigen::VectorXd& point) const;
   Outcome outcomeOf(const Eigen::MatrixXd& path, const Eigen::VectorXd& start) const;
+  double unknownValue() const;
 
   Eigen::MatrixXd torques_;
   double spread_ = 1.0;                         // of features
@@ -72,6 +80,7 @@ class TimeToGoal {
   Eigen::MatrixXd points_;                      // p(x_i)  [2 feature_dim x M]
   std::vector<std::vector<Outcome>> outcomes_;  // of each landmark, one for each set of torques
   Eigen::VectorXd z_ref_;
+  bool exploring_ = false;
   Eigen::ArrayXd values_;  // V_i  [M]
 };
 
