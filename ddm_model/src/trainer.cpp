@@ -178,6 +178,23 @@ Candidate run(Problem* problem, Eigen::VectorXd initial_theta, const Schedule& s
   return candidate;
 }
 
+/// Makes the model of a candidate that is done.
+/// @param problem  of all frames
+void fillIn(Problem* problem, const Candidate& best, const DataSet& data, const Pca& pca,
+            const Schedule& schedule, ModelInfo info, TrainingResult* result) {
+  result->initial_cost = best.initial_cost;
+  result->final_cost = problem->cost(best.theta, schedule.terms());
+  const Value value = problem->objective.evaluate(best.theta.cast<float>(), nullptr);
+  info.frames = static_cast<std::uint32_t>(data.numFrames());
+  info.v_r = squaredScale(pca) * value.v_r;
+  info.v_p = squaredScale(pca) * value.v_p;
+  info.feature_spread = problem->objective.featureSpread();
+  info.landmarks =
+      landmarkStates(problem->objective.features(), data, problem->options.memory(), kMaxLandmarks);
+  result->model.emplace(problem->options, data.imageSize(), data.torqueDim(), pca, best.theta,
+                        data.goal(), info);
+}
+
 }  // namespace
 
 TrainingResult train(const DataSet& data, const ModelOptions& model,
@@ -188,7 +205,11 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
   const Pca pca =
       fitPca(data, model.pca_dim, training.score_std, Blur(data.imageSize(), model.blur));
   const TrainingData<float> training_data = makeTrainingData(data, pca);
-  const auto problems = makeProblems(model, training, data.torqueDim(), training_data);
+  const auto problems = makeProblems(model, training, data.torqueDim(),
+                                     training.selection_frames > 0
+                                         ? evenPart(training_data, training.selection_frames,
+                                                    model.order + largestDelay(model, training))
+                                         : training_data);
   const Eigen::MatrixXd scores = training_data.scores.cast<double>();
   const Schedule schedule = makeSchedule(training);
   Progress progress(callback, schedule, training.num_starts * static_cast<int>(problems.size()),
@@ -207,25 +228,17 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
       if (candidate.error < best.error) best = std::move(candidate);
     }
   }
-  if (best.theta.size() > 0 && !result.cancelled && schedule.finish) {
-    runStage(*schedule.finish, training, best.problem->networks, &progress,
-             &best.problem->objective, &best.theta, &result);
-    best.message = result.message;
-  }
   if (best.theta.size() > 0 && !result.cancelled) {
-    result.message = best.message;
-    result.initial_cost = best.initial_cost;
-    result.final_cost = best.problem->cost(best.theta, schedule.terms());
-    JointObjective<float>& objective = best.problem->objective;
-    const ModelOptions& options = best.problem->options;
-    const Value value = objective.evaluate(best.theta.cast<float>(), nullptr);
-    info.frames = static_cast<std::uint32_t>(data.numFrames());
-    info.v_r = squaredScale(pca) * value.v_r;
-    info.v_p = squaredScale(pca) * value.v_p;
-    info.feature_spread = objective.featureSpread();
-    info.landmarks = landmarkStates(objective.features(), data, options.memory(), kMaxLandmarks);
-    result.model.emplace(options, data.imageSize(), data.torqueDim(), pca, best.theta, data.goal(),
-                         info);
+    Problem problem(best.problem->options, data.torqueDim(), training_data);  // all frames
+    if (schedule.finish) {
+      runStage(*schedule.finish, training, problem.networks, &progress, &problem.objective,
+               &best.theta, &result);
+      best.message = result.message;
+    }
+    if (!result.cancelled) {
+      result.message = best.message;
+      fillIn(&problem, best, data, pca, schedule, std::move(info), &result);
+    }
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return result;

@@ -12,6 +12,7 @@
 #include "ddm_model/model_file.h"
 #include "ddm_model/objective.h"
 #include "ddm_model/solver_log.h"
+#include "ddm_model/training_data.h"
 #include "ddm_msgs/testing/expect_error.h"
 #include "toy_data.h"
 
@@ -240,6 +241,37 @@ TEST_F(Trainer, FindsHowManyFramesLateTheImagesAre) {
     ASSERT_TRUE(result.model) << result.message;
     EXPECT_EQ(result.model->options().delay, delay);
   }
+}
+
+TEST_F(Trainer, ComparesStartsOnAPartAndLearnsFromAllFrames) {
+  training_.num_starts = 3;
+  training_.selection_iterations = 10;
+  const TrainingResult all = run();
+  training_.selection_frames = 30;
+  const TrainingResult part = run();
+  ASSERT_TRUE(part.model) << part.message;
+  EXPECT_NE(part.model->theta(), all.model->theta());
+  EXPECT_EQ(part.model->info().frames, 60U);
+  EXPECT_LT(part.final_cost, 1.5 * all.final_cost);
+  training_.selection_frames = 60;
+  EXPECT_EQ(run().model->theta(), all.model->theta());
+}
+
+TEST(EvenPart, HasStretchesSpreadOverAllFramesAndTheGoal) {
+  TrainingData<float> data;
+  data.scores = Eigen::RowVectorXf::LinSpaced(401, 0.0F, 400.0F);
+  data.torques = Eigen::RowVectorXd::LinSpaced(400, 0.0, 399.0);
+  data.pieces = {{0, 50}, {50, 250}, {300, 100}};
+  const TrainingData<float> part = evenPart(data, 200, 2);
+  ASSERT_EQ(part.torques.cols(), 150);
+  EXPECT_EQ(part.torques(0, 0), 150.0);  // the second stretch of the second piece, and the third
+  EXPECT_EQ(part.torques(0, 149), 299.0);
+  EXPECT_EQ(part.scores(0, 149), 299.0F);
+  EXPECT_EQ(part.scores(0, 150), 400.0F) << "the goal";
+  ASSERT_EQ(part.pieces.size(), 2U);
+  EXPECT_EQ(part.pieces[1].begin, 100);
+  EXPECT_EQ(evenPart(data, 400, 2).torques, data.torques);
+  EXPECT_EQ(evenPart(data, 200, 100).torques, data.torques) << "no stretch is long enough";
 }
 
 TEST_F(Trainer, KeepsTheDelayItIsGivenWhereNoOtherIsTried) {

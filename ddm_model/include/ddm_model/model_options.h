@@ -50,6 +50,7 @@ struct TrainingOptions {
   int max_delay = 0;               ///< largest model/delay that is tried [frames]
   int selection_steps = 0;         ///< by predictions so many steps ahead; 0: by what is minimised
   int selection_iterations = 0;  ///< after so many of each start's last stage; 0: when all are done
+  int selection_frames = 0;      ///< compared on so many frames at most; 0: on all
   int max_iterations = 500;      ///< cap on the iterations of the solver, each stage [-]
   int prediction_steps = 1;      ///< V_P: predictions up to so many steps ahead [-]
   int warm_up_iterations = 100;  ///< cap on those with one step first, if more are asked for [-]
@@ -69,6 +70,7 @@ struct TrainingOptions {
     visitor("max_delay", max_delay);
     visitor("selection_steps", selection_steps);
     visitor("selection_iterations", selection_iterations);
+    visitor("selection_frames", selection_frames);
     visitor("max_iterations", max_iterations);
     visitor("prediction_steps", prediction_steps);
     visitor("warm_up_iterations", warm_up_iterations);

@@ -22,4 +22,11 @@ inline TrainingData<float> makeTrainingData(const DataSet& data, const Pca& pca)
   return {pca.project(data), data.torques(), data.pieces()};
 }
 
+/// Stretches of up to 100 frames, spread evenly over all and at most so many frames together, and the goal.
+/// @param max_frames  more than there are: all
+/// @param longer_than  shorter stretches are left out [frames]
+/// @return             all, if there is no such stretch
+TrainingData<float> evenPart(const TrainingData<float>& data, Eigen::Index max_frames,
+                             Eigen::Index longer_than);
+
 }  // namespace ddm

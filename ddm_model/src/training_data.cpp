@@ -1,0 +1,47 @@
+// What the objective is computed from: a part of it.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_model/training_data.h"
+
+#include <algorithm>
+
+namespace ddm {
+namespace {
+
+constexpr Eigen::Index kStretch = 100;  // frames
+
+}  // namespace
+
+TrainingData<float> evenPart(const TrainingData<float>& data, Eigen::Index max_frames,
+                             Eigen::Index longer_than) {
+  const Eigen::Index num_frames = data.torques.cols();
+  if (num_frames <= max_frames) return data;
+  std::vector<Piece> chosen;
+  Eigen::Index seen = 0, taken = 0;
+  for (const Piece& piece : data.pieces) {
+    for (Eigen::Index at = 0; at < piece.size; at += kStretch) {
+      const Piece stretch{piece.begin + at, std::min(kStretch, piece.size - at)};
+      seen += stretch.size;
+      // Taken are those that keep to the share max_frames / num_frames of what was seen.
+      const bool due = (taken + stretch.size) * num_frames <= seen * max_frames;
+      if (!due || stretch.size <= longer_than) continue;
+      taken += stretch.size;
+      chosen.push_back(stretch);
+    }
+  }
+  if (chosen.empty()) return data;
+  const Eigen::Index num_others = data.scores.cols() - num_frames;  // the goal
+  TrainingData<float> part;
+  part.scores.resize(data.scores.rows(), taken + num_others);
+  part.scores.rightCols(num_others) = data.scores.rightCols(num_others);
+  part.torques.resize(data.torques.rows(), taken);
+  Eigen::Index at = 0;
+  for (const Piece& piece : chosen) {
+    part.scores.middleCols(at, piece.size) = data.scores.middleCols(piece.begin, piece.size);
+    part.torques.middleCols(at, piece.size) = data.torques.middleCols(piece.begin, piece.size);
+    part.pieces.push_back({at, piece.size});
+    at += piece.size;
+  }
+  return part;
+}
+
+}  // namespace ddm
