@@ -38,7 +38,8 @@ class DotPlotsTest(figure_case.FigureCase):
             "steps,Without steps,200 to 300,50,0.9,0.01,-0.2,0.05")))
 
     def writeNuisances(self):
-        return self.writeLines("nuisances.csv", NUISANCES, "none,500,20,1,0.84,1,0.9,0.7,0.97",
+        return self.writeLines("nuisances.csv", NUISANCES, "none,100,20,0.9,0.7,0.97,0,0,0.16",
+                               "none,500,20,1,0.84,1,0.9,0.7,0.97", "thin_rod,100,20,0,0,0.16,0,0,0.16",
                                "thin_rod,500,20,0.5,0.3,0.7,0,0,0.16")
 
     def drawAblation(self):
@@ -106,13 +107,13 @@ class DotPlotsTest(figure_case.FigureCase):
                 self.assertLessEqual(box.x1, figure.bbox.width)
 
     def test_an_interval_need_not_be_symmetric(self):
-        names, series, frames = nuisances_compared.read_series(self.writeNuisances())
-        self.assertEqual((names, frames), (["none", "thin rod"], [500]))
+        names, series = nuisances_compared.read_series(self.writeNuisances())
+        self.assertEqual((names, [each.label for each in series]), (["none", "thin rod"], ["100 images", "500 images"]))
         with new_figure(COLUMN_WIDTH, 3.0) as figure:
             axes = draw_figure_of_dots(figure, names, series, 2)
-            self.assertEqual([x for x, _ in figure_case.drawn_points(axes, "success")], [1.0, 0.5])
-            self.assertEqual([x for x, _ in figure_case.drawn_points(axes, "success_strict")], [0.9, 0.0])
-            for (left, right), expected in zip(bars(axes, "success") + bars(axes, "success_strict"),
+            self.assertEqual([x for x, _ in figure_case.drawn_points(axes, "500 images")], [1.0, 0.5])
+            self.assertEqual([x for x, _ in figure_case.drawn_points(axes, "100 images")], [0.9, 0.0])
+            for (left, right), expected in zip(bars(axes, "500 images") + bars(axes, "100 images"),
                                                ((0.84, 1.0), (0.3, 0.7), (0.7, 0.97), (0.0, 0.16))):
                 self.assertAlmostEqual(left, expected[0])
                 self.assertAlmostEqual(right, expected[1])
