@@ -162,7 +162,9 @@ struct Candidate {
 /// @param result  as of runStage()
 Candidate run(Problem* problem, Eigen::VectorXd initial_theta, const Schedule& schedule,
               const TrainingOptions& training, Progress* progress, TrainingResult* result) {
-  Candidate candidate{problem, std::move(initial_theta)};
+  Candidate candidate;
+  candidate.problem = problem;
+  candidate.theta = std::move(initial_theta);
   candidate.initial_cost = problem->cost(candidate.theta, schedule.terms());
   if (!runStages(schedule.stages, training, problem->networks, progress, &problem->objective,
                  &candidate.theta, result)) {
