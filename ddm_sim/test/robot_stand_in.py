@@ -102,6 +102,9 @@ class Listener:
     def end(self):
         self._subscriber.unregister()
 
+    def connected(self):
+        return self._subscriber.get_num_connections() > 0
+
     def next(self):
         """The next message from now on."""
         seen = len(self.messages)
@@ -128,6 +131,8 @@ class Robot:
         self.process = Process([find_program("ddm_sim", "robot_node")] + list(arguments), **kwargs)
         rospy.wait_for_service("reset", LIMIT_S)
         wait_until(lambda: self.torques.get_num_connections() and self.trial_ends.get_num_connections(), "robot_node")
+        for listener in self.listeners():  # or a message that is sent once could be missed
+            wait_until(listener.connected, "a connection of each topic")
 
     def end(self):
         """Leaves the topics to the next one."""
@@ -137,8 +142,11 @@ class Robot:
             self.controller.unregister()
         self.torques.unregister()
         self.trial_ends.unregister()
-        for listener in (self.images, self.goals, self.efforts, self.applied, self.latencies, self.misses, self.cancels):
+        for listener in self.listeners():
             listener.end()
+
+    def listeners(self):
+        return self.images, self.goals, self.efforts, self.applied, self.latencies, self.misses, self.cancels
 
     def enable(self, on):
         return rospy.ServiceProxy("enable", SetBool)(on)
