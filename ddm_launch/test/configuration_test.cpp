@@ -115,9 +115,9 @@ TEST(Configuration, ThePaperPresetHoldsTheNumbersOfThePaper) {
 }
 
 TEST(Configuration, APresetThatDoesNotExistIsRefusedWithThoseThatDo) {
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [] { resolve(arguments("papier", "pendulum")); },
-      {"unknown preset 'papier'", "debug, efficient, paper"}));
+  EXPECT_TRUE(
+      throwsNaming<std::invalid_argument>([] { resolve(arguments("papier", "pendulum")); },
+                                          {"unknown preset 'papier'", "debug, efficient, paper"}));
 }
 
 TEST(Configuration, APlantThatDoesNotExistIsRefusedWithThoseThatDo) {
