@@ -98,8 +98,13 @@ std::shared_ptr<const Ddm> randomModel(const ModelConfig& config, std::mt19937_6
               static_cast<float>(config.image.size);
   pca.variance = Eigen::VectorXd::Ones(config.model.pca_dim);
   const Eigen::VectorXd theta = Eigen::VectorXd::NullaryExpr(networks.numParams(), draw);
+  const int memory = config.model.memory();
+  ModelInfo info;  // as many landmarks as a training keeps
+  info.landmarks =
+      Eigen::MatrixXd::NullaryExpr(memory * config.model.feature_dim + memory - 1, 1000, draw)
+          .cast<float>();
   return std::make_shared<const Ddm>(config.model, config.image.size, 1, pca, theta,
-                                     randomGrey(config.image.size, rng), ModelInfo());
+                                     randomGrey(config.image.size, rng), info);
 }
 
 /// @return time from each image to the end of its decision [s]
