@@ -32,6 +32,7 @@ void EpsilonGreedy::setEpsilon(double epsilon) {
     throw std::invalid_argument("a trial with epsilon < 1 needs a model");
   }
   options_.epsilon = epsilon;
+  if (policy_ != nullptr) policy_->setExploring(epsilon > 0.0);
 }
 
 void EpsilonGreedy::setGoal(const Grey& goal) {

@@ -51,7 +51,6 @@ void MpcPolicy::startTrial(const TrialId& id) {
   offset_.setZero();
   predicted_.resize(0);
   planner_.clear();
-  cost_.setExploring(!id.evaluation);
   rng_ = randomStream(id, StreamRole::kPlannerStarts);
 }
 

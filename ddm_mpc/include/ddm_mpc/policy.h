@@ -42,6 +42,9 @@ class Policy {
   /// @throws std::invalid_argument for a wrong number of pixels
   virtual void setGoal(const Grey& /*goal*/) {}
 
+  /// Whether random torques are wanted too: only then may a policy go where it knows little.
+  virtual void setExploring(bool /*exploring*/) {}
+
   /// Takes in the image just seen.
   /// @throws std::invalid_argument for a wrong number of pixels
   virtual void observe(const Grey& grey) = 0;

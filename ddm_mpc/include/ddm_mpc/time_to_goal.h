@@ -26,7 +26,7 @@ namespace ddm {
 ///
 /// p(x) = (z_t, z_t - z_{t-1}), both in units of their spread. h is 1.4 times how far landmarks are apart. V_0 is what
 /// counts farther than 3 h from all of them, where nothing was seen: the goal is never reached from there,
-/// V_0 = V_max = 1 / (1 - gamma); or, in trials that are learned from, it is 160 steps away, V_0 = 0.8 V_max. So where no
+/// V_0 = V_max = 1 / (1 - gamma); or, where epsilon > 0, it is 160 steps away, V_0 = 0.8 V_max. So where no
 /// way to the goal is known, plans lead to what was not seen yet, as in R-max (Brafman and Tennenholtz, JMLR 2002), and
 /// where one is known, they keep to it.
 class TimeToGoal {
