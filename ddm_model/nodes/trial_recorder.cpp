@@ -20,6 +20,8 @@ constexpr int kQueue = 1000;  // a slow disk must not cost a frame
 TrialRecorder::TrialRecorder(ros::NodeHandle nh, const BagOptions& bag, const BagAccess& access,
                              const RecorderOptions& options)
     : bag_options_(bag), access_(access), options_(options), transport_(nh) {
+  // Otherwise TCP holds an image back until the one before is acknowledged, while the trial goes on.
+  const auto no_delay = ros::TransportHints().tcpNoDelay();
   goal_sub_ = nh.subscribe<sensor_msgs::Image>(topics::kGoalImage, 1,
                                                [this](const sensor_msgs::ImageConstPtr& goal) {
                                                  const std::lock_guard<std::mutex> lock(mutex_);
@@ -27,11 +29,12 @@ TrialRecorder::TrialRecorder(ros::NodeHandle nh, const BagOptions& bag, const Ba
                                                  changed_.notify_all();
                                                });
   image_sub_ = transport_.subscribe(
-      topics::kImage, kQueue, [this](const sensor_msgs::ImageConstPtr& image) { record(*image); });
+      topics::kImage, kQueue, [this](const sensor_msgs::ImageConstPtr& image) { record(*image); },
+      ros::VoidPtr(), image_transport::TransportHints("raw", no_delay));
   torque_sub_ = nh.subscribe<ddm_msgs::Torque>(
       topics::kAppliedTorque, kQueue,
       [this](const ddm_msgs::TorqueConstPtr& torque) { recordApplied(*torque); },
-      ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
+      ros::VoidConstPtr(), no_delay);
   start_server_ = nh.advertiseService(topics::kStartRecording, &TrialRecorder::start, this);
   stop_server_ = nh.advertiseService(topics::kStopRecording, &TrialRecorder::stop, this);
 }

@@ -19,7 +19,7 @@ namespace ddm {
 namespace {
 
 constexpr int kQueue = 10;
-constexpr int kAppliedQueue = 1000;              // a recorder that is slow must not lose one
+constexpr int kRecordedQueue = 1000;             // a recorder that is slow must not lose one
 constexpr std::chrono::seconds kFreshCamera(1);  // one that is silent for longer is not there
 constexpr double kStepTolerance = 0.1;           // of dt
 const ros::WallDuration kWatchPeriod(0.1);
@@ -44,10 +44,10 @@ RobotNode::RobotNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size,
       stamps_(options.dt),
       picker_(options.dt),
       transport_(nh),
-      image_pub_(transport_.advertise(topics::kImage, kQueue)),
+      image_pub_(transport_.advertise(topics::kImage, kRecordedQueue)),
       goal_pub_(nh.advertise<sensor_msgs::Image>(topics::kGoalImage, 1, /*latch=*/true)),
       effort_(nh, options.numMotors()),
-      applied_pub_(nh.advertise<ddm_msgs::Torque>(topics::kAppliedTorque, kAppliedQueue)),
+      applied_pub_(nh.advertise<ddm_msgs::Torque>(topics::kAppliedTorque, kRecordedQueue)),
       latency_pub_(nh.advertise<std_msgs::Float64>(topics::kLatency, kQueue)),
       misses_pub_(nh.advertise<std_msgs::UInt32>(topics::kDeadlineMisses, 1, /*latch=*/true)),
       cancel_pub_(

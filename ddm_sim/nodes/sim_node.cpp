@@ -36,7 +36,7 @@ SimNode::SimNode(ros::NodeHandle nh, std::unique_ptr<Rig> rig, bool clock)
       ground_truth_pub_(
           nh.advertise<sensor_msgs::JointState>(topics::kGroundTruth, kLongQueueSize)),
       applied_pub_(nh.advertise<ddm_msgs::Torque>(topics::kAppliedTorque, kLongQueueSize)),
-      image_pub_(image_transport::ImageTransport(nh).advertise(topics::kImage, kQueueSize)),
+      image_pub_(image_transport::ImageTransport(nh).advertise(topics::kImage, kLongQueueSize)),
       view_(nh, plant()) {
   if (clock) clock_pub_ = nh.advertise<rosgraph_msgs::Clock>("/clock", 1, /*latch=*/true);
   torque_sub_ = nh.subscribe(topics::kTorque, kQueueSize, &SimNode::onTorque, this,
