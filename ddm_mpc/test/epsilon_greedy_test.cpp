@@ -28,10 +28,12 @@ class ConstantPolicy : public Policy {
     return answer;
   }
   void apply(const Eigen::VectorXd& u) override { applied.push_back(u[0]); }
+  void setExploring(bool on) override { exploring.push_back(on); }
 
   static constexpr double kTorque = 1.25;
   std::vector<std::uint32_t> trials;
   std::vector<double> applied;
+  std::vector<bool> exploring;
   int num_images = 0;
 };
 
@@ -59,6 +61,14 @@ std::vector<double> torques(const std::vector<Decision>& decisions) {
 std::vector<double> randomTrial(const TrialId& id) {
   EpsilonGreedy policy(nullptr, explore(1.0), id);
   return torques(decide(&policy, 20));
+}
+
+TEST(EpsilonGreedy, LetsThePolicyExploreWhereRandomTorquesAreWantedAndNowhereElse) {
+  auto constant = std::make_shared<ConstantPolicy>();
+  EpsilonGreedy greedy(constant, explore(0.0), TrialId());
+  EpsilonGreedy exploring(constant, explore(0.2), TrialId());
+  exploring.setEpsilon(0.0);
+  EXPECT_EQ(constant->exploring, (std::vector<bool>{false, true, false}));
 }
 
 TEST(EpsilonGreedy, NeverExploresAtEpsilonZero) {
