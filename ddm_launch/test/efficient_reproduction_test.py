@@ -21,6 +21,9 @@ from scratch_case import ScratchCase  # noqa: E402
 
 PACKAGE = os.path.dirname(TEST)
 WIDTHS = "encoder_widths: [25, 12, 6]"  # those of the stand-in's config.yaml
+# Two episodes of what is asked for by: --config FILE --model FILE --seeds A:B --out DIR.
+EVALUATE = """mkdir -p "$8" && echo "$4 $6" > "$8/asked" && printf 'seed,success,return\\n350,1,900\\n351,0,600\\n' > "$8/evaluation.csv"
+"""
 SEEDS = ["--seeds", "100:125", "--ablation-seeds", "0:4"]
 
 
@@ -40,9 +43,11 @@ class EfficientReproductionTest(ScratchCase):
             self.writeConfig(name, text)
 
         self.writeRunExperiment(code=1)
+        self.evaluate = self.writeProgram("evaluate", EVALUATE)
 
         def find_program(name):
             return {"sweep": os.path.join(TEST, "stand_in_sweep.py"), "run_experiment": self.run_experiment,
+                    "evaluate": self.evaluate,
                     "study_figure": os.path.join(PACKAGE, "study", "scripts", name)}.get(
                 name, os.path.join(PACKAGE, "scripts", name))
 
@@ -52,6 +57,7 @@ class EfficientReproductionTest(ScratchCase):
             return os.path.join(self.scratch if names[0] == "config" else PACKAGE, *names)
 
         for module, name, stand_in in ((step_runner, "find_program", find_program),
+                                       (reproduce_efficient, "find_program", find_program),
                                        (step_runner, "package_path", package_path),
                                        (reproduce_efficient, "package_path", package_path)):
             patch = mock.patch.object(module, name, stand_in)
@@ -63,8 +69,12 @@ class EfficientReproductionTest(ScratchCase):
 
     def writeRunExperiment(self, code):
         """A stand-in that knows all methods (1), or refuses its options (2)."""
-        self.run_experiment = self.write("run_experiment", "#!/bin/sh\nexit %d\n" % code)
-        os.chmod(self.run_experiment, 0o755)
+        self.run_experiment = self.writeProgram("run_experiment", "exit %d\n" % code)
+
+    def writeProgram(self, name, text):
+        path = self.write(name, "#!/bin/sh\n" + text)
+        os.chmod(path, 0o755)
+        return path
 
     def call(self, *arguments, stops=None):
         """Returns (exit code, output) of reproduce_efficient."""
@@ -155,9 +165,15 @@ class EfficientReproductionTest(ScratchCase):
         self.assertEqual([row[:3] for row in self.rows("tried.csv")], [
             [name, label, frames] for name, label in (("preset", "Full preset"), ("starts", "8 starts"))
             for frames in ("100", "200", "100 to 200")])
-        self.assertEqual([row[:5] for row in self.rows("tasks.csv") if row[0] == "two_link"][:2], [
-            ["two_link", "100", "10", "20", "0.5"], ["two_link", "200", "20", "20", "1"]])
-        for name in ("success_rate", "ablation", "tried", "gravity", "nuisances"):
+        self.assertEqual([row[1:6] for row in self.rows("tasks.csv") if row[0] == "two_link"][:2], [
+            ["100", "", "10", "20", "0.5"], ["200", "", "20", "20", "1"]])
+        self.assertEqual([row[1:6] + row[8:] for row in self.rows("tasks.csv") if row[0] == "suite_reacher"][1], [
+            "200", "1000", "20", "20", "1", "100", "0"])
+        self.assertEqual(self.rows("tasks", "suite_pendulum", "last_models.csv")[0], ["100", "2", "0.5", "750"])
+        asked = self.file(self.out, "runs", "task_suite_pendulum", "seed_0100", "last_model", "asked")
+        with open(asked) as stream:
+            self.assertRegex(stream.read(), "seed_0100/trial_009/model.ddm 350:360")
+        for name in ("success_rate", "ablation", "tried", "gravity", "nuisances", "suite_pendulum", "suite_reacher"):
             self.assertEqual(read_bytes(self.out, name + ".png")[:4], b"\x89PNG", name)
         for folder in ("", "gravity"):
             self.assertEqual(read_yaml(self.out, folder, "config.yaml")["version"], "made up")
@@ -167,6 +183,9 @@ class EfficientReproductionTest(ScratchCase):
             "efficient": 25, "ablation_preset": 4, "ablation_residual": 4, "ablation_widths": 4, "tried_starts": 4, "gravity": 20,
             "gravity_oracle": 20, "gravity_pilco_state": 4, "nuisance_noise": 20, "nuisance_thin_rod": 20, **{"task_" + plant: 20 for plant in reproduce_efficient.TASKS}})
         self.assertRegex(output, r"(?m)^no .*nuisances, 200 to 500 frames.*0.000")
+        self.assertRegex(output, r"(?m)^yes .*suite_pendulum with a mean return of 700: >= 16 of 20; here 20 of 20")
+        self.assertRegex(output, r"(?m)^no .*suite_reacher with a mean return of 800: >= 16 of 20; here 0 of 20")
+        self.assertRegex(output, r"(?m)^yes .*mean success of two_link, 1000 to 2000 frames.*1.000")
 
     def test_an_ablation_that_changes_nothing_is_told(self):
         output = self.assertWorks("--only", "ablation")

@@ -17,6 +17,12 @@ PRESET = "preset"  # folder of the ablation's reference
 GRAVITY = (("ddm", "gravity/trials.csv"), ("pilco_state", "gravity/pilco_state/trials.csv"),
            ("oracle", "gravity/oracle/trials.csv"))  # method, table
 
+# What the DeepMind Control Suite calls a plant of ours, and a physics frame of it [s].
+SuiteTask = collections.namedtuple("SuiteTask", "name step_s")
+SUITE = {"suite_pendulum": SuiteTask("pendulum_swingup", 0.02), "suite_reacher": SuiteTask("reacher_easy", 0.02)}
+# By how many seeds of 20 the last model must have this mean return.
+LEAST_RETURNS = {"suite_pendulum": (700.0, 16), "suite_reacher": (800.0, 16)}
+
 # The bars. With fewer seeds there is no verdict.
 SEEDS, FEW_SEEDS = 50, 20
 FIRST_FRAMES, LATER_FRAMES, GRAVITY_FRAMES, NUISANCE_FRAMES = 100, (200, 1600), (1500, 2000), (200, 500)
@@ -24,6 +30,7 @@ TRIAL_FRAMES = 100
 LEAST_FIRST, LEAST_MEAN, LEAST_LATER, MOST_UNSETTLED = 0.86, 0.99, 0.96, 0.04
 LEAST_GRAVITY_MEAN, LEAST_GRAVITY = 0.97, 0.8
 LEAST_NUISANCE_FIRST, LEAST_NUISANCE_LATER = 0.85, 0.97
+TWO_LINK_FRAMES, LEAST_TWO_LINK_MEAN, LEAST_TWO_LINK = (1000, 2000), 0.85, 0.7
 MOST_EXPERIMENT_S, MOST_PLAN_MS = 120.0, 20.0
 ROUNDING = 1e-9  # rates are quotients of small whole numbers, and bars decimal fractions
 
@@ -134,7 +141,8 @@ def gravity_rows(folder):
 
 
 def task_rows(folder, names):
-    """Rows (task, frames, robot time [s], runs, success, its interval, mean return); empty where a task has no reward."""
+    """Rows (task, frames, physics frames, robot time [s], runs, success, its interval, mean return, its standard error).
+    Plants that are not of the suite have neither physics frames nor returns."""
     rows = []
     for name in names:
         path = os.path.join(folder, "tasks", name)
@@ -144,14 +152,30 @@ def task_rows(folder, names):
                 returns.setdefault(row["frames"], []).append(row["return"])
         dt = float(read_yaml(os.path.join(path, "config.yaml"))["plant"]["dt"])
         for frames, rate, _, runs in success_rates(read_sweep(os.path.join(path, "trials.csv"), REMEDY).values()):
-            mean = statistics.mean(returns[frames]) if frames in returns else ""
-            rows.append((name, frames, frames * dt, runs, rate) + wilson_interval(rate, runs) + (mean,))
+            time_s = round(frames * dt, 6)
+            physics_frames = round(time_s / SUITE[name].step_s) if name in SUITE else ""
+            rows.append((name, frames, physics_frames, time_s, runs, rate) + wilson_interval(rate, runs) +
+                        (mean_and_error(returns[frames]) if frames in returns else ("", "")))
     return rows
 
 
 def write_tasks(folder, names):
     write_csv(os.path.join(folder, "tasks.csv"),
-              ["task", "frames", "robot_s", "runs", "success", "low", "high", "mean_return"], task_rows(folder, names))
+              ["task", "frames", "physics_frames", "robot_s", "runs", "success", "low", "high", "mean_return",
+               "return_se"], task_rows(folder, names))
+
+
+def write_last_models(folder, name, evaluations):
+    """tasks/NAME/last_models.csv: what each seed's last model does from several starts.
+
+    evaluations: {seed: folder of evaluate}
+    """
+    rows = []
+    for seed, path in evaluations.items():
+        episodes = read_csv(os.path.join(path, "evaluation.csv"), {"success": int, "return": float}, REMEDY)
+        rows.append((seed, len(episodes), statistics.mean(episode["success"] for episode in episodes),
+                     statistics.mean(episode["return"] for episode in episodes)))
+    write_csv(os.path.join(folder, "tasks", name, "last_models.csv"), ["seed", "episodes", "success", "mean_return"], rows)
 
 
 def write_success(folder, sweep_folder, resumed=()):
@@ -187,8 +211,9 @@ class Rate(collections.namedtuple("Rate", "frames runs success low high strict n
 def read_rates(folder, name):
     """The rows of a table; none if there is no such table."""
     path = os.path.join(folder, name)
-    columns = {"frames": int, "runs": int, "success": float, "low": float, "high": float, "success_strict": float}
-    return [Rate(*(row[column] for column in columns), name=row.get("method") or row.get("nuisance"))
+    columns = {"frames": int, "runs": int, "success": float, "low": float, "high": float}
+    return [Rate(*(row[column] for column in columns), strict=float(row.get("success_strict") or "nan"),
+                 name=row.get("method") or row.get("nuisance") or row.get("task"))
             for row in read_csv(path, columns, REMEDY)] if os.path.exists(path) else []
 
 
@@ -253,12 +278,27 @@ def nuisance_bars(rates):
     return bars
 
 
+def task_bars(folder):
+    """Bars for two links, and for the last models of tasks of the suite."""
+    bars = level_bars("success of two_link", [rate for rate in read_rates(folder, "tasks.csv") if rate.name == "two_link"],
+                      TWO_LINK_FRAMES, LEAST_TWO_LINK_MEAN, LEAST_TWO_LINK, FEW_SEEDS)
+    for name, (threshold, least) in LEAST_RETURNS.items():
+        path = os.path.join(folder, "tasks", name, "last_models.csv")
+        if os.path.exists(path):
+            returns = [row["mean_return"] for row in read_csv(path, {"mean_return": float}, REMEDY)]
+            reached = sum(value >= threshold for value in returns)
+            bars.append(("seeds of %s with a mean return of %g" % (name, threshold), ">= %d of %d" % (least, FEW_SEEDS),
+                         "%d of %d" % (reached, len(returns)), reached >= least if len(returns) >= FEW_SEEDS else None))
+    return bars
+
+
 def write_bars(folder):
     """Writes bars.csv about the tables that are there. Returns its rows (point, bar, here, yes | no | n/a)."""
     gravity = [rate for rate in read_rates(folder, "gravity.csv") if rate.name == "ddm"]
     bars = headline_bars(folder) + time_bars(folder) + level_bars(
         "success with gravity", gravity, GRAVITY_FRAMES, LEAST_GRAVITY_MEAN, LEAST_GRAVITY, FEW_SEEDS)
     bars += nuisance_bars([rate for rate in read_rates(folder, "nuisances.csv") if rate.name != "none"])
+    bars += task_bars(folder)
     rows = [(point, bar, here, verdict(holds)) for point, bar, here, holds in bars]
     write_csv(os.path.join(folder, "bars.csv"), ["point", "bar", "here", "holds"], rows)
     return rows

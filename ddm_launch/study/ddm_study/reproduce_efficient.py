@@ -1,12 +1,13 @@
 # Runs the experiments about data-efficiency and turns them into tables and figures, with one command.
 # SPDX-License-Identifier: BSD-3-Clause
+import glob
 import os
 
-from ddm_launch.command import Failure, number, package_path, program_parser
+from ddm_launch.command import Failure, find_program, number, package_path, program_parser
 from ddm_launch.settings import flat, read_yaml
 from ddm_launch.sweep import seed_range
-from ddm_study.efficient_tables import (PRESET, write_bars, write_gravity, write_nuisances, write_success, write_tasks,
-                                        write_variants)
+from ddm_study.efficient_tables import (PRESET, SUITE, write_bars, write_gravity, write_last_models, write_nuisances,
+                                        write_success, write_tasks, write_variants)
 from ddm_study.step_runner import Part, StepRunner, SweepStep, verdict_lines
 
 PARTS = ("efficient", "ablation", "tried", "gravity", "nuisances", "tasks")
@@ -18,6 +19,7 @@ NUM_FEW_SEEDS = 20  # with gravity, and of each nuisance
 FULL_LABEL = "Full preset"
 # plant: trials after the first; of 100 images, those of the suite of 400
 TASKS = {"two_link": 19, "suite_pendulum": 9, "suite_reacher": 9}
+EPISODES = "350:360"  # seeds of evaluate, for the last model of each seed of a task of the suite
 
 ABOUT = """\
 Makes the results about data-efficiency: the preset `efficient` on the pendulum next to the paper's curves, what each of
@@ -33,7 +35,8 @@ parts (--only), in this order, and what they leave in DIR:
                gravity.csv, gravity.png
   nuisances    nuisances/NAME/trials.csv, nuisances.csv, nuisances.png: under each file of config/nuisances
                that is not one of a scene
-  tasks        tasks/PLANT/trials.csv of harder plants: two_link, suite_pendulum, suite_reacher; tasks.csv
+  tasks        tasks/PLANT/trials.csv of harder plants: two_link, suite_pendulum, suite_reacher; tasks.csv; of the last
+               two tasks/PLANT/last_models.csv, ten episodes of each seed's last model, and PLANT.png
 bars.csv holds what the results must reach and whether they do, machine.yaml how each step was made, runs/ and logs/
 everything that the programs left. A step whose files have changed since it was made is refused. The columns are explained
 in ddm_launch's README."""
@@ -159,9 +162,27 @@ class EfficientReproduction(StepRunner):
         def write_tables():
             for plant, step in steps.items():
                 self.keep_config(step, os.path.join("tasks", plant, "config.yaml"))
+            for plant in SUITE:
+                write_last_models(self.out, plant, self.evaluate_last_models(steps[plant]))
             write_tasks(self.out, list(steps))
 
-        return Part(list(steps.values()), write_tables, dict)
+        return Part(list(steps.values()), write_tables, lambda: {
+            plant: self.figure("study_figure", "task_compared", [
+                self.path("tasks.csv"), "--task", plant, "--published",
+                package_path("results", "published", "suite_returns.csv")], plant) for plant in SUITE})
+
+    def evaluate_last_models(self, step):
+        """{seed: folder of evaluate} of a sweep; what is there is not made again."""
+        folders = {}
+        for seed, run in step.seed_folders(self.out).items():
+            folders[seed] = os.path.join(run, "last_model")
+            if os.path.exists(os.path.join(folders[seed], "evaluation.csv")):
+                continue
+            model = sorted(glob.glob(os.path.join(run, "trial_*", "model.ddm")))[-1]
+            self.call("%s_last_model_%04d" % (step.name, seed), [
+                find_program("evaluate"), "--config", os.path.join(run, "config.yaml"), "--model", model, "--seeds",
+                EPISODES, "--out", folders[seed]])
+        return folders
 
     def success_figure(self, name, curves, more=()):
         """Of those of the curves (label, path) that are there."""
