@@ -41,9 +41,10 @@ int iterationCap(const std::vector<Stage>& stages) {
 /// All starts and stages as one progress.
 class Progress {
  public:
-  Progress(const TrainingCallback& callback, const Schedule& schedule, int num_runs, const Pca& pca)
+  Progress(const TrainingCallback& callback, const Schedule& schedule, int num_starts,
+           const Pca& pca)
       : callback_(callback),
-        cap_(static_cast<double>(num_runs) * iterationCap(schedule.stages) +
+        cap_(static_cast<double>(num_starts) * iterationCap(schedule.stages) +
              (schedule.finish ? schedule.finish->max_iterations : 0)),
         squared_scale_(squaredScale(pca)) {}
 
@@ -213,24 +214,21 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
                                          : training_data);
   const Eigen::MatrixXd scores = training_data.scores.cast<double>();
   const Schedule schedule = makeSchedule(training);
-  const int num_runs = training.num_starts - 1 + static_cast<int>(problems.size());
-  Progress progress(callback, schedule, num_runs, pca);
+  Progress progress(callback, schedule, training.num_starts * static_cast<int>(problems.size()),
+                    pca);
   std::mt19937_64 rng = randomStream({info.seed, info.trial}, StreamRole::kInitialisation);
 
   TrainingResult result;
   Candidate best;
-  std::vector<Problem*> tried;
-  for (const auto& problem : problems) tried.push_back(problem.get());
   for (int start = 0; start < training.num_starts && !result.cancelled; ++start) {
     const Eigen::VectorXd initial_theta =
         initialTheta(initial_networks, scores, training,
                      schedule.pca_start && start < training.pca_starts, &rng);
-    for (Problem* problem : tried) {
-      Candidate candidate = run(problem, initial_theta, schedule, training, &progress, &result);
+    for (size_t i = 0; i < problems.size() && !result.cancelled; ++i) {
+      Candidate candidate =
+          run(problems[i].get(), initial_theta, schedule, training, &progress, &result);
       if (candidate.error < best.error) best = std::move(candidate);
-      if (result.cancelled) break;
     }
-    if (best.problem != nullptr) tried = {best.problem};  // the first start tells the delay
   }
   if (best.theta.size() > 0 && !result.cancelled) {
     Problem problem(best.problem->options, data.torqueDim(), training_data);  // all frames

@@ -243,21 +243,6 @@ TEST_F(Trainer, FindsHowManyFramesLateTheImagesAre) {
   }
 }
 
-TEST_F(Trainer, TriesEachDelayWithTheFirstStartAlone) {
-  training_.num_starts = 3;
-  training_.pca_starts = 3;
-  training_.max_delay = 1;
-  training_.function_tolerance = 0.0;
-  training_.max_iterations = 10;
-  double done = 0.0;
-  const TrainingResult result = run([&](const TrainingProgress& progress) {
-    done = progress.fraction_done;
-    return true;
-  });
-  EXPECT_EQ(result.iterations, (2 + 1 + 1) * 10);
-  EXPECT_DOUBLE_EQ(done, 1.0);
-}
-
 TEST_F(Trainer, ComparesStartsOnAPartAndLearnsFromAllFrames) {
   training_.num_starts = 3;
   training_.selection_iterations = 10;
