@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# export: the README's lines of NumPy compute what the C++ model does.
+# A model in Python: it computes what the C++ model does, as the README's lines ask it to; and export, its arrays in a file.
 # SPDX-License-Identifier: BSD-3-Clause
 import errno
 import os
@@ -12,23 +12,26 @@ import numpy as np
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import ddm_model  # noqa: E402
 import toy_robot  # noqa: E402
 
+STEPS = 15
+TOLERANCE = 1e-6  # C++ has images and principal components in single precision
 README = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "README.md")
 
 
-def readme_functions(npz):
-    """The names that the README's Python block defines, for this file."""
+def readme_names(model, images, torques):
+    """What the README's Python block computes of this model file, these images and torques."""
     with open(README) as stream:
         block = re.search(r"```python\n(.*?)```", stream.read(), re.DOTALL).group(1)
-    names = {}
-    exec(block.replace('"model.npz"', repr(npz)), names)  # pylint: disable=exec-used
+    names = dict(images=images, torques=torques)
+    exec(block.replace('"robot.model"', repr(model)), names)  # pylint: disable=exec-used
     return names
 
 
 def features_in(table):
-    """[2 x rows]"""
-    return np.array([table["z_1"], table["z_2"]])
+    """[rows x 2]"""
+    return np.array([table["z_1"], table["z_2"]]).T
 
 
 class ExportTest(toy_robot.ToyRobotCase):
@@ -40,47 +43,44 @@ class ExportTest(toy_robot.ToyRobotCase):
     def export(self, model):
         code, output = toy_robot.call("export", "--model", model, "--out", self.npz)
         self.assertEqual(code, 0, output)
-        return readme_functions(self.npz)
+        return dict(np.load(self.npz))
 
     def assertComputesTheSame(self, model_options, training_options=""):
-        model = toy_robot.train(self.scratch, [self.bag], model_options, training_options)
-        ours = self.export(model)
-        code, output = toy_robot.call("inspect", "--model", model, "--out", self.scratch, "--steps", 4, self.bag)
+        path = toy_robot.train(self.scratch, [self.bag], model_options, training_options)
+        model = ddm_model.load(path)
+        code, output = toy_robot.call("inspect", "--model", path, "--out", self.scratch, "--steps", STEPS, self.bag)
         self.assertEqual(code, 0, output)
         truth = features_in(toy_robot.read_table(self.file("features.csv")))
-        features = ours["encode"](self.images.reshape(len(self.images), -1).T)
-        np.testing.assert_allclose(features, truth, rtol=0.0, atol=1e-5)
+        np.testing.assert_allclose(model.encode(self.images), truth, rtol=0.0, atol=TOLERANCE)
         self.assertGreater(np.ptp(truth), 0.05)  # or anything would do
-        self.assertPredicts(ours, truth)
-        self.assertDecodes(ours, truth, model)
+        self.assertPredicts(model, truth)
+        self.assertDecodes(model, truth, path)
 
-    def assertPredicts(self, ours, truth):
+    def assertPredicts(self, model, truth):
         rows = toy_robot.read_table(self.file("predicted_features.csv"))
-        self.assertEqual(len(rows["frame"]), 2 * 5)
-        n, delay = int(ours["model"]["order"]), int(ours["model"]["delay"])
+        self.assertEqual(len(rows["frame"]), 2 * (STEPS + 1))
+        n, delay = model.options["order"], model.options["delay"]
         for kind in ("typical", "worst"):
             predicted = rows[rows["kind"] == kind]
             frame = predicted["frame"][0]
-            Z = [truth[:, [frame - lag]] for lag in range(n)]
-            for k in range(4):
-                U = [self.torques[frame + k - lag].reshape(1, 1) for lag in range(n + delay)]
-                Z = [ours["predict"](Z, U)] + Z[:-1]
-                np.testing.assert_allclose(Z[0][:, 0], features_in(predicted)[:, k + 1], rtol=0.0, atol=1e-5)
+            torques = self.torques[frame - n + 1 - delay:frame + STEPS, None]
+            np.testing.assert_allclose(model.roll_out(truth[frame - n + 1:frame + 1], torques),
+                                       features_in(predicted)[1:], rtol=0.0, atol=TOLERANCE)
 
-    def assertDecodes(self, ours, truth, model):
+    def assertDecodes(self, model, truth, path):
         with open(self.file("features.txt"), "w") as stream:
-            stream.write("z_1,z_2\n" + "".join("%.17g,%.17g\n" % tuple(z) for z in truth[:, :5].T))
+            stream.write("z_1,z_2\n" + "".join("%.17g,%.17g\n" % tuple(z) for z in truth[:5]))
         command = "%s %s --frames %s < %s" % (
-            toy_robot.find_program("decode_features"), model, self.scratch, self.file("features.txt"))
+            toy_robot.find_program("decode_features"), path, self.scratch, self.file("features.txt"))
         self.assertEqual(os.system(command), 0)
-        decoded = 255.0 * np.clip(ours["decode"](truth[:, :5]), 0.0, 1.0)
+        decoded = 255.0 * np.clip(model.decode(truth[:5]), 0.0, 1.0)
         for i in range(5):
-            picture = 255.0 * matplotlib.image.imread(self.file("frame_%04d.png" % i)).reshape(-1)
+            picture = 255.0 * matplotlib.image.imread(self.file("frame_%04d.png" % i))
             # The program rounds to a grey value: half of one, and what single precision does to 255.
-            np.testing.assert_allclose(decoded[:, i], picture, rtol=0.0, atol=0.5 + 255e-5)
+            np.testing.assert_allclose(decoded[i], picture, rtol=0.0, atol=0.5 + 255e-5)
             self.assertGreater(np.ptp(picture), 20)
 
-    def test_the_readme_encodes_decodes_and_predicts_as_the_model_does(self):
+    def test_it_encodes_decodes_and_predicts_as_the_model_does(self):
         self.assertComputesTheSame("")
 
     def test_so_it_does_with_blur_changes_increments_and_a_longer_past(self):
@@ -89,11 +89,43 @@ class ExportTest(toy_robot.ToyRobotCase):
     def test_so_it_does_where_images_are_late(self):
         self.assertComputesTheSame(", increments: true, delay: 1")
 
+    def test_the_readme_reads_a_model_and_uses_it(self):
+        path = toy_robot.train(self.scratch, [self.bag])
+        names, model = readme_names(path, self.images, self.torques[:, None]), ddm_model.load(path)
+        np.testing.assert_array_equal(names["z"], model.encode(self.images))
+        self.assertLess(np.sqrt(np.mean((names["y"] - self.images / 255.0) ** 2)), 0.15)
+        self.assertEqual(names["future"].shape, (16, 2))
+        np.testing.assert_array_equal(names["future"][0], names["z_next"])
+        self.assertGreater(np.ptp(names["future"]), 0.0)
+
+    def test_images_of_another_size_are_refused(self):
+        model = ddm_model.load(toy_robot.train(self.scratch, [self.bag]))
+        with self.assertRaisesRegex(ValueError, "12 x 12 pixels, got an array .*40, 11, 12"):
+            model.encode(self.images[:, 1:])
+
+    def test_features_and_torques_that_do_not_fit_the_past_are_refused(self):
+        model = ddm_model.load(toy_robot.train(self.scratch, [self.bag], ", order: 3, delay: 1"))
+        with self.assertRaisesRegex(ValueError, "last 3 features and 4 torques .* got 3 and 3"):
+            model.predict(np.zeros((3, 2)), np.zeros((3, 1)))
+
+    def test_a_damaged_model_is_named(self):
+        path = toy_robot.train(self.scratch, [self.bag])
+        with open(path, "rb") as stream:
+            data = stream.read()
+        for damage, word in ((data[:-1], "damaged"), (data[:5], "is not a DDM model"), (data[:12], "cut short"),
+                             (data[:-9] + b"x" + data[-8:], "damaged"),
+                             (data[:8] + b"\x63" + data[9:], "format version 99")):
+            with open(path, "wb") as stream:
+                stream.write(damage)
+            with self.assertRaisesRegex(ddm_model.ModelFileError, "model %s: .*%s" % (re.escape(path), word)):
+                ddm_model.load(path)
+
     def test_the_goal_and_its_feature_are_exported(self):
-        arrays = self.export(toy_robot.train(self.scratch, [self.bag]))["model"]
+        path = toy_robot.train(self.scratch, [self.bag])
+        arrays, model = self.export(path), ddm_model.load(path)
         np.testing.assert_array_equal(arrays["goal"], toy_robot.picture(3.0).reshape(-1))
-        ours = readme_functions(self.npz)
-        np.testing.assert_allclose(ours["encode"](arrays["goal"][:, None])[:, 0], arrays["goal_feature"], atol=1e-5)
+        np.testing.assert_array_equal(arrays["goal_feature"], model.goal_feature)
+        self.assertEqual(set(arrays), set(model.arrays))
 
     def test_a_file_that_is_no_model_is_named_and_nothing_is_written(self):
         code, output = toy_robot.call("export", "--model", self.bag, "--out", self.npz)

@@ -1,16 +1,16 @@
-// model_data: a model, and what it makes of bags, as arrays and YAML for inspect and export.
+// model_data: what is written in a model, and what it makes of bags, as YAML and arrays for inspect.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/bag_reader.h>
 #include <ddm_bag_io/model_config.h>
 #include <ddm_model/long_term_prediction.h>
 #include <ddm_model/model_file.h>
-#include <ddm_model/per_motor.h>
 #include <ddm_params/param_value.h>
 #include <ddm_params/tool.h>
 #include <ros/time.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <string>
 #include <utility>
@@ -36,8 +36,8 @@ struct Arguments {
 /// @return false where --help was asked for and has been printed
 bool parse(int argc, char** argv, Arguments* arguments) {
   po::options_description options(
-      "Writes a model, and what it makes of bags, as YAML and NumPy files: what\n"
-      "`rosrun ddm_model inspect` and `rosrun ddm_model export` show to people.\n\n"
+      "Writes what is written in a model, and what it makes of bags, as YAML and\n"
+      "NumPy files: what `rosrun ddm_model inspect` shows to people.\n\n"
       "usage: rosrun ddm_model model_data --model FILE --out DIR [--steps K] [--config FILE]...\n"
       "                                   [BAG...]\n\noptions");
   options.add_options()("model", po::value(&arguments->model)->value_name("FILE"), "model file");
@@ -86,49 +86,6 @@ std::string factsOf(const Ddm& model, const std::string& id) {
   facts["options"] = toYaml(model.options());
   facts["config"] = info.config;
   return YAML::Dump(facts) + "\n";
-}
-
-void writeNetwork(const Mlp<double>& network, const double* theta, const std::string& name,
-                  const ArrayFolder& out) {
-  for (int layer = 0; layer < network.numLayers(); ++layer) {
-    const std::string number = std::to_string(layer + 1);
-    out.write(name + "_W" + number, Eigen::MatrixXd(network.weights(theta, layer)));
-    out.write(name + "_b" + number, Eigen::VectorXd(network.biases(theta, layer)));
-  }
-}
-
-/// Everything that the model computes with, under the names in the README.
-void writeModel(const Ddm& model, const ArrayFolder& out) {
-  const ModelOptions& options = model.options();
-  out.writeNumber("image_size", std::int64_t{model.imageSize()});
-  out.writeNumber("feature_dim", std::int64_t{options.feature_dim});
-  out.writeNumber("torque_dim", std::int64_t{model.torqueDim()});
-  out.writeNumber("order", std::int64_t{options.order});
-  out.writeNumber("delay", std::int64_t{options.delay});
-  if (options.max_torque.size() == 1) {
-    out.writeNumber("max_torque", options.max_torque[0]);
-  } else {
-    out.write("max_torque", perMotor(options.max_torque, model.torqueDim(), "model/max_torque"));
-  }
-  out.writeNumber("residual", std::int64_t{options.residual ? 1 : 0});
-  out.writeNumber("increments", std::int64_t{options.increments ? 1 : 0});
-  const Eigen::MatrixXf& G = model.pca().blur.matrix();
-  out.write("blur",
-            G.size() > 0 ? G : Eigen::MatrixXf::Identity(model.imageSize(), model.imageSize()));
-  out.write("pca_mean", model.pca().mean);
-  out.write("pca_basis", model.pca().basis);
-  out.write("pca_variance", model.pca().variance);
-  out.writeNumber("pca_scale", static_cast<double>(model.pca().scale));
-  const Networks<double> networks(options, model.torqueDim());
-  const double* theta = model.theta().data();
-  writeNetwork(networks.encoder(), networks.encoderOf(theta), "encoder", out);
-  writeNetwork(networks.decoder(), networks.decoderOf(theta), "decoder", out);
-  writeNetwork(networks.f(), networks.predictorOf(theta), "f", out);
-  if (!model.hasGoal()) return;
-  DataSet goal(model.imageSize(), model.torqueDim());
-  goal.setGoal(model.goal());
-  out.write("goal", Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>(goal.pixels(0, 1).col(0)));
-  out.write("goal_feature", model.goalFeature());
 }
 
 /// All bags as one data set. What was found in each is in bags.yaml.
@@ -232,7 +189,7 @@ void run(const Arguments& arguments) {
   params.requireValid();
   const std::string bytes = readFile(arguments.model);
   const Ddm model = deserialiseModel(bytes, arguments.model);
-  writeModel(model, ArrayFolder(arguments.out + "/model"));
+  std::filesystem::create_directories(arguments.out);
   if (!arguments.bags.empty()) {
     const ArrayFolder out(arguments.out + "/bags");
     const DataSet data = readBags(model, arguments, topics, out);

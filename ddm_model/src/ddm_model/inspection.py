@@ -106,7 +106,7 @@ def inspect(model, bags, out, options):
     """Writes the report and the numbers behind it into a folder. Returns the checks."""
     with tempfile.TemporaryDirectory() as folder:
         write_model_data(model, bags, folder, options)
-        data = ModelData(folder)
+        data = ModelData(model, folder)
         page, checks = build_page(data, model, lambda text: print(text, file=sys.stderr))
         os.makedirs(out, exist_ok=True)
         with open(os.path.join(folder, "model.yaml"), "rb") as stream:

@@ -11,6 +11,8 @@ import numpy as np
 import roslib.packages
 import yaml
 
+from ddm_model.model import blurred, load
+
 BLOCK_BYTES = 1 << 23  # of the images that are compared at a time
 
 
@@ -59,12 +61,6 @@ def read_arrays(folder, mmap_mode=None):
             for name in sorted(os.listdir(folder)) if name.endswith(".npy")}
 
 
-def blurred(model, y):
-    """Images y [N x D] as the model sees them."""
-    size = int(model["image_size"])
-    return np.einsum("ir,nrc,jc->nij", model["blur"], y.reshape(-1, size, size), model["blur"]).reshape(y.shape)
-
-
 def kept_by_pca(model, y):
     """Coordinates along the principal components [grey] of images y [N x D], and the images with those alone."""
     coordinates = (y - model["pca_mean"]) @ model["pca_basis"]
@@ -99,14 +95,14 @@ Prediction = collections.namedtuple("Prediction", "frame features images")
 
 
 class ModelData:
-    """Everything in a folder of model_data, and the errors of images. Without bags `bags` and what comes after it are
-    None, and tables is empty."""
+    """A model file, everything in a folder of model_data, and the errors of images. Without bags `bags` and what comes
+    after it are None, and tables is empty."""
 
-    def __init__(self, folder):
+    def __init__(self, model, folder):
         with open(os.path.join(folder, "model.yaml")) as stream:
             self.facts = yaml.load(stream, Loader=yaml.BaseLoader)  # texts: an id like 12e45678 is not a number
         self.options = self.facts["options"]
-        self.model = read_arrays(os.path.join(folder, "model"))
+        self.model = load(model).arrays
         self.bags = self.frames = self.features = self.torques = self.spectrum = self.errors = self.variation = None
         self.tables, self.predictions = {}, {}
         if os.path.exists(os.path.join(folder, "bags.yaml")):

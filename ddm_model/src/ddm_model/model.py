@@ -1,0 +1,209 @@
+# A model file in NumPy: what is in it, and what the model computes.
+# SPDX-License-Identifier: BSD-3-Clause
+import struct
+import zlib
+
+import numpy as np
+
+MAGIC, HEADER = b"DDMMODEL", "<IQI"  # version, bytes of content, CRC-32
+VERSION = 5  # of the format; all before it are read
+
+
+class ModelFileError(ValueError):
+    """A file is no model, or is damaged."""
+
+
+class _Reader:
+    """Numbers in the order in which model_file.cpp writes them."""
+
+    def __init__(self, content):
+        self._content, self._at = content, 0
+
+    def number(self, kind):
+        """kind: a type of NumPy; little-endian as the file is."""
+        return self._take(kind, 1)[0]
+
+    def array(self, kind):
+        return self._take(kind, int(self.number("<u8")))
+
+    def text(self):
+        return self.array("u1").tobytes().decode("utf-8")
+
+    def _take(self, kind, count):
+        if count * np.dtype(kind).itemsize > len(self._content) - self._at:
+            raise ModelFileError("its content ends early")
+        values = np.frombuffer(self._content, kind, count, self._at)
+        self._at += values.nbytes
+        return values
+
+
+def _content(data):
+    """(version, content) of the bytes of a model file."""
+    begin = len(MAGIC) + struct.calcsize(HEADER)
+    if data[:len(MAGIC)] != MAGIC:
+        raise ModelFileError("is not a DDM model (it does not begin with %s)" % MAGIC.decode())
+    if len(data) < begin:
+        raise ModelFileError("is cut short: copy or train it again")
+    version, size, checksum = struct.unpack_from(HEADER, data, len(MAGIC))
+    if not 1 <= version <= VERSION:
+        raise ModelFileError("has format version %d, this program reads versions 1 to %d: train it again from its bags"
+                             % (version, VERSION))
+    if size != len(data) - begin or checksum != zlib.crc32(data[begin:]):
+        raise ModelFileError("is damaged (wrong size or checksum): copy or train it again")
+    return version, data[begin:]
+
+
+def _read_options(version, reader):
+    """The block `model` of the configuration."""
+    options = {name: int(reader.number("<i4")) for name in ("pca_dim", "feature_dim", "order")}
+    for name in ("encoder_widths", "decoder_widths", "predictor_widths"):
+        options[name] = reader.array("<i4").tolist()
+    for name in ("residual", "increments"):
+        options[name] = bool(reader.number("u1")) if version > 1 else False
+    options["max_torque"] = reader.array("<f8") if version > 2 else np.array([reader.number("<f8")])
+    options["blur"] = float(reader.number("<f8")) if version > 3 else 0.0
+    options["delay"] = int(reader.number("<i4")) if version > 4 else 0
+    return options
+
+
+def _blur(size, std):
+    """Each row has the weights of a Gaussian along one axis, in the model's single precision  [size x size]."""
+    if not std > 0.0:
+        return np.eye(size, dtype=np.float32)
+    distance = np.subtract.outer(np.arange(size), np.arange(size)) / std
+    weights = np.exp(-0.5 * distance ** 2).astype(np.float32)
+    return weights / weights.sum(axis=1, keepdims=True)
+
+
+def _layers(theta, widths, name):
+    """({NAME_W1: weights [outputs x inputs], NAME_b1: biases, ...}, the parameters that are left)"""
+    arrays = {}
+    for layer, (inputs, outputs) in enumerate(zip(widths, widths[1:]), 1):
+        weights, theta = np.split(theta, [inputs * outputs])
+        arrays["%s_W%d" % (name, layer)] = weights.reshape(inputs, outputs).T  # column by column
+        arrays["%s_b%d" % (name, layer)], theta = np.split(theta, [outputs])
+    return arrays, theta
+
+
+def blurred(arrays, y):
+    """Images y as the model with these arrays sees them  [N x D]."""
+    blur, size = arrays["blur"], int(arrays["image_size"])
+    return np.einsum("ir,nrc,jc->nij", blur, y.reshape(-1, size, size), blur).reshape(y.shape)
+
+
+class Model:
+    """A deep dynamical model. Images, features and torques have one sample in each row.
+
+    options: the block `model` of its configuration. image_size [pixels], torque_dim [-]. info: seed, trial, frames, v_r,
+    v_p, feature_spread, and config, the YAML text that it was trained with. arrays: all that it computes with, under the
+    names of ddm_model's README. goal_feature: z_ref, None where there is no goal image.
+    """
+
+    def __init__(self, data):
+        """data: bytes of a model file. Raises ModelFileError."""
+        version, content = _content(data)
+        reader = _Reader(content)
+        self.options = _read_options(version, reader)
+        self.image_size, self.torque_dim = int(reader.number("<i4")), int(reader.number("<i4"))
+        self.info = {name: int(reader.number(kind)) for name, kind in (("seed", "<u8"), ("trial", "<u4"),
+                                                                       ("frames", "<u4"))}
+        for name in ("v_r", "v_p", "feature_spread"):
+            self.info[name] = float(reader.number("<f8")) if version > 1 or name != "feature_spread" else 0.0
+        if version > 3:
+            reader.array("<f4")  # landmarks
+        self.info["config"] = reader.text()
+        self.arrays = self._read_arrays(reader)
+        goal = reader.array("u1")
+        self.goal_feature = None
+        if goal.size > 0:
+            self.goal_feature = self.encode(goal[None])[0]
+            self.arrays.update(goal=goal, goal_feature=self.goal_feature)
+
+    def _read_arrays(self, reader):
+        options = self.options
+        max_torque = options["max_torque"]
+        arrays = {"image_size": self.image_size, "torque_dim": self.torque_dim,
+                  **{name: int(options[name]) for name in ("feature_dim", "order", "delay", "residual", "increments")},
+                  "max_torque": max_torque[0] if max_torque.size == 1 else max_torque,
+                  "blur": _blur(self.image_size, options["blur"]), "pca_scale": float(reader.number("<f4")),
+                  "pca_mean": reader.array("<f4"), "pca_basis": reader.array("<f4"),
+                  "pca_variance": reader.array("<f8")}
+        arrays["pca_basis"] = arrays["pca_basis"].reshape(options["pca_dim"], -1).T
+        theta, n, dim = reader.array("<f8"), options["order"], options["feature_dim"]
+        for name, widths in (("encoder", [options["pca_dim"], *options["encoder_widths"], dim]),
+                             ("decoder", [dim, *options["decoder_widths"], options["pca_dim"]]),
+                             ("f", [n * (dim + self.torque_dim), *options["predictor_widths"], dim])):
+            layers, theta = _layers(theta, widths, name)
+            arrays.update(layers)
+        return {name: np.asarray(value) for name, value in arrays.items()}
+
+    def _network(self, name, a, last_linear=True):
+        """a: inputs, one sample a row."""
+        num_layers = sum(key.startswith(name + "_W") for key in self.arrays)
+        for layer in range(1, num_layers + 1):
+            a = a @ self.arrays["%s_W%d" % (name, layer)].T + self.arrays["%s_b%d" % (name, layer)]
+            if layer < num_layers or not last_linear:
+                a = np.arctan(a)
+        return a
+
+    def encode(self, images):
+        """z = g^-1(y), eq. (3a).
+
+        images: grey values 255 y  [N x size x size] or [N x size^2]. Returns features [N x feature_dim]. Raises ValueError
+        for another number of pixels.
+        """
+        images = np.asarray(images)
+        if images.size != len(images) * self.image_size ** 2:
+            raise ValueError("images must have %d x %d pixels, got an array %s: crop and resize them" % (
+                self.image_size, self.image_size, images.shape))
+        y = blurred(self.arrays, images.reshape(len(images), -1) / 255.0)
+        scores = self.arrays["pca_scale"] * ((y - self.arrays["pca_mean"]) @ self.arrays["pca_basis"])
+        return self._network("encoder", scores, last_linear=False)
+
+    def decode(self, features):
+        """y = g(z), eq. (3b), not clipped to [0, 1].
+
+        features: [N x feature_dim]. Returns [N x size x size].
+        """
+        scores = self._network("decoder", np.asarray(features)) / self.arrays["pca_scale"]
+        y = self.arrays["pca_mean"] + scores @ self.arrays["pca_basis"].T
+        return y.reshape(-1, self.image_size, self.image_size)
+
+    def predict(self, features, torques):
+        """z_{t+1} = f(z_t, u_t, ..., z_{t-n+1}, u_{t-n+1}), eq. (2); with a delay d the torques are u_{t-d}, ...
+
+        features: z_{t-n+1} ... z_t, oldest first  [n x feature_dim]. torques: u_{t-n+1-d} ... u_t, oldest first
+        [n + d x torque_dim, N m]. Returns [feature_dim].
+        """
+        n, delay = self.options["order"], self.options["delay"]
+        if len(features) != n or len(torques) != n + delay:
+            raise ValueError("the last %d features and %d torques predict the next feature, got %d and %d" % (
+                n, n + delay, len(features), len(torques)))
+        features, torques = np.asarray(features, dtype=float), np.asarray(torques, dtype=float).reshape(n + delay, -1)
+        past = features[::-1].copy()
+        if self.options["increments"]:
+            past[1:] = features[:0:-1] - features[-2::-1]
+        h = np.hstack([past, torques[n - 1::-1] / self.arrays["max_torque"]])
+        change = self._network("f", h.reshape(1, -1))[0]
+        return features[-1] + change if self.options["residual"] else change
+
+    def roll_out(self, features, torques):
+        """Features predicted one after the other, each from those before it.
+
+        features: as of predict(). torques: as there, and all that follow  [n + d - 1 + K x torque_dim]. Returns
+        [K x feature_dim].
+        """
+        features, n, memory = list(features), self.options["order"], self.options["order"] + self.options["delay"]
+        for k in range(len(torques) - memory + 1):
+            features.append(self.predict(features[-n:], torques[k:k + memory]))
+        return np.array(features[n:])
+
+
+def load(path):
+    """The Model in a file. Raises OSError, or ModelFileError, which names the file."""
+    with open(path, "rb") as stream:
+        data = stream.read()
+    try:
+        return Model(data)
+    except ModelFileError as error:
+        raise ModelFileError("model %s: %s" % (path, error)) from None
