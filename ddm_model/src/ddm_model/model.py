@@ -172,31 +172,33 @@ class Model:
     def predict(self, features, torques):
         """z_{t+1} = f(z_t, u_t, ..., z_{t-n+1}, u_{t-n+1}), eq. (2); with a delay d the torques are u_{t-d}, ...
 
-        features: z_{t-n+1} ... z_t, oldest first  [n x feature_dim]. torques: u_{t-n+1-d} ... u_t, oldest first
-        [n + d x torque_dim, N m]. Returns [feature_dim].
+        features: z_{t-n+1} ... z_t, oldest first  [... x n x feature_dim]. torques: u_{t-n+1-d} ... u_t, oldest first
+        [... x n + d x torque_dim, N m]. Returns [... x feature_dim].
         """
+        features, torques = np.asarray(features, dtype=float), np.asarray(torques, dtype=float)
         n, delay = self.options["order"], self.options["delay"]
-        if len(features) != n or len(torques) != n + delay:
+        if features.shape[-2] != n or torques.shape[-2] != n + delay:
             raise ValueError("the last %d features and %d torques predict the next feature, got %d and %d" % (
-                n, n + delay, len(features), len(torques)))
-        features, torques = np.asarray(features, dtype=float), np.asarray(torques, dtype=float).reshape(n + delay, -1)
-        past = features[::-1].copy()
+                n, n + delay, features.shape[-2], torques.shape[-2]))
+        past = features[..., ::-1, :].copy()
         if self.options["increments"]:
-            past[1:] = features[:0:-1] - features[-2::-1]
-        h = np.hstack([past, torques[n - 1::-1] / self.arrays["max_torque"]])
-        change = self._network("f", h.reshape(1, -1))[0]
-        return features[-1] + change if self.options["residual"] else change
+            past[..., 1:, :] = features[..., :0:-1, :] - features[..., -2::-1, :]
+        h = np.concatenate([past, torques[..., n - 1::-1, :] / self.arrays["max_torque"]], axis=-1)
+        change = self._network("f", h.reshape(h.shape[:-2] + (-1,)))
+        return features[..., -1, :] + change if self.options["residual"] else change
 
     def roll_out(self, features, torques):
         """Features predicted one after the other, each from those before it.
 
-        features: as of predict(). torques: as there, and all that follow  [n + d - 1 + K x torque_dim]. Returns
-        [K x feature_dim].
+        features: as of predict(). torques: as there, and all that follow  [... x n + d - 1 + K x torque_dim, N m].
+        Returns [... x K x feature_dim].
         """
-        features, n, memory = list(features), self.options["order"], self.options["order"] + self.options["delay"]
-        for k in range(len(torques) - memory + 1):
-            features.append(self.predict(features[-n:], torques[k:k + memory]))
-        return np.array(features[n:])
+        n, memory = self.options["order"], self.options["order"] + self.options["delay"]
+        features, torques = np.asarray(features, dtype=float), np.asarray(torques, dtype=float)
+        for k in range(torques.shape[-2] - memory + 1):
+            following = self.predict(features[..., -n:, :], torques[..., k:k + memory, :])
+            features = np.concatenate([features, following[..., None, :]], axis=-2)
+        return features[..., n:, :]
 
 
 def load(path):
