@@ -17,8 +17,8 @@ from ddm_launch.tables import read_csv, write_csv
 from ddm_model.model import ModelFileError, load
 
 ABOUT = """\
-Tells what stands in the way of a task. For each run folder it takes the last model but one and asks, of the images of the
-trial after it, which the model has not learned from:
+Shows why a task is not learned. For each run folder it takes the last model but one and the images of the next trial,
+which that model was not trained on:
   features    how far off is each joint, if it is read from the features: that of the nearest image learned from?
   prediction  how far off is it, if it is read from features predicted 1, 5 and 15 steps ahead under the torques that acted?
   goal        which share of the images learned from shows each joint within 20 degrees (or 0.1 m) of the goal? Not for

@@ -10,7 +10,7 @@ VERSION = 5  # of the format; all before it are read
 
 
 class ModelFileError(ValueError):
-    """A file is no model, or is damaged."""
+    """The file is not a model, or it is damaged."""
 
 
 class _Reader:
@@ -96,7 +96,7 @@ class Model:
 
     options: the block `model` of its configuration. image_size [pixels], torque_dim [-]. info: seed, trial, frames, v_r,
     v_p, feature_spread, and config, the YAML text that it was trained with. arrays: all that it computes with, under the
-    names of ddm_model's README. goal_feature: z_ref, None where there is no goal image.
+    names of ddm_model's README. goal_feature: z_ref, None without a goal image.
     """
 
     def __init__(self, data):
