@@ -42,11 +42,12 @@ with ThreadPoolExecutor(len(tcp)) as pool:
 for port in udp:
     socket.socket(socket.AF_INET, socket.SOCK_DGRAM).sendto(b"?", (address, int(port)))
 """
-# Counts the datagrams that get past the rule.
+# Counts the datagrams that get past the rule, and takes them: roscpp does not read what comes to a node's UDP port, and its
+# thread for sockets runs without pause from then on.
 COUNTER = """table inet test {
   chain input {
     type filter hook input priority 10; policy accept;
-    iif != "lo" meta l4proto udp counter
+    iif != "lo" meta l4proto udp counter drop
   }
 }
 """
