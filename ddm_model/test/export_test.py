@@ -5,7 +5,9 @@ import errno
 import os
 import re
 import resource
+import struct
 import sys
+import zlib
 
 import matplotlib.image
 import numpy as np
@@ -119,6 +121,18 @@ class ExportTest(toy_robot.ToyRobotCase):
                 stream.write(damage)
             with self.assertRaisesRegex(ddm_model.ModelFileError, "model %s: .*%s" % (re.escape(path), word)):
                 ddm_model.load(path)
+
+    def test_a_model_whose_parameters_do_not_fit_its_networks_is_named(self):
+        path = toy_robot.train(self.scratch, [self.bag])
+        with open(path, "rb") as stream:
+            data = stream.read()
+        content = bytearray(data[len("DDMMODEL") + struct.calcsize("<IQI"):])
+        self.assertEqual(struct.unpack_from("<iii", content)[1:], (2, 2))
+        struct.pack_into("<i", content, 4, 3)  # three features
+        with open(path, "wb") as stream:
+            stream.write(data[:8] + struct.pack("<IQI", 5, len(content), zlib.crc32(content)) + content)
+        with self.assertRaisesRegex(ddm_model.ModelFileError, r"has \d+ parameters, but its networks need \d+"):
+            ddm_model.load(path)
 
     def test_the_goal_and_its_feature_are_exported(self):
         path = toy_robot.train(self.scratch, [self.bag])

@@ -6,8 +6,8 @@ import os
 from ddm_launch.command import Failure, find_program, number, package_path, program_parser
 from ddm_launch.settings import flat, read_yaml
 from ddm_launch.sweep import seed_range
-from ddm_study.efficient_tables import (PRESET, SUITE, write_bars, write_gravity, write_last_models, write_nuisances,
-                                        write_success, write_tasks, write_variants)
+from ddm_study.efficient_tables import (FEW_SEEDS, PRESET, SUITE, TASKS, write_bars, write_gravity, write_last_models,
+                                        write_nuisances, write_success, write_tasks, write_variants)
 from ddm_study.step_runner import Part, StepRunner, SweepStep, verdict_lines
 
 PARTS = ("efficient", "ablation", "tried", "gravity", "nuisances", "tasks")
@@ -15,10 +15,7 @@ VARIANTS = {"ablation": "ablations", "tried": "tried"}  # part: folder of config
 TRIALS, ABLATION_TRIALS, TRIED_TRIALS, GRAVITY_TRIALS, NUISANCE_TRIALS = 15, 5, 1, 19, 4
 PILCO_TABLE = "gravity/pilco_state/trials.csv"
 PILCO_TRIALS = 15  # of 125 frames: 2000 as the others
-NUM_FEW_SEEDS = 20  # with gravity, and of each nuisance
 FULL_LABEL = "Full preset"
-# plant: trials after the first; of 100 images, those of the suite of 400
-TASKS = {"two_link": 19, "suite_pendulum": 9, "suite_reacher": 9}
 EPISODES = "350:360"  # seeds of evaluate, for the last model of each seed of a task of the suite
 
 ABOUT = """\
@@ -35,11 +32,12 @@ parts (--only), in this order, and what they leave in DIR:
                gravity.csv, gravity.png
   nuisances    nuisances/NAME/trials.csv, nuisances.csv, nuisances.png: under each file of config/nuisances
                that is not one of a scene
-  tasks        tasks/PLANT/trials.csv of harder plants: two_link, suite_pendulum, suite_reacher; tasks.csv; of the last
-               two tasks/PLANT/last_models.csv, ten episodes of each seed's last model, and PLANT.png
+  tasks        tasks/PLANT/trials.csv of harder plants (%s); tasks.csv; of
+               those of the DeepMind Control Suite tasks/PLANT/last_models.csv, ten episodes of each seed's last model,
+               and PLANT.png
 bars.csv holds what the results must reach and whether they do, machine.yaml how each step was made, runs/ and logs/
 everything that the programs left. A step whose files have changed since it was made is refused. The columns are explained
-in ddm_launch's README."""
+in ddm_launch's README.""" % ", ".join(TASKS)
 
 
 def yaml_names(folder):
@@ -69,7 +67,7 @@ class EfficientReproduction(StepRunner):
     def __init__(self, options):
         self.preset = options.preset
         super().__init__("reproduce_efficient", options.out, {"preset": self.preset}, options.jobs)
-        self.options, self.few_seeds = options, options.seeds[:NUM_FEW_SEEDS]
+        self.options, self.few_seeds = options, options.seeds[:FEW_SEEDS]
         self.variants = {}  # {part: {name: path}}
 
     def parts(self):
@@ -156,8 +154,8 @@ class EfficientReproduction(StepRunner):
             "nuisances": self.figure("study_figure", "nuisances_compared", [self.path("nuisances.csv")], "nuisances")})
 
     def tasks(self):
-        steps = {plant: self.step("task_" + plant, os.path.join("tasks", plant), self.few_seeds, trials, plant=plant)
-                 for plant, trials in TASKS.items()}
+        steps = {plant: self.step("task_" + plant, os.path.join("tasks", plant), self.few_seeds, task.num_trials,
+                                  plant=plant) for plant, task in TASKS.items()}
 
         def write_tables():
             for plant, step in steps.items():
@@ -205,7 +203,7 @@ def main(arguments=None):
     parser = program_parser("reproduce_efficient", ABOUT, EPILOG)
     parser.add_argument("--seeds", type=seed_range, default=range(300, 350), metavar="A:B",
                         help="seeds A ... B - 1, default 300:350; the first %d of them with gravity, under each "
-                        "nuisance, and of each task" % NUM_FEW_SEEDS)
+                        "nuisance, and of each task" % FEW_SEEDS)
     parser.add_argument("--ablation-seeds", type=seed_range, default=range(0, 50), metavar="A:B",
                         help="of the ablation and of what was tried, default 0:50: those that the preset was chosen on")
     parser.add_argument("--out", default="efficient_results", metavar="DIR", help="default efficient_results")

@@ -88,7 +88,7 @@ def _layers(theta, widths, name):
 def blurred(arrays, y):
     """Images y as the model with these arrays sees them  [N x D]."""
     blur, size = arrays["blur"], int(arrays["image_size"])
-    return np.einsum("ir,nrc,jc->nij", blur, y.reshape(-1, size, size), blur).reshape(y.shape)
+    return (blur @ y.reshape(-1, size, size) @ blur.T).reshape(y.shape)
 
 
 class Model:
@@ -130,9 +130,13 @@ class Model:
                   "pca_variance": reader.array("<f8")}
         arrays["pca_basis"] = arrays["pca_basis"].reshape(options["pca_dim"], -1).T
         theta, n, dim = reader.array("<f8"), options["order"], options["feature_dim"]
-        for name, widths in (("encoder", [options["pca_dim"], *options["encoder_widths"], dim]),
-                             ("decoder", [dim, *options["decoder_widths"], options["pca_dim"]]),
-                             ("f", [n * (dim + self.torque_dim), *options["predictor_widths"], dim])):
+        networks = (("encoder", [options["pca_dim"], *options["encoder_widths"], dim]),
+                    ("decoder", [dim, *options["decoder_widths"], options["pca_dim"]]),
+                    ("f", [n * (dim + self.torque_dim), *options["predictor_widths"], dim]))
+        needed = sum((inputs + 1) * outputs for _, widths in networks for inputs, outputs in zip(widths, widths[1:]))
+        if theta.size != needed:
+            raise ModelFileError("has %d parameters, but its networks need %d: train it again" % (theta.size, needed))
+        for name, widths in networks:
             layers, theta = _layers(theta, widths, name)
             arrays.update(layers)
         return {name: np.asarray(value) for name, value in arrays.items()}
