@@ -15,7 +15,7 @@ STEP_NS = 200000000
 REST = """camera: {noise_std: 0.1, brightness_drift: 0.2, delay: 1, drop_rate: 0.15}
 plant: {rod_half_width: 0.05}
 model: {residual: true, increments: true, order: 3}
-training: {num_starts: 2, pca_starts: 2, selection_steps: 2, prediction_steps: 2, weight_decay: 0.1}
+training: {num_starts: 2, selection_steps: 2, prediction_steps: 2, weight_decay: 0.1}
 mpc: {offset_gain: 0.3}
 """
 

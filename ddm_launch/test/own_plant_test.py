@@ -117,7 +117,7 @@ class OwnPlantTest(BothDriversCase):
                            "--plant", "no_cart/cart")
 
     def test_from_one_random_trial_the_model_learns_to_stop_the_cart_at_its_goal(self):
-        config = self.write("quick.yaml", "training: {num_starts: 2, pca_starts: 2, max_iterations: 150}\n")
+        config = self.write("quick.yaml", "training: {num_starts: 2, max_iterations: 150}\n")
         code, output = run_experiment("--preset", "efficient", "--plant", "ddm_cart/cart", "--trials", 0, "--config",
                                       config, "--out", self.out)
         self.assertEqual(code, 0, output)

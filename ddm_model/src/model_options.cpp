@@ -40,7 +40,6 @@ std::vector<std::string> TrainingOptions::problems() const {
   training.requireWithin("max_delay", max_delay, 0, 50);
   training.requireWithin("selection_steps", selection_steps, 0, 1000);
   training.requireWithin("selection_iterations", selection_iterations, 0, 1000000);
-  training.requireWithin("pca_starts", pca_starts, 0, 1000);
   training.requireWithin("prediction_steps", prediction_steps, 1, 100);
   training.requireAtLeast("warm_up_iterations", warm_up_iterations, 0);
   training.requireNotNegative("weight_decay", weight_decay);

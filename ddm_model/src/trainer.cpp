@@ -222,8 +222,7 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
   Candidate best;
   for (int start = 0; start < training.num_starts && !result.cancelled; ++start) {
     const Eigen::VectorXd initial_theta =
-        initialTheta(initial_networks, scores, training,
-                     schedule.pca_start && start < training.pca_starts, &rng);
+        initialTheta(initial_networks, scores, training, schedule.pca_start, &rng);
     for (size_t i = 0; i < problems.size() && !result.cancelled; ++i) {
       Candidate candidate =
           run(problems[i].get(), initial_theta, schedule, training, &progress, &result);

@@ -55,7 +55,7 @@ class InspectionTest(toy_robot.ToyRobotCase):
             toy_robot.write_bag(bag, num_frames=200, seed=seed + 1)
         cls.unseen, cls.report = bags[2], os.path.join(cls.class_scratch, "report")
         cls.model = toy_robot.train(cls.class_scratch, bags[:2], ", residual: true, increments: true",
-                                    ", num_starts: 4, pca_starts: 4, selection_steps: 4, prediction_steps: 4")
+                                    ", num_starts: 4, selection_steps: 4, prediction_steps: 4")
         cls.code, cls.words = toy_robot.call("inspect", "--model", cls.model, "--out", cls.report, "--steps", 6,
                                              cls.unseen)
 

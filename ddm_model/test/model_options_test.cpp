@@ -77,7 +77,6 @@ TEST(TrainingOptions, RefusesEachKeyOutOfRangeWithItsNameAndValue) {
       refuses(with(&Training::function_tolerance, 1.0), "training/function_tolerance", "1"));
   EXPECT_TRUE(
       refuses(with(&Training::function_tolerance, kNaN), "training/function_tolerance", "nan"));
-  EXPECT_TRUE(refuses(with(&Training::pca_starts, -1), "training/pca_starts", "-1"));
   EXPECT_TRUE(refuses(with(&Training::selection_steps, -1), "training/selection_steps", "-1"));
   for (int bad : {-1, 7}) {  // with a single start
     EXPECT_TRUE(refuses(with(&Training::selection_iterations, bad), "training/selection_iterations",

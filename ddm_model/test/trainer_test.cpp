@@ -208,7 +208,6 @@ TEST_F(Trainer, ChoosesAmongStartsByWhatTheScheduleMinimises) {
 
 TEST_F(Trainer, ChoosesAmongStartsByWhatIsAskedFor) {
   training_.num_starts = 8;
-  training_.pca_starts = 8;
   training_.max_iterations = 8;  // far from done, starts differ more
   const Ddm by_cost = run().model.value();
   training_.selection_steps = 1;
@@ -281,7 +280,6 @@ TEST_F(Trainer, KeepsTheDelayItIsGivenWhereNoOtherIsTried) {
 
 TEST_F(Trainer, TheChosenStartAloneGoesOn) {
   training_.num_starts = 5;
-  training_.pca_starts = 5;
   training_.function_tolerance = 0.0;
   training_.max_iterations = 40;
   const TrainingResult all = run();

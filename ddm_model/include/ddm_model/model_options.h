@@ -46,7 +46,6 @@ struct TrainingOptions {
   std::string schedule = "joint";  ///< what is minimised over what, see scheduleNames()
   std::string solver = "lbfgs";    ///< "lbfgs", "kfac" or "bfgs"
   int num_starts = 1;              ///< trainings, of which the best is kept [-]
-  int pca_starts = 1;              ///< how many of them start from PCA, the rest at random [-]
   int max_delay = 0;               ///< largest model/delay that is tried [frames]
   int selection_steps = 0;         ///< by predictions so many steps ahead; 0: by what is minimised
   int selection_iterations = 0;  ///< after so many of each start's last stage; 0: when all are done
@@ -66,7 +65,6 @@ struct TrainingOptions {
     visitor("schedule", schedule);
     visitor("solver", solver);
     visitor("num_starts", num_starts);
-    visitor("pca_starts", pca_starts);
     visitor("max_delay", max_delay);
     visitor("selection_steps", selection_steps);
     visitor("selection_iterations", selection_iterations);

@@ -145,7 +145,7 @@ def check_features(data):
                  "reconstructions from %s features keep %s of what differs between the images" % (
                      data.options["feature_dim"], percent(kept)),
                  "at least %s: what a feature does not hold, no plan can steer" % percent(KEPT_BY_FEATURES),
-                 "Train with more starts (training/num_starts, pca_starts) or iterations; wider encoder and decoder; "
+                 "Train with more starts (training/num_starts) or iterations; wider encoder and decoder; "
                  "model/feature_dim must be at least the number of joints that move.")
 
 
