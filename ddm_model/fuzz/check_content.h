@@ -22,8 +22,6 @@ inline void checkContent(const BagContent& content, int image_size) {
   require(content.times[0] == 0.0 && std::is_sorted(content.times.begin(), content.times.end()),
           "times rise from zero");
   require(std::isfinite(content.interval) && content.interval >= 0.0, "the interval is a time");
-  require(content.num_images_without_torque >= 0 && content.num_torques_without_image >= 0,
-          "counts are counts");
   require(!content.camera.empty(), "the camera is told");
   for (Eigen::Index i = 0; i < data.numFrames(); ++i) {
     require(data.image(i).size() == static_cast<std::size_t>(image_size) * image_size,

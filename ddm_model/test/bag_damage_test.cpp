@@ -1,7 +1,7 @@
 // Tests of the bag reader's refusals: each names the bag and what is wrong with it.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
-#include <std_msgs/Float64.h>
+#include <std_msgs/String.h>
 
 #include <cstring>
 #include <filesystem>
@@ -143,7 +143,7 @@ TEST_F(BagDamage, RecordsThatMakeNoSenseAreNamed) {
   writeBytes(with(in_index + 3, 77));
   EXPECT_TRUE(isRefused({"in its index has the unknown op 77", "copy"}));
   writeBytes(with(chunk + 3, 4));  // the chunk passes for an index, which is skipped
-  EXPECT_TRUE(isRefused({"announces 1 chunks, it holds 0", "copy"}));
+  EXPECT_TRUE(isRefused({"no field conn", "copy"}));
   writeBytes(with(bytes.rfind("conn=", message) + 5, 77));
   EXPECT_TRUE(isRefused({"connection 77", "its index does not list", "copy"}));
   writeBytes(with(bytes.find("compression=none") + 12, 'x'));
@@ -207,9 +207,9 @@ TEST_F(BagDamage, ATopicOfAnotherTypeIsRefused) {
   {
     ToyBag bag(path_);
     bag.image(1.0, 0.0);
-    bag.write("torque", 1.0, std_msgs::Float64());
+    bag.write("torque", 1.0, std_msgs::String());
   }
-  EXPECT_TRUE(isRefused({"std_msgs/Float64", "ddm_msgs/Torque", "data_set/torque_topic"}));
+  EXPECT_TRUE(isRefused({"std_msgs/String", "ddm_msgs/Torque or", "data_set/torque_topic"}));
 }
 
 TEST_F(BagDamage, TorquesThatAreNotFiniteAreRefusedWithTheirTime) {

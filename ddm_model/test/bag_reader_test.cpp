@@ -64,8 +64,8 @@ TEST_F(BagReader, GivesBackTheTrialThatWasWritten) {
   EXPECT_EQ(content.data.pieces().size(), 1U);
   EXPECT_EQ(content.data.goal(), toyImage(3.0));
   EXPECT_EQ(content.camera, "8x8 mono8");
-  EXPECT_EQ(content.num_images_without_torque, 0);
-  EXPECT_EQ(content.num_torques_without_image, 0);
+  EXPECT_EQ(content.images_without_torque.size(), 0u);
+  EXPECT_EQ(content.torques_without_image.size(), 0u);
   ASSERT_EQ(content.times.size(), 20U);
   EXPECT_EQ(content.times[0], 0.0);
   EXPECT_NEAR(content.times[19], 19 * 0.2, 1e-6);
@@ -96,8 +96,8 @@ TEST_F(BagReader, AnImageWithoutTorqueSplitsTheTrial) {
     bag.torque(50.0, {1.0});
   }
   EXPECT_EQ(pieceSizes(), (Sizes{4, 5}));
-  EXPECT_EQ(read().num_images_without_torque, 1);
-  EXPECT_EQ(read().num_torques_without_image, 1);
+  EXPECT_EQ(read().images_without_torque.size(), 1u);
+  EXPECT_EQ(read().torques_without_image.size(), 1u);
 }
 
 TEST_F(BagReader, ATorqueWithoutANumberIsNone) {

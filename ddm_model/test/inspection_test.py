@@ -124,6 +124,7 @@ class InspectionTest(toy_robot.ToyRobotCase):
         with open(self.file("names.yaml"), "w") as stream:
             stream.write("data_set: {image_topic: eye}\n")
         page = self.inspect("--config", self.file("names.yaml"), self.file("lazy.bag"))
+        self.assertEqual(self.inspect("--image-topic", "eye", self.file("lazy.bag")).text, page.text)
         self.assertIn("what to do", page.text)
         self.assertIn("Record trials", page.text)
         self.assertFalse(self.verdict(self.out)["Torques are excited"])

@@ -164,6 +164,11 @@ TEST_F(TrainFromBags, RefusesAConfigurationWithMistakesAndNamesThem) {
   EXPECT_TRUE(testing::names(outcome.err, {"model/order", "[1, 50]", "got 0"}));
   EXPECT_TRUE(testing::names(outcome.err, {"training/layer_std", "> 0", "got nan"}));
   EXPECT_EQ(train("--config missing.yaml a.bag").exit_code, 1);
+  const Outcome options = train("--dt often --crop 1,2 --image-topic / a.bag");
+  EXPECT_EQ(options.exit_code, 1);
+  EXPECT_TRUE(testing::names(options.err, {"data_set/dt", "a number", "often"}));
+  EXPECT_TRUE(testing::names(options.err, {"data_set/crop", "[1, 2]"}));
+  EXPECT_TRUE(testing::names(options.err, {"data_set/image_topic", "'/'"}));
   EXPECT_FALSE(fs::exists(path("new.model")));
 }
 

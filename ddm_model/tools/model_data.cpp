@@ -4,12 +4,14 @@
 #include <ddm_bag_io/model_config.h>
 #include <ddm_model/long_term_prediction.h>
 #include <ddm_model/model_file.h>
+#include <ddm_params/config_blocks.h>
 #include <ddm_params/param_value.h>
 #include <ddm_params/tool.h>
 #include <ros/time.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <filesystem>
 #include <iostream>
 #include <string>
@@ -17,6 +19,7 @@
 #include <vector>
 
 #include "array_folder.h"
+#include "bag_arguments.h"
 
 namespace po = boost::program_options;
 
@@ -31,6 +34,7 @@ struct Arguments {
   int steps = 15;
   std::string out;
   std::vector<std::string> bags;
+  BagArguments data_set;
 };
 
 /// @return false where --help was asked for and has been printed
@@ -47,6 +51,7 @@ bool parse(int argc, char** argv, Arguments* arguments) {
                         "longest prediction");
   options.add_options()("config", po::value(&arguments->configs)->composing()->value_name("FILE"),
                         "YAML file whose block data_set names the topics; repeatable");
+  arguments->data_set.addTo(&options);
   const Positional bags{"bag", po::value(&arguments->bags), -1};
   if (!parseCommandLine(argc, argv, options, bags)) return false;
   if (arguments->model.empty()) throw po::error("--model FILE is missing: say which model");
@@ -107,8 +112,8 @@ DataSet readBags(const Ddm& model, const Arguments& arguments, const BagOptions&
     bag["camera"] = content.camera;
     bag["frames"] = content.data.numFrames();
     bag["pieces"] = content.data.pieces().size();
-    bag["images_without_torque"] = content.num_images_without_torque;
-    bag["torques_without_image"] = content.num_torques_without_image;
+    bag["images_without_torque"] = content.images_without_torque.size();
+    bag["torques_without_image"] = content.torques_without_image.size();
     bag["interval_s"] = formatDouble(content.interval);
     bag["goal"] = content.data.hasGoal() ? 1 : 0;
     bags.push_back(bag);
@@ -184,7 +189,10 @@ void writeFrames(const Ddm& model, const DataSet& data, const Eigen::MatrixXd& Z
 }
 
 void run(const Arguments& arguments) {
-  ParamReader params = ParamReader::fromFiles(arguments.configs);
+  YAML::Node blocks(YAML::NodeType::Map);
+  for (const std::string& file : arguments.configs) overlay(readBlocks(file), &blocks);
+  arguments.data_set.overlayOn(&blocks);
+  ParamReader params(blocks, boost::algorithm::join(arguments.configs, ", "));
   const auto topics = params.read<BagOptions>("data_set");
   params.requireValid();
   const std::string bytes = readFile(arguments.model);

@@ -18,6 +18,8 @@
 #include <string>
 #include <vector>
 
+#include "bag_arguments.h"
+
 namespace po = boost::program_options;
 
 namespace {
@@ -28,6 +30,7 @@ struct Arguments {
   std::int64_t seed = 0;  // signed: -1 is to be refused, not to become a huge number
   std::string out;
   std::vector<std::string> bags;
+  ddm::BagArguments data_set;
 };
 
 /// @return false where --help was asked for and has been printed
@@ -35,7 +38,8 @@ bool parse(int argc, char** argv, Arguments* arguments) {
   po::options_description options(
       "Trains a deep dynamical model from recorded bags, without a ROS master.\n\n"
       "usage: rosrun ddm_model train_from_bags [--config FILE]... [--goal IMAGE] [--seed N]\n"
-      "                                        --out FILE BAG...\n\noptions");
+      "                                        --out FILE BAG...\n\noptions",
+      100);
   options.add_options()("config", po::value(&arguments->configs)->composing(),
                         "YAML file with blocks image, model, training, data_set; repeatable, later "
                         "files win. The limits of the motors are model/max_torque, else those of "
@@ -45,6 +49,7 @@ bool parse(int argc, char** argv, Arguments* arguments) {
   options.add_options()("seed", po::value(&arguments->seed)->default_value(0),
                         "seed of the initial parameters");
   options.add_options()("out", po::value(&arguments->out), "model file to write");
+  arguments->data_set.addTo(&options);
   const ddm::Positional bags{"bag", po::value(&arguments->bags), -1};
   if (!ddm::parseCommandLine(argc, argv, options, bags)) return false;
   if (arguments->out.empty()) throw po::error("--out FILE is missing: say where the model goes");
@@ -67,9 +72,10 @@ bool showProgress(const ddm::TrainingProgress& progress) {
 /// robot or plant in the same files, unless they give it themselves.
 /// @throws std::invalid_argument if only a model file could say
 /// @param limits_from  out: the key that they come from
-YAML::Node readConfigs(const std::vector<std::string>& files, std::string* limits_from) {
+YAML::Node readConfigs(const Arguments& arguments, std::string* limits_from) {
   YAML::Node blocks(YAML::NodeType::Map);
-  for (const std::string& file : files) ddm::overlay(ddm::readBlocks(file), &blocks);
+  for (const std::string& file : arguments.configs) ddm::overlay(ddm::readBlocks(file), &blocks);
+  arguments.data_set.overlayOn(&blocks);
   const std::string owner =
       ddm::hasKey(blocks, "model", "max_torque") ? "model" : ddm::ownerOfMotors(blocks);
   if (owner.empty() && ddm::hasKey(blocks, "plant", "model")) {
@@ -87,7 +93,7 @@ YAML::Node readConfigs(const std::vector<std::string>& files, std::string* limit
 
 void run(const Arguments& arguments) {
   std::string limits_from;
-  ddm::ParamReader params(readConfigs(arguments.configs, &limits_from),
+  ddm::ParamReader params(readConfigs(arguments, &limits_from),
                           boost::algorithm::join(arguments.configs, ", "));
   const ddm::ModelConfig config = ddm::readModelConfig(&params);
   params.requireValid();

@@ -48,8 +48,11 @@ class Bytes {
   }
   void skip(std::uint32_t size) {
     require(size);
-    at_ += size;
-    in_->seekg(static_cast<std::streamoff>(at_));
+    goTo(at_ + size);
+  }
+  void goTo(std::uint64_t position) {
+    at_ = position;
+    in_->seekg(static_cast<std::streamoff>(position));
   }
 
  private:
@@ -90,6 +93,7 @@ class Fields {
     }
   }
 
+  bool has(const std::string& name) const { return fields_.count(name) > 0; }
   const std::string& text(const std::string& name) const {
     const auto found = fields_.find(name);
     if (found == fields_.end()) refuse("a record has no field " + name);
@@ -112,7 +116,13 @@ class Fields {
 /// The topic is in the record's own fields, the rest in its data.
 BagConnection connectionOf(const Fields& record, const std::string& data) {
   const Fields fields(data);
-  return {record.text("topic"), fields.text("type"), fields.text("md5sum")};
+  return {record.text("topic"), fields.text("type"), fields.text("md5sum"),
+          fields.has("callerid") ? fields.text("callerid") : ""};
+}
+
+ros::Time timeOf(const Fields& fields) {
+  const auto time = fields.number<std::uint64_t>("time");  // seconds, then nanoseconds
+  return {static_cast<std::uint32_t>(time), static_cast<std::uint32_t>(time >> 32U)};
 }
 
 constexpr std::uint32_t kMaxChunk = 256U << 20U;
@@ -164,26 +174,20 @@ std::string fromBz2(std::string data, std::uint32_t size) {
   return out;
 }
 
-/// @param compression  none, lz4 or bz2
-/// @param size         that the result must have                                 [bytes]
-/// @throws std::runtime_error if the compression is another, the size is beyond 256 MB or more
-///         than this many bytes can hold, or the data are damaged
+/// @param size  that the result must have                                        [bytes]
+/// @throws std::runtime_error if the compression is none that is known, the size is more than this
+///         many bytes can hold, or the data are damaged
 std::string decompressChunk(const std::string& compression, const std::string& data,
                             std::uint32_t size) {
-  if (size > kMaxChunk) {
-    refuse("a chunk announces " + std::to_string(size) + " bytes, at most " +
-           std::to_string(kMaxChunk) + " are allowed");
+  try {
+    if (compression == "lz4") return fromLz4(data, size);
+    if (compression == "bz2") return fromBz2(data, size);
+  } catch (const std::bad_alloc&) {
+    throw std::runtime_error("not enough memory for a chunk (" + compression + ") of " +
+                             std::to_string(size) +
+                             " bytes: end other programs, then read it again");
   }
-  if (compression == "lz4") return fromLz4(data, size);
-  if (compression == "bz2") return fromBz2(data, size);
-  if (compression != "none") {
-    refuse("a chunk has the compression '" + compression + "', known are none, lz4 and bz2");
-  }
-  if (data.size() != size) {
-    refuse("a chunk has " + std::to_string(data.size()) + " bytes, it announces " +
-           std::to_string(size));
-  }
-  return data;
+  refuse("a chunk has the compression '" + compression + "', known are none, lz4 and bz2");
 }
 
 }  // namespace
@@ -201,81 +205,121 @@ BagFile::BagFile(std::istream* in) : in_(in) {
   front.skip(takeSize(&front));  // blanks, so that the header can be written again
   first_ = front.at();
   index_ = header.number<std::uint64_t>("index_pos");
-  num_chunks_ = header.number<std::uint32_t>("chunk_count");
   if (index_ == 0) throw std::runtime_error("was not closed; run `rosbag reindex` on it");
   if (index_ < first_ || index_ > size_) {
     refuse("its header puts the index at byte " + std::to_string(index_) +
            ", it must lie between byte " + std::to_string(first_) + " and the end of the file at " +
            std::to_string(size_));
   }
+  readIndex();
+  const auto num_connections = header.number<std::uint32_t>("conn_count");
+  const auto num_chunks = header.number<std::uint32_t>("chunk_count");
+  if (connections_.size() != num_connections || chunks_.size() != num_chunks) {
+    refuse("its header announces " + std::to_string(num_connections) + " connections and " +
+           std::to_string(num_chunks) + " chunks, its index lists " +
+           std::to_string(connections_.size()) + " and " + std::to_string(chunks_.size()));
+  }
+}
 
-  std::uint32_t num_chunks = 0;
+void BagFile::readIndex() {
   Bytes bytes(in_, index_, size_);
   while (!bytes.done()) {
     const Fields fields(bytes.take(takeSize(&bytes)));
-    const std::uint32_t size = takeSize(&bytes);
+    const std::string data = bytes.take(takeSize(&bytes));
     if (fields.kind() == Kind::kConnection) {
-      connections_[fields.number<std::uint32_t>("conn")] = connectionOf(fields, bytes.take(size));
+      connections_[fields.number<std::uint32_t>("conn")] = connectionOf(fields, data);
     } else if (fields.kind() == Kind::kChunkInfo) {
-      bytes.skip(size);
-      ++num_chunks;
+      Numbers& numbers = chunks_[fields.number<std::uint64_t>("chunk_pos")];
+      std::istringstream in(data);
+      Bytes counts(&in, 0, data.size());
+      while (!counts.done()) {  // number of a connection, number of its messages
+        numbers.insert(numberOf<std::uint32_t>(counts.take(4)));
+        counts.skip(4);
+      }
     } else {
       fields.refuseKind("in its index");
     }
   }
-  const auto num_connections = header.number<std::uint32_t>("conn_count");
-  if (connections_.size() != num_connections || num_chunks != num_chunks_) {
-    refuse("its header announces " + std::to_string(num_connections) + " connections and " +
-           std::to_string(num_chunks_) + " chunks, its index lists " +
-           std::to_string(connections_.size()) + " and " + std::to_string(num_chunks));
-  }
 }
 
-void BagFile::forEachMessage(const TakeMessage& take) {
-  const auto takeChunk = [&](const std::string& chunk) {
-    std::istringstream in(chunk);
-    Bytes bytes(&in, 0, chunk.size());
-    while (!bytes.done()) {
-      const Fields fields(bytes.take(takeSize(&bytes)));
-      const std::string data = bytes.take(takeSize(&bytes));
-      if (fields.kind() == Kind::kConnection) continue;  // they are in the index, too
-      if (fields.kind() != Kind::kMessage) fields.refuseKind("in a chunk");
-      const auto number = fields.number<std::uint32_t>("conn");
-      const auto connection = connections_.find(number);
-      if (connection == connections_.end()) {
-        refuse("a message is of connection " + std::to_string(number) +
-               ", which its index does not list");
-      }
-      take(connection->second, data);
-    }
-  };
-  std::uint32_t num_chunks = 0;
-  Bytes bytes(in_, first_, index_);
+void BagFile::forEachMessageIn(std::istream* chunk, std::uint64_t begin, std::uint64_t end,
+                               const Numbers& wanted, const TakeMessage& take) const {
+  Bytes bytes(chunk, begin, end);
   while (!bytes.done()) {
     const Fields fields(bytes.take(takeSize(&bytes)));
     const std::uint32_t size = takeSize(&bytes);
-    if (fields.kind() == Kind::kChunk) {
-      const std::string data = bytes.take(size);
-      const std::string& compression = fields.text("compression");
-      const auto chunk_size = fields.number<std::uint32_t>("size");
-      std::string chunk;
-      try {
-        chunk = decompressChunk(compression, data, chunk_size);
-      } catch (const std::bad_alloc&) {
-        throw std::runtime_error("not enough memory for a chunk (" + compression + ") of " +
-                                 std::to_string(chunk_size) +
-                                 " bytes: end other programs, then read it again");
-      }
-      takeChunk(chunk);
-      ++num_chunks;
-    } else if (fields.kind() == Kind::kIndex) {
+    if (fields.kind() == Kind::kConnection) {  // they are in the index, too
       bytes.skip(size);
+      continue;
+    }
+    if (fields.kind() != Kind::kMessage) fields.refuseKind("in a chunk");
+    const auto number = fields.number<std::uint32_t>("conn");
+    const auto connection = connections_.find(number);
+    if (connection == connections_.end()) {
+      refuse("a message is of connection " + std::to_string(number) +
+             ", which its index does not list");
+    }
+    if (wanted.count(number) > 0) {
+      take({connection->second, timeOf(fields), bytes.take(size)});
     } else {
-      fields.refuseKind("among its chunks");
+      bytes.skip(size);
     }
   }
-  if (num_chunks != num_chunks_) {
-    refuse("its header announces " + std::to_string(num_chunks_) + " chunks, it holds " +
+}
+
+void BagFile::forEachMessage(const std::set<std::string>& topics, const TakeMessage& take) {
+  Numbers wanted;
+  for (const auto& entry : connections_) {
+    if (topics.count(entry.second.topic) > 0) wanted.insert(entry.first);
+  }
+  const auto isWanted = [&wanted](std::uint32_t number) { return wanted.count(number) > 0; };
+  std::size_t num_chunks = 0;
+  bool unpacked = false;  // the last chunk
+  Bytes bytes(in_, first_, index_);
+  while (!bytes.done()) {
+    const std::uint64_t position = bytes.at();
+    const Fields fields(bytes.take(takeSize(&bytes)));
+    const std::uint32_t size = takeSize(&bytes);
+    const std::uint64_t begin = bytes.at();
+    if (fields.kind() != Kind::kChunk && fields.kind() != Kind::kIndex) {
+      fields.refuseKind("among its chunks");
+    }
+    bytes.skip(size);
+    if (fields.kind() == Kind::kIndex) {  // what is in the last chunk, once more
+      if (!unpacked && isWanted(fields.number<std::uint32_t>("conn"))) {
+        refuse("its two indices disagree about the chunk before byte " + std::to_string(position));
+      }
+      continue;
+    }
+    ++num_chunks;
+    const auto listed = chunks_.find(position);
+    if (listed == chunks_.end()) {
+      refuse("the chunk at byte " + std::to_string(position) + " is not in its index");
+    }
+    unpacked = std::any_of(listed->second.begin(), listed->second.end(), isWanted);
+    if (!unpacked) continue;
+    const std::string& compression = fields.text("compression");
+    const auto chunk_size = fields.number<std::uint32_t>("size");
+    if (chunk_size > kMaxChunk) {
+      refuse("a chunk announces " + std::to_string(chunk_size) + " bytes, at most " +
+             std::to_string(kMaxChunk) + " are allowed");
+    }
+    if (compression == "none") {
+      if (size != chunk_size) {
+        refuse("a chunk has " + std::to_string(size) + " bytes, it announces " +
+               std::to_string(chunk_size));
+      }
+      forEachMessageIn(in_, begin, begin + size, wanted, take);
+    } else {
+      bytes.goTo(begin);
+      const std::string chunk = decompressChunk(compression, bytes.take(size), chunk_size);
+      std::istringstream in(chunk);
+      forEachMessageIn(&in, 0, chunk.size(), wanted, take);
+    }
+    bytes.goTo(begin + size);
+  }
+  if (num_chunks != chunks_.size()) {
+    refuse("its index lists " + std::to_string(chunks_.size()) + " chunks, it holds " +
            std::to_string(num_chunks));
   }
 }

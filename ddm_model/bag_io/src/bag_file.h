@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ros/time.h>
+
 #include <cstdint>
 #include <functional>
 #include <istream>
 #include <map>
+#include <set>
 #include <string>
 
 namespace ddm {
@@ -14,17 +17,25 @@ namespace ddm {
 struct BagConnection {
   std::string topic;
   std::string type;
-  std::string md5sum;  ///< of the definition of the message
+  std::string md5sum;     ///< of the definition of the message
+  std::string publisher;  ///< name of its node; empty: not known
+};
+
+struct BagMessage {
+  const BagConnection& connection;
+  ros::Time recorded;  ///< when it arrived
+  std::string bytes;
 };
 
 /// Reads bags of format 2.0 from front to back. rosbag follows positions and sizes in the file
 /// wherever they lead, be it out of its memory; here each size is compared with what is there
-/// before memory is taken, and what no message needs (the index) is stepped over.
+/// before memory is taken, and what nobody asked for is stepped over.
 ///
 /// All functions throw std::runtime_error with the fault and the remedy.
 class BagFile {
  public:
-  using TakeMessage = std::function<void(const BagConnection&, const std::string& message)>;
+  using TakeMessage = std::function<void(const BagMessage&)>;
+  using Numbers = std::set<std::uint32_t>;  ///< of connections
 
   /// Reads what connections there are.
   /// @param in  stays with the caller; binary, can be positioned
@@ -33,15 +44,20 @@ class BagFile {
   /// By their numbers in the file.
   const std::map<std::uint32_t, BagConnection>& connections() const { return connections_; }
 
-  /// Calls `take` with each message, in the order of the file.
-  void forEachMessage(const TakeMessage& take);
+  /// Calls `take` with each message of these topics, in the order of the file. Chunks without any
+  /// are not unpacked.
+  void forEachMessage(const std::set<std::string>& topics, const TakeMessage& take);
 
  private:
+  void readIndex();
+  void forEachMessageIn(std::istream* chunk, std::uint64_t begin, std::uint64_t end,
+                        const Numbers& wanted, const TakeMessage& take) const;
+
   std::istream* in_;
-  std::uint64_t size_;   // of the file
-  std::uint64_t first_;  // position of the first chunk
-  std::uint64_t index_;  // position after the last chunk
-  std::uint32_t num_chunks_;
+  std::uint64_t size_;                       // of the file
+  std::uint64_t first_;                      // position of the first chunk
+  std::uint64_t index_;                      // position after the last chunk
+  std::map<std::uint64_t, Numbers> chunks_;  // by their positions: what the index says is in them
   std::map<std::uint32_t, BagConnection> connections_;
 };
 

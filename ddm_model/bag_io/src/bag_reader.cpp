@@ -3,23 +3,37 @@
 #include "ddm_bag_io/bag_reader.h"
 
 #include <ddm_files/plain_file.h>
-#include <ddm_msgs/message_bytes.h>
+#include <ddm_images/image_codec.h>
 #include <ddm_params/option_checks.h>
+#include <sensor_msgs/CompressedImage.h>
+#include <sensor_msgs/Image.h>
 
+#include <algorithm>
 #include <boost/algorithm/string/join.hpp>
 #include <boost/algorithm/string/predicate.hpp>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "bag_file.h"
+#include "bag_message.h"
+#include "torque_reader.h"
 #include "trial_messages.h"
 
 namespace ddm {
 namespace {
+
+/// "[1, 2]"
+std::string listText(const std::vector<int>& numbers) {
+  std::vector<std::string> texts;
+  for (const int number : numbers) texts.push_back(std::to_string(number));
+  return "[" + boost::algorithm::join(texts, ", ") + "]";
+}
 
 using Connections = std::map<std::uint32_t, BagConnection>;
 
@@ -27,10 +41,17 @@ std::string absolute(const std::string& topic) {
   return !topic.empty() && topic.front() == '/' ? topic : "/" + topic;
 }
 
+using Types = std::vector<std::string>;
+
+/// A topic of a bag; an empty name: there is none.
+struct Topic {
+  std::string name;
+  std::string type;
+};
+
 /// The recorded topic that `name` means: the one of this name, else one in some namespace.
-/// @return empty if there is none
-std::string findTopic(const Connections& connections, const std::string& name,
-                      const std::string& type, const std::string& key) {
+Topic findTopic(const Connections& connections, const std::string& name, const Types& types,
+                const std::string& key) {
   std::set<std::string> found;
   bool exact = false;
   for (const auto& entry : connections) {
@@ -46,19 +67,29 @@ std::string findTopic(const Connections& connections, const std::string& name,
     throw std::runtime_error("topics " + *found.begin() + " and " + *found.rbegin() +
                              " both match: set data_set/" + key + " to one of them");
   }
+  if (found.empty()) return {};
+  Topic topic{*found.begin(), ""};
   for (const auto& entry : connections) {
-    if (found.count(entry.second.topic) > 0 && entry.second.type != type) {
-      throw std::runtime_error("topic " + entry.second.topic + " has type " + entry.second.type +
-                               ", it must be " + type + ": set data_set/" + key);
+    const BagConnection& connection = entry.second;
+    if (connection.topic != topic.name) continue;
+    if (std::find(types.begin(), types.end(), connection.type) == types.end()) {
+      throw std::runtime_error("topic " + topic.name + " has type " + connection.type +
+                               ", it must be " + boost::algorithm::join(types, " or ") +
+                               ": set data_set/" + key);
     }
+    if (!topic.type.empty() && topic.type != connection.type) {
+      throw std::runtime_error("topic " + topic.name + " has messages of " + topic.type + " and " +
+                               connection.type + ": leave this bag out");
+    }
+    topic.type = connection.type;
   }
-  return found.empty() ? "" : *found.begin();
+  return topic;
 }
 
-std::string requireTopic(const Connections& connections, const std::string& name,
-                         const std::string& type, const std::string& key) {
-  const std::string topic = findTopic(connections, name, type, key);
-  if (!topic.empty()) return topic;
+Topic requireTopic(const Connections& connections, const std::string& name, const Types& types,
+                   const std::string& key) {
+  Topic topic = findTopic(connections, name, types, key);
+  if (!topic.name.empty()) return topic;
   std::set<std::string> topics;
   for (const auto& entry : connections) {
     topics.insert(entry.second.topic);
@@ -68,17 +99,33 @@ std::string requireTopic(const Connections& connections, const std::string& name
                            "): record it, or set data_set/" + key);
 }
 
-template <class Message>
-Message messageOf(const BagConnection& connection, const std::string& bytes) {
-  if (connection.md5sum != ros::message_traits::md5sum<Message>()) {
-    throw std::runtime_error("topic " + connection.topic +
-                             " was recorded with another definition of " + connection.type);
-  }
+const Types kImages = {"sensor_msgs/Image", "sensor_msgs/CompressedImage"};
+
+/// Stamp of the header that images begin with.
+ros::Time stampOf(const BagMessage& message) {
+  MessageBytes bytes(message.bytes.data(), message.bytes.size());
+  std_msgs::Header header;
   try {
-    return messageFromBytes<Message>(bytes.data(), bytes.size());
+    bytes.next(header);
   } catch (const std::exception& e) {
-    throw std::runtime_error("a message of topic " + connection.topic + " " + e.what() +
+    throw std::runtime_error("a message of topic " + message.connection.topic + " " + e.what() +
                              ": leave this bag out");
+  }
+  return header.stamp;
+}
+
+/// An image and its encoding, as the camera sent it.
+std::pair<sensor_msgs::Image, std::string> imageOf(const BagMessage& message) {
+  if (message.connection.type == kImages[0]) {
+    auto image = parse<sensor_msgs::Image>(message);
+    std::string encoding = image.encoding;
+    return {std::move(image), std::move(encoding)};
+  }
+  const auto compressed = parse<sensor_msgs::CompressedImage>(message);
+  try {
+    return {unpacked(compressed), compressed.format};
+  } catch (const std::exception& e) {
+    throw std::runtime_error("topic " + message.connection.topic + ": " + e.what());
   }
 }
 
@@ -93,26 +140,61 @@ std::vector<std::string> BagOptions::problems() const {
   requireTopicName("image_topic", image_topic);
   requireTopicName("torque_topic", torque_topic);
   requireTopicName("goal_topic", goal_topic);
+  data_set.requireNotNegative("dt", dt);
+  data_set.require(std::none_of(motors.begin(), motors.end(),
+                                [](const std::string& motor) { return motor.empty(); }),
+                   "motors", "be names", "an empty one");
+  data_set.require(crop.size() == 4 && std::all_of(crop.begin(), crop.end(),
+                                                   [](int n) { return n >= 0 && n <= 16384; }),
+                   "crop", "be [column, row, width, height], each in [0, 16384]", listText(crop));
   return data_set.problems();
 }
 
 BagContent readBagBytes(std::istream* in, int image_size, const BagOptions& options) {
   BagFile bag(in);
-  const std::string image_topic =
-      requireTopic(bag.connections(), options.image_topic, "sensor_msgs/Image", "image_topic");
-  const std::string torque_topic =
-      requireTopic(bag.connections(), options.torque_topic, "ddm_msgs/Torque", "torque_topic");
-  const std::string goal_topic =
-      findTopic(bag.connections(), options.goal_topic, "sensor_msgs/Image", "goal_topic");
-  TrialMessages messages(image_size);
-  bag.forEachMessage([&](const BagConnection& connection, const std::string& bytes) {
-    if (connection.topic == image_topic) {
-      messages.takeImage(messageOf<sensor_msgs::Image>(connection, bytes));
-    } else if (connection.topic == torque_topic) {
-      messages.takeTorque(messageOf<ddm_msgs::Torque>(connection, bytes));
-    } else if (connection.topic == goal_topic) {
-      messages.takeGoal(messageOf<sensor_msgs::Image>(connection, bytes));
-    }
+  const Topic images = requireTopic(bag.connections(), options.image_topic, kImages, "image_topic");
+  const Topic torques =
+      requireTopic(bag.connections(), options.torque_topic, TorqueReader::types(), "torque_topic");
+  const Topic goal = findTopic(bag.connections(), options.goal_topic, kImages, "goal_topic");
+  const bool by_stamp = TorqueReader::answersImages(torques.type);
+  if (!by_stamp && options.dt == 0.0) {
+    throw std::runtime_error("topic " + torques.name + " has type " + torques.type +
+                             ", which does not say which image it answers: set data_set/dt, the "
+                             "time between frames [s]");
+  }
+  const auto timeOf = [by_stamp](const BagMessage& image) {
+    const ros::Time stamp = stampOf(image);
+    return by_stamp || !stamp.isZero() ? stamp : image.recorded;
+  };
+  TrialMessages messages(image_size,
+                         {options.crop[0], options.crop[1], options.crop[2], options.crop[3]});
+  TorqueReader reader(options.motors);
+  std::set<std::string> publishers;
+  bag.forEachMessage({images.name, torques.name}, [&](const BagMessage& message) {
+    if (message.connection.topic == images.name) return messages.takeImageTime(timeOf(message));
+    const std::optional<TimedTorque> torque = reader.read(message);
+    if (!torque) return;
+    messages.takeTorque(*torque);
+    publishers.insert(message.connection.publisher);
+  });
+  if (publishers.empty()) {
+    throw std::runtime_error(
+        "topic " + torques.name + " has no torque" +
+        (options.motors.empty() ? "" : " of " + boost::algorithm::join(options.motors, " and ")) +
+        ": leave this bag out, or set data_set/torque_topic and motors");
+  }
+  if (publishers.size() > 1) {
+    throw std::runtime_error("topic " + torques.name + " has torques of " +
+                             boost::algorithm::join(publishers, " and ") +
+                             ": record the one that moves the motor");
+  }
+  messages.pair(by_stamp ? 0.0 : options.dt);
+  bag.forEachMessage({images.name, goal.name}, [&](const BagMessage& message) {
+    if (message.connection.topic == goal.name) return messages.takeGoal(imageOf(message).first);
+    const ros::Time time = timeOf(message);
+    if (!messages.wants(time)) return;
+    const auto image = imageOf(message);
+    messages.takeImage(time, image.first, image.second);
   });
   return messages.frames();
 }

@@ -2,37 +2,54 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_images/image_codec.h>
 #include <ddm_model/data_set.h>
-#include <ddm_msgs/Torque.h>
 #include <ros/time.h>
 #include <sensor_msgs/Image.h>
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "ddm_bag_io/bag_reader.h"
+#include "pairing.h"
+#include "torque_reader.h"
 
 namespace ddm {
 
-/// Takes messages in any order. All functions throw std::runtime_error with stamp, fault and
-/// remedy.
+/// Takes messages in any order, in two rounds: only images that become frames are decoded. All
+/// functions throw std::runtime_error with stamp, fault and remedy.
 class TrialMessages {
  public:
   /// @param image_size  images are converted to image_size x image_size grey values
-  explicit TrialMessages(int image_size) : image_size_(image_size) {}
+  /// @param crop        what of a larger or smaller image counts
+  explicit TrialMessages(int image_size, const ImageCrop& crop = ImageCrop())
+      : image_size_(image_size), crop_(crop) {}
 
-  void takeImage(const sensor_msgs::Image& image);
-  void takeTorque(const ddm_msgs::Torque& torque);
+  /// First round.
+  void takeImageTime(const ros::Time& time);
+  void takeTorque(TimedTorque torque);
+  /// Ends it. dt: see BagOptions [s]; 0: what belongs together has the same stamp.
+  void pair(double dt);
+
+  /// Second round. Whether the image of that time becomes a frame.
+  bool wants(const ros::Time& time) const { return images_.count(time) > 0; }
+  /// @param encoding  as the camera sent it, for messages
+  void takeImage(const ros::Time& time, const sensor_msgs::Image& image,
+                 const std::string& encoding);
   void takeGoal(const sensor_msgs::Image& image);
-
-  /// The images with a torque of the same stamp as frames, in the order of the stamps.
   BagContent frames() const;
 
  private:
+  Grey decode(const sensor_msgs::Image& image, const std::string& what) const;
+
   int image_size_;
-  std::map<ros::Time, Grey> images_;
-  std::map<ros::Time, std::vector<double>> torques_;
+  ImageCrop crop_;
+  std::set<ros::Time> times_;         // of all images
+  std::vector<TimedTorque> torques_;  // all
+  Pairs pairs_;
+  std::map<ros::Time, Grey> images_;  // of the frames; empty until they come
   Grey goal_;
   std::string camera_;
 };

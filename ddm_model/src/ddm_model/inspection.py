@@ -14,6 +14,15 @@ from ddm_model.plain_file import write_file
 from ddm_model.model_data import Decoder, ModelData, ModelDataError, write_model_data
 from ddm_model.verdict import summary, verdict
 
+# Shorthands for keys of the block data_set, see model_data.
+DATA_SET_OPTIONS = (
+    ("--image-topic", "TOPIC", "sensor_msgs/Image or CompressedImage"),
+    ("--torque-topic", "TOPIC", "ddm_msgs/Torque, std_msgs/Float64 or Float64MultiArray, geometry_msgs/WrenchStamped, "
+     "sensor_msgs/JointState"),
+    ("--dt", "S", "time between frames [s], but for ddm_msgs/Torque"),
+    ("--motors", "A,B,...", "joints of a JointState, or parts (torque.z) of a wrench"),
+    ("--crop", "X,Y,W,H", "what counts of the images: column, row, width, height [pixels]"))
+
 
 def write_table(path, columns):
     """columns: {name: values}."""
@@ -130,12 +139,18 @@ def main(arguments=None):
     parser.add_argument("--steps", type=int, default=15, help="longest prediction (%(default)s, as plans are)")
     parser.add_argument("--config", metavar="FILE", action="append", default=[],
                         help="YAML file whose block data_set names the topics in the bags; repeatable")
+    for option, form, what in DATA_SET_OPTIONS:
+        parser.add_argument(option, metavar=form, help="data_set/%s: %s" % (option[2:].replace("-", "_"), what))
     parser.add_argument("bags", metavar="BAG", nargs="*", help="bags with images and torques, best such that the "
                         "model has not learned from. Images are brought to the model's size")
     options = parser.parse_args(arguments)
     if not 1 <= options.steps <= 1000:
         parser.error("--steps must lie in [1, 1000], got %d" % options.steps)
     tool_options = ["--steps", str(options.steps)] + [word for file in options.config for word in ("--config", file)]
+    for option, _, _ in DATA_SET_OPTIONS:
+        value = getattr(options, option[2:].replace("-", "_"))
+        if value is not None:
+            tool_options.append("%s=%s" % (option, value))
     try:
         checks = inspect(options.model, options.bags, options.out, tool_options)
     except (ModelDataError, OSError) as error:

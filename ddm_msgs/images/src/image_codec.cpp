@@ -178,6 +178,19 @@ std::vector<std::uint8_t> decodeImage(const sensor_msgs::Image& image, int size,
   return out;
 }
 
+sensor_msgs::Image unpacked(const sensor_msgs::CompressedImage& image) {
+  cv::Mat pixels;
+  try {
+    if (!image.data.empty()) pixels = cv::imdecode(image.data, cv::IMREAD_COLOR);
+  } catch (const cv::Exception&) {  // what is said below says more than its text
+  }
+  if (pixels.empty()) {
+    refuse(std::to_string(image.data.size()) + " bytes of format '" + image.format +
+           "' cannot be unpacked: record JPEG or PNG");
+  }
+  return *cv_bridge::CvImage(image.header, "bgr8", pixels).toImageMsg();
+}
+
 sensor_msgs::Image encodeImage(const std::vector<std::uint8_t>& grey, int size,
                                const ros::Time& stamp, const std::string& frame_id) {
   requireSize(size);

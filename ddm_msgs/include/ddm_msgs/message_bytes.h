@@ -33,12 +33,16 @@ class MessageBytes {
     const std::size_t size = count(1);
     text.assign(take(size), size);
   }
-  template <class Number>
-  void next(std::vector<Number>& values) {
-    static_assert(std::is_arithmetic<Number>::value, "arrays of numbers only");
-    values.resize(count(sizeof(Number)));
-    const char* const bytes = take(values.size() * sizeof(Number));
-    if (!values.empty()) std::memcpy(values.data(), bytes, values.size() * sizeof(Number));
+  template <class Value>
+  void next(std::vector<Value>& values) {
+    if constexpr (std::is_arithmetic<Value>::value) {
+      values.resize(count(sizeof(Value)));
+      const char* const bytes = take(values.size() * sizeof(Value));
+      if (!values.empty()) std::memcpy(values.data(), bytes, values.size() * sizeof(Value));
+    } else {  // memory is taken as they come
+      values.clear();
+      for (std::size_t left = count(1); left > 0; --left) next(values.emplace_back());
+    }
   }
 
  private:

@@ -117,6 +117,17 @@ void dropForeignKeys(const std::string& type, YAML::Node* blocks) {
   }
 }
 
+/// Once some starts could begin at random: training/pca_starts said how many did not.
+void dropPcaStarts(YAML::Node* blocks) {
+  if (!hasKey(*blocks, "training", "pca_starts") || !hasKey(*blocks, "training", "num_starts"))
+    return;
+  const YAML::Node training = (*blocks)["training"];
+  const int none = -1;
+  if (training["pca_starts"].as<int>(none) >= training["num_starts"].as<int>(none)) {
+    drop("training", "pca_starts", blocks);
+  }
+}
+
 }  // namespace
 
 YAML::Node readBlocks(const std::string& path) {
@@ -179,6 +190,7 @@ YAML::Node withTodaysKeys(const YAML::Node& blocks) {
   for (const OldKey& gone : kGone) {
     if (saysNothing(gone, out)) drop(gone.block, gone.key, &out);
   }
+  dropPcaStarts(&out);
   return out;
 }
 

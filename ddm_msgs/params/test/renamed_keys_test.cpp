@@ -121,6 +121,19 @@ TEST(RenamedKeys, KeepWhatAPersonWroteToBeRefused) {
   EXPECT_EQ(out["plant"]["tile_width"].as<double>(), 9.0);
 }
 
+/// All starts were of PCA where there were not more of them.
+TEST(RenamedKeys, DropTheNumberOfStartsOfPcaThatARunSavedWhereAllWere) {
+  const auto kept = [](const std::string& training) {
+    return hasKey(withTodaysKeys(YAML::Load("version: 0.1.0 (abcdef0)\ntraining: " + training)),
+                  "training", "pca_starts");
+  };
+  EXPECT_FALSE(kept("{num_starts: 3, pca_starts: 3}"));
+  EXPECT_FALSE(kept("{num_starts: 1, pca_starts: 4}"));
+  EXPECT_TRUE(kept("{num_starts: 3, pca_starts: 1}"));
+  EXPECT_TRUE(kept("{num_starts: 3, pca_starts: many}"));
+  EXPECT_TRUE(kept("{pca_starts: 1}"));
+}
+
 /// Old versions saved the look of the rod with the camera, whatever the plant: by default it says
 /// nothing of a plant that is no rod.
 TEST(RenamedKeys, DropTheLookOfARodThatARunSavedWithAPlantOfAnotherPackage) {

@@ -12,15 +12,23 @@ namespace ddm {
 
 /// Block `data_set`.
 struct BagOptions {
-  std::string image_topic = "camera/image_raw";  ///< sensor_msgs/Image
-  std::string torque_topic = "torque";           ///< ddm_msgs/Torque
-  std::string goal_topic = "goal_image";         ///< sensor_msgs/Image, may be missing in the bag
+  std::string image_topic = "camera/image_raw";  ///< sensor_msgs/Image or CompressedImage
+  std::string torque_topic = "torque";           ///< see readBag()
+  std::string goal_topic = "goal_image";         ///< as images, may be missing in the bag
+  double dt = 0.0;  ///< how far apart frames are where torques are no ddm_msgs/Torque [s]
+  /// Joints of a sensor_msgs/JointState, or parts ("torque.z") of a geometry_msgs/WrenchStamped;
+  /// empty: all joints, in the message's order.
+  std::vector<std::string> motors{};
+  std::vector<int> crop{0, 0, 0, 0};  ///< of images: column, row, width, height; 0: to the edge
 
   template <class Visitor>
   void visit(Visitor& visitor) {
     visitor("image_topic", image_topic);
     visitor("torque_topic", torque_topic);
     visitor("goal_topic", goal_topic);
+    visitor("dt", dt);
+    visitor("motors", motors);
+    visitor("crop", crop);
   }
   /// Everything wrong with these values, in words a user can act on. Empty means valid.
   std::vector<std::string> problems() const;
@@ -32,19 +40,27 @@ struct BagContent {
   std::string camera;           ///< size and encoding of the images, "51x51 mono8"
   std::vector<double> times{};  ///< of each frame, since the first one [s]
   double interval = 0.0;        ///< median of those between frames [s]; 0 if there is only one
-  int num_images_without_torque = 0;
-  int num_torques_without_image = 0;
+  std::vector<double> images_without_torque{};  ///< their times, since the first frame [s]
+  std::vector<double> torques_without_image{};  ///< likewise
 };
 
 /// Reads one bag: ours, or one made with plain `rosbag record`.
 ///
-/// An image and a torque are a frame if their header stamps are equal. A new piece begins after an
-/// image without a torque, and after a gap of more than 1.5 times the median interval. A topic is
-/// found under its name or under any namespace. The goal image is the last on its topic.
-/// @param image_size  images are converted to image_size x image_size grey values
+/// Torques are ddm_msgs/Torque: an image and a torque are a frame if their header stamps are equal,
+/// and a new piece begins after an image without a torque, and after a gap of more than 1.5 times
+/// the median interval. Or they are std_msgs/Float64 or Float64MultiArray, the effort of a
+/// sensor_msgs/JointState, or parts of a geometry_msgs/WrenchStamped: then images are taken dt
+/// apart, each with the torque in force until the next, and what has no header stamp has the time
+/// at which it was recorded.
+///
+/// A topic is found under its name or under any namespace. The goal image is the last on its topic.
+/// Memory is that of the frames and of the largest chunk; chunks without these topics are skipped.
+/// @param image_size  images are cropped and converted to image_size x image_size grey values; one
+///                    of that size is not cropped
 /// @throws std::runtime_error naming the bag, the fault and the remedy: unreadable, cut short,
 ///         still active, without a topic, a topic of another type, images that change size or
-///         encoding, torques that are not finite or change dimension, no image with a torque
+///         encoding, torques that are not finite or change dimension, no image with a torque,
+///         images farther apart than dt, torques of two nodes
 BagContent readBag(const std::string& path, int image_size, const BagOptions& options);
 
 /// The same from any stream; messages do not name it.

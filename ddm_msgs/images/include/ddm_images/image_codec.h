@@ -3,6 +3,7 @@
 #pragma once
 
 #include <ros/time.h>
+#include <sensor_msgs/CompressedImage.h>
 #include <sensor_msgs/Image.h>
 
 #include <cstdint>
@@ -44,7 +45,11 @@ struct ImageCrop {
 std::vector<std::uint8_t> decodeImage(const sensor_msgs::Image& image, int size,
                                       const ImageCrop& crop = ImageCrop());
 
-/// The inverse: a mono8 image without padding. decodeImage(encodeImage(k, size, ...), size) == k.
+/// An image from its JPEG, PNG or other bytes, in colour: bgr8.
+/// @throws std::invalid_argument if OpenCV cannot read them
+sensor_msgs::Image unpacked(const sensor_msgs::CompressedImage& image);
+
+/// The inverse of decodeImage(): a mono8 image without padding. decodeImage(encodeImage(k, size, ...), size) == k.
 ///
 /// @param grey  grey values k, row by row from the top left corner              [size * size]
 /// @param size  width and height                                                [1 ... 16384]

@@ -1,0 +1,30 @@
+// A message of a bag as what it says it is.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ddm_msgs/message_bytes.h>
+#include <ros/message_traits.h>
+
+#include <stdexcept>
+
+#include "bag_file.h"
+
+namespace ddm {
+
+/// @throws std::runtime_error with the topic and the fault
+template <class Message>
+Message parse(const BagMessage& message) {
+  const BagConnection& connection = message.connection;
+  if (connection.md5sum != ros::message_traits::md5sum<Message>()) {
+    throw std::runtime_error("topic " + connection.topic +
+                             " was recorded with another definition of " + connection.type);
+  }
+  try {
+    return messageFromBytes<Message>(message.bytes.data(), message.bytes.size());
+  } catch (const std::exception& e) {
+    throw std::runtime_error("a message of topic " + connection.topic + " " + e.what() +
+                             ": leave this bag out");
+  }
+}
+
+}  // namespace ddm

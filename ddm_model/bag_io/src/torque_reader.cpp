@@ -1,0 +1,113 @@
+// Torques, whatever the message that carries them.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "torque_reader.h"
+
+#include <ddm_msgs/Torque.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <sensor_msgs/JointState.h>
+#include <std_msgs/Float64.h>
+#include <std_msgs/Float64MultiArray.h>
+
+#include <algorithm>
+#include <boost/algorithm/string/join.hpp>
+#include <cmath>
+#include <stdexcept>
+
+#include "bag_message.h"
+
+namespace ddm {
+namespace {
+
+std::string listOf(const std::vector<std::string>& names) {
+  return names.empty() ? "nothing" : boost::algorithm::join(names, ", ");
+}
+
+/// Those of its header, unless nobody filled it in.
+ros::Time timeOf(const std_msgs::Header& header, const BagMessage& message) {
+  return header.stamp.isZero() ? message.recorded : header.stamp;
+}
+
+}  // namespace
+
+const std::vector<std::string>& TorqueReader::types() {
+  static const std::vector<std::string> types = {
+      "ddm_msgs/Torque", "std_msgs/Float64", "std_msgs/Float64MultiArray",
+      "geometry_msgs/WrenchStamped", "sensor_msgs/JointState"};
+  return types;
+}
+
+/// The values of motors_. Empty if none of them is among the names.
+TorqueReader::Values TorqueReader::byName(const std::vector<std::string>& names,
+                                          const Values& values, const std::string& topic) const {
+  Values found;
+  std::vector<std::string> missing;
+  for (const std::string& motor : motors_) {
+    const auto name = std::find(names.begin(), names.end(), motor);
+    if (name == names.end()) {
+      missing.push_back(motor);
+    } else {
+      found.push_back(values[static_cast<std::size_t>(name - names.begin())]);
+    }
+  }
+  if (found.empty() || missing.empty()) return found;
+  throw std::runtime_error("topic " + topic + " has " + listOf(names) + ", but no " +
+                           listOf(missing) + ": set data_set/motors to names that are there");
+}
+
+std::optional<TimedTorque> TorqueReader::read(const BagMessage& message) {
+  const BagConnection& connection = message.connection;
+  TimedTorque out{message.recorded, {}};
+  if (connection.type == "std_msgs/Float64") {
+    out.torque = {parse<std_msgs::Float64>(message).data};
+  } else if (connection.type == "std_msgs/Float64MultiArray") {
+    out.torque = parse<std_msgs::Float64MultiArray>(message).data;
+  } else if (connection.type == "geometry_msgs/WrenchStamped") {
+    const auto wrench = parse<geometry_msgs::WrenchStamped>(message);
+    const geometry_msgs::Vector3 &f = wrench.wrench.force, &t = wrench.wrench.torque;
+    out.time = timeOf(wrench.header, message);
+    const std::vector<std::string> names = {"force.x",  "force.y",  "force.z",
+                                            "torque.x", "torque.y", "torque.z"};
+    out.torque = byName(names, {f.x, f.y, f.z, t.x, t.y, t.z}, connection.topic);
+    if (out.torque.empty()) {
+      throw std::runtime_error("topic " + connection.topic + " has forces and torques along " +
+                               listOf(names) + ": set data_set/motors to those of the motors");
+    }
+  } else if (connection.type == "sensor_msgs/JointState") {
+    const auto joints = parse<sensor_msgs::JointState>(message);
+    out.time = timeOf(joints.header, message);
+    if (names_.empty()) names_ = joints.name;
+    if (motors_.empty() && joints.name != names_) {
+      throw std::runtime_error("the joints of topic " + connection.topic + " change from " +
+                               listOf(names_) + " to " + listOf(joints.name) +
+                               ": set data_set/motors to those of the motors");
+    }
+    if (joints.effort.size() != joints.name.size()) {
+      throw std::runtime_error("topic " + connection.topic + " has " +
+                               std::to_string(joints.effort.size()) + " effort(s) for " +
+                               std::to_string(joints.name.size()) +
+                               " joint(s): record what commands the motors");
+    }
+    out.torque =
+        motors_.empty() ? joints.effort : byName(joints.name, joints.effort, connection.topic);
+  } else {
+    const auto torque = parse<ddm_msgs::Torque>(message);
+    out.time = torque.header.stamp;  // that of the image, even if it is 0
+    out.torque = torque.torque;      // empty: applied_torque says so where none acted in time
+  }
+  if (out.torque.empty()) return std::nullopt;
+  const std::string time = std::to_string(out.time.toSec()) + " s";
+  for (const double value : out.torque) {
+    if (std::isfinite(value)) continue;
+    throw std::runtime_error("the torque at " + time + " must be finite, got " +
+                             std::to_string(value) +
+                             ": leave this bag out, or mend what commands the motor");
+  }
+  if (dim_ == 0) dim_ = out.torque.size();
+  if (out.torque.size() != dim_) {
+    throw std::runtime_error("the torque at " + time + " has " + std::to_string(out.torque.size()) +
+                             " value(s) where " + std::to_string(dim_) + " are due");
+  }
+  return out;
+}
+
+}  // namespace ddm

@@ -1,0 +1,389 @@
+// Tests of bags that were not recorded by this project: other torques, a faster camera, other clocks.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <geometry_msgs/WrenchStamped.h>
+#include <gtest/gtest.h>
+#include <rosbag/bag.h>
+#include <sensor_msgs/CompressedImage.h>
+#include <sensor_msgs/JointState.h>
+#include <std_msgs/Float64.h>
+#include <std_msgs/Float64MultiArray.h>
+#include <std_msgs/String.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+
+#include "ddm_bag_io/bag_reader.h"
+#include "ddm_files/plain_file.h"
+#include "ddm_msgs/testing/expect_error.h"
+#include "ddm_msgs/testing/temp_folder.h"
+#include "toy_bags.h"
+
+namespace ddm {
+namespace {
+
+using testing::imageMessage;
+using testing::kToySize;
+using testing::toyImage;
+
+constexpr double kBegin = 10.0, kDt = 0.1, kLatency = 0.01;
+constexpr int kFrames = 20, kImagesPerFrame = 3;
+
+/// The torque that a controller commands on the image of frame k.
+double torqueOf(int k) { return std::sin(3.0 * k); }
+
+/// What is commanded `time` after the beginning: a new torque a moment after each image.
+double commandedAt(double time) {
+  return torqueOf(static_cast<int>(std::floor((time - kLatency) / kDt + 1e-6)));
+}
+
+double angleOf(int image) { return 0.05 * image; }
+
+class OtherBags : public ::testing::Test {
+ protected:
+  OtherBags() {
+    options_.torque_topic = "command";
+    options_.dt = kDt;
+  }
+
+  BagContent read() const { return readBag(path_, kToySize, options_); }
+  ::testing::AssertionResult isRefused(const std::vector<std::string>& parts) const {
+    std::vector<std::string> all = {"bag " + path_};
+    all.insert(all.end(), parts.begin(), parts.end());
+    return testing::throwsNaming<std::runtime_error>([&] { read(); }, all);
+  }
+
+  template <class Message>
+  void write(const std::string& topic, double time, const Message& message,
+             const std::string& publisher = "/recorded") {
+    namespace traits = ros::message_traits;
+    const auto header = boost::make_shared<ros::M_string>(
+        ros::M_string{{"topic", topic},
+                      {"type", traits::datatype(message)},
+                      {"md5sum", traits::md5sum(message)},
+                      {"message_definition", traits::definition(message)},
+                      {"callerid", publisher}});
+    bag_->write(topic, ros::Time(time), message, header);
+  }
+  /// A camera of 30 Hz.
+  template <class IsThere>
+  void writeImages(const IsThere& isThere, double jitter = 0.0) {
+    for (int i = 0; i < kFrames * kImagesPerFrame; ++i) {
+      if (!isThere(i)) continue;
+      const double stamp = kBegin + kDt / kImagesPerFrame * i + jitter * std::sin(7.0 * i);
+      write("camera/image_raw", stamp + 0.005, imageMessage(stamp, toyImage(angleOf(i))));
+    }
+  }
+  void writeImages() {
+    writeImages([](int) { return true; });
+  }
+  /// 50 messages a second, made of time and torque.
+  template <class Make>
+  void writeTorques(const Make& make) {
+    for (double time = kLatency; time < kDt * kFrames + kLatency; time += 0.02) {
+      write("command", kBegin + time, make(kBegin + time, commandedAt(time)));
+    }
+  }
+  void writeFloats() {
+    writeTorques([](double, double u) { return floatOf(u); });
+  }
+  static std_msgs::Float64 floatOf(double u) {
+    std_msgs::Float64 message;
+    message.data = u;
+    return message;
+  }
+  static sensor_msgs::JointState jointsOf(const std::vector<std::string>& names,
+                                          const std::vector<double>& efforts) {
+    sensor_msgs::JointState message;
+    message.name = names;
+    message.effort = efforts;
+    return message;
+  }
+  void close() { bag_.reset(); }
+
+  /// Each frame has the third image of all, and the torque commanded on it.
+  void expectAllFrames(int motor = 0) const {
+    const BagContent content = read();
+    ASSERT_EQ(content.data.numFrames(), kFrames);
+    EXPECT_EQ(content.data.pieces().size(), 1u);
+    EXPECT_NEAR(content.interval, kDt, 1e-6);
+    EXPECT_TRUE(content.images_without_torque.empty());
+    for (int k = 0; k < kFrames; ++k) {
+      EXPECT_EQ(content.data.image(k), toyImage(angleOf(kImagesPerFrame * k))) << k;
+      EXPECT_DOUBLE_EQ(content.data.torques()(motor, k), torqueOf(k)) << k;
+    }
+  }
+
+  BagOptions options_;
+  const testing::TempFolder folder_;
+  const std::string path_ = folder_.file("other.bag");
+  std::unique_ptr<rosbag::Bag> bag_ = std::make_unique<rosbag::Bag>(path_, rosbag::bagmode::Write);
+};
+
+TEST_F(OtherBags, NumbersWithoutAHeader) {
+  writeImages();
+  writeFloats();
+  close();
+  expectAllFrames();
+}
+
+TEST_F(OtherBags, ArraysOfNumbersWithoutAHeader) {
+  writeImages();
+  writeTorques([](double, double u) {
+    std_msgs::Float64MultiArray message;
+    message.layout.dim.resize(1);
+    message.layout.dim[0].label = "motors";
+    message.data = {-u, u};
+    return message;
+  });
+  close();
+  expectAllFrames(/*motor=*/1);
+  EXPECT_EQ(read().data.torqueDim(), 2);
+}
+
+TEST_F(OtherBags, PartsOfAWrenchByName) {
+  writeImages();
+  writeTorques([](double, double u) {
+    geometry_msgs::WrenchStamped message;
+    message.wrench.force.z = 100.0;
+    message.wrench.torque.z = u;
+    return message;
+  });
+  close();
+  EXPECT_TRUE(isRefused({"command", "torque.z", "data_set/motors"}));
+  options_.motors = {"torque.w"};
+  EXPECT_TRUE(isRefused({"command", "torque.z", "data_set/motors"}));
+  options_.motors = {"torque.z"};
+  expectAllFrames();
+}
+
+TEST_F(OtherBags, EffortsOfJointsByName) {
+  writeImages();
+  writeTorques([](double, double u) { return jointsOf({"gripper", "arm"}, {5.0, u}); });
+  for (int i = 0; i < 10; ++i) {  // others publish theirs on the same topic
+    write("command", kBegin + 0.1 * i, jointsOf({"wheel"}, {7.0}));
+  }
+  close();
+  EXPECT_TRUE(isRefused({"change from", "gripper, arm", "to wheel", "data_set/motors"}));
+  options_.motors = {"arm", "elbow"};
+  EXPECT_TRUE(isRefused({"no elbow", "data_set/motors"}));
+  options_.motors = {"leg"};
+  EXPECT_TRUE(isRefused({"no torque of leg"}));
+  options_.motors = {"arm"};
+  expectAllFrames();
+}
+
+TEST_F(OtherBags, AllEffortsWhereNoNamesAreGiven) {
+  writeImages();
+  writeTorques([](double, double u) { return jointsOf({"gripper", "arm"}, {5.0, u}); });
+  close();
+  expectAllFrames(/*motor=*/1);
+}
+
+TEST_F(OtherBags, JointsWithoutEffortAreRefused) {
+  writeImages();
+  writeTorques([](double, double) { return jointsOf({"arm"}, {}); });
+  close();
+  EXPECT_TRUE(isRefused({"0 effort(s)", "1 joint(s)"}));
+}
+
+TEST_F(OtherBags, AStampCountsMoreThanTheTimeOfTheRecording) {
+  writeImages();
+  for (double time = kLatency; time < kDt * kFrames; time += 0.02) {
+    auto message = jointsOf({"arm"}, {commandedAt(time)});
+    message.header.stamp = ros::Time(kBegin + time);
+    write("command", kBegin + time + 0.3, message);  // the network was slow
+  }
+  close();
+  expectAllFrames();
+}
+
+TEST_F(OtherBags, AJitterOfTheCameraChangesNothing) {
+  writeImages([](int) { return true; }, /*jitter=*/0.004);
+  writeFloats();
+  close();
+  const BagContent content = read();
+  ASSERT_EQ(content.data.numFrames(), kFrames);
+  EXPECT_EQ(content.data.pieces().size(), 1u);
+  for (int k = 0; k < kFrames; ++k) {
+    EXPECT_EQ(content.data.image(k), toyImage(angleOf(kImagesPerFrame * k))) << k;
+    EXPECT_DOUBLE_EQ(content.data.torques()(0, k), torqueOf(k)) << k;
+  }
+}
+
+TEST_F(OtherBags, ADroppedImageIsReplacedByItsNeighbourOrSplitsTheBag) {
+  writeImages([](int i) { return i < 20 || i > 26; });  // those due are 21 and 24; 27 is there
+  writeFloats();
+  close();
+  const BagContent content = read();
+  ASSERT_EQ(content.data.pieces().size(), 2u);
+  EXPECT_EQ(content.data.pieces()[0].size, 7);
+  EXPECT_EQ(content.data.image(7), toyImage(angleOf(27)));
+  EXPECT_DOUBLE_EQ(content.data.torques()(0, 7), torqueOf(9));
+  EXPECT_EQ(content.data.numFrames(), kFrames - 2);
+}
+
+TEST_F(OtherBags, WhereTorquesFallSilentThereIsNoFrame) {
+  writeImages();
+  for (double time = kLatency; time < kDt * kFrames; time += 0.02) {
+    if (time < 0.52 || time > 0.8) write("command", kBegin + time, floatOf(commandedAt(time)));
+  }
+  close();
+  const BagContent content = read();
+  EXPECT_EQ(content.data.pieces().size(), 2u);
+  EXPECT_EQ(content.data.numFrames() + static_cast<int>(content.images_without_torque.size()),
+            kFrames);
+  ASSERT_EQ(content.images_without_torque.size(), 2u);
+  EXPECT_NEAR(content.images_without_torque[0], 0.6, 1e-6);
+}
+
+TEST_F(OtherBags, ATorqueThatIsSaidOnceHoldsUntilTheNext) {
+  writeImages();
+  for (const int k : {0, 4, 8, 12, 16}) write("command", kBegin + kDt * k, floatOf(k));
+  close();
+  const BagContent content = read();
+  ASSERT_EQ(content.data.numFrames(), kFrames);
+  for (int k = 0; k < kFrames; ++k) EXPECT_EQ(content.data.torques()(0, k), k / 4 * 4) << k;
+}
+
+TEST_F(OtherBags, TorquesBeforeTheFirstImageAreCounted) {
+  writeImages();
+  for (int i = 0; i < 5; ++i) write("command", kBegin - 2.0 + 0.02 * i, floatOf(1.0));
+  writeFloats();
+  close();
+  const BagContent content = read();
+  ASSERT_EQ(content.torques_without_image.size(), 5u);
+  EXPECT_NEAR(content.torques_without_image[0], -2.0, 1e-6);
+  expectAllFrames();
+}
+
+TEST_F(OtherBags, TwoControllersAtOnceAreRefused) {
+  writeImages();
+  for (int i = 0; i < 20; ++i) {
+    write("command", kBegin + 0.1 * i, floatOf(1.0), i % 2 == 0 ? "/teleop" : "/controller");
+  }
+  close();
+  EXPECT_TRUE(isRefused({"command", "/controller and /teleop"}));
+}
+
+TEST_F(OtherBags, TheTimeBetweenFramesMustBeGivenAndSuitTheCamera) {
+  writeImages();
+  writeFloats();
+  close();
+  options_.dt = 0.0;
+  EXPECT_TRUE(isRefused({"command", "std_msgs/Float64", "data_set/dt"}));
+  options_.dt = 0.02;
+  EXPECT_TRUE(isRefused({"0.0333", "data_set/dt = 0.02"}));
+  options_.dt = kDt / kImagesPerFrame;
+  EXPECT_EQ(read().data.numFrames(), kFrames * kImagesPerFrame);
+}
+
+TEST_F(OtherBags, OtherClocksAreRefusedWithBothSpans) {
+  writeImages();
+  write("command", 5000.0, floatOf(1.0));
+  write("command", 5001.0, floatOf(1.0));
+  close();
+  EXPECT_TRUE(isRefused({"from 10.0", "to 11.9", "from 5000.0", "to 5001.0", "one clock"}));
+}
+
+TEST_F(OtherBags, CompressedImagesAreUnpacked) {
+  const auto compressed = [this](double stamp, const char* suffix,
+                                 const sensor_msgs::Image& image) {
+    const std::string picture = folder_.file(std::string("picture") + suffix);
+    writePicture(picture, image);
+    const std::string bytes = readFile(picture);
+    sensor_msgs::CompressedImage message;
+    message.header.stamp = ros::Time(stamp);
+    message.format = suffix + 1;
+    message.data.assign(bytes.begin(), bytes.end());
+    return message;
+  };
+  for (const char* suffix : {".png", ".jpg"}) {
+    bag_ = std::make_unique<rosbag::Bag>(path_, rosbag::bagmode::Write);
+    for (int i = 0; i < kFrames; ++i) {
+      write("camera/image_raw", kBegin + kDt * i,
+            compressed(kBegin + kDt * i, suffix, imageMessage(0.0, toyImage(angleOf(i)))));
+    }
+    writeFloats();
+    close();
+    const BagContent content = read();
+    EXPECT_EQ(content.camera, "8x8 " + std::string(suffix + 1));
+    ASSERT_EQ(content.data.numFrames(), kFrames);
+    const Grey truth = toyImage(angleOf(5)), grey = content.data.image(5);
+    for (size_t i = 0; i < truth.size(); ++i) {
+      EXPECT_NEAR(grey[i], truth[i], suffix == std::string(".png") ? 0 : 25) << suffix;
+    }
+  }
+}
+
+TEST_F(OtherBags, ACompressedImageThatIsNoneIsRefused) {
+  sensor_msgs::CompressedImage message;
+  message.header.stamp = ros::Time(kBegin);
+  message.format = "jpeg";
+  message.data = {1, 2, 3};
+  write("camera/image_raw", kBegin, message);
+  write("command", kBegin, floatOf(1.0));
+  close();
+  EXPECT_TRUE(isRefused({"camera/image_raw", "3 bytes of format 'jpeg'", "JPEG or PNG"}));
+}
+
+TEST_F(OtherBags, ThePartOfTheImageIsTakenThatCounts) {
+  for (int i = 0; i < 3; ++i) {
+    sensor_msgs::Image image = imageMessage(kBegin + kDt * i, Grey(40 * 40, 10), 40);
+    for (int row = 20; row < 28; ++row) {
+      for (int col = 4; col < 12; ++col) image.data[40 * row + col] = 200;
+    }
+    write("camera/image_raw", kBegin + kDt * i, image);
+  }
+  writeFloats();
+  close();
+  EXPECT_NE(read().data.image(0), Grey(kToySize * kToySize, 200));
+  options_.crop = {4, 20, 8, 8};
+  EXPECT_EQ(read().data.image(0), Grey(kToySize * kToySize, 200));
+  options_.crop = {4, 20, 8, 80};
+  EXPECT_TRUE(isRefused({"crop of 8 x 80", "40 x 40"}));
+}
+
+TEST_F(OtherBags, AnImageOfTheRightSizeIsNotCropped) {
+  writeImages();
+  writeFloats();
+  close();
+  options_.crop = {4, 20, 8, 8};
+  expectAllFrames();
+}
+
+TEST_F(OtherBags, ChunksOfOtherTopicsAreNotUnpacked) {
+  bag_->setCompression(rosbag::compression::LZ4);
+  bag_->setChunkThreshold(1);  // a chunk for each message
+  std_msgs::String other;
+  other.data = std::string(2000, 'x');
+  write("log", kBegin, other);
+  writeImages();
+  writeFloats();
+  close();
+  expectAllFrames();
+  std::string bytes = readFile(path_);
+  const size_t chunk = bytes.find("compression=lz4");
+  for (int i = 0; i < 8; ++i) bytes[chunk + 60 + i] ^= char(0x55);  // in the first chunk
+  std::ofstream(path_, std::ios::binary | std::ios::trunc) << bytes;
+  expectAllFrames();
+  options_.image_topic = "log";
+  EXPECT_TRUE(isRefused({"topic log", "std_msgs/String", "sensor_msgs/Image or"}));
+}
+
+TEST_F(OtherBags, IndicesThatDisagreeAreRefused) {
+  bag_->setChunkThreshold(1);
+  write("log", kBegin, std_msgs::String());
+  writeImages();
+  writeFloats();
+  close();
+  std::string bytes = readFile(path_);
+  const size_t index = bytes.find("op=\x04");  // that of the first chunk, which is of the log
+  bytes[bytes.rfind("conn=", index) + 5] = 1;  // the images
+  std::ofstream(path_, std::ios::binary | std::ios::trunc) << bytes;
+  EXPECT_TRUE(isRefused({"indices disagree", "copy"}));
+}
+
+}  // namespace
+}  // namespace ddm
