@@ -24,6 +24,9 @@ WIDTHS = "encoder_widths: [25, 12, 6]"  # those of the stand-in's config.yaml
 # Two episodes of what is asked for by: --config FILE --model FILE --seeds A:B --out DIR.
 EVALUATE = """mkdir -p "$8" && echo "$4 $6" > "$8/asked" && printf 'seed,success,return\\n350,1,900\\n351,0,600\\n' > "$8/evaluation.csv"
 """
+# Keeps the run folders that are given before the last two words, --out FILE.csv.
+DIAGNOSIS = """while [ $# -gt 2 ]; do echo "$1"; shift; done > "$out"
+"""
 SEEDS = ["--seeds", "100:125", "--ablation-seeds", "0:4"]
 
 
@@ -44,10 +47,11 @@ class EfficientReproductionTest(ScratchCase):
 
         self.writeRunExperiment(code=1)
         self.evaluate = self.writeProgram("evaluate", EVALUATE)
+        self.diagnosis = self.writeProgram("task_diagnosis", 'for out; do :; done\n' + DIAGNOSIS)
 
         def find_program(name):
             return {"sweep": os.path.join(TEST, "stand_in_sweep.py"), "run_experiment": self.run_experiment,
-                    "evaluate": self.evaluate,
+                    "evaluate": self.evaluate, "task_diagnosis": self.diagnosis,
                     "study_figure": os.path.join(PACKAGE, "study", "scripts", name)}.get(
                 name, os.path.join(PACKAGE, "scripts", name))
 
@@ -173,6 +177,9 @@ class EfficientReproductionTest(ScratchCase):
         asked = self.file(self.out, "runs", "task_suite_pendulum", "seed_0100", "last_model", "asked")
         with open(asked) as stream:
             self.assertRegex(stream.read(), "seed_0100/trial_009/model.ddm 350:360")
+        with open(self.file(self.out, "tasks", "two_link", "diagnosis.csv")) as stream:
+            folders = stream.read().split()
+        self.assertEqual([os.path.basename(folder) for folder in folders], ["seed_%04d" % seed for seed in range(100, 120)])
         for name in ("success_rate", "ablation", "tried", "gravity", "nuisances", "suite_pendulum", "suite_reacher"):
             self.assertEqual(read_bytes(self.out, name + ".png")[:4], b"\x89PNG", name)
         for folder in ("", "gravity"):

@@ -32,9 +32,9 @@ parts (--only), in this order, and what they leave in DIR:
                gravity.csv, gravity.png
   nuisances    nuisances/NAME/trials.csv, nuisances.csv, nuisances.png: under each file of config/nuisances
                that is not one of a scene
-  tasks        tasks/PLANT/trials.csv of harder plants (%s); tasks.csv; of
-               those of the DeepMind Control Suite tasks/PLANT/last_models.csv, ten episodes of each seed's last model,
-               and PLANT.png
+  tasks        tasks/PLANT/trials.csv of harder plants (%s); tasks.csv;
+               tasks/PLANT/diagnosis.csv of task_diagnosis; of those of the DeepMind Control Suite
+               tasks/PLANT/last_models.csv, ten episodes of each seed's last model, and PLANT.png
 bars.csv holds what the results must reach and whether they do, machine.yaml how each step was made, runs/ and logs/
 everything that the programs left. A step whose files have changed since it was made is refused. The columns are explained
 in ddm_launch's README.""" % ", ".join(TASKS)
@@ -160,6 +160,9 @@ class EfficientReproduction(StepRunner):
         def write_tables():
             for plant, step in steps.items():
                 self.keep_config(step, os.path.join("tasks", plant, "config.yaml"))
+                self.call("diagnosis_of_" + plant, [
+                    find_program("task_diagnosis"), *step.seed_folders(self.out).values(),
+                    "--out", self.path("tasks", plant, "diagnosis.csv")])
             for plant in SUITE:
                 write_last_models(self.out, plant, self.evaluate_last_models(steps[plant]))
             write_tasks(self.out, list(steps))
