@@ -26,8 +26,8 @@ def why_no_nft():
 
 
 def nft_rule(peers=False):
-    """The rule for nftables as ddm_launch's page prints it. peers: with the line for several machines."""
-    rule, = pages.blocks(pages.read("ddm_launch/README.md"), "nft")
+    """The rule for nftables as doc/reference/network.md prints it. peers: with the line for several machines."""
+    rule, = pages.blocks(pages.read("doc/reference/network.md"), "nft")
     return rule.replace("# ip saddr", "ip saddr") if peers else rule
 
 

@@ -21,9 +21,9 @@ from scratch_case import SharedScratchCase  # noqa: E402
 
 LIMIT_S = 300.0  # for the commands of a page
 # What a reader has before: files that a page begins with.
-GIVEN = {"ddm_launch/README.md": ["monday.ddm", "monday/a.bag", "a.bag", "b.bag"],
-         "ddm_model/README.md": ["robot.model", "monday.bag", "my_robot.yaml", "upright.png", "trial_000.bag",
-                                 "trial_001.bag"],
+GIVEN = {"doc/reference/launch_files.md": ["monday.ddm", "monday/a.bag", "a.bag", "b.bag"],
+         "doc/reference/programs.md": ["robot.model", "monday.bag", "my_robot.yaml", "upright.png", "trial_000.bag",
+                                       "trial_001.bag"],
          "ddm_launch/results/published/README.md": ["trials.csv", "success_rate.csv"]}
 NEED_MUJOCO = ["ddm_launch/results/README.md", "ddm_launch/results/tasks/README.md", "doc/your_plant.md"]
 
@@ -150,7 +150,7 @@ class PageCommandsTest(SharedScratchCase):
         return set(re.findall(r"--\w[\w-]*", output))
 
     def test_the_table_of_features_names_tests_that_run_its_commands(self):
-        rows = pages.tables(pages.section(pages.read("ddm_launch/README.md"), "What there is for whom"))[0][1:]
+        rows = pages.tables(pages.section(pages.read("doc/develop/testing.md"), "Features and their tests"))[0][1:]
         self.assertGreater(len(rows), 12)
         for row in rows:
             programs = [page_commands.program_of(command) for command in pages.code_spans(row[1])]

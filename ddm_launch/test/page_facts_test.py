@@ -17,20 +17,21 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import pages  # noqa: E402
 
 LIMIT_S = 60.0  # until all nodes have made their topics
-NODES = [("ddm_sim/README.md", "sim_node", ""), ("ddm_mpc/README.md", "mpc_node", ""),
-         ("ddm_mpc/README.md", "view_node", ""), ("ddm_model/README.md", "model_node", ""),
-         ("ddm_model/README.md", "trial_recorder", ""), ("ddm_sim/README.md", "robot_node", "/robot")]
+TOPICS = "doc/reference/topics.md"
+MANUAL = "doc/reference/parameters.md"
+NODES = [("sim_node", ""), ("mpc_node", ""), ("view_node", ""), ("model_node", ""), ("trial_recorder", ""),
+         ("robot_node", "/robot")]
 ACTION_TOPICS = ("goal", "cancel", "status", "feedback", "result")
 # Blocks of parameters in a table, and the manuals whose values are the structs' (tests of each package say so).
-PARAMETERS = [("ddm_sim/README.md", "robot_node", ["robot"], ["ddm_sim/config/robot.yaml"]),
-              ("ddm_sim/README.md", "Parameters", ["plant", "camera", "sim", "show"],
+PARAMETERS = [("Robot", ["robot"], ["ddm_sim/config/robot.yaml"]),
+              ("Plant and camera", ["plant", "camera", "sim", "show"],
                ["ddm_sim/config/moving_tile.yaml", "ddm_sim/config/pendulum.yaml", "ddm_sim/config/sim.yaml"]),
-              ("ddm_mpc/README.md", "Turned while it runs", [], ["ddm_mpc/config/mpc.yaml"])]
+              ("Turned while it runs", [], ["ddm_mpc/config/mpc.yaml"])]
 
 
-def documented(page, node):
+def documented(node):
     """Names of topics, services and actions in the tables and the sentences of a node's section."""
-    text = pages.section(pages.read(page), node)
+    text = pages.section(pages.read(TOPICS), node)
     names, kind = set(), ""
     for table in pages.tables(text):
         if "default" in table[0] or "colour" in table[0] or "status" in table[0] or "state" in table[0]:
@@ -64,9 +65,9 @@ def offered(node, namespace):
     return {name for name in names if not re.match("(camera/image_raw|camera_view/image_raw|goal_image)/", name)}
 
 
-def parameter_rows(page, heading):
+def parameter_rows(heading):
     """(block, key, the rest of the row) of each parameter in the table of a section."""
-    for table in pages.tables(pages.section(pages.read(page), heading)):
+    for table in pages.tables(pages.section(pages.read(MANUAL), heading)):
         if "default" in table[0]:
             for row in table[1:]:
                 for block, key in re.findall(r"`~?(\w+)/(\w+)`", row[0]):
@@ -96,50 +97,50 @@ def value_in(cell):
 class PageFactsTest(unittest.TestCase):
     maxDiff = None
 
-    def test_topics_services_and_actions_of_each_node_are_those_of_its_readme(self):
+    def test_topics_services_and_actions_of_each_node_are_those_of_its_section(self):
         deadline = time.monotonic() + LIMIT_S
-        for page, node, namespace in NODES:
-            wanted = documented(page, node)
+        for node, namespace in NODES:
+            wanted = documented(node)
             self.assertGreater(len(wanted), 2, node)
             while offered(node, namespace) != wanted and time.monotonic() < deadline:
                 time.sleep(0.1)
             self.assertEqual(sorted(offered(node, namespace)), sorted(wanted), node)
 
     def test_defaults_and_units_of_parameters_are_those_of_the_manuals(self):
-        for page, heading, blocks, files in PARAMETERS:
+        for heading, blocks, files in PARAMETERS:
             values, comments = manual(files)
             seen = set()
-            for block, key, row in parameter_rows(page, heading):
+            for block, key, row in parameter_rows(heading):
                 if block == "image":
                     continue  # the same in all nodes: ddm_model/config/model.yaml
                 seen.add((block, key))
-                self.assertEqual(value_in(row["default"]), values[block][key], (page, block, key))
+                self.assertEqual(value_in(row["default"]), values[block][key], (heading, block, key))
                 unit = re.split(";| of wall time", row.get("unit", "–"))[0].replace("²", "^2")
                 if unit != "–" and "[" in comments["%s/%s" % (block, key)]:
-                    self.assertIn("[%s" % unit.split(",")[0], comments["%s/%s" % (block, key)], (page, block, key))
-            self.assertGreater(len(seen), 2, page)
+                    self.assertIn("[%s" % unit.split(",")[0], comments["%s/%s" % (block, key)], (heading, block, key))
+            self.assertGreater(len(seen), 2, heading)
             for block in blocks:
-                self.assertEqual({key for name, key in seen if name == block}, set(values[block]), (page, block))
+                self.assertEqual({key for name, key in seen if name == block}, set(values[block]), (heading, block))
 
     def test_topics_of_the_contract_are_those_of_its_header(self):
         header = pages.read("ddm_msgs/include/ddm_msgs/topics.h")
-        names = {name for table in pages.tables(pages.read("ddm_msgs/README.md")) for row in table[1:]
+        names = {name for table in pages.tables(pages.read(TOPICS)) for row in table[1:]
                  for name in pages.code_spans(row[0])}
         constants = re.findall(r'constexpr char k\w+\[\] =\s+"([^"]+)"', header)
         self.assertGreater(len(constants), 15)
         self.assertEqual([name for name in constants if name not in names], [])
 
-    def test_fields_of_messages_are_those_of_their_readme(self):
+    def test_fields_of_messages_are_those_of_the_page(self):
         rows, message = {}, ""
-        for row in pages.tables(pages.section(pages.read("ddm_msgs/README.md"), "Messages"))[0][1:]:
+        for row in pages.tables(pages.section(pages.read(TOPICS), "Messages"))[0][1:]:
             message = row[0] or message
             rows.setdefault(message, []).extend(name.split(".")[0] for name in pages.code_spans(row[1]))
         for name, fields in rows.items():
             self.assertEqual(sorted(fields), sorted(getattr(ddm_msgs.msg, name).__slots__), name)
         self.assertEqual(sorted(rows), ["Model", "Plan", "PlanScalars", "Torque"])
 
-    def test_fields_of_services_and_actions_are_those_of_their_readme(self):
-        text = pages.read("ddm_msgs/README.md")
+    def test_fields_of_services_and_actions_are_those_of_the_page(self):
+        text = pages.read(TOPICS)
         for row in pages.tables(pages.section(text, "Services"))[0][1:]:
             if "/" in row[1]:
                 continue  # of another package

@@ -11,7 +11,7 @@ BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 def page_paths():
     """All pages, relative to the checkout."""
-    patterns = ["README.md", "doc/*.md", "examples/**/*.md"] + [package + "/**/*.md" for package in PACKAGES]
+    patterns = ["README.md", "CONTRIBUTING.md", "doc/**/*.md", "examples/**/*.md"] + [package + "/**/*.md" for package in PACKAGES]
     return sorted({os.path.relpath(path, CHECKOUT) for pattern in patterns
                    for path in glob.glob(os.path.join(CHECKOUT, pattern), recursive=True)})
 

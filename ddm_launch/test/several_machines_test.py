@@ -28,7 +28,7 @@ class SeveralMachinesTest(ScratchCase):
         self.addCleanup(self.network.close)
 
     def startOn(self, machine, master, *words):
-        """roslaunch on a machine, with what the README says to set there."""
+        """roslaunch on a machine, with what doc/reference/network.md says to set there."""
         address, enter = machine
         environment = dict(line_by_line(), ROS_MASTER_URI="http://%s:11311" % master, ROS_IP=address,
                            ROS_HOME=os.path.join(self.disk, "ros"))

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# Which sockets of a launch other machines reach: as README.md, "Who can reach the nodes", says, and none with its rule.
+# Which sockets of a launch other machines reach: as doc/reference/network.md says, and none with its rule.
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
 import os

@@ -37,7 +37,7 @@ parts (--only), in this order, and what they leave in DIR:
                tasks/PLANT/last_models.csv, ten episodes of each seed's last model, and PLANT.png
 bars.csv holds what the results must reach and whether they do, machine.yaml how each step was made, runs/ and logs/
 everything that the programs left. A step whose files have changed since it was made is refused. The columns are explained
-in ddm_launch's README.""" % ", ".join(TASKS)
+in doc/reference/run_folder.md.""" % ", ".join(TASKS)
 
 
 def yaml_names(folder):

@@ -96,7 +96,7 @@ class Model:
 
     options: the block `model` of its configuration. image_size [pixels], torque_dim [-]. info: seed, trial, frames, v_r,
     v_p, feature_spread, and config, the YAML text that it was trained with. arrays: all that it computes with, under the
-    names of ddm_model's README. goal_feature: z_ref, None without a goal image.
+    names of doc/reference/programs.md. goal_feature: z_ref, None without a goal image.
     """
 
     def __init__(self, data):
