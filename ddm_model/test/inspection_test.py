@@ -11,14 +11,16 @@ import sys
 
 import matplotlib.image
 import numpy as np
+import rosbag
 import rosunit
 import yaml
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import toy_robot  # noqa: E402
+from ddm_model.model_data import ModelData, write_model_data  # noqa: E402
 
-WITH_BAGS = ["Principal components", "Reconstructions", "A prediction: typical", "A prediction: worst", "Error by step",
-             "Feature plane", "Coverage"]
+WITH_BAGS = ["Principal components", "Pairs of image and torque", "Reconstructions", "A prediction: typical",
+             "A prediction: worst", "Error by step", "Feature plane", "Coverage"]
 
 
 class Page(html.parser.HTMLParser):
@@ -143,8 +145,21 @@ class InspectionTest(toy_robot.ToyRobotCase):
         code, output = toy_robot.call("inspect", "--model", model, "--out", self.out, self.file("short.bag"))
         self.assertEqual(code, 0, output)
         self.assertEqual(list(Page(os.path.join(self.out, "report.html")).images),
-                         ["Principal components", "Reconstructions", "Feature plane", "Coverage"])
+                         ["Principal components", "Pairs of image and torque", "Reconstructions", "Feature plane",
+                          "Coverage"])
         self.assertIsNone(self.verdict(self.out)["Predictions beat repeating the last frame"])
+
+    def test_what_could_not_be_paired_is_known_with_its_bag_and_time(self):
+        toy_robot.write_bag(self.file("whole.bag"), num_frames=20)
+        with rosbag.Bag(self.file("whole.bag")) as whole, rosbag.Bag(self.file("gaps.bag"), "w") as gaps:
+            for topic, message, time in whole.read_messages():
+                frame = round((time.to_sec() - 10.0) / 0.2)
+                if (topic, frame) not in (("torque", 5), ("camera/image_raw", 9)):
+                    gaps.write(topic, message, time)
+        write_model_data(self.model, [self.unseen, self.file("gaps.bag")], self.file("data"))
+        data = ModelData(self.model, self.file("data"))
+        np.testing.assert_allclose(data.unpaired["images without torque"], [[1.0], [1.0]], atol=1e-6)  # bag 1, after 1 s
+        np.testing.assert_allclose(data.unpaired["torques without image"], [[1.0], [1.8]], atol=1e-6)
 
     def test_what_cannot_be_read_is_named(self):
         self.assertRefused(["missing.bag"], "--model", self.model, self.unseen, self.file("missing.bag"))

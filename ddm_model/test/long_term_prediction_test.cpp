@@ -171,7 +171,7 @@ TEST(PredictionErrors, AreSmallForATrainedModelOnImagesItHasNotSeen) {
   silenceSolverLog();
   TrainingOptions training;
   training.max_iterations = 500;
-  training.num_starts = 4;  // a single one may end in a bad optimum
+  training.num_starts = 4;             // a single one may end in a bad optimum
   DataSet data(testing::kToySize, 1);  // from all round the circle
   for (unsigned seed = 10; seed < 70; seed += 2) data.append(testing::toyTrial(20, seed));
   const TrainingResult result = train(data, testing::toyModelOptions(), training, {});

@@ -93,6 +93,22 @@ std::string factsOf(const Ddm& model, const std::string& id) {
   return YAML::Dump(facts) + "\n";
 }
 
+/// Times of what could not be paired: rows number of the bag, time since its first frame [s].
+class Unpaired {
+ public:
+  void add(std::size_t bag, const std::vector<double>& times) {
+    for (const double time : times) columns_.emplace_back(static_cast<double>(bag), time);
+  }
+  void write(const std::string& name, const ArrayFolder& out) const {
+    Eigen::MatrixXd matrix(2, static_cast<Eigen::Index>(columns_.size()));
+    for (Eigen::Index i = 0; i < matrix.cols(); ++i) matrix.col(i) = columns_[i];
+    out.write(name, matrix);
+  }
+
+ private:
+  std::vector<Eigen::Vector2d> columns_;
+};
+
 /// All bags as one data set. What was found in each is in bags.yaml.
 DataSet readBags(const Ddm& model, const Arguments& arguments, const BagOptions& topics,
                  const ArrayFolder& out) {
@@ -100,6 +116,7 @@ DataSet readBags(const Ddm& model, const Arguments& arguments, const BagOptions&
   const auto show = progress("reading " + std::to_string(arguments.bags.size()) + " bag(s)");
   YAML::Node bags(YAML::NodeType::Sequence);
   std::vector<double> times;
+  Unpaired images, torques;
   for (const std::string& path : arguments.bags) {
     const BagContent content = readBag(path, model.imageSize(), topics);
     if (content.data.torqueDim() != model.torqueDim()) {
@@ -116,12 +133,16 @@ DataSet readBags(const Ddm& model, const Arguments& arguments, const BagOptions&
     bag["torques_without_image"] = content.torques_without_image.size();
     bag["interval_s"] = formatDouble(content.interval);
     bag["goal"] = content.data.hasGoal() ? 1 : 0;
+    images.add(bags.size(), content.images_without_torque);
+    torques.add(bags.size(), content.torques_without_image);
     bags.push_back(bag);
     data.append(content.data);
     times.insert(times.end(), content.times.begin(), content.times.end());
     show(static_cast<double>(bags.size()) / static_cast<double>(arguments.bags.size()));
   }
   writeFileAtomically(arguments.out + "/bags.yaml", YAML::Dump(bags) + "\n");
+  images.write("images_without_torque", out);
+  torques.write("torques_without_image", out);
   out.write("times", Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
                          times.data(), static_cast<Eigen::Index>(times.size()))));
   return data;

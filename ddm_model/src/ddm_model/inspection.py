@@ -70,6 +70,9 @@ def figures_of(data, model):
     out = [("Principal components", lambda: report_figures.draw_spectrum(data),
             "How much each component matters. A curve that has not come down at its right end asks for more of them.")]
     if data.bags is not None:
+        out.append(("Pairs of image and torque", lambda: report_figures.draw_pairing(data),
+                    "When there are frames, and when images and torques that have no partner. A frame that is missing "
+                    "splits its bag, and nothing is predicted across it."))
         out.append(("Reconstructions", lambda: report_figures.draw_reconstructions(data),
                     "Images, what the principal components keep of them, and what the features do."))
         for kind, words in (("typical", "in the middle"), ("worst", "at the end")):

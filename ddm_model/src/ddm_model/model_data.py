@@ -96,14 +96,15 @@ Prediction = collections.namedtuple("Prediction", "frame features images")
 
 class ModelData:
     """A model file, everything in a folder of model_data, and the errors of images. Without bags `bags` and what comes
-    after it are None, and tables is empty."""
+    after it are None, and tables is empty. unpaired: {what: number of the bag and time since its first frame [s]  [2 x N]}.
+    """
 
     def __init__(self, model, folder):
         with open(os.path.join(folder, "model.yaml")) as stream:
             self.facts = yaml.load(stream, Loader=yaml.BaseLoader)  # texts: an id like 12e45678 is not a number
         self.options = self.facts["options"]
         self.model = load(model).arrays
-        self.bags = self.frames = self.features = self.torques = self.spectrum = self.errors = self.variation = None
+        self.bags = self.frames = self.features = self.torques = self.spectrum = self.errors = self.variation = self.unpaired = None
         self.tables, self.predictions = {}, {}
         if os.path.exists(os.path.join(folder, "bags.yaml")):
             self._read_bags(folder)
@@ -118,6 +119,7 @@ class ModelData:
         self.images = arrays["images"].T.reshape(-1, *2 * [int(self.facts["image_size"])])
         self.reconstructions = arrays["reconstructions"].T.reshape(self.images.shape)
         self.features, self.torques = arrays["features"].T, arrays["torques"].T
+        self.unpaired = {name: arrays[name.replace(" ", "_")] for name in ("images without torque", "torques without image")}
         errors = image_errors(self.model, arrays["images"].T, arrays["reconstructions"].T)
         self.variation = errors.variation
         number_of = [np.repeat(np.arange(len(sizes)), sizes)  # the bag and the piece of each frame

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import base64
 import io
+import os
 
 import matplotlib
 matplotlib.use("Agg")  # no display needed
@@ -17,6 +18,7 @@ BLUE, VERMILLION, YELLOW, GREY, LIGHT = "#0072B2", "#D55E00", "#F0E442", "#66666
 WIDTH = 9.0  # [in]
 MAX_COLUMNS = 16  # pictures side by side
 RECONSTRUCTIONS = 8
+BAGS = 20
 
 
 def as_data_uri(figure):
@@ -141,6 +143,26 @@ def draw_line(data, decoder, low, high):
         axes[1].hist(data.features[:, 0], bins=40, color=BLUE)
     axes[1].set_ylabel("frames")
     axes[1].set_xlabel("feature $z_1$ [-]")
+    return figure
+
+
+def draw_pairing(data):
+    """When there are frames, and what could not be paired: a row for each of the bags, those first where most is missing."""
+    missing = sum(np.bincount(times[0].astype(int), minlength=len(data.bags["bag"])) for times in data.unpaired.values())
+    bags = np.sort(np.argsort(-missing, kind="stable")[:BAGS])
+    figure, (axes,) = new_axes(0.9 + 0.3 * len(bags))
+    frames = data.frames["bag"], data.frames["time_s"]
+    for (label, (numbers, times)), colour, shift in zip(
+            [("frames", frames)] + list(data.unpaired.items()), (GREY, VERMILLION, BLUE), (0.0, -0.3, 0.3)):
+        rows = np.searchsorted(bags, numbers)
+        shown = np.isin(numbers, bags)
+        axes.plot(times[shown], rows[shown] + shift, "|", color=colour, markersize=5,
+                  label="%s: %d" % (label, len(numbers)))
+    axes.set_yticks(np.arange(len(bags)))
+    axes.set_yticklabels([os.path.basename(data.bags["bag"][bag]) for bag in bags])
+    axes.set_ylim(len(bags) - 0.4, -0.6)
+    axes.set_xlabel("time since the bag's first frame [s]")
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncol=3, frameon=False)
     return figure
 
 

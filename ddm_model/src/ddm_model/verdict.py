@@ -54,11 +54,11 @@ def check_pairs(data):
     lost = data.bags["images_without_torque"].sum()
     share = lost / (lost + len(data.features))
     return Check("Images have their torques", share <= LOST,
-                 "%d of %d images (%s) have no torque with the same header stamp" % (
+                 "%d of %d images (%s) have no torque" % (
                      lost, lost + len(data.features), percent(share)),
                  "at most %s: each one splits the trial, and nothing is predicted across it" % percent(LOST),
-                 "Stamp each torque with the header stamp of the image that it answers, and record both topics from "
-                 "before the first image to after the last.")
+                 "Stamp each torque with the header stamp of the image that it answers, or command one at least every data_set/dt, "
+                 "and record both topics from before the first image to after the last.")
 
 
 def check_rate(data):
