@@ -18,7 +18,7 @@ packages_to_run=(
   ros-message-generation ros-message-runtime
   ros-std-msgs ros-sensor-msgs ros-geometry-msgs ros-actionlib-msgs ros-rosgraph-msgs ros-diagnostic-msgs
   ros-visualization-msgs
-  libstd-msgs-dev libsensor-msgs-dev libactionlib-msgs-dev libros-rosgraph-msgs-dev libdiagnostic-msgs-dev
+  libstd-msgs-dev libsensor-msgs-dev libgeometry-msgs-dev libactionlib-msgs-dev libros-rosgraph-msgs-dev libdiagnostic-msgs-dev
   libvisualization-msgs-dev
   # ROS in C++
   ros-std-srvs libstd-srvs-dev python3-std-srvs

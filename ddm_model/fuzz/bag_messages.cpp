@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Input: for each message its kind (1 byte), its size (2 bytes) and its bytes.
+#include <ddm_msgs/Torque.h>
 #include <ddm_msgs/message_bytes.h>
 
 #include <string>
