@@ -49,7 +49,8 @@ void requireFits(const std::string& path, const Configuration& configuration, co
     throw std::invalid_argument(text.str());
   };
   require(bag.data.torqueDim() == torque_dim, "torques a frame", bag.data.torqueDim(), torque_dim);
-  require(bag.camera == camera, "images", bag.camera, camera);
+  const bool fits = bag.camera == camera || configuration.model.data_set.ofOthers();
+  require(fits, "images", bag.camera, camera);
   const bool same_rate = bag.interval == 0.0 || std::abs(bag.interval - dt) <= kRateTolerance * dt;
   require(same_rate, "seconds between frames (dt)", bag.interval, dt);
 }

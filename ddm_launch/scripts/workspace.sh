@@ -18,8 +18,8 @@ packages_to_run=(
   ros-message-generation ros-message-runtime
   ros-std-msgs ros-sensor-msgs ros-geometry-msgs ros-actionlib-msgs ros-rosgraph-msgs ros-diagnostic-msgs
   ros-visualization-msgs
-  libstd-msgs-dev libsensor-msgs-dev libgeometry-msgs-dev libactionlib-msgs-dev libros-rosgraph-msgs-dev libdiagnostic-msgs-dev
-  libvisualization-msgs-dev
+  libstd-msgs-dev libsensor-msgs-dev libgeometry-msgs-dev libactionlib-msgs-dev libros-rosgraph-msgs-dev
+  libdiagnostic-msgs-dev libvisualization-msgs-dev
   # ROS in C++
   ros-std-srvs libstd-srvs-dev python3-std-srvs
   libroscpp-dev libactionlib-dev librosbag-dev libroslz4-dev libcv-bridge-dev libimage-transport-dev libroslib-dev

@@ -81,6 +81,14 @@ TEST_F(BagCacheTest, RefusesToMixCameras) {
       {small, large, "8x8 mono8", "16x16 mono8"}));
 }
 
+TEST_F(BagCacheTest, MixesCamerasWhereSomeBagsWereRecordedByOthers) {
+  BagOptions options;
+  options.dt = 0.2;
+  BagCache cache(testing::kToySize, options);
+  const std::string small = write("small.bag", toyTrial(5, 1));
+  EXPECT_EQ(cache.read({small, write("large.bag", toyTrial(5, 1, 16))}).numFrames(), 10);
+}
+
 TEST_F(BagCacheTest, RefusesToMixNumbersOfMotors) {
   const std::string one = write("one.bag", toyTrial(5, 1)), two = folder_.file("two.bag");
   {

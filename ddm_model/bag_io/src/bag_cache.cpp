@@ -40,7 +40,8 @@ DataSet BagCache::read(const std::vector<std::string>& paths) {
       throw std::runtime_error("bag " + path + " is given twice: it would count twice");
     }
     const BagContent& content = contentOf(path);
-    if (content.camera != camera || content.data.torqueDim() != torque_dim) {
+    const bool fits = content.camera == camera || options_.ofOthers();
+    if (!fits || content.data.torqueDim() != torque_dim) {
       throw std::runtime_error("bag " + path + " (" + content.camera + ", " +
                                std::to_string(content.data.torqueDim()) + " torque(s)) and bag " +
                                paths.front() + " (" + camera + ", " + std::to_string(torque_dim) +

@@ -21,6 +21,10 @@ struct BagOptions {
   std::vector<std::string> motors{};
   std::vector<int> crop{0, 0, 0, 0};  ///< of images: column, row, width, height; 0: to the edge
 
+  /// Whether some of the bags were recorded otherwise than this project does. Then their cameras
+  /// may differ: it is for who says so to see that the images look alike.
+  bool ofOthers() const { return dt > 0.0 || crop != std::vector<int>{0, 0, 0, 0}; }
+
   template <class Visitor>
   void visit(Visitor& visitor) {
     visitor("image_topic", image_topic);
