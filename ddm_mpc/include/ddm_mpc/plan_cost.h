@@ -7,11 +7,12 @@
 
 namespace ddm {
 
-/// Cost of the torques u_0 ... u_{K-1} from a current state on, which the implementation holds:
+/// Cost of the torques u_0 ... u_{K-1} from a current state on, which the implementation holds. With
+/// `mpc/cost: distance`
 ///
 ///   J(U) = sum_{k=1}^{K} |z_k - z_ref|^2 + lambda |u_{k-1}|^2
 ///
-/// Implementations differ in whose predictions z_k are: eq. (7) of the paper plans with a known
+/// and DdmPlanCost has another. Implementations differ in whose predictions z_k are: eq. (7) of the paper plans with a known
 /// model of the state, eq. (9) in feature space. Deviation: the paper's sum runs over z_0 ...
 /// z_{K-1}, in which z_0 is a constant and u_{K-1} acts on nothing; here it runs over the K
 /// features that the K torques bring about.
