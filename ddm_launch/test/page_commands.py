@@ -14,7 +14,7 @@ RUN_HERE = {"run_experiment", "sweep", "figure film_strip", "figure learning_cur
 ELSEWHERE = {"reproduce_paper": "reproduce_paper_test.py", "reproduce_efficient": "reproduce_efficient_test.py",
              "benchmark": "benchmark_test.py", "planning_budget": "benchmark_programs_test.py",
              "growth": "growth_test.py", "fault_table": "fault_table_test.py", "soak": "soak_test.py",
-             "rviz_screenshot": "rviz_test.py",
+             "rviz_screenshot": "rviz_test.py", "task_diagnosis": "task_diagnosis_test.py",
              "robot.launch": "robot_loop_test.py", "robot_check.launch": "robot_loop_test.py",
              "part.launch": "several_machines_test.py", "test.sh": "scripts_test.py", "fuzz.sh": "fuzzing_test.py",
              "decode_features": "../../ddm_model/test/decode_features_test.cpp",
