@@ -126,6 +126,8 @@ TEST_F(OtherBags, NumbersWithoutAHeader) {
   writeFloats();
   close();
   expectAllFrames();
+  options_.motors = {"arm"};
+  EXPECT_TRUE(isRefused({"command", "std_msgs/Float64", "data_set/motors"}));
 }
 
 TEST_F(OtherBags, ArraysOfNumbersWithoutAHeader) {

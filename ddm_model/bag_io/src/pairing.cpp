@@ -10,8 +10,8 @@
 namespace ddm {
 namespace {
 
-constexpr double kGap = 1.5;       // in median intervals
-constexpr double kQuarter = 0.25;  // of dt: how far an image may be from where it is due
+constexpr double kGap = 1.5;         // in median intervals
+constexpr double kTolerance = 0.25;  // of dt: how far an image may be from where it is due
 
 bool isEarlier(const TimedTorque& a, const TimedTorque& b) { return a.time < b.time; }
 
@@ -47,7 +47,7 @@ std::vector<std::pair<ros::Time, bool>> pickImages(const std::set<ros::Time>& im
       const ros::Time time = picked.back().first + ros::Duration(dt);
       const auto candidate = nearest(images, time);
       const double off = (*candidate - time).toSec();
-      if (std::abs(off) <= kQuarter * dt) {
+      if (std::abs(off) <= kTolerance * dt) {
         picked.emplace_back(*candidate, false);
         image = std::next(candidate);
         continue;
@@ -102,7 +102,7 @@ Pairs pairByStamp(const std::set<ros::Time>& images, std::vector<TimedTorque> to
 
 Pairs pairInTime(const std::set<ros::Time>& images, std::vector<TimedTorque> torques, double dt) {
   const double apart = medianInterval({images.begin(), images.end()});
-  if (apart > (1.0 + kQuarter) * dt) {
+  if (apart > (1.0 + kTolerance) * dt) {
     std::ostringstream text;
     text << "its images are " << apart << " s apart, and frames must be data_set/dt = " << dt
          << " s apart: make that as long as images are apart, or longer";

@@ -56,6 +56,10 @@ TorqueReader::Values TorqueReader::byName(const std::vector<std::string>& names,
 
 std::optional<TimedTorque> TorqueReader::read(const BagMessage& message) {
   const BagConnection& connection = message.connection;
+  if (!motors_.empty() && connection.type.rfind("std_msgs/", 0) == 0) {
+    throw std::runtime_error("topic " + connection.topic + " has type " + connection.type +
+                             ", whose numbers have no names: leave data_set/motors empty");
+  }
   TimedTorque out{message.recorded, {}};
   if (connection.type == "std_msgs/Float64") {
     out.torque = {parse<std_msgs::Float64>(message).data};

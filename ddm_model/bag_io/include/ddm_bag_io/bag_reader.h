@@ -15,7 +15,7 @@ struct BagOptions {
   std::string image_topic = "camera/image_raw";  ///< sensor_msgs/Image or CompressedImage
   std::string torque_topic = "torque";           ///< see readBag()
   std::string goal_topic = "goal_image";         ///< as images, may be missing in the bag
-  double dt = 0.0;  ///< how far apart frames are where torques are no ddm_msgs/Torque [s]
+  double dt = 0.0;  ///< time between frames, for bags without ddm_msgs/Torque [s]
   /// Joints of a sensor_msgs/JointState, or parts ("torque.z") of a geometry_msgs/WrenchStamped;
   /// empty: all joints, in the message's order.
   std::vector<std::string> motors{};
