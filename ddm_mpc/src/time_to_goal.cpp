@@ -16,8 +16,9 @@ constexpr double kWorst = 1.0 / (1.0 - kGamma);  // V_max: never at the goal
 constexpr double kOptimism = 0.8;         // V_0 in units of V_max while the plant is explored
 constexpr double kSmoothness = 1.4;       // h in units of how far landmarks are apart
 constexpr double kSmallestWeight = 1e-4;  // of a landmark that still counts
-constexpr int kMaxSweeps = 1000;
-constexpr double kTolerance = 1e-3;                  // largest change of a V_i in the last sweep
+constexpr int kMaxSweeps = 1000;          // that compare all torques
+constexpr int kPolicySweeps = 20;         // that follow the best ones, after each of those
+constexpr double kTolerance = 1e-3;       // largest change of a V_i in the last sweep
 const double kUnknown = std::exp(-0.5 * 3.0 * 3.0);  // w_0: a landmark 3 h away weighs as much
 
 /// All combinations of -max, 0 and max.
@@ -151,24 +152,49 @@ void TimeToGoal::setGoal(const Eigen::VectorXd& z_ref) {
     costs.emplace_back();
     for (const Outcome& outcome : outcomes) costs.back().push_back(costOf(outcome));
   }
+  iterate(costs);
+}
+
+/// Modified policy iteration: to compare all torques takes 3^torque_dim times as long as to follow the best ones, and what is
+/// best soon stays so.
+/// @param costs  of each outcome on its way
+void TimeToGoal::iterate(const std::vector<std::vector<double>>& costs) {
   const double discount = std::pow(kGamma, kHoldSteps), unknown = unknownValue();
   values_.setConstant(points_.cols(), kWorst);
+  const auto valueOf = [&](size_t i, size_t k) {
+    const Outcome& outcome = outcomes_[i][k];
+    double gain = 0.0;  // on V_0
+    for (size_t j = 0; j < outcome.landmarks.size(); ++j) {
+      gain += outcome.weights[j] * (unknown - values_[outcome.landmarks[j]]);
+    }
+    return costs[i][k] + discount * (unknown - gain);
+  };
+  const auto set = [this](size_t i, double value) {
+    const double change = std::abs(value - values_[static_cast<Eigen::Index>(i)]);
+    values_[static_cast<Eigen::Index>(i)] = value;
+    return change;
+  };
+  std::vector<size_t> best(outcomes_.size(), 0);
   double change = std::numeric_limits<double>::infinity();
   for (int sweep = 0; sweep < kMaxSweeps && change > kTolerance; ++sweep) {
     change = 0.0;
     for (size_t i = 0; i < outcomes_.size(); ++i) {
-      double best = kWorst;
+      double least = std::numeric_limits<double>::infinity();
       for (size_t k = 0; k < outcomes_[i].size(); ++k) {
-        const Outcome& outcome = outcomes_[i][k];
-        double gain = 0.0;  // on V_0
-        for (size_t j = 0; j < outcome.landmarks.size(); ++j) {
-          gain += outcome.weights[j] * (unknown - values_[outcome.landmarks[j]]);
+        const double value = valueOf(i, k);
+        if (value < least) {
+          least = value;
+          best[i] = k;
         }
-        best = std::min(best, costs[i][k] + discount * (unknown - gain));
       }
-      double& value = values_[static_cast<Eigen::Index>(i)];
-      change = std::max(change, std::abs(best - value));
-      value = best;
+      change = std::max(change, set(i, std::min(least, kWorst)));
+    }
+    double followed = change;
+    for (int i = 0; i < kPolicySweeps && followed > kTolerance; ++i) {
+      followed = 0.0;
+      for (size_t j = 0; j < outcomes_.size(); ++j) {
+        followed = std::max(followed, set(j, std::min(valueOf(j, best[j]), kWorst)));
+      }
     }
   }
 }

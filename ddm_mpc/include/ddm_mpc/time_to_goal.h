@@ -72,6 +72,7 @@ class TimeToGoal {
   Eigen::ArrayXd kernel(const Eigen::VectorXd& point) const;
   Outcome outcomeOf(const Eigen::MatrixXd& path, const Eigen::VectorXd& start) const;
   double unknownValue() const;
+  void iterate(const std::vector<std::vector<double>>& costs);
 
   Eigen::MatrixXd torques_;
   double spread_ = 1.0;                         // of features
