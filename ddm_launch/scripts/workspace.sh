@@ -37,7 +37,7 @@ packages_to_run=(
   python3-rosparam python3-rosmsg python3-dynamic-reconfigure python3-diagnostic-msgs python3-visualization-msgs
   rosbash rospack-tools
   # what one sees: rviz and figures
-  rviz python3-matplotlib python3-numpy python3-pil python3-tqdm python3-yaml
+  rviz python3-matplotlib python3-numpy python3-pandas python3-pil python3-tqdm python3-yaml
   # sweeps
   parallel
 )

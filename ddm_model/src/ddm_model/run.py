@@ -1,0 +1,86 @@
+# A run folder in pandas: its models, and each step of its trials and evaluations.
+# SPDX-License-Identifier: BSD-3-Clause
+import collections
+import os
+import re
+
+import pandas as pd
+import yaml
+
+# config: effective configuration, as nested dictionaries
+# trials: trials.csv, one row for each model, indexed by its trial
+# steps: one row for each step of all trials and evaluations, indexed by (kind, trial, episode, step) with kind "trial" or
+#   "evaluation": torques [N m], exploratory, and where they are known the plant's true state and the goal distance [spread of the
+#   features], with the columns of torques.csv, trajectory.csv and goal_distance.csv
+Run = collections.namedtuple("Run", "config trials steps")
+
+FOLDER = re.compile(r"(trial|evaluation)_(\d+)$")
+EPISODE = re.compile(r"episode_(\d+)$")
+STEP_TABLES = ("torques.csv", "trajectory.csv", "goal_distance.csv")
+INDEX = ["kind", "trial", "episode", "step"]
+
+
+class RunFolderError(ValueError):
+    """The folder is not one of an experiment, or a table in it is damaged."""
+
+
+def _read_table(path, *columns):
+    """columns: those without which it is none of ours."""
+    try:
+        table = pd.read_csv(path, float_precision="round_trip")  # the numbers as they were written
+    except (OSError, UnicodeDecodeError, pd.errors.EmptyDataError, pd.errors.ParserError) as error:
+        raise RunFolderError("cannot read %s: %s; give a folder that experiment.launch or run_experiment has written"
+                             % (path, getattr(error, "strerror", None) or error)) from error
+    missing = [name for name in columns if name not in table.columns]
+    if missing:
+        raise RunFolderError("%s has no column '%s', only %s: give a folder that experiment.launch or run_experiment has "
+                             "written" % (path, "', '".join(missing), ", ".join(table.columns)))
+    return table
+
+
+def _read_config(folder):
+    path = os.path.join(folder, "config.yaml")
+    try:
+        with open(path, encoding="utf-8") as stream:
+            config = yaml.safe_load(stream)
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        raise RunFolderError("cannot read %s: %s; give a folder that experiment.launch or run_experiment has written"
+                             % (path, getattr(error, "strerror", None) or error)) from error
+    if not isinstance(config, dict):
+        raise RunFolderError("%s must hold the blocks of a configuration, and holds %r" % (path, config))
+    return config
+
+
+def _recordings(folder):
+    """(kind, trial, episode, folder) of what has its torques: an interrupted trial has none."""
+    for name in sorted(os.listdir(folder)):
+        match = FOLDER.match(name)
+        if not match:
+            continue
+        path = os.path.join(folder, name)
+        episodes = [(int(found.group(1)), os.path.join(path, found.group(0)))
+                    for found in map(EPISODE.match, sorted(os.listdir(path))) if found]
+        for episode, where in [(0, path)] + episodes:
+            if os.path.isfile(os.path.join(where, STEP_TABLES[0])):
+                yield match.group(1), int(match.group(2)), episode, where
+
+
+def _read_steps(folder):
+    parts = []
+    for kind, trial, episode, where in _recordings(folder):
+        tables = [_read_table(os.path.join(where, name), "step").set_index("step") for name in STEP_TABLES
+                  if os.path.isfile(os.path.join(where, name))]
+        steps = pd.concat(tables, axis=1).reset_index()
+        parts.append(steps.assign(kind=kind, trial=trial, episode=episode))
+    if not parts:
+        return pd.DataFrame(index=pd.MultiIndex.from_arrays([[]] * len(INDEX), names=INDEX))
+    return pd.concat(parts, ignore_index=True).set_index(INDEX)
+
+
+def read_run(folder):
+    """The Run in a folder of experiment.launch or run_experiment, which may be under way.
+
+    Raises RunFolderError if there is none, or if one of its tables cannot be read.
+    """
+    trials = _read_table(os.path.join(folder, "trials.csv"), "trial", "frames").set_index("trial")
+    return Run(_read_config(folder), trials, _read_steps(folder))
