@@ -180,6 +180,45 @@ Candidate run(Problem* problem, Eigen::VectorXd initial_theta, const Schedule& s
   return candidate;
 }
 
+/// Numbers of frames that the chosen start goes on with: twice as many each time, up to all. What can be learned from few
+/// need not be learned from all.
+/// @param first  training/selection_frames; 0: all at once
+std::vector<Eigen::Index> growingFrames(Eigen::Index first, Eigen::Index all) {
+  std::vector<Eigen::Index> counts;
+  if (first > 0) {
+    for (Eigen::Index count = first; count < all; count *= 2) counts.push_back(count);
+  }
+  counts.push_back(all);
+  return counts;
+}
+
+/// Minimises schedule.finish on more and more frames, about as many iterations on each.
+/// @param best    in: the start that was chosen, out: what it came to
+/// @param result  as of runStage()
+/// @return        the problem of all frames
+std::unique_ptr<Problem> finish(const Schedule& schedule, const TrainingOptions& training,
+                                const TrainingData<float>& data, Eigen::Index longer_than,
+                                Progress* progress, Candidate* best, TrainingResult* result) {
+  const int torque_dim = static_cast<int>(data.torques.rows());
+  const ModelOptions& model = best->problem->options;
+  if (!schedule.finish) return std::make_unique<Problem>(model, torque_dim, data);
+  std::unique_ptr<Problem> problem;
+  const std::vector<Eigen::Index> counts =
+      growingFrames(training.selection_frames, data.torques.cols());
+  int rest = schedule.finish->max_iterations;
+  for (size_t i = 0; i < counts.size() && !result->cancelled; ++i) {
+    problem = std::make_unique<Problem>(model, torque_dim, evenPart(data, counts[i], longer_than));
+    Stage stage = *schedule.finish;
+    stage.max_iterations = rest / static_cast<int>(counts.size() - i);
+    rest -= stage.max_iterations;
+    if (stage.max_iterations == 0) continue;
+    runStage(stage, training, problem->networks, progress, &problem->objective, &best->theta,
+             result);
+    best->message = result->message;
+  }
+  return problem;
+}
+
 /// Makes the model of a candidate that is done.
 /// @param problem  of all frames
 void fillIn(Problem* problem, const Candidate& best, const DataSet& data, const Pca& pca,
@@ -207,11 +246,12 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
   const Pca pca =
       fitPca(data, model.pca_dim, training.score_std, Blur(data.imageSize(), model.blur));
   const TrainingData<float> training_data = makeTrainingData(data, pca);
-  const auto problems = makeProblems(model, training, data.torqueDim(),
-                                     training.selection_frames > 0
-                                         ? evenPart(training_data, training.selection_frames,
-                                                    model.order + largestDelay(model, training))
-                                         : training_data);
+  const int longer_than = model.order + largestDelay(model, training);
+  const auto problems =
+      makeProblems(model, training, data.torqueDim(),
+                   training.selection_frames > 0
+                       ? evenPart(training_data, training.selection_frames, longer_than)
+                       : training_data);
   const Eigen::MatrixXd scores = training_data.scores.cast<double>();
   const Schedule schedule = makeSchedule(training);
   Progress progress(callback, schedule, training.num_starts * static_cast<int>(problems.size()),
@@ -230,15 +270,11 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
     }
   }
   if (best.theta.size() > 0 && !result.cancelled) {
-    Problem problem(best.problem->options, data.torqueDim(), training_data);  // all frames
-    if (schedule.finish) {
-      runStage(*schedule.finish, training, problem.networks, &progress, &problem.objective,
-               &best.theta, &result);
-      best.message = result.message;
-    }
+    const std::unique_ptr<Problem> problem =
+        finish(schedule, training, training_data, longer_than, &progress, &best, &result);
     if (!result.cancelled) {
       result.message = best.message;
-      fillIn(&problem, best, data, pca, schedule, std::move(info), &result);
+      fillIn(problem.get(), best, data, pca, schedule, std::move(info), &result);
     }
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();

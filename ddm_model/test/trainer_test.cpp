@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 
 #include "ddm_model/long_term_prediction.h"
@@ -254,6 +255,23 @@ TEST_F(Trainer, ComparesStartsOnAPartAndLearnsFromAllFrames) {
   EXPECT_LT(part.final_cost, 1.5 * all.final_cost);
   training_.selection_frames = 60;
   EXPECT_EQ(run().model->theta(), all.model->theta());
+}
+
+TEST_F(Trainer, GoesOnWithTheSameFramesAndThenWithTwiceAsMany) {
+  training_.function_tolerance = 0.0;
+  training_.max_iterations = 30;
+  training_.selection_iterations = 10;
+  training_.selection_frames = 30;
+  std::map<int, double> errors;  // V_R + V_P by iteration, sums over the frames
+  const TrainingResult result = run([&](const TrainingProgress& progress) {
+    errors[progress.iteration] = progress.v_r + progress.v_p;
+    return true;
+  });
+  ASSERT_TRUE(result.model) << result.message;
+  EXPECT_EQ(result.iterations, 30);
+  EXPECT_LT(errors.at(18), errors.at(12));
+  EXPECT_GT(errors.at(21), 1.3 * errors.at(18));
+  EXPECT_LT(errors.at(30), errors.at(21));
 }
 
 TEST(EvenPart, HasStretchesSpreadOverAllFramesAndTheGoal) {

@@ -31,7 +31,7 @@ struct Stage {
 struct Schedule {
   bool pca_start = true;        ///< auto-encoder starts from layer-wise PCA; false: at random
   std::vector<Stage> stages;    ///< at least one; each start goes through them
-  std::optional<Stage> finish;  ///< for the start that is chosen, alone
+  std::optional<Stage> finish;  ///< for the start that is chosen, alone, on more and more frames
 
   /// The terms that any stage minimises.
   Terms terms() const;
