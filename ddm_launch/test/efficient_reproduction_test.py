@@ -27,6 +27,7 @@ EVALUATE = """mkdir -p "$8" && echo "$4 $6" > "$8/asked" && printf 'seed,success
 # Keeps the run folders that are given before the last two words, --out FILE.csv.
 DIAGNOSIS = """while [ $# -gt 2 ]; do echo "$1"; shift; done > "$out"
 """
+PLANTS = sorted({task.plant for task in reproduce_efficient.TASKS.values()})
 SEEDS = ["--seeds", "100:125", "--ablation-seeds", "0:4"]
 
 
@@ -37,12 +38,13 @@ class EfficientReproductionTest(ScratchCase):
                            ("methods/pilco_state", "trial: {num_steps: 125}\n"),
                            ("methods/oracle", "mpc: {horizon: 15}\n"),
                            ("pendulum", "plant: {length: 1.0}\n"), ("pendulum_gravity", "plant: {gravity: 9.82}\n"),
-                           *((plant, "plant: {dt: 0.1}\n") for plant in reproduce_efficient.TASKS),
+                           *((plant, "plant: {dt: 0.1}\n") for plant in PLANTS),
                            ("ablations/widths", "# Narrow.\n\nmodel: {%s}\n" % WIDTHS),
                            ("ablations/residual", "# Without residual.\n\nmodel: {residual: false, %s}\n" % WIDTHS),
                            ("tried/starts", "# 8 starts.\n\ntraining: {num_starts: 8}\n"),
                            ("sparse_gp", "sparse_gp: {max_points: 300}\n"),
-                           ("nuisances/thin_rod", "# A rod half as wide.\n"), ("nuisances/noise", "# Noise.\n")):
+                           ("nuisances/thin_rod", "# A rod half as wide.\n"), ("nuisances/noise", "# Noise.\n"),
+                           ("nuisances/scene_camera", "# Elsewhere.\n"), ("nuisances/scene_colours", "# Others.\n")):
             self.writeConfig(name, text)
 
         self.writeRunExperiment(code=1)
@@ -56,7 +58,7 @@ class EfficientReproductionTest(ScratchCase):
                 name, os.path.join(PACKAGE, "scripts", name))
 
         def package_path(*names, package="ddm_launch"):
-            plants = ("pendulum", "pendulum_gravity") + tuple(reproduce_efficient.TASKS)
+            plants = ["pendulum", "pendulum_gravity"] + PLANTS
             self.assertEqual(package == "ddm_sim", names[-1][:-len(".yaml")] in plants, names)
             return os.path.join(self.scratch if names[0] == "config" else PACKAGE, *names)
 
@@ -141,6 +143,13 @@ class EfficientReproductionTest(ScratchCase):
             "gravity_pilco_state": ("gravity/pilco_state/trials.csv", 1800.0,
                                     "--seeds 100:103" + words + "15 -- --method pilco_state --config /config/sparse_gp.yaml")})
 
+    def test_scene_nuisances_have_ten_seeds_and_twice_the_frames(self):
+        steps = self.steps("tasks")
+        self.assertEqual(steps["task_suite_pendulum"][2], "--seeds 100:120 --preset efficient --plant suite_pendulum --trials 9")
+        for name in ("scene_camera", "scene_colours"):
+            self.assertEqual(steps["task_suite_pendulum_" + name][2], "--seeds 100:110 --preset efficient --plant "
+                             "suite_pendulum --trials 19 -- --nuisance " + name)
+
     def test_each_nuisance_has_twenty_seeds_and_500_frames(self):
         words = "--seeds 100:120 --preset efficient --plant pendulum --trials 4 -- --nuisance "
         self.assertEqual(self.steps("nuisances"), {
@@ -188,11 +197,19 @@ class EfficientReproductionTest(ScratchCase):
         self.assertEqual(machine["preset"], "efficient")
         self.assertEqual({name: step["seeds_run"] for name, step in machine["steps"].items()}, {
             "efficient": 25, "ablation_preset": 4, "ablation_residual": 4, "ablation_widths": 4, "tried_starts": 4, "gravity": 20,
-            "gravity_oracle": 20, "gravity_pilco_state": 4, "nuisance_noise": 20, "nuisance_thin_rod": 20, **{"task_" + plant: 20 for plant in reproduce_efficient.TASKS}})
+            "gravity_oracle": 20, "gravity_pilco_state": 4, "nuisance_noise": 20, "nuisance_thin_rod": 20, "task_two_link": 20,
+            "task_suite_pendulum": 20, "task_suite_reacher": 20, "task_suite_pendulum_scene_camera": 10,
+            "task_suite_pendulum_scene_colours": 10})
         self.assertRegex(output, r"(?m)^no .*nuisances, 200 to 500 frames.*0.000")
         self.assertRegex(output, r"(?m)^yes .*suite_pendulum with a mean return of 700: >= 16 of 20; here 20 of 20")
+        self.assertRegex(output, r"(?m)^yes .*suite_pendulum_scene_camera with a mean return of 700: >= 5 of 10; here 10 of 10")
         self.assertRegex(output, r"(?m)^no .*suite_reacher with a mean return of 800: >= 16 of 20; here 0 of 20")
         self.assertRegex(output, r"(?m)^yes .*mean success of two_link, 1000 to 2000 frames.*1.000")
+
+    def test_one_task_with_its_nuisance_alone(self):
+        self.assertWorks("--only", "tasks", "--tasks", "suite_pendulum_scene_camera")
+        self.assertEqual(os.listdir(self.file(self.out, "tasks")), ["suite_pendulum_scene_camera"])
+        self.assertEqual(list(read_yaml(self.out, "machine.yaml")["steps"]), ["task_suite_pendulum_scene_camera"])
 
     def test_an_ablation_that_changes_nothing_is_told(self):
         output = self.assertWorks("--only", "ablation")

@@ -27,8 +27,9 @@ class ReproduceEfficientTest(ScratchCase):
     def test_run_experiment_accepts_the_preset_for_gravity_with_each_method_and_for_each_task(self):
         for method in ("ddm", "oracle"):
             self.assertAccepts("--preset", "efficient", "--plant", "pendulum_gravity", "--method", method)
-        for plant in TASKS:
-            self.assertAccepts("--preset", "efficient", "--plant", plant)
+        for task in TASKS.values():
+            self.assertAccepts("--preset", "efficient", "--plant", task.plant,
+                               *(["--nuisance", task.nuisance] if task.nuisance else []))
 
     def test_headline_and_ablation_come_to_tables_and_figures(self):
         code, output = call([find_program("ddm_launch", "reproduce_efficient"), "--preset", "debug", "--seeds",

@@ -154,23 +154,26 @@ class EfficientReproduction(StepRunner):
             "nuisances": self.figure("study_figure", "nuisances_compared", [self.path("nuisances.csv")], "nuisances")})
 
     def tasks(self):
-        steps = {plant: self.step("task_" + plant, os.path.join("tasks", plant), self.few_seeds, task.num_trials,
-                                  plant=plant) for plant, task in TASKS.items()}
+        tasks = {name: TASKS[name] for name in self.options.tasks}
+        steps = {name: self.step("task_" + name, os.path.join("tasks", name), self.options.seeds[:task.num_seeds],
+                                 task.num_trials, ["--nuisance", task.nuisance] if task.nuisance else [], task.plant)
+                 for name, task in tasks.items()}
+        suite = [name for name in tasks if name in SUITE]
 
         def write_tables():
-            for plant, step in steps.items():
-                self.keep_config(step, os.path.join("tasks", plant, "config.yaml"))
-                self.call("diagnosis_of_" + plant, [
+            for name, step in steps.items():
+                self.keep_config(step, os.path.join("tasks", name, "config.yaml"))
+                self.call("diagnosis_of_" + name, [
                     find_program("task_diagnosis"), *step.seed_folders(self.out).values(),
-                    "--out", self.path("tasks", plant, "diagnosis.csv")])
-            for plant in SUITE:
-                write_last_models(self.out, plant, self.evaluate_last_models(steps[plant]))
+                    "--out", self.path("tasks", name, "diagnosis.csv")])
+            for name in suite:
+                write_last_models(self.out, name, self.evaluate_last_models(steps[name]))
             write_tasks(self.out, list(steps))
 
         return Part(list(steps.values()), write_tables, lambda: {
-            plant: self.figure("study_figure", "task_compared", [
-                self.path("tasks.csv"), "--task", plant, "--published",
-                package_path("results", "published", "suite_returns.csv")], plant) for plant in SUITE})
+            name: self.figure("study_figure", "task_compared", [
+                self.path("tasks.csv"), "--task", name, "--published",
+                package_path("results", "published", "suite_returns.csv")], name) for name in suite})
 
     def evaluate_last_models(self, step):
         """{seed: folder of evaluate} of a sweep; what is there is not made again."""
@@ -212,6 +215,8 @@ def main(arguments=None):
     parser.add_argument("--out", default="efficient_results", metavar="DIR", help="default efficient_results")
     parser.add_argument("--only", nargs="+", choices=PARTS, default=PARTS, metavar="PART",
                         help="make only these parts: %s" % ", ".join(PARTS))
+    parser.add_argument("--tasks", nargs="+", choices=TASKS, default=list(TASKS), metavar="TASK",
+                        help="make only these of the part tasks: %s" % ", ".join(TASKS))
     parser.add_argument("--preset", default="efficient",
                         help="default efficient; debug is for a quick look at the path")
     parser.add_argument("--pilco-seeds", type=number(int, 0), default=4, metavar="N",
