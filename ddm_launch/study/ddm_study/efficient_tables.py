@@ -17,7 +17,7 @@ PRESET = "preset"  # folder of the ablation's reference
 GRAVITY = (("ddm", "gravity/trials.csv"), ("pilco_state", "gravity/pilco_state/trials.csv"),
            ("oracle", "gravity/oracle/trials.csv"))  # method, table
 
-# The bars. With fewer seeds there is no verdict.
+# What the results must reach. Runs of fewer seeds get no verdict.
 SEEDS, FEW_SEEDS, FEWEST_SEEDS = 50, 20, 10
 
 # A task of the DeepMind Control Suite: its name there, a physics frame [s], and the last models of how many seeds must have which

@@ -32,9 +32,9 @@ parts (--only), in this order, and what they leave in DIR:
                gravity.csv, gravity.png
   nuisances    nuisances/NAME/trials.csv, nuisances.csv, nuisances.png: under each file of config/nuisances
                that is not one of a scene
-  tasks        tasks/PLANT/trials.csv of harder plants (%s); tasks.csv;
-               tasks/PLANT/diagnosis.csv of task_diagnosis; of those of the DeepMind Control Suite
-               tasks/PLANT/last_models.csv, ten episodes of each seed's last model, and PLANT.png
+  tasks        tasks/TASK/trials.csv of harder plants, and of one with another camera and other colours (%s); tasks.csv;
+               tasks/TASK/diagnosis.csv of task_diagnosis; of those of the DeepMind Control Suite
+               tasks/TASK/last_models.csv, ten episodes of each seed's last model, and TASK.png
 bars.csv holds what the results must reach and whether they do, machine.yaml how each step was made, runs/ and logs/
 everything that the programs left. A step whose files have changed since it was made is refused. The columns are explained
 in doc/reference/run_folder.md.""" % ", ".join(TASKS)
