@@ -5,7 +5,7 @@
 # played by this one.
 packages_to_test=(
   catkin-lint catkin-tools clang-format python3-wstool git
-  clang libclang-rt-dev llvm
+  clang libclang-rt-dev libomp-dev llvm
   xvfb imagemagick
   openssh-client openssh-server iproute2 nftables
   slurmctld slurmd slurm-client munge

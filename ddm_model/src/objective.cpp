@@ -8,7 +8,8 @@
 namespace ddm {
 namespace {
 
-constexpr Eigen::Index kBlock = 128;  // samples whose activations stay in the first-level cache
+constexpr Eigen::Index kMaxPart = 128;  // images whose activations stay in cache
+constexpr size_t kLanes = 8;  // sums that are computed at once, however many processors there are
 
 /// Sum of the squared weights of a network, its biases not among them.
 template <class Scalar>
@@ -32,12 +33,18 @@ void addDecay(const Mlp<Scalar>& net, const Scalar* theta, Scalar price, Scalar*
 
 template <class Scalar>
 JointObjective<Scalar>::JointObjective(const Networks<Scalar>& networks, TrainingData<Scalar> data)
-    : networks_(networks), data_(std::move(data)), roll_out_(networks.prediction_model) {
+    : networks_(networks), data_(std::move(data)) {
   const PredictionModel<Scalar>& f = networks_.prediction_model;
   const Eigen::Index num_images = data_.scores.cols();
   if (data_.scores.rows() != networks_.encoder().inputDim() ||
       data_.torques.rows() != f.torqueDim() || data_.torques.cols() > num_images) {
     throw std::invalid_argument("objective: scores or torques do not fit the networks");
+  }
+  const Eigen::Index num_parts = std::max<Eigen::Index>(1, (num_images + kMaxPart - 1) / kMaxPart);
+  const Eigen::Index part_size = (num_images + num_parts - 1) / num_parts;
+  for (Eigen::Index begin = 0; begin < num_images; begin += part_size) {
+    const Eigen::Index first = std::max<Eigen::Index>(begin - f.memory(), 0);
+    parts_.push_back({first, begin, std::min(begin + part_size, num_images), {}, {}});
   }
   std::sort(data_.pieces.begin(), data_.pieces.end(),
             [](const Piece& a, const Piece& b) { return a.begin < b.begin; });
@@ -46,50 +53,40 @@ JointObjective<Scalar>::JointObjective(const Networks<Scalar>& networks, Trainin
       throw std::invalid_argument("objective: a piece reaches beyond the frames");
     }
     for (Eigen::Index i = f.memory(); i < piece.size; ++i) {
-      targets_.push_back(piece.begin + i);
-      piece_end_.push_back(piece.begin + piece.size);
+      Part& part = parts_[(piece.begin + i) / part_size];
+      part.targets.push_back(piece.begin + i - part.first);
+      part.piece_end.push_back(piece.begin + piece.size - part.first);
     }
   }
-  if (targets_.empty()) {
+  if (numPredictions() == 0) {
     throw std::invalid_argument(
         "no prediction can be learned: each piece of the data (frames without a gap, each with its "
         "torque) needs more than model/order + model/delay = " +
         std::to_string(f.memory()) + " frames");
   }
   weight_ = 1.0 / std::max(1e-30, static_cast<double>(data_.scores.squaredNorm()));
-
-  const Eigen::Index num_blocks = (num_images + kBlock - 1) / kBlock;
-  for (Eigen::Index block = 0; block <= num_blocks; ++block) {
-    const auto first = std::lower_bound(targets_.begin(), targets_.end(), blockBegin(block));
-    block_target_.push_back(first - targets_.begin());
-  }
+  lanes_ = std::vector<Lane>(std::min(parts_.size(), kLanes), Lane(f));
   features_.resize(f.featureDim(), num_images);
-  d_features_.resize(f.featureDim(), num_images);
+}
+
+template <class Scalar>
+Eigen::Index JointObjective<Scalar>::numPredictions() const {
+  size_t sum = 0;
+  for (const Part& part : parts_) sum += part.targets.size();
+  return static_cast<Eigen::Index>(sum);
 }
 
 /// Memory for predictions so many steps ahead.
 template <class Scalar>
 void JointObjective<Scalar>::reserve(int num_steps) {
-  if (residual_.cols() >= (1 + num_steps) * kBlock) return;
-  encoder_tapes_.resize(1 + blocksOf(num_steps - 1) + blocksOf(networks_.prediction_model.order()));
-  roll_out_.reserve(kBlock, num_steps);
-  residual_.resize(data_.scores.rows(), (1 + num_steps) * kBlock);
-}
-
-/// How many blocks away from its own a frame may lie that is so many frames away.
-template <class Scalar>
-Eigen::Index JointObjective<Scalar>::blocksOf(Eigen::Index frames) const {
-  return (frames + kBlock - 1) / kBlock;
-}
-
-template <class Scalar>
-Eigen::Index JointObjective<Scalar>::blockBegin(Eigen::Index block) const {
-  return std::min(block * kBlock, data_.scores.cols());
-}
-
-template <class Scalar>
-Eigen::Index JointObjective<Scalar>::blockSize(Eigen::Index block) const {
-  return blockBegin(block + 1) - blockBegin(block);
+  const Eigen::Index columns = (1 + num_steps) * kMaxPart;
+  for (Lane& lane : lanes_) {
+    lane.d_theta.resize(networks_.numParams());
+    if (lane.residual.cols() >= columns) continue;
+    lane.roll_out.reserve(kMaxPart, num_steps);
+    lane.d_features.resize(features_.rows(), kMaxPart + networks_.prediction_model.memory());
+    lane.residual.resize(data_.scores.rows(), columns);
+  }
 }
 
 template <class Scalar>
@@ -97,174 +94,171 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::evaluate(const Ve
                                                                         Vector* d_theta,
                                                                         const Terms& terms) {
   eigen_assert(theta.size() == networks_.numParams() && terms.prediction_steps >= 1);
-  reserve(terms.prediction_steps);
-  Scalar* gradient = nullptr;
+  sumOverParts(theta, terms, d_theta != nullptr, nullptr);
+  Value value;
+  for (const Lane& lane : lanes_) {
+    value.v_r += lane.value.v_r;
+    value.v_p += lane.value.v_p;
+  }
   if (d_theta != nullptr) {
     d_theta->setZero(theta.size());
-    gradient = d_theta->data();
+    for (const Lane& lane : lanes_) *d_theta += 2 * lane.d_theta;
   }
-  const auto num_blocks = static_cast<Eigen::Index>(block_target_.size()) - 1;
-  const Eigen::Index ahead = blocksOf(terms.prediction_steps - 1);
-  const Eigen::Index behind = blocksOf(networks_.prediction_model.order());
-  Eigen::Index encoded = 0, finished = 0;
-  d_features_.setZero();
-  Value value;
-  for (Eigen::Index block = 0; block < num_blocks; ++block) {
-    while (encoded < std::min(block + ahead + 1, num_blocks)) encode(theta.data(), encoded++);
-    const Value part = decodeBlock(theta.data(), block, terms, gradient);
-    value.v_r += part.v_r;
-    value.v_p += part.v_p;
-    if (gradient == nullptr) continue;
-    const Eigen::Index last = block + 1 == num_blocks ? block : block - behind;
-    while (finished <= last) backwardThroughEncoder(theta.data(), finished++, gradient);
-  }
-  value.v_w = squaredWeights(theta.data());
-  if (gradient == nullptr) return value;
-  *d_theta *= Scalar(2);
-  addDecay(theta.data(), terms.weight_decay, gradient);
+  const auto addDecay = [&](const Mlp<Scalar>& net, auto part_of) {
+    value.v_w += squaredWeights(net, part_of(theta.data()));
+    if (d_theta == nullptr || terms.weight_decay == 0.0) return;
+    const auto weight = static_cast<Scalar>(terms.weight_decay);
+    ddm::addDecay(net, part_of(theta.data()), weight, part_of(d_theta->data()));
+  };
+  addDecay(networks_.encoder(), [this](auto of) { return networks_.encoderOf(of); });
+  addDecay(networks_.decoder(), [this](auto of) { return networks_.decoderOf(of); });
+  addDecay(networks_.f(), [this](auto of) { return networks_.predictorOf(of); });
   return value;
 }
 
 template <class Scalar>
 LayerFactors<Scalar> JointObjective<Scalar>::factors(const Vector& theta, const Terms& terms,
                                                      std::mt19937_64* rng) {
-  reserve(terms.prediction_steps);
-  LayerFactors<Scalar> encoder = networks_.encoder().zeroFactors();
-  LayerFactors<Scalar> decoder = networks_.decoder().zeroFactors();
-  LayerFactors<Scalar> f = networks_.f().zeroFactors();
-  const auto collect = [this](LayerFactors<Scalar>* of_encoder, LayerFactors<Scalar>* of_decoder,
-                              LayerFactors<Scalar>* of_f) {
-    for (auto& tape : encoder_tapes_) tape.factors = of_encoder;
-    decoder_tape_.factors = of_decoder;
-    roll_out_.collect(of_f);
+  const std::uint64_t seed = (*rng)();
+  sumOverParts(theta, terms, true, &seed);
+  LayerFactors<Scalar> sum = networks_.encoder().zeroFactors();
+  const auto append = [&sum](const LayerFactors<Scalar>& more) {
+    sum.insert(sum.end(), more.begin(), more.end());
   };
-  collect(&encoder, &decoder, &f);
-  error_rng_ = rng;
-  Vector d_theta;
-  evaluate(theta, &d_theta, terms);
-  error_rng_ = nullptr;
-  collect(nullptr, nullptr, nullptr);
-  encoder.insert(encoder.end(), decoder.begin(), decoder.end());
-  encoder.insert(encoder.end(), f.begin(), f.end());
-  for (KroneckerFactors<Scalar>& layer : encoder) layer.errors *= static_cast<Scalar>(weight_);
-  return encoder;
+  append(networks_.decoder().zeroFactors());
+  append(networks_.f().zeroFactors());
+  for (Lane& lane : lanes_) {
+    auto layer = sum.begin();
+    for (LayerFactors<Scalar>* of :
+         {&lane.encoder_factors, &lane.decoder_factors, &lane.f_factors}) {
+      for (const KroneckerFactors<Scalar>& factors : *of) (layer++)->add(factors);
+      of->clear();
+    }
+  }
+  for (KroneckerFactors<Scalar>& layer : sum) layer.errors *= static_cast<Scalar>(weight_);
+  return sum;
+}
+
+/// Fills the lanes.
+/// @param error_seed  not null: derivatives and factors are those of errors that are drawn, see factors()
+template <class Scalar>
+void JointObjective<Scalar>::sumOverParts(const Vector& theta, const Terms& terms, bool gradient,
+                                          const std::uint64_t* error_seed) {
+  reserve(terms.prediction_steps);
+  const auto num_lanes = static_cast<int>(lanes_.size());
+#pragma omp parallel for schedule(static, 1) if (num_lanes > 1)
+  for (int i = 0; i < num_lanes; ++i) {
+    Lane& lane = lanes_[i];
+    lane.value = Value();
+    lane.d_theta.setZero();
+    if (error_seed != nullptr) {
+      lane.encoder_factors = networks_.encoder().zeroFactors();
+      lane.decoder_factors = networks_.decoder().zeroFactors();
+      lane.f_factors = networks_.f().zeroFactors();
+    }
+    lane.encoder_tape.factors = error_seed != nullptr ? &lane.encoder_factors : nullptr;
+    lane.decoder_tape.factors = error_seed != nullptr ? &lane.decoder_factors : nullptr;
+    lane.roll_out.collect(error_seed != nullptr ? &lane.f_factors : nullptr);
+    for (size_t p = i; p < parts_.size(); p += lanes_.size()) {
+      forward(parts_[p], theta.data(), terms, &lane);
+      if (error_seed != nullptr) {
+        drawErrors(parts_[p], terms.prediction_steps, std::mt19937_64(*error_seed + p), &lane);
+      }
+      if (gradient) backward(parts_[p], theta.data(), terms, &lane);
+    }
+  }
+}
+
+/// Reconstructions of a part's images and the predictions of them go through the decoder together.
+/// Leaves their residuals in the lane, and adds to its value.
+template <class Scalar>
+void JointObjective<Scalar>::forward(const Part& part, const Scalar* theta, const Terms& terms,
+                                     Lane* lane) {
+  const Eigen::Index before = part.begin - part.first;
+  const Eigen::Index size = part.end - part.begin;
+  const auto count = static_cast<Eigen::Index>(part.targets.size());
+  const int steps = terms.prediction_steps;
+  networks_.encoder().forward(networks_.encoderOf(theta),  // g^-1, eq. (3a)
+                              data_.scores.middleCols(part.first, before + size),
+                              &lane->encoder_tape);
+  const auto Z = lane->encoder_tape.output();
+  features_.middleCols(part.begin, size) = Z.rightCols(size);
+  lane->roll_out.forward(networks_.predictorOf(theta), Z,
+                         data_.torques.rightCols(data_.torques.cols() - part.first),
+                         typename RollOut<Scalar>::Targets(part.targets.data(), count), steps);
+  auto codes = networks_.decoder().inputs(size + steps * count, &lane->decoder_tape);
+  codes.leftCols(size) = Z.rightCols(size);
+  for (int j = 0; j < steps; ++j) {
+    codes.middleCols(size + j * count, count) = lane->roll_out.predicted(j);
+  }
+  networks_.decoder().forward(networks_.decoderOf(theta), &lane->decoder_tape);  // g, eq. (3b)
+
+  const auto decoded = lane->decoder_tape.output();
+  Matrix& residual = lane->residual;
+  residual.leftCols(size) =
+      decoded.leftCols(size) - data_.scores.middleCols(part.begin, size);  // eq. (1)
+  for (int j = 0; j < steps; ++j) {
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const Eigen::Index frame = part.targets[i] + j;
+      const Eigen::Index column = size + j * count + i;
+      if (frame < part.piece_end[i]) {
+        residual.col(column) =
+            decoded.col(column) - data_.scores.col(part.first + frame);  // eq. (4)
+      } else {
+        residual.col(column).setZero();  // beyond the piece there is nothing to compare with
+      }
+    }
+  }
+  lane->value.v_r += static_cast<double>(residual.leftCols(size).squaredNorm());  // eq. (5c)
+  lane->value.v_p +=                                                              // eq. (5b)
+      static_cast<double>(residual.middleCols(size, steps * count).squaredNorm()) / steps;
 }
 
 /// Replaces residuals by random signs, for factors(). Targets beyond a piece keep their 0.
 template <class Scalar>
-void JointObjective<Scalar>::drawErrors(Eigen::Index num_images, Eigen::Index columns,
-                                        Scalar step_weight) {
+void JointObjective<Scalar>::drawErrors(const Part& part, int steps, std::mt19937_64 rng,
+                                        Lane* lane) {
+  const Eigen::Index num_images = part.end - part.begin;
+  const auto columns = num_images + steps * static_cast<Eigen::Index>(part.targets.size());
   for (Eigen::Index i = 0; i < columns; ++i) {
-    if (residual_.col(i).isZero(0)) continue;
-    // V counts the square with step_weight, which decodeBlock() multiplies by afterwards.
-    const Scalar size = i < num_images ? Scalar(1) : 1 / std::sqrt(step_weight);
-    for (Eigen::Index row = 0; row < residual_.rows(); ++row) {
-      residual_(row, i) = ((*error_rng_)() & 1) != 0 ? size : -size;
-    }
+    auto residual = lane->residual.col(i);
+    if (residual.isZero(0)) continue;
+    // V counts the square divided by the steps, as backward() divides the residual.
+    const Scalar size = i < num_images ? Scalar(1) : std::sqrt(Scalar(steps));
+    for (Eigen::Index row = 0; row < residual.rows(); ++row)
+      residual[row] = (rng() & 1) != 0 ? size : -size;
   }
 }
 
-/// V_W
+/// Adds the derivative of V / 2 to the lane's. Uses its residuals up.
 template <class Scalar>
-double JointObjective<Scalar>::squaredWeights(const Scalar* theta) const {
-  return ddm::squaredWeights(networks_.encoder(), networks_.encoderOf(theta)) +
-         ddm::squaredWeights(networks_.decoder(), networks_.decoderOf(theta)) +
-         ddm::squaredWeights(networks_.f(), networks_.predictorOf(theta));
-}
-
-template <class Scalar>
-void JointObjective<Scalar>::addDecay(const Scalar* theta, double price, Scalar* d_theta) const {
-  if (price == 0.0) return;
-  const auto factor = static_cast<Scalar>(price);
-  ddm::addDecay(networks_.encoder(), networks_.encoderOf(theta), factor,
-                networks_.encoderOf(d_theta));
-  ddm::addDecay(networks_.decoder(), networks_.decoderOf(theta), factor,
-                networks_.decoderOf(d_theta));
-  ddm::addDecay(networks_.f(), networks_.predictorOf(theta), factor,
-                networks_.predictorOf(d_theta));
-}
-
-template <class Scalar>
-void JointObjective<Scalar>::encode(const Scalar* theta, Eigen::Index block) {
-  typename Mlp<Scalar>::Tape& tape = encoder_tapes_[block % encoder_tapes_.size()];
-  networks_.encoder().forward(networks_.encoderOf(theta),  // g^-1, eq. (3a)
-                              data_.scores.middleCols(blockBegin(block), blockSize(block)), &tape);
-  features_.middleCols(blockBegin(block), blockSize(block)) = tape.output();
-}
-
-/// Once nothing is added to the dV/dz of the block any more.
-template <class Scalar>
-void JointObjective<Scalar>::backwardThroughEncoder(const Scalar* theta, Eigen::Index block,
-                                                    Scalar* d_theta) {
-  networks_.encoder().backward(networks_.encoderOf(theta),
-                               &encoder_tapes_[block % encoder_tapes_.size()],
-                               d_features_.middleCols(blockBegin(block), blockSize(block)),
-                               networks_.encoderOf(d_theta), nullptr);
-}
-
-/// All terms for the images of one block: their reconstructions and the predictions of them go
-/// through the decoder together.
-template <class Scalar>
-typename JointObjective<Scalar>::Value JointObjective<Scalar>::decodeBlock(const Scalar* theta,
-                                                                           Eigen::Index block,
-                                                                           const Terms& terms,
-                                                                           Scalar* d_theta) {
-  const Eigen::Index begin = blockBegin(block);
-  const Eigen::Index size = blockSize(block);
-  const Eigen::Index first = block_target_[block];
-  const Eigen::Index count = block_target_[block + 1] - first;
+void JointObjective<Scalar>::backward(const Part& part, const Scalar* theta, const Terms& terms,
+                                      Lane* lane) const {
+  const Eigen::Index before = part.begin - part.first;
+  const Eigen::Index size = part.end - part.begin;
+  const auto count = static_cast<Eigen::Index>(part.targets.size());
   const int steps = terms.prediction_steps;
-  const Eigen::Index columns = size + steps * count;
-  const typename RollOut<Scalar>::Targets targets(targets_.data() + first, count);
-  roll_out_.forward(networks_.predictorOf(theta), features_, data_.torques, targets, steps);
-  auto codes = networks_.decoder().inputs(columns, &decoder_tape_);
-  codes.leftCols(size) = features_.middleCols(begin, size);
+  Scalar* d_theta = lane->d_theta.data();
+  auto reconstructed = lane->residual.leftCols(size);
+  auto predicted = lane->residual.middleCols(size, steps * count);
+  if (!terms.v_r) reconstructed.setZero();
+  predicted *= terms.v_p ? Scalar(1) / Scalar(steps) : Scalar(0);
+  networks_.decoder().backward(networks_.decoderOf(theta), &lane->decoder_tape,
+                               lane->residual.leftCols(size + steps * count),
+                               networks_.decoderOf(d_theta), &lane->d_codes);
+  lane->d_features.leftCols(before).setZero();
+  lane->d_features.middleCols(before, size) = lane->d_codes.leftCols(size);
   for (int j = 0; j < steps; ++j) {
-    codes.middleCols(size + j * count, count) = roll_out_.predicted(j);
+    lane->roll_out.dPredicted(j) = lane->d_codes.middleCols(size + j * count, count);
   }
-  networks_.decoder().forward(networks_.decoderOf(theta), &decoder_tape_);  // g, eq. (3b)
-
-  Value value;
-  const auto decoded = decoder_tape_.output();
-  residual_.leftCols(size) =
-      decoded.leftCols(size) - data_.scores.middleCols(begin, size);  // eq. (1)
-  const Scalar step_weight = Scalar(1) / Scalar(steps);
-  for (int j = 0; j < steps; ++j) {
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const Eigen::Index frame = targets_[first + i] + j;
-      auto residual = residual_.col(size + j * count + i);
-      if (frame < piece_end_[first + i]) {
-        residual = decoded.col(size + j * count + i) - data_.scores.col(frame);  // eq. (4)
-      } else {
-        residual.setZero();  // beyond the piece there is nothing to compare with
-      }
-    }
-  }
-  value.v_r = static_cast<double>(residual_.leftCols(size).squaredNorm());  // eq. (5c)
-  value.v_p =                                                               // eq. (5b)
-      static_cast<double>(step_weight * residual_.middleCols(size, steps * count).squaredNorm());
-  if (d_theta == nullptr) return value;
-
-  if (error_rng_ != nullptr) drawErrors(size, columns, step_weight);
-  // From here on derivatives are those of V / 2: evaluate() doubles them.
-  if (!terms.v_r) residual_.leftCols(size).setZero();
-  if (!terms.v_p) {
-    residual_.middleCols(size, steps * count).setZero();
-  } else if (steps > 1) {
-    residual_.middleCols(size, steps * count) *= step_weight;
-  }
-  networks_.decoder().backward(networks_.decoderOf(theta), &decoder_tape_,
-                               residual_.leftCols(columns), networks_.decoderOf(d_theta),
-                               &d_codes_);
-  d_features_.middleCols(begin, size) += d_codes_.leftCols(size);
-  for (int j = 0; j < steps; ++j) {
-    roll_out_.dPredicted(j) = d_codes_.middleCols(size + j * count, count);
-  }
+  const typename RollOut<Scalar>::Targets targets(part.targets.data(), count);
   for (int j = steps - 1; j >= 0; --j) {
-    roll_out_.backward(networks_.predictorOf(theta), targets, j, networks_.predictorOf(d_theta),
-                       &d_features_, nullptr);
+    lane->roll_out.backward(networks_.predictorOf(theta), targets, j,
+                            networks_.predictorOf(d_theta), &lane->d_features, nullptr);
   }
-  return value;
+  networks_.encoder().backward(networks_.encoderOf(theta), &lane->encoder_tape,
+                               lane->d_features.leftCols(before + size),
+                               networks_.encoderOf(d_theta), nullptr);
 }
 
 template class JointObjective<float>;

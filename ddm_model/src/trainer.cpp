@@ -4,10 +4,14 @@
 
 #include <ddm_msgs/random_stream.h>
 
+#include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <numeric>
 #include <sstream>
 #include <string>
@@ -38,80 +42,53 @@ int iterationCap(const std::vector<Stage>& stages) {
                          [](int sum, const Stage& stage) { return sum + stage.max_iterations; });
 }
 
-/// All starts and stages as one progress.
+/// All starts and stages as one progress, whichever of them run at the same time.
 class Progress {
  public:
-  Progress(const TrainingCallback& callback, const Schedule& schedule, int num_starts,
+  Progress(const TrainingCallback& callback, const Schedule& schedule, size_t num_starts,
            const Pca& pca)
       : callback_(callback),
         cap_(static_cast<double>(num_starts) * iterationCap(schedule.stages) +
              (schedule.finish ? schedule.finish->max_iterations : 0)),
         squared_scale_(squaredScale(pca)) {}
 
-  /// The next stage.
-  /// @param cap         on its iterations
-  /// @param iterations  of all stages before
-  /// @return            what is to be called while it is minimised
-  StageCallback ofStage(int cap, int iterations) {
-    const double before = caps_before_;
-    caps_before_ += cap;
-    if (!callback_) return nullptr;
-    return [this, before, iterations](const Minimum& so_far, const Value& value) {
+  /// @return what is to be called while the next stage of one start is minimised
+  StageCallback ofStage() {
+    int before = 0;  // iterations of this stage at the last call
+    return [this, before](const Minimum& so_far, const Value& value) mutable {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (cancelled_) return false;
+      iterations_ += so_far.iterations - before;
+      before = so_far.iterations;
+      if (!callback_) return true;
       TrainingProgress progress;
-      progress.iteration = iterations + so_far.iterations;
+      progress.iteration = iterations_;
       progress.v_r = squared_scale_ * value.v_r;
       progress.v_p = squared_scale_ * value.v_p;
       progress.gradient_norm = so_far.gradient.lpNorm<Eigen::Infinity>();
-      progress.fraction_done = (before + so_far.iterations) / cap_;
-      return callback_(progress);
+      progress.fraction_done = (skipped_ + iterations_) / cap_;
+      cancelled_ = !callback_(progress);
+      return !cancelled_;
     };
   }
+
+  /// A stage ended before its cap.
+  void skip(int iterations) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    skipped_ += iterations;
+  }
+
+  bool cancelled() const { return cancelled_; }
 
  private:
   const TrainingCallback& callback_;
   double cap_;  // on the iterations of the whole training
-  double caps_before_ = 0.0;
   double squared_scale_;
+  std::mutex mutex_;
+  std::atomic<bool> cancelled_{false};
+  int iterations_ = 0;  // of all stages
+  int skipped_ = 0;     // that no stage will need any more
 };
-
-/// Minimises one stage.
-/// @param theta   in: initial parameters, out: the minimum
-/// @param result  out: message, cancelled; iterations and evaluations are added
-Minimum runStage(const Stage& stage, const TrainingOptions& training,
-                 const Networks<float>& networks, Progress* progress,
-                 JointObjective<float>* objective, Eigen::VectorXd* theta, TrainingResult* result) {
-  Minimum minimum = minimiseStage(stage, training, networks, objective, theta,
-                                  progress->ofStage(stage.max_iterations, result->iterations));
-  result->message = minimum.message;
-  result->iterations += minimum.iterations;
-  result->evaluations += minimum.evaluations;
-  if (minimum.reason == MinimumReason::kStopped) {
-    result->message = "training was cancelled";
-    result->cancelled = true;
-  }
-  return minimum;
-}
-
-/// Minimises the stages one after the other.
-/// @return false if there is no usable minimum; the message says why
-bool runStages(const std::vector<Stage>& stages, const TrainingOptions& training,
-               const Networks<float>& networks, Progress* progress,
-               JointObjective<float>* objective, Eigen::VectorXd* theta, TrainingResult* result) {
-  for (size_t i = 0; i < stages.size(); ++i) {
-    const Minimum minimum =
-        runStage(stages[i], training, networks, progress, objective, theta, result);
-    if (result->cancelled) return false;
-    if (!minimum.improved()) {
-      std::ostringstream text;
-      text << "training did not lower the objective: stage " << i + 1 << " of " << stages.size()
-           << " stays at " << minimum.initial_cost << " (" << minimum.message
-           << "); check the bags, or leave the block training at its defaults";
-      result->message = text.str();
-      return false;
-    }
-  }
-  return true;
-}
 
 /// The terms that the best start is chosen by: predictions training/selection_steps ahead, or what
 /// the schedule minimises.
@@ -124,8 +101,10 @@ Terms selectionTerms(const Schedule& schedule, const TrainingOptions& training) 
 
 /// What is minimised for one model/delay.
 struct Problem {
-  Problem(ModelOptions model, int torque_dim, const TrainingData<float>& data)
-      : options(std::move(model)), networks(options, torque_dim), objective(networks, data) {}
+  Problem(ModelOptions model, const TrainingData<float>& data)
+      : options(std::move(model)),
+        networks(options, static_cast<int>(data.torques.rows())),
+        objective(networks, data) {}
 
   ModelOptions options;
   Networks<float> networks;
@@ -137,47 +116,90 @@ struct Problem {
   }
 };
 
-/// One for each delay that is tried.
-std::vector<std::unique_ptr<Problem>> makeProblems(ModelOptions model,
-                                                   const TrainingOptions& training, int torque_dim,
-                                                   const TrainingData<float>& data) {
-  std::vector<std::unique_ptr<Problem>> problems;
-  const int last = largestDelay(model, training);
-  for (; model.delay <= last; ++model.delay) {
-    problems.push_back(std::make_unique<Problem>(model, torque_dim, data));
-  }
-  return problems;
-}
-
-/// What one start came to.
+/// One start with one delay, and what it came to.
 struct Candidate {
-  Problem* problem = nullptr;
-  Eigen::VectorXd theta;  ///< empty: nothing usable
+  ModelOptions model;
+  Eigen::VectorXd theta;
   double initial_cost = 0.0;
-  double error = std::numeric_limits<double>::infinity();  ///< of a prediction; less is better
-  std::string message;                                     ///< how the solver ended
+  double error =
+      std::numeric_limits<double>::infinity();  ///< of a prediction; infinite: nothing usable
+  std::string message;                          ///< how the solver ended
+  int iterations = 0;
+  int evaluations = 0;
+  std::exception_ptr refusal;  ///< of its data
 };
 
-/// One start for one delay, all stages.
-/// @param result  as of runStage()
-Candidate run(Problem* problem, Eigen::VectorXd initial_theta, const Schedule& schedule,
-              const TrainingOptions& training, Progress* progress, TrainingResult* result) {
-  Candidate candidate;
-  candidate.problem = problem;
-  candidate.theta = std::move(initial_theta);
-  candidate.initial_cost = problem->cost(candidate.theta, schedule.terms());
-  if (!runStages(schedule.stages, training, problem->networks, progress, &problem->objective,
-                 &candidate.theta, result)) {
-    return {};
+/// Each start with each delay that is tried.
+std::vector<Candidate> makeCandidates(const ModelOptions& model, const TrainingOptions& training,
+                                      const std::vector<Eigen::VectorXd>& starts) {
+  std::vector<Candidate> candidates;
+  for (const Eigen::VectorXd& theta : starts) {
+    for (int delay = model.delay; delay <= largestDelay(model, training); ++delay) {
+      candidates.emplace_back();
+      candidates.back().model = model;
+      candidates.back().model.delay = delay;
+      candidates.back().theta = theta;
+    }
+  }
+  return candidates;
+}
+
+/// Minimises one stage from where the candidate is.
+Minimum runStage(const Stage& stage, const TrainingOptions& training, Problem* problem,
+                 Progress* progress, Candidate* candidate) {
+  Minimum minimum = minimiseStage(stage, training, problem->networks, &problem->objective,
+                                  &candidate->theta, progress->ofStage());
+  progress->skip(stage.max_iterations - minimum.iterations);
+  candidate->message = minimum.message;
+  candidate->iterations += minimum.iterations;
+  candidate->evaluations += minimum.evaluations;
+  return minimum;
+}
+
+/// All stages of one candidate. Its error is infinite afterwards if there is no usable minimum; the message says why.
+void run(const Schedule& schedule, const TrainingOptions& training, const TrainingData<float>& data,
+         Progress* progress, Candidate* candidate) {
+  Problem problem(candidate->model, data);
+  candidate->initial_cost = problem.cost(candidate->theta, schedule.terms());
+  const std::vector<Stage>& stages = schedule.stages;
+  for (size_t i = 0; i < stages.size(); ++i) {
+    const Minimum minimum = runStage(stages[i], training, &problem, progress, candidate);
+    if (progress->cancelled()) return;
+    if (!minimum.improved()) {
+      std::ostringstream text;
+      text << "training did not lower the objective: stage " << i + 1 << " of " << stages.size()
+           << " stays at " << minimum.initial_cost << " (" << minimum.message
+           << "); check the bags, or leave the block training at its defaults";
+      candidate->message = text.str();
+      return;
+    }
   }
   // A longer delay leaves fewer predictions to learn from.
-  candidate.error = problem->cost(candidate.theta, selectionTerms(schedule, training)) /
-                    static_cast<double>(problem->objective.numPredictions());
-  if (!std::isfinite(candidate.error)) {  // a roll-out that grows without bound
-    candidate.error = std::numeric_limits<double>::max();
+  candidate->error = problem.cost(candidate->theta, selectionTerms(schedule, training)) /
+                     static_cast<double>(problem.objective.numPredictions());
+  if (!std::isfinite(candidate->error)) {  // a roll-out that grows without bound
+    candidate->error = std::numeric_limits<double>::max();
   }
-  candidate.message = result->message;
-  return candidate;
+}
+
+/// All candidates, on as many processors as OpenMP may use.
+/// @throws what the first of those threw that refused its data
+void runAll(const Schedule& schedule, const TrainingOptions& training,
+            const TrainingData<float>& data, Progress* progress,
+            std::vector<Candidate>* candidates) {
+  const auto count = static_cast<int>(candidates->size());
+#pragma omp parallel for schedule(dynamic, 1) if (count > 1)
+  for (int i = 0; i < count; ++i) {
+    Candidate& candidate = (*candidates)[i];
+    try {  // no exception may leave a thread
+      run(schedule, training, data, progress, &candidate);
+    } catch (...) {
+      candidate.refusal = std::current_exception();
+    }
+  }
+  for (const Candidate& candidate : *candidates) {
+    if (candidate.refusal) std::rethrow_exception(candidate.refusal);
+  }
 }
 
 /// Numbers of frames that the chosen start goes on with: twice as many each time, up to all. What can be learned from few
@@ -193,28 +215,22 @@ std::vector<Eigen::Index> growingFrames(Eigen::Index first, Eigen::Index all) {
 }
 
 /// Minimises schedule.finish on more and more frames, about as many iterations on each.
-/// @param best    in: the start that was chosen, out: what it came to
-/// @param result  as of runStage()
-/// @return        the problem of all frames
+/// @param best  in: the start that was chosen, out: what it came to
+/// @return      the problem of all frames
 std::unique_ptr<Problem> finish(const Schedule& schedule, const TrainingOptions& training,
                                 const TrainingData<float>& data, Eigen::Index longer_than,
-                                Progress* progress, Candidate* best, TrainingResult* result) {
-  const int torque_dim = static_cast<int>(data.torques.rows());
-  const ModelOptions& model = best->problem->options;
-  if (!schedule.finish) return std::make_unique<Problem>(model, torque_dim, data);
+                                Progress* progress, Candidate* best) {
+  if (!schedule.finish) return std::make_unique<Problem>(best->model, data);
   std::unique_ptr<Problem> problem;
   const std::vector<Eigen::Index> counts =
       growingFrames(training.selection_frames, data.torques.cols());
   int rest = schedule.finish->max_iterations;
-  for (size_t i = 0; i < counts.size() && !result->cancelled; ++i) {
-    problem = std::make_unique<Problem>(model, torque_dim, evenPart(data, counts[i], longer_than));
+  for (size_t i = 0; i < counts.size() && !progress->cancelled(); ++i) {
+    problem = std::make_unique<Problem>(best->model, evenPart(data, counts[i], longer_than));
     Stage stage = *schedule.finish;
     stage.max_iterations = rest / static_cast<int>(counts.size() - i);
     rest -= stage.max_iterations;
-    if (stage.max_iterations == 0) continue;
-    runStage(stage, training, problem->networks, progress, &problem->objective, &best->theta,
-             result);
-    best->message = result->message;
+    if (stage.max_iterations > 0) runStage(stage, training, problem.get(), progress, best);
   }
   return problem;
 }
@@ -246,36 +262,41 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
   const Pca pca =
       fitPca(data, model.pca_dim, training.score_std, Blur(data.imageSize(), model.blur));
   const TrainingData<float> training_data = makeTrainingData(data, pca);
-  const int longer_than = model.order + largestDelay(model, training);
-  const auto problems =
-      makeProblems(model, training, data.torqueDim(),
-                   training.selection_frames > 0
-                       ? evenPart(training_data, training.selection_frames, longer_than)
-                       : training_data);
   const Eigen::MatrixXd scores = training_data.scores.cast<double>();
   const Schedule schedule = makeSchedule(training);
-  Progress progress(callback, schedule, training.num_starts * static_cast<int>(problems.size()),
-                    pca);
   std::mt19937_64 rng = randomStream({info.seed, info.trial}, StreamRole::kInitialisation);
+  std::vector<Eigen::VectorXd> starts;
+  for (int i = 0; i < training.num_starts; ++i) {
+    starts.push_back(initialTheta(initial_networks, scores, training, schedule.pca_start, &rng));
+  }
+  std::vector<Candidate> candidates = makeCandidates(model, training, starts);
+  Progress progress(callback, schedule, candidates.size(), pca);
+  const int longer_than = model.order + largestDelay(model, training);
+  runAll(schedule, training,
+         training.selection_frames > 0
+             ? evenPart(training_data, training.selection_frames, longer_than)
+             : training_data,
+         &progress, &candidates);
 
   TrainingResult result;
-  Candidate best;
-  for (int start = 0; start < training.num_starts && !result.cancelled; ++start) {
-    const Eigen::VectorXd initial_theta =
-        initialTheta(initial_networks, scores, training, schedule.pca_start, &rng);
-    for (size_t i = 0; i < problems.size() && !result.cancelled; ++i) {
-      Candidate candidate =
-          run(problems[i].get(), initial_theta, schedule, training, &progress, &result);
-      if (candidate.error < best.error) best = std::move(candidate);
-    }
-  }
-  if (best.theta.size() > 0 && !result.cancelled) {
+  Candidate& best =
+      *std::min_element(candidates.begin(), candidates.end(),
+                        [](const Candidate& a, const Candidate& b) { return a.error < b.error; });
+  if (std::isfinite(best.error) && !progress.cancelled()) {
     const std::unique_ptr<Problem> problem =
-        finish(schedule, training, training_data, longer_than, &progress, &best, &result);
-    if (!result.cancelled) {
-      result.message = best.message;
+        finish(schedule, training, training_data, longer_than, &progress, &best);
+    if (!progress.cancelled()) {
       fillIn(problem.get(), best, data, pca, schedule, std::move(info), &result);
     }
+  }
+  for (const Candidate& candidate : candidates) {
+    result.iterations += candidate.iterations;
+    result.evaluations += candidate.evaluations;
+  }
+  result.message = best.message;
+  if (progress.cancelled()) {
+    result.message = "training was cancelled";
+    result.cancelled = true;
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return result;

@@ -3,8 +3,10 @@
 #include "ddm_model/objective.h"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <stdexcept>
+#include <tuple>
 
 #include "ddm_model/testing/gradient_check.h"
 #include "ddm_model/testing/random_matrix.h"
@@ -119,7 +121,7 @@ TEST(JointObjective, EqualsASlowComputationFromTheFormula) {
   }
 }
 
-TEST(JointObjective, EqualsTheFormulaAcrossTheBordersOfItsBlocks) {
+TEST(JointObjective, EqualsTheFormulaAcrossTheBordersOfItsParts) {
   const Networks<double> nets(tinyOptions(), 1);
   const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
   for (int num_frames : {127, 128, 129, 256, 300}) {
@@ -165,7 +167,7 @@ TEST(JointObjective, PredictionsOfSeveralStepsEqualASlowComputationFromTheFormul
     for (const ModelOptions& options : formsOfF(order)) {
       for (const int steps : {1, 2, 5}) {
         const Networks<double> nets(options, 2);
-        // The second piece is shorter than the longest prediction; the last one crosses a block.
+        // The second piece is shorter than the longest prediction; the last one crosses a part.
         const auto data = randomData(4, 2, 140, true, {{0, 7}, {7, 4}, {11, 1}, {12, 128}});
         JointObjective<double> objective(nets, data);
         const Eigen::VectorXd theta = 0.5 * randomMatrix(nets.numParams(), 1, 3);
@@ -230,7 +232,7 @@ TEST(JointObjective, GradientWithWeightDecayMatchesDifferencesForEveryParameter)
   }
 }
 
-TEST(JointObjective, GradientOfSeveralStepsMatchesDifferencesAcrossTheBordersOfItsBlocks) {
+TEST(JointObjective, GradientOfSeveralStepsMatchesDifferencesAcrossTheBordersOfItsParts) {
   const Networks<double> nets(tinyOptions(), 1);
   JointObjective<double> objective(nets, randomData(4, 1, 134, true, {{0, 131}, {131, 3}}));
   Terms terms;
@@ -239,7 +241,7 @@ TEST(JointObjective, GradientOfSeveralStepsMatchesDifferencesAcrossTheBordersOfI
                                        0.5 * randomMatrix(nets.numParams(), 1, 3)));
 }
 
-TEST(JointObjective, GradientMatchesDifferencesAcrossTheBordersOfItsBlocks) {
+TEST(JointObjective, GradientMatchesDifferencesAcrossTheBordersOfItsParts) {
   const Networks<double> nets(tinyOptions(), 1);
   JointObjective<double> objective(nets, randomData(4, 1, 131, true, {{0, 130}, {130, 1}}));
   EXPECT_TRUE(
@@ -280,6 +282,33 @@ TEST(JointObjective, DirectionalDerivativeMatchesAtTheSizeOfThePaper) {
         gradient.normalized() + randomMatrix(nets.numParams(), 1, seed).normalized();
     EXPECT_TRUE(testing::directionalDerivativeMatches(jointFunction(&objective), theta, direction));
   }
+}
+
+TEST(JointObjective, TheNumberOfProcessorsChangesNoBit) {
+  const Networks<float> nets(tinyOptions(), 1);
+  const auto data = randomData(4, 1, 1500, true, {{0, 700}, {700, 800}});  // twelve parts
+  JointObjective<float> objective(nets, {data.scores.cast<float>(), data.torques, data.pieces});
+  const Eigen::VectorXf theta = randomMatrix(nets.numParams(), 1, 3).cast<float>();
+  const auto flat = [](const Eigen::MatrixXf& matrix) {
+    return Eigen::Map<const Eigen::VectorXf>(matrix.data(), matrix.size()).eval();
+  };
+  const auto onProcessors = [&](int number) {
+    omp_set_num_threads(number);
+    Eigen::VectorXf all;  // values, gradient and factors one after the other
+    const auto value = objective.evaluate(theta, &all);
+    std::mt19937_64 rng(1);
+    for (const auto& layer : objective.factors(theta, Terms(), &rng)) {
+      const Eigen::VectorXf before = all;
+      all.resize(before.size() + layer.inputs.size() + layer.errors.size());
+      all << before, flat(layer.inputs), flat(layer.errors);
+    }
+    return std::make_tuple(value.v_r, value.v_p, all);
+  };
+  const int usual = omp_get_max_threads();
+  const auto one = onProcessors(1);
+  EXPECT_EQ(onProcessors(2), one);
+  EXPECT_EQ(onProcessors(5), one);
+  omp_set_num_threads(usual);
 }
 
 TEST(JointObjective, SinglePrecisionAgreesWithDouble) {
@@ -337,7 +366,7 @@ TEST(JointObjective, TheOrderOfThePiecesDoesNotMatter) {
   EXPECT_EQ(value({{0, 90}, {90, 110}}), value({{90, 110}, {0, 90}}));
 }
 
-TEST(JointObjective, CopesWithBlocksInWhichNothingIsPredicted) {
+TEST(JointObjective, CopesWithPartsInWhichNothingIsPredicted) {
   const Networks<double> nets(tinyOptions(), 1);
   const auto data = randomData(4, 1, 300, true, {{0, 1}, {290, 10}});
   JointObjective<double> objective(nets, data);

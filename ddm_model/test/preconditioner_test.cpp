@@ -105,9 +105,11 @@ class FactorsOfTheObjective : public ::testing::Test {
 TEST_F(FactorsOfTheObjective, AreThoseOfEveryLayerInTurn) {
   const LayerFactors<double> all = factors(Terms());
   ASSERT_EQ(all.size(), 6U);  // two layers of each network
-  EXPECT_TRUE(
-      all[0].inputs.topLeftCorner(4, 4).isApprox(data_.scores * data_.scores.transpose(), 1e-12));
-  EXPECT_EQ(all[0].num_samples, 151);
+  const auto twice =
+      data_.scores.middleCols(74, 2);  // of the first part, and for predictions in the second
+  EXPECT_TRUE(all[0].inputs.topLeftCorner(4, 4).isApprox(
+      data_.scores * data_.scores.transpose() + twice * twice.transpose(), 1e-12));
+  EXPECT_EQ(all[0].num_samples, 151 + 2);
   EXPECT_EQ(all[2].num_samples, 151 + 98 + 48);  // images, and targets with two predecessors
   EXPECT_EQ(all[4].num_samples, 98 + 48);
 }

@@ -3,6 +3,7 @@
 #include "ddm_model/trainer.h"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -347,6 +348,18 @@ TEST_F(Trainer, TellsOneProgressOverAllStartsAndStopsThemAll) {
 }
 
 TEST_F(Trainer, SameSeedSameBytes) { EXPECT_EQ(trainedBytes(), trainedBytes()); }
+
+TEST_F(Trainer, TheNumberOfProcessorsChangesNoByte) {
+  training_.num_starts = 3;
+  training_.max_delay = 1;
+  training_.selection_iterations = 10;
+  const int usual = omp_get_max_threads();
+  omp_set_num_threads(1);
+  const std::string one = trainedBytes();
+  omp_set_num_threads(4);
+  EXPECT_EQ(trainedBytes(), one);
+  omp_set_num_threads(usual);
+}
 
 TEST_F(Trainer, AnotherSeedOrTrialGivesAnotherModel) {
   const Eigen::VectorXd theta = run().model->theta();

@@ -37,6 +37,13 @@ struct KroneckerFactors {
     errors.noalias() += e * e.transpose();
     num_samples += a.cols();
   }
+
+  /// Of further samples of the same layer.
+  void add(const KroneckerFactors& other) {
+    inputs += other.inputs;
+    errors += other.errors;
+    num_samples += other.num_samples;
+  }
 };
 
 /// Of all layers of a network, or of several, in the order of their parameters.

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <vector>
 
@@ -30,9 +31,12 @@ namespace ddm {
 ///
 /// All on PCA scores s: the pixels outside the basis add a constant that no parameter changes. The
 /// weight w = 1 / sum_t |s_t|^2 makes V about 1 for a useless model, whatever the data.
-/// Targets beyond the end of a piece count 0. The encoder runs once for both terms. Samples are
-/// walked in blocks that stay in cache; memory is taken once, for more steps ahead when they are
-/// first asked for.
+/// Targets beyond the end of a piece count 0. The encoder runs once for both terms.
+///
+/// V is a sum over parts of up to 128 images, whose activations stay in cache. Parts have nothing in
+/// common: each encodes the few images before it again. Lanes of parts are computed at once on all
+/// processors that OpenMP may use and are added in their order, so that their number changes no
+/// bit. Memory is taken once, for more steps ahead when they are first asked for.
 template <class Scalar>
 class JointObjective {
  public:
@@ -62,6 +66,7 @@ class JointObjective {
   Value evaluate(const Vector& theta, Vector* d_theta, const Terms& terms = Terms());
 
   /// Kronecker factors of all layers, in the order of theta, of w times `terms` without its weight decay.
+  /// Images that two parts encode count twice in those of the encoder.
   /// @param rng  draws the errors at the outputs: +1 or -1 with equal probability
   LayerFactors<Scalar> factors(const Vector& theta, const Terms& terms, std::mt19937_64* rng);
 
@@ -75,37 +80,46 @@ class JointObjective {
   /// @return w
   double weight() const { return weight_; }
   /// @return number of one-step predictions
-  Eigen::Index numPredictions() const { return static_cast<Eigen::Index>(targets_.size()); }
+  Eigen::Index numPredictions() const;
 
  private:
-  double squaredWeights(const Scalar* theta) const;
-  void addDecay(const Scalar* theta, double price, Scalar* d_theta) const;
-  void encode(const Scalar* theta, Eigen::Index block);
-  void backwardThroughEncoder(const Scalar* theta, Eigen::Index block, Scalar* d_theta);
-  Value decodeBlock(const Scalar* theta, Eigen::Index block, const Terms& terms, Scalar* d_theta);
-  void reserve(int num_steps);
-  void drawErrors(Eigen::Index num_images, Eigen::Index columns, Scalar step_weight);
+  /// Images [begin, end), with those from `first` on to predict them from. Frames are counted from `first`.
+  struct Part {
+    Eigen::Index first, begin, end;
+    std::vector<Eigen::Index> targets;    // frames that are predicted one step ahead
+    std::vector<Eigen::Index> piece_end;  // of each target: first frame that is not in its piece
+  };
 
-  Eigen::Index blocksOf(Eigen::Index frames) const;
-  Eigen::Index blockBegin(Eigen::Index block) const;
-  Eigen::Index blockSize(Eigen::Index block) const;
+  /// Where parts are computed one after the other: their sum, and memory that each of them uses.
+  struct Lane {
+    explicit Lane(const PredictionModel<Scalar>& f) : roll_out(f) {}
+
+    Value value;
+    Vector d_theta;                        // of V / 2
+    LayerFactors<Scalar> encoder_factors;  // empty: not wanted
+    LayerFactors<Scalar> decoder_factors;
+    LayerFactors<Scalar> f_factors;
+    typename Mlp<Scalar>::Tape encoder_tape;
+    typename Mlp<Scalar>::Tape decoder_tape;
+    RollOut<Scalar> roll_out;  // of the part's targets
+    Matrix d_features;         // dV/dz of the part's images
+    Matrix d_codes;            // dV/dz of what is decoded: images, then predictions step by step
+    Matrix residual;           // of their decoded scores
+  };
+
+  void reserve(int num_steps);
+  void sumOverParts(const Vector& theta, const Terms& terms, bool gradient,
+                    const std::uint64_t* error_seed);
+  void forward(const Part& part, const Scalar* theta, const Terms& terms, Lane* lane);
+  void backward(const Part& part, const Scalar* theta, const Terms& terms, Lane* lane) const;
+  static void drawErrors(const Part& part, int steps, std::mt19937_64 rng, Lane* lane);
 
   const Networks<Scalar>& networks_;
   TrainingData<Scalar> data_;
   double weight_ = 1.0;
-  std::vector<Eigen::Index> targets_;       // frames that are predicted one step ahead, ascending
-  std::vector<Eigen::Index> piece_end_;     // of each target: first frame that is not in its piece
-  std::vector<Eigen::Index> block_target_;  // first target of each block, and the end
-  Matrix features_;                         // z of all images         [feature_dim x M]
-  Matrix d_features_;                       // dV/dz                   [feature_dim x M]
-  // Of the blocks between the last one encoded and the first one whose dV/dz is not complete, in
-  // turn: they stay in cache, however many frames there are.
-  std::vector<typename Mlp<Scalar>::Tape> encoder_tapes_;
-  typename Mlp<Scalar>::Tape decoder_tape_;
-  RollOut<Scalar> roll_out_;  // of the block's targets
-  Matrix d_codes_;   // dV/dz: of the block, then of the predicted z of its targets, step by step
-  Matrix residual_;  // of their decoded scores
-  std::mt19937_64* error_rng_ = nullptr;  // not null: errors are drawn, see factors()
+  std::vector<Part> parts_;
+  std::vector<Lane> lanes_;
+  Matrix features_;  // z of all images  [feature_dim x M]
 };
 
 extern template class JointObjective<float>;
