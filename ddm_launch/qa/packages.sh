@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 
 # Linters, the check of .rosinstall, sanitizers with symbols in their reports, a screen for rviz, and other machines,
-# played by this one.
+# played by this one; PyTorch, which ours is compared with.
 packages_to_test=(
   catkin-lint catkin-tools clang-format python3-wstool git
   clang libclang-rt-dev libomp-dev llvm
   xvfb imagemagick
   openssh-client openssh-server iproute2 nftables
   slurmctld slurmd slurm-client munge
+  python3-torch libopenblas0-pthread
 )
 
 # Runs a command as root while no package may start a service (Debian policy 9.11.1: policy-rc.d), and disables those

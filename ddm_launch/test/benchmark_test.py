@@ -29,10 +29,10 @@ class BenchmarkTest(ScratchCase):
     def leave(self, programs, what, command, **_):
         """Leaves what the programs would; the lock-step loop is twice as slow as the bare one."""
         run = os.path.join(programs.scratch, what)
-        if what in ("experiment", "ros_experiment"):
+        if what.endswith("experiment") or what.endswith("all_cores"):
             self.write(os.path.join(run, "summary.yaml"), "finished: true\nwall_s: 9.5\n")
             self.write(os.path.join(run, "config.yaml"), "version: made up\n")
-        elif what == "kernels":
+        elif what.endswith("kernels"):
             rows = [{"name": name, "run_name": name + "/iterations:1", "aggregate_name": kind, "real_time": time,
                      "plan_iterations": 42.0}
                     for name, median, p99 in KERNELS
@@ -45,8 +45,10 @@ class BenchmarkTest(ScratchCase):
         elif what == "planning_budget":
             return "%s,%s,5,2000,2000,5.1,5.2,5.3,6,1,1\n" % (command[2], "busy" if "--busy" in command else "idle")
         elif "torch_peers" in " ".join(command):
-            return json.dumps({"plan": {"median_us": 60000.0, "p99_us": 70000.0}})
-        return "1.13\n"
+            time_us = 60000.0 if "--eager" in command else 50000.0 if command[-1] == "1" else 40000.0
+            return json.dumps({"times": {"plan": {"median_us": time_us, "p99_us": 70000.0}}, "torch": "1.13",
+                               "blas": "libopenblas.so"})
+        return ""
 
     def runWithStandIns(self, *arguments):
         with mock.patch.object(Programs, "call", lambda *words, **more: self.leave(*words, **more)), \
@@ -58,15 +60,20 @@ class BenchmarkTest(ScratchCase):
         code, output = self.runWithStandIns("--peers")
         self.assertEqual(code, 0, output)
         rows = read_rows(self.out, "speed.csv")
-        self.assertEqual(rows[0], ["name", "median_us", "p99_us", "peer_median_us"])
-        by_name = {row[0]: row[1:] for row in rows[1:]}
+        self.assertEqual(rows[0], ["name", "median_us", "p99_us", "peer_median_us", "torch_eager_us", "torch_script_us",
+                                   "torch_script_2_threads_us"])
+        by_name = {row[0]: row[1:4] for row in rows[1:]}
+        kernels = {"objective_gradient": ["1000", "1500", ""], "matrix_products/64": ["800", "900", ""],
+                   "matrix_products/128": ["700", "950", ""], "matrix_products": ["700", "950", ""]}
         self.assertEqual(by_name, {
-            "experiment": ["9.5e+06", "", ""], "objective_gradient": ["1000", "1500", ""],
-            "matrix_products/64": ["800", "900", ""], "matrix_products/128": ["700", "950", ""],
-            "matrix_products": ["700", "950", ""], "plan": ["300", "600", "60000"],
-            "ros_experiment": ["9.5e+06", "", ""], "lockstep_round_trip": ["80", "160", ""],
-            "bare_round_trip": ["40", "80", ""]})
-        self.assertEqual(read_yaml(self.out, "machine.yaml")["plan_iterations"], 42.0)
+            **kernels, **{"efficient_" + name: row for name, row in kernels.items()},
+            "experiment": ["9.5e+06", "", ""], "efficient_experiment": ["9.5e+06", "", ""],
+            "efficient_experiment_all_cores": ["9.5e+06", "", ""], "plan": ["300", "600", "50000"],
+            "efficient_plan": ["300", "600", ""], "ros_experiment": ["9.5e+06", "", ""],
+            "lockstep_round_trip": ["80", "160", ""], "bare_round_trip": ["40", "80", ""]})
+        self.assertIn(["plan", "300", "600", "50000", "60000", "50000", "40000"], rows)
+        machine = read_yaml(self.out, "machine.yaml")
+        self.assertEqual((machine["plan_iterations"], machine["torch_blas"]), (42.0, "libopenblas.so"))
         budgets = read_rows(self.out, "planning_budget.csv")
         self.assertEqual(budgets[0], benchmark.BUDGET_COLUMNS)
         self.assertEqual([row[:2] for row in budgets[1:]],

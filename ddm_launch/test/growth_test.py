@@ -22,6 +22,8 @@ class GrowthTest(figure_case.FigureCase):
         if what == "growth":
             frames, size = (int(command[command.index(option) + 1]) for option in ("--frames", "--size"))
             return "%d,%d,%d,%d,90\n" % (frames, size, 10 * frames, frames)
+        if what == "retrain":
+            return "v_p: 3\ntrain_s: 6.5\npeak_memory_mb: 150.4\n"
         for word in command:
             if word.startswith("out:="):
                 with open(word.split(":=")[1], "w") as stream:
@@ -31,7 +33,7 @@ class GrowthTest(figure_case.FigureCase):
     def make(self, frames_learned=100000):
         self.frames_learned = frames_learned
         with mock.patch.object(Programs, "call", lambda *words, **more: self.leave(*words, **more)), \
-                mock.patch.object(growth, "find_program", lambda name: name):
+                mock.patch.object(growth, "find_program", lambda name, package=None: name):
             return growth.make(self.scratch)
 
     def test_table_figure_and_exponent_come_from_the_rows(self):
@@ -42,6 +44,8 @@ class GrowthTest(figure_case.FigureCase):
         self.assertEqual([row[:2] for row in rows[1:]],
                          [[str(frames), "51"] for frames in (1000, 3000, 10000, 30000, 100000)] +
                          [["1600", str(size)] for size in (51, 71, 101, 142, 201)])
+        self.assertEqual(read_rows(self.scratch, "retrain.csv"), [["frames", "train_s", "peak_memory_mb"]] + [
+            [str(frames), "6.5", "150.4"] for frames in (1000, 3000, 10000, 20000)])
         self.assertEqual(read_bytes(self.scratch, "growth.png")[:4], b"\x89PNG")
         self.assertEqual(read_yaml(self.scratch, "growth.yaml")["exponent"], 1.0)
 

@@ -7,6 +7,7 @@
 #include <ddm_model/model_file.h>
 #include <ddm_model/networks.h>
 #include <ddm_model/objective.h>
+#include <ddm_model/schedule.h>
 #include <ddm_model/solver_log.h>
 #include <ddm_model/trainer.h>
 #include <ddm_mpc/ddm_plan_cost.h>
@@ -79,16 +80,17 @@ void measure(const std::string& name, int num_calls, const std::function<void()>
 }
 
 /// W a, delta a^T and W^T delta of each layer of g^-1, g and f, on random matrices: what no
-/// implementation of an objective with its gradient leaves out, and nothing else. The decoder has
-/// twice the samples, the images' features and the predicted.
+/// implementation of an objective with its gradient leaves out, and nothing else. f predicts
+/// num_steps features from each image, and the decoder has those and the image's own.
 class MatrixProducts {
  public:
   /// @param block  so many of the samples go through all networks before the next ones do
-  MatrixProducts(const Networks<float>& networks, Eigen::Index num_samples, Eigen::Index block)
+  MatrixProducts(const Networks<float>& networks, Eigen::Index num_samples, int num_steps,
+                 Eigen::Index block)
       : num_blocks_((num_samples + block - 1) / block) {
     add(networks.encoder(), block, false);  // nothing is learned before the images
-    add(networks.f(), block, true);
-    add(networks.decoder(), 2 * block, true);
+    add(networks.f(), num_steps * block, true);
+    add(networks.decoder(), (1 + num_steps) * block, true);
   }
 
   void run() {
@@ -133,12 +135,13 @@ void measureObjective(const Experience& experience) {
       *networks, makeTrainingData(experience.data, experience.model->pca()));
   const Eigen::VectorXf theta = experience.model->theta().cast<float>();
   const auto d_theta = std::make_shared<Eigen::VectorXf>();
-  measure("objective_gradient", 1000, [networks, objective, theta, d_theta]() {
-    benchmark::DoNotOptimize(objective->evaluate(theta, d_theta.get()));
+  const Terms terms = makeSchedule(experience.configuration.model.training).terms();
+  measure("objective_gradient", 1000, [networks, objective, theta, d_theta, terms]() {
+    benchmark::DoNotOptimize(objective->evaluate(theta, d_theta.get(), terms));
   });
   for (const int block : kProductBlocks) {
-    const auto products =
-        std::make_shared<MatrixProducts>(*networks, objective->numPredictions(), block);
+    const auto products = std::make_shared<MatrixProducts>(*networks, objective->numPredictions(),
+                                                           terms.prediction_steps, block);
     measure("matrix_products/" + std::to_string(block), 1000, [products]() { products->run(); });
   }
 }

@@ -16,7 +16,11 @@ from ddm_launch.tables import write_csv
 from ddm_model.plain_file import write_file
 from ddm_qa.processes import Programs
 
-COLUMNS = ["name", "median_us", "p99_us", "peer_median_us"]
+# Columns of PyTorch: how it runs.
+MODES = {"torch_eager_us": ["--eager", "--threads", "1"], "torch_script_us": ["--threads", "1"],
+         "torch_script_2_threads_us": ["--threads", "2"]}
+ONE_CORE = ("torch_eager_us", "torch_script_us")  # the better of these is the peer
+COLUMNS = ["name", "median_us", "p99_us", "peer_median_us"] + list(MODES)
 BUDGET_COLUMNS = ["preset", "load", "budget_ms", "plans", "cut_short", "median_ms", "p99_ms", "p999_ms", "max_ms",
                   "within_2_ms", "within_10_ms"]
 PEERS = os.path.join(os.path.dirname(__file__), "torch_peers.py")
@@ -41,12 +45,16 @@ DIR/speed.csv, one row a name; times in microseconds, of single calls unless sai
                        100 in a row; median of the medians, and of the 99 % quantiles, of 9 restarts
   bare_round_trip      the same messages between two nodes that do nothing with them, restarts taking turns
   experiment           15 trials after the random one in one process, the whole; once
+  efficient_NAME       the same of the preset efficient, whose frames are 1600 too; efficient_experiment_all_cores is the
+                       only row in which training may use all cores
   ros_experiment       the same by roslaunch, from the first frame to the last; once
 DIR/planning_budget.csv  2000 decisions of presets paper and efficient that would take minutes, with mpc/time_budget at
                        5 ms, on the idle machine and with a busy process on each core: time from when an image is due to
                        its torque, and the fraction that took at most the budget and 2 ms, or 10 ms
-With --peers, peer_median_us is the time of the same mathematics in PyTorch, one thread, its own L-BFGS.
-DIR/machine.yaml       processor, versions, iterations of a plan"""
+With --peers, torch_..._us is the time of the same mathematics in PyTorch with its own L-BFGS, the starts of a plan in one
+batch: eager or compiled by TorchScript, one thread or two. peer_median_us is the best of one thread. Nothing is timed unless its
+losses are ours to 1e-5.
+DIR/machine.yaml       processor, versions, BLAS of PyTorch, iterations of a plan"""
 
 
 class Benchmark:
@@ -54,20 +62,27 @@ class Benchmark:
         self.out, self.peers, self.scratch = os.path.abspath(out), peers, scratch
         self.programs = Programs(scratch)
         self.run = os.path.join(scratch, "experiment")
-        self.rows = {}  # name: [median, 99 % quantile, peer's median] [us]
+        self.rows = {}  # name: {column: [us]}
         self.plan_iterations = None
+        self.torch = {}  # what machine.yaml says of it
         self.budgets = []  # rows of planning_budget.csv
 
     def keep_wall_time(self, name, run):
         summary = read_yaml(os.path.join(run, "summary.yaml"))
         if summary.get("finished") is not True:
             raise Failure("%s: the experiment did not finish" % name)
-        self.rows[name] = [1e6 * summary["wall_s"], "", ""]
+        self.rows[name] = {"median_us": 1e6 * summary["wall_s"]}
 
-    def experiment(self):
-        self.programs.call("experiment", [find_program("run_experiment"), "--preset", "paper", "--plant", "pendulum",
-                                          "--seed", "0", "--trials", str(TRIALS), "--out", self.run])
-        self.keep_wall_time("experiment", self.run)
+    def experiment(self, name="experiment", preset="paper", **variables):
+        run = os.path.join(self.scratch, name)
+        self.programs.call(name, [find_program("run_experiment"), "--preset", preset, "--plant", "pendulum", "--seed", "0",
+                                  "--trials", str(TRIALS), "--out", run], **variables)
+        self.keep_wall_time(name, run)
+
+    def efficient(self):
+        self.experiment("efficient_experiment", "efficient")
+        self.experiment("efficient_experiment_all_cores", "efficient", OMP_NUM_THREADS=str(os.cpu_count()))
+        self.kernels("efficient_")
 
     def ros_experiment(self):
         run = os.path.join(self.scratch, "ros_experiment")
@@ -75,30 +90,39 @@ class Benchmark:
                                 "plant:=pendulum", "seed:=0", "trials:=%d" % TRIALS, "runs:=" + run)
         self.keep_wall_time("ros_experiment", run)
 
-    def kernels(self):
-        report = os.path.join(self.scratch, "kernels.json")
-        self.programs.call("kernels", [find_program("speed_kernels"), self.run, "--benchmark_out_format=json",
-                                       "--benchmark_out=" + report])
+    def kernels(self, prefix=""):
+        """Of the experiment of this prefix."""
+        name = prefix + "kernels"
+        report = os.path.join(self.scratch, name + ".json")
+        self.programs.call(name, [find_program("speed_kernels"), os.path.join(self.scratch, prefix + "experiment"),
+                                  "--benchmark_out_format=json", "--benchmark_out=" + report])
         with open(report) as stream:
             found = json.load(stream)["benchmarks"]
         times = {}  # name: {median, p99}
         for row in found:
             if row.get("error_occurred"):
-                raise Failure("kernels: %s: %s" % (row["name"], row.get("error_message", "failed")))
-            name = row["run_name"].split("/iterations")[0]
-            times.setdefault(name, {})[row.get("aggregate_name")] = row["real_time"]
-            if name == "plan" and row.get("aggregate_name") == "mean":
+                raise Failure("%s: %s: %s" % (name, row["name"], row.get("error_message", "failed")))
+            kernel = row["run_name"].split("/iterations")[0]
+            times.setdefault(kernel, {})[row.get("aggregate_name")] = row["real_time"]
+            if not prefix and kernel == "plan" and row.get("aggregate_name") == "mean":
                 self.plan_iterations = row["plan_iterations"]
         times["matrix_products"] = min((found for name, found in times.items() if name.startswith("matrix_products/")),
                                        key=lambda found: found["median"])
-        for name in times:
-            self.rows[name] = [times[name]["median"], times[name]["p99"], ""]
+        for kernel, found in times.items():
+            self.rows[prefix + kernel] = {"median_us": found["median"], "p99_us": found["p99"]}
 
     def peer(self):
-        text = self.programs.call("peers", [sys.executable, PEERS, self.run, "--iterations", str(ITERATIONS),
-                                            "--plan-iterations", "%.1f" % self.plan_iterations])
-        for name, times in json.loads(text.splitlines()[-1]).items():
-            self.rows[name][2] = times["median_us"]
+        path = os.pathsep.join([os.path.dirname(os.path.dirname(PEERS)), os.environ.get("PYTHONPATH", "")])
+        for column, mode in MODES.items():
+            text = self.programs.call("peers", [sys.executable, PEERS, self.run, "--iterations", str(ITERATIONS),
+                                                "--plan-iterations", "%.1f" % self.plan_iterations] + mode, PYTHONPATH=path)
+            found = json.loads(text.splitlines()[-1])
+            for name, times in found["times"].items():
+                row = self.rows[name]
+                row[column] = times["median_us"]
+                if column in ONE_CORE:
+                    row["peer_median_us"] = min(times["median_us"], row.get("peer_median_us", times["median_us"]))
+            self.torch = {"torch": found["torch"], "torch_blas": found["blas"]}
 
     def round_trips(self, progress):
         """Restarts of both loops, taking turns."""
@@ -115,7 +139,8 @@ class Benchmark:
                 found.append((measured["median_us"], measured["p99_us"]))
                 progress.update(1)
         for name, found in times.items():
-            self.rows[name + "_round_trip"] = [statistics.median(column) for column in zip(*found)] + [""]
+            medians, p99s = zip(*found)
+            self.rows[name + "_round_trip"] = {"median_us": statistics.median(medians), "p99_us": statistics.median(p99s)}
 
     def planning_budget(self):
         for load in ([], ["--busy"]):
@@ -125,7 +150,7 @@ class Benchmark:
                 self.budgets.append(row.strip().split(","))
 
     def work(self):
-        steps = [("experiment", self.experiment), ("kernels", self.kernels)]
+        steps = [("experiment", self.experiment), ("kernels", self.kernels), ("preset efficient", self.efficient)]
         steps += [("PyTorch", self.peer)] if self.peers else []
         steps += [("planning with a budget", self.planning_budget), ("roslaunch experiment", self.ros_experiment)]
         with tqdm(total=len(steps) + 2 * RESTARTS, unit="step", dynamic_ncols=True, disable=None) as progress:
@@ -139,13 +164,11 @@ class Benchmark:
 
     def write(self):
         write_csv(os.path.join(self.out, "speed.csv"), COLUMNS,
-                  [[name] + ["" if value == "" else float(value) for value in row] for name, row in self.rows.items()])
+                  [[name] + [float(row[column]) if column in row else "" for column in COLUMNS[1:]]
+                   for name, row in self.rows.items()])
         write_csv(os.path.join(self.out, "planning_budget.csv"), BUDGET_COLUMNS, self.budgets)
         machine = {"cpu": processor(), "cores": os.cpu_count(), "plan_iterations": self.plan_iterations,
-                   "version": read_yaml(os.path.join(self.run, "config.yaml")).get("version", "?")}
-        if self.peers:
-            version = [sys.executable, "-c", "import torch; print(torch.__version__)"]
-            machine["torch"] = self.programs.call("peers", version).strip()
+                   "version": read_yaml(os.path.join(self.run, "config.yaml")).get("version", "?"), **self.torch}
         write_file(os.path.join(self.out, "machine.yaml"), yaml.safe_dump(machine, sort_keys=False))
 
 
@@ -157,8 +180,8 @@ def main(arguments=None):
 
     def work():
         if options.peers and importlib.util.find_spec("torch") is None:
-            raise Failure("--peers needs PyTorch for %s: sudo apt install python3-torch, or leave the option out"
-                          % sys.executable)
+            raise Failure("--peers needs PyTorch for %s: sudo apt install python3-torch libopenblas0-pthread, or leave the "
+                          "option out" % sys.executable)
         with tempfile.TemporaryDirectory() as scratch:
             benchmark = Benchmark(options.out, options.peers, scratch)
             benchmark.work()

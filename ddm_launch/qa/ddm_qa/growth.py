@@ -1,6 +1,8 @@
 # How time and memory of learning grow with frames and pixels: a table, a figure, and the trainer's own peak.
 # SPDX-License-Identifier: BSD-3-Clause
+import glob
 import os
+import sys
 import tempfile
 
 import numpy as np
@@ -8,7 +10,7 @@ from tqdm import tqdm
 import yaml
 
 from ddm_launch.command import Failure, find_program, package_path, processor, program_parser, run_program
-from ddm_launch.figure_style import BLUE, COLUMN_WIDTH, VERMILLION, new_figure, save
+from ddm_launch.figure_style import BLUE, COLUMN_WIDTH, GREEN, VERMILLION, new_figure, save
 from ddm_launch.settings import read_yaml
 from ddm_launch.tables import read_csv
 from ddm_model.plain_file import write_file
@@ -17,15 +19,24 @@ from ddm_qa.processes import Programs
 COLUMNS = "frames,size_px,pca_us,objective_gradient_us,peak_memory_mb"
 FRAMES, SIZES = (1000, 3000, 10000, 30000, 100000), (51, 71, 101, 142, 201)
 SIZE, NUM_FRAMES = 51, 1600  # of the rows in which the other one grows
+RETRAIN_COLUMNS = "frames,train_s,peak_memory_mb"
+RETRAIN_FRAMES = (1000, 3000, 10000, 20000)
+# Runs a command and says what the kernel says of its memory.
+WITH_PEAK_MEMORY = """import resource, subprocess, sys
+code = subprocess.call(sys.argv[1:])
+print("peak_memory_mb: %.1f" % (resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024.0))
+sys.exit(code)"""
 REMEDY = "rosrun ddm_launch growth writes it"
 
 ABOUT = """\
 Times PCA and one objective with its gradient on 1,000 to 100,000 frames of 51 x 51 pixels, and on 1600 frames of up to
-201 x 201; then has model_node learn from bags of 100,000 frames, and reads its peak memory. Takes a few minutes."""
+201 x 201, preset paper, on one core; a whole training of the preset efficient on bags of 1,000 to 20,000 frames, on all cores; then has
+model_node learn from bags of 100,000 frames, and reads its peak memory. Takes a few minutes."""
 
 EPILOG = """\
 DIR/growth.csv    frames, size [pixels], PCA and objective with gradient [us], peak memory of the process [MB]
-DIR/growth.png    both times over frames and over pixels
+DIR/retrain.csv   frames, time of a training from its bags [s], peak memory of the process [MB]
+DIR/growth.png    all these times over frames and over pixels
 DIR/growth.yaml   exponent of the objective's time over frames, peak memory of model_node [MB], processor"""
 
 
@@ -52,14 +63,43 @@ def exponent(xs, ys):
     return float(np.polyfit(np.log(xs), np.log(ys), 1)[0])
 
 
-def draw(path, out):
+def value_of(text, name):
+    """Of a line `name: value`."""
+    return next(float(line.split(":")[1]) for line in text.splitlines() if line.startswith(name + ":"))
+
+
+def write_bags(programs, frames):
+    """Their paths, 1000 frames in each."""
+    folder = os.path.join(programs.scratch, "bags_%d" % frames)
+    os.makedirs(folder)
+    programs.call("bags", [find_program("speed_growth"), "--frames", str(frames), "--bags", folder])
+    return sorted(glob.glob(os.path.join(folder, "*.bag")))
+
+
+def write_retrain_table(out, programs, progress):
+    lines = [RETRAIN_COLUMNS]
+    for frames in RETRAIN_FRAMES:
+        progress.set_description("training on %d frames" % frames)
+        said = programs.call("retrain", [
+            sys.executable, "-c", WITH_PEAK_MEMORY, find_program("train_from_bags", package="ddm_model"), "--config",
+            package_path("config", "presets", "efficient.yaml"), "--seed", "1", "--out",
+            os.path.join(programs.scratch, "model.ddm")] + write_bags(programs, frames), OMP_NUM_THREADS=str(os.cpu_count()))
+        lines.append("%d,%g,%g" % (frames, value_of(said, "train_s"), value_of(said, "peak_memory_mb")))
+        progress.update(1)
+    write_file(os.path.join(out, "retrain.csv"), "\n".join(lines) + "\n")
+
+
+def draw(path, retrain_path, out):
     by_frames, by_size = read_table(path)
+    retrain = read_csv(retrain_path, {"frames": float, "train_s": float}, REMEDY)
     with new_figure(COLUMN_WIDTH, 1.9) as figure:
         left, right = figure.subplots(1, 2, sharey=True)
         for axes, rows, xs in ((left, by_frames, by_frames[:, 0]), (right, by_size, by_size[:, 1] ** 2)):
             axes.loglog(xs, 1e-6 * rows[:, 2], color=VERMILLION, marker="s", label="PCA")
             axes.loglog(xs, 1e-6 * rows[:, 3], color=BLUE, marker="o", label="objective, gradient")
             axes.grid(True)
+        left.loglog([row["frames"] for row in retrain], [row["train_s"] for row in retrain], color=GREEN, marker="^")
+        right.plot([], [], color=GREEN, marker="^", label="training, efficient")
         left.set_xlabel("frames of 51 x 51 pixels")
         right.set_xlabel("pixels, %d frames" % NUM_FRAMES)
         left.set_ylabel("time [s]")
@@ -70,9 +110,8 @@ def draw(path, out):
 def node_memory(programs, progress):
     """Peak memory of model_node that has learned from as many frames [MB]."""
     progress.set_description("model_node, %d frames" % FRAMES[-1])
-    bags, result = os.path.join(programs.scratch, "bags"), os.path.join(programs.scratch, "memory.yaml")
-    os.makedirs(bags)
-    programs.call("bags", [find_program("speed_growth"), "--frames", str(FRAMES[-1]), "--bags", bags])
+    write_bags(programs, FRAMES[-1])
+    bags, result = os.path.join(programs.scratch, "bags_%d" % FRAMES[-1]), os.path.join(programs.scratch, "memory.yaml")
     programs.roslaunch("model_node", package_path("qa", "benchmark", "model_memory.launch"), "bags:=" + bags,
                        "out:=" + result)
     progress.update(1)
@@ -85,12 +124,13 @@ def node_memory(programs, progress):
 def make(out):
     os.makedirs(out, exist_ok=True)
     with tempfile.TemporaryDirectory() as scratch, tqdm(
-            total=len(FRAMES) + len(SIZES) + 1, unit="step", dynamic_ncols=True, disable=None) as progress:
+            total=len(FRAMES) + len(SIZES) + len(RETRAIN_FRAMES) + 1, unit="step", dynamic_ncols=True, disable=None) as progress:
         programs = Programs(scratch)
         write_table(out, programs, progress)
+        write_retrain_table(out, programs, progress)
         memory_mb = node_memory(programs, progress)
     table = os.path.join(out, "growth.csv")
-    draw(table, os.path.join(out, "growth.png"))
+    draw(table, os.path.join(out, "retrain.csv"), os.path.join(out, "growth.png"))
     by_frames, _ = read_table(table)
     found = {"exponent": round(exponent(by_frames[:, 0], by_frames[:, 3]), 3),
              "model_node_peak_memory_mb": round(memory_mb, 1), "cpu": processor()}

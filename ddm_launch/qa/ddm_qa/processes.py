@@ -140,7 +140,7 @@ class Programs:
 
     def call(self, what, command, **variables):
         """Returns what a program printed. variables: of its environment. Raises Failure with its last words."""
-        environment = on_this_machine(dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", **variables))
+        environment = on_this_machine({**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", **variables})
         try:
             done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                   universal_newlines=True, timeout=LIMIT_S, env=environment)

@@ -1,157 +1,176 @@
 # What training and planning take in PyTorch: the same mathematics, shapes and data, with its own L-BFGS.
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs as a process of its own, so that PyTorch's threads and memory are its own.
-Samples are rows here, as PyTorch wants them."""
+Samples are rows here, as PyTorch wants them. Functions of tensors alone are what TorchScript compiles."""
 import argparse
+import glob
 import json
-import math
 import os
 import time
+from typing import List
 
-import numpy
-import rosbag
+import numpy as np
 import torch
 import yaml
 
-LAYER_STD = 0.3
+from ddm_model.model import load
+from ddm_qa.recorded import read_trials
+
 OVERSAMPLING = 10  # dimensions of the PCA's subspace beyond those wanted, as ours
+MOST_DIFFERENCE = 1e-5  # of a loss from ours, relative
+WARM_UP = 10  # calls in which TorchScript specialises what it compiled
 
 
-def read_trials(run):
-    """Lists (images [N x D] in [0, 1], torques [N x m]) of the bags of a run folder, and the goal image [D]."""
-    trials, goal = [], None
-    for name in sorted(os.listdir(run)):
-        path = os.path.join(run, name, "trial.bag")
-        if not os.path.exists(path):
-            continue
-        images, torques = {}, {}
-        with rosbag.Bag(path) as bag:
-            for topic, message, _ in bag.read_messages():
-                if topic.endswith("goal_image"):
-                    goal = pixels(message)
-                elif topic.endswith("image_raw"):
-                    images[message.header.stamp] = pixels(message)
-                elif topic.endswith("torque"):
-                    torques[message.header.stamp] = message.torque
-        stamps = sorted(set(images) & set(torques))
-        trials.append((numpy.stack([images[stamp] for stamp in stamps]),
-                       numpy.array([torques[stamp] for stamp in stamps], dtype=numpy.float32)))
-    return trials, goal
-
-
-def pixels(message):
-    return numpy.frombuffer(message.data, dtype=numpy.uint8).astype(numpy.float32) / 255.0
-
-
-def network(widths, linear_output, generator):
-    """Weights and biases of a fully connected network, to be optimised."""
-    layers = []
-    for inputs, outputs in zip(widths, widths[1:]):
-        weights = torch.randn(outputs, inputs, generator=generator) * LAYER_STD / math.sqrt(inputs)
-        layers.append((weights.requires_grad_(), torch.zeros(outputs, requires_grad=True)))
-    return layers, linear_output
-
-
-def forward(net, samples):
-    layers, linear_output = net
-    for number, (weights, biases) in enumerate(layers):
-        samples = torch.nn.functional.linear(samples, weights, biases)
-        if not (linear_output and number == len(layers) - 1):
+def forward(layers: List[torch.Tensor], linear_output: bool, samples: torch.Tensor) -> torch.Tensor:
+    """layers: weights and biases in turn."""
+    num_layers = len(layers) // 2
+    for layer in range(num_layers):
+        samples = torch.addmm(layers[2 * layer + 1], samples, layers[2 * layer].t())
+        if layer + 1 < num_layers or not linear_output:
             samples = torch.atan(samples)
     return samples
 
 
-class Peer:
-    """The deep dynamical model of a configuration."""
+def joint_objective(encoder: List[torch.Tensor], decoder: List[torch.Tensor], f: List[torch.Tensor],
+                    scores: torch.Tensor, torques: torch.Tensor, targets: torch.Tensor, wanted: torch.Tensor,
+                    order: int) -> torch.Tensor:
+    """V_R + V_P, eq. (5a)."""
+    features = forward(encoder, False, scores)
+    columns: List[torch.Tensor] = []
+    for lag in range(1, order + 1):
+        columns.append(features[targets - lag])
+        columns.append(torques[targets - lag])
+    predicted = forward(f, True, torch.cat(columns, 1))
+    decoded = forward(decoder, True, torch.cat([features, predicted]))
+    return (decoded - wanted).square().sum()
 
-    def __init__(self, config, trials, goal):
-        model, mpc = config["model"], config["mpc"]
-        self.order, self.feature_dim, self.pca_dim = model["order"], model["feature_dim"], model["pca_dim"]
-        self.horizon, self.control_weight = mpc["horizon"], mpc["control_weight"]
-        self.max_torque = mpc["max_torque"]
-        self.images = torch.from_numpy(numpy.concatenate([images for images, _ in trials] + [goal[None]]))
-        self.torques = torch.from_numpy(numpy.concatenate([torques for _, torques in trials])) / model["max_torque"]
-        begins = numpy.cumsum([0] + [len(images) for images, _ in trials])
-        self.targets = torch.from_numpy(numpy.concatenate(
-            [numpy.arange(begin + self.order, end) for begin, end in zip(begins, begins[1:])]))
-        generator = torch.Generator().manual_seed(0)
-        regressors = self.order * (self.feature_dim + self.torques.shape[1])
-        self.encoder = network([self.pca_dim] + model["encoder_widths"] + [self.feature_dim], False, generator)
-        self.decoder = network([self.feature_dim] + model["decoder_widths"] + [self.pca_dim], True, generator)
-        self.f = network([regressors] + model["predictor_widths"] + [self.feature_dim], True, generator)
-        self.fit_pca()
+
+def plan_costs(f: List[torch.Tensor], v: torch.Tensor, features: torch.Tensor, torques: torch.Tensor,
+               goal: torch.Tensor, control_weight: float) -> torch.Tensor:
+    """J of the torques u = max_torque tanh(v) of all starts at once, eq. (9)  [starts].
+
+    v: [starts x K x motors]. features, torques: the last ones, the newest first  [n x feature_dim], [n - 1 x motors].
+    control_weight: lambda max_torque^2
+    """
+    num_starts = v.size(0)
+    u = torch.tanh(v)
+    past = [features[lag].expand(num_starts, -1) for lag in range(features.size(0))]
+    acted = [torques[lag].expand(num_starts, -1) for lag in range(torques.size(0))]
+    cost = control_weight * u.square().sum(dim=[1, 2])
+    for step in range(v.size(1)):
+        acted.insert(0, u[:, step])
+        parts: List[torch.Tensor] = []
+        for lag in range(features.size(0)):
+            parts.append(past[lag])
+            parts.append(acted[lag])
+        past.insert(0, forward(f, True, torch.cat(parts, 1)))
+        cost = cost + (past[0] - goal).square().sum(1)
+    return cost
+
+
+class Peer:
+    """The deep dynamical model of a finished run of preset paper."""
+
+    def __init__(self, run, compiled):
+        """compiled: by TorchScript, or eager."""
+        with open(os.path.join(run, "config.yaml")) as stream:
+            self.config = yaml.safe_load(stream)
+        self.ours = load(sorted(glob.glob(os.path.join(run, "trial_*", "model.ddm")))[-1])
+        options, trials = self.ours.options, read_trials(run, self.ours.arrays["goal"])
+        if options["residual"] or options["increments"] or options["blur"] or options["delay"]:
+            raise ValueError("%s: the peers compute what preset paper does, without residual, increments, blur and delay"
+                             % run)
+        wrap = torch.jit.script if compiled else lambda function: function
+        self.forward, self.joint_objective, self.plan_costs = wrap(forward), wrap(joint_objective), wrap(plan_costs)
+        self.order, self.horizon = options["order"], self.config["mpc"]["horizon"]
+        self.max_torque = torch.tensor(options["max_torque"], dtype=torch.float32)
+        self.control_weight = float(self.config["mpc"]["control_weight"] * options["max_torque"][0] ** 2)
+        self.images = torch.from_numpy(trials.images)
+        self.torques = torch.from_numpy(trials.torques) / self.max_torque
+        self.targets = torch.from_numpy(trials.targets(self.order))
+        self.encoder, self.decoder, self.f = (self.layers_of(name) for name in ("encoder", "decoder", "f"))
+        self.mean = torch.tensor(self.ours.arrays["pca_mean"])
+        self.basis = torch.tensor(np.ascontiguousarray(self.ours.arrays["pca_basis"]))
+        self.scale = float(self.ours.arrays["pca_scale"])
+        self.project()
+
+    def layers_of(self, name):
+        """Our weights and biases, to be optimised."""
+        num_layers = sum(key.startswith(name + "_W") for key in self.ours.arrays)
+        return [torch.tensor(np.ascontiguousarray(self.ours.arrays["%s_%s%d" % (name, kind, layer)]),
+                             dtype=torch.float32).requires_grad_()
+                for layer in range(1, num_layers + 1) for kind in "Wb"]
 
     def parameters(self):
-        return [each for net in (self.encoder, self.decoder, self.f) for layer in net[0] for each in layer]
+        return self.encoder + self.decoder + self.f
+
+    def project(self):
+        self.scores = (self.images - self.mean) @ self.basis * self.scale
+        self.wanted = torch.cat([self.scores, self.scores[self.targets]])
+        self.weight = 1.0 / self.scores.square().sum()
 
     def fit_pca(self):
         self.mean = self.images.mean(0)
-        centred = self.images - self.mean
-        _, _, basis = torch.pca_lowrank(centred, q=self.pca_dim + OVERSAMPLING, center=False, niter=2)
-        self.basis = basis[:, :self.pca_dim].contiguous()
-        scores = centred @ self.basis
-        self.scale = 1.0 / scores[:, 0].std()
-        self.scores = scores * self.scale
-        self.weight = 1.0 / self.scores.square().sum()
+        _, _, basis = torch.pca_lowrank(self.images - self.mean, q=self.ours.options["pca_dim"] + OVERSAMPLING,
+                                        center=False, niter=2)
+        self.basis = basis[:, :self.ours.options["pca_dim"]].contiguous()
+        self.scale = 1.0
+        self.project()
+        self.scale = float(1.0 / self.scores[:, 0].std())
+        self.project()
 
     def encode(self, image):
-        return forward(self.encoder, (image - self.mean) @ self.basis * self.scale)
+        return self.forward(self.encoder, False, ((image - self.mean) @ self.basis * self.scale)[None])
 
-    def regressors(self, features):
-        """h of all targets."""
-        columns = []
-        for lag in range(1, self.order + 1):
-            columns += [features[self.targets - lag], self.torques[self.targets - lag]]
-        return torch.cat(columns, 1)
+    def loss(self):
+        """V_R + V_P"""
+        return self.joint_objective(self.encoder, self.decoder, self.f, self.scores, self.torques, self.targets, self.wanted,
+                                    self.order)
 
     def objective(self):
-        """w (V_R + V_P)"""
-        features = forward(self.encoder, self.scores)
-        predicted = forward(self.f, self.regressors(features))
-        decoded = forward(self.decoder, torch.cat([features, predicted]))
-        wanted = torch.cat([self.scores, self.scores[self.targets]])
-        return self.weight * (decoded - wanted).square().sum()
+        return self.weight * self.loss()
 
     def objective_gradient(self):
-        for parameter in self.parameters():
-            parameter.grad = None
-        value = self.objective()
-        value.backward()
-        return value
+        return torch.autograd.grad(self.objective(), self.parameters())
 
     def retrain(self, iterations, rank):
         self.fit_pca()
         minimise(self.parameters(), self.objective, iterations, rank)
 
-    def plan_cost(self, v, features, torques):
-        """J of the torques u = max_torque tanh(v), from the last features and torques, the newest first."""
-        u = torch.tanh(v)
-        features, torques = list(features), list(torques)
-        cost = self.control_weight * (self.max_torque * u).square().sum()
-        for step in range(self.horizon):
-            torques.insert(0, u[step])
-            parts = [part for pair in zip(features[:self.order], torques[:self.order]) for part in pair]
-            features.insert(0, forward(self.f, torch.cat(parts)))
-            cost = cost + (features[0] - self.goal_feature).square().sum()
-        return cost
-
-    def plan(self, number, last_v, iterations_per_start):
-        """The best of three starts from the frame of target `number`: the last plan moved on by one step, no torque, a
-        constant one."""
+    def start_plan(self, number):
+        """What plan_costs() wants to know of the frame of target `number`."""
         with torch.no_grad():
-            self.goal_feature = forward(self.encoder, self.scores[-1:])[0]
-            past = forward(self.encoder, self.scores[self.targets[number] - torch.arange(self.order)])
-            torques = self.torques[self.targets[number] - torch.arange(1, self.order)]
-        starts = [torch.cat([last_v[1:], last_v[-1:]]), torch.zeros_like(last_v), torch.full_like(last_v, 0.5)]
-        best = None
-        for v in starts:
-            v = v.clone().requires_grad_()
-            minimise([v], lambda: self.plan_cost(v, past, torques), iterations_per_start, iterations_per_start)
-            with torch.no_grad():
-                cost = float(self.plan_cost(v, past, torques))
-            if best is None or cost < best[0]:
-                best = cost, v.detach()
-        return best[1]
+            goal = self.forward(self.encoder, False, self.scores[-1:])[0]
+            now = self.targets[number] - 1
+            past = self.forward(self.encoder, False, self.scores[now - torch.arange(self.order)])
+        return past, self.torques[now - torch.arange(1, self.order)], goal
+
+    def plan(self, number, last_v, iterations):
+        """The best of three starts: the last plan moved on by one step, no torque, a constant one."""
+        past, torques, goal = self.start_plan(number)
+        v = torch.stack([torch.cat([last_v[1:], last_v[-1:]]), torch.zeros_like(last_v), torch.full_like(last_v, 0.5)])
+        v.requires_grad_()
+
+        def costs():
+            return self.plan_costs(self.f, v, past, torques, goal, self.control_weight)
+
+        minimise([v], lambda: costs().sum(), iterations, iterations)
+        with torch.no_grad():
+            return v[torch.argmin(costs())].clone()
+
+    def differences(self):
+        """{name: relative difference of a loss from ours} at our parameters."""
+        with torch.no_grad():
+            v_sum = (self.ours.info["v_r"] + self.ours.info["v_p"]) * self.scale ** 2  # from [grey^2]
+            differences = {"V_R + V_P": abs(float(self.loss()) / v_sum - 1.0)}
+            past, torques, goal = self.start_plan(0)
+            u = 0.5 * torch.sin(torch.arange(float(self.horizon)))[:, None]
+            cost = float(self.plan_costs(self.f, torch.atanh(u)[None], past, torques, goal, self.control_weight)[0])
+            acted = torch.cat([torques.flip(0), u]) * self.max_torque
+            ahead = self.ours.roll_out(past.flip(0).numpy(), acted.numpy())
+            j = float(np.sum((ahead - self.ours.goal_feature) ** 2) + self.control_weight * np.sum(u.numpy() ** 2))
+            differences["J"] = abs(cost / j - 1.0)
+        return differences
 
 
 def minimise(parameters, function, iterations, rank):
@@ -168,46 +187,62 @@ def minimise(parameters, function, iterations, rank):
     solver.step(closure)
 
 
-def times_us(call, num_calls):
-    """(median, 99 % quantile) of single calls, after one that does not count [us]."""
-    call()
+def times_us(call, num_calls, warm_up=1):
+    """(median, 99 % quantile) of single calls, after some that do not count [us]."""
+    for _ in range(warm_up):
+        call()
     times = []
     for _ in range(num_calls):
         start = time.perf_counter()
         call()
         times.append(1e6 * (time.perf_counter() - start))
-    return float(numpy.median(times)), float(numpy.quantile(times, 0.99))
+    return float(np.median(times)), float(np.quantile(times, 0.99))
 
 
-def measure(run, iterations, plan_iterations):
-    with open(os.path.join(run, "config.yaml")) as stream:
-        config = yaml.safe_load(stream)
-    peer = Peer(config, *read_trials(run))
-    starts = config["mpc"]["num_starts"]
+def measure(run, compiled, iterations, plan_iterations):
+    """{name: {median_us, p99_us}}. Raises ValueError where a loss is not ours."""
+    peer = Peer(run, compiled)
+    for name, difference in peer.differences().items():
+        if not difference < MOST_DIFFERENCE:
+            raise ValueError("%s of PyTorch is %.1e off ours, more than %.0e: nothing was timed" % (
+                name, difference, MOST_DIFFERENCE))
     image = peer.images[0]
-    results = {"objective_gradient": times_us(peer.objective_gradient, 100), "pca": times_us(peer.fit_pca, 5)}
+    results = {"objective_gradient": times_us(peer.objective_gradient, 100, WARM_UP), "pca": times_us(peer.fit_pca, 5)}
     with torch.no_grad():
-        results["encode"] = times_us(lambda: peer.encode(image), 1000)
-    results["retrain"] = times_us(lambda: peer.retrain(iterations, config["training"]["lbfgs_rank"]), 3)
+        results["encode"] = times_us(lambda: peer.encode(image), 1000, WARM_UP)
+    results["retrain"] = times_us(lambda: peer.retrain(iterations, peer.config["training"]["lbfgs_rank"]), 3)
     state = {"v": torch.zeros(peer.horizon, peer.torques.shape[1]), "number": 0}
 
     def plan():
-        state["v"] = peer.plan(state["number"], state["v"], max(1, round(plan_iterations / starts)))
+        state["v"] = peer.plan(state["number"], state["v"], max(1, round(plan_iterations / 3.0)))
         state["number"] += 1
 
-    results["plan"] = times_us(plan, 20)
+    results["plan"] = times_us(plan, 20, WARM_UP)
     return {name: {"median_us": median, "p99_us": p99} for name, (median, p99) in results.items()}
+
+
+def blas():
+    """File name of the BLAS library that PyTorch computes with."""
+    with open("/proc/self/maps") as stream:
+        names = {os.path.basename(line.split()[-1]) for line in stream if "blas" in line.lower() and "/" in line}
+    return ", ".join(sorted(names)) or "PyTorch's own"
 
 
 def main():
     parser = argparse.ArgumentParser(prog="torch_peers", description="Times training and planning in PyTorch, on the "
-                                     "bags of a finished experiment; prints JSON.")
+                                     "bags of a finished experiment of preset paper; prints JSON.")
     parser.add_argument("run", metavar="RUN_FOLDER")
+    parser.add_argument("--eager", action="store_true", help="without TorchScript")
+    parser.add_argument("--threads", type=int, default=1, help="default 1")
     parser.add_argument("--iterations", type=int, default=200, help="of a retraining, default 200")
     parser.add_argument("--plan-iterations", type=float, default=60.0, help="of a plan, over its three starts, default 60")
     options = parser.parse_args()
-    torch.set_num_threads(1)
-    print(json.dumps(measure(options.run, options.iterations, options.plan_iterations)))
+    torch.set_num_threads(options.threads)
+    try:
+        times = measure(options.run, not options.eager, options.iterations, options.plan_iterations)
+    except ValueError as error:
+        parser.exit(1, "torch_peers: %s\n" % error)
+    print(json.dumps({"times": times, "torch": torch.__version__, "blas": blas()}))
 
 
 if __name__ == "__main__":
