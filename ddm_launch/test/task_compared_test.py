@@ -33,10 +33,10 @@ class TaskComparedTest(figure_case.FigureCase):
             self.assertEqual(figure_case.drawn_points(axes, "MR.Q")[0], (10000, 6.1))
             self.assertEqual(axes.get_xscale(), "log")
 
-    def test_each_published_method_has_a_style_of_its_own(self):
-        self.assertEqual(len(set(task_compared.STYLES)), len(task_compared.STYLES))
+    def test_the_same_four_published_methods_are_drawn_for_each_task(self):
+        self.assertEqual(len(set(task_compared.COLOURS.values())), 4)
         for task in task_compared.SUITE.values():
-            self.assertIn(len(task_compared.read_published(PUBLISHED, task.name)), range(1, len(task_compared.STYLES)))
+            self.assertEqual(set(task_compared.read_published(PUBLISHED, task.name)), set(task_compared.COLOURS))
 
     def test_the_program_draws_it(self):
         self.assertDrawn(task_compared, [self.table, "--task", "suite_pendulum", "--published", PUBLISHED], COLUMN_WIDTH)

@@ -3,7 +3,7 @@
 import argparse
 import sys
 
-from ddm_launch import film_strip, learning_curve, success_rate
+from ddm_launch import film, film_strip, learning_curve, success_rate
 from ddm_launch.command import run_program
 
 
@@ -13,6 +13,7 @@ def program(name, about, figures):
       ABOUT                  what it draws; --help lists its first sentence
       add_arguments(parser)  of its own; every figure has --out, by default FIGURE.png in the working folder
       draw(options)          writes options.out
+      SUFFIX                 of that file, where it is not .png
     """
     def main(arguments=None):
         parser = argparse.ArgumentParser(prog=name, description=about)
@@ -22,7 +23,8 @@ def program(name, about, figures):
             of_figure = names.add_parser(figure, description=module.ABOUT,
                                          help=module.ABOUT.split(". ")[0].replace("%", "%%"))
             module.add_arguments(of_figure)
-            of_figure.add_argument("--out", metavar="FILE.png", default=figure + ".png",
+            suffix = getattr(module, "SUFFIX", ".png")
+            of_figure.add_argument("--out", metavar="FILE" + suffix, default=figure + suffix,
                                    help="picture to write; default %(default)s")
             of_figure.set_defaults(draw=module.draw)
         options = parser.parse_args(sys.argv[1:] if arguments is None else arguments)
@@ -35,4 +37,4 @@ def program(name, about, figures):
 
 
 main = program("figure", "Draws a figure; `figure FIGURE --help` lists its options.",
-               (film_strip, learning_curve, success_rate))
+               (film, film_strip, learning_curve, success_rate))

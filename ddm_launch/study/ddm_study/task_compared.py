@@ -1,8 +1,8 @@
 # Draws the mean return of a task over the physics frames learned from, next to published methods that learn from pixels.
 # SPDX-License-Identifier: BSD-3-Clause
 from ddm_launch.command import Failure
-from ddm_launch.figure_style import (BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION, YELLOW,
-                                     add_legend, new_figure, panel_above_legend, save)
+from ddm_launch.figure_style import (BLACK, BLUE, COLUMN_WIDTH, GREEN, PURPLE, VERMILLION, add_legend, new_figure,
+                                     panel_above_legend, save)
 from ddm_launch.tables import optional, read_csv
 from ddm_study.efficient_tables import REMEDY, SUITE
 
@@ -11,9 +11,8 @@ ABOUT = ("Mean return of a task of the DeepMind Control Suite over the physics f
          "time.")
 OURS = "DDM + MPC"
 PUBLISHED = "it is results/published/suite_returns.csv of ddm_launch"
-# Colour and dashes of the first, second, ... published method.
-STYLES = ((BLUE, "-"), (VERMILLION, "-"), (GREEN, "-"), (PURPLE, "-"), (SKY, "--"), (ORANGE, "--"), (GREY, "--"),
-          (GREEN, ":"), (PURPLE, ":"), (YELLOW, ":"))
+# The published methods that are drawn, those that need the fewest frames in some task; the others are in its table.
+COLOURS = {"MR.Q": BLUE, "DreamerV3": VERMILLION, "DrQ-v2": GREEN, "Dreamer v1": PURPLE}
 
 
 def read_ours(path, task):
@@ -27,10 +26,10 @@ def read_ours(path, task):
 
 
 def read_published(path, task):
-    """{method: ([physics frames], [mean return])}"""
+    """{method: ([physics frames], [mean return])} of COLOURS."""
     curves = {}
     for row in read_csv(path, {"task": str, "method": str, "physics_frames": float, "mean_return": float}, PUBLISHED):
-        if row["task"] == task:
+        if row["task"] == task and row["method"] in COLOURS:
             frames, returns = curves.setdefault(row["method"], ([], []))
             frames.append(row["physics_frames"])
             returns.append(row["mean_return"])
@@ -39,8 +38,8 @@ def read_published(path, task):
 
 def draw_curves(axes, ours, published, step_s):
     """Ours on top; robot time on the upper edge. step_s: of a physics frame [s]."""
-    for (method, (frames, returns)), (colour, dashes) in zip(published.items(), STYLES):
-        axes.plot(frames, returns, color=colour, linestyle=dashes, linewidth=0.9, label=method)
+    for method, (frames, returns) in published.items():
+        axes.plot(frames, returns, color=COLOURS[method], linewidth=0.9, label=method)
     frames, returns, errors = ours
     axes.errorbar(frames, returns, yerr=errors, color=BLACK, marker="o", capsize=2, elinewidth=0.8, zorder=5, label=OURS)
     axes.set_xscale("log")

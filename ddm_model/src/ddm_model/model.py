@@ -96,7 +96,8 @@ class Model:
 
     options: the block `model` of its configuration. image_size [pixels], torque_dim [-]. info: seed, trial, frames, v_r,
     v_p, feature_spread, and config, the YAML text that it was trained with. arrays: all that it computes with, under the
-    names of doc/reference/programs.md. goal_feature: z_ref, None without a goal image.
+    names of doc/reference/programs.md. goal_feature: z_ref, None without a goal image. landmarks: features of states that it has
+    seen  [M x feature_dim].
     """
 
     def __init__(self, data):
@@ -109,10 +110,11 @@ class Model:
                                                                        ("frames", "<u4"))}
         for name in ("v_r", "v_p", "feature_spread"):
             self.info[name] = float(reader.number("<f8")) if version > 1 or name != "feature_spread" else 0.0
-        if version > 3:
-            reader.array("<f4")  # landmarks
+        landmarks = reader.array("<f4") if version > 3 else np.zeros(0, "<f4")
         self.info["config"] = reader.text()
         self.arrays = self._read_arrays(reader)
+        memory, dim = self.options["order"] + self.options["delay"], self.options["feature_dim"]
+        self.landmarks = landmarks.reshape(-1, memory * dim + (memory - 1) * self.torque_dim)[:, :dim]
         goal = reader.array("u1")
         self.goal_feature = None
         if goal.size > 0:

@@ -1,0 +1,176 @@
+# Draws greedy evaluations as one animation: the camera, what the model expected, and the feature space.
+# SPDX-License-Identifier: BSD-3-Clause
+import collections
+import os
+import re
+import subprocess
+
+from matplotlib import font_manager
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+import yaml
+
+from ddm_launch.command import Failure, find_program
+from ddm_launch.figure_style import BLUE, GREY, ORANGE, VERMILLION, save_picture
+from ddm_launch.images import draw_images
+from ddm_launch.run_folder import read_setting, read_trials
+from ddm_launch.tables import read_csv
+from ddm_model.model import ModelFileError, load
+
+ABOUT = ("Greedy evaluations of run folders, one after the other. Left the camera; in the middle what the model expected a "
+         "second ago to see now, under the torques that acted since; right the feature space: what the model has seen, the goal, "
+         "and the way that it expects from now on.")
+SUFFIX = ".webp"
+AHEAD_S = 1.0
+PANEL, MARGIN, HEADER, FOOTER = 200, 8, 26, 24  # [pixels]
+LAST_MS = 1500  # the last picture of an evaluation stays
+TITLES = ("camera", "expected a second ago", "feature space")
+EVALUATION = re.compile(r"evaluation_(\d+)$")
+
+# One evaluation. title; dt [s]; images [N x size x size] and what was expected of them, None at first; features [N x 2]; paths:
+# for each frame the features that are expected from it on; landmarks, goal: features  [.. x 2].
+Clip = collections.namedtuple("Clip", "title dt images expected features paths landmarks goal")
+
+
+def read_columns(path, names):
+    """[rows x names]"""
+    rows = read_csv(path, dict.fromkeys(names, float))
+    return np.array([[row[name] for name in names] for row in rows])
+
+
+def simulate(run, evaluation):
+    """Images of an evaluation as the plant draws them, one for each torque, and the torques [N x motors, N m]."""
+    with open(os.path.join(evaluation, "torques.csv")) as stream:
+        motors = stream.readline().strip().split(",")[1:-1]  # step, motors, exploratory
+    plant, config = read_setting(run, "experiment", "plant", "plant"), os.path.join(run, "config.yaml")
+    program = [find_program("simulate", "ddm_sim"), "--plant", plant, "--config", config]
+    facts = subprocess.run(program + ["--describe"], check=True, stdout=subprocess.PIPE, universal_newlines=True).stdout
+    start = read_columns(os.path.join(evaluation, "trajectory.csv"), yaml.safe_load(facts)["state"])[0]
+    torques = read_columns(os.path.join(evaluation, "torques.csv"), motors)
+    text = "\n".join([",".join(motors)] + [",".join(map(repr, map(float, row))) for row in torques]) + "\n"
+    pictures = draw_images(program + ["--start", ",".join(map(repr, map(float, start)))], text)[:len(torques)]
+    return np.array([np.asarray(picture) for picture in pictures]), torques
+
+
+def plane_of(points):
+    """Projection of features to the two directions in which these points vary most."""
+    mean = points.mean(axis=0)
+    directions = np.linalg.svd(points - mean, full_matrices=False)[2][:2]
+    return lambda features: (np.asarray(features) - mean) @ directions.T
+
+
+def read_clip(evaluation):
+    evaluation = os.path.normpath(evaluation)
+    found = EVALUATION.search(evaluation)
+    if not found:
+        raise Failure("a film shows folders RUN/evaluation_NNN, got '%s'" % evaluation)
+    run, trial = os.path.dirname(evaluation) or ".", int(found.group(1))
+    path = os.path.join(run, "trial_%03d" % trial, "model.ddm")
+    try:
+        model = load(path)
+    except (OSError, ModelFileError) as error:
+        raise Failure("%s has no model to show: %s" % (run, error))
+    frames = next((row.frames for row in read_trials(run) if row.trial == trial), None)
+    images, torques = simulate(run, evaluation)
+    if images.shape[1] != model.image_size:
+        raise Failure("the plant of %s draws %d pixels and the model sees %d: film runs in which both are equal" % (
+            run, images.shape[1], model.image_size))
+    dt = float(read_setting(run, "plant", "dt", "time step"))
+    steps, n = max(1, round(AHEAD_S / dt)), model.options["order"]
+    memory = n + model.options["delay"]
+    features, paths, expected = model.encode(images), [], [None] * len(images)
+    for now in range(len(images)):
+        acted = torques[max(now - memory + 1, 0):now + steps]
+        if now < memory - 1 or len(acted) < memory:
+            paths.append(features[now:now + 1])
+            continue
+        ahead = model.roll_out(features[now - n + 1:now + 1], acted)
+        paths.append(np.concatenate([features[now:now + 1], ahead]))
+        if now + steps < len(images):
+            expected[now + steps] = np.clip(255.0 * model.decode(ahead[-1:])[0], 0, 255)
+    seen = model.landmarks if len(model.landmarks) > 1 else features
+    project = plane_of(seen)
+    goal = None if model.goal_feature is None else project(model.goal_feature[None])
+    title = read_setting(run, "experiment", "plant", "plant")
+    if frames:
+        title += ", after {:,} images ({:g} s)".format(frames, frames * dt)
+    return Clip(title, dt, images, expected, project(features), [project(path) for path in paths], project(seen), goal)
+
+
+class Plane:
+    """The right panel: features as points and ways in a square of PANEL pixels."""
+
+    def __init__(self, clip):
+        points = np.concatenate([clip.landmarks, clip.features])
+        self._middle = 0.5 * (points.max(axis=0) + points.min(axis=0))
+        self._scale = 0.44 * PANEL / max(1e-9, 0.5 * float(np.max(np.ptp(points, axis=0))))
+        self._background = Image.new("RGB", (PANEL, PANEL), "white")
+        pen = ImageDraw.Draw(self._background)
+        for point in clip.landmarks:
+            self._dot(pen, point, 1, "#cccccc")
+        if clip.goal is not None:
+            self._dot(pen, clip.goal[0], 6, VERMILLION)
+
+    def _at(self, point):
+        x, y = self._scale * (np.asarray(point) - self._middle)
+        return PANEL / 2 + x, PANEL / 2 - y
+
+    def _dot(self, pen, point, radius, colour):
+        x, y = self._at(point)
+        pen.ellipse([x - radius, y - radius, x + radius, y + radius], fill=colour)
+
+    def draw(self, past, path):
+        picture = self._background.copy()
+        pen = ImageDraw.Draw(picture)
+        pen.line([self._at(point) for point in past], fill=GREY, width=1)
+        pen.line([self._at(point) for point in path], fill=ORANGE, width=3)
+        self._dot(pen, path[0], 5, BLUE)
+        return picture
+
+
+def font(size):
+    return ImageFont.truetype(font_manager.findfont("DejaVu Sans"), size)
+
+
+def pictures_of(clip):
+    """RGB pictures of all frames."""
+    width = 3 * PANEL + 4 * MARGIN
+    plane, pictures = Plane(clip), []
+    for now, image in enumerate(clip.images):
+        picture = Image.new("RGB", (width, HEADER + PANEL + FOOTER + MARGIN), "white")
+        pen = ImageDraw.Draw(picture)
+        pen.text((MARGIN, 5), "%s:   %4.1f s" % (clip.title, now * clip.dt), fill="black", font=font(14))
+        panels = [as_panel(image), as_panel(clip.expected[now]),
+                  plane.draw(clip.features[max(0, now - 10):now + 1] if now else clip.features[:2], clip.paths[now])]
+        for column, (panel, title) in enumerate(zip(panels, TITLES)):
+            left = MARGIN + column * (PANEL + MARGIN)
+            picture.paste(panel, (left, HEADER))
+            pen.rectangle([left, HEADER, left + PANEL - 1, HEADER + PANEL - 1], outline="#dddddd")
+            pen.text((left, HEADER + PANEL + 4), title, fill="black", font=font(13))
+        pictures.append(picture)
+    return pictures
+
+
+def as_panel(image):
+    """None: nothing is expected yet."""
+    if image is None:
+        return Image.new("RGB", (PANEL, PANEL), "#eeeeee")
+    return Image.fromarray(np.asarray(image, dtype=np.uint8)).resize((PANEL, PANEL), Image.BICUBIC).convert("RGB")
+
+
+def add_arguments(parser):
+    parser.add_argument("evaluations", metavar="RUN/evaluation_NNN", nargs="+", help="shown one after the other")
+    parser.add_argument("--seconds", type=float, default=10.0, help="of each, default %(default)g")
+
+
+def draw(options):
+    if not options.out.lower().endswith(SUFFIX):
+        raise Failure("a film must be a .webp, got '%s': give --out another name" % options.out)
+    pictures, durations = [], []
+    for evaluation in options.evaluations:
+        clip = read_clip(evaluation)
+        shown = pictures_of(clip)[:1 + round(options.seconds / clip.dt)]
+        pictures += shown
+        durations += [round(1000 * clip.dt)] * (len(shown) - 1) + [LAST_MS]
+    save_picture(pictures[0], options.out, "WEBP", save_all=True, append_images=pictures[1:], duration=durations, loop=0,
+                 quality=60, method=4)
