@@ -1,14 +1,17 @@
 #!/usr/bin/python3
-# Whole experiments in real time: robot.launch behind a stand-in camera, stopped and resumed; and experiment.launch.
+# Whole experiments in real time: robot.launch behind a stand-in camera, stopped and resumed, or rehearsed; experiment.launch.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import sys
 import time
 
 import rosbag
+import rosgraph
 import rospy
 import rosunit
-from std_srvs.srv import SetBool
+from sensor_msgs.msg import Image
+from std_msgs.msg import Header
+from std_srvs.srv import SetBool, Trigger
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import roslaunch, start_roslaunch  # noqa: E402
@@ -77,6 +80,37 @@ class RobotLoopTest(ScratchCase):
         self.assertLess(check["latency_ms"]["median"], 200.0)
         self.assertLess(check["deadline_misses"], STEPS)  # none on a machine that has nothing else to do
         self.assertEqual([row["trial"] for row in check["evaluations"]], [0])
+
+    def test_a_rehearsal_runs_to_its_end_and_no_motor_listens(self):
+        """As the tutorial says: armed, with effort:=/nobody. Then what it recorded is replayed."""
+        config = self.write("my_robot.yaml", "robot: {max_torque: 2.0}\n")
+        camera = rospy.Publisher("/usb_cam/image_raw", Image, queue_size=1)
+        shown = rospy.Timer(rospy.Duration(0.04), lambda _: camera.publish(Image(
+            header=Header(stamp=rospy.Time.now()), width=64, height=64, step=64, encoding="mono8", data=os.urandom(64 * 64))))
+        self.addCleanup(shown.shutdown)
+        launch = start_roslaunch(self.scratch, "robot.launch", "camera:=/usb_cam/image_raw", "effort:=/nobody", "preset:=debug",
+                                 "trials:=0", "config:=" + config, "runs:=" + self.out, port=0)
+        self.addCleanup(launch.stop)
+        launch.waitForText("call service take_goal", LIMIT_S)
+        self.assertTrue(rospy.ServiceProxy("take_goal", Trigger)().success)
+        self.assertTrue(rospy.ServiceProxy("enable", SetBool)(True).success)
+        launch.waitForText("reset_done", LIMIT_S)
+        self.assertTrue(rospy.ServiceProxy("reset_done", Trigger)().success)
+        launch.waitForText("motors follow", LIMIT_S)
+        publishers, subscribers, _ = rosgraph.Master("/robot_loop_test").getSystemState()
+        self.assertEqual(dict(publishers)["/nobody"], ["/robot_node"])
+        self.assertEqual([name for name, _ in publishers if name.endswith("effort_command")], ["/mpc_node/effort_command"])
+        self.assertEqual([name for name, _ in subscribers if name == "/nobody" or name.endswith("effort_command")], [])
+        deadline = time.monotonic() + LIMIT_S
+        while not rospy.ServiceProxy("reset_done", Trigger)().success:  # for the evaluation, after the training
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.1)
+        launch.waitForEnd(LIMIT_S)
+        self.assertIn("summary.yaml", files_in(self.out), launch.output)
+        trial = os.path.join(self.out, "trial_000")
+        _, output = roslaunch(self.scratch, "replay.launch", "bag:=" + os.path.join(trial, "trial.bag"), "rate:=0",
+                              "model:=" + os.path.join(trial, "model.ddm"), "preset:=debug", "config:=" + config, limit_s=LIMIT_S)
+        self.assertIn("frames replayed", output)
 
     def test_an_experiment_with_the_simulator_in_real_time(self):
         config = self.write("config.yaml", "plant: {dt: 0.1}\n")
