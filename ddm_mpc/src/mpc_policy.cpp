@@ -16,7 +16,7 @@ std::shared_ptr<const Ddm> usable(std::shared_ptr<const Ddm> model, const MpcOpt
     throw std::invalid_argument("mpc/max_torque must be at most the model's model/max_torque " +
                                 limitsText(model->options().max_torque) + " N m, got " +
                                 limitsText(options.max_torque) +
-                                ": the model has seen no larger torque");
+                                ": lower it, or train a model for larger torques from the bags");
   }
   return model;
 }
