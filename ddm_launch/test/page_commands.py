@@ -6,7 +6,7 @@ import re
 import pages
 
 # Programs and launch files that page_commands_test runs as the page says, but for CHEAPER.
-RUN_HERE = {"run_experiment", "sweep", "figure film_strip", "figure learning_curve", "figure success_rate", "evaluate", "train_from_bags",
+RUN_HERE = {"run_experiment", "sweep", "figure film", "figure film_strip", "figure learning_curve", "figure success_rate", "evaluate", "train_from_bags",
             "inspect", "export", "simulate", "sim_node", "mpc_node", "dynparam", "experiment.launch", "record.launch",
             "control.launch", "replay.launch", "demo.sh"}
 
@@ -44,7 +44,7 @@ CHEAPER = [
     (r"(experiment\.launch)(?!.*trials:=)", r"\1 trials:=1"),
     (r"--trials \d+", "--trials 1"), (r"trials:=\d+", "trials:=1"), (r"--seeds \d+:\d+", "--seeds 0:2"),
     (r"(--method oracle --config .*)", r"\1 --config %s/ddm_launch/config/presets/debug.yaml" % pages.CHECKOUT),
-    (r"trial_\d+/model.ddm", "trial_001/model.ddm"), (r"rviz:=true", "view:=true frame_rate:=0"),
+    (r"trial_\d+/model.ddm", "trial_001/model.ddm"), (r"/evaluation_\d+", "/evaluation_001"), (r"rviz:=true", "view:=true frame_rate:=0"),
     (r"^bash ddm_launch/scripts/demo.sh", "bash -c 'set -e; . %s/ddm_launch/scripts/demo.sh; "
      "check_system() { :; }; install_packages() { :; }; build_release() { :; }; main \"$@\"' demo.sh --trials 1"
      % pages.CHECKOUT)]
