@@ -51,9 +51,6 @@ std::vector<std::string> TrainingOptions::problems() const {
   training.require(selection_iterations <= 0 || choice, "selection_iterations", no_choice,
                    selection_iterations);
   training.requireWithin("selection_frames", selection_frames, 0, 1000000000);
-  training.require(selection_frames <= 0 || selection_iterations > 0, "selection_frames",
-                   "be 0 where training/selection_iterations is 0: all frames count in the end",
-                   selection_frames);
   if (schedule == "v_r_only") {
     training.require(selection_steps == 0 && prediction_steps == 1, "selection_steps",
                      "be 0 and prediction_steps 1 where nothing is predicted: training/schedule",

@@ -86,8 +86,8 @@ class Progress {
   double squared_scale_;
   std::mutex mutex_;
   std::atomic<bool> cancelled_{false};
-  int iterations_ = 0;  // of all stages
-  int skipped_ = 0;     // that no stage will need any more
+  int iterations_ = 0;    // of all stages
+  double skipped_ = 0.0;  // that no stage will need any more
 };
 
 /// The terms that the best start is chosen by: predictions training/selection_steps ahead, or what
@@ -159,6 +159,7 @@ Minimum runStage(const Stage& stage, const TrainingOptions& training, Problem* p
 /// All stages of one candidate. Its error is infinite afterwards if there is no usable minimum; the message says why.
 void run(const Schedule& schedule, const TrainingOptions& training, const TrainingData<float>& data,
          Progress* progress, Candidate* candidate) {
+  if (progress->cancelled()) return;
   Problem problem(candidate->model, data);
   candidate->initial_cost = problem.cost(candidate->theta, schedule.terms());
   const std::vector<Stage>& stages = schedule.stages;
@@ -187,15 +188,20 @@ void run(const Schedule& schedule, const TrainingOptions& training, const Traini
 void runAll(const Schedule& schedule, const TrainingOptions& training,
             const TrainingData<float>& data, Progress* progress,
             std::vector<Candidate>* candidates) {
-  const auto count = static_cast<int>(candidates->size());
-#pragma omp parallel for schedule(dynamic, 1) if (count > 1)
-  for (int i = 0; i < count; ++i) {
-    Candidate& candidate = (*candidates)[i];
+  const auto attempt = [&](Candidate* candidate) {
     try {  // no exception may leave a thread
-      run(schedule, training, data, progress, &candidate);
+      run(schedule, training, data, progress, candidate);
     } catch (...) {
-      candidate.refusal = std::current_exception();
+      candidate->refusal = std::current_exception();
     }
+  };
+  const auto count = static_cast<int>(candidates->size());
+  if (count ==
+      1) {  // in a team of one thread its objective would start new threads at each evaluation
+    attempt(&candidates->front());
+  } else {
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int i = 0; i < count; ++i) attempt(&(*candidates)[i]);
   }
   for (const Candidate& candidate : *candidates) {
     if (candidate.refusal) std::rethrow_exception(candidate.refusal);
@@ -273,7 +279,7 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
   Progress progress(callback, schedule, candidates.size(), pca);
   const int longer_than = model.order + largestDelay(model, training);
   runAll(schedule, training,
-         training.selection_frames > 0
+         schedule.finish && training.selection_frames > 0
              ? evenPart(training_data, training.selection_frames, longer_than)
              : training_data,
          &progress, &candidates);

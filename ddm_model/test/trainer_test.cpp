@@ -256,6 +256,12 @@ TEST_F(Trainer, ComparesStartsOnAPartAndLearnsFromAllFrames) {
   EXPECT_LT(part.final_cost, 1.5 * all.final_cost);
   training_.selection_frames = 60;
   EXPECT_EQ(run().model->theta(), all.model->theta());
+  training_.selection_iterations =
+      0;  // nobody is chosen early: all frames count from the beginning
+  training_.selection_frames = 0;
+  const TrainingResult late = run();
+  training_.selection_frames = 30;
+  EXPECT_EQ(run().model->theta(), late.model->theta());
 }
 
 TEST_F(Trainer, GoesOnWithTheSameFramesAndThenWithTwiceAsMany) {
@@ -356,7 +362,7 @@ TEST_F(Trainer, TheNumberOfProcessorsChangesNoByte) {
   const int usual = omp_get_max_threads();
   omp_set_num_threads(1);
   const std::string one = trainedBytes();
-  omp_set_num_threads(4);
+  omp_set_num_threads(2);
   EXPECT_EQ(trainedBytes(), one);
   omp_set_num_threads(usual);
 }

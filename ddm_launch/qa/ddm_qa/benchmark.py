@@ -52,8 +52,8 @@ DIR/planning_budget.csv  2000 decisions of presets paper and efficient that woul
                        5 ms, on the idle machine and with a busy process on each core: time from when an image is due to
                        its torque, and the fraction that took at most the budget and 2 ms, or 10 ms
 With --peers, torch_..._us is the time of the same mathematics in PyTorch with its own L-BFGS, the starts of a plan in one
-batch: eager or compiled by TorchScript, one thread or two. peer_median_us is the best of one thread. Nothing is timed unless its
-losses are ours to 1e-5.
+batch: eager or compiled by TorchScript, one thread or two. peer_median_us is the best of one thread. Times count only if the
+losses agree with ours to 1e-5.
 DIR/machine.yaml       processor, versions, BLAS of PyTorch, iterations of a plan"""
 
 
@@ -114,8 +114,10 @@ class Benchmark:
     def peer(self):
         path = os.pathsep.join([os.path.dirname(os.path.dirname(PEERS)), os.environ.get("PYTHONPATH", "")])
         for column, mode in MODES.items():
+            threads = mode[-1]  # of its BLAS, too
             text = self.programs.call("peers", [sys.executable, PEERS, self.run, "--iterations", str(ITERATIONS),
-                                                "--plan-iterations", "%.1f" % self.plan_iterations] + mode, PYTHONPATH=path)
+                                                "--plan-iterations", "%.1f" % self.plan_iterations] + mode, PYTHONPATH=path,
+                                      OMP_NUM_THREADS=threads, OPENBLAS_NUM_THREADS=threads)
             found = json.loads(text.splitlines()[-1])
             for name, times in found["times"].items():
                 row = self.rows[name]

@@ -21,7 +21,7 @@ FRAMES, SIZES = (1000, 3000, 10000, 30000, 100000), (51, 71, 101, 142, 201)
 SIZE, NUM_FRAMES = 51, 1600  # of the rows in which the other one grows
 RETRAIN_COLUMNS = "frames,train_s,peak_memory_mb"
 RETRAIN_FRAMES = (1000, 3000, 10000, 20000)
-# Runs a command and says what the kernel says of its memory.
+# Runs a command and prints its peak memory.
 WITH_PEAK_MEMORY = """import resource, subprocess, sys
 code = subprocess.call(sys.argv[1:])
 print("peak_memory_mb: %.1f" % (resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024.0))

@@ -10,21 +10,23 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 import yaml
 
-from ddm_launch.command import Failure, find_program
+from ddm_launch.command import Failure, find_program, number
 from ddm_launch.figure_style import BLUE, GREY, ORANGE, VERMILLION, save_picture
 from ddm_launch.images import draw_images
 from ddm_launch.run_folder import read_setting, read_trials
+from ddm_launch.settings import read_yaml
 from ddm_launch.tables import read_csv
 from ddm_model.model import ModelFileError, load
 
-ABOUT = ("Greedy evaluations of run folders, one after the other. Left the camera; in the middle what the model expected a "
-         "second ago to see now, under the torques that acted since; right the feature space: what the model has seen, the goal, "
-         "and the way that it expects from now on.")
+ABOUT = ("Greedy evaluations of run folders, one after the other. Left: the image, without nuisances of the camera. Middle: the "
+         "image that the model predicted one second earlier, given the torques applied since. Right: the feature space, with states "
+         "that the model has seen (grey), the goal (red), the current image (blue) and the features predicted from it under the "
+         "torques to come (orange).")
 SUFFIX = ".webp"
 AHEAD_S = 1.0
 PANEL, MARGIN, HEADER, FOOTER = 200, 8, 26, 24  # [pixels]
 LAST_MS = 1500  # the last picture of an evaluation stays
-TITLES = ("camera", "expected a second ago", "feature space")
+TITLES = ("image", "predicted a second ago", "feature space")
 EVALUATION = re.compile(r"evaluation_(\d+)$")
 
 # One evaluation. title; dt [s]; images [N x size x size] and what was expected of them, None at first; features [N x 2]; paths:
@@ -44,8 +46,10 @@ def simulate(run, evaluation):
         motors = stream.readline().strip().split(",")[1:-1]  # step, motors, exploratory
     plant, config = read_setting(run, "experiment", "plant", "plant"), os.path.join(run, "config.yaml")
     program = [find_program("simulate", "ddm_sim"), "--plant", plant, "--config", config]
-    facts = subprocess.run(program + ["--describe"], check=True, stdout=subprocess.PIPE, universal_newlines=True).stdout
-    start = read_columns(os.path.join(evaluation, "trajectory.csv"), yaml.safe_load(facts)["state"])[0]
+    described = subprocess.run(program + ["--describe"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+    if described.returncode != 0:
+        raise Failure("%s cannot be drawn again: %s" % (evaluation, described.stderr.strip()))
+    start = read_columns(os.path.join(evaluation, "trajectory.csv"), yaml.safe_load(described.stdout)["state"])[0]
     torques = read_columns(os.path.join(evaluation, "torques.csv"), motors)
     text = "\n".join([",".join(motors)] + [",".join(map(repr, map(float, row))) for row in torques]) + "\n"
     pictures = draw_images(program + ["--start", ",".join(map(repr, map(float, start)))], text)[:len(torques)]
@@ -54,8 +58,10 @@ def simulate(run, evaluation):
 
 def plane_of(points):
     """Projection of features to the two directions in which these points vary most."""
-    mean = points.mean(axis=0)
-    directions = np.linalg.svd(points - mean, full_matrices=False)[2][:2]
+    mean, dim = points.mean(axis=0), points.shape[1]
+    directions = np.zeros((2, dim))
+    found = np.linalg.svd(points - mean, full_matrices=False)[2][:2]
+    directions[:len(found)] = found
     return lambda features: (np.asarray(features) - mean) @ directions.T
 
 
@@ -80,17 +86,18 @@ def read_clip(evaluation):
     memory = n + model.options["delay"]
     features, paths, expected = model.encode(images), [], [None] * len(images)
     for now in range(len(images)):
-        acted = torques[max(now - memory + 1, 0):now + steps]
-        if now < memory - 1 or len(acted) < memory:
+        if now < memory - 1:
             paths.append(features[now:now + 1])
             continue
-        ahead = model.roll_out(features[now - n + 1:now + 1], acted)
+        ahead = model.roll_out(features[now - n + 1:now + 1], torques[now - memory + 1:now + steps])
         paths.append(np.concatenate([features[now:now + 1], ahead]))
         if now + steps < len(images):
             expected[now + steps] = np.clip(255.0 * model.decode(ahead[-1:])[0], 0, 255)
     seen = model.landmarks if len(model.landmarks) > 1 else features
     project = plane_of(seen)
-    goal = None if model.goal_feature is None else project(model.goal_feature[None])
+    # Where each trial has a goal of its own, the model's is that of another.
+    drawn = (read_yaml(os.path.join(run, "config.yaml")).get("plant") or {}).get("goal_site")
+    goal = None if drawn or model.goal_feature is None else project(model.goal_feature[None])
     title = read_setting(run, "experiment", "plant", "plant")
     if frames:
         title += ", after {:,} images ({:g} s)".format(frames, frames * dt)
@@ -160,7 +167,7 @@ def as_panel(image):
 
 def add_arguments(parser):
     parser.add_argument("evaluations", metavar="RUN/evaluation_NNN", nargs="+", help="shown one after the other")
-    parser.add_argument("--seconds", type=float, default=10.0, help="of each, default %(default)g")
+    parser.add_argument("--seconds", type=number(float, 0), default=10.0, help="of each, default %(default)g")
 
 
 def draw(options):

@@ -11,7 +11,7 @@ ABOUT = ("Mean return of a task of the DeepMind Control Suite over the physics f
          "time.")
 OURS = "DDM + MPC"
 PUBLISHED = "it is results/published/suite_returns.csv of ddm_launch"
-# The published methods that are drawn, those that need the fewest frames in some task; the others are in its table.
+# The published methods that are drawn: at most four, the same for each task. The others are in the published table.
 COLOURS = {"MR.Q": BLUE, "DreamerV3": VERMILLION, "DrQ-v2": GREEN, "Dreamer v1": PURPLE}
 
 

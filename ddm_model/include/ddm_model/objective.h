@@ -33,10 +33,9 @@ namespace ddm {
 /// weight w = 1 / sum_t |s_t|^2 makes V about 1 for a useless model, whatever the data.
 /// Targets beyond the end of a piece count 0. The encoder runs once for both terms.
 ///
-/// V is a sum over parts of up to 128 images, whose activations stay in cache. Parts have nothing in
-/// common: each encodes the few images before it again. Lanes of parts are computed at once on all
-/// processors that OpenMP may use and are added in their order, so that their number changes no
-/// bit. Memory is taken once, for more steps ahead when they are first asked for.
+/// V is a sum over parts of up to 128 images, whose activations stay in cache. Parts are independent: each encodes the
+/// few images before its first one again. Up to eight lanes of parts run in parallel and are added in a fixed order, so the
+/// result does not depend on the number of threads. Memory is taken once, for more steps ahead when they are first asked for.
 template <class Scalar>
 class JointObjective {
  public:

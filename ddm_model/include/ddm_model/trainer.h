@@ -21,7 +21,8 @@ struct TrainingProgress {
   double fraction_done = 0.0;  ///< iterations over their caps, of all starts and stages
 };
 
-/// Called after each iteration; false ends the training without a model.
+/// Called after each iteration, of whichever start has moved on: from any thread, but never from two at a time. False ends the
+/// training without a model.
 using TrainingCallback = std::function<bool(const TrainingProgress&)>;
 
 /// What a training came to. Numerical trouble is reported here, never thrown.
