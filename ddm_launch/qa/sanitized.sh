@@ -69,7 +69,6 @@ run_sanitized() {  # address|thread|fuzz PATTERN
   rm -rf "$reports"
   mkdir -p "$reports"
   export ASAN_OPTIONS=log_path=$reports/report:detect_stack_use_after_return=1:strict_string_checks=1
-  export LSAN_OPTIONS=suppressions=$checkout/ddm_launch/qa/leak_suppressions.txt:print_suppressions=0
   export UBSAN_OPTIONS=log_path=$reports/report:print_stacktrace=1
   # ROS's own libraries are not instrumented: without the last option their locks look like none
   export TSAN_OPTIONS=log_path=$reports/report:suppressions=$suppressions:ignore_noninstrumented_modules=1

@@ -2,9 +2,11 @@
 # What benchmark runs, for a short time: nodes, kernels and growth give what its table needs.
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
+import importlib.util
 import os
 import shutil
 import sys
+import unittest
 from unittest import mock
 
 import rosunit
@@ -39,6 +41,7 @@ class BenchmarkProgramsTest(ScratchCase):
             self.assertTrue(0.0 < row["median_us"] <= row["p99_us"], (name, row))
         self.assertGreater(bench.plan_iterations, 0.0)
 
+    @unittest.skipUnless(importlib.util.find_spec("torch"), "PyTorch is not installed")
     def test_pytorch_computes_our_losses_before_it_is_timed(self):
         run = self.file("experiment")
         code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 1, "--out", run)

@@ -16,6 +16,7 @@ from run_files import read_rows, read_yaml  # noqa: E402
 
 TRIALS = 1
 QUICK = """training: {num_starts: 1, max_iterations: 20}
+trial: {num_steps: 30, episodes: 1}
 evaluation: {num_steps: 40, record: true}
 """
 RUNS = ["%s_%03d" % (kind, k) for k in range(TRIALS + 1) for kind in ("trial", "evaluation")]
