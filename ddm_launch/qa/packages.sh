@@ -4,13 +4,15 @@
 # Linters, the check of .rosinstall, sanitizers with symbols in their reports, a screen for rviz, and other machines,
 # played by this one; PyTorch, which ours is compared with.
 packages_to_test=(
-  catkin-lint catkin-tools clang-format python3-wstool git
+  catkin-lint catkin-tools clang-format git
   clang libclang-rt-dev libomp-dev llvm
   xvfb imagemagick
   openssh-client openssh-server iproute2 nftables
   slurmctld slurmd slurm-client munge
   python3-torch libopenblas0-pthread
 )
+# Debian 13 has no wstool
+[[ $(. /etc/os-release && echo "${VERSION_ID:-}") == 13 ]] || packages_to_test+=(python3-wstool)
 
 # Runs a command as root while no package may start a service (Debian policy 9.11.1: policy-rc.d), and disables those
 # that came with it: the tests start daemons of their own, and nobody asked for an sshd.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From a clean Debian 12 to a learned swing-up: installs, builds, runs an experiment, draws the result.
+# From a clean Debian to a learned swing-up: installs, builds, runs an experiment, draws the result.
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/workspace.sh"
@@ -19,6 +19,7 @@ and draws a learning curve and a film strip. Called again on the same run folder
 
   DDM_WS              catkin workspace to make or use, default ~/ddm_ws
   ROS_PARALLEL_JOBS   compiler jobs, for example -j1; default one per core, two gigabytes for each
+  DDM_NATIVE          OFF: compile for any processor of this architecture; default ON, for this one
 TEXT
 }
 

@@ -10,7 +10,7 @@ fail() {
   exit 1
 }
 
-# Debian 12 packages to build and run everything, tests included (both scripts share one build).
+# Packages of Debian 12 and 13 to build and run everything, tests included (both scripts share one build).
 packages_to_run=(
   # compiler, build tool
   build-essential cmake catkin python3-catkin-pkg python3-setuptools
@@ -53,7 +53,7 @@ use_system_environment() {
   [[ -n ${ROS_IP:-}${ROS_HOSTNAME:-} ]] || export ROS_IP=127.0.0.1
 }
 
-# Stops unless this is the system that everything is tested on. Argument: an os-release file.
+# Stops unless this is a system that everything is tested on. Argument: an os-release file.
 check_system() {
   local file=${1:-/etc/os-release} id='' version='' name='an unknown system'
   if [[ -r $file ]]; then
@@ -61,20 +61,20 @@ check_system() {
     version=$(. "$file" && printf %s "${VERSION_ID:-}")
     name=$(. "$file" && printf %s "${PRETTY_NAME:-$name}")
   fi
-  if [[ $id == debian && $version == 12 ]]; then
+  if [[ $id == debian && $version =~ ^1[23]$ ]]; then
     echo "System: $name"
     return
   fi
-  local known='No other system has been tried.'
+  local known="What other systems need: $checkout/doc/install.md"
   if [[ $id == ubuntu && $version == 20.04 ]]; then
     known="The code keeps to the compiler and libraries of Ubuntu 20.04 with ROS Noetic, but has not been run
 there, and the package names of this script are Debian's. To try it, with Noetic sourced:
     rosdep install --from-paths $checkout --ignore-src
     catkin_make -DCMAKE_BUILD_TYPE=Release      (in a workspace whose src/ links $checkout)"
   fi
-  fail "this is $name, but the scripts are tested on Debian 12 (bookworm) with Debian's own ROS 1 packages.
+  fail "this is $name, but the scripts are tested on Debian 12 and 13 with Debian's own ROS 1 packages.
 $known
-Remedy: use Debian 12, for example in a container:
+Remedy: use one of them, for example in a container:
     docker run --rm -it -v $checkout:/ddm debian:12 bash /ddm/ddm_launch/scripts/${0##*/}"
 }
 
@@ -165,9 +165,10 @@ job_flags() {
 unity_flags=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0)
 
 # The Release build, in $DDM_WS/build and $DDM_WS/devel. Arguments: make targets, or none for all programs.
-# demo.sh and test.sh must pass the same flags, or each would rebuild what the other built.
+# demo.sh and test.sh must pass the same flags, or each would rebuild what the other built. For this machine's processor,
+# unless DDM_NATIVE=OFF.
 build_release() {
-  local flags=(-DCMAKE_BUILD_TYPE=Release -DDDM_NATIVE=ON -DDDM_WERROR=OFF "${unity_flags[@]}") jobs
+  local flags=(-DCMAKE_BUILD_TYPE=Release -DDDM_NATIVE="${DDM_NATIVE:-ON}" -DDDM_WERROR=OFF "${unity_flags[@]}") jobs
   [[ -z ${CI:-} ]] || flags[2]=-DDDM_WERROR=ON
   read -ra jobs < <(job_flags)
   catkin_make -C "$DDM_WS" "${jobs[@]}" "${flags[@]}" "$@" || return

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# demo.sh, test.sh and what they share: what they refuse, with which words, and that they do nothing twice.
+# demo.sh, test.sh, what they share, and fresh_root.sh: what they refuse, with which words, and that they do nothing twice.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import shlex
@@ -14,6 +14,7 @@ from scratch_case import ScratchCase  # noqa: E402
 
 SCRIPTS = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "scripts"))
 CHECKOUT = os.path.dirname(os.path.dirname(SCRIPTS))
+FRESH_ROOT = os.path.join(CHECKOUT, "ddm_launch", "qa", "fresh_root.sh")
 
 
 class ScriptsTest(ScratchCase):
@@ -33,16 +34,20 @@ class ScriptsTest(ScratchCase):
         path = shlex.quote(os.path.join(SCRIPTS, script))
         return self.call("/bin/bash", "-c", "set -euo pipefail; . %s; %s" % (path, code))
 
-    def test_debian_12_is_accepted(self):
-        release = self.write("os-release", 'ID=debian\nVERSION_ID="12"\nPRETTY_NAME="Debian 12"\n')
-        self.assertEqual(self.callFunction("check_system " + release), (0, "System: Debian 12\n"))
+    def test_debian_12_and_13_are_accepted(self):
+        for version in ("12", "13"):
+            release = self.write("os-release", 'ID=debian\nVERSION_ID="%s"\nPRETTY_NAME="Debian %s"\n' % (version, version))
+            self.assertEqual(self.callFunction("check_system " + release), (0, "System: Debian %s\n" % version))
 
     def test_another_system_is_refused_with_a_remedy(self):
         for text in ('ID=debian\nVERSION_ID="11"\nPRETTY_NAME="It"\n', "ID=debian\nPRETTY_NAME=It\n",
+                     'ID=debian\nVERSION_ID="130"\nPRETTY_NAME="It"\n', 'ID=ubuntu\nVERSION_ID="12"\nPRETTY_NAME="It"\n',
                      'ID=ubuntu\nVERSION_ID="22.04"\nPRETTY_NAME="It"\n'):
             code, output = self.callFunction("check_system " + self.write("os-release", text))
             self.assertEqual(code, 1)
             self.assertIn("this is It", output)
+            self.assertIn("Debian 12 and 13", output)
+            self.assertIn("doc/install.md", output)
             self.assertIn("docker run", output)
 
     def test_ubuntu_with_noetic_is_told_what_to_try(self):
@@ -176,6 +181,36 @@ class ScriptsTest(ScratchCase):
         self.assertNotEqual(int(output), 11311)
         with socket.socket() as probe:
             probe.bind(("", int(output)))
+
+    def test_the_build_is_for_this_processor_unless_told_otherwise(self):
+        printed = "; DDM_WS=%s; catkin_make() { printf '%%s\\n' \"$@\"; }; grep() { true; }; build_release" % self.workspace
+        for told, flag in (("unset DDM_NATIVE", "-DDDM_NATIVE=ON"), ("DDM_NATIVE=OFF", "-DDDM_NATIVE=OFF")):
+            code, output = self.callFunction(told + printed)
+            self.assertEqual(code, 0)
+            self.assertIn(flag, output.splitlines())
+
+    def callFreshRoot(self, *arguments, **environment):
+        folder = self.file("roots")
+        os.makedirs(folder, exist_ok=True)
+        set_variables = ["%s=%s" % variable for variable in dict(environment, TMPDIR=folder).items()]
+        done = self.call("/usr/bin/env", *set_variables, "/bin/bash", FRESH_ROOT, *arguments)
+        self.assertEqual(os.listdir(folder), [])  # nothing was made
+        return done
+
+    def test_an_empty_system_other_than_debian_12_or_13_is_refused(self):
+        for arguments in ((), ("sid",), ("demo",), ("bookworm", "trixie"), ("trixie", "demo", "--nonsense")):
+            code, output = self.callFreshRoot(*arguments)
+            self.assertEqual(code, 2)
+            self.assertIn("usage: bash fresh_root.sh bookworm|trixie", output)
+            self.assertIn("'%s'" % (arguments or ("",))[-1], output)
+        self.assertEqual(self.callFreshRoot("trixie", "--help")[0], 0)
+
+    def test_an_empty_system_needs_a_tool_that_makes_it(self):
+        os.makedirs(self.file("tools"))
+        os.symlink("/usr/bin/dirname", self.file("tools", "dirname"))
+        code, output = self.callFreshRoot("trixie", PATH=self.file("tools"))
+        self.assertEqual(code, 1)
+        self.assertIn("debootstrap is not installed", output)
 
     def checkSummary(self, text):
         if text is not None:
