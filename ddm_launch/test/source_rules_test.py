@@ -4,6 +4,7 @@
 import glob
 import os
 import re
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -111,6 +112,7 @@ class SourceRulesTest(unittest.TestCase):
                     without.append((os.path.basename(path), argument.get("name")))
         self.assertEqual(without, [])
 
+    @unittest.skipUnless(shutil.which("wstool"), "Debian 13 has no wstool")
     def test_wstool_accepts_the_rosinstall_file(self):
         self.assertRuns("wstool", "info", "-t", CHECKOUT)
 
