@@ -93,7 +93,7 @@ run_container() {  # NAME COMMAND...
   run_buildah run --volume "$folder/runs:/runs" "$1" -- "${@:2}" </dev/null
 }
 
-# The image of the Dockerfile, with the empty system in the place of Debian's own image.
+# The image of the Dockerfile, with the empty system instead of Debian's own image.
 run_image() {
   local base container entry command
   make_root "$folder/base"
