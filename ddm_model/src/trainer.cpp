@@ -196,8 +196,8 @@ void runAll(const Schedule& schedule, const TrainingOptions& training,
     }
   };
   const auto count = static_cast<int>(candidates->size());
-  if (count ==
-      1) {  // in a team of one thread its objective would start new threads at each evaluation
+  // In a team of one thread its objective would start new threads at each evaluation.
+  if (count == 1) {
     attempt(&candidates->front());
   } else {
 #pragma omp parallel for schedule(dynamic, 1)
