@@ -96,11 +96,20 @@ class BenchmarkTest(ScratchCase):
         with self.assertRaisesRegex(Failure, r"kernels: (.|\n)*3(.|\n)*out of luck"):
             bench.programs.call("kernels", ["sh", "-c", "echo out of luck >&2; exit 3"])
 
-    def test_nodes_that_leave_nothing_are_told(self):
+    def test_nodes_that_leave_nothing_are_named_with_their_last_words(self):
         bench = benchmark.Benchmark(self.out, False, self.scratch)
-        with mock.patch.object(Programs, "roslaunch", lambda *_: None):
-            with self.assertRaisesRegex(Failure, "lockstep"):
+        with mock.patch.object(Programs, "roslaunch", lambda *_: "sim_node: out of luck\n"):
+            with self.assertRaisesRegex(Failure, r"lockstep(.|\n)*out of luck"):
                 bench.round_trips(mock.Mock())
+
+    def test_what_was_timed_is_kept_where_the_nodes_leave_nothing(self):
+        with mock.patch.object(Programs, "roslaunch", lambda *_: ""), \
+                mock.patch.object(benchmark.Benchmark, "ros_experiment", lambda _: None):
+            code, _ = self.runWithStandIns()
+        self.assertEqual(code, 1)
+        names = [row[0] for row in read_rows(self.out, "speed.csv")]
+        self.assertIn("objective_gradient", names)
+        self.assertNotIn("lockstep_round_trip", names)
 
 
 if __name__ == "__main__":

@@ -132,12 +132,12 @@ class Benchmark:
         for restart in range(RESTARTS):
             for name, found in times.items():
                 path = os.path.join(self.scratch, "%s_%d.yaml" % (name, restart))
-                self.programs.roslaunch(name, package_path("qa", "benchmark", name + ".launch"), "out:=" + path,
-                                        "num_frames:=%d" % NUM_FRAMES)
+                output = self.programs.roslaunch(name, package_path("qa", "benchmark", name + ".launch"),
+                                                 "out:=" + path, "num_frames:=%d" % NUM_FRAMES)
                 measured = read_yaml(path)
                 if not measured:
-                    raise Failure("%s: the nodes ended without a result: look for their errors above and in %s"
-                                  % (name, os.path.join(self.scratch, "ros")))
+                    raise Failure("%s: the nodes ended without a result. Their last words:\n%s" % (
+                        name, output[-2000:].strip()))
                 found.append((measured["median_us"], measured["p99_us"]))
                 progress.update(1)
         for name, found in times.items():
@@ -159,6 +159,7 @@ class Benchmark:
             for name, step in steps:
                 progress.set_description(name)
                 step()
+                self.write()  # after each step: what was timed is kept if a later one fails
                 progress.update(1)
             progress.set_description("lock-step and bare loop")
             self.round_trips(progress)

@@ -138,11 +138,12 @@ class Programs:
         """scratch: folder for the logs of nodes."""
         self.scratch = scratch
 
-    def call(self, what, command, **variables):
-        """Returns what a program printed. variables: of its environment. Raises Failure with its last words."""
+    def call(self, what, command, stderr=subprocess.PIPE, **variables):
+        """Returns what a program printed, with its errors if stderr is STDOUT. variables: of its environment. Raises
+        Failure with its last words."""
         environment = on_this_machine({**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", **variables})
         try:
-            done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=stderr,
                                   universal_newlines=True, timeout=LIMIT_S, env=environment)
         except subprocess.TimeoutExpired:
             raise Failure("%s: '%s' has not ended within %g s" % (what, " ".join(command), LIMIT_S)) from None
@@ -152,10 +153,10 @@ class Programs:
         return done.stdout
 
     def roslaunch(self, what, *arguments):
-        """roslaunch returns 0 whatever happens: what its nodes leave behind is the verdict."""
+        """Returns what was printed. roslaunch returns 0 whatever happens: what its nodes leave behind is the verdict."""
         port = free_port()
-        self.call(what, ["roslaunch", "-p", str(port)] + list(arguments), ROS_HOME=os.path.join(self.scratch, "ros"),
-                  ROS_MASTER_URI="http://localhost:%d" % port)
+        return self.call(what, ["roslaunch", "-p", str(port)] + list(arguments), stderr=subprocess.STDOUT,
+                         ROS_HOME=os.path.join(self.scratch, "ros"), ROS_MASTER_URI="http://localhost:%d" % port)
 
 
 def pid_of(master, node):
