@@ -10,7 +10,7 @@ import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import rooms  # noqa: E402, F401
-from ddm_launch.command import Failure  # noqa: E402
+from ddm_launch.command import Failure, processor  # noqa: E402
 from ddm_qa import benchmark  # noqa: E402
 from ddm_qa.processes import Programs  # noqa: E402
 from processes import call_main  # noqa: E402
@@ -110,6 +110,12 @@ class BenchmarkTest(ScratchCase):
         names = [row[0] for row in read_rows(self.out, "speed.csv")]
         self.assertIn("objective_gradient", names)
         self.assertNotIn("lockstep_round_trip", names)
+
+    def test_processors_of_one_name_are_told_apart_by_family_and_model(self):
+        path = self.write(os.path.join(self.scratch, "cpuinfo"), "processor\t: 0\ncpu family\t: 26\nmodel\t\t: 2\n"
+                          "model name\t: AMD EPYC\n\nprocessor\t: 1\nmodel name\t: other\n")
+        self.assertEqual(processor(path), "AMD EPYC (family 26, model 2)")
+        self.assertNotEqual(processor(os.path.join(self.scratch, "no_such_file")), "")
 
 
 if __name__ == "__main__":

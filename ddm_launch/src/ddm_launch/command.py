@@ -103,10 +103,16 @@ def package_path(*names, package="ddm_launch"):
     return os.path.join(roslib.packages.get_pkg_dir(package), *names)
 
 
-def processor():
-    """Name of this machine's processor."""
+def processor(path="/proc/cpuinfo"):
+    """This machine's processor: its name, and the family and model that tell apart generations of one name. Rows of
+    results repeat digit by digit only on the same one."""
     try:
-        with open("/proc/cpuinfo") as stream:
-            return next(line.split(":", 1)[1].strip() for line in stream if line.startswith("model name"))
-    except (OSError, StopIteration):
+        with open(path) as stream:
+            first = stream.read().split("\n\n")[0]
+        facts = {name.strip(): value.strip() for name, _, value in (line.partition(":") for line in first.splitlines())}
+        name = facts["model name"]
+    except (OSError, KeyError):
         return platform.processor() or "?"
+    if "cpu family" in facts and "model" in facts:
+        name += " (family %s, model %s)" % (facts["cpu family"], facts["model"])
+    return name
