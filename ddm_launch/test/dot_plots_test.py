@@ -4,6 +4,8 @@
 import os
 import sys
 
+import numpy as np
+from PIL import Image
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -117,6 +119,21 @@ class DotPlotsTest(figure_case.FigureCase):
                                                ((0.84, 1.0), (0.3, 0.7), (0.7, 0.97), (0.0, 0.16))):
                 self.assertAlmostEqual(left, expected[0])
                 self.assertAlmostEqual(right, expected[1])
+
+    def test_the_image_of_a_nuisance_is_drawn_upright_next_to_its_row(self):
+        path = self.file("nuisances", "thin_rod", "image.png")
+        os.makedirs(os.path.dirname(path))
+        image = Image.new("L", (8, 8), 0)
+        image.paste(255, (0, 0, 8, 4))  # the upper half is white
+        image.save(path)
+        self.assertDrawn(nuisances_compared, [self.writeNuisances()], COLUMN_WIDTH)
+        with Image.open(self.out) as picture:
+            grey = np.asarray(picture.convert("L")) / 255.0
+        column = grey[:, int(0.25 * grey.shape[1])]  # through the images
+        edges = [row for row in range(8, len(column) - 8)
+                 if (column[row - 8:row] > 0.9).all() and (column[row:row + 8] < 0.1).all()]  # white above black
+        self.assertEqual(len(edges), 1)
+        self.assertGreater(edges[0], 0.3 * len(column))  # in the lower of the two rows
 
     def test_both_tables_make_a_picture_as_wide_as_a_column(self):
         self.assertDrawn(ablation_compared, [self.writeAblation()], COLUMN_WIDTH)

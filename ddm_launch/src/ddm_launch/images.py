@@ -1,10 +1,12 @@
-# Images that the C++ programs make: of a plant in a given state, and of features as a model decodes them.
+# Images: recorded ones, those of a plant in a given state, and those of features as a model decodes them.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import subprocess
 import tempfile
 
+import numpy as np
 from PIL import Image
+import rosbag
 
 from ddm_launch.command import Failure, find_program
 from ddm_launch.run_folder import read_setting
@@ -28,6 +30,13 @@ def draw_images(command, text):
             with Image.open(os.path.join(folder, name)) as image:
                 images.append(image.convert("L"))
         return images
+
+
+def recorded_images(bag):
+    """The grey images of a recorded trial, as the learner got them  [N x size x size]."""
+    with rosbag.Bag(bag) as recording:
+        return np.array([np.frombuffer(message.data, np.uint8).reshape(message.height, message.width)
+                         for topic, message, _ in recording.read_messages() if topic.endswith("image_raw")])
 
 
 class Camera:

@@ -3,7 +3,11 @@
 import glob
 import os
 
+from PIL import Image
+
 from ddm_launch.command import Failure, find_program, number, package_path, program_parser
+from ddm_launch.figure_style import save_picture
+from ddm_launch.images import recorded_images
 from ddm_launch.settings import flat, read_yaml
 from ddm_launch.sweep import seed_range
 from ddm_study.efficient_tables import (FEW_SEEDS, PRESET, SUITE, TASKS, write_bars, write_gravity, write_last_models,
@@ -16,6 +20,7 @@ TRIALS, ABLATION_TRIALS, TRIED_TRIALS, GRAVITY_TRIALS, NUISANCE_TRIALS = 15, 5, 
 PILCO_TABLE = "gravity/pilco_state/trials.csv"
 PILCO_TRIALS = 15  # of 125 frames: 2000 as the others
 FULL_LABEL = "Full preset"
+IMAGE = 50  # number of the image that shows a nuisance: the rod has left its start
 EPISODES = "350:360"  # seeds of evaluate, for the last model of each seed of a task of the suite
 
 ABOUT = """\
@@ -30,7 +35,7 @@ parts (--only), in this order, and what they leave in DIR:
   tried        tried/NAME/trials.csv, tried.csv, tried.png: with what each file of config/tried changes, to 200 frames
   gravity      gravity/trials.csv of the plant `pendulum_gravity`, gravity/oracle/ and gravity/pilco_state/,
                gravity.csv, gravity.png
-  nuisances    nuisances/NAME/trials.csv, nuisances.csv, nuisances.png: under each file of config/nuisances
+  nuisances    nuisances/NAME/trials.csv, image.png, nuisances.csv, nuisances.png: under each file of config/nuisances
                that is not one of a scene
   tasks        tasks/TASK/trials.csv of harder plants, and of one with another camera and other colours (%s); tasks.csv;
                tasks/TASK/diagnosis.csv of task_diagnosis; of those of the DeepMind Control Suite
@@ -93,8 +98,11 @@ class EfficientReproduction(StepRunner):
         words = ["--preset", self.preset, "--plant", plant, "--trials", str(trials)]
         return SweepStep(name, os.path.join(folder, "trials.csv"), seeds, words, more, limit_s)
 
+    def efficient_step(self):
+        return self.step("efficient", "", self.options.seeds, TRIALS)
+
     def efficient(self):
-        step = self.step("efficient", "", self.options.seeds, TRIALS)
+        step = self.efficient_step()
 
         def write_tables():
             self.keep_config(step, "config.yaml")
@@ -150,8 +158,22 @@ class EfficientReproduction(StepRunner):
         names = [name for name in yaml_names("nuisances") if not name.startswith("scene_")]  # the plant has no scene
         steps = [self.step("nuisance_" + name, os.path.join("nuisances", name), self.few_seeds, NUISANCE_TRIALS,
                            ["--nuisance", name]) for name in names]
-        return Part(steps, lambda: write_nuisances(self.out, names), lambda: {
+
+        def write_tables():
+            write_nuisances(self.out, names)
+            for name, step in zip(names, steps):
+                self.keep_image(step, os.path.join("nuisances", name, "image.png"))
+            self.keep_image(self.efficient_step(), os.path.join("nuisances", "none", "image.png"))
+
+        return Part(steps, write_tables, lambda: {
             "nuisances": self.figure("study_figure", "nuisances_compared", [self.path("nuisances.csv")], "nuisances")})
+
+    def keep_image(self, step, name):
+        """An image of the first trial of a sweep, if it was recorded: what the learner was shown."""
+        bag = os.path.join(step.seed_folder(self.out, step.seeds[0]), "trial_000", "trial.bag")
+        if os.path.exists(bag):
+            os.makedirs(os.path.dirname(self.path(name)), exist_ok=True)
+            save_picture(Image.fromarray(recorded_images(bag)[IMAGE]), self.path(name), "PNG", optimize=True)
 
     def tasks(self):
         tasks = {name: TASKS[name] for name in self.options.tasks}

@@ -12,6 +12,7 @@ from tqdm import tqdm
 import yaml
 
 from ddm_launch.command import Failure, find_program, program_parser, run_program
+from ddm_launch.images import recorded_images
 from ddm_launch.settings import read_yaml
 from ddm_launch.tables import read_csv, write_csv
 from ddm_model.model import ModelFileError, load
@@ -63,13 +64,11 @@ def read_columns(path, names):
 
 
 def read_episode(folder, joints):
-    with rosbag.Bag(os.path.join(folder, "trial.bag")) as bag:
-        images = [np.frombuffer(message.data, np.uint8) for topic, message, _ in bag.read_messages()
-                  if topic.endswith("image_raw")]
+    images = recorded_images(os.path.join(folder, "trial.bag"))
     torques = os.path.join(folder, "torques.csv")
     with open(torques) as stream:
         motors = stream.readline().strip().split(",")[1:-1]  # step, motors, exploratory
-    return Episode(np.array(images), read_columns(torques, motors)[:len(images)],
+    return Episode(images, read_columns(torques, motors)[:len(images)],
                    read_columns(os.path.join(folder, "trajectory.csv"), joints.columns)[:len(images)])
 
 
