@@ -3,7 +3,7 @@
 #include "oracle_method.h"
 
 #include <ddm_mpc/planner.h>
-#include <ddm_msgs/random_stream.h>
+#include <ddm_random/random_stream.h>
 #include <ddm_sim/plant_factory.h>
 
 #include <utility>

@@ -8,7 +8,7 @@ threaded_programs=(
 # What computes and what reads bytes from outside; `test.sh --debug` adds the other gtests, which take long to compile.
 gtest_programs=(
   ddm_bag_io_test ddm_files_test ddm_images_test ddm_model_config_test ddm_model_test ddm_mpc_test ddm_msgs_test
-  ddm_node_test ddm_params_test ddm_robot_test
+  ddm_node_test ddm_params_test ddm_random_test ddm_robot_test
 )
 threaded_tests='^_ctest_ddm_[a-z]+_rostest_test_(model_node|mpc_node|replay|robot_node|trial_recorder)\.test$'
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/trainer.h"
 
-#include <ddm_msgs/random_stream.h>
+#include <ddm_random/random_stream.h>
 
 #include <algorithm>
 #include <atomic>

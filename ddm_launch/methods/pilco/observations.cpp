@@ -6,9 +6,9 @@
 #include <ddm_model/long_term_prediction.h>
 #include <ddm_model/model_file.h>
 #include <ddm_model/trainer.h>
-#include <ddm_msgs/random_stream.h>
 #include <ddm_pilco/gp_training.h>
 #include <ddm_pilco/messages.h>
+#include <ddm_random/random_stream.h>
 
 #include <boost/filesystem.hpp>
 #include <cmath>

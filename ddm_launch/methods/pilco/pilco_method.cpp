@@ -4,11 +4,11 @@
 
 #include <ddm_files/plain_file.h>
 #include <ddm_model/per_motor.h>
-#include <ddm_msgs/random_stream.h>
 #include <ddm_params/param_value.h>
 #include <ddm_params/yaml_text.h>
 #include <ddm_pilco/messages.h>
 #include <ddm_pilco/rbf_policy.h>
+#include <ddm_random/random_stream.h>
 #include <ddm_sim/plant.h>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <ddm_model/data_set.h>
-#include <ddm_msgs/random_stream.h>
+#include <ddm_random/random_stream.h>
 
 #include <Eigen/Core>
 #include <optional>

@@ -1,6 +1,6 @@
 // Tests of the random streams: a stream for each role of each run, the same in every version.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_msgs/random_stream.h"
+#include "ddm_random/random_stream.h"
 
 #include <gtest/gtest.h>
 
