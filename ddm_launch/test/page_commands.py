@@ -6,8 +6,9 @@ import re
 import pages
 
 # Programs and launch files that page_commands_test runs as the page says, but for CHEAPER.
-RUN_HERE = {"run_experiment", "sweep", "figure film", "figure film_strip", "figure learning_curve", "figure success_rate", "evaluate", "train_from_bags",
-            "inspect", "export", "simulate", "sim_node", "mpc_node", "dynparam", "experiment.launch", "record.launch",
+RUN_HERE = {"run_experiment", "sweep", "feature_space", "study_figure pendulum_feature_space", "figure film",
+            "figure film_strip", "figure learning_curve", "figure success_rate", "evaluate", "train_from_bags", "inspect",
+            "export", "simulate", "sim_node", "mpc_node", "dynparam", "experiment.launch", "record.launch",
             "control.launch", "replay.launch", "demo.sh"}
 
 # Those that another test runs, with all that takes long or needs more than one machine: the test must name it.
@@ -44,7 +45,8 @@ CHEAPER = [
     (r"(experiment\.launch)(?!.*trials:=)", r"\1 trials:=1"),
     (r"--trials \d+", "--trials 1"), (r"trials:=\d+", "trials:=1"), (r"--seeds \d+:\d+", "--seeds 0:2"),
     (r"(--method oracle --config .*)", r"\1 --config %s/ddm_launch/config/presets/debug.yaml" % pages.CHECKOUT),
-    (r"trial_\d+/model.ddm", "trial_001/model.ddm"), (r"/evaluation_\d+", "/evaluation_001"), (r"rviz:=true", "view:=true frame_rate:=0"),
+    (r"(feature_space .*--trial) \d+", r"\1 1"), (r"trial_\d+/model.ddm", "trial_001/model.ddm"),
+    (r"/evaluation_\d+", "/evaluation_001"), (r"rviz:=true", "view:=true frame_rate:=0"),
     (r"^bash ddm_launch/scripts/demo.sh", "bash -c 'set -e; . %s/ddm_launch/scripts/demo.sh; "
      "check_system() { :; }; install_packages() { :; }; build_release() { :; }; main \"$@\"' demo.sh --trials 1"
      % pages.CHECKOUT)]
@@ -88,7 +90,7 @@ def usage_commands(text):
 
 def program_of(command):
     """Name of the program or launch file that a command starts, or None for one of the shell."""
-    found = re.search(r"\b(?:rosrun|roslaunch(?: --wait)?|catkin_find --libexec) \w+ (figure \w+|\w[\w.]*)|"
+    found = re.search(r"\b(?:rosrun|roslaunch(?: --wait)?|catkin_find --libexec) \w+ ((?:study_)?figure \w+|\w[\w.]*)|"
                       r"(?:scripts|qa)/(\w+\.sh)", command)
     return found and (found.group(1) or found.group(2))
 
