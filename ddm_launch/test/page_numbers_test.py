@@ -14,8 +14,9 @@ import pages  # noqa: E402
 
 RESULTS = "ddm_launch/results/"
 ROBOT = "doc/your_robot.md"
+SPEED = RESULTS + "speed/README.md"
 EFFICIENT = RESULTS + "efficient/README.md"
-CHECKED = (EFFICIENT,)  # pages on which each number in a table belongs to a claim
+CHECKED = (EFFICIENT, SPEED)  # pages on which each number in a table belongs to a claim
 NO_NUMBER = "not learned"  # what a row says whose other numbers are the task's own
 
 
@@ -95,6 +96,31 @@ def claims():
     yield EFFICIENT, cells("successful, of 20", by_images(gravity, images, method="ddm"))
     yield EFFICIENT, cells("both links upright, of 20", by_images("efficient/tasks.csv", images, task="two_link"))
     yield EFFICIENT, "The median over the seeds is %.0f" % returns.median()
+    for text in speed_claims():
+        yield SPEED, text
+
+
+def speed_claims():
+    rows = table("speed/speed.csv").set_index("name")
+    us, peers = rows.median_us, rows.peer_median_us / rows.median_us
+    biggest = table("speed/retrain.csv").set_index("frames").loc[20000]
+    yield "| 15 trials of `efficient`, pendulum, one core | %.1f s | 40 s |" % (us.efficient_experiment / 1e6)
+    yield "| the same on two cores | %.1f s | 25 s |" % (us.efficient_experiment_all_cores / 1e6)
+    for preset, prefix in (("efficient", "efficient_"), ("paper", "")):
+        objective, products = us[prefix + "objective_gradient"] / 1e3, us[prefix + "matrix_products"] / 1e3
+        yield "| objective and gradient of `%s`, over the matrix products in it | %.2f ms, %.2f ms: %.2f | 1.6 |" % (
+            preset, objective, products, objective / products)
+    yield "| retraining `efficient` on 20,000 images | %.1f s, %.0f MB | 60 s, 1 GB |" % tuple(biggest)
+    yield "| PyTorch's time for this objective, over ours | %.1f | 3 |" % peers.objective_gradient
+    yield "| PyTorch's time for a retraining of 200 iterations, over ours | %.1f | 3 |" % peers.retrain
+    yield "| PyTorch's time for a plan, over ours | %.0f | 20 |" % peers.plan
+    yield "over that of two nodes that only send the messages | %.2f | 0.60 |" % (us.bare_round_trip / us.lockstep_round_trip)
+    yield "%.0f µs a frame against %.0f µs" % (us.lockstep_round_trip, us.bare_round_trip)
+    for row in table("speed/planning_budget.csv").itertuples():
+        yield "| %s | %s | %.1f | %.1f | %.1f |" % (row.preset, {"busy": "both cores busy"}.get(row.load, row.load),
+                                                  row.median_ms, row.p99_ms, row.max_ms)
+    yield "%.2f after 100 images (target 0.86), and %.3f over 200 to 1,600" % tuple(
+        good / count for good, count in (models("speed/success/success_rate.csv", *frames) for frames in ((100,), (200, 1600))))
 
 
 def table_numbers(text):
