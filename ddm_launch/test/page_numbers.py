@@ -150,7 +150,7 @@ class Page:
         return any(row.heading == name or row.head.startswith(name) or row.line.startswith(name) for name in self.without_csv)
 
     def uncovered(self):
-        """Rows with a number that belongs to no claim, and excuses for what is no longer there."""
+        """Rows with a number outside all claims, and entries of without_csv that are not on the page."""
         excuses = {name: [match.span() for match in re.finditer(parse(name)[0], self.text)] for name in self.without_csv}
         shown = list(self.text)
         for start, end in self.covered + sum(excuses.values(), [match.span() for match in NOT_SHOWN.finditer(self.text)]):

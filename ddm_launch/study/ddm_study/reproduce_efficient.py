@@ -173,7 +173,8 @@ class EfficientReproduction(StepRunner):
         bag = os.path.join(step.seed_folder(self.out, step.seeds[0]), "trial_000", "trial.bag")
         if os.path.exists(bag):
             os.makedirs(os.path.dirname(self.path(name)), exist_ok=True)
-            save_picture(Image.fromarray(recorded_images(bag)[IMAGE]), self.path(name), "PNG", optimize=True)
+            images = recorded_images(bag)
+            save_picture(Image.fromarray(images[min(IMAGE, len(images) - 1)]), self.path(name), "PNG", optimize=True)
 
     def tasks(self):
         tasks = {name: TASKS[name] for name in self.options.tasks}
