@@ -19,8 +19,8 @@ TRIALS = 1
 LIMIT_S = 240.0  # of a program on a machine that has much else to do
 QUICK = "training: {max_iterations: 20, num_starts: 1}\nprediction: {training_frames: 60, held_out_frames: 30}\n"
 
-# Each program: what it reads, what it writes. Programs that read a run or a prediction are called below; figures and
-# reports call decode_features, which reads a model.
+# Each program: what it reads, what it writes. Programs that read a run or a prediction are called below; figures call
+# decode_features, which reads a model.
 READS_A_RUN = {
     "ddm_launch": {
         "evaluate": ("a model", "evaluation.csv and .yaml in --out"),
@@ -32,7 +32,7 @@ READS_A_RUN = {
     "ddm_model": {
         "export": ("a model", "--out"),
         "inspect": ("a model, bags", "report.html, verdict.yaml and pictures in --out"),
-        "model_data": ("a model, bags", "tables in --out"),
+        "read_bags": ("bags", "their frames in --out"),
         "train_from_bags": ("config.yaml, bags", "--out")}}
 READS_A_PREDICTION = {
     "feature_plane": ("config.yaml, features.csv, a model", "--out"),
@@ -113,7 +113,7 @@ class ReadingTest(SharedScratchCase):
             "speed_kernels": [self.run_folder, "--benchmark_filter=encode"],
             "export": ["--model", self.model, "--out", self.file("model.npz")],
             "inspect": ["--model", self.model, "--out", self.file("report")] + self.bags,
-            "model_data": ["--model", self.model, "--out", self.file("data")] + self.bags,
+            "read_bags": ["--image-size", 51, "--out", self.file("frames")] + self.bags,
             "train_from_bags": ["--config", os.path.join(self.run_folder, "config.yaml"), "--out",
                                 self.file("again.ddm")] + self.bags}
         self.assertEqual(set(calls), {name for names in READS_A_RUN.values() for name in names})

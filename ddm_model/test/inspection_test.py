@@ -17,7 +17,8 @@ import yaml
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import toy_robot  # noqa: E402
-from ddm_model.model_data import ModelData, write_model_data  # noqa: E402
+from ddm_model.model import load  # noqa: E402
+from ddm_model.model_data import ModelData  # noqa: E402
 
 WITH_BAGS = ["Principal components", "Pairs of image and torque", "Reconstructions", "A prediction: typical",
              "A prediction: worst", "Error by step", "Feature plane", "Coverage"]
@@ -150,20 +151,35 @@ class InspectionTest(toy_robot.ToyRobotCase):
         self.assertIsNone(self.verdict(self.out)["Predictions beat repeating the last frame"])
 
     def test_what_could_not_be_paired_is_known_with_its_bag_and_time(self):
-        toy_robot.write_bag(self.file("whole.bag"), num_frames=20)
+        images, torques = toy_robot.write_bag(self.file("whole.bag"), num_frames=20)
         with rosbag.Bag(self.file("whole.bag")) as whole, rosbag.Bag(self.file("gaps.bag"), "w") as gaps:
             for topic, message, time in whole.read_messages():
                 frame = round((time.to_sec() - 10.0) / 0.2)
                 if (topic, frame) not in (("torque", 5), ("camera/image_raw", 9)):
                     gaps.write(topic, message, time)
-        write_model_data(self.model, [self.unseen, self.file("gaps.bag")], self.file("data"))
-        data = ModelData(self.model, self.file("data"))
+        data = ModelData(load(self.model), [self.unseen, self.file("gaps.bag")])
         np.testing.assert_allclose(data.unpaired["images without torque"], [[1.0], [1.0]], atol=1e-6)  # bag 1, after 1 s
         np.testing.assert_allclose(data.unpaired["torques without image"], [[1.0], [1.8]], atol=1e-6)
+        paired = [k for k in range(20) if k not in (5, 9)]
+        np.testing.assert_array_equal(data.images[200:], images[paired])
+        np.testing.assert_array_equal(data.torques[200:, 0], torques[paired])
+        np.testing.assert_array_equal(data.frames["piece"][200:], np.repeat([1, 2, 3], [5, 3, 10]))
+
+    def test_a_bag_of_another_robot_is_named(self):
+        with rosbag.Bag(self.unseen) as bag, rosbag.Bag(self.file("two.bag"), "w") as two:
+            for topic, message, time in bag.read_messages():
+                if topic == "torque":
+                    message.torque = [0.0, 1.0]
+                two.write(topic, message, time)
+        self.assertRefused(["inspect: bag %s: has 2 torque(s) a frame, the model has 1" % self.file("two.bag")],
+                           "--model", self.model, self.unseen, self.file("two.bag"))
 
     def test_what_cannot_be_read_is_named(self):
         self.assertRefused(["missing.bag"], "--model", self.model, self.unseen, self.file("missing.bag"))
         self.assertRefused([self.unseen, "DDMMODEL"], "--model", self.unseen)
+        self.assertRefused(["missing.ddm"], "--model", self.file("missing.ddm"))
+        os.mkfifo(self.file("pipe.ddm"))
+        self.assertRefused(["pipe.ddm", "regular file"], "--model", self.file("pipe.ddm"))
         self.assertRefused(["--steps", "[1, 1000]", "got 0"], "--model", self.model, "--steps", 0, code=2)
 
     def test_what_cannot_be_written_is_named_and_there_is_no_report(self):

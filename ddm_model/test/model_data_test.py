@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# Errors of images, by hand.
+# Errors of images and of predictions, by hand.
 # SPDX-License-Identifier: BSD-3-Clause
 import unittest
 import unittest.mock
@@ -7,13 +7,27 @@ import unittest.mock
 import numpy as np
 import rosunit
 
-from ddm_model.model_data import image_errors
+from ddm_model.model_data import grey, image_errors, predicted_features, prediction_errors, prediction_starts
 
 NUM_IMAGES, SIZE = 40, 4
 NUM_PIXELS = SIZE * SIZE
 
 
-class ImageErrorsTest(unittest.TestCase):
+class SumModel:
+    """A feature is the one before it and the torque; an image has one pixel, y = z / 10."""
+
+    options = {"order": 2, "delay": 1}
+
+    @staticmethod
+    def roll_out(features, torques):
+        return features[:, -1:] + np.cumsum(torques[:, 2:], axis=1)
+
+    @staticmethod
+    def decode(features):
+        return features[:, :, None] / 10.0
+
+
+class ModelDataTest(unittest.TestCase):
     def setUp(self):
         random = np.random.RandomState(1)
         self.images = random.randint(0, 256, (NUM_IMAGES, NUM_PIXELS)).astype(np.uint8)
@@ -58,6 +72,34 @@ class ImageErrorsTest(unittest.TestCase):
             for name, values in self.errors()._asdict().items():
                 np.testing.assert_allclose(values, getattr(whole, name), rtol=1e-12, err_msg=name)
 
+    def test_they_start_where_no_gap_is_near_and_are_evenly_thinned_out(self):
+        self.assertEqual(prediction_starts(np.array([6, 5]), 2, 3).tolist(), [1, 2, 7])
+        self.assertEqual(prediction_starts(np.array([6, 5]), 2, 5).tolist(), [])
+        with unittest.mock.patch("ddm_model.model_data.MAX_STARTS", 3):
+            self.assertEqual(prediction_starts(np.array([9]), 2, 1).tolist(), [1, 3, 5])
+            self.assertEqual(prediction_starts(np.array([4]), 2, 1).tolist(), [1, 2])
+
+    def test_they_are_told_of_the_torques_that_followed_or_of_one(self):
+        torques, features = np.arange(10.0)[:, None], 0.5 * np.arange(10.0)[:, None]
+        paths = predicted_features(SumModel, features, torques, np.array([3, 5]), 2)
+        np.testing.assert_array_equal(paths[..., 0], [[1.5, 4.5, 8.5], [2.5, 7.5, 13.5]])
+        blind = predicted_features(SumModel, features, torques, np.array([3]), 2, told=[1.0])
+        np.testing.assert_array_equal(blind[..., 0], [[1.5, 2.5, 3.5]])
+        self.assertEqual(torques[3], 3.0)  # ours are as they were
+
+    def test_errors_are_the_root_mean_square_over_all_predictions_and_pixels(self):
+        images, starts = np.array([0, 51, 102, 255], dtype=np.uint8)[:, None, None], np.array([0, 1])
+        predicted, blind = np.full((2, 3, 1), 2.0), np.full((2, 3, 1), 20.0)  # y = 0.2, y = 2 that is seen as 1
+        for block in (1 << 23, 8):
+            with unittest.mock.patch("ddm_model.model_data.BLOCK_BYTES", block):
+                errors = prediction_errors(SumModel, images, starts, predicted, blind)
+            np.testing.assert_allclose(errors ** 2 * 2.0, [
+                [0.0 + 0.2 ** 2, 0.2 ** 2 + 0.8 ** 2], [0.2 ** 2 + 0.2 ** 2, 0.4 ** 2 + 0.8 ** 2],
+                [0.8 ** 2 + 0.6 ** 2, 0.6 ** 2 + 0.0]], atol=1e-12)
+
+    def test_grey_values_are_rounded_and_within_their_range(self):
+        self.assertEqual(grey(np.array([-0.1, 0.4999 / 255.0, 0.5001 / 255.0, 1.0, 1.1])).tolist(), [0, 0, 1, 255, 255])
+
 
 if __name__ == "__main__":
-    rosunit.unitrun("ddm_model", "model_data_test", ImageErrorsTest)
+    rosunit.unitrun("ddm_model", "model_data_test", ModelDataTest)

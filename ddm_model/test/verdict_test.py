@@ -2,6 +2,7 @@
 # The verdict: each rule is broken by the fault that it is for, and by no other.
 # SPDX-License-Identifier: BSD-3-Clause
 import re
+import types
 import unittest
 
 import numpy as np
@@ -16,8 +17,8 @@ class GoodData:
     def __init__(self, num_frames=400):
         random = np.random.RandomState(1)
         half = num_frames // 2
-        self.facts = {"frames": "500"}
-        self.options = {"pca_dim": "50", "feature_dim": "2"}
+        self.model = types.SimpleNamespace(info={"frames": 500})
+        self.options = {"pca_dim": 50, "feature_dim": 2}
         self.max_torque = np.array([6.0])
         self.variation = 0.1
         angle = np.linspace(0.0, 6.3, num_frames)
@@ -62,7 +63,7 @@ def pushes_too_hard(data):
 
 
 def learned_little(data):
-    data.facts["frames"] = "90"
+    data.model.info["frames"] = 90
 
 
 def shows_other_images(data):

@@ -5,16 +5,16 @@ import csv
 import io
 import os
 import sys
-import tempfile
 
 import yaml
 
 from ddm_model import report, report_figures
+from ddm_model.model import ModelFileError, load
+from ddm_model.model_data import ModelData, ModelDataError
 from ddm_model.plain_file import write_file
-from ddm_model.model_data import Decoder, ModelData, ModelDataError, write_model_data
-from ddm_model.verdict import summary, verdict
+from ddm_model.verdict import limits, summary, verdict
 
-# Shorthands for keys of the block data_set, see model_data.
+# Shorthands for keys of the block data_set, see read_bags.
 DATA_SET_OPTIONS = (
     ("--image-topic", "TOPIC", "sensor_msgs/Image or CompressedImage"),
     ("--torque-topic", "TOPIC", "ddm_msgs/Torque, std_msgs/Float64 or Float64MultiArray, geometry_msgs/WrenchStamped, "
@@ -22,6 +22,10 @@ DATA_SET_OPTIONS = (
     ("--dt", "S", "time between frames [s], but for ddm_msgs/Torque"),
     ("--motors", "A,B,...", "joints of a JointState, or parts (torque.z) of a wrench"),
     ("--crop", "X,Y,W,H", "what counts of the images: column, row, width, height [pixels]"))
+
+
+def say(text):
+    print(text, file=sys.stderr, flush=True)
 
 
 def write_table(path, columns):
@@ -33,16 +37,24 @@ def write_table(path, columns):
     write_file(path, text.getvalue())
 
 
-def facts_table(data, model):
+def facts_of(model):
     """What is written in the model itself."""
-    facts, options = data.facts, data.options
-    frames = max(int(facts["frames"]), 1)
-    pixels = int(facts["image_size"]) ** 2
-    rms = [(float(facts[name]) / (frames * pixels)) ** 0.5 for name in ("v_r", "v_p")]
-    widths = ["%s: %s" % (name, ", ".join(options[name + "_widths"]) or "none")
+    max_torque = model.options["max_torque"].tolist()
+    facts = {**model.info, "image_size": model.image_size, "torque_dim": model.torque_dim,
+             "goal": model.goal_feature is not None,
+             "options": {**model.options, "max_torque": max_torque if len(max_torque) > 1 else max_torque[0]}}
+    facts["config"] = facts.pop("config")  # last: it is long
+    return facts
+
+
+def facts_table(data, path):
+    facts, options = facts_of(data.model), data.options
+    frames, pixels = max(facts["frames"], 1), facts["image_size"] ** 2
+    rms = [(facts[name] / (frames * pixels)) ** 0.5 for name in ("v_r", "v_p")]
+    widths = ["%s: %s" % (name, ", ".join(map(str, options[name + "_widths"])) or "none")
               for name in ("encoder", "decoder", "predictor")]
     return report.table(["the model", ""], [
-        ("file", model), ("id", facts["id"]),
+        ("file", path), ("id", facts["id"]),
         ("images", "%s x %s pixels, %s principal components" % (
             facts["image_size"], facts["image_size"], options["pca_dim"])),
         ("features, torques", "%s, %s; the last %s of each predict the next" % (
@@ -50,12 +62,12 @@ def facts_table(data, model):
         ("delay", "%s frame(s): an image shows what the torque of so many frames before it did" % options["delay"]),
         ("hidden layers", "; ".join(widths)),
         ("f", "residual: %s, increments: %s, torques in units of %s N m" % (
-            options["residual"], options["increments"], options["max_torque"])),
+            *(str(options[name]).lower() for name in ("residual", "increments")), limits(data))),
         ("trained on", "%s frames, the last trial was %s, seed %s" % (
             facts["frames"], facts["trial"], facts["seed"])),
         ("V_R, V_P", "%.4g, %.4g grey²: %.3g and %.3g grey a pixel, within the principal components" % (
-            float(facts["v_r"]), float(facts["v_p"]), rms[0], rms[1])),
-        ("goal image", "yes" if facts["goal"] == "true" else "none")])
+            facts["v_r"], facts["v_p"], *rms)),
+        ("goal image", "yes" if facts["goal"] else "none")])
 
 
 def bags_table(data):
@@ -65,7 +77,7 @@ def bags_table(data):
     return report.table([name.replace("_s", " [s]").replace("_", " ") for name in names], rows)
 
 
-def figures_of(data, model):
+def figures_of(data):
     """(title, function that draws, caption), in the order of the report."""
     out = [("Principal components", lambda: report_figures.draw_spectrum(data),
             "How much each component matters. A curve that has not come down at its right end asks for more of them.")]
@@ -84,7 +96,7 @@ def figures_of(data, model):
             out.append(("Error by step", lambda: report_figures.draw_errors(data),
                         "Over %d predictions of each length. Predictions must stay below the grey curve to be of use."
                         % data.errors["num_predictions"][0]))
-    out.append(("Feature plane", lambda: report_figures.draw_plane(data, Decoder(model, data.beyond_plane)),
+    out.append(("Feature plane", lambda: report_figures.draw_plane(data),
                 "Images that the model decodes at 9 x 9 features, and where the frames lie. Neighbouring images must "
                 "look alike, and motions be paths without jumps."))
     if data.bags is not None:
@@ -93,7 +105,7 @@ def figures_of(data, model):
     return out
 
 
-def build_page(data, model, say):
+def build_page(data, path):
     checks = verdict(data)
     sections = ["<h2>Verdict</h2>", report.verdict_table(checks)]
     if data.bags is None:
@@ -101,30 +113,28 @@ def build_page(data, model, say):
                         "judged.</p>")
     else:
         sections.append("<p>If the model was trained on these bags, its errors flatter: judge by others.</p>")
-    sections += ["<h2>Facts</h2>", facts_table(data, model)]
+    sections += ["<h2>Facts</h2>", facts_table(data, path)]
     if data.bags is not None:
         sections += ["<p></p>", bags_table(data)]
-    drawn = figures_of(data, model)
+    drawn = figures_of(data)
     for i, (title, draw, caption) in enumerate(drawn):
         say("drawing %d of %d: %s" % (i + 1, len(drawn), title))
         sections.append(report.figure(title, report_figures.as_data_uri(draw()), caption))
     sections += ["<h2>Configuration that it was trained with</h2>",
-                 "<pre>%s</pre>" % report.escaped(data.facts["config"])]
+                 "<pre>%s</pre>" % report.escaped(data.model.info["config"])]
     failed = any(check.ok is False for check in checks)
-    return report.page("Model %s" % data.facts["id"], summary(checks), failed, sections), checks
+    return report.page("Model %s" % data.model.info["id"], summary(checks), failed, sections), checks
 
 
-def inspect(model, bags, out, options):
-    """Writes the report and the numbers behind it into a folder. Returns the checks."""
-    with tempfile.TemporaryDirectory() as folder:
-        write_model_data(model, bags, folder, options)
-        data = ModelData(model, folder)
-        page, checks = build_page(data, model, lambda text: print(text, file=sys.stderr))
-        os.makedirs(out, exist_ok=True)
-        with open(os.path.join(folder, "model.yaml"), "rb") as stream:
-            write_file(os.path.join(out, "model.yaml"), stream.read())
-        for name, columns in data.tables.items():
-            write_table(os.path.join(out, name), columns)
+def inspect(path, bags, out, steps, options):
+    """Writes the report of a model file and the numbers behind it into a folder. Returns the checks."""
+    data = ModelData(load(path), bags, steps, options, say)
+    page, checks = build_page(data, path)
+    os.makedirs(out, exist_ok=True)
+    write_file(os.path.join(out, "model.yaml"), yaml.safe_dump(facts_of(data.model), sort_keys=False,
+                                                               default_flow_style=None))
+    for name, columns in data.tables.items():
+        write_table(os.path.join(out, name), columns)
     write_file(os.path.join(out, "verdict.yaml"),
                yaml.safe_dump([dict(check._asdict()) for check in checks], sort_keys=False))
     write_file(os.path.join(out, "report.html"), page)
@@ -149,14 +159,14 @@ def main(arguments=None):
     options = parser.parse_args(arguments)
     if not 1 <= options.steps <= 1000:
         parser.error("--steps must lie in [1, 1000], got %d" % options.steps)
-    tool_options = ["--steps", str(options.steps)] + [word for file in options.config for word in ("--config", file)]
+    bag_options = [word for file in options.config for word in ("--config", file)]
     for option, _, _ in DATA_SET_OPTIONS:
         value = getattr(options, option[2:].replace("-", "_"))
         if value is not None:
-            tool_options.append("%s=%s" % (option, value))
+            bag_options.append("%s=%s" % (option, value))
     try:
-        checks = inspect(options.model, options.bags, options.out, tool_options)
-    except (ModelDataError, OSError) as error:
+        checks = inspect(options.model, options.bags, options.out, options.steps, bag_options)
+    except (ModelDataError, ModelFileError, OSError) as error:
         print("inspect: %s" % error, file=sys.stderr)
         return 1
     for check in checks:

@@ -1,5 +1,6 @@
 # A model file in NumPy: what is in it, and what the model computes.
 # SPDX-License-Identifier: BSD-3-Clause
+import os
 import struct
 import zlib
 
@@ -94,7 +95,7 @@ def blurred(arrays, y):
 class Model:
     """A deep dynamical model. Images, features and torques have one sample in each row.
 
-    options: the block `model` of its configuration. image_size [pixels], torque_dim [-]. info: seed, trial, frames, v_r,
+    options: the block `model` of its configuration. image_size [pixels], torque_dim [-]. info: id, seed, trial, frames, v_r,
     v_p, feature_spread, and config, the YAML text that it was trained with. arrays: all that it computes with, under the
     names of doc/reference/programs.md. goal_feature: z_ref, None without a goal image. landmarks: features of states that it has
     seen  [M x feature_dim].
@@ -106,8 +107,9 @@ class Model:
         reader = _Reader(content)
         self.options = _read_options(version, reader)
         self.image_size, self.torque_dim = int(reader.number("<i4")), int(reader.number("<i4"))
-        self.info = {name: int(reader.number(kind)) for name, kind in (("seed", "<u8"), ("trial", "<u4"),
-                                                                       ("frames", "<u4"))}
+        self.info = {"id": "%08x" % zlib.crc32(data)}
+        for name, kind in (("seed", "<u8"), ("trial", "<u4"), ("frames", "<u4")):
+            self.info[name] = int(reader.number(kind))
         for name in ("v_r", "v_p", "feature_spread"):
             self.info[name] = float(reader.number("<f8")) if version > 1 or name != "feature_spread" else 0.0
         landmarks = reader.array("<f4") if version > 3 else np.zeros(0, "<f4")
@@ -120,6 +122,9 @@ class Model:
         if goal.size > 0:
             self.goal_feature = self.encode(goal[None])[0]
             self.arrays.update(goal=goal, goal_feature=self.goal_feature)
+        for name, values in self.arrays.items():
+            if not np.all(np.isfinite(values)):
+                raise ModelFileError("its %s must be finite: train it again" % name)
 
     def _read_arrays(self, reader):
         options = self.options
@@ -209,6 +214,8 @@ class Model:
 
 def load(path):
     """The Model in a file. Raises OSError, or ModelFileError, which names the file."""
+    if os.path.exists(path) and not os.path.isfile(path):  # a pipe or a device may never end
+        raise OSError("cannot read %s: it is not a regular file" % path)
     with open(path, "rb") as stream:
         data = stream.read()
     try:

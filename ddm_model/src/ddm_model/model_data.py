@@ -1,53 +1,46 @@
-# What the program model_data writes about a model and bags, in NumPy, and the tables that come of it.
+# What a model makes of bags: features, reconstructions, predictions, their errors, and the tables of them.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
-import io
 import os
 import subprocess
 import tempfile
 
-import matplotlib.image
 import numpy as np
 import roslib.packages
 import yaml
 
-from ddm_model.model import blurred, load
+from ddm_model.model import blurred
 
-BLOCK_BYTES = 1 << 23  # of the images that are compared at a time
+BLOCK_BYTES = 1 << 23  # of the images that are computed with at a time
+MAX_STARTS = 1000  # predictions of each length: seconds, not minutes
 
 
 class ModelDataError(Exception):
-    """A program of ddm_model is not there or has failed; it has said why itself."""
+    """A bag cannot be read, or is of another robot than the model."""
 
 
-def run_program(name, *arguments, **options):
-    """Runs a program of ddm_model. Its progress and its errors go to our standard error."""
-    programs = roslib.packages.find_node("ddm_model", name)
+def read_bags(paths, image_size, options=()):
+    """What the program read_bags finds in each bag, by name: camera, interval_s, goal, piece_sizes; images [N x size x size],
+    torques [N x torque_dim, N m], times and those of what could not be paired [s]. Its errors go to our standard error.
+    """
+    programs = roslib.packages.find_node("ddm_model", "read_bags")
     if not programs:
-        raise ModelDataError("the program %s is not there: build the workspace, then source its setup.bash" % name)
-    if subprocess.run([programs[0]] + list(arguments), **options).returncode != 0:
-        raise ModelDataError("nothing was written")
+        raise ModelDataError("the program read_bags is not there: build the workspace, then source its setup.bash")
+    with tempfile.TemporaryDirectory() as folder:
+        command = [programs[0], "--image-size", str(image_size), "--out", folder, *options, "--", *paths]
+        if subprocess.run(command, stdin=subprocess.DEVNULL).returncode != 0:
+            raise ModelDataError("nothing was written")
+        return [_read_arrays(os.path.join(folder, str(i)), image_size) for i in range(len(paths))]
 
 
-def write_model_data(model, bags, folder, options=()):
-    """Runs model_data into a folder."""
-    run_program("model_data", "--model", model, "--out", folder, *options, "--", *bags, stdin=subprocess.DEVNULL)
-
-
-class Decoder:
-    """Images of features, decoded by a model file. rest: values of the features beyond those that are given."""
-
-    def __init__(self, model, rest=()):
-        self.model, self.rest = model, rest
-
-    def decode(self, features):
-        """Grey values, an array [number x size x size]."""
-        features, text = np.array([np.append(z, self.rest) for z in features]), io.StringIO()
-        np.savetxt(text, features, fmt="%.17g", delimiter=",", header=",".join(numbered("z", features.T)), comments="")
-        with tempfile.TemporaryDirectory() as folder:
-            run_program("decode_features", self.model, "--frames", folder, input=text.getvalue().encode())
-            pictures = [matplotlib.image.imread(os.path.join(folder, name)) for name in sorted(os.listdir(folder))]
-        return np.rint(255.0 * np.array(pictures)).astype(np.uint8)
+def _read_arrays(folder, image_size):
+    with open(os.path.join(folder, "bag.yaml")) as stream:
+        bag = yaml.safe_load(stream)
+    for name in ("images", "torques", "times", "images_without_torque", "torques_without_image"):
+        bag[name] = np.fromfile(os.path.join(folder, name), np.uint8 if name == "images" else np.float64)
+    bag["images"] = bag["images"].reshape(-1, image_size, image_size)
+    bag["torques"] = bag["torques"].reshape(-1, bag["torque_dim"])
+    return bag
 
 
 def numbered(name, rows):
@@ -55,16 +48,21 @@ def numbered(name, rows):
     return {"%s_%d" % (name, i + 1): row for i, row in enumerate(rows)}
 
 
-def read_arrays(folder, mmap_mode=None):
-    """{name: array} of all .npy files in a folder. mmap_mode: "r" leaves them on disk."""
-    return {name[:-len(".npy")]: np.load(os.path.join(folder, name), mmap_mode)
-            for name in sorted(os.listdir(folder)) if name.endswith(".npy")}
+def grey(y):
+    """Grey values 255 y of images, as a camera gives them."""
+    return np.rint(255.0 * np.clip(y, 0.0, 1.0)).astype(np.uint8)
 
 
-def kept_by_pca(model, y):
+def blocks(number, num_pixels):
+    """Slices of so many images, each of BLOCK_BYTES at most."""
+    size = max(1, BLOCK_BYTES // (8 * num_pixels))
+    return [slice(begin, begin + size) for begin in range(0, number, size)]
+
+
+def kept_by_pca(arrays, y):
     """Coordinates along the principal components [grey] of images y [N x D], and the images with those alone."""
-    coordinates = (y - model["pca_mean"]) @ model["pca_basis"]
-    return coordinates, model["pca_mean"] + coordinates @ model["pca_basis"].T
+    coordinates = (y - arrays["pca_mean"]) @ arrays["pca_basis"]
+    return coordinates, arrays["pca_mean"] + coordinates @ arrays["pca_basis"].T
 
 
 # mean_rms, pca_rms, reconstruction_rms: distance of each image, blurred, to the model's mean image, to what the principal
@@ -74,15 +72,14 @@ def kept_by_pca(model, y):
 ImageErrors = collections.namedtuple("ImageErrors", "mean_rms pca_rms reconstruction_rms share variation")
 
 
-def image_errors(model, images, reconstructions):
-    """images, reconstructions: grey values k = 255 y  [N x D]."""
+def image_errors(arrays, images, reconstructions):
+    """arrays: of the model. images, reconstructions: grey values k = 255 y  [N x D]."""
     squares, component_squares = [], 0.0
-    own_mean = blurred(model, images.mean(axis=0) / 255.0)
-    block = max(1, BLOCK_BYTES // (8 * images.shape[1]))
-    for begin in range(0, len(images), block):
-        y, y_hat = blurred(model, images[begin:begin + block] / 255.0), reconstructions[begin:begin + block] / 255.0
-        coordinates, kept = kept_by_pca(model, y)
-        squares.append([np.mean(np.square(y - other), axis=1) for other in (model["pca_mean"], kept, y_hat, own_mean)])
+    own_mean = blurred(arrays, images.mean(axis=0) / 255.0)
+    for block in blocks(*images.shape):
+        y, y_hat = blurred(arrays, images[block] / 255.0), reconstructions[block] / 255.0
+        coordinates, kept = kept_by_pca(arrays, y)
+        squares.append([np.mean(np.square(y - other), axis=1) for other in (arrays["pca_mean"], kept, y_hat, own_mean)])
         component_squares = component_squares + np.sum(np.square(coordinates), axis=0)
     of_mean, of_pca, of_reconstruction, of_own_mean = np.concatenate(squares, axis=1)
     whole = np.sum(of_mean) * images.shape[1]
@@ -90,79 +87,132 @@ def image_errors(model, images, reconstructions):
                        component_squares / whole if whole > 0.0 else component_squares, np.sqrt(np.mean(of_own_mean)))
 
 
+def prediction_starts(piece_sizes, memory, steps):
+    """Frames with memory - 1 frames before and so many after them without a gap: at most MAX_STARTS, evenly spread over all."""
+    begins = np.cumsum(piece_sizes) - piece_sizes
+    starts = np.concatenate([begin + np.arange(memory - 1, size - steps) for begin, size in zip(begins, piece_sizes)])
+    number = min(len(starts), MAX_STARTS)
+    return starts[np.arange(number) * len(starts) // max(number, 1)]
+
+
+def predicted_features(model, features, torques, starts, steps, told=None):
+    """Features 0, 1, ... steps ahead of frames  [starts x steps + 1 x feature_dim]. told: a torque instead of those that followed."""
+    n, memory = model.options["order"], model.options["order"] + model.options["delay"]
+    past, known = features[starts[:, None] + np.arange(1 - n, 1)], torques[starts[:, None] + np.arange(1 - memory, steps)]
+    if told is not None:
+        known[:, memory - 1:] = told
+    return np.concatenate([past[:, -1:], model.roll_out(past, known)], axis=1)
+
+
+def prediction_errors(model, images, starts, predicted, blind):
+    """Root mean square over the pixels of all images 1, 2, ... steps ahead of the starts [grey]: of predictions, of the image
+    predicted to stay as it is, of predictions `blind` that were told of the mean torque  [3 x steps].
+    """
+    squares, num_pixels = np.zeros((3, predicted.shape[1] - 1)), images[0].size
+    for block in blocks(len(starts), num_pixels):
+        for k in range(1, predicted.shape[1]):
+            truth = images[starts[block] + k] / 255.0
+            shown = grey(model.decode(predicted[block, k])), images[starts[block]], grey(model.decode(blind[block, k]))
+            squares[:, k - 1] += [np.sum(np.square(image / 255.0 - truth)) for image in shown]
+    return np.sqrt(squares / (len(starts) * num_pixels))
+
+
 # A prediction that is shown: frame it starts from, features and images predicted 0, 1, ... steps ahead.
 Prediction = collections.namedtuple("Prediction", "frame features images")
 
 
 class ModelData:
-    """A model file, everything in a folder of model_data, and the errors of images. Without bags `bags` and what comes
-    after it are None, and tables is empty. unpaired: {what: number of the bag and time since its first frame [s]  [2 x N]}.
+    """A Model and what it makes of bags. Without bags `bags` and what comes after it are None, and tables is empty.
+    unpaired: {what: number of the bag and time since its first frame [s]  [2 x N]}.
     """
 
-    def __init__(self, model, folder):
-        with open(os.path.join(folder, "model.yaml")) as stream:
-            self.facts = yaml.load(stream, Loader=yaml.BaseLoader)  # texts: an id like 12e45678 is not a number
-        self.options = self.facts["options"]
-        self.model = load(model).arrays
-        self.bags = self.frames = self.features = self.torques = self.spectrum = self.errors = self.variation = self.unpaired = None
+    def __init__(self, model, bags=(), steps=15, options=(), say=lambda text: None):
+        """steps: of the longest prediction. options: of read_bags. say: told what is done."""
+        self.model = model
+        self.bags = self.frames = self.features = self.torques = self.spectrum = self.errors = None
+        self.variation = self.unpaired = None
         self.tables, self.predictions = {}, {}
-        if os.path.exists(os.path.join(folder, "bags.yaml")):
-            self._read_bags(folder)
+        if bags:
+            say("reading %d bag(s)" % len(bags))
+            piece_sizes, times = self._read_bags(bags, options)
+            self._judge_images(piece_sizes, times)
+            self._predict(piece_sizes, steps, say)
 
-    def _read_bags(self, folder):
-        with open(os.path.join(folder, "bags.yaml")) as stream:
-            bags = yaml.load(stream, Loader=yaml.BaseLoader)
-        texts = {name: [bag[name] for bag in bags] for name in bags[0]}
-        self.bags = {name: cells if name in ("bag", "camera") else np.array(cells, dtype=float)
-                     for name, cells in texts.items()}
-        arrays = read_arrays(os.path.join(folder, "bags"), "r")
-        self.images = arrays["images"].T.reshape(-1, *2 * [int(self.facts["image_size"])])
-        self.reconstructions = arrays["reconstructions"].T.reshape(self.images.shape)
-        self.features, self.torques = arrays["features"].T, arrays["torques"].T
-        self.unpaired = {name: arrays[name.replace(" ", "_")] for name in ("images without torque", "torques without image")}
-        errors = image_errors(self.model, arrays["images"].T, arrays["reconstructions"].T)
+    def _read_bags(self, paths, options):
+        """Returns the sizes of all pieces and the times of all frames."""
+        bags = read_bags(paths, self.model.image_size, options)
+        for path, bag in zip(paths, bags):
+            if bag["torque_dim"] != self.model.torque_dim:
+                raise ModelDataError("bag %s: has %d torque(s) a frame, the model has %d: it is of another robot" % (
+                    path, bag["torque_dim"], self.model.torque_dim))
+        self.images, self.torques, times, piece_sizes = (
+            np.concatenate([bag[name] for bag in bags]) for name in ("images", "torques", "times", "piece_sizes"))
+        unpaired = ("images_without_torque", "torques_without_image")
+        self.unpaired = {name.replace("_", " "): np.array(
+            [(i, time) for i, bag in enumerate(bags) for time in bag[name]]).reshape(-1, 2).T for name in unpaired}
+        self.bags = {"bag": paths, "camera": [bag["camera"] for bag in bags],
+                     **{key: np.array([len(bag[name]) for bag in bags])
+                        for key, name in (("frames", "times"), ("pieces", "piece_sizes"), *zip(unpaired, unpaired))},
+                     **{name: np.array([bag[name] for bag in bags]) for name in ("interval_s", "goal")}}
+        self.tables["bags.csv"] = self.bags
+        return piece_sizes, times
+
+    def _judge_images(self, piece_sizes, times):
+        shape = len(self.images), self.images[0].size
+        in_blocks = blocks(*shape)
+        self.features = np.concatenate([self.model.encode(self.images[block]) for block in in_blocks])
+        self.reconstructions = np.concatenate([grey(self.model.decode(self.features[block])) for block in in_blocks])
+        errors = image_errors(self.model.arrays, self.images.reshape(shape), self.reconstructions.reshape(shape))
         self.variation = errors.variation
-        number_of = [np.repeat(np.arange(len(sizes)), sizes)  # the bag and the piece of each frame
-                     for sizes in (self.bags["frames"].astype(int), arrays["piece_sizes"])]
-        self.frames = dict(bag=number_of[0], piece=number_of[1], time_s=arrays["times"],
-                           **numbered("u", arrays["torques"]), **numbered("z", arrays["features"]),
-                           mean_rms=errors.mean_rms, pca_rms=errors.pca_rms,
+        bag, piece = (np.repeat(np.arange(len(sizes)), sizes) for sizes in (self.bags["frames"], piece_sizes))
+        self.frames = dict(bag=bag, piece=piece, time_s=times, **numbered("u", self.torques.T),
+                           **numbered("z", self.features.T), mean_rms=errors.mean_rms, pca_rms=errors.pca_rms,
                            reconstruction_rms=errors.reconstruction_rms)
-        self.spectrum = {"component": np.arange(1, len(errors.share) + 1), "variance": self.model["pca_variance"],
-                         "share": errors.share}
-        self.errors = dict(zip(("steps", "num_predictions", "rmse", "rmse_repeat", "rmse_mean_torque"),
-                               arrays["prediction_errors"]))
-        for name in ("steps", "num_predictions"):
-            self.errors[name] = self.errors[name].astype(int)
-        self.tables = {"bags.csv": texts, "features.csv": self.frames, "spectrum.csv": self.spectrum,
-                       "prediction_errors.csv": self.errors}
-        if len(self.errors["steps"]) > 0:
-            self._read_predictions(arrays)
+        self.spectrum = {"component": np.arange(1, len(errors.share) + 1),
+                         "variance": self.model.arrays["pca_variance"], "share": errors.share}
+        self.tables.update({"features.csv": self.frames, "spectrum.csv": self.spectrum})
 
-    def _read_predictions(self, arrays):
-        for kind in ("typical", "worst"):
-            self.predictions[kind] = Prediction(int(arrays[kind + "_frame"]), arrays[kind + "_features"].T,
-                                                arrays[kind + "_images"].T.reshape(-1, *self.images.shape[1:]))
-        shown = self.predictions.items()
-        steps = np.arange(len(self.errors["steps"]) + 1)
+    def _predict(self, piece_sizes, steps, say):
+        memory = self.model.options["order"] + self.model.options["delay"]
+        steps = max(0, min(steps, np.max(piece_sizes) - memory))  # shorter where all pieces are
+        starts, errors = prediction_starts(piece_sizes, memory, steps), np.zeros((3, 0))
+        if steps > 0:
+            say("predicting %d step(s) from %d frames" % (steps, len(starts)))
+            predicted, blind = (predicted_features(self.model, self.features, self.torques, starts, steps, told)
+                                for told in (None, self.torques.mean(axis=0)))
+            errors = prediction_errors(self.model, self.images, starts, predicted, blind)
+            self._choose_predictions(starts, predicted)
+        self.errors = dict(zip(("steps", "num_predictions", "rmse", "rmse_repeat", "rmse_mean_torque"),
+                               (np.arange(1, steps + 1), np.full(steps, len(starts)), *errors)))
+        self.tables["prediction_errors.csv"] = self.errors
+
+    def _choose_predictions(self, starts, predicted):
+        """Those in the middle and worst by the distance of the feature predicted last to that of the image that came."""
+        steps = np.arange(predicted.shape[1])
+        ranked = np.argsort(np.linalg.norm(predicted[:, -1] - self.features[starts + steps[-1]], axis=1), kind="stable")
+        shown = {"typical": ranked[len(ranked) // 2], "worst": ranked[-1]}
+        self.predictions = {kind: Prediction(starts[i], predicted[i], grey(self.model.decode(predicted[i])))
+                            for kind, i in shown.items()}
         self.tables["predicted_features.csv"] = dict(
-            kind=[kind for kind, _ in shown for _ in steps],
-            frame=[prediction.frame for _, prediction in shown for _ in steps],
-            steps=np.tile(steps, len(shown)),
-            **numbered("z", np.concatenate([prediction.features for _, prediction in shown]).T))
+            kind=np.repeat(list(shown), len(steps)), frame=np.repeat(starts[list(shown.values())], len(steps)),
+            steps=np.tile(steps, len(shown)), **numbered("z", np.concatenate(predicted[list(shown.values())]).T))
+
+    @property
+    def options(self):
+        """The block `model` of its configuration."""
+        return self.model.options
 
     @property
     def goal_feature(self):
         """z_ref, None if the model has no goal image."""
-        return self.model.get("goal_feature")
-
-    @property
-    def beyond_plane(self):
-        """What all images of a feature plane have in common: the goal's features from the third on, else zeros."""
-        goal = np.zeros(int(self.options["feature_dim"])) if self.goal_feature is None else self.goal_feature
-        return goal[2:]
+        return self.model.goal_feature
 
     @property
     def max_torque(self):
         """One for each motor [N m]."""
-        return np.broadcast_to(self.model["max_torque"], (int(self.facts["torque_dim"]),))
+        return np.broadcast_to(self.options["max_torque"], (self.model.torque_dim,))
+
+    def decode_plane(self, features):
+        """Images of features of which the first two, or one, are given. The others are the goal's, without a goal zero."""
+        goal = np.zeros(self.options["feature_dim"]) if self.goal_feature is None else self.goal_feature
+        return grey(self.model.decode(np.column_stack([features, np.tile(goal[2:], (len(features), 1))])))

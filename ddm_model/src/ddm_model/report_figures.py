@@ -40,7 +40,7 @@ def new_axes(height, columns=1):
 def draw_spectrum(data):
     """Variance along each principal component; with bags what share of their images it keeps."""
     figure, axes = new_axes(3.0, columns=1 if data.spectrum is None else 2)
-    variance = data.model["pca_variance"]
+    variance = data.model.arrays["pca_variance"]
     axes[0].semilogy(np.arange(1, len(variance) + 1), variance, color=BLUE, marker="o", markersize=3)
     axes[0].set_xlabel("principal component")
     axes[0].set_ylabel("variance [grey²]")
@@ -74,7 +74,7 @@ def draw_rows(rows, labels, columns):
 def draw_reconstructions(data):
     shown = np.unique(np.arange(RECONSTRUCTIONS) * len(data.images) // RECONSTRUCTIONS)
     images = data.images[shown]
-    kept = kept_by_pca(data.model, images.reshape(len(shown), -1) / 255.0)[1].reshape(images.shape)
+    kept = kept_by_pca(data.model.arrays, images.reshape(len(shown), -1) / 255.0)[1].reshape(images.shape)
     return draw_rows([images, 255.0 * kept, data.reconstructions[shown]], ["image", "PCA", "features"],
                      ["frame %d" % frame for frame in shown])
 
@@ -113,14 +113,14 @@ def plane_range(data):
     return features.min(axis=0) - margin, features.max(axis=0) + margin
 
 
-def draw_plane(data, decoder):
+def draw_plane(data):
     """Decoded images over the range of the features, and the features of all frames."""
     low, high = plane_range(data)
-    if int(data.options["feature_dim"]) < 2:
-        return draw_line(data, decoder, low[0], high[0])
+    if data.options["feature_dim"] < 2:
+        return draw_line(data, low[0], high[0])
     figure, axes = plt.subplots(figsize=(WIDTH, 6.2), constrained_layout=True)
     grid = FeatureGrid(low, high)
-    grid.draw(axes, decoder.decode(grid.features))
+    grid.draw(axes, data.decode_plane(grid.features))
     if data.features is not None:
         axes.scatter(data.features[:, 0], data.features[:, 1], s=9, color=YELLOW, edgecolors="black",
                      linewidths=0.25, label="frames of these bags", zorder=2)
@@ -132,11 +132,11 @@ def draw_plane(data, decoder):
     return figure
 
 
-def draw_line(data, decoder, low, high):
+def draw_line(data, low, high):
     """A model with one feature: decoded images along it, and how often the frames have it."""
     figure, axes = plt.subplots(2, 1, figsize=(WIDTH, 2.6), constrained_layout=True, sharex=True)
     features, step = np.linspace(low, high, GRID, retstep=True)
-    axes[0].imshow(np.hstack(list(decoder.decode(features))), cmap="gray", vmin=0, vmax=255,
+    axes[0].imshow(np.hstack(list(data.decode_plane(features))), cmap="gray", vmin=0, vmax=255,
                    extent=(low - step / 2, high + step / 2, 0.0, step), aspect="auto")
     axes[0].set_yticks([])
     if data.features is not None:

@@ -116,7 +116,7 @@ def check_torque_range(data):
 
 
 def check_frames(data):
-    learned, components = int(data.facts["frames"]), int(data.options["pca_dim"])
+    learned, components = data.model.info["frames"], data.options["pca_dim"]
     return Check("Enough frames to learn from", learned >= FRAMES_PER_COMPONENT * components,
                  "%d frames learned from, %d principal components" % (learned, components),
                  "at least %g frames for each component; 10 are comfortable" % FRAMES_PER_COMPONENT,

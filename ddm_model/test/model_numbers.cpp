@@ -1,0 +1,26 @@
+// model_numbers: what C++ computes with a model, for tests of what Python does.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_bag_io/bag_reader.h>
+#include <ddm_files/plain_file.h>
+#include <ddm_model/long_term_prediction.h>
+#include <ddm_model/model_file.h>
+#include <ros/time.h>
+
+#include <iostream>
+#include <string>
+
+/// usage: model_numbers MODEL BAG FRAME STEPS. A line for the feature of each frame, then one for each of those predicted
+/// 0, 1, ... steps ahead of a frame.
+int main(int, char** argv) {
+  ros::Time::init();
+  const ddm::Ddm model = ddm::deserialiseModel(ddm::readFile(argv[1]), argv[1]);
+  const ddm::DataSet data = ddm::readBag(argv[2], model.imageSize(), {}).data;
+  const Eigen::MatrixXd Z = ddm::encodeAll(model, data);
+  const Eigen::IOFormat exact(Eigen::FullPrecision, Eigen::DontAlignCols);
+  std::cout << Z.transpose().format(exact) << "\n"
+            << model.rollOut(Z, data.torques(), std::stoi(argv[3]), std::stoi(argv[4]))
+                   .transpose()
+                   .format(exact)
+            << "\n";
+  return 0;
+}

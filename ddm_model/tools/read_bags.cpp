@@ -1,0 +1,99 @@
+// read_bags: the frames of bags as training reads them, for programs in Python.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_bag_io/bag_reader.h>
+#include <ddm_files/plain_file.h>
+#include <ddm_params/config_blocks.h>
+#include <ddm_params/param_reader.h>
+#include <ddm_params/param_value.h>
+#include <ddm_params/tool.h>
+#include <ros/time.h>
+#include <unistd.h>
+
+#include <boost/algorithm/string/join.hpp>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "bag_arguments.h"
+
+namespace po = boost::program_options;
+
+namespace {
+
+struct Arguments {
+  std::vector<std::string> configs;
+  int image_size = 0;
+  std::string out;
+  std::vector<std::string> bags;
+  ddm::BagArguments data_set;
+};
+
+/// @return false where --help was asked for and has been printed
+bool parse(int argc, char** argv, Arguments* arguments) {
+  po::options_description options(
+      "Writes the frames of bags, paired, cropped and resized as training reads them.\n\n"
+      "usage: rosrun ddm_model read_bags --image-size N --out DIR [--config FILE]... BAG...\n\n"
+      "Output: DIR/0, DIR/1, ...: a folder for each bag with bag.yaml and numbers without a "
+      "header,\n"
+      "        frame by frame: images (grey values, 8 bit), torques [N m] and times [s] "
+      "(doubles).\n"
+      "        Likewise the times images_without_torque and torques_without_image.\n\noptions");
+  options.add_options()("image-size",
+                        po::value(&arguments->image_size)->required()->value_name("N"),
+                        "images are brought to N x N pixels");
+  options.add_options()("out", po::value(&arguments->out)->required()->value_name("DIR"),
+                        "folder of these folders; made if need be");
+  options.add_options()("config", po::value(&arguments->configs)->composing()->value_name("FILE"),
+                        "YAML file whose block data_set names the topics; repeatable");
+  arguments->data_set.addTo(&options);
+  const ddm::Positional bags{"bag", po::value(&arguments->bags)->required(), -1};
+  return ddm::parseCommandLine(argc, argv, options, bags);
+}
+
+void writeBag(const ddm::BagContent& content, const std::string& folder) {
+  std::filesystem::create_directories(folder);
+  const auto write = [&folder](const char* name, const auto& values) {
+    const auto* bytes = reinterpret_cast<const char*>(values.data());
+    ddm::writeFileAtomically(folder + "/" + name,
+                             std::string(bytes, values.size() * sizeof(*values.data())));
+  };
+  const ddm::DataSet& data = content.data;
+  write("images", data.pixels(0, data.numFrames()));
+  write("torques", data.torques());
+  write("times", content.times);
+  write("images_without_torque", content.images_without_torque);
+  write("torques_without_image", content.torques_without_image);
+  YAML::Node bag;
+  bag["camera"] = content.camera;
+  bag["torque_dim"] = data.torqueDim();
+  for (const ddm::Piece& piece : data.pieces()) bag["piece_sizes"].push_back(piece.size);
+  bag["interval_s"] = ddm::formatDouble(content.interval);
+  bag["goal"] = data.hasGoal() ? 1 : 0;
+  ddm::writeFileAtomically(folder + "/bag.yaml", YAML::Dump(bag) + "\n");
+}
+
+void run(const Arguments& arguments) {
+  YAML::Node blocks(YAML::NodeType::Map);
+  for (const std::string& file : arguments.configs) ddm::overlay(ddm::readBlocks(file), &blocks);
+  arguments.data_set.overlayOn(&blocks);
+  ddm::ParamReader params(blocks, boost::algorithm::join(arguments.configs, ", "));
+  const auto topics = params.read<ddm::BagOptions>("data_set");
+  params.requireValid();
+  const bool live = ::isatty(STDERR_FILENO) != 0;
+  const std::size_t number = arguments.bags.size();
+  for (std::size_t i = 0; i < number; ++i) {
+    if (live) std::cerr << "\rbag " << i + 1 << " of " << number << (i + 1 == number ? "\n" : "");
+    writeBag(ddm::readBag(arguments.bags[i], arguments.image_size, topics),
+             arguments.out + "/" + std::to_string(i));
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ros::Time::init();
+  Arguments arguments;
+  return ddm::runTool(
+      "read_bags", [&] { return parse(argc, argv, &arguments); }, [&] { run(arguments); });
+}
