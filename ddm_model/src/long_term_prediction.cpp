@@ -1,4 +1,4 @@
-// Long-term predictions: from which frames they can be made, and how wrong they are.
+// Long-term predictions, and how wrong they are.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/long_term_prediction.h"
 
@@ -20,16 +20,8 @@ double squaredDistance(const Grey& a, const Grey& b) {
          (255.0 * 255.0);
 }
 
-}  // namespace
-
-Eigen::MatrixXd encodeAll(const Ddm& model, const DataSet& data) {
-  Eigen::MatrixXd Z(model.featureDim(), data.numFrames());
-  for (Eigen::Index i = 0; i < data.numFrames(); ++i) {
-    Z.col(i) = model.encode(data.image(i));
-  }
-  return Z;
-}
-
+/// Frames that have n - 1 predecessors and num_steps successors without a gap: what can be
+/// predicted from. In the order of the data.
 std::vector<Eigen::Index> predictionStarts(const Ddm& model, const DataSet& data, int num_steps) {
   std::vector<Eigen::Index> starts;
   for (const Piece& piece : data.pieces()) {
@@ -40,42 +32,35 @@ std::vector<Eigen::Index> predictionStarts(const Ddm& model, const DataSet& data
   return starts;
 }
 
-std::vector<Eigen::Index> thinnedOut(const std::vector<Eigen::Index>& frames, Eigen::Index number) {
-  const auto size = static_cast<Eigen::Index>(frames.size());
-  if (size <= number) return frames;
-  std::vector<Eigen::Index> out;
-  for (Eigen::Index i = 0; i < number; ++i) out.push_back(frames[i * size / number]);
-  return out;
+}  // namespace
+
+Eigen::MatrixXd encodeAll(const Ddm& model, const DataSet& data) {
+  Eigen::MatrixXd Z(model.featureDim(), data.numFrames());
+  for (Eigen::Index i = 0; i < data.numFrames(); ++i) {
+    Z.col(i) = model.encode(data.image(i));
+  }
+  return Z;
 }
 
 std::vector<PredictionError> predictionErrors(const Ddm& model, const DataSet& data,
-                                              const std::vector<Eigen::Index>& starts,
-                                              int max_steps,
-                                              const std::function<void(double)>& progress) {
+                                              int max_steps) {
   if (max_steps < 1) throw std::invalid_argument("predictions: steps must be >= 1");
+  const std::vector<Eigen::Index> starts = predictionStarts(model, data, max_steps);
   if (starts.empty()) {
     throw std::invalid_argument(
         "predictions: no frame has " + std::to_string(model.options().memory() - 1) +
         " frames before it and " + std::to_string(max_steps) + " after it without a gap");
   }
   const Eigen::MatrixXd Z = encodeAll(model, data);
-  const Eigen::VectorXd mean_torque = data.torques().rowwise().mean();
-  Eigen::MatrixXd told = data.torques();
   std::vector<PredictionError> errors(max_steps);
-  for (size_t i = 0; i < starts.size(); ++i) {
-    const Eigen::Index frame = starts[i];
+  for (const Eigen::Index frame : starts) {
     const Eigen::MatrixXd predicted = model.rollOut(Z, data.torques(), frame, max_steps);
-    told.middleCols(frame, max_steps).colwise() = mean_torque;
-    const Eigen::MatrixXd blind = model.rollOut(Z, told, frame, max_steps);
-    told.middleCols(frame, max_steps) = data.torques().middleCols(frame, max_steps);
     for (int k = 1; k <= max_steps; ++k) {
       const Grey& truth = data.image(frame + k);
       PredictionError& error = errors[k - 1];
       error.rmse += squaredDistance(model.decode(predicted.col(k)), truth);
       error.rmse_repeat += squaredDistance(data.image(frame), truth);
-      error.rmse_mean_torque += squaredDistance(model.decode(blind.col(k)), truth);
     }
-    progress(static_cast<double>(i + 1) / static_cast<double>(starts.size()));
   }
   const auto num_predictions = static_cast<Eigen::Index>(starts.size());
   const auto num_pixels = static_cast<double>(num_predictions * data.numPixels());
@@ -83,16 +68,11 @@ std::vector<PredictionError> predictionErrors(const Ddm& model, const DataSet& d
     PredictionError& error = errors[k - 1];
     error.steps = k;
     error.num_predictions = num_predictions;
-    for (double* sum : {&error.rmse, &error.rmse_repeat, &error.rmse_mean_torque}) {
+    for (double* sum : {&error.rmse, &error.rmse_repeat}) {
       *sum = std::sqrt(*sum / num_pixels);
     }
   }
   return errors;
-}
-
-std::vector<PredictionError> predictionErrors(const Ddm& model, const DataSet& data,
-                                              int max_steps) {
-  return predictionErrors(model, data, predictionStarts(model, data, max_steps), max_steps);
 }
 
 }  // namespace ddm

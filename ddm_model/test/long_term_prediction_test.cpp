@@ -129,44 +129,6 @@ TEST(PredictionErrors, AreTheRootMeanSquareOverAllPredictionsAndPixels) {
   }
 }
 
-TEST(PredictionErrors, TellWhatTheTorquesThatFollowAreWorth) {
-  const Ddm model = testing::toyModel();
-  const DataSet data = testing::toyTrial(8, 1);
-  const double mean = data.torques().mean();
-  // The torque before the frame was seen; those from the frame on are replaced.
-  DataSet told(testing::kToySize, 1);
-  for (Eigen::Index i = 0; i < 8; ++i) {
-    const double u = i < 3 ? data.torques()(0, i) : mean;
-    told.append(data.image(i), Eigen::VectorXd::Constant(1, u), i == 0);
-  }
-  const auto errors = predictionErrors(model, data, {3}, 2);
-  double sum = 0.0;
-  for (int k = 1; k <= 2; ++k) {
-    const Grey truth = data.image(3 + k);
-    sum = squaredError(model.decode(predictedByHand(model, told, 3, k)), truth);
-    EXPECT_NEAR(errors[k - 1].rmse_mean_torque, std::sqrt(sum / truth.size()), 1e-12);
-    EXPECT_EQ(errors[k - 1].num_predictions, 1);
-  }
-  EXPECT_NE(errors[1].rmse_mean_torque, errors[1].rmse);
-  // ... of this frame alone: the next one is told of the true torques again.
-  EXPECT_NEAR(predictionErrors(model, data, {3, 4}, 2)[0].rmse,
-              std::hypot(predictionErrors(model, data, {3}, 2)[0].rmse,
-                         predictionErrors(model, data, {4}, 2)[0].rmse) /
-                  std::sqrt(2.0),
-              1e-12);
-}
-
-TEST(PredictionStarts, LieWithinPiecesAndCanBeThinnedOutEvenly) {
-  const Ddm model = testing::toyModel();
-  DataSet data = testing::toyTrial(6, 1);
-  data.append(testing::toyTrial(5, 2));
-  using Frames = std::vector<Eigen::Index>;
-  EXPECT_EQ(predictionStarts(model, data, 3), (Frames{1, 2, 7}));
-  EXPECT_EQ(predictionStarts(model, data, 5), Frames());
-  EXPECT_EQ(thinnedOut({1, 2, 3, 4, 5, 6, 7}, 3), (Frames{1, 3, 5}));
-  EXPECT_EQ(thinnedOut({1, 2}, 3), (Frames{1, 2}));
-}
-
 TEST(PredictionErrors, AreSmallForATrainedModelOnImagesItHasNotSeen) {
   silenceSolverLog();
   TrainingOptions training;
