@@ -15,12 +15,4 @@ Blur::Blur(int image_size, double std) {
   G_.array().colwise() /= G_.rowwise().sum().array().eval();
 }
 
-void Blur::map(const Eigen::MatrixXf& G, Eigen::MatrixXf* images) const {
-  if (G.size() == 0) return;
-  for (Eigen::Index i = 0; i < images->cols(); ++i) {
-    Eigen::Map<Eigen::MatrixXf> image(images->col(i).data(), G.rows(), G.cols());
-    image = (G * image * G.transpose()).eval();
-  }
-}
-
 }  // namespace ddm

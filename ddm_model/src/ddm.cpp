@@ -60,6 +60,7 @@ Ddm::Ddm(ModelOptions options, int image_size, int torque_dim, Pca pca, Eigen::V
     throw std::invalid_argument("model: the scale of PCA must be > 0 and finite, got " +
                                 std::to_string(pca_.scale) + kRemedy);
   }
+  projection_ = Projection(pca_);
   if (hasGoal()) goal_feature_ = encode(goal_);
   // Finite parameters may be too large to compute with.
   requireFinite("feature of the goal image", goal_feature_);
@@ -71,8 +72,7 @@ Eigen::VectorXd Ddm::encode(const Grey& grey) const {
                                 " pixels, got " + std::to_string(grey.size()));
   }
   Mlp<double>::Tape tape;  // g^-1, eq. (3a)
-  networks_.encoder().forward(networks_.encoderOf(theta_.data()), pca_.project(grey).cast<double>(),
-                              &tape);
+  networks_.encoder().forward(networks_.encoderOf(theta_.data()), projection_(grey), &tape);
   return tape.output();
 }
 

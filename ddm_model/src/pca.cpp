@@ -79,11 +79,6 @@ Eigen::MatrixXf Pca::project(const Eigen::Ref<const GreyMatrix>& pixels) const {
   return scale * (basis.transpose() * (images.colwise() - mean));
 }
 
-Eigen::VectorXf Pca::project(const Grey& grey) const {
-  return project(
-      Eigen::Map<const GreyMatrix>(grey.data(), static_cast<Eigen::Index>(grey.size()), 1));
-}
-
 Eigen::MatrixXf Pca::project(const DataSet& data) const {
   Eigen::MatrixXf scores(basis.cols(), data.numImages());
   for (Eigen::Index begin = 0; begin < data.numImages(); begin += kBlock) {
@@ -95,6 +90,19 @@ Eigen::MatrixXf Pca::project(const DataSet& data) const {
 
 Eigen::MatrixXf Pca::reconstruct(const Eigen::Ref<const Eigen::MatrixXf>& scores) const {
   return (basis * (scores / scale)).colwise() + mean;
+}
+
+Projection::Projection(const Pca& pca) {
+  Eigen::MatrixXd filters = pca.basis.cast<double>();
+  offset_ = pca.scale * (filters.transpose() * pca.mean.cast<double>());
+  pca.blur.applyTransposed(&filters);
+  filters_ = static_cast<double>(pca.scale) / kWhite * filters.transpose();
+}
+
+Eigen::VectorXd Projection::operator()(const Grey& grey) const {
+  const Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>> pixels(
+      grey.data(), static_cast<Eigen::Index>(grey.size()));
+  return filters_ * pixels.cast<double>() - offset_;
 }
 
 Pca fitPca(const DataSet& data, int dim, double score_std, const Blur& blur) {

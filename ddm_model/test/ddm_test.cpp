@@ -36,7 +36,7 @@ TEST(Ddm, EncodesThroughPcaAndEncoder) {
   const Grey image = toyImage(0.5);
   const Networks<double> nets(model.options(), 1);
   Mlp<double>::Tape tape;
-  nets.encoder().forward(model.theta().data(), model.pca().project(image).cast<double>(), &tape);
+  nets.encoder().forward(model.theta().data(), Projection(model.pca())(image), &tape);
   ASSERT_EQ(model.encode(image).size(), 2);
   EXPECT_EQ(model.encode(image), tape.output());
 }

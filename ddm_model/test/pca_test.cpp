@@ -211,7 +211,8 @@ TEST(Pca, TheGoalImageIsPartOfTheData) {
   data.setGoal(Grey(data.numPixels(), 255));
   const Pca with = fitPca(data, 6, 1.0);
   const auto error = [&data](const Pca& pca) {
-    return (pca.reconstruct(pca.project(data.goal())).array() - 1.0F).matrix().norm();
+    const Eigen::VectorXf scores = Projection(pca)(data.goal()).cast<float>();
+    return (pca.reconstruct(scores).array() - 1.0F).matrix().norm();
   };
   EXPECT_LT(error(with), 0.2F * error(without));
 }
@@ -230,6 +231,23 @@ TEST(Pca, SeesImagesThroughTheBlur) {
   const Eigen::MatrixXf scores = pca.project(data);
   EXPECT_LT((scores - pca.scale * pca.basis.transpose() * centred.cast<float>()).norm(),
             1e-4F * scores.norm());
+}
+
+TEST(Projection, ComputesTheScoresOfSingleImagesInDouble) {
+  const DataSet data = twoBlobs(80, 12, 3);
+  const Blur blur(12, 1.5);
+  const Pca pca = fitPca(data, 6, 1.0, blur);
+  const Projection projection(pca);
+  Eigen::MatrixXd images = data.pixels(0, data.numFrames()).cast<double>() / 255.0;
+  blur.apply(&images);
+  const Eigen::MatrixXd scores = static_cast<double>(pca.scale) *
+                                 pca.basis.cast<double>().transpose() *
+                                 (images.colwise() - pca.mean.cast<double>());
+  for (Eigen::Index i = 0; i < data.numFrames(); ++i) {
+    EXPECT_LT((projection(data.image(i)) - scores.col(i)).norm(), 1e-12);
+  }
+  EXPECT_LT((pca.project(data).leftCols(data.numFrames()).cast<double>() - scores).norm(),
+            1e-4 * scores.norm());  // in float
 }
 
 TEST(Pca, IsDeterministic) {

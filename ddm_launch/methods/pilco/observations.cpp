@@ -164,9 +164,10 @@ std::vector<std::string> PcaObservation::names() const {
 
 Eigen::MatrixXd PcaObservation::learn(const std::vector<std::string>& /*bags*/, const DataSet& data,
                                       const TrialId& /*id*/) {
-  pca_ = fitPca(data, config_.model.pca_dim, config_.training.score_std,
-                Blur(data.imageSize(), config_.model.blur));
-  const Eigen::MatrixXd Z = pca_.project(data).leftCols(data.numFrames()).cast<double>();
+  const Pca pca = fitPca(data, config_.model.pca_dim, config_.training.score_std,
+                         Blur(data.imageSize(), config_.model.blur));
+  projection_ = Projection(pca);
+  const Eigen::MatrixXd Z = pca.project(data).leftCols(data.numFrames()).cast<double>();
   if (!data.hasGoal())
     throw std::runtime_error(
         "the bags hold no goal image, which tells the goal: record one on goal_image");

@@ -147,10 +147,10 @@ class PcaObservation : public ImageObservation {
   std::vector<std::string> names() const override;
   Eigen::MatrixXd learn(const std::vector<std::string>& bags, const DataSet& data,
                         const TrialId& id) override;
-  Eigen::VectorXd observe(const Grey& grey) override { return pca_.project(grey).cast<double>(); }
+  Eigen::VectorXd observe(const Grey& grey) override { return projection_(grey); }
 
  private:
-  Pca pca_;
+  Projection projection_;
 };
 
 }  // namespace ddm

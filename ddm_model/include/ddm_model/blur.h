@@ -11,21 +11,37 @@ namespace ddm {
 /// share pixels from one pose to the next, and few principal components show them.
 class Blur {
  public:
+  template <class Scalar>
+  using Images = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+
   Blur() = default;  ///< none
   /// @param image_size  width and height of the images [pixels]
   /// @param std         standard deviation of the Gaussian [pixels]; 0: images stay as they are
   Blur(int image_size, double std);
 
   /// @param images  one image per column  [D x N]
-  void apply(Eigen::MatrixXf* images) const { map(G_, images); }
+  template <class Scalar>
+  void apply(Images<Scalar>* images) const {
+    map<Scalar>(G_.cast<Scalar>(), images);
+  }
   /// G; empty where there is no blur  [image_size x image_size]
   const Eigen::MatrixXf& matrix() const { return G_; }
   /// The transposed map.
   /// @param images  one image per column  [D x N]
-  void applyTransposed(Eigen::MatrixXf* images) const { map(G_.transpose(), images); }
+  template <class Scalar>
+  void applyTransposed(Images<Scalar>* images) const {
+    map<Scalar>(G_.transpose().cast<Scalar>(), images);
+  }
 
  private:
-  void map(const Eigen::MatrixXf& G, Eigen::MatrixXf* images) const;
+  template <class Scalar>
+  static void map(const Images<Scalar>& G, Images<Scalar>* images) {
+    if (G.size() == 0) return;
+    for (Eigen::Index i = 0; i < images->cols(); ++i) {
+      Eigen::Map<Images<Scalar>> image(images->col(i).data(), G.rows(), G.cols());
+      image = (G * image * G.transpose()).eval();
+    }
+  }
 
   Eigen::MatrixXf G_;  // empty: no blur  [image_size x image_size]
 };

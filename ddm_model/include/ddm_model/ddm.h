@@ -90,6 +90,7 @@ class Ddm {
   int image_size_;
   Networks<double> networks_;
   Pca pca_;
+  Projection projection_;
   Eigen::VectorXd theta_;
   Grey goal_;
   ModelInfo info_;

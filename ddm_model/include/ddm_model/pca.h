@@ -26,9 +26,6 @@ struct Pca {
   /// @return        scores [-]                     [pca_dim x N]
   Eigen::MatrixXf project(const Eigen::Ref<const GreyMatrix>& pixels) const;
 
-  /// The same of a single image.
-  Eigen::VectorXf project(const Grey& grey) const;
-
   /// The same of all images of a data set, the goal last; a few at a time are floats.
   /// @return        scores [-]                     [pca_dim x data.numImages()]
   Eigen::MatrixXf project(const DataSet& data) const;
@@ -36,6 +33,22 @@ struct Pca {
   /// @param scores  [pca_dim x N]
   /// @return        blurred images, not clamped to [0, 1]  [D x N]
   Eigen::MatrixXf reconstruct(const Eigen::Ref<const Eigen::MatrixXf>& scores) const;
+};
+
+/// Scores of one image after another, in double: what comes after them may magnify a rounding error a hundred times.
+/// Blur, mean and basis are one linear map of the pixels.
+class Projection {
+ public:
+  Projection() = default;  ///< of no use until another is assigned
+  explicit Projection(const Pca& pca);
+
+  /// @param grey  grey values k  [D]
+  /// @return      scores [-]     [pca_dim]
+  Eigen::VectorXd operator()(const Grey& grey) const;
+
+ private:
+  Eigen::MatrixXd filters_;  ///< scale / 255 (blurred basis)^T  [pca_dim x D]
+  Eigen::VectorXd offset_;   ///< scale basis^T mean             [pca_dim]
 };
 
 /// Leading principal components of all images of a data set, its goal image included, by subspace
