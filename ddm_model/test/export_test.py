@@ -19,7 +19,7 @@ import ddm_model  # noqa: E402
 import toy_robot  # noqa: E402
 
 FRAME, STEPS = 20, 15  # of a prediction
-TOLERANCE = 1e-6  # C++ has images and principal components in single precision
+TOLERANCE = 1e-6  # the blur is normalised in single precision
 README = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "README.md")
 
 
