@@ -63,10 +63,10 @@ class PredictionStripTest(figure_case.FigureCase):
             box = image.point(lambda grey: 255 if grey > 127 else 0).getbbox()
             self.assertAlmostEqual((box[0] + box[2]) / 2.0, x, delta=1.5)
 
-    def test_a_model_that_is_none_is_named_in_the_programs_words(self):
+    def test_a_model_that_is_none_is_named(self):
         self.writeWholeStrip()
         synthetic_run.write_config(self.scratch)
-        self.assertRefused(prediction_strip, [self.scratch], "decode_features", "model.ddm")
+        self.assertRefused(prediction_strip, [self.scratch], self.file("model.ddm"))
 
     def test_a_folder_without_strip_is_named_with_the_remedy(self):
         self.assertRefused(prediction_strip, [self.scratch], self.file("strip.csv"),

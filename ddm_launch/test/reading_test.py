@@ -19,8 +19,7 @@ TRIALS = 1
 LIMIT_S = 240.0  # of a program on a machine that has much else to do
 QUICK = "training: {max_iterations: 20, num_starts: 1}\nprediction: {training_frames: 60, held_out_frames: 30}\n"
 
-# Each program: what it reads, what it writes. Programs that read a run or a prediction are called below; figures call
-# decode_features, which reads a model.
+# Each program: what it reads, what it writes. Programs that read a run or a prediction are called below.
 READS_A_RUN = {
     "ddm_launch": {
         "evaluate": ("a model", "evaluation.csv and .yaml in --out"),

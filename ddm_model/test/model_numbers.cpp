@@ -10,17 +10,19 @@
 #include <string>
 
 /// usage: model_numbers MODEL BAG FRAME STEPS. A line for the feature of each frame, then one for each of those predicted
-/// 0, 1, ... steps ahead of a frame.
+/// 0, 1, ... steps ahead of a frame, then one for the decoded image of each of these.
 int main(int, char** argv) {
   ros::Time::init();
   const ddm::Ddm model = ddm::deserialiseModel(ddm::readFile(argv[1]), argv[1]);
   const ddm::DataSet data = ddm::readBag(argv[2], model.imageSize(), {}).data;
   const Eigen::MatrixXd Z = ddm::encodeAll(model, data);
   const Eigen::IOFormat exact(Eigen::FullPrecision, Eigen::DontAlignCols);
-  std::cout << Z.transpose().format(exact) << "\n"
-            << model.rollOut(Z, data.torques(), std::stoi(argv[3]), std::stoi(argv[4]))
-                   .transpose()
-                   .format(exact)
-            << "\n";
+  const Eigen::MatrixXd path =
+      model.rollOut(Z, data.torques(), std::stoi(argv[3]), std::stoi(argv[4]));
+  std::cout << Z.transpose().format(exact) << "\n" << path.transpose().format(exact) << "\n";
+  for (Eigen::Index k = 0; k < path.cols(); ++k) {
+    for (const int grey : model.decode(path.col(k))) std::cout << grey << " ";
+    std::cout << "\n";
+  }
   return 0;
 }

@@ -1,4 +1,4 @@
-// Fuzz target: numbers on the standard input of simulate and decode_features.
+// Fuzz target: numbers on the standard input of simulate.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/testing/fuzzing.h>
 #include <ddm_params/number_csv.h>

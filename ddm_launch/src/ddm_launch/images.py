@@ -10,6 +10,8 @@ import rosbag
 
 from ddm_launch.command import Failure, find_program
 from ddm_launch.run_folder import read_setting
+from ddm_model.model import ModelFileError, load
+from ddm_model.model_data import grey
 
 TORQUE_COLUMNS = {"moving_tile": "dx_px,dy_px", "two_link": "shoulder_nm,elbow_nm"}  # else torque_nm
 
@@ -57,11 +59,18 @@ class Camera:
 class Decoder:
     """Images of features, decoded by a model."""
 
-    def __init__(self, model):
-        self.command = [find_program("decode_features", "ddm_model"), model]
+    def __init__(self, path):
+        """Raises Failure with the path if there is no model in it."""
+        self.path = path
+        try:
+            self.model = load(path)
+        except (OSError, ModelFileError) as error:
+            raise Failure(str(error)) from None
 
     def decode(self, features):
-        """One grey image for each feature (z_1, z_2, ...)."""
-        header = ",".join("z_%d" % (i + 1) for i in range(len(features[0])))
-        lines = [",".join(repr(float(value)) for value in feature) for feature in features]
-        return draw_images(self.command, "\n".join([header] + lines) + "\n")
+        """One grey image for each feature [feature_dim]. Raises Failure if the model has another number of them."""
+        features, due = np.asarray(features, dtype=float), self.model.options["feature_dim"]
+        if features.ndim != 2 or features.shape[1] != due:
+            raise Failure("model %s: needs %d feature(s) of each image, got an array %s: take a model of the same run" % (
+                self.path, due, features.shape))
+        return [Image.fromarray(image) for image in grey(self.model.decode(features))]
