@@ -8,11 +8,15 @@ namespace ddm {
 
 Blur::Blur(int image_size, double std) {
   if (!(std > 0.0)) return;
-  G_ = Eigen::MatrixXf::NullaryExpr(image_size, image_size, [std](Eigen::Index i, Eigen::Index j) {
-    const double distance = static_cast<double>(i - j) / std;
-    return static_cast<float>(std::exp(-0.5 * distance * distance));
-  });
-  G_.array().colwise() /= G_.rowwise().sum().array().eval();
+  Eigen::MatrixXd G(image_size, image_size);
+  for (Eigen::Index i = 0; i < image_size; ++i) {
+    for (Eigen::Index j = 0; j < image_size; ++j) {
+      const double distance = static_cast<double>(i - j) / std;
+      G(i, j) = std::exp(-0.5 * distance * distance);
+    }
+    G.row(i) /= G.row(i).sum();
+  }
+  G_ = G.cast<float>();  // last: NumPy then has the same weights
 }
 
 }  // namespace ddm

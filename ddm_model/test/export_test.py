@@ -18,7 +18,7 @@ import ddm_model  # noqa: E402
 import toy_robot  # noqa: E402
 
 FRAME, STEPS = 20, 15  # of a prediction
-TOLERANCE = 1e-6  # the blur is normalised in single precision
+TOLERANCE = 1e-9
 README = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "README.md")
 
 
@@ -45,7 +45,7 @@ class ExportTest(toy_robot.ToyRobotCase):
     def assertComputesTheSame(self, model_options, training_options=""):
         path = toy_robot.train(self.scratch, [self.bag], model_options, training_options)
         model = ddm_model.load(path)
-        lines = subprocess.check_output([toy_robot.find_program("model_numbers"), path, self.bag, str(FRAME), str(STEPS)])
+        lines = subprocess.check_output([toy_robot.find_program("model_test_numbers"), path, self.bag, str(FRAME), str(STEPS)])
         lines = lines.splitlines()
         truth, predicted, decoded = (np.loadtxt(part) for part in (
             lines[:len(self.images)], lines[len(self.images):-STEPS - 1], lines[-STEPS - 1:]))

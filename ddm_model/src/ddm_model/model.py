@@ -72,8 +72,8 @@ def _blur(size, std):
     if not std > 0.0:
         return np.eye(size, dtype=np.float32)
     distance = np.subtract.outer(np.arange(size), np.arange(size)) / std
-    weights = np.exp(-0.5 * distance ** 2).astype(np.float32)
-    return weights / weights.sum(axis=1, keepdims=True)
+    weights = np.exp(-0.5 * distance ** 2)
+    return (weights / weights.sum(axis=1, keepdims=True)).astype(np.float32)
 
 
 def _layers(theta, widths, name):

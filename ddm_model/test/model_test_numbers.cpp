@@ -1,4 +1,4 @@
-// model_numbers: what C++ computes with a model, for tests of what Python does.
+// model_test_numbers: what C++ computes with a model, for tests of what Python does.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/bag_reader.h>
 #include <ddm_files/plain_file.h>
@@ -9,7 +9,7 @@
 #include <iostream>
 #include <string>
 
-/// usage: model_numbers MODEL BAG FRAME STEPS. A line for the feature of each frame, then one for each of those predicted
+/// usage: model_test_numbers MODEL BAG FRAME STEPS. A line for the feature of each frame, then one for each of those predicted
 /// 0, 1, ... steps ahead of a frame, then one for the decoded image of each of these.
 int main(int, char** argv) {
   ros::Time::init();
