@@ -54,6 +54,8 @@ class PredictionStripTest(figure_case.FigureCase):
         self.assertEqual([image.size for image in images], [(51, 51)] * 3)
         self.assertEqual(images[1].tobytes(), images[2].tobytes())
         self.assertNotEqual(images[0].tobytes(), images[1].tobytes())
+        with self.assertRaisesRegex(Failure, r"model.ddm: needs 2 feature\(s\)"):
+            decoder.decode([(1.0,), (2.0,)])
 
     def test_the_camera_sees_the_tile_where_it_is(self):
         synthetic_run.write_config(self.scratch, plant="moving_tile")

@@ -174,6 +174,11 @@ class InspectionTest(toy_robot.ToyRobotCase):
         self.assertRefused(["inspect: bag %s: has 2 torque(s) a frame, the model has 1" % self.file("two.bag")],
                            "--model", self.model, self.unseen, self.file("two.bag"))
 
+    def test_images_of_no_size_are_refused_before_a_bag_is_read(self):
+        code, output = toy_robot.call("read_bags", "--image-size", 0, "--out", self.out, self.file("missing.bag"))
+        self.assertEqual(code, 2, output)
+        self.assertIn("--image-size must lie in [1, 16384], got 0", output)
+
     def test_what_cannot_be_read_is_named(self):
         self.assertRefused(["missing.bag"], "--model", self.model, self.unseen, self.file("missing.bag"))
         self.assertRefused([self.unseen, "DDMMODEL"], "--model", self.unseen)

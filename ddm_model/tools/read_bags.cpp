@@ -21,6 +21,8 @@ namespace po = boost::program_options;
 
 namespace {
 
+constexpr int kMaxImageSize = 16384;  // of a model
+
 struct Arguments {
   std::vector<std::string> configs;
   int image_size = 0;
@@ -48,7 +50,12 @@ bool parse(int argc, char** argv, Arguments* arguments) {
                         "YAML file whose block data_set names the topics; repeatable");
   arguments->data_set.addTo(&options);
   const ddm::Positional bags{"bag", po::value(&arguments->bags)->required(), -1};
-  return ddm::parseCommandLine(argc, argv, options, bags);
+  if (!ddm::parseCommandLine(argc, argv, options, bags)) return false;
+  if (arguments->image_size < 1 || arguments->image_size > kMaxImageSize) {
+    throw po::error("--image-size must lie in [1, " + std::to_string(kMaxImageSize) + "], got " +
+                    std::to_string(arguments->image_size));
+  }
+  return true;
 }
 
 void writeBag(const ddm::BagContent& content, const std::string& folder) {

@@ -60,7 +60,7 @@ class Decoder:
     """Images of features, decoded by a model."""
 
     def __init__(self, path):
-        """Raises Failure with the path if there is no model in it."""
+        """Raises Failure, which names the file, if it is not a model."""
         self.path = path
         try:
             self.model = load(path)
