@@ -17,6 +17,7 @@ class SumModel:
     """A feature is the one before it and the torque; an image has one pixel, y = z / 10."""
 
     options = {"order": 2, "delay": 1}
+    arrays = {"image_size": 1, "blur": np.eye(1)}
 
     @staticmethod
     def roll_out(features, torques):
@@ -65,6 +66,8 @@ class ModelDataTest(unittest.TestCase):
         self.assertAlmostEqual(self.errors().variation, 0.0, places=12)
         self.images[::2], self.images[1::2] = 51, 102  # 0.1 to either side of 0.3
         self.assertAlmostEqual(self.errors().variation, 0.1, places=12)
+        self.model["blur"] = np.zeros((SIZE, SIZE))  # it is compared with the noise of a camera, which is not blurred
+        self.assertAlmostEqual(self.errors().variation, 0.1, places=12)
 
     def test_a_block_of_images_at_a_time_gives_the_same(self):
         whole, block = self.errors(), "ddm_model.model_data.BLOCK_BYTES"
@@ -96,6 +99,15 @@ class ModelDataTest(unittest.TestCase):
             np.testing.assert_allclose(errors ** 2 * 2.0, [
                 [0.0 + 0.2 ** 2, 0.2 ** 2 + 0.8 ** 2], [0.2 ** 2 + 0.2 ** 2, 0.4 ** 2 + 0.8 ** 2],
                 [0.8 ** 2 + 0.6 ** 2, 0.6 ** 2 + 0.0]], atol=1e-12)
+
+    def test_predictions_are_compared_with_images_as_the_model_sees_them(self):
+        class Blurred(SumModel):
+            arrays = {"image_size": 1, "blur": np.full((1, 1), np.sqrt(0.5))}  # each image has half its grey value
+
+        images, starts = np.array([0, 102], dtype=np.uint8)[:, None, None], np.array([0])
+        predicted = blind = np.full((1, 2, 1), 2.0)  # y = 0.2
+        np.testing.assert_allclose(prediction_errors(Blurred, images, starts, predicted, blind)[:, 0], [0.0, 0.2, 0.0],
+                                   atol=1e-12)
 
     def test_grey_values_are_rounded_and_within_their_range(self):
         self.assertEqual(grey(np.array([-0.1, 0.4999 / 255.0, 0.5001 / 255.0, 1.0, 1.1])).tolist(), [0, 0, 1, 255, 255])

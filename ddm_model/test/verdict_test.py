@@ -17,7 +17,7 @@ class GoodData:
     def __init__(self, num_frames=400):
         random = np.random.RandomState(1)
         half = num_frames // 2
-        self.model = types.SimpleNamespace(info={"frames": 500})
+        self.model = types.SimpleNamespace(info={"frames": 500}, landmarks=np.zeros((0, 2)))
         self.options = {"pca_dim": 50, "feature_dim": 2}
         self.max_torque = np.array([6.0])
         self.variation = 0.1
@@ -121,6 +121,16 @@ class VerdictTest(unittest.TestCase):
         data.features = data.features * 1e-3
         data.goal_feature = data.features[0]
         self.assertEqual(self.failed(data), ["Features tell images apart"])
+
+    def test_the_goal_may_have_been_seen_in_bags_that_are_not_these(self):
+        for features in (GoodData().features, None):
+            data = GoodData()
+            data.features = features
+            never_saw_the_goal(data)
+            data.model.landmarks = np.array([[0.0, -1.0], [0.0, 1.5]])
+            self.assertTrue(verdict.check_goal(data).ok)
+            data.model.landmarks = np.array([[0.0, -1.0], [0.0, 0.4]])
+            self.assertFalse(verdict.check_goal(data).ok)
 
     def test_short_bags_are_too_few_to_judge_by(self):
         self.assertEqual(self.failed(GoodData(num_frames=40)), ["Enough frames to judge by"])

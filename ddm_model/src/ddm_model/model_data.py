@@ -68,18 +68,20 @@ def kept_by_pca(arrays, y):
 # mean_rms, pca_rms, reconstruction_rms: distance of each image, blurred, to the model's mean image, to what the principal
 # components keep of it, to its reconstruction, root mean square over pixels [grey]  [N]. share: mean square of the
 # images along each component over that of the whole images [-]  [pca_dim]. variation: root mean square over all pixels
-# and images of their distance to the mean of these very images [grey].
+# and images of their distance, not blurred, to the mean of these very images [grey].
 ImageErrors = collections.namedtuple("ImageErrors", "mean_rms pca_rms reconstruction_rms share variation")
 
 
 def image_errors(arrays, images, reconstructions):
     """arrays: of the model. images, reconstructions: grey values k = 255 y  [N x D]."""
     squares, component_squares = [], 0.0
-    own_mean = blurred(arrays, images.mean(axis=0) / 255.0)
+    own_mean = images.mean(axis=0) / 255.0
     for block in blocks(*images.shape):
-        y, y_hat = blurred(arrays, images[block] / 255.0), reconstructions[block] / 255.0
+        raw, y_hat = images[block] / 255.0, reconstructions[block] / 255.0
+        y = blurred(arrays, raw)
         coordinates, kept = kept_by_pca(arrays, y)
-        squares.append([np.mean(np.square(y - other), axis=1) for other in (arrays["pca_mean"], kept, y_hat, own_mean)])
+        pairs = (y, arrays["pca_mean"]), (y, kept), (y, y_hat), (raw, own_mean)
+        squares.append([np.mean(np.square(image - other), axis=1) for image, other in pairs])
         component_squares = component_squares + np.sum(np.square(coordinates), axis=0)
     of_mean, of_pca, of_reconstruction, of_own_mean = np.concatenate(squares, axis=1)
     whole = np.sum(of_mean) * images.shape[1]
@@ -105,15 +107,16 @@ def predicted_features(model, features, torques, starts, steps, told=None):
 
 
 def prediction_errors(model, images, starts, predicted, blind):
-    """Root mean square over the pixels of all images 1, 2, ... steps ahead of the starts [grey]: of predictions, of the image
-    predicted to stay as it is, of predictions `blind` that were told of the mean torque  [3 x steps].
+    """Root mean square over the pixels of all images, blurred, 1, 2, ... steps ahead of the starts [grey]: of predictions, of
+    the image predicted to stay as it is, of predictions `blind` that were told of the mean torque  [3 x steps].
     """
     squares, num_pixels = np.zeros((3, predicted.shape[1] - 1)), images[0].size
     for block in blocks(len(starts), num_pixels):
+        stays = blurred(model.arrays, images[starts[block]].reshape(-1, num_pixels) / 255.0)
         for k in range(1, predicted.shape[1]):
-            truth = images[starts[block] + k] / 255.0
-            shown = grey(model.decode(predicted[block, k])), images[starts[block]], grey(model.decode(blind[block, k]))
-            squares[:, k - 1] += [np.sum(np.square(image / 255.0 - truth)) for image in shown]
+            truth = blurred(model.arrays, images[starts[block] + k].reshape(-1, num_pixels) / 255.0)
+            shown = grey(model.decode(predicted[block, k])) / 255.0, stays, grey(model.decode(blind[block, k])) / 255.0
+            squares[:, k - 1] += [np.sum(np.square(image.reshape(truth.shape) - truth)) for image in shown]
     return np.sqrt(squares / (len(starts) * num_pixels))
 
 

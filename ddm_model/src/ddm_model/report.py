@@ -5,7 +5,7 @@ import html
 STYLE = """body { font: 15px/1.45 sans-serif; color: #222; max-width: 62em; margin: 2em auto; padding: 0 1em; }
 h1 { font-size: 1.5em; } h2 { font-size: 1.15em; margin-top: 2em; }
 table { border-collapse: collapse; } td, th { border: 1px solid #ccc; padding: .3em .6em; text-align: left;
-vertical-align: top; } th { background: #f3f3f3; }
+vertical-align: top; overflow-wrap: anywhere; } th { background: #f3f3f3; }
 img { max-width: 100%; height: auto; } pre { background: #f6f6f6; padding: .8em; overflow-x: auto; }
 .summary { border-left: .4em solid #0072B2; background: #f3f7fb; padding: .8em 1em; }
 .failed { border-left-color: #D55E00; background: #fcf3ee; } tr.failed td:first-child { font-weight: bold; }

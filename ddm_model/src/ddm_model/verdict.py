@@ -14,7 +14,8 @@ VARIATION = 0.01  # [grey]: about the noise of a camera
 EXCITATION = 0.2  # of max_torque; uniform torques over the whole range have 0.58
 # Over the first third of the steps. Set on 18 pendulum models after one to five trials (presets paper and efficient,
 # and the worse schedules v_p_only and sequential), judged by the next two bags: all rules together pass the 9 whose
-# greedy run succeeded and fail the 9 others. Of 14 models of other seeds they pass 9 of 11 and fail 1 of 3.
+# greedy run succeeded and fail the 9 others. Of 14 models of other seeds they pass 9 of 11 and fail 1 of 3. Since predictions
+# are compared with blurred images: of 100 models of seeds 0 to 4 they pass 34 of 44 (efficient: 23 of 23) and fail 47 of 56.
 BEATS_REPEAT = 0.75  # error of predictions over that of the last frame repeated
 TORQUE_EFFECT = 1.04  # error without knowing the torque, over the error with it
 FRAMES_PER_COMPONENT = 2.0
@@ -201,12 +202,14 @@ def check_goal(data):
     if data.goal_feature is None:
         return Check("There is a goal", False, "the model has no goal image", "one, to plan to",
                      "Train with --goal IMAGE, or record goal_image into the bags.")
-    if data.features is None:
+    seen = data.model.landmarks if data.features is None else np.concatenate([data.model.landmarks, data.features])
+    if len(seen) == 0:
         return Check("There is a goal", True, "the model has a goal image", "one, to plan to", remedy)
-    distances = np.sqrt(np.sum((data.features - data.goal_feature) ** 2, axis=1))
-    near = float(np.min(distances)) / max(spread_of(data.features), 1e-12)
+    distances = np.sqrt(np.sum((seen - data.goal_feature) ** 2, axis=1))
+    near = float(np.min(distances)) / max(spread_of(seen), 1e-12)
     return Check("The goal has been seen", near <= GOAL_DISTANCE,
-                 "the frame nearest to the goal is %.2f spreads of the features away" % near, rule, remedy)
+                 "the nearest frame, of those the model keeps and of these bags, is %.2f spreads of the features away" % near,
+                 rule, remedy)
 
 
 OF_MODEL = (check_frames, check_goal)
