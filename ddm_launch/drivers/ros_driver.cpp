@@ -54,11 +54,11 @@ RosDriver::RosDriver(const ros::NodeHandle& nh, double timeout, Peers peers)
       trial_client_(nh_, topics::kRunTrial, /*spin_thread=*/false),
       train_client_(nh_, topics::kTrain, /*spin_thread=*/false),
       spinner_(kThreads, &callbacks_) {
-  ground_truth_sub_ = nh_.subscribe<sensor_msgs::JointState>(
+  ros::NodeHandle quiet_nh(nh_);
+  quiet_nh.setCallbackQueue(&ground_truth_queue_);
+  ground_truth_sub_ = quiet_nh.subscribe<sensor_msgs::JointState>(
       topics::kGroundTruth, kQueue, [this](const sensor_msgs::JointStateConstPtr& state) {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        ground_truth_.push_back(*state);
-        if (awaits_ground_truth_) changed_.notify_all();  // else a wake-up for each frame
+        ground_truth_[state->header.stamp] = *state;
       });
   model_sub_ = nh_.subscribe<ddm_msgs::Model>(topics::kModel, 1,
                                               [this](const ddm_msgs::ModelConstPtr& model) {
@@ -112,7 +112,9 @@ void RosDriver::signOfLife() {
 /// @throws std::runtime_error if nobody gave a sign of life within the timeout, or on shutdown
 void RosDriver::waitFor(const std::function<bool()>& condition,
                         const std::function<std::string()>& what) {
-  while (!condition()) {
+  for (;;) {
+    ground_truth_queue_.callAvailable();
+    if (condition()) return;
     if (!ros::ok()) throw std::runtime_error(kInterrupted);
     std::unique_lock<std::mutex> lock(mutex_);
     if ((ros::WallTime::now() - last_sign_of_life_).toSec() > timeout_) {
@@ -149,6 +151,7 @@ auto RosDriver::execute(Client* client, const std::string& name, const Goal& goa
     const std::lock_guard<std::mutex> lock(mutex_);
     last_sign_of_life_ = ros::WallTime::now();
     pending->fraction = fraction_of(*feedback);
+    changed_.notify_all();
   };
   // Progress is told by this thread and without the lock: a terminal may hold up who writes to it.
   const auto is_done = [&] {
@@ -197,10 +200,7 @@ void RosDriver::refuseIntruders() const {
 
 TrialOutcome RosDriver::runTrial(const TrialRequest& request, const PhaseCallback& progress) {
   if (!request.bag.empty()) startRecording(request.bag);
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    ground_truth_.clear();
-  }
+  ground_truth_.clear();
   const ddm_msgs::Reset::Response begin = reset(request);
   const ddm_msgs::RunTrialResult result = runPolicy(request, begin, progress);
   last_image_ = result.last;
@@ -279,24 +279,18 @@ ddm_msgs::RunTrialResult RosDriver::runPolicy(const TrialRequest& request,
 /// State at each frame that was answered, if anybody publishes it. In real time there are others.
 void RosDriver::takeGroundTruth(const std::vector<ros::Time>& stamps, TrialOutcome* outcome) {
   if (ground_truth_sub_.getNumPublishers() == 0) return;
-  std::map<ros::Time, sensor_msgs::JointState> truth;
   waitFor(
       [&] {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        awaits_ground_truth_ = true;
-        for (sensor_msgs::JointState& state : ground_truth_) truth[state.header.stamp] = state;
-        ground_truth_.clear();
-        return std::all_of(stamps.begin(), stamps.end(),
-                           [&](const ros::Time& stamp) { return truth.count(stamp) > 0; });
+        return std::all_of(stamps.begin(), stamps.end(), [this](const ros::Time& stamp) {
+          return ground_truth_.count(stamp) > 0;
+        });
       },
       [&] {
         return "ground truth of the trial is incomplete, " +
                describePublishers(ground_truth_sub_.getTopic());
       });
-  const std::lock_guard<std::mutex> lock(mutex_);
-  awaits_ground_truth_ = false;
   for (const ros::Time& stamp : stamps) {
-    const sensor_msgs::JointState& joints = truth[stamp];
+    const sensor_msgs::JointState& joints = ground_truth_[stamp];
     const auto dim = static_cast<Eigen::Index>(joints.position.size());
     const auto rate_dim = static_cast<Eigen::Index>(joints.velocity.size());
     Eigen::VectorXd state(dim + rate_dim);

@@ -70,6 +70,9 @@ class RosDriver : public Driver {
 
   ros::CallbackQueue callbacks_;
   ros::NodeHandle nh_;  // with that queue
+  /// Called by the thread that waits, now and then: a thread of its own would wake up for each frame.
+  ros::CallbackQueue ground_truth_queue_;
+  std::map<ros::Time, sensor_msgs::JointState> ground_truth_;  // of the trial under way, by stamp
   double timeout_;
   Peers peers_;
   std::string model_id_;
@@ -78,8 +81,6 @@ class RosDriver : public Driver {
   std::mutex mutex_;  // guards what callbacks write, below
   std::condition_variable changed_;
   ros::WallTime last_sign_of_life_;
-  std::vector<sensor_msgs::JointState> ground_truth_;
-  bool awaits_ground_truth_ = false;
   ddm_msgs::ModelConstPtr model_;
 
   actionlib::SimpleActionClient<ddm_msgs::RunTrialAction> trial_client_;

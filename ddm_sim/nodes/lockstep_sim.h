@@ -27,8 +27,8 @@ namespace ddm {
 /// of the last one, and the stamps have a gap. A torque with another stamp is counted and ignored.
 /// A torque that cannot be applied, or does not come within the watchdog's wall time, ends the
 /// trial: idle until the next reset. /clock never runs backwards: each trial starts later than the
-/// last one ended, with a gap that no reader can take for a step. Ground truth and /clock come a
-/// millisecond of wall time after the image, those of all frames in between at once. Stamps are
+/// last one ended, with a gap that no reader can take for a step. Ground truth and /clock come ten
+/// milliseconds of wall time after the image, those of all frames in between at once. Stamps are
 /// whole nanoseconds, so equality is exact.
 class LockstepSim : public SimNode {
  public:
@@ -54,7 +54,7 @@ class LockstepSim : public SimNode {
  private:
   static constexpr std::uint64_t kSecond = 1000000000;  // [ns]
   static constexpr int kWatchdogTicks = 20;
-  static constexpr double kTellPeriod = 0.001;  // of wall time [s]
+  static constexpr double kTellPeriod = 0.01;  // of wall time [s]
 
   ros::Time beginTrial(const ddm_msgs::Reset::Request& request) override {
     if (running_) ROS_WARN_STREAM(trial_ << " is cut short by a reset at " << frameName());

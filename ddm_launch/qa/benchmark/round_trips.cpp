@@ -7,11 +7,10 @@
 #include <ddm_params/param_value.h>
 #include <ros/ros.h>
 #include <sensor_msgs/Image.h>
-#include <sensor_msgs/JointState.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
-#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -26,20 +25,19 @@ constexpr int kQueue = 1000;
 constexpr double kTimeout = 30.0;  // [s]
 const ros::TransportHints kNoDelay = ros::TransportHints().tcpNoDelay();
 
-/// Events may be heard of several at a time, so an interval is the mean over kEvents of them.
+/// Means over a tenth of a second.
 class IntervalLog {
  public:
-  static constexpr int kEvents = 100;
-
-  /// An event is now. The first kEvents do not count: connections and caches are new.
-  void tick() {
-    if (++num_events_ % kEvents != 0) return;
+  /// So many events by now. The first interval does not count: connections and caches were new.
+  void tick(int num_events) {
     const auto now = std::chrono::steady_clock::now();
     const std::chrono::duration<double, std::micro> interval = now - last_;
-    if (num_events_ > kEvents) intervals_us_.push_back(interval.count() / kEvents);
+    if (interval < kInterval) return;
+    if (last_events_ > kWarmUp)
+      intervals_us_.push_back(interval.count() / (num_events - last_events_));
     last_ = now;
+    last_events_ = num_events;
   }
-  int numEvents() const { return num_events_; }
 
   /// `{median_us: ..., p99_us: ...}`, which appears at once and whole.
   /// @throws std::runtime_error if there is nothing to tell, or the file cannot be written
@@ -51,30 +49,26 @@ class IntervalLog {
   }
 
  private:
-  int num_events_ = 0;
+  static constexpr std::chrono::milliseconds kInterval{90};  // feedback comes each 100 ms or so
+
+  static constexpr int kWarmUp = 100;
+
+  int last_events_ = 0;
   std::chrono::steady_clock::time_point last_;
   std::vector<double> intervals_us_;
 };
 
-/// Has the real nodes run one random trial, and times frame after frame.
+/// Has the real nodes run one random trial, and times it by its feedback: to hear of each frame would be a load.
 void timeLockstep(const ros::NodeHandle& nh, int num_events, IntervalLog* log) {
-  ros::AsyncSpinner spinner(1);
-  spinner.start();
-  std::mutex mutex;
-  // RosDriver hears the ground truth anyway: one more callback, but no message that others lack.
-  const ros::Subscriber frames = ros::NodeHandle(nh).subscribe<sensor_msgs::JointState>(
-      ddm::topics::kGroundTruth, kQueue, [&](const sensor_msgs::JointStateConstPtr&) {
-        const std::lock_guard<std::mutex> lock(mutex);
-        log->tick();
-      });
   ddm::RosDriver::Peers peers;
   peers.recorder = peers.trainer = false;
   ddm::RosDriver driver(nh, kTimeout, peers);
   ddm::TrialRequest request;
   request.num_steps = num_events;
   request.epsilon = 1.0;
-  driver.runTrial(request, [](double) {});
-  spinner.stop();
+  driver.runTrial(request, [&](double fraction) {
+    log->tick(static_cast<int>(std::lround(fraction * num_events)));
+  });
 }
 
 /// Publishes an image as soon as the last one has its torque, and times that.
@@ -82,14 +76,15 @@ void timeBareCamera(ros::NodeHandle* nh, int num_events, IntervalLog* log) {
   const std::vector<std::uint8_t> grey(kImageSize * kImageSize, 100);
   const ros::Publisher images = nh->advertise<sensor_msgs::Image>(ddm::topics::kImage, kQueue);
   ros::Time stamp(1, 0);
+  int num_answered = 0;
   const auto show = [&] {
     stamp += ros::Duration(0.2);
     images.publish(ddm::encodeImage(grey, kImageSize, stamp, "camera"));
   };
   const auto on_torque = [&](const ddm_msgs::TorqueConstPtr& torque) {
     if (torque->header.stamp != stamp) return;
-    log->tick();
-    if (log->numEvents() < num_events) return show();
+    log->tick(++num_answered);
+    if (num_answered < num_events) return show();
     ros::shutdown();
   };
   const ros::Subscriber torques = nh->subscribe<ddm_msgs::Torque>(
@@ -119,7 +114,7 @@ void run() {
   ros::NodeHandle private_nh("~");
   const std::string role = private_nh.param<std::string>("role", "lockstep");
   if (role == "controller") return answer(&nh);
-  const int num_events = private_nh.param("num_frames", 3000) + IntervalLog::kEvents;
+  const int num_events = private_nh.param("num_frames", 3000);
   IntervalLog log;
   if (role == "camera") {
     timeBareCamera(&nh, num_events, &log);

@@ -20,6 +20,7 @@ from ddm_qa.processes import Programs
 MODES = {"torch_eager_us": ["--eager", "--threads", "1"], "torch_script_us": ["--threads", "1"],
          "torch_script_2_threads_us": ["--threads", "2"]}
 ONE_CORE = ("torch_eager_us", "torch_script_us")  # the better of these is the peer
+LOOPS = ("lockstep", "bare")
 COLUMNS = ["name", "median_us", "p99_us", "peer_median_us"] + list(MODES)
 BUDGET_COLUMNS = ["preset", "load", "budget_ms", "plans", "cut_short", "median_ms", "p99_ms", "p999_ms", "max_ms",
                   "within_2_ms", "within_10_ms"]
@@ -41,9 +42,10 @@ DIR/speed.csv, one row a name; times in microseconds, of single calls unless sai
   pca, encode          PCA of 1601 images; the features of one image
   plan                 a whole plan along greedy trials; plan_cost_gradient: one evaluation of its cost
   render, read_bag     an image of the simulator; a bag of 100 frames
-  lockstep_round_trip  image to torque to next image with sim_node and mpc_node, random policy, recorder off: means of
-                       100 in a row; median of the medians, and of the 99 % quantiles, of 9 restarts
+  lockstep_round_trip  image to torque to next image with sim_node and mpc_node, random policy, recorder off: means over
+                       0.1 s; median of the medians, and of the 99 % quantiles, of 9 restarts
   bare_round_trip      the same messages between two nodes that do nothing with them, restarts taking turns
+  ..._trip_one_core    all these processes, and the master, on one core
   experiment           15 trials after the random one in one process, the whole; once
   efficient_NAME       the same of the preset efficient, whose frames are 1600 too. efficient_experiment is the median of
                        the seeds 0 to 9; so is efficient_experiment_all_cores, the only row in which training may use
@@ -130,22 +132,32 @@ class Benchmark:
             self.torch = {"torch": found["torch"], "torch_blas": found["blas"]}
 
     def round_trips(self, progress):
-        """Restarts of both loops, taking turns."""
-        times = {"lockstep": [], "bare": []}
+        """Restarts of both loops, on all cores and on one, taking turns."""
+        all_cores = os.sched_getaffinity(0)
+        cores = {"": all_cores, "_one_core": {min(all_cores)}}
+        times = {name + "_round_trip" + suffix: [] for suffix in cores for name in LOOPS}
         for restart in range(RESTARTS):
-            for name, found in times.items():
-                path = os.path.join(self.scratch, "%s_%d.yaml" % (name, restart))
-                output = self.programs.roslaunch(name, package_path("qa", "benchmark", name + ".launch"),
-                                                 "out:=" + path, "num_frames:=%d" % NUM_FRAMES)
-                measured = read_yaml(path)
-                if not measured:
-                    raise Failure("%s: the nodes ended without a result. Their last words:\n%s" % (
-                        name, output[-2000:].strip()))
-                found.append((measured["median_us"], measured["p99_us"]))
-                progress.update(1)
+            for suffix, chosen in cores.items():
+                for name in LOOPS:
+                    times[name + "_round_trip" + suffix].append(self.round_trip(name, chosen, all_cores, restart))
+                    progress.update(1)
         for name, found in times.items():
             medians, p99s = zip(*found)
-            self.rows[name + "_round_trip"] = {"median_us": statistics.median(medians), "p99_us": statistics.median(p99s)}
+            self.rows[name] = {"median_us": statistics.median(medians), "p99_us": statistics.median(p99s)}
+
+    def round_trip(self, name, cores, all_cores, restart):
+        """(median, 99 % quantile) of one of LOOPS [us]."""
+        path = os.path.join(self.scratch, "%s_%d_%d.yaml" % (name, len(cores), restart))
+        os.sched_setaffinity(0, cores)  # what is started from here on inherits it
+        try:
+            output = self.programs.roslaunch(name, package_path("qa", "benchmark", name + ".launch"), "out:=" + path,
+                                             "num_frames:=%d" % NUM_FRAMES)
+        finally:
+            os.sched_setaffinity(0, all_cores)
+        measured = read_yaml(path)
+        if not measured:
+            raise Failure("%s: the nodes ended without a result. Their last words:\n%s" % (name, output[-2000:].strip()))
+        return measured["median_us"], measured["p99_us"]
 
     def planning_budget(self):
         for load in ([], ["--busy"]):
@@ -160,7 +172,7 @@ class Benchmark:
         steps.append(("kernels of efficient", lambda: self.kernels("efficient_")))
         steps += [("PyTorch", self.peer)] if self.peers else []
         steps += [("planning with a budget", self.planning_budget), ("roslaunch experiment", self.ros_experiment)]
-        with tqdm(total=len(steps) + 2 * RESTARTS, unit="step", dynamic_ncols=True, disable=None) as progress:
+        with tqdm(total=len(steps) + 2 * len(LOOPS) * RESTARTS, unit="step", dynamic_ncols=True, disable=None) as progress:
             for name, step in steps:
                 progress.set_description(name)
                 step()
