@@ -9,7 +9,7 @@ packages_to_test=(
   xvfb imagemagick
   openssh-client openssh-server iproute2 nftables
   slurmctld slurmd slurm-client munge
-  python3-torch libopenblas0-pthread
+  python3-torch libtorch-dev libopenblas0-pthread
 )
 # Debian 13 has no wstool
 [[ $(. /etc/os-release && echo "${VERSION_ID:-}") == 13 ]] || packages_to_test+=(python3-wstool)

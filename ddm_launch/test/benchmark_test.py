@@ -46,6 +46,11 @@ class BenchmarkTest(ScratchCase):
             self.write(path, "{median_us: %g, p99_us: %g, count: 3000}\n" % (time_us, 2.0 * time_us))
         elif what == "planning_budget":
             return "%s,%s,5,2000,2000,5.1,5.2,5.3,6,1,1\n" % (command[2], "busy" if "--busy" in command else "idle")
+        elif what == "peer in C++":
+            self.assertEqual(command[-2:], [str(benchmark.ITERATIONS), "20"])
+            return json.dumps({"objective_gradient": {"median_us": 1900.0, "p99_us": 2000.0}})
+        elif "--save" in command:
+            return "20\n"
         elif "torch_peers" in " ".join(command):
             time_us = 60000.0 if "--eager" in command else 50000.0 if command[-1] == "1" else 40000.0
             return json.dumps({"times": {"plan": {"median_us": time_us, "p99_us": 70000.0}}, "torch": "1.13",
@@ -55,6 +60,7 @@ class BenchmarkTest(ScratchCase):
     def runWithStandIns(self, *arguments):
         with mock.patch.object(Programs, "call", lambda *words, **more: self.leave(*words, **more)), \
                 mock.patch.object(benchmark, "find_program", lambda name: name), \
+                mock.patch.object(benchmark, "find_node", lambda _, name: [name]), \
                 mock.patch.object(benchmark.importlib.util, "find_spec", lambda _: True):
             return self.call(*arguments)
 
@@ -63,7 +69,7 @@ class BenchmarkTest(ScratchCase):
         self.assertEqual(code, 0, output)
         rows = read_rows(self.out, "speed.csv")
         self.assertEqual(rows[0], ["name", "median_us", "p99_us", "peer_median_us", "torch_eager_us", "torch_script_us",
-                                   "torch_script_2_threads_us"])
+                                   "torch_script_2_threads_us", "torch_cpp_us"])
         by_name = {row[0]: row[1:4] for row in rows[1:]}
         kernels = {"objective_gradient": ["1000", "1500", ""], "matrix_products/64": ["800", "900", ""],
                    "matrix_products/128": ["700", "950", ""], "matrix_products": ["700", "950", ""]}
@@ -71,10 +77,11 @@ class BenchmarkTest(ScratchCase):
             **kernels, **{"efficient_" + name: row for name, row in kernels.items()},
             "experiment": ["9.5e+06", "", ""], "efficient_experiment": ["1.4e+07", "", ""],
             "efficient_experiment_all_cores": ["1.4e+07", "", ""], "plan": ["300", "600", "50000"],
-            "efficient_plan": ["300", "600", ""], "ros_experiment": ["9.5e+06", "", ""],
+            "efficient_plan": ["300", "600", ""], "objective_gradient": ["1000", "1500", "1900"], "ros_experiment": ["9.5e+06", "", ""],
             "lockstep_round_trip": ["80", "160", ""], "bare_round_trip": ["40", "80", ""],
             "lockstep_round_trip_one_core": ["50", "100", ""], "bare_round_trip_one_core": ["10", "20", ""]})
-        self.assertIn(["plan", "300", "600", "50000", "60000", "50000", "40000"], rows)
+        self.assertIn(["plan", "300", "600", "50000", "60000", "50000", "40000", ""], rows)
+        self.assertIn(["objective_gradient", "1000", "1500", "1900", "", "", "", "1900"], rows)
         machine = read_yaml(self.out, "machine.yaml")
         self.assertEqual((machine["plan_iterations"], machine["torch_blas"]), (42.0, "libopenblas.so"))
         budgets = read_rows(self.out, "planning_budget.csv")

@@ -7,6 +7,7 @@ import statistics
 import sys
 import tempfile
 
+from roslib.packages import find_node
 from tqdm import tqdm
 import yaml
 
@@ -19,9 +20,10 @@ from ddm_qa.processes import Programs
 # Columns of PyTorch: how it runs.
 MODES = {"torch_eager_us": ["--eager", "--threads", "1"], "torch_script_us": ["--threads", "1"],
          "torch_script_2_threads_us": ["--threads", "2"]}
-ONE_CORE = ("torch_eager_us", "torch_script_us")  # the better of these is the peer
+CPP = "torch_cpp_us"
+ONE_CORE = ("torch_eager_us", "torch_script_us", CPP)  # the best of these is the peer
 LOOPS = ("lockstep", "bare")
-COLUMNS = ["name", "median_us", "p99_us", "peer_median_us"] + list(MODES)
+COLUMNS = ["name", "median_us", "p99_us", "peer_median_us"] + list(MODES) + [CPP]
 BUDGET_COLUMNS = ["preset", "load", "budget_ms", "plans", "cut_short", "median_ms", "p99_ms", "p999_ms", "max_ms",
                   "within_2_ms", "within_10_ms"]
 PEERS = os.path.join(os.path.dirname(__file__), "torch_peers.py")
@@ -55,9 +57,15 @@ DIR/planning_budget.csv  2000 decisions of presets paper and efficient that woul
                        5 ms, on the idle machine and with a busy process on each core: time from when an image is due to
                        its torque, and the fraction that took at most the budget and 2 ms, or 10 ms
 With --peers, torch_..._us is the time of the same mathematics in PyTorch with its own L-BFGS, the starts of a plan in one
-batch: eager or compiled by TorchScript, one thread or two. peer_median_us is the best of one thread. Times count only if the
-losses agree with ours to 1e-5.
+batch: eager or compiled by TorchScript, one thread or two; torch_cpp_us is training written in C++, where libtorch-dev was
+there when the workspace was built. peer_median_us is the best of one thread. Times count only if the losses agree with ours
+to 1e-5.
 DIR/machine.yaml       processor, versions, BLAS of PyTorch, iterations of a plan"""
+
+
+def blas_threads(number):
+    """Environment variables; OpenBLAS reads either, by its build."""
+    return {"OMP_NUM_THREADS": number, "OPENBLAS_NUM_THREADS": number}
 
 
 class Benchmark:
@@ -117,19 +125,31 @@ class Benchmark:
             self.rows[prefix + kernel] = {"median_us": found["median"], "p99_us": found["p99"]}
 
     def peer(self):
-        path = os.pathsep.join([os.path.dirname(os.path.dirname(PEERS)), os.environ.get("PYTHONPATH", "")])
         for column, mode in MODES.items():
-            threads = mode[-1]  # of its BLAS, too
-            text = self.programs.call("peers", [sys.executable, PEERS, self.run, "--iterations", str(ITERATIONS),
-                                                "--plan-iterations", "%.1f" % self.plan_iterations] + mode, PYTHONPATH=path,
-                                      OMP_NUM_THREADS=threads, OPENBLAS_NUM_THREADS=threads)
-            found = json.loads(text.splitlines()[-1])
-            for name, times in found["times"].items():
-                row = self.rows[name]
-                row[column] = times["median_us"]
-                if column in ONE_CORE:
-                    row["peer_median_us"] = min(times["median_us"], row.get("peer_median_us", times["median_us"]))
+            found = json.loads(self.torch_peers(mode[-1], ["--iterations", str(ITERATIONS), "--plan-iterations",
+                                                           "%.1f" % self.plan_iterations] + mode))
+            self.keep_peer(column, found["times"])
             self.torch = {"torch": found["torch"], "torch_blas": found["blas"]}
+        in_cpp = find_node("ddm_launch", "torch_training")
+        if in_cpp:
+            saved = os.path.join(self.scratch, "peer.pt")
+            rank = self.torch_peers("1", ["--save", saved])
+            self.keep_peer(CPP, json.loads(self.programs.call("peer in C++", [in_cpp[0], saved, str(ITERATIONS), rank],
+                                                              **blas_threads("1"))))
+
+    def torch_peers(self, threads, arguments):
+        """The last line that it prints."""
+        path = os.pathsep.join([os.path.dirname(os.path.dirname(PEERS)), os.environ.get("PYTHONPATH", "")])
+        text = self.programs.call("peers", [sys.executable, PEERS, self.run] + arguments, PYTHONPATH=path,
+                                  **blas_threads(threads))
+        return text.splitlines()[-1]
+
+    def keep_peer(self, column, times):
+        for name, found in times.items():
+            row = self.rows[name]
+            row[column] = found["median_us"]
+            if column in ONE_CORE:
+                row["peer_median_us"] = min(found["median_us"], row.get("peer_median_us", found["median_us"]))
 
     def round_trips(self, progress):
         """Restarts of both loops, on all cores and on one, taking turns."""

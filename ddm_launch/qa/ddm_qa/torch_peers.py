@@ -172,11 +172,14 @@ class Peer:
         with torch.no_grad():
             return v[torch.argmin(costs())].clone()
 
+    def our_loss(self):
+        """V_R + V_P as the model file has it, in units of the scores."""
+        return (self.ours.info["v_r"] + self.ours.info["v_p"]) * self.scale ** 2  # from [grey^2]
+
     def differences(self):
         """{name: relative difference of a loss from ours} at our parameters."""
         with torch.no_grad():
-            v_sum = (self.ours.info["v_r"] + self.ours.info["v_p"]) * self.scale ** 2  # from [grey^2]
-            differences = {"V_R + V_P": abs(float(self.loss()) / v_sum - 1.0)}
+            differences = {"V_R + V_P": abs(float(self.loss()) / self.our_loss() - 1.0)}
             past, torques, goal = self.start_plan(0)
             u = 0.5 * torch.sin(torch.arange(float(self.horizon)))[:, None]
             cost = float(self.plan_costs(self.f, torch.atanh(u)[None], past, torques, goal, self.control_weight)[0])
@@ -185,6 +188,23 @@ class Peer:
             j = float(np.sum((ahead - self.ours.goal_feature) ** 2) + self.control_weight * np.sum(u.numpy() ** 2))
             differences["J"] = abs(cost / j - 1.0)
         return differences
+
+
+class Saved(torch.nn.Module):
+    """What torch_training needs of a Peer, in a form that C++ reads."""
+
+    def __init__(self, peer):
+        super().__init__()
+        lists = {"encoder": peer.encoder, "decoder": peer.decoder, "f": peer.f, "start": peer.start_at}
+        tensors = {"%s_%d" % (name, i): each.detach() for name, found in lists.items() for i, each in enumerate(found)}
+        tensors.update(images=peer.images, torques=peer.torques, targets=peer.targets, mean=peer.mean, basis=peer.basis,
+                       scale=torch.tensor(peer.scale, dtype=torch.float64), order=torch.tensor(peer.order),
+                       our_loss=torch.tensor(peer.our_loss(), dtype=torch.float64))
+        for name, tensor in tensors.items():
+            self.register_buffer(name, tensor)
+
+    def forward(self):
+        return 0
 
 
 def minimise(parameters, function, iterations, rank):
@@ -252,9 +272,16 @@ def main():
     parser.add_argument("--threads", type=int, default=1, help="default 1")
     parser.add_argument("--iterations", type=int, default=200, help="of a retraining, default 200")
     parser.add_argument("--plan-iterations", type=float, default=60.0, help="of a plan, over its three starts, default 60")
+    parser.add_argument("--save", metavar="FILE", help="time nothing: save what torch_training times in C++, and print the "
+                        "rank of its L-BFGS")
     options = parser.parse_args()
     torch.set_num_threads(options.threads)
     try:
+        if options.save:
+            peer = Peer(options.run, compiled=False)
+            torch.jit.script(Saved(peer)).save(options.save)
+            print(peer.config["training"]["lbfgs_rank"])
+            return
         times = measure(options.run, not options.eager, options.iterations, options.plan_iterations)
     except ValueError as error:
         parser.exit(1, "torch_peers: %s\n" % error)
