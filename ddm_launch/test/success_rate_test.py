@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import sys
+from unittest import mock
 
 from matplotlib.colors import to_rgb
 import rosunit
@@ -91,8 +92,23 @@ class SuccessRateTest(figure_case.FigureCase):
                     self.assertGreaterEqual(legend.x0, 0.0)
                     self.assertLessEqual(legend.x1, figure.bbox.width)
                     self.assertGreaterEqual(legend.y0, 0.0)
-                    if names is methods:  # two columns: no method's name is too long for its place beside the paper's
+                    if names is methods and not published:  # two columns: no method's name is too long
                         self.assertEqual(success_rate.num_legend_columns(ours, published), 2)
+
+    def test_of_many_curves_those_that_are_mostly_zero_are_named_and_not_drawn(self):
+        rows = ["%d,%d,%d,%d,1" % (seed, trial, 100 * (trial + 1), trial == 4) for seed in (0, 1) for trial in range(5)]
+        path = self.writeLines("zero.csv", HEADER, *rows)
+        for names, drawn in ((["low"], [(100, 0.0), (200, 0.0), (300, 0.0), (400, 0.0), (500, 1.0)]), (["low", "mine"], [])):
+            curves = [success_rate.read_curve(name, path if name == "low" else self.writeSweep()) for name in names]
+            with new_figure(COLUMN_WIDTH, 3.0) as figure:
+                axes = figure.add_subplot(1, 1, 1)
+                success_rate.draw_curves(axes, curves, success_rate.read_published(PUBLISHED))
+                labels = axes.get_legend_handles_labels()[1]
+                found = [figure_case.drawn_points(axes, label) for label in labels if label.startswith("low")]
+            self.assertEqual(found, [drawn], labels)
+            self.assertEqual([label for label in labels if label.endswith(": near 0")],
+                             [] if drawn else ["low (2 seeds): near 0", "PILCO, features (paper): near 0",
+                                               "PILCO, PCA (paper): near 0"])
 
     def draw(self, names):
         """Draws curves of these names over the paper's. Returns {label: (colour, marker, line)}."""
@@ -107,7 +123,8 @@ class SuccessRateTest(figure_case.FigureCase):
 
     def test_a_method_of_the_paper_has_the_colour_and_marker_of_its_published_curve(self):
         names = [row[0] for row in success_rate.METHODS]
-        drawn = self.draw(["oracle"] + names[::-1])
+        with mock.patch.object(success_rate, "MOST_CURVES", 9):
+            drawn = self.draw(["oracle"] + names[::-1])
         for name in names:
             ours, paper = drawn[name + " (4 seeds)"], drawn[name + " (paper)"]
             self.assertEqual(paper[0], success_rate.lighter(ours[0]))

@@ -3,6 +3,7 @@
 import argparse
 import copy
 import math
+import statistics
 
 from matplotlib.colors import to_rgb
 from matplotlib.ticker import MaxNLocator
@@ -26,6 +27,8 @@ OURS_LINE, PUBLISHED_LINE = "-", "--"
 ABOUT = ("Success rate over the frames learned from. One curve per file of many seeds, with the standard error "
          "sqrt(p (1 - p) / (n - 1)); a level line where nothing is learned.")
 LONGEST_PAIR = 54  # [characters] that fit next to each other into the width of a column
+MOSTLY_ZERO = ": near 0"
+MOST_CURVES = 5  # that can be told apart; beyond that those that are mostly 0 are named only
 
 
 class Curve:
@@ -35,6 +38,9 @@ class Curve:
     def __init__(self, name, remark, frames, rates, errors, band=None):
         self.name, self.label = name, "%s (%s)" % (name, remark)
         self.frames, self.rates, self.errors, self.band = frames, rates, errors, band
+
+    def is_mostly_zero(self):
+        return statistics.median(self.rates) == 0.0
 
     def spread_to(self, last_frames):
         """This curve; one that learns from no frames (the oracle) as a level line up to last_frames."""
@@ -94,16 +100,24 @@ def lighter(colour):
 def draw_curves(axes, ours, published):
     """Ours with full lines and markers, on top of the paper's, which are dashed, open and lighter."""
     last_frames = max(100, *(curve.frames[-1] for curve in ours + published))
-    for curve, (colour, marker) in zip(ours, styles([curve.name for curve in ours])):
-        level = curve.spread_to(last_frames)
-        axes.errorbar(level.frames, level.rates, yerr=level.errors, color=colour, marker=marker, linestyle=OURS_LINE,
-                      capsize=2, elinewidth=0.8, label=curve.label, zorder=3 if level is curve else 1)
-        if level.band:
-            axes.fill_between(level.frames, *level.band, color=colour, alpha=0.2, linewidth=0.0, zorder=1)
-    for curve, (_, colour, marker, _, _) in zip(published, METHODS):
-        axes.errorbar(curve.frames, curve.rates, yerr=curve.errors, color=lighter(colour), marker=marker,
-                      linestyle=PUBLISHED_LINE, markerfacecolor="white", linewidth=0.9, capsize=2, elinewidth=0.7,
-                      label=curve.label, zorder=2)
+    looks = styles([curve.name for curve in ours]) + styles([curve.name for curve in published])
+    crowded = len(looks) > MOST_CURVES
+    named_only = [curve for curve in ours + published if crowded and curve.is_mostly_zero()]
+    for curve, (colour, marker) in zip(ours + published, looks):
+        if curve in named_only:
+            continue
+        if curve in published:
+            axes.errorbar(curve.frames, curve.rates, yerr=curve.errors, color=lighter(colour), marker=marker,
+                          linestyle=PUBLISHED_LINE, markerfacecolor="white", linewidth=0.9, capsize=2, elinewidth=0.7,
+                          label=curve.label, zorder=2)
+        else:
+            level = curve.spread_to(last_frames)
+            axes.errorbar(level.frames, level.rates, yerr=level.errors, color=colour, marker=marker, linestyle=OURS_LINE,
+                          capsize=2, elinewidth=0.8, label=curve.label, zorder=3 if level is curve else 1)
+            if level.band:
+                axes.fill_between(level.frames, *level.band, color=colour, alpha=0.2, linewidth=0.0, zorder=1)
+    for curve in named_only:
+        axes.errorbar([], [], linestyle=" ", label=curve.label + MOSTLY_ZERO)
     axes.set_xlim(left=-40)
     axes.xaxis.set_major_locator(MaxNLocator(nbins=6, steps=[1, 2, 5, 10]))
     axes.set_ylim(-0.04, 1.04)
@@ -113,9 +127,11 @@ def draw_curves(axes, ours, published):
 
 
 def num_legend_columns(ours, published):
-    """2 where the longest label of ours fits next to the longest of the paper's."""
-    first, second = (max([len(curve.label) for curve in curves], default=0) for curves in (ours, published or ours))
-    return 2 if first + second <= LONGEST_PAIR else 1
+    """2 where the longest two labels fit next to each other."""
+    curves = ours + published
+    note = len(MOSTLY_ZERO) if len(curves) > MOST_CURVES else 0
+    lengths = sorted(len(curve.label) + note * curve.is_mostly_zero() for curve in curves)
+    return 2 if sum(lengths[-2:]) <= LONGEST_PAIR else 1
 
 
 def source(text):
@@ -138,7 +154,7 @@ def add_arguments(parser):
 
 
 def draw_figure(figure, ours, published):
-    """The curves, and below them the legend: ours on the left, the paper's on the right."""
+    """The curves, and below them the legend: ours, the paper's, and those that are not drawn."""
     axes, place = panel_above_legend(figure)
     draw_curves(axes, ours, published)
     add_legend(figure, place, *axes.get_legend_handles_labels(), ncol=num_legend_columns(ours, published),
