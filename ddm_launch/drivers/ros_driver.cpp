@@ -23,7 +23,6 @@
 namespace ddm {
 namespace {
 
-constexpr int kQueue = 1000;
 constexpr std::uint32_t kThreads = 2;
 // How often conditions without a callback are checked.
 constexpr std::chrono::milliseconds kLook(20);
@@ -56,9 +55,10 @@ RosDriver::RosDriver(const ros::NodeHandle& nh, double timeout, Peers peers)
       spinner_(kThreads, &callbacks_) {
   ros::NodeHandle quiet_nh(nh_);
   quiet_nh.setCallbackQueue(&ground_truth_queue_);
+  // Of any length: whoever is told of progress may hold up the thread that empties it.
   ground_truth_sub_ = quiet_nh.subscribe<sensor_msgs::JointState>(
-      topics::kGroundTruth, kQueue, [this](const sensor_msgs::JointStateConstPtr& state) {
-        ground_truth_[state->header.stamp] = *state;
+      topics::kGroundTruth, 0, [this](const sensor_msgs::JointStateConstPtr& state) {
+        if (keeps_ground_truth_) ground_truth_[state->header.stamp] = *state;
       });
   model_sub_ = nh_.subscribe<ddm_msgs::Model>(topics::kModel, 1,
                                               [this](const ddm_msgs::ModelConstPtr& model) {
@@ -200,7 +200,8 @@ void RosDriver::refuseIntruders() const {
 
 TrialOutcome RosDriver::runTrial(const TrialRequest& request, const PhaseCallback& progress) {
   if (!request.bag.empty()) startRecording(request.bag);
-  ground_truth_.clear();
+  ground_truth_.clear();  // of a trial that failed
+  keeps_ground_truth_ = true;
   const ddm_msgs::Reset::Response begin = reset(request);
   const ddm_msgs::RunTrialResult result = runPolicy(request, begin, progress);
   last_image_ = result.last;
@@ -299,6 +300,7 @@ void RosDriver::takeGroundTruth(const std::vector<ros::Time>& stamps, TrialOutco
     outcome->times.push_back((stamp - stamps.front()).toSec());
     outcome->states.push_back(state);
   }
+  keeps_ground_truth_ = false;
 }
 
 TrainingOutcome RosDriver::train(const std::vector<std::string>& bags, const TrialId& id,

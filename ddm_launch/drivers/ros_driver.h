@@ -24,7 +24,7 @@ namespace ddm {
 
 /// Orders the nodes about; computes nothing. All waits are in wall time, because simulated time
 /// stands still while a model is trained, and all end with an error that names who is silent.
-/// Handles its callbacks in threads of its own; progress is reported by the thread that waits.
+/// Handles callbacks, but those of ground truth, in threads of its own; progress is reported by the thread that waits.
 class RosDriver : public Driver {
  public:
   struct Peers {
@@ -72,7 +72,8 @@ class RosDriver : public Driver {
   ros::NodeHandle nh_;  // with that queue
   /// Called by the thread that waits, now and then: a thread of its own would wake up for each frame.
   ros::CallbackQueue ground_truth_queue_;
-  std::map<ros::Time, sensor_msgs::JointState> ground_truth_;  // of the trial under way, by stamp
+  std::map<ros::Time, sensor_msgs::JointState> ground_truth_;  // of the last trial, by stamp
+  bool keeps_ground_truth_ = false;                            // a trial is under way
   double timeout_;
   Peers peers_;
   std::string model_id_;

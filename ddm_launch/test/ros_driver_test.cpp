@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
+#include <sensor_msgs/JointState.h>
 
 #include <atomic>
 #include <chrono>
@@ -47,8 +48,13 @@ class Peers {
   /// Each service takes so long, or until release().
   void answerAfter(double seconds) { answer_time_ = seconds; }
 
-  /// The trial goes on and tells its feedback until release().
-  void runUntilReleased() { endless_ = true; }
+  /// The trial goes on and tells its feedback and ground truth until release().
+  void runUntilReleased() {
+    endless_ = true;
+    truth_ = ros::NodeHandle().advertise<sensor_msgs::JointState>(topics::kGroundTruth, 0);
+  }
+
+  std::uint32_t numTruths() const { return num_truths_; }
 
   void release() {
     if (!released_.exchange(true)) release_.set_value();
@@ -73,16 +79,29 @@ class Peers {
     do {
       feedback.step = 1;
       server_.publishFeedback(feedback);
+      for (int i = 0; truth_ && i < 50; ++i) truth_.publish(nextTruth());
     } while (endless_ && end_.wait_for(std::chrono::milliseconds(10)) != std::future_status::ready);
     ddm_msgs::RunTrialResult result;
     result.num_steps = kSteps;
     result.exploratory.resize(kSteps);
     result.stamp.resize(kSteps);
+    for (std::uint32_t i = 0; truth_ && i < result.stamp.size(); ++i) result.stamp[i] = stampOf(i);
     result.torque.resize(kSteps);
     server_.setSucceeded(result);
   }
 
+  static ros::Time stampOf(std::uint32_t truth) { return ros::Time(2, 1000 * truth); }
+
+  sensor_msgs::JointState nextTruth() {
+    sensor_msgs::JointState joints;
+    joints.header.stamp = stampOf(num_truths_++);
+    joints.position = {0.5};
+    return joints;
+  }
+
   ros::CallbackQueue callbacks_;
+  ros::Publisher truth_;
+  std::atomic<std::uint32_t> num_truths_{0};
   std::atomic<double> answer_time_{0.0};
   std::atomic<bool> endless_{false};
   std::atomic<bool> released_{false};
@@ -165,12 +184,14 @@ TEST(RosDriverTest, HearsItsPeersWhileItsProgressIsHeldUp) {
   peers.runUntilReleased();
   RosDriver driver(ros::NodeHandle(), 0.5, {/*recorder=*/false, /*trainer=*/false});
   std::set<std::thread::id> reporters;
-  driver.runTrial(trial(), [&](double) {
+  const TrialOutcome outcome = driver.runTrial(trial(), [&](double) {
     if (reporters.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(1500));
     reporters.insert(std::this_thread::get_id());
     peers.release();
   });
   EXPECT_EQ(reporters, std::set<std::thread::id>{std::this_thread::get_id()});
+  EXPECT_GT(peers.numTruths(), 2000u);  // more than any queue of a fixed length had taken
+  EXPECT_EQ(outcome.states.size(), static_cast<size_t>(kSteps));
 }
 
 TEST(ServiceCall, LeavesAConnectionBehindThatIsNeverMade) {

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -28,33 +29,35 @@ const ros::TransportHints kNoDelay = ros::TransportHints().tcpNoDelay();
 /// Means over a tenth of a second.
 class IntervalLog {
  public:
-  /// So many events by now. The first interval does not count: connections and caches were new.
+  /// So many events by now. The first ones do not count: connections and caches are new.
   void tick(int num_events) {
-    const auto now = std::chrono::steady_clock::now();
-    const std::chrono::duration<double, std::micro> interval = now - last_;
+    if (num_events < kWarmUp) return;
+    const Event now{std::chrono::steady_clock::now(), num_events};
+    if (!last_) last_ = now;
+    const std::chrono::duration<double, std::micro> interval = now.time - last_->time;
     if (interval < kInterval) return;
-    if (last_events_ > kWarmUp)
-      intervals_us_.push_back(interval.count() / (num_events - last_events_));
+    intervals_us_.push_back(interval.count() / (now.number - last_->number));
     last_ = now;
-    last_events_ = num_events;
   }
 
-  /// `{median_us: ..., p99_us: ...}`, which appears at once and whole.
+  /// `{median_us: ...}`, which appears at once and whole.
   /// @throws std::runtime_error if there is nothing to tell, or the file cannot be written
   void write(const std::string& path) const {
     if (intervals_us_.empty()) throw std::runtime_error("no round trip was timed");
     ddm::writeFileAtomically(
-        path, "{median_us: " + ddm::formatDouble(ddm::quantile(intervals_us_, 0.5)) +
-                  ", p99_us: " + ddm::formatDouble(ddm::quantile(intervals_us_, 0.99)) + "}\n");
+        path, "{median_us: " + ddm::formatDouble(ddm::quantile(intervals_us_, 0.5)) + "}\n");
   }
 
  private:
-  static constexpr std::chrono::milliseconds kInterval{90};  // feedback comes each 100 ms or so
+  struct Event {
+    std::chrono::steady_clock::time_point time;
+    int number;
+  };
 
   static constexpr int kWarmUp = 100;
+  static constexpr std::chrono::milliseconds kInterval{90};  // feedback comes each 100 ms or so
 
-  int last_events_ = 0;
-  std::chrono::steady_clock::time_point last_;
+  std::optional<Event> last_;
   std::vector<double> intervals_us_;
 };
 

@@ -25,9 +25,9 @@ METHODS = (("DDM + MPC", BLUE, "o", "ddm_mpc", "ddm_mpc_se"),
 OTHERS = ((BLACK, "X"), (ORANGE, "P"), (SKY, "v"), (GREY, "*"))
 OURS_LINE, PUBLISHED_LINE = "-", "--"
 ABOUT = ("Success rate over the frames learned from. One curve per file of many seeds, with the standard error "
-         "sqrt(p (1 - p) / (n - 1)); a level line where nothing is learned.")
+         "sqrt(p (1 - p) / (n - 1)); a level line where nothing is learned. Of more than five curves those that are 0 at most "
+         "points are not drawn but told in words.")
 LONGEST_PAIR = 54  # [characters] that fit next to each other into the width of a column
-MOSTLY_ZERO = ": near 0"
 MOST_CURVES = 5  # that can be told apart; beyond that those that are mostly 0 are named only
 
 
@@ -40,7 +40,11 @@ class Curve:
         self.frames, self.rates, self.errors, self.band = frames, rates, errors, band
 
     def is_mostly_zero(self):
-        return statistics.median(self.rates) == 0.0
+        return statistics.median(self.rates) == 0.0 and max(self.rates) < 0.5
+
+    def in_words(self):
+        """Label of a curve that is not drawn."""
+        return self.label + (": mostly 0, at most %.2g" % max(self.rates) if max(self.rates) else ": 0")
 
     def spread_to(self, last_frames):
         """This curve; one that learns from no frames (the oracle) as a level line up to last_frames."""
@@ -79,7 +83,7 @@ def read_published(path):
 
 
 def styles(names):
-    """(colour, marker) of each curve of ours. Raises Failure if some could not be distinguished."""
+    """(colour, marker) of each curve. Raises Failure if some could not be distinguished."""
     of_name = {name: (colour, marker) for name, colour, marker, _, _ in METHODS}
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
@@ -117,7 +121,7 @@ def draw_curves(axes, ours, published):
             if level.band:
                 axes.fill_between(level.frames, *level.band, color=colour, alpha=0.2, linewidth=0.0, zorder=1)
     for curve in named_only:
-        axes.errorbar([], [], linestyle=" ", label=curve.label + MOSTLY_ZERO)
+        axes.errorbar([], [], linestyle=" ", label=curve.in_words())
     axes.set_xlim(left=-40)
     axes.xaxis.set_major_locator(MaxNLocator(nbins=6, steps=[1, 2, 5, 10]))
     axes.set_ylim(-0.04, 1.04)
@@ -129,8 +133,8 @@ def draw_curves(axes, ours, published):
 def num_legend_columns(ours, published):
     """2 where the longest two labels fit next to each other."""
     curves = ours + published
-    note = len(MOSTLY_ZERO) if len(curves) > MOST_CURVES else 0
-    lengths = sorted(len(curve.label) + note * curve.is_mostly_zero() for curve in curves)
+    crowded = len(curves) > MOST_CURVES
+    lengths = sorted(len(curve.in_words() if crowded and curve.is_mostly_zero() else curve.label) for curve in curves)
     return 2 if sum(lengths[-2:]) <= LONGEST_PAIR else 1
 
 

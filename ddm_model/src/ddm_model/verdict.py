@@ -202,14 +202,14 @@ def check_goal(data):
     if data.goal_feature is None:
         return Check("There is a goal", False, "the model has no goal image", "one, to plan to",
                      "Train with --goal IMAGE, or record goal_image into the bags.")
-    seen = data.model.landmarks if data.features is None else np.concatenate([data.model.landmarks, data.features])
-    if len(seen) == 0:
+    features = data.model.landmarks if data.features is None else data.features
+    if len(features) == 0:
         return Check("There is a goal", True, "the model has a goal image", "one, to plan to", remedy)
-    distances = np.sqrt(np.sum((seen - data.goal_feature) ** 2, axis=1))
-    near = float(np.min(distances)) / max(spread_of(seen), 1e-12)
+    seen = np.concatenate([data.model.landmarks, features])
+    near = np.min(np.linalg.norm(seen - data.goal_feature, axis=1)) / max(spread_of(features), 1e-12)
     return Check("The goal has been seen", near <= GOAL_DISTANCE,
-                 "the nearest frame, of those the model keeps and of these bags, is %.2f spreads of the features away" % near,
-                 rule, remedy)
+                 "of all frames here and of those that the model keeps, the nearest to the goal is %.2f spreads of the features "
+                 "away" % near, rule, remedy)
 
 
 OF_MODEL = (check_frames, check_goal)
