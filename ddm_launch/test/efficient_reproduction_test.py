@@ -143,12 +143,12 @@ class EfficientReproductionTest(ScratchCase):
             "gravity_pilco_state": ("gravity/pilco_state/trials.csv", 1800.0,
                                     "--seeds 100:103" + words + "15 -- --method pilco_state --config /config/sparse_gp.yaml")})
 
-    def test_scene_nuisances_have_ten_seeds_and_twice_the_frames(self):
+    def test_scene_nuisances_have_ten_seeds_and_the_same_frames(self):
         steps = self.steps("tasks")
         self.assertEqual(steps["task_suite_pendulum"][2], "--seeds 100:120 --preset efficient --plant suite_pendulum --trials 9")
         for name in ("scene_camera", "scene_colours"):
             self.assertEqual(steps["task_suite_pendulum_" + name][2], "--seeds 100:110 --preset efficient --plant "
-                             "suite_pendulum --trials 19 -- --nuisance " + name)
+                             "suite_pendulum --trials 9 -- --nuisance " + name)
 
     def test_each_nuisance_has_twenty_seeds_and_500_frames(self):
         words = "--seeds 100:120 --preset efficient --plant pendulum --trials 4 -- --nuisance "
