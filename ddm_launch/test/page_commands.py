@@ -18,7 +18,7 @@ ELSEWHERE = {"reproduce_paper": "reproduce_paper_test.py", "reproduce_efficient"
              "rviz_screenshot": "rviz_test.py", "task_diagnosis": "task_diagnosis_test.py",
              "robot.launch": "robot_loop_test.py", "robot_check.launch": "robot_loop_test.py",
              "part.launch": "several_machines_test.py", "test.sh": "scripts_test.py", "fuzz.sh": "fuzzing_test.py",
-             "pilco_check": "../../ddm_mpc/pilco/test/pilco_check_test.cpp"}
+             "read_bags": "reading_test.py", "pilco_check": "../../ddm_mpc/pilco/test/pilco_check_test.cpp"}
 
 # Whole commands that another test runs: its words for them.
 COMMANDS_ELSEWHERE = [
