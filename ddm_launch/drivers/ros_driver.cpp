@@ -218,6 +218,7 @@ TrialOutcome RosDriver::runTrial(const TrialRequest& request, const PhaseCallbac
   outcome.solve_times = result.solve_time;
   outcome.goal_distances = result.goal_distance;
   takeGroundTruth(result.stamp, &outcome);
+  keeps_ground_truth_ = false;
   return outcome;
 }
 
@@ -300,7 +301,6 @@ void RosDriver::takeGroundTruth(const std::vector<ros::Time>& stamps, TrialOutco
     outcome->times.push_back((stamp - stamps.front()).toSec());
     outcome->states.push_back(state);
   }
-  keeps_ground_truth_ = false;
 }
 
 TrainingOutcome RosDriver::train(const std::vector<std::string>& bags, const TrialId& id,

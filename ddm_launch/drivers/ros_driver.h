@@ -24,7 +24,8 @@ namespace ddm {
 
 /// Orders the nodes about; computes nothing. All waits are in wall time, because simulated time
 /// stands still while a model is trained, and all end with an error that names who is silent.
-/// Handles callbacks, but those of ground truth, in threads of its own; progress is reported by the thread that waits.
+/// Callbacks, except those of ground truth, are handled in threads of its own; progress is reported
+/// by the thread that waits.
 class RosDriver : public Driver {
  public:
   struct Peers {
@@ -70,7 +71,7 @@ class RosDriver : public Driver {
 
   ros::CallbackQueue callbacks_;
   ros::NodeHandle nh_;  // with that queue
-  /// Called by the thread that waits, now and then: a thread of its own would wake up for each frame.
+  /// Emptied now and then by the thread that waits: a thread of its own would wake for each frame.
   ros::CallbackQueue ground_truth_queue_;
   std::map<ros::Time, sensor_msgs::JointState> ground_truth_;  // of the last trial, by stamp
   bool keeps_ground_truth_ = false;                            // a trial is under way

@@ -110,6 +110,11 @@ class SuccessRateTest(figure_case.FigureCase):
                              [] if drawn else ["low (5 seeds): mostly 0, at most 0.2", "PILCO, features (paper): 0",
                                                "PILCO, PCA (paper): 0"])
 
+    def test_a_slow_learner_is_drawn(self):
+        for last, is_mostly_zero in ((0.4, True), (0.5, False)):
+            self.assertEqual(success_rate.Curve("slow", "1 seed", [1, 2, 3], [0.0, 0.0, last], None).is_mostly_zero(),
+                             is_mostly_zero)
+
     def draw(self, names):
         """Draws curves of these names over the paper's. Returns {label: (colour, marker, line)}."""
         path = self.writeSweep()

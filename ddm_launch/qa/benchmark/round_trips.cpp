@@ -61,7 +61,8 @@ class IntervalLog {
   std::vector<double> intervals_us_;
 };
 
-/// Has the real nodes run one random trial, and times it by its feedback: to hear of each frame would be a load.
+/// Has the real nodes run one random trial, and times it by its feedback: to hear of each frame
+/// would be a load.
 void timeLockstep(const ros::NodeHandle& nh, int num_events, IntervalLog* log) {
   ddm::RosDriver::Peers peers;
   peers.recorder = peers.trainer = false;
