@@ -62,6 +62,7 @@ make_root() {  # FOLDER
     tail -n 20 "$1.log" >&2
     fail "debootstrap failed, see above."
   }
+  printf '127.0.0.1 localhost\n127.0.1.1 %s\n' "$(uname -n)" >"$1/etc/hosts"  # as Debian's installer does
 }
 
 copy_checkout() {  # FOLDER

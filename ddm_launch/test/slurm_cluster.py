@@ -27,7 +27,7 @@ JobAcctGatherType=jobacct_gather/none
 AccountingStorageType=accounting_storage/none
 MpiDefault=none
 SwitchType=switch/none
-SelectType=select/cons_res
+SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
 SchedulerType=sched/builtin
 SchedulerParameters=sched_interval=1,batch_sched_delay=0
@@ -40,7 +40,6 @@ PartitionName=all Nodes=localhost Default=YES
 """
 CGROUP_CONF = """\
 CgroupPlugin=cgroup/v1
-CgroupAutomount=no
 CgroupMountpoint={folder}/no_cgroup
 """
 

@@ -17,6 +17,17 @@ PACKAGES = sorted(os.path.dirname(path) for pattern in ("*", "examples/*")
                   for path in glob.glob(os.path.join(CHECKOUT, pattern, "package.xml")))
 
 
+def clang_format_version():
+    """None where there is none."""
+    if not shutil.which("clang-format"):
+        return None
+    text = subprocess.run(["clang-format", "--version"], stdout=subprocess.PIPE, universal_newlines=True, check=True).stdout
+    return int(re.search(r"version (\d+)", text).group(1))
+
+
+CLANG_FORMAT = clang_format_version()
+
+
 def first_lines(path, count):
     with open(path, errors="replace") as stream:
         return [line for _, line in zip(range(count), stream)]
@@ -63,6 +74,7 @@ class SourceRulesTest(unittest.TestCase):
         self.assertIn(os.path.realpath(__file__), scripts("python3"))
         self.assertIn(os.path.join(CHECKOUT, ".ci", "run"), scripts("bash"))
 
+    @unittest.skipUnless(CLANG_FORMAT == 14, "clang-format 14 judges, and this is %s: others break lines elsewhere" % CLANG_FORMAT)
     def test_cpp_files_are_formatted_by_clang_format(self):
         self.assertRuns("clang-format", "--dry-run", "-Werror", *CPP_FILES)
 

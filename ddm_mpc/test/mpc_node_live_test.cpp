@@ -21,6 +21,7 @@ class MpcNodeLiveTest : public MpcNodeTest {
  protected:
   void SetUp() override {
     MpcNodeTest::SetUp();
+    ASSERT_TRUE(waitUntil([this] { return diagnostics_.connected(); }));  // each count is told once
     ASSERT_TRUE(ros::service::waitForService("mpc_node/mpc/set_parameters", 10000));
     turn("horizon", 12);
     turn("control_weight", 0.05);
