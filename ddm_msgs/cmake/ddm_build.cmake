@@ -19,8 +19,9 @@ if(DDM_NATIVE)
   add_compile_options(-march=native)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # GCC 12 sees uninitialised values in its own AVX-512 header, and reads beyond Eigen's vectors of two and three
-    # numbers, where there are none. Clang, which makes the Debug build, still looks for both.
-    add_compile_options(-Wno-maybe-uninitialized -Wno-uninitialized -Wno-array-bounds)
+    # numbers, where there are none; GCC 14 has another name for the latter, which GCC 9 ignores. Clang, which makes the
+    # Debug build, still looks for both.
+    add_compile_options(-Wno-maybe-uninitialized -Wno-uninitialized -Wno-array-bounds -Wno-stringop-overread)
   endif()
 endif()
 if(DDM_WERROR)
