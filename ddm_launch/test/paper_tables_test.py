@@ -36,6 +36,7 @@ class PaperTablesTest(ScratchCase):
         self.write_trials("oracle/trials.csv", lambda seed, trial: True, frames=0)
         for schedule, successes in (("sequential", 1), ("v_p_only", 0), ("joint_random_init", 3)):
             self.write_trials(schedule + "/trials.csv", lambda seed, trial, n=successes: seed < n)
+        self.write_trials("bfgs/trials.csv", lambda seed, trial: seed < 2 and trial > 0, trials=2)
         self.write_predictions("tile/predictions.csv", 0.04)
         for folder in ("tile_predictions", "pendulum_predictions"):
             for schedule, rmse in (("joint", 0.04), ("sequential", 0.08), ("v_p_only", 0.2),
@@ -95,6 +96,12 @@ class PaperTablesTest(ScratchCase):
         self.assertEqual(self.holds()[point], "yes")
         self.write_trials("oracle/trials.csv", lambda seed, trial: (seed, trial) != (2, 7), frames=0)
         self.assertEqual(self.holds()[point], "no")
+
+    def test_solvers_are_compared_on_the_models_that_both_have(self):
+        rows = paper_tables.solver_table(self.scratch)
+        self.assertEqual([row[:4] for row in rows], [("lbfgs", 100, 4, 3), ("lbfgs", 200, 4, 3),
+                                                     ("bfgs", 100, 4, 0), ("bfgs", 200, 4, 2)])
+        self.assertAlmostEqual(rows[0][6], 0.25)  # of 0.1 to 0.4 s
 
     def test_the_tile_is_judged_by_mean_ratio_and_median_of_the_explained_position(self):
         rows = paper_tables.tile_rows(self.scratch)

@@ -56,6 +56,9 @@ class ReproducePaperTest(ScratchCase):
         self.assertEqual([row[:2] for row in rows[1:]], [[str(s), str(t)] for s in range(2) for t in range(16)])
         for name in ["oracle"] + SCHEDULES:
             self.assertEqual(len(read_rows(self.path(name, "trials.csv"))), 33, name)
+        self.assertEqual([row[:2] for row in read_rows(self.path("bfgs", "trials.csv"))[1:]],
+                         [[str(s), str(t)] for s in range(2) for t in range(5)])
+        self.assertEqual([row[0] for row in read_rows(self.path("solvers.csv"))[1:]], 5 * ["lbfgs"] + 5 * ["bfgs"])
         for name in ["joint"] + SCHEDULES:
             for plant in ("tile_predictions", "pendulum_predictions"):
                 self.assertEqual(len(read_rows(self.path(plant, name, "predictions.csv"))), 17, (plant, name))
@@ -81,7 +84,7 @@ class ReproducePaperTest(ScratchCase):
 
         machine = read_yaml(self.path("machine.yaml"))
         self.assertEqual(machine["preset"], "debug")
-        self.assertEqual(len(machine["steps"]), 18)
+        self.assertEqual(len(machine["steps"]), 19)
         self.assertEqual({name: step["seeds_run"] for name, step in machine["steps"].items() if step["seeds_run"] != 2},
                          {"pilco_pca": 1})
         for name, step in machine["steps"].items():

@@ -86,6 +86,23 @@ def time_table(trials):
     return rows
 
 
+def solver_table(folder):
+    """Rows (solver, frames, seeds, successes, medians of V_R and V_P per frame [grey^2] and of the time to train [s]) of
+    L-BFGS, which the preset has, and of BFGS, which the paper names, on the seeds and frames that both have."""
+    columns = {"seed": int, "frames": int, "success": int, "v_r": float, "v_p": float, "train_s": float}
+    runs = {solver: {(row["seed"], row["frames"]): row for row in read_csv(os.path.join(folder, name), columns)}
+            for solver, name in (("lbfgs", "trials.csv"), ("bfgs", "bfgs/trials.csv"))}
+    common = sorted(set(runs["lbfgs"]) & set(runs["bfgs"]))
+    rows = []
+    for solver, by_model in runs.items():
+        for frames in sorted({frames for _, frames in common}):
+            models = [by_model[key] for key in common if key[1] == frames]
+            rows.append((solver, frames, len(models), sum(model["success"] for model in models)) + tuple(
+                statistics.median(model[name] / divisor for model in models)
+                for name, divisor in (("v_r", frames), ("v_p", frames), ("train_s", 1.0))))
+    return rows
+
+
 def tile_rows(folder):
     """Rows (seed, RMSE 8 steps ahead, of repeating, ratio, R^2 of the position) of joint training on the tile."""
     predictions = read_predictions_csv(os.path.join(folder, "tile", "predictions.csv"))
@@ -167,6 +184,7 @@ def write_tables(folder, published, pilco=()):
         "success_rate": ("frames seeds success success_se paper paper_se difference_in_paper_se",
                          success_table(trials, published)),
         "schedules": ("measure schedule seeds mean se difference_to_joint difference_se", schedule_table(folder)),
+        "solvers": ("solver frames seeds successes v_r_per_frame v_p_per_frame train_s", solver_table(folder)),
         "times": ("what frames median largest unit source", time_table(trials) + pilco_tables.time_rows(folder, pilco)),
         "tile": ("seed rmse_8 rmse_repeat_8 ratio position_r2", tile_rows(folder)),
         "agreement": ("point claim_or_bar here holds", agreement)}

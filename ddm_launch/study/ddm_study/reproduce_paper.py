@@ -13,6 +13,8 @@ from ddm_study.step_runner import Part, StepRunner, SweepStep, verdict_lines
 NUM_ANGLE_SEEDS = 16  # as in the paper's Fig. 7
 NUM_SCHEDULE_SEEDS = 25  # of each schedule but the paper's own
 NUM_PREDICTION_SEEDS = 20
+NUM_BFGS_SEEDS = 10
+BFGS_TRIALS = 4  # a training takes a minute
 FIGURE_SEED = 0  # which seed the figures of a single model show
 FIGURE_STEP = 1
 TRIALS = 15
@@ -28,7 +30,7 @@ DISTRIBUTION_SECONDS = 3  # a swing-up takes one; what happens later shows in th
 
 ABOUT = """\
 Reproduces the paper's experiments: success on the pendulum (Fig. 7 and 8) with the oracle, PILCO and other training
-schedules for comparison, predictions of the moving tile (Fig. 4 and 5) and of the pendulum, the feature space (Fig. 6),
+schedules and BFGS for comparison, predictions of the moving tile (Fig. 4 and 5) and of the pendulum, the feature space (Fig. 6),
 tables and figures. PILCO takes hours, all else minutes: --without-pilco leaves it out. The same command resumes;
 without that option it adds PILCO."""
 
@@ -63,6 +65,7 @@ def sweep_steps(preset, num_seeds, configs, with_pilco):
     add_trials("oracle", "oracle", num_seeds, TRIALS, ["--method", "oracle"])
     for schedule in SCHEDULES[1:]:
         add_trials(schedule, schedule, NUM_SCHEDULE_SEEDS, TRIALS, options[schedule])
+    add_trials("bfgs", "bfgs", NUM_BFGS_SEEDS, BFGS_TRIALS, config_option("bfgs.yaml"))
     add_predictions("tile", "tile", "moving_tile", [])
     for plant, folder in (("moving_tile", "tile_predictions"), ("pendulum", "pendulum_predictions")):
         for schedule in SCHEDULES:  # one start each: the best of several would be a random one of most schedules
@@ -157,8 +160,8 @@ def main(arguments=None):
     parser = program_parser("reproduce_paper", ABOUT, EPILOG)
     parser.add_argument("--seeds", type=number(int, 1), default=50, metavar="N",
                         help="seeds 0 ... N - 1 of the paper's experiment, default 50; at most %d of each other "
-                        "schedule, %d of each prediction experiment, and %s of PILCO" % (
-                            NUM_SCHEDULE_SEEDS, NUM_PREDICTION_SEEDS, ", ".join(str(row[2]) for row in PILCO)))
+                        "schedule, %d of BFGS, %d of each prediction experiment, and %s of PILCO" % (
+                            NUM_SCHEDULE_SEEDS, NUM_BFGS_SEEDS, NUM_PREDICTION_SEEDS, ", ".join(str(row[2]) for row in PILCO)))
     parser.add_argument("--out", default="paper_results", metavar="DIR", help="default paper_results")
     parser.add_argument("--preset", default="paper", help="default paper; debug is for a quick look at the path")
     parser.add_argument("--without-pilco", action="store_true", help="leave out PILCO, which takes hours")
