@@ -12,11 +12,10 @@ import yaml
 
 from ddm_launch.command import Failure, find_program, number
 from ddm_launch.figure_style import BLUE, GREY, ORANGE, VERMILLION, save_picture
-from ddm_launch.images import draw_images
+from ddm_launch.images import draw_images, read_model
 from ddm_launch.run_folder import read_setting, read_trials
 from ddm_launch.settings import read_yaml
 from ddm_launch.tables import read_csv
-from ddm_model.model import ModelFileError, load
 
 ABOUT = ("Greedy evaluations of run folders, one after the other. Left: the image, without nuisances of the camera. Middle: the "
          "image that the model predicted one second earlier, given the torques applied since. Right: the feature space, with states "
@@ -71,11 +70,7 @@ def read_clip(evaluation):
     if not found:
         raise Failure("a film shows folders RUN/evaluation_NNN, got '%s'" % evaluation)
     run, trial = os.path.dirname(evaluation) or ".", int(found.group(1))
-    path = os.path.join(run, "trial_%03d" % trial, "model.ddm")
-    try:
-        model = load(path)
-    except (OSError, ModelFileError) as error:
-        raise Failure("%s has no model to show: %s" % (run, error))
+    model = read_model(os.path.join(run, "trial_%03d" % trial, "model.ddm"))
     frames = next((row.frames for row in read_trials(run) if row.trial == trial), None)
     images, torques = simulate(run, evaluation)
     if images.shape[1] != model.image_size:

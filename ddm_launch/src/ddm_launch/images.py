@@ -56,16 +56,20 @@ class Camera:
         return draw_images(self.command + ["--start", start], self.header + "\n")[0]
 
 
+def read_model(path):
+    """The Model in a file. Raises Failure, which names the file, if it is none."""
+    try:
+        return load(path)
+    except (OSError, ModelFileError) as error:
+        raise Failure(str(error)) from None
+
+
 class Decoder:
     """Images of features, decoded by a model."""
 
     def __init__(self, path):
         """Raises Failure, which names the file, if it is not a model."""
-        self.path = path
-        try:
-            self.model = load(path)
-        except (OSError, ModelFileError) as error:
-            raise Failure(str(error)) from None
+        self.path, self.model = path, read_model(path)
 
     def decode(self, features):
         """One grey image for each feature [feature_dim]. Raises Failure if the model has another number of them."""
