@@ -16,6 +16,7 @@ ELSEWHERE = {"reproduce_paper": "reproduce_paper_test.py", "reproduce_efficient"
              "benchmark": "benchmark_test.py", "planning_budget": "benchmark_programs_test.py",
              "growth": "growth_test.py", "fault_table": "fault_table_test.py", "soak": "soak_test.py",
              "rviz_screenshot": "rviz_test.py", "task_diagnosis": "task_diagnosis_test.py",
+             "compare_results": "compare_results_test.py",
              "robot.launch": "robot_loop_test.py", "robot_check.launch": "robot_loop_test.py",
              "part.launch": "several_machines_test.py", "test.sh": "scripts_test.py", "fuzz.sh": "fuzzing_test.py",
              "read_bags": "reading_test.py", "pilco_check": "../../ddm_mpc/pilco/test/pilco_check_test.cpp"}
