@@ -23,7 +23,6 @@ class CompareResultsTest(ScratchCase):
         self.write("old/success_rate.csv", "frames,success\n100,0.5\n")  # of all seeds
         self.write("new/trials.csv", HEADER + "300,0,1.5,0.2,1.0.1\n300,1,2.5,0.2,1.0.1\n")
         self.write("new/success_rate.csv", "frames,success\n100,1\n")
-        self.write("new/runs/trials.csv", "seed\n7\n")
 
     def call(self, again="new"):
         return call_main(compare_results.main, [self.file("old"), self.file(again)])
@@ -47,12 +46,33 @@ class CompareResultsTest(ScratchCase):
         self.assertEqual(code, 1)
         self.assertIn("2 rows of these seeds are committed, and 1 were made", output)
 
+    def test_older_names_of_columns_are_understood_and_unknown_ones_are_a_difference(self):
+        self.write("old/trials.csv", "seed,trial,final_error_deg\n300,0,2.5\n")
+        self.write("new/trials.csv", "seed,trial,final_error,return\n300,0,2.5,\n")
+        self.assertEqual(self.call()[0], 0)
+        self.write("new/trials.csv", "seed,trial,final_error,return\n300,0,3.5,\n")
+        self.assertIn("final_error is 2.5", self.call()[1])
+        self.write("new/trials.csv", "seed,trial,final_error,v_q\n300,0,2.5,1\n")
+        code, output = self.call()
+        self.assertEqual(code, 1)
+        self.assertIn("columns v_q", output)
+
+    def test_returns_are_compared_where_both_have_them(self):
+        self.write("old/trials.csv", "seed,trial,return\n300,0,700\n")
+        self.write("new/trials.csv", "seed,trial,return\n300,0,701\n")
+        self.assertIn("return is 700 in the committed file, and 701", self.call()[1])
+
+    def test_a_table_of_times_alone_is_not_called_equal(self):
+        self.write("old/times.csv", "seed,train_s,wall_s\n300,1,2\n")
+        self.write("new/times.csv", "seed,train_s,wall_s\n300,3,4\n")
+        self.assertNotIn("times.csv", self.call()[1])
+
     def test_folders_without_a_common_table_are_refused(self):
         os.remove(self.file("new/trials.csv"))
         self.assertIn("has no table of seeds", self.call()[1])
         code, output = self.call("nowhere")
         self.assertEqual(code, 1)
-        self.assertIn("nowhere is no folder", output)
+        self.assertIn("there is no folder " + self.file("nowhere"), output)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ import csv
 import os
 
 from ddm_launch.command import Failure, program_parser, run_program
+from ddm_launch.run_folder import LATER_COLUMNS, OLD_COLUMNS
 from ddm_launch.settings import read_yaml
 from ddm_launch.tables import read_csv
 
@@ -16,32 +17,37 @@ example, two seeds of each sweep of results/efficient:
   rosrun ddm_launch compare_results "$(rospack find ddm_launch)/results/efficient" again"""
 
 MAY_DIFFER = {"version", "train_s", "wall_s", "plan_ms_median", "plan_ms_p99", "gp_s", "policy_search_s"}
-WORK = ("runs", "logs")  # of a reproduction, not kept with the results
 
 
 def header_of(path):
+    """Its columns, as they are named today."""
     with open(path, newline="") as stream:
-        return next(csv.reader(stream), [])
+        return [OLD_COLUMNS.get(name, name) for name in next(csv.reader(stream), [])]
 
 
-def tables(folder):
-    """Paths of the CSV files with rows of seeds, relative to the folder."""
+def tables(committed, again):
+    """Paths of the CSV files with rows of seeds that both folders have, relative to them, but for those of times alone."""
     found = []
-    for parent, folders, names in os.walk(folder):
-        if parent == folder:
-            folders[:] = [name for name in folders if name not in WORK]
-        paths = [os.path.join(parent, name) for name in names if name.endswith(".csv")]
-        found += [os.path.relpath(path, folder) for path in paths if "seed" in header_of(path)]
+    for parent, _, names in os.walk(committed):
+        for name in names:
+            path = os.path.relpath(os.path.join(parent, name), committed)
+            if name.endswith(".csv") and os.path.isfile(os.path.join(again, path)):
+                columns = set(header_of(os.path.join(again, path)))
+                if "seed" in columns and columns - MAY_DIFFER - {"seed"}:
+                    found.append(path)
     return sorted(found)
 
 
 def compare(committed, again):
     """(number of rows, what differs first or None) of one table that was made again for some seeds."""
-    columns = [name for name in header_of(again) if name in header_of(committed) and name not in MAY_DIFFER]
-    kinds = dict.fromkeys(columns, str)
-    rows = read_csv(again, kinds)
+    old_columns, new_columns = (set(header_of(path)) - MAY_DIFFER for path in (committed, again))
+    in_one = (old_columns ^ new_columns) - set(LATER_COLUMNS)
+    if in_one:
+        return 0, "only one of the two files has the columns %s" % ", ".join(sorted(in_one))
+    columns = [name for name in header_of(again) if name in old_columns & new_columns]
+    rows = read_csv(again, columns, renamed=OLD_COLUMNS)
     seeds = {row["seed"] for row in rows}
-    due = [row for row in read_csv(committed, kinds) if row["seed"] in seeds]
+    due = [row for row in read_csv(committed, columns, renamed=OLD_COLUMNS) if row["seed"] in seeds]
     if len(due) != len(rows):
         return len(rows), "%d rows of these seeds are committed, and %d were made" % (len(due), len(rows))
     for number, (old, new) in enumerate(zip(due, rows), 1):
@@ -60,8 +66,8 @@ def processors(folder):
 def work(options):
     for folder in (options.committed, options.again):
         if not os.path.isdir(folder):
-            raise Failure("%s is no folder: give that of a reproduction" % folder)
-    names = [name for name in tables(options.again) if os.path.isfile(os.path.join(options.committed, name))]
+            raise Failure("there is no folder %s: give one that reproduce_paper or reproduce_efficient wrote" % folder)
+    names = tables(options.committed, options.again)
     if not names:
         raise Failure("%s has no table of seeds that %s has too: make it again with the same command" % (
             options.again, options.committed))
