@@ -190,7 +190,7 @@ class EfficientReproductionTest(ScratchCase):
             folders = stream.read().split()
         self.assertEqual([os.path.basename(folder) for folder in folders], ["seed_%04d" % seed for seed in range(100, 120)])
         for name in ("success_rate", "ablation", "tried", "gravity", "nuisances", "suite_pendulum", "suite_reacher",
-                     "suite_cartpole", "suite_acrobot"):
+                     "suite_reacher_hard", "suite_cartpole", "suite_acrobot"):
             self.assertEqual(read_bytes(self.out, name + ".png")[:4], b"\x89PNG", name)
         for folder in ("", "gravity"):
             self.assertEqual(read_yaml(self.out, folder, "config.yaml")["version"], "made up")
@@ -199,8 +199,9 @@ class EfficientReproductionTest(ScratchCase):
         self.assertEqual({name: step["seeds_run"] for name, step in machine["steps"].items()}, {
             "efficient": 25, "ablation_preset": 4, "ablation_residual": 4, "ablation_widths": 4, "tried_starts": 4, "gravity": 20,
             "gravity_oracle": 20, "gravity_pilco_state": 4, "nuisance_noise": 20, "nuisance_thin_rod": 20, "task_two_link": 20,
-            "task_suite_pendulum": 20, "task_suite_reacher": 20, "task_suite_pendulum_scene_camera": 10,
-            "task_suite_pendulum_scene_colours": 10, "task_suite_cartpole": 20, "task_suite_acrobot": 20})
+            "task_suite_pendulum": 20, "task_suite_reacher": 20, "task_suite_reacher_hard": 20,
+            "task_suite_pendulum_scene_camera": 10, "task_suite_pendulum_scene_colours": 10, "task_suite_cartpole": 20,
+            "task_suite_acrobot": 20})
         self.assertRegex(output, r"(?m)^no .*nuisances, 200 to 500 frames.*0.000")
         self.assertRegex(output, r"(?m)^yes .*suite_pendulum with a mean return of 700: >= 16 of 20; here 20 of 20")
         self.assertRegex(output, r"(?m)^yes .*suite_pendulum_scene_camera with a mean return of 700: >= 5 of 10; here 10 of 10")

@@ -30,6 +30,7 @@ Task = collections.namedtuple("Task", "plant nuisance num_trials num_seeds suite
 TASKS = {"two_link": Task("two_link", "", 19, FEW_SEEDS, None),
          "suite_pendulum": Task("suite_pendulum", "", 9, FEW_SEEDS, PENDULUM_SWINGUP),
          "suite_reacher": Task("suite_reacher", "", 9, FEW_SEEDS, SuiteTask("reacher_easy", 0.02, 800.0, 16)),
+         "suite_reacher_hard": Task("suite_reacher_hard", "", 9, FEW_SEEDS, SuiteTask("reacher_hard", 0.02, 800.0, 16)),
          "suite_cartpole": Task("suite_cartpole", "", 18, FEW_SEEDS, SuiteTask("cartpole_swingup", 0.01, 700.0, 10)),
          "suite_acrobot": Task("suite_acrobot", "", 18, FEW_SEEDS, SuiteTask("acrobot_swingup", 0.01, 300.0, 10))}
 for nuisance in ("scene_camera", "scene_colours"):
