@@ -53,8 +53,8 @@ CHEAPER = [
 
 # Commands that do not end: what runs, and when the next one may come.
 STAYS = {"roscore &": ("roscore -p ${ROS_MASTER_URI##*:}", "rosparam get /rosversion"),
-         "rosrun ddm_sim sim_node": ("rosrun ddm_sim sim_node", "rosservice type /reset"),
-         "rosrun ddm_mpc mpc_node": ("rosrun ddm_mpc mpc_node", "rosservice type /mpc_node/mpc/set_parameters")}
+         "rosrun ddm_sim sim_node &": ("rosrun ddm_sim sim_node", "rosservice type /reset"),
+         "rosrun ddm_mpc mpc_node &": ("rosrun ddm_mpc mpc_node", "rosservice type /mpc_node/mpc/set_parameters")}
 
 # roslaunch returns 0 whatever happened: its main node must have ended well, and said so.
 PREAMBLE = """set -e

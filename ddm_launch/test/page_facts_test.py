@@ -26,7 +26,7 @@ ACTION_TOPICS = ("goal", "cancel", "status", "feedback", "result")
 PARAMETERS = [("Robot", ["robot"], ["ddm_sim/config/robot.yaml"]),
               ("Plant and camera", ["plant", "camera", "sim", "show"],
                ["ddm_sim/config/moving_tile.yaml", "ddm_sim/config/pendulum.yaml", "ddm_sim/config/sim.yaml"]),
-              ("Turned while it runs", [], ["ddm_mpc/config/mpc.yaml"])]
+              ("Changed during a run", [], ["ddm_mpc/config/mpc.yaml"])]
 
 
 def documented(node):
