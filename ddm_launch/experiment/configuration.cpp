@@ -4,12 +4,23 @@
 
 #include <ddm_model/per_motor.h>
 #include <ddm_model/schedule.h>
+#include <ddm_mpc/time_to_goal.h>
 #include <ddm_sim/plant_factory.h>
 
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 namespace ddm {
+
+std::vector<std::string> torqueNames(const Configuration& configuration) {
+  if (!configuration.robot) return configuration.plant_info.torque_names;
+  const int num_motors = configuration.robot->numMotors();
+  if (num_motors == 1) return {"torque_nm"};
+  std::vector<std::string> names;
+  for (int i = 1; i <= num_motors; ++i) names.push_back("torque_" + std::to_string(i) + "_nm");
+  return names;
+}
 
 Configuration readEachBlock(ParamReader* reader) {
   Configuration all;
@@ -48,6 +59,10 @@ void requireConsistent(const Configuration& all) {
       torques);
   require(within(all.mpc.max_torque, model.max_torque),
           "mpc/max_torque must be at most model/max_torque, which scales what f sees", torques);
+  require(all.mpc.cost != "time" || static_cast<int>(limits.size()) <= TimeToGoal::kMaxMotors,
+          "mpc/cost must be distance with more than " + std::to_string(TimeToGoal::kMaxMotors) +
+              " motors, as time compares 3^motors sets of torques",
+          "time with the " + std::to_string(limits.size()) + " of " + owner + "/max_torque");
   require(all.mpc.time_budget <= (all.robot ? all.robot->dt : all.plant_info.dt),
           "mpc/time_budget must be at most " + owner + "/dt, when the next image comes",
           all.mpc.time_budget);

@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "experiment_options.h"
 
@@ -33,6 +34,10 @@ struct Configuration {
   std::optional<RobotOptions> robot;  ///< empty: a simulated plant
   YAML::Node method_blocks;           ///< those that experiment/method alone reads, by name
 };
+
+/// Names of the torques of a trial, with units, one for each motor: those of the robot where there
+/// is one, whatever the plant is.
+std::vector<std::string> torqueNames(const Configuration& configuration);
 
 /// Reads all blocks and checks each.
 /// @throws std::invalid_argument with all problems, one per line

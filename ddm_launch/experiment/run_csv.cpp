@@ -38,6 +38,14 @@ Eigen::VectorXd numbersOf(const std::vector<std::string>& cells, std::size_t beg
 std::string formatTorquesCsv(const TorqueRows& rows, const std::vector<std::string>& names) {
   std::string text = torquesHeader(names);
   for (std::size_t step = 0; step < rows.torques.size(); ++step) {
+    const auto size = static_cast<std::size_t>(rows.torques[step].size());
+    if (size != names.size()) {
+      throw std::invalid_argument("torques.csv: step " + std::to_string(step) + " has " +
+                                  std::to_string(size) + " torque(s), the header " +
+                                  std::to_string(names.size()) + " (" + csvCell(names) +
+                                  "): the plant or robot of the configuration is not the one that "
+                                  "ran");
+    }
     text += csvLine(step, rows.torques[step], bool(rows.exploratory[step]));
   }
   return text;

@@ -16,6 +16,7 @@ struct TorqueRows {
 
 /// Header and one row per step.
 /// @param names  of the torques
+/// @throws std::invalid_argument if a row has another number of torques
 std::string formatTorquesCsv(const TorqueRows& rows, const std::vector<std::string>& names);
 
 /// The inverse.

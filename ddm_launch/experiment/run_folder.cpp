@@ -104,13 +104,12 @@ void RunFolder::writeTraining(int trial, const TrainingOutcome& outcome) {
 }
 
 void RunFolder::writeRun(const RunId& run, const TrialOutcome& outcome) {
-  const PlantInfo& plant = configuration_.plant_info;
   const std::string folder = runName(run);
   write(folder + "/torques.csv",
-        formatTorquesCsv({outcome.torques, outcome.exploratory}, plant.torque_names));
+        formatTorquesCsv({outcome.torques, outcome.exploratory}, torqueNames(configuration_)));
   if (!outcome.states.empty()) {
-    write(folder + "/trajectory.csv",
-          formatTrajectoryCsv(outcome.times, outcome.states, plant.state_names));
+    write(folder + "/trajectory.csv", formatTrajectoryCsv(outcome.times, outcome.states,
+                                                          configuration_.plant_info.state_names));
   } else if (!outcome.goal_distances.empty()) {  // what a run without ground truth is judged by
     std::string text = csvLine("step", "goal_distance");
     for (size_t step = 0; step < outcome.goal_distances.size(); ++step) {

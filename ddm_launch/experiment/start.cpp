@@ -37,7 +37,7 @@ void requireFits(const std::string& path, const Configuration& configuration, co
   const Picture picture = robot ? Picture{size, size, 1, {}, {}} : plant.render(plant.state());
   const std::string camera = std::to_string(picture.width) + "x" + std::to_string(picture.height) +
                              (picture.channels == 1 ? " mono8" : " rgb8");
-  const int torque_dim = robot ? configuration.robot->numMotors() : plant.torqueDim();
+  const auto torque_dim = static_cast<int>(torqueNames(configuration).size());
   const double dt = robot ? configuration.robot->dt : plant.info().dt;
   const BagContent bag = readBag(path, size, configuration.model.data_set);
   const auto require = [&](bool ok, const std::string& what, const auto& has, const auto& wants) {
@@ -71,8 +71,12 @@ void requireModelFits(const std::shared_ptr<const Ddm>& model, const std::string
   };
   requireEqual("images of size", model->imageSize(), "image/size is",
                configuration.model.image.size, "set image/size to the model's");
-  requireEqual("a number of torques of", model->torqueDim(), "the plant",
-               configuration.plant_info.torqueDim(), "choose the plant that it was trained on");
+  const bool robot = configuration.robot.has_value();
+  requireEqual(
+      "a number of torques of", model->torqueDim(), robot ? "the robot" : "the plant",
+      static_cast<int>(torqueNames(configuration).size()),
+      robot ? "give robot/max_torque a number for each motor, or choose a model of this robot"
+            : "choose the plant that it was trained on");
   try {
     MpcPolicy(model, configuration.mpc);
   } catch (const std::invalid_argument& e) {

@@ -15,7 +15,7 @@ namespace ddm {
 std::shared_ptr<const Ddm> readModel(const std::string& path);
 
 /// @param source  file of the model, for messages
-/// @throws std::invalid_argument if model, configuration and plant do not fit together
+/// @throws std::invalid_argument if model, configuration and plant or robot do not fit together
 void requireModelFits(const std::shared_ptr<const Ddm>& model, const std::string& source,
                       const Configuration& configuration);
 

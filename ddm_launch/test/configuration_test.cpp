@@ -262,6 +262,9 @@ TEST(Configuration, WhatContradictsIsRefused) {
        {"mpc/max_torque", "plant/max_torque", "got 6.5"}},
       {"mpc: {max_torque: 6.0}\nmodel: {max_torque: 5.0}",
        {"mpc/max_torque", "model/max_torque", "got 6"}},
+      {"mpc: {cost: time}\nrobot: {max_torque: [6, 6, 6, 6, 6, 6]}",
+       {"mpc/cost must be distance", "more than 5 motors",
+        "got time with the 6 of robot/max_torque"}},
       {"mpc: {time_budget: 0.3}", {"mpc/time_budget", "plant/dt", "got 0.3"}},
       {"mpc: {time_budget: 0.15}\nrobot: {dt: 0.1}", {"mpc/time_budget", "robot/dt", "got 0.15"}},
       {"trial: {num_steps: 60}\nevaluation: {settled_steps_strict: 61}",
@@ -315,6 +318,8 @@ TEST(Configuration, WhatJustFitsIsAccepted) {
   EXPECT_NO_THROW(readText("trial: {num_steps: 51}\nevaluation: {settled_steps_strict: 51}\n"));
   EXPECT_NO_THROW(readText("trial: {num_steps: 30}\nmodel: {pca_dim: 10, order: 29}\n"));
   EXPECT_NO_THROW(readText("mpc: {time_budget: 0.2}\n"));
+  EXPECT_NO_THROW(readText("mpc: {cost: time}\nrobot: {max_torque: [6, 6, 6, 6, 6]}\n"));
+  EXPECT_NO_THROW(readText("robot: {max_torque: [6, 6, 6, 6, 6, 6]}\n"));  // cost: distance
 }
 
 TEST(Configuration, AllContradictionsAreReportedAtOnce) {

@@ -25,6 +25,14 @@ TEST(TorquesCsv, TorquesAreReadBackDigitByDigit) {
   EXPECT_EQ(read.exploratory, rows.exploratory);
 }
 
+TEST(TorquesCsv, RowsThatDoNotFitTheHeaderAreNotWritten) {
+  TorqueRows rows;
+  rows.torques = {Eigen::Vector2d(1.0, 2.0), Eigen::VectorXd::Zero(1)};
+  rows.exploratory = {false, false};
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { formatTorquesCsv(rows, kTorqueNames); },
+                                                  {"step 1 has 1 ", " 2 (dx_px,dy_px)"}));
+}
+
 TEST(TorquesCsv, WhatIsDamagedIsRefusedWithItsLine) {
   const std::string header = formatTorquesCsv({}, kTorqueNames);
   const std::string line = "torques.csv, line ";

@@ -8,6 +8,8 @@
 #include <ddm_msgs/testing/temp_folder.h>
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include "toy_run.h"
 
 namespace ddm {
@@ -33,6 +35,20 @@ class StartTest : public ::testing::Test {
     }
     writer.close();
     return path;
+  }
+
+  /// A model of the configuration that was never trained.
+  std::shared_ptr<const Ddm> untrainedModel(int torque_dim) const {
+    const ModelOptions& options = configuration_.model.model;
+    const int image_size = configuration_.model.image.size;
+    Pca pca;
+    pca.mean = Eigen::VectorXf::Zero(image_size * image_size);
+    pca.basis = Eigen::MatrixXf::Identity(image_size * image_size, options.pca_dim);
+    pca.variance = Eigen::VectorXd::Ones(options.pca_dim);
+    const Eigen::VectorXd theta =
+        Eigen::VectorXd::Zero(Networks<double>(options, torque_dim).numParams());
+    return std::make_shared<const Ddm>(options, image_size, torque_dim, pca, theta, Grey(),
+                                       ModelInfo());
   }
 
   testing::TempFolder scratch_;
@@ -69,6 +85,15 @@ TEST_F(StartTest, WhereARobotActsBagsMustFitItAndNotThePlant) {
   configuration_.start.bags = {bag(51)};
   EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { prepareStart(&configuration_); },
                                                   {"51.bag", ": 51x51 mono8 ", ", 20x20 mono8 "}));
+}
+
+TEST_F(StartTest, WhereARobotActsAModelMustHaveItsMotorsAndNotThoseOfThePlant) {
+  configuration_.robot = RobotOptions();
+  configuration_.robot->max_torque = {6.0, 6.0};
+  EXPECT_NO_THROW(requireModelFits(untrainedModel(2), "two.ddm", configuration_));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [this] { requireModelFits(untrainedModel(1), "one.ddm", configuration_); },
+      {"one.ddm", "torques of 1", "robot 2", "robot/max_torque"}));
 }
 
 }  // namespace

@@ -28,9 +28,10 @@ void DdmPlanCost::setHorizon(int horizon) {
 }
 
 void DdmPlanCost::setControlWeight(double control_weight) {
-  price_.setConstant(f_.torqueDim(), control_weight);
+  control_weight_.setConstant(f_.torqueDim(), control_weight);
   if (!time_to_goal_) return;
-  price_ /= 2.0 * TimeToGoal::kWidth * TimeToGoal::kWidth * f_.maxTorque().array().square();
+  control_weight_ /=
+      2.0 * TimeToGoal::kWidth * TimeToGoal::kWidth * f_.maxTorque().array().square();
 }
 
 void DdmPlanCost::setGoal(const Eigen::VectorXd& goal_feature) {
@@ -74,8 +75,8 @@ Eigen::VectorXd DdmPlanCost::featureAfter(int num_steps) const {
 double DdmPlanCost::stepCost(int step, const Eigen::Ref<const Eigen::VectorXd>& u,
                              Eigen::VectorXd* d_z, Eigen::VectorXd* d_u) const {
   const auto z = roll_out_.predicted(step);
-  const double effort = (price_ * u.array().square()).sum();
-  if (d_u != nullptr) *d_u = 2.0 * price_ * u.array();
+  const double effort = (control_weight_ * u.array().square()).sum();
+  if (d_u != nullptr) *d_u = 2.0 * control_weight_ * u.array();
   if (!time_to_goal_) {  // eq. (9)
     if (d_z != nullptr) *d_z = 2.0 * (z - goal_feature_);
     return (z - goal_feature_).squaredNorm() + effort;

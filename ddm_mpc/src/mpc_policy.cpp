@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 namespace ddm {
 namespace {
@@ -23,6 +24,12 @@ std::shared_ptr<const Ddm> usable(std::shared_ptr<const Ddm> model, const MpcOpt
 
 std::optional<TimeToGoal> timeToGoal(const Ddm& model, const MpcOptions& options) {
   if (options.cost != "time") return std::nullopt;
+  if (model.torqueDim() > TimeToGoal::kMaxMotors) {
+    throw std::invalid_argument("mpc/cost time needs a model with at most " +
+                                std::to_string(TimeToGoal::kMaxMotors) +
+                                " motors, as it compares 3^motors sets of torques, got " +
+                                std::to_string(model.torqueDim()) + ": set mpc/cost to distance");
+  }
   if (model.info().landmarks.cols() < 2) {
     throw std::invalid_argument(
         "mpc/cost time needs a model with landmarks, and this one, of an older version, has none: "

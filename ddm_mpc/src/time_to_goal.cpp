@@ -75,8 +75,10 @@ std::vector<Eigen::MatrixXd> predictions(const Ddm& model, const Eigen::MatrixXd
 
 }  // namespace
 
-TimeToGoal::TimeToGoal(const Ddm& model, const Eigen::VectorXd& max_torque)
-    : torques_(combinations(max_torque)) {
+TimeToGoal::TimeToGoal(const Ddm& model, const Eigen::VectorXd& max_torque) {
+  eigen_assert(model.info().landmarks.cols() >= 2 && max_torque.size() == model.torqueDim() &&
+               max_torque.size() <= kMaxMotors);
+  torques_ = combinations(max_torque);
   const Eigen::MatrixXd X = model.info().landmarks.cast<double>();
   const Eigen::Index dim = model.featureDim(), M = X.cols();
   const Eigen::MatrixXd Z = X.topRows(dim);

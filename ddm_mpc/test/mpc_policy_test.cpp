@@ -76,7 +76,7 @@ TEST(MpcPolicy, GivesTheSameTorquesWhenATrialIsRunAgain) {
   EXPECT_EQ(torquesOfATrial(&policy, id), first) << "startTrial() must forget the trial before";
 }
 
-TEST(MpcPolicy, TakesAnotherHorizonAndPriceOfTorqueInTheMiddleOfATrial) {
+TEST(MpcPolicy, TakesAnotherHorizonAndWeightOfTorqueInTheMiddleOfATrial) {
   RandomModelOptions random;
   random.model.order = 3;
   const auto model = sharedModel(random);
@@ -120,6 +120,28 @@ TEST(MpcPolicy, PlansByTimeOnlyWithAModelThatHasLandmarksAndNamesTheRemedies) {
   EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
       [&options] { MpcPolicy policy(sharedModel(), options); },
       {"mpc/cost time", "landmarks", "train it again", "distance"}));
+}
+
+/// A model with some landmarks.
+std::shared_ptr<const Ddm> modelWithMotors(int torque_dim) {
+  RandomModelOptions options;
+  options.torque_dim = torque_dim;
+  const Ddm random = randomModel(options);
+  ModelInfo info;  // z_t, z_{t-1}, u_{t-1} of each landmark
+  info.landmarks = testing::randomMatrix(2 + 2 + torque_dim, 4, 7).cast<float>();
+  return std::make_shared<const Ddm>(random.options(), random.imageSize(), torque_dim, random.pca(),
+                                     random.theta(), random.goal(), info);
+}
+
+TEST(MpcPolicy, PlansByTimeForAtMostFiveMotorsAndNamesTheRemedy) {
+  MpcOptions options;
+  options.cost = "time";
+  EXPECT_NO_THROW(MpcPolicy(modelWithMotors(5), options));
+  EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
+      [&options] { MpcPolicy policy(modelWithMotors(6), options); },
+      {"mpc/cost time", "at most 5 motors", "got 6", "set mpc/cost to distance"}));
+  options.cost = "distance";
+  EXPECT_NO_THROW(MpcPolicy(modelWithMotors(6), options));
 }
 
 TEST(MpcPolicy, PlansFromTheEncodedImageToTheGoalOfTheModel) {

@@ -178,7 +178,7 @@ TEST_F(PlansWithTimeToGoal, TheGradientMatchesFiniteDifferencesFarFromTheGoalAnd
   EXPECT_TRUE(testing::gradientMatches(f, u, 1e-5));
 }
 
-TEST(PlanWithTimeToGoal, PricesEachTorqueAtTheGoalByItsShareOfTheLargest) {
+TEST(PlanWithTimeToGoal, WeighsEachTorqueAtTheGoalByItsShareOfTheLargest) {
   const Eigen::Vector2d max_torque(2.0, 0.5);
   const Ddm model = pushedModel(horseshoe(), {2.0, 0.5});
   Eigen::MatrixXd U(2, 1);
@@ -195,9 +195,9 @@ TEST(PlanWithTimeToGoal, PricesEachTorqueAtTheGoalByItsShareOfTheLargest) {
     return whole - time.value(cost.predictedFeatures().col(1), z, nullptr, nullptr);
   };
   constexpr double kWidth = 0.25;
-  const double price = 0.3 * (0.25 + 1.0) / (2.0 * kWidth * kWidth);
+  const double effort = 0.3 * (0.25 + 1.0) / (2.0 * kWidth * kWidth);
   EXPECT_LT(costOfStep(0.0, 0.1), 0.5) << "at the goal";
-  EXPECT_NEAR(1.0 - costOfStep(0.3, 0.1), (1.0 - costOfStep(0.0, 0.1)) * std::exp(-price), 1e-12);
+  EXPECT_NEAR(1.0 - costOfStep(0.3, 0.1), (1.0 - costOfStep(0.0, 0.1)) * std::exp(-effort), 1e-12);
   EXPECT_NEAR(costOfStep(0.3, 1.0), costOfStep(0.0, 1.0), 1e-3) << "far from it";
 }
 

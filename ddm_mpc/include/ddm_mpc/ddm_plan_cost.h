@@ -33,6 +33,7 @@ class DdmPlanCost : public PlanCost {
   /// @param model           outlives the cost
   /// @param horizon         K, steps
   /// @param control_weight  lambda [(N m)^-2], with a TimeToGoal [-]: of a torque of max_torque
+  /// @throws std::invalid_argument if the horizon is < 1
   DdmPlanCost(const Ddm& model, int horizon, double control_weight,
               std::optional<TimeToGoal> time_to_goal = std::nullopt);
 
@@ -77,7 +78,7 @@ class DdmPlanCost : public PlanCost {
   const PredictionModel<double>& f_;
   const double* theta_p_;
   int horizon_ = 0;
-  Eigen::ArrayXd price_;  // of a squared torque, by motor [(N m)^-2]
+  Eigen::ArrayXd control_weight_;  // of a squared torque, by motor [(N m)^-2]
   std::optional<TimeToGoal> time_to_goal_;
   Eigen::VectorXd goal_feature_;
   Eigen::VectorXd offset_;

@@ -11,7 +11,7 @@ namespace ddm {
 struct MpcOptions {
   int horizon = 15;               ///< K, planned steps [-]
   std::string cost = "distance";  ///< of a step: "distance" to the goal, or "time" to get there
-  double control_weight = 0.01;   ///< lambda, price of torque [(N m)^-2], with cost time [-]
+  double control_weight = 0.01;   ///< lambda, weight of torque [(N m)^-2], with cost time [-]
   double offset_gain = 0.0;       ///< share of a prediction error that corrects later ones [-]
   std::vector<double> max_torque = {6.0};  ///< bound on |u|; one, or one per motor [N m]
   double epsilon = 0.2;                    ///< probability of a uniformly random torque [-]

@@ -29,7 +29,8 @@ namespace ddm {
 /// so that a model that is a little wrong about rest does not keep the plant off its goal.
 class MpcPolicy : public Policy {
  public:
-  /// @throws std::invalid_argument if max_torque exceeds the model's
+  /// @throws std::invalid_argument if max_torque exceeds the model's or is for another number of motors, or the horizon is
+  ///         < 1; with mpc/cost time also if the model has fewer than two landmarks, or more motors than TimeToGoal takes
   MpcPolicy(std::shared_ptr<const Ddm> model, const MpcOptions& options);
 
   /// Other values for the plans to come, also in the middle of a trial.

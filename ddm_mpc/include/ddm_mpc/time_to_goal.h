@@ -33,15 +33,16 @@ class TimeToGoal {
  public:
   static constexpr int kHoldSteps = 4;    ///< m
   static constexpr double kWidth = 0.25;  ///< w
+  static constexpr int kMaxMotors = 5;    ///< 3^5 sets of torques for each of up to 1000 landmarks
 
-  /// @param model       has landmarks; is not needed afterwards
-  /// @param max_torque  of each motor [N m]
+  /// @param model       has at least two landmarks, and at most kMaxMotors motors; is not needed afterwards
+  /// @param max_torque  of each motor [N m]  [torque_dim]
+  /// @pre as above (checked by eigen_assert, i.e. in debug builds only)
   TimeToGoal(const Ddm& model, const Eigen::VectorXd& max_torque);
 
   /// Computes V.
   /// @param z_ref  feature of the goal  [feature_dim]
   void setGoal(const Eigen::VectorXd& z_ref);
-  const Eigen::VectorXd& goal() const { return z_ref_; }
   /// Computes V anew if this changes V_0 and there is a goal.
   void setExploring(bool exploring);
 

@@ -98,6 +98,27 @@ inline MujocoOptions armOptions() {
   return options;
 }
 
+/// The plant of a model file with this text.
+inline std::unique_ptr<MujocoPlant> plantOf(const std::string& text, const MujocoOptions& options,
+                                            const std::string& name = "model.xml") {
+  const ModelFolder folder;
+  return std::make_unique<MujocoPlant>(folder.loadText(text, name), options);
+}
+
+inline std::unique_ptr<MujocoPlant> arm(const MujocoOptions& options = armOptions()) {
+  return plantOf(armText(), options);
+}
+
+/// For the URDF, its motors in another order than its joints.
+inline MujocoOptions urdfOptions() {
+  MujocoOptions options = armOptions();
+  options.motors = {"elbow", "shoulder"};
+  options.max_torque = {2.0, 1.0};
+  options.look.position = {0.0, 0.0, 2.0};
+  options.look.look_at = {0.0, 0.1, 0.0};
+  return options;
+}
+
 /// What `make` says when it refuses; empty if it does not.
 template <class Make>
 std::string refusalOf(const Make& make) {

@@ -1,4 +1,4 @@
-// Tests of plants that a model file describes: motion, motors, starts, goals, and what is refused.
+// Tests of plants that a model file describes: motion, motors, starts and goals.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/mujoco_plant.h"
 
@@ -6,10 +6,8 @@
 
 #include <cmath>
 #include <filesystem>
-#include <functional>
 #include <future>
 #include <memory>
-#include <ostream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -23,31 +21,15 @@
 namespace ddm {
 namespace {
 
+using testing::arm;
 using testing::armOptions;
 using testing::armText;
 using testing::armUrdf;
 using testing::ModelFolder;
+using testing::plantOf;
 using testing::refusalOf;
+using testing::urdfOptions;
 using Names = std::vector<std::string>;
-
-std::unique_ptr<MujocoPlant> plantOf(const std::string& text, const MujocoOptions& options,
-                                     const std::string& name = "model.xml") {
-  const ModelFolder folder;
-  return std::make_unique<MujocoPlant>(folder.loadText(text, name), options);
-}
-
-std::unique_ptr<MujocoPlant> arm(const MujocoOptions& options = armOptions()) {
-  return plantOf(armText(), options);
-}
-
-MujocoOptions urdfOptions() {
-  MujocoOptions options = armOptions();
-  options.motors = {"elbow", "shoulder"};
-  options.max_torque = {2.0, 1.0};
-  options.look.position = {0.0, 0.0, 2.0};
-  options.look.look_at = {0.0, 0.1, 0.0};
-  return options;
-}
 
 TEST(MujocoPlant, HasTheColumnsLimitsAndJointsOfItsFile) {
   const PlantInfo info = arm()->info();
@@ -283,187 +265,6 @@ TEST(MujocoPlant, MovesAndLooksTheSameInEachOfSeveralThreads) {
   std::vector<std::future<std::pair<Eigen::VectorXd, std::vector<std::uint8_t>>>> others;
   for (int i = 0; i < 4; ++i) others.push_back(std::async(std::launch::async, run));
   for (auto& other : others) EXPECT_TRUE(other.get() == alone);
-}
-
-struct Flaw {
-  const char* name;
-  std::function<std::unique_ptr<MujocoPlant>()> make;
-  std::vector<std::string> words;  ///< that the refusal must have
-};
-
-void PrintTo(const Flaw& flaw, std::ostream* out) { *out << flaw.name; }
-
-class MujocoPlantFlawTest : public ::testing::TestWithParam<Flaw> {};
-
-TEST_P(MujocoPlantFlawTest, IsRefusedByName) {
-  const std::string text = refusalOf(GetParam().make);
-  for (const std::string& word : GetParam().words) {
-    EXPECT_NE(text.find(word), std::string::npos) << word << " is not in: " << text;
-  }
-}
-
-/// The arm with one option that is wrong.
-std::function<std::unique_ptr<MujocoPlant>()> armWith(
-    const std::function<void(MujocoOptions*)>& spoil) {
-  return [spoil] {
-    MujocoOptions options = armOptions();
-    spoil(&options);
-    return arm(options);
-  };
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  return text.replace(text.find(from), from.size(), to);
-}
-
-std::vector<Flaw> options() {
-  using O = MujocoOptions;
-  return {
-      {"UnknownMotor",
-       armWith([](O* o) { o->motors = {"elbw"}; }),
-       {"plant/motors", "elbw", "elbow?"}},
-      {"TwoMotorsOfOneJoint",
-       armWith([](O* o) {
-         o->motors = {"elbow", "elbow"};
-       }),
-       {"plant/motors", "elbow"}},
-      {"UnknownErrorJoint",
-       armWith([](O* o) { o->error_joints = {"knee"}; }),
-       {"plant/error_joints", "knee", "shoulder, elbow"}},
-      {"UnknownErrorSite",
-       armWith([](O* o) { o->error_sites = {"top"}; }),
-       {"plant/error_sites", "top", "tip?"}},
-      {"UnknownVisibleSite",
-       armWith([](O* o) { o->visible_sites = {"top"}; }),
-       {"plant/visible_sites", "top", "tip"}},
-      {"UnknownGoalSite",
-       armWith([](O* o) {
-         o->goal_site = "top";
-         o->goal_distance = {0.1, 0.2};
-       }),
-       {"plant/goal_site", "top", "tip"}},
-      {"UnknownCamera", armWith([](O* o) { o->look.camera = "abowe"; }), {"abowe", "above"}},
-      {"UnknownReward",
-       armWith([](O* o) { o->reward = "reacher_esay"; }),
-       {"plant/reward", "reacher_esay", "reacher_easy?"}},
-      {"RewardOfAnotherPlant",
-       armWith([](O* o) { o->reward = "pendulum_swingup"; }),
-       {"plant/reward", "pendulum_swingup", "2 joints"}},
-      {"TimeStepIsNoMultiple",
-       armWith([](O* o) { o->dt = 0.125; }),
-       {"plant/dt", "0.01", "0.125", "nearest"}},
-      {"TimeStepIsShorterThanAFrame",
-       armWith([](O* o) { o->dt = 0.004; }),
-       {"plant/dt", "0.01", "0.004"}},
-      {"EpisodeIsNoMultiple",
-       armWith([](O* o) { o->episode_frames = 1001; }),
-       {"plant/episode_frames", "1001"}},
-      {"LimitBeyondTheMotor",
-       armWith([](O* o) {
-         o->max_torque = {1.0, 0.5};
-       }),
-       {"plant/max_torque", "elbow", "0.4", "0.5"}},
-      {"AnotherNumberOfLimits",
-       armWith([](O* o) {
-         o->max_torque = {0.1, 0.1, 0.1};
-       }),
-       {"plant/max_torque", "2", "3"}},
-      {"AnotherNumberOfStarts",
-       armWith([](O* o) {
-         o->start = {0, 0, 0};
-       }),
-       {"plant/start", "3"}},
-      {"AnotherNumberOfGoals", armWith([](O* o) { o->goal = {0}; }), {"plant/goal", "1"}},
-      {"AnotherNumberOfSpreads",
-       armWith([](O* o) { o->start_uniform = {1}; }),
-       {"plant/start_uniform", "1"}},
-      {"AnotherNumberOfColumns",
-       armWith([](O* o) {
-         o->state_names = {"a", "b"};
-       }),
-       {"plant/state_names", "2"}},
-      {"NoTolerance", armWith([](O* o) { o->tolerance = 0.0; }), {"plant/tolerance"}},
-      {"GearWithoutMotors", armWith([](O* o) { o->gear = {2.0}; }), {"plant/gear"}},
-  };
-}
-
-std::vector<Flaw> files() {
-  const auto fileWith = [](const std::string& from, const std::string& to) {
-    return [=] { return plantOf(replaced(armText(), from, to), armOptions()); };
-  };
-  const auto urdfWith = [](const std::function<void(MujocoOptions*)>& spoil) {
-    return [spoil] {
-      MujocoOptions options = urdfOptions();
-      spoil(&options);
-      return plantOf(armUrdf(), options, "arm.urdf");
-    };
-  };
-  return {
-      {"UrdfWithoutMotors",
-       urdfWith([](MujocoOptions* o) { o->motors.clear(); }),
-       {"plant/motors", "shoulder, elbow"}},
-      {"JointWithoutALimit",
-       urdfWith([](MujocoOptions* o) { o->max_torque.clear(); }),
-       {"plant/max_torque", "shoulder", "effort"}},
-      {"UrdfWithoutACamera",
-       urdfWith([](MujocoOptions* o) {
-         o->look.position.clear();
-         o->look.look_at.clear();
-       }),
-       {"camera"}},
-      {"MotorWithoutALimit",
-       fileWith("gear=\"2\" ctrllimited=\"true\" ctrlrange=\"-0.5 0.5\"", "gear=\"2\""),
-       {"plant/max_torque", "shoulder", "ctrlrange"}},
-      {"PositionServo",
-       fileWith("<motor name=\"first\" joint=\"shoulder\" gear=\"2\"",
-                "<position name=\"first\" joint=\"shoulder\""),
-       {"actuator first", "motor", "plant/motors"}},
-      {"FreeJoint",
-       fileWith("<worldbody>",
-                "<worldbody><body><freejoint name=\"loose\"/><geom size=\"0.1\"/></body>"),
-       {"plant/model", "free joint", "loose"}},
-      {"BallJoint", fileWith("axis=\"0 0 1\" damping=\"0.1\"/>", "type=\"ball\"/>"), {"shoulder"}},
-      {"SlideBesideHinge",
-       fileWith("axis=\"0 0 1\" damping=\"0.1\"/>", "type=\"slide\"/>"),
-       {"plant/error_joints", "plant/error_sites"}},
-  };
-}
-
-std::string flawName(const ::testing::TestParamInfo<Flaw>& info) { return info.param.name; }
-
-INSTANTIATE_TEST_SUITE_P(Options, MujocoPlantFlawTest, ::testing::ValuesIn(options()), flawName);
-INSTANTIATE_TEST_SUITE_P(Files, MujocoPlantFlawTest, ::testing::ValuesIn(files()), flawName);
-
-TEST(MujocoOptions, AreCompletedByLimitsAndDigestAndRefuseThatOfAnotherFile) {
-  const ModelFolder folder;
-  const auto model = folder.loadText(armText());
-  const MujocoOptions options = completed(armOptions(), *model);
-  EXPECT_EQ(options.max_torque, (std::vector<double>{1.0, 0.4}));
-  EXPECT_EQ(options.model_digest, model->digest());
-  EXPECT_EQ(completed(options, *model).model_digest, model->digest());
-  const auto changed = folder.loadText(armText("<!-- stronger -->"));
-  const std::string text = refusalOf([&] { completed(options, *changed); });
-  for (const std::string& word :
-       {std::string("plant/model_digest"), model->digest(), changed->digest(), changed->uri()}) {
-    EXPECT_NE(text.find(word), std::string::npos) << word << " is not in: " << text;
-  }
-}
-
-TEST(MujocoOptions, HaveADigestOfTheBackgroundsPicturesToo) {
-  const ModelFolder folder;
-  const auto model = folder.loadText(armText());
-  MujocoOptions options = armOptions();
-  options.scene.background = 1.0;
-  options.scene.background_pictures = {folder.write("office.png", "a picture")};
-  const MujocoOptions saved = completed(options, *model);
-  EXPECT_NE(saved.model_digest, model->digest());
-  EXPECT_EQ(completed(saved, *model).model_digest, saved.model_digest);
-  folder.write("office.png", "another picture");
-  EXPECT_TRUE(testing::names(refusalOf([&] { completed(saved, *model); }),
-                             {"plant/model_digest", saved.model_digest}));
-  options.scene.background_pictures = {"none.png"};
-  EXPECT_TRUE(testing::names(refusalOf([&] { completed(options, *model); }),
-                             {"plant/background_pictures", "none.png"}));
 }
 
 }  // namespace

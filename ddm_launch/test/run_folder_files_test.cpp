@@ -1,0 +1,194 @@
+// What a run folder writes: files as a whole, nothing over a bag, and a verdict only when there is one.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <boost/filesystem.hpp>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "run_folder.h"
+#include "run_folder_case.h"
+#include "toy_run.h"
+#include "trials_csv.h"
+
+namespace ddm {
+namespace {
+
+namespace fs = boost::filesystem;
+using testing::textOf;
+using testing::throwsNaming;
+using testing::toyRow;
+using testing::writeText;
+
+using RunFolderFilesTest = testing::RunFolderCase;
+
+TEST_F(RunFolderFilesTest, AFinishedTrialWithoutItsBagIsRefused) {
+  finish(2);
+  fs::remove(file("trial_001/trial.bag"));
+  expectRefused({"trial_001/trial.bag", "missing"});
+}
+
+TEST_F(RunFolderFilesTest, BagsOfAnEarlierTryAreKeptUnderOtherNames) {
+  finish(1);
+  RunFolder folder(configuration_);
+  for (const std::string attempt : {"first", "second"}) {
+    std::vector<std::string> kept;
+    const std::string bag = folder.beginRun({1}, &kept);
+    EXPECT_FALSE(fs::exists(bag) || fs::exists(bag + ".active"));
+    EXPECT_EQ(kept.size(), attempt == "first" ? 0u : 2u);
+    writeText(bag, attempt);
+    writeText(bag + ".active", attempt + " active");
+  }
+  folder.beginRun({1});
+  EXPECT_EQ(textOf(file("trial_001/trial.1.bag")), "first");
+  EXPECT_EQ(textOf(file("trial_001/trial.1.bag.active")), "first active");
+  EXPECT_EQ(textOf(file("trial_001/trial.2.bag")), "second");
+  EXPECT_EQ(textOf(file("trial_001/trial.2.bag.active")), "second active");
+  EXPECT_EQ(textOf(file("trial_000/trial.bag")), "a bag");
+}
+
+TEST_F(RunFolderFilesTest, AFolderThatCannotBeMadeOrWrittenIsNamed) {
+  writeText(scratch_.file("plain_file"), "");
+  // Below /proc nobody makes files, not even root.
+  for (const std::string& path : {scratch_.file("plain_file"), scratch_.file("plain_file/run"),
+                                  std::string("/proc/ddm"), std::string("/proc/self")}) {
+    configuration_.experiment.runs = path;
+    EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { RunFolder(configuration_).beginRun({0}); },
+                                                 {"cannot", path}));
+  }
+}
+
+TEST_F(RunFolderFilesTest, FilesAreReplacedAsAWhole) {
+  RunFolder folder(configuration_);
+  folder.finishTrial(toyRow(0));
+  std::ifstream reader(file("trials.csv"));  // begins to read before the next row is written
+  folder.finishTrial(toyRow(1));
+  std::ostringstream seen;
+  seen << reader.rdbuf();
+  EXPECT_EQ(seen.str(), formatTrialsCsv({toyRow(0)}));
+  EXPECT_EQ(textOf(file("trials.csv")), formatTrialsCsv({toyRow(0), toyRow(1)}));
+}
+
+TEST_F(RunFolderFilesTest, NothingButTheFilesOfTheContractIsLeft) {
+  {
+    RunFolder folder(configuration_);
+    testing::ObedientDriver driver;
+    driver.state = Eigen::Vector2d::Zero();
+    TrialRequest request;
+    request.num_steps = 2;
+    const TrialOutcome outcome = driver.runTrial(request, [](double) {});
+    folder.writeRun({0, /*evaluation=*/false}, outcome);
+    TrainingOutcome training;
+    training.files["model.ddm"] = "model";
+    folder.writeTraining(0, training);
+    folder.writeRun({0, /*evaluation=*/true}, outcome);
+    folder.finishTrial(toyRow(0));
+    folder.writeSummary(1.0);
+  }
+  std::vector<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(scratch_.file("run"))) {
+    if (fs::is_regular_file(entry)) {
+      names.push_back(fs::relative(entry.path(), scratch_.file("run")).string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{
+                       ".trials.crc32", "config.yaml", "evaluation_000/torques.csv",
+                       "evaluation_000/trajectory.csv", "summary.yaml", "trial_000/model.ddm",
+                       "trial_000/torques.csv", "trial_000/trajectory.csv", "trials.csv"}));
+}
+
+TEST_F(RunFolderFilesTest, DistancesInFeaturesAreWrittenWhereTheTrueStateIsNotKnown) {
+  RunFolder folder(configuration_);
+  TrialOutcome outcome;
+  outcome.torques = {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Zero(1)};
+  outcome.exploratory = {false, false};
+  outcome.goal_distances = {1.5, 0.1};
+  folder.writeRun({0, /*evaluation=*/true}, outcome);
+  EXPECT_EQ(textOf(file("evaluation_000/goal_distance.csv")), "step,goal_distance\n0,1.5\n1,0.1\n");
+  outcome.states = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+  outcome.times = {0.0, 0.2};
+  folder.writeRun({1, /*evaluation=*/true}, outcome);
+  EXPECT_FALSE(fs::exists(file("evaluation_001/goal_distance.csv")));
+}
+
+TEST_F(RunFolderFilesTest, TorquesAreWrittenWith17Digits) {
+  RunFolder folder(configuration_);
+  TrialOutcome outcome;
+  outcome.torques = {Eigen::VectorXd::Constant(1, 0.1), Eigen::VectorXd::Constant(1, -6.0)};
+  outcome.exploratory = {true, false};
+  folder.writeRun({3, /*evaluation=*/false}, outcome);
+  EXPECT_EQ(textOf(file("trial_003/torques.csv")),
+            "step,torque_nm,exploratory\n0,0.10000000000000001,1\n1,-6,0\n");
+}
+
+TEST_F(RunFolderFilesTest, TorquesOfARobotAreThoseOfItsMotorsWhateverThePlantIs) {
+  configuration_.robot = RobotOptions();
+  TrialOutcome outcome;
+  outcome.exploratory = {true};
+  const auto written = [&](const std::string& name) {
+    configuration_.experiment.runs = file(name);
+    RunFolder(configuration_).writeRun({0, /*evaluation=*/false}, outcome);
+    return textOf(file(name + "/trial_000/torques.csv"));
+  };
+  outcome.torques = {Eigen::Vector2d(0.5, -2.0)};
+  configuration_.robot->max_torque = {6.0, 4.0};
+  EXPECT_EQ(written("two_motors"), "step,torque_1_nm,torque_2_nm,exploratory\n0,0.5,-2,1\n");
+  outcome.torques = {Eigen::VectorXd::Constant(1, 0.5)};
+  configuration_.robot->max_torque = {6.0};
+  testing::usePlant(testing::plantOf("{type: moving_tile}"), &configuration_);
+  EXPECT_EQ(written("one_motor"), "step,torque_nm,exploratory\n0,0.5,1\n");
+}
+
+TEST_F(RunFolderFilesTest, TheVerdictOfAnEarlierCallIsRemovedBeforeTheNextTrial) {
+  {
+    RunFolder folder(configuration_);
+    folder.finishTrial(toyRow(0));
+    writeText(folder.beginRun({0}), "a bag");
+    folder.writeSummary(1.0);
+  }
+  RunFolder folder(configuration_);
+  ASSERT_TRUE(folder.isFinished());
+  folder.beginRun({1});
+  EXPECT_FALSE(fs::exists(file("summary.yaml")));
+  EXPECT_FALSE(folder.isFinished());
+}
+
+TEST_F(RunFolderFilesTest, ASummaryThatMakesNoSenseIsNoVerdict) {
+  finish(1);
+  for (const std::string text : {"", "[", "7\n", "[1]\n", "finished: false\n", "finished: [1]\n"}) {
+    writeText(file("summary.yaml"), text);
+    EXPECT_FALSE(RunFolder(configuration_).isFinished()) << text;
+  }
+}
+
+TEST_F(RunFolderFilesTest, TheSummaryHoldsTheVerdict) {
+  RunFolder folder(configuration_);
+  for (int trial = 0; trial < 3; ++trial) folder.finishTrial(toyRow(trial));
+  folder.writeSummary(2.5);
+  const YAML::Node summary = YAML::LoadFile(file("summary.yaml"));
+  EXPECT_TRUE(summary["finished"].as<bool>());
+  EXPECT_EQ(summary["trials"].as<int>(), 2);
+  EXPECT_EQ(summary["seed"].as<int>(), 7);
+  EXPECT_EQ(summary["success"].as<std::vector<int>>(), (std::vector<int>{0, 1, 0}));
+  EXPECT_DOUBLE_EQ(summary["mean_success"].as<double>(), 1.0 / 3.0);
+  EXPECT_EQ(summary["wall_s"].as<double>(), 2.5);
+}
+
+TEST_F(RunFolderFilesTest, TheSummaryClaimsNoSuccessThatIsNotKnown) {
+  RunFolder folder(configuration_);
+  TrialRow row = toyRow(0);
+  row.evaluation = Evaluation();
+  folder.finishTrial(row);
+  folder.writeSummary(1.0);
+  const YAML::Node summary = YAML::LoadFile(file("summary.yaml"));
+  EXPECT_TRUE(summary["finished"].as<bool>());
+  EXPECT_FALSE(summary["success"].IsDefined());
+  EXPECT_FALSE(summary["mean_success"].IsDefined());
+}
+
+}  // namespace
+}  // namespace ddm
