@@ -36,7 +36,7 @@ struct ExperimentOptions {
     OptionChecks checks("experiment");
     checks.requireAtLeast("seed", seed, 0);
     checks.requireWithin("trials", trials, 0, 999);
-    checks.requirePositive("timeout", timeout);
+    checks.requireTimeLimit("timeout", timeout);
     return checks.problems();
   }
 };

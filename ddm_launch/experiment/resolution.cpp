@@ -4,6 +4,7 @@
 
 #include <ddm_params/config_blocks.h>
 #include <ddm_plant_plugin/plant_config.h>
+#include <ddm_robot/robot_options.h>
 #include <ros/package.h>
 
 #include <algorithm>
@@ -169,7 +170,8 @@ void boundPlanning(const Given& given, YAML::Node* blocks) {
   const bool robot = (*blocks)["robot"].IsDefined();
   const bool lockstep = valueAt<bool>(*blocks, "sim", "lockstep").value_or(true);
   if (given("mpc", "time_budget") || (!robot && lockstep)) return;
-  const auto dt = valueAt<double>(*blocks, robot ? "robot" : "plant", "dt");
+  auto dt = valueAt<double>(*blocks, robot ? "robot" : "plant", "dt");
+  if (robot && !dt) dt = RobotOptions().dt;  // robot.yaml is read where robot_node runs
   if (dt) follow("mpc", "time_budget", valueToYaml(0.5 * *dt), blocks);
 }
 

@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -126,6 +128,22 @@ void allowAccess(const std::vector<std::string>& paths, YAML::Node* blocks) {
   (*blocks)["access"]["bags"] = bags;
 }
 
+/// mpc_node ends a trial in which no image comes for controller/timeout, and a robot's images are robot/dt apart. Only
+/// nodes read that block, and no saved configuration has it: the check is here, not in requireConsistent().
+/// @throws std::invalid_argument if the timeout is shorter than two time steps
+void requirePatience(const RobotOptions& robot, const YAML::Node& blocks) {
+  double timeout = 0.0;
+  if (!hasKey(blocks, "controller", "timeout") ||
+      !parseValue(blocks["controller"]["timeout"], &timeout)) {
+    return;  // mpc_node refuses what is not a number
+  }
+  if (timeout >= 2.0 * robot.dt) return;
+  std::ostringstream problem;
+  problem << "controller/timeout must be at least 2 robot/dt, " << 2.0 * robot.dt << " s, got "
+          << timeout << ": raise it, or the next image would count as missing";
+  throw std::invalid_argument(problem.str());
+}
+
 void run(const Request& request) {
   ResolvedConfiguration resolved = resolve(request.arguments);
   ParamReader reader = resolved.reader();
@@ -133,6 +151,7 @@ void run(const Request& request) {
   const YAML::Node names = request.arguments.values["experiment"];
   const bool experiment = names.IsDefined() && names["runs"].IsDefined();
   if (experiment) requireConsistent(all);
+  if (all.robot) requirePatience(*all.robot, resolved.blocks);
 
   YAML::Node& blocks = resolved.blocks;
   makeAbsolute(blocks["experiment"]["runs"]);

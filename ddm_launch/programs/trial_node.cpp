@@ -38,7 +38,7 @@ struct RunOptions {
     checks.require(epsilon >= 0.0 && epsilon <= 1.0, "epsilon", "lie in [0, 1]", epsilon);
     checks.require(num_steps >= 1, "num_steps", "be >= 1", num_steps);
     checks.require(seed >= 0, "seed", "be >= 0", seed);
-    checks.requirePositive("timeout", timeout);
+    checks.requireTimeLimit("timeout", timeout);
     return checks.problems();
   }
 };

@@ -113,6 +113,8 @@ TEST_F(Resolution, PlansTakeHalfATimeStepInRealTimeUnlessAnythingSaysOtherwise) 
   EXPECT_EQ(read().mpc.time_budget, 0.1);
   given_.configs = {file("robot.yaml", "robot: {dt: 0.05}\n")};
   EXPECT_EQ(read().mpc.time_budget, 0.025);
+  given_.configs = {file("limits.yaml", "robot: {max_torque: 1.0}\n")};
+  EXPECT_EQ(read().mpc.time_budget, 0.5 * RobotOptions().dt);
   given_.configs.push_back(file("none.yaml", "mpc: {time_budget: 0}\n"));
   EXPECT_EQ(read().mpc.time_budget, 0.0);
   given_.set("mpc/time_budget", 0.04);

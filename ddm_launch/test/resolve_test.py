@@ -82,6 +82,12 @@ class ResolveTest(ScratchCase):
         self.assertEqual(self.resolve("--runs", "/runs", "--config", "access.yaml")["access"]["bags"],
                          ["/runs", "/elsewhere"])
 
+    def test_a_controller_waits_at_least_two_time_steps_of_its_robot(self):
+        slow = ["--set", "robot/dt=3"]
+        self.assertRefused(["controller/timeout must be at least 2 robot/dt", "6 s", "got 5"], *slow, code=1)
+        self.assertEqual(float(self.resolve(*slow, "--set", "controller/timeout=6")["controller"]["timeout"]), 6.0)
+        self.assertEqual(float(self.resolve("--set", "robot/dt=2.5")["controller"]["timeout"]), 5.0)
+
     def test_a_crop_is_four_numbers(self):
         robot = self.resolve("--crop", "1,2,30,40")["robot"]
         self.assertEqual([robot["crop_" + key] for key in ("x", "y", "width", "height")], [1, 2, 30, 40])

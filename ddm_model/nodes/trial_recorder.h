@@ -29,7 +29,7 @@ struct RecorderOptions {
   }
   std::vector<std::string> problems() const {
     OptionChecks recorder("recorder");
-    recorder.requirePositive("timeout", timeout);
+    recorder.requireTimeLimit("timeout", timeout);
     return recorder.problems();
   }
 };

@@ -22,7 +22,7 @@ struct ControllerOptions {
   std::vector<std::string> problems() const {
     OptionChecks controller("controller");
     controller.requireWithin("torque_dim", torque_dim, 1, 1000);
-    controller.requirePositive("timeout", timeout);
+    controller.requireTimeLimit("timeout", timeout);
     return controller.problems();
   }
 };

@@ -22,6 +22,7 @@ namespace ddm {
 namespace {
 
 constexpr int kQueue = 10;
+const ros::WallDuration kPlanLogPeriod(5.0);
 const ros::WallDuration kTick(0.1);  // of feedback too: for each frame it would be a load
 
 ros::NodeHandle withQueue(ros::NodeHandle nh, ros::CallbackQueue* queue) {
@@ -113,9 +114,9 @@ void MpcNode::onModel(const ddm_msgs::ModelConstPtr& message) {
         std::make_shared<const Ddm>(deserialiseModel(bytes, "on topic " + model_sub_.getTopic()));
     model_id_ = modelId(bytes);
     health_.takeModel(*message);
-    ROS_INFO("model %s of trial %u received", model_id_.c_str(), message->trial);
+    log_.info("model " + model_id_ + " of trial " + std::to_string(message->trial) + " received");
   } catch (const std::exception& e) {
-    ROS_ERROR_STREAM("model refused: " << e.what());
+    log_.error(std::string("model refused: ") + e.what());
     return;
   }
   beginIfReady(std::unique_lock<std::mutex>(mutex_));
@@ -125,7 +126,7 @@ void MpcNode::onGoalImage(const sensor_msgs::ImageConstPtr& image) {
   try {
     decodeImage(*image, image_size_);
   } catch (const std::exception& e) {
-    ROS_ERROR_STREAM("goal image refused: " << e.what());
+    log_.error(std::string("goal image refused: ") + e.what());
     return;
   }
   std::unique_lock<std::mutex> lock(mutex_);
@@ -148,7 +149,7 @@ void MpcNode::beginIfReady(std::unique_lock<std::mutex> lock) {
     last_progress_ = ros::SteadyTime::now();
   } catch (const std::exception& e) {
     lock.unlock();
-    abort(std::string("trial refused: ") + e.what());
+    abort({std::string("trial refused: ") + e.what(), ""});
     return;
   }
   lock.unlock();
@@ -179,15 +180,16 @@ void MpcNode::onImage(const sensor_msgs::ImageConstPtr& image) {
 
 void MpcNode::answer(const sensor_msgs::Image& image) {
   const auto arrival = std::chrono::steady_clock::now();
-  const std::shared_ptr<TrialRun> trial = trialToAnswer();
+  Changes changes;
+  const std::shared_ptr<TrialRun> trial = trialToAnswer(&changes);
   if (trial == nullptr) return;
-  std::string problem;
-  const std::optional<Decision> decision = decide(trial.get(), image, arrival, &problem);
+  Trouble trouble;
+  const std::optional<Decision> decision = decide(trial.get(), changes, image, arrival, &trouble);
 
   const std::lock_guard<std::mutex> lock(mutex_);
   deciding_since_.reset();
   if (trial->ended()) return;  // meanwhile: its motors have their zero
-  if (!problem.empty()) {
+  if (!trouble.text.empty()) {
     publishTorque(image.header.stamp, Eigen::VectorXd::Zero(controller_.torque_dim), false);
   } else if (decision) {
     last_progress_ = ros::SteadyTime::now();
@@ -199,34 +201,41 @@ void MpcNode::answer(const sensor_msgs::Image& image) {
     return;
   }
   trial->end();
-  finished_ = problem;
+  finished_ = trouble;
   ros::getGlobalCallbackQueue()->addCallback(finish_);
 }
 
-/// The trial under way, with the options that somebody has turned meanwhile; null if there is none.
-std::shared_ptr<TrialRun> MpcNode::trialToAnswer() {
+/// The trial under way; null if there is none.
+/// @param changes  out: what the trial does not know yet
+std::shared_ptr<TrialRun> MpcNode::trialToAnswer(Changes* changes) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (trial_ == nullptr || trial_->ended()) return nullptr;
-  if (turned_) trial_->turn(mpc_, turned_epsilon_);
+  if (turned_) changes->mpc = mpc_;
   turned_ = false;
-  if (goal_changed_) trial_->setGoal(*goal_image_);
+  changes->epsilon = turned_epsilon_;
+  if (goal_changed_) changes->goal_image = goal_image_;
   goal_changed_ = false;
   deciding_since_ = ros::SteadyTime::now();
   return trial_;
 }
 
-/// @param problem  out: why the image cannot be answered
-std::optional<Decision> MpcNode::decide(TrialRun* trial, const sensor_msgs::Image& image,
+/// Without the lock: another goal or epsilon may take as long as a plan.
+/// @param trouble  out: why the image cannot be answered
+std::optional<Decision> MpcNode::decide(TrialRun* trial, const Changes& changes,
+                                        const sensor_msgs::Image& image,
                                         std::chrono::steady_clock::time_point arrival,
-                                        std::string* problem) const {
+                                        Trouble* trouble) const {
+  if (image_sub_.getNumPublishers() > 1) {
+    trouble->text = "image refused: only one camera may be looked through: stop the others";
+    trouble->topic = image_sub_.getTopic();
+    return std::nullopt;
+  }
   try {
-    if (image_sub_.getNumPublishers() > 1) {
-      throw std::runtime_error("only one camera may be looked through: stop the others, " +
-                               describePublishers(image_sub_.getTopic()));
-    }
+    if (changes.mpc) trial->turn(*changes.mpc, changes.epsilon);
+    if (changes.goal_image != nullptr) trial->setGoal(*changes.goal_image);
     return trial->decide(image, arrival);
   } catch (const std::exception& e) {
-    *problem = std::string("image refused: ") + e.what();
+    trouble->text = std::string("image refused: ") + e.what();
     return std::nullopt;
   }
 }
@@ -254,8 +263,10 @@ void MpcNode::publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torqu
 
 void MpcNode::publishPlan(const ros::Time& stamp, const Plan& plan) {
   health_.countPlan(plan);
-  if (plan.status == PlanStatus::kFailed) {
-    ROS_WARN_STREAM_THROTTLE(5.0, "plan failed, the torque is 0: " << plan.message);
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  if (plan.status == PlanStatus::kFailed && now - last_plan_log_ >= kPlanLogPeriod) {
+    last_plan_log_ = now;
+    log_.warn("plan failed, the torque is 0: " + plan.message);
   }
   ddm_msgs::Plan message;
   message.header.stamp = stamp;
@@ -274,29 +285,31 @@ void MpcNode::publishPlan(const ros::Time& stamp, const Plan& plan) {
 
 /// The thread of the images has ended the trial.
 void MpcNode::onFinish() {
-  std::string problem;
+  Trouble trouble;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!finished_) return;  // it was cancelled before this was called
-    problem = *finished_;
+    trouble = *finished_;
   }
-  if (!problem.empty()) {
-    abort(problem);
+  if (!trouble.text.empty()) {
+    abort(trouble);
     return;
   }
   const ddm_msgs::RunTrialGoalConstPtr goal = goal_;
   const ddm_msgs::RunTrialResult result = endTrial();
-  ROS_INFO("trial %u%s: %u torques, %u exploratory, %u failed plans, %u cut short", goal->trial,
-           goal->evaluation != 0 ? " (evaluation)" : "", result.num_steps, result.num_exploratory,
-           result.num_failed_plans, result.num_cut_plans);
+  std::ostringstream text;
+  text << "trial " << goal->trial << (goal->evaluation != 0 ? " (evaluation)" : "") << ": "
+       << result.num_steps << " torques, " << result.num_exploratory << " exploratory, "
+       << result.num_failed_plans << " failed plans, " << result.num_cut_plans << " cut short";
+  log_.info(text.str());
   server_.setSucceeded(result);
 }
 
 void MpcNode::onTick() {
   if (goal_ == nullptr) return;
   publishFeedback();
-  const std::string silence = describeSilence();
-  if (!silence.empty()) abort(silence);
+  const std::optional<Trouble> silence = describeSilence();
+  if (silence) abort(*silence);
 }
 
 void MpcNode::publishFeedback() {
@@ -310,32 +323,29 @@ void MpcNode::publishFeedback() {
   server_.publishFeedback(feedback);
 }
 
-/// Who keeps the trial waiting for longer than its timeout; empty: nobody.
-std::string MpcNode::describeSilence() {
+/// What keeps the trial waiting for longer than its timeout; empty: nothing.
+std::optional<MpcNode::Trouble> MpcNode::describeSilence() {
   std::ostringstream reason;
   std::string topic = model_sub_.getTopic();
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (finished_) return "";
-    const ros::SteadyTime since =
-        std::max(last_progress_, deciding_since_.value_or(last_progress_));
-    if ((ros::SteadyTime::now() - since).toSec() <= controller_.timeout) return "";
-    if (trial_ == nullptr) {
-      const bool is_goal = goal_->model_id.empty() || goal_->model_id == model_id_;
-      reason << (is_goal ? "the goal image of the trial" : "model " + goal_->model_id)
-             << " did not come";
-      if (is_goal) topic = goal_image_sub_.getTopic();
-    } else if (deciding_since_) {
-      reason << "no plan for step " << trial_->result().num_steps + 1;
-      topic.clear();
-    } else {
-      reason << "no image after step " << trial_->result().num_steps;
-      topic = image_sub_.getTopic();
-    }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (finished_) return std::nullopt;
+  const ros::SteadyTime since = std::max(last_progress_, deciding_since_.value_or(last_progress_));
+  if ((ros::SteadyTime::now() - since).toSec() <= controller_.timeout) return std::nullopt;
+  if (trial_ == nullptr) {
+    const bool is_goal = goal_->model_id.empty() || goal_->model_id == model_id_;
+    reason << (is_goal ? "the goal image of the trial" : "model " + goal_->model_id)
+           << " did not come";
+    if (is_goal) topic = goal_image_sub_.getTopic();
+  } else if (deciding_since_) {
+    reason << "no plan for step " << trial_->result().num_steps + 1;
+    topic.clear();
+  } else {
+    reason << "no image after step " << trial_->result().num_steps;
+    topic = image_sub_.getTopic();
   }
   reason << " within " << controller_.timeout << " s";
-  reason << (topic.empty() ? ": set mpc/time_budget" : ": " + describePublishers(topic));
-  return reason.str();
+  if (topic.empty()) reason << ": set mpc/time_budget";
+  return Trouble{reason.str(), topic};
 }
 
 /// However a trial ends, an effort controller must not go on with its last torque.
@@ -354,9 +364,12 @@ ddm_msgs::RunTrialResult MpcNode::endTrial() {
   return result;
 }
 
-void MpcNode::abort(const std::string& reason) {
-  ROS_ERROR_STREAM(reason);
+/// The zero first: the master may keep whoever asks it waiting.
+void MpcNode::abort(const Trouble& trouble) {
   const ddm_msgs::RunTrialResult result = endTrial();
+  std::string reason = trouble.text;
+  if (!trouble.topic.empty()) reason += ": " + describePublishers(trouble.topic);
+  log_.error(reason);
   server_.setAborted(result, reason);
 }
 
@@ -365,7 +378,6 @@ void MpcNode::abort(const std::string& reason) {
 namespace {
 
 const ros::WallDuration kLook(0.05);
-const ros::WallDuration kFlush(0.1);  // for the last message to leave
 
 void run(const ros::NodeHandle& nh, const ros::NodeHandle& pnh, ddm::ParamReader* params) {
   params->ignore("image_transport");    // read by image_transport itself
@@ -376,15 +388,13 @@ void run(const ros::NodeHandle& nh, const ros::NodeHandle& pnh, ddm::ParamReader
   params->requireValid();
   ROS_INFO_STREAM("mpc_node runs with\n" << ddm::toYaml(mpc) << "\n" << ddm::toYaml(controller));
   ddm::MpcNode node(nh, pnh, image.size, mpc, controller);
-  ddm::catchEndSignals();  // not before: a node that waits for a master must still end
-  while (ros::ok() && !ddm::endRequested()) ros::getGlobalCallbackQueue()->callAvailable(kLook);
-  if (node.stop()) kFlush.sleep();
-  ros::shutdown();
+  ddm::runUntilEnd([] { ros::getGlobalCallbackQueue()->callAvailable(kLook); },
+                   [&node] { return node.stop(); });
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   ddm::silenceSolverLog();
-  return ddm::runNode("mpc_node", argc, argv, run, ros::init_options::NoSigintHandler);
+  return ddm::runNode("mpc_node", argc, argv, run, ddm::Ending::kByLastMessage);
 }

@@ -7,6 +7,7 @@
 #include <ddm_msgs/Model.h>
 #include <ddm_msgs/RunTrialAction.h>
 #include <ddm_node/effort_publisher.h>
+#include <ddm_node/log_thread.h>
 #include <image_transport/image_transport.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
@@ -58,6 +59,19 @@ class MpcNode {
     std::function<void()> function_;
   };
 
+  /// Why a trial cannot go on; no text: nothing is wrong.
+  struct Trouble {
+    std::string text;
+    std::string topic;  ///< whose publishers are to be named; may be empty
+  };
+
+  /// What somebody has changed for the trial under way.
+  struct Changes {
+    std::optional<MpcOptions> mpc;
+    std::optional<double> epsilon;          // empty: that of the goal counts
+    sensor_msgs::ImageConstPtr goal_image;  // null: as before
+  };
+
   // In the thread of the global queue.
   void onGoal();
   void onPreempt();
@@ -69,21 +83,23 @@ class MpcNode {
   void beginIfReady(std::unique_lock<std::mutex> lock);
   bool goalImageIsThere() const;
   void publishFeedback();
-  std::string describeSilence();
+  std::optional<Trouble> describeSilence();
   ddm_msgs::RunTrialResult endTrial();
-  void abort(const std::string& reason);
+  void abort(const Trouble& trouble);
 
   // In the thread of the images.
   void onImage(const sensor_msgs::ImageConstPtr& image);
   void answer(const sensor_msgs::Image& image);
-  std::shared_ptr<TrialRun> trialToAnswer();
-  std::optional<Decision> decide(TrialRun* trial, const sensor_msgs::Image& image,
+  std::shared_ptr<TrialRun> trialToAnswer(Changes* changes);
+  std::optional<Decision> decide(TrialRun* trial, const Changes& changes,
+                                 const sensor_msgs::Image& image,
                                  std::chrono::steady_clock::time_point arrival,
-                                 std::string* problem) const;
+                                 Trouble* trouble) const;
   void publish(const std_msgs::Header& header, const Decision& decision);
   void publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torque, bool exploratory);
   void publishPlan(const ros::Time& stamp, const Plan& plan);
 
+  LogThread log_;  // a terminal that is stopped must not be in the way of a stop
   const int image_size_;
   const ControllerOptions controller_;
 
@@ -96,6 +112,7 @@ class MpcNode {
   // Of the thread of the images.
   sensor_msgs::ImageConstPtr last_image_;  // may be the first of a trial whose goal is on its way
   PlanScalars scalars_;
+  ros::SteadyTime last_plan_log_;
 
   std::mutex mutex_;  // not held while a plan is computed; guards these and effort_
   MpcOptions mpc_;
@@ -103,8 +120,8 @@ class MpcNode {
   bool turned_ = false;                    // the trial does not know yet
   sensor_msgs::ImageConstPtr goal_image_;  // the newest; null: none came
   bool goal_changed_ = false;              // the trial does not know yet
-  std::shared_ptr<TrialRun> trial_;      // null: no trial, or it waits for its model or goal image
-  std::optional<std::string> finished_;  // why the image thread ended the trial; "": all is done
+  std::shared_ptr<TrialRun> trial_;  // null: no trial, or it waits for its model or goal image
+  std::optional<Trouble> finished_;  // why the image thread ended the trial, if all is not done
   ros::SteadyTime last_progress_;
   std::optional<ros::SteadyTime> deciding_since_;
 

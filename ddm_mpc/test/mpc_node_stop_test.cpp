@@ -9,6 +9,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <optional>
 #include <string>
 #include <vector>
@@ -189,6 +190,15 @@ TEST_F(InterruptedNode, LeavesZeroTorque) {
   begin(trialGoal(10, 1.0));
   show(2);
   ASSERT_EQ(kill(node_, SIGINT), 0);
+  ASSERT_TRUE(waitUntil([this] { return hasEnded(); }));
+  EXPECT_EQ(*exit_status_, 0);
+  expectEffortsOfTorquesAndThenZeros();
+}
+
+TEST_F(InterruptedNode, LeavesZeroTorqueWhereTheMasterEndsItToo) {
+  begin(trialGoal(10, 1.0));
+  show(2);
+  ASSERT_EQ(std::system("rosnode kill /interrupted/mpc_node"), 0);
   ASSERT_TRUE(waitUntil([this] { return hasEnded(); }));
   EXPECT_EQ(*exit_status_, 0);
   expectEffortsOfTorquesAndThenZeros();

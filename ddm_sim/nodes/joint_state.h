@@ -18,7 +18,7 @@ namespace ddm {
 ///
 ///   as many further components as joints, each named "..._per_s":  they are `velocity`
 ///   else:  each further component is a `position` after those of the joints, and named as in the
-///          plant's stateNames()
+///          plant's info().state_names
 ///   `effort` is the torque where there are as many motors as names, else it is empty
 ///
 /// So position, then velocity, are always the plant's state.

@@ -25,6 +25,7 @@ constexpr double kStepTolerance = 0.1;           // of dt
 const ros::WallDuration kWatchPeriod(0.1);
 const ros::WallDuration kRemindPeriod(10.0);
 const ros::WallDuration kDiagnosisPeriod(1.0);
+const ros::WallDuration kFrameLogPeriod(5.0);
 
 template <class RosTime>
 Stamp toStamp(const RosTime& time) {
@@ -68,9 +69,9 @@ RobotNode::RobotNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size,
     joints_sub_ = nh.subscribe(topics::kJointStates, kQueue, &RobotNode::onJointStates, this,
                                ros::TransportHints().tcpNoDelay());
   } else {
-    ROS_WARN(
-        "positions and speeds are not guarded: robot/position_limits and robot/speed_limit "
-        "are empty");
+    log_.warn(
+        "positions and speeds are not guarded: robot/position_limits and robot/speed_limit are "
+        "empty");
   }
   trial_end_sub_ =
       nh.subscribe(std::string(topics::kRunTrial) + "/result", 1, &RobotNode::onTrialEnd, this);
@@ -91,6 +92,17 @@ void RobotNode::stopMotors(const std::string& reason) {
   const std::lock_guard<std::mutex> lock(mutex_);
   gate_.stop(reason);
   publishEffort();
+}
+
+/// Does what a message or the time asks for. roscpp ends a process in which a callback throws, and
+/// the motors would keep their torque.
+template <class Work>
+void RobotNode::guarded(const Work& work) {
+  try {
+    work();
+  } catch (const std::exception& e) {
+    stopMotors(std::string("this node failed: ") + e.what());
+  }
 }
 
 /// What the controller sees of a frame of the camera.
@@ -116,7 +128,7 @@ void RobotNode::onFrame(const sensor_msgs::ImageConstPtr& frame) {
     const std::string refusal = stamps_.take(frame_arrival_, frame_arrival_clock_, stamp);
     if (!refusal.empty()) {
       frame_problem_ = refusal;
-      ROS_WARN_STREAM_THROTTLE(5.0, "frame of " << frame_sub_.getTopic() << ": " << refusal);
+      logFrameProblem();
       return;
     }
     if (!picker_.pick(stamp)) return;
@@ -127,65 +139,98 @@ void RobotNode::onFrame(const sensor_msgs::ImageConstPtr& frame) {
     image = shown(*frame);
   } catch (const std::exception& e) {
     problem = e.what();
-    ROS_ERROR_STREAM_THROTTLE(5.0, "frame of " << frame_sub_.getTopic() << ": " << problem);
   }
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     frame_problem_ = problem;
-    if (!problem.empty()) return;
+    if (!problem.empty()) {
+      logFrameProblem();
+      return;
+    }
+    settle(true);
     gate_.showImage(stamps_.taken(), stamp);  // before anybody can answer it
   }
   image_pub_.publish(image);
 }
 
+/// At most one line in kFrameLogPeriod. To be called with the lock.
+void RobotNode::logFrameProblem() {
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  if (now - last_frame_log_ < kFrameLogPeriod) return;
+  last_frame_log_ = now;
+  log_.warn("frame of " + frame_sub_.getTopic() + ": " + frame_problem_);
+}
+
 void RobotNode::onTorque(const ddm_msgs::TorqueConstPtr& torque) {
-  const ros::Time now = ros::Time::now();
-  std_msgs::Float64 latency;
-  latency.data = (now - torque->header.stamp).toSec();
+  guarded([&] { takeTorque(*torque); });
+}
+
+void RobotNode::takeTorque(const ddm_msgs::Torque& torque) {
+  const Stamp arrival = toStamp(ros::Time::now());
+  const Stamp stamp = toStamp(torque.header.stamp);
   const std::lock_guard<std::mutex> lock(mutex_);
-  const Stamp stamp = toStamp(torque->header.stamp);
-  const bool acts = gate_.takeTorque(steadyNow(), stamp, torque->torque);
+  const bool acts = gate_.takeTorque(steadyNow(), stamp, torque.torque);
   publishEffort();
-  if (acts) publishApplied(stamp, gate_.target(), torque->exploratory != 0);
+  if (acts) {
+    settle(true);
+    acting_.header.stamp = torque.header.stamp;
+    acting_.torque = gate_.target();
+    acting_.exploratory = torque.exploratory;
+  }
+  if (!gate_.armed()) cancelTrial();  // it has begun without the motors
+  std_msgs::Float64 latency;
+  latency.data = std::chrono::duration<double>(arrival - stamp).count();
   latency_pub_.publish(latency);
   worst_latency_ = std::max(worst_latency_, latency.data);
 }
 
 void RobotNode::onJointStates(const sensor_msgs::JointStateConstPtr& joints) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  gate_.takeJoints(steadyNow(), joints->name, joints->position, joints->velocity);
-  if (was_in_trial_ && !gate_.armed()) publishEffort();  // not at each report
+  guarded([&] {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    gate_.takeJoints(steadyNow(), joints->name, joints->position, joints->velocity);
+    if (was_armed_ && !gate_.armed()) publishEffort();  // not at each report
+  });
 }
 
 void RobotNode::onTrialEnd(const ddm_msgs::RunTrialActionResultConstPtr& /*result*/) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  gate_.endTrial();
-  publishEffort();
+  guarded([this] {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    settle(true);
+    gate_.endTrial();
+    publishEffort();
+  });
 }
 
 void RobotNode::onTick(const ros::SteadyTimerEvent& /*event*/) {
-  const auto num_publishers = static_cast<int>(torque_sub_.getNumPublishers());
-  const std::lock_guard<std::mutex> lock(mutex_);
-  gate_.setPublishers(num_publishers);
-  publishEffort();
+  guarded([this] {
+    const auto num_publishers = static_cast<int>(torque_sub_.getNumPublishers());
+    const std::lock_guard<std::mutex> lock(mutex_);
+    gate_.setPublishers(num_publishers);
+    publishEffort();
+  });
 }
 
 /// To be called with the lock, whenever something may have changed.
 void RobotNode::publishEffort() {
   const std::vector<double>& effort = gate_.effort(steadyNow());
   if (!routine_moves_) effort_.publish(effort);
-  for (const Stamp& stamp : gate_.takeUnanswered()) publishApplied(stamp, {}, false);
+  if (gate_.state() != TorqueGate::State::kFollowing) settle(false);
+  for (const Stamp& stamp : gate_.takeUnanswered()) {
+    ddm_msgs::Torque nothing;
+    nothing.header.stamp.fromNSec(static_cast<std::uint64_t>(stamp.count()));
+    applied_pub_.publish(nothing);
+  }
   reportState();
 }
 
-/// What acted as the answer to an image; no torque: nothing did.
-void RobotNode::publishApplied(const Stamp& stamp, const std::vector<double>& torque,
-                               bool exploratory) {
-  ddm_msgs::Torque applied;
-  applied.header.stamp.fromNSec(static_cast<std::uint64_t>(stamp.count()));
-  applied.torque = torque;
-  applied.exploratory = exploratory;
-  applied_pub_.publish(applied);
+/// Publishes what acted as the answer to the last image that was answered: its step is over.
+/// @param acted  to the end of the step. False, as publishEffort() finds it: the motors got zero
+///               before, and nothing is to be learned from the step
+void RobotNode::settle(bool acted) {
+  if (acting_.torque.empty()) return;
+  if (!acted) acting_.torque.clear();
+  applied_pub_.publish(acting_);
+  acting_.torque.clear();
 }
 
 void RobotNode::reportState() {
@@ -195,20 +240,22 @@ void RobotNode::reportState() {
     misses.data = static_cast<std::uint32_t>(last_misses_);
     misses_pub_.publish(misses);
   }
-  if (was_in_trial_ && !gate_.armed()) {
-    ROS_ERROR("the motors were stopped in a trial: it is cancelled");
-    cancel_pub_.publish(actionlib_msgs::GoalID());  // without an id: all goals
-  }
-  was_in_trial_ = gate_.inTrial();
+  if (was_armed_ && !gate_.armed()) cancelTrial();
+  was_armed_ = gate_.armed();
   const std::string state = gate_.describe();
   if (state == last_state_) return;
   last_state_ = state;
   if (gate_.state() == TorqueGate::State::kWaiting ||
       gate_.state() == TorqueGate::State::kFollowing) {
-    ROS_INFO_STREAM(state);
+    log_.info(state);
   } else {
-    ROS_WARN_STREAM(state);
+    log_.warn(state);
   }
+}
+
+/// The trial under way, or about to begin. There may be none.
+void RobotNode::cancelTrial() {
+  cancel_pub_.publish(actionlib_msgs::GoalID());  // without an id: all goals
 }
 
 bool RobotNode::onEnable(std_srvs::SetBool::Request& request,
@@ -229,8 +276,7 @@ bool RobotNode::onEnable(std_srvs::SetBool::Request& request,
 void RobotNode::loadGoal() {
   if (options_.goal_file.empty()) return;
   if (!std::filesystem::exists(options_.goal_file)) {
-    ROS_WARN_STREAM("there is no picture " << options_.goal_file
-                                           << " yet: service take_goal writes it");
+    log_.warn("there is no picture " + options_.goal_file + " yet: service take_goal writes it");
     return;
   }
   const sensor_msgs::Image picture = readPicture(options_.goal_file);
@@ -239,22 +285,27 @@ void RobotNode::loadGoal() {
 
 void RobotNode::publishGoal(const sensor_msgs::Image& goal) {
   goal_pub_.publish(goal);
+  const std::lock_guard<std::mutex> lock(mutex_);
   has_goal_ = true;
 }
 
 bool RobotNode::onTakeGoal(std_srvs::Trigger::Request& /*request*/,
                            std_srvs::Trigger::Response& response) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (gate_.inTrial()) {
-    response.message = "a trial is under way, and it has a goal: wait for its end";
-    return true;
+  sensor_msgs::ImageConstPtr frame;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (gate_.inTrial()) {
+      response.message = "a trial is under way, and it has a goal: wait for its end";
+      return true;
+    }
+    if (!seesCamera()) {
+      response.message = "no image on " + frame_sub_.getTopic();
+      return true;
+    }
+    frame = frame_;
   }
-  if (!seesCamera()) {
-    response.message = "no image on " + frame_sub_.getTopic();
-    return true;
-  }
-  try {
-    const sensor_msgs::Image goal = shown(*frame_);
+  try {  // without the lock: a disk may be slow, and must not be in the way of a stop
+    const sensor_msgs::Image goal = shown(*frame);
     if (!options_.goal_file.empty()) writePicture(options_.goal_file, goal);
     publishGoal(goal);
     response.success = true;
@@ -288,8 +339,10 @@ bool RobotNode::onReset(ddm_msgs::Reset::Request& /*request*/,
     const std::lock_guard<std::mutex> lock(mutex_);
     gate_.endReset();
     if (std::abs(picker_.step() - options_.dt) > kStepTolerance * options_.dt) {
-      ROS_WARN("the camera's frames do not fit: images are %g s apart where dt is %g s",
-               picker_.step(), options_.dt);
+      std::ostringstream text;
+      text << "the camera's frames do not fit: images are " << picker_.step()
+           << " s apart where dt is " << options_.dt << " s";
+      log_.warn(text.str());
     }
     stamps_.restart();
     picker_.restart();
@@ -298,7 +351,7 @@ bool RobotNode::onReset(ddm_msgs::Reset::Request& /*request*/,
   response.success = problem.empty();
   response.message = problem;
   response.start = ros::Time::now();
-  if (!problem.empty()) ROS_ERROR_STREAM("reset: " << problem);
+  if (!problem.empty()) log_.error("reset: " + problem);
   return true;
 }
 
@@ -325,7 +378,7 @@ std::string RobotNode::waitUntilThere(const ros::SteadyTime& deadline, bool moto
     if (what != told || now - last_told > kRemindPeriod) {
       told = what;
       last_told = now;
-      ROS_WARN_STREAM("the trial waits: " << what);
+      log_.warn("the trial waits: " + what);
     }
     kWatchPeriod.sleep();
   }

@@ -6,6 +6,7 @@
 #include <ddm_msgs/RunTrialAction.h>
 #include <ddm_msgs/Torque.h>
 #include <ddm_node/effort_publisher.h>
+#include <ddm_node/log_thread.h>
 #include <ddm_robot/frame_picker.h>
 #include <ddm_robot/robot_options.h>
 #include <ddm_robot/stamp_check.h>
@@ -25,8 +26,8 @@
 namespace ddm {
 
 /// Shows the controller an image every dt and hands its torques to the motors through a TorqueGate.
-/// A trial in which the motors are stopped is cancelled: its torques do not act, so nothing is to
-/// be learned from it.
+/// A trial in which the motors are stopped, or that begins while they are, is cancelled: its
+/// torques do not act, so nothing is to be learned from it.
 ///
 /// Needs a spinner with several threads: a reset may wait for a person while all else goes on.
 class RobotNode {
@@ -40,6 +41,8 @@ class RobotNode {
   void stopMotors(const std::string& reason);
 
  private:
+  template <class Work>
+  void guarded(const Work& work);
   void onFrame(const sensor_msgs::ImageConstPtr& frame);
   void onTorque(const ddm_msgs::TorqueConstPtr& torque);
   void onJointStates(const sensor_msgs::JointStateConstPtr& joints);
@@ -49,18 +52,22 @@ class RobotNode {
   bool onTakeGoal(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Response& response);
 
+  void takeTorque(const ddm_msgs::Torque& torque);
   bool seesCamera() const;
+  void logFrameProblem();
   sensor_msgs::Image shown(const sensor_msgs::Image& frame) const;
   void loadGoal();
   void publishGoal(const sensor_msgs::Image& goal);
   void publishEffort();
-  void publishApplied(const Stamp& stamp, const std::vector<double>& torque, bool exploratory);
+  void settle(bool acted);
   void reportState();
+  void cancelTrial();
   std::string bringToStart(const ros::SteadyTime& deadline);
   std::string waitUntilThere(const ros::SteadyTime& deadline, bool motors);
   std::string missing(bool motors);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
+  LogThread log_;  // a terminal that is stopped must not be in the way of a stop
   const int image_size_;
   const RobotOptions options_;
   ResetRoutine routine_;
@@ -75,7 +82,9 @@ class RobotNode {
   std::string frame_problem_;     // why the newest frame cannot be used
   bool has_goal_ = false;
   bool routine_moves_ = false;  // the user's reset has the motors, and no effort is published
-  bool was_in_trial_ = false;
+  ddm_msgs::Torque acting_;     // what is not yet published as applied; no torque: nothing is
+  ros::SteadyTime last_frame_log_;
+  bool was_armed_ = false;
   std::string last_state_;
   int last_misses_ = -1;
   double worst_latency_ = 0.0;  // since the last diagnosis [s]

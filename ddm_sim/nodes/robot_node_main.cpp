@@ -8,10 +8,8 @@
 namespace {
 
 const ros::WallDuration kLook(0.05);
-const ros::WallDuration kFlush(0.1);  // for the last message to leave
 
 void run(const ros::NodeHandle& nh, const ros::NodeHandle& pnh, ddm::ParamReader* params) {
-  ddm::catchEndSignals();
   params->ignore("image_transport");    // read by image_transport itself
   params->ignore("diagnostic_period");  // read by diagnostic_updater itself
   const auto image = params->read<ddm::ImageOptions>("image");
@@ -21,14 +19,15 @@ void run(const ros::NodeHandle& nh, const ros::NodeHandle& pnh, ddm::ParamReader
   ddm::RobotNode node(nh, pnh, image.size, robot);
   ros::AsyncSpinner spinner(4);  // a reset waits in one of them
   spinner.start();
-  while (ros::ok() && !ddm::endRequested()) kLook.sleep();
-  node.stopMotors("this node ends");
-  kFlush.sleep();
-  ros::shutdown();  // a reset that waits gives up, so that the spinner can end
+  const auto stop = [&node] {
+    node.stopMotors("this node ends");
+    return true;
+  };
+  ddm::runUntilEnd([] { kLook.sleep(); }, stop);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  return ddm::runNode("robot_node", argc, argv, run, ros::init_options::NoSigintHandler);
+  return ddm::runNode("robot_node", argc, argv, run, ddm::Ending::kByLastMessage);
 }

@@ -17,17 +17,18 @@ def find_program(package, name):
 
 
 class Process:
-    """stdout and stderr together are `output`."""
+    """stdout and stderr together are `output`, unless they go to the file `written_to`."""
 
-    def __init__(self, command, terminal=subprocess.DEVNULL):
+    def __init__(self, command, terminal=subprocess.DEVNULL, written_to=None):
         self._changed = threading.Condition()
         self._text = ""
         self._ended = False
         environment = dict(os.environ, PYTHONUNBUFFERED="1", ROSCONSOLE_STDOUT_LINE_BUFFERED="1")
-        self._process = subprocess.Popen(command, env=environment, stdin=terminal, stdout=subprocess.PIPE,
+        self._process = subprocess.Popen(command, env=environment, stdin=terminal, stdout=written_to or subprocess.PIPE,
                                          stderr=subprocess.STDOUT, universal_newlines=True, errors="replace")
         self._reader = threading.Thread(target=self._read, daemon=True)
-        self._reader.start()
+        if written_to is None:
+            self._reader.start()
 
     def _read(self):
         with self._process.stdout as stream:

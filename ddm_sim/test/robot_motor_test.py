@@ -3,9 +3,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import signal
+import subprocess
 import sys
 
-from ddm_msgs.msg import RunTrialActionResult
+from ddm_msgs.msg import RunTrialActionResult, Torque
 import rospy
 import rosunit
 
@@ -75,6 +76,11 @@ class RobotMotorTest(RobotCase):
         self.assertEqual(self.robot.appliedAt(self.robot.answer(9.0)), [4.0])  # as the motor has it
         self.assertEqual(self.robot.appliedAt(self.robot.answer(3.0, delay_s=1.1 * DT)), [])
         self.assertEqual(self.robot.appliedAt(lost), [])
+        cut_short = self.robot.answer(2.0)
+        self.robot.waitForEffort(2.0)
+        self.robot.enable(False)
+        self.assertEqual(self.robot.appliedAt(cut_short), [])
+        self.enterTrial()
         self.robot.enable(False)
         self.assertEqual(self.robot.appliedAt(self.robot.answer(1.0)), [])
 
@@ -96,6 +102,25 @@ class RobotMotorTest(RobotCase):
         self.assertEqual(self.robot.effort(), 0.0)
         self.enterTrial(3.0)
 
+    def test_a_torque_with_any_stamp_is_survived(self):
+        self.enterTrial()
+        far = Torque(torque=[3.0])
+        for far.header.stamp in (rospy.Time(4294967295, 999999999), rospy.Time(0)):
+            self.robot.torques.publish(far)
+        wait_until(lambda: len(self.robot.latencies.messages) >= 3, "latencies")
+        self.assertNotIn(3.0, [message.data for message in self.robot.efforts.messages])
+        self.robot.answer(1.0)
+        self.robot.waitForEffort(1.0)
+
+    def test_a_trial_is_cancelled_where_the_motors_are_stopped_before_its_first_torque(self):
+        self.assertTrue(self.robot.enable(True).success)
+        self.assertTrue(self.robot.enable(False).success)
+        wait_until(lambda: self.robot.cancels.messages, "the trial is cancelled")
+
+    def test_a_trial_that_begins_while_the_motors_are_off_is_cancelled(self):
+        self.robot.answer(2.0)
+        wait_until(lambda: self.robot.cancels.messages, "the trial is cancelled")
+
     def test_two_publishers_of_torques_stop_the_motors_while_they_are_there(self):
         self.enterTrial()
         second = Process(["rostopic", "pub", "-r", "1", "torque", "ddm_msgs/Torque", "{torque: [1.0]}"])
@@ -112,6 +137,13 @@ class RobotMotorTest(RobotCase):
         self.robot.process.send(signal.SIGINT)
         self.assertEqual(self.robot.process.waitForEnd(LIMIT_S), 0)
         wait_until(lambda: self.robot.efforts.messages[-1].data == 0.0, "zero")
+
+    def test_the_last_word_is_zero_where_the_master_ends_the_node_too(self):
+        self.enterTrial()
+        subprocess.run(["rosnode", "kill", "/robot_node"], stdout=subprocess.DEVNULL, check=True, timeout=LIMIT_S)
+        self.assertEqual(self.robot.process.waitForEnd(LIMIT_S), 0)
+        wait_until(lambda: self.robot.efforts.messages[-1].data == 0.0, "zero")
+        self.assertIn("user request", self.robot.process.output)
 
 
 if __name__ == "__main__":

@@ -3,17 +3,21 @@
 #include "ddm_images/image_codec.h"
 
 #include <cv_bridge/cv_bridge.h>
+#include <ddm_files/plain_file.h>
 #include <sensor_msgs/image_encodings.h>
 
 #include <algorithm>
 #include <boost/make_shared.hpp>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
 #include <stdexcept>
+#include <vector>
 
 namespace ddm {
 namespace {
@@ -222,14 +226,14 @@ sensor_msgs::Image readPicture(const std::string& path) {
 
 void writePicture(const std::string& path, const sensor_msgs::Image& image) {
   const char* encoding = image.encoding == "mono8" ? "mono8" : "bgr8";  // as OpenCV writes colours
-  bool written = false;
+  std::vector<std::uint8_t> bytes;
   try {
-    written = cv::imwrite(path, cv_bridge::toCvCopy(image, encoding)->image);
-  } catch (const cv::Exception&) {  // the path below says more than its text
+    cv::imencode(std::filesystem::path(path).extension().string(),
+                 cv_bridge::toCvCopy(image, encoding)->image, bytes);
+  } catch (const cv::Exception&) {
+    throw std::runtime_error(path + " cannot be written: end its name in .png or .pgm");
   }
-  if (!written) {
-    throw std::runtime_error(path + " cannot be written; check the folder and its disk");
-  }
+  writeFileAtomically(path, std::string(bytes.begin(), bytes.end()));
 }
 
 }  // namespace ddm

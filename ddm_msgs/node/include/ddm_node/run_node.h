@@ -3,7 +3,9 @@
 #pragma once
 
 #include <ros/ros.h>
+#include <ros/xmlrpc_manager.h>
 
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -17,21 +19,40 @@ namespace ddm {
 
 namespace internal {
 
-inline volatile std::sig_atomic_t end_requested = 0;
+inline std::atomic<bool> end_requested{false};
 
-inline void requestEnd(int /*signal*/) { end_requested = 1; }
+inline void onSignal(int /*signal*/) { end_requested = true; }
+
+/// The master's `shutdown`: of `rosnode kill`, and where another node takes the name.
+inline void onShutdownRequest(XmlRpc::XmlRpcValue& params, XmlRpc::XmlRpcValue& result) {
+  end_requested = true;
+  result = ros::xmlrpc::responseInt(1, "", 0);
+  if (params.getType() == XmlRpc::XmlRpcValue::TypeArray && params.size() > 1) {
+    ROS_WARN_STREAM("asked to end: " << static_cast<std::string>(params[1]));
+  }
+}
 
 }  // namespace internal
 
-/// From now on SIGINT and SIGTERM set endRequested() and do nothing else. roscpp's own handler
-/// shuts all topics down before a zero can be sent to the motors: call ros::init() with
-/// NoSigintHandler.
-inline void catchEndSignals() {
-  std::signal(SIGINT, internal::requestEnd);
-  std::signal(SIGTERM, internal::requestEnd);
-}
+/// What a node does when it is asked to end.
+enum class Ending {
+  kAtOnce,        ///< roscpp shuts down whatever it is doing
+  kByLastMessage  ///< it runs in runUntilEnd(), and sends a last message
+};
 
-inline bool endRequested() { return internal::end_requested != 0; }
+/// Runs a node with motors until SIGINT, SIGTERM or the master asks it to end. roscpp's own
+/// handlers shut all topics down before a zero can be sent: start the node with kByLastMessage.
+///
+/// @param look  called again and again; returns soon
+/// @param stop  sends the last message; false: there was none to send
+template <class Look, class Stop>
+void runUntilEnd(const Look& look, const Stop& stop) {
+  std::signal(SIGINT, internal::onSignal);
+  std::signal(SIGTERM, internal::onSignal);
+  while (ros::ok() && !internal::end_requested) look();
+  if (stop()) ros::WallDuration(0.1).sleep();  // for the message to leave
+  ros::shutdown();
+}
 
 /// Runs a node until it ends.
 ///
@@ -42,15 +63,20 @@ inline bool endRequested() { return internal::end_requested != 0; }
 ///     ros::spin();
 ///   });
 ///
-/// @param run      (node handle, private node handle, reader of its parameters)
-/// @param options  ros::init_options
+/// @param run  (node handle, private node handle, reader of its parameters)
 /// @return exit code: 1 if `run` threw an exception, whose text is logged. The process ends with it
 ///         ten seconds later at most: what belongs to ROS tells the master for each topic that it
 ///         goes, and a master that was stopped never answers
 template <class Run>
 int runNode(const std::string& name, int argc, char** argv, const Run& run,
-            std::uint32_t options = 0) {
-  ros::init(argc, argv, name, options);
+            Ending ending = Ending::kAtOnce) {
+  if (ending == Ending::kByLastMessage) {
+    ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
+    // Before there is a node handle: with it, roscpp binds what is not bound yet.
+    ros::XMLRPCManager::instance()->bind("shutdown", internal::onShutdownRequest);
+  } else {
+    ros::init(argc, argv, name);
+  }
   ros::NodeHandle nh;
   ros::NodeHandle pnh("~");  // outside the try: its destructor shuts the log down
   int code = EXIT_SUCCESS;

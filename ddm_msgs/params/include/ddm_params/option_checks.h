@@ -76,6 +76,10 @@ class OptionChecks {
   void requirePositive(const std::string& key, double value) {
     require(isPositive(value), key, "be > 0 and finite", value);
   }
+  /// A time to wait [s]: roscpp's durations end at 68 years.
+  void requireTimeLimit(const std::string& key, double value) {
+    require(value > 0.0 && value <= 86400.0, key, "lie in (0, 86400]", value);
+  }
   void requireNotNegative(const std::string& key, double value) {
     require(isNotNegative(value), key, "be >= 0 and finite", value);
   }

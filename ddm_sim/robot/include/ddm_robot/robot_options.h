@@ -64,7 +64,7 @@ struct RobotOptions {
     robot.requireWithin("crop_width", crop_width, 0, 16384);
     robot.requireWithin("crop_height", crop_height, 0, 16384);
     robot.requireWithin("effort_rate", effort_rate, 1.0, 1000.0);
-    robot.requirePositive("reset_timeout", reset_timeout);
+    robot.requireTimeLimit("reset_timeout", reset_timeout);
     checkMotors(&robot);
     checkLimits(&robot);
     return robot.problems();
