@@ -24,6 +24,7 @@ namespace ddm {
 namespace {
 
 constexpr std::uint32_t kThreads = 2;
+constexpr char kBagUnderWay[] = "";  // for StartRecording
 // How often conditions without a callback are checked.
 constexpr std::chrono::milliseconds kLook(20);
 
@@ -104,7 +105,7 @@ void RosDriver::connect() {
 
 void RosDriver::signOfLife() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  last_sign_of_life_ = ros::WallTime::now();
+  last_sign_of_life_ = ros::SteadyTime::now();
 }
 
 /// Waits for a condition, which is checked whenever a callback has changed something.
@@ -117,7 +118,7 @@ void RosDriver::waitFor(const std::function<bool()>& condition,
     if (condition()) return;
     if (!ros::ok()) throw std::runtime_error(kInterrupted);
     std::unique_lock<std::mutex> lock(mutex_);
-    if ((ros::WallTime::now() - last_sign_of_life_).toSec() > timeout_) {
+    if ((ros::SteadyTime::now() - last_sign_of_life_).toSec() > timeout_) {
       lock.unlock();
       throw std::runtime_error(what() + waited(timeout_));
     }
@@ -149,7 +150,7 @@ auto RosDriver::execute(Client* client, const std::string& name, const Goal& goa
   };
   const auto on_feedback = [this, pending, fraction_of](const auto& feedback) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    last_sign_of_life_ = ros::WallTime::now();
+    last_sign_of_life_ = ros::SteadyTime::now();
     pending->fraction = fraction_of(*feedback);
     changed_.notify_all();
   };
@@ -199,10 +200,14 @@ void RosDriver::refuseIntruders() const {
 }
 
 TrialOutcome RosDriver::runTrial(const TrialRequest& request, const PhaseCallback& progress) {
-  if (!request.bag.empty()) startRecording(request.bag);
+  // Before the reset, which may show the first image at once.
+  if (!request.bag.empty()) startRecording(request.bag, last_image_);
   ground_truth_.clear();  // of a trial that failed
   keeps_ground_truth_ = true;
   const ddm_msgs::Reset::Response begin = reset(request);
+  // The clock was set back since the last trial, whose stamps say nothing about this one.
+  const bool set_back = !begin.start.isZero() && begin.start <= last_image_;
+  if (!request.bag.empty() && set_back) startRecording(kBagUnderWay, /*after=*/ros::Time());
   const ddm_msgs::RunTrialResult result = runPolicy(request, begin, progress);
   last_image_ = result.last;
   refuseIntruders();
@@ -222,10 +227,10 @@ TrialOutcome RosDriver::runTrial(const TrialRequest& request, const PhaseCallbac
   return outcome;
 }
 
-void RosDriver::startRecording(const std::string& bag) {
+void RosDriver::startRecording(const std::string& bag, const ros::Time& after) {
   ddm_msgs::StartRecording service;
   service.request.path = bag;
-  service.request.after = last_image_;
+  service.request.after = after;
   call(topics::kStartRecording, &service, timeout_);
 }
 

@@ -22,8 +22,9 @@
 
 namespace ddm {
 
-/// Orders the nodes about; computes nothing. All waits are in wall time, because simulated time
-/// stands still while a model is trained, and all end with an error that names who is silent.
+/// Orders the nodes about; computes nothing. All waits go by the monotonic clock, because simulated
+/// time stands still while a model is trained and wall time can be set, and all end with an error
+/// that names who is silent.
 /// Callbacks, except those of ground truth, are handled in threads of its own; progress is reported
 /// by the thread that waits.
 class RosDriver : public Driver {
@@ -51,7 +52,7 @@ class RosDriver : public Driver {
 
  private:
   void connect();
-  void startRecording(const std::string& bag);
+  void startRecording(const std::string& bag, const ros::Time& after);
   void stopRecording(int num_steps, const ros::Time& last, const ros::Time& goal);
   ddm_msgs::Reset::Response reset(const TrialRequest& request);
   ddm_msgs::RunTrialResult runPolicy(const TrialRequest& request,
@@ -82,7 +83,7 @@ class RosDriver : public Driver {
 
   std::mutex mutex_;  // guards what callbacks write, below
   std::condition_variable changed_;
-  ros::WallTime last_sign_of_life_;
+  ros::SteadyTime last_sign_of_life_;
   ddm_msgs::ModelConstPtr model_;
 
   actionlib::SimpleActionClient<ddm_msgs::RunTrialAction> trial_client_;

@@ -51,7 +51,7 @@ struct ReplayOptions {
     checks.require(!bag.empty(), "bag", "be a bag", "nothing");
     checks.require(!model.empty(), "model", "be a model file", "nothing");
     checks.require(rate >= 0.0 && rate <= 1000.0, "rate", "lie in [0, 1000]", rate);
-    checks.require(timeout > 0.0 && timeout <= 3600.0, "timeout", "lie in (0, 3600]", timeout);
+    checks.requireTimeLimit("timeout", timeout);
     return checks.problems();
   }
 };
@@ -109,6 +109,18 @@ class Replay {
                                              static_cast<Eigen::Index>(answer_->torque.size()));
   }
 
+  /// Waits for the end of a piece whose frames are all answered. Before mpc_node gives the trial up
+  /// over an image that it refuses, it answers the image with zero: only the end tells that zero
+  /// from a proposal.
+  /// @throws std::runtime_error unless mpc_node has completed the trial
+  void endPiece() {
+    waitFor([this] { return trial_client_.getState().isDone(); },
+            "mpc_node does not end its trial");
+    const actionlib::SimpleClientGoalState state = trial_client_.getState();
+    if (state == actionlib::SimpleClientGoalState::SUCCEEDED) return;
+    throw std::runtime_error("mpc_node: " + state.toString() + ", " + state.getText());
+  }
+
  private:
   /// @throws std::runtime_error after the timeout, if mpc_node gives the trial up, or on shutdown
   template <class Condition>
@@ -163,6 +175,7 @@ Eigen::MatrixXd play(const ddm::BagContent& bag, double rate, Replay* replay,
       proposed.col(frame) = torque;
       progress->update(static_cast<double>(frame + 1) / static_cast<double>(data.numFrames()));
     }
+    replay->endPiece();
   }
   return proposed;
 }

@@ -6,9 +6,11 @@ import sys
 import threading
 
 from ddm_msgs.msg import Torque
+import rosbag
 import rosgraph
 import rospy
 import rosunit
+from sensor_msgs.msg import Image
 from std_msgs.msg import Float64
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -34,6 +36,11 @@ class ReplayTest(SharedScratchCase):
         for topic, kind in (("torque", Torque), ("effort_command", Float64), ("replay/torque", Torque),
                             ("replay/proposed_torque", Torque)):
             rospy.Subscriber(topic, kind, cls.hear, topic)
+
+    def setUp(self):
+        super().setUp()
+        with self.lock:
+            self.heard.clear()
 
     @classmethod
     def hear(cls, message, topic):
@@ -70,6 +77,17 @@ class ReplayTest(SharedScratchCase):
         told = [float(row[4]) for row in rows[1:]]
         self.assertTrue(set(proposed.values()) <= set(told))
         self.assertGreater(len(set(told)), STEPS // 2)
+
+    def test_the_zero_of_a_last_image_that_is_refused_is_no_proposal(self):
+        bag, out = self.file("one.bag"), self.file("torques.csv")
+        with rosbag.Bag(self.bag) as whole, rosbag.Bag(bag, "w") as one:
+            for wanted in ("camera/image_raw", "torque"):  # of the first frame, which is the last here
+                one.write(*next(whole.read_messages([wanted])))
+        camera = rospy.Publisher("camera/image_raw", Image, queue_size=1)  # mpc_node refuses to look through two
+        self.addCleanup(camera.unregister)
+        output, _ = self.replay("bag:=" + bag, "model:=" + self.model, "out:=" + out)
+        self.assertRegex(output, r"FATAL.*only one camera")
+        self.assertFalse(os.path.exists(out))
 
     def test_a_bag_that_is_missing_is_named(self):
         output, _ = self.replay("bag:=/nowhere/x.bag", "model:=" + self.model)

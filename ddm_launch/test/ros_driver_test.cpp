@@ -18,8 +18,12 @@
 #include <atomic>
 #include <chrono>
 #include <future>
+#include <mutex>
 #include <set>
+#include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 namespace ddm {
 namespace {
@@ -35,9 +39,8 @@ class Peers {
             withQueue(), topics::kRunTrial,
             [this](const ddm_msgs::RunTrialGoalConstPtr&) { runTrial(); }, /*auto_start=*/false) {
     ros::NodeHandle nh = withQueue();
-    reset_ = nh.advertiseService(topics::kReset, &Peers::answer<ddm_msgs::Reset>, this);
-    start_ = nh.advertiseService(topics::kStartRecording, &Peers::answer<ddm_msgs::StartRecording>,
-                                 this);
+    reset_ = nh.advertiseService(topics::kReset, &Peers::onReset, this);
+    start_ = nh.advertiseService(topics::kStartRecording, &Peers::onStart, this);
     stop_ =
         nh.advertiseService(topics::kStopRecording, &Peers::answer<ddm_msgs::StopRecording>, this);
     server_.start();
@@ -56,6 +59,19 @@ class Peers {
 
   std::uint32_t numTruths() const { return num_truths_; }
 
+  /// The trials to come begin and end with images of these stamps.
+  void showImages(double first, double last) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    first_ = ros::Time(first);
+    last_ = ros::Time(last);
+  }
+
+  /// `path` and `after` [s] of each call of start_recording.
+  std::vector<std::pair<std::string, double>> recordings() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return recordings_;
+  }
+
   void release() {
     if (!released_.exchange(true)) release_.set_value();
   }
@@ -65,6 +81,23 @@ class Peers {
     ros::NodeHandle nh;
     nh.setCallbackQueue(&callbacks_);
     return nh;
+  }
+
+  bool onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Response& response) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      response.start = first_;
+    }
+    return answer<ddm_msgs::Reset>(request, response);
+  }
+
+  bool onStart(ddm_msgs::StartRecording::Request& request,
+               ddm_msgs::StartRecording::Response& response) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      recordings_.emplace_back(request.path, request.after.toSec());
+    }
+    return answer<ddm_msgs::StartRecording>(request, response);
   }
 
   template <class Service>
@@ -87,6 +120,10 @@ class Peers {
     result.stamp.resize(kSteps);
     for (std::uint32_t i = 0; truth_ && i < result.stamp.size(); ++i) result.stamp[i] = stampOf(i);
     result.torque.resize(kSteps);
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      result.last = last_;
+    }
     server_.setSucceeded(result);
   }
 
@@ -105,6 +142,9 @@ class Peers {
   std::atomic<double> answer_time_{0.0};
   std::atomic<bool> endless_{false};
   std::atomic<bool> released_{false};
+  mutable std::mutex mutex_;  // guards these three
+  ros::Time first_, last_;
+  std::vector<std::pair<std::string, double>> recordings_;
   std::promise<void> release_;
   std::shared_future<void> end_ = release_.get_future().share();
   actionlib::SimpleActionServer<ddm_msgs::RunTrialAction> server_;
@@ -176,6 +216,27 @@ TEST(RosDriverTest, LeavesARobotTheTimeThatItsResetMayTake) {
   peers.answerAfter(1.5);
   RosDriver driver(ros::NodeHandle(), 0.5, {/*recorder=*/false, /*trainer=*/false, 10.0});
   EXPECT_EQ(errorOf(&driver, trial()), "none");
+}
+
+TEST(RosDriverTest, HasATrialRecordedThatBeginsEarlierThanTheLastOneEnded) {
+  Peers peers;
+  RosDriver driver(ros::NodeHandle(), 5.0, {/*recorder=*/true, /*trainer=*/false});
+  TrialRequest request = trial();
+  request.bag = "/nowhere/trial.bag";
+  const auto runFrom = [&](double first) {
+    peers.showImages(first, first + 10.0);
+    EXPECT_EQ(errorOf(&driver, request), "none");
+  };
+  runFrom(100.0);
+  runFrom(120.0);
+  runFrom(70.0);  // the clock was set back
+  runFrom(90.0);
+  const std::vector<std::pair<std::string, double>> expected = {{request.bag, 0.0},
+                                                                {request.bag, 110.0},
+                                                                {request.bag, 130.0},
+                                                                {"", 0.0},
+                                                                {request.bag, 80.0}};
+  EXPECT_EQ(peers.recordings(), expected);
 }
 
 /// A terminal that is stopped holds up who writes to it, and nobody else.

@@ -83,7 +83,7 @@ class ModelNode {
 
   bool reportProgress(const TrainingProgress& progress) {
     health_.progress(progress);
-    const ros::WallTime now = ros::WallTime::now();
+    const ros::SteadyTime now = ros::SteadyTime::now();
     if (now - last_feedback_ >= kFeedbackPeriod) {
       last_feedback_ = now;
       ddm_msgs::TrainFeedback feedback;
@@ -111,7 +111,7 @@ class ModelNode {
   BagCache bags_;
   TrainingHealth health_;
   ros::Publisher model_pub_;
-  ros::WallTime last_feedback_;
+  ros::SteadyTime last_feedback_;
   actionlib::SimpleActionServer<ddm_msgs::TrainAction> server_;
 };
 

@@ -61,8 +61,10 @@ void TrialRecorder::recordApplied(const ddm_msgs::Torque& torque) {
   changed_.notify_all();
 }
 
-/// The goal image is stamped with the trial's first image, so that the bag begins with the trial.
-/// It is written last: it may come after the first images, since it has a topic of its own.
+/// The goal image is stamped with the first image, so that the bag does not begin before it. That
+/// image need not be of the trial: a robot shows images while its reset waits, and only those from
+/// the first torque to the last are learned from.
+/// The goal is written last: it may come after the first images, since it has a topic of its own.
 void TrialRecorder::writeGoal(BagWriter* bag) const {
   if (goal_ != nullptr && !bag->images().empty()) bag->writeGoal(*goal_, *bag->images().begin());
 }
@@ -70,6 +72,11 @@ void TrialRecorder::writeGoal(BagWriter* bag) const {
 bool TrialRecorder::start(ddm_msgs::StartRecording::Request& request,
                           ddm_msgs::StartRecording::Response& response) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  if (bag_ != nullptr && request.path.empty()) {
+    after_ = request.after;
+    response.success = true;
+    return true;
+  }
   if (bag_ != nullptr) ROS_WARN("a recording was not stopped: its bag stays *.active");
   bag_.reset();
   ++num_recordings_;

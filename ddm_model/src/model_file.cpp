@@ -156,8 +156,13 @@ Ddm readContent(std::uint32_t version, Reader* in) {
   const ModelOptions options = readOptions(version, in);
   const int image_size = in->number<std::int32_t>();
   const int torque_dim = in->number<std::int32_t>();
-  if (image_size < 1 || image_size > 16384) throw std::runtime_error("its image size is absurd");
-  if (torque_dim < 1 || torque_dim > 1000) throw std::runtime_error("its torque size is absurd");
+  const auto requireWithin = [](const std::string& name, int value, int largest) {
+    if (value >= 1 && value <= largest) return;
+    throw std::runtime_error("its " + name + " must lie in [1, " + std::to_string(largest) +
+                             "], got " + std::to_string(value));
+  };
+  requireWithin("image size", image_size, 16384);
+  requireWithin("number of motors", torque_dim, 1000);
   const auto state_dim = static_cast<size_t>(options.memory()) * options.feature_dim +
                          static_cast<size_t>(options.memory() - 1) * torque_dim;
   ModelInfo info = readInfo(version, state_dim, in);

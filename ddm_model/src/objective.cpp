@@ -21,11 +21,11 @@ double squaredWeights(const Mlp<Scalar>& net, const Scalar* theta) {
   return sum;
 }
 
-/// Adds the derivative of price times that.
+/// Adds the derivative of weight_decay times that.
 template <class Scalar>
-void addDecay(const Mlp<Scalar>& net, const Scalar* theta, Scalar price, Scalar* d_theta) {
+void addDecay(const Mlp<Scalar>& net, const Scalar* theta, Scalar weight_decay, Scalar* d_theta) {
   for (int layer = 0; layer < net.numLayers(); ++layer) {
-    net.weights(d_theta, layer) += 2 * price * net.weights(theta, layer);
+    net.weights(d_theta, layer) += 2 * weight_decay * net.weights(theta, layer);
   }
 }
 

@@ -3,6 +3,7 @@
 #include "preconditioner.h"
 
 #include <Eigen/Eigenvalues>
+#include <cmath>
 
 namespace ddm {
 namespace {
@@ -11,11 +12,11 @@ namespace {
 /// would take unbounded steps.
 constexpr double kDamping = 0.03;
 
-/// The damped matrix to the power of -1/2; the identity where all is 0.
+/// The damped matrix to the power of -1/2; the identity where all is 0, or where errors have overflowed float.
 Eigen::MatrixXf inverseRoot(const Eigen::MatrixXd& matrix) {
   const Eigen::Index size = matrix.rows();
   const double mean = matrix.trace() / static_cast<double>(size);  // of the eigenvalues
-  if (!(mean > 0.0)) return Eigen::MatrixXf::Identity(size, size);
+  if (!(mean > 0.0) || !std::isfinite(mean)) return Eigen::MatrixXf::Identity(size, size);
   const Eigen::MatrixXd damped = matrix + kDamping * mean * Eigen::MatrixXd::Identity(size, size);
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(damped).operatorInverseSqrt().cast<float>();
 }

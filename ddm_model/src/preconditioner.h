@@ -15,7 +15,7 @@ namespace ddm {
 ///   [W b] = [W b]_0 + E'^(-1/2) V A'^(-1/2),   A' = A / N + d mean(eig(A / N)) I,   E' likewise
 ///
 /// so that steps of L-BFGS in v are those of K-FAC in theta (Martens and Grosse, ICML 2015) as long as it has seen
-/// no curvature itself. T is symmetric.
+/// no curvature itself. T is symmetric. The power of a factor that is 0 or not finite counts as I.
 class Preconditioner {
  public:
   /// @param factors  of the layers whose parameters theta are

@@ -3,6 +3,7 @@
 #include "stage_minimisation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <random>
@@ -135,13 +136,19 @@ Minimum minimiseStage(const Stage& stage, const TrainingOptions& training,
     }
     options.max_iterations = kfac ? std::min(kRefresh, cap - total.iterations) : cap;
     Minimum minimum = minimise(std::ref(function), x, options);
-    x = minimum.x;
-    if (total.evaluations > 0) minimum.initial_cost = total.initial_cost;
+    const bool found = std::isfinite(minimum.cost);
+    if (found) {
+      x = minimum.x;
+      theta->segment(free.begin, free.size) = function.parametersAt(x).cast<double>();
+    }
+    if (total.evaluations > 0) {
+      minimum.initial_cost = total.initial_cost;
+      if (!found) minimum.cost = total.cost;  // what was reached before these factors still holds
+    }
     minimum.iterations += total.iterations;
     minimum.evaluations += total.evaluations;
     total = std::move(minimum);
   } while (total.reason == MinimumReason::kIterationLimit && total.iterations < cap);
-  theta->segment(free.begin, free.size) = function.parametersAt(x).cast<double>();
   return total;
 }
 

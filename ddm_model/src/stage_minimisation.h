@@ -16,7 +16,8 @@ using StageCallback =
     std::function<bool(const Minimum& so_far, const JointObjective<float>::Value& value)>;
 
 /// Minimises w times the terms of the stage over the parameters that it leaves free.
-/// @param theta     in: all parameters, out: with the free ones at the minimum     [P]
+/// @param theta     in: all parameters, out: with the free ones at the minimum; as they were if the
+///                  objective cannot be evaluated there                            [P]
 /// @param callback  may be empty
 Minimum minimiseStage(const Stage& stage, const TrainingOptions& training,
                       const Networks<float>& networks, JointObjective<float>* objective,

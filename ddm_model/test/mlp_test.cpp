@@ -174,16 +174,26 @@ TEST(Mlp, RefusesShapesThatAreNoNetwork) {
       {">= 1", "got 0"}));
 }
 
-TEST(PredictionModel, LaysOutItsRegressorNewestFirst) {
+TEST(PredictionModel, TakesItsRegressorNewestFirstWithEachTorqueAfterItsFeature) {
   ModelOptions options;
   options.feature_dim = 3;
   options.order = 4;
+  options.residual = true;
+  options.increments = true;
   const PredictionModel<double> f(options, /*torque_dim=*/2);
-  EXPECT_EQ(f.regressorDim(), 4 * (3 + 2));
-  EXPECT_EQ(f.featureRow(0), 0);
-  EXPECT_EQ(f.torqueRow(0), 3);
-  EXPECT_EQ(f.featureRow(1), 5);
-  EXPECT_EQ(f.torqueRow(3), 18);
+  ASSERT_EQ(f.regressorDim(), 4 * (3 + 2));
+  const Eigen::VectorXd theta_p = Eigen::VectorXd::Zero(f.network().numParams());
+  Eigen::MatrixXd h = Eigen::VectorXd::LinSpaced(20, 0.0, 19.0).array().cube().matrix();
+  const Eigen::MatrixXd newest = h.topRows(3);
+  Eigen::MatrixXd expected = h;
+  for (int lag = 1; lag < 4; ++lag) {
+    expected.middleRows(5 * lag, 3) = h.middleRows(5 * lag - 5, 3) - h.middleRows(5 * lag, 3);
+  }
+  Eigen::MatrixXd predicted(3, 1);
+  Mlp<double>::Tape tape;
+  f.forward(theta_p.data(), h, &tape, predicted);
+  EXPECT_EQ(h, expected) << "increments of features, and torques as they were";
+  EXPECT_EQ(predicted, newest) << "a network of zeros changes nothing";
 }
 
 TEST(PredictionModel, OfThePaperIsA642Network) {

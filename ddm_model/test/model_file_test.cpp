@@ -224,6 +224,9 @@ TEST(ModelFile, ContentThatMakesNoSenseIsRefusedThoughItsChecksumFits) {
   EXPECT_TRUE(isRefused(withNumber(0, -1), {"no sense", "model/pca_dim"}));
   EXPECT_TRUE(isRefused(withNumber(8, 0), {"no sense", "model/order"}));
   EXPECT_TRUE(isRefused(withNumber(12, 0x7fffffff), {"no sense", "longer"}));
+  EXPECT_EQ(withNumber(78, testing::kToySize), bytes);  // the image size follows the options
+  EXPECT_TRUE(isRefused(withNumber(78, 0), {"no sense", "image size", "[1, 16384]", "got 0"}));
+  EXPECT_TRUE(isRefused(withNumber(82, 1001), {"no sense", "motors", "[1, 1000]", "got 1001"}));
 }
 
 TEST(ModelFile, LandmarksThatAreNoStatesAreRefused) {

@@ -77,6 +77,14 @@ TEST(Preconditioner, LeavesALayerAloneWhoseErrorsNobodyCounts) {
   EXPECT_TRUE(Preconditioner({factors})(v).allFinite());
 }
 
+TEST(Preconditioner, LeavesALayerAloneWhoseErrorsOverflow) {
+  KroneckerFactors<float> factors(4, 3);
+  factors.add(randomMatrix(4, 20, 1).cast<float>(), Eigen::MatrixXf::Constant(3, 20, 1e30F));
+  ASSERT_FALSE(factors.errors.allFinite());
+  const Eigen::VectorXf v = randomMatrix(15, 1, 3).cast<float>();
+  EXPECT_TRUE(Preconditioner({factors})(v).allFinite());
+}
+
 class FactorsOfTheObjective : public ::testing::Test {
  protected:
   FactorsOfTheObjective() {

@@ -122,10 +122,10 @@ TEST_F(Trainer, PredictsBetterThanStandingStill) {
   const DataSet fresh = testing::toyTrial(20, 3);
   for (int t = 1; t + 1 < 20; ++t) {
     const auto feature = [&](int at) { return model.encode(fresh.image(at)); };
-    Eigen::VectorXd h(f.regressorDim());
+    Eigen::VectorXd h(f.regressorDim());  // z_t, u_t, z_{t-1}, u_{t-1}
     for (int lag = 0; lag < 2; ++lag) {
-      h.segment(f.featureRow(lag), 2) = feature(t - lag);
-      h[f.torqueRow(lag)] = fresh.torques()(0, t - lag) / model_.max_torque[0];
+      h.segment(3 * lag, 2) = feature(t - lag);
+      h[3 * lag + 2] = fresh.torques()(0, t - lag) / model_.max_torque[0];
     }
     Mlp<double>::Tape tape;
     f.network().forward(model.thetaP(), h, &tape);

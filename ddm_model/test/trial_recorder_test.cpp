@@ -223,6 +223,21 @@ TEST_F(TrialRecorderTest, LeavesOutMessagesOfAnEarlierTrial) {
   EXPECT_EQ(readBag(path_, testing::kToySize, BagOptions()).data.torques()(0, 0), 1.0);
 }
 
+TEST_F(TrialRecorderTest, ARecordingUnderWayCanBeToldThatNothingIsOfAnEarlierTrial) {
+  ASSERT_TRUE(start(path_, /*after=*/100.0)) << message_;
+  ASSERT_TRUE(start(/*path=*/"", /*after=*/0.0)) << message_;  // the clock was set back
+  publishFrames(6);                                            // at 1.0, 1.2, ..., 2.0 s
+  const auto response = stop(6, /*last=*/5);
+  EXPECT_TRUE(response.success) << response.message;
+  EXPECT_EQ(response.images, 6U);
+  EXPECT_EQ(readBag(path_, testing::kToySize, BagOptions()).data.numFrames(), 6);
+}
+
+TEST_F(TrialRecorderTest, RefusesAStartWithoutAPathWhereNothingIsBeingRecorded) {
+  EXPECT_FALSE(start(/*path=*/""));
+  EXPECT_TRUE(contains(message_, "no path")) << message_;
+}
+
 TEST_F(TrialRecorderTest, StopsWithWhateverThereIsWhereNoNumberIsDue) {
   ASSERT_TRUE(start(path_)) << message_;
   const auto response = stop(0);

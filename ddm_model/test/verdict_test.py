@@ -25,7 +25,8 @@ class GoodData:
         self.features = np.column_stack([np.sin(angle), np.cos(angle)])
         self.goal_feature = np.array([0.0, 1.0])
         self.torques = random.uniform(-6.0, 6.0, (num_frames, 1))
-        self.bags = {"camera": ["51x51 mono8"] * 2, "images_without_torque": np.zeros(2), "interval_s": np.full(2, 0.2)}
+        self.bags = {"camera": ["51x51 mono8"] * 2, "interval_s": np.full(2, 0.2)}
+        self.unpaired = {"images without torque": np.zeros((2, 0))}
         self.frames = {"bag": np.repeat([0.0, 1.0], half), "time_s": np.tile(0.2 * np.arange(half), 2),
                        "mean_rms": np.full(num_frames, 0.1), "pca_rms": np.full(num_frames, 0.02),
                        "reconstruction_rms": np.full(num_frames, 0.04)}
@@ -35,7 +36,7 @@ class GoodData:
 
 
 def loses_torques(data):
-    data.bags["images_without_torque"] = np.array([20.0, 0.0])
+    data.unpaired["images without torque"] = np.array([np.zeros(20), np.linspace(1.1, 38.9, 20)])
 
 
 def stumbles(data):
@@ -97,7 +98,7 @@ FAULTS = {
     hardly_moves: "Torques are excited", pushes_too_hard: "Torques are within the model's range",
     learned_little: "Enough frames to learn from", shows_other_images: "Enough components, for such images",
     blurs: "Features hold the image", guesses: "Predictions beat repeating the last frame",
-    is_deaf_to_torque: "The model heeds the torque", never_saw_the_goal: "The goal has been seen",
+    is_deaf_to_torque: "The model responds to the torque", never_saw_the_goal: "The goal has been seen",
     has_no_goal: "There is a goal"}
 
 
@@ -115,6 +116,20 @@ class VerdictTest(unittest.TestCase):
             data = GoodData()
             spoil(data)
             self.assertEqual(self.failed(data), [name], spoil.__name__)
+
+    def test_images_before_the_first_torque_and_after_the_last_are_not_of_the_trial(self):
+        data = GoodData()
+        first, last = data.frames["time_s"][0], data.frames["time_s"][-1]
+        times = np.concatenate([first - 0.2 * np.arange(1, 1500), last + 0.2 * np.arange(1, 20)])  # five minutes of waiting
+        data.unpaired["images without torque"] = np.array([(bag, time) for bag in (0, 1) for time in times]).T
+        self.assertEqual(self.failed(data), [])
+        self.assertRegex(verdict.check_pairs(data).figure, r"^0 of 400 ")
+
+    def test_an_image_without_a_torque_is_lost_in_its_own_bag_only(self):
+        data = GoodData()
+        data.frames["time_s"][data.frames["bag"] == 1] *= 0.5
+        data.unpaired["images without torque"] = np.array([[0, 1], [30.0, 30.0]])  # the second bag ends earlier
+        self.assertRegex(verdict.check_pairs(data).figure, r"^1 of 401 ")
 
     def test_features_on_one_spot_tell_nothing_apart(self):
         data = GoodData()
@@ -142,7 +157,7 @@ class VerdictTest(unittest.TestCase):
         self.assertEqual(figures["Images have their torques"], ["20", "420", "4.76"])
         self.assertEqual(figures["Predictions beat repeating the last frame"],
                          ["0.35", "5", "1", "0.035", "0.1", "13", "15"])
-        self.assertEqual(figures["The model heeds the torque"], ["1.27", "5"])
+        self.assertEqual(figures["The model responds to the torque"], ["1.27", "5"])
         self.assertEqual(figures["Enough components, for such images"][-1], "96")
 
     def test_the_summary_says_what_to_do_first(self):
@@ -159,7 +174,7 @@ class VerdictTest(unittest.TestCase):
         data = GoodData()
         data.errors = {name: np.zeros(0) for name in data.errors}
         unknown = [check.name for check in verdict.verdict(data) if check.ok is None]
-        self.assertEqual(unknown, ["Predictions beat repeating the last frame", "The model heeds the torque"])
+        self.assertEqual(unknown, ["Predictions beat repeating the last frame", "The model responds to the torque"])
         self.assertEqual(self.failed(data), [])
         self.assertIn("2 of 14 ", verdict.summary(verdict.verdict(data)))
 

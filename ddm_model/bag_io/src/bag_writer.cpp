@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_bag_io/bag_writer.h"
 
+#include <ddm_files/plain_file.h>
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
@@ -111,9 +111,8 @@ void BagWriter::close() {
   } catch (const std::exception& e) {
     throw std::runtime_error("cannot complete bag " + path_ + ".active: " + reason(path_, e));
   }
-  if (std::rename((path_ + ".active").c_str(), path_.c_str()) != 0) {
-    throw std::runtime_error("cannot rename " + path_ + ".active: " + std::strerror(errno));
-  }
+  // On the disk before trials.csv can be: a trial that is listed there without its bag is refused.
+  renameDurably(path_ + ".active", path_);
 }
 
 }  // namespace ddm

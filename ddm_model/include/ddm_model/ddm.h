@@ -47,6 +47,7 @@ class Ddm {
 
   /// y_hat = g(z) (eq. 3b), clamped to what an image can show.
   /// @param z  [feature_dim]
+  /// @pre the size of z (checked by eigen_assert, i.e. in debug builds only)
   Grey decode(const Eigen::VectorXd& z) const;
 
   /// z_ref, the feature of the goal image.

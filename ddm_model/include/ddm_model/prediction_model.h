@@ -50,10 +50,6 @@ class PredictionModel {
   const Eigen::VectorXd& maxTorque() const { return max_torque_; }
   /// @return n (feature_dim + torque_dim), the size of h_n
   int regressorDim() const { return network_.inputDim(); }
-  /// Where the feature of `lag` steps ago (0: the current one) starts in h_n.
-  int featureRow(int lag) const { return lag * (feature_dim_ + torque_dim_); }
-  /// Where the torque of `lag` steps ago starts in h_n.
-  int torqueRow(int lag) const { return featureRow(lag) + feature_dim_; }
 
   /// The network within f.
   const Mlp<Scalar>& network() const { return network_; }
@@ -88,10 +84,10 @@ class PredictionModel {
   }
 
  private:
-  /// Rows of the feature of `lag` steps ago.
+  /// Rows of the feature of `lag` steps ago (0: the current one).
   template <class Regressors>
   auto features(int lag, Regressors& regressors) const {
-    return regressors.middleRows(featureRow(lag), feature_dim_);
+    return regressors.middleRows(lag * (feature_dim_ + torque_dim_), feature_dim_);
   }
 
   int feature_dim_;

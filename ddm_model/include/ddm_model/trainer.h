@@ -15,9 +15,11 @@ namespace ddm {
 /// State of a training under way: at the best parameters so far of the present stage.
 struct TrainingProgress {
   int iteration = 0;
-  double v_r = 0.0;            ///< [grey^2]
-  double v_p = 0.0;            ///< [grey^2]
-  double gradient_norm = 0.0;  ///< largest entry of the scaled objective's gradient
+  double v_r = 0.0;  ///< [grey^2]
+  double v_p = 0.0;  ///< [grey^2]
+  /// Largest entry of the scaled objective's gradient; with training/solver kfac in preconditioned coordinates, which
+  /// change every 50 iterations, so that values before and after a change do not compare.
+  double gradient_norm = 0.0;
   double fraction_done = 0.0;  ///< iterations over their caps, of all starts and stages
 };
 

@@ -86,7 +86,7 @@ def figures_of(data):
                     "When there are frames, and when images and torques that have no partner. A frame that is missing "
                     "splits its bag, and nothing is predicted across it."))
         out.append(("Reconstructions", lambda: report_figures.draw_reconstructions(data),
-                    "Images, what the principal components keep of them, and what the features do."))
+                    "Images, what the principal components keep of them after model/blur, and what the features do."))
         for kind, words in (("typical", "in the middle"), ("worst", "at the end")):
             if kind in data.predictions:
                 out.append(("A prediction: %s" % kind, lambda kind=kind: report_figures.draw_prediction(data, kind),

@@ -60,7 +60,7 @@ def blocks(number, num_pixels):
 
 
 def kept_by_pca(arrays, y):
-    """Coordinates along the principal components [grey] of images y [N x D], and the images with those alone."""
+    """Coordinates along the principal components [grey] of blurred images y [N x D], and the images with those alone."""
     coordinates = (y - arrays["pca_mean"]) @ arrays["pca_basis"]
     return coordinates, arrays["pca_mean"] + coordinates @ arrays["pca_basis"].T
 

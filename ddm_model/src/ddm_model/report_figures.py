@@ -11,6 +11,7 @@ from matplotlib.ticker import MaxNLocator  # noqa: E402
 import numpy as np  # noqa: E402
 
 from ddm_model.feature_grid import GRID, FeatureGrid  # noqa: E402
+from ddm_model.model import blurred  # noqa: E402
 from ddm_model.model_data import kept_by_pca  # noqa: E402
 
 # From the Okabe-Ito set: told apart by colour-blind readers, and dashes and shapes differ too.
@@ -74,7 +75,8 @@ def draw_rows(rows, labels, columns):
 def draw_reconstructions(data):
     shown = np.unique(np.arange(RECONSTRUCTIONS) * len(data.images) // RECONSTRUCTIONS)
     images = data.images[shown]
-    kept = kept_by_pca(data.model.arrays, images.reshape(len(shown), -1) / 255.0)[1].reshape(images.shape)
+    y = blurred(data.model.arrays, images.reshape(len(shown), -1) / 255.0)
+    kept = kept_by_pca(data.model.arrays, y)[1].reshape(images.shape)
     return draw_rows([images, 255.0 * kept, data.reconstructions[shown]], ["image", "PCA", "features"],
                      ["frame %d" % frame for frame in shown])
 

@@ -51,15 +51,28 @@ def intervals(data):
     return np.concatenate(out) if out else np.ones(0)
 
 
+def num_lost(data):
+    """How many images have no torque, between the first and the last frame of their bag. What lies before is a robot's wait
+    for its reset, what lies after is the end.
+    """
+    bag_of, time = data.unpaired["images without torque"]
+    number = 0
+    for bag in np.unique(data.frames["bag"]):
+        frames = data.frames["time_s"][data.frames["bag"] == bag]
+        number += np.count_nonzero((bag_of == bag) & (time >= np.min(frames)) & (time <= np.max(frames)))
+    return number
+
+
 def check_pairs(data):
-    lost = data.bags["images_without_torque"].sum()
+    lost = num_lost(data)
     share = lost / (lost + len(data.features))
     return Check("Images have their torques", share <= LOST,
                  "%d of %d images (%s) have no torque" % (
                      lost, lost + len(data.features), percent(share)),
-                 "at most %s: each one splits the trial, and nothing is predicted across it" % percent(LOST),
-                 "Stamp each torque with the header stamp of the image that it answers, or command one at least every data_set/dt, "
-                 "and record both topics from before the first image to after the last.")
+                 "at most %s, from the first image that has one to the last: each one splits the trial, and nothing is predicted "
+                 "across it" % percent(LOST),
+                 "Stamp each torque with the header stamp of the image that it answers, or command one at least every "
+                 "data_set/dt.")
 
 
 def check_rate(data):
@@ -182,7 +195,7 @@ def check_prediction(data):
 
 
 def check_torque_effect(data):
-    name, rule = "The model heeds the torque", "at least %g times the error with the true torques" % TORQUE_EFFECT
+    name, rule = "The model responds to the torque", "at least %g times the error with the true torques" % TORQUE_EFFECT
     if len(data.errors["steps"]) == 0:
         return Check(name, None, "no prediction could be made", rule, "Record longer bags without gaps.")
     near = first_third(data)

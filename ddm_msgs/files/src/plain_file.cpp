@@ -54,6 +54,29 @@ bool writeAll(int file, const std::string& bytes) {
   return true;
 }
 
+/// Waits until the bytes of a file, or the names in a folder, are on the disk.
+/// @param flags  of open()
+/// @return  false, with errno set, if they are not
+bool store(const std::string& path, int flags) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | flags);
+  if (file < 0) return false;
+  const int error = ::fsync(file) == 0 ? 0 : errno;
+  ::close(file);
+  errno = error;
+  return error == 0;
+}
+
+/// Renames a file and waits until its new name is on the disk.
+/// @return  false, with errno set, if that failed
+bool renameAndStore(const std::string& from, const std::string& to) {
+  if (::rename(from.c_str(), to.c_str()) != 0) return false;
+  const size_t slash = to.find_last_of('/');
+  const std::string folder = slash == std::string::npos ? "." : to.substr(0, slash + 1);
+  // The file is there: it does not matter that a folder may not be read, or that its file system
+  // does not know how to store one.
+  return store(folder, O_DIRECTORY) || errno == EACCES || errno == EINVAL;
+}
+
 }  // namespace
 
 void requirePlainFile(const std::string& path) {
@@ -88,11 +111,16 @@ void writeFileAtomically(const std::string& path, const std::string& bytes) {
   if (file < 0) cannot("write", path);
   int error = writeAll(file, bytes) && ::fsync(file) == 0 ? 0 : errno;
   if (::close(file) != 0 && error == 0) error = errno;
-  if (error == 0 && ::rename(unfinished.c_str(), path.c_str()) != 0) error = errno;
+  if (error == 0 && !renameAndStore(unfinished, path)) error = errno;
   if (error == 0) return;
   ::unlink(unfinished.c_str());
   errno = error;
   cannot("write", path);
+}
+
+void renameDurably(const std::string& from, const std::string& to) {
+  if (!store(from, /*flags=*/0)) cannot("store", from);
+  if (!renameAndStore(from, to)) cannot("rename", from + " to " + to);
 }
 
 }  // namespace ddm

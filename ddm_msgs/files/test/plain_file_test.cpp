@@ -64,6 +64,31 @@ TEST_F(PlainFile, AWriteThatFailsLeavesTheOldFileAndNothingElse) {
   EXPECT_TRUE(isNotWritten(folder_.file("missing/a"), "No such file"));
 }
 
+TEST_F(PlainFile, AFileOfAnotherWriterGetsItsFinalNameOrIsNamedAndStays) {
+  const std::string active = path_ + ".active";
+  writeFileAtomically(path_, "old");
+  writeFileAtomically(active, "new");
+  renameDurably(active, path_);
+  EXPECT_EQ(readFile(path_), "new");
+  EXPECT_EQ(files(), std::vector<std::string>{"a.model"});
+  EXPECT_TRUE(testing::throwsNaming<std::runtime_error>([&] { renameDurably(active, path_); },
+                                                        {active, "No such file"}));
+  EXPECT_TRUE(testing::throwsNaming<std::runtime_error>(
+      [&] { renameDurably(path_, folder_.file("")); }, {path_, folder_.file("")}));
+  EXPECT_TRUE(testing::throwsNaming<std::runtime_error>(
+      [&] { renameDurably(path_, folder_.file("missing/a")); }, {path_, "No such file"}));
+  EXPECT_EQ(readFile(path_), "new");
+}
+
+TEST_F(PlainFile, AFileOfTheCurrentFolderNeedsNoFolderInItsPath) {
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_.file(""));
+  EXPECT_NO_THROW(writeFileAtomically("a.active", "new"));
+  EXPECT_NO_THROW(renameDurably("a.active", "a.model"));
+  fs::current_path(before);
+  EXPECT_EQ(readFile(path_), "new");
+}
+
 TEST_F(PlainFile, FilesOfOtherWritersAreNotTouched) {
   const std::string others = path_ + ".unfinished";
   writeFileAtomically(others, "of another process");

@@ -30,8 +30,6 @@ constexpr char kFeatureSpaceImage[] =
 constexpr char kFeatureSpaceMarkers[] =
     "feature_space_markers";          ///< visualization_msgs/MarkerArray: the same
 constexpr char kTrials[] = "trials";  ///< std_msgs/String, latched: trials.csv and its goal
-constexpr char kLearningCurveImage[] =
-    "learning_curve_image";  ///< sensor_msgs/Image, latched: what each model could do
 
 constexpr char kCamera[] = "camera/source";  ///< sensor_msgs/Image: a robot's camera, as it comes
 constexpr char kJointStates[] = "joint_states";  ///< sensor_msgs/JointState: a robot's, for limits

@@ -38,7 +38,7 @@ class BagWriter {
   /// Number of images whose torque is there too.
   int numFrames() const;
 
-  /// Closes the bag and gives it its final name.
+  /// Closes the bag and gives it its final name. From then on it survives a power cut.
   /// @throws std::runtime_error with the path and the reason
   void close();
 

@@ -15,8 +15,14 @@ std::string readFile(const std::string& path);
 
 /// Writes bytes to a new file next to `path` and renames it: there is never half a file under the
 /// name. If several processes or threads write at once, one of their files survives, whole.
+/// After a power cut there is the old file or the new one, and the new one if this had returned.
 /// @throws std::runtime_error with the path and the reason, also if there is something at the path
-///         that is not a regular file; then nothing has changed
+///         that is not a regular file; then nothing has changed, unless the disk fails at the end
 void writeFileAtomically(const std::string& path, const std::string& bytes);
+
+/// Renames a file that somebody else wrote and closed. Its bytes are on the disk before it has the
+/// name, and the name is when this returns: after a power cut nothing incomplete has it.
+/// @throws std::runtime_error with the path and the reason
+void renameDurably(const std::string& from, const std::string& to);
 
 }  // namespace ddm
