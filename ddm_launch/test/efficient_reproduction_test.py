@@ -193,7 +193,9 @@ class EfficientReproductionTest(ScratchCase):
                      "suite_reacher_hard", "suite_cartpole", "suite_acrobot"):
             self.assertEqual(read_bytes(self.out, name + ".png")[:4], b"\x89PNG", name)
         for folder in ("", "gravity"):
-            self.assertEqual(read_yaml(self.out, folder, "config.yaml")["version"], "made up")
+            config = read_yaml(self.out, folder, "config.yaml")
+            self.assertEqual(config["version"], "made up")
+            self.assertEqual(config["experiment"]["runs"], "runs/%s/seed_0100" % (folder or "efficient"))
         machine = read_yaml(self.out, "machine.yaml")
         self.assertEqual(machine["preset"], "efficient")
         self.assertEqual({name: step["seeds_run"] for name, step in machine["steps"].items()}, {

@@ -50,7 +50,8 @@ def main():
             return 1
         write(os.path.join(options.out, "logs", "seed_%04d.log" % seed), "seed %d" % seed)
         write(os.path.join(folders[seed], "config.yaml"), "version: made up",
-              "model: {residual: true, encoder_widths: [25, 12, 6]}", "plant: {dt: 0.1}")
+              "model: {residual: true, encoder_widths: [25, 12, 6]}", "plant: {dt: 0.1}",
+              "experiment: {runs: %s}" % os.path.abspath(folders[seed]))
         write_trials(os.path.join(folders[seed], "trials.csv"), seed, options.trials + 1, not more, options.plant)
         write(os.path.join(folders[seed], "summary.yaml"), "finished: true", "wall_s: %d" % (100 + seed))
         print("seed %d finished (of some)" % seed, flush=True)

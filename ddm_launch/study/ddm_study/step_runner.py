@@ -158,7 +158,12 @@ class StepRunner:
         shutil.copyfile(source, self.path(name))
 
     def keep_config(self, step, name):
-        self.keep(os.path.join(step.seed_folder(self.out, step.seeds[0]), "config.yaml"), name)
+        """That of the first seed. Its run folder is named as seen from DIR: no path of a machine is kept."""
+        with open(os.path.join(step.seed_folder(self.out, step.seeds[0]), "config.yaml")) as stream:
+            text = stream.read()
+        os.makedirs(os.path.dirname(self.path(name)), exist_ok=True)
+        with open(self.path(name), "w") as stream:
+            stream.write(text.replace(os.path.join(os.path.abspath(self.out), ""), ""))
 
     def run_sweep(self, step, bar):
         """Runs the seeds that are not finished, moves the bar by each that is, and keeps the table."""
