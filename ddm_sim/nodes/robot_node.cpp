@@ -276,7 +276,8 @@ bool RobotNode::onEnable(std_srvs::SetBool::Request& request,
 void RobotNode::loadGoal() {
   if (options_.goal_file.empty()) return;
   if (!std::filesystem::exists(options_.goal_file)) {
-    log_.warn("there is no picture " + options_.goal_file + " yet: service take_goal writes it");
+    log_.warn("there is no picture " + options_.goal_file +
+              " yet: call service take_goal to write it");
     return;
   }
   const sensor_msgs::Image picture = readPicture(options_.goal_file);

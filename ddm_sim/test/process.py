@@ -26,8 +26,9 @@ class Process:
         environment = dict(os.environ, PYTHONUNBUFFERED="1", ROSCONSOLE_STDOUT_LINE_BUFFERED="1")
         self._process = subprocess.Popen(command, env=environment, stdin=terminal, stdout=written_to or subprocess.PIPE,
                                          stderr=subprocess.STDOUT, universal_newlines=True, errors="replace")
-        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader = None
         if written_to is None:
+            self._reader = threading.Thread(target=self._read, daemon=True)
             self._reader.start()
 
     def _read(self):
@@ -55,7 +56,8 @@ class Process:
     def waitForEnd(self, limit_s):
         """The exit code."""
         code = self._process.wait(limit_s)
-        self._reader.join(limit_s)
+        if self._reader is not None:
+            self._reader.join(limit_s)
         return code
 
     def send(self, signal_number):

@@ -104,9 +104,10 @@ class RobotMotorTest(RobotCase):
 
     def test_a_torque_with_any_stamp_is_survived(self):
         self.enterTrial()
-        far = Torque(torque=[3.0])
-        for far.header.stamp in (rospy.Time(4294967295, 999999999), rospy.Time(0)):
-            self.robot.torques.publish(far)
+        for stamp in (rospy.Time(4294967295, 999999999), rospy.Time(0)):
+            torque = Torque(torque=[3.0])
+            torque.header.stamp = stamp
+            self.robot.torques.publish(torque)
         wait_until(lambda: len(self.robot.latencies.messages) >= 3, "latencies")
         self.assertNotIn(3.0, [message.data for message in self.robot.efforts.messages])
         self.robot.answer(1.0)

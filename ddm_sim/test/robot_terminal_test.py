@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import select
+import signal
 import sys
 import threading
 
@@ -10,7 +11,7 @@ import rospy
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from robot_stand_in import RobotCase, wait_until  # noqa: E402
+from robot_stand_in import LIMIT_S, RobotCase, wait_until  # noqa: E402
 
 
 class StoppedTerminal:
@@ -58,8 +59,9 @@ class RobotTerminalTest(RobotCase):
         self.assertTrue(self.robot.enable(False).success)
         self.assertEqual(self.robot.effort(), 0.0)
 
-    def test_the_last_word_is_zero(self):
-        self.robot.process.send(2)
+    def test_the_node_ends_and_its_last_word_is_zero(self):
+        self.robot.process.send(signal.SIGINT)
+        self.assertEqual(self.robot.process.waitForEnd(LIMIT_S), 0)  # it gives up on the terminal after ten seconds
         wait_until(lambda: self.robot.efforts.messages[-1].data == 0.0, "zero")
 
 

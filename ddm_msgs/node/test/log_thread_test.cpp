@@ -6,8 +6,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdio>
 #include <string>
+
+#include "ddm_node/waiting.h"
 
 namespace ddm {
 namespace {
@@ -60,7 +63,11 @@ TEST(LogThread, WritesAllLinesInTheirOrderBeforeItEnds) {
 TEST(LogThread, KeepsNobodyWaitingWhereTheTerminalIsStopped) {
   const StoppedTerminal terminal;
   LogThread log;
-  for (int i = 0; i < 10; ++i) log.info("a line");
+  const auto logged = callWithin(std::chrono::seconds(10), [&log] {
+    for (int i = 0; i < 10; ++i) log.info("a line");
+    return true;
+  });
+  EXPECT_TRUE(logged.value_or(false));
 }
 
 }  // namespace

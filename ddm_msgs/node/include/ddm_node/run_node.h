@@ -32,6 +32,15 @@ inline void onShutdownRequest(XmlRpc::XmlRpcValue& params, XmlRpc::XmlRpcValue& 
   }
 }
 
+/// The process ends ten seconds from now at the latest, whatever then still waits for a master or a
+/// terminal that was stopped.
+inline void endSoon(int code) {
+  std::thread([code] {
+    std::this_thread::sleep_for(std::chrono::seconds(10));
+    std::_Exit(code);
+  }).detach();
+}
+
 }  // namespace internal
 
 /// What a node does when it is asked to end.
@@ -51,6 +60,7 @@ void runUntilEnd(const Look& look, const Stop& stop) {
   std::signal(SIGTERM, internal::onSignal);
   while (ros::ok() && !internal::end_requested) look();
   if (stop()) ros::WallDuration(0.1).sleep();  // for the message to leave
+  internal::endSoon(EXIT_SUCCESS);
   ros::shutdown();
 }
 
@@ -87,10 +97,7 @@ int runNode(const std::string& name, int argc, char** argv, const Run& run,
     ROS_FATAL_STREAM(name << ": " << e.what());
     code = EXIT_FAILURE;
   }
-  std::thread([code] {
-    std::this_thread::sleep_for(std::chrono::seconds(10));
-    std::_Exit(code);
-  }).detach();
+  internal::endSoon(code);
   return code;
 }
 
