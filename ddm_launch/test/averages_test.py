@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-# Means over experiments: standard errors, and Wilson's intervals against published ones.
+# Means over experiments: standard errors, Wilson's intervals against published ones, and tests by hand.
 # SPDX-License-Identifier: BSD-3-Clause
 import unittest
 
 import rosunit
 
-from ddm_launch.averages import mean_and_error, success_rates, wilson_interval
+from ddm_launch.averages import holm, mean_and_error, sign_test, success_rates, wilson_interval
 from ddm_launch.run_folder import Trial
 
 
@@ -42,6 +42,19 @@ class AveragesTest(unittest.TestCase):
         mean, error = mean_and_error([1.0, 0.0, 1.0, 1.0])
         self.assertEqual(mean, 0.75)
         self.assertAlmostEqual(error, (0.75 * 0.25 / 3.0) ** 0.5)
+
+    def test_a_sign_test_counts_the_pairs_that_differ(self):
+        # 0 or 1 of 5 fair coins: 1/32 and 6/32, both sides
+        self.assertAlmostEqual(sign_test([-1.0, 0.0, -0.2, -1.0, -0.4, 0.0, -1.0]), 2.0 / 32.0)
+        self.assertAlmostEqual(sign_test([1.0, -1.0, 1.0, 1.0, 1.0]), 12.0 / 32.0)
+        self.assertEqual(sign_test([1.0, -1.0]), 1.0)  # 3/4 on each side
+        self.assertEqual(sign_test([0.0, 0.0]), 1.0)
+
+    def test_holm_multiplies_by_the_tests_that_are_left_and_keeps_their_order(self):
+        for p, expected in zip(holm([0.04, 0.01, 0.03]), (0.06, 0.03, 0.06)):
+            self.assertAlmostEqual(p, expected)
+        self.assertEqual(holm([0.6, 0.5]), [1.0, 1.0])
+        self.assertEqual(holm([]), [])
 
 
 if __name__ == "__main__":

@@ -119,8 +119,8 @@ class EfficientReproductionTest(ScratchCase):
         self.assertEqual(self.steps("efficient"), {"efficient": (
             "trials.csv", None, "--seeds 100:125 --preset efficient --plant pendulum --trials 15")})
 
-    def test_each_ablation_runs_the_seeds_that_the_preset_was_chosen_on(self):
-        words = "--seeds 0:4 --preset efficient --plant pendulum --trials 5"
+    def test_each_ablation_runs_seeds_of_its_own(self):
+        words = "--seeds 0:4 --preset efficient --plant pendulum --trials 3"
         self.assertEqual(self.steps("ablation"), {
             "ablation_preset": ("ablation/preset/trials.csv", None, words),
             "ablation_residual": ("ablation/residual/trials.csv", None,
@@ -131,7 +131,7 @@ class EfficientReproductionTest(ScratchCase):
     def test_what_was_tried_stands_beside_the_reference_of_the_ablation(self):
         words = "--seeds 0:4 --preset efficient --plant pendulum --trials "
         self.assertEqual(self.steps("tried"), {
-            "ablation_preset": ("ablation/preset/trials.csv", None, words + "5"),
+            "ablation_preset": ("ablation/preset/trials.csv", None, words + "3"),
             "tried_starts": ("tried/starts/trials.csv", None, words + "1 -- --config /config/tried/starts.yaml")})
 
     def test_gravity_has_the_oracle_and_pilco_beside_it(self):
@@ -168,7 +168,8 @@ class EfficientReproductionTest(ScratchCase):
         self.assertEqual(self.rows("times.csv")[-2:], [["median", "32", "212", "4"], ["largest", "32", "224", "4"]])
         differences = {(row[0], row[2]): row[4:] for row in self.rows("ablation.csv")}
         self.assertEqual(differences["residual", "100"][:3], ["0", "0", "-0.5"])
-        self.assertEqual(differences["widths", "200 to 600"], ["0", "0", "-1", "0"])
+        self.assertEqual(differences["widths", "200 to 400"], ["0", "0", "-1", "0", "0.125", "0.25"])
+        self.assertEqual(differences["preset", "200 to 400"][2:], ["0", "0", "", ""])
         self.assertEqual({row[0]: row[1] for row in self.rows("ablation.csv")},
                          {"preset": "Full preset", "residual": "Without residual", "widths": "Narrow"})
         self.assertEqual([row[0] for row in self.rows("gravity.csv")],

@@ -84,11 +84,12 @@ class EfficientTablesTest(figure_case.FigureCase):
                 "100", "200", "300", "100 to 300", "200 to 300")])
         by_key = {(row[0], row[2]): row[4:] for row in rows}
         self.assertEqual(by_key["preset", "100"][0], 0.75)
-        self.assertEqual([by_key["preset", frames][2:] for frames in ("100", "100 to 300")], [(0.0, 0.0)] * 2)
-        success, error, difference, difference_error = by_key["steps", "100"]
+        self.assertEqual([by_key["preset", frames][2:] for frames in ("100", "100 to 300")], [(0.0, 0.0, "", "")] * 2)
+        success, error, difference, difference_error, p, p_holm = by_key["steps", "100"]
         self.assertEqual((success, difference), (0.5, -0.25))
         self.assertAlmostEqual(error, (0.25 / 3.0) ** 0.5)
         self.assertAlmostEqual(difference_error, 0.25)  # 0, -1, 0, 0: s = 1/2
+        self.assertEqual((p, p_holm), (1.0, 1.0))  # one pair differs
         self.assertAlmostEqual(by_key["steps", "100 to 300"][0], 9.0 / 12.0)
         self.assertAlmostEqual(by_key["steps", "100 to 300"][2], -2.0 / 12.0)
         self.assertAlmostEqual(by_key["steps", "200 to 300"][2], -1.0 / 8.0)
@@ -119,6 +120,14 @@ class EfficientTablesTest(figure_case.FigureCase):
         differences = {(row[0], row[2]): row[6] for row in rows}
         self.assertEqual((differences["ensemble", "100"], differences["ensemble", "200"]), (0.0, -0.25))
         self.assertEqual(differences["starts", "100"], 0.25)
+
+    def test_several_variants_share_the_level_of_their_tests(self):
+        self.writeTrials("ablation/preset/trials.csv", range(6), 1, lambda seed, trial: True)
+        for name, failures in (("all", 6), ("five", 5), ("none", 0)):
+            self.writeTrials("ablation/%s/trials.csv" % name, range(6), 1, lambda seed, trial: seed >= failures)
+        rows = efficient_tables.variant_rows(self.scratch, "ablation", dict.fromkeys(("preset", "none", "five", "all"), "-"))
+        self.assertEqual({row[0]: row[8:] for row in rows}, {
+            "preset": ("", ""), "none": (1.0, 1.0), "five": (2.0 / 32, 4.0 / 32), "all": (2.0 / 64, 6.0 / 64)})
 
     def test_variants_without_a_common_number_of_frames_are_refused(self):
         self.writeAblation()

@@ -1,4 +1,4 @@
-# Means over experiments, with their standard errors and confidence intervals.
+# Means over experiments, with their standard errors, confidence intervals and tests.
 # SPDX-License-Identifier: BSD-3-Clause
 import itertools
 import math
@@ -41,3 +41,26 @@ def mean_and_error(values):
     """Mean of these numbers and its standard error, s / sqrt(n) with the sample's s; 0 for a single number."""
     mean = math.fsum(values) / len(values)
     return mean, statistics.stdev(values, mean) / math.sqrt(len(values)) if len(values) > 1 else 0.0
+
+
+def sign_test(differences):
+    """Exact two-sided p-value of paired differences whose signs would be as likely + as -; zeros do not count.
+
+    Of successes (1) and failures (0) it is McNemar's exact test. W. J. Conover, "Practical Nonparametric Statistics"
+    (1999), sec. 3.4 and 3.5.
+    """
+    more, fewer = sum(d > 0 for d in differences), sum(d < 0 for d in differences)
+    n = more + fewer
+    return min(1.0, 2.0 * sum(math.comb(n, k) for k in range(min(more, fewer) + 1)) / 2 ** n)
+
+
+def holm(p_values):
+    """p-values of several tests at once, so that at 5 % the chance of any false finding is 5 % at most.
+
+    S. Holm, "A simple sequentially rejective multiple test procedure", Scand. J. Stat. 6 (1979): the i-th smallest of
+    m (i = 0, 1, ...) times m - i, and none below one that is smaller itself.
+    """
+    adjusted, largest = [0.0] * len(p_values), 0.0
+    for rank, index in enumerate(sorted(range(len(p_values)), key=p_values.__getitem__)):
+        largest = adjusted[index] = max(largest, min(1.0, (len(p_values) - rank) * p_values[index]))
+    return adjusted

@@ -4,7 +4,7 @@ import collections
 import os
 import statistics
 
-from ddm_launch.averages import mean_and_error, success_rates, wilson_interval
+from ddm_launch.averages import holm, mean_and_error, sign_test, success_rates, wilson_interval
 from ddm_launch.command import Failure
 from ddm_launch.run_folder import read_sweep
 from ddm_launch.settings import read_yaml
@@ -94,30 +94,37 @@ def mean_success(runs, frames):
 
 
 def variant_rows(folder, part, labels):
-    """Rows (variant, label, frames, seeds, success, its standard error, difference to the preset, its standard error).
+    """Rows (variant, label, frames, seeds, success, its standard error, difference to the preset, its standard error,
+    p of the sign test, p by Holm over all variants at these frames).
 
     labels: {variant: label}; the results of each lie in FOLDER/PART/VARIANT, those of the preset itself, PRESET, in
-    FOLDER/ablation. Differences are paired by seed. Single frames come first, those that each variant has; then the
-    mean over all, and over all but the first.
+    FOLDER/ablation. Differences are paired by seed; the preset has neither p. Single frames come first, those that each
+    variant has; then the mean over all, and over all but the first.
     """
-    rows, variants = [], {name: read_runs(folder, "ablation" if name == PRESET else part, name, "trials.csv")
-                          for name in labels}
+    variants = {name: read_runs(folder, "ablation" if name == PRESET else part, name, "trials.csv") for name in labels}
     frames = sorted(set.intersection(*({row[0] for row in success_rates(runs.values())}
                                        for runs in variants.values())))
     if not frames:
         raise Failure("%s: no number of frames is known of %s and the preset itself: run each with as many frames a "
                       "trial" % (os.path.join(folder, part), ", ".join(name for name in labels if name != PRESET)))
-    for variant, label in labels.items():
-        for group in [[count] for count in frames] + [some for some in (frames, frames[1:]) if len(some) > 1]:
-            text = " to ".join(map(str, group if len(group) == 1 else (group[0], group[-1])))
-            values, reference = mean_success(variants[variant], group), mean_success(variants[PRESET], group)
+    groups = {str(count): [count] for count in frames}
+    groups.update(("%d to %d" % (some[0], some[-1]), some) for some in (frames, frames[1:]) if len(some) > 1)
+    measured, p_values = {}, {}
+    for text, group in groups.items():
+        reference, differences = mean_success(variants[PRESET], group), {}
+        for variant in labels:
+            values = mean_success(variants[variant], group)
             seeds = sorted(set(values) & set(reference))
             if not seeds:
                 raise Failure("no seed has %s frames of both %s and the preset itself: run the same seeds with each"
                               % (text, variant))
-            rows.append((variant, label, text, len(seeds)) + mean_and_error([values[seed] for seed in seeds]) +
-                        mean_and_error([values[seed] - reference[seed] for seed in seeds]))
-    return rows
+            differences[variant] = [values[seed] - reference[seed] for seed in seeds]
+            measured[variant, text] = ((len(seeds),) + mean_and_error([values[seed] for seed in seeds]) +
+                                       mean_and_error(differences[variant]))
+        p = {variant: sign_test(differences[variant]) for variant in labels if variant != PRESET}
+        p_values.update(((variant, text), both) for variant, both in zip(p, zip(p.values(), holm(list(p.values())))))
+    return [(variant, labels[variant], text) + measured[variant, text] + p_values.get((variant, text), ("", ""))
+            for variant in labels for text in groups]
 
 
 def nuisance_rows(folder, names):
@@ -201,7 +208,8 @@ def write_success(folder, sweep_folder, resumed=()):
 
 def write_variants(folder, part, labels):
     write_csv(os.path.join(folder, part + ".csv"),
-              ["variant", "label", "frames", "seeds", "success", "success_se", "difference", "difference_se"],
+              ["variant", "label", "frames", "seeds", "success", "success_se", "difference", "difference_se", "p",
+               "p_holm"],
               variant_rows(folder, part, labels))
 
 
