@@ -17,9 +17,9 @@ LAST = 300
 DT_NS = 200000000
 
 
-def samples_of(rss_kb, open_files):
+def samples_of(rss_kb, open_files, node="node"):
     """Of one node; both are functions of the trial."""
-    return [Sample("lockstep", "node", trial, 0.5 * trial, rss_kb(trial), open_files(trial))
+    return [Sample("lockstep", node, trial, 0.5 * trial, rss_kb(trial), open_files(trial))
             for trial in range(LAST + 1)]
 
 
@@ -52,6 +52,15 @@ class SoakBarsTest(ScratchCase):
 
     def test_growth_before_trial_30_is_no_leak(self):
         self.assertEqual(verdicts(samples_of(lambda trial: 30000 + 1000 * min(trial, 30), lambda _: 17)), [1, 1, 1])
+
+    def test_the_images_that_model_node_keeps_are_no_leak(self):
+        def passed(kb_a_trial, node="model_node", image_bytes=1024):
+            frames = [dict(lost_frame(0), trial=trial, part=part) for trial in range(LAST + 1)
+                      for part in ("trial", "evaluation")]  # 20 images each
+            samples = samples_of(lambda trial: 60000 + kb_a_trial * trial, lambda _: 17, node)
+            return judge("lockstep", LAST, samples, frames, image_bytes)[0].passed
+        self.assertEqual([passed(kb) for kb in (0, 20, 40, 41)], [1, 1, 1, 0])
+        self.assertEqual((passed(20, node="mpc_node"), passed(20, image_bytes=None)), (0, 0))
 
     def test_a_file_that_stays_open_every_hundred_trials_is_noticed(self):
         self.assertEqual(verdicts(samples_of(lambda _: 60000, lambda trial: 17 + trial // 100)), [1, 0, 1])

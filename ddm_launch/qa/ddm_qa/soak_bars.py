@@ -16,6 +16,7 @@ Bar = collections.namedtuple("Bar", "run bar measured passed")
 FRAME_COLUMNS = ["run", "trial", "part", "due", "published", "recorded", "answered", "lost"]
 
 GROWTH = 0.05  # of resident memory, since the first tenth of the trials: trial 30 of 300
+IMAGES = 2.0  # that model_node may keep of each frame of a trial: one, and what else it needs
 
 
 def reference_trial(last):
@@ -36,15 +37,27 @@ def after(samples, trial):
     return next(sample for sample in samples if sample.trial >= trial)
 
 
-def judge(run, last, samples, frames):
-    """All bars of a run. last: number of its last trial; samples, frames: of this run."""
+def memory_bar(run, node, first, end, last, kept_bytes):
+    """first, end: samples of the node. kept_bytes: of the images that it was given in between, or None if it keeps none."""
+    name, passed = "resident memory of %s" % node, end.trial == last
+    grown = end.rss_kb / first.rss_kb - 1.0
+    measured = "%.1f MB after trial %d, %.1f MB after trial %d: %+.1f %%" % (
+        first.rss_kb / 1024.0, first.trial, end.rss_kb / 1024.0, end.trial, 100.0 * grown)
+    if kept_bytes is None:
+        return Bar(run, name, measured, int(passed and grown <= GROWTH))
+    images = 1024.0 * (end.rss_kb - first.rss_kb) / max(1, kept_bytes)
+    return Bar(run, name, "%s, %.2f images a frame" % (measured, images), int(passed and images <= IMAGES))
+
+
+def judge(run, last, samples, frames, image_bytes=None):
+    """All bars of a run. last: number of its last trial; samples, frames: of this run; image_bytes: of an image, if those that
+    model_node keeps may make it grow."""
     bars, tenth = [], reference_trial(last)
     for node, of_node in by_node(samples).items():
         first, end = after(of_node, tenth), of_node[-1]
-        growth = end.rss_kb / first.rss_kb - 1.0
-        bars.append(Bar(run, "resident memory of %s" % node, "%.1f MB after trial %d, %.1f MB after trial %d: %+.1f %%" % (
-            first.rss_kb / 1024.0, first.trial, end.rss_kb / 1024.0, end.trial, 100.0 * growth),
-                        int(end.trial == last and growth <= GROWTH)))
+        num_kept = sum(row["answered"] for row in frames if row["part"] == "trial" and first.trial < row["trial"] <= end.trial)
+        kept_bytes = num_kept * image_bytes if image_bytes and node == "model_node" else None
+        bars.append(memory_bar(run, node, first, end, last, kept_bytes))
         # A bag or a connection may be open just then: the most in the last tenth must have been there in the second.
         early = max(sample.open_files for sample in of_node if tenth <= sample.trial <= 2 * tenth)
         late = max(sample.open_files for sample in of_node if sample.trial >= last - tenth)

@@ -35,7 +35,7 @@ tables and figures. PILCO takes hours, all else minutes: --without-pilco leaves 
 without that option it adds PILCO."""
 
 EPILOG = """\
-DIR gets the rows of all seeds, tables and figures; the files are explained in ddm_launch/results/paper/README.md.
+DIR gets the rows of all seeds, tables and figures; the files are explained in ddm_launch/results/paper/PROVENANCE.md.
 agreement.csv: what holds of the paper's claims. machine.yaml: how each step was made. runs/, logs/: everything that the
 programs left, which the figures do not need."""
 
