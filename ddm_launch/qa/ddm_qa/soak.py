@@ -128,7 +128,8 @@ def draw_run(samples, memory, files):
         files.plot(trials, [sample.open_files for sample in of_node], dashes, color=color,
                    label="%s, %.0f MB" % (node, base / 1024.0))
     memory.axhline(100.0 * GROWTH, color=GREY, linewidth=0.8)
-    memory.text(0.01, 100.0 * GROWTH - 0.1, "at most after the last trial", transform=memory.get_yaxis_transform(),
+    but_for = ", but for model_node" if samples[0].run == "lockstep" else ""
+    memory.text(0.01, 100.0 * GROWTH - 0.1, "at most after the last trial" + but_for, transform=memory.get_yaxis_transform(),
                 verticalalignment="top", color=GREY, fontsize=7)
     memory.axvline(reference, color=GREY, linewidth=0.8, linestyle=":")
     minutes = max(sample.time_s for sample in samples) / 60.0
