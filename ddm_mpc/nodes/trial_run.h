@@ -47,6 +47,7 @@ class TrialRun {
           "train the model with one");
     }
     if (num_steps_ < 1) throw std::invalid_argument("num_steps must be >= 1, got 0");
+    if (greedy_ != nullptr) greedy_->prepare();  // before the first image: no torque is late for it
     if (!goal.start.isZero()) last_stamp_ = goal.start - ros::Duration(0, 1);
   }
 

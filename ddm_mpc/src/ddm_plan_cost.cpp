@@ -40,7 +40,18 @@ void DdmPlanCost::setGoal(const Eigen::VectorXd& goal_feature) {
   }
   if (goal_feature_.size() > 0 && goal_feature_ == goal_feature) return;
   goal_feature_ = goal_feature;
-  if (time_to_goal_) time_to_goal_->setGoal(goal_feature);
+  prepared_ = false;
+}
+
+void DdmPlanCost::setExploring(bool exploring) {
+  if (exploring == exploring_) return;
+  exploring_ = exploring;
+  prepared_ = false;
+}
+
+void DdmPlanCost::prepare() {
+  if (time_to_goal_ && !prepared_) time_to_goal_->setGoal(goal_feature_, exploring_);
+  prepared_ = true;
 }
 
 void DdmPlanCost::setProblem(const History& x, const Eigen::VectorXd& goal_feature,
@@ -53,6 +64,7 @@ void DdmPlanCost::setProblem(const History& x, const Eigen::VectorXd& goal_featu
   features_ = x.features().rowwise().reverse();
   torques_.leftCols(f_.memory() - 1) = x.torques().rowwise().reverse();
   setGoal(goal_feature);
+  prepare();
   offset_ = offset;
 }
 

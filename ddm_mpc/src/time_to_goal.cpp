@@ -134,14 +134,9 @@ TimeToGoal::Outcome TimeToGoal::outcomeOf(const Eigen::MatrixXd& path,
 /// V_0
 double TimeToGoal::unknownValue() const { return exploring_ ? kOptimism * kWorst : kWorst; }
 
-void TimeToGoal::setExploring(bool exploring) {
-  if (exploring == exploring_) return;
-  exploring_ = exploring;
-  if (z_ref_.size() > 0) setGoal(Eigen::VectorXd(z_ref_));
-}
-
-void TimeToGoal::setGoal(const Eigen::VectorXd& z_ref) {
+void TimeToGoal::setGoal(const Eigen::VectorXd& z_ref, bool exploring) {
   z_ref_ = z_ref;
+  exploring_ = exploring;
   const auto costOf = [this](const Outcome& outcome) {
     double cost = 0.0, discount = 1.0;
     for (int step = 0; step < kHoldSteps; ++step, discount *= kGamma) {

@@ -63,7 +63,7 @@ Eigen::MatrixXd horseshoe() {
 
 TimeToGoal timeTo(const Eigen::Vector2d& goal, const Ddm& model) {
   TimeToGoal time(model, Eigen::Vector2d::Ones());
-  time.setGoal(goal);
+  time.setGoal(goal, false);
   return time;
 }
 
@@ -116,16 +116,16 @@ TEST(TimeToGoal, ExpectsTheWorstWhereNothingWasSeen) {
 TEST(TimeToGoal, HopesForMoreWhileThePlantIsExplored) {
   TimeToGoal time = timeTo({0.0, 0.0}, pushedModel(line()));
   const double known = valueAtRest(time, {1.0, 0.0});
-  time.setExploring(true);
+  time.setGoal(Eigen::Vector2d::Zero(), true);
   EXPECT_NEAR(valueAtRest(time, {0.0, 3.0}), 80.0, 0.8);
   EXPECT_LT(valueAtRest(time, {1.0, 0.0}), known);
-  time.setExploring(false);
+  time.setGoal(Eigen::Vector2d::Zero(), false);
   EXPECT_EQ(valueAtRest(time, {1.0, 0.0}), known);
 }
 
 TEST(TimeToGoal, TakesAnotherGoal) {
   TimeToGoal turned = timeTo({1.0, 0.0}, pushedModel(line()));
-  turned.setGoal(Eigen::Vector2d(-1.0, 0.0));
+  turned.setGoal(Eigen::Vector2d(-1.0, 0.0), false);
   const TimeToGoal fresh = timeTo({-1.0, 0.0}, pushedModel(line()));
   for (const double x : {-1.0, -0.3, 0.8}) {
     EXPECT_EQ(valueAtRest(turned, {x, 0.0}), valueAtRest(fresh, {x, 0.0}));
@@ -190,7 +190,7 @@ TEST(PlanWithTimeToGoal, WeighsEachTorqueAtTheGoalByItsShareOfTheLargest) {
     history.observe(z);
     DdmPlanCost cost(model, 1, control_weight, time);
     cost.setProblem(history, goal);
-    time.setGoal(goal);
+    time.setGoal(goal, false);
     const double whole = cost.evaluate(U, nullptr);
     return whole - time.value(cost.predictedFeatures().col(1), z, nullptr, nullptr);
   };
@@ -199,6 +199,26 @@ TEST(PlanWithTimeToGoal, WeighsEachTorqueAtTheGoalByItsShareOfTheLargest) {
   EXPECT_LT(costOfStep(0.0, 0.1), 0.5) << "at the goal";
   EXPECT_NEAR(1.0 - costOfStep(0.3, 0.1), (1.0 - costOfStep(0.0, 0.1)) * std::exp(-effort), 1e-12);
   EXPECT_NEAR(costOfStep(0.3, 1.0), costOfStep(0.0, 1.0), 1e-3) << "far from it";
+}
+
+TEST_F(PlansWithTimeToGoal, GoalAndExploringCountFromTheNextProblemOnHoweverOftenTheyChange) {
+  const Eigen::MatrixXd U = Eigen::MatrixXd::Zero(2, kHorizon);
+  const Eigen::Vector2d start(0.9, 0.95), goal(0.1, 0.0);
+  const auto costOf = [&](DdmPlanCost* cost) {
+    cost->setProblem(restingAt(start), goal);
+    return cost->evaluate(U, nullptr);
+  };
+  const double greedy = costOf(&cost_);
+  cost_.setExploring(true);
+  cost_.setGoal(Eigen::Vector2d(0.5, 1.0));
+  cost_.prepare();
+  const double exploring = costOf(&cost_);
+  EXPECT_LT(exploring, greedy);
+  DdmPlanCost fresh(model_, kHorizon, 0.1, TimeToGoal(model_, Eigen::Vector2d::Ones()));
+  fresh.setExploring(true);
+  EXPECT_EQ(costOf(&fresh), exploring);
+  cost_.setExploring(false);
+  EXPECT_EQ(costOf(&cost_), greedy);
 }
 
 TEST_F(PlansWithTimeToGoal, TheProposalLeadsOnAndIsHeldForFourSteps) {

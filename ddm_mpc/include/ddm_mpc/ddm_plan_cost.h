@@ -42,14 +42,17 @@ class DdmPlanCost : public PlanCost {
   void setHorizon(int horizon);
   void setControlWeight(double control_weight);
 
-  /// With a TimeToGoal: see there. Takes a while if it changes.
-  void setExploring(bool exploring) {
-    if (time_to_goal_) time_to_goal_->setExploring(exploring);
-  }
+  /// With a TimeToGoal: see there.
+  void setExploring(bool exploring);
 
-  /// The feature to plan to. Takes a while with a TimeToGoal, unless it is the last one.
+  /// The feature to plan to.
   /// @throws std::invalid_argument for a wrong size
   void setGoal(const Eigen::VectorXd& goal_feature);
+
+  /// Gives goal and exploring to the TimeToGoal if they are not those that it has, which takes a while. setProblem() does so
+  /// too; who has time before the first plan calls this.
+  /// @pre there is a goal
+  void prepare();
 
   /// The state to plan from, the feature to plan to, and the offset.
   /// @throws std::invalid_argument for a wrong size or an empty history
@@ -80,6 +83,8 @@ class DdmPlanCost : public PlanCost {
   int horizon_ = 0;
   Eigen::ArrayXd control_weight_;  // of a squared torque, by motor [(N m)^-2]
   std::optional<TimeToGoal> time_to_goal_;
+  bool prepared_ = false;  // the TimeToGoal has these
+  bool exploring_ = false;
   Eigen::VectorXd goal_feature_;
   Eigen::VectorXd offset_;
   RollOut<double> roll_out_;

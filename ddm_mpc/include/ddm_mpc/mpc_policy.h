@@ -51,6 +51,9 @@ class MpcPolicy : public Policy {
     cost_.setGoal(z_ref_);
   }
   bool hasGoal() const { return z_ref_.size() > 0; }
+  /// Computes now what the first plan to this goal would have to wait for.
+  /// @pre hasGoal()
+  void prepare() { cost_.prepare(); }
   void observe(const Grey& grey) override;
   /// |z - z_ref| in units of the features' spread; nothing if the model does not know the spread,
   /// or there is no goal.

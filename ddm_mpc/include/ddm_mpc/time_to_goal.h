@@ -40,11 +40,10 @@ class TimeToGoal {
   /// @pre as above (checked by eigen_assert, i.e. in debug builds only)
   TimeToGoal(const Ddm& model, const Eigen::VectorXd& max_torque);
 
-  /// Computes V.
-  /// @param z_ref  feature of the goal  [feature_dim]
-  void setGoal(const Eigen::VectorXd& z_ref);
-  /// Computes V anew if this changes V_0 and there is a goal.
-  void setExploring(bool exploring);
+  /// Computes V, which takes a while.
+  /// @param z_ref      feature of the goal  [feature_dim]
+  /// @param exploring  whether epsilon > 0, see V_0
+  void setGoal(const Eigen::VectorXd& z_ref, bool exploring);
 
   /// @param gradient  out: d away / dz; null: not wanted  [feature_dim]
   double away(const Eigen::Ref<const Eigen::VectorXd>& z, Eigen::VectorXd* gradient) const;
