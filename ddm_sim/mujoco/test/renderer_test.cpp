@@ -7,7 +7,9 @@
 #include <ddm_plant_plugin/picture_message.h>
 #include <gtest/gtest.h>
 
+#include <boost/filesystem.hpp>
 #include <cstdlib>
+#include <fstream>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -167,6 +169,17 @@ TEST(Renderer, GivesTheSameBytesOnAllThreads) {
     EXPECT_EQ(of_own[i], expected) << i;
     EXPECT_EQ(of_shared[i], expected) << i;
   }
+}
+
+TEST(Renderer, DrawsOnTheCallersThread) {
+  drawn(SceneModel(0.4), colourful());
+  std::vector<std::string> drawing;  // threads of Mesa that draw
+  for (const auto& task : boost::filesystem::directory_iterator("/proc/self/task")) {
+    std::string name;
+    std::ifstream((task.path() / "comm").string()) >> name;
+    if (name.rfind("llvmpipe", 0) == 0) drawing.push_back(name);
+  }
+  EXPECT_EQ(drawing, std::vector<std::string>());
 }
 
 TEST(Renderer, OutlivesItsThreadAndTheModelsOwner) {
