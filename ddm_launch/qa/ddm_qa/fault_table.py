@@ -66,6 +66,6 @@ def main():
     parser.add_argument("--jobs", type=number(int, 1), default=3, metavar="N",
                         help="cases at a time, which wait more than they compute (default: %(default)s)")
     parser.add_argument("--patience", type=number(float, 0.01), default=1.0, metavar="X",
-                        help="all time limits times this, for slow machines (default: %(default)s)")
+                        help="all time limits but a robot's times this, for slow machines (default: %(default)s)")
     options = parser.parse_args()
     return run_program("fault_table", lambda: run(options))

@@ -64,8 +64,8 @@ class FaultBench:
     seed = SEED
 
     def __init__(self, out, patience=1.0):
-        """patience: what all time limits are multiplied by."""
-        self.out, self.limit_s, self.slack_s = out, LIMIT_S * patience, SLACK_S * patience
+        """patience: what all time limits are multiplied by, but a robot's: its motors must stop in time anywhere."""
+        self.out, self.limit_s = out, LIMIT_S * patience
         self.config = CONFIG.format(node_s=NODE_S * patience, experiment_s=EXPERIMENT_S * patience)
         self.reference, self.begun = os.path.join(out, "reference", "run"), os.path.join(out, "begun")
         self.launches = []
@@ -100,7 +100,7 @@ class FaultBench:
         injection = {"phase": case.phase, "fault": fault, "report": self.report(folder)}
         if case.phase.endswith(ON_A_ROBOT):
             return self.launch_experiment(folder, folder, launch_file="fault_robot.launch", config=ROBOT_CONFIG,
-                                          slack=self.slack_s, **injection)
+                                          slack=SLACK_S, **injection)
         real_time = case.phase.endswith(REAL_TIME)
         config, mode = REAL_TIME_CONFIG if real_time else "", {"real_time": "true" if real_time else "false"}
         if fault in CONFIGS or fault == NO_FAULT:
