@@ -41,6 +41,15 @@ class BenchmarkProgramsTest(ScratchCase):
         self.assertGreater(bench.plan_iterations, 0.0)
 
     @unittest.skipUnless(importlib.util.find_spec("torch"), "PyTorch is not installed")
+    def test_trainings_that_end_early_are_not_timed(self):
+        from ddm_qa.torch_peers import times_us
+        outcomes = [True, False, True, False, True]
+        self.assertEqual(len(times_us(lambda: outcomes.pop(0), num_calls=2, warm_up=1)), 2)
+        self.assertEqual(outcomes, [])  # one to warm up, two that ended early, two that count
+        with self.assertRaisesRegex(ValueError, "ended early 3 times in 3"):
+            times_us(lambda: False, num_calls=2)
+
+    @unittest.skipUnless(importlib.util.find_spec("torch"), "PyTorch is not installed")
     def test_pytorch_computes_our_losses_before_it_is_timed(self):
         run = self.file("experiment")
         code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 1, "--out", run)
