@@ -99,10 +99,11 @@ class ResetRoutine {
   }
 
   bool onDone(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigger::Response& response) {
-    response.success = asking_;
+    const bool asked = asking_;
+    response.success = asked;
     response.message =
-        asking_ ? "the trial may begin" : "no reset waits for the robot: begin a trial first";
-    done_ = true;
+        asked ? "the trial may begin" : "no reset waits for the robot: begin a trial first";
+    if (asked) done_ = true;
     return true;
   }
 

@@ -80,8 +80,9 @@ RobotNode::RobotNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size,
       image_transport::TransportHints("raw", ros::TransportHints().tcpNoDelay(), pnh));
   timer_ =
       nh.createSteadyTimer(ros::WallDuration(1.0 / options.effort_rate), &RobotNode::onTick, this);
-  diagnosis_timer_ = nh.createSteadyTimer(
-      kDiagnosisPeriod, [this](const ros::SteadyTimerEvent&) { updater_.update(); });
+  diagnosis_timer_ = nh.createSteadyTimer(kDiagnosisPeriod, [this](const ros::SteadyTimerEvent&) {
+    guarded([this] { updater_.update(); });
+  });
   enable_server_ = nh.advertiseService(topics::kEnable, &RobotNode::onEnable, this);
   take_goal_server_ = nh.advertiseService(topics::kTakeGoal, &RobotNode::onTakeGoal, this);
   // Last: whoever sees the service finds everything else in place.
@@ -119,6 +120,10 @@ bool RobotNode::seesCamera() const {
 }
 
 void RobotNode::onFrame(const sensor_msgs::ImageConstPtr& frame) {
+  guarded([&] { takeFrame(frame); });
+}
+
+void RobotNode::takeFrame(const sensor_msgs::ImageConstPtr& frame) {
   const Stamp stamp = toStamp(frame->header.stamp);
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -339,10 +344,11 @@ bool RobotNode::onReset(ddm_msgs::Reset::Request& /*request*/,
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     gate_.endReset();
-    if (std::abs(picker_.step() - options_.dt) > kStepTolerance * options_.dt) {
+    const double step = picker_.step();  // 0: not known
+    if (step > 0.0 && std::abs(step - options_.dt) > kStepTolerance * options_.dt) {
       std::ostringstream text;
-      text << "the camera's frames do not fit: images are " << picker_.step()
-           << " s apart where dt is " << options_.dt << " s";
+      text << "the camera's frames do not fit: images are " << step << " s apart where dt is "
+           << options_.dt << " s";
       log_.warn(text.str());
     }
     stamps_.restart();
@@ -361,7 +367,12 @@ std::string RobotNode::bringToStart(const ros::SteadyTime& deadline) {
     const std::lock_guard<std::mutex> lock(mutex_);
     routine_moves_ = routine_.byService();
   }
-  const std::string problem = routine_.run(deadline);
+  std::string problem;
+  try {
+    problem = routine_.run(deadline);
+  } catch (const std::exception& e) {
+    problem = std::string("the robot was not brought to its start: ") + e.what();
+  }
   const std::lock_guard<std::mutex> lock(mutex_);
   routine_moves_ = false;
   return problem;

@@ -52,6 +52,7 @@ class RobotNode {
   bool onTakeGoal(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Response& response);
 
+  void takeFrame(const sensor_msgs::ImageConstPtr& frame);
   void takeTorque(const ddm_msgs::Torque& torque);
   bool seesCamera() const;
   void logFrameProblem();
