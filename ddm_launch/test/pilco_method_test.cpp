@@ -105,6 +105,14 @@ TEST_F(PilcoMethodTest, EveryBaselineRunsAndLeavesItsFiles) {
   }
 }
 
+TEST_F(PilcoMethodTest, TheTrainingBeforeIsFoundWhereTrialsHaveSeveralEpisodes) {
+  Configuration all = smallConfiguration("pilco_state", folder("episodes"));
+  all.trial.episodes = 2;
+  runSmall(all);
+  const YAML::Node report = YAML::LoadFile(folder("episodes") + "/trial_002/pilco.yaml");
+  EXPECT_EQ(report["points"].as<int>(), 6 * (testing::kToySteps - 1));
+}
+
 TEST_F(PilcoMethodTest, ARunThatIsResumedEndsLikeOneThatIsNot) {
   Configuration whole = smallConfiguration("pilco_state", folder("whole"));
   runSmall(whole);

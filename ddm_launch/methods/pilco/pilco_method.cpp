@@ -33,10 +33,11 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// What the training before left: beside the last bag but one.
-std::string memoryFile(const std::vector<std::string>& bags) {
-  const boost::filesystem::path last_bag = bags.at(bags.size() - 2);
-  return (last_bag.parent_path() / kMemoryFile).string();
+/// What the training before left: beside the bags of the last trial but one.
+/// @param episodes  bags of each trial
+std::string memoryFile(const std::vector<std::string>& bags, int episodes) {
+  const boost::filesystem::path bag = bags.at(bags.size() - 2 * static_cast<size_t>(episodes));
+  return (bag.parent_path() / kMemoryFile).string();
 }
 
 /// What the GPs learn from.
@@ -122,8 +123,12 @@ PilcoMethod::PilcoMethod(const Configuration& configuration, const PilcoConfig& 
       bags_(configuration.model.image.size, configuration.model.data_set) {}
 
 PilcoMemory PilcoMethod::lastMemory(const std::vector<std::string>& bags) const {
-  if (bags.size() < 2 || !observation_->keepsCoordinates()) return {};
-  return readMemory(readFile(memoryFile(bags)), memoryFile(bags));
+  const int episodes = configuration_.trial.episodes;
+  if (bags.size() < 2 * static_cast<size_t>(episodes) || !observation_->keepsCoordinates()) {
+    return {};
+  }
+  const std::string file = memoryFile(bags, episodes);
+  return readMemory(readFile(file), file);
 }
 
 TrainingOutcome PilcoMethod::train(const std::vector<std::string>& bags, const TrialId& id,
@@ -192,9 +197,10 @@ pilco::LongTermCost PilcoMethod::improvePolicy(pilco::Propagation dynamics, cons
   Eigen::VectorXd& parameters = training->memory.policy;
   if (parameters.size() == 0) parameters = drawStart();
   if (parameters.size() != policy_->numParameters()) {
-    throw std::runtime_error(pilco::message(memoryFile(bags), ": policy must have ",
-                                            policy_->numParameters(), " parameters, got ",
-                                            parameters.size(), ": use another run folder"));
+    const std::string file = memoryFile(bags, configuration_.trial.episodes);
+    throw std::runtime_error(pilco::message(file, ": policy must have ", policy_->numParameters(),
+                                            " parameters, got ", parameters.size(),
+                                            ": use another run folder"));
   }
   pilco::LongTermCost cost(std::move(dynamics), task.cost, policy_.get(), task.start,
                            pilco_.pilco.horizon);
