@@ -4,6 +4,7 @@
 #include <ddm_node/run_node.h>
 #include <std_msgs/String.h>
 
+#include <cstdint>
 #include <optional>
 #include <stdexcept>
 
@@ -20,7 +21,8 @@ void publishTrials(const ros::Publisher& publisher, const std::vector<ddm::Trial
                    const ddm::Configuration& configuration) {
   YAML::Node trials;
   trials["evaluation"] = toYaml(configuration.evaluation);
-  trials["frames"] = (configuration.experiment.trials + 1) * configuration.trial.num_steps;
+  trials["frames"] = static_cast<std::int64_t>(configuration.experiment.trials + 1) *
+                     configuration.trial.num_steps * configuration.trial.episodes;
   trials["trials_csv"] = ddm::formatTrialsCsv(rows);
   std_msgs::String message;
   message.data = YAML::Dump(trials);

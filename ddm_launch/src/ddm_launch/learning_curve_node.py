@@ -41,7 +41,7 @@ def picture(text):
                 draw_one(above, read_trials(folder), read_goal(folder))
             except Failure:
                 above.set_title("success is not known: there is no ground truth")
-        below.set_xlim(0, trials["frames"])
+        below.set_xlim(0, max(trials["frames"], below.dataLim.x1))  # frames of start/bags count, too
         below.set_xlabel("frames learned from [image-torque pairs]")
         below.set_ylabel("errors per frame [grey²]")
         figure.canvas.draw()
