@@ -167,7 +167,6 @@ Ddm readContent(std::uint32_t version, Reader* in) {
                          static_cast<size_t>(options.memory() - 1) * torque_dim;
   ModelInfo info = readInfo(version, state_dim, in);
   Pca pca;
-  pca.blur = Blur(image_size, options.blur);
   pca.scale = in->number<float>();
   const std::vector<float> mean = in->array<float>();
   const std::vector<float> basis = in->array<float>();
@@ -180,6 +179,7 @@ Ddm readContent(std::uint32_t version, Reader* in) {
       variance.size() != pca_dim) {
     throw std::runtime_error("the sizes of its PCA do not fit");
   }
+  pca.blur = Blur(image_size, options.blur);
   pca.mean = Eigen::Map<const Eigen::VectorXf>(mean.data(), mean.size());
   pca.basis = Eigen::Map<const Eigen::MatrixXf>(basis.data(), num_pixels, pca_dim);
   pca.variance = Eigen::Map<const Eigen::VectorXd>(variance.data(), variance.size());
