@@ -125,13 +125,13 @@ class Replay {
   /// @throws std::runtime_error after the timeout, if mpc_node gives the trial up, or on shutdown
   template <class Condition>
   void waitFor(const Condition& condition, const std::string& what) {
-    const ros::WallTime begin = ros::WallTime::now();
+    const ros::SteadyTime begin = ros::SteadyTime::now();
     while (!condition()) {
       if (!ros::ok()) throw std::runtime_error("interrupted");
       if (trial_begun_ && trial_client_.getState() == actionlib::SimpleClientGoalState::ABORTED) {
         throw std::runtime_error("mpc_node: " + trial_client_.getState().getText());
       }
-      if ((ros::WallTime::now() - begin).toSec() > options_.timeout) {
+      if ((ros::SteadyTime::now() - begin).toSec() > options_.timeout) {
         throw std::runtime_error(what + ddm::waited(options_.timeout));
       }
       ros::getGlobalCallbackQueue()->callAvailable(kLook);
@@ -159,12 +159,12 @@ Eigen::MatrixXd play(const ddm::BagContent& bag, double rate, Replay* replay,
                      ddm::Progress* progress) {
   const ddm::DataSet& data = bag.data;
   Eigen::MatrixXd proposed(data.torqueDim(), data.numFrames());
-  const ros::WallTime begin = ros::WallTime::now();
+  const ros::SteadyTime begin = ros::SteadyTime::now();
   for (const ddm::Piece& piece : data.pieces()) {
     replay->beginPiece(piece.size);
     for (Eigen::Index frame = piece.begin; frame < piece.begin + piece.size; ++frame) {
       const double time = bag.times[static_cast<size_t>(frame)];
-      if (rate > 0.0) ros::WallTime::sleepUntil(begin + ros::WallDuration(time / rate));
+      if (rate > 0.0) ros::SteadyTime::sleepUntil(begin + ros::WallDuration(time / rate));
       const Eigen::VectorXd torque =
           replay->propose(data.image(frame), data.imageSize(), data.torques().col(frame));
       if (torque.size() != proposed.rows()) {

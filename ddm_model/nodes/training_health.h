@@ -23,13 +23,14 @@ class TrainingHealth {
     updater_.add("training", [this](Status& status) { report(&status); });
     // Not Updater::update(), which goes by simulated time: that stands still while a model is
     // trained.
-    timer_ = nh.createWallTimer(ros::WallDuration(updater_.getPeriod()),
-                                [this](const ros::WallTimerEvent&) { updater_.force_update(); });
+    timer_ =
+        nh.createSteadyTimer(ros::WallDuration(updater_.getPeriod()),
+                             [this](const ros::SteadyTimerEvent&) { updater_.force_update(); });
   }
 
   void begin(std::uint32_t trial) {
     trial_ = trial;
-    set(training(TrainingProgress()), ros::WallTime::now());
+    set(training(TrainingProgress()), ros::SteadyTime::now());
   }
 
   void progress(const TrainingProgress& progress) { set(training(progress), since_); }
@@ -41,20 +42,20 @@ class TrainingHealth {
     status.add("frames learned from", result.frames);
     status.addf("V_R [grey^2]", "%.4g", result.v_r);
     status.addf("V_P [grey^2]", "%.4g", result.v_p);
-    set(status, ros::WallTime::now());
+    set(status, ros::SteadyTime::now());
   }
 
   /// Whoever has asked for the training has cancelled it.
   void cancel() {
     Status status;
     status.summaryf(Status::WARN, "trial %u: training cancelled", trial_);
-    set(status, ros::WallTime::now());
+    set(status, ros::SteadyTime::now());
   }
 
   void fail(const std::string& reason) {
     Status status;
     status.summary(Status::ERROR, "trial " + std::to_string(trial_) + ": " + reason);
-    set(status, ros::WallTime::now());
+    set(status, ros::SteadyTime::now());
   }
 
  private:
@@ -70,7 +71,7 @@ class TrainingHealth {
     return status;
   }
 
-  void set(Status status, const ros::WallTime& since) {
+  void set(Status status, const ros::SteadyTime& since) {
     status.add("trial", trial_);
     const std::lock_guard<std::mutex> lock(mutex_);
     status_ = status;
@@ -81,17 +82,18 @@ class TrainingHealth {
     const std::lock_guard<std::mutex> lock(mutex_);
     status->summary(status_);
     status->values = status_.values;
-    if (!since_.isZero()) status->addf("for [s]", "%.1f", (ros::WallTime::now() - since_).toSec());
+    if (!since_.isZero())
+      status->addf("for [s]", "%.1f", (ros::SteadyTime::now() - since_).toSec());
   }
 
   std::uint32_t trial_ = 0;  // only the thread that trains knows it
 
   std::mutex mutex_;  // guards the next two
   Status status_;
-  ros::WallTime since_;  // when the training began or ended; zero: there was none
+  ros::SteadyTime since_;  // when the training began or ended; zero: there was none
 
   diagnostic_updater::Updater updater_;
-  ros::WallTimer timer_;
+  ros::SteadyTimer timer_;
 };
 
 }  // namespace ddm
