@@ -15,7 +15,8 @@ from std_msgs.msg import Float64, UInt32
 from std_srvs.srv import SetBool, Trigger
 import yaml
 
-from ddm_launch.command import find_program
+from ddm_launch.command import Failure, find_program
+from ddm_launch.plant import describe_plant, simulator
 from ddm_model.plain_file import write_file
 
 LIMIT_S = 60.0
@@ -26,16 +27,14 @@ LATENCY_P99_MS = 50.0
 
 def quantile(values, q):
     """By nearest rank."""
-    return sorted(values)[max(0, math.ceil(q * len(values)) - 1)]
+    return sorted(values)[max(0, math.ceil(q * len(values)) - 1)] if values else math.inf
 
 
 class PlantGoal:
     """The goal of a simulated plant, and when it is reached: by ground truth, which robot.launch never sees."""
 
     def __init__(self, plant):
-        text = subprocess.run([find_program("simulate", "ddm_sim"), "--plant", plant, "--describe"], check=True,
-                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE).stdout
-        about = yaml.safe_load(text)
+        about = describe_plant(simulator(plant))
         self.state, self.unit, self.tolerance = about["goal"], about["error_unit"], about["tolerance"]
         self._kinds = [joint["kind"] for joint in about["joints"]]
 
@@ -132,7 +131,8 @@ class RobotCheck:
         self._frames += len(stamps)
         self._control_s += 1e-9 * (stamps[-1] - stamps[0])
         if goal.evaluation:
-            error = max(error for stamp, error in truth.items() if stamps[-SETTLED_STEPS] <= stamp <= stamps[-1])
+            error = max((error for stamp, error in truth.items() if stamps[-SETTLED_STEPS] <= stamp <= stamps[-1]),
+                        default=math.inf)
             self._evaluations.append({"trial": goal.trial, "largest_error": round(error, 4),
                                       "reached": error <= self._plant_goal.tolerance})
         write_file(os.path.join(self._runs, "robot_check.yaml"), yaml.safe_dump(self._result(), sort_keys=False))
@@ -150,7 +150,11 @@ class RobotCheck:
 
 def main():
     rospy.init_node("robot_check")
-    goal = PlantGoal(rospy.get_param("~plant"))
+    try:
+        goal = PlantGoal(rospy.get_param("~plant"))
+    except Failure as failure:
+        rospy.logfatal("robot_check: %s", failure)
+        return 1
     check = RobotCheck(goal)
     if check.load:
         rospy.on_shutdown(check.load.end)

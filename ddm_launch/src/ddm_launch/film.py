@@ -3,19 +3,18 @@
 import collections
 import os
 import re
-import subprocess
 
 from matplotlib import font_manager
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
-import yaml
 
-from ddm_launch.command import Failure, find_program, number
+from ddm_launch.command import Failure, number
 from ddm_launch.figure_style import BLUE, GREY, ORANGE, VERMILLION, save_picture
 from ddm_launch.images import draw_images, read_model
+from ddm_launch.plant import describe_plant, simulator
 from ddm_launch.run_folder import read_setting, read_trials
 from ddm_launch.settings import read_yaml
-from ddm_launch.tables import read_csv
+from ddm_launch.tables import motors_of, read_columns
 
 ABOUT = ("Greedy evaluations of run folders, one after the other. Left: the image, without nuisances of the camera. Middle: the "
          "image that the model predicted one second earlier, given the torques applied since. Right: the feature space, with states "
@@ -33,22 +32,11 @@ EVALUATION = re.compile(r"evaluation_(\d+)$")
 Clip = collections.namedtuple("Clip", "title dt images expected features paths landmarks goal")
 
 
-def read_columns(path, names):
-    """[rows x names]"""
-    rows = read_csv(path, dict.fromkeys(names, float))
-    return np.array([[row[name] for name in names] for row in rows])
-
-
 def simulate(run, evaluation):
     """Images of an evaluation as the plant draws them, one for each torque, and the torques [N x motors, N m]."""
-    with open(os.path.join(evaluation, "torques.csv")) as stream:
-        motors = stream.readline().strip().split(",")[1:-1]  # step, motors, exploratory
-    plant, config = read_setting(run, "experiment", "plant", "plant"), os.path.join(run, "config.yaml")
-    program = [find_program("simulate", "ddm_sim"), "--plant", plant, "--config", config]
-    described = subprocess.run(program + ["--describe"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
-    if described.returncode != 0:
-        raise Failure("%s cannot be drawn again: %s" % (evaluation, described.stderr.strip()))
-    start = read_columns(os.path.join(evaluation, "trajectory.csv"), yaml.safe_load(described.stdout)["state"])[0]
+    program = simulator(read_setting(run, "experiment", "plant", "plant"), "--config", os.path.join(run, "config.yaml"))
+    start = read_columns(os.path.join(evaluation, "trajectory.csv"), describe_plant(program)["state"])[0]
+    motors = motors_of(os.path.join(evaluation, "torques.csv"))
     torques = read_columns(os.path.join(evaluation, "torques.csv"), motors)
     text = "\n".join([",".join(motors)] + [",".join(map(repr, map(float, row))) for row in torques]) + "\n"
     pictures = draw_images(program + ["--start", ",".join(map(repr, map(float, start)))], text)[:len(torques)]

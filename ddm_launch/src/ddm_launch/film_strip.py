@@ -16,7 +16,7 @@ SUCCESS_LIMIT_RAD = math.radians(10.0)
 
 
 def target_error(angle_rad):
-    """Distance from the target (the rod points up, +-pi), wrapped [rad]."""
+    """Distance from the goal (the rod points up, +-pi), wrapped [rad]."""
     return abs(math.remainder(angle_rad - math.pi, 2.0 * math.pi))
 
 

@@ -8,12 +8,11 @@ import numpy as np
 from PIL import Image
 import rosbag
 
-from ddm_launch.command import Failure, find_program
+from ddm_launch.command import Failure
+from ddm_launch.plant import describe_plant, simulator
 from ddm_launch.run_folder import read_setting
 from ddm_model.model import ModelFileError, load
 from ddm_model.model_data import grey
-
-TORQUE_COLUMNS = {"moving_tile": "dx_px,dy_px", "two_link": "shoulder_nm,elbow_nm"}  # else torque_nm
 
 
 def draw_images(command, text):
@@ -45,10 +44,9 @@ class Camera:
     """Images of a folder's plant in given states, drawn by the simulator with the folder's own configuration."""
 
     def __init__(self, folder):
-        plant = read_setting(folder, "experiment", "plant", "plant")
-        self.command = [find_program("simulate", "ddm_sim"), "--plant", plant,
-                        "--config", os.path.join(folder, "config.yaml")]
-        self.header = TORQUE_COLUMNS.get(read_setting(folder, "plant", "type", "type of the plant"), "torque_nm")
+        self.command = simulator(read_setting(folder, "experiment", "plant", "plant"),
+                                 "--config", os.path.join(folder, "config.yaml"))
+        self.header = ",".join(describe_plant(self.command)["torque"])
 
     def shoot(self, *state):
         """The grey image of one state, e.g. angle [rad] and rate [rad/s] of the pendulum."""

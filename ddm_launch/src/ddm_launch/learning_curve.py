@@ -32,7 +32,7 @@ def draw_one(axes, trials, goal):
         axes.set_yticks(sorted({0, goal.tolerance, 45, 90, 135, 180}))
     else:
         axes.set_ylim(bottom=0)
-    axes.set_ylabel("distance from the target at the end [%s]" % goal.unit.replace("deg", "°"))
+    axes.set_ylabel("distance from the goal at the end [%s]" % goal.unit.replace("deg", "°"))
 
 
 def draw_many(axes, runs):

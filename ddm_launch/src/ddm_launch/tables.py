@@ -5,6 +5,8 @@ import io
 import math
 import os
 
+import numpy as np
+
 from ddm_launch.command import Failure
 from ddm_model.plain_file import write_file
 
@@ -61,6 +63,17 @@ def read_csv(path, columns, remedy=None, once=(), renamed=None):
                 "%s %s" % item for item in zip(once, named))))
         seen.add(named)
     return rows
+
+
+def read_columns(path, names):
+    """Numbers of these columns  [rows x names]. Raises Failure as read_csv() does."""
+    return np.array([[row[name] for name in names] for row in read_csv(path, dict.fromkeys(names, float))])
+
+
+def motors_of(path):
+    """Names of the motors' columns of a torques.csv: step, motors, exploratory."""
+    with open(path) as stream:
+        return stream.readline().strip().split(",")[1:-1]
 
 
 def grouped(path, rows, column, names):

@@ -4,17 +4,17 @@ import collections
 import glob
 import math
 import os
-import subprocess
 
 import numpy as np
 import rosbag
 from tqdm import tqdm
-import yaml
 
-from ddm_launch.command import Failure, find_program, program_parser, run_program
+from ddm_launch.command import Failure, program_parser, run_program
 from ddm_launch.images import recorded_images
+from ddm_launch.plant import describe_plant, simulator
+from ddm_launch.run_folder import read_setting
 from ddm_launch.settings import read_yaml
-from ddm_launch.tables import read_csv, write_csv
+from ddm_launch.tables import motors_of, read_columns, write_csv
 from ddm_model.model import ModelFileError, load
 
 ABOUT = """\
@@ -39,12 +39,14 @@ class Joints:
     """What a plant says of its positions. names, columns of a trajectory.csv, units; goal: their values there."""
 
     def __init__(self, plant):
-        text = subprocess.run([find_program("simulate", package="ddm_sim"), "--plant", plant, "--describe"], check=True,
-                              stdout=subprocess.PIPE, universal_newlines=True).stdout
-        facts = yaml.safe_load(text)
+        facts = describe_plant(simulator(plant))
         self.columns = [name for name in facts["state"] if not name.endswith("_per_s")]
         self.names, self.units = zip(*(name.rsplit("_", 1) for name in self.columns))
         self.goal = np.array(facts["goal"][:len(self.columns)])
+        unknown = sorted(set(self.units) - set(NEAR))
+        if unknown:
+            raise Failure("plant %s: positions must be in %s, got %s: take a run of another plant" % (
+                plant, " or ".join(NEAR), ", ".join(unknown)))
 
     def distances(self, a, b):
         """Of positions a to positions b, angles around the circle  [.. x joints]."""
@@ -57,18 +59,10 @@ class Joints:
         return np.mean(np.all(self.distances(positions, self.goal) < limits, axis=1))
 
 
-def read_columns(path, names):
-    """[rows x names]"""
-    rows = read_csv(path, dict.fromkeys(names, float))
-    return np.array([[row[name] for name in names] for row in rows]).reshape(len(rows), len(names))
-
-
 def read_episode(folder, joints):
     images = recorded_images(os.path.join(folder, "trial.bag"))
     torques = os.path.join(folder, "torques.csv")
-    with open(torques) as stream:
-        motors = stream.readline().strip().split(",")[1:-1]  # step, motors, exploratory
-    return Episode(images, read_columns(torques, motors)[:len(images)],
+    return Episode(images, read_columns(torques, motors_of(torques))[:len(images)],
                    read_columns(os.path.join(folder, "trajectory.csv"), joints.columns)[:len(images)])
 
 
@@ -108,8 +102,9 @@ def prediction_errors(model, episodes, read_out, steps, joints):
 
 def diagnose(run):
     """Rows of COLUMNS of a finished run folder."""
+    plant, seed = (read_setting(run, "experiment", name, name) for name in ("plant", "seed"))
     config = read_yaml(os.path.join(run, "config.yaml"))
-    joints = Joints(config["experiment"]["plant"])
+    joints = Joints(plant)
     last = len(glob.glob(os.path.join(run, "trial_*", "model.ddm"))) - 1
     if last < 1:
         raise Failure("%s must have two trials at least, got %d: the second is what the first model has not learned from"
@@ -119,7 +114,7 @@ def diagnose(run):
     held_out = read_trial(run, last, joints)
     positions = np.concatenate([episode.positions for episode in learned])
     read_out = ReadOut(np.concatenate([model.encode(episode.images) for episode in learned]), positions)
-    head = [config["experiment"]["plant"], config["experiment"]["seed"], len(positions)]
+    head = [plant, seed, len(positions)]
     rows = []
 
     def add(part, steps, errors):
