@@ -1,5 +1,5 @@
-// Tests of what one turns and sees of mpc_node while it runs: dynamic_reconfigure, plan_scalars,
-// /diagnostics. SPDX-License-Identifier: BSD-3-Clause
+// Tests of mpc_node while it runs: dynamic_reconfigure, plan_scalars, /diagnostics.
+// SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_mpc/MpcConfig.h>
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <dynamic_reconfigure/Reconfigure.h>

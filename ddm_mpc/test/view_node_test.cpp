@@ -1,5 +1,5 @@
-// Tests of view_node from outside: both pictures, pixel by pixel, and what it does with bad
-// messages. SPDX-License-Identifier: BSD-3-Clause
+// Tests of view_node from outside: both pictures, pixel by pixel, and bad messages.
+// SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/Plan.h>
 #include <gtest/gtest.h>
 #include <sensor_msgs/image_encodings.h>
