@@ -94,7 +94,7 @@ start_debug_build() {
   setsid bash -c "$(declare -p unity_flags debug_targets && declare -f)"'
     lower_priority
     code=0
-    (set -e; build_sanitized address "${debug_targets[@]}") || code=$?
+    build_sanitized address "${debug_targets[@]}" || code=$?
     echo "$code" >"$DDM_WS/debug/build.code"' >"$DDM_WS/debug/build.log" 2>&1 </dev/null &
   debug_build=$!
 }

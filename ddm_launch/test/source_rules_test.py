@@ -26,6 +26,7 @@ def clang_format_version():
 
 
 CLANG_FORMAT = clang_format_version()
+LICENCE_TAG = "SPDX-License-Identifier: BSD-3-Clause"
 
 
 def first_lines(path, count):
@@ -100,7 +101,7 @@ class SourceRulesTest(unittest.TestCase):
         wrong = []
         for path in CPP_FILES + scripts("python3") + scripts("bash"):
             lines = [line for line in first_lines(path, 3) if not line.startswith("#!")]
-            if len(lines) < 2 or len(lines[0]) < 12 or "SPDX-License-Identifier: BSD-3-Clause" not in lines[1]:
+            if len(lines) < 2 or len(lines[0]) < 12 or lines[1].lstrip("#/ ").strip() != LICENCE_TAG:
                 wrong.append(os.path.relpath(path, CHECKOUT))
         self.assertEqual(wrong, [])
 

@@ -1,5 +1,5 @@
-// Tests of what an experiment starts from: bags and who shall act after them fit together, or are
-// refused. SPDX-License-Identifier: BSD-3-Clause
+// Tests of what an experiment starts from: bags and models must fit together, or are refused.
+// SPDX-License-Identifier: BSD-3-Clause
 #include "start.h"
 
 #include <ddm_bag_io/bag_writer.h>

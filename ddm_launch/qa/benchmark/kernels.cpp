@@ -1,5 +1,5 @@
-// speed_kernels: computing time of what users wait for, by Google Benchmark, on a finished
-// experiment. SPDX-License-Identifier: BSD-3-Clause
+// speed_kernels: computing times, by Google Benchmark, on a finished experiment.
+// SPDX-License-Identifier: BSD-3-Clause
 #include <benchmark/benchmark.h>
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_files/plain_file.h>
@@ -12,6 +12,7 @@
 #include <ddm_model/trainer.h>
 #include <ddm_mpc/ddm_plan_cost.h>
 #include <ddm_mpc/mpc_policy.h>
+#include <ddm_params/tool.h>
 #include <ddm_sim/plant_factory.h>
 #include <ros/time.h>
 
@@ -31,7 +32,6 @@
 namespace ddm {
 namespace {
 
-constexpr int kUsageError = 2;
 constexpr int kRetrainIterations = 200;
 constexpr int kProductBlocks[] = {32, 64, 128, 256, 512, 1600};
 constexpr int kTrialSteps = 100;
@@ -57,8 +57,12 @@ Experience readExperience(const std::string& run) {
   const RunFolder folder(configuration);
   if (folder.rows().empty()) throw std::runtime_error(run + " holds no finished trial");
   std::vector<std::string> bags;
-  for (const TrialRow& row : folder.rows()) bags.push_back(folder.bagPath(row.trial));
-  const std::string model = bags.back().substr(0, bags.back().rfind('/')) + "/model.ddm";
+  for (const TrialRow& row : folder.rows()) {
+    for (int episode = 0; episode < configuration.trial.episodes; ++episode) {
+      bags.push_back(folder.bagPath(row.trial, episode));
+    }
+  }
+  const std::string model = folder.modelPath(folder.rows().back().trial);
   DataSet data = BagCache(configuration.model.image.size, configuration.model.data_set).read(bags);
   return {configuration, bags, std::move(data),
           std::make_shared<const Ddm>(deserialiseModel(readFile(model), model))};

@@ -1,5 +1,5 @@
-// round_trips: what times the loop, and two nodes that only send its messages to and fro. ~role is
-// `lockstep`, `camera` or `controller`. SPDX-License-Identifier: BSD-3-Clause
+// round_trips: times the loop, or one of two nodes that only send its messages. ~role: `lockstep`, `camera` or `controller`.
+// SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_files/plain_file.h>
 #include <ddm_images/image_codec.h>
 #include <ddm_msgs/Torque.h>

@@ -1,5 +1,5 @@
-// torch_training: times training in PyTorch's C++ interface, on data that torch_peers.py has saved.
-// Samples are rows, as PyTorch wants them. SPDX-License-Identifier: BSD-3-Clause
+// torch_training: times training in PyTorch's C++ interface, on data saved by torch_peers.py. Samples are rows.
+// SPDX-License-Identifier: BSD-3-Clause
 #include <torch/script.h>
 #include <torch/torch.h>
 

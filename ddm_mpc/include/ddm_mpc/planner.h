@@ -34,8 +34,9 @@ struct Plan {
 };
 
 /// Minimises J(U) by BFGS (paper, Sec. 3.1) and keeps the best of several starts: what the cost
-/// proposes, if it does, the last plan moved on by one step, then no torque, then constant torques drawn at random. The bound holds by
-/// construction, u = max_torque tanh(v): clipping afterwards would bias the plan.
+/// proposes, if it does, the last plan moved on by one step, then no torque, then constant torques
+/// drawn at random. The bound holds by construction, u = max_torque tanh(v): clipping afterwards
+/// would bias the plan.
 class Planner {
  public:
   /// @param cost  of plans from the current state on; outlives the planner
@@ -47,9 +48,8 @@ class Planner {
 
   /// Never throws for numerical trouble: the status tells.
   /// @param rng   draws the random starts
-  /// @param stop  asked before each evaluation of the cost but the first: true ends the search,
-  /// over
-  ///              all starts, and the best plan evaluated so far counts; empty: never
+  /// @param stop  asked before each evaluation of the cost but the first: true ends the search
+  ///              over all starts, and the best plan evaluated so far counts; empty: never
   Plan solve(std::mt19937_64* rng, const std::function<bool()>& stop = {});
 
  private:

@@ -24,10 +24,8 @@ std::optional<bool> answerWithin(double limit, std::function<bool()> function) {
 
 void waitForSimulatedTime(double limit) {
   if (ros::Time::waitForValid(ros::WallDuration(limit)) || !ros::ok()) return;
-  std::ostringstream text;
-  text << "simulated time does not come (waited " << limit << " s), "
-       << describePublishers("/clock");
-  throw std::runtime_error(text.str());
+  throw std::runtime_error("simulated time does not come" + waited(limit) + ", " +
+                           describePublishers("/clock"));
 }
 
 }  // namespace ddm

@@ -1,5 +1,5 @@
-// Tests of YAML that nobody vouches for: what yaml-cpp would take to the end of the stack is
-// refused. SPDX-License-Identifier: BSD-3-Clause
+// Tests of YAML from outside: what would overflow the stack of yaml-cpp is refused.
+// SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_params/yaml_text.h"
 
 #include <gtest/gtest.h>

@@ -61,8 +61,8 @@ class Rig {
 
   const Plant& plant() const { return *plant_; }
   std::uint64_t numSteps() const { return num_steps_; }  ///< since the reset
+  /// Since the reset [s].
   double time() const { return static_cast<double>(num_steps_) * plant_->info().dt; }
-  ///< since the reset [s]
   const Eigen::VectorXd& applied() const { return applied_; }  ///< torque of the last step, or zero
 
  private:

@@ -1,5 +1,5 @@
-// Counts what a program takes from the heap. Include it in one file of a program: it defines
-// malloc. SPDX-License-Identifier: BSD-3-Clause
+// Counts what a program takes from the heap. Include it in one file of a program: it defines malloc.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <atomic>
