@@ -10,7 +10,7 @@ import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import rooms  # noqa: E402, F401
-from ddm_launch.command import Failure, processor  # noqa: E402
+from ddm_launch.command import Failure, distribution, processor  # noqa: E402
 from ddm_qa import benchmark  # noqa: E402
 from ddm_qa.processes import Programs  # noqa: E402
 from processes import call_main  # noqa: E402
@@ -133,6 +133,11 @@ class BenchmarkTest(ScratchCase):
                           "model name\t: AMD EPYC\n\nprocessor\t: 1\nmodel name\t: other\n")
         self.assertEqual(processor(path), "AMD EPYC (family 26, model 2)")
         self.assertNotEqual(processor(os.path.join(self.scratch, "no_such_file")), "")
+
+    def test_the_distribution_is_named_as_its_own_file_has_it(self):
+        path = self.write(os.path.join(self.scratch, "os-release"), 'ID=debian\n\nPRETTY_NAME="Debian GNU/Linux 12 (bookworm)"\n')
+        self.assertEqual(distribution(path), "Debian GNU/Linux 12 (bookworm)")
+        self.assertEqual(distribution(os.path.join(self.scratch, "no_such_file")), "?")
 
 
 if __name__ == "__main__":

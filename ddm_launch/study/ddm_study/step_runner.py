@@ -3,7 +3,6 @@
 """What reproduce_paper and reproduce_efficient share. Each is a StepRunner that says what to run: its parts()."""
 import collections
 import os
-import platform
 import shutil
 import signal
 import subprocess
@@ -13,7 +12,7 @@ import time
 from tqdm import tqdm
 import yaml
 
-from ddm_launch.command import Failure, Interrupted, find_program, package_path, processor, run_program
+from ddm_launch.command import Failure, Interrupted, distribution, find_program, package_path, processor, run_program
 from ddm_launch.run_folder import in_todays_columns, is_finished, num_finished
 from ddm_launch.settings import differences, read_yaml
 from ddm_model.plain_file import write_file
@@ -271,7 +270,7 @@ class StepRunner:
 
     def write_machine(self):
         """With what the figures were made, step by step."""
-        machine = dict(self.about, system=platform.platform(), steps=self.measured)
+        machine = dict(self.about, system=distribution(), steps=self.measured)
         write_file(self.path("machine.yaml"), yaml.safe_dump(machine, sort_keys=False))
 
     def call(self, name, command):
