@@ -9,7 +9,7 @@ import rosunit
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import rooms  # noqa: E402, F401
 from ddm_launch.command import package_path  # noqa: E402
-from ddm_launch.figure_style import COLUMN_WIDTH, new_figure  # noqa: E402
+from ddm_launch.figure_style import COLUMN_WIDTH, METHOD_STYLES, new_figure  # noqa: E402
 from ddm_study import task_compared  # noqa: E402
 import figure_case  # noqa: E402
 
@@ -34,9 +34,9 @@ class TaskComparedTest(figure_case.FigureCase):
             self.assertEqual(axes.get_xscale(), "log")
 
     def test_the_same_four_published_methods_are_drawn_for_each_task(self):
-        self.assertEqual(len(set(task_compared.COLOURS.values())), 4)
+        self.assertEqual(len({METHOD_STYLES[method] for method in task_compared.DRAWN + (task_compared.OURS,)}), 5)
         for task in task_compared.SUITE.values():
-            self.assertEqual(set(task_compared.read_published(PUBLISHED, task.name)), set(task_compared.COLOURS))
+            self.assertEqual(set(task_compared.read_published(PUBLISHED, task.name)), set(task_compared.DRAWN))
 
     def test_the_program_draws_it(self):
         self.assertDrawn(task_compared, [self.table, "--task", "suite_pendulum", "--published", PUBLISHED], COLUMN_WIDTH)

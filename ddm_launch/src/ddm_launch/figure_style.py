@@ -20,6 +20,11 @@ ORANGE, SKY, GREEN, YELLOW = "#E69F00", "#56B4E9", "#009E73", "#F0E442"
 BLUE, VERMILLION, PURPLE, BLACK = "#0072B2", "#D55E00", "#CC79A7", "#000000"
 GREY = "#666666"  # for references
 
+# Colour and marker of each method, in every figure.
+METHOD_STYLES = {"DDM + MPC": (BLUE, "o"), "efficient": (BLACK, "X"), "oracle": (ORANGE, "P"), "PILCO, state": (VERMILLION, "s"),
+                 "PILCO, features": (GREEN, "D"), "PILCO, PCA": (PURPLE, "^"), "MR.Q": (SKY, "v"), "DreamerV3": (PURPLE, "<"),
+                 "DrQ-v2": (GREEN, ">"), "Dreamer v1": (GREY, "*")}
+
 SETTINGS = {"font.size": 8, "axes.titlesize": 8, "axes.labelsize": 8, "xtick.labelsize": 7, "ytick.labelsize": 7,
             "legend.fontsize": 7, "axes.linewidth": 0.6, "lines.linewidth": 1.2, "lines.markersize": 4,
             "figure.constrained_layout.w_pad": 0.03, "figure.constrained_layout.h_pad": 0.03,

@@ -10,19 +10,19 @@ from matplotlib.ticker import MaxNLocator
 
 from ddm_launch.averages import success_rates, wilson_interval
 from ddm_launch.command import Failure
-from ddm_launch.figure_style import (BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION,
-                                     add_legend, new_figure, panel_above_legend, save)
+from ddm_launch.figure_style import (BLACK, COLUMN_WIDTH, GREY, METHOD_STYLES, SKY, YELLOW, add_legend, new_figure,
+                                     panel_above_legend, save)
 from ddm_launch.run_folder import read_sweep
 from ddm_launch.tables import read_csv
 
-# The paper's methods: name, colour, marker; of the published curve: column of the rate, of its standard error (None:
-# not given). A curve of ours of such a name is drawn in the same colour as the published one.
-METHODS = (("DDM + MPC", BLUE, "o", "ddm_mpc", "ddm_mpc_se"),
-           ("PILCO, state", VERMILLION, "s", "pilco_state", "pilco_state_se"),
-           ("PILCO, features", GREEN, "D", "pilco_autoencoder_features", None),
-           ("PILCO, PCA", PURPLE, "^", "pilco_pca20_features", None))
-# Colour, marker of the first, second, ... of our curves of another name.
-OTHERS = ((BLACK, "X"), (ORANGE, "P"), (SKY, "v"), (GREY, "*"))
+# The paper's methods: name; of the published curve: column of the rate, of its standard error (None: not given). A curve of
+# ours of such a name is drawn in the same colour as the published one.
+METHODS = (("DDM + MPC", "ddm_mpc", "ddm_mpc_se"),
+           ("PILCO, state", "pilco_state", "pilco_state_se"),
+           ("PILCO, features", "pilco_autoencoder_features", None),
+           ("PILCO, PCA", "pilco_pca20_features", None))
+# Colour, marker of the first, second, ... of our curves of a name that METHOD_STYLES does not have.
+OTHERS = ((SKY, "h"), (YELLOW, "p"), (BLACK, "d"), (GREY, "x"))
 OURS_LINE, PUBLISHED_LINE = "-", "--"
 ABOUT = ("Success rate over the frames learned from. One curve per file of many seeds, with the standard error "
          "sqrt(p (1 - p) / (n - 1)); a level line where nothing is learned. Of more than five curves those that are 0 at most "
@@ -73,25 +73,25 @@ def read_curve(name, path, wilson=False):
 
 def read_published(path):
     """The paper's curves, in the order of METHODS."""
-    columns = [name for method in METHODS for name in method[3:] if name]
+    columns = [name for method in METHODS for name in method[1:] if name]
     rows = read_csv(path, dict.fromkeys(["frames"] + columns, float),
                     "it is results/published/success_rate.csv of ddm_launch")
     frames, *series = ([row[name] for row in rows] if name else None
-                       for name in ["frames"] + [name for method in METHODS for name in method[3:]])
+                       for name in ["frames"] + [name for method in METHODS for name in method[1:]])
     return [Curve(method[0], "paper", frames, rates, errors)
             for method, rates, errors in zip(METHODS, series[::2], series[1::2])]
 
 
 def styles(names):
     """(colour, marker) of each curve. Raises Failure if some could not be distinguished."""
-    of_name = {name: (colour, marker) for name, colour, marker, _, _ in METHODS}
+    of_name = dict(METHOD_STYLES)
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise Failure("each curve must have a label of its own, got '%s' twice: give it another" % twice[0])
     others = [name for name in names if name not in of_name]
     if len(others) > len(OTHERS):
-        raise Failure("at most %d curves besides those of the paper's methods (%s) can be distinguished, got %d: "
-                             "draw two figures" % (len(OTHERS), "; ".join(of_name), len(others)))
+        raise Failure("at most %d curves besides those of known methods (%s) can be distinguished, got %d: draw two figures" % (
+            len(OTHERS), "; ".join(of_name), len(others)))
     of_name.update(zip(others, OTHERS))
     return [of_name[name] for name in names]
 

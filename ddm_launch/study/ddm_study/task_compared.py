@@ -1,18 +1,18 @@
 # Draws the mean return of a task over the physics frames learned from, next to published methods that learn from pixels.
 # SPDX-License-Identifier: BSD-3-Clause
 from ddm_launch.command import Failure
-from ddm_launch.figure_style import (BLACK, BLUE, COLUMN_WIDTH, GREEN, PURPLE, VERMILLION, add_legend, new_figure,
-                                     panel_above_legend, save)
+from ddm_launch.figure_style import COLUMN_WIDTH, METHOD_STYLES, add_legend, new_figure, panel_above_legend, save
 from ddm_launch.tables import optional, read_csv
 from ddm_study.efficient_tables import REMEDY, SUITE
 
 ABOUT = ("Mean return of a task of the DeepMind Control Suite over the physics frames learned from, with its standard "
          "error, next to published methods. Those are given a reward, ours a picture of the goal and a planner at run "
          "time.")
-OURS = "DDM + MPC"
+OURS = "efficient"
 PUBLISHED = "it is results/published/suite_returns.csv of ddm_launch"
 # The published methods that are drawn: at most four, the same for each task. The others are in the published table.
-COLOURS = {"MR.Q": BLUE, "DreamerV3": VERMILLION, "DrQ-v2": GREEN, "Dreamer v1": PURPLE}
+DRAWN = ("MR.Q", "DreamerV3", "DrQ-v2", "Dreamer v1")
+MARKER_DISTANCE = 0.12  # along a curve, of the diagonal of the axes
 
 
 def read_ours(path, task):
@@ -26,10 +26,10 @@ def read_ours(path, task):
 
 
 def read_published(path, task):
-    """{method: ([physics frames], [mean return])} of COLOURS."""
+    """{method: ([physics frames], [mean return])} of DRAWN."""
     curves = {}
     for row in read_csv(path, {"task": str, "method": str, "physics_frames": float, "mean_return": float}, PUBLISHED):
-        if row["task"] == task and row["method"] in COLOURS:
+        if row["task"] == task and row["method"] in DRAWN:
             frames, returns = curves.setdefault(row["method"], ([], []))
             frames.append(row["physics_frames"])
             returns.append(row["mean_return"])
@@ -39,9 +39,11 @@ def read_published(path, task):
 def draw_curves(axes, ours, published, step_s):
     """Ours on top; robot time on the upper edge. step_s: of a physics frame [s]."""
     for method, (frames, returns) in published.items():
-        axes.plot(frames, returns, color=COLOURS[method], linewidth=0.9, label=method)
+        colour, marker = METHOD_STYLES[method]
+        axes.plot(frames, returns, color=colour, marker=marker, markevery=MARKER_DISTANCE, linewidth=0.9, label=method)
     frames, returns, errors = ours
-    axes.errorbar(frames, returns, yerr=errors, color=BLACK, marker="o", capsize=2, elinewidth=0.8, zorder=5, label=OURS)
+    colour, marker = METHOD_STYLES[OURS]
+    axes.errorbar(frames, returns, yerr=errors, color=colour, marker=marker, capsize=2, elinewidth=0.8, zorder=5, label=OURS)
     axes.set_xscale("log")
     axes.set_ylim(-20, 1020)
     axes.set_xlabel("physics frames learned from [-]")
