@@ -10,7 +10,7 @@ import rosgraph
 from tqdm import tqdm
 
 from ddm_launch.command import Failure, number, program_parser, run_program
-from ddm_launch.figure_style import (BLACK, BLUE, GREEN, GREY, ORANGE, PAGE_WIDTH, PURPLE, SKY, VERMILLION, new_figure,
+from ddm_launch.figure_style import (BLUE, GREEN, GREY, ORANGE, PAGE_WIDTH, PURPLE, VERMILLION, new_figure,
                                      save)
 from ddm_launch.run_folder import is_finished, num_finished
 from ddm_launch.tables import read_csv, write_csv
@@ -33,7 +33,8 @@ trial: {num_steps: %d}
 """
 LOCKSTEP_SIZE, REAL_TIME_SIZE = 51, 5  # of an image [pixels]
 LONG_TRAINING = "training: {max_iterations: 1000, function_tolerance: 1.0e-12}\n"
-LINES = [(BLUE, "-"), (VERMILLION, "--"), (GREEN, "-."), (ORANGE, "-"), (PURPLE, "--"), (SKY, "-."), (BLACK, ":")]
+LINES = [(BLUE, "-"), (VERMILLION, "--"), (GREEN, "-."), (ORANGE, "-"), (PURPLE, "--")]
+NOT_DRAWN = ("master", "rosout")  # ROS's own, which bars.csv judges like all others
 
 # last: the trial after which it is judged; one more follows, so that the nodes are still there. seconds: after which it is
 # ended, from its first trial on. One of both is None.
@@ -120,8 +121,8 @@ def draw_run(samples, memory, files):
     """Both panels of a run; samples: of this run."""
     last = max(sample.trial for sample in samples)
     reference = reference_trial(last)
-    for number, (node, of_node) in enumerate(sorted(by_node(samples).items())):
-        color, dashes = LINES[number % len(LINES)]
+    drawn = sorted((node, of_node) for node, of_node in by_node(samples).items() if node not in NOT_DRAWN)
+    for (node, of_node), (color, dashes) in zip(drawn, LINES):
         trials = [sample.trial for sample in of_node]
         base = after(of_node, reference).rss_kb
         memory.plot(trials, [100.0 * (sample.rss_kb / base - 1.0) for sample in of_node], dashes, color=color)
