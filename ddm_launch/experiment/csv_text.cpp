@@ -53,7 +53,7 @@ void parseCsv(const std::string& text, const std::string& header, const std::str
 double csvNumber(const std::string& cell) {
   double value = 0.0;
   if (!boost::conversion::try_lexical_convert(cell, value)) {
-    throw std::runtime_error("'" + cell + "' is no number");
+    throw std::runtime_error("'" + cell + "' is not a number");
   }
   if (!std::isfinite(value)) throw std::runtime_error("'" + cell + "' is not finite");
   return value;

@@ -43,7 +43,7 @@ std::uint32_t count(const std::string& text) {
 /// A time, which is written with three decimals.
 double duration(const std::string& text) {
   const double value = csvNumber(text);
-  if (value < 0.0 || value > 1e12) throw std::runtime_error("'" + text + "' is no duration");
+  if (value < 0.0 || value > 1e12) throw std::runtime_error("'" + text + "' is not a duration");
   return value;
 }
 

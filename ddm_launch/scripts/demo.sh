@@ -10,7 +10,7 @@ usage: bash demo.sh [--rviz] [--runs FOLDER] [--trials N]
 
 Learns to hold a pendulum at the target from its camera images alone: installs the Debian packages that are
 missing (as root, or through sudo), builds the workspace \$DDM_WS, runs one experiment with the real ROS nodes
-and draws a learning curve and a film strip. Called again on the same run folder it goes on where it ended.
+and draws a learning curve and a film strip. Called again on the same run folder, it resumes.
 
   --rviz          show camera, prediction and feature space in rviz while it learns, at 25 frames a second
   --runs FOLDER   run folder, default \$DDM_WS/runs/demo

@@ -226,7 +226,7 @@ std::optional<Decision> MpcNode::decide(TrialRun* trial, const Changes& changes,
                                         std::chrono::steady_clock::time_point arrival,
                                         Trouble* trouble) const {
   if (image_sub_.getNumPublishers() > 1) {
-    trouble->text = "image refused: only one camera may be looked through: stop the others";
+    trouble->text = "image refused: only one node may publish images: stop the others";
     trouble->topic = image_sub_.getTopic();
     return std::nullopt;
   }

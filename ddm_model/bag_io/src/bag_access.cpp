@@ -32,7 +32,7 @@ bool isIn(const fs::path& path, const fs::path& place) {
 
 void BagAccess::require(const std::string& path) const {
   if (path.empty() || path.find('\0') != std::string::npos) {
-    throw std::runtime_error("bag '" + std::string(path.c_str()) + "': this is no path");
+    throw std::runtime_error("bag '" + std::string(path.c_str()) + "' is not a path");
   }
   std::string known;
   const fs::path asked = target(path);
