@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# Tables of reproduce_efficient: what they say of made-up results, and which bars these reach.
+# Tables of reproduce_efficient: what they say of made-up results, and which targets these reach.
 # SPDX-License-Identifier: BSD-3-Clause
 import csv
 import os
@@ -164,8 +164,8 @@ class EfficientTablesTest(figure_case.FigureCase):
         self.assertEqual([row[:4] for row in rows], [("ddm", 100, 2, 0.0), ("ddm", 200, 2, 1.0),
                                                      ("oracle", 0, 6, 1.0)])
 
-    def bars(self):
-        return {row[0]: row[2:] for row in efficient_tables.write_bars(self.scratch)}
+    def targets(self):
+        return {row[0]: row[2:] for row in efficient_tables.write_targets(self.scratch)}
 
     def writeHeadline(self, success, seeds=50, trials=16, strict=None):
         path = self.writeTrials("trials.csv", range(seeds), trials, success, strict)
@@ -175,46 +175,46 @@ class EfficientTablesTest(figure_case.FigureCase):
         self.assertEqual(len(self.readTable("success_rate.csv")), trials)
         self.assertTrue(os.path.exists(path))
 
-    def test_a_bar_that_is_just_reached_holds(self):
+    def test_a_target_that_is_just_reached_holds(self):
         self.writeHeadline(lambda seed, trial: seed < 43 if trial == 0 else seed < (48 if trial < 5 else 50),
                            strict=lambda seed, trial: seed < 43 if trial == 0 else seed < (46 if trial < 5 else 49))
-        bars = self.bars()
-        self.assertEqual(bars["success, 100 frames"], ("0.86 [0.74, 0.93] of 50", "yes"))
-        self.assertEqual(bars["mean success, 200 to 1600 frames"], ("0.989", "no"))  # (4 0.96 + 11) / 15
-        self.assertEqual(bars["lowest success, 200 to 1600 frames"][1], "yes")
-        self.assertEqual(bars["success minus success_strict, largest"], ("0.04 at 200 frames", "yes"))
-        self.assertEqual(bars["whole experiment, largest of 50 seeds"], ("119.6 s", "yes"))
-        self.assertEqual(bars["plan, 99 % of a greedy run, largest"], ("58.5 ms", "no"))
+        targets = self.targets()
+        self.assertEqual(targets["success, 100 frames"], ("0.86 [0.74, 0.93] of 50", "yes"))
+        self.assertEqual(targets["mean success, 200 to 1600 frames"], ("0.989", "no"))  # (4 0.96 + 11) / 15
+        self.assertEqual(targets["lowest success, 200 to 1600 frames"][1], "yes")
+        self.assertEqual(targets["success minus success_strict, largest"], ("0.04 at 200 frames", "yes"))
+        self.assertEqual(targets["whole experiment, largest of 50 seeds"], ("119.6 s", "yes"))
+        self.assertEqual(targets["plan, 99 % of a greedy run, largest"], ("58.5 ms", "no"))
 
-    def test_a_headline_below_the_bars_does_not_reach_them(self):
+    def test_a_headline_below_the_targets_does_not_reach_them(self):
         self.writeHeadline(lambda seed, trial: seed < (42 if trial == 0 else 47 if trial == 3 else 50),
                            strict=lambda seed, trial: seed < 42)
-        bars = self.bars()
-        self.assertEqual([bars[point][1] for point in (
+        targets = self.targets()
+        self.assertEqual([targets[point][1] for point in (
             "success, 100 frames", "mean success, 200 to 1600 frames", "lowest success, 200 to 1600 frames",
             "success minus success_strict, largest")], ["no", "yes", "no", "no"])
-        self.assertIn("at 400 frames", bars["lowest success, 200 to 1600 frames"][0])
+        self.assertIn("at 400 frames", targets["lowest success, 200 to 1600 frames"][0])
 
     def test_few_seeds_or_missing_points_have_no_verdict(self):
         self.writeHeadline(lambda seed, trial: True, seeds=49)
-        self.assertEqual({row[1] for row in self.bars().values()}, {"n/a"})
+        self.assertEqual({row[1] for row in self.targets().values()}, {"n/a"})
         self.writeHeadline(lambda seed, trial: True, trials=15)
-        bars = self.bars()
-        self.assertEqual((bars["success, 100 frames"][1], bars["mean success, 200 to 1600 frames"][1]), ("yes", "n/a"))
+        targets = self.targets()
+        self.assertEqual((targets["success, 100 frames"][1], targets["mean success, 200 to 1600 frames"][1]), ("yes", "n/a"))
 
     def test_gravity_is_judged_from_1500_to_2000_frames_by_what_learns_from_images(self):
         self.writeTrials("gravity/trials.csv", range(20), 20,
                          lambda seed, trial: trial >= 14 and seed < (20 if trial > 14 else 18))
         self.writeTrials("gravity/pilco_state/trials.csv", range(4), 20, lambda seed, trial: False)
         efficient_tables.write_gravity(self.scratch)
-        bars = self.bars()
-        self.assertEqual(bars["mean success with gravity, 1500 to 2000 frames"], ("0.983", "yes"))
-        self.assertEqual(bars["lowest success with gravity, 1500 to 2000 frames"][1], "yes")
+        targets = self.targets()
+        self.assertEqual(targets["mean success with gravity, 1500 to 2000 frames"], ("0.983", "yes"))
+        self.assertEqual(targets["lowest success with gravity, 1500 to 2000 frames"][1], "yes")
         self.writeTrials("gravity/trials.csv", range(20), 20, lambda seed, trial: trial >= 15 or seed < 15)
         efficient_tables.write_gravity(self.scratch)
-        bars = self.bars()
-        self.assertEqual(bars["mean success with gravity, 1500 to 2000 frames"], ("0.958", "no"))
-        self.assertEqual(bars["lowest success with gravity, 1500 to 2000 frames"],
+        targets = self.targets()
+        self.assertEqual(targets["mean success with gravity, 1500 to 2000 frames"], ("0.958", "no"))
+        self.assertEqual(targets["lowest success with gravity, 1500 to 2000 frames"],
                          ("0.75 [0.53, 0.89] of 20 at 1500 frames", "no"))
 
     def test_the_mean_of_the_nuisances_is_judged_and_their_absence_is_not(self):
@@ -222,9 +222,9 @@ class EfficientTablesTest(figure_case.FigureCase):
         self.writeTrials("nuisances/drops/trials.csv", range(20), 5, lambda seed, trial: trial > 0 or seed < 18)
         self.writeTrials("nuisances/delay/trials.csv", range(20), 5, lambda seed, trial: seed < (18 if trial else 16))
         efficient_tables.write_nuisances(self.scratch, ["delay", "drops"])
-        self.assertEqual({point: holds for point, (_, holds) in self.bars().items()}, {
+        self.assertEqual({point: holds for point, (_, holds) in self.targets().items()}, {
             "mean success of the nuisances, 100 frames": "yes", "mean success of the nuisances, 200 to 500 frames": "no"})
-        self.assertEqual([row["holds"] for row in self.readTable("bars.csv")], ["yes", "no"])
+        self.assertEqual([row["holds"] for row in self.readTable("targets.csv")], ["yes", "no"])
 
 
 if __name__ == "__main__":

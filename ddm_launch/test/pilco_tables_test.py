@@ -120,7 +120,7 @@ class PilcoTablesTest(ScratchCase):
             self.writeResults("pilco_state", train_s=lambda seed, trial: 60.0 if seed else slowest_s)
             self.assertEqual(self.agreement()[TIME], ("< 30 min (authors: 3 to 10 h)", text + " (median 10.0)", holds))
 
-    def test_fewer_seeds_or_policies_than_the_bars_name_have_no_verdict(self):
+    def test_fewer_seeds_or_policies_than_the_targets_name_have_no_verdict(self):
         self.writeResults("pilco_state", seeds=11, trials=12)
         self.assertEqual({row[2] for row in self.agreement().values()}, {None})
         self.writeResults("pilco_state", seeds=12, trials=3)
@@ -129,7 +129,7 @@ class PilcoTablesTest(ScratchCase):
         self.assertEqual(rows[LATER][1:], ("24 of 24", None))
         self.assertEqual(rows["PILCO, state: time to policy 3, largest of 12 seeds"][2], None)
 
-    def test_what_has_no_bar_is_reported_without_a_verdict(self):
+    def test_what_has_no_target_is_reported_without_a_verdict(self):
         self.writeResults("pilco_state_sparse")
         self.writeResults("pilco_features", seeds=5, trials=16, success=lambda seed, trial: (seed, trial) == (1, 15))
         rows = self.agreement("pilco_state", "pilco_state_sparse", "pilco_features")

@@ -9,7 +9,7 @@ import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import rooms  # noqa: E402, F401
-from ddm_qa.soak_bars import count_frames  # noqa: E402
+from ddm_qa.soak_targets import count_frames  # noqa: E402
 from processes import call, find_program  # noqa: E402
 from run_files import read_bytes, read_rows  # noqa: E402
 from scratch_case import ScratchCase  # noqa: E402
@@ -21,13 +21,13 @@ class SoakTest(ScratchCase):
     def test_both_runs_leave_tables_and_a_figure_and_lockstep_loses_no_frame(self):
         code, output = call([find_program("ddm_launch", "soak"), "--trials", "5", "--minutes", "0.2", "--steps", "12",
                              "--out", self.out], limit_s=200.0)
-        bars = read_rows(self.out, "bars.csv")[1:]
-        self.assertEqual(code, 0 if all(row[3] == "1" for row in bars) else 1, output)
+        targets = read_rows(self.out, "targets.csv")[1:]
+        self.assertEqual(code, 0 if all(row[3] == "1" for row in targets) else 1, output)
         for run in ("lockstep", "real_time"):
-            self.assertEqual({row[1] for row in bars if row[0] == run},
-                             {"lost frames"} | {bar + node for bar in ("resident memory of ", "open files of ")
+            self.assertEqual({row[1] for row in targets if row[0] == run},
+                             {"lost frames"} | {target + node for target in ("resident memory of ", "open files of ")
                                                 for node in NODES}, output)
-        self.assertIn(["lockstep", "lost frames", "0 of 240", "1"], bars, output)
+        self.assertIn(["lockstep", "lost frames", "0 of 240", "1"], targets, output)
         self.assertEqual({(row[1], row[2]) for row in read_rows(self.out, "soak.csv") if row[0] == "lockstep"},
                          {(node, str(trial)) for node in NODES for trial in range(6)})
         self.assertEqual(read_bytes(self.out, "soak.png")[:4], b"\x89PNG")

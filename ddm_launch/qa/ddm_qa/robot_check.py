@@ -21,7 +21,7 @@ from ddm_model.plain_file import write_file
 
 LIMIT_S = 60.0
 SETTLED_STEPS = 10        # as `success` of an experiment has it
-DEADLINE_MISSES = 0       # the bars
+DEADLINE_MISSES = 0       # the targets
 LATENCY_P99_MS = 50.0
 
 

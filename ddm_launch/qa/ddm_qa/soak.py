@@ -15,7 +15,7 @@ from ddm_launch.figure_style import (BLUE, GREEN, GREY, ORANGE, PAGE_WIDTH, PURP
 from ddm_launch.run_folder import is_finished, num_finished
 from ddm_launch.tables import read_csv, write_csv
 from ddm_qa.processes import free_port, memory_kb, pid_of, start_roslaunch
-from ddm_qa.soak_bars import (FRAME_COLUMNS, GROWTH, Bar, Sample, after, by_node, count_frames, judge,
+from ddm_qa.soak_targets import (FRAME_COLUMNS, GROWTH, Target, Sample, after, by_node, count_frames, judge,
                               reference_trial)
 
 RUNS = {"lockstep": "lock-step", "real_time": "real time"}  # name: title in the figure
@@ -34,7 +34,7 @@ trial: {num_steps: %d}
 LOCKSTEP_SIZE, REAL_TIME_SIZE = 51, 5  # of an image [pixels]
 LONG_TRAINING = "training: {max_iterations: 1000, function_tolerance: 1.0e-12}\n"
 LINES = [(BLUE, "-"), (VERMILLION, "--"), (GREEN, "-."), (ORANGE, "-"), (PURPLE, "--")]
-NOT_DRAWN = ("master", "rosout")  # ROS's own, which bars.csv judges like all others
+NOT_DRAWN = ("master", "rosout")  # ROS's own, which targets.csv judges like all others
 
 # last: the trial after which it is judged; one more follows, so that the nodes are still there. seconds: after which it is
 # ended, from its first trial on. One of both is None.
@@ -48,7 +48,7 @@ model_node keeps in lockstep, and no frame be lost."""
 EPILOG = """\
 DIR/soak.csv    run,node,trial,time_s,rss_kb,open_files: resident memory and open files of each node and of the master
 DIR/frames.csv  run,trial,part,due,published,recorded,answered,lost: a row a trial, and one for its evaluation
-DIR/bars.csv    run,bar,measured,passed
+DIR/targets.csv    run,target,measured,passed
 DIR/soak.png    memory and open files over the trials
 Results of a run that is not asked for stay. Exit code: 0 all passed, 1 not, 2 bad options."""
 
@@ -155,10 +155,10 @@ def draw(samples, out):
         save(figure, out)
 
 
-def write_results(out, run, samples, frames, bars):
+def write_results(out, run, samples, frames, targets):
     """Of a run; the rows of other runs stay."""
     counts = [[row[column] for column in FRAME_COLUMNS] for row in frames]
-    for name, columns, rows in (("soak.csv", Sample._fields, samples), ("bars.csv", Bar._fields, bars),
+    for name, columns, rows in (("soak.csv", Sample._fields, samples), ("targets.csv", Target._fields, targets),
                                 ("frames.csv", FRAME_COLUMNS, counts)):
         path = os.path.join(out, name)
         others = [[row[column] for column in columns] for row in read_csv(path, columns)
@@ -174,14 +174,14 @@ def read_samples(path):
 
 
 def make(soak, out):
-    """Runs one and writes what came of it. Returns its bars."""
+    """Runs one and writes what came of it. Returns its targets."""
     with tqdm(total=soak.seconds or soak.last + 2, unit="s" if soak.seconds else "trial", desc=soak.name,
               dynamic_ncols=True, disable=None, bar_format="{l_bar}{bar}| {n:.0f}/{total:.0f} {unit}") as progress:
         samples, frames = SoakRun(soak, out).make(lambda done: progress.update(done - progress.n))
     image_bytes = LOCKSTEP_SIZE ** 2 if soak.name == "lockstep" else None
-    bars = judge(soak.name, samples[-1].trial if soak.last is None else soak.last, samples, frames, image_bytes)
-    write_results(out, soak.name, samples, frames, bars)
-    return bars
+    targets = judge(soak.name, samples[-1].trial if soak.last is None else soak.last, samples, frames, image_bytes)
+    write_results(out, soak.name, samples, frames, targets)
+    return targets
 
 
 def run(options):
@@ -190,13 +190,13 @@ def run(options):
     soaks = {"lockstep": Soak("lockstep", CONFIG % (LOCKSTEP_SIZE, 20), ["trials:=%d" % (options.trials + 1)], options.trials, None),
              "real_time": Soak("real_time", CONFIG % (REAL_TIME_SIZE, options.steps) + LONG_TRAINING,
                                ["trials:=999", "real_time:=true"], None, 60.0 * options.minutes)}
-    bars = [bar for name in options.runs for bar in make(soaks[name], out)]
-    for bar in bars:
-        print("%-6s  %s: %s: %s" % ("passed" if bar.passed else "failed", bar.run, bar.bar, bar.measured))
-    num_passed = sum(bar.passed for bar in bars)
+    targets = [target for name in options.runs for target in make(soaks[name], out)]
+    for target in targets:
+        print("%-6s  %s: %s: %s" % ("passed" if target.passed else "failed", target.run, target.target, target.measured))
+    num_passed = sum(target.passed for target in targets)
     print("results: %s" % out)
-    print("%d passed, %d failed" % (num_passed, len(bars) - num_passed))
-    return 0 if num_passed == len(bars) else 1
+    print("%d passed, %d failed" % (num_passed, len(targets) - num_passed))
+    return 0 if num_passed == len(targets) else 1
 
 
 def main():

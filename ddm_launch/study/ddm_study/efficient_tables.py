@@ -45,7 +45,7 @@ LEAST_GRAVITY_MEAN, LEAST_GRAVITY = 0.97, 0.8
 LEAST_NUISANCE_FIRST, LEAST_NUISANCE_LATER = 0.85, 0.97
 TWO_LINK_FRAMES, LEAST_TWO_LINK_MEAN, LEAST_TWO_LINK = (1000, 2000), 0.85, 0.7
 MOST_EXPERIMENT_S, MOST_PLAN_MS = 120.0, 20.0
-ROUNDING = 1e-9  # rates are quotients of small whole numbers, and bars decimal fractions
+ROUNDING = 1e-9  # rates are quotients of small whole numbers, and targets decimal fractions
 
 
 def interval_cells(row):
@@ -242,8 +242,8 @@ def at_least(point, least, value, here, known):
     return point, ">= %.2f" % least, here, value >= least - ROUNDING if known else None
 
 
-def level_bars(what, rates, frames, least_mean, least, num_runs):
-    """Bars for mean and lowest point of a curve over a range of frames; none if it has no point there."""
+def level_targets(what, rates, frames, least_mean, least, num_runs):
+    """Targets for mean and lowest point of a curve over a range of frames; none if it has no point there."""
     part = [rate for rate in rates if frames[0] <= rate.frames <= frames[1]]
     if not part:
         return []
@@ -255,11 +255,11 @@ def level_bars(what, rates, frames, least_mean, least, num_runs):
             at_least("lowest " + where, least, lowest.success, "%s at %d frames" % (lowest, lowest.frames), known)]
 
 
-def headline_bars(folder):
+def headline_targets(folder):
     rates = read_rates(folder, "success_rate.csv")
     rows = [at_least("success, %d frames" % FIRST_FRAMES, LEAST_FIRST, rate.success, str(rate), rate.runs >= SEEDS)
             for rate in rates if rate.frames == FIRST_FRAMES]
-    rows += level_bars("success", rates, LATER_FRAMES, LEAST_MEAN, LEAST_LATER, SEEDS)
+    rows += level_targets("success", rates, LATER_FRAMES, LEAST_MEAN, LEAST_LATER, SEEDS)
     if rates:
         worst = max(rates, key=lambda rate: rate.success - rate.strict)
         unsettled = worst.success - worst.strict
@@ -269,24 +269,24 @@ def headline_bars(folder):
     return rows
 
 
-def time_bars(folder):
+def time_targets(folder):
     path = os.path.join(folder, "times.csv")
     if not os.path.exists(path):
         return []
     rows = read_csv(path, {"seed": str, "wall_s": optional(float), "plan_ms_p99": float}, REMEDY)
     num_timed = sum(row["seed"].isdigit() and row["wall_s"] is not None for row in rows)
-    largest, bars = rows[-1], []
+    largest, targets = rows[-1], []
     if num_timed:
-        bars.append(("whole experiment, largest of %d seeds" % num_timed, "< %g s" % MOST_EXPERIMENT_S,
+        targets.append(("whole experiment, largest of %d seeds" % num_timed, "< %g s" % MOST_EXPERIMENT_S,
                      "%.1f s" % largest["wall_s"],
                      largest["wall_s"] < MOST_EXPERIMENT_S if num_timed >= SEEDS else None))
-    return bars + [("plan, 99 % of a greedy run, largest", "< %g ms" % MOST_PLAN_MS, "%.1f ms" % largest["plan_ms_p99"],
+    return targets + [("plan, 99 % of a greedy run, largest", "< %g ms" % MOST_PLAN_MS, "%.1f ms" % largest["plan_ms_p99"],
                     largest["plan_ms_p99"] < MOST_PLAN_MS if len(rows) - 2 >= SEEDS else None)]
 
 
-def nuisance_bars(rates):
-    """Bars for the mean of all nuisances, after the first trial and after those that follow."""
-    bars = []
+def nuisance_targets(rates):
+    """Targets for the mean of all nuisances, after the first trial and after those that follow."""
+    targets = []
     for frames, least in (((FIRST_FRAMES, FIRST_FRAMES), LEAST_NUISANCE_FIRST), (NUISANCE_FRAMES, LEAST_NUISANCE_LATER)):
         part = [rate for rate in rates if frames[0] <= rate.frames <= frames[1]]
         if part:
@@ -294,33 +294,33 @@ def nuisance_bars(rates):
             points = {rate.frames for rate in part}
             known = (points == set(range(frames[0], frames[1] + 1, TRIAL_FRAMES)) and
                      all(rate.runs >= FEW_SEEDS for rate in part))
-            bars.append(at_least("mean success of the nuisances, %s frames" % " to ".join(
+            targets.append(at_least("mean success of the nuisances, %s frames" % " to ".join(
                 map(str, sorted(set(frames)))), least, mean, "%.3f" % mean, known))
-    return bars
+    return targets
 
 
-def task_bars(folder):
-    """Bars for two links, and for the last models of tasks of the suite."""
-    bars = level_bars("success of two_link", [rate for rate in read_rates(folder, "tasks.csv") if rate.name == "two_link"],
+def task_targets(folder):
+    """Targets for two links, and for the last models of tasks of the suite."""
+    targets = level_targets("success of two_link", [rate for rate in read_rates(folder, "tasks.csv") if rate.name == "two_link"],
                       TWO_LINK_FRAMES, LEAST_TWO_LINK_MEAN, LEAST_TWO_LINK, FEW_SEEDS)
     for name, task in SUITE.items():
         path = os.path.join(folder, "tasks", name, "last_models.csv")
         if os.path.exists(path):
             returns = [row["mean_return"] for row in read_csv(path, {"mean_return": float}, REMEDY)]
             reached = sum(value >= task.least_return for value in returns)
-            bars.append(("seeds of %s with a mean return of %g" % (name, task.least_return),
+            targets.append(("seeds of %s with a mean return of %g" % (name, task.least_return),
                          ">= %d of %d" % (task.least_seeds, TASKS[name].num_seeds), "%d of %d" % (reached, len(returns)),
                          reached >= task.least_seeds if len(returns) >= TASKS[name].num_seeds else None))
-    return bars
+    return targets
 
 
-def write_bars(folder):
-    """Writes bars.csv about the tables that are there. Returns its rows (point, bar, here, yes | no | n/a)."""
+def write_targets(folder):
+    """Writes targets.csv about the tables that are there. Returns its rows (point, target, here, yes | no | n/a)."""
     gravity = [rate for rate in read_rates(folder, "gravity.csv") if rate.name == "ddm"]
-    bars = headline_bars(folder) + time_bars(folder) + level_bars(
+    targets = headline_targets(folder) + time_targets(folder) + level_targets(
         "success with gravity", gravity, GRAVITY_FRAMES, LEAST_GRAVITY_MEAN, LEAST_GRAVITY, FEW_SEEDS)
-    bars += nuisance_bars([rate for rate in read_rates(folder, "nuisances.csv") if rate.name != "none"])
-    bars += task_bars(folder)
-    rows = [(point, bar, here, verdict(holds)) for point, bar, here, holds in bars]
-    write_csv(os.path.join(folder, "bars.csv"), ["point", "bar", "here", "holds"], rows)
+    targets += nuisance_targets([rate for rate in read_rates(folder, "nuisances.csv") if rate.name != "none"])
+    targets += task_targets(folder)
+    rows = [(point, target, here, verdict(holds)) for point, target, here, holds in targets]
+    write_csv(os.path.join(folder, "targets.csv"), ["point", "target", "here", "holds"], rows)
     return rows

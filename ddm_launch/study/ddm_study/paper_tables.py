@@ -167,7 +167,7 @@ def schedule_agreement(folder):
 
 
 def agreement_table(folder, published, pilco=()):
-    """Rows (point, claim of the paper or bar, here, yes | no | n/a) of all that numbers can decide.
+    """Rows (point, claim of the paper or target, here, yes | no | n/a) of all that numbers can decide.
 
     pilco: those of pilco_tables.LABELS that have results.
     """
@@ -187,7 +187,7 @@ def write_tables(folder, published, pilco=()):
         "solvers": ("solver frames seeds successes v_r_per_frame v_p_per_frame train_s", solver_table(folder)),
         "times": ("what frames median largest unit source", time_table(trials) + pilco_tables.time_rows(folder, pilco)),
         "tile": ("seed rmse_8 rmse_repeat_8 ratio position_r2", tile_rows(folder)),
-        "agreement": ("point claim_or_bar here holds", agreement)}
+        "agreement": ("point claim_or_target here holds", agreement)}
     if pilco:
         tables["pilco"] = ("method policies frames successes runs authors_successes authors_runs",
                            pilco_tables.success_rows(folder, pilco))

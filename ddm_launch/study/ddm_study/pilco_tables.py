@@ -15,10 +15,10 @@ AUTHORS = "UCL-SML/pilco-matlab, stored runs"
 AUTHORS_SEEDS = 12
 AUTHORS_SUCCESSES = (11, 12, 12, 12, 12, 12, 12, 12, 12, 12, 12, 11, 12, 12, 9, 10)  # of policy 1, 2, ...
 AUTHORS_HOURS = (3.75, 10.5)  # policies 2 to 10 together: median and largest of the seeds
-GROUPS = ((1, 1), (2, 6))  # policies that the bars look at together
-BAR_FIRST, BAR_LATER = 10, 57  # of 12 and of 60 successes
+GROUPS = ((1, 1), (2, 6))  # policies that the targets look at together
+TARGET_FIRST, TARGET_LATER = 10, 57  # of 12 and of 60 successes
 NUM_TIMED = 10  # policies whose times are added up
-BAR_TIME_S = 30.0 * 60.0
+TARGET_TIME_S = 30.0 * 60.0
 REMEDY = "rosrun ddm_launch reproduce_paper writes it"
 
 
@@ -112,26 +112,26 @@ def time_rows(folder, names):
 
 
 def agreement_rows(folder, names):
-    """Rows (point, bar, here, True | False | None); only PILCO on the state, full GP, has bars and verdicts."""
+    """Rows (point, target, here, True | False | None); only PILCO on the state, full GP, has targets and verdicts."""
     rows = []
     for name in names:
-        runs, label, has_bars = read_runs(folder, name), LABELS[name], name == "pilco_state"
-        for (first, last), bar in zip(GROUPS if has_bars else (), (BAR_FIRST, BAR_LATER)):
+        runs, label, has_targets = read_runs(folder, name), LABELS[name], name == "pilco_state"
+        for (first, last), target in zip(GROUPS if has_targets else (), (TARGET_FIRST, TARGET_LATER)):
             authors, of_runs = of_authors(first, last)
             trials = greedy_runs(runs, first, last)
             rows.append(("%s: successes of policy %s" % (label, range_text(first, last)),
-                         ">= %d of %d (authors: %d)" % (bar, of_runs, authors),
+                         ">= %d of %d (authors: %d)" % (target, of_runs, authors),
                          "%d of %d" % (num_successes(trials), len(trials)),
-                         num_successes(trials) >= bar if len(trials) == of_runs else None))
-        if not has_bars:
+                         num_successes(trials) >= target if len(trials) == of_runs else None))
+        if not has_targets:
             trials = greedy_runs(runs)
             rows.append((label + ": successes of all policies",
                          "reported" if name in ON_THE_STATE else "reported (paper: 0)",
                          "%d of %d" % (num_successes(trials), len(trials)), None))
         count, _, totals = total_seconds(folder, name)
-        known = has_bars and (count, len(totals)) == (NUM_TIMED, AUTHORS_SEEDS)
+        known = has_targets and (count, len(totals)) == (NUM_TIMED, AUTHORS_SEEDS)
         rows.append(("%s: time to policy %d, largest of %d seed%s" % (label, count, len(totals), "s" * (len(totals) > 1)),
-                     "< %g min (authors: 3 to 10 h)" % (BAR_TIME_S / 60.0) if has_bars else "reported",
+                     "< %g min (authors: 3 to 10 h)" % (TARGET_TIME_S / 60.0) if has_targets else "reported",
                      "%.1f min (median %.1f)" % (max(totals) / 60.0, statistics.median(totals) / 60.0),
-                     max(totals) < BAR_TIME_S if known else None))
+                     max(totals) < TARGET_TIME_S if known else None))
     return rows

@@ -10,7 +10,7 @@ from ddm_launch.figure_style import save_picture
 from ddm_launch.images import recorded_images
 from ddm_launch.settings import flat, read_yaml
 from ddm_launch.sweep import seed_range
-from ddm_study.efficient_tables import (FEW_SEEDS, PRESET, SUITE, TASKS, write_bars, write_gravity, write_last_models,
+from ddm_study.efficient_tables import (FEW_SEEDS, PRESET, SUITE, TASKS, write_targets, write_gravity, write_last_models,
                                         write_nuisances, write_success, write_tasks, write_variants)
 from ddm_study.step_runner import Part, StepRunner, SweepStep, verdict_lines
 
@@ -40,7 +40,7 @@ parts (--only), in this order, and what they leave in DIR:
   tasks        tasks/TASK/trials.csv of harder plants, and of one with another camera and other colours (%s); tasks.csv;
                tasks/TASK/diagnosis.csv of task_diagnosis; of those of the DeepMind Control Suite
                tasks/TASK/last_models.csv, ten episodes of each seed's last model, and TASK.png
-bars.csv holds what the results must reach and whether they do, machine.yaml how each step was made, runs/ and logs/
+targets.csv holds what the results must reach and whether they do, machine.yaml how each step was made, runs/ and logs/
 everything that the programs left. A step whose files have changed since it was made is refused. The columns are explained
 in doc/reference/run_folder.md.""" % ", ".join(TASKS)
 
@@ -92,7 +92,7 @@ class EfficientReproduction(StepRunner):
         return parts
 
     def verdict(self):
-        return self.idle_variants() + verdict_lines(write_bars(self.out))
+        return self.idle_variants() + verdict_lines(write_targets(self.out))
 
     def step(self, name, folder, seeds, trials, more=(), plant="pendulum", limit_s=None):
         words = ["--preset", self.preset, "--plant", plant, "--trials", str(trials)]

@@ -8,7 +8,7 @@ import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import rooms  # noqa: E402, F401
-from ddm_qa.soak_bars import Sample, count_recorded, count_seen, judge  # noqa: E402
+from ddm_qa.soak_targets import Sample, count_recorded, count_seen, judge  # noqa: E402
 from ddm_qa.soak import write_results  # noqa: E402
 from run_files import read_rows  # noqa: E402
 from scratch_case import ScratchCase  # noqa: E402
@@ -30,10 +30,10 @@ def lost_frame(lost):
 
 def verdicts(samples, lost=0):
     """passed of memory, open files and frames."""
-    return [bar.passed for bar in judge("lockstep", LAST, samples, [lost_frame(lost)])]
+    return [target.passed for target in judge("lockstep", LAST, samples, [lost_frame(lost)])]
 
 
-class SoakBarsTest(ScratchCase):
+class SoakTargetsTest(ScratchCase):
     """The made-up trial: twenty frames, dt apart, with two frames before and after it that nobody answers."""
 
     def setUp(self):
@@ -111,10 +111,10 @@ class SoakBarsTest(ScratchCase):
             samples = [sample._replace(run=run) for sample in samples_of(lambda _: 60000, lambda _: 17)]
             frames = [dict(lost_frame(0), run=run)]
             write_results(self.scratch, run, samples, frames, judge(run, LAST, samples, frames))
-        self.assertEqual([len(read_rows(self.scratch, name)) for name in ("soak.csv", "frames.csv", "bars.csv")],
+        self.assertEqual([len(read_rows(self.scratch, name)) for name in ("soak.csv", "frames.csv", "targets.csv")],
                          [2 * (LAST + 1) + 1, 3, 7])
         self.assertEqual([row[0] for row in read_rows(self.scratch, "frames.csv")], ["run", "lockstep", "real_time"])
 
 
 if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "soak_bars", SoakBarsTest)
+    rosunit.unitrun("ddm_launch", "soak_targets", SoakTargetsTest)

@@ -11,8 +11,8 @@ from ddm_launch.run_folder import Trajectory, read_setting
 
 # Of a node after a trial. time_s: since the launch.
 Sample = collections.namedtuple("Sample", "run node trial time_s rss_kb open_files")
-# One row of bars.csv; passed: 0 or 1.
-Bar = collections.namedtuple("Bar", "run bar measured passed")
+# One row of targets.csv; passed: 0 or 1.
+Target = collections.namedtuple("Target", "run target measured passed")
 FRAME_COLUMNS = ["run", "trial", "part", "due", "published", "recorded", "answered", "lost"]
 
 GROWTH = 0.05  # of resident memory, since the first tenth of the trials: trial 30 of 300
@@ -37,35 +37,35 @@ def after(samples, trial):
     return next(sample for sample in samples if sample.trial >= trial)
 
 
-def memory_bar(run, node, first, end, last, kept_bytes):
+def memory_target(run, node, first, end, last, kept_bytes):
     """first, end: samples of the node. kept_bytes: of the images that it was given in between, or None if it keeps none."""
     name, passed = "resident memory of %s" % node, end.trial == last
     grown = end.rss_kb / first.rss_kb - 1.0
     measured = "%.1f MB after trial %d, %.1f MB after trial %d: %+.1f %%" % (
         first.rss_kb / 1024.0, first.trial, end.rss_kb / 1024.0, end.trial, 100.0 * grown)
     if kept_bytes is None:
-        return Bar(run, name, measured, int(passed and grown <= GROWTH))
+        return Target(run, name, measured, int(passed and grown <= GROWTH))
     images = 1024.0 * (end.rss_kb - first.rss_kb) / max(1, kept_bytes)
-    return Bar(run, name, "%s, %.2f images a frame" % (measured, images), int(passed and images <= IMAGES))
+    return Target(run, name, "%s, %.2f images a frame" % (measured, images), int(passed and images <= IMAGES))
 
 
 def judge(run, last, samples, frames, image_bytes=None):
-    """All bars of a run. last: number of its last trial; samples, frames: of this run; image_bytes: of an image, if those that
+    """All targets of a run. last: number of its last trial; samples, frames: of this run; image_bytes: of an image, if those that
     model_node keeps may make it grow."""
-    bars, tenth = [], reference_trial(last)
+    targets, tenth = [], reference_trial(last)
     for node, of_node in by_node(samples).items():
         first, end = after(of_node, tenth), of_node[-1]
         num_kept = sum(row["answered"] for row in frames if row["part"] == "trial" and first.trial < row["trial"] <= end.trial)
         kept_bytes = num_kept * image_bytes if image_bytes and node == "model_node" else None
-        bars.append(memory_bar(run, node, first, end, last, kept_bytes))
+        targets.append(memory_target(run, node, first, end, last, kept_bytes))
         # A bag or a connection may be open just then: the most in the last tenth must have been there in the second.
         early = max(sample.open_files for sample in of_node if tenth <= sample.trial <= 2 * tenth)
         late = max(sample.open_files for sample in of_node if sample.trial >= last - tenth)
-        bars.append(Bar(run, "open files of %s" % node, "at most %d in trials %d to %d, %d in trials %d to %d" % (
+        targets.append(Target(run, "open files of %s" % node, "at most %d in trials %d to %d, %d in trials %d to %d" % (
             early, tenth, 2 * tenth, late, last - tenth, last), int(late <= early)))
     due = sum(max(row["due"], row["published"] or 0) for row in frames)
     lost = sum(row["lost"] for row in frames)
-    return bars + [Bar(run, "lost frames", "%d of %d" % (lost, due), int(bool(frames) and lost == 0))]
+    return targets + [Target(run, "lost frames", "%d of %d" % (lost, due), int(bool(frames) and lost == 0))]
 
 
 def frames_between(seconds, dt):
