@@ -24,7 +24,9 @@ SUFFIX = ".webp"
 AHEAD_S = 1.0
 PANEL, MARGIN, HEADER, FOOTER = 200, 8, 26, 24  # [pixels]
 LAST_MS = 1500  # the last picture of an evaluation stays
-TITLES = ("image", "predicted a second ago", "feature space")
+# Below each panel: words, their distance from its left edge [pixels] and their colour.
+TITLES = ([("image", 0, "black")], [("predicted a second ago", 0, "black")],
+          [("features:", 0, "black"), ("now", 66, BLUE), ("plan", 98, ORANGE), ("goal", 132, VERMILLION), ("seen", 166, GREY)])
 EVALUATION = re.compile(r"evaluation_(\d+)$")
 
 # One evaluation. title; dt [s]; images [N x size x size] and what was expected of them, None at first; features [N x 2]; paths:
@@ -136,7 +138,8 @@ def pictures_of(clip):
             left = MARGIN + column * (PANEL + MARGIN)
             picture.paste(panel, (left, HEADER))
             pen.rectangle([left, HEADER, left + PANEL - 1, HEADER + PANEL - 1], outline="#dddddd")
-            pen.text((left, HEADER + PANEL + 4), title, fill="black", font=font(13))
+            for word, shift, colour in title:
+                pen.text((left + shift, HEADER + PANEL + 4), word, fill=colour, font=font(13))
         pictures.append(picture)
     return pictures
 
