@@ -84,7 +84,7 @@ class Replay {
   }
 
   /// One stretch of frames without a gap: a trial of its own.
-  void beginPiece(Eigen::Index num_frames) {
+  void beginSegment(Eigen::Index num_frames) {
     ddm_msgs::RunTrialGoal goal;
     goal.num_steps = static_cast<std::uint32_t>(num_frames);
     goal.hold_steps = 1;
@@ -109,11 +109,11 @@ class Replay {
                                              static_cast<Eigen::Index>(answer_->torque.size()));
   }
 
-  /// Waits for the end of a piece whose frames are all answered. Before mpc_node gives the trial up
+  /// Waits for the end of a segment whose frames are all answered. Before mpc_node gives the trial up
   /// over an image that it refuses, it answers the image with zero: only the end tells that zero
   /// from a proposal.
   /// @throws std::runtime_error unless mpc_node has completed the trial
-  void endPiece() {
+  void endSegment() {
     waitFor([this] { return trial_client_.getState().isDone(); },
             "mpc_node does not end its trial");
     const actionlib::SimpleClientGoalState state = trial_client_.getState();
@@ -160,9 +160,9 @@ Eigen::MatrixXd play(const ddm::BagContent& bag, double rate, Replay* replay,
   const ddm::DataSet& data = bag.data;
   Eigen::MatrixXd proposed(data.torqueDim(), data.numFrames());
   const ros::SteadyTime begin = ros::SteadyTime::now();
-  for (const ddm::Piece& piece : data.pieces()) {
-    replay->beginPiece(piece.size);
-    for (Eigen::Index frame = piece.begin; frame < piece.begin + piece.size; ++frame) {
+  for (const ddm::Segment& segment : data.segments()) {
+    replay->beginSegment(segment.size);
+    for (Eigen::Index frame = segment.begin; frame < segment.begin + segment.size; ++frame) {
       const double time = bag.times[static_cast<size_t>(frame)];
       if (rate > 0.0) ros::SteadyTime::sleepUntil(begin + ros::WallDuration(time / rate));
       const Eigen::VectorXd torque =
@@ -175,7 +175,7 @@ Eigen::MatrixXd play(const ddm::BagContent& bag, double rate, Replay* replay,
       proposed.col(frame) = torque;
       progress->update(static_cast<double>(frame + 1) / static_cast<double>(data.numFrames()));
     }
-    replay->endPiece();
+    replay->endSegment();
   }
   return proposed;
 }
@@ -184,11 +184,11 @@ void writeCsv(const ddm::BagContent& bag, const Eigen::MatrixXd& proposed,
               const std::string& path) {
   const ddm::DataSet& data = bag.data;
   std::string text =
-      ddm::csvLine("frame", "piece", "time_s", ddm::featureNames(data.torqueDim(), "recorded"),
+      ddm::csvLine("frame", "segment", "time_s", ddm::featureNames(data.torqueDim(), "recorded"),
                    ddm::featureNames(data.torqueDim(), "proposed"));
-  for (size_t p = 0; p < data.pieces().size(); ++p) {
-    const ddm::Piece& piece = data.pieces()[p];
-    for (Eigen::Index frame = piece.begin; frame < piece.begin + piece.size; ++frame) {
+  for (size_t p = 0; p < data.segments().size(); ++p) {
+    const ddm::Segment& segment = data.segments()[p];
+    for (Eigen::Index frame = segment.begin; frame < segment.begin + segment.size; ++frame) {
       text += ddm::csvLine(frame, p, bag.times[static_cast<size_t>(frame)],
                            data.torques().col(frame), proposed.col(frame));
     }

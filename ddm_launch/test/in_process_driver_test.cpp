@@ -65,11 +65,11 @@ class InProcessDriverTest : public ::testing::Test {
   TrialRequest request_;
 };
 
-TEST_F(InProcessDriverTest, APerfectCameraGivesAFrameInEachStepAndOnePiece) {
+TEST_F(InProcessDriverTest, APerfectCameraGivesAFrameInEachStepAndOneSegment) {
   const TrialOutcome outcome = run();
   ASSERT_EQ(outcome.times.size(), 40u);
   for (size_t t = 0; t + 1 < 40; ++t) EXPECT_EQ(stepsAfter(outcome, t), 1) << t;
-  ASSERT_EQ(bag().data.pieces().size(), 1u);
+  ASSERT_EQ(bag().data.segments().size(), 1u);
   EXPECT_EQ(bag().data.numFrames(), 40);
 }
 
@@ -121,7 +121,7 @@ TEST_F(InProcessDriverTest, TheReturnIsThatOfAsManyStepsAsWithoutLostFrames) {
 TEST_F(InProcessDriverTest, NoPairOfTheBagStraddlesALostFrame) {
   configuration_.camera.drop_rate = 0.2;
   const TrialOutcome outcome = run();
-  std::vector<Eigen::Index> expected = {0};  // first frames of the pieces
+  std::vector<Eigen::Index> expected = {0};  // first frames of the segments
   for (size_t t = 0; t + 1 < 40; ++t) {
     if (stepsAfter(outcome, t) > 1) expected.push_back(static_cast<Eigen::Index>(t) + 1);
   }
@@ -129,7 +129,7 @@ TEST_F(InProcessDriverTest, NoPairOfTheBagStraddlesALostFrame) {
   const BagContent content = bag();
   EXPECT_EQ(content.data.numFrames(), 40);
   std::vector<Eigen::Index> begins;
-  for (const Piece& piece : content.data.pieces()) begins.push_back(piece.begin);
+  for (const Segment& segment : content.data.segments()) begins.push_back(segment.begin);
   EXPECT_EQ(begins, expected);
 }
 

@@ -191,10 +191,10 @@ TEST(ImageTask, TakesGoalStartAndScaleFromTheData) {
   Eigen::MatrixXd X(2, 4);
   X << 1, 0, 3, 0,  //
       0, 1, 2, -1;
-  const std::vector<Piece> pieces = {{0, 2}, {2, 2}};
+  const std::vector<Segment> segments = {{0, 2}, {2, 2}};
   PilcoOptions options;
   const Eigen::VectorXd goal = pair(-1.0, 0.0);
-  const PilcoTask task = imageTask(X, pieces, goal, options);
+  const PilcoTask task = imageTask(X, segments, goal, options);
   const double spread = std::sqrt(2.0 + 5.0 / 3.0);  // sample variances of the two rows
   EXPECT_TRUE(task.angles.empty());
   EXPECT_NEAR(task.cost.expected(pilco::known(goal)), 0.0, 1e-15);

@@ -91,7 +91,7 @@ class RecordedBagTest(ScratchCase):
                              "--seed", "1", "--out", model, bag])
         self.assertEqual(code, 0, output)
         self.assertRegex(output, r"(?m)^frames: (299|300|301)$")
-        self.assertRegex(output, r"(?m)^pieces: 1$")
+        self.assertRegex(output, r"(?m)^segments: 1$")
         code, output = call([find_program("ddm_model", "inspect"), "--model", model, *names, "--out", self.file("report"), bag])
         self.assertEqual(code, 0, output)
         self.assertIn("checks passed", output)

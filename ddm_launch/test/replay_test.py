@@ -68,7 +68,7 @@ class ReplayTest(SharedScratchCase):
             heard = dict(self.heard)
         self.assertEqual(sorted(heard), ["replay/proposed_torque", "replay/torque"])
         rows = read_rows(out)
-        self.assertEqual(rows[0], ["frame", "piece", "time_s", "recorded_1", "proposed_1"])
+        self.assertEqual(rows[0], ["frame", "segment", "time_s", "recorded_1", "proposed_1"])
         self.assertEqual([row[3] for row in rows[1:]],
                          [row[1] for row in read_rows(os.path.dirname(self.bag), "torques.csv")[1:]])
         proposed = {message.header.stamp: message.torque[0] for message in heard["replay/proposed_torque"]}
@@ -83,10 +83,10 @@ class ReplayTest(SharedScratchCase):
         with rosbag.Bag(self.bag) as whole, rosbag.Bag(bag, "w") as one:
             for wanted in ("camera/image_raw", "torque"):  # of the first frame, which is the last here
                 one.write(*next(whole.read_messages([wanted])))
-        camera = rospy.Publisher("camera/image_raw", Image, queue_size=1)  # mpc_node refuses to look through two
+        camera = rospy.Publisher("camera/image_raw", Image, queue_size=1)  # mpc_node refuses images of two publishers
         self.addCleanup(camera.unregister)
         output, _ = self.replay("bag:=" + bag, "model:=" + self.model, "out:=" + out)
-        self.assertRegex(output, r"FATAL.*only one camera")
+        self.assertRegex(output, r"FATAL.*only one node may publish images")
         self.assertFalse(os.path.exists(out))
 
     def test_a_bag_that_is_missing_is_named(self):

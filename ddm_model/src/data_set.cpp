@@ -14,7 +14,7 @@ DataSet::DataSet(int image_size, int torque_dim)
   }
 }
 
-void DataSet::append(const Grey& grey, const Eigen::VectorXd& torque, bool new_piece) {
+void DataSet::append(const Grey& grey, const Eigen::VectorXd& torque, bool new_segment) {
   if (static_cast<Eigen::Index>(grey.size()) != numPixels()) {
     throw std::invalid_argument("data set: an image must have " + std::to_string(numPixels()) +
                                 " pixels, got " + std::to_string(grey.size()));
@@ -24,10 +24,10 @@ void DataSet::append(const Grey& grey, const Eigen::VectorXd& torque, bool new_p
                                 " value(s), got " + std::to_string(torque.size()));
   }
   if (!torque.allFinite()) throw std::invalid_argument("data set: a torque must be finite");
-  if (new_piece || pieces_.empty()) pieces_.push_back({num_frames_, 0});
+  if (new_segment || segments_.empty()) segments_.push_back({num_frames_, 0});
   images_.push_back(std::make_shared<const Grey>(grey));
   torques_.insert(torques_.end(), torque.data(), torque.data() + torque.size());
-  ++pieces_.back().size;
+  ++segments_.back().size;
   ++num_frames_;
 }
 
@@ -35,8 +35,8 @@ void DataSet::append(const DataSet& other) {
   if (other.image_size_ != image_size_ || other.torque_dim_ != torque_dim_) {
     throw std::invalid_argument("data set: image size or torque dimension differ");
   }
-  for (const Piece& piece : other.pieces_) {
-    pieces_.push_back({piece.begin + num_frames_, piece.size});
+  for (const Segment& segment : other.segments_) {
+    segments_.push_back({segment.begin + num_frames_, segment.size});
   }
   images_.insert(images_.end(), other.images_.begin(), other.images_.end());
   torques_.insert(torques_.end(), other.torques_.begin(), other.torques_.end());

@@ -24,9 +24,9 @@ double squaredDistance(const Grey& a, const Grey& b) {
 /// predicted from. In the order of the data.
 std::vector<Eigen::Index> predictionStarts(const Ddm& model, const DataSet& data, int num_steps) {
   std::vector<Eigen::Index> starts;
-  for (const Piece& piece : data.pieces()) {
-    for (Eigen::Index i = model.options().memory() - 1; i + num_steps < piece.size; ++i) {
-      starts.push_back(piece.begin + i);
+  for (const Segment& segment : data.segments()) {
+    for (Eigen::Index i = model.options().memory() - 1; i + num_steps < segment.size; ++i) {
+      starts.push_back(segment.begin + i);
     }
   }
   return starts;

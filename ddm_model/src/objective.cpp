@@ -46,21 +46,22 @@ JointObjective<Scalar>::JointObjective(const Networks<Scalar>& networks, Trainin
     const Eigen::Index first = std::max<Eigen::Index>(begin - f.memory(), 0);
     parts_.push_back({first, begin, std::min(begin + part_size, num_images), {}, {}});
   }
-  std::sort(data_.pieces.begin(), data_.pieces.end(),
-            [](const Piece& a, const Piece& b) { return a.begin < b.begin; });
-  for (const Piece& piece : data_.pieces) {
-    if (piece.begin < 0 || piece.begin + piece.size > data_.torques.cols()) {
-      throw std::invalid_argument("objective: a piece reaches beyond the frames");
+  std::sort(data_.segments.begin(), data_.segments.end(),
+            [](const Segment& a, const Segment& b) { return a.begin < b.begin; });
+  for (const Segment& segment : data_.segments) {
+    if (segment.begin < 0 || segment.begin + segment.size > data_.torques.cols()) {
+      throw std::invalid_argument("objective: a segment reaches beyond the frames");
     }
-    for (Eigen::Index i = f.memory(); i < piece.size; ++i) {
-      Part& part = parts_[(piece.begin + i) / part_size];
-      part.targets.push_back(piece.begin + i - part.first);
-      part.piece_end.push_back(piece.begin + piece.size - part.first);
+    for (Eigen::Index i = f.memory(); i < segment.size; ++i) {
+      Part& part = parts_[(segment.begin + i) / part_size];
+      part.targets.push_back(segment.begin + i - part.first);
+      part.segment_end.push_back(segment.begin + segment.size - part.first);
     }
   }
   if (numPredictions() == 0) {
     throw std::invalid_argument(
-        "no prediction can be learned: each piece of the data (frames without a gap, each with its "
+        "no prediction can be learned: each segment of the data (frames without a gap, each with "
+        "its "
         "torque) needs more than model/order + model/delay = " +
         std::to_string(f.memory()) + " frames");
   }
@@ -201,11 +202,11 @@ void JointObjective<Scalar>::forward(const Part& part, const Scalar* theta, cons
     for (Eigen::Index i = 0; i < count; ++i) {
       const Eigen::Index frame = part.targets[i] + j;
       const Eigen::Index column = size + j * count + i;
-      if (frame < part.piece_end[i]) {
+      if (frame < part.segment_end[i]) {
         residual.col(column) =
             decoded.col(column) - data_.scores.col(part.first + frame);  // eq. (4)
       } else {
-        residual.col(column).setZero();  // beyond the piece there is nothing to compare with
+        residual.col(column).setZero();  // beyond the segment there is nothing to compare with
       }
     }
   }
@@ -214,7 +215,7 @@ void JointObjective<Scalar>::forward(const Part& part, const Scalar* theta, cons
       static_cast<double>(residual.middleCols(size, steps * count).squaredNorm()) / steps;
 }
 
-/// Replaces residuals by random signs, for factors(). Targets beyond a piece keep their 0.
+/// Replaces residuals by random signs, for factors(). Targets beyond a segment keep their 0.
 template <class Scalar>
 void JointObjective<Scalar>::drawErrors(const Part& part, int steps, std::mt19937_64 rng,
                                         Lane* lane) {

@@ -15,11 +15,11 @@ TrainingData<float> evenPart(const TrainingData<float>& data, Eigen::Index max_f
                              Eigen::Index longer_than) {
   const Eigen::Index num_frames = data.torques.cols();
   if (num_frames <= max_frames) return data;
-  std::vector<Piece> chosen;
+  std::vector<Segment> chosen;
   Eigen::Index seen = 0, taken = 0;
-  for (const Piece& piece : data.pieces) {
-    for (Eigen::Index at = 0; at < piece.size; at += kStretch) {
-      const Piece stretch{piece.begin + at, std::min(kStretch, piece.size - at)};
+  for (const Segment& segment : data.segments) {
+    for (Eigen::Index at = 0; at < segment.size; at += kStretch) {
+      const Segment stretch{segment.begin + at, std::min(kStretch, segment.size - at)};
       seen += stretch.size;
       // Taken are those that keep to the share max_frames / num_frames of what was seen.
       const bool due = (taken + stretch.size) * num_frames <= seen * max_frames;
@@ -35,11 +35,12 @@ TrainingData<float> evenPart(const TrainingData<float>& data, Eigen::Index max_f
   part.scores.rightCols(num_others) = data.scores.rightCols(num_others);
   part.torques.resize(data.torques.rows(), taken);
   Eigen::Index at = 0;
-  for (const Piece& piece : chosen) {
-    part.scores.middleCols(at, piece.size) = data.scores.middleCols(piece.begin, piece.size);
-    part.torques.middleCols(at, piece.size) = data.torques.middleCols(piece.begin, piece.size);
-    part.pieces.push_back({at, piece.size});
-    at += piece.size;
+  for (const Segment& segment : chosen) {
+    part.scores.middleCols(at, segment.size) = data.scores.middleCols(segment.begin, segment.size);
+    part.torques.middleCols(at, segment.size) =
+        data.torques.middleCols(segment.begin, segment.size);
+    part.segments.push_back({at, segment.size});
+    at += segment.size;
   }
   return part;
 }

@@ -28,7 +28,7 @@ TEST_P(Allocation, AnEvaluationTakesNoMemory) {
   TrainingData<float> data;
   data.scores = testing::randomMatrix(options.pca_dim, 301, 1).cast<float>();
   data.torques = testing::randomMatrix(1, 300, 2);
-  data.pieces = {{0, 200}, {200, 100}};
+  data.segments = {{0, 200}, {200, 100}};
   JointObjective<float> objective(networks, data);
   const Eigen::VectorXf theta =
       0.1F * testing::randomMatrix(networks.numParams(), 1, 3).cast<float>();

@@ -33,10 +33,10 @@ class BagCacheTest : public ::testing::Test {
 TEST_F(BagCacheTest, KeepsTrialsApartAndInOrder) {
   const DataSet data =
       cache_.read({write("b.bag", toyTrial(7, 1)), write("a.bag", toyTrial(5, 2))});
-  ASSERT_EQ(data.pieces().size(), 2U);
-  EXPECT_EQ(data.pieces()[0].size, 7);
-  EXPECT_EQ(data.pieces()[1].begin, 7);
-  EXPECT_EQ(data.pieces()[1].size, 5);
+  ASSERT_EQ(data.segments().size(), 2U);
+  EXPECT_EQ(data.segments()[0].size, 7);
+  EXPECT_EQ(data.segments()[1].begin, 7);
+  EXPECT_EQ(data.segments()[1].size, 5);
   EXPECT_EQ(data.torques()(0, 7), toyTrial(5, 2).torques()(0, 0));
   EXPECT_TRUE(data.hasGoal());
 }

@@ -1,4 +1,4 @@
-// Tests of the bag reader: how frames are found, and where pieces begin.
+// Tests of the bag reader: how frames are found, and where segments begin.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_bag_io/bag_reader.h"
 
@@ -24,10 +24,10 @@ class BagReader : public ::testing::Test {
   BagContent read(const BagOptions& options = BagOptions()) const {
     return readBag(path_, kToySize, options);
   }
-  std::vector<Eigen::Index> pieceSizes() const {
+  std::vector<Eigen::Index> segmentSizes() const {
     const BagContent content = read();
     std::vector<Eigen::Index> sizes;
-    for (const Piece& piece : content.data.pieces()) sizes.push_back(piece.size);
+    for (const Segment& segment : content.data.segments()) sizes.push_back(segment.size);
     return sizes;
   }
   /// Five images, each answered by torque 1 on the first of the topics, 2 on the second, and so on.
@@ -61,7 +61,7 @@ TEST_F(BagReader, GivesBackTheTrialThatWasWritten) {
   const BagContent content = read();
   EXPECT_EQ(content.data.pixels(0, 20), trial.pixels(0, 20));
   EXPECT_EQ(content.data.torques(), trial.torques());
-  EXPECT_EQ(content.data.pieces().size(), 1U);
+  EXPECT_EQ(content.data.segments().size(), 1U);
   EXPECT_EQ(content.data.goal(), toyImage(3.0));
   EXPECT_EQ(content.camera, "8x8 mono8");
   EXPECT_EQ(content.images_without_torque.size(), 0u);
@@ -95,7 +95,7 @@ TEST_F(BagReader, AnImageWithoutTorqueSplitsTheTrial) {
     }
     bag.torque(50.0, {1.0});
   }
-  EXPECT_EQ(pieceSizes(), (Sizes{4, 5}));
+  EXPECT_EQ(segmentSizes(), (Sizes{4, 5}));
   EXPECT_EQ(read().images_without_torque.size(), 1u);
   EXPECT_EQ(read().torques_without_image.size(), 1u);
 }
@@ -108,7 +108,7 @@ TEST_F(BagReader, ATorqueWithoutANumberIsNone) {
       bag.torque(1.0 + 0.2 * t, t == 4 ? std::vector<double>() : std::vector<double>{1.0});
     }
   }
-  EXPECT_EQ(pieceSizes(), (Sizes{4, 5}));
+  EXPECT_EQ(segmentSizes(), (Sizes{4, 5}));
 }
 
 TEST_F(BagReader, AnImageWithoutTorqueSplitsEvenWhereTimeHasNoGap) {
@@ -117,7 +117,7 @@ TEST_F(BagReader, AnImageWithoutTorqueSplitsEvenWhereTimeHasNoGap) {
     for (double stamp : {1.0, 1.2, 1.4, 1.6, 1.8}) bag.frame(stamp, stamp, 1.0);
     bag.image(1.5, 0.0);
   }
-  EXPECT_EQ(pieceSizes(), (Sizes{3, 2}));
+  EXPECT_EQ(segmentSizes(), (Sizes{3, 2}));
 }
 
 TEST_F(BagReader, AGapInTimeSplitsTheTrialAndJitterDoesNot) {
@@ -129,7 +129,7 @@ TEST_F(BagReader, AGapInTimeSplitsTheTrialAndJitterDoesNot) {
       bag.frame(stamp, 0.1 * t, 1.0);
     }
   }
-  EXPECT_EQ(pieceSizes(), (Sizes{5, 7}));
+  EXPECT_EQ(segmentSizes(), (Sizes{5, 7}));
 }
 
 TEST_F(BagReader, AGapSplitsEvenTheShortestTrialAndOneThatBeginsAtTimeZero) {
@@ -140,7 +140,7 @@ TEST_F(BagReader, AGapSplitsEvenTheShortestTrialAndOneThatBeginsAtTimeZero) {
       bag.write("torque", stamp + 1.0, torqueMessage(stamp, {1.0}));
     }
   }
-  EXPECT_EQ(pieceSizes(), (Sizes{2, 1}));
+  EXPECT_EQ(segmentSizes(), (Sizes{2, 1}));
   {
     ToyBag bag(path_);
     for (double stamp : {0.0, 0.6, 0.8, 1.0}) {
@@ -148,7 +148,7 @@ TEST_F(BagReader, AGapSplitsEvenTheShortestTrialAndOneThatBeginsAtTimeZero) {
       bag.write("torque", stamp + 1.0, torqueMessage(stamp, {1.0}));
     }
   }
-  EXPECT_EQ(pieceSizes(), (Sizes{1, 3}));
+  EXPECT_EQ(segmentSizes(), (Sizes{1, 3}));
 }
 
 TEST_F(BagReader, FindsTopicsUnderAnyNamespaceAsPlainRosbagRecordWritesThem) {
@@ -236,7 +236,7 @@ TEST_F(BagReader, ForgivesMessagesThatWereRecordedTwice) {
       bag.frame(1.0 + 0.2 * t, 0.1 * t, 1.0);
     }
   }
-  EXPECT_EQ(pieceSizes(), (Sizes{5}));
+  EXPECT_EQ(segmentSizes(), (Sizes{5}));
 }
 
 TEST_F(BagReader, ReadsTorquesOfSeveralMotors) {

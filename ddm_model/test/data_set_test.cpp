@@ -1,4 +1,4 @@
-// Tests of the data set: pieces, seams, refusals.
+// Tests of the data set: segments, seams, refusals.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/data_set.h"
 
@@ -59,27 +59,27 @@ TEST(DataSet, SharesItsImagesWithThoseItIsAppendedTo) {
   EXPECT_EQ(&copy.image(0), &all.image(0));
 }
 
-TEST(DataSet, BeginsAPieceWhereItIsToldTo) {
+TEST(DataSet, BeginsASegmentWhereItIsToldTo) {
   DataSet data(2, 1);
-  for (bool new_piece : {false, false, true, true, false}) {  // the first always begins one
-    data.append(Grey(4), torque(0.0), new_piece);
+  for (bool new_segment : {false, false, true, true, false}) {  // the first always begins one
+    data.append(Grey(4), torque(0.0), new_segment);
   }
-  ASSERT_EQ(data.pieces().size(), 3U);
-  EXPECT_EQ(data.pieces()[0].begin, 0);
-  EXPECT_EQ(data.pieces()[0].size, 2);
-  EXPECT_EQ(data.pieces()[1].begin, 2);
-  EXPECT_EQ(data.pieces()[1].size, 1);
-  EXPECT_EQ(data.pieces()[2].begin, 3);
-  EXPECT_EQ(data.pieces()[2].size, 2);
+  ASSERT_EQ(data.segments().size(), 3U);
+  EXPECT_EQ(data.segments()[0].begin, 0);
+  EXPECT_EQ(data.segments()[0].size, 2);
+  EXPECT_EQ(data.segments()[1].begin, 2);
+  EXPECT_EQ(data.segments()[1].size, 1);
+  EXPECT_EQ(data.segments()[2].begin, 3);
+  EXPECT_EQ(data.segments()[2].size, 2);
 }
 
 TEST(DataSet, KeepsASeamBetweenTwoTrials) {
   DataSet data = numbered(0, 3);
   data.append(numbered(10, 2));
   ASSERT_EQ(data.numFrames(), 5);
-  ASSERT_EQ(data.pieces().size(), 2U);
-  EXPECT_EQ(data.pieces()[1].begin, 3);
-  EXPECT_EQ(data.pieces()[1].size, 2);
+  ASSERT_EQ(data.segments().size(), 2U);
+  EXPECT_EQ(data.segments()[1].begin, 3);
+  EXPECT_EQ(data.segments()[1].size, 2);
   EXPECT_EQ(data.image(3)[0], 10);
   EXPECT_EQ(data.torques()(0, 4), 11.0);
 }
@@ -111,7 +111,7 @@ TEST(DataSet, RefusesFramesThatDoNotFit) {
   EXPECT_TRUE(
       throwsNaming<std::invalid_argument>([&] { data.setGoal(Grey(3)); }, {"4 pixels", "got 3"}));
   EXPECT_EQ(data.numFrames(), 0);  // nothing of a refused frame is kept
-  EXPECT_TRUE(data.pieces().empty());
+  EXPECT_TRUE(data.segments().empty());
 }
 
 TEST(DataSet, RefusesAnotherRobot) {

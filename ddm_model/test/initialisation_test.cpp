@@ -23,7 +23,7 @@ class Initialisation : public ::testing::Test {
   /// V_R over its value for a model that knows nothing.
   double cost(const ModelOptions& options, const Eigen::VectorXd& theta) const {
     const Networks<double> nets(options, 1);
-    TrainingData<double> data{scores_, data_.torques(), data_.pieces()};
+    TrainingData<double> data{scores_, data_.torques(), data_.segments()};
     JointObjective<double> objective(nets, data);
     return objective.weight() * objective.evaluate(theta, nullptr).v_r;
   }

@@ -163,7 +163,7 @@ class InspectionTest(toy_robot.ToyRobotCase):
         paired = [k for k in range(20) if k not in (5, 9)]
         np.testing.assert_array_equal(data.images[200:], images[paired])
         np.testing.assert_array_equal(data.torques[200:, 0], torques[paired])
-        np.testing.assert_array_equal(data.frames["piece"][200:], np.repeat([1, 2, 3], [5, 3, 10]))
+        np.testing.assert_array_equal(data.frames["segment"][200:], np.repeat([1, 2, 3], [5, 3, 10]))
 
     def test_a_bag_of_another_robot_is_named(self):
         with rosbag.Bag(self.unseen) as bag, rosbag.Bag(self.file("two.bag"), "w") as two:

@@ -46,11 +46,11 @@ TEST(FarthestPoints, AreAsFarApartAsOthersAreFromThem) {
 }
 
 TEST(Landmarks, AreStatesOfOneMotionEach) {
-  // z_t = t, u_t = 10 t, in two pieces of different length
+  // z_t = t, u_t = 10 t, in two segments of different length
   DataSet data(2, 1);
   Eigen::MatrixXf Z(1, 7);
   for (int t = 0; t < 7; ++t) {
-    data.append(Grey(4, 0), Eigen::VectorXd::Constant(1, 10.0 * t), /*new_piece=*/t == 4);
+    data.append(Grey(4, 0), Eigen::VectorXd::Constant(1, 10.0 * t), /*new_segment=*/t == 4);
     Z(0, t) = static_cast<float>(t);
   }
   const Eigen::MatrixXf landmarks = landmarkStates(Z, data, /*order=*/3, /*max_count=*/100);
@@ -58,7 +58,8 @@ TEST(Landmarks, AreStatesOfOneMotionEach) {
   ASSERT_EQ(landmarks.cols(), 7);
   for (Eigen::Index i = 0; i < 7; ++i) {
     const Eigen::VectorXf x = landmarks.col(i);
-    const float begin = x[0] < 4.0F ? 0.0F : 4.0F;  // of the piece: what was before it was at rest
+    const float begin =
+        x[0] < 4.0F ? 0.0F : 4.0F;  // of the segment: what was before it was at rest
     EXPECT_EQ(x[1], std::max(x[0] - 1.0F, begin));
     EXPECT_EQ(x[2], std::max(x[0] - 2.0F, begin));
     EXPECT_EQ(x[3], x[0] > begin ? 10.0F * (x[0] - 1.0F) : 0.0F);

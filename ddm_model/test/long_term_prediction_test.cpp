@@ -110,13 +110,13 @@ TEST(RollOut, ReachesFromTheFirstPossibleFrameToTheLast) {
 TEST(PredictionErrors, AreTheRootMeanSquareOverAllPredictionsAndPixels) {
   const Ddm model = testing::toyModel();
   DataSet data = testing::toyTrial(8, 1);
-  data.append(testing::toyTrial(5, 2));  // another piece
+  data.append(testing::toyTrial(5, 2));  // another segment
   const auto errors = predictionErrors(model, data, 3);
   ASSERT_EQ(errors.size(), 3u);
   for (int k = 1; k <= 3; ++k) {
     double sum = 0.0, sum_repeat = 0.0;
     int count = 0;
-    for (Eigen::Index frame : {1, 2, 3, 4, 9}) {  // one before, three after, in the same piece
+    for (Eigen::Index frame : {1, 2, 3, 4, 9}) {  // one before, three after, in the same segment
       const Grey truth = data.image(frame + k);
       sum += squaredError(model.decode(predictedByHand(model, data, frame, k)), truth);
       sum_repeat += squaredError(data.image(frame), truth);
@@ -144,7 +144,7 @@ TEST(PredictionErrors, AreSmallForATrainedModelOnImagesItHasNotSeen) {
   }
 }
 
-TEST(PredictionErrors, RefusesDataWithoutALongEnoughPiece) {
+TEST(PredictionErrors, RefusesDataWithoutALongEnoughSegment) {
   const Ddm model = testing::toyModel();
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
       [&] { predictionErrors(model, testing::toyTrial(5, 1), 4); },

@@ -1,4 +1,4 @@
-// Tests of the joint objective V_R + V_P: the formula, the gradient, the borders of pieces.
+// Tests of the joint objective V_R + V_P: the formula, the gradient, the borders of segments.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/objective.h"
 
@@ -26,13 +26,13 @@ ModelOptions tinyOptions() {
   return options;
 }
 
-/// Random scores and torques [N m]; frames that are in no piece are allowed.
+/// Random scores and torques [N m]; frames that are in no segment are allowed.
 TrainingData<double> randomData(int pca_dim, int torque_dim, int num_frames, bool with_goal,
-                                std::vector<Piece> pieces) {
+                                std::vector<Segment> segments) {
   TrainingData<double> data;
   data.scores = randomMatrix(pca_dim, num_frames + (with_goal ? 1 : 0), 1);
   data.torques = 6.0 * randomMatrix(torque_dim, num_frames, 2);
-  data.pieces = std::move(pieces);
+  data.segments = std::move(segments);
   return data;
 }
 
@@ -42,7 +42,7 @@ Eigen::VectorXd applied(const Mlp<double>& net, const double* theta, const Eigen
   return tape.output();
 }
 
-/// V_R and V_P straight from the formula: one image at a time, piece by piece.
+/// V_R and V_P straight from the formula: one image at a time, segment by segment.
 /// @param form  of f: only its flags count
 JointObjective<double>::Value slowValue(const Networks<double>& nets,
                                         const TrainingData<double>& data,
@@ -59,9 +59,9 @@ JointObjective<double>::Value slowValue(const Networks<double>& nets,
     value.v_r += (data.scores.col(t) - decoded(z(t))).squaredNorm();
   }
   const int n = nets.prediction_model.order();
-  for (const Piece& piece : data.pieces) {
-    const Eigen::Index end = piece.begin + piece.size;
-    for (Eigen::Index t = piece.begin + n - 1; t + 1 < end; ++t) {
+  for (const Segment& segment : data.segments) {
+    const Eigen::Index end = segment.begin + segment.size;
+    for (Eigen::Index t = segment.begin + n - 1; t + 1 < end; ++t) {
       std::vector<Eigen::VectorXd> path;  // z_{t-n+1} ... z_t, then the predictions
       for (Eigen::Index i = t - n + 1; i <= t; ++i) path.push_back(z(i));
       for (int j = 1; j <= terms.prediction_steps && t + j < end; ++j) {
@@ -167,7 +167,7 @@ TEST(JointObjective, PredictionsOfSeveralStepsEqualASlowComputationFromTheFormul
     for (const ModelOptions& options : formsOfF(order)) {
       for (const int steps : {1, 2, 5}) {
         const Networks<double> nets(options, 2);
-        // The second piece is shorter than the longest prediction; the last one crosses a part.
+        // The second segment is shorter than the longest prediction; the last one crosses a part.
         const auto data = randomData(4, 2, 140, true, {{0, 7}, {7, 4}, {11, 1}, {12, 128}});
         JointObjective<double> objective(nets, data);
         const Eigen::VectorXd theta = 0.5 * randomMatrix(nets.numParams(), 1, 3);
@@ -287,7 +287,7 @@ TEST(JointObjective, DirectionalDerivativeMatchesAtTheSizeOfThePaper) {
 TEST(JointObjective, TheNumberOfProcessorsChangesNoBit) {
   const Networks<float> nets(tinyOptions(), 1);
   const auto data = randomData(4, 1, 1500, true, {{0, 700}, {700, 800}});  // twelve parts
-  JointObjective<float> objective(nets, {data.scores.cast<float>(), data.torques, data.pieces});
+  JointObjective<float> objective(nets, {data.scores.cast<float>(), data.torques, data.segments});
   const Eigen::VectorXf theta = randomMatrix(nets.numParams(), 1, 3).cast<float>();
   const auto flat = [](const Eigen::MatrixXf& matrix) {
     return Eigen::Map<const Eigen::VectorXf>(matrix.data(), matrix.size()).eval();
@@ -314,7 +314,7 @@ TEST(JointObjective, SinglePrecisionAgreesWithDouble) {
   const Networks<double> nets(tinyOptions(), 1);
   const Networks<float> nets_single(tinyOptions(), 1);
   const auto data = randomData(4, 1, 200, true, {{0, 200}});
-  TrainingData<float> single{data.scores.cast<float>(), data.torques, data.pieces};
+  TrainingData<float> single{data.scores.cast<float>(), data.torques, data.segments};
   const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
   Eigen::VectorXd gradient;
   Eigen::VectorXf gradient_single;
@@ -326,10 +326,10 @@ TEST(JointObjective, SinglePrecisionAgreesWithDouble) {
   EXPECT_TRUE(gradient_single.cast<double>().isApprox(gradient, 1e-4));
 }
 
-TEST(JointObjective, PredictsOnlyFramesWithAFullHistoryInTheirPiece) {
+TEST(JointObjective, PredictsOnlyFramesWithAFullHistoryInTheirSegment) {
   const Networks<double> nets(tinyOptions(), 1);  // n = 2
-  const auto predictions = [&nets](std::vector<Piece> pieces) {
-    return JointObjective<double>(nets, randomData(4, 1, 10, true, std::move(pieces)))
+  const auto predictions = [&nets](std::vector<Segment> segments) {
+    return JointObjective<double>(nets, randomData(4, 1, 10, true, std::move(segments)))
         .numPredictions();
   };
   EXPECT_EQ(predictions({{0, 10}}), 8);
@@ -337,16 +337,16 @@ TEST(JointObjective, PredictsOnlyFramesWithAFullHistoryInTheirPiece) {
   EXPECT_EQ(predictions({{0, 2}, {2, 1}, {3, 3}, {6, 2}}), 1);
 }
 
-TEST(JointObjective, NoPredictionStraddlesTwoPieces) {
+TEST(JointObjective, NoPredictionStraddlesTwoSegments) {
   const Networks<double> nets(tinyOptions(), 1);
   const auto data = randomData(4, 1, 10, false, {{0, 5}, {5, 5}});
-  auto changed = data;  // the last torque of a piece answers an image that has no successor
+  auto changed = data;  // the last torque of a segment answers an image that has no successor
   changed.torques(0, 4) += 100.0;
   changed.torques(0, 9) += 100.0;
   auto straddling = changed;
-  straddling.pieces = {{0, 10}};
+  straddling.segments = {{0, 10}};
   auto joined = data;
-  joined.pieces = {{0, 10}};
+  joined.segments = {{0, 10}};
   const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
   const auto v_p = [&](const TrainingData<double>& with) {
     return JointObjective<double>(nets, with).evaluate(theta, nullptr).v_p;
@@ -355,11 +355,11 @@ TEST(JointObjective, NoPredictionStraddlesTwoPieces) {
   EXPECT_NE(v_p(joined), v_p(straddling));  // the check above can fail
 }
 
-TEST(JointObjective, TheOrderOfThePiecesDoesNotMatter) {
+TEST(JointObjective, TheOrderOfTheSegmentsDoesNotMatter) {
   const Networks<double> nets(tinyOptions(), 1);
   const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
-  const auto value = [&](std::vector<Piece> pieces) {
-    JointObjective<double> objective(nets, randomData(4, 1, 200, false, std::move(pieces)));
+  const auto value = [&](std::vector<Segment> segments) {
+    JointObjective<double> objective(nets, randomData(4, 1, 200, false, std::move(segments)));
     return objective.evaluate(theta, nullptr).v_p;
   };
   EXPECT_EQ(value({{0, 90}, {90, 110}}), value({{90, 110}, {0, 90}}));
@@ -383,7 +383,7 @@ TEST(JointObjective, ItsWeightMakesAUselessModelCostAboutOne) {
   EXPECT_NEAR(objective.weight() * objective.evaluate(nothing, nullptr).v_r, 1.0, 1e-12);
 }
 
-TEST(JointObjective, RefusesDataInWhichNoPieceIsLongEnough) {
+TEST(JointObjective, RefusesDataInWhichNoSegmentIsLongEnough) {
   const Networks<double> nets(tinyOptions(), 1);
   EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
       [&] {

@@ -106,7 +106,7 @@ class OtherBags : public ::testing::Test {
   void expectAllFrames(int motor = 0) const {
     const BagContent content = read();
     ASSERT_EQ(content.data.numFrames(), kFrames);
-    EXPECT_EQ(content.data.pieces().size(), 1u);
+    EXPECT_EQ(content.data.segments().size(), 1u);
     EXPECT_NEAR(content.interval, kDt, 1e-6);
     EXPECT_TRUE(content.images_without_torque.empty());
     for (int k = 0; k < kFrames; ++k) {
@@ -207,7 +207,7 @@ TEST_F(OtherBags, AJitterOfTheCameraChangesNothing) {
   close();
   const BagContent content = read();
   ASSERT_EQ(content.data.numFrames(), kFrames);
-  EXPECT_EQ(content.data.pieces().size(), 1u);
+  EXPECT_EQ(content.data.segments().size(), 1u);
   for (int k = 0; k < kFrames; ++k) {
     EXPECT_EQ(content.data.image(k), toyImage(angleOf(kImagesPerFrame * k))) << k;
     EXPECT_DOUBLE_EQ(content.data.torques()(0, k), torqueOf(k)) << k;
@@ -219,8 +219,8 @@ TEST_F(OtherBags, ADroppedImageIsReplacedByItsNeighbourOrSplitsTheBag) {
   writeFloats();
   close();
   const BagContent content = read();
-  ASSERT_EQ(content.data.pieces().size(), 2u);
-  EXPECT_EQ(content.data.pieces()[0].size, 7);
+  ASSERT_EQ(content.data.segments().size(), 2u);
+  EXPECT_EQ(content.data.segments()[0].size, 7);
   EXPECT_EQ(content.data.image(7), toyImage(angleOf(27)));
   EXPECT_DOUBLE_EQ(content.data.torques()(0, 7), torqueOf(9));
   EXPECT_EQ(content.data.numFrames(), kFrames - 2);
@@ -233,7 +233,7 @@ TEST_F(OtherBags, WhereTorquesFallSilentThereIsNoFrame) {
   }
   close();
   const BagContent content = read();
-  EXPECT_EQ(content.data.pieces().size(), 2u);
+  EXPECT_EQ(content.data.segments().size(), 2u);
   EXPECT_EQ(content.data.numFrames() + static_cast<int>(content.images_without_torque.size()),
             kFrames);
   ASSERT_EQ(content.images_without_torque.size(), 2u);

@@ -94,7 +94,7 @@ class FactorsOfTheObjective : public ::testing::Test {
     options_.predictor_widths = {3};
     data_.scores = randomMatrix(4, 151, 1);  // the last one is the goal's
     data_.torques = randomMatrix(1, 150, 2);
-    data_.pieces = {{0, 100}, {100, 50}};
+    data_.segments = {{0, 100}, {100, 50}};
   }
 
   LayerFactors<double> factors(const Terms& terms) {
@@ -127,7 +127,7 @@ TEST_F(FactorsOfTheObjective, CountEachScoreAsTheObjectiveDoes) {
     Terms terms;
     terms.prediction_steps = steps;
     const LayerFactors<double> all = factors(terms);
-    // Each of the k predictions counts 1/k. The last target of a piece has only the first of them.
+    // Each of the k predictions counts 1/k. The last target of a segment has only the first of them.
     const double count = 151.0 + (steps == 1 ? 146.0 : (146.0 + 144.0) / 2.0);
     for (Eigen::Index i = 0; i < 4; ++i) {
       EXPECT_NEAR(all[3].errors(i, i), weight_ * count, 1e-9 * weight_ * count) << steps;

@@ -28,7 +28,7 @@ class StageMinimisation : public ::testing::Test {
     TrainingData<float> data;
     data.scores = randomMatrix(options_.pca_dim, 150, 1).cast<float>();
     data.torques = randomMatrix(1, 150, 2);
-    data.pieces = {{0, 150}};
+    data.segments = {{0, 150}};
     return data;
   }
 

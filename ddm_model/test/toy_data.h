@@ -43,7 +43,7 @@ inline DataSet toyTrial(int num_frames, unsigned seed, int size = kToySize) {
   double angle = 0.1 * seed;
   for (int t = 0; t < num_frames; ++t) {
     const double u = torque(rng);
-    data.append(toyImage(angle, size), Eigen::VectorXd::Constant(1, u), /*new_piece=*/t == 0);
+    data.append(toyImage(angle, size), Eigen::VectorXd::Constant(1, u), /*new_segment=*/t == 0);
     angle += 0.2 * u;
   }
   return data;

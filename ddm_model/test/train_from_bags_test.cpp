@@ -58,7 +58,7 @@ TEST_F(TrainFromBags, WritesAModelOfAllBags) {
   EXPECT_EQ(model().info().trial, 1U);
   EXPECT_EQ(model().goal(), testing::toyImage(3.0));
   EXPECT_TRUE(contains(outcome.out, "id: " + modelId(readFile(path("new.model"))))) << outcome.out;
-  EXPECT_TRUE(contains(outcome.out, "frames: 60\npieces: 2\ngoal: yes\n")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "frames: 60\nsegments: 2\ngoal: yes\n")) << outcome.out;
   EXPECT_TRUE(contains(model().info().config, "max_iterations: 10"));
 }
 

@@ -106,7 +106,7 @@ TEST_F(Trainer, ReportsTheErrorsOfTheModelItReturns) {
   data.scores = model.pca().project(data_).cast<double>();
   ASSERT_EQ(data.scores.cols(), 61);  // the goal is the last
   data.torques = data_.torques();
-  data.pieces = data_.pieces();
+  data.segments = data_.segments();
   const Networks<double> nets(model_, 1);
   const auto value = JointObjective<double>(nets, data).evaluate(model.theta(), nullptr);
   const double grey_per_score = 1.0 / model.pca().scale;
@@ -285,15 +285,15 @@ TEST(EvenPart, HasStretchesSpreadOverAllFramesAndTheGoal) {
   TrainingData<float> data;
   data.scores = Eigen::RowVectorXf::LinSpaced(401, 0.0F, 400.0F);
   data.torques = Eigen::RowVectorXd::LinSpaced(400, 0.0, 399.0);
-  data.pieces = {{0, 50}, {50, 250}, {300, 100}};
+  data.segments = {{0, 50}, {50, 250}, {300, 100}};
   const TrainingData<float> part = evenPart(data, 200, 2);
   ASSERT_EQ(part.torques.cols(), 150);
-  EXPECT_EQ(part.torques(0, 0), 150.0);  // the second stretch of the second piece, and the third
+  EXPECT_EQ(part.torques(0, 0), 150.0);  // the second stretch of the second segment, and the third
   EXPECT_EQ(part.torques(0, 149), 299.0);
   EXPECT_EQ(part.scores(0, 149), 299.0F);
   EXPECT_EQ(part.scores(0, 150), 400.0F) << "the goal";
-  ASSERT_EQ(part.pieces.size(), 2U);
-  EXPECT_EQ(part.pieces[1].begin, 100);
+  ASSERT_EQ(part.segments.size(), 2U);
+  EXPECT_EQ(part.segments[1].begin, 100);
   EXPECT_EQ(evenPart(data, 400, 2).torques, data.torques);
   EXPECT_EQ(evenPart(data, 200, 100).torques, data.torques) << "no stretch is long enough";
 }
@@ -413,10 +413,10 @@ TEST_F(Trainer, RefusesTooLittleData) {
       throwsNaming<std::invalid_argument>([this] { run(); }, {"model/pca_dim = 6", "got 5"}));
 }
 
-TEST_F(Trainer, RefusesDataWithoutAPieceThatIsLongEnough) {
-  DataSet pieces(testing::kToySize, 1);
-  for (unsigned seed = 1; seed <= 5; ++seed) pieces.append(testing::toyTrial(2, seed));
-  data_ = pieces;
+TEST_F(Trainer, RefusesDataWithoutASegmentThatIsLongEnough) {
+  DataSet segments(testing::kToySize, 1);
+  for (unsigned seed = 1; seed <= 5; ++seed) segments.append(testing::toyTrial(2, seed));
+  data_ = segments;
   EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { run(); }, {"model/order"}));
 }
 

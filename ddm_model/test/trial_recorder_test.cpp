@@ -88,7 +88,7 @@ TEST_F(TrialRecorderTest, RecordsATrialAndRenamesItsBag) {
   EXPECT_FALSE(fs::exists(path_ + ".active"));
   const DataSet data = readBag(path_, testing::kToySize, BagOptions()).data;
   EXPECT_EQ(data.numFrames(), 10);
-  EXPECT_EQ(data.pieces().size(), 1U);
+  EXPECT_EQ(data.segments().size(), 1U);
   EXPECT_EQ(data.torques()(0, 9), 4.5);
 }
 
@@ -169,7 +169,7 @@ TEST_F(TrialRecorderTest, ImagesThatNoTorqueAnsweredInTimeAreGapsOfTheTrial) {
   EXPECT_EQ(response.pairs, 8U);
   const DataSet data = readBag(path_, testing::kToySize, BagOptions()).data;
   EXPECT_EQ(data.numFrames(), 8);
-  ASSERT_EQ(data.pieces().size(), 2U);
+  ASSERT_EQ(data.segments().size(), 2U);
   EXPECT_EQ(data.torques()(0, 4), 2.5);  // of image 5: that of image 4 is in no frame
 }
 

@@ -74,7 +74,7 @@ void writeBag(const ddm::BagContent& content, const std::string& folder) {
   YAML::Node bag;
   bag["camera"] = content.camera;
   bag["torque_dim"] = data.torqueDim();
-  for (const ddm::Piece& piece : data.pieces()) bag["piece_sizes"].push_back(piece.size);
+  for (const ddm::Segment& segment : data.segments()) bag["segment_sizes"].push_back(segment.size);
   bag["interval_s"] = ddm::formatDouble(content.interval);
   bag["goal"] = data.hasGoal() ? 1 : 0;
   ddm::writeFileAtomically(folder + "/bag.yaml", YAML::Dump(bag) + "\n");

@@ -104,7 +104,7 @@ void run(const Arguments& arguments) {
     std::cerr << "no --goal and no goal_image in the bags: the model can predict, but not be "
                  "planned with\n";
   }
-  std::cerr << data.numFrames() << " frames in " << data.pieces().size() << " piece(s) from "
+  std::cerr << data.numFrames() << " frames in " << data.segments().size() << " segment(s) from "
             << arguments.bags.size() << " bag(s)\n";
   ddm::ModelInfo info;
   info.seed = static_cast<std::uint64_t>(arguments.seed);
@@ -117,7 +117,7 @@ void run(const Arguments& arguments) {
   ddm::writeFileAtomically(arguments.out, bytes);
   std::cerr << (::isatty(STDERR_FILENO) != 0 ? "\n" : "");
   std::cout << "model: " << arguments.out << "\nid: " << ddm::modelId(bytes)
-            << "\nframes: " << data.numFrames() << "\npieces: " << data.pieces().size()
+            << "\nframes: " << data.numFrames() << "\nsegments: " << data.segments().size()
             << "\ngoal: " << (data.hasGoal() ? "yes" : "none")
             << "\nmax_torque: " << ddm::limitsText(config.model.max_torque)
             << "\nmax_torque_from: " << limits_from << "\nv_r: " << result.model->info().v_r

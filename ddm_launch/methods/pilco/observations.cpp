@@ -36,19 +36,19 @@ bool isPendulum(const Plant& plant) {
          std::abs(std::remainder(info.goal[0] - kPi, 2.0 * kPi)) <= kUprightWithin;
 }
 
-pilco::Gaussian startDistribution(const Eigen::MatrixXd& X, const std::vector<Piece>& pieces,
+pilco::Gaussian startDistribution(const Eigen::MatrixXd& X, const std::vector<Segment>& segments,
                                   double distance) {
   const Eigen::Index dim = X.rows();
-  Eigen::MatrixXd first(dim, static_cast<Eigen::Index>(pieces.size()));
-  for (size_t i = 0; i < pieces.size(); ++i) {
-    first.col(static_cast<Eigen::Index>(i)) = X.col(pieces[i].begin);
+  Eigen::MatrixXd first(dim, static_cast<Eigen::Index>(segments.size()));
+  for (size_t i = 0; i < segments.size(); ++i) {
+    first.col(static_cast<Eigen::Index>(i)) = X.col(segments[i].begin);
   }
   const Eigen::VectorXd mean = first.rowwise().mean();
   const Eigen::MatrixXd centred = first.colwise() - mean;
   const Eigen::MatrixXd scatter =
       centred * centred.transpose() +
       distance * distance / static_cast<double>(dim) * Eigen::MatrixXd::Identity(dim, dim);
-  return {mean, scatter / static_cast<double>(pieces.size())};
+  return {mean, scatter / static_cast<double>(segments.size())};
 }
 
 }  // namespace
@@ -78,7 +78,7 @@ Eigen::MatrixXd TrueStateObservation::learn(const std::vector<std::string>& bags
         (boost::filesystem::path(bags[trial]).parent_path() / "trajectory.csv").string();
     const Eigen::MatrixXd states =
         parseTrajectoryCsv(readFile(file), plant_.info().state_names, file);
-    const Eigen::Index due = trial < data.pieces().size() ? data.pieces()[trial].size : 0;
+    const Eigen::Index due = trial < data.segments().size() ? data.segments()[trial].size : 0;
     if (states.cols() != due) {
       throw std::runtime_error(pilco::message(file, " must have the ", due,
                                               " frames of the bag beside it, got ", states.cols(),
@@ -115,7 +115,7 @@ Eigen::VectorXd TrueStateObservation::measure(const Eigen::VectorXd& state) {
   return x;
 }
 
-PilcoTask imageTask(const Eigen::MatrixXd& X, const std::vector<Piece>& pieces,
+PilcoTask imageTask(const Eigen::MatrixXd& X, const std::vector<Segment>& segments,
                     const Eigen::VectorXd& goal, const PilcoOptions& options) {
   const Eigen::VectorXd std = pilco::sampleStd(X);
   const double spread = std.norm();
@@ -124,7 +124,7 @@ PilcoTask imageTask(const Eigen::MatrixXd& X, const std::vector<Piece>& pieces,
   const double width = options.cost_width * spread;
   const Eigen::MatrixXd weight = Eigen::MatrixXd::Identity(dim, dim) / (width * width);
   return {{},
-          startDistribution(X, pieces, options.start_std * spread),
+          startDistribution(X, segments, options.start_std * spread),
           pilco::StateCost(pilco::replaceAngles(dim, {}), pilco::SaturatingCost(goal, weight)),
           std};
 }
@@ -150,7 +150,7 @@ Eigen::MatrixXd FeatureObservation::learn(const std::vector<std::string>& /*bags
   if (!result.model) throw std::runtime_error("auto-encoder: " + result.message);
   model_ = *result.model;
   const Eigen::MatrixXd Z = encodeAll(*model_, data);
-  task_ = imageTask(Z, data.pieces(), model_->goalFeature(), options_);
+  task_ = imageTask(Z, data.segments(), model_->goalFeature(), options_);
   return Z;
 }
 
@@ -171,7 +171,7 @@ Eigen::MatrixXd PcaObservation::learn(const std::vector<std::string>& /*bags*/, 
   if (!data.hasGoal())
     throw std::runtime_error(
         "the bags hold no goal image, which tells the goal: record one on goal_image");
-  task_ = imageTask(Z, data.pieces(), observe(data.goal()), options_);
+  task_ = imageTask(Z, data.segments(), observe(data.goal()), options_);
   return Z;
 }
 

@@ -103,7 +103,7 @@ class TrueStateObservation : public Observation {
 /// @param X     x of all frames                                                         [D x N]
 /// @param goal  x of the goal image                                                         [D]
 /// @throws std::runtime_error if all frames are the same
-PilcoTask imageTask(const Eigen::MatrixXd& X, const std::vector<Piece>& pieces,
+PilcoTask imageTask(const Eigen::MatrixXd& X, const std::vector<Segment>& segments,
                     const Eigen::VectorXd& goal, const PilcoOptions& options);
 
 /// Learned anew from all data after each trial, so its coordinates change.

@@ -46,17 +46,17 @@ struct Transitions {
   Eigen::MatrixXd targets;  ///< x_{t+1} - x_t, one per row
 };
 
-/// No transition straddles two pieces.
+/// No transition straddles two segments.
 Transitions transitions(const DataSet& data, const Eigen::MatrixXd& X,
                         const pilco::Augmentation& features) {
   Eigen::Index count = 0;
-  for (const Piece& piece : data.pieces()) count += piece.size - 1;
+  for (const Segment& segment : data.segments()) count += segment.size - 1;
   Transitions out;
   out.inputs.resize(features.outputDim() + data.torqueDim(), count);
   out.targets.resize(count, X.rows());
   Eigen::Index i = 0;
-  for (const Piece& piece : data.pieces()) {
-    for (Eigen::Index t = piece.begin; t + 1 < piece.begin + piece.size; ++t, ++i) {
+  for (const Segment& segment : data.segments()) {
+    for (Eigen::Index t = segment.begin; t + 1 < segment.begin + segment.size; ++t, ++i) {
       out.inputs.col(i) << features.value(X.col(t)), data.torques().col(t);
       out.targets.row(i) = (X.col(t + 1) - X.col(t)).transpose();
     }

@@ -38,10 +38,11 @@ YAML::Node readBlocks(ParamReader* reader) {
 MethodKind pilcoKind(const std::string& name, const std::string& about,
                      const MakeObservation& make_observation) {
   const auto make = [make_observation](const Configuration& all, const Plant& plant) {
-    pilco::require(!(all.camera.drop_rate > 0.0),
-                   "camera/drop_rate must be 0 with PILCO, which takes a piece of its data without "
-                   "a gap for a trial, got ",
-                   all.camera.drop_rate);
+    pilco::require(
+        !(all.camera.drop_rate > 0.0),
+        "camera/drop_rate must be 0 with PILCO, which takes a segment of its data without "
+        "a gap for a trial, got ",
+        all.camera.drop_rate);
     ParamReader reader(all.method_blocks);
     const PilcoConfig config = readConfig(&reader);
     return std::make_unique<PilcoMethod>(all, config, make_observation(all, config.pilco, plant));

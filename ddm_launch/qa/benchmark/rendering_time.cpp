@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kPictures = 200;
 
-/// What a piece of work took [ms].
+/// What a segment of work took [ms].
 struct Times {
   double wall;
   double cpu;  ///< of all threads: on a busy machine what one idle core would take

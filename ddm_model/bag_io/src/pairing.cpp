@@ -38,7 +38,7 @@ std::set<ros::Time>::const_iterator nearest(const std::set<ros::Time>& images,
   return later == images.end() || time - *earlier < *later - time ? earlier : later;
 }
 
-/// Images dt apart; bool: whether a new piece begins.
+/// Images dt apart; bool: whether a new segment begins.
 std::vector<std::pair<ros::Time, bool>> pickImages(const std::set<ros::Time>& images, double dt) {
   std::vector<std::pair<ros::Time, bool>> picked;
   for (auto image = images.begin(); image != images.end();) {
@@ -72,7 +72,7 @@ double Pairs::interval() const {
 Pairs pairByStamp(const std::set<ros::Time>& images, std::vector<TimedTorque> torques) {
   std::stable_sort(torques.begin(), torques.end(), isEarlier);
   Pairs pairs;
-  bool new_piece = true;
+  bool new_segment = true;
   auto image = images.begin();
   for (size_t i = 0; i < torques.size(); ++i) {
     if (i > 0 && torques[i].time == torques[i - 1].time) {
@@ -82,20 +82,20 @@ Pairs pairByStamp(const std::set<ros::Time>& images, std::vector<TimedTorque> to
     }
     for (; image != images.end() && *image < torques[i].time; ++image) {
       pairs.images_without_torque.push_back(*image);
-      new_piece = true;
+      new_segment = true;
     }
     if (image == images.end() || *image != torques[i].time) {
       pairs.torques_without_image.push_back(torques[i].time);
       continue;
     }
-    pairs.frames.push_back({*image++, torques[i].torque, new_piece});
-    new_piece = false;
+    pairs.frames.push_back({*image++, torques[i].torque, new_segment});
+    new_segment = false;
   }
   pairs.images_without_torque.insert(pairs.images_without_torque.end(), image, images.end());
   const double gap = kGap * pairs.interval();
   for (size_t i = 1; i < pairs.frames.size(); ++i) {
     const double interval = (pairs.frames[i].image - pairs.frames[i - 1].image).toSec();
-    pairs.frames[i].new_piece = pairs.frames[i].new_piece || interval > gap;
+    pairs.frames[i].new_segment = pairs.frames[i].new_segment || interval > gap;
   }
   return pairs;
 }

@@ -17,7 +17,7 @@ struct Pairs {
   struct Frame {
     ros::Time image;
     std::vector<double> torque;  ///< [N m]
-    bool new_piece;              ///< nothing of the frame before leads to it
+    bool new_segment;            ///< nothing of the frame before leads to it
   };
   std::vector<Frame> frames;  ///< by their times
   std::vector<ros::Time> images_without_torque;
@@ -27,14 +27,14 @@ struct Pairs {
   double interval() const;
 };
 
-/// Pairs what has the same stamp, as this project records it. A new piece begins after an image
+/// Pairs what has the same stamp, as this project records it. A new segment begins after an image
 /// without a torque, and after a gap of more than 1.5 times the median interval.
 /// @throws std::runtime_error if two different torques have one stamp
 Pairs pairByStamp(const std::set<ros::Time>& images, std::vector<TimedTorque> torques);
 
 /// Takes images dt apart, to a quarter of dt, and with each the torque that is in force when the
 /// next one is due. A torque is in force until there is another, but no longer than dt or 1.5 times
-/// the median interval of all. A new piece begins where an image or its torque is missing.
+/// the median interval of all. A new segment begins where an image or its torque is missing.
 /// @param dt  [s], > 0
 /// @throws std::runtime_error if images are farther apart than that
 Pairs pairInTime(const std::set<ros::Time>& images, std::vector<TimedTorque> torques, double dt);

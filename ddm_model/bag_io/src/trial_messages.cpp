@@ -92,7 +92,7 @@ BagContent TrialMessages::frames() const {
     content.times.push_back(since(frame.image));
     content.data.append(images_.at(frame.image),
                         Eigen::Map<const Eigen::VectorXd>(frame.torque.data(), torque_dim),
-                        frame.new_piece);
+                        frame.new_segment);
   }
   content.interval = pairs_.interval();
   for (const ros::Time& time : pairs_.images_without_torque) {

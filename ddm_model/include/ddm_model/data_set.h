@@ -15,7 +15,7 @@ using Grey = std::vector<std::uint8_t>;
 using GreyMatrix = Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// Frames without a gap between them: frame i+1 follows frame i by one sampling time.
-struct Piece {
+struct Segment {
   Eigen::Index begin = 0;  ///< first frame
   Eigen::Index size = 0;   ///< number of frames
 };
@@ -33,10 +33,10 @@ class DataSet {
   /// Appends a frame.
   /// @param grey       image y_t                                                            [D]
   /// @param torque     u_t [N m]                                                    [torque_dim]
-  /// @param new_piece  true where the previous frame is not the one of a sampling time before (the
+  /// @param new_segment  true where the previous frame is not the one of a sampling time before (the
   ///                   first of a trial, or after a gap): no training pair straddles this
   /// @throws std::invalid_argument for a wrong size or a torque that is not finite
-  void append(const Grey& grey, const Eigen::VectorXd& torque, bool new_piece);
+  void append(const Grey& grey, const Eigen::VectorXd& torque, bool new_segment);
 
   /// Appends all frames of another data set; no pair straddles the seam. Takes over its goal image
   /// where this one has none.
@@ -53,7 +53,7 @@ class DataSet {
   int torqueDim() const { return torque_dim_; }
   Eigen::Index numPixels() const { return static_cast<Eigen::Index>(image_size_) * image_size_; }
   Eigen::Index numFrames() const { return num_frames_; }
-  const std::vector<Piece>& pieces() const { return pieces_; }
+  const std::vector<Segment>& segments() const { return segments_; }
 
   /// Number of frames, and one for the goal if there is one.
   Eigen::Index numImages() const { return num_frames_ + (hasGoal() ? 1 : 0); }
@@ -73,7 +73,7 @@ class DataSet {
   Eigen::Index num_frames_ = 0;
   std::vector<std::shared_ptr<const Grey>> images_;
   std::vector<double> torques_;
-  std::vector<Piece> pieces_;
+  std::vector<Segment> segments_;
   Grey goal_;
 };
 

@@ -20,7 +20,7 @@ std::vector<Eigen::Index> farthestPoints(const Eigen::Ref<const Eigen::MatrixXf>
 /// States x_t (eq. 8, see History) of frames, chosen by farthest points (z_t, z_t - z_{t-1}), both in units
 /// of their spread.
 /// @param Z          features of all frames, others may follow           [feature_dim x >= N]
-/// @param data       torques and pieces of the frames
+/// @param data       torques and segments of the frames
 /// @param memory     n + d, the frames of a state
 /// @param max_count  of landmarks
 /// @return           z_t ... z_{t-n-d+1}, then u_{t-1} ... u_{t-n-d+1} [N m], in each column

@@ -19,7 +19,7 @@ namespace ddm {
 ///
 ///   V_R = sum_t |s_t - g(g^-1(s_t))|^2     all images and the goal                 eqs. (1, 5c)
 ///   V_P = sum_t |s_{t+1} - g(f(h_n))|^2    frames with n predecessors in their     eqs. (4, 5b)
-///                                          piece
+///                                          segment
 ///
 /// With Terms::prediction_steps k > 1, V_P is the mean over predictions 1 ... k steps ahead, each
 /// from the one before it:
@@ -31,7 +31,7 @@ namespace ddm {
 ///
 /// All on PCA scores s: the pixels outside the basis add a constant that no parameter changes. The
 /// weight w = 1 / sum_t |s_t|^2 makes V about 1 for a useless model, whatever the data.
-/// Targets beyond the end of a piece count 0. The encoder runs once for both terms.
+/// Targets beyond the end of a segment count 0. The encoder runs once for both terms.
 ///
 /// V is a sum over parts of up to 128 images, whose activations stay in cache. Parts are independent: each encodes the
 /// few images before its first one again. Up to eight lanes of parts run in parallel and are added in a fixed order, so the
@@ -55,7 +55,7 @@ class JointObjective {
   };
 
   /// @param networks  shapes; outlives the objective
-  /// @throws std::invalid_argument if shapes do not fit, or no piece is longer than n frames
+  /// @throws std::invalid_argument if shapes do not fit, or no segment is longer than n frames
   JointObjective(const Networks<Scalar>& networks, TrainingData<Scalar> data);
 
   /// @param theta    parameters                                            [P]
@@ -85,8 +85,9 @@ class JointObjective {
   /// Images [begin, end), with those from `first` on to predict them from. Frames are counted from `first`.
   struct Part {
     Eigen::Index first, begin, end;
-    std::vector<Eigen::Index> targets;    // frames that are predicted one step ahead
-    std::vector<Eigen::Index> piece_end;  // of each target: first frame that is not in its piece
+    std::vector<Eigen::Index> targets;  // frames that are predicted one step ahead
+    std::vector<Eigen::Index>
+        segment_end;  // of each target: first frame that is not in its segment
   };
 
   /// Where parts are computed one after the other: their sum, and memory that each of them uses.

@@ -13,13 +13,13 @@ namespace ddm {
 template <class Scalar>
 struct TrainingData {
   using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
-  Matrix scores;              ///< all frames, then the goal if there is one  [pca_dim x M]
-  Eigen::MatrixXd torques;    ///< [N m]                               [torque_dim x N]
-  std::vector<Piece> pieces;  ///< no prediction straddles two of them
+  Matrix scores;                  ///< all frames, then the goal if there is one  [pca_dim x M]
+  Eigen::MatrixXd torques;        ///< [N m]                               [torque_dim x N]
+  std::vector<Segment> segments;  ///< no prediction straddles two of them
 };
 
 inline TrainingData<float> makeTrainingData(const DataSet& data, const Pca& pca) {
-  return {pca.project(data), data.torques(), data.pieces()};
+  return {pca.project(data), data.torques(), data.segments()};
 }
 
 /// Stretches of up to 100 frames, spread evenly over all and at most so many frames together, and the goal.

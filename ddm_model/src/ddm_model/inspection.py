@@ -71,7 +71,7 @@ def facts_table(data, path):
 
 
 def bags_table(data):
-    names = ["camera", "frames", "pieces", "images_without_torque", "torques_without_image", "interval_s", "bag"]
+    names = ["camera", "frames", "segments", "images_without_torque", "torques_without_image", "interval_s", "bag"]
     columns = [data.bags[name] for name in names]
     rows = [[cell if isinstance(cell, str) else "%g" % cell for cell in row] for row in zip(*columns)]
     return report.table([name.replace("_s", " [s]").replace("_", " ") for name in names], rows)

@@ -20,7 +20,7 @@ class ModelDataError(Exception):
 
 
 def read_bags(paths, image_size, options=()):
-    """What the program read_bags finds in each bag, by name: camera, interval_s, goal, piece_sizes; images [N x size x size],
+    """What the program read_bags finds in each bag, by name: camera, interval_s, goal, segment_sizes; images [N x size x size],
     torques [N x torque_dim, N m], times and those of what could not be paired [s]. Its errors go to our standard error.
     """
     programs = roslib.packages.find_node("ddm_model", "read_bags")
@@ -89,10 +89,10 @@ def image_errors(arrays, images, reconstructions):
                        component_squares / whole if whole > 0.0 else component_squares, np.sqrt(np.mean(of_own_mean)))
 
 
-def prediction_starts(piece_sizes, memory, steps):
+def prediction_starts(segment_sizes, memory, steps):
     """Frames with memory - 1 frames before and so many after them without a gap: at most MAX_STARTS, evenly spread over all."""
-    begins = np.cumsum(piece_sizes) - piece_sizes
-    starts = np.concatenate([begin + np.arange(memory - 1, size - steps) for begin, size in zip(begins, piece_sizes)])
+    begins = np.cumsum(segment_sizes) - segment_sizes
+    starts = np.concatenate([begin + np.arange(memory - 1, size - steps) for begin, size in zip(begins, segment_sizes)])
     number = min(len(starts), MAX_STARTS)
     return starts[np.arange(number) * len(starts) // max(number, 1)]
 
@@ -137,48 +137,48 @@ class ModelData:
         self.tables, self.predictions = {}, {}
         if bags:
             say("reading %d bag(s)" % len(bags))
-            piece_sizes, times = self._read_bags(bags, options)
-            self._judge_images(piece_sizes, times)
-            self._predict(piece_sizes, steps, say)
+            segment_sizes, times = self._read_bags(bags, options)
+            self._judge_images(segment_sizes, times)
+            self._predict(segment_sizes, steps, say)
 
     def _read_bags(self, paths, options):
-        """Returns the sizes of all pieces and the times of all frames."""
+        """Returns the sizes of all segments and the times of all frames."""
         bags = read_bags(paths, self.model.image_size, options)
         for path, bag in zip(paths, bags):
             if bag["torque_dim"] != self.model.torque_dim:
                 raise ModelDataError("bag %s: has %d torque(s) a frame, the model has %d: it is of another robot" % (
                     path, bag["torque_dim"], self.model.torque_dim))
-        self.images, self.torques, times, piece_sizes = (
-            np.concatenate([bag[name] for bag in bags]) for name in ("images", "torques", "times", "piece_sizes"))
+        self.images, self.torques, times, segment_sizes = (
+            np.concatenate([bag[name] for bag in bags]) for name in ("images", "torques", "times", "segment_sizes"))
         unpaired = ("images_without_torque", "torques_without_image")
         self.unpaired = {name.replace("_", " "): np.array(
             [(i, time) for i, bag in enumerate(bags) for time in bag[name]]).reshape(-1, 2).T for name in unpaired}
         self.bags = {"bag": paths, "camera": [bag["camera"] for bag in bags],
                      **{key: np.array([len(bag[name]) for bag in bags])
-                        for key, name in (("frames", "times"), ("pieces", "piece_sizes"), *zip(unpaired, unpaired))},
+                        for key, name in (("frames", "times"), ("segments", "segment_sizes"), *zip(unpaired, unpaired))},
                      **{name: np.array([bag[name] for bag in bags]) for name in ("interval_s", "goal")}}
         self.tables["bags.csv"] = self.bags
-        return piece_sizes, times
+        return segment_sizes, times
 
-    def _judge_images(self, piece_sizes, times):
+    def _judge_images(self, segment_sizes, times):
         shape = len(self.images), self.images[0].size
         in_blocks = blocks(*shape)
         self.features = np.concatenate([self.model.encode(self.images[block]) for block in in_blocks])
         self.reconstructions = np.concatenate([grey(self.model.decode(self.features[block])) for block in in_blocks])
         errors = image_errors(self.model.arrays, self.images.reshape(shape), self.reconstructions.reshape(shape))
         self.variation = errors.variation
-        bag, piece = (np.repeat(np.arange(len(sizes)), sizes) for sizes in (self.bags["frames"], piece_sizes))
-        self.frames = dict(bag=bag, piece=piece, time_s=times, **numbered("u", self.torques.T),
+        bag, segment = (np.repeat(np.arange(len(sizes)), sizes) for sizes in (self.bags["frames"], segment_sizes))
+        self.frames = dict(bag=bag, segment=segment, time_s=times, **numbered("u", self.torques.T),
                            **numbered("z", self.features.T), mean_rms=errors.mean_rms, pca_rms=errors.pca_rms,
                            reconstruction_rms=errors.reconstruction_rms)
         self.spectrum = {"component": np.arange(1, len(errors.share) + 1),
                          "variance": self.model.arrays["pca_variance"], "share": errors.share}
         self.tables.update({"features.csv": self.frames, "spectrum.csv": self.spectrum})
 
-    def _predict(self, piece_sizes, steps, say):
+    def _predict(self, segment_sizes, steps, say):
         memory = self.model.options["order"] + self.model.options["delay"]
-        steps = max(0, min(steps, np.max(piece_sizes) - memory))  # shorter where all pieces are
-        starts, errors = prediction_starts(piece_sizes, memory, steps), np.zeros((3, 0))
+        steps = max(0, min(steps, np.max(segment_sizes) - memory))  # shorter where all segments are
+        starts, errors = prediction_starts(segment_sizes, memory, steps), np.zeros((3, 0))
         if steps > 0:
             say("predicting %d step(s) from %d frames" % (steps, len(starts)))
             predicted, blind = (predicted_features(self.model, self.features, self.torques, starts, steps, told)

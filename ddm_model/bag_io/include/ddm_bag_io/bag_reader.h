@@ -51,7 +51,7 @@ struct BagContent {
 /// Reads one bag: ours, or one made with plain `rosbag record`.
 ///
 /// Torques are ddm_msgs/Torque: an image and a torque are a frame if their header stamps are equal,
-/// and a new piece begins after an image without a torque, and after a gap of more than 1.5 times
+/// and a new segment begins after an image without a torque, and after a gap of more than 1.5 times
 /// the median interval. Or they are std_msgs/Float64 or Float64MultiArray, the effort of a
 /// sensor_msgs/JointState, or parts of a geometry_msgs/WrenchStamped: then images are taken dt
 /// apart, each with the torque in force until the next, and what has no header stamp has the time
