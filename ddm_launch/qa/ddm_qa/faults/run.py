@@ -23,10 +23,12 @@ SEED, TRIALS = 1, 1
 NO_FAULT = "none"
 LIMIT_S = 120.0  # of a launch
 # Long trainings, so that there is time for a fault; short limits, so that a silent node is named soon.
+# A training takes half a second, so that a fault comes in time on a fast processor, too. The controller waits for longer than the
+# simulator: where a message is lost between them, the simulator says so.
 CONFIG = """\
-training: {{max_iterations: 3000, function_tolerance: 1.0e-12}}
+training: {{max_iterations: 15000, function_tolerance: 0.0}}
 sim: {{watchdog: {node_s}}}
-controller: {{timeout: {node_s}}}
+controller: {{timeout: {controller_s}}}
 recorder: {{timeout: {node_s}}}
 experiment: {{timeout: {experiment_s}}}
 """
@@ -66,7 +68,8 @@ class FaultBench:
     def __init__(self, out, patience=1.0):
         """patience: what all time limits are multiplied by, but a robot's: its motors must stop in time anywhere."""
         self.out, self.limit_s = out, LIMIT_S * patience
-        self.config = CONFIG.format(node_s=NODE_S * patience, experiment_s=EXPERIMENT_S * patience)
+        self.config = CONFIG.format(node_s=NODE_S * patience, controller_s=(NODE_S + 1.0) * patience,
+                                    experiment_s=EXPERIMENT_S * patience)
         self.reference, self.begun = os.path.join(out, "reference", "run"), os.path.join(out, "begun")
         self.launches = []
         os.makedirs(os.path.join(out, "logs"), exist_ok=True)
