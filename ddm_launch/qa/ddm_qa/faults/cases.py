@@ -144,7 +144,7 @@ def files():
                      ("flip model.ddm", REFUSED, "model.ddm", "is damaged (wrong checksum)"),
                      ("flip head of model.ddm", REFUSED, "model.ddm"),
                      ("cut model.ddm", REFUSED, "model.ddm"),
-                     ("read-only folder", STAYS, "cannot write into the folder"))
+                     ("read-only folder", STAYS, "config.yaml: Read-only file system"))
     full = ("cannot", "No space left on device")
     yield from cases([FIRST], ("fill disk", ENDS_IN_FIRST_TRIAL, *full))
     yield from cases(PHASES[1:], ("fill disk", ENDS, *full))
