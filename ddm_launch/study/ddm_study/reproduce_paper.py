@@ -108,8 +108,9 @@ class Reproduction(StepRunner):
         self.call("feature_space", [find_program("feature_space"), folder, "--trial", str(trial), "--step",
                                     str(FIGURE_STEP), "--out", self.path("pendulum", "feature_space.csv")])
         for step, kept in (("tile", "tile"), ("tile_predictions_sequential", "tile_predictions/sequential")):
+            self.keep_config(self.by_name[step], kept + "/config.yaml")
             folder = self.by_name[step].seed_folder(self.out, FIGURE_SEED)
-            for name in ("config.yaml", "features.csv", "model.ddm", "strip.csv"):
+            for name in ("features.csv", "model.ddm", "strip.csv"):
                 self.keep(os.path.join(folder, name), "%s/%s" % (kept, name))
         if self.pilco:
             self.collect_pilco()
