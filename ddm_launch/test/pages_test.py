@@ -41,7 +41,7 @@ def program_files():
 
 
 def literals(path):
-    """A source with the segments of each text joined, so that a message stands in it as it is printed."""
+    """A source in which adjacent string literals are joined, so that each message appears as it is printed."""
     with open(path, errors="replace") as stream:
         return re.sub(r'"\s*(?:<<|\+)?\s*"', "", stream.read()).replace("\\\"", "\"")
 

@@ -54,6 +54,12 @@ class TaskDiagnosisTest(ScratchCase):
         self.assertIn("%s must have two trials at least, got 1" % self.run_folder, output)
         self.assertFalse(os.path.exists(self.table))
 
+    def test_a_plant_in_pixels_is_refused(self):
+        self.makeRun(1, "moving_tile")
+        code, output = self.call()
+        self.assertEqual(code, 1)
+        self.assertIn("plant moving_tile: positions must be in rad or m, got px", output)
+
     def test_angles_are_compared_around_the_circle_and_lengths_are_not(self):
         joints = task_diagnosis.Joints("two_link")
         np.testing.assert_allclose(joints.goal, [math.pi, 0.0])

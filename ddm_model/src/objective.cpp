@@ -61,8 +61,7 @@ JointObjective<Scalar>::JointObjective(const Networks<Scalar>& networks, Trainin
   if (numPredictions() == 0) {
     throw std::invalid_argument(
         "no prediction can be learned: each segment of the data (frames without a gap, each with "
-        "its "
-        "torque) needs more than model/order + model/delay = " +
+        "its torque) needs more than model/order + model/delay = " +
         std::to_string(f.memory()) + " frames");
   }
   weight_ = 1.0 / std::max(1e-30, static_cast<double>(data_.scores.squaredNorm()));

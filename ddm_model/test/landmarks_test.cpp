@@ -58,8 +58,8 @@ TEST(Landmarks, AreStatesOfOneMotionEach) {
   ASSERT_EQ(landmarks.cols(), 7);
   for (Eigen::Index i = 0; i < 7; ++i) {
     const Eigen::VectorXf x = landmarks.col(i);
-    const float begin =
-        x[0] < 4.0F ? 0.0F : 4.0F;  // of the segment: what was before it was at rest
+    // Of the segment: before it the plant was at rest.
+    const float begin = x[0] < 4.0F ? 0.0F : 4.0F;
     EXPECT_EQ(x[1], std::max(x[0] - 1.0F, begin));
     EXPECT_EQ(x[2], std::max(x[0] - 2.0F, begin));
     EXPECT_EQ(x[3], x[0] > begin ? 10.0F * (x[0] - 1.0F) : 0.0F);

@@ -33,7 +33,7 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// What the training before left: beside the bags of the last trial but one.
+/// The file that the previous training left next to the bags of the last trial but one.
 /// @param episodes  bags of each trial
 std::string memoryFile(const std::vector<std::string>& bags, int episodes) {
   const boost::filesystem::path bag = bags.at(bags.size() - 2 * static_cast<size_t>(episodes));

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kPictures = 200;
 
-/// What a segment of work took [ms].
+/// How long some work took [ms].
 struct Times {
   double wall;
   double cpu;  ///< of all threads: on a busy machine what one idle core would take

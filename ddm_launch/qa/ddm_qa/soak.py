@@ -15,7 +15,7 @@ from ddm_launch.figure_style import (BLUE, GREEN, GREY, ORANGE, PAGE_WIDTH, PURP
 from ddm_launch.run_folder import is_finished, num_finished
 from ddm_launch.tables import read_csv, write_csv
 from ddm_qa.processes import free_port, memory_kb, pid_of, start_roslaunch
-from ddm_qa.soak_targets import (FRAME_COLUMNS, GROWTH, Target, Sample, after, by_node, count_frames, judge,
+from ddm_qa.soak_targets import (FRAME_COLUMNS, GROWTH, Sample, Target, after, by_node, count_frames, judge,
                               reference_trial)
 
 RUNS = {"lockstep": "lock-step", "real_time": "real time"}  # name: title in the figure

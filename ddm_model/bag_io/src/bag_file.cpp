@@ -127,7 +127,7 @@ ros::Time timeOf(const Fields& fields) {
 
 constexpr std::uint32_t kMaxChunk = 256U << 20U;
 constexpr std::uint64_t kLz4Ratio = 255;  // a byte of LZ4 stands for 255 bytes at most
-constexpr std::size_t kBz2Segment = 65536;
+constexpr std::size_t kBz2Chunk = 65536;
 
 std::string fromLz4(std::string data, std::uint32_t size) {
   if (size > kLz4Ratio * data.size()) {
@@ -153,7 +153,7 @@ std::string fromBz2(std::string data, std::uint32_t size) {
   int result = BZ_OK;
   while (result == BZ_OK && out.size() < size) {
     const std::size_t filled = out.size();
-    out.resize(std::min<std::size_t>(size, filled + std::max(filled, kBz2Segment)));
+    out.resize(std::min<std::size_t>(size, filled + std::max(filled, kBz2Chunk)));
     stream.next_out = &out[filled];
     stream.avail_out = static_cast<unsigned>(out.size() - filled);
     result = BZ2_bzDecompress(&stream);

@@ -86,8 +86,8 @@ class JointObjective {
   struct Part {
     Eigen::Index first, begin, end;
     std::vector<Eigen::Index> targets;  // frames that are predicted one step ahead
-    std::vector<Eigen::Index>
-        segment_end;  // of each target: first frame that is not in its segment
+    // Of each target: the first frame that is not in its segment.
+    std::vector<Eigen::Index> segment_end;
   };
 
   /// Where parts are computed one after the other: their sum, and memory that each of them uses.

@@ -41,7 +41,7 @@ def verdict_table(checks):
 
 
 def page(title, summary, failed, sections):
-    """sections: segments of HTML, escaped already."""
+    """sections: HTML that is escaped already."""
     return "\n".join(
         ["<!DOCTYPE html>", '<html lang="en"><head><meta charset="utf-8"><title>%s</title>' % escaped(title),
          "<style>%s</style></head><body>" % STYLE, "<h1>%s</h1>" % escaped(title),

@@ -23,8 +23,8 @@ SEED, TRIALS = 1, 1
 NO_FAULT = "none"
 LIMIT_S = 120.0  # of a launch
 # Long trainings, so that there is time for a fault; short limits, so that a silent node is named soon.
-# A training takes half a second, so that a fault comes in time on a fast processor, too. The controller waits for longer than the
-# simulator: where a message is lost between them, the simulator says so.
+# Trainings last half a second, so that faults reach them even on fast processors. The controller waits longer than the simulator,
+# which therefore is the one that reports a message lost between them.
 CONFIG = """\
 training: {{max_iterations: 15000, function_tolerance: 0.0}}
 sim: {{watchdog: {node_s}}}
