@@ -235,7 +235,7 @@ TEST_F(TrialRecorderTest, ARecordingUnderWayCanBeToldThatNothingIsOfAnEarlierTri
 
 TEST_F(TrialRecorderTest, RefusesAStartWithoutAPathWhereNothingIsBeingRecorded) {
   EXPECT_FALSE(start(/*path=*/""));
-  EXPECT_TRUE(contains(message_, "no path")) << message_;
+  EXPECT_TRUE(contains(message_, "is not a path")) << message_;
 }
 
 TEST_F(TrialRecorderTest, StopsWithWhateverThereIsWhereNoNumberIsDue) {

@@ -57,7 +57,7 @@ class RobotTerminalTest(RobotCase):
 
     def test_the_motor_stops_when_somebody_says_so(self):
         self.assertTrue(self.robot.enable(False).success)
-        self.assertEqual(self.robot.effort(), 0.0)
+        self.robot.waitForEffort(0.0)
 
     def test_the_node_ends_and_its_last_word_is_zero(self):
         self.robot.process.send(signal.SIGINT)
