@@ -8,8 +8,8 @@ COPY ddm_launch/scripts/workspace.sh /ddm/ddm_launch/scripts/
 RUN bash -euc '. /ddm/ddm_launch/scripts/workspace.sh; check_system; install_packages "${packages_to_run[@]}"' && \
     rm -rf /var/lib/apt/lists/* /var/cache/apt/archives/*.deb
 
-# also for the processors of other machines; nodes keep to the container, whose name need not resolve
-ENV DDM_WS=/ddm_ws DDM_NATIVE=OFF ROS_IP=127.0.0.1
+# nodes keep to the container, whose name need not resolve
+ENV DDM_WS=/ddm_ws ROS_IP=127.0.0.1
 COPY . /ddm
 RUN bash -euc '. /ddm/ddm_launch/scripts/workspace.sh; use_system_environment; make_workspace; build_release'
 

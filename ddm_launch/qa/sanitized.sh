@@ -32,7 +32,7 @@ build_sanitized() {  # address|thread|fuzz TARGET...
   mkdir -p "$folder"
   local configure=(catkin_make -C "$DDM_WS" --build "$folder/build" "${jobs[@]}"
     -DCATKIN_DEVEL_PREFIX="$folder/devel" -DCMAKE_INSTALL_PREFIX="$folder/install" -DCMAKE_CXX_COMPILER=clang++
-    -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-O1 -gline-tables-only' -DDDM_NATIVE=OFF -DDDM_WERROR=ON
+    -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-O1 -gline-tables-only' -DDDM_AVX2=OFF -DDDM_WERROR=ON
     -DDDM_SANITIZE=$sanitizer -DDDM_FUZZ=$everything -DDDM_PILCO=$everything "${unity_flags[@]}")
   "${configure[@]}" "${@:2}" || return
   # as in build_release

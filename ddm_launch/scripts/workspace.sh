@@ -165,10 +165,9 @@ job_flags() {
 unity_flags=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0)
 
 # The Release build, in $DDM_WS/build and $DDM_WS/devel. Arguments: make targets, or none for all programs.
-# demo.sh and test.sh must pass the same flags, or each would rebuild what the other built. For this machine's processor,
-# unless DDM_NATIVE=OFF.
+# demo.sh and test.sh must pass the same flags, or each would rebuild what the other built.
 build_release() {
-  local flags=(-DCMAKE_BUILD_TYPE=Release -DDDM_NATIVE="${DDM_NATIVE:-ON}" -DDDM_WERROR=OFF "${unity_flags[@]}") jobs
+  local flags=(-DCMAKE_BUILD_TYPE=Release -DDDM_AVX2="${DDM_AVX2:-ON}" -DDDM_WERROR=OFF "${unity_flags[@]}") jobs
   [[ -z ${CI:-} ]] || flags[2]=-DDDM_WERROR=ON
   read -ra jobs < <(job_flags)
   catkin_make -C "$DDM_WS" "${jobs[@]}" "${flags[@]}" "$@" || return

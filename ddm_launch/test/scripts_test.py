@@ -182,9 +182,9 @@ class ScriptsTest(ScratchCase):
         with socket.socket() as probe:
             probe.bind(("", int(output)))
 
-    def test_the_build_is_for_this_processor_unless_told_otherwise(self):
+    def test_the_build_uses_avx2_unless_told_otherwise(self):
         printed = "; DDM_WS=%s; catkin_make() { printf '%%s\\n' \"$@\"; }; grep() { true; }; build_release" % self.workspace
-        for told, flag in (("unset DDM_NATIVE", "-DDDM_NATIVE=ON"), ("DDM_NATIVE=OFF", "-DDDM_NATIVE=OFF")):
+        for told, flag in (("unset DDM_AVX2", "-DDDM_AVX2=ON"), ("DDM_AVX2=OFF", "-DDDM_AVX2=OFF")):
             code, output = self.callFunction(told + printed)
             self.assertEqual(code, 0)
             self.assertIn(flag, output.splitlines())

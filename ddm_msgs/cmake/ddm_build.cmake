@@ -5,7 +5,10 @@ if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release)  # unoptimised Eigen is painfully slow
 endif()
 
-option(DDM_NATIVE "Build for the instruction set of this machine" ${DDM_NATIVE_DEFAULT})  # see ddm_native.cmake.in
+if(NOT DEFINED DDM_AVX2_DEFAULT)  # see ddm_avx2.cmake.in
+  set(DDM_AVX2_DEFAULT ON)
+endif()
+option(DDM_AVX2 "On x86-64, build for processors with AVX2 and FMA, which most have since 2013" ${DDM_AVX2_DEFAULT})
 option(DDM_WERROR "Treat warnings as errors" OFF)
 set(DDM_SANITIZE "" CACHE STRING "Sanitizers: empty for none, address (with undefined behaviour) or thread")
 option(DDM_FUZZ "Build the fuzz targets, and everything for libFuzzer; needs clang" OFF)
@@ -15,13 +18,24 @@ set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 
 add_compile_options(-Wall -Wextra)
-if(DDM_NATIVE)
-  add_compile_options(-march=native)
+# Results are to repeat digit by digit on other processors: so one instruction set instead of -march=native, and Eigen must not
+# split its sums by the sizes of this processor's caches.
+add_compile_definitions(EIGEN_NO_CPUID)
+if(DDM_AVX2 AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
+  add_compile_options(-march=haswell)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # GCC 12 sees uninitialised values in its own AVX-512 header, and reads beyond Eigen's vectors of two and three
-    # numbers, where there are none; GCC 14 has another name for the latter, which GCC 9 ignores. Clang, which makes the
-    # Debug build, still looks for both.
-    add_compile_options(-Wno-maybe-uninitialized -Wno-uninitialized -Wno-array-bounds -Wno-stringop-overread)
+    # GCC 12 sees reads beyond Eigen's vectors of two and three numbers, where there are none; GCC 14 has another name for
+    # that, which GCC 9 ignores. Clang, which makes the Debug build, still looks for them.
+    add_compile_options(-Wno-array-bounds -Wno-stringop-overread)
+  endif()
+  if(NOT CMAKE_CROSSCOMPILING)
+    include(CheckCXXSourceRuns)
+    check_cxx_source_runs("int main() { return !__builtin_cpu_supports(\"avx2\") || !__builtin_cpu_supports(\"fma\"); }"
+                          DDM_AVX2_RUNS_HERE)
+    if(NOT DDM_AVX2_RUNS_HERE)
+      message(FATAL_ERROR "DDM_AVX2 must be OFF on this processor, which has no AVX2 or no FMA, got ON. "
+                          "Remedy: run cmake with -DDDM_AVX2=OFF, or demo.sh with the environment variable DDM_AVX2=OFF.")
+    endif()
   endif()
 endif()
 if(DDM_WERROR)

@@ -104,8 +104,7 @@ def package_path(*names, package="ddm_launch"):
 
 
 def processor(path="/proc/cpuinfo"):
-    """This machine's processor: its name, and the family and model that tell apart generations of one name. Rows of
-    results repeat digit by digit only on the same one."""
+    """This machine's processor: its name, and the family and model that tell apart generations of one name."""
     try:
         with open(path) as stream:
             first = stream.read().split("\n\n")[0]

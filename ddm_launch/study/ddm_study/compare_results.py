@@ -10,7 +10,7 @@ from ddm_launch.tables import read_csv
 
 ABOUT = """\
 Compares results that were made again, of some of the seeds, with committed ones: each CSV file in AGAIN that has rows of
-seeds. Times and versions may differ, all else must not. On another processor or build, rows are expected to differ."""
+seeds. Times and versions may differ, all else must not. Another compiler or build setting may round differently."""
 EPILOG = """\
 example, two seeds of each sweep of results/efficient:
   rosrun ddm_launch reproduce_efficient --seeds 300:302 --pilco-seeds 0 --only efficient gravity nuisances tasks --out again
