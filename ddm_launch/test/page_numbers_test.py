@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
 import os
+import re
 import sys
 import tempfile
 import unittest
@@ -38,6 +39,15 @@ class PageNumbersTest(unittest.TestCase):
         self.assertEqual([problem for page in checked for problem in page.uncovered()], [])
         there = glob.glob(os.path.join(pages.CHECKOUT, RESULTS, "**/README.md"), recursive=True)
         self.assertEqual({os.path.relpath(path, pages.CHECKOUT) for path in there} - {page.name for page in checked}, set())
+
+    def test_the_first_run_prints_what_its_page_shows(self):
+        rows = read_rows("first_run/trials.csv").set_index("trial")
+        lines = re.findall(r"^trial  (\d)/3 +(\d+) frames  V_R +(\S+)  V_P +(\S+)  error +(\S+) deg  success$",
+                           pages.read("doc/first_run.md"), re.MULTILINE)
+        self.assertEqual([trial for trial, *_ in lines], ["0", "3"])
+        for trial, frames, *numbers in lines:
+            row = rows.loc[int(trial)]
+            self.assertEqual((int(frames), numbers), (row.frames, ["%.3g" % row[name] for name in ("v_r", "v_p", "final_error")]))
 
     def test_rates_are_those_of_the_single_runs(self):
         for folder in ("efficient/", "paper/"):
