@@ -52,7 +52,8 @@ TEST_F(BagAccessTest, TakesASingleBagAndNotItsNeighbour) {
 
 TEST_F(BagAccessTest, RefusesWhatIsNoPath) {
   for (const std::string& path : {std::string(), run_ + std::string("/a\0.bag", 7)}) {
-    EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { access_.require(path); }, {"is not a path"}));
+    EXPECT_TRUE(
+        throwsNaming<std::runtime_error>([&] { access_.require(path); }, {"is not a path"}));
   }
 }
 
