@@ -24,7 +24,7 @@ reports anything.
   DDM_WS              catkin workspace to make or use, default ~/ddm_ws (Release in devel/, Debug in debug/devel/ and
                       fuzz/devel/, ThreadSanitizer in thread/devel/)
   ROS_PARALLEL_JOBS   compiler jobs, for example -j1; default one per core, two gigabytes for each
-  DDM_AVX2            OFF: compile for processors without AVX2, too: slower; default ON
+  DDM_AVX2            OFF: slower programs that need no AVX2; default ON
   CI                  if set, warnings are errors in the Release build too
   DDM_PILCO_VECTORS   file of reference values for PILCO, which pilco_check then must accept; if not set, that case
                       is skipped

@@ -19,7 +19,7 @@ and draws a learning curve and a film strip. Called again on the same run folder
 
   DDM_WS              catkin workspace to make or use, default ~/ddm_ws
   ROS_PARALLEL_JOBS   compiler jobs, for example -j1; default one per core, two gigabytes for each
-  DDM_AVX2            OFF: compile for processors without AVX2, too: slower; default ON
+  DDM_AVX2            OFF: slower programs that need no AVX2; default ON
 TEXT
 }
 
