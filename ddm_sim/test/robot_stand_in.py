@@ -166,7 +166,8 @@ class Robot:
 
     def answer(self, *torque, delay_s=0.0):
         """Answers the next image. Returns its stamp."""
-        image = self.images.next()
+        now = rospy.Time.now()  # one taken before may be on its way, and the motors enabled after it
+        image = wait_until(lambda: next((each for each in self.images.messages if each.header.stamp > now), None), "an image")
         time.sleep(delay_s)
         self.publishTorque(image, *torque)
         return image.header.stamp
@@ -189,8 +190,11 @@ class Robot:
     def waitForEffort(self, effort):
         """From now on. A number, of several motors a tuple."""
         seen = len(self.efforts.messages)
-        wait_until(lambda: any(message.data == effort for message in self.efforts.messages[seen:]),
-                   "effort %s" % (effort,))
+        try:
+            wait_until(lambda: any(message.data == effort for message in self.efforts.messages[seen:]),
+                       "effort %s" % (effort,))
+        except AssertionError as e:
+            raise AssertionError("%s; robot_node says:\n%s" % (e, self.process.output))
 
     def effort(self):
         """What the motors get now."""
