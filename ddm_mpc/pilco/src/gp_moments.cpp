@@ -25,17 +25,15 @@ double pairAdjoint(int a, int b, const Moments& d_output) {
 }  // namespace
 
 GpMoments::GpMoments(GpModel model) : model_(std::move(model)) {
-  const int n = model_.numPoints();
   const int outputs = model_.outputDim();
-  eigen_assert(n >= 1 && outputs >= 1 && model_.beta.rows() == n &&
+  eigen_assert(model_.numPoints() >= 1 && outputs >= 1 &&
+               model_.beta.rows() == model_.numPoints() &&
                model_.hyperparameters.log_length_scales.rows() == model_.inputDim() &&
                model_.hyperparameters.log_length_scales.cols() == outputs &&
                model_.hyperparameters.log_signal_std.size() == outputs &&
                (model_.inverse.empty() || static_cast<int>(model_.inverse.size()) == outputs));
   precisions_ = (-2.0 * model_.hyperparameters.log_length_scales.array()).exp();
   log_signal_variance_ = 2.0 * model_.hyperparameters.log_signal_std;
-  padded_beta_ = Eigen::MatrixXd::Zero(paddedRows(n), outputs);
-  padded_beta_.topRows(n) = model_.beta;
   finite_ = model_.inputs.allFinite() && model_.beta.allFinite() && precisions_.allFinite() &&
             log_signal_variance_.allFinite() && (precisions_.array() > 0.0).all();
 
@@ -46,12 +44,9 @@ GpMoments::GpMoments(GpModel model) : model_(std::move(model)) {
     Eigen::MatrixXd full = model_.beta.col(a) * model_.beta.col(a).transpose();
     if (!model_.inverse.empty()) full -= model_.inverse[a];
     finite_ = finite_ && full.allFinite();
-    weights_[a] = Eigen::MatrixXd::Zero(paddedRows(n), n);
-    weights_[a].topRows(n).triangularView<Eigen::StrictlyLower>() = full;
-    weights_[a].topRows(n).diagonal() = 0.5 * full.diagonal();
+    weights_[a] = full.triangularView<Eigen::StrictlyLower>();
+    weights_[a].diagonal() = 0.5 * full.diagonal();
   }
-  matrix_.f = Eigen::VectorXd::Zero(paddedRows(n));
-  matrix_.u = Eigen::MatrixXd::Zero(paddedRows(n), model_.inputDim());
 }
 
 Moments GpMoments::predict(const Gaussian& input, Tape* tape) {
@@ -143,11 +138,10 @@ bool GpMoments::predictPair(int a, int b, const Gaussian& input, Moments* output
   const auto quadratic = [&](const Eigen::Ref<const Eigen::MatrixXd>& scaled) -> Eigen::VectorXd {
     return (scaled * pair.inner - z_).cwiseProduct(scaled).rowwise().sum();
   };
-  matrix_.u.topRows(n) = z_ * precisions_.col(a).asDiagonal();
+  matrix_.u = z_ * precisions_.col(a).asDiagonal();
   scaled_b_ = z_ * precisions_.col(b).asDiagonal();
   matrix_.v.noalias() = pair.inner * scaled_b_.transpose();
-  matrix_.f.head(n) = (log_signal_variance_[a] - 0.5 * pair.log_det_R) +
-                      0.5 * quadratic(matrix_.u.topRows(n)).array();
+  matrix_.f = (log_signal_variance_[a] - 0.5 * pair.log_det_R) + 0.5 * quadratic(matrix_.u).array();
   matrix_.g = log_signal_variance_[b] + 0.5 * quadratic(scaled_b_).array();
   matrix_.lower_triangle = a == b;
   if (a == b) {
@@ -155,7 +149,7 @@ bool GpMoments::predictPair(int a, int b, const Gaussian& input, Moments* output
     matrix_.weight_stride = weights_[a].rows();
     matrix_.column_weights = Eigen::VectorXd::Ones(n);
   } else {
-    matrix_.weights = padded_beta_.col(a).data();
+    matrix_.weights = model_.beta.col(a).data();
     matrix_.weight_stride = 0;
     matrix_.column_weights = model_.beta.col(b);
   }
@@ -170,8 +164,8 @@ bool GpMoments::predictPair(int a, int b, const Gaussian& input, Moments* output
   output->covariance(b, a) = covariance;
   if (tape == nullptr) return true;
 
-  const auto u = matrix_.u.topRows(n);
-  const auto rows = sums_.rows.head(n);
+  const Eigen::MatrixXd& u = matrix_.u;
+  const Eigen::VectorXd& rows = sums_.rows;
   const Eigen::VectorXd first = u.transpose() * rows + scaled_b_.transpose() * sums_.columns;
   const Eigen::MatrixXd cross = sums_.moments * scaled_b_;
   const Eigen::MatrixXd second = u.transpose() * rows.asDiagonal() * u +

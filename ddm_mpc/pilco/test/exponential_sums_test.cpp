@@ -15,23 +15,17 @@ namespace {
 
 struct Problem {
   ExponentialMatrix matrix;
-  Eigen::MatrixXd weights;  // [N x n]
+  Eigen::MatrixXd weights;  // [n x n]
 };
 
 Problem randomProblem(int dim, int n, double scale, std::mt19937_64& random) {
   Problem problem;
-  const int rows = paddedRows(n);
-  const auto padded = [&](int cols) {
-    Eigen::MatrixXd values = Eigen::MatrixXd::Zero(rows, cols);
-    values.topRows(n) = normalMatrix(n, cols, scale, random);
-    return values;
-  };
-  problem.matrix.f = padded(1);
-  problem.matrix.u = padded(dim);
+  problem.matrix.f = normalMatrix(n, 1, scale, random);
+  problem.matrix.u = normalMatrix(n, dim, scale, random);
   problem.matrix.g = normalMatrix(n, 1, scale, random);
   problem.matrix.v = normalMatrix(dim, n, 1.0, random);
   problem.matrix.column_weights = normalMatrix(n, 1, 1.0, random);
-  problem.weights = padded(n);
+  problem.weights = normalMatrix(n, n, scale, random);
   return problem;
 }
 
@@ -88,12 +82,12 @@ TEST(ExponentialSums, SkipOnlyWeightsThatAreZeroAboveTheDiagonal) {
 TEST(ExponentialSums, StayExactWhereTheExponentialIsHugeOrTiny) {
   for (const double exponent : {-499.0, -300.0, -1e-9, 0.0, 1e-9, 1.0, 300.0, 700.0}) {
     Problem problem;
-    problem.matrix.f = Eigen::VectorXd::Zero(kRowPadding);
-    problem.matrix.u = Eigen::MatrixXd::Zero(kRowPadding, 1);
+    problem.matrix.f = Eigen::VectorXd::Zero(1);
+    problem.matrix.u = Eigen::MatrixXd::Zero(1, 1);
     problem.matrix.g = Eigen::VectorXd::Constant(1, exponent);
     problem.matrix.v = Eigen::MatrixXd::Zero(1, 1);
     problem.matrix.column_weights = Eigen::VectorXd::Ones(1);
-    problem.weights = Eigen::VectorXd::Unit(kRowPadding, 0);
+    problem.weights = Eigen::VectorXd::Ones(1);
     problem.matrix.weights = problem.weights.data();
     ExponentialSums sums;
     exponentialSums(problem.matrix, &sums);
@@ -103,12 +97,12 @@ TEST(ExponentialSums, StayExactWhereTheExponentialIsHugeOrTiny) {
 
 TEST(ExponentialSums, AreNextToNothingForExponentsBelowThoseThatAreExact) {
   Problem problem;
-  problem.matrix.f = Eigen::VectorXd::Zero(kRowPadding);
-  problem.matrix.u = Eigen::MatrixXd::Zero(kRowPadding, 1);
+  problem.matrix.f = Eigen::VectorXd::Zero(1);
+  problem.matrix.u = Eigen::MatrixXd::Zero(1, 1);
   problem.matrix.g = Eigen::VectorXd::Constant(1, -1e6);
   problem.matrix.v = Eigen::MatrixXd::Zero(1, 1);
   problem.matrix.column_weights = Eigen::VectorXd::Ones(1);
-  problem.weights = Eigen::VectorXd::Unit(kRowPadding, 0);
+  problem.weights = Eigen::VectorXd::Ones(1);
   problem.matrix.weights = problem.weights.data();
   ExponentialSums sums;
   exponentialSums(problem.matrix, &sums);

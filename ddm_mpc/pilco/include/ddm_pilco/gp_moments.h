@@ -89,8 +89,7 @@ class GpMoments {
   GpModel model_;
   Eigen::MatrixXd precisions_;            // 1 / l^2                             [D x E]
   Eigen::VectorXd log_signal_variance_;   // log sf^2                                [E]
-  std::vector<Eigen::MatrixXd> weights_;  // half of beta beta^T - A^-1    E times [N x n]
-  Eigen::MatrixXd padded_beta_;           //                                     [N x E]
+  std::vector<Eigen::MatrixXd> weights_;  // half of beta beta^T - A^-1    E times [n x n]
   bool finite_ = false;
 
   Eigen::MatrixXd z_;  // X_i - m in rows                                        [n x D]
