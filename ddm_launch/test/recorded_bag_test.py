@@ -4,6 +4,7 @@
 import io
 import os
 import random
+import re
 import subprocess
 import sys
 import threading
@@ -90,8 +91,9 @@ class RecordedBagTest(ScratchCase):
         code, output = call([find_program("ddm_model", "train_from_bags"), "--config", PRESET, *names, "--goal", goal,
                              "--seed", "1", "--out", model, bag])
         self.assertEqual(code, 0, output)
-        self.assertRegex(output, r"(?m)^frames: (299|300|301)$")
-        self.assertRegex(output, r"(?m)^segments: 1$")
+        num_frames = int(re.search(r"(?m)^frames: (\d+)$", output).group(1))
+        self.assertIn(num_frames, range(290, 302), output)
+        self.assertIn(int(re.search(r"(?m)^segments: (\d+)$", output).group(1)), range(1, 4), output)  # 1 where nobody is held up
         code, output = call([find_program("ddm_model", "inspect"), "--model", model, *names, "--out", self.file("report"), bag])
         self.assertEqual(code, 0, output)
         self.assertIn("checks passed", output)
@@ -104,22 +106,22 @@ class RecordedBagTest(ScratchCase):
         self.assertGreaterEqual(successes.count("1"), 4, rows)
         names = self.write("names.yaml", "data_set: {image_topic: %s, torque_topic: %s, dt: %s}\n" % (
             IMAGE_TOPIC, TORQUE_TOPIC, DT))
-        self.assertLearnedFurther(model, bag, names)
-        self.assertReplayed(model, bag, names)
+        self.assertLearnedFurther(model, bag, names, num_frames)
+        self.assertReplayed(model, bag, names, num_frames)
 
-    def assertLearnedFurther(self, model, bag, names):
+    def assertLearnedFurther(self, model, bag, names, num_frames):
         code, output = run_experiment("--preset", "efficient", "--plant", "pendulum", "--seed", 1, "--trials", 0, "--config", names,
                                       "--model", model, "--bags", bag, "--out", self.file("further"))
         self.assertEqual(code, 0, output)
         rows = read_rows(self.file("further"), "trials.csv")
-        self.assertIn(int(rows[1][rows[0].index("frames")]), (399, 400, 401))
+        self.assertEqual(int(rows[1][rows[0].index("frames")]), 100 + num_frames)
 
-    def assertReplayed(self, model, bag, names):
+    def assertReplayed(self, model, bag, names, num_frames):
         table = self.file("replay.csv")
         code, output = roslaunch(self.file("ros"), "replay.launch", "bag:=" + bag, "model:=" + model, "config:=" + names,
                                  "preset:=efficient", "rate:=0", "out:=" + table, port=0)
         self.assertEqual(code, 0, output)
-        self.assertIn(len(read_rows(table)) - 1, (299, 300, 301), output)
+        self.assertEqual(len(read_rows(table)) - 1, num_frames, output)
 
 
 if __name__ == "__main__":

@@ -204,8 +204,8 @@ TEST(RosDriverTest, WaitsForAResetNoLongerThanForAnythingElse) {
 
 TEST(RosDriverTest, ConnectsAgainAfterAServiceThatDidNotAnswer) {
   Peers peers;
-  peers.answerAfter(2.0);
-  RosDriver driver(ros::NodeHandle(), 0.5, {/*recorder=*/false, /*trainer=*/false});
+  peers.answerAfter(3.0);
+  RosDriver driver(ros::NodeHandle(), 1.0, {/*recorder=*/false, /*trainer=*/false});
   EXPECT_NE(errorOf(&driver, trial()), "none");
   peers.answerAfter(0.0);
   EXPECT_EQ(errorOf(&driver, trial()), "none");
@@ -213,8 +213,8 @@ TEST(RosDriverTest, ConnectsAgainAfterAServiceThatDidNotAnswer) {
 
 TEST(RosDriverTest, LeavesARobotTheTimeThatItsResetMayTake) {
   Peers peers;
-  peers.answerAfter(1.5);
-  RosDriver driver(ros::NodeHandle(), 0.5, {/*recorder=*/false, /*trainer=*/false, 10.0});
+  peers.answerAfter(2.5);
+  RosDriver driver(ros::NodeHandle(), 1.0, {/*recorder=*/false, /*trainer=*/false, 10.0});
   EXPECT_EQ(errorOf(&driver, trial()), "none");
 }
 
@@ -243,10 +243,10 @@ TEST(RosDriverTest, HasATrialRecordedThatBeginsEarlierThanTheLastOneEnded) {
 TEST(RosDriverTest, HearsItsPeersWhileItsProgressIsHeldUp) {
   Peers peers;
   peers.runUntilReleased();
-  RosDriver driver(ros::NodeHandle(), 0.5, {/*recorder=*/false, /*trainer=*/false});
+  RosDriver driver(ros::NodeHandle(), 1.0, {/*recorder=*/false, /*trainer=*/false});
   std::set<std::thread::id> reporters;
   const TrialOutcome outcome = driver.runTrial(trial(), [&](double) {
-    if (reporters.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    if (reporters.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(2500));
     reporters.insert(std::this_thread::get_id());
     peers.release();
   });

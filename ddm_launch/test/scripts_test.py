@@ -172,6 +172,7 @@ class ScriptsTest(ScratchCase):
     def test_another_port_is_taken_when_the_masters_port_is_in_use(self):
         with socket.socket() as holder:
             try:
+                holder.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # a master that has ended leaves it waiting
                 holder.bind(("", 11311))
                 holder.listen(1)
             except OSError:

@@ -88,6 +88,7 @@ class SlurmTest(SharedScratchCase):
 
     def test_a_task_that_was_cancelled_is_named_and_run_again(self):
         process = self.start(*self.debug("0:4", 12))
+        process.waitForText("Slurm job ", 30.0)
         wait_for(lambda: programs_of(seed_folder(self.out, 1)), "the program of seed 1")
         self.cluster.call("scancel", self.jobOf(process.output) + "_1")
         self.assertEqual(process.waitForEnd(60.0), 1, process.output)
@@ -105,6 +106,7 @@ class SlurmTest(SharedScratchCase):
 
     def test_a_signal_cancels_the_job(self):
         process = self.start(*self.debug("0:2", 999), "--jobs", 1)
+        process.waitForText("Slurm job ", 30.0)
         wait_for(lambda: programs_of(seed_folder(self.out, 0)), "the program of seed 0")
         self.assertEqual(sorted(self.cluster.tasks()), ["PENDING", "RUNNING"])
         self.assertIn("ArrayTaskThrottle=1",

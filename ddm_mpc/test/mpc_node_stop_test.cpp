@@ -127,13 +127,13 @@ TEST_F(LongPlan, EndsWithTheTimeoutOfItsTrial) {
 
 TEST_F(LongPlan, DoesNotDelayAChangeOfParameters) {
   beginPlan(23);
-  const auto answered = callWithin(std::chrono::seconds(1), [] {
+  const auto answered = callWithin(std::chrono::seconds(10), [] {
     dynamic_reconfigure::Reconfigure service;
     return ros::service::call("mpc_node/mpc/set_parameters", service);
   });
   EXPECT_TRUE(answered.value_or(false));
   action_.cancelGoal();
-  expectEnd(State::PREEMPTED);
+  expectEnd(State::PREEMPTED);  // the answer did not wait for the end of the trial
 }
 
 TEST_F(InTime, GivesTheBestSoFarWithinItsBudgetAndIsCounted) {

@@ -21,8 +21,9 @@ class RobotMotorTest(RobotCase):
 
     def enterTrial(self, torque=2.0):
         self.assertTrue(self.robot.enable(True).success)
-        self.robot.answer(torque)
+        self.robot.answerAll(torque)  # on a busy machine the first answer may be late
         self.robot.waitForEffort(torque)
+        self.robot.controller.unregister()
 
     def test_images_are_cropped_small_and_grey_and_dt_apart(self):
         self.robot.camera.left = 200
@@ -64,9 +65,8 @@ class RobotMotorTest(RobotCase):
         self.robot.waitForEffort(0.0)
         wait_until(lambda: self.robot.numMisses() >= 1, "a miss")
         self.assertNotIn(3.0, [message.data for message in self.robot.efforts.messages])
-        wait_until(lambda: len(self.robot.latencies.messages) == 2, "latencies")
-        self.assertLess(self.robot.latencies.messages[0].data, DT)
-        self.assertGreater(self.robot.latencies.messages[1].data, 1.1 * DT)
+        wait_until(lambda: self.robot.latencies.messages[-1].data > 1.1 * DT, "a latency")
+        self.assertLess(min(latency.data for latency in self.robot.latencies.messages), DT)
         self.robot.answer(1.0)  # ... and the next one in time does
         self.robot.waitForEffort(1.0)
 

@@ -40,7 +40,7 @@ class RobotResetTest(RobotCase):
         reset = answer()
         self.assertTrue(reset.success, reset.message)
         self.assertLess(abs((rospy.Time.now() - reset.start).to_sec()), LIMIT_S)
-        self.assertGreater(robot.images.next().header.stamp, reset.start)
+        wait_until(lambda: any(image.header.stamp > reset.start for image in robot.images.messages), "an image of the trial")
         self.assertEqual(list(bytearray(robot.goals.messages[0].data)), 4 * [255, 255, 0, 0])
 
     def test_the_goal_is_kept_in_its_file(self):

@@ -46,7 +46,7 @@ class StandInTest(unittest.TestCase):
             torques.publish(message)
 
         controller = rospy.Subscriber("camera/image_raw", Image, answer, tcp_nodelay=True)
-        moved = wait_until(lambda: truth.messages[-1].position[0] > MIDDLE + 8.0 and truth.messages[-1], "a movement")
+        moved = wait_until(lambda: next((each for each in truth.messages if each.position[0] > MIDDLE + 8.0), None), "a movement")
         controller.unregister()
         self.assertEqual(list(moved.effort), TORQUE)
         self.assertAlmostEqual(moved.position[1] - MIDDLE, -0.5 * (moved.position[0] - MIDDLE), delta=1e-9)

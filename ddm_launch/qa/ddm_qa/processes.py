@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import concurrent.futures
 import os
+import random
 import re
 import signal
 import socket
@@ -15,6 +16,7 @@ from tqdm import tqdm
 from ddm_launch.command import Failure
 
 LIMIT_S = 900.0  # of what Programs calls
+PORTS = range(12000, 32768)  # Linux gives none of them to programs that take any port
 
 
 def side_by_side(work, items, jobs, stop, unit):
@@ -33,9 +35,15 @@ def side_by_side(work, items, jobs, stop, unit):
 
 
 def free_port():
-    with socket.socket() as sock:
-        sock.bind(("localhost", 0))
-        return sock.getsockname()[1]
+    """One for a master, which takes it seconds later, when nodes have taken some, too."""
+    while True:
+        port = random.SystemRandom().choice(PORTS)
+        with socket.socket() as sock:
+            try:
+                sock.bind(("localhost", port))
+                return port
+            except OSError:
+                pass  # in use
 
 
 def on_this_machine(environment):

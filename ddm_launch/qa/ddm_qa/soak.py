@@ -81,6 +81,8 @@ class SoakRun:
                 stream.write(launch.output)
         if self.soak.seconds is None and not is_finished(self.runs):
             raise self.failure(launch, "the experiment did not finish")
+        if not self.samples or self.samples[-1].trial == 0:
+            raise self.failure(launch, "at least two trials must end in its time: make that longer")
         return self.samples, count_frames(self.soak.name, self.runs, self.samples[-1].trial + 1)
 
     def failure(self, launch, what):
