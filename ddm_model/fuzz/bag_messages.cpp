@@ -50,7 +50,7 @@ void takeThen(const Message& message, ddm::TrialMessages* messages) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr int kImageSize = 4;
   ddm::testing::FuzzBytes bytes(data, size);
-  ddm::TrialMessages messages(kImageSize);
+  ddm::TrialMessages messages(kImageSize, ddm::BagOptions());
   ddm::TorqueReader reader({});
   std::vector<Message> all;
   while (!bytes.empty()) {

@@ -115,6 +115,15 @@ TEST_F(TrainFromBags, TakesTheGoalFromAnImageFile) {
   EXPECT_EQ(model().goal()[10], 30);
 }
 
+TEST_F(TrainFromBags, CropsAGoalThatTheCameraTook) {
+  std::string pixels;
+  for (int i = 0; i < 16 * 16; ++i) pixels += std::to_string(10 * (i % 16)) + " ";
+  write("goal.pgm", "P2\n16 16\n255\n" + pixels + "\n");
+  ASSERT_EQ(train("--crop 4,2,8,8 --goal goal.pgm a.bag").exit_code, 0);
+  EXPECT_EQ(model().goal()[0], 40);
+  EXPECT_EQ(model().goal()[7], 110);
+}
+
 TEST_F(TrainFromBags, SaysWhereThereIsNoGoal) {
   const Outcome outcome = train("goalless.bag");
   EXPECT_EQ(outcome.exit_code, 0);

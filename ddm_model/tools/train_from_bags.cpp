@@ -45,7 +45,7 @@ bool parse(int argc, char** argv, Arguments* arguments) {
                         "files win. The limits of the motors are model/max_torque, else those of "
                         "a block robot or plant");
   options.add_options()("goal", po::value(&arguments->goal),
-                        "goal image; else the goal_image of the bags");
+                        "goal image, cropped like theirs; else the goal_image of the bags");
   options.add_options()("seed", po::value(&arguments->seed)->default_value(0),
                         "seed of the initial parameters");
   options.add_options()("out", po::value(&arguments->out), "model file to write");
@@ -98,8 +98,9 @@ void run(const Arguments& arguments) {
   const ddm::ModelConfig config = ddm::readModelConfig(&params);
   params.requireValid();
   ddm::DataSet data = ddm::BagCache(config.image.size, config.data_set).read(arguments.bags);
-  if (!arguments.goal.empty())
-    data.setGoal(ddm::decodeImage(ddm::readPicture(arguments.goal), config.image.size));
+  if (!arguments.goal.empty()) {
+    data.setGoal(ddm::greyOf(ddm::readPicture(arguments.goal), config.image.size, config.data_set));
+  }
   if (!data.hasGoal()) {
     std::cerr << "no --goal and no goal_image in the bags: the model can predict, but not be "
                  "planned with\n";

@@ -6,7 +6,6 @@
 #include <ddm_images/image_codec.h>
 #include <ddm_params/option_checks.h>
 #include <sensor_msgs/CompressedImage.h>
-#include <sensor_msgs/Image.h>
 
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
@@ -150,6 +149,14 @@ std::vector<std::string> BagOptions::problems() const {
   return data_set.problems();
 }
 
+Grey greyOf(const sensor_msgs::Image& image, int image_size, const BagOptions& options) {
+  const auto size = static_cast<std::uint32_t>(image_size);
+  const bool done = image.width == size && image.height == size;  // its crop, too
+  const std::vector<int>& crop = options.crop;
+  return decodeImage(image, image_size,
+                     done ? ImageCrop() : ImageCrop{crop[0], crop[1], crop[2], crop[3]});
+}
+
 BagContent readBagBytes(std::istream* in, int image_size, const BagOptions& options) {
   BagFile bag(in);
   const Topic images = requireTopic(bag.connections(), options.image_topic, kImages, "image_topic");
@@ -166,8 +173,7 @@ BagContent readBagBytes(std::istream* in, int image_size, const BagOptions& opti
     const ros::Time stamp = stampOf(image);
     return by_stamp || !stamp.isZero() ? stamp : image.recorded;
   };
-  TrialMessages messages(image_size,
-                         {options.crop[0], options.crop[1], options.crop[2], options.crop[3]});
+  TrialMessages messages(image_size, options);
   TorqueReader reader(options.motors);
   std::set<std::string> publishers;
   bag.forEachMessage({images.name, torques.name}, [&](const BagMessage& message) {

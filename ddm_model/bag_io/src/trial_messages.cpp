@@ -52,10 +52,8 @@ void TrialMessages::pair(double dt) {
 }
 
 Grey TrialMessages::decode(const sensor_msgs::Image& image, const std::string& what) const {
-  const auto size = static_cast<std::uint32_t>(image_size_);
-  const bool done = image.width == size && image.height == size;  // its crop, too
   try {
-    return decodeImage(image, image_size_, done ? ImageCrop() : crop_);
+    return greyOf(image, image_size_, options_);
   } catch (const std::exception& e) {
     throw std::runtime_error(what + ": " + e.what());
   }

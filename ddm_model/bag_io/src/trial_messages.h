@@ -23,9 +23,8 @@ namespace ddm {
 class TrialMessages {
  public:
   /// @param image_size  images are converted to image_size x image_size grey values
-  /// @param crop        what of a larger or smaller image counts
-  explicit TrialMessages(int image_size, const ImageCrop& crop = ImageCrop())
-      : image_size_(image_size), crop_(crop) {}
+  TrialMessages(int image_size, const BagOptions& options)
+      : image_size_(image_size), options_(options) {}
 
   /// First round.
   void takeImageTime(const ros::Time& time);
@@ -45,7 +44,7 @@ class TrialMessages {
   Grey decode(const sensor_msgs::Image& image, const std::string& what) const;
 
   int image_size_;
-  ImageCrop crop_;
+  BagOptions options_;
   std::set<ros::Time> times_;         // of all images
   std::vector<TimedTorque> torques_;  // all
   Pairs pairs_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <ddm_model/data_set.h>
+#include <sensor_msgs/Image.h>
 
 #include <istream>
 #include <string>
@@ -37,6 +38,11 @@ struct BagOptions {
   /// Everything wrong with these values, in words a user can act on. Empty means valid.
   std::vector<std::string> problems() const;
 };
+
+/// An image of a bag, or a picture that goes with bags, as training sees it: cropped and converted,
+/// but one of image_size is not cropped.
+/// @throws std::invalid_argument see decodeImage()
+Grey greyOf(const sensor_msgs::Image& image, int image_size, const BagOptions& options);
 
 /// A bag and what was found in it.
 struct BagContent {
