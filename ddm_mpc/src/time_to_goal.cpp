@@ -97,7 +97,7 @@ TimeToGoal::TimeToGoal(const Ddm& model, const Eigen::VectorXd& max_torque) {
     Eigen::MatrixXd path(dim, kHoldSteps);
     for (Eigen::Index landmark = 0; landmark < M; ++landmark) {
       for (int step = 0; step < kHoldSteps; ++step) path.col(step) = steps[step].col(landmark);
-      outcomes_[static_cast<size_t>(landmark)].push_back(outcomeOf(path, Z.col(landmark)));
+      outcomes_[static_cast<size_t>(landmark)].push_back(outcomeOf(path));
     }
   }
 }
@@ -115,11 +115,10 @@ Eigen::ArrayXd TimeToGoal::kernel(const Eigen::VectorXd& point) const {
   return (squared * (-0.5 / (h_ * h_))).exp();
 }
 
-TimeToGoal::Outcome TimeToGoal::outcomeOf(const Eigen::MatrixXd& path,
-                                          const Eigen::VectorXd& start) const {
+TimeToGoal::Outcome TimeToGoal::outcomeOf(const Eigen::MatrixXd& path) const {
   Outcome outcome{path, {}, {}};
-  const Eigen::VectorXd before = kHoldSteps > 1 ? path.col(kHoldSteps - 2) : start;
-  const Eigen::ArrayXd weights = kernel(pointOf(path.col(kHoldSteps - 1), before));
+  const Eigen::ArrayXd weights =
+      kernel(pointOf(path.col(kHoldSteps - 1), path.col(kHoldSteps - 2)));
   double sum = kUnknown;
   for (Eigen::Index j = 0; j < weights.size(); ++j) {
     if (!(weights[j] > kSmallestWeight)) continue;

@@ -70,7 +70,7 @@ class TimeToGoal {
   Eigen::VectorXd pointOf(const Eigen::Ref<const Eigen::VectorXd>& z,
                           const Eigen::Ref<const Eigen::VectorXd>& before) const;
   Eigen::ArrayXd kernel(const Eigen::VectorXd& point) const;
-  Outcome outcomeOf(const Eigen::MatrixXd& path, const Eigen::VectorXd& start) const;
+  Outcome outcomeOf(const Eigen::MatrixXd& path) const;
   double unknownValue() const;
   void iterate(const std::vector<std::vector<double>>& costs);
 

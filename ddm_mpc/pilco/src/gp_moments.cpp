@@ -131,7 +131,6 @@ GpMoments::Pair GpMoments::pairTerms(int a, int b, const Eigen::MatrixXd& s) con
 ///
 /// False if R has no positive eigenvalues.
 bool GpMoments::predictPair(int a, int b, const Gaussian& input, Moments* output, Tape* tape) {
-  const int n = model_.numPoints();
   const Pair pair = pairTerms(a, b, input.covariance);
   if (!pair.valid) return false;
 
@@ -143,17 +142,13 @@ bool GpMoments::predictPair(int a, int b, const Gaussian& input, Moments* output
   matrix_.v.noalias() = pair.inner * scaled_b_.transpose();
   matrix_.f = (log_signal_variance_[a] - 0.5 * pair.log_det_R) + 0.5 * quadratic(matrix_.u).array();
   matrix_.g = log_signal_variance_[b] + 0.5 * quadratic(scaled_b_).array();
-  matrix_.lower_triangle = a == b;
   if (a == b) {
-    matrix_.weights = weights_[a].data();
-    matrix_.weight_stride = weights_[a].rows();
-    matrix_.column_weights = Eigen::VectorXd::Ones(n);
+    matrix_.column_weights = Eigen::VectorXd::Ones(model_.numPoints());
+    exponentialSums(matrix_, weights_[a], &sums_);
   } else {
-    matrix_.weights = model_.beta.col(a).data();
-    matrix_.weight_stride = 0;
     matrix_.column_weights = model_.beta.col(b);
+    exponentialSums(matrix_, model_.beta.col(a), &sums_);
   }
-  exponentialSums(matrix_, &sums_);
 
   const double factor = a == b ? 2.0 : 1.0;
   const double total = factor * sums_.columns.sum();
