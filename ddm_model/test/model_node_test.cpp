@@ -3,6 +3,7 @@
 #include <actionlib/client/simple_action_client.h>
 #include <ddm_msgs/Model.h>
 #include <ddm_msgs/TrainAction.h>
+#include <ddm_msgs/testing/node_main.h>
 #include <ddm_msgs/topics.h>
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <gtest/gtest.h>
@@ -199,10 +200,3 @@ TEST_F(ModelNodeTest, RefusesToStartWithParametersThatAreWrong) {
 
 }  // namespace
 }  // namespace ddm
-
-int main(int argc, char** argv) {
-  ::testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "model_node_test");
-  const ros::NodeHandle nh;  // keeps the node alive between the tests
-  return RUN_ALL_TESTS();
-}

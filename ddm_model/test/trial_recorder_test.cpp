@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/StartRecording.h>
 #include <ddm_msgs/StopRecording.h>
+#include <ddm_msgs/testing/node_main.h>
 #include <ddm_msgs/topics.h>
 #include <gtest/gtest.h>
 #include <ros/ros.h>
@@ -315,10 +316,3 @@ TEST_F(TrialRecorderTest, RefusesToStartWithParametersThatAreWrong) {
 
 }  // namespace
 }  // namespace ddm
-
-int main(int argc, char** argv) {
-  ::testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "trial_recorder_test");
-  const ros::NodeHandle nh;  // keeps the node alive between the tests
-  return RUN_ALL_TESTS();
-}

@@ -1,6 +1,7 @@
 // Tests of mpc_node while it runs: dynamic_reconfigure, plan_scalars, /diagnostics.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_mpc/MpcConfig.h>
+#include <ddm_msgs/testing/node_main.h>
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <dynamic_reconfigure/Reconfigure.h>
 #include <gtest/gtest.h>
@@ -325,10 +326,3 @@ TEST(MpcConfig, HasTheDefaultsAndTheRangesOfTheOptions) {
 
 }  // namespace
 }  // namespace ddm
-
-int main(int argc, char** argv) {
-  ros::init(argc, argv, "mpc_node_live_test");
-  ros::NodeHandle nh;  // keeps the node alive for all tests
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

@@ -1,5 +1,6 @@
 // Tests of how mpc_node stops two motors, and that it does so while a plan is computed.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_msgs/testing/node_main.h>
 #include <ddm_node/waiting.h>
 #include <dynamic_reconfigure/Reconfigure.h>
 #include <gtest/gtest.h>
@@ -206,10 +207,3 @@ TEST_F(InterruptedNode, LeavesZeroTorqueWhereTheMasterEndsItToo) {
 
 }  // namespace
 }  // namespace ddm
-
-int main(int argc, char** argv) {
-  ros::init(argc, argv, "mpc_node_stop_test");
-  ros::NodeHandle nh;  // keeps the node alive for all tests
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

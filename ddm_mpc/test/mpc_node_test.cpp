@@ -1,5 +1,6 @@
 // Tests of mpc_node from outside: trials, models, and what it does when something is missing.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_msgs/testing/node_main.h>
 #include <gtest/gtest.h>
 #include <sensor_msgs/image_encodings.h>
 #include <std_msgs/Float64.h>
@@ -258,10 +259,3 @@ TEST_F(MpcNodeTest, RefusesADamagedModelAndKeepsTheLastOne) {
 
 }  // namespace
 }  // namespace ddm
-
-int main(int argc, char** argv) {
-  ros::init(argc, argv, "mpc_node_test");
-  ros::NodeHandle nh;  // keeps the node alive for all tests
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

@@ -1,5 +1,6 @@
 // Tests of mpc_node and view_node with bad parameters: they end and say what is wrong.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_msgs/testing/node_main.h>
 #include <ddm_msgs/testing/refused_params.h>
 #include <gtest/gtest.h>
 #include <ros/ros.h>
@@ -38,10 +39,3 @@ TEST_F(NodeParams, ViewNodeRefusesAMisspeltKey) {
 
 }  // namespace
 }  // namespace ddm
-
-int main(int argc, char** argv) {
-  ros::init(argc, argv, "refused_params_test");
-  ros::NodeHandle nh;  // keeps the node alive for all tests
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

@@ -1,6 +1,7 @@
 // Tests of view_node from outside: both pictures, pixel by pixel, and bad messages.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/Plan.h>
+#include <ddm_msgs/testing/node_main.h>
 #include <gtest/gtest.h>
 #include <sensor_msgs/image_encodings.h>
 #include <visualization_msgs/MarkerArray.h>
@@ -241,10 +242,3 @@ TEST_F(ViewNodeTest, DropsBadMessagesWithAWarningAndGoesOn) {
 
 }  // namespace
 }  // namespace ddm
-
-int main(int argc, char** argv) {
-  ros::init(argc, argv, "view_node_test");
-  ros::NodeHandle nh;  // keeps the node alive for all tests
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

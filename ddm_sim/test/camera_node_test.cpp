@@ -1,5 +1,6 @@
 // Tests of the camera's nuisances over the wire, in lock-step and in real time.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_msgs/testing/node_main.h>
 #include <gtest/gtest.h>
 #include <ros/ros.h>
 
@@ -115,9 +116,3 @@ TEST_F(RealtimeCamera, ShowsTheFramesOfTheLibraryAndNothingWhereOneIsLost) {
 
 }  // namespace
 }  // namespace ddm
-
-int main(int argc, char** argv) {
-  ros::init(argc, argv, "camera_node_test");
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

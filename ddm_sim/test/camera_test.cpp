@@ -41,16 +41,6 @@ Bytes photographOf(const CameraOptions& options, const Picture& picture) {
   return photographOf(&camera, picture);
 }
 
-CameraOptions allNuisances() {
-  CameraOptions options;
-  options.noise_std = 0.05;
-  options.brightness_drift = 0.2;
-  options.clutter = 0.6;
-  options.delay = 1;
-  options.drop_rate = 0.3;
-  return options;
-}
-
 /// Photographs of a pendulum that swings, one for each step, empty where the frame is lost.
 std::vector<Bytes> film(Camera* camera, int num_steps) {
   Pendulum plant{PendulumOptions()};
@@ -134,7 +124,7 @@ TEST(Camera, KeepsTheShapeAndTheColoursOfAPictureAndForgetsItsCover) {
   const Picture picture = colourful();
   CameraOptions clutter;
   clutter.clutter = 0.5;
-  for (const CameraOptions& options : {CameraOptions(), clutter, allNuisances()}) {
+  for (const CameraOptions& options : {CameraOptions(), clutter, testing::allNuisances()}) {
     Camera camera(options, kDt);
     for (const Picture& out : {*camera.photograph(picture), camera.photographGoal(picture)}) {
       EXPECT_EQ(out.width, 40);
@@ -336,7 +326,7 @@ TEST(Camera, ShowsTheStateOfSoManyFramesAgoAndAtFirstThatOfTheFirstFrame) {
 }
 
 TEST(Camera, HoldsBackTheVeryPicturesThatItWouldHaveShownAtOnce) {
-  CameraOptions options = allNuisances();
+  CameraOptions options = testing::allNuisances();
   options.brightness_period = 3.0;
   options.delay = 0;
   Camera punctual(options, kDt);
@@ -392,7 +382,7 @@ TEST(Camera, NoiseChangesNeitherWhichFramesAreLostNorTheBrightness) {
 }
 
 TEST(Camera, GivesTheSamePhotographsInTheSameRunAndOthersInAnother) {
-  Camera camera(allNuisances(), kDt);
+  Camera camera(testing::allNuisances(), kDt);
   std::set<std::vector<Bytes>> films;
   std::set<std::vector<bool>> losses;
   for (const bool evaluation : {false, true}) {
@@ -400,7 +390,7 @@ TEST(Camera, GivesTheSamePhotographsInTheSameRunAndOthersInAnother) {
       for (const std::uint64_t seed : {0ULL, 1ULL, 1ULL << 32}) {
         camera.begin(seed, trial, evaluation);
         const std::vector<Bytes> first = film(&camera, 40);
-        Camera other(allNuisances(), kDt);
+        Camera other(testing::allNuisances(), kDt);
         other.begin(seed, trial, evaluation);
         EXPECT_EQ(film(&other, 40), first);
         films.insert(first);
@@ -413,14 +403,14 @@ TEST(Camera, GivesTheSamePhotographsInTheSameRunAndOthersInAnother) {
 }
 
 TEST(Camera, IsReadyForItsFirstRunWithoutABeginning) {
-  Camera at_once(allNuisances(), kDt);
-  Camera begun(allNuisances(), kDt);
+  Camera at_once(testing::allNuisances(), kDt);
+  Camera begun(testing::allNuisances(), kDt);
   begun.begin(0, 0, false);
   EXPECT_EQ(film(&at_once, 40), film(&begun, 40));
 }
 
 TEST(Camera, TakesTheSameNoisyGoalImageWheneverItIsAsked) {
-  CameraOptions options = allNuisances();
+  CameraOptions options = testing::allNuisances();
   Camera camera(options, kDt);
   const Picture rod = hangingRod();
   const Bytes goal = camera.photographGoal(rod).bytes;
@@ -438,7 +428,7 @@ TEST(Camera, TakesTheSameNoisyGoalImageWheneverItIsAsked) {
 }
 
 TEST(Camera, TakingTheGoalImageChangesNoPhotograph) {
-  Camera camera(allNuisances(), kDt);
+  Camera camera(testing::allNuisances(), kDt);
   const std::vector<Bytes> expected = film(&camera, 20);
   camera.begin(0, 0, false);
   camera.photographGoal(hangingRod());

@@ -1,5 +1,6 @@
 // Tests of sim_node in lock-step, over the wire.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_msgs/testing/node_main.h>
 #include <gtest/gtest.h>
 #include <ros/ros.h>
 
@@ -244,9 +245,3 @@ TEST_F(Lockstep, EndsATrialWhoseStateLeavesTheRangeOfDouble) {
 
 }  // namespace
 }  // namespace ddm
-
-int main(int argc, char** argv) {
-  ros::init(argc, argv, "lockstep_test");
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

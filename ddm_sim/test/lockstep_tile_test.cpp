@@ -1,5 +1,6 @@
 // Tests of sim_node with the moving tile: two torques, two joints, no rates.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_msgs/testing/node_main.h>
 #include <gtest/gtest.h>
 #include <ros/ros.h>
 
@@ -84,9 +85,3 @@ TEST_F(LockstepTile, RefusesATorqueOfOneNumberAndSaysWhichItWants) {
 
 }  // namespace
 }  // namespace ddm
-
-int main(int argc, char** argv) {
-  ros::init(argc, argv, "lockstep_tile_test");
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

@@ -1,6 +1,7 @@
 // Tests of sim_node in real time, over the wire.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <actionlib_msgs/GoalID.h>
+#include <ddm_msgs/testing/node_main.h>
 #include <gtest/gtest.h>
 #include <ros/ros.h>
 
@@ -208,9 +209,3 @@ TEST_F(Realtime, PublishesNoClock) {
 
 }  // namespace
 }  // namespace ddm
-
-int main(int argc, char** argv) {
-  ros::init(argc, argv, "realtime_test");
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

@@ -23,16 +23,6 @@ using testing::ToyPlant;
 constexpr std::uint64_t kSeed = 7;
 constexpr std::uint32_t kTrial = 3;
 
-CameraOptions allFaults() {
-  CameraOptions options;
-  options.noise_std = 0.05;
-  options.brightness_drift = 0.2;
-  options.clutter = 0.6;
-  options.delay = 1;
-  options.drop_rate = 0.3;
-  return options;
-}
-
 PendulumOptions quickPendulum() {
   PendulumOptions options;
   options.dt = 0.1;
@@ -46,7 +36,7 @@ Eigen::VectorXd torqueOf(double value) { return Eigen::VectorXd::Constant(1, val
 /// Plant and camera, moved by hand.
 struct ByHand {
   Pendulum plant{quickPendulum()};
-  Camera camera{allFaults(), quickPendulum().dt};
+  Camera camera{testing::allNuisances(), quickPendulum().dt};
 
   std::optional<Picture> begin() {
     std::mt19937_64 starts = startStream(kSeed, kTrial, true);
@@ -62,7 +52,7 @@ struct ByHand {
 };
 
 TEST(Rig, ShowsInEachStepWhatPlantAndCameraShowByHand) {
-  Rig rig(quickPlant(), allFaults());
+  Rig rig(quickPlant(), testing::allNuisances());
   ByHand by_hand;
   EXPECT_EQ(rig.reset(kSeed, kTrial, true).bytes, by_hand.begin()->bytes);
   int num_lost = 0;
@@ -83,7 +73,7 @@ TEST(Rig, ShowsInEachStepWhatPlantAndCameraShowByHand) {
 }
 
 TEST(Rig, GoesOnUnderTheSameTorqueUntilAFrameIsSeenAndCountsTheLostOnes) {
-  Rig rig(quickPlant(), allFaults());
+  Rig rig(quickPlant(), testing::allNuisances());
   ByHand by_hand;
   rig.reset(kSeed, kTrial, true);
   by_hand.begin();
@@ -122,7 +112,7 @@ TEST(Rig, BeginsARunAtTheDrawnStartWithoutTorqueAtTimeZero) {
 }
 
 TEST(Rig, BeginsARunAtAGivenStartDigitByDigitWithTheFramesOfThatRun) {
-  Rig rig(quickPlant(), allFaults());
+  Rig rig(quickPlant(), testing::allNuisances());
   const Eigen::Vector2d start(0.1 + 0.2, -1e-17);
   const Picture first = rig.reset(kSeed, kTrial, true, start);
   EXPECT_EQ(rig.plant().state(), start);
@@ -135,8 +125,8 @@ TEST(Rig, BeginsARunAtAGivenStartDigitByDigitWithTheFramesOfThatRun) {
 
 TEST(Rig, ChangesNothingWhereAStartIsRefused) {
   ToyPlant::Traits traits = testing::colourfulToy();
-  Rig rig(std::make_unique<ToyPlant>(traits), allFaults());
-  Rig undisturbed(std::make_unique<ToyPlant>(traits), allFaults());
+  Rig rig(std::make_unique<ToyPlant>(traits), testing::allNuisances());
+  Rig undisturbed(std::make_unique<ToyPlant>(traits), testing::allNuisances());
   for (Rig* each : {&rig, &undisturbed}) {
     each->reset(kSeed, kTrial, true);
     each->stepUntilSeen(torqueOf(2.0));
@@ -158,8 +148,8 @@ TEST(Rig, ChangesNothingWhereAStartIsRefused) {
 }
 
 TEST(Rig, ChangesNothingWhereATorqueIsRefused) {
-  Rig rig(quickPlant(), allFaults());
-  Rig undisturbed(quickPlant(), allFaults());
+  Rig rig(quickPlant(), testing::allNuisances());
+  Rig undisturbed(quickPlant(), testing::allNuisances());
   for (Rig* each : {&rig, &undisturbed}) {
     each->reset(kSeed, kTrial, true);
     each->step(torqueOf(2.0));
@@ -214,8 +204,8 @@ TEST(Rig, DrawsAGoalForEachRunAndShowsItOnTheGoalImage) {
 }
 
 TEST(Rig, TakesTheGoalImageWithTheFaultsOfTheCameraButChangesNoPhotograph) {
-  Rig rig(quickPlant(), allFaults());
-  Rig undisturbed(quickPlant(), allFaults());
+  Rig rig(quickPlant(), testing::allNuisances());
+  Rig undisturbed(quickPlant(), testing::allNuisances());
   ByHand by_hand;
   rig.reset(kSeed, kTrial, true);
   undisturbed.reset(kSeed, kTrial, true);

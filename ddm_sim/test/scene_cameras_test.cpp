@@ -1,5 +1,6 @@
 // Tests of what sim_node publishes of cameras: the view for people, camera_info and tf.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_msgs/testing/node_main.h>
 #include <gtest/gtest.h>
 #include <ros/master.h>
 #include <ros/ros.h>
@@ -152,9 +153,3 @@ TEST_F(SceneCameras, InventNoLensForAPlantWithoutOneAndShowPeopleWhatItsCameraSh
 
 }  // namespace
 }  // namespace ddm
-
-int main(int argc, char** argv) {
-  ros::init(argc, argv, "scene_cameras_test");
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

@@ -1,5 +1,6 @@
 // Tests of sim_node with bad parameters: it says what is wrong and ends with an error.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_msgs/testing/node_main.h>
 #include <ddm_msgs/testing/refused_params.h>
 #include <gtest/gtest.h>
 #include <ros/ros.h>
@@ -55,10 +56,3 @@ TEST_F(SimNodeParams, RefusesAValueOfAnotherType) {
 
 }  // namespace
 }  // namespace ddm
-
-int main(int argc, char** argv) {
-  ros::init(argc, argv, "sim_node_params_test");
-  ros::NodeHandle nh;  // keeps the node alive for all tests
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

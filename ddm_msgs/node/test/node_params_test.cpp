@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_node/node_params.h"
 
+#include <ddm_msgs/testing/node_main.h>
 #include <gtest/gtest.h>
 #include <ros/init.h>
 
@@ -127,10 +128,3 @@ TEST(NodeParams, RefusesAValueInPlaceOfParameters) {
 
 }  // namespace
 }  // namespace ddm
-
-int main(int argc, char** argv) {
-  ::testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "node_params_test");
-  const ros::NodeHandle nh;  // keeps the node alive between tests
-  return RUN_ALL_TESTS();
-}

@@ -108,12 +108,6 @@ int countOf(const mjModel& model, mjtObj type) {
       return model.njnt;
     case mjOBJ_SITE:
       return model.nsite;
-    case mjOBJ_CAMERA:
-      return model.ncam;
-    case mjOBJ_ACTUATOR:
-      return model.nu;
-    case mjOBJ_GEOM:
-      return model.ngeom;
     case mjOBJ_BODY:
       return model.nbody;
     default:
