@@ -96,7 +96,13 @@ std::string differencesOf(const YAML::Node& there, const YAML::Node& here, bool 
   return differences;
 }
 
-std::string codeVersion() { return DDM_CODE_VERSION; }
+std::string codeVersion() {
+#if defined(__x86_64__) && !defined(__AVX2__)
+  return DDM_CODE_VERSION " without AVX2";  // it rounds differently
+#else
+  return DDM_CODE_VERSION;
+#endif
+}
 
 ResultsFolder::ResultsFolder(std::string path, YAML::Node configuration)
     : path_(std::move(path)), configuration_(std::move(configuration)) {

@@ -16,7 +16,7 @@ namespace ddm {
 /// @param here   likewise
 std::string differencesOf(const YAML::Node& there, const YAML::Node& here, bool trial_finished);
 
-/// Version of the package and commit that are running, "0.1.0 (1a2b3c4)".
+/// Version of the package, commit, and instruction set if it is not the usual one: "1.0.0 (1a2b3c4)".
 std::string codeVersion();
 
 /// Holds config.yaml, the effective configuration and the version of the code that began, and in
