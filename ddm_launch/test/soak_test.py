@@ -3,12 +3,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import sys
+from unittest import mock
 
 import rosbag
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import rooms  # noqa: E402, F401
+from ddm_launch.command import Failure  # noqa: E402
+from ddm_qa import soak  # noqa: E402
 from ddm_qa.soak_targets import count_frames  # noqa: E402
 from processes import call, find_program  # noqa: E402
 from run_files import read_bytes, read_rows  # noqa: E402
@@ -33,6 +36,14 @@ class SoakTest(ScratchCase):
         self.assertLessEqual({(node, "5") for node in NODES}, samples)  # of short trials some may be missed, not the last
         self.assertEqual(read_bytes(self.out, "soak.png")[:4], b"\x89PNG")
         self.lose_a_frame()
+
+    def test_a_time_too_short_for_two_trials_is_named(self):
+        run = soak.SoakRun(soak.Soak("real_time", "", [], None, 1.0), self.out)
+        run.samples = [soak.Sample("real_time", "master", 0, 1.0, 1000, 10)]
+        with mock.patch.object(soak, "start_roslaunch", lambda *_, **__: mock.Mock(output="")), \
+                mock.patch.object(run, "follow"), self.assertRaises(Failure) as caught:
+            run.make(print)
+        self.assertIn("--minutes", str(caught.exception))
 
     def lose_a_frame(self):
         """In a bag of the run, the ninth image."""

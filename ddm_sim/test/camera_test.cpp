@@ -12,11 +12,13 @@
 #include "ddm_sim/angles.h"
 #include "ddm_sim/moving_tile.h"
 #include "ddm_sim/pendulum.h"
+#include "ddm_sim/testing/all_nuisances.h"
 #include "ddm_sim/testing/toy_plant.h"
 
 namespace ddm {
 namespace {
 
+using testing::allNuisances;
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr double kDt = 0.2;  // [s]
@@ -124,7 +126,7 @@ TEST(Camera, KeepsTheShapeAndTheColoursOfAPictureAndForgetsItsCover) {
   const Picture picture = colourful();
   CameraOptions clutter;
   clutter.clutter = 0.5;
-  for (const CameraOptions& options : {CameraOptions(), clutter, testing::allNuisances()}) {
+  for (const CameraOptions& options : {CameraOptions(), clutter, allNuisances()}) {
     Camera camera(options, kDt);
     for (const Picture& out : {*camera.photograph(picture), camera.photographGoal(picture)}) {
       EXPECT_EQ(out.width, 40);
@@ -326,7 +328,7 @@ TEST(Camera, ShowsTheStateOfSoManyFramesAgoAndAtFirstThatOfTheFirstFrame) {
 }
 
 TEST(Camera, HoldsBackTheVeryPicturesThatItWouldHaveShownAtOnce) {
-  CameraOptions options = testing::allNuisances();
+  CameraOptions options = allNuisances();
   options.brightness_period = 3.0;
   options.delay = 0;
   Camera punctual(options, kDt);
@@ -382,7 +384,7 @@ TEST(Camera, NoiseChangesNeitherWhichFramesAreLostNorTheBrightness) {
 }
 
 TEST(Camera, GivesTheSamePhotographsInTheSameRunAndOthersInAnother) {
-  Camera camera(testing::allNuisances(), kDt);
+  Camera camera(allNuisances(), kDt);
   std::set<std::vector<Bytes>> films;
   std::set<std::vector<bool>> losses;
   for (const bool evaluation : {false, true}) {
@@ -390,7 +392,7 @@ TEST(Camera, GivesTheSamePhotographsInTheSameRunAndOthersInAnother) {
       for (const std::uint64_t seed : {0ULL, 1ULL, 1ULL << 32}) {
         camera.begin(seed, trial, evaluation);
         const std::vector<Bytes> first = film(&camera, 40);
-        Camera other(testing::allNuisances(), kDt);
+        Camera other(allNuisances(), kDt);
         other.begin(seed, trial, evaluation);
         EXPECT_EQ(film(&other, 40), first);
         films.insert(first);
@@ -403,14 +405,14 @@ TEST(Camera, GivesTheSamePhotographsInTheSameRunAndOthersInAnother) {
 }
 
 TEST(Camera, IsReadyForItsFirstRunWithoutABeginning) {
-  Camera at_once(testing::allNuisances(), kDt);
-  Camera begun(testing::allNuisances(), kDt);
+  Camera at_once(allNuisances(), kDt);
+  Camera begun(allNuisances(), kDt);
   begun.begin(0, 0, false);
   EXPECT_EQ(film(&at_once, 40), film(&begun, 40));
 }
 
 TEST(Camera, TakesTheSameNoisyGoalImageWheneverItIsAsked) {
-  CameraOptions options = testing::allNuisances();
+  CameraOptions options = allNuisances();
   Camera camera(options, kDt);
   const Picture rod = hangingRod();
   const Bytes goal = camera.photographGoal(rod).bytes;
@@ -428,7 +430,7 @@ TEST(Camera, TakesTheSameNoisyGoalImageWheneverItIsAsked) {
 }
 
 TEST(Camera, TakingTheGoalImageChangesNoPhotograph) {
-  Camera camera(testing::allNuisances(), kDt);
+  Camera camera(allNuisances(), kDt);
   const std::vector<Bytes> expected = film(&camera, 20);
   camera.begin(0, 0, false);
   camera.photographGoal(hangingRod());

@@ -13,11 +13,13 @@
 #include <vector>
 
 #include "ddm_sim/pendulum.h"
+#include "ddm_sim/testing/all_nuisances.h"
 #include "ddm_sim/testing/toy_plant.h"
 
 namespace ddm {
 namespace {
 
+using testing::allNuisances;
 using testing::ToyPlant;
 
 constexpr std::uint64_t kSeed = 7;
@@ -36,7 +38,7 @@ Eigen::VectorXd torqueOf(double value) { return Eigen::VectorXd::Constant(1, val
 /// Plant and camera, moved by hand.
 struct ByHand {
   Pendulum plant{quickPendulum()};
-  Camera camera{testing::allNuisances(), quickPendulum().dt};
+  Camera camera{allNuisances(), quickPendulum().dt};
 
   std::optional<Picture> begin() {
     std::mt19937_64 starts = startStream(kSeed, kTrial, true);
@@ -52,7 +54,7 @@ struct ByHand {
 };
 
 TEST(Rig, ShowsInEachStepWhatPlantAndCameraShowByHand) {
-  Rig rig(quickPlant(), testing::allNuisances());
+  Rig rig(quickPlant(), allNuisances());
   ByHand by_hand;
   EXPECT_EQ(rig.reset(kSeed, kTrial, true).bytes, by_hand.begin()->bytes);
   int num_lost = 0;
@@ -73,7 +75,7 @@ TEST(Rig, ShowsInEachStepWhatPlantAndCameraShowByHand) {
 }
 
 TEST(Rig, GoesOnUnderTheSameTorqueUntilAFrameIsSeenAndCountsTheLostOnes) {
-  Rig rig(quickPlant(), testing::allNuisances());
+  Rig rig(quickPlant(), allNuisances());
   ByHand by_hand;
   rig.reset(kSeed, kTrial, true);
   by_hand.begin();
@@ -112,7 +114,7 @@ TEST(Rig, BeginsARunAtTheDrawnStartWithoutTorqueAtTimeZero) {
 }
 
 TEST(Rig, BeginsARunAtAGivenStartDigitByDigitWithTheFramesOfThatRun) {
-  Rig rig(quickPlant(), testing::allNuisances());
+  Rig rig(quickPlant(), allNuisances());
   const Eigen::Vector2d start(0.1 + 0.2, -1e-17);
   const Picture first = rig.reset(kSeed, kTrial, true, start);
   EXPECT_EQ(rig.plant().state(), start);
@@ -125,8 +127,8 @@ TEST(Rig, BeginsARunAtAGivenStartDigitByDigitWithTheFramesOfThatRun) {
 
 TEST(Rig, ChangesNothingWhereAStartIsRefused) {
   ToyPlant::Traits traits = testing::colourfulToy();
-  Rig rig(std::make_unique<ToyPlant>(traits), testing::allNuisances());
-  Rig undisturbed(std::make_unique<ToyPlant>(traits), testing::allNuisances());
+  Rig rig(std::make_unique<ToyPlant>(traits), allNuisances());
+  Rig undisturbed(std::make_unique<ToyPlant>(traits), allNuisances());
   for (Rig* each : {&rig, &undisturbed}) {
     each->reset(kSeed, kTrial, true);
     each->stepUntilSeen(torqueOf(2.0));
@@ -148,8 +150,8 @@ TEST(Rig, ChangesNothingWhereAStartIsRefused) {
 }
 
 TEST(Rig, ChangesNothingWhereATorqueIsRefused) {
-  Rig rig(quickPlant(), testing::allNuisances());
-  Rig undisturbed(quickPlant(), testing::allNuisances());
+  Rig rig(quickPlant(), allNuisances());
+  Rig undisturbed(quickPlant(), allNuisances());
   for (Rig* each : {&rig, &undisturbed}) {
     each->reset(kSeed, kTrial, true);
     each->step(torqueOf(2.0));
@@ -204,8 +206,8 @@ TEST(Rig, DrawsAGoalForEachRunAndShowsItOnTheGoalImage) {
 }
 
 TEST(Rig, TakesTheGoalImageWithTheFaultsOfTheCameraButChangesNoPhotograph) {
-  Rig rig(quickPlant(), testing::allNuisances());
-  Rig undisturbed(quickPlant(), testing::allNuisances());
+  Rig rig(quickPlant(), allNuisances());
+  Rig undisturbed(quickPlant(), allNuisances());
   ByHand by_hand;
   rig.reset(kSeed, kTrial, true);
   undisturbed.reset(kSeed, kTrial, true);

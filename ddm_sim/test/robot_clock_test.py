@@ -39,7 +39,8 @@ class RobotClockTest(RobotCase):
             self.robot.camera.showing = True
             self.robot.waitForEffort(2.0)
         print("from the last good image to zero [s]: %s" % " ".join("%.3f" % delay for delay in sorted(delays)))
-        self.assertLessEqual(sorted(delays)[-2], LIMIT_S)  # once a busy machine may hold us up
+        self.assertLessEqual(sorted(delays)[-2], LIMIT_S)
+        self.assertLessEqual(max(delays), LIMIT_S + 0.5)  # a busy machine may hold this test up once
 
     def refused(self):
         """(level, number of images refused) by the last diagnosis."""

@@ -166,7 +166,7 @@ class Robot:
 
     def answer(self, *torque, delay_s=0.0):
         """Answers the next image. Returns its stamp."""
-        now = rospy.Time.now()  # one taken before may be on its way, and the motors enabled after it
+        now = rospy.Time.now()  # an image from before the motors were enabled may still arrive
         image = wait_until(lambda: next((each for each in self.images.messages if each.header.stamp > now), None), "an image")
         time.sleep(delay_s)
         self.publishTorque(image, *torque)

@@ -35,7 +35,7 @@ def side_by_side(work, items, jobs, stop, unit):
 
 
 def free_port():
-    """One for a master, which takes it seconds later, when nodes have taken some, too."""
+    """A port for a master. Nodes that start before the master do not take it."""
     while True:
         port = random.SystemRandom().choice(PORTS)
         with socket.socket() as sock:

@@ -82,7 +82,7 @@ class SoakRun:
         if self.soak.seconds is None and not is_finished(self.runs):
             raise self.failure(launch, "the experiment did not finish")
         if not self.samples or self.samples[-1].trial == 0:
-            raise self.failure(launch, "at least two trials must end in its time: make that longer")
+            raise self.failure(launch, "fewer than two trials ended: raise --minutes or --trials")
         return self.samples, count_frames(self.soak.name, self.runs, self.samples[-1].trial + 1)
 
     def failure(self, launch, what):

@@ -14,7 +14,6 @@
 #include <utility>
 #include <vector>
 
-#include "ddm_sim/camera_options.h"
 #include "ddm_sim/picture.h"
 #include "ddm_sim/plant.h"
 #include "ddm_sim/plant_factory.h"
@@ -27,16 +26,6 @@ namespace testing {
 inline Picture plainPicture(int size, std::uint8_t grey) {
   const auto num_pixels = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
   return brightOnBlack(size, std::vector<std::uint8_t>(num_pixels, grey));
-}
-
-inline CameraOptions allNuisances() {
-  CameraOptions options;
-  options.noise_std = 0.05;
-  options.brightness_drift = 0.2;
-  options.clutter = 0.6;
-  options.delay = 1;
-  options.drop_rate = 0.3;
-  return options;
 }
 
 /// A cart on a rail, one motor, to be brought to 1 m.
