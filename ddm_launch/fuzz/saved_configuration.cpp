@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/testing/fuzzing.h>
 #include <ddm_params/config_blocks.h>
+#include <ddm_params/renamed_keys.h>
 
 #include "results_folder.h"
 

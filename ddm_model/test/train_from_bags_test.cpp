@@ -8,8 +8,8 @@
 #include "ddm_files/plain_file.h"
 #include "ddm_model/model_file.h"
 #include "ddm_msgs/testing/expect_error.h"
+#include "ddm_msgs/testing/run_program.h"
 #include "ddm_msgs/testing/temp_folder.h"
-#include "subprocess.h"
 #include "toy_bags.h"
 
 namespace ddm {

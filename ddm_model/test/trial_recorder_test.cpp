@@ -11,8 +11,9 @@
 #include <future>
 
 #include "ddm_bag_io/bag_reader.h"
+#include "ddm_msgs/testing/run_program.h"
 #include "ddm_msgs/testing/temp_folder.h"
-#include "subprocess.h"
+
 #include "toy_bags.h"
 
 namespace ddm {

@@ -1,9 +1,10 @@
 // Fuzz target: numbers on the standard input of simulate.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/testing/fuzzing.h>
-#include <ddm_params/number_csv.h>
 
 #include <sstream>
+
+#include "number_csv.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::istringstream text(std::string(reinterpret_cast<const char*>(data), size));

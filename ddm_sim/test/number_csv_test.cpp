@@ -1,6 +1,7 @@
 // Tests of the reader of numbers: what it takes, and what it says of the rest.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_params/number_csv.h>
+#include "number_csv.h"
+
 #include <gtest/gtest.h>
 
 #include <sstream>

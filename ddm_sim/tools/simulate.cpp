@@ -17,11 +17,11 @@
 #include <string>
 #include <vector>
 
-#include "ddm_params/number_csv.h"
 #include "ddm_params/param_reader.h"
 #include "ddm_params/param_value.h"
 #include "ddm_params/tool.h"
 #include "ddm_sim/plant_factory.h"
+#include "number_csv.h"
 
 namespace ddm {
 namespace {
@@ -32,12 +32,14 @@ namespace po = boost::program_options;
 constexpr char kAbout[] =
     "Moves a plant under given torques.\n\n"
     "usage: rosrun ddm_sim simulate --plant NAME [options] < torques.csv > trajectory.csv\n\n"
-    "Input:  a header, then one torque a line, N of them. The header is torque_nm for a pendulum\n"
-    "        [N m] and dx_px,dy_px for a moving tile [pixels]. A torque beyond the plant's\n"
-    "        max_torque saturates, as the motor does.\n"
-    "Output: a header, then N + 1 rows; row 0 is the start. The header is\n"
-    "        step,time_s,angle_rad,rate_rad_per_s for a pendulum, whose angle is not wrapped, and\n"
-    "        step,time_s,x_px,y_px for a moving tile; a plant with a reward also has `reward`, of\n"
+    "Input:  a header, then one torque a line, N of them. The header is `torque` of --describe, "
+    "such\n"
+    "        as torque_nm for a pendulum. A torque beyond the plant's max_torque saturates, as "
+    "the\n"
+    "        motor does.\n"
+    "Output: a header, then N + 1 rows; row 0 is the start. The header is step,time_s and `state` "
+    "of\n"
+    "        --describe; angles are not wrapped. A plant with a reward also has `reward`, of\n"
     "        this state under the torque of the row before (row 0: none). Nothing is written if "
     "any of the "
     "input\n"
@@ -67,7 +69,8 @@ bool parse(int argc, char** argv, Arguments* arguments) {
       "start state, taken exactly: the columns of the output after time_s; without it a pendulum "
       "hangs at rest and a tile is in the middle");
   add("angle", po::value(&arguments->angle)->value_name("RAD"),
-      "pendulum: start angle [rad], taken exactly; 0 hangs, counter-clockwise is positive");
+      "pendulum: start angle [rad], taken exactly; as the plant's file counts it, in `pendulum` 0 "
+      "hangs and counter-clockwise is positive");
   add("rate", po::value(&arguments->rate)->value_name("RAD_PER_S"),
       "pendulum: start rate [rad/s], taken exactly");
   add("target", po::value(&arguments->target)->value_name("X,Y"),

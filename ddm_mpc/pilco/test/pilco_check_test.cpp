@@ -1,16 +1,15 @@
 // Tests of pilco_check: what it accepts, what it finds, what it says.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <sstream>
 #include <string>
 
 #include "ddm_msgs/testing/expect_error.h"
+#include "ddm_msgs/testing/run_program.h"
 #include "ddm_msgs/testing/temp_folder.h"
 
 namespace ddm {
@@ -66,19 +65,10 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return at == std::string::npos ? text : text.replace(at, what.size(), by);
 }
 
-struct Outcome {
-  int exit_code;
-  std::string text;  ///< of both outputs
-};
+using ddm::testing::Outcome;
 
 Outcome run(const std::string& arguments) {
-  const ::ddm::testing::TempFolder folder;
-  const std::string out = folder.file("out");
-  const int status =
-      std::system((std::string(DDM_PILCO_CHECK) + " " + arguments + " > " + out + " 2>&1").c_str());
-  std::ostringstream text;
-  text << std::ifstream(out).rdbuf();
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text.str()};
+  return ddm::testing::run(std::string(DDM_PILCO_CHECK) + " " + arguments + " 2>&1");
 }
 
 Outcome check(const std::string& content) {
@@ -90,17 +80,17 @@ Outcome check(const std::string& content) {
 ::testing::AssertionResult fails(const std::string& content,
                                  const std::vector<std::string>& parts) {
   const Outcome outcome = check(content);
-  if (outcome.exit_code == 1) return ::ddm::testing::names(outcome.text, parts);
-  return ::testing::AssertionFailure() << "exit code " << outcome.exit_code << ": " << outcome.text;
+  if (outcome.exit_code == 1) return ::ddm::testing::names(outcome.out, parts);
+  return ::testing::AssertionFailure() << "exit code " << outcome.exit_code << ": " << outcome.out;
 }
 
 TEST(PilcoCheck, AcceptsWhatClosedFormsSayAndTellsWhichKindsHaveNoCases) {
   const Outcome outcome = check(goodFile());
-  EXPECT_EQ(0, outcome.exit_code) << outcome.text;
-  EXPECT_NE(std::string::npos, outcome.text.find("simulate             2")) << outcome.text;
-  EXPECT_NE(std::string::npos, outcome.text.find("gp_predict: no cases"));
-  EXPECT_EQ(std::string::npos, outcome.text.find("gsin: no cases"));
-  EXPECT_NE(std::string::npos, outcome.text.find("tolerances"));
+  EXPECT_EQ(0, outcome.exit_code) << outcome.out;
+  EXPECT_NE(std::string::npos, outcome.out.find("simulate             2")) << outcome.out;
+  EXPECT_NE(std::string::npos, outcome.out.find("gp_predict: no cases"));
+  EXPECT_EQ(std::string::npos, outcome.out.find("gsin: no cases"));
+  EXPECT_NE(std::string::npos, outcome.out.find("tolerances"));
 }
 
 TEST(PilcoCheck, AcceptsIndentedFiles) {
@@ -162,7 +152,7 @@ TEST(PilcoCheck, FindsAComputedNumberThatIsNotFiniteBesideOnesThatAreRight) {
       R"("e": [1, 1], "M": [0, 0], "V": [[0, 0], [0, )" +
       right + R"(]], "C": [[0, 0], [0, )" + digits(std::exp(-0.2)) + "]]}]}";
   EXPECT_TRUE(fails(file, {"gsin: case a, field V, entry (1, 1): ", "has 0, "}));
-  EXPECT_EQ(std::string::npos, check(file).text.find("entry (2, 2)"));
+  EXPECT_EQ(std::string::npos, check(file).out.find("entry (2, 2)"));
 }
 
 TEST(PilcoCheck, ComparesTheOtherCasesOfAKindWithAnUnreadableOne) {
@@ -178,7 +168,7 @@ TEST(PilcoCheck, FailsWithUnknownKindsAndWithoutAnyCase) {
   EXPECT_TRUE(fails(R"({"gsin": 1})", {"gsin: ", "list"}));
   const Outcome none = check(R"({"meta": {"source": "none"}})");
   EXPECT_EQ(1, none.exit_code);
-  EXPECT_EQ(std::string::npos, none.text.find("failed")) << none.text;
+  EXPECT_EQ(std::string::npos, none.out.find("failed")) << none.out;
 }
 
 TEST(PilcoCheck, NamesAKindWhoseListIsEmpty) {
@@ -200,8 +190,8 @@ TEST(PilcoCheck, AcceptsTheReferenceValuesOfTheEnvironment) {
     GTEST_SKIP() << "DDM_PILCO_VECTORS names no file: nothing was compared";
   }
   const Outcome outcome = run("'" + std::string(file) + "'");
-  EXPECT_EQ(0, outcome.exit_code) << outcome.text;
-  EXPECT_NE(std::string::npos, outcome.text.find("tolerances")) << outcome.text;
+  EXPECT_EQ(0, outcome.exit_code) << outcome.out;
+  EXPECT_NE(std::string::npos, outcome.out.find("tolerances")) << outcome.out;
 }
 
 TEST(PilcoCheck, ExplainsItsUse) {
@@ -211,7 +201,7 @@ TEST(PilcoCheck, ExplainsItsUse) {
   }
   const Outcome help = run("--help");
   EXPECT_EQ(0, help.exit_code);
-  EXPECT_NE(std::string::npos, help.text.find("pilco_check FILE.json")) << help.text;
+  EXPECT_NE(std::string::npos, help.out.find("pilco_check FILE.json")) << help.out;
   EXPECT_EQ(1, run("/nowhere/values.json").exit_code);
 }
 

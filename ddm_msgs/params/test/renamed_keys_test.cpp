@@ -1,5 +1,7 @@
 // Tests of keys that have another name today: where they move, and what stays to be refused.
 // SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_params/renamed_keys.h"
+
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,12 +1,8 @@
 // Tests of drawing in processes of their own: equal bytes, and a name for each failure.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_msgs/testing/temp_folder.h>
+#include <ddm_msgs/testing/run_program.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
-#include <fstream>
-#include <sstream>
 #include <string>
 
 // A sanitizer reserves terabytes of addresses: under a limit of them no program starts.
@@ -19,44 +15,23 @@
 namespace ddm {
 namespace {
 
-struct Outcome {
-  int code = -1;
-  std::string out;
-  std::string err;
-};
+using testing::Outcome;
 
-class DrawingProcessesTest : public ::testing::Test {
- protected:
-  /// @param setting    shell words in front of the command: assignments, or `ulimit ...;`
-  /// @param arguments  after the scene: ANGLE SIZE SAMPLES [nothing]
-  Outcome draw(const std::string& setting, const std::string& arguments) {
-    const std::string out = folder_.file("out");
-    const std::string err = folder_.file("err");
-    const std::string command = setting + " " DDM_MUJOCO_DRAW_ONCE " " DDM_MUJOCO_TEST_SCENE " " +
-                                arguments + " > '" + out + "' 2> '" + err + "'";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, textOf(out), textOf(err)};
-  }
+/// @param setting    shell words in front of the command: assignments, or `ulimit ...;`
+/// @param arguments  after the scene: ANGLE SIZE SAMPLES [nothing]
+Outcome draw(const std::string& setting, const std::string& arguments) {
+  return testing::run(setting + " " DDM_MUJOCO_DRAW_ONCE " " DDM_MUJOCO_TEST_SCENE " " + arguments);
+}
 
-  static void expectNamed(const Outcome& outcome, const std::string& part) {
-    EXPECT_EQ(outcome.code, 1);
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
-  }
+void expectNamed(const Outcome& outcome, const std::string& part) {
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+}
 
- private:
-  static std::string textOf(const std::string& path) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
-  }
-
-  testing::TempFolder folder_;
-};
-
-TEST_F(DrawingProcessesTest, GiveTheSameBytes) {
+TEST(DrawingProcesses, GiveTheSameBytes) {
   const Outcome first = draw("", "0.4 51 4");
-  ASSERT_EQ(first.code, 0) << first.err;
+  ASSERT_EQ(first.exit_code, 0) << first.err;
   EXPECT_EQ(first.out.size(), std::size_t{2 * 3 * 51 * 51});
   for (const char* setting : {"", "LP_NUM_THREADS=0", "LP_NUM_THREADS=1", "LP_NUM_THREADS=3"}) {
     EXPECT_EQ(draw(setting, "0.4 51 4").out, first.out) << setting;
@@ -64,13 +39,13 @@ TEST_F(DrawingProcessesTest, GiveTheSameBytes) {
   EXPECT_NE(draw("", "0.5 51 4").out, first.out);
 }
 
-TEST_F(DrawingProcessesTest, NeedNoScreen) {
+TEST(DrawingProcesses, NeedNoScreen) {
   const Outcome outcome = draw("unset DISPLAY WAYLAND_DISPLAY XDG_RUNTIME_DIR;", "0.4 51 0");
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(draw("DISPLAY=:99", "0.4 51 0").out, outcome.out);
 }
 
-TEST_F(DrawingProcessesTest, NameEglWhereItIsMissing) {
+TEST(DrawingProcesses, NameEglWhereItIsMissing) {
   const char* const no_vendor = "__EGL_VENDOR_LIBRARY_FILENAMES=/dev/null";
   expectNamed(draw(no_vendor, "0 51 0"), "eglGetPlatformDisplayEXT");
   expectNamed(draw(no_vendor, "0 51 0"), "libgl1-mesa-dri");
@@ -78,16 +53,16 @@ TEST_F(DrawingProcessesTest, NameEglWhereItIsMissing) {
               "eglInitialize");
 }
 
-TEST_F(DrawingProcessesTest, NeedNoEglWhereNothingIsDrawn) {
+TEST(DrawingProcesses, NeedNoEglWhereNothingIsDrawn) {
   const Outcome outcome = draw("__EGL_VENDOR_LIBRARY_FILENAMES=/dev/null", "0 51 0 nothing");
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
 }
 
-TEST_F(DrawingProcessesTest, NameADriverThatIsTooOld) {
+TEST(DrawingProcesses, NameADriverThatIsTooOld) {
   expectNamed(draw("MESA_GL_VERSION_OVERRIDE=1.1", "0 51 0"), "OpenGL version");
 }
 
-TEST_F(DrawingProcessesTest, NameAPictureThatMemoryDoesNotHold) {
+TEST(DrawingProcesses, NameAPictureThatMemoryDoesNotHold) {
 #ifdef DDM_SANITIZED
   GTEST_SKIP() << "memory cannot be limited under a sanitizer";
 #endif
@@ -96,7 +71,7 @@ TEST_F(DrawingProcessesTest, NameAPictureThatMemoryDoesNotHold) {
   expectNamed(outcome, "memory");
 }
 
-TEST_F(DrawingProcessesTest, NameAPictureThatIsTooLarge) {
+TEST(DrawingProcesses, NameAPictureThatIsTooLarge) {
   expectNamed(draw("", "0 4097 0"), "plant/supersampling");
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "check/case.h"
 
-#include <ddm_params/number_csv.h>
+#include <ddm_params/parse_number.h>
 #include <ddm_params/yaml_text.h>
 
 #include <cmath>

@@ -4,13 +4,11 @@
 
 #include <gtest/gtest.h>
 #include <ros/ros.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
 #include <string>
-#include <utility>
 #include <vector>
+
+#include "ddm_msgs/testing/run_program.h"
 
 namespace ddm {
 namespace testing {
@@ -22,21 +20,11 @@ class RefusedParams : public ::testing::Test {
 
   /// Runs a program as /bad_node to its end, which must be an error with each of the words.
   static void expectRefused(const std::string& program, const std::vector<std::string>& words) {
-    const auto [exit_code, output] = run(program + " __name:=bad_node 2>&1");
-    EXPECT_EQ(exit_code, 1);
+    const Outcome outcome = run(program + " __name:=bad_node 2>&1");
+    EXPECT_EQ(outcome.exit_code, 1);
     for (const std::string& word : words) {
-      EXPECT_NE(output.find(word), std::string::npos) << word << " is not in: " << output;
+      EXPECT_TRUE(contains(outcome.out, word)) << word << " is not in: " << outcome.out;
     }
-  }
-
- private:
-  static std::pair<int, std::string> run(const std::string& command) {
-    FILE* pipe = popen(command.c_str(), "r");
-    std::string output;
-    std::array<char, 256> part;
-    while (fgets(part.data(), part.size(), pipe) != nullptr) output += part.data();
-    const int status = pclose(pipe);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, output};
   }
 };
 

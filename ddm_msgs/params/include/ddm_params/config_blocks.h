@@ -32,9 +32,4 @@ bool hasKey(const YAML::Node& blocks, const std::string& block, const std::strin
 /// without a robot `plant`; empty if that block does not say, or has an empty list.
 std::string ownerOfMotors(const YAML::Node& blocks);
 
-/// The blocks of a file with today's keys, so that files of older versions stay good. A key whose
-/// new name is also given is left as it is, to be refused as unknown. A file with the key `version`
-/// was saved by a program, with all keys that there were: those that say nothing are dropped.
-YAML::Node withTodaysKeys(const YAML::Node& blocks);
-
 }  // namespace ddm

@@ -2,32 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_params/parse_number.h>
+#include <ddm_params/yaml_text.h>
+
 #include <Eigen/Core>
 #include <boost/algorithm/string.hpp>
-#include <cmath>
-#include <cstdlib>
 #include <istream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "ddm_params/yaml_text.h"
-
 namespace ddm {
-
-/// A finite decimal number and nothing else: no hexadecimal, no nan, no inf, no unit behind it.
-/// Blanks around it are allowed.
-/// @return false, with `value` unchanged, if `text` is anything else
-inline bool parseNumber(const std::string& text, double* value) {
-  const std::string word = boost::trim_copy(text);
-  // strtod also takes nan, inf and hexadecimal; their letters are kept out here.
-  if (word.empty() || word.find_first_not_of("+-.0123456789eE") != std::string::npos) return false;
-  char* end = nullptr;
-  const double number = std::strtod(word.c_str(), &end);
-  if (*end != '\0' || !std::isfinite(number)) return false;
-  *value = number;
-  return true;
-}
 
 /// Finite decimal numbers with commas between them; each as parseNumber() takes it.
 /// @return false, with `values` unchanged, if there are not exactly `count` or one is anything else

@@ -15,13 +15,14 @@ namespace ddm {
 namespace testing {
 
 struct Outcome {
-  int exit_code;    ///< -1 if a signal ended the program
+  int exit_code;    ///< 128 and its number if a signal ended the program
   std::string out;  ///< standard output
   std::string err;  ///< standard error
 };
 
-/// @param command  program and arguments, as for a shell
-inline Outcome run(const std::string& command) {
+/// @param command  as for a shell
+/// @param input    standard input
+inline Outcome run(const std::string& command, const std::string& input = "") {
   const TempFolder folder;
   const auto text = [&folder](const std::string& name) {
     std::ifstream file(folder.file(name));
@@ -29,8 +30,10 @@ inline Outcome run(const std::string& command) {
     content << file.rdbuf();
     return content.str();
   };
-  const int status = std::system(
-      (command + " < /dev/null > " + folder.file("out") + " 2> " + folder.file("err")).c_str());
+  std::ofstream(folder.file("in")) << input;
+  const int status = std::system(("(" + command + ") < " + folder.file("in") + " > " +
+                                  folder.file("out") + " 2> " + folder.file("err"))
+                                     .c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text("out"), text("err")};
 }
 
