@@ -14,14 +14,16 @@
 namespace ddm {
 
 /// dynamic_reconfigure for `mpc/epsilon`, `mpc/control_weight` and `mpc/horizon`: the names of the
-/// parameters, which always hold what is in force. At the start nothing changes. Later values are
-/// brought into their ranges by dynamic_reconfigure; those without a place in them are refused.
+/// parameters, which hold what is in force (epsilon: that of each trial's goal, until somebody
+/// turns it). At the start nothing changes. Later values are brought into their ranges by
+/// dynamic_reconfigure; those without a place in them are refused.
 class LiveOptions {
  public:
   /// @param options  all of the block, after a change
   using Callback = std::function<void(const MpcOptions& options)>;
 
-  /// @param nh       namespace of the block `mpc`
+  /// @param nh       namespace of the block `mpc`. The thread of its queue may wait for the master
+  ///                 whenever an option is turned
   /// @param options  values in force, valid
   LiveOptions(const ros::NodeHandle& nh, const MpcOptions& options, Callback on_change)
       : options_(options), on_change_(std::move(on_change)), server_(withParameters(nh, options)) {

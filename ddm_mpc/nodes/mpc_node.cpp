@@ -60,14 +60,16 @@ MpcNode::MpcNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size, const 
       effort_(nh, controller.torque_dim),
       plan_pub_(nh.advertise<ddm_msgs::Plan>(topics::kPlan, kQueue)),
       scalars_pub_(nh.advertise<ddm_msgs::PlanScalars>(topics::kPlanScalars, kQueue)),
-      live_(ros::NodeHandle(pnh, "mpc"), mpc, [this](const MpcOptions& turned) { onTurn(turned); }),
+      live_(withQueue(ros::NodeHandle(pnh, "mpc"), &options_queue_), mpc,
+            [this](const MpcOptions& turned) { onTurn(turned); }),
       health_(nh, pnh),
       server_(nh, topics::kRunTrial, /*auto_start=*/false),
       answer_last_image_(boost::make_shared<Callback>([this] {
         if (last_image_ != nullptr) answer(*last_image_);
       })),
       finish_(boost::make_shared<Callback>([this] { onFinish(); })),
-      image_spinner_(/*thread_count=*/1, &image_queue_) {
+      image_spinner_(/*thread_count=*/1, &image_queue_),
+      options_spinner_(/*thread_count=*/1, &options_queue_) {
   server_.registerGoalCallback([this] { onGoal(); });
   server_.registerPreemptCallback([this] { onPreempt(); });
   model_sub_ = nh.subscribe(topics::kModel, 1, &MpcNode::onModel, this);
@@ -77,12 +79,14 @@ MpcNode::MpcNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size, const 
       topics::kImage, 1, &MpcNode::onImage, this,
       image_transport::TransportHints("raw", ros::TransportHints().tcpNoDelay()));
   image_spinner_.start();
+  options_spinner_.start();
   server_.start();  // last: whoever sees the action finds everything else in place
 }
 
 MpcNode::~MpcNode() {
   stop();                 // else the spinner would wait for a plan
   image_spinner_.stop();  // no callback is running from here on
+  options_spinner_.stop();
 }
 
 bool MpcNode::stop() {
@@ -142,9 +146,10 @@ void MpcNode::beginIfReady(std::unique_lock<std::mutex> lock) {
   if (!goal_->model_id.empty() && goal_->model_id != model_id_) return;
   if (!goalImageIsThere()) return;
   try {
-    trial_ = std::make_shared<TrialRun>(*goal_, goal_->model_id.empty() ? nullptr : model_,
-                                        goal_image_, image_size_, mpc_, controller_);
-    turned_ = true;
+    trial_ =
+        std::make_shared<TrialRun>(*goal_, goal_->model_id.empty() ? nullptr : model_, goal_image_,
+                                   image_size_, mpc_, controller_, turned_epsilon_);
+    turned_ = false;
     goal_changed_ = false;
     last_progress_ = ros::SteadyTime::now();
   } catch (const std::exception& e) {
@@ -244,7 +249,7 @@ void MpcNode::publish(const std_msgs::Header& header, const Decision& decision) 
   publishTorque(header.stamp, decision.torque, decision.exploratory);
   if (decision.plan) publishPlan(header.stamp, *decision.plan);
   if (decision.plan && scalars_pub_.getNumSubscribers() > 0) {
-    scalars_pub_.publish(scalars_.of(header.stamp, *decision.plan));
+    scalars_pub_.publish(scalars_.of(header.stamp, *decision.plan, decision.goal_distance));
   } else {
     scalars_.forget();
   }

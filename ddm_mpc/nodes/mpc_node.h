@@ -30,9 +30,9 @@
 namespace ddm {
 
 /// Action `run_trial`: each image of the trial is answered on `torque` with the image's stamp.
-/// Images have a thread of their own, which plans. Everything else, such as a goal that is
-/// cancelled, a trial that times out or an option that is turned, is for the thread that spins the
-/// global queue, and does not wait for a plan.
+/// Images have a thread of their own, which plans, and so have options that are turned, which wait
+/// for the master and a terminal. Everything else, such as a goal that is cancelled or a trial that
+/// times out, is for the thread that spins the global queue, and waits for none of these.
 class MpcNode {
  public:
   /// @param nh   topics and action
@@ -78,7 +78,6 @@ class MpcNode {
   void onGoalImage(const sensor_msgs::ImageConstPtr& image);
   void onModel(const ddm_msgs::ModelConstPtr& message);
   void onTick();
-  void onTurn(const MpcOptions& mpc);
   void onFinish();
   void beginIfReady(std::unique_lock<std::mutex> lock);
   bool goalImageIsThere() const;
@@ -86,6 +85,9 @@ class MpcNode {
   std::optional<Trouble> describeSilence();
   ddm_msgs::RunTrialResult endTrial();
   void abort(const Trouble& trouble);
+
+  // In the thread of the options.
+  void onTurn(const MpcOptions& mpc);
 
   // In the thread of the images.
   void onImage(const sensor_msgs::ImageConstPtr& image);
@@ -126,6 +128,7 @@ class MpcNode {
   std::optional<ros::SteadyTime> deciding_since_;
 
   ros::CallbackQueue image_queue_;
+  ros::CallbackQueue options_queue_;
   image_transport::ImageTransport transport_;
   ros::Publisher torque_pub_;
   EffortPublisher effort_;
@@ -140,7 +143,9 @@ class MpcNode {
   actionlib::SimpleActionServer<ddm_msgs::RunTrialAction> server_;
   const ros::CallbackInterfacePtr answer_last_image_;  // for image_queue_
   const ros::CallbackInterfacePtr finish_;             // for the global queue
-  ros::AsyncSpinner image_spinner_;                    // last: ends before anything that it uses
+  // Last: they end before anything that they use.
+  ros::AsyncSpinner image_spinner_;
+  ros::AsyncSpinner options_spinner_;
 };
 
 }  // namespace ddm

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <optional>
 
 #include "ddm_mpc/planner.h"
 
@@ -14,11 +15,14 @@ namespace ddm {
 /// Looks at the plans of a trial in turn: what one predicts, the next one finds to be so or not.
 class PlanScalars {
  public:
-  ddm_msgs::PlanScalars of(const ros::Time& stamp, const Plan& plan) {
+  /// @param goal_distance  in units of the features' spread; empty: not known
+  ddm_msgs::PlanScalars of(const ros::Time& stamp, const Plan& plan,
+                           const std::optional<double>& goal_distance) {
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
     ddm_msgs::PlanScalars out;
     out.header.stamp = stamp;
-    out.goal_distance = out.prediction_error = kUnknown;
+    out.goal_distance = goal_distance.value_or(kUnknown);
+    out.prediction_error = kUnknown;
     out.cost = plan.cost;
     out.solve_time = plan.solve_time;
     if (plan.status == PlanStatus::kFailed) {
@@ -26,7 +30,6 @@ class PlanScalars {
       return out;
     }
     const Eigen::VectorXd z = plan.features.col(0);
-    out.goal_distance = (z - plan.goal_feature).norm();
     if (predicted_.size() > 0) out.prediction_error = (z - predicted_).norm();
     predicted_ = plan.features.col(1);
     return out;

@@ -29,15 +29,16 @@ class TrialRun {
  public:
   /// @param model       may be null where goal.epsilon = 1
   /// @param goal_image  to plan to; null: the model's
+  /// @param epsilon     instead of the goal's, but in an evaluation; empty: the goal's
   /// @throws std::invalid_argument if goal, model and options do not fit together
   TrialRun(const ddm_msgs::RunTrialGoal& goal, std::shared_ptr<const Ddm> model,
            const sensor_msgs::ImageConstPtr& goal_image, int image_size, const MpcOptions& mpc,
-           const ControllerOptions& controller)
+           const ControllerOptions& controller, const std::optional<double>& epsilon)
       : num_steps_(goal.num_steps),
         image_size_(image_size),
         evaluation_(goal.evaluation != 0),
         greedy_(makePolicy(std::move(model), image_size, mpc, controller)),
-        policy_(greedy_, explorationOf(goal, mpc, controller),
+        policy_(greedy_, explorationOf(goal, mpc, controller, epsilon),
                 TrialId{goal.seed, goal.trial, evaluation_}) {
     if (greedy_ != nullptr) greedy_->setStop([this] { return ended(); });
     if (goal_image != nullptr) setGoal(*goal_image);
@@ -129,11 +130,12 @@ class TrialRun {
     return std::make_shared<MpcPolicy>(std::move(model), mpc);
   }
 
-  static EpsilonGreedy::Options explorationOf(const ddm_msgs::RunTrialGoal& goal,
-                                              const MpcOptions& mpc,
-                                              const ControllerOptions& controller) {
+  EpsilonGreedy::Options explorationOf(const ddm_msgs::RunTrialGoal& goal, const MpcOptions& mpc,
+                                       const ControllerOptions& controller,
+                                       const std::optional<double>& epsilon) const {
     EpsilonGreedy::Options options;
-    options.epsilon = goal.epsilon;
+    options.epsilon =
+        greedy_ != nullptr && !evaluation_ ? epsilon.value_or(goal.epsilon) : goal.epsilon;
     options.hold_steps = static_cast<int>(goal.hold_steps);
     options.max_torque = perMotor(mpc.max_torque, controller.torque_dim, "mpc/max_torque");
     return options;

@@ -78,11 +78,17 @@ std::optional<double> MpcPolicy::goalDistance() const {
 
 Plan MpcPolicy::plan() {
   if (!hasGoal()) throw std::logic_error("there is no goal image to plan to");
-  cost_.setProblem(x_, z_ref_, offset_);
-  if (time_budget_.count() <= 0.0) return planner_.solve(&rng_, stop_);
-  return planner_.solve(&rng_, [this] {
-    return std::chrono::steady_clock::now() - began_ >= time_budget_ || (stop_ && stop_());
-  });
+  const auto begin = std::chrono::steady_clock::now();
+  cost_.setProblem(x_, z_ref_, offset_);  // after another goal, computes V
+  std::function<bool()> stop = stop_;
+  if (time_budget_.count() > 0.0) {
+    stop = [this] {
+      return std::chrono::steady_clock::now() - began_ >= time_budget_ || (stop_ && stop_());
+    };
+  }
+  Plan plan = planner_.solve(&rng_, stop);
+  plan.solve_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return plan;
 }
 
 void MpcPolicy::apply(const Eigen::VectorXd& u) {

@@ -214,7 +214,7 @@ TEST_F(MpcNodeLiveTest, TellsHowFarTheGoalIsAndHowWrongTheLastPredictionWas) {
     EXPECT_EQ(scalars.messages[i].header.stamp, plan.header.stamp);
     EXPECT_EQ(scalars.messages[i].cost, plan.cost);
     EXPECT_EQ(scalars.messages[i].solve_time, plan.solve_time);
-    EXPECT_DOUBLE_EQ(scalars.messages[i].goal_distance, (feature(i, 0) - goal).norm());
+    EXPECT_DOUBLE_EQ(scalars.messages[i].goal_distance, (feature(i, 0) - goal).norm() / kSpread);
     if (i == 0 || i == 3) {
       EXPECT_TRUE(std::isnan(scalars.messages[i].prediction_error)) << "nothing was predicted";
     } else {

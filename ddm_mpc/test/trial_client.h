@@ -32,10 +32,16 @@ inline ddm_msgs::RunTrialGoal trialGoal(std::uint32_t num_steps, double epsilon,
   return goal;
 }
 
+constexpr double kSpread = 0.5;  // of the features, in the models of modelOfSeed()
+
 inline ddm_msgs::Model modelOfSeed(unsigned seed) {
   RandomModelOptions options;
   options.seed = seed;
-  return modelMessage(randomModel(options));
+  const Ddm model = randomModel(options);
+  ModelInfo info = model.info();
+  info.feature_spread = kSpread;
+  return modelMessage(Ddm(model.options(), model.imageSize(), model.torqueDim(), model.pca(),
+                          model.theta(), model.goal(), info));
 }
 
 /// Runs trials of mpc_node.

@@ -133,11 +133,17 @@ class RobotMotorTest(RobotCase):
         second.stop()
         wait_until(lambda: self.robot.enable(True).success, "one publisher")
 
-    def test_the_last_word_to_the_motor_is_zero(self):
+    def endBy(self, signal_number):
         self.enterTrial()
-        self.robot.process.send(signal.SIGINT)
+        self.robot.process.send(signal_number)
         self.assertEqual(self.robot.process.waitForEnd(LIMIT_S), 0)
         wait_until(lambda: self.robot.efforts.messages[-1].data == 0.0, "zero")
+
+    def test_the_last_word_to_the_motor_is_zero(self):
+        self.endBy(signal.SIGINT)
+
+    def test_the_last_word_is_zero_where_the_terminal_is_closed(self):
+        self.endBy(signal.SIGHUP)
 
     def test_the_last_word_is_zero_where_the_master_ends_the_node_too(self):
         self.enterTrial()
@@ -148,5 +154,6 @@ class RobotMotorTest(RobotCase):
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)  # nodes inherit it, and nohup ignores it
     rospy.init_node("robot_motor_test")
     rosunit.unitrun("ddm_sim", "robot_motor", RobotMotorTest)

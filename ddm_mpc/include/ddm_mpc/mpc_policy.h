@@ -21,7 +21,8 @@ namespace ddm {
 
 /// Encodes each image, keeps the state x, and plans towards the feature of the goal image
 /// (paper, Sec. 3.1): the model's own until there is another. mpc/time_budget covers the whole
-/// decision, from the arrival of the image on. An offset is added to each prediction and follows
+/// decision, from the arrival of the image on, but does not cut short what prepare() computes,
+/// after another goal or a change of exploration. An offset is added to each prediction and follows
 /// their errors,
 ///
 ///   offset <- offset + offset_gain (z_{t+1} - z_{t+1|t} - offset)

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <limits>
 #include <random>
 #include <string>
 
@@ -27,10 +28,10 @@ struct Plan {
   Eigen::MatrixXd torques;       ///< u_0 ... u_{K-1} [N m]             [torque_dim x K]
   Eigen::MatrixXd features;      ///< z_0, predicted z_1 ... z_K        [feature_dim x (K + 1)]
   Eigen::VectorXd goal_feature;  ///< z_ref                         [feature_dim]
-  double cost = 0.0;             ///< J
-  int iterations = 0;            ///< over all starts
-  int evaluations = 0;           ///< over all starts
-  double solve_time = 0.0;       ///< wall time [s]
+  double cost = std::numeric_limits<double>::quiet_NaN();  ///< J; NaN where it failed
+  int iterations = 0;                                      ///< over all starts
+  int evaluations = 0;                                     ///< over all starts
+  double solve_time = 0.0;                                 ///< wall time [s]
 };
 
 /// Minimises J(U) by BFGS (paper, Sec. 3.1) and keeps the best of several starts: what the cost

@@ -49,8 +49,9 @@ enum class Ending {
   kByLastMessage  ///< it runs in runUntilEnd(), and sends a last message
 };
 
-/// Runs a node with motors until SIGINT, SIGTERM or the master asks it to end. roscpp's own
-/// handlers shut all topics down before a zero can be sent: start the node with kByLastMessage.
+/// Runs a node with motors until SIGINT, SIGTERM, SIGHUP (its terminal is closed; not under nohup,
+/// which ignores it) or the master asks it to end. roscpp's own handlers shut all topics down
+/// before a zero can be sent: start the node with kByLastMessage.
 ///
 /// @param look  called again and again; returns soon
 /// @param stop  sends the last message; false: there was none to send
@@ -58,6 +59,7 @@ template <class Look, class Stop>
 void runUntilEnd(const Look& look, const Stop& stop) {
   std::signal(SIGINT, internal::onSignal);
   std::signal(SIGTERM, internal::onSignal);
+  if (std::signal(SIGHUP, internal::onSignal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   while (ros::ok() && !internal::end_requested) look();
   if (stop()) ros::WallDuration(0.1).sleep();  // for the message to leave
   internal::endSoon(EXIT_SUCCESS);
@@ -74,9 +76,9 @@ void runUntilEnd(const Look& look, const Stop& stop) {
 ///   });
 ///
 /// @param run  (node handle, private node handle, reader of its parameters)
-/// @return exit code: 1 if `run` threw an exception, whose text is logged. The process ends with it
-///         ten seconds later at most: what belongs to ROS tells the master for each topic that it
-///         goes, and a master that was stopped never answers
+/// @return exit code: 1 if `run` threw an exception, whose text is logged. After `run`, the process
+///         ends within ten seconds: ROS tells the master for each topic that it goes, and a master
+///         that was stopped never answers
 template <class Run>
 int runNode(const std::string& name, int argc, char** argv, const Run& run,
             Ending ending = Ending::kAtOnce) {
