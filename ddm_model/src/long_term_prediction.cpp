@@ -20,7 +20,7 @@ double squaredDistance(const Grey& a, const Grey& b) {
          (255.0 * 255.0);
 }
 
-/// Frames that have n - 1 predecessors and num_steps successors without a gap: what can be
+/// Frames that have n + d - 1 predecessors and num_steps successors without a gap: what can be
 /// predicted from. In the order of the data.
 std::vector<Eigen::Index> predictionStarts(const Ddm& model, const DataSet& data, int num_steps) {
   std::vector<Eigen::Index> starts;

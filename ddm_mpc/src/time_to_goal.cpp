@@ -85,9 +85,11 @@ TimeToGoal::TimeToGoal(const Ddm& model, const Eigen::VectorXd& max_torque) {
   const Eigen::MatrixXd changes = model.options().memory() > 1
                                       ? Eigen::MatrixXd(Z - X.middleRows(dim, dim))
                                       : Eigen::MatrixXd::Zero(dim, M);
-  const double smallest = std::numeric_limits<double>::min();  // where nothing moved
-  spread_ = std::max((Z.colwise() - Z.rowwise().mean()).norm() / std::sqrt(M), smallest);
-  change_spread_ = std::max(changes.norm() / std::sqrt(M), smallest);
+  // Where nothing moved, or a state is one frame, states differ by their features alone.
+  constexpr double kNoChange = std::numeric_limits<double>::infinity();
+  spread_ = std::max((Z.colwise() - Z.rowwise().mean()).norm() / std::sqrt(M),
+                     std::numeric_limits<double>::min());
+  change_spread_ = changes.isZero(0.0) ? kNoChange : changes.norm() / std::sqrt(M);
   points_.resize(2 * dim, M);
   points_ << Z / spread_, changes / change_spread_;
   h_ = kSmoothness * spacing(points_);

@@ -100,6 +100,23 @@ TEST(TimeToGoal, GrowsWithTheStepsThatTheModelNeeds) {
   }
 }
 
+TEST(TimeToGoal, GrowsWithTheStepsAlsoWhereAStateIsOneFrame) {
+  RandomModelOptions options;
+  options.torque_dim = 2;
+  options.model.order = 1;
+  options.model.max_torque = {1.0};
+  Eigen::MatrixXd A(2, 4);  // h = z_t, u_t
+  A << Eigen::Matrix2d::Identity(), kStep * Eigen::Matrix2d::Identity();
+  const Ddm model = linearModel(options, A, Eigen::VectorXd::Zero(2));
+  ModelInfo info;
+  info.landmarks = line().cast<float>();
+  const TimeToGoal time = timeTo({1.0, 0.0}, Ddm(model.options(), model.imageSize(), 2, model.pca(),
+                                                 model.theta(), model.goal(), info));
+  for (double x = -0.9; x < 0.55; x += 0.1) {
+    EXPECT_GT(valueAtRest(time, {x - 0.1, 0.0}), valueAtRest(time, {x, 0.0}) + 0.3) << x;
+  }
+}
+
 TEST(TimeToGoal, GoesAroundAGapWhereNothingWasSeen) {
   const TimeToGoal time = timeTo({0.0, 0.0}, pushedModel(horseshoe()));
   // the other end is nearer to the goal than the corner is, but the way leads through the corner

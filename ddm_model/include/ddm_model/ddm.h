@@ -62,11 +62,11 @@ class Ddm {
   /// @throws std::invalid_argument if x is empty, or x or u do not fit the model
   Eigen::VectorXd predict(const History& x, const Eigen::VectorXd& u) const;
 
-  /// z_t, then z_{t+1} ... z_{t+num_steps} predicted from the last n features and torques that were
-  /// seen until t, and the torques that followed (paper, Sec. 4.1).
+  /// z_t, then z_{t+1} ... z_{t+num_steps} predicted from the last n + d features and torques that
+  /// were seen until t, and the torques that followed (paper, Sec. 4.1).
   /// @param Z        features of all frames                               [feature_dim x N]
   /// @param torques  torques of all frames [N m]                           [torque_dim x N]
-  /// @param frame    t; n - 1 <= t <= N - num_steps. No gap may lie in between
+  /// @param frame    t; n + d - 1 <= t <= N - num_steps. No gap may lie in between
   /// @return         [feature_dim x (num_steps + 1)]
   /// @throws std::invalid_argument for sizes or a frame that do not fit
   Eigen::MatrixXd rollOut(const Eigen::MatrixXd& Z,

@@ -23,8 +23,8 @@ struct PredictionError {
   double rmse_repeat = 0.0;  ///< the same for an image predicted to stay as it is [grey]
 };
 
-/// Predicts from all frames that have n - 1 predecessors and max_steps successors without a gap, and
-/// compares with what came.
+/// Predicts from all frames that have n + d - 1 predecessors and max_steps successors without a gap,
+/// and compares with what came.
 /// @param data       not learned from
 /// @param max_steps  longest prediction
 /// @return           for 1 ... max_steps steps ahead

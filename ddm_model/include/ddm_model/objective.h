@@ -18,7 +18,7 @@ namespace ddm {
 /// V = w (V_R + V_P) with (paper, eq. 5a)
 ///
 ///   V_R = sum_t |s_t - g(g^-1(s_t))|^2     all images and the goal                 eqs. (1, 5c)
-///   V_P = sum_t |s_{t+1} - g(f(h_n))|^2    frames with n predecessors in their     eqs. (4, 5b)
+///   V_P = sum_t |s_{t+1} - g(f(h_n))|^2    frames with n + d before them in their  eqs. (4, 5b)
 ///                                          segment
 ///
 /// With Terms::prediction_steps k > 1, V_P is the mean over predictions 1 ... k steps ahead, each
@@ -55,7 +55,7 @@ class JointObjective {
   };
 
   /// @param networks  shapes; outlives the objective
-  /// @throws std::invalid_argument if shapes do not fit, or no segment is longer than n frames
+  /// @throws std::invalid_argument if shapes do not fit, or no segment is longer than n + d frames
   JointObjective(const Networks<Scalar>& networks, TrainingData<Scalar> data);
 
   /// @param theta    parameters                                            [P]

@@ -22,7 +22,7 @@ namespace ddm {
 ///
 ///   J(U) = sum_{k=1}^{K} [1 - exp(-(|z_k - z_ref|^2 / s^2 + lambda |u_{k-1} / max_torque|^2) / (2 w^2))] + V(x_K)
 ///
-/// with the spread s of the features and the w of TimeToGoal. A step far from the goal costs 1 whatever its
+/// with the s and w of TimeToGoal. A step far from the goal costs 1 whatever its
 /// torque; at the goal, torque makes it cost up to 1.
 ///
 /// The offset is what recent predictions were wrong by (0 in the paper): the same error in every
@@ -88,8 +88,8 @@ class DdmPlanCost : public PlanCost {
   Eigen::VectorXd goal_feature_;
   Eigen::VectorXd offset_;
   RollOut<double> roll_out_;
-  Eigen::MatrixXd features_;   // z_{-n+1} ... z_0                          [feature_dim x n]
-  Eigen::MatrixXd torques_;    // u_{-n+1} ... u_{K-1} [N m]     [torque_dim x (n - 1 + K)]
+  Eigen::MatrixXd features_;   // z_{-n-d+1} ... z_0                    [feature_dim x (n + d)]
+  Eigen::MatrixXd torques_;    // u_{-n-d+1} ... u_{K-1} [N m]  [torque_dim x (n + d - 1 + K)]
   Eigen::MatrixXd d_torques_;  // dJ/du of these
   Eigen::VectorXd d_step_;     // d stepCost / dz                           [feature_dim]
   Eigen::VectorXd d_torque_;   // d stepCost / du                           [torque_dim]

@@ -15,7 +15,7 @@ namespace ddm {
 ///
 ///   away(z) = 1 - exp(-|z - z_ref|^2 / (2 w^2 s^2))
 ///
-/// with the spread s of the features and w = 1/4,
+/// with the spread s of the landmarks' features and w = 1/4,
 /// and V is the discounted sum of these over the steps to come, under the best torques. It is computed for
 /// the landmarks x_i of the model, states that were seen, by predictions of f under each of the torques
 /// -max, 0, max of each motor, held for m = 4 steps, and smoothed in between by a kernel (Ormoneit and Sen,
@@ -75,7 +75,7 @@ class TimeToGoal {
   void iterate(const std::vector<std::vector<double>>& costs);
 
   Eigen::MatrixXd torques_;
-  double spread_ = 1.0;                         // of features
+  double spread_ = 1.0;                         // of the landmarks' features
   double change_spread_ = 1.0;                  // of their changes from one frame to the next
   double h_ = 1.0;                              // in units of both
   Eigen::MatrixXd points_;                      // p(x_i)  [2 feature_dim x M]
