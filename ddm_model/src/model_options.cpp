@@ -41,7 +41,7 @@ std::vector<std::string> TrainingOptions::problems() const {
   training.requireWithin("selection_steps", selection_steps, 0, 1000);
   training.requireWithin("selection_iterations", selection_iterations, 0, 1000000);
   training.requireWithin("prediction_steps", prediction_steps, 1, 100);
-  training.requireAtLeast("warm_up_iterations", warm_up_iterations, 0);
+  training.requireWithin("warm_up_iterations", warm_up_iterations, 0, 1000000);
   training.requireNotNegative("weight_decay", weight_decay);
   const bool choice = num_starts > 1 || max_delay > 0;
   const std::string no_choice =
@@ -56,7 +56,7 @@ std::vector<std::string> TrainingOptions::problems() const {
                      "be 0 and prediction_steps 1 where nothing is predicted: training/schedule",
                      schedule);
   }
-  training.requireAtLeast("max_iterations", max_iterations, 1);
+  training.requireWithin("max_iterations", max_iterations, 1, 1000000);
   training.requireFraction("function_tolerance", function_tolerance);
   training.requireWithin("lbfgs_rank", lbfgs_rank, 1, 1000);
   training.requirePositive("score_std", score_std);

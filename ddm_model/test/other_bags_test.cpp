@@ -165,6 +165,7 @@ TEST_F(OtherBags, EffortsOfJointsByName) {
   writeTorques([](double, double u) { return jointsOf({"gripper", "arm"}, {5.0, u}); });
   for (int i = 0; i < 10; ++i) {  // others publish theirs on the same topic
     write("command", kBegin + 0.1 * i, jointsOf({"wheel"}, {7.0}));
+    write("command", kBegin + 0.1 * i, jointsOf({"caster"}, {}));
   }
   close();
   EXPECT_TRUE(isRefused({"change from", "gripper, arm", "to wheel", "data_set/motors"}));

@@ -22,6 +22,11 @@ std::string listOf(const std::vector<std::string>& names) {
   return names.empty() ? "nothing" : boost::algorithm::join(names, ", ");
 }
 
+bool anyIn(const std::vector<std::string>& names, const std::vector<std::string>& wanted) {
+  return std::find_first_of(names.begin(), names.end(), wanted.begin(), wanted.end()) !=
+         names.end();
+}
+
 /// Those of its header, unless nobody filled it in.
 ros::Time timeOf(const std_msgs::Header& header, const BagMessage& message) {
   return header.stamp.isZero() ? message.recorded : header.stamp;
@@ -85,6 +90,7 @@ std::optional<TimedTorque> TorqueReader::read(const BagMessage& message) {
                                listOf(names_) + " to " + listOf(joints.name) +
                                ": set data_set/motors to those of the motors");
     }
+    if (!motors_.empty() && !anyIn(joints.name, motors_)) return std::nullopt;
     if (joints.effort.size() != joints.name.size()) {
       throw std::runtime_error("topic " + connection.topic + " has " +
                                std::to_string(joints.effort.size()) + " effort(s) for " +

@@ -136,7 +136,7 @@ void setTheta(const Eigen::VectorXd& theta, Eigen::Index output, Hyperparameters
 
 std::vector<std::string> GpTrainingOptions::problems() const {
   OptionChecks gp("gp");
-  gp.requireAtLeast("max_iterations", max_iterations, 0);
+  gp.requireWithin("max_iterations", max_iterations, 0, 1000000);
   gp.require(training_points == 0 || training_points >= 2, "training_points", "be 0 or >= 2",
              training_points);
   gp.require(length_scale_limit > 1.0 && std::isfinite(length_scale_limit), "length_scale_limit",

@@ -130,8 +130,8 @@ Eigen::MatrixXd columnsOf(const Eigen::MatrixXd& matrix, const std::vector<Eigen
 std::vector<std::string> SparseGpOptions::problems() const {
   OptionChecks sparse_gp("sparse_gp");
   sparse_gp.requireAtLeast("max_points", max_points, 1);
-  sparse_gp.requireAtLeast("first_iterations", first_iterations, 0);
-  sparse_gp.requireAtLeast("max_iterations", max_iterations, 0);
+  sparse_gp.requireWithin("first_iterations", first_iterations, 0, 1000000);
+  sparse_gp.requireWithin("max_iterations", max_iterations, 0, 1000000);
   sparse_gp.requirePositive("ridge", ridge);
   return sparse_gp.problems();
 }
