@@ -181,6 +181,12 @@ auto RosDriver::execute(Client* client, const std::string& name, const Goal& goa
                              " was cancelled, as it is when the motors of a robot are stopped in a "
                              "trial: the same command resumes");
   }
+  if (state == actionlib::SimpleClientGoalState::RECALLED) {
+    throw std::runtime_error(
+        "action " + name +
+        " takes no goal with an earlier stamp than its last one, and the clock "
+        "was set back: start the nodes again; the same command resumes");
+  }
   if (state != actionlib::SimpleClientGoalState::SUCCEEDED) {
     throw std::runtime_error("action " + name + ": " + state.toString() + ", " + state.getText());
   }

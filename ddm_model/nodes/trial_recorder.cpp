@@ -150,8 +150,12 @@ bool TrialRecorder::stop(ddm_msgs::StopRecording::Request& request,
     response.message = "nothing is being recorded: call start_recording first";
     return true;
   }
+  if (stopping_ == num_recordings_) {  // a second wait would leave no thread for what both wait for
+    response.message = "this recording is being stopped already";
+    return true;
+  }
   // Other services run while this one waits: afterwards the recording may be another one.
-  const int recording = num_recordings_;
+  const int recording = stopping_ = num_recordings_;
   const auto replaced = [&] { return bag_ == nullptr || num_recordings_ != recording; };
   changed_.wait_for(lock, std::chrono::duration<double>(options_.timeout),
                     [&] { return replaced() || !error_.empty() || complete(request); });

@@ -66,6 +66,7 @@ class TrialRecorder {
   std::set<ros::Time> unanswered_;  // images of which is known that no torque acted in time
   sensor_msgs::ImageConstPtr goal_;
   int num_recordings_ = 0;
+  int stopping_ = 0;  // the recording for whose end a stop waits or has waited
   image_transport::ImageTransport transport_;
   image_transport::Subscriber image_sub_;
   ros::Subscriber torque_sub_;

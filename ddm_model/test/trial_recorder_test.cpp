@@ -7,13 +7,13 @@
 #include <gtest/gtest.h>
 #include <ros/ros.h>
 
+#include <chrono>
 #include <filesystem>
 #include <future>
 
 #include "ddm_bag_io/bag_reader.h"
 #include "ddm_msgs/testing/run_program.h"
 #include "ddm_msgs/testing/temp_folder.h"
-
 #include "toy_bags.h"
 
 namespace ddm {
@@ -289,6 +289,22 @@ TEST_F(TrialRecorderTest, AStartEndsAStopThatStillWaits) {
   EXPECT_FALSE(response.success);
   EXPECT_FALSE(response.message.empty());
   EXPECT_FALSE(stop(0).success);  // the node is alive and not recording
+}
+
+TEST_F(TrialRecorderTest, RefusesASecondStopWhileOneWaits) {
+  ASSERT_TRUE(start(path_)) << message_;
+  auto one = std::async(std::launch::async, [] { return stop(5); });
+  auto other = std::async(std::launch::async, [] { return stop(5); });
+  const auto ended = [](auto& call) {
+    return call.wait_for(std::chrono::milliseconds(5)) == std::future_status::ready;
+  };
+  while (!ended(one) && !ended(other)) continue;
+  auto& refused = ended(one) ? one : other;
+  auto& waiting = &refused == &one ? other : one;
+  const auto response = refused.get();
+  EXPECT_TRUE(contains(response.message, "being stopped already")) << response.message;
+  publishFrames(5);
+  EXPECT_TRUE(waiting.get().success);
 }
 
 TEST_F(TrialRecorderTest, RefusesToWriteOutsideOfItsFolder) {

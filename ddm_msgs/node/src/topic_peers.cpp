@@ -7,6 +7,7 @@
 #include <ros/network.h>
 #include <ros/this_node.h>
 #include <ros/xmlrpc_manager.h>
+#include <xmlrpcpp/XmlRpcException.h>
 
 #include <boost/algorithm/string/join.hpp>
 #include <map>
@@ -48,13 +49,18 @@ Connections outgoingConnectionsAt(const std::string& host, std::uint32_t port) {
   XmlRpc::XmlRpcClient* const client =
       ros::XMLRPCManager::instance()->getXMLRPCClient(host, static_cast<int>(port), "/");
   if (client == nullptr) return out;
-  if (client->execute("getBusInfo", caller, response) && response.size() == 3) {
-    for (int i = 0; i < response[2].size(); ++i) {
-      // id, destination, direction, transport, topic
-      XmlRpc::XmlRpcValue& connection = response[2][i];
-      if (static_cast<std::string>(connection[2]) != "o") continue;
-      out.emplace(static_cast<std::string>(connection[4]), static_cast<std::string>(connection[1]));
+  try {
+    if (client->execute("getBusInfo", caller, response) && response.size() == 3) {
+      for (int i = 0; i < response[2].size(); ++i) {
+        // id, destination, direction, transport, topic
+        XmlRpc::XmlRpcValue& connection = response[2][i];
+        if (static_cast<std::string>(connection[2]) != "o") continue;
+        out.emplace(static_cast<std::string>(connection[4]),
+                    static_cast<std::string>(connection[1]));
+      }
     }
+  } catch (const XmlRpc::XmlRpcException&) {  // of other types: no answer
+    out.clear();
   }
   ros::XMLRPCManager::instance()->releaseXMLRPCClient(client);
   return out;
