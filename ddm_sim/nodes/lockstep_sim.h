@@ -75,10 +75,12 @@ class LockstepSim : public SimNode {
                   const std::string& publisher) override {
     const ros::Time& stamp = message.header.stamp;
     if (!running_ || stamp != now()) {
-      ++ignored_;
-      ROS_WARN_STREAM_THROTTLE(
-          5.0, "torque of " << publisher << " with stamp " << stamp << " ignored (" << ignored_
-                            << " so far), waiting for " << (running_ ? frameName() : "a reset"));
+      if (++ignored_ == 1) {
+        ROS_WARN_STREAM("torque of " << publisher << " with stamp " << stamp
+                                     << " ignored, waiting for "
+                                     << (running_ ? frameName() : "a reset")
+                                     << "; further ones of this trial are only counted");
+      }
       return;
     }
     if (num_steps_ != 0 && frame_ + 1 == num_steps_) {
@@ -100,7 +102,10 @@ class LockstepSim : public SimNode {
   }
 
   void torqueRefused(const ros::Time& stamp, const std::string& reason) override {
-    if (!running_ || stamp != now()) return;
+    if (!running_ || stamp != now()) {
+      if (++ignored_ == 1) ROS_WARN_STREAM(reason);
+      return;
+    }
     ROS_ERROR_STREAM(trial_ << " ends at " << frameName()
                             << ", a reset starts another: " << reason);
     endTrial();

@@ -70,11 +70,12 @@ class RealtimeSim : public SimNode {
     steps_held_ = 0;
   }
 
-  void torqueRefused(const ros::Time& /*stamp*/, const std::string& /*reason*/) override {
+  void torqueRefused(const ros::Time& /*stamp*/, const std::string& reason) override {
     switchMotorOff();
     if (stopped_) return;
     stopped_ = true;
-    ROS_ERROR("the motor is off until the next reset, and the trial is cancelled");
+    ROS_ERROR_STREAM(
+        reason << ". The motor is off until the next reset, and the trial is cancelled");
     cancel_pub_.publish(actionlib_msgs::GoalID());  // without an id: all goals
   }
 

@@ -99,7 +99,7 @@ bool SimNode::onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Respon
     seen_ = rig_->reset(request.seed, request.trial, request.evaluation, start);
   } catch (const std::invalid_argument& e) {
     response.success = false;
-    response.message = std::string("field `start` of the request: ") + e.what();
+    response.message = e.what();
     ROS_WARN_STREAM("reset refused, nothing has changed: " << response.message);
     return true;
   }
@@ -120,7 +120,6 @@ void SimNode::onTorque(const ros::MessageEvent<ddm_msgs::Torque const>& event) {
   std::ostringstream reason;
   reason << "torque refused: " << event.getPublisherName() << " published " << fewNumbers(torque)
          << " on " << torqueTopic() << ", " << rule;
-  ROS_ERROR_STREAM(reason.str());
   torqueRefused(message.header.stamp, reason.str());
 }
 

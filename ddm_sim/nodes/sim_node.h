@@ -72,7 +72,7 @@ class SimNode {
   virtual void takeTorque(const ddm_msgs::Torque& message, const Eigen::VectorXd& torque,
                           const std::string& publisher) = 0;
 
-  /// A torque that was refused; `reason` names its publisher and value and has been logged.
+  /// A torque that was refused; `reason` names its publisher and value, for the log.
   virtual void torqueRefused(const ros::Time& stamp, const std::string& reason) = 0;
 
   std::unique_ptr<Rig> rig_;

@@ -113,8 +113,7 @@ TEST_F(Lockstep, PublishesWhatActedAsTheAnswerToEachImage) {
 TEST_F(Lockstep, CountsAndIgnoresATorqueWithAnotherStamp) {
   const ros::Time start = begin(0);
   client_->publish(start + ros::Duration(0, 1), {6.0});
-  ASSERT_TRUE(client_->waitForLog("ignored (1 "));
-  EXPECT_TRUE(client_->logged("frame 0"));
+  ASSERT_TRUE(client_->waitForLog("ignored, waiting for frame 0"));
   EXPECT_EQ(client_->images.size(), 1U);
   client_->publish(start, {1.0});
   ASSERT_TRUE(client_->waitForImages(2));
@@ -133,7 +132,6 @@ TEST_F(Lockstep, RefusesATorqueThatIsNotFiniteNamesItsPublisherAndEndsTheTrial) 
     ASSERT_TRUE(client_->waitForLog("torque refused: " + ros::this_node::getName()));
     EXPECT_TRUE(client_->logged(text)) << text;
     ASSERT_TRUE(client_->waitForLog("trial 0 ends"));
-    EXPECT_TRUE(client_->logged("frame 0"));
     expectIdle(start);
   }
 }

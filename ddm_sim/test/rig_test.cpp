@@ -225,5 +225,22 @@ TEST(Rig, RefusesACameraWithProblems) {
   EXPECT_THROW(Rig(quickPlant(), options), std::invalid_argument);
 }
 
+TEST(Rig, StaysAsItIsWhereTheGoalIsOutOfReach) {
+  bool within_reach = true;
+  ToyPlant::Traits traits;
+  traits.draw_goal = [&within_reach](std::mt19937_64*) {
+    if (!within_reach) throw std::invalid_argument("out of reach");
+    return testing::toyInfo().goal;
+  };
+  Rig rig(std::make_unique<ToyPlant>(traits), CameraOptions());
+  rig.reset(kSeed, 0, false);
+  rig.step(torqueOf(1.0));
+  const Eigen::VectorXd state = rig.plant().state();
+  within_reach = false;
+  EXPECT_THROW(rig.reset(kSeed, 1, false), std::invalid_argument);
+  EXPECT_EQ(rig.plant().state(), state);
+  EXPECT_EQ(rig.numSteps(), 1U);
+}
+
 }  // namespace
 }  // namespace ddm

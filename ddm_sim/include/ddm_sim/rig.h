@@ -27,12 +27,14 @@ class Rig {
   /// @param trial       number of the trial, 0 is the random one
   /// @param evaluation  the greedy run after `trial`
   /// @param start       (optional) this state, digit by digit, instead of a drawn one
-  /// @throws std::invalid_argument if the start is not a state; nothing has changed
+  /// @throws std::invalid_argument if the start is not a state or the goal out of reach; nothing
+  ///         has changed
   Picture reset(std::uint64_t seed, std::uint32_t trial, bool evaluation,
                 const std::optional<Eigen::VectorXd>& start = {}) {
+    const Eigen::VectorXd goal = goalOf(*plant_, seed, trial, evaluation);
     std::mt19937_64 starts = startStream(seed, trial, evaluation);
     plant_->setState(start ? *start : plant_->drawStart(starts));
-    plant_->setGoal(goalOf(*plant_, seed, trial, evaluation));
+    plant_->setGoal(goal);
     camera_.begin(seed, trial, evaluation);
     num_steps_ = 0;
     applied_.setZero();

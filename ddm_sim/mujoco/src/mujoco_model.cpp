@@ -17,18 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// MuJoCo reports a warning in the thread that caused it.
-std::string& warningsOfThisThread() {
-  thread_local std::string warnings;
-  return warnings;
-}
-
 void throwError(const char* text) { throw std::runtime_error(std::string("MuJoCo: ") + text); }
 
-void keepWarning(const char* text) {
-  std::string& all = warningsOfThisThread();
-  if (all.size() < 2000) all += (all.empty() ? "" : "\n") + std::string(text);
-}
+void ignoreWarning(const char* /*text*/) {}  // mjData::warning counts them, see requireStable()
 
 /// @throws std::invalid_argument if there is no such file, naming those in its folder
 std::string pathOf(const std::string& uri, const FindPackage& find_package) {
@@ -119,18 +110,11 @@ int countOf(const mjModel& model, mjtObj type) {
 
 void installMujocoHandlers() {
   mju_user_error = throwError;
-  mju_user_warning = keepWarning;
-}
-
-std::string takeMujocoWarnings() {
-  std::string out;
-  out.swap(warningsOfThisThread());
-  return out;
+  mju_user_warning = ignoreWarning;
 }
 
 MujocoModel::MujocoModel(const std::string& uri, const FindPackage& find_package) : uri_(uri) {
   installMujocoHandlers();
-  takeMujocoWarnings();
   if (uri.empty()) {
     throw std::invalid_argument(
         "plant/model must name a model file (MJCF or URDF), got nothing: for example "

@@ -71,7 +71,6 @@ void MujocoPhysics::requireStable(int frame, const Eigen::VectorXd& state) const
   for (int i = 0; i < mjNWARNING; ++i) {
     const mjWarningStat& warning = data_->warning[i];
     if (warning.number == 0) continue;
-    takeMujocoWarnings();
     std::ostringstream text;
     text << "plant: the simulation of " << model_->uri() << " is unstable, MuJoCo says \""
          << mju_warningText(i, warning.lastinfo) << "\" in frame " << frame + 1

@@ -191,8 +191,6 @@ TEST_F(MujocoModelTest, ThrowsWhatMujocoCallsAnErrorAndLeavesNoLogBehind) {
   installMujocoHandlers();
   EXPECT_THROW(mju_error("on purpose"), std::runtime_error);
   mju_warning("a hint");
-  EXPECT_EQ(takeMujocoWarnings(), "a hint");
-  EXPECT_EQ(takeMujocoWarnings(), "");
   EXPECT_FALSE(fs::exists("MUJOCO_LOG.TXT"));
   fs::current_path(before);
 }

@@ -20,9 +20,6 @@ using FindPackage = std::function<std::string(const std::string& package)>;
 /// harmless when called again. MujocoModel does it.
 void installMujocoHandlers();
 
-/// The warnings of MuJoCo on this thread since the last call, one a line; empty: none.
-std::string takeMujocoWarnings();
-
 /// What has a position in the world: a site, or the centre of mass of a body, which URDF calls link.
 /// Its origin would be the joint that turns it, where a pole is at any angle.
 struct Place {
