@@ -77,10 +77,18 @@ std::string chosen(const std::string& key, const std::vector<Layer>& layers) {
   return name;
 }
 
+/// A plant's file is found from any folder.
+std::string chosenPlant(const std::vector<Layer>& layers) {
+  const std::string name = chosen("plant", layers);
+  return fs::path(name).extension() == ".yaml" && fs::is_regular_file(name)
+             ? fs::absolute(name).lexically_normal().string()
+             : name;
+}
+
 /// A saved configuration holds every value of its plant: with another plant's name it would be a
 /// mixture of the two.
 void requirePlant(const std::string& plant, const Layer& config) {
-  const std::string theirs = chosen("plant", {config});
+  const std::string theirs = chosenPlant({config});
   if (theirs.empty() || theirs == plant || !config.blocks["plant"].IsDefined()) return;
   throw std::invalid_argument(config.file + " describes the plant " + theirs + ", not " + plant +
                               ": name that plant or none, or leave the file out and choose preset "
@@ -191,7 +199,7 @@ ResolvedConfiguration resolve(const Arguments& arguments) {
   std::vector<Layer> naming = layers;
   naming.insert(naming.end(), configs.begin(), configs.end());
   naming.push_back({"", values});
-  const std::string plant = chosen("plant", naming);
+  const std::string plant = chosenPlant(naming);
   std::vector<std::string> files = {chooseFile("presets", chosen("preset", naming), "preset"),
                                     plantFile(plant)};
   const std::string of_method = methodFile(chosen("method", naming));
@@ -212,6 +220,7 @@ ResolvedConfiguration resolve(const Arguments& arguments) {
   resolved.blocks.remove("version");  // of the code that saved a file
   forgetChecksums(values, &resolved.blocks);
   overlay(values, &resolved.blocks);
+  follow("experiment", "plant", YAML::Node(plant), &resolved.blocks);
   layers.push_back({"", values});
   const Given given = [&](const std::string& block, const std::string& key) {
     return std::any_of(layers.begin() + num_manuals, layers.end(),

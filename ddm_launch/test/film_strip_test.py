@@ -21,6 +21,8 @@ import synthetic_run  # noqa: E402
 class GreyCamera:
     """Stands in for the simulator where only the layout matters: the brightness tells the angle."""
 
+    plant = {"goal": [math.pi, 0.0], "tolerance": 10.0}
+
     def __init__(self, _folder):
         pass
 
@@ -52,12 +54,14 @@ class FilmStripTest(ScratchCase):
 
     def test_the_strip_ends_a_little_after_the_target_is_reached_for_good(self):
         angles = [math.pi * min(1.0, k / 16.0) for k in range(100)]
-        self.assertEqual(film_strip.swing_up_end(angles), 21)  # within 10 degrees from step 16 on
+        self.assertEqual(film_strip.swing_up_end(angles, math.pi, math.radians(10.0)), 21)  # within 10 degrees from step 16 on
         passing = angles[:30] + [1.0] + [-math.pi] * 69  # overshoots once, then stays: the arrival is step 31
-        self.assertEqual(film_strip.swing_up_end(passing), 38)
+        self.assertEqual(film_strip.swing_up_end(passing, math.pi, math.radians(10.0)), 38)
+        tips = [0.2 * k for k in range(15)]  # where up is 0, the rod begins there
+        self.assertEqual(film_strip.swing_up_end(tips[::-1] + [0.0] * 85, 0.0, math.radians(8.0)), 19)
 
     def test_a_swing_up_that_never_arrives_is_shown_to_its_end(self):
-        self.assertEqual(film_strip.swing_up_end([0.01 * k for k in range(50)]), 49)
+        self.assertEqual(film_strip.swing_up_end([0.01 * k for k in range(50)], math.pi, 0.1), 49)
 
     def test_images_are_evenly_spaced_and_reach_the_end(self):
         self.assertEqual(film_strip.steps_to_show(22, 100), list(range(0, 23, 2)))

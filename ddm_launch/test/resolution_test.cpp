@@ -177,8 +177,10 @@ TEST_F(Resolution, WhereThereIsARobotItsMotorsDecide) {
 }
 
 TEST_F(Resolution, ABlockThatIsNotAMapIsLeftToTheReader) {
-  given_.configs = {file("robot.yaml", "robot: {max_torque: 2}\nmodel: 3\nmpc: [1]\n")};
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { read(); }, {"model", "mpc"}));
+  given_.configs = {
+      file("robot.yaml", "robot: {max_torque: 2}\nmodel: 3\nmpc: [1]\nexperiment: 3\n")};
+  EXPECT_TRUE(
+      throwsNaming<std::invalid_argument>([this] { read(); }, {"model", "mpc", "experiment"}));
 }
 
 TEST_F(Resolution, ASavedPlantIsNotMixedWithAnother) {

@@ -70,6 +70,7 @@ class ResolveTest(ScratchCase):
             mjcf["plant"].update(limits)
             self.write("mjcf.yaml", yaml.dump(mjcf))
             blocks = self.resolve("--plant", "./mjcf.yaml")
+            self.assertEqual(blocks["experiment"]["plant"], self.file("mjcf.yaml"))
             self.assertEqual(blocks["plant"]["model"], mjcf["plant"]["model"])
             self.assertEqual([blocks[block]["max_torque"] for block in ("model", "mpc")], [[0.05, 0.05]] * 2)
             self.assertEqual(blocks["controller"]["torque_dim"], 2)

@@ -37,7 +37,10 @@ Clip = collections.namedtuple("Clip", "title dt images expected features paths l
 def simulate(run, evaluation):
     """Images of an evaluation as the plant draws them, one for each torque, and the torques [N x motors, N m]."""
     program = simulator(read_setting(run, "experiment", "plant", "plant"), "--config", os.path.join(run, "config.yaml"))
-    start = read_columns(os.path.join(evaluation, "trajectory.csv"), describe_plant(program)["state"])[0]
+    plant, trajectory = describe_plant(program), os.path.join(evaluation, "trajectory.csv")
+    if np.any(np.diff(read_columns(trajectory, ["time_s"])[:, 0]) > 1.5 * plant["dt"]):
+        raise Failure("in %s the camera has lost frames: only runs without camera/drop_rate can be filmed" % trajectory)
+    start = read_columns(trajectory, plant["state"])[0]
     motors = motors_of(os.path.join(evaluation, "torques.csv"))
     torques = read_columns(os.path.join(evaluation, "torques.csv"), motors)
     text = "\n".join([",".join(motors)] + [",".join(map(repr, map(float, row))) for row in torques]) + "\n"
@@ -84,6 +87,8 @@ def read_clip(evaluation):
     drawn = (read_yaml(os.path.join(run, "config.yaml")).get("plant") or {}).get("goal_site")
     goal = None if drawn or model.goal_feature is None else project(model.goal_feature[None])
     title = read_setting(run, "experiment", "plant", "plant")
+    if title.endswith(".yaml"):
+        title = os.path.basename(title)[:-len(".yaml")]
     if frames:
         title += ", after {:,} images ({:g} s)".format(frames, frames * dt)
     return Clip(title, dt, images, expected, project(features), [project(path) for path in paths], project(seen), goal)

@@ -12,17 +12,11 @@ from ddm_launch.run_folder import Evaluation, read_trials
 ABOUT = ("The greedy evaluation of a run folder. Images from the start until the rod is up, and the torque below; "
          "--gif writes an animation of it.")
 NUM_IMAGES = 12
-SUCCESS_LIMIT_RAD = math.radians(10.0)
 
 
-def target_error(angle_rad):
-    """Distance from the goal (the rod points up, +-pi), wrapped [rad]."""
-    return abs(math.remainder(angle_rad - math.pi, 2.0 * math.pi))
-
-
-def swing_up_end(angles_rad):
-    """The step to show the film up to: a little after the target is reached for good, or the very last step."""
-    away = [k for k, angle in enumerate(angles_rad) if target_error(angle) >= SUCCESS_LIMIT_RAD]
+def swing_up_end(angles_rad, goal_rad, tolerance_rad):
+    """The step to show the film up to: a little after the goal is reached for good, or the very last step."""
+    away = [k for k, angle in enumerate(angles_rad) if abs(math.remainder(angle - goal_rad, 2.0 * math.pi)) >= tolerance_rad]
     arrival = away[-1] + 1 if away else 0
     last = len(angles_rad) - 1
     return min(last, arrival + max(5, arrival // 4))
@@ -100,8 +94,8 @@ def add_arguments(parser):
 def draw(options):
     trial = options.trial if options.trial is not None else default_trial(read_trials(options.folder))
     evaluation = Evaluation(options.folder, trial)
-    end = swing_up_end(evaluation.angle_rad)
     camera = Camera(options.folder)
+    end = swing_up_end(evaluation.angle_rad, camera.plant["goal"][0], math.radians(camera.plant["tolerance"]))
     draw_strip(evaluation, end, camera, options.out)
     print("evaluation after trial %d" % trial)
     if options.gif:

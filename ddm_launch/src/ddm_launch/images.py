@@ -46,12 +46,12 @@ class Camera:
     def __init__(self, folder):
         self.command = simulator(read_setting(folder, "experiment", "plant", "plant"),
                                  "--config", os.path.join(folder, "config.yaml"))
-        self.header = ",".join(describe_plant(self.command)["torque"])
+        self.plant = describe_plant(self.command)
 
     def shoot(self, *state):
         """The grey image of one state, e.g. angle [rad] and rate [rad/s] of the pendulum."""
         start = ",".join(repr(float(value)) for value in state)
-        return draw_images(self.command + ["--start", start], self.header + "\n")[0]
+        return draw_images(self.command + ["--start", start], ",".join(self.plant["torque"]) + "\n")[0]
 
 
 def read_model(path):

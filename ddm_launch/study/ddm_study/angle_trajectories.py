@@ -6,12 +6,12 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ddm_launch.figure_style import BLUE, PAGE_WIDTH, VERMILLION, add_legend, new_figure, save
-from ddm_launch.film_strip import SUCCESS_LIMIT_RAD
 from ddm_launch.tables import read_csv
 
 ABOUT = ("The angle over time in greedy evaluations. One panel per number of frames learned from and all seeds in it; how "
          "many succeed is written above each panel. Angles count full turns; what lies beyond the panels is cut off.")
 COLUMNS = 5  # panels in a row
+SUCCESS_LIMIT_RAD = math.radians(10.0)
 MOST_TURNS = 2.3  # the panels show at most +- this many half turns [pi rad]; few trajectories leave them
 TARGET = "#c8c8c8"  # light enough that lines on it stand out
 STYLES = {False: (VERMILLION, (0, (3, 1))), True: (BLUE, "-")}  # success: colour, line; those that succeed are on top
