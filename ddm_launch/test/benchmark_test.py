@@ -60,11 +60,13 @@ class BenchmarkTest(ScratchCase):
     def useCores(self, _, cores):
         self.cores = cores
 
-    def runWithStandIns(self, *arguments):
+    def runWithStandIns(self, *arguments, roslaunch=None):
+        roslaunch = roslaunch or (lambda programs, what, *words: self.leave(programs, what, words))
         self.cores = {3, 4}
         with mock.patch.object(benchmark.os, "sched_getaffinity", lambda _: self.cores), \
                 mock.patch.object(benchmark.os, "sched_setaffinity", self.useCores), \
                 mock.patch.object(Programs, "call", lambda *words, **more: self.leave(*words, **more)), \
+                mock.patch.object(Programs, "roslaunch", roslaunch), \
                 mock.patch.object(benchmark, "find_program", lambda name: name), \
                 mock.patch.object(benchmark, "find_node", lambda _, name: [name]), \
                 mock.patch.object(benchmark.importlib.util, "find_spec", lambda _: True):
@@ -120,9 +122,8 @@ class BenchmarkTest(ScratchCase):
                 bench.round_trips(mock.Mock())
 
     def test_what_was_timed_is_kept_where_the_nodes_leave_nothing(self):
-        with mock.patch.object(Programs, "roslaunch", lambda *_: ""), \
-                mock.patch.object(benchmark.Benchmark, "ros_experiment", lambda _: None):
-            code, _ = self.runWithStandIns()
+        with mock.patch.object(benchmark.Benchmark, "ros_experiment", lambda _: None):
+            code, _ = self.runWithStandIns(roslaunch=lambda *_: "")
         self.assertEqual(code, 1)
         names = [row[0] for row in read_rows(self.out, "speed.csv")]
         self.assertIn("objective_gradient", names)

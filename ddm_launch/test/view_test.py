@@ -24,7 +24,7 @@ from scratch_case import SharedScratchCase  # noqa: E402
 
 TRIALS = 3
 FRAMES = 2 * 30 * (TRIALS + 1)
-RATE = 60.0
+RATE = 12.0  # so low that the rest of the launch takes less time than these frames
 TOPICS = {"trials": String, "prediction_image": Image, "feature_space_image": Image,
           "feature_space_markers": MarkerArray, "plan_scalars": PlanScalars, "diagnostics": DiagnosticArray}
 STATUSES = ["model_node: training"] + ["mpc_node: " + name for name in ("camera", "model", "plan", "torque")]
@@ -92,7 +92,7 @@ class ViewTest(SharedScratchCase):
         self.assertEqual(sorted(times), STATUSES)
         for name in STATUSES:
             self.assertGreaterEqual(times[name], 2, name)
-            # and one at the start; 48 s of simulated time are over in a few seconds
+            # and one at the start; 48 s of simulated time take about 25 s
             self.assertLessEqual(times[name], self.wall_s + 2, name)
 
 

@@ -39,8 +39,8 @@ class RobotClockTest(RobotCase):
             self.robot.camera.showing = True
             self.robot.waitForEffort(2.0)
         print("from the last good image to zero [s]: %s" % " ".join("%.3f" % delay for delay in sorted(delays)))
-        self.assertLessEqual(sorted(delays)[-2], LIMIT_S)
-        self.assertLessEqual(max(delays), LIMIT_S + 0.5)  # a busy machine may hold this test up once
+        self.assertLessEqual(sorted(delays)[3 * TRIES // 4], LIMIT_S)  # a busy machine holds some of them up
+        self.assertLessEqual(max(delays), LIMIT_S + 0.5)
 
     def refused(self):
         """(level, number of images refused) by the last diagnosis."""

@@ -103,7 +103,9 @@ class Listener:
         self._subscriber.unregister()
 
     def connected(self):
-        return self._subscriber.get_num_connections() > 0
+        """rospy counts a connection before it is one: until its header is there, messages can be missed."""
+        connections = self._subscriber.impl.connections
+        return bool(connections) and all(connection.header for connection in connections)
 
     def next(self):
         """The next message from now on."""

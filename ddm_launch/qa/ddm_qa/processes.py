@@ -146,13 +146,15 @@ class Programs:
         """scratch: folder for the logs of nodes."""
         self.scratch = scratch
 
-    def call(self, what, command, stderr=subprocess.PIPE, **variables):
-        """Returns what a program printed, with its errors if stderr is STDOUT. variables: of its environment. Raises
-        Failure with its last words."""
-        environment = on_this_machine({**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", **variables})
+    @staticmethod
+    def _environment(**variables):
+        return on_this_machine({**line_by_line(), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", **variables})
+
+    def call(self, what, command, **variables):
+        """Returns what a program printed. variables: of its environment. Raises Failure with its last words."""
         try:
-            done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=stderr,
-                                  universal_newlines=True, timeout=LIMIT_S, env=environment)
+            done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                  universal_newlines=True, timeout=LIMIT_S, env=self._environment(**variables))
         except subprocess.TimeoutExpired:
             raise Failure("%s: '%s' has not ended within %g s" % (what, " ".join(command), LIMIT_S)) from None
         if done.returncode != 0:
@@ -163,8 +165,15 @@ class Programs:
     def roslaunch(self, what, *arguments):
         """Returns what was printed. roslaunch returns 0 whatever happens: what its nodes leave behind is the verdict."""
         port = free_port()
-        return self.call(what, ["roslaunch", "-p", str(port)] + list(arguments), stderr=subprocess.STDOUT,
-                         ROS_HOME=os.path.join(self.scratch, "ros"), ROS_MASTER_URI="http://localhost:%d" % port)
+        process = Process(["roslaunch", "-p", port, *arguments], self._environment(
+            ROS_HOME=os.path.join(self.scratch, "ros"), ROS_MASTER_URI="http://localhost:%d" % port))
+        try:
+            process.waitForEnd(LIMIT_S)
+        except TimeoutError as error:
+            raise Failure("%s: %s" % (what, error)) from None
+        finally:
+            process.stop()  # however this ends, its nodes must not live on
+        return process.output
 
 
 def pid_of(master, node):

@@ -9,7 +9,7 @@ import rosbag
 
 from ddm_launch.run_folder import Trajectory, read_setting
 
-# Of a node after a trial. time_s: since the launch.
+# Of a node after a trial. time_s: since the first trial began.
 Sample = collections.namedtuple("Sample", "run node trial time_s rss_kb open_files")
 # One row of targets.csv; passed: 0 or 1.
 Target = collections.namedtuple("Target", "run target measured passed")

@@ -38,7 +38,7 @@ ROBOT_CONFIG = "robot: {position_limits: [[-1000.0, 1000.0]], speed_limit: [1000
 LONG_PLANS = "mpc: {horizon: 200, num_starts: 1000, max_iterations: 1000000, function_tolerance: 0.0, time_budget: %g}\n"
 CONFIGS = {"long plans": LONG_PLANS % 0.0, "long plans with a budget": LONG_PLANS % 0.02}  # by fault
 SLACK_S = 0.05  # that a torque may take, apart from two dt, to its end
-NODE_S, EXPERIMENT_S = 5.0, 8.0  # without a sign of life
+NODE_S, CONTROLLER_S, EXPERIMENT_S = 5.0, 8.0, 11.0  # without a sign of life
 CRASH = re.compile(r"exit code -(?!2\b|9\b|15\b)\d+|Traceback|terminate called|Segmentation fault")
 DISK_BYTES = 2 * 1024 * 1024
 COMPARED = [name for name in expected_files(TRIALS) if not name.endswith((".bag", "config.yaml"))]
@@ -68,7 +68,7 @@ class FaultBench:
     def __init__(self, out, patience=1.0):
         """patience: what all time limits are multiplied by, but a robot's: its motors must stop in time anywhere."""
         self.out, self.limit_s = out, LIMIT_S * patience
-        self.config = CONFIG.format(node_s=NODE_S * patience, controller_s=(NODE_S + 1.0) * patience,
+        self.config = CONFIG.format(node_s=NODE_S * patience, controller_s=CONTROLLER_S * patience,
                                     experiment_s=EXPERIMENT_S * patience)
         self.reference, self.begun = os.path.join(out, "reference", "run"), os.path.join(out, "begun")
         self.launches = []
