@@ -33,6 +33,7 @@ class GrowthTest(figure_case.FigureCase):
     def make(self, frames_learned=100000):
         self.frames_learned = frames_learned
         with mock.patch.object(Programs, "call", lambda *words, **more: self.leave(*words, **more)), \
+                mock.patch.object(Programs, "roslaunch", lambda programs, what, *words: self.leave(programs, what, words)), \
                 mock.patch.object(growth, "find_program", lambda name, package=None: name):
             return growth.make(self.scratch)
 
