@@ -83,7 +83,7 @@ class BenchmarkProgramsTest(ScratchCase):
         code, output = call([sys.executable, "-c", "import sys, torch; m = torch.jit.load(sys.argv[1]); m.our_loss *= 1.001; "
                              "m.save(sys.argv[1])", saved], 60.0)
         self.assertEqual(code, 0, output)
-        code, output = call([find_program("ddm_launch", "torch_training"), saved, "5", "20"], 60.0)
+        code, output = call([find_program("torch_training"), saved, "5", "20"], 60.0)
         self.assertEqual(code, 1, output)
         self.assertRegex(output, r"V_R \+ V_P of PyTorch in C\+\+ is 0\.0(0099|010)\d* off ours")
 
@@ -99,7 +99,7 @@ class BenchmarkProgramsTest(ScratchCase):
             self.assertGreater(float(row["median_ms"]), 5.0)
 
     def test_growth_gives_a_row(self):
-        code, output = call([find_program("ddm_launch", "speed_growth"), "--frames", "200", "--size", "21"], 60.0)
+        code, output = call([find_program("speed_growth"), "--frames", "200", "--size", "21"], 60.0)
         self.assertEqual(code, 0, output)
         frames, size, pca_us, objective_us, memory_mb = output.strip().split(",")
         self.assertEqual((frames, size), ("200", "21"))
@@ -107,7 +107,7 @@ class BenchmarkProgramsTest(ScratchCase):
             self.assertGreater(float(value), 0.0)
 
     def test_rendering_time_gives_a_row_for_the_learner_and_none_for_people_where_there_is_no_view(self):
-        code, output = call([find_program("ddm_launch", "rendering_time"), "pendulum", "moving_tile"], 60.0)
+        code, output = call([find_program("rendering_time"), "pendulum", "moving_tile"], 60.0)
         self.assertEqual(code, 0, output)
         header, *rows = [line.split(",") for line in output.strip().splitlines()]
         self.assertEqual(header, ["plant", "picture", "median_ms", "p99_ms", "cpu_median_ms", "first_ms"])
@@ -117,7 +117,7 @@ class BenchmarkProgramsTest(ScratchCase):
             self.assertGreaterEqual(float(row[3]), float(row[2]))
 
     def test_rendering_time_names_a_plant_that_is_not_there(self):
-        code, output = call([find_program("ddm_launch", "rendering_time"), "pendulumm"], 60.0)
+        code, output = call([find_program("rendering_time"), "pendulumm"], 60.0)
         self.assertEqual(code, 1)
         self.assertIn("pendulumm", output)
 

@@ -34,7 +34,7 @@ class EvaluateMujocoTest(SharedScratchCase):
     def evaluate(self, jobs):
         """Rows without the times of plans, and the summary."""
         folder = self.file("jobs_%d" % jobs)
-        code, output = call([find_program("ddm_launch", "evaluate"), "--model", self.model, "--config", self.config,
+        code, output = call([find_program("evaluate"), "--model", self.model, "--config", self.config,
                              "--seeds", "0:%d" % SEEDS, "--jobs", str(jobs), "--out", folder] + PLANT)
         self.assertEqual(code, 0, output)
         header, *lines = read_rows(folder, "evaluation.csv")

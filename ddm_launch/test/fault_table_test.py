@@ -27,7 +27,7 @@ class FaultTableTest(ScratchCase):
         self.assertGreaterEqual(len([case for case in CASES if case.quick and not case.root]), 20)
 
     def test_all_quick_cases_pass(self):
-        code, output = call([find_program("ddm_launch", "fault_table"), "--subset", "quick", "--out", self.scratch],
+        code, output = call([find_program("fault_table"), "--subset", "quick", "--out", self.scratch],
                             limit_s=500.0)
         rows = read_rows(self.scratch, "faults.csv")
         self.assertEqual(rows[0], table.COLUMNS)

@@ -71,14 +71,14 @@ class OwnPlantTest(BothDriversCase):
         self.assertEqual((plant["type"], plant["friction"]), ("ddm_cart/Cart", 2.0))
 
     def test_a_sweep_finds_the_plant_in_the_workspace_that_is_sourced(self):
-        code, output = call([find_program("ddm_launch", "sweep"), "--preset", "debug", "--plant", "ddm_cart/cart",
+        code, output = call([find_program("sweep"), "--preset", "debug", "--plant", "ddm_cart/cart",
                              "--seeds", "1:2", "--trials", "0", "--out", self.out])
         self.assertEqual(code, 0, output)
         self.assertEqual(read_rows(self.out, "sweep.csv")[1][:3], ["1", "0", "30"])
 
     def test_simulate_knows_the_plant(self):
         with open(self.write("torques.csv", "force_n\n2\n2\n")) as stream:
-            text = subprocess.check_output([find_program("ddm_sim", "simulate"), "--plant", "ddm_cart/cart", "--start",
+            text = subprocess.check_output([find_program("simulate", "ddm_sim"), "--plant", "ddm_cart/cart", "--start",
                                             "0.1,0"], stdin=stream, universal_newlines=True)
         self.assertTrue(text.startswith("step,time_s,x_m,rate_m_per_s\n0,0,0.1"), text)
         # a constant force of 2 N: x = 0.1 + t - (1 - exp(-2 t)) / 2
@@ -93,7 +93,7 @@ class OwnPlantTest(BothDriversCase):
             code, output = call(["catkin"] + command, 300.0, environment=dict(self.without_example, HOME=self.scratch))
             self.assertEqual(code, 0, output)
         installed = environment_of(os.path.join(workspace, "install", "setup.bash"), self.without_example)
-        done = subprocess.run([find_program("ddm_sim", "simulate"), "--plant", "ddm_cart/cart"], input="force_n\n2\n",
+        done = subprocess.run([find_program("simulate", "ddm_sim"), "--plant", "ddm_cart/cart"], input="force_n\n2\n",
                               env=installed, stdout=subprocess.PIPE, universal_newlines=True)
         self.assertEqual(len(done.stdout.splitlines()), 3)
         found = subprocess.check_output(["rospack", "find", "ddm_cart"], env=installed, universal_newlines=True)

@@ -143,7 +143,7 @@ class PageCommandsTest(SharedScratchCase):
         if program in ("sim_node", "mpc_node", "dynparam", "speed_kernels"):
             return {"--benchmark_filter"}
         name, *words = program.split()
-        path = (find_program(package.group(1), name) if package
+        path = (find_program(name, package.group(1)) if package
                 else os.path.join(pages.CHECKOUT, "ddm_launch", "qa" if name == "fuzz.sh" else "scripts", name))
         code, output = call((["bash"] if name.endswith(".sh") else []) + [path] + words + ["--help"])
         assert code == 0, output

@@ -47,7 +47,7 @@ class PilcoTest(ScratchCase):
             names += ["trial_%03d/%s" % (k, name) for name in ("prediction.csv", "torques.csv", "trajectory.csv")]
             names += ["evaluation_%03d/%s" % (k, name) for name in ("torques.csv", "trajectory.csv")]
         arguments = ["--method", "pilco_state"] + self.debug(trials)
-        process = Process([find_program("ddm_launch", "run_experiment")] + arguments)
+        process = Process([find_program("run_experiment")] + arguments)
         process.waitForText("trial %2d/%d" % (2, trials), 60.0)
         process.send(signal.SIGKILL)
         process.waitForEnd(10.0)

@@ -34,7 +34,7 @@ class PredictionExperimentTest(SharedScratchCase):
 
     @classmethod
     def predict(cls, *arguments, plant="moving_tile", seed=3):
-        return call([find_program("ddm_launch", "prediction_experiment"), "--preset", "debug", "--plant", plant,
+        return call([find_program("prediction_experiment"), "--preset", "debug", "--plant", plant,
                      "--seed", seed, "--config", cls.quick] + list(arguments))
 
     def test_leaves_these_files_and_says_how_it_went(self):
@@ -158,7 +158,7 @@ class PredictionExperimentTest(SharedScratchCase):
         run, out = self.file("run"), self.file("feature_space.csv")
         code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 1, "--out", run)
         self.assertEqual(code, 0, output)
-        program = find_program("ddm_launch", "feature_space")
+        program = find_program("feature_space")
         code, output = call([program, run, "--trial", 1, "--step", 2, "--out", out])
         self.assertEqual(code, 0, output)
         rows = read_rows(out)
@@ -190,7 +190,7 @@ class PredictionExperimentTest(SharedScratchCase):
                                               "drop_rate: 0.2}\n")
         code, output = run_experiment("--preset", "debug", "--trials", 0, "--config", config, "--out", run)
         self.assertEqual(code, 0, output)
-        code, output = call([find_program("ddm_launch", "feature_space"), run, "--trial", 0, "--step", 29,
+        code, output = call([find_program("feature_space"), run, "--trial", 0, "--step", 29,
                              "--out", self.out])
         self.assertEqual(code, 0, output)  # each torque up to there was the recorded one
 

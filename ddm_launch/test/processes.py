@@ -3,18 +3,9 @@
 import contextlib
 import io
 
-import roslib.packages
-
 import rooms  # noqa: F401
+from ddm_launch.command import find_program
 from ddm_qa.processes import Process, free_port, line_by_line, start_roslaunch  # noqa: F401
-
-
-def find_program(package, name):
-    """Path of a program of a package, in the devel or the install space."""
-    paths = roslib.packages.find_node(package, name)
-    if not paths:
-        raise AssertionError("%s has no program %s: build the workspace first" % (package, name))
-    return paths[0]
 
 
 def call(command, limit_s=60.0, **kwargs):
@@ -25,7 +16,7 @@ def call(command, limit_s=60.0, **kwargs):
 
 def has_mujoco():
     """Whether ddm_sim was built with MuJoCo, which Ubuntu 20.04 does not have."""
-    code, output = call([find_program("ddm_sim", "simulate"), "--plant", "mujoco_pendulum", "--describe"])
+    code, output = call([find_program("simulate", "ddm_sim"), "--plant", "mujoco_pendulum", "--describe"])
     assert code == 0 or "libmujoco-dev" in output, output
     return code == 0
 
@@ -41,7 +32,7 @@ def call_main(main, *arguments):
 
 
 def run_experiment(*arguments, limit_s=60.0, **kwargs):
-    return call([find_program("ddm_launch", "run_experiment")] + list(arguments), limit_s, **kwargs)
+    return call([find_program("run_experiment")] + list(arguments), limit_s, **kwargs)
 
 
 def roslaunch(log_folder, *arguments, limit_s=60.0, **kwargs):

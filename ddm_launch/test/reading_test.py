@@ -59,7 +59,7 @@ class ReadingTest(SharedScratchCase):
             stream.write(QUICK)
         for name, plant, arguments in (("run_experiment", "pendulum", ["--trials", TRIALS, "--out", cls.run_folder]),
                                        ("prediction_experiment", "moving_tile", ["--out", cls.prediction])):
-            code, output = call([find_program("ddm_launch", name), "--preset", "debug", "--plant", plant, "--seed", 1,
+            code, output = call([find_program(name), "--preset", "debug", "--plant", plant, "--seed", 1,
                                  "--config", cls.config] + arguments)
             assert code == 0, output
         cls.model = os.path.join(cls.run_folder, "trial_001", "model.ddm")
@@ -75,7 +75,7 @@ class ReadingTest(SharedScratchCase):
 
     def assertReads(self, package, name, *arguments):
         """The program succeeds and leaves the folders as they are."""
-        code, output = call([find_program(package, name)] + list(arguments), LIMIT_S, folder=self.scratch)
+        code, output = call([find_program(name, package)] + list(arguments), LIMIT_S, folder=self.scratch)
         self.assertEqual(code, 0, output)
         self.assertUnchanged([name] + list(arguments))
 

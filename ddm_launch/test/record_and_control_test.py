@@ -19,7 +19,7 @@ VERDICT = r"final error \d+\.\d+ deg: .*reached"
 
 
 def train(out, *bags):
-    return call([find_program("ddm_model", "train_from_bags"), "--config", DEBUG, "--out", out] + list(bags))
+    return call([find_program("train_from_bags", "ddm_model"), "--config", DEBUG, "--out", out] + list(bags))
 
 
 class RecordAndControlTest(SharedScratchCase):
@@ -30,7 +30,7 @@ class RecordAndControlTest(SharedScratchCase):
         cls.bag, cls.plain, cls.model = (os.path.join(cls.class_scratch, name)
                                          for name in ("random.bag", "plain.bag", "model.ddm"))
         # On the master of this test, which is there before the launch: so nothing is missed.
-        recorder = Process([find_program("rosbag", "record"), "-O", cls.plain, "/camera/image_raw", "/torque",
+        recorder = Process([find_program("record", "rosbag"), "-O", cls.plain, "/camera/image_raw", "/torque",
                             "/goal_image"])
         try:
             recorder.waitForText("Subscribing to /goal_image", 20.0)

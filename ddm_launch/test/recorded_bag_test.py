@@ -43,7 +43,7 @@ class RecordedBagTest(ScratchCase):
         text = self.write("torques.csv", "torque_nm\n" + "".join("%r\n" % torque for torque in torques))
         frames = self.file(folder)
         with open(text) as stream:
-            subprocess.run([find_program("ddm_sim", "simulate"), "--plant", "pendulum", "--config", config, "--frames",
+            subprocess.run([find_program("simulate", "ddm_sim"), "--plant", "pendulum", "--config", config, "--frames",
                             frames, *options], stdin=stream, stdout=subprocess.DEVNULL, check=True)
         images = []
         for name in sorted(os.listdir(frames))[:len(torques)]:
@@ -57,7 +57,7 @@ class RecordedBagTest(ScratchCase):
         camera = rospy.Publisher(IMAGE_TOPIC, CompressedImage, queue_size=10)
         motor = rospy.Publisher(TORQUE_TOPIC, Float64, queue_size=10)
         path = self.file("robot.bag")
-        recorder = Process([find_program("rosbag", "record"), "-O", path, "/" + IMAGE_TOPIC, "/" + TORQUE_TOPIC])
+        recorder = Process([find_program("record", "rosbag"), "-O", path, "/" + IMAGE_TOPIC, "/" + TORQUE_TOPIC])
         self.addCleanup(recorder.stop)
         listening = threading.Event()
         watch = rospy.Timer(rospy.Duration(0.05), lambda _: listening.set() if min(
@@ -88,17 +88,17 @@ class RecordedBagTest(ScratchCase):
             stream.write(self.simulate([0.0], "goal", "--angle", "3.141592653589793")[0])
         model = self.file("model.ddm")
         names = ["--image-topic", IMAGE_TOPIC, "--torque-topic", TORQUE_TOPIC, "--dt", str(DT)]
-        code, output = call([find_program("ddm_model", "train_from_bags"), "--config", PRESET, *names, "--goal", goal,
+        code, output = call([find_program("train_from_bags", "ddm_model"), "--config", PRESET, *names, "--goal", goal,
                              "--seed", "1", "--out", model, bag])
         self.assertEqual(code, 0, output)
         num_frames = int(re.search(r"(?m)^frames: (\d+)$", output).group(1))
         self.assertIn(num_frames, range(290, 302), output)
         self.assertIn(int(re.search(r"(?m)^segments: (\d+)$", output).group(1)), range(1, 4), output)  # 1 where nobody is held up
-        code, output = call([find_program("ddm_model", "inspect"), "--model", model, *names, "--out", self.file("report"), bag])
+        code, output = call([find_program("inspect", "ddm_model"), "--model", model, *names, "--out", self.file("report"), bag])
         self.assertEqual(code, 0, output)
         self.assertIn("checks passed", output)
         self.assertNotIn("FAILED", output)
-        code, output = call([find_program("ddm_launch", "evaluate"), "--preset", "efficient", "--plant", "pendulum",
+        code, output = call([find_program("evaluate"), "--preset", "efficient", "--plant", "pendulum",
                              "--model", model, "--seeds", "0:5", "--out", self.out])
         self.assertEqual(code, 0, output)
         rows = read_rows(self.out, "evaluation.csv")

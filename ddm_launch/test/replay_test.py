@@ -96,14 +96,14 @@ class ReplayTest(SharedScratchCase):
     def test_time_that_does_not_come_is_named(self):
         rospy.set_param("/use_sim_time", True)
         self.addCleanup(rospy.delete_param, "/use_sim_time")
-        code, output = call([find_program("ddm_launch", "replay_node"), "_replay/bag:=" + self.bag,
+        code, output = call([find_program("replay_node"), "_replay/bag:=" + self.bag,
                              "_replay/model:=" + self.model, "_replay/timeout:=0.5"])
         self.assertEqual(code, 1, output)
         for word in ("0.5 s", "nobody", "/clock"):
             self.assertIn(word, output)
 
     def test_a_bag_of_another_robot_is_refused(self):
-        code, output = call([find_program("ddm_model", "train_from_bags"), "--config", DEBUG, "--config",
+        code, output = call([find_program("train_from_bags", "ddm_model"), "--config", DEBUG, "--config",
                              self.write("small.yaml", "image: {size: 20}\n"), "--out", self.file("small.ddm"),
                              self.bag])
         self.assertEqual(code, 0, output)

@@ -32,7 +32,7 @@ class ReproduceEfficientTest(ScratchCase):
                                *(["--nuisance", task.nuisance] if task.nuisance else []))
 
     def test_headline_and_ablation_come_to_tables_and_figures(self):
-        code, output = call([find_program("ddm_launch", "reproduce_efficient"), "--preset", "debug", "--seeds",
+        code, output = call([find_program("reproduce_efficient"), "--preset", "debug", "--seeds",
                              "100:102", "--ablation-seeds", "0:2", "--only", "efficient", "ablation", "--out",
                              self.out], 200.0)
         self.assertEqual(code, 0, output)

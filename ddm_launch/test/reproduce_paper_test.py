@@ -36,7 +36,7 @@ class ReproducePaperTest(ScratchCase):
         return os.path.join(self.out, *names)
 
     def command(self):
-        return [find_program("ddm_launch", "reproduce_paper"), "--preset", "debug", "--seeds", 2, "--out", self.out,
+        return [find_program("reproduce_paper"), "--preset", "debug", "--seeds", 2, "--out", self.out,
                 "--config", self.small]
 
     def test_goes_on_after_an_interruption_and_leaves_tables_and_figures(self):
@@ -110,7 +110,7 @@ class ReproducePaperTest(ScratchCase):
 
     def test_wrong_options_end_with_code_2(self):
         for arguments in (["--seeds", "0"], ["--seeds", "0:5"], ["--figures"]):
-            code, output = call([find_program("ddm_launch", "reproduce_paper"), "--out", self.out] + arguments)
+            code, output = call([find_program("reproduce_paper"), "--out", self.out] + arguments)
             self.assertEqual(code, 2, output)
         self.assertFalse(os.path.exists(self.out))
 

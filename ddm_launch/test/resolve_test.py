@@ -16,12 +16,12 @@ from scratch_case import ScratchCase  # noqa: E402
 class ResolveTest(ScratchCase):
     def resolve(self, *arguments):
         """What is printed, read as YAML."""
-        code, output = call([find_program("ddm_launch", "resolve")] + list(arguments), folder=self.scratch)
+        code, output = call([find_program("resolve")] + list(arguments), folder=self.scratch)
         self.assertEqual(code, 0, output)
         return yaml.safe_load(output)
 
     def assertRefused(self, words, *arguments, code=2):
-        actual, output = call([find_program("ddm_launch", "resolve")] + list(arguments), folder=self.scratch)
+        actual, output = call([find_program("resolve")] + list(arguments), folder=self.scratch)
         self.assertEqual(actual, code, output)
         for word in words:
             self.assertIn(word, output)

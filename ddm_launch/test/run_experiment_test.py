@@ -109,7 +109,7 @@ class RunExperimentTest(SharedScratchCase):
     def test_a_run_that_was_killed_goes_on_as_if_nothing_had_happened(self):
         trials = 12
         for finished in (0, 3, 6):
-            process = Process([find_program("ddm_launch", "run_experiment")] + self.debug(trials))
+            process = Process([find_program("run_experiment")] + self.debug(trials))
             process.waitForText("trial %2d/%d" % (finished, trials), 30.0)
             process.send(signal.SIGKILL)
             process.waitForEnd(10.0)
@@ -221,7 +221,7 @@ class RunExperimentTest(SharedScratchCase):
             self.assertRefused(1, ["cannot", out], *self.debug(out=out))
 
     def test_a_second_process_in_the_same_folder_is_refused(self):
-        first = Process([find_program("ddm_launch", "run_experiment")] + self.debug(999))
+        first = Process([find_program("run_experiment")] + self.debug(999))
         self.addCleanup(first.stop)
         first.waitForText("trial  0/999", 30.0)
         self.assertRefused(1, ["is running", self.out], *self.debug(999))
@@ -242,7 +242,7 @@ class RunExperimentTest(SharedScratchCase):
         except OSError as error:  # a bare chroot; what is drawn on a terminal is also tested in progress_test.cpp
             self.skipTest("this system gives no terminal: %s" % error)
         self.addCleanup(os.close, master)
-        code, _ = call([find_program("ddm_launch", "run_experiment")] + self.debug(0), output=slave)
+        code, _ = call([find_program("run_experiment")] + self.debug(0), output=slave)
         os.close(slave)
         shown = b""
         while b"results:" not in shown:

@@ -22,7 +22,7 @@ NODES = {"experiment_node", "master", "model_node", "mpc_node", "rosout", "sim_n
 
 class SoakTest(ScratchCase):
     def test_both_runs_leave_tables_and_a_figure_and_lockstep_loses_no_frame(self):
-        code, output = call([find_program("ddm_launch", "soak"), "--trials", "5", "--minutes", "0.3", "--steps", "12",
+        code, output = call([find_program("soak"), "--trials", "5", "--minutes", "0.3", "--steps", "12",
                              "--out", self.out], limit_s=200.0)
         targets = read_rows(self.out, "targets.csv")[1:]
         self.assertEqual(code, 0 if all(row[3] == "1" for row in targets) else 1, output)

@@ -123,7 +123,7 @@ class StartTest(SharedScratchCase):
         self.assertRefused(["method oracle", "only ddm"], "--method", "oracle", "--model", self.model)
 
     def evaluate(self, *arguments, model=None):
-        return call([find_program("ddm_launch", "evaluate"), "--model", model or self.model, "--preset", "debug",
+        return call([find_program("evaluate"), "--model", model or self.model, "--preset", "debug",
                      "--out", self.out] + list(arguments))
 
     def test_evaluate_repeats_the_evaluation_of_the_experiment(self):
@@ -135,7 +135,7 @@ class StartTest(SharedScratchCase):
         self.assertEqual(rows[1][:4], [theirs[0]] + theirs[3:6])
 
     def test_evaluate_writes_into_the_current_folder_unless_told_where(self):
-        code, output = call([find_program("ddm_launch", "evaluate"), "--preset", "debug", "--seeds", "1:2", "--model",
+        code, output = call([find_program("evaluate"), "--preset", "debug", "--seeds", "1:2", "--model",
                              self.model], folder=self.scratch)
         self.assertEqual(code, 0, output)
         self.assertEqual(len(read_rows(self.scratch, "evaluation.csv")), 2)
@@ -154,7 +154,7 @@ class StartTest(SharedScratchCase):
 
     def test_evaluate_takes_the_model_s_own_shape(self):
         config = self.write("shape.yaml", "image: {size: 40}\nmodel: {residual: true, increments: true, order: 3}\n")
-        code, output = call([find_program("ddm_model", "train_from_bags"), "--config", config, "--out",
+        code, output = call([find_program("train_from_bags", "ddm_model"), "--config", config, "--out",
                              self.file("shape.ddm")] + self.bags)
         self.assertEqual(code, 0, output)
         code, output = self.evaluate("--seeds", "0:2", model=self.file("shape.ddm"))

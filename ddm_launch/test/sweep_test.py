@@ -297,7 +297,7 @@ class SweepTest(SharedScratchCase):
                         environment={"PATH": self.scratch + ":/usr/bin:/bin"})
 
     def test_help_names_every_option_and_has_an_example(self):
-        code, output = call([find_program("ddm_launch", "sweep"), "--help"])
+        code, output = call([find_program("sweep"), "--help"])
         self.assertEqual(code, 0)
         for words in ("--preset", "--plant", "--seeds A:B", "--trials", "--out", "--jobs", "--hosts", "--slurm",
                       "--program", "-- ", "SBATCH_PARTITION", "example:", "rosrun ddm_launch sweep --preset paper"):

@@ -12,7 +12,7 @@ class Sweep(Process):
     """`rosrun ddm_launch sweep`, in a process group of its own."""
 
     def __init__(self, *arguments, environment=None, **kwargs):
-        command = ["/usr/bin/setsid", find_program("ddm_launch", "sweep")] + list(arguments)
+        command = ["/usr/bin/setsid", find_program("sweep")] + list(arguments)
         super().__init__(command, dict(line_by_line(), **(environment or {})), **kwargs)
 
     def kill_group(self):

@@ -9,10 +9,12 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "ddm_sim/angles.h"
+
 namespace ddm {
 namespace {
 
-constexpr double kTwoPi = 2 * 3.14159265358979323846;
+constexpr double kTwoPi = 2 * kPi;
 constexpr int kNumShapes = 30;
 
 /// A disc or a turned rectangle; lengths in pixels.

@@ -9,6 +9,7 @@
 #include <ddm_pilco/gp_training.h>
 #include <ddm_pilco/messages.h>
 #include <ddm_random/random_stream.h>
+#include <ddm_sim/angles.h>
 
 #include <boost/filesystem.hpp>
 #include <cmath>
@@ -22,7 +23,6 @@ namespace {
 
 constexpr int kRate = 0;  // places in x
 constexpr int kAngle = 1;
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kUprightWithin = 1e-9;  // [rad]
 
 /// (angle, rate) of the plant to x.

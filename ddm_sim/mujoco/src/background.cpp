@@ -19,9 +19,6 @@ using Bytes = std::vector<mjtByte>;
 constexpr int kTile = 256;  // width and height of a background [texels]
 constexpr int kNumDiscs = 40;
 
-/// What MuJoCo takes for a geom that leaves its colour to its material.
-const std::array<float, 4> kUnset = {0.5F, 0.5F, 0.5F, 1.0F};
-
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 /// The square picture, `width` texels wide. MuJoCo shows skies as seen from outside, mirrored.

@@ -4,12 +4,16 @@
 
 #include <mujoco/mujoco.h>
 
+#include <array>
 #include <random>
 #include <vector>
 
 #include "ddm_mujoco/render_options.h"
 
 namespace ddm {
+
+/// What MuJoCo takes for a geom that leaves its colour to its material.
+constexpr std::array<float, 4> kUnset = {0.5F, 0.5F, 0.5F, 1.0F};
 
 /// Sky, floor and walls are the skybox, which is made where a model has none, and all planes and
 /// boxes that stand still. Everything else keeps its look, and what lights and shadows do to floor and walls

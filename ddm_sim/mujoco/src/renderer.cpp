@@ -17,13 +17,14 @@
 #include <vector>
 
 #include "ddm_mujoco/mujoco_model.h"
+#include "ddm_sim/angles.h"
 #include "egl_context.h"
 #include "scene.h"
 
 namespace ddm {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
+constexpr double kDegree = kPi / 180.0;
 constexpr int kMaxDecor = 1000;  // drawn things that are not geoms: sites, tendons, joints
 constexpr int kNoCamera = -1;
 

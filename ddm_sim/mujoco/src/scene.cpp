@@ -6,15 +6,16 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <random>
 #include <utility>
 
+#include "ddm_sim/angles.h"
+
 namespace ddm {
 namespace {
 
-constexpr double kQuarterTurn = 1.57079632679489661923;
+constexpr double kQuarterTurn = 0.5 * kPi;
 constexpr double kNearest = 0.5;  // change of distance at a share of 1
 
 /// What is drawn apart, so that switching one nuisance on does not change another.
@@ -87,10 +88,9 @@ void Scene::drawColours(const SceneOptions& options) {
   const std::vector<float> own = geom_rgba_;
   shiftColours(&shift, model_->ngeom, &geom_rgba_);
   // A geom shows its own colour in the place of its material's if it is not the default one.
-  const std::array<float, 4> unset = {0.5F, 0.5F, 0.5F, 1.0F};
   for (int i = 0; i < model_->ngeom; ++i) {
     const auto first = own.begin() + 4 * i;
-    if (model_->geom_matid[i] >= 0 && std::equal(unset.begin(), unset.end(), first)) {
+    if (model_->geom_matid[i] >= 0 && std::equal(kUnset.begin(), kUnset.end(), first)) {
       std::copy(first, first + 4, geom_rgba_.begin() + 4 * i);
     }
   }
@@ -126,9 +126,7 @@ void Scene::moveCamera(mjvGLCamera* camera) const {
   Vector up(camera->up);
   Eigen::Matrix3f axes;  // of the camera in the world: right, up, backwards
   axes << forward.cross(up), up, -forward;
-  const Eigen::Vector3f middle(static_cast<float>(model_->stat.center[0]),
-                               static_cast<float>(model_->stat.center[1]),
-                               static_cast<float>(model_->stat.center[2]));
+  const Eigen::Vector3f middle = this->middle();
   const float distance = std::max((middle - position).dot(forward), camera->frustum_near);
   const Eigen::Vector3f target = position + distance * forward;
   const Eigen::Matrix3f turned = axes * turn_;
@@ -137,11 +135,13 @@ void Scene::moveCamera(mjvGLCamera* camera) const {
   position = target - nearer_ * distance * forward;
 }
 
+Eigen::Vector3f Scene::middle() const {
+  return Eigen::Map<const Eigen::Vector3d>(model_->stat.center).cast<float>();
+}
+
 void Scene::changeLights(mjvScene* drawn) const {
   if (lights_.empty()) return;
-  const Eigen::Vector3f middle(static_cast<float>(model_->stat.center[0]),
-                               static_cast<float>(model_->stat.center[1]),
-                               static_cast<float>(model_->stat.center[2]));
+  const Eigen::Vector3f middle = this->middle();
   for (int i = 0; i < drawn->nlight; ++i) {
     mjvLight& light = drawn->lights[i];
     const LightChange& change = lights_[static_cast<std::size_t>(i)];

@@ -34,6 +34,8 @@ class Scene {
   void changeLights(mjvScene* drawn) const;
 
  private:
+  Eigen::Vector3f middle() const;
+
   void drawCamera(const SceneOptions& options);
   void drawColours(const SceneOptions& options);
   void drawLights(const SceneOptions& options);
