@@ -80,9 +80,7 @@ std::string chosen(const std::string& key, const std::vector<Layer>& layers) {
 /// A plant's file is found from any folder.
 std::string chosenPlant(const std::vector<Layer>& layers) {
   const std::string name = chosen("plant", layers);
-  return fs::path(name).extension() == ".yaml" && fs::is_regular_file(name)
-             ? fs::absolute(name).lexically_normal().string()
-             : name;
+  return namesPlantFile(name) ? fs::absolute(name).lexically_normal().string() : name;
 }
 
 /// A saved configuration holds every value of its plant: with another plant's name it would be a

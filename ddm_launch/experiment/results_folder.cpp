@@ -4,6 +4,7 @@
 
 #include <ddm_files/plain_file.h>
 #include <ddm_params/config_blocks.h>
+#include <ddm_plant_plugin/plant_config.h>
 #include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>
@@ -72,8 +73,6 @@ std::shared_ptr<const int> lockFolder(const std::string& folder) {
   throw std::runtime_error("cannot lock the folder " + folder + ": " + std::strerror(errno));
 }
 
-bool namesAFile(const std::string& plant) { return fs::path(plant).extension() == ".yaml"; }
-
 }  // namespace
 
 std::string differencesOf(const YAML::Node& there, const YAML::Node& here, bool trial_finished) {
@@ -87,8 +86,8 @@ std::string differencesOf(const YAML::Node& there, const YAML::Node& here, bool 
     const std::pair<std::string, std::string>& value = entry.second;
     if (kMayDiffer.count(entry.first) > 0 || value.first == value.second) continue;
     // A plant's file may have moved, or its path be relative: what is in it is compared.
-    if (entry.first == "experiment/plant" && namesAFile(value.first) && namesAFile(value.second))
-      continue;
+    const bool of_files = namesPlantFile(value.first) && namesPlantFile(value.second);
+    if (entry.first == "experiment/plant" && of_files) continue;
     const bool chosen = robot && kChosenOnTheRobot.count(entry.first) > 0;
     if (chosen && !trial_finished) continue;
     differences += "\n - " + entry.first + ": " + words(value.first) + " there, " +

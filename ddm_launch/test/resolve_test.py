@@ -2,6 +2,7 @@
 # resolve: what the launch files take their configuration from.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
+import subprocess
 import sys
 
 import roslib.packages
@@ -74,6 +75,13 @@ class ResolveTest(ScratchCase):
             self.assertEqual(blocks["plant"]["model"], mjcf["plant"]["model"])
             self.assertEqual([blocks[block]["max_torque"] for block in ("model", "mpc")], [[0.05, 0.05]] * 2)
             self.assertEqual(blocks["controller"]["torque_dim"], 2)
+
+    def test_a_trial_without_a_bag_gives_the_nodes_access_to_no_other_folder(self):
+        for launch, folders in (("control.launch model:=/here/model.ddm", ["."]), ("record.launch bag:=/there/a.bag", ["/there"]),
+                                ("record.launch bag:=/a.bag", ["/"])):
+            output = subprocess.check_output(["roslaunch", "--dump-params", "ddm_launch"] + launch.split(), stderr=subprocess.DEVNULL)
+            blocks = yaml.safe_load(yaml.safe_load(output)["/configuration"])
+            self.assertEqual(blocks["access"]["bags"], folders, launch)
 
     def test_bags_that_a_file_starts_from_may_be_read_by_the_nodes(self):
         self.write("start.yaml", "start: {bags: [/a.bag]}\n")

@@ -79,6 +79,15 @@ TEST_F(RunFolderTest, TrialsMayGrow) {
   EXPECT_EQ(YAML::LoadFile(file("config.yaml"))["experiment"]["trials"].as<int>(), 5);
 }
 
+TEST_F(RunFolderTest, ThePathOfAPlantsFileMayDifferButNotItsName) {
+  configuration_.experiment.plant = "./robot.yaml";
+  finish(1);
+  configuration_.experiment.plant = "/moved/robot.yaml";
+  EXPECT_EQ(RunFolder(configuration_).rows().size(), 1u);
+  configuration_.experiment.plant = "pendulum_gravity";
+  expectRefused({"experiment/plant: ./robot.yaml there, pendulum_gravity here"});
+}
+
 TEST_F(RunFolderTest, TimeLimitsMayDiffer) {
   finish(1);
   configuration_.experiment.timeout = 10.0;

@@ -1,6 +1,7 @@
 // Tests of how mpc_node stops two motors, and that it does so while a plan is computed.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/testing/node_main.h>
+#include <ddm_node/topic_peers.h>
 #include <ddm_node/waiting.h>
 #include <dynamic_reconfigure/Reconfigure.h>
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <future>
 #include <optional>
 #include <string>
 #include <vector>
@@ -76,6 +78,39 @@ TEST_F(TwoMotors, GetZeroWhenAnImageIsRefused) {
   ASSERT_TRUE(waitUntil([this] { return effort_.messages.size() == 4; }));
   EXPECT_EQ(effort_.messages[2].data, kZeros);
   EXPECT_EQ(effort_.messages[3].data, kZeros);
+}
+
+/// Goes on when this goes.
+struct StoppedMaster {
+  explicit StoppedMaster(pid_t master) : pid(master) { kill(pid, SIGSTOP); }
+  ~StoppedMaster() { kill(pid, SIGCONT); }
+  pid_t pid;
+};
+
+TEST_F(TwoMotors, GetZeroWhileAnOptionThatIsTurnedWaitsForTheMaster) {
+  ros::ServiceClient turn = client_.nh.serviceClient<dynamic_reconfigure::Reconfigure>(
+      "mpc_node/mpc/set_parameters", /*persistent=*/true);
+  std::optional<XmlRpc::XmlRpcValue> master = askMaster("getPid", ros::this_node::getName());
+  ASSERT_TRUE(master.has_value());
+  begin(trialGoal(10, 1.0));
+  show(2);
+  std::future<bool> turned;
+  {
+    const StoppedMaster stopped(static_cast<int>(*master));
+    turned = std::async(std::launch::async, [&turn] {
+      dynamic_reconfigure::Reconfigure service;
+      service.request.config.doubles.resize(1);
+      service.request.config.doubles[0].name = "control_weight";
+      service.request.config.doubles[0].value = 0.02;
+      return turn.call(service);
+    });
+    EXPECT_TRUE(waitUntil([this] { return client_.logged("mpc/control_weight is 0.02"); }));
+    action_.cancelGoal();
+    expectEnd(State::PREEMPTED);
+    expectEffortsOfTorquesAndThenZeros();
+    EXPECT_NE(turned.wait_for(std::chrono::seconds(0)), std::future_status::ready);
+  }
+  EXPECT_TRUE(turned.get());
 }
 
 class LongPlan : public TwoMotors {

@@ -6,8 +6,13 @@
 #include <ros/ros.h>
 #include <signal.h>
 #include <std_msgs/Float64.h>
+#include <xmlrpcpp/XmlRpc.h>
 
+#include <atomic>
 #include <functional>
+#include <string>
+#include <thread>
+#include <vector>
 
 namespace ddm {
 namespace {
@@ -62,6 +67,42 @@ TEST_F(TopicPeersTest, ATopicWithTwoPublishersIsNamedUnlessOneOfThemIsThisNode) 
   const ros::Publisher own = nh_.advertise<std_msgs::Float64>("/spoken", 1);
   const Lines expected = {"/disputed: /first, /second"};
   EXPECT_EQ(eventually(expected, [] { return sharedTopics({"/disputed", "/spoken"}); }), expected);
+}
+
+/// Answers every question for connections with numbers.
+class Babbler : public XmlRpc::XmlRpcServerMethod {
+ public:
+  explicit Babbler(XmlRpc::XmlRpcServer* server) : XmlRpcServerMethod("getBusInfo", server) {}
+  void execute(XmlRpc::XmlRpcValue& /*request*/, XmlRpc::XmlRpcValue& answer) override {
+    answer[0] = 1;
+    answer[1] = "";
+    for (int i = 0; i < 5; ++i) answer[2][0][i] = i;
+  }
+};
+
+TEST_F(TopicPeersTest, ANodeThatAnswersWithOtherTypesIsNamed) {
+  XmlRpc::XmlRpcServer server;
+  Babbler babbler(&server);
+  ASSERT_TRUE(server.bindAndListen(0));
+  std::atomic<bool> ended{false};
+  std::thread work([&] {
+    while (!ended) server.work(0.05);
+  });
+  XmlRpc::XmlRpcValue node;
+  node[0] = "/babbler";
+  node[1] = "/spoken";
+  node[2] = "std_msgs/Float64";
+  node[3] = "http://localhost:" + std::to_string(server.get_port()) + "/";
+  EXPECT_TRUE(askMaster("registerPublisher", node).has_value());
+  const Lines expected = {"/babbler -> " + ros::this_node::getName() + " on /spoken"};
+  EXPECT_EQ(eventually(expected, [] { return missingConnections({"/spoken"}); }), expected);
+  XmlRpc::XmlRpcValue gone;
+  gone[0] = node[0];
+  gone[1] = node[1];
+  gone[2] = node[3];
+  EXPECT_TRUE(askMaster("unregisterPublisher", gone).has_value());
+  ended = true;
+  work.join();
 }
 
 TEST_F(TopicPeersTest, AMasterThatWasStoppedIsNotWaitedForWithoutEnd) {

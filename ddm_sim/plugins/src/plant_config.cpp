@@ -111,8 +111,10 @@ std::shared_ptr<const PlantPlugin> readPlant(ParamReader* reader) {
   return plugin;
 }
 
+bool namesPlantFile(const std::string& name) { return fs::path(name).extension() == ".yaml"; }
+
 std::string plantFile(const std::string& name) {
-  if (fs::path(name).extension() == ".yaml" && fs::is_regular_file(name)) return name;
+  if (namesPlantFile(name) && fs::is_regular_file(name)) return name;
   const std::string::size_type slash = name.find('/');
   const bool ours = slash == std::string::npos;
   const std::string package = ours ? "ddm_sim" : name.substr(0, slash);

@@ -17,6 +17,9 @@ namespace ddm {
 /// @throws std::runtime_error if its library cannot be loaded
 std::shared_ptr<const PlantPlugin> readPlant(ParamReader* reader);
 
+/// Whether a plant is named by its file, not by a name in a package.
+bool namesPlantFile(const std::string& name);
+
 /// The file that describes a plant: config/NAME.yaml of ddm_sim, for PACKAGE/NAME of that package,
 /// or the file itself, if the name ends in .yaml and there is one.
 /// @throws std::invalid_argument naming what there is, if there is no such file or package
