@@ -101,7 +101,7 @@ def draw_all(figure, trials):
                        pad=3)
     target, target_label = target_handle()
     add_legend(figure, place, [Line2D([], [], color=colour, linestyle=style) for colour, style in (
-        STYLES[True], STYLES[False])] + [target], ["success (counted above)", "none", target_label], ncol=3)
+        STYLES[True], STYLES[False])] + [target], ["success (counted above)", "failure", target_label], ncol=3)
 
 
 def add_arguments(parser):
