@@ -43,6 +43,7 @@ class ModelNode {
     health_.begin(goal->trial);
     try {
       for (const std::string& bag : goal->bags) access_.require(bag);
+      ROS_INFO("trial %u: reads %zu bags, then trains", goal->trial, goal->bags.size());
       const DataSet data = bags_.read(goal->bags);
       if (!data.hasGoal()) {
         ROS_WARN("no bag holds a goal image: the model can predict, but not be planned with");

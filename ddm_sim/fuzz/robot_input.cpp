@@ -49,7 +49,8 @@ void act(std::uint8_t kind, ddm::SteadyTime time, ddm::Stamp stamp, FuzzBytes* b
     case 7: {
       std::vector<double> values(bytes->number<std::uint8_t>() % 4);
       for (double& value : values) value = bytes->number<double>();
-      gate->takeJoints(time, std::vector<std::string>(values.size(), "joint"), values, values);
+      gate->takeJoints(time, "/driver", std::vector<std::string>(values.size(), "joint"), values,
+                       values);
       break;
     }
     default: {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <ddm_msgs/topics.h>
+#include <ddm_node/waiting.h>
 #include <poll.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
@@ -10,9 +11,11 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <chrono>
-#include <future>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 
 namespace ddm {
 
@@ -20,22 +23,25 @@ namespace ddm {
 class ResetRoutine {
  public:
   /// @param service  std_srvs/Trigger that brings the robot to its start; empty: a person does
-  ResetRoutine(ros::NodeHandle nh, const std::string& service)
+  /// @param moves    called with true before the service gets the motors, and then with false
+  ResetRoutine(ros::NodeHandle nh, const std::string& service, std::function<void(bool)> moves)
       : nh_(nh),
         service_(service.empty() ? "" : nh.resolveName(service)),
+        moves_(std::move(moves)),
         done_server_(nh_.advertiseService(topics::kResetDone, &ResetRoutine::onDone, this)) {}
 
   /// Brings the robot to its start. Blocks until it is there, or until the deadline.
   /// @return what went wrong; empty: nothing
   std::string run(const ros::SteadyTime& deadline) {
-    return byService() ? callService(deadline) : askPerson(deadline);
+    return service_.empty() ? askPerson(deadline) : callService(deadline);
   }
 
-  bool byService() const { return !service_.empty(); }
-
  private:
+  static double timeLeft(const ros::SteadyTime& deadline) {
+    return (deadline - ros::SteadyTime::now()).toSec();
+  }
   static bool timeIsLeft(const ros::SteadyTime& deadline) {
-    return ros::ok() && ros::SteadyTime::now() < deadline;
+    return ros::ok() && timeLeft(deadline) > 0.0;
   }
 
   /// Waits a moment for a line on the terminal.
@@ -51,35 +57,36 @@ class ResetRoutine {
     return false;
   }
 
+  /// In threads of their own: a master that is stopped may never answer.
   std::string callService(const ros::SteadyTime& deadline) {
-    // Persistent, because only then does shutdown() below end a call.
-    ros::ServiceClient client = nh_.serviceClient<std_srvs::Trigger>(service_, /*persistent=*/true);
-    while (!client.exists()) {
+    const auto exists = [name = service_] {
+      return ros::service::exists(name, /*print_failure=*/false);
+    };
+    while (!answerWithin(timeLeft(deadline), exists).value_or(false)) {
       if (!timeIsLeft(deadline)) {
         return "service " + service_ +
                " is not offered: start its node, or correct robot/reset_service";
       }
       poll_.sleep();
-      client = nh_.serviceClient<std_srvs::Trigger>(service_, /*persistent=*/true);
     }
-    std_srvs::Trigger trigger;
-    std::future<bool> answer =
-        std::async(std::launch::async, [&client, &trigger] { return client.call(trigger); });
-    while (answer.wait_for(std::chrono::milliseconds(kPoll_ms)) != std::future_status::ready) {
-      if (timeIsLeft(deadline)) continue;
-      client.shutdown();
-      answer.wait();
+    const auto trigger = std::make_shared<std_srvs::Trigger>();
+    moves_(true);
+    const std::optional<bool> answer = answerWithin(timeLeft(deadline), [trigger, name = service_] {
+      return ros::service::call(name, *trigger);
+    });
+    moves_(false);
+    if (!answer) {
       return "service " + service_ +
              " does not answer: look at its node, or set a longer robot/reset_timeout";
     }
-    if (!answer.get()) {
+    if (!*answer) {
       return "service " + service_ + " ended without an answer: look at the output of its node";
     }
-    if (trigger.response.success) return "";
-    if (trigger.response.message.empty()) {
+    if (trigger->response.success) return "";
+    if (trigger->response.message.empty()) {
       return "service " + service_ + " failed without a message: look at the output of its node";
     }
-    return "service " + service_ + ": " + trigger.response.message;
+    return "service " + service_ + ": " + trigger->response.message;
   }
 
   std::string askPerson(const ros::SteadyTime& deadline) {
@@ -111,6 +118,7 @@ class ResetRoutine {
   const ros::WallDuration poll_{1e-3 * kPoll_ms};
   ros::NodeHandle nh_;
   std::string service_;
+  std::function<void(bool)> moves_;
   std::atomic<bool> asking_{false};
   std::atomic<bool> done_{false};
   ros::ServiceServer done_server_;

@@ -22,6 +22,7 @@ constexpr int kQueue = 10;
 constexpr int kRecordedQueue = 1000;             // a recorder that is slow must not lose one
 constexpr std::chrono::seconds kFreshCamera(1);  // one that is silent for longer is not there
 constexpr double kStepTolerance = 0.1;           // of dt
+constexpr char kGoalInTrial[] = "a trial is under way, and it has a goal: wait for its end";
 const ros::WallDuration kWatchPeriod(0.1);
 const ros::WallDuration kRemindPeriod(10.0);
 const ros::WallDuration kDiagnosisPeriod(1.0);
@@ -40,7 +41,11 @@ RobotNode::RobotNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size,
                      const RobotOptions& options)
     : image_size_(image_size),
       options_(options),
-      routine_(nh, options.reset_service),
+      routine_(nh, options.reset_service,
+               [this](bool moves) {
+                 const std::lock_guard<std::mutex> lock(mutex_);
+                 routine_moves_ = moves;
+               }),
       gate_(options),
       stamps_(options.dt),
       picker_(options.dt),
@@ -81,7 +86,7 @@ RobotNode::RobotNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size,
   timer_ =
       nh.createSteadyTimer(ros::WallDuration(1.0 / options.effort_rate), &RobotNode::onTick, this);
   diagnosis_timer_ = nh.createSteadyTimer(kDiagnosisPeriod, [this](const ros::SteadyTimerEvent&) {
-    guarded([this] { updater_.update(); });
+    guarded([this] { updater_.force_update(); });  // update() goes by a clock that may be set
   });
   enable_server_ = nh.advertiseService(topics::kEnable, &RobotNode::onEnable, this);
   take_goal_server_ = nh.advertiseService(topics::kTakeGoal, &RobotNode::onTakeGoal, this);
@@ -91,6 +96,12 @@ RobotNode::RobotNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size,
 
 void RobotNode::stopMotors(const std::string& reason) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  stop(reason);
+}
+
+/// To be called with the lock. Ends what the user's reset has of the motors, too.
+void RobotNode::stop(const std::string& reason) {
+  routine_moves_ = false;
   gate_.stop(reason);
   publishEffort();
 }
@@ -125,12 +136,16 @@ void RobotNode::onFrame(const sensor_msgs::ImageConstPtr& frame) {
 
 void RobotNode::takeFrame(const sensor_msgs::ImageConstPtr& frame) {
   const Stamp stamp = toStamp(frame->header.stamp);
+  const auto num_cameras = frame_sub_.getNumPublishers();
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     frame_ = frame;
     frame_arrival_ = steadyNow();
     frame_arrival_clock_ = toStamp(ros::WallTime::now());
-    const std::string refusal = stamps_.take(frame_arrival_, frame_arrival_clock_, stamp);
+    const std::string refusal =
+        num_cameras > 1
+            ? std::to_string(num_cameras) + " nodes publish images there: end all but one"
+            : stamps_.take(frame_arrival_, frame_arrival_clock_, stamp);
     if (!refusal.empty()) {
       frame_problem_ = refusal;
       logFrameProblem();
@@ -173,7 +188,9 @@ void RobotNode::onTorque(const ddm_msgs::TorqueConstPtr& torque) {
 void RobotNode::takeTorque(const ddm_msgs::Torque& torque) {
   const Stamp arrival = toStamp(ros::Time::now());
   const Stamp stamp = toStamp(torque.header.stamp);
+  const auto num_publishers = static_cast<int>(torque_sub_.getNumPublishers());
   const std::lock_guard<std::mutex> lock(mutex_);
+  gate_.setPublishers(num_publishers);
   const bool acts = gate_.takeTorque(steadyNow(), stamp, torque.torque);
   publishEffort();
   if (acts) {
@@ -189,10 +206,12 @@ void RobotNode::takeTorque(const ddm_msgs::Torque& torque) {
   worst_latency_ = std::max(worst_latency_, latency.data);
 }
 
-void RobotNode::onJointStates(const sensor_msgs::JointStateConstPtr& joints) {
+void RobotNode::onJointStates(const ros::MessageEvent<const sensor_msgs::JointState>& event) {
   guarded([&] {
+    const sensor_msgs::JointState& joints = *event.getConstMessage();
     const std::lock_guard<std::mutex> lock(mutex_);
-    gate_.takeJoints(steadyNow(), joints->name, joints->position, joints->velocity);
+    gate_.takeJoints(steadyNow(), event.getPublisherName(), joints.name, joints.position,
+                     joints.velocity);
     if (was_armed_ && !gate_.armed()) publishEffort();  // not at each report
   });
 }
@@ -270,7 +289,7 @@ bool RobotNode::onEnable(std_srvs::SetBool::Request& request,
   if (request.data) {
     problem = gate_.arm(steadyNow());
   } else {
-    gate_.stop("service enable stopped them");
+    stop("service enable stopped them");
   }
   publishEffort();
   response.success = problem.empty();
@@ -289,9 +308,11 @@ void RobotNode::loadGoal() {
   publishGoal(encodeImage(decodeImage(picture, image_size_), image_size_, ros::Time::now(), ""));
 }
 
+/// @throws std::runtime_error in a trial
 void RobotNode::publishGoal(const sensor_msgs::Image& goal) {
-  goal_pub_.publish(goal);
   const std::lock_guard<std::mutex> lock(mutex_);
+  if (gate_.inTrial()) throw std::runtime_error(kGoalInTrial);
+  goal_pub_.publish(goal);
   has_goal_ = true;
 }
 
@@ -301,7 +322,7 @@ bool RobotNode::onTakeGoal(std_srvs::Trigger::Request& /*request*/,
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (gate_.inTrial()) {
-      response.message = "a trial is under way, and it has a goal: wait for its end";
+      response.message = kGoalInTrial;
       return true;
     }
     if (!seesCamera()) {
@@ -363,19 +384,11 @@ bool RobotNode::onReset(ddm_msgs::Reset::Request& /*request*/,
 }
 
 std::string RobotNode::bringToStart(const ros::SteadyTime& deadline) {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    routine_moves_ = routine_.byService();
-  }
-  std::string problem;
   try {
-    problem = routine_.run(deadline);
+    return routine_.run(deadline);
   } catch (const std::exception& e) {
-    problem = std::string("the robot was not brought to its start: ") + e.what();
+    return std::string("the robot was not brought to its start: ") + e.what();
   }
-  const std::lock_guard<std::mutex> lock(mutex_);
-  routine_moves_ = false;
-  return problem;
 }
 
 /// @return what has not come in time; empty: nothing

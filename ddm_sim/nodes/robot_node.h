@@ -45,13 +45,14 @@ class RobotNode {
   void guarded(const Work& work);
   void onFrame(const sensor_msgs::ImageConstPtr& frame);
   void onTorque(const ddm_msgs::TorqueConstPtr& torque);
-  void onJointStates(const sensor_msgs::JointStateConstPtr& joints);
+  void onJointStates(const ros::MessageEvent<const sensor_msgs::JointState>& event);
   void onTrialEnd(const ddm_msgs::RunTrialActionResultConstPtr& result);
   void onTick(const ros::SteadyTimerEvent& event);
   bool onEnable(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   bool onTakeGoal(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Response& response);
 
+  void stop(const std::string& reason);
   void takeFrame(const sensor_msgs::ImageConstPtr& frame);
   void takeTorque(const ddm_msgs::Torque& torque);
   bool seesCamera() const;

@@ -11,7 +11,8 @@ import rosunit
 from sensor_msgs.msg import JointState
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from robot_stand_in import RobotCase, wait_until  # noqa: E402
+from process import Process  # noqa: E402
+from robot_stand_in import LIMIT_S, RobotCase, wait_until  # noqa: E402
 
 LIMITS = {"joints": ["arm"], "position_limits": [[-2.0, 2.0]], "speed_limit": [8.0]}
 
@@ -55,6 +56,12 @@ class RobotLimitsTest(RobotCase):
         self.assertFalse(refused.success)
         self.assertIn(words, refused.message)
         self.assertEqual(self.robot.effort(), 0.0)
+
+    def test_a_joint_that_two_nodes_report_stops_the_motors(self):
+        second = Process(["rostopic", "pub", "-r", "5", "joint_states", "sensor_msgs/JointState", "{name: [arm], position: [0.0], velocity: [0.0]}"])
+        self.addCleanup(second.stop)
+        self.robot.process.waitForText("reported on joint_states by", LIMIT_S)
+        self.assertStopped("its driver alone")
 
     def assertOnlyEnableHelps(self):
         seen = len(self.robot.efforts.messages)

@@ -40,6 +40,8 @@ class RobotMotorTest(RobotCase):
         self.robot.answer(2.0)
         self.assertEqual(self.robot.effort(), 0.0)
         self.enterTrial()
+        self.robot.answerAll(2.0)  # or it would be zero soon anyway
+        self.robot.waitForEffort(2.0)
         answer = self.robot.enable(False)
         self.assertTrue(answer.success)
         self.assertIn(" off", answer.message)
@@ -144,6 +146,25 @@ class RobotMotorTest(RobotCase):
 
     def test_the_last_word_is_zero_where_the_terminal_is_closed(self):
         self.endBy(signal.SIGHUP)
+
+    def test_the_last_word_is_zero_where_somebody_quits(self):
+        self.endBy(signal.SIGQUIT)
+
+    def test_a_node_that_somebody_suspends_goes_on(self):
+        self.enterTrial()
+        self.robot.process.send(signal.SIGTSTP)
+        self.robot.waitForEffort(0.0)
+
+    def test_two_cameras_bring_zero_torque(self):
+        self.robot.answerAll(2.0)
+        self.assertTrue(self.robot.enable(True).success)
+        self.robot.waitForEffort(2.0)
+        second = Process(["rostopic", "pub", "-r", "1", "camera/source", "sensor_msgs/Image", "{}"])
+        self.addCleanup(second.stop)
+        self.robot.process.waitForText("2 nodes publish images there", LIMIT_S)
+        self.robot.waitForEffort(0.0)
+        second.stop()
+        self.robot.waitForEffort(2.0)
 
     def test_the_last_word_is_zero_where_the_master_ends_the_node_too(self):
         self.enterTrial()

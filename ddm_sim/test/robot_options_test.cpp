@@ -75,6 +75,8 @@ TEST(RobotOptions, EachKeyHasItsRule) {
     EXPECT_NE(problem([&](auto* o) { o->speed_limit = {bad}; }).find("robot/speed_limit"),
               std::string::npos);
   }
+  EXPECT_NE(problem([](auto* o) { o->effort_rate = 19.0; }).find("robot/effort_rate"),
+            std::string::npos);
   EXPECT_NE(problem([](auto* o) { o->joints = {"arm"}; }).find("robot/joints"), std::string::npos);
   EXPECT_TRUE(testing::names(problem([](auto* o) {
                                o->joints = {"elbow", "wrist"};

@@ -88,6 +88,33 @@ class RobotResetTest(RobotCase):
         self.assertLessEqual(heard[0], 2)  # one may have been on its way
         self.assertEqual(robot.effort(), 0.0)
 
+    def test_a_stop_takes_the_motor_from_the_service_of_the_user(self):
+        robot = self.start("_robot/reset_service:=go_home")
+        wait_until(lambda: robot.takeGoal().success, "a camera")
+        called, released = threading.Event(), threading.Event()
+        self.addCleanup(released.set)
+
+        def goHome(_):
+            called.set()
+            released.wait(LIMIT_S)
+            return TriggerResponse(success=True)
+
+        self.offer("go_home", goHome)
+        answer = robot.reset()
+        self.assertTrue(called.wait(LIMIT_S))
+        self.assertTrue(robot.enable(False).success)
+        robot.waitForEffort(0.0)
+        released.set()
+        wait_until(lambda: robot.enable(True).success and answer().success, "the end of the reset")
+
+    def test_the_motor_gets_zero_while_the_service_of_the_user_is_not_there(self):
+        robot = self.start("_robot/reset_service:=go_home", "_robot/reset_timeout:=3.0")
+        wait_until(lambda: robot.takeGoal().success, "a camera")
+        answer = robot.reset()
+        for _ in range(5):
+            self.assertEqual(robot.effort(), 0.0)
+        self.assertIn("not offered", answer().message)
+
     def test_what_does_not_come_in_time_is_named(self):
         robot = self.start("_robot/reset_service:=go_home", "_robot/reset_timeout:=1.5")
         self.assertIn("take_goal", robot.reset()().message)

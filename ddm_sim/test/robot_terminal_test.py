@@ -4,9 +4,13 @@
 import os
 import select
 import signal
+import socket
+import struct
 import sys
 import threading
+import xmlrpc.client
 
+import rosgraph
 import rospy
 import rosunit
 
@@ -56,8 +60,22 @@ class RobotTerminalTest(RobotCase):
         self.robot.waitForEffort(0.0)
 
     def test_the_motor_stops_when_somebody_says_so(self):
+        self.robot.answerAll(2.0)
+        self.robot.waitForEffort(2.0)
         self.assertTrue(self.robot.enable(False).success)
         self.robot.waitForEffort(0.0)
+
+    def test_the_motor_stops_after_somebody_asked_for_a_topic_in_a_wrong_way(self):
+        uri = rosgraph.Master("/robot_terminal_test").lookupNode("/robot_node")
+        _, _, (_, host, port) = xmlrpc.client.ServerProxy(uri).requestTopic("/somebody", "/applied_torque", [["TCPROS"]])
+        field = b"topic=/applied_torque"
+        header = struct.pack("<I", len(field)) + field  # neither type nor md5sum: roscpp logs an error
+        with socket.create_connection((host, port), LIMIT_S) as connection:
+            connection.sendall(struct.pack("<I", len(header)) + header)
+            connection.settimeout(LIMIT_S)
+            self.assertIn(b"error", connection.recv(4096))
+            self.robot.camera.showing = False
+            self.robot.waitForEffort(0.0)
 
     def test_the_node_ends_and_its_last_word_is_zero(self):
         self.robot.process.send(signal.SIGINT)

@@ -145,9 +145,23 @@ TEST(StampCheck, ImagesThatComeLateAreAcceptedAndSoIsTheNextOneInTime) {
 TEST(StampCheck, AfterTenSecondsOfDelayTheFirstImageInTimeIsNotTakenForAJump) {
   Robot robot;
   double now = robot.images(0.0, 2.0);
-  for (const double end = now + 10.0; now < end; now += kPeriod) robot.image(now, 0.0, 3.0 * kDt);
+  for (const double end = now + 10.0; now < end; now += kPeriod) {
+    robot.image(now, 0.0, 3.0 * kDt);
+    if (end - now > 9.5) continue;
+    EXPECT_EQ(robot.effort(now), 0.0) << "it is late however long it lasts";
+  }
   now = robot.images(now, now + 2.0);
   EXPECT_EQ(robot.effort(now), 2.0);
+}
+
+TEST(StampCheck, OneImageInTimeTellsThatTheNextOnesAreLate) {
+  Robot robot;
+  robot.image(0.0);
+  for (double now = kPeriod; now < 5.0; now += kPeriod) {
+    robot.image(now, 0.0, 3.0 * kDt);
+    if (now < 0.5) continue;
+    EXPECT_EQ(robot.effort(now), 0.0) << now;
+  }
 }
 
 TEST(StampCheck, AJitteryTransportRefusesNothing) {

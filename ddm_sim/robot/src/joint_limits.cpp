@@ -24,8 +24,8 @@ JointLimits::JointLimits(const RobotOptions& options) : named_(!options.joints.e
   }
 }
 
-void JointLimits::take(SteadyTime now, const std::vector<std::string>& names,
-                       const std::vector<double>& positions,
+void JointLimits::take(SteadyTime now, const std::string& reporter,
+                       const std::vector<std::string>& names, const std::vector<double>& positions,
                        const std::vector<double>& velocities) {
   const std::size_t num_reported = std::max(positions.size(), velocities.size());
   unfit_.clear();
@@ -43,9 +43,24 @@ void JointLimits::take(SteadyTime now, const std::vector<std::string>& names,
       if (found == names.end()) continue;
       index = static_cast<std::size_t>(found - names.begin());
     }
+    joints_[i].violation = findRival(&joints_[i], now, reporter);
     joints_[i].heard = now;
-    joints_[i].violation = check(joints_[i], index, positions, velocities);
+    if (joints_[i].violation.empty()) {
+      joints_[i].violation = check(joints_[i], index, positions, velocities);
+    }
   }
+}
+
+std::string JointLimits::findRival(Joint* joint, SteadyTime now, const std::string& reporter) {
+  if (joint->reporter != reporter && joint->heard != SteadyTime() &&
+      now - joint->heard <= kTakeover) {
+    joint->rival = joint->reporter;
+    joint->contested = now;
+  }
+  joint->reporter = reporter;
+  if (joint->contested == SteadyTime() || now - joint->contested > kTakeover) return "";
+  return "joint " + joint->name + " is reported on joint_states by " + joint->rival + " and by " +
+         reporter + ": let its driver alone report it";
 }
 
 std::string JointLimits::check(const Joint& joint, std::size_t index,

@@ -11,6 +11,7 @@ namespace ddm {
 namespace {
 
 constexpr std::size_t kNumOffsets = 100;  // some seconds of a camera: drift within them is nothing
+constexpr int kLargestDrift = 500;        // one part in so many: clocks drift apart by far less
 
 Stamp median(const std::deque<Stamp>& values) {
   std::vector<Stamp> sorted(values.begin(), values.end());
@@ -60,13 +61,17 @@ std::string StampCheck::take(SteadyTime arrival, Stamp clock, Stamp stamp) {
   last_ = stamp;
   offsets_.push_back(offset);
   if (offsets_.size() > kNumOffsets) offsets_.pop_front();
-  taken_ = arrival + std::min(Stamp(0), offset - median(offsets_));
+  const Stamp usual = median(offsets_);
+  usual_ = usual_ ? std::max(usual, *usual_ - (arrival - arrival_) / kLargestDrift) : usual;
+  arrival_ = arrival;
+  taken_ = arrival + std::min(Stamp(0), offset - *usual_);
   return "";
 }
 
 void StampCheck::restart() {
   last_.reset();
   offsets_.clear();
+  usual_.reset();
 }
 
 }  // namespace ddm

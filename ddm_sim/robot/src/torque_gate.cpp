@@ -115,10 +115,11 @@ bool TorqueGate::takeTorque(SteadyTime now, Stamp stamp, const std::vector<doubl
   return true;
 }
 
-void TorqueGate::takeJoints(SteadyTime now, const std::vector<std::string>& names,
+void TorqueGate::takeJoints(SteadyTime now, const std::string& reporter,
+                            const std::vector<std::string>& names,
                             const std::vector<double>& positions,
                             const std::vector<double>& velocities) {
-  joints_.take(now, names, positions, velocities);
+  joints_.take(now, reporter, names, positions, velocities);
   if (inTrial() && !joints_.violation().empty()) stop(joints_.violation());
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ros/console.h>
 #include <ros/ros.h>
 #include <ros/xmlrpc_manager.h>
 
@@ -41,6 +42,14 @@ inline void endSoon(int code) {
   }).detach();
 }
 
+/// roscpp's one thread that sends also logs, as where a subscriber's message type differs: a terminal
+/// that is stopped would keep it, and every zero with it. From here on the node itself logs, and
+/// whoever has the other type.
+inline void silenceSendingThread() {
+  ros::console::set_logger_level("ros.roscpp", ros::console::levels::Fatal);
+  ros::console::notifyLoggerLevelsChanged();
+}
+
 }  // namespace internal
 
 /// What a node does when it is asked to end.
@@ -49,9 +58,10 @@ enum class Ending {
   kByLastMessage  ///< it runs in runUntilEnd(), and sends a last message
 };
 
-/// Runs a node with motors until SIGINT, SIGTERM, SIGHUP (its terminal is closed; not under nohup,
-/// which ignores it) or the master asks it to end. roscpp's own handlers shut all topics down
-/// before a zero can be sent: start the node with kByLastMessage.
+/// Runs a node with motors until SIGINT, SIGTERM, SIGQUIT, SIGHUP (its terminal is closed; not under
+/// nohup, which ignores it) or the master asks it to end. Ctrl-Z does nothing: it would leave the
+/// motors with their last torque. roscpp's own handlers shut all topics down before a zero can be
+/// sent: start the node with kByLastMessage.
 ///
 /// @param look  called again and again; returns soon
 /// @param stop  sends the last message; false: there was none to send
@@ -59,6 +69,8 @@ template <class Look, class Stop>
 void runUntilEnd(const Look& look, const Stop& stop) {
   std::signal(SIGINT, internal::onSignal);
   std::signal(SIGTERM, internal::onSignal);
+  std::signal(SIGQUIT, internal::onSignal);
+  std::signal(SIGTSTP, SIG_IGN);
   if (std::signal(SIGHUP, internal::onSignal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   while (ros::ok() && !internal::end_requested) look();
   if (stop()) ros::WallDuration(0.1).sleep();  // for the message to leave
@@ -91,6 +103,7 @@ int runNode(const std::string& name, int argc, char** argv, const Run& run,
   }
   ros::NodeHandle nh;
   ros::NodeHandle pnh("~");  // outside the try: its destructor shuts the log down
+  if (ending == Ending::kByLastMessage) internal::silenceSendingThread();
   int code = EXIT_SUCCESS;
   try {
     ParamReader params(nodeParams(pnh), pnh.getNamespace());

@@ -15,7 +15,8 @@ namespace ddm {
 ///
 /// Joints are found by `robot/joints`; a message without any of them is ignored, since several
 /// nodes may report, each some joints. Without names a message must have exactly the joints that
-/// have limits, in their order. What is needed and is missing, or is not finite, is a violation.
+/// have limits, in their order. What is needed and is missing, or is not finite, is a violation, and
+/// so is a joint that two nodes report: one of them may repeat what the other said before it died.
 class JointLimits {
  public:
   explicit JointLimits(const RobotOptions& options);
@@ -24,10 +25,11 @@ class JointLimits {
   bool given() const { return !joints_.empty(); }
 
   /// The robot reports.
+  /// @param reporter    node that does
   /// @param names       of its joints, may be empty
   /// @param positions   [rad or m], as many as joints, or none
   /// @param velocities  [rad/s or m/s], as many as joints, or none
-  void take(SteadyTime now, const std::vector<std::string>& names,
+  void take(SteadyTime now, const std::string& reporter, const std::vector<std::string>& names,
             const std::vector<double>& positions, const std::vector<double>& velocities);
 
   /// What the last reports violate; empty: nothing.
@@ -38,6 +40,8 @@ class JointLimits {
 
   /// Slower than all robots report, and short enough for a motor that nobody watches.
   static constexpr std::chrono::milliseconds kSilence{200};
+  /// Two reporters within this are two; later, one has taken over from the other.
+  static constexpr std::chrono::seconds kTakeover{1};
 
  private:
   struct Joint {
@@ -48,9 +52,13 @@ class JointLimits {
     double upper = 0.0;
     double speed_limit = 0.0;  // [rad/s or m/s]
     SteadyTime heard{};
+    std::string reporter;  // of the last report
+    std::string rival;     // the last other one
+    SteadyTime contested{};
     std::string violation;
   };
 
+  static std::string findRival(Joint* joint, SteadyTime now, const std::string& reporter);
   static std::string check(const Joint& joint, std::size_t index,
                            const std::vector<double>& positions,
                            const std::vector<double>& velocities);

@@ -31,8 +31,8 @@ struct RobotOptions {
   std::vector<std::string> joints;  ///< that have limits; empty: all that joint_states reports
   std::vector<std::vector<double>> position_limits;  ///< [lower, upper] of each [rad or m]
   std::vector<double> speed_limit;                   ///< of each [rad/s or m/s]
-  double effort_rate = 100.0;                        ///< how often the motors get their torque [Hz]
-  std::string goal_file;                             ///< picture of the goal; take_goal writes it
+  double effort_rate = 100.0;    ///< how often the motors get their torque, and are guarded [Hz]
+  std::string goal_file;         ///< picture of the goal; take_goal writes it
   std::string reset_service;     ///< std_srvs/Trigger that brings it to its start; empty: a person
   double reset_timeout = 300.0;  ///< time that all of a reset may take [s]
 
@@ -63,7 +63,7 @@ struct RobotOptions {
     robot.requireWithin("crop_y", crop_y, 0, 16383);
     robot.requireWithin("crop_width", crop_width, 0, 16384);
     robot.requireWithin("crop_height", crop_height, 0, 16384);
-    robot.requireWithin("effort_rate", effort_rate, 1.0, 1000.0);
+    robot.requireWithin("effort_rate", effort_rate, 20.0, 1000.0);
     robot.requireTimeLimit("reset_timeout", reset_timeout);
     checkMotors(&robot);
     checkLimits(&robot);

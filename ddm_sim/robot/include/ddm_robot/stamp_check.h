@@ -41,7 +41,8 @@ class StampCheck {
   std::string take(SteadyTime arrival, Stamp clock, Stamp stamp);
 
   /// When the camera took the last image that was accepted: its arrival, less the time that it was
-  /// on its way longer than the median of recent images.
+  /// on its way longer than usual. Usual is the median of recent images, and grows no faster than
+  /// clocks drift: images of a link that is jammed stay late, however long it lasts.
   SteadyTime taken() const { return taken_; }
 
   /// The next image counts as the first.
@@ -54,9 +55,11 @@ class StampCheck {
   std::string refusal(SteadyTime arrival, Stamp clock, Stamp stamp) const;
 
   std::chrono::nanoseconds dt_;
-  std::optional<Stamp> last_;  // empty: none was accepted yet
-  Stamp highest_{0};           // offset
-  std::deque<Stamp> offsets_;  // of recent images
+  std::optional<Stamp> last_;   // empty: none was accepted yet
+  Stamp highest_{0};            // offset
+  std::deque<Stamp> offsets_;   // of recent images
+  std::optional<Stamp> usual_;  // offset
+  SteadyTime arrival_;
   SteadyTime taken_;
   int num_refused_ = 0;
 };

@@ -25,7 +25,7 @@ namespace ddm {
 ///
 /// The last three end by themselves with the next torque in time. Three faults latch: a torque that
 /// is not one finite number for each motor, a second publisher of torques, and a joint beyond its
-/// limits when a torque acts or is about to. They switch the motors off until arm(), which is
+/// limits, or reported by two nodes, when a torque acts or is about to. They switch the motors off until arm(), which is
 /// refused while the fault is there. Between trials, where no torque acts, joints may be moved
 /// beyond their limits.
 ///
@@ -79,8 +79,9 @@ class TorqueGate {
   const std::vector<double>& target() const { return target_; }
 
   /// What joint_states reports, as in JointLimits::take().
-  void takeJoints(SteadyTime now, const std::vector<std::string>& names,
-                  const std::vector<double>& positions, const std::vector<double>& velocities);
+  void takeJoints(SteadyTime now, const std::string& reporter,
+                  const std::vector<std::string>& names, const std::vector<double>& positions,
+                  const std::vector<double>& velocities);
 
   /// How many publish torques at present; more than one is a fault.
   void setPublishers(int num_publishers);
