@@ -150,11 +150,6 @@ class RobotMotorTest(RobotCase):
     def test_the_last_word_is_zero_where_somebody_quits(self):
         self.endBy(signal.SIGQUIT)
 
-    def test_a_node_that_somebody_suspends_goes_on(self):
-        self.enterTrial()
-        self.robot.process.send(signal.SIGTSTP)
-        self.robot.waitForEffort(0.0)
-
     def test_two_cameras_bring_zero_torque(self):
         self.robot.answerAll(2.0)
         self.assertTrue(self.robot.enable(True).success)

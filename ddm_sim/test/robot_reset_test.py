@@ -96,7 +96,7 @@ class RobotResetTest(RobotCase):
 
         def goHome(_):
             called.set()
-            released.wait(LIMIT_S)
+            released.wait(2.0 * LIMIT_S)  # longer than anybody below waits
             return TriggerResponse(success=True)
 
         self.offer("go_home", goHome)
