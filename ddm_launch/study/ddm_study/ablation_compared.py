@@ -3,7 +3,7 @@
 import textwrap
 
 from ddm_launch.command import Failure
-from ddm_launch.figure_style import BLUE, COLUMN_WIDTH, GREY, VERMILLION, new_figure, save
+from ddm_launch.figure_style import COLUMN_WIDTH, GREY, SHADES, new_figure, save
 from ddm_launch.tables import read_csv
 from ddm_study.dot_plot import ROW_HEIGHT, Series, draw_figure_of_dots
 from ddm_study.efficient_tables import PRESET, REMEDY
@@ -11,7 +11,7 @@ from ddm_study.efficient_tables import PRESET, REMEDY
 ABOUT = ("Difference of the success rate without each ingredient of the preset. Means over paired seeds with bars of two "
          "standard errors to each side, at the first number of frames and over all later ones; the most harmful on top.")
 NUM_ERRORS = 2.0  # half a bar [standard errors]
-STYLES = ((VERMILLION, "s"), (BLUE, "o"))  # of the first frames, of the mean over the later ones
+STYLES = ((SHADES[0], "s"), (SHADES[2], "o"))  # of the first frames, of the mean over the later ones
 LABEL_LETTERS = 30  # in a line; longer labels would leave no room for what they name
 
 

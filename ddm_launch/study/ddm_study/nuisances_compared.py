@@ -5,7 +5,7 @@ import os
 import numpy as np
 from PIL import Image
 
-from ddm_launch.figure_style import BLUE, COLUMN_WIDTH, PURPLE, SKY, new_figure, save, show_image
+from ddm_launch.figure_style import COLUMN_WIDTH, SHADES, new_figure, save, show_image
 from ddm_launch.tables import read_csv
 from ddm_study.dot_plot import ROW_HEIGHT, Series, draw_figure_of_dots
 from ddm_study.efficient_tables import INTERVALS, REMEDY
@@ -13,7 +13,7 @@ from ddm_study.efficient_tables import INTERVALS, REMEDY
 ABOUT = ("Success rate under each nuisance of the camera after few and after more images, with Wilson's 95 % intervals, and "
          "an image with each, where nuisances/NAME/image.png is next to the table.")
 HEIGHT, LEFT = 0.9, -0.2  # of an image [rows], and its left edge [success rate]
-STYLES = {100: (PURPLE, "s"), 200: (SKY, "v"), 500: (BLUE, "o")}  # images learned from: colour, marker
+STYLES = {100: (SHADES[0], "s"), 200: (SHADES[1], "v"), 500: (SHADES[2], "o")}  # images learned from: colour, marker
 
 
 def read_series(path):

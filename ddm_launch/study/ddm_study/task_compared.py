@@ -45,7 +45,7 @@ def draw_curves(axes, ours, published, step_s):
     colour, marker = METHOD_STYLES[OURS]
     axes.errorbar(frames, returns, yerr=errors, color=colour, marker=marker, capsize=2, elinewidth=0.8, zorder=5, label=OURS)
     axes.set_xscale("log")
-    axes.set_ylim(-20, 1020)
+    axes.set_ylim(bottom=-20)
     axes.set_xlabel("physics frames learned from [-]")
     axes.set_ylabel("mean return of an episode [-]")
     axes.grid(True)
