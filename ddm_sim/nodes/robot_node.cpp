@@ -288,10 +288,10 @@ bool RobotNode::onEnable(std_srvs::SetBool::Request& request,
   std::string problem;
   if (request.data) {
     problem = gate_.arm(steadyNow());
+    publishEffort();
   } else {
     stop("service enable stopped them");
   }
-  publishEffort();
   response.success = problem.empty();
   response.message = problem.empty() ? gate_.describe() : problem;
   return true;

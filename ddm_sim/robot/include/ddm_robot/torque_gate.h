@@ -25,9 +25,9 @@ namespace ddm {
 ///
 /// The last three end by themselves with the next torque in time. Three faults latch: a torque that
 /// is not one finite number for each motor, a second publisher of torques, and a joint beyond its
-/// limits, or reported by two nodes, when a torque acts or is about to. They switch the motors off until arm(), which is
-/// refused while the fault is there. Between trials, where no torque acts, joints may be moved
-/// beyond their limits.
+/// limits, or reported by two nodes, when a torque acts or is about to. They switch the motors off
+/// until arm(), which is refused while the fault is there. Between trials, where no torque acts,
+/// joints may be moved beyond their limits.
 ///
 /// Time is that of the monotonic clock: whatever stamps say, a motor that hears nothing stops.
 ///
