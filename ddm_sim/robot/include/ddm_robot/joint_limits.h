@@ -15,8 +15,8 @@ namespace ddm {
 ///
 /// Joints are found by `robot/joints`; a message without any of them is ignored, since several
 /// nodes may report, each some joints. Without names a message must have exactly the joints that
-/// have limits, in their order. What is needed and is missing, or is not finite, is a violation, and
-/// so is a joint that two nodes report: one of them may repeat what the other said before it died.
+/// have limits, in their order. What is needed and is missing, or is not finite, is a violation.
+/// So is a joint that two nodes report: one of them may repeat what the other said before it died.
 class JointLimits {
  public:
   explicit JointLimits(const RobotOptions& options);
