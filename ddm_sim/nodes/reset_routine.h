@@ -23,7 +23,7 @@ namespace ddm {
 class ResetRoutine {
  public:
   /// @param service  std_srvs/Trigger that brings the robot to its start; empty: a person does
-  /// @param moves    called with true before the service gets the motors, and then with false
+  /// @param moves    called with true before the service takes over the motors, with false after
   ResetRoutine(ros::NodeHandle nh, const std::string& service, std::function<void(bool)> moves)
       : nh_(nh),
         service_(service.empty() ? "" : nh.resolveName(service)),
@@ -57,7 +57,7 @@ class ResetRoutine {
     return false;
   }
 
-  /// In threads of their own: a master that is stopped may never answer.
+  /// Calls ROS in threads of their own, because a stopped master may never answer.
   std::string callService(const ros::SteadyTime& deadline) {
     const auto exists = [name = service_] {
       return ros::service::exists(name, /*print_failure=*/false);

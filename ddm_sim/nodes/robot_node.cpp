@@ -99,7 +99,7 @@ void RobotNode::stopMotors(const std::string& reason) {
   stop(reason);
 }
 
-/// To be called with the lock. Ends what the user's reset has of the motors, too.
+/// Requires the lock. Also takes the motors back from the user's reset service.
 void RobotNode::stop(const std::string& reason) {
   routine_moves_ = false;
   gate_.stop(reason);
@@ -173,7 +173,7 @@ void RobotNode::takeFrame(const sensor_msgs::ImageConstPtr& frame) {
   image_pub_.publish(image);
 }
 
-/// At most one line in kFrameLogPeriod. To be called with the lock.
+/// Logs at most once every kFrameLogPeriod. Requires the lock.
 void RobotNode::logFrameProblem() {
   const ros::SteadyTime now = ros::SteadyTime::now();
   if (now - last_frame_log_ < kFrameLogPeriod) return;
@@ -234,7 +234,7 @@ void RobotNode::onTick(const ros::SteadyTimerEvent& /*event*/) {
   });
 }
 
-/// To be called with the lock, whenever something may have changed.
+/// Requires the lock. Call it whenever something may have changed.
 void RobotNode::publishEffort() {
   const std::vector<double>& effort = gate_.effort(steadyNow());
   if (!routine_moves_) effort_.publish(effort);

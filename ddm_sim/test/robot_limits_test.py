@@ -61,7 +61,7 @@ class RobotLimitsTest(RobotCase):
         second = Process(["rostopic", "pub", "-r", "5", "joint_states", "sensor_msgs/JointState", "{name: [arm], position: [0.0], velocity: [0.0]}"])
         self.addCleanup(second.stop)
         self.robot.process.waitForText("reported on joint_states by", LIMIT_S)
-        self.assertStopped("its driver alone")
+        self.assertStopped("only its driver")
 
     def assertOnlyEnableHelps(self):
         seen = len(self.robot.efforts.messages)

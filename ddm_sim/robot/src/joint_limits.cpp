@@ -60,7 +60,7 @@ std::string JointLimits::findRival(Joint* joint, SteadyTime now, const std::stri
   joint->reporter = reporter;
   if (joint->contested == SteadyTime() || now - joint->contested > kTakeover) return "";
   return "joint " + joint->name + " is reported on joint_states by " + joint->rival + " and by " +
-         reporter + ": let its driver alone report it";
+         reporter + ": only its driver should";
 }
 
 std::string JointLimits::check(const Joint& joint, std::size_t index,

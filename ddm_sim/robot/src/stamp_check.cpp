@@ -11,7 +11,7 @@ namespace ddm {
 namespace {
 
 constexpr std::size_t kNumOffsets = 100;  // some seconds of a camera: drift within them is nothing
-constexpr int kLargestDrift = 500;        // one part in so many: clocks drift apart by far less
+constexpr int kLargestDrift = 500;        // clocks drift apart by less than 1 part in this many
 
 Stamp median(const std::deque<Stamp>& values) {
   std::vector<Stamp> sorted(values.begin(), values.end());

@@ -42,9 +42,9 @@ inline void endSoon(int code) {
   }).detach();
 }
 
-/// roscpp's one thread that sends also logs, as where a subscriber's message type differs: a terminal
-/// that is stopped would keep it, and every zero with it. From here on the node itself logs, and
-/// whoever has the other type.
+/// roscpp sends and logs on the same thread, for instance when a subscriber has another message
+/// type. A stopped terminal would block that thread, and with it every zero torque. The node's own
+/// messages remain, and so do those of the other side.
 inline void silenceSendingThread() {
   ros::console::set_logger_level("ros.roscpp", ros::console::levels::Fatal);
   ros::console::notifyLoggerLevelsChanged();

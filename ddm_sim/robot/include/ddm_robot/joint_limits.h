@@ -25,7 +25,7 @@ class JointLimits {
   bool given() const { return !joints_.empty(); }
 
   /// The robot reports.
-  /// @param reporter    node that does
+  /// @param reporter    name of the node that sent the report
   /// @param names       of its joints, may be empty
   /// @param positions   [rad or m], as many as joints, or none
   /// @param velocities  [rad/s or m/s], as many as joints, or none
@@ -40,7 +40,7 @@ class JointLimits {
 
   /// Slower than all robots report, and short enough for a motor that nobody watches.
   static constexpr std::chrono::milliseconds kSilence{200};
-  /// Two reporters within this are two; later, one has taken over from the other.
+  /// A new reporter within this time is a second one; later, it has replaced the other.
   static constexpr std::chrono::seconds kTakeover{1};
 
  private:
@@ -52,9 +52,9 @@ class JointLimits {
     double upper = 0.0;
     double speed_limit = 0.0;  // [rad/s or m/s]
     SteadyTime heard{};
-    std::string reporter;  // of the last report
-    std::string rival;     // the last other one
-    SteadyTime contested{};
+    std::string reporter;    // of the last report
+    std::string rival;       // the one it was contested with
+    SteadyTime contested{};  // when two nodes last reported it
     std::string violation;
   };
 

@@ -31,7 +31,7 @@ struct RobotOptions {
   std::vector<std::string> joints;  ///< that have limits; empty: all that joint_states reports
   std::vector<std::vector<double>> position_limits;  ///< [lower, upper] of each [rad or m]
   std::vector<double> speed_limit;                   ///< of each [rad/s or m/s]
-  double effort_rate = 100.0;    ///< how often the motors get their torque, and are guarded [Hz]
+  double effort_rate = 100.0;    ///< how often torques are sent and timeouts checked [Hz]
   std::string goal_file;         ///< picture of the goal; take_goal writes it
   std::string reset_service;     ///< std_srvs/Trigger that brings it to its start; empty: a person
   double reset_timeout = 300.0;  ///< time that all of a reset may take [s]

@@ -41,8 +41,8 @@ class StampCheck {
   std::string take(SteadyTime arrival, Stamp clock, Stamp stamp);
 
   /// When the camera took the last image that was accepted: its arrival, less the time that it was
-  /// on its way longer than usual. Usual is the median of recent images, and grows no faster than
-  /// clocks drift: images of a link that is jammed stay late, however long it lasts.
+  /// on its way longer than usual. The usual time is the median over recent images and grows no
+  /// faster than clocks drift, so images over a congested link stay late for as long as that lasts.
   SteadyTime taken() const { return taken_; }
 
   /// The next image counts as the first.
