@@ -65,6 +65,9 @@ class SoakTargetsTest(ScratchCase):
     def test_a_file_that_stays_open_every_hundred_trials_is_noticed(self):
         self.assertEqual(verdicts(samples_of(lambda _: 60000, lambda trial: 17 + trial // 100)), [1, 0, 1])
 
+    def test_a_file_that_is_open_now_and_then_is_no_leak(self):
+        self.assertEqual(verdicts(samples_of(lambda _: 60000, lambda trial: 17 + (trial in (10, 280, 281)))), [1, 1, 1])
+
     def test_a_node_that_was_not_seen_after_the_last_trial_does_not_pass(self):
         self.assertEqual(verdicts(samples_of(lambda _: 60000, lambda _: 17)[:-1]), [0, 1, 1])
 
