@@ -11,7 +11,7 @@ usage() {
 usage: bash ddm_launch/qa/fuzz.sh --out DIR [--runs N] [--only TARGET...] [--jobs N] [--seed S]
 
 Installs the Debian packages that are missing (as root, or through sudo), builds the fuzz targets with clang into
-\$DDM_WS/fuzz, and runs them. The same call again goes on where it ended.
+\$DDM_WS/debug, and runs them. The same call again goes on where it ended.
 
   DDM_WS              catkin workspace to make or use, default ~/ddm_ws
   ROS_PARALLEL_JOBS   compiler jobs, for example -j1; default one per core, two gigabytes for each
@@ -29,7 +29,7 @@ main() {
   check_system
   make_workspace
   install_packages "${packages_to_run[@]}" "${packages_to_test[@]}"
-  build_sanitized fuzz fuzz_targets
+  build_sanitized address -DDDM_PILCO=ON fuzz_targets
   run_fuzzing "$@"
 }
 

@@ -12,28 +12,25 @@ gtest_programs=(
 )
 threaded_tests='^_ctest_ddm_[a-z]+_rostest_test_(model_node|mpc_node|replay|robot_node|trial_recorder)\.test$'
 
-# Where the build with a sanitizer is. Argument: address or thread, as for DDM_SANITIZE, or fuzz, which is address with
-# what libFuzzer needs, and of everything.
+# Where the build with a sanitizer is. Argument: address or thread, as for DDM_SANITIZE.
 sanitized_folder() {
   case $1 in
     address) echo "$DDM_WS/debug" ;;
-    fuzz) echo "$DDM_WS/fuzz" ;;
     thread) echo "$DDM_WS/thread" ;;
   esac
 }
 
 # Portable instruction set, because reports shall be the same on all machines; -O1, because Eigen without any
 # optimisation takes minutes for what Release does in seconds.
-build_sanitized() {  # address|thread|fuzz TARGET...
-  local folder sanitizer=$1 everything=OFF jobs
+build_sanitized() {  # address|thread [-DDDM_PILCO=ON] TARGET...
+  local folder jobs
   folder=$(sanitized_folder "$1")
-  [[ $1 != fuzz ]] || sanitizer=address everything=ON
   read -ra jobs < <(job_flags)
   mkdir -p "$folder"
   local configure=(catkin_make -C "$DDM_WS" --build "$folder/build" "${jobs[@]}"
     -DCATKIN_DEVEL_PREFIX="$folder/devel" -DCMAKE_INSTALL_PREFIX="$folder/install" -DCMAKE_CXX_COMPILER=clang++
     -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-O1 -gline-tables-only' -DDDM_AVX2=OFF -DDDM_WERROR=ON
-    -DDDM_SANITIZE=$sanitizer -DDDM_FUZZ=$everything -DDDM_PILCO=$everything "${unity_flags[@]}")
+    -DDDM_SANITIZE="$1" -DDDM_PILCO=OFF "${unity_flags[@]}")
   "${configure[@]}" "${@:2}" || return
   # as in build_release
   if ! grep -q "PYTHONPATH=.*$folder/devel/lib" "$folder/build/catkin_generated/setup_cached.sh"; then
@@ -42,7 +39,7 @@ build_sanitized() {  # address|thread|fuzz TARGET...
 }
 
 # A short experiment by each driver and evaluations side by side. What does not reach its end is a report, too.
-short_loop() {  # address|thread|fuzz REPORTS
+short_loop() {  # address|thread REPORTS
   local folder out
   folder=$(sanitized_folder "$1")
   out=$folder/loop
@@ -63,7 +60,7 @@ short_loop() {  # address|thread|fuzz REPORTS
 }
 
 # Runs tests and the loop; each file in build/sanitizer_reports is a report, which test_report.py takes for a failure.
-run_sanitized() {  # address|thread|fuzz PATTERN
+run_sanitized() {  # address|thread PATTERN
   local reports suppressions=$checkout/ddm_launch/qa/thread_suppressions.txt
   reports=$(sanitized_folder "$1")/build/sanitizer_reports
   rm -rf "$reports"
@@ -84,14 +81,14 @@ run_sanitized() {  # address|thread|fuzz PATTERN
 # Runs the fuzz targets; arguments are those of fuzz.sh.
 run_fuzzing() {
   PYTHONPATH=$checkout/ddm_launch/src:$checkout/ddm_model/src /usr/bin/python3 "$checkout/ddm_launch/qa/scripts/fuzzing" \
-    --programs "$(sanitized_folder fuzz)/devel/lib" "$@"
+    --programs "$(sanitized_folder address)/devel/lib" "$@"
 }
 
 # From the committed seeds on, always the same draws. A finding is told by the result file.
 fuzz_shortly() {
   local out result
-  out=$(sanitized_folder fuzz)/fuzzing
-  result=$(sanitized_folder fuzz)/build/test_results/ddm_launch/fuzzing.xml
+  out=$(sanitized_folder address)/fuzzing
+  result=$(sanitized_folder address)/build/test_results/ddm_launch/fuzzing.xml
   rm -rf "$out" "$result"
   run_fuzzing --runs 1000 --seed 1 --out "$out" --junit "$result" || [[ -f $result ]]
 }

@@ -12,17 +12,17 @@ usage: bash test.sh [--debug | --thread-sanitizer]
 
 Installs the Debian packages that are missing (as root, or through sudo), builds the workspace \$DDM_WS, and
 runs every test: gtest, rosunit, rostest, roslaunch-check and the linters on the Release build; the gtests of the core
-once more and a short experiment on a Debug build by clang, with Eigen's assertions, AddressSanitizer,
+once more, a short experiment and short fuzzing on a Debug build by clang, with Eigen's assertions, AddressSanitizer,
 UndefinedBehaviorSanitizer, and warnings as errors. A case that runs in several builds counts once; one that is
 skipped does not count and is named. Returns 1 if any case fails, if a test leaves no result, or if a sanitizer
 reports anything.
 
-  --debug             instead of all that: the Debug build of everything, all gtests and short fuzzing
+  --debug             instead of all that: the Debug build of everything, and all gtests on it
   --thread-sanitizer  instead of all that: what has several threads, on a Debug build with ThreadSanitizer
   --help              this text
 
-  DDM_WS              catkin workspace to make or use, default ~/ddm_ws (Release in devel/, Debug in debug/devel/ and
-                      fuzz/devel/, ThreadSanitizer in thread/devel/)
+  DDM_WS              catkin workspace to make or use, default ~/ddm_ws (Release in devel/, Debug in debug/devel/,
+                      ThreadSanitizer in thread/devel/)
   ROS_PARALLEL_JOBS   compiler jobs, for example -j1; default one per core, two gigabytes for each
   DDM_AVX2            OFF: slower programs that need no AVX2; default ON
   CI                  if set, warnings are errors in the Release build too
@@ -34,7 +34,7 @@ TEXT
 parse_arguments() {
   (($# == 0)) && return
   [[ $1 == --help || $1 == -h ]] && usage && exit 0
-  [[ $1 == --debug && $# == 1 ]] && builds=(fuzz) && return
+  [[ $1 == --debug && $# == 1 ]] && builds=(all_debug) && return
   [[ $1 == --thread-sanitizer && $# == 1 ]] && builds=(thread) && return
   printf 'test.sh: unknown argument %s\n\n' "'$1'" >&2
   usage >&2
@@ -54,9 +54,9 @@ run_tests() {  # BUILD_FOLDER PATTERN
 
 # What is built and run; each gives a build folder to the report. The Debug build makes what it runs.
 builds=(release debug)
-debug_targets=("${loop_programs[@]}" "${gtest_programs[@]}")
+debug_targets=("${loop_programs[@]}" "${gtest_programs[@]}" fuzz_targets)
 debug_tests="_gtest_($(IFS='|' && echo "${gtest_programs[*]}"))\$"
-run_build() {  # release|debug|fuzz|thread
+run_build() {  # release|debug|all_debug|thread
   case $1 in
     release)
       phase "Release build into $DDM_WS/devel" build_release all tests
@@ -67,14 +67,11 @@ run_build() {  # release|debug|fuzz|thread
       ;;
     debug)
       phase "Debug build with AddressSanitizer into $DDM_WS/debug/devel" finish_debug_build
-      phase "gtests and a short loop on the Debug build" run_sanitized address "$debug_tests"
-      results+=("$DDM_WS/debug/build")
+      run_debug "$debug_tests"
       ;;
-    fuzz)
-      phase "Debug build of everything into $DDM_WS/fuzz/devel" build_sanitized fuzz all tests
-      phase "gtests and a short loop on the Debug build" run_sanitized fuzz _gtest_
-      phase "Short fuzzing" fuzz_shortly
-      results+=("$DDM_WS/fuzz/build")
+    all_debug)
+      phase "Debug build of everything into $DDM_WS/debug/devel" build_sanitized address -DDDM_PILCO=ON all tests fuzz_targets
+      run_debug _gtest_
       ;;
     thread)
       phase "Build with ThreadSanitizer into $DDM_WS/thread/devel" \
@@ -83,6 +80,12 @@ run_build() {  # release|debug|fuzz|thread
       results+=("$DDM_WS/thread/build")
       ;;
   esac
+}
+
+run_debug() {  # PATTERN
+  phase "gtests and a short loop on the Debug build" run_sanitized address "$1"
+  phase "Short fuzzing" fuzz_shortly
+  results+=("$DDM_WS/debug/build")
 }
 
 # Builds in a session of its own, whose processes run only where all others leave a core idle.

@@ -11,7 +11,6 @@ endif()
 option(DDM_AVX2 "On x86-64, build for processors with AVX2 and FMA, which most have since 2013" ${DDM_AVX2_DEFAULT})
 option(DDM_WERROR "Treat warnings as errors" OFF)
 set(DDM_SANITIZE "" CACHE STRING "Sanitizers: empty for none, address (with undefined behaviour) or thread")
-option(DDM_FUZZ "Build the fuzz targets, and everything for libFuzzer; needs clang" OFF)
 
 set(CMAKE_CXX_STANDARD 17)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
@@ -45,20 +44,18 @@ endif()
 # The runtimes of sanitizers are linked into programs only: a program without them cannot load a library of such a
 # build, so a build with sanitizers has folders of its own and is not for installation.
 set(DDM_INSTRUMENTATION)
+set(DDM_FUZZ OFF)
 if(DDM_SANITIZE STREQUAL "address")
   set(DDM_INSTRUMENTATION -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")  # libFuzzer is a part of it
+    set(DDM_FUZZ ON)
+    list(APPEND DDM_INSTRUMENTATION -fsanitize=fuzzer-no-link)
+  endif()
 elseif(DDM_SANITIZE STREQUAL "thread")
   set(DDM_INSTRUMENTATION -fsanitize=thread -fno-omit-frame-pointer)
 elseif(DDM_SANITIZE)
   message(FATAL_ERROR "DDM_SANITIZE must be empty, address or thread, got '${DDM_SANITIZE}'. "
                       "Remedy: run cmake with -DDDM_SANITIZE=address, or with -DDDM_SANITIZE= for none.")
-endif()
-if(DDM_FUZZ)
-  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
-    message(FATAL_ERROR "DDM_FUZZ needs clang, whose part libFuzzer is, got the compiler ${CMAKE_CXX_COMPILER_ID}. "
-                        "Remedy: configure an empty build folder with -DCMAKE_CXX_COMPILER=clang++, or with -DDDM_FUZZ=OFF.")
-  endif()
-  list(APPEND DDM_INSTRUMENTATION -fsanitize=fuzzer-no-link)
 endif()
 add_compile_options(${DDM_INSTRUMENTATION})
 link_libraries(${DDM_INSTRUMENTATION})
