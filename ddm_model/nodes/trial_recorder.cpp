@@ -13,7 +13,10 @@
 namespace ddm {
 namespace {
 
+using Seconds = std::chrono::duration<double>;
+
 constexpr int kQueue = 1000;  // a slow disk must not cost a frame
+constexpr Seconds kSlice(0.1);
 
 }  // namespace
 
@@ -157,8 +160,11 @@ bool TrialRecorder::stop(ddm_msgs::StopRecording::Request& request,
   // Other services run while this one waits: afterwards the recording may be another one.
   const int recording = stopping_ = num_recordings_;
   const auto replaced = [&] { return bag_ == nullptr || num_recordings_ != recording; };
-  changed_.wait_for(lock, std::chrono::duration<double>(options_.timeout),
-                    [&] { return replaced() || !error_.empty() || complete(request); });
+  const auto decided = [&] { return replaced() || !error_.empty() || complete(request); };
+  // In slices: a pause of this process takes one at most, and what came meanwhile is still read.
+  for (double left = options_.timeout; left > 0.0; left -= kSlice.count()) {
+    if (changed_.wait_for(lock, std::min(kSlice, Seconds(left)), decided)) break;
+  }
   if (replaced()) {
     response.message = "another recording was started or stopped meanwhile";
     return true;

@@ -4,8 +4,12 @@
 #include <ddm_msgs/StopRecording.h>
 #include <ddm_msgs/testing/node_main.h>
 #include <ddm_msgs/topics.h>
+#include <ddm_node/topic_peers.h>
 #include <gtest/gtest.h>
+#include <ros/network.h>
 #include <ros/ros.h>
+#include <signal.h>
+#include <xmlrpcpp/XmlRpcClient.h>
 
 #include <chrono>
 #include <filesystem>
@@ -26,6 +30,19 @@ using testing::torqueMessage;
 using testing::toyImage;
 
 const ros::WallDuration kLimit(20.0);
+
+/// Of a node that runs, or 0.
+pid_t pidOf(const std::string& node) {
+  XmlRpc::XmlRpcValue request, answer;
+  request[0] = ros::this_node::getName();
+  request[1] = node;
+  std::optional<XmlRpc::XmlRpcValue> address = askMaster("lookupNode", request);
+  std::string host;
+  std::uint32_t port = 0;
+  if (!address || !ros::network::splitURI(static_cast<std::string>(*address), host, port)) return 0;
+  XmlRpc::XmlRpcClient client(host.c_str(), static_cast<int>(port), "/");
+  return client.execute("getPid", request[0], answer) ? static_cast<int>(answer[2]) : 0;
+}
 
 class TrialRecorderTest : public ::testing::Test {
  protected:
@@ -305,6 +322,22 @@ TEST_F(TrialRecorderTest, RefusesASecondStopWhileOneWaits) {
   EXPECT_TRUE(contains(response.message, "being stopped already")) << response.message;
   publishFrames(5);
   EXPECT_TRUE(waiting.get().success);
+}
+
+TEST_F(TrialRecorderTest, ReadsWhatCameWhileItWasPausedForLongerThanItWaits) {
+  const pid_t recorder = pidOf("/trial_recorder");
+  ASSERT_GT(recorder, 0);
+  ASSERT_TRUE(start(path_)) << message_;
+  publishFrames(2);
+  publishImage(2);
+  auto stopping = std::async(std::launch::async, [] { return stop(3); });
+  ASSERT_EQ(stopping.wait_for(std::chrono::milliseconds(300)), std::future_status::timeout);
+  kill(recorder, SIGSTOP);
+  publishTorque(2);
+  ros::WallDuration(1.5).sleep();  // recorder/timeout is 1 s
+  kill(recorder, SIGCONT);
+  const auto response = stopping.get();
+  EXPECT_TRUE(response.success) << response.message;
 }
 
 TEST_F(TrialRecorderTest, RefusesToWriteOutsideOfItsFolder) {
