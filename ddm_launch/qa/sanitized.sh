@@ -69,6 +69,8 @@ run_sanitized() {  # address|thread PATTERN
   export UBSAN_OPTIONS=log_path=$reports/report:print_stacktrace=1
   # ROS's own libraries are not instrumented: without the last option their locks look like none
   export TSAN_OPTIONS=log_path=$reports/report:suppressions=$suppressions:ignore_noninstrumented_modules=1
+  # tells ThreadSanitizer what OpenMP, which is not instrumented either, does with threads
+  [[ $1 != thread ]] || export OMP_TOOL_LIBRARIES="$(clang++ -print-resource-dir)/../../libarcher.so"
   short_loop "$1" "$reports"
   run_tests "$(sanitized_folder "$1")/build" "$2"
   if compgen -G "$reports/*" >/dev/null; then
