@@ -45,6 +45,7 @@ class RvizTest(unittest.TestCase):
                              "preset:=no_such_preset"])
         self.assertEqual(code, 1)
         self.assertIn("no_such_preset", output)
+        self.assertIn("ended before the end of trial 5", output)
 
 
 if __name__ == "__main__":

@@ -14,6 +14,8 @@
 #include <chrono>
 #include <filesystem>
 #include <future>
+#include <optional>
+#include <utility>
 
 #include "ddm_bag_io/bag_reader.h"
 #include "ddm_msgs/testing/run_program.h"
@@ -73,6 +75,20 @@ class TrialRecorderTest : public ::testing::Test {
     call.request.goal = goal;
     EXPECT_TRUE(ros::service::call(topics::kStopRecording, call));
     return call.response;
+  }
+  /// @return the stop that waits for the rest of its trial, and the answer to the other one
+  static std::pair<std::future<ddm_msgs::StopRecording::Response>,
+                   ddm_msgs::StopRecording::Response>
+  stopTwice(std::uint32_t num_steps) {
+    const auto call = [num_steps] { return stop(num_steps); };
+    auto one = std::async(std::launch::async, call);
+    auto other = std::async(std::launch::async, call);
+    const auto ended = [](auto& stopping) {
+      return stopping.wait_for(std::chrono::milliseconds(5)) == std::future_status::ready;
+    };
+    while (!ended(one) && !ended(other)) continue;
+    if (ended(one)) std::swap(one, other);
+    return {std::move(one), other.get()};
   }
   static ros::Time stampOf(int t) { return ros::Time(1.0 + 0.2 * t); }
   void publishImage(int t) {
@@ -310,16 +326,8 @@ TEST_F(TrialRecorderTest, AStartEndsAStopThatStillWaits) {
 
 TEST_F(TrialRecorderTest, RefusesASecondStopWhileOneWaits) {
   ASSERT_TRUE(start(path_)) << message_;
-  auto one = std::async(std::launch::async, [] { return stop(5); });
-  auto other = std::async(std::launch::async, [] { return stop(5); });
-  const auto ended = [](auto& call) {
-    return call.wait_for(std::chrono::milliseconds(5)) == std::future_status::ready;
-  };
-  while (!ended(one) && !ended(other)) continue;
-  auto& refused = ended(one) ? one : other;
-  auto& waiting = &refused == &one ? other : one;
-  const auto response = refused.get();
-  EXPECT_TRUE(contains(response.message, "being stopped already")) << response.message;
+  auto [waiting, refused] = stopTwice(5);
+  EXPECT_TRUE(contains(refused.message, "being stopped already")) << refused.message;
   publishFrames(5);
   EXPECT_TRUE(waiting.get().success);
 }
@@ -330,13 +338,12 @@ TEST_F(TrialRecorderTest, ReadsWhatCameWhileItWasPausedForLongerThanItWaits) {
   ASSERT_TRUE(start(path_)) << message_;
   publishFrames(2);
   publishImage(2);
-  auto stopping = std::async(std::launch::async, [] { return stop(3); });
-  ASSERT_EQ(stopping.wait_for(std::chrono::milliseconds(300)), std::future_status::timeout);
+  auto waiting = stopTwice(3).first;
   kill(recorder, SIGSTOP);
   publishTorque(2);
   ros::WallDuration(1.5).sleep();  // recorder/timeout is 1 s
   kill(recorder, SIGCONT);
-  const auto response = stopping.get();
+  const auto response = waiting.get();
   EXPECT_TRUE(response.success) << response.message;
 }
 

@@ -155,7 +155,8 @@ def run(options):
 
 def main(arguments=None):
     parser = program_parser("fuzz", ABOUT, EPILOG)
-    parser.add_argument("--programs", required=True, metavar="PROGRAMS", help="folder lib/ of a build with DDM_SANITIZE=address by clang")
+    parser.add_argument("--programs", required=True, metavar="PROGRAMS",
+                        help="folder lib/ of a build with DDM_SANITIZE=address by clang")
     parser.add_argument("--out", required=True, metavar="DIR", help="folder for table, findings and corpus")
     parser.add_argument("--runs", type=number(int, 1), default=100000, metavar="N",
                         help="of each target (default: %(default)s)")
