@@ -24,7 +24,7 @@ ddm::Stamp drawStamp(FuzzBytes* bytes) {
 
 void act(std::uint8_t kind, ddm::SteadyTime time, ddm::Stamp stamp, FuzzBytes* bytes,
          TorqueGate* gate) {
-  switch (kind % 9) {
+  switch (kind % 10) {
     case 0:
       gate->arm(time);
       break;
@@ -46,11 +46,19 @@ void act(std::uint8_t kind, ddm::SteadyTime time, ddm::Stamp stamp, FuzzBytes* b
     case 6:
       gate->setPublishers(bytes->number<std::uint8_t>() % 3);
       break;
-    case 7: {
+    case 7:
+      gate->setListeners(bytes->number<std::uint8_t>() % 2);
+      break;
+    case 8: {
       std::vector<double> values(bytes->number<std::uint8_t>() % 4);
       for (double& value : values) value = bytes->number<double>();
-      gate->takeJoints(time, "/driver", std::vector<std::string>(values.size(), "joint"), values,
-                       values);
+      ddm::JointReport report;
+      report.arrival = time;
+      report.clock = report.stamp = stamp;
+      report.reporter = "/driver";
+      report.names.assign(values.size(), "joint");
+      report.positions = report.velocities = values;
+      gate->takeJoints(report);
       break;
     }
     default: {

@@ -23,12 +23,19 @@ namespace ddm {
 class ResetRoutine {
  public:
   /// @param service  std_srvs/Trigger that brings the robot to its start; empty: a person does
-  /// @param moves    called with true before the service takes over the motors, with false after
-  ResetRoutine(ros::NodeHandle nh, const std::string& service, std::function<void(bool)> moves)
+  /// @param begin    called before the service takes over the motors: why it may not; empty: it may
+  /// @param end      called after, with whether the service has answered: why its answer does not
+  ///                 count; empty: it counts
+  ResetRoutine(ros::NodeHandle nh, const std::string& service, std::function<std::string()> begin,
+               std::function<std::string(bool)> end)
       : nh_(nh),
         service_(service.empty() ? "" : nh.resolveName(service)),
-        moves_(std::move(moves)),
+        begin_(std::move(begin)),
+        end_(std::move(end)),
         done_server_(nh_.advertiseService(topics::kResetDone, &ResetRoutine::onDone, this)) {}
+
+  /// Whether a service moves the robot, and not a person.
+  bool usesMotors() const { return !service_.empty(); }
 
   /// Brings the robot to its start. Blocks until it is there, or until the deadline.
   /// @return what went wrong; empty: nothing
@@ -70,15 +77,19 @@ class ResetRoutine {
       poll_.sleep();
     }
     const auto trigger = std::make_shared<std_srvs::Trigger>();
-    moves_(true);
+    const std::string refusal = begin_();
+    if (!refusal.empty()) return refusal;
     const std::optional<bool> answer = answerWithin(timeLeft(deadline), [trigger, name = service_] {
       return ros::service::call(name, *trigger);
     });
-    moves_(false);
+    const std::string stopped = end_(answer.has_value());
     if (!answer) {
       return "service " + service_ +
-             " does not answer: look at its node, or set a longer robot/reset_timeout";
+             " does not answer, and the motors were switched off: look at its node, or set a "
+             "longer "
+             "robot/reset_timeout";
     }
+    if (!stopped.empty()) return stopped;
     if (!*answer) {
       return "service " + service_ + " ended without an answer: look at the output of its node";
     }
@@ -118,7 +129,8 @@ class ResetRoutine {
   const ros::WallDuration poll_{1e-3 * kPoll_ms};
   ros::NodeHandle nh_;
   std::string service_;
-  std::function<void(bool)> moves_;
+  std::function<std::string()> begin_;
+  std::function<std::string(bool)> end_;
   std::atomic<bool> asking_{false};
   std::atomic<bool> done_{false};
   ros::ServiceServer done_server_;

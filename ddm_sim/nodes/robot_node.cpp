@@ -6,10 +6,12 @@
 #include <ddm_images/image_codec.h>
 #include <ddm_msgs/topics.h>
 #include <ddm_node/topic_peers.h>
+#include <std_msgs/Bool.h>
 #include <std_msgs/Float64.h>
 #include <std_msgs/UInt32.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
@@ -22,6 +24,7 @@ constexpr int kQueue = 10;
 constexpr int kRecordedQueue = 1000;             // a recorder that is slow must not lose one
 constexpr std::chrono::seconds kFreshCamera(1);  // one that is silent for longer is not there
 constexpr double kStepTolerance = 0.1;           // of dt
+constexpr double kMaxStepTolerance = 0.5;        // of dt: beyond, each step would count as a gap
 constexpr char kGoalInTrial[] = "a trial is under way, and it has a goal: wait for its end";
 const ros::WallDuration kWatchPeriod(0.1);
 const ros::WallDuration kRemindPeriod(10.0);
@@ -35,17 +38,27 @@ Stamp toStamp(const RosTime& time) {
 
 SteadyTime steadyNow() { return std::chrono::steady_clock::now(); }
 
+std::string formatOf(const sensor_msgs::Image& image) {
+  return std::to_string(image.width) + "x" + std::to_string(image.height) + " " + image.encoding;
+}
+
+/// A problem without its numbers: the same problem with another value need not be logged again.
+std::string withoutNumbers(std::string text) {
+  text.erase(std::remove_if(text.begin(), text.end(),
+                            [](unsigned char c) { return std::isdigit(c) != 0; }),
+             text.end());
+  return text;
+}
+
 }  // namespace
 
 RobotNode::RobotNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size,
                      const RobotOptions& options)
     : image_size_(image_size),
       options_(options),
-      routine_(nh, options.reset_service,
-               [this](bool moves) {
-                 const std::lock_guard<std::mutex> lock(mutex_);
-                 routine_moves_ = moves;
-               }),
+      routine_(
+          nh, options.reset_service, [this] { return beginRoutine(); },
+          [this](bool answered) { return endRoutine(answered); }),
       gate_(options),
       stamps_(options.dt),
       picker_(options.dt),
@@ -58,6 +71,7 @@ RobotNode::RobotNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size,
       misses_pub_(nh.advertise<std_msgs::UInt32>(topics::kDeadlineMisses, 1, /*latch=*/true)),
       cancel_pub_(
           nh.advertise<actionlib_msgs::GoalID>(std::string(topics::kRunTrial) + "/cancel", 1)),
+      enabled_pub_(nh.advertise<std_msgs::Bool>(topics::kMotorsEnabled, 1, /*latch=*/true)),
       updater_(nh, pnh) {
   if (nh.resolveName(topics::kCamera) == nh.resolveName(topics::kImage)) {
     throw std::invalid_argument(
@@ -66,6 +80,7 @@ RobotNode::RobotNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size,
         "ROS_NAMESPACE=ddm roslaunch ...");
   }
   loadGoal();
+  enabled_pub_.publish(std_msgs::Bool());
   updater_.setHardwareID("none");
   updater_.add("motor and camera", this, &RobotNode::diagnose);
   torque_sub_ = nh.subscribe(topics::kTorque, kQueue, &RobotNode::onTorque, this,
@@ -99,9 +114,8 @@ void RobotNode::stopMotors(const std::string& reason) {
   stop(reason);
 }
 
-/// Requires the lock. Also takes the motors back from the user's reset service.
+/// Requires the lock.
 void RobotNode::stop(const std::string& reason) {
-  routine_moves_ = false;
   gate_.stop(reason);
   publishEffort();
 }
@@ -141,11 +155,11 @@ void RobotNode::takeFrame(const sensor_msgs::ImageConstPtr& frame) {
     const std::lock_guard<std::mutex> lock(mutex_);
     frame_ = frame;
     frame_arrival_ = steadyNow();
-    frame_arrival_clock_ = toStamp(ros::WallTime::now());
-    const std::string refusal =
-        num_cameras > 1
-            ? std::to_string(num_cameras) + " nodes publish images there: end all but one"
-            : stamps_.take(frame_arrival_, frame_arrival_clock_, stamp);
+    frame_arrival_clock_ = toStamp(ros::Time::now());
+    std::string refusal = num_cameras > 1 ? std::to_string(num_cameras) +
+                                                " nodes publish images there: end all but one"
+                                          : formatProblem(*frame);
+    if (refusal.empty()) refusal = stamps_.take(frame_arrival_, frame_arrival_clock_, stamp);
     if (!refusal.empty()) {
       frame_problem_ = refusal;
       logFrameProblem();
@@ -173,6 +187,14 @@ void RobotNode::takeFrame(const sensor_msgs::ImageConstPtr& frame) {
   image_pub_.publish(image);
 }
 
+/// Why the crop would show something else than before; empty: it does not. Requires the lock.
+std::string RobotNode::formatProblem(const sensor_msgs::Image& frame) const {
+  if (camera_format_.empty() || formatOf(frame) == camera_format_) return "";
+  return "the images have changed from " + camera_format_ + " to " + formatOf(frame) +
+         ", so that the crop shows something else: set the camera back, or start again with "
+         "another goal and another folder";
+}
+
 /// Logs at most once every kFrameLogPeriod. Requires the lock.
 void RobotNode::logFrameProblem() {
   const ros::SteadyTime now = ros::SteadyTime::now();
@@ -181,19 +203,20 @@ void RobotNode::logFrameProblem() {
   log_.warn("frame of " + frame_sub_.getTopic() + ": " + frame_problem_);
 }
 
-void RobotNode::onTorque(const ddm_msgs::TorqueConstPtr& torque) {
-  guarded([&] { takeTorque(*torque); });
+void RobotNode::onTorque(const ros::MessageEvent<const ddm_msgs::Torque>& event) {
+  guarded([&] { takeTorque(*event.getConstMessage(), event.getPublisherName()); });
 }
 
-void RobotNode::takeTorque(const ddm_msgs::Torque& torque) {
+void RobotNode::takeTorque(const ddm_msgs::Torque& torque, const std::string& publisher) {
   const Stamp arrival = toStamp(ros::Time::now());
   const Stamp stamp = toStamp(torque.header.stamp);
-  const auto num_publishers = static_cast<int>(torque_sub_.getNumPublishers());
   const std::lock_guard<std::mutex> lock(mutex_);
-  gate_.setPublishers(num_publishers);
+  controller_watch_.hear(publisher);
+  lookAtPeers();
   const bool acts = gate_.takeTorque(steadyNow(), stamp, torque.torque);
   publishEffort();
   if (acts) {
+    if (camera_format_.empty() && frame_ != nullptr) camera_format_ = formatOf(*frame_);
     settle(true);
     acting_.header.stamp = torque.header.stamp;
     acting_.torque = gate_.target();
@@ -209,9 +232,16 @@ void RobotNode::takeTorque(const ddm_msgs::Torque& torque) {
 void RobotNode::onJointStates(const ros::MessageEvent<const sensor_msgs::JointState>& event) {
   guarded([&] {
     const sensor_msgs::JointState& joints = *event.getConstMessage();
+    JointReport report;
+    report.arrival = steadyNow();
+    report.clock = toStamp(ros::Time::now());
+    report.stamp = toStamp(joints.header.stamp);
+    report.reporter = event.getPublisherName();
+    report.names = joints.name;
+    report.positions = joints.position;
+    report.velocities = joints.velocity;
     const std::lock_guard<std::mutex> lock(mutex_);
-    gate_.takeJoints(steadyNow(), event.getPublisherName(), joints.name, joints.position,
-                     joints.velocity);
+    gate_.takeJoints(report);
     if (was_armed_ && !gate_.armed()) publishEffort();  // not at each report
   });
 }
@@ -227,18 +257,26 @@ void RobotNode::onTrialEnd(const ddm_msgs::RunTrialActionResultConstPtr& /*resul
 
 void RobotNode::onTick(const ros::SteadyTimerEvent& /*event*/) {
   guarded([this] {
-    const auto num_publishers = static_cast<int>(torque_sub_.getNumPublishers());
     const std::lock_guard<std::mutex> lock(mutex_);
-    gate_.setPublishers(num_publishers);
+    lookAtPeers();
     publishEffort();
   });
+}
+
+/// Requires the lock.
+void RobotNode::lookAtPeers() {
+  auto num_publishers = static_cast<int>(torque_sub_.getNumPublishers());
+  if (controller_watch_.died()) num_publishers = 0;
+  gate_.setPublishers(num_publishers);
+  gate_.setListeners(effort_.numSubscribers());
 }
 
 /// Requires the lock. Call it whenever something may have changed.
 void RobotNode::publishEffort() {
   const std::vector<double>& effort = gate_.effort(steadyNow());
+  if (!gate_.armed()) routine_moves_ = false;  // a stop takes the motors from the reset service
   if (!routine_moves_) effort_.publish(effort);
-  if (gate_.state() != TorqueGate::State::kFollowing) settle(false);
+  if (gate_.state() != TorqueGate::State::kFollowing) settle(gate_.heldForAStep());
   for (const Stamp& stamp : gate_.takeUnanswered()) {
     ddm_msgs::Torque nothing;
     nothing.header.stamp.fromNSec(static_cast<std::uint64_t>(stamp.count()));
@@ -265,7 +303,15 @@ void RobotNode::reportState() {
     misses_pub_.publish(misses);
   }
   if (was_armed_ && !gate_.armed()) cancelTrial();
+  if (was_armed_ != gate_.armed()) {
+    std_msgs::Bool enabled;
+    enabled.data = gate_.armed();
+    enabled_pub_.publish(enabled);
+  }
   was_armed_ = gate_.armed();
+  const std::string frozen = gate_.frozenJoint();
+  if (last_frozen_.empty() && !frozen.empty()) log_.warn(frozen);
+  last_frozen_ = frozen;
   const std::string state = gate_.describe();
   if (state == last_state_) return;
   last_state_ = state;
@@ -287,7 +333,11 @@ bool RobotNode::onEnable(std_srvs::SetBool::Request& request,
   const std::lock_guard<std::mutex> lock(mutex_);
   std::string problem;
   if (request.data) {
-    problem = gate_.arm(steadyNow());
+    lookAtPeers();
+    problem = routine_runs_ && !routine_moves_
+                  ? "the reset service still runs, although the motors were switched off: wait for "
+                    "its end"
+                  : gate_.arm(steadyNow());
     publishEffort();
   } else {
     stop("service enable stopped them");
@@ -305,6 +355,13 @@ void RobotNode::loadGoal() {
     return;
   }
   const sensor_msgs::Image picture = readPicture(options_.goal_file);
+  if (std::min(picture.width, picture.height) < static_cast<std::uint32_t>(image_size_)) {
+    throw std::invalid_argument(
+        "the goal image " + options_.goal_file + " has " + std::to_string(picture.width) + "x" +
+        std::to_string(picture.height) + " pixels, and must have at least image/size " +
+        std::to_string(image_size_) +
+        " in each direction: remove the file, and write it by service take_goal");
+  }
   publishGoal(encodeImage(decodeImage(picture, image_size_), image_size_, ros::Time::now(), ""));
 }
 
@@ -329,12 +386,18 @@ bool RobotNode::onTakeGoal(std_srvs::Trigger::Request& /*request*/,
       response.message = "no image on " + frame_sub_.getTopic();
       return true;
     }
+    response.message = formatProblem(*frame_);
+    if (!response.message.empty()) return true;
     frame = frame_;
   }
   try {  // without the lock: a disk may be slow, and must not be in the way of a stop
     const sensor_msgs::Image goal = shown(*frame);
     if (!options_.goal_file.empty()) writePicture(options_.goal_file, goal);
     publishGoal(goal);
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      camera_format_ = formatOf(*frame);
+    }
     response.success = true;
     response.message = "the goal is what the camera sees now" +
                        (options_.goal_file.empty() ? "" : ", and in " + options_.goal_file);
@@ -351,6 +414,13 @@ bool RobotNode::onReset(ddm_msgs::Reset::Request& /*request*/,
     response.message = "another reset is under way: wait for its end";
     return true;
   }
+  if (!options_.holdsForAStep()) {
+    std::ostringstream text;
+    text << "robot/max_hold is " << options_.max_hold << " s and robot/dt is " << options_.dt
+         << " s, so that no torque would act for a whole step: set robot/max_hold to at least dt";
+    response.message = text.str();
+    return true;
+  }
   const ros::SteadyTime deadline =
       ros::SteadyTime::now() + ros::WallDuration(options_.reset_timeout);
   {
@@ -358,19 +428,25 @@ bool RobotNode::onReset(ddm_msgs::Reset::Request& /*request*/,
     gate_.beginReset();
     publishEffort();
   }
-  // The goal first: to show it, the robot has to leave its start. The motors last: people reach in.
-  std::string problem = waitUntilThere(deadline, /*motors=*/false);
+  // The goal first: to show it, the robot has to leave its start. The motors last where a person
+  // brings the robot to its start, who reaches in; first where a service of the user moves it.
+  std::string problem =
+      waitUntilThere(deadline, routine_.usesMotors() ? Motors::kOn : Motors::kAny);
   if (problem.empty()) problem = bringToStart(deadline);
-  if (problem.empty()) problem = waitUntilThere(deadline, /*motors=*/true);
+  if (problem.empty()) problem = waitUntilThere(deadline, Motors::kFit);
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     gate_.endReset();
     const double step = picker_.step();  // 0: not known
     if (step > 0.0 && std::abs(step - options_.dt) > kStepTolerance * options_.dt) {
       std::ostringstream text;
-      text << "the camera's frames do not fit: images are " << step << " s apart where dt is "
-           << options_.dt << " s";
-      log_.warn(text.str());
+      text << "the camera's frames do not fit: images are " << step << " s apart where robot/dt is "
+           << options_.dt << " s: make dt a whole multiple of the time between frames";
+      if (std::abs(step - options_.dt) <= kMaxStepTolerance * options_.dt) {
+        log_.warn(text.str());
+      } else if (problem.empty()) {
+        problem = "the trial cannot begin: " + text.str();
+      }
     }
     stamps_.restart();
     picker_.restart();
@@ -383,6 +459,24 @@ bool RobotNode::onReset(ddm_msgs::Reset::Request& /*request*/,
   return true;
 }
 
+/// Permission for the user's reset service to move the robot. A stop takes it back.
+std::string RobotNode::beginRoutine() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!gate_.armed()) return "the robot was not brought to its start: " + gate_.describe();
+  routine_runs_ = routine_moves_ = true;
+  return "";
+}
+
+std::string RobotNode::endRoutine(bool answered) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const bool stopped = !routine_moves_;
+  routine_runs_ = routine_moves_ = false;
+  if (!answered) stop("the reset service does not answer");
+  if (!stopped) return "";
+  return "the motors were switched off while the reset service moved the robot: call service "
+         "enable, and begin the trial again";
+}
+
 std::string RobotNode::bringToStart(const ros::SteadyTime& deadline) {
   try {
     return routine_.run(deadline);
@@ -392,7 +486,7 @@ std::string RobotNode::bringToStart(const ros::SteadyTime& deadline) {
 }
 
 /// @return what has not come in time; empty: nothing
-std::string RobotNode::waitUntilThere(const ros::SteadyTime& deadline, bool motors) {
+std::string RobotNode::waitUntilThere(const ros::SteadyTime& deadline, Motors motors) {
   std::string told;
   ros::SteadyTime last_told;
   for (;;) {
@@ -400,8 +494,8 @@ std::string RobotNode::waitUntilThere(const ros::SteadyTime& deadline, bool moto
     const ros::SteadyTime now = ros::SteadyTime::now();
     if (what.empty()) return "";
     if (!ros::ok() || now > deadline) return "the trial cannot begin: " + what;
-    if (what != told || now - last_told > kRemindPeriod) {
-      told = what;
+    if (withoutNumbers(what) != told || now - last_told > kRemindPeriod) {
+      told = withoutNumbers(what);
       last_told = now;
       log_.warn("the trial waits: " + what);
     }
@@ -410,12 +504,12 @@ std::string RobotNode::waitUntilThere(const ros::SteadyTime& deadline, bool moto
 }
 
 /// What a trial cannot begin without, the first thing first; empty if nothing is missing.
-/// @param motors  they must be on, too
-std::string RobotNode::missing(bool motors) {
+std::string RobotNode::missing(Motors motors) {
   std::unique_lock<std::mutex> lock(mutex_);
   if (!seesCamera()) {
     lock.unlock();  // the master may be slow, and must not be in the way of a stop
-    return "no image from the camera, " + describePublishers(frame_sub_.getTopic());
+    return "no image from the camera, " +
+           describeImagePublishers(frame_sub_.getTopic(), "camera:=");
   }
   std::string problem = stamps_.compare(frame_arrival_clock_, toStamp(frame_->header.stamp));
   if (problem.empty()) problem = frame_problem_;
@@ -425,9 +519,10 @@ std::string RobotNode::missing(bool motors) {
     return problem;
   }
   if (!has_goal_) return "no goal image: bring the robot to its goal and call service take_goal";
-  if (motors && !gate_.armed()) return gate_.describe();
-  if (motors) return gate_.fault(steadyNow());
-  return "";
+  if (motors == Motors::kAny) return "";
+  if (!gate_.armed()) return gate_.describe();
+  // The reset service may bring a joint back that is beyond its limits.
+  return motors == Motors::kFit ? gate_.fault(steadyNow()) : "";
 }
 
 void RobotNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
@@ -440,6 +535,8 @@ void RobotNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   if (!frame_problem_.empty()) {
     status.summary(diagnostic_msgs::DiagnosticStatus::ERROR, frame_problem_);
   }
+  const std::string frozen = gate_.frozenJoint();
+  if (!frozen.empty()) status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, frozen);
   status.add("torques in time", gate_.numAnswers());
   status.add("deadlines missed", gate_.numMisses());
   status.add("worst latency since the last status [s]", worst_latency_);

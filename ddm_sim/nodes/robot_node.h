@@ -7,6 +7,7 @@
 #include <ddm_msgs/Torque.h>
 #include <ddm_node/effort_publisher.h>
 #include <ddm_node/log_thread.h>
+#include <ddm_node/node_watch.h>
 #include <ddm_robot/frame_picker.h>
 #include <ddm_robot/robot_options.h>
 #include <ddm_robot/stamp_check.h>
@@ -44,7 +45,7 @@ class RobotNode {
   template <class Work>
   void guarded(const Work& work);
   void onFrame(const sensor_msgs::ImageConstPtr& frame);
-  void onTorque(const ddm_msgs::TorqueConstPtr& torque);
+  void onTorque(const ros::MessageEvent<const ddm_msgs::Torque>& event);
   void onJointStates(const ros::MessageEvent<const sensor_msgs::JointState>& event);
   void onTrialEnd(const ddm_msgs::RunTrialActionResultConstPtr& result);
   void onTick(const ros::SteadyTimerEvent& event);
@@ -54,7 +55,7 @@ class RobotNode {
 
   void stop(const std::string& reason);
   void takeFrame(const sensor_msgs::ImageConstPtr& frame);
-  void takeTorque(const ddm_msgs::Torque& torque);
+  void takeTorque(const ddm_msgs::Torque& torque, const std::string& publisher);
   bool seesCamera() const;
   void logFrameProblem();
   sensor_msgs::Image shown(const sensor_msgs::Image& frame) const;
@@ -64,15 +65,22 @@ class RobotNode {
   void settle(bool acted);
   void reportState();
   void cancelTrial();
+  void lookAtPeers();
+  std::string beginRoutine();
+  std::string endRoutine(bool answered);
   std::string bringToStart(const ros::SteadyTime& deadline);
-  std::string waitUntilThere(const ros::SteadyTime& deadline, bool motors);
-  std::string missing(bool motors);
+  /// What the motors must be before a reset goes on.
+  enum class Motors { kAny, kOn, kFit };
+  std::string waitUntilThere(const ros::SteadyTime& deadline, Motors motors);
+  std::string missing(Motors motors);
+  std::string formatProblem(const sensor_msgs::Image& frame) const;
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   LogThread log_;  // a terminal that is stopped must not be in the way of a stop
   const int image_size_;
   const RobotOptions options_;
   ResetRoutine routine_;
+  NodeWatch controller_watch_;
 
   std::mutex mutex_;  // guards what callbacks change, below
   TorqueGate gate_;
@@ -82,12 +90,15 @@ class RobotNode {
   SteadyTime frame_arrival_;
   Stamp frame_arrival_clock_{0};  // the same by the clock of this machine
   std::string frame_problem_;     // why the newest frame cannot be used
+  std::string camera_format_;     // size and encoding that the crop was used with; empty: not yet
   bool has_goal_ = false;
-  bool routine_moves_ = false;  // the user's reset has the motors, and no effort is published
+  bool routine_runs_ = false;   // the user's reset service has been called and has not answered
+  bool routine_moves_ = false;  // it has the motors, and no effort is published
   ddm_msgs::Torque acting_;     // what is not yet published as applied; no torque: nothing is
   ros::SteadyTime last_frame_log_;
   bool was_armed_ = false;
   std::string last_state_;
+  std::string last_frozen_;
   int last_misses_ = -1;
   double worst_latency_ = 0.0;  // since the last diagnosis [s]
 
@@ -100,6 +111,7 @@ class RobotNode {
   ros::Publisher latency_pub_;
   ros::Publisher misses_pub_;
   ros::Publisher cancel_pub_;
+  ros::Publisher enabled_pub_;
   image_transport::Subscriber frame_sub_;
   ros::Subscriber torque_sub_;
   ros::Subscriber joints_sub_;  // only where joints have limits

@@ -11,7 +11,7 @@ import rosunit
 from sensor_msgs.msg import JointState
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from process import Process  # noqa: E402
+from process import Process, find_program  # noqa: E402
 from robot_stand_in import LIMIT_S, RobotCase, wait_until  # noqa: E402
 
 LIMITS = {"joints": ["arm"], "position_limits": [[-2.0, 2.0]], "speed_limit": [8.0]}
@@ -21,7 +21,7 @@ class Joints:
     """100 reports a second, of a gripper and an arm in two messages."""
 
     def __init__(self):
-        self.position, self.velocity, self.reporting = 0.0, 0.0, True
+        self.position, self.velocity, self.reporting, self.age_s = 0.0, 0.0, True, 0.0
         self._ended = False
         self._publisher = rospy.Publisher("joint_states", JointState, queue_size=10, tcp_nodelay=True)
         self._thread = threading.Thread(target=self._report, daemon=True)
@@ -34,10 +34,16 @@ class Joints:
 
     def _report(self):
         while not self._ended:
-            self._publisher.publish(JointState(name=["gripper"], position=[99.0], velocity=[99.0]))
+            self._publish("gripper", 99.0, 99.0)
             if self.reporting:
-                self._publisher.publish(JointState(name=["arm"], position=[self.position], velocity=[self.velocity]))
+                self._publish("arm", self.position, self.velocity)
             time.sleep(0.01)
+
+
+    def _publish(self, name, position, velocity):
+        joints = JointState(name=[name], position=[position], velocity=[velocity])
+        joints.header.stamp = rospy.Time.now() - rospy.Duration(self.age_s)
+        self._publisher.publish(joints)
 
 
 class RobotLimitsTest(RobotCase):
@@ -95,6 +101,30 @@ class RobotLimitsTest(RobotCase):
         self.assertEqual(self.robot.cancels.messages, [])
         self.joints.reporting = True
         self.robot.waitForEffort(2.0)
+
+
+    def test_old_reports_bring_zero_torque(self):
+        self.joints.age_s = 2.0
+        self.robot.waitForEffort(0.0)
+        refused = wait_until(lambda: self.robot.enable(True), "an answer")
+        self.assertFalse(refused.success)
+        self.assertRegex(refused.message, "joint arm .*differ by (1.9|2)")
+        self.joints.age_s = 0.0
+        self.robot.waitForEffort(2.0)
+
+    def test_a_joint_that_stays_where_it_is_while_torques_change_is_reported(self):
+        self.robot.controller.unregister()
+        for torque in range(12):
+            self.robot.answer(0.1 * torque)
+        self.robot.process.waitForText("joint arm at exactly 0", LIMIT_S)
+        self.robot.waitForEffort(0.1 * torque)
+
+    def test_names_are_required_where_several_joints_have_limits(self):
+        self.robot.process.stop()
+        rospy.set_param("/robot_node/robot", {"position_limits": [[-1.0, 1.0], [-2.0, 2.0]]})
+        process = Process([find_program("ddm_sim", "robot_node")])
+        self.assertEqual(process.waitForEnd(LIMIT_S), 1)
+        self.assertIn("robot/joints", process.output)
 
 
 if __name__ == "__main__":

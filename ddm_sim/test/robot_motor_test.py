@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 
 from ddm_msgs.msg import RunTrialActionResult, Torque
 import rospy
@@ -13,6 +14,24 @@ import rosunit
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from process import Process  # noqa: E402
 from robot_stand_in import DT, LIMIT_S, RobotCase, wait_until  # noqa: E402
+
+
+# A controller in a process of its own: answers each image with the same torque.
+CONTROLLER = """
+import rospy
+from ddm_msgs.msg import Torque
+from sensor_msgs.msg import Image
+
+def answer(image):
+    torque = Torque(torque=[2.0])
+    torque.header.stamp = image.header.stamp
+    torques.publish(torque)
+
+rospy.init_node("controller")
+torques = rospy.Publisher("torque", Torque, queue_size=10, tcp_nodelay=True)
+rospy.Subscriber("camera/image_raw", Image, answer, tcp_nodelay=True)
+rospy.spin()
+"""
 
 
 class RobotMotorTest(RobotCase):
@@ -85,6 +104,61 @@ class RobotMotorTest(RobotCase):
         self.enterTrial()
         self.robot.enable(False)
         self.assertEqual(self.robot.appliedAt(self.robot.answer(1.0)), [])
+
+    def timeOfEffort(self, effort, since):
+        """Monotonic time of the first one from a number of messages on."""
+        efforts = self.robot.efforts
+
+        def found():
+            return [at for at, message in list(zip(efforts.times, efforts.messages))[since:] if message.data == effort]
+
+        return wait_until(found, "effort %g" % effort)[0]
+
+    def test_the_torque_is_zero_as_soon_as_the_controller_is_killed(self):
+        self.robot.end()
+        self.robot = self.start("_robot/max_hold:=5.0", dt=2.0)
+        self.robot.torques.unregister()
+        controller = Process([sys.executable, "-c", CONTROLLER])
+        self.addCleanup(controller.stop)
+        self.assertTrue(self.robot.enable(True).success)
+        self.robot.waitForEffort(2.0)
+        seen, killed = len(self.robot.efforts.messages), time.monotonic()
+        controller.send(signal.SIGKILL)
+        self.assertLess(self.timeOfEffort(0.0, seen) - killed, 0.5)  # dt is four times that
+        self.robot.process.waitForText("no node publishes torques", LIMIT_S)
+
+    def test_no_torque_is_held_for_longer_than_the_limit(self):
+        self.robot.end()
+        self.robot = self.start(dt=4.0)
+        self.assertTrue(self.robot.enable(True).success)
+        seen = len(self.robot.efforts.messages)
+        stamp = self.robot.answer(2.0)
+        acted_for = -self.timeOfEffort(2.0, seen)
+        self.robot.waitForEffort(0.0)
+        acted_for += self.robot.efforts.times[-1]
+        self.assertGreater(acted_for, 0.4)
+        self.assertLess(acted_for, 1.5)  # dt is 4 s
+        self.assertEqual(self.robot.appliedAt(stamp), [])  # nothing is learned from an eighth of a step
+
+    def test_without_a_subscriber_of_the_efforts_the_motors_are_off(self):
+        self.enterTrial()
+        self.robot.efforts.end()
+        wait_until(lambda: self.robot.cancels.messages, "the trial is cancelled")
+        refused = self.robot.enable(True)
+        self.assertFalse(refused.success)
+        self.assertIn("effort controller", refused.message)
+
+    def test_a_camera_that_changes_between_trials_is_refused(self):
+        self.enterTrial()
+        self.robot.trial_ends.publish(RunTrialActionResult())
+        self.robot.camera.width = 64
+        for words in ("48x40 rgb8", "64x40 rgb8"):
+            self.robot.process.waitForText(words, LIMIT_S)
+        self.robot.waitForEffort(0.0)
+        self.assertIn("64x40 rgb8", self.robot.takeGoal().message)
+        seen = len(self.robot.images.messages)
+        self.robot.camera.width = 48
+        wait_until(lambda: len(self.robot.images.messages) > seen, "an image")
 
     def test_the_torque_is_zero_when_the_camera_stops(self):
         self.enterTrial()

@@ -78,16 +78,20 @@ TEST(RobotOptions, EachKeyHasItsRule) {
   EXPECT_NE(problem([](auto* o) { o->effort_rate = 19.0; }).find("robot/effort_rate"),
             std::string::npos);
   EXPECT_NE(problem([](auto* o) { o->joints = {"arm"}; }).find("robot/joints"), std::string::npos);
+  EXPECT_NE(problem([](auto* o) { o->max_hold = 0.0; }).find("robot/max_hold"), std::string::npos);
+  for (const std::vector<std::string>& names : {std::vector<std::string>{}, {"arm", "arm"}}) {
+    EXPECT_EQ(problem([&](auto* o) {
+                o->joints = names;
+                o->position_limits = {{0.0, 1.0}, {0.0, 1.0}};
+              }).find("robot/joints"),
+              0u)
+        << "names decide where several joints have limits";
+  }
   EXPECT_TRUE(testing::names(problem([](auto* o) {
                                o->joints = {"elbow", "wrist"};
                                o->speed_limit = {1.0};
                              }),
                              {"robot/speed_limit", "robot/joints, 2", "got 1"}));
-  EXPECT_TRUE(testing::names(problem([](auto* o) {
-                               o->position_limits = {{0.0, 1.0}, {0.0, 1.0}};
-                               o->speed_limit = {1.0};
-                             }),
-                             {"robot/speed_limit", "robot/position_limits, 2", "got 1"}));
   EXPECT_EQ(problem([](auto* o) {
               o->joints = {"arm"};
               o->position_limits = {{-2.0, std::numeric_limits<double>::infinity()}};

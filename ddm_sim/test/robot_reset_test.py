@@ -9,11 +9,13 @@ import threading
 
 import rospy
 import rosunit
+from sensor_msgs.msg import CompressedImage
+from std_msgs.msg import Bool
 from std_srvs.srv import Trigger, TriggerResponse
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from process import Process, find_program  # noqa: E402
-from robot_stand_in import LIMIT_S, RobotCase, wait_until  # noqa: E402
+from robot_stand_in import LIMIT_S, Listener, RobotCase, wait_until  # noqa: E402
 
 
 class RobotResetTest(RobotCase):
@@ -88,9 +90,29 @@ class RobotResetTest(RobotCase):
         self.assertLessEqual(heard[0], 2)  # one may have been on its way
         self.assertEqual(robot.effort(), 0.0)
 
+    def test_the_service_of_the_user_is_not_called_while_the_motors_are_off(self):
+        robot = self.start("_robot/reset_service:=go_home")
+        wait_until(lambda: robot.takeGoal().success, "a camera")
+        called = threading.Event()
+
+        def goHome(_):
+            called.set()
+            return TriggerResponse(success=True)
+
+        self.offer("go_home", goHome)
+        answer = robot.reset()
+        wait_until(lambda: re.search("waits: .*motors are off", robot.process.output), "a word on the motors")
+        self.assertFalse(called.is_set())
+        self.assertTrue(robot.enable(True).success)
+        self.assertTrue(answer().success)
+        self.assertTrue(called.is_set())
+
     def test_a_stop_takes_the_motor_from_the_service_of_the_user(self):
         robot = self.start("_robot/reset_service:=go_home")
         wait_until(lambda: robot.takeGoal().success, "a camera")
+        enabled = Listener("motors_enabled", Bool)
+        self.addCleanup(enabled.end)
+        self.assertTrue(robot.enable(True).success)
         called, released = threading.Event(), threading.Event()
         self.addCleanup(released.set)
 
@@ -102,14 +124,22 @@ class RobotResetTest(RobotCase):
         self.offer("go_home", goHome)
         answer = robot.reset()
         self.assertTrue(called.wait(LIMIT_S))
+        wait_until(lambda: enabled.messages[-1].data, "permission")
         self.assertTrue(robot.enable(False).success)
         robot.waitForEffort(0.0)
+        wait_until(lambda: not enabled.messages[-1].data, "the end of the permission")
+        refused = robot.enable(True)
+        self.assertFalse(refused.success)
+        self.assertIn("reset service", refused.message)
         released.set()
-        wait_until(lambda: robot.enable(True).success and answer().success, "the end of the reset")
+        self.assertIn("switched off", answer().message)
+        self.assertTrue(robot.enable(True).success)
+        self.assertTrue(robot.reset()().success)
 
     def test_the_motor_gets_zero_while_the_service_of_the_user_is_not_there(self):
         robot = self.start("_robot/reset_service:=go_home", "_robot/reset_timeout:=3.0")
         wait_until(lambda: robot.takeGoal().success, "a camera")
+        self.assertTrue(robot.enable(True).success)
         answer = robot.reset()
         for _ in range(5):
             self.assertEqual(robot.effort(), 0.0)
@@ -119,6 +149,8 @@ class RobotResetTest(RobotCase):
         robot = self.start("_robot/reset_service:=go_home", "_robot/reset_timeout:=1.5")
         self.assertIn("take_goal", robot.reset()().message)
         self.assertTrue(robot.takeGoal().success)
+        self.assertIn("motors are off", robot.reset()().message)
+        self.assertTrue(robot.enable(True).success)
         self.assertRegex(robot.reset()().message, "/go_home .*offered.*robot/reset_service")
         reasons = [""]
         self.offer("go_home", lambda _: TriggerResponse(success=False, message=reasons[0]))
@@ -134,6 +166,7 @@ class RobotResetTest(RobotCase):
     def test_a_service_that_hangs_does_not_hang_the_reset(self):
         robot = self.start("_robot/reset_service:=go_home", "_robot/reset_timeout:=1.5")
         wait_until(lambda: robot.takeGoal().success, "a camera")
+        self.assertTrue(robot.enable(True).success)
         called, released = threading.Event(), threading.Event()
         self.addCleanup(released.set)
 
@@ -147,6 +180,25 @@ class RobotResetTest(RobotCase):
         self.assertTrue(called.wait(LIMIT_S))
         self.assertIn("another reset", robot.reset()().message)
         self.assertRegex(first().message, "/go_home .*answer")
+        wait_until(lambda: "reset service" in robot.process.output, "the motors are off")
+        robot.answer(2.0)
+        self.assertEqual(robot.effort(), 0.0)
+
+    def test_another_form_of_images_is_named_with_the_remedy(self):
+        robot = self.start("_robot/reset_timeout:=1.0")
+        robot.camera.end()
+        compressed = rospy.Publisher("camera/source/compressed", CompressedImage, queue_size=1)
+        self.addCleanup(compressed.unregister)
+        wait_until(lambda: re.search("CompressedImage.*republish compressed in:=/camera/source", robot.reset()().message), "a remedy")
+        other = rospy.Publisher("camera/source", CompressedImage, queue_size=1)
+        self.addCleanup(other.unregister)
+        wait_until(lambda: "must be sensor_msgs/Image" in robot.reset()().message, "the type")
+
+    def test_a_goal_that_would_be_enlarged_is_refused(self):
+        first = self.start("_robot/goal_file:=" + self.goal)
+        wait_until(lambda: first.takeGoal().success, "a camera")
+        first.process.stop()
+        self.assertRefused("4x4 pixels", "_image/size:=5", "_robot/goal_file:=" + self.goal)
 
     def assertRefused(self, words, *arguments):
         if rospy.has_param("/refused"):

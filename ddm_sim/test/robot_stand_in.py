@@ -53,6 +53,7 @@ class Camera:
 
     def __init__(self, topic):
         self.left = 255
+        self.width = WIDTH
         self.showing = True
         self.age_s = 0.0
         self.shown_at = 0.0  # monotonic time of the last image
@@ -76,9 +77,9 @@ class Camera:
             time.sleep(1.0 / 30.0)
 
     def _publish(self, age_s):
-        image = Image(width=WIDTH, height=HEIGHT, step=3 * WIDTH, encoding="rgb8")
+        image = Image(width=self.width, height=HEIGHT, step=3 * self.width, encoding="rgb8")
         image.header.stamp = rospy.Time.now() - rospy.Duration(age_s)
-        image.data = bytes([self.left] * 3 * (WIDTH // 2) + [0] * 3 * (WIDTH - WIDTH // 2)) * HEIGHT
+        image.data = bytes([self.left] * 3 * (WIDTH // 2) + [0] * 3 * (self.width - WIDTH // 2)) * HEIGHT
         self._publisher.publish(image)
 
     def end_with_image(self, age_s):

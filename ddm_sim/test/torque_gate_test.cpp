@@ -105,6 +105,51 @@ TEST_F(TorqueGateTest, WhenImagesStopTheTorqueIsZeroAfterTwoSteps) {
   EXPECT_EQ(effort(910), 1.0);
 }
 
+TEST_F(TorqueGateTest, WhenTheLastPublisherHasGoneTheTorqueIsZeroUntilTheNextTorque) {
+  follow();
+  gate_.setPublishers(0);
+  EXPECT_EQ(effort(30), 0.0);
+  EXPECT_EQ(gate_.state(), State::kNoController);
+  gate_.setPublishers(1);
+  EXPECT_EQ(effort(40), 0.0) << "a connection alone is no torque";
+  showImage(200);
+  EXPECT_TRUE(answer(210, 200, 1.0));
+  EXPECT_EQ(effort(210), 1.0);
+}
+
+TEST_F(TorqueGateTest, NoTorqueActsForLongerThanTheLimitWhateverDtIs) {
+  RobotOptions options;
+  options.dt = 5.0;
+  followWith(options);
+  ASSERT_TRUE(answer(20, 0, 2.0));
+  EXPECT_EQ(effort(519), 2.0);
+  EXPECT_EQ(effort(520), 0.0);
+  EXPECT_EQ(gate_.state(), State::kHeldTooLong);
+  EXPECT_FALSE(gate_.heldForAStep()) << "nothing is to be learned from a tenth of a step";
+  EXPECT_EQ(gate_.numMisses(), 0);
+}
+
+TEST_F(TorqueGateTest, ATorqueThatActedForNearlyAStepCounts) {
+  RobotOptions options;
+  options.dt = 0.5;
+  followWith(options);
+  ASSERT_TRUE(answer(20, 0, 2.0));
+  EXPECT_EQ(effort(520), 0.0);
+  EXPECT_TRUE(gate_.heldForAStep());
+}
+
+TEST_F(TorqueGateTest, WithoutASubscriberOfTheEffortsNoTrialBeginsAndNoneGoesOn) {
+  gate_.setListeners(0);
+  EXPECT_NE(gate_.arm(at(0)).find("effort controller"), std::string::npos);
+  gate_.setListeners(1);
+  follow();
+  gate_.setListeners(0);
+  EXPECT_EQ(gate_.state(), State::kStopped);
+  EXPECT_EQ(effort(30), 0.0);
+  gate_.setListeners(1);
+  EXPECT_EQ(effort(40), 0.0) << "until somebody enables the motors";
+}
+
 TEST_F(TorqueGateTest, AnImageThatIsSkippedIsAMissToo) {
   follow();
   showImage(200);
@@ -342,7 +387,14 @@ class GuardedTorqueGateTest : public TorqueGateTest {
     report(0, 0.0);
   }
   void report(int now, double position) {
-    gate_.takeJoints(at(now), "/driver", {"arm"}, {position}, {});
+    JointReport report;
+    report.arrival = at(now);
+    report.clock = std::chrono::hours(500000) + std::chrono::milliseconds(now);
+    report.stamp = report.clock;
+    report.reporter = "/driver";
+    report.names = {"arm"};
+    report.positions = {position};
+    gate_.takeJoints(report);
   }
 };
 

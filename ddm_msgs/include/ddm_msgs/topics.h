@@ -41,7 +41,9 @@ constexpr char kReset[] = "reset";                     ///< ddm_msgs/Reset
 constexpr char kStartRecording[] = "start_recording";  ///< ddm_msgs/StartRecording
 constexpr char kStopRecording[] = "stop_recording";    ///< ddm_msgs/StopRecording
 
-constexpr char kEnable[] = "enable";         ///< std_srvs/SetBool: motors of a robot
+constexpr char kEnable[] = "enable";  ///< std_srvs/SetBool: motors of a robot
+constexpr char kMotorsEnabled[] =
+    "motors_enabled";  ///< std_msgs/Bool, latched: what `enable` set, or a fault took back
 constexpr char kTakeGoal[] = "take_goal";    ///< std_srvs/Trigger: the robot is at its goal
 constexpr char kResetDone[] = "reset_done";  ///< std_srvs/Trigger: the robot is at its start
 

@@ -4,11 +4,13 @@
 
 #include <ros/console.h>
 #include <ros/master.h>
+#include <ros/names.h>
 #include <ros/network.h>
 #include <ros/this_node.h>
 #include <ros/xmlrpc_manager.h>
 #include <xmlrpcpp/XmlRpcException.h>
 
+#include <algorithm>
 #include <boost/algorithm/string/join.hpp>
 #include <map>
 #include <set>
@@ -67,14 +69,10 @@ Connections outgoingConnectionsAt(const std::string& host, std::uint32_t port) {
 }
 
 Connections outgoingConnections(const std::string& node) {
-  XmlRpc::XmlRpcValue request;
-  request[0] = ros::this_node::getName();
-  request[1] = node;
-  std::optional<XmlRpc::XmlRpcValue> uri = askMaster("lookupNode", request);
-  std::string host;
-  std::uint32_t port = 0;
-  if (!uri || !ros::network::splitURI(static_cast<std::string>(*uri), host, port)) return {};
-  return callWithin(kLimit, [host, port] { return outgoingConnectionsAt(host, port); })
+  const std::optional<std::pair<std::string, std::uint32_t>> address = addressOf(node);
+  if (!address) return {};
+  return callWithin(kLimit,
+                    [address] { return outgoingConnectionsAt(address->first, address->second); })
       .value_or(Connections());
 }
 
@@ -93,12 +91,63 @@ std::optional<XmlRpc::XmlRpcValue> askMaster(const std::string& method,
   return answer ? *answer : std::nullopt;
 }
 
+std::optional<std::pair<std::string, std::uint32_t>> addressOf(const std::string& node) {
+  XmlRpc::XmlRpcValue request;
+  request[0] = ros::this_node::getName();
+  request[1] = node;
+  std::optional<XmlRpc::XmlRpcValue> uri = askMaster("lookupNode", request);
+  std::pair<std::string, std::uint32_t> address;
+  if (!uri ||
+      !ros::network::splitURI(static_cast<std::string>(*uri), address.first, address.second)) {
+    return std::nullopt;
+  }
+  return address;
+}
+
 std::string describePublishers(const std::string& topic) {
   auto nodes = publishersAndSubscribers();
   if (!nodes) return "the ROS master does not answer";
   const std::set<std::string>& publishers = nodes->first[topic];
   if (publishers.empty()) return "nobody publishes " + topic;
   return "publisher(s) of " + topic + ": " + boost::algorithm::join(publishers, ", ");
+}
+
+std::string describeImagePublishers(const std::string& topic, const std::string& argument) {
+  constexpr char kImage[] = "sensor_msgs/Image";
+  constexpr char kCompressed[] = "sensor_msgs/CompressedImage";
+  const std::string publishers = describePublishers(topic);
+  const auto published = callWithin(kLimit, [] {
+                           ros::master::V_TopicInfo topics;  // that have a publisher
+                           ros::master::getTopics(topics);
+                           return topics;
+                         }).value_or(ros::master::V_TopicInfo());
+  const auto typeOf = [&published](const std::string& name) {
+    const auto found =
+        std::find_if(published.begin(), published.end(),
+                     [&name](const ros::master::TopicInfo& each) { return each.name == name; });
+    return found == published.end() ? std::string() : found->datatype;
+  };
+  const auto republish = [&argument](const std::string& base) {
+    return ": run `rosrun image_transport republish compressed in:=" + base + " raw out:=" + base +
+           "_raw`, and give " + argument + base + "_raw";
+  };
+  const std::string type = typeOf(topic);
+  const std::string suffix = "/compressed";
+  if (type == kCompressed) {
+    const bool ends = topic.size() > suffix.size() &&
+                      topic.compare(topic.size() - suffix.size(), suffix.size(), suffix) == 0;
+    return publishers + ". Its type is " + kCompressed + ", and must be " + kImage +
+           republish(ends ? topic.substr(0, topic.size() - suffix.size()) : topic);
+  }
+  if (!type.empty() && type != kImage) {
+    return publishers + ". Its type is " + type + ", and must be " + kImage +
+           ": give the topic of the camera's images by " + argument + "TOPIC";
+  }
+  if (type.empty() && typeOf(topic + suffix) == kCompressed) {
+    return publishers + ", but " + topic + suffix + " is published, as " + kCompressed +
+           republish(topic);
+  }
+  return publishers;
 }
 
 std::vector<std::string> missingConnections(const std::vector<std::string>& topics) {
@@ -115,6 +164,14 @@ std::vector<std::string> missingConnections(const std::vector<std::string>& topi
     }
   }
   return missing;
+}
+
+std::string otherPublishers(const std::string& topic) {
+  auto nodes = publishersAndSubscribers();
+  if (!nodes) return "";
+  std::set<std::string>& publishers = nodes->first[topic];
+  publishers.erase(ros::this_node::getName());
+  return boost::algorithm::join(publishers, ", ");
 }
 
 std::vector<std::string> sharedTopics(const std::vector<std::string>& topics) {

@@ -24,31 +24,58 @@ JointLimits::JointLimits(const RobotOptions& options) : named_(!options.joints.e
   }
 }
 
-void JointLimits::take(SteadyTime now, const std::string& reporter,
-                       const std::vector<std::string>& names, const std::vector<double>& positions,
-                       const std::vector<double>& velocities) {
-  const std::size_t num_reported = std::max(positions.size(), velocities.size());
+void JointLimits::take(const JointReport& report) {
+  const std::size_t num_reported = std::max(report.positions.size(), report.velocities.size());
   unfit_.clear();
   if (!named_ && num_reported != joints_.size()) {
     std::ostringstream text;
     text << "joint_states reports " << num_reported << " joint(s) where limits are set for "
-         << joints_.size() << ": name those that have limits in robot/joints";
+         << joints_.size() << ": name the joints that have limits in robot/joints";
     unfit_ = text.str();
     return;
   }
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     std::size_t index = i;
     if (named_) {
-      const auto found = std::find(names.begin(), names.end(), joints_[i].name);
-      if (found == names.end()) continue;
-      index = static_cast<std::size_t>(found - names.begin());
+      const auto found = std::find(report.names.begin(), report.names.end(), joints_[i].name);
+      if (found == report.names.end()) continue;
+      index = static_cast<std::size_t>(found - report.names.begin());
     }
-    joints_[i].violation = findRival(&joints_[i], now, reporter);
-    joints_[i].heard = now;
-    if (joints_[i].violation.empty()) {
-      joints_[i].violation = check(joints_[i], index, positions, velocities);
-    }
+    take(report, index, &joints_[i]);
   }
+}
+
+void JointLimits::take(const JointReport& report, std::size_t index, Joint* joint) {
+  const std::string rivalry = findRival(joint, report.arrival, report.reporter);
+  if (!rivalry.empty()) joint->violation = rivalry;
+  joint->refusal = joint->stamps.take(report.arrival, report.clock, report.stamp);
+  if (!joint->refusal.empty()) {
+    joint->stamps.restart();  // the next report is compared with the clock of this machine
+    return;
+  }
+  joint->heard = joint->stamps.taken();
+  if (index < report.positions.size() && report.positions[index] != joint->position) {
+    joint->position = report.positions[index];
+    joint->torques_since_change = 0;
+  }
+  joint->violation = rivalry.empty() ? check(*joint, index, report) : rivalry;
+}
+
+void JointLimits::torqueChanges() {
+  for (Joint& joint : joints_) ++joint.torques_since_change;
+}
+
+std::string JointLimits::frozen() const {
+  for (const Joint& joint : joints_) {
+    if (!joint.has_position_limits || joint.torques_since_change < kFrozenTorques) continue;
+    std::ostringstream text;
+    text << "joint_states has reported joint " << joint.name << " at exactly " << joint.position
+         << " while " << joint.torques_since_change
+         << " torques acted: make sure that its driver measures it, and that nothing holds the "
+            "joint";
+    return text.str();
+  }
+  return "";
 }
 
 std::string JointLimits::findRival(Joint* joint, SteadyTime now, const std::string& reporter) {
@@ -63,9 +90,9 @@ std::string JointLimits::findRival(Joint* joint, SteadyTime now, const std::stri
          reporter + ": only its driver should";
 }
 
-std::string JointLimits::check(const Joint& joint, std::size_t index,
-                               const std::vector<double>& positions,
-                               const std::vector<double>& velocities) {
+std::string JointLimits::check(const Joint& joint, std::size_t index, const JointReport& report) {
+  const std::vector<double>& positions = report.positions;
+  const std::vector<double>& velocities = report.velocities;
   const auto within = [](double value, double lower, double upper) {  // never so for NaN
     return std::isfinite(value) && value >= lower && value <= upper;
   };
@@ -102,6 +129,7 @@ std::string JointLimits::silence(SteadyTime now) const {
     std::ostringstream text;
     text << "joint_states has not reported joint " << joint.name << " for " << toSeconds(kSilence)
          << " s, and it has limits";
+    if (!joint.refusal.empty()) text << ": " << joint.refusal;
     return text.str();
   }
   return "";

@@ -1,4 +1,4 @@
-// Whether the stamps of a camera can be trusted: each is compared with the arrival of its image.
+// Whether the stamps of a sensor can be trusted: each is compared with the arrival of its message.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_robot/stamp_check.h"
 
@@ -26,10 +26,13 @@ std::string StampCheck::compare(Stamp clock, Stamp stamp) const {
   const Stamp age = clock - stamp;
   if (age <= dt_ && age >= -dt_) return "";
   std::ostringstream text;
-  text
-      << "the camera's stamps and this machine's clock differ by " << std::abs(toSeconds(age))
-      << " s when images arrive, at most dt is allowed: let the driver set the stamps, synchronise "
-         "the clocks";
+  if (stamp == Stamp(0)) {
+    text << item_ << " has no stamp, so its age is unknown: let the driver set header.stamp";
+    return text.str();
+  }
+  text << "the " << sensor_ << "'s stamps and this machine's clock differ by "
+       << std::abs(toSeconds(age)) << " s when " << item_ << " arrives, at most " << toSeconds(dt_)
+       << " s are allowed: let the driver set the stamps, synchronise the clocks";
   return text.str();
 }
 
@@ -38,15 +41,15 @@ std::string StampCheck::refusal(SteadyTime arrival, Stamp clock, Stamp stamp) co
   const Stamp ahead = stamp - arrival.time_since_epoch() - highest_;
   std::ostringstream text;
   if (ahead > dt_) {
-    text << "the camera's clock has jumped forward by " << toSeconds(ahead) << " s";
+    text << "the " << sensor_ << "'s clock has jumped forward by " << toSeconds(ahead) << " s";
   } else if (stamp <= *last_) {
-    text << "an image is stamped " << toSeconds(*last_ - stamp)
-         << " s before the one that came before it: the camera's clock was set back, or images "
-            "come out of order";
+    text << item_ << " is stamped " << toSeconds(*last_ - stamp)
+         << " s before the one that came before it: the " << sensor_
+         << "'s clock was set back, or messages come twice or out of order";
   } else {
     return "";
   }
-  text << ". Images are refused until its clock is right, or until the next reset";
+  text << ". Messages are refused until that clock is right, or until the next reset";
   return text.str();
 }
 

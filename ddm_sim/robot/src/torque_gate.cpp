@@ -9,6 +9,9 @@
 namespace ddm {
 namespace {
 
+constexpr char kNoListener[] =
+    "no node subscribes to the efforts, so that torques cannot act: start the effort controller";
+
 bool allFinite(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(),
                      [](double value) { return std::isfinite(value); });
@@ -20,6 +23,8 @@ TorqueGate::TorqueGate(const RobotOptions& options)
     : max_torque_(options.max_torque),
       slew_rate_(options.slew_rate),
       dt_(fromSeconds(options.dt)),
+      max_hold_(fromSeconds(options.max_hold)),
+      holds_for_a_step_(options.holdsForAStep()),
       joints_(options),
       target_(max_torque_.size(), 0.0),
       effort_(max_torque_.size(), 0.0) {
@@ -30,6 +35,7 @@ std::string TorqueGate::fault(SteadyTime now) const {
   if (num_publishers_ > 1) {
     return std::to_string(num_publishers_) + " nodes publish torques: end all but one";
   }
+  if (num_listeners_ == 0) return kNoListener;
   const std::string silence = joints_.silence(now);
   return silence.empty() ? joints_.violation() : silence;
 }
@@ -96,6 +102,10 @@ bool TorqueGate::takeTorque(SteadyTime now, Stamp stamp, const std::vector<doubl
          " finite number(s) [N m], one for each motor, got " + listText(torque));
     return false;
   }
+  if (num_listeners_ == 0) {
+    stop(kNoListener);
+    return false;
+  }
   if (state_ == State::kResetting || !joints_.silence(now).empty()) return false;
   if (!joints_.violation().empty()) {
     stop(joints_.violation());
@@ -109,17 +119,17 @@ bool TorqueGate::takeTorque(SteadyTime now, Stamp stamp, const std::vector<doubl
   pending_.pop_front();
   ++num_answers_;
   state_ = State::kFollowing;
+  last_torque_ = now;
+  const std::vector<double> before = target_;
   for (std::size_t i = 0; i < torque.size(); ++i) {
     target_[i] = std::max(-max_torque_[i], std::min(max_torque_[i], torque[i]));
   }
+  if (target_ != before) joints_.torqueChanges();
   return true;
 }
 
-void TorqueGate::takeJoints(SteadyTime now, const std::string& reporter,
-                            const std::vector<std::string>& names,
-                            const std::vector<double>& positions,
-                            const std::vector<double>& velocities) {
-  joints_.take(now, reporter, names, positions, velocities);
+void TorqueGate::takeJoints(const JointReport& report) {
+  joints_.take(report);
   if (inTrial() && !joints_.violation().empty()) stop(joints_.violation());
 }
 
@@ -128,6 +138,12 @@ void TorqueGate::setPublishers(int num_publishers) {
   if (num_publishers > 1 && armed()) {
     stop(std::to_string(num_publishers) + " nodes publish torques, one must");
   }
+  if (num_publishers == 0 && state_ == State::kFollowing) state_ = State::kNoController;
+}
+
+void TorqueGate::setListeners(int num_listeners) {
+  num_listeners_ = num_listeners;
+  if (num_listeners == 0 && inTrial()) stop(kNoListener);
 }
 
 /// Notices what has not come.
@@ -139,6 +155,7 @@ void TorqueGate::expire(SteadyTime now) {
     state_ = State::kLate;
   }
   if (state_ == State::kFollowing && now - last_image_ > 2 * dt_) state_ = State::kImagesStopped;
+  if (state_ == State::kFollowing && now - last_torque_ >= max_hold_) state_ = State::kHeldTooLong;
   if (inTrial() && !joints_.silence(now).empty()) state_ = State::kJointsSilent;
 }
 
@@ -170,6 +187,10 @@ std::string TorqueGate::describe() const {
       return "zero torque: no image came for two dt";
     case State::kLate:
       return "zero torque: an image had no torque within dt";
+    case State::kNoController:
+      return "zero torque: no node publishes torques";
+    case State::kHeldTooLong:
+      return "zero torque: the last torque has acted for robot/max_hold";
     case State::kJointsSilent:
       return "zero torque: joint_states does not report the joints that have limits";
   }

@@ -15,6 +15,7 @@ from ddm_qa.robot_check import PlantGoal, show_goal_and_enable
 ON_A_ROBOT = " on a robot"  # end of a phase
 HOUR = rospy.Duration(3600)
 CLOCK_IS_WRONG_S = 1.5
+OLD_JOINTS_S, AGE = 1.5, rospy.Duration(2)
 BEYOND = 1.0e4  # position and speed [rad, rad/s]
 QUEUE = 1000
 IMAGE_BYTES = 1 << 24  # a camera's image is larger than what rospy reads at once
@@ -54,12 +55,24 @@ class RobotInjection(Injection):
                 self.begin(CLOCK_IS_WRONG_S)
             if time.monotonic() < self.ends:
                 image.header.stamp += HOUR if self.fault.endswith("forward") else -HOUR
+        elif self.fault == "resize image":
+            if self.is_due():
+                self.begin()
+            if self.done:  # the upper half, as after a change of the camera's resolution
+                image.height //= 2
+                image.data = image.data[:image.step * image.height]
         self.publish(self.images, image)
 
     def on_joints(self, joints):
         if self.fault.startswith("exceed") and self.is_due():
             setattr(joints, "position" if self.fault == "exceed position" else "velocity", [BEYOND])
             self.begin()
+        elif self.fault == "age joints":
+            if self.is_due():
+                self.ends = time.monotonic() + OLD_JOINTS_S
+                self.begin(OLD_JOINTS_S)
+            if time.monotonic() < self.ends:
+                joints.header.stamp -= AGE
         self.publish(self.joints, joints)
 
     def begin(self, lasts=float("inf")):

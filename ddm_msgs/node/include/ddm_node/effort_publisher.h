@@ -6,6 +6,7 @@
 #include <std_msgs/Float64.h>
 #include <std_msgs/Float64MultiArray.h>
 
+#include <string>
 #include <vector>
 
 #include "ddm_msgs/topics.h"
@@ -34,6 +35,9 @@ class EffortPublisher {
       publisher_.publish(message);
     }
   }
+
+  int numSubscribers() const { return static_cast<int>(publisher_.getNumSubscribers()); }
+  std::string topic() const { return publisher_.getTopic(); }
 
   /// Zero to every motor.
   void publishZero() { publish(std::vector<double>(static_cast<std::size_t>(num_motors_), 0.0)); }

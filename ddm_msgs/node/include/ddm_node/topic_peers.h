@@ -4,8 +4,10 @@
 
 #include <XmlRpcValue.h>
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace ddm {
@@ -16,15 +18,30 @@ namespace ddm {
 std::optional<XmlRpc::XmlRpcValue> askMaster(const std::string& method,
                                              const XmlRpc::XmlRpcValue& request);
 
+/// Host and port at which a node answers others; empty if the master does not know it, or does not
+/// answer.
+/// @param node  resolved name
+std::optional<std::pair<std::string, std::uint32_t>> addressOf(const std::string& node);
+
 /// "publisher(s) of /torque: /mpc_node" or "nobody publishes /torque", as the master knows it.
 /// @param topic  resolved name
 std::string describePublishers(const std::string& topic);
+
+/// The same for a topic of images, with a remedy where images are published in another form: as
+/// another type, or only compressed.
+/// @param topic     resolved name
+/// @param argument  for the remedy: how the user names another topic, such as "camera:="
+std::string describeImagePublishers(const std::string& topic, const std::string& argument);
 
 /// Asks each publisher of the topics for its connections. Messages are safe only from the moment
 /// the publisher has made the connection; the subscriber counts the publisher before that.
 /// @param topics  resolved names
 /// @return "/sim_node -> /mpc_node on /camera/image_raw" for each connection that is still missing
 std::vector<std::string> missingConnections(const std::vector<std::string>& topics);
+
+/// Other nodes than this one that publish a topic, as the master knows them: "/a, /b".
+/// @param topic  resolved name
+std::string otherPublishers(const std::string& topic);
 
 /// @param topics  resolved names
 /// @return "/torque: /intruder, /mpc_node" for each topic that more than one node publishes, this

@@ -4,6 +4,8 @@
 
 #include <ddm_params/option_checks.h>
 
+#include <algorithm>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -28,9 +30,10 @@ struct RobotOptions {
   int crop_height = 0;  ///< rows; 0: to the bottom [pixels]
   std::vector<double> max_torque = {6.0};  ///< bound on the torque of each motor [N m]
   std::vector<double> slew_rate = {0.0};   ///< bound on its change, or one for all; 0: none [N m/s]
-  std::vector<std::string> joints;  ///< that have limits; empty: all that joint_states reports
+  std::vector<std::string> joints;  ///< names of those that have limits, in the order of the limits
   std::vector<std::vector<double>> position_limits;  ///< [lower, upper] of each [rad or m]
   std::vector<double> speed_limit;                   ///< of each [rad/s or m/s]
+  double max_hold = 0.5;         ///< how long a torque acts at most, whatever dt is [s]
   double effort_rate = 100.0;    ///< how often torques are sent and timeouts checked [Hz]
   std::string goal_file;         ///< picture of the goal; take_goal writes it
   std::string reset_service;     ///< std_srvs/Trigger that brings it to its start; empty: a person
@@ -48,11 +51,14 @@ struct RobotOptions {
     visitor("joints", joints);
     visitor("position_limits", position_limits);
     visitor("speed_limit", speed_limit);
+    visitor("max_hold", max_hold);
     visitor("effort_rate", effort_rate);
     visitor("goal_file", goal_file);
     visitor("reset_service", reset_service);
     visitor("reset_timeout", reset_timeout);
   }
+  /// Whether a torque may act for (nearly) all of a time step: otherwise nothing can be learned.
+  bool holdsForAStep() const { return max_hold >= 0.9 * dt; }
   int numMotors() const { return static_cast<int>(max_torque.size()); }
 
   /// Everything wrong with these values, in words a user can act on. Empty means valid.
@@ -63,6 +69,7 @@ struct RobotOptions {
     robot.requireWithin("crop_y", crop_y, 0, 16383);
     robot.requireWithin("crop_width", crop_width, 0, 16384);
     robot.requireWithin("crop_height", crop_height, 0, 16384);
+    robot.requireWithin("max_hold", max_hold, 0.001, 20.0);
     robot.requireWithin("effort_rate", effort_rate, 20.0, 1000.0);
     robot.requireTimeLimit("reset_timeout", reset_timeout);
     checkMotors(&robot);
@@ -96,9 +103,15 @@ struct RobotOptions {
       robot->require(size == 0 || count == 0 || size == count, key,
                      "have as many entries as robot/" + of + ", " + std::to_string(count), size);
     };
+    const std::size_t num_limits = std::max(position_limits.size(), speed_limit.size());
+    robot->require(num_limits < 2 || !joints.empty(), "joints",
+                   "name the joints that have limits, in the order of the limits, where there is "
+                   "more than one",
+                   "none for " + std::to_string(num_limits));
+    robot->require(std::set<std::string>(joints.begin(), joints.end()).size() == joints.size(),
+                   "joints", "name each joint once", "a name twice");
     requireEach("position_limits", position_limits.size(), "joints", joints.size());
     requireEach("speed_limit", speed_limit.size(), "joints", joints.size());
-    requireEach("speed_limit", speed_limit.size(), "position_limits", position_limits.size());
   }
 };
 

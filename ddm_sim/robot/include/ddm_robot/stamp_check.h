@@ -1,10 +1,11 @@
-// Whether the stamps of a camera can be trusted: each is compared with the arrival of its image.
+// Whether the stamps of a sensor can be trusted: each is compared with the arrival of its message.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "ddm_robot/clocks.h"
 
@@ -26,14 +27,19 @@ namespace ddm {
 /// after it, which costs no more than a lost image. An image that comes late is accepted, however
 /// late, and so is the next one in time. A refused image changes nothing here: as soon as the
 /// camera's clock is right again its images are accepted. A clock that stays wrong needs restart().
+///
+/// Joint states are judged in the same way.
 class StampCheck {
  public:
-  /// @param dt  time step, > 0 [s]
-  explicit StampCheck(double dt) : dt_(fromSeconds(dt)) {}
+  /// @param dt      tolerance, > 0: one time step for images [s]
+  /// @param sensor  for messages: what sets the stamps
+  /// @param item    for messages: what carries the stamps
+  explicit StampCheck(double dt, std::string sensor = "camera", std::string item = "an image")
+      : dt_(fromSeconds(dt)), sensor_(std::move(sensor)), item_(std::move(item)) {}
 
   /// Compares a stamp with the clock of this machine.
   /// @param clock  of this machine when the image arrived, since its epoch
-  /// @return       what is wrong; empty: they differ by no more than dt
+  /// @return       what is wrong; empty: they differ by no more than the tolerance
   std::string compare(Stamp clock, Stamp stamp) const;
 
   /// To be called for each image.
@@ -55,6 +61,8 @@ class StampCheck {
   std::string refusal(SteadyTime arrival, Stamp clock, Stamp stamp) const;
 
   std::chrono::nanoseconds dt_;
+  std::string sensor_;
+  std::string item_;
   std::optional<Stamp> last_;   // empty: none was accepted yet
   Stamp highest_{0};            // offset
   std::deque<Stamp> offsets_;   // of recent images

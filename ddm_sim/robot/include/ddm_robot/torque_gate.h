@@ -21,13 +21,15 @@ namespace ddm {
 ///   kWaiting        no trial is under way
 ///   kImagesStopped  a trial is under way, and no image came for two dt
 ///   kLate           an image had no answer within dt. A torque that comes later does not act
+///   kNoController   a trial is under way, and no node publishes torques
+///   kHeldTooLong    the last torque has acted for robot/max_hold
 ///   kJointsSilent   the joints have limits, and joint_states does not report them
 ///
-/// The last three end by themselves with the next torque in time. Three faults latch: a torque that
-/// is not one finite number for each motor, a second publisher of torques, and a joint beyond its
-/// limits, or reported by two nodes, when a torque acts or is about to. They switch the motors off
-/// until arm(), which is refused while the fault is there. Between trials, where no torque acts,
-/// joints may be moved beyond their limits.
+/// The last five end by themselves with the next torque in time. Four faults latch: a torque that
+/// is not one finite number for each motor, a second publisher of torques, no subscriber of the
+/// efforts in a trial, and a joint beyond its limits, or reported by two nodes, when a torque acts
+/// or is about to. They switch the motors off until arm(), which is refused while the fault is
+/// there. Between trials, where no torque acts, joints may be moved beyond their limits.
 ///
 /// Time is that of the monotonic clock: whatever stamps say, a motor that hears nothing stops.
 ///
@@ -42,6 +44,8 @@ class TorqueGate {
     kFollowing,
     kImagesStopped,
     kLate,
+    kNoController,
+    kHeldTooLong,
     kJointsSilent
   };
 
@@ -79,12 +83,15 @@ class TorqueGate {
   const std::vector<double>& target() const { return target_; }
 
   /// What joint_states reports, as in JointLimits::take().
-  void takeJoints(SteadyTime now, const std::string& reporter,
-                  const std::vector<std::string>& names, const std::vector<double>& positions,
-                  const std::vector<double>& velocities);
+  void takeJoints(const JointReport& report);
+  /// A joint whose position does not change, see JointLimits::frozen().
+  std::string frozenJoint() const { return joints_.frozen(); }
 
-  /// How many publish torques at present; more than one is a fault.
+  /// How many nodes publish torques at present. More than one is a fault; without one, a torque ends.
   void setPublishers(int num_publishers);
+
+  /// How many nodes subscribe to the efforts. Without one, no torque can act: a fault.
+  void setListeners(int num_listeners);
 
   /// What the motors get now. To be called with times that never decrease.
   /// @return torque [N m]                                                            [numMotors]
@@ -93,9 +100,10 @@ class TorqueGate {
   State state() const { return state_; }
   bool armed() const { return state_ != State::kStopped; }
   bool inTrial() const {
-    return state_ == State::kFollowing || state_ == State::kImagesStopped ||
-           state_ == State::kLate || state_ == State::kJointsSilent;
+    return state_ != State::kStopped && state_ != State::kResetting && state_ != State::kWaiting;
   }
+  /// Whether the last torque has acted for (nearly) all of a time step, although it does not act now.
+  bool heldForAStep() const { return state_ == State::kHeldTooLong && holds_for_a_step_; }
   /// The state in words, with what brought it about.
   std::string describe() const;
 
@@ -119,14 +127,18 @@ class TorqueGate {
   std::vector<double> max_torque_;  // of each motor [N m]
   std::vector<double> slew_rate_;   // of each motor; 0: any [N m/s]
   std::chrono::nanoseconds dt_;
+  std::chrono::nanoseconds max_hold_;
+  bool holds_for_a_step_;
   JointLimits joints_;
   State state_ = State::kStopped;
   bool resetting_ = false;
   std::string stop_reason_ = "service enable arms them";
   int num_publishers_ = 0;
+  int num_listeners_ = 1;
   std::deque<Pending> pending_;
   std::vector<Stamp> unanswered_;
   SteadyTime last_image_;
+  SteadyTime last_torque_;      // that acts
   std::vector<double> target_;  // [N m]
   std::vector<double> effort_;  // what the motors got last [N m]
   SteadyTime last_effort_;
