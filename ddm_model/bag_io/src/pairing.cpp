@@ -24,6 +24,19 @@ std::vector<ros::Time> timesOf(const std::vector<Item>& items) {
   return times;
 }
 
+/// [s]; 0 if there are fewer than two.
+double medianInterval(const std::vector<ros::Time>& times) {
+  std::vector<double> intervals;
+  for (size_t i = 1; i < times.size(); ++i) {
+    intervals.push_back((times[i] - times[i - 1]).toSec());
+  }
+  if (intervals.empty()) return 0.0;
+  // The lower of two middle ones: a gap only ever lengthens an interval.
+  const auto middle = intervals.begin() + (intervals.size() - 1) / 2;
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  return *middle;
+}
+
 /// The position of the time that is nearest to another.
 /// @param times  sorted, at least one
 std::size_t nearest(const std::vector<ros::Time>& times, const ros::Time& time) {
@@ -58,18 +71,6 @@ std::vector<std::pair<std::size_t, bool>> pickImages(const std::vector<ros::Time
 }
 
 }  // namespace
-
-double medianInterval(const std::vector<ros::Time>& times) {
-  std::vector<double> intervals;
-  for (size_t i = 1; i < times.size(); ++i) {
-    intervals.push_back((times[i] - times[i - 1]).toSec());
-  }
-  if (intervals.empty()) return 0.0;
-  // The lower of two middle ones: a gap only ever lengthens an interval.
-  const auto middle = intervals.begin() + (intervals.size() - 1) / 2;
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
-}
 
 double Pairs::interval() const { return medianInterval(timesOf(frames)); }
 

@@ -43,9 +43,6 @@ struct Pairs {
   double interval() const;
 };
 
-/// [s]; 0 if there are fewer than two.
-double medianInterval(const std::vector<ros::Time>& times);
-
 /// Pairs what has the same stamp, as this project records it. A new segment begins after an image
 /// without a torque, and after a gap of more than 1.5 times the median interval.
 /// @param images  by their times
