@@ -10,7 +10,7 @@
 
 #include <boost/filesystem.hpp>
 #include <cmath>
-#include <set>
+#include <iostream>
 #include <sstream>
 #include <stdexcept>
 
@@ -53,6 +53,9 @@ void requireFits(const std::string& path, const Configuration& configuration, co
   require(fits, "images", bag.camera, camera);
   const bool same_rate = bag.interval == 0.0 || std::abs(bag.interval - dt) <= kRateTolerance * dt;
   require(same_rate, "seconds between frames (dt)", bag.interval, dt);
+  for (const std::string& note : bag.notes) {
+    std::cerr << "warning: bag " << path << ": " << note << "\n";
+  }
 }
 
 }  // namespace
@@ -101,12 +104,9 @@ void prepareStart(Configuration* configuration) {
     throw std::invalid_argument(
         "start/bag_ids must have one entry for each of start/bags, or none");
   }
-  std::set<std::string> seen;
+  requireDifferentBags(start.bags);
   for (size_t i = 0; i < start.bags.size(); ++i) {
     identify(&start.bags[i], &start.bag_ids[i]);
-    if (!seen.insert(start.bags[i]).second) {
-      throw std::invalid_argument("bag " + start.bags[i] + " is given twice: it would count twice");
-    }
     requireFits(start.bags[i], *configuration, *plant);
   }
 }

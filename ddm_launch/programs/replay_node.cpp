@@ -202,6 +202,7 @@ void run(const ros::NodeHandle& nh, ddm::ParamReader* params) {
   params->requireValid();
   const std::shared_ptr<const ddm::Ddm> model = ddm::readModel(options.model);
   const ddm::BagContent bag = ddm::readBag(options.bag, model->imageSize(), topics);
+  for (const std::string& note : bag.notes) ROS_WARN_STREAM("bag " << options.bag << ": " << note);
   ddm::waitForSimulatedTime(options.timeout);
   Replay replay(nh, options, *model);
   ddm::Progress progress;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "../bag_io/src/torque_reader.h"
 #include "../bag_io/src/trial_messages.h"
 #include "check_content.h"
 
@@ -31,17 +32,18 @@ void takeFirst(const Message& message, ddm::TorqueReader* reader, ddm::TrialMess
     const auto torque = reader->read({torques(), ros::Time(), message.second});
     if (torque) messages->takeTorque(*torque);
   } else if (message.first == 1) {
-    messages->takeImageTime(imageFrom(message.second).header.stamp);
+    const ros::Time stamp = imageFrom(message.second).header.stamp;
+    messages->takeImageTime(stamp, stamp, std::hash<std::string>()(message.second));
   }
 }
 
-void takeThen(const Message& message, ddm::TrialMessages* messages) {
+void takeThen(const Message& message, std::size_t* number, ddm::TrialMessages* messages) {
   if (message.first == 2) {
     messages->takeGoal(imageFrom(message.second));
   } else if (message.first == 1) {
     const sensor_msgs::Image image = imageFrom(message.second);
-    if (!messages->wants(image.header.stamp)) return;
-    messages->takeImage(image.header.stamp, image, image.encoding);
+    if (messages->wants(*number)) messages->takeImage(*number, image, image.encoding);
+    ++*number;
   }
 }
 
@@ -60,7 +62,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   ddm::testing::accepts<std::runtime_error>([&] {
     messages.pair(0.0);
-    for (const Message& message : all) takeThen(message, &messages);
+    std::size_t number = 0;
+    for (const Message& message : all) takeThen(message, &number, &messages);
     ddm::testing::checkContent(messages.frames(), kImageSize);
   });
   return 0;

@@ -28,7 +28,8 @@ class ModelNode {
             const BagAccess& access)
       : config_(config),
         access_(access),
-        bags_(config.image.size, config.data_set),
+        bags_(config.image.size, config.data_set,
+              [](const std::string& note) { ROS_WARN_STREAM(note); }),
         health_(nh, pnh),
         model_pub_(nh.advertise<ddm_msgs::Model>(topics::kModel, 1, /*latch=*/true)),
         server_(
@@ -44,7 +45,7 @@ class ModelNode {
     try {
       for (const std::string& bag : goal->bags) access_.require(bag);
       ROS_INFO("trial %u: reads %zu bags, then trains", goal->trial, goal->bags.size());
-      const DataSet data = bags_.read(goal->bags);
+      const DataSet data = bags_.read(goal->bags, [this] { return isWanted(); });
       if (!data.hasGoal()) {
         ROS_WARN("no bag holds a goal image: the model can predict, but not be planned with");
       }
@@ -66,6 +67,11 @@ class ModelNode {
         server_.setSucceeded(result);
       }
     } catch (const std::exception& e) {
+      if (!isWanted()) {
+        health_.cancel();
+        server_.setPreempted(result, e.what());
+        return;
+      }
       ROS_ERROR_STREAM("trial " << goal->trial << ": cannot train: " << e.what());
       health_.fail(e.what());
       server_.setAborted(result, e.what());
@@ -95,8 +101,11 @@ class ModelNode {
       feedback.fraction_done = progress.fraction_done;
       server_.publishFeedback(feedback);
     }
-    return ros::ok() && !server_.isPreemptRequested();
+    return isWanted();
   }
+
+  /// Whether nobody asked to end the training or this node.
+  bool isWanted() { return ros::ok() && !server_.isPreemptRequested(); }
 
   void publish(const Ddm& model, ddm_msgs::TrainResult* result) {
     const ddm_msgs::Model message = toMessage(model, ros::Time::now());

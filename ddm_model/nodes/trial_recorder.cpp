@@ -190,6 +190,7 @@ bool TrialRecorder::stop(ddm_msgs::StopRecording::Request& request,
 
 int main(int argc, char** argv) {
   return ddm::runNode("trial_recorder", argc, argv, [](auto nh, auto, ddm::ParamReader* params) {
+    params->ignore("image_transport");  // read by image_transport itself
     const auto bag = params->read<ddm::BagOptions>("data_set");
     const auto access = params->read<ddm::BagAccess>("access");
     const auto options = params->read<ddm::RecorderOptions>("recorder");

@@ -41,7 +41,7 @@ void DataSet::append(const DataSet& other) {
   images_.insert(images_.end(), other.images_.begin(), other.images_.end());
   torques_.insert(torques_.end(), other.torques_.begin(), other.torques_.end());
   num_frames_ += other.num_frames_;
-  if (goal_.empty()) goal_ = other.goal_;
+  if (other.hasGoal()) goal_ = other.goal_;
 }
 
 void DataSet::setGoal(const Grey& grey) {

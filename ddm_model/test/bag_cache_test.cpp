@@ -60,6 +60,66 @@ TEST_F(BagCacheTest, RefusesABagThatIsGivenTwice) {
   EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { cache_.read({a, b, a}); }, {a, "twice"}));
 }
 
+TEST_F(BagCacheTest, RefusesAFileThatIsGivenByTwoPaths) {
+  const std::string a = write("a.bag", toyTrial(7, 1));
+  fs::create_symlink(a, folder_.file("link.bag"));
+  fs::create_hard_link(a, folder_.file("hard.bag"));
+  for (const std::string& other :
+       {folder_.file("./a.bag"), folder_.file("link.bag"), folder_.file("hard.bag")}) {
+    EXPECT_TRUE(throwsNaming<std::runtime_error>(
+        [&] {
+          cache_.read({a, other});
+        },
+        {a, other, "twice"}));
+  }
+}
+
+TEST_F(BagCacheTest, ForgetsABagThatIsNoLongerAskedFor) {
+  const std::string a = write("a.bag", toyTrial(7, 1)), b = write("b.bag", toyTrial(5, 2));
+  const fs::file_time_type time = fs::last_write_time(a);
+  cache_.read({a, b});
+  const auto size = fs::file_size(a);
+  std::ofstream(a, std::ios::trunc) << std::string(size, 'x');
+  fs::last_write_time(a, time);
+  cache_.read({b});
+  EXPECT_THROW(cache_.read({a, b}), std::runtime_error) << "it must be read anew";
+}
+
+TEST_F(BagCacheTest, StopsBeforeTheNextBagWhenItIsTold) {
+  const std::string a = write("a.bag", toyTrial(7, 1)), missing = folder_.file("b.bag");
+  int left = 1;
+  EXPECT_TRUE(throwsNaming<std::runtime_error>(
+      [&] {
+        cache_.read({a, missing}, [&left] { return left-- > 0; });
+      },
+      {"cancelled"}));
+}
+
+TEST_F(BagCacheTest, TheGoalImageOfTheLastBagThatHasOneCounts) {
+  const auto writeGoal = [this](const std::string& name, double angle) {
+    testing::ToyBag bag(folder_.file(name));
+    bag.frame(1.0, 0.0, 1.0);
+    bag.goal(1.0, testing::imageMessage(1.0, testing::toyImage(angle)));
+    return folder_.file(name);
+  };
+  const std::string first = writeGoal("first.bag", 1.0), last = writeGoal("last.bag", 2.0);
+  testing::writeTrial(folder_.file("none.bag"), toyTrial(5, 1), /*with_goal=*/false);
+  EXPECT_EQ(cache_.read({first, last, folder_.file("none.bag")}).goal(), testing::toyImage(2.0));
+}
+
+TEST_F(BagCacheTest, TellsTheNotesOfEachBagOnce) {
+  std::vector<std::string> notes;
+  BagCache cache(testing::kToySize, BagOptions(),
+                 [&notes](const std::string& note) { notes.push_back(note); });
+  DataSet dark(testing::kToySize, 1);
+  for (int t = 0; t < 5; ++t) dark.append(Grey(64, 3), Eigen::VectorXd::Zero(1), t == 0);
+  const std::string path = write("dark.bag", dark);
+  cache.read({path});
+  cache.read({path});
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_TRUE(testing::names(notes[0], {path, "grey values"}));
+}
+
 TEST_F(BagCacheTest, AChangedBagDoesNotMakeItReadTheOthersAgain) {
   const std::string a = write("a.bag", toyTrial(7, 1)), b = write("b.bag", toyTrial(5, 2));
   const fs::file_time_type time = fs::last_write_time(a);

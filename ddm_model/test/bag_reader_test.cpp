@@ -239,6 +239,36 @@ TEST_F(BagReader, ForgivesMessagesThatWereRecordedTwice) {
   EXPECT_EQ(segmentSizes(), (Sizes{5}));
 }
 
+TEST_F(BagReader, AClockThatIsSetBackChangesNeitherOrderNorPairs) {
+  {
+    ToyBag bag(path_);
+    for (int t = 0; t < 10; ++t) {
+      const double recorded = 20.0 + 0.2 * t, stamp = recorded - (t < 6 ? 0.0 : 0.9);
+      bag.image(recorded, imageMessage(stamp, toyImage(0.1 * t)));
+      bag.write("torque", recorded, torqueMessage(stamp, {1.0 * t}));
+    }
+  }
+  const BagContent content = read();
+  EXPECT_EQ(segmentSizes(), (Sizes{10}));
+  for (int t = 0; t < 10; ++t) EXPECT_EQ(content.data.torques()(0, t), t);
+  EXPECT_EQ(content.data.image(7), toyImage(0.7));
+  EXPECT_NEAR(content.times[9], 1.8, 1e-6);
+  ASSERT_EQ(content.notes.size(), 1U);
+  EXPECT_TRUE(testing::names(content.notes[0], {"go back", "21.0", "20.3"}));
+}
+
+TEST_F(BagReader, ATopicCannotBeTwoThings) {
+  testing::writeTrial(path_, testing::toyTrial(5, 1));
+  BagOptions options;
+  options.goal_topic = "/" + options.image_topic;
+  EXPECT_TRUE(testing::names(options.problems().at(0), {"goal_topic", "image_topic"}));
+  options.torque_topic = options.goal_topic;
+  EXPECT_EQ(options.problems().size(), 3U);
+  options = BagOptions();
+  options.goal_topic = "image_raw";  // found in the namespace /camera
+  EXPECT_TRUE(isRefused({"camera/image_raw", "data_set/goal_topic"}, options));
+}
+
 TEST_F(BagReader, ReadsTorquesOfSeveralMotors) {
   {
     ToyBag bag(path_);

@@ -84,7 +84,7 @@ TEST(DataSet, KeepsASeamBetweenTwoTrials) {
   EXPECT_EQ(data.torques()(0, 4), 11.0);
 }
 
-TEST(DataSet, TakesOverAGoalOnlyWhereItHasNone) {
+TEST(DataSet, TheLastGoalThatIsAppendedCounts) {
   DataSet with_goal = numbered(0, 1);
   with_goal.setGoal(Grey(4, 9));
   DataSet data = numbered(0, 1);
@@ -94,7 +94,9 @@ TEST(DataSet, TakesOverAGoalOnlyWhereItHasNone) {
   DataSet other = numbered(0, 1);
   other.setGoal(Grey(4, 7));
   data.append(other);
-  EXPECT_EQ(data.goal(), Grey(4, 9));
+  EXPECT_EQ(data.goal(), Grey(4, 7));
+  data.append(numbered(0, 1));
+  EXPECT_EQ(data.goal(), Grey(4, 7));
 }
 
 TEST(DataSet, RefusesFramesThatDoNotFit) {

@@ -165,6 +165,16 @@ class InspectionTest(toy_robot.ToyRobotCase):
         np.testing.assert_array_equal(data.torques[200:, 0], torques[paired])
         np.testing.assert_array_equal(data.frames["segment"][200:], np.repeat([1, 2, 3], [5, 3, 10]))
 
+    def test_what_to_know_about_a_bag_is_in_the_report_and_on_standard_error(self):
+        with rosbag.Bag(self.unseen) as bag, rosbag.Bag(self.file("broken.bag"), "w") as broken:
+            for topic, message, time in bag.read_messages():
+                if topic == "camera/image_raw" and round((time.to_sec() - 10.0) / 0.2) == 50:
+                    message.data = message.data[:7]
+                broken.write(topic, message, time)
+        page = self.inspect(self.file("broken.bag"))
+        for words in (page.text, self.output):
+            self.assertIn("1 image(s) cannot be read and leave a gap, the first: image at 20.0", words)
+
     def test_a_bag_of_another_robot_is_named(self):
         with rosbag.Bag(self.unseen) as bag, rosbag.Bag(self.file("two.bag"), "w") as two:
             for topic, message, time in bag.read_messages():

@@ -5,10 +5,13 @@
 #include <rosbag/bag.h>
 #include <sensor_msgs/CompressedImage.h>
 #include <sensor_msgs/JointState.h>
+#include <std_msgs/Float32.h>
+#include <std_msgs/Float32MultiArray.h>
 #include <std_msgs/Float64.h>
 #include <std_msgs/Float64MultiArray.h>
 #include <std_msgs/String.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -48,6 +51,12 @@ class OtherBags : public ::testing::Test {
   }
 
   BagContent read() const { return readBag(path_, kToySize, options_); }
+  /// Whether the only note has all the parts.
+  ::testing::AssertionResult notes(const std::vector<std::string>& parts) const {
+    const std::vector<std::string> notes = read().notes;
+    if (notes.size() == 1) return testing::names(notes[0], parts);
+    return ::testing::AssertionFailure() << notes.size() << " notes";
+  }
   ::testing::AssertionResult isRefused(const std::vector<std::string>& parts) const {
     std::vector<std::string> all = {"bag " + path_};
     all.insert(all.end(), parts.begin(), parts.end());
@@ -65,6 +74,23 @@ class OtherBags : public ::testing::Test {
                       {"message_definition", traits::definition(message)},
                       {"callerid", publisher}});
     bag_->write(topic, ros::Time(time), message, header);
+  }
+  /// A controller's torque on each image of frame k, with no torque in between.
+  template <class Make>
+  void writeTorquePerFrame(const Make& make, double lag = 0.0) {
+    for (int k = 0; k < kFrames; ++k) {
+      const double time = kBegin + kDt * k + kLatency;
+      write("command", time + lag, make(time, torqueOf(k)));
+    }
+  }
+  /// An image for each frame.
+  /// @param stampOf  of frame k
+  template <class StampOf>
+  void writeImagePerFrame(const StampOf& stampOf, double lag = 0.0) {
+    for (int k = 0; k < kFrames; ++k) {
+      write("camera/image_raw", kBegin + kDt * k + lag,
+            imageMessage(stampOf(k), toyImage(angleOf(kImagesPerFrame * k))));
+    }
   }
   /// A camera of 30 Hz.
   template <class IsThere>
@@ -126,8 +152,35 @@ TEST_F(OtherBags, NumbersWithoutAHeader) {
   writeFloats();
   close();
   expectAllFrames();
+  EXPECT_TRUE(read().notes.empty());
   options_.motors = {"arm"};
   EXPECT_TRUE(isRefused({"command", "std_msgs/Float64", "data_set/motors"}));
+}
+
+TEST_F(OtherBags, NumbersOfSinglePrecision) {
+  for (const bool array : {false, true}) {
+    bag_ = std::make_unique<rosbag::Bag>(path_, rosbag::bagmode::Write);
+    writeImages();
+    if (array) {
+      writeTorques([](double, double u) {
+        std_msgs::Float32MultiArray message;
+        message.data = {static_cast<float>(u)};
+        return message;
+      });
+    } else {
+      writeTorques([](double, double u) {
+        std_msgs::Float32 message;
+        message.data = static_cast<float>(u);
+        return message;
+      });
+    }
+    close();
+    const BagContent content = read();
+    ASSERT_EQ(content.data.numFrames(), kFrames);
+    for (int k = 0; k < kFrames; ++k) {
+      EXPECT_EQ(content.data.torques()(0, k), static_cast<float>(torqueOf(k))) << k;
+    }
+  }
 }
 
 TEST_F(OtherBags, ArraysOfNumbersWithoutAHeader) {
@@ -188,7 +241,91 @@ TEST_F(OtherBags, JointsWithoutEffortAreRefused) {
   writeImages();
   writeTorques([](double, double) { return jointsOf({"arm"}, {}); });
   close();
-  EXPECT_TRUE(isRefused({"0 effort(s)", "1 joint(s)"}));
+  EXPECT_TRUE(isRefused({"no torque", "messages of /recorded have no effort"}));
+}
+
+TEST_F(OtherBags, PublishersWithoutEffortOfTheJointsDoNotCount) {
+  writeImages();
+  writeTorques([](double, double u) { return jointsOf({"gripper", "arm"}, {5.0, u}); });
+  const double unknown = std::nan("");
+  for (int i = 0; i < 10; ++i) {
+    write("command", kBegin + 0.1 * i, jointsOf({"arm", "gripper"}, {}), "/positions");
+    write("command", kBegin + 0.1 * i, jointsOf({"gripper", "arm"}, {unknown, unknown}), "/rates");
+  }
+  close();
+  expectAllFrames(/*motor=*/1);
+  EXPECT_TRUE(notes({"10 messages of /positions", "10 messages of /rates", "no effort"}));
+}
+
+TEST_F(OtherBags, ALagOfTheRecorderDoesNotMoveTorquesWithoutStamps) {
+  writeImagePerFrame([](int k) { return kBegin + kDt * k; }, /*lag=*/0.5);
+  writeTorquePerFrame([](double, double u) { return floatOf(u); }, /*lag=*/0.5);
+  close();
+  const BagContent content = read();
+  ASSERT_EQ(content.data.numFrames(), kFrames);
+  for (int k = 0; k < kFrames; ++k) EXPECT_EQ(content.data.torques()(0, k), torqueOf(k)) << k;
+  EXPECT_TRUE(notes({"0.5 s after their stamps", "training/max_delay to 5"}));
+}
+
+TEST_F(OtherBags, WhereTheCameraClockCannotBeTrustedRecordingTimesCount) {
+  const auto expectPairs = [this](const char* what, const auto& stampOf, bool stamped) {
+    bag_ = std::make_unique<rosbag::Bag>(path_, rosbag::bagmode::Write);
+    writeImagePerFrame(stampOf);
+    writeTorquePerFrame([stamped](double time, double u) {
+      auto message = jointsOf({"arm"}, {u});
+      if (stamped) message.header.stamp = ros::Time(time);
+      return message;
+    });
+    close();
+    const BagContent content = read();
+    ASSERT_EQ(content.data.numFrames(), kFrames) << what;
+    EXPECT_EQ(content.data.segments().size(), 1U) << what;
+    for (int k = 0; k < kFrames; ++k) {
+      EXPECT_EQ(content.data.image(k), toyImage(angleOf(kImagesPerFrame * k))) << what << k;
+      EXPECT_EQ(content.data.torques()(0, k), torqueOf(k)) << what << k;
+    }
+    EXPECT_TRUE(notes({what, "recorded count instead"}));
+  };
+  for (const bool stamped : {false, true}) {
+    expectPairs(
+        "stand still at 7.0", [](int) { return 7.0; }, stamped);
+    expectPairs(
+        "stand still at 10.9", [](int k) { return kBegin + kDt * std::min(k, 9); }, stamped);
+    expectPairs(
+        "go back", [](int k) { return kBegin + kDt * k - (k < 9 ? 0.0 : 5.0); }, stamped);
+    expectPairs(
+        "go back", [](int k) { return kBegin + kDt * k - (k < 9 ? 0.0 : 0.25); }, stamped);
+    expectPairs(
+        "leap", [](int k) { return kBegin + kDt * k + (k < 9 ? 0.0 : 37.0); }, stamped);
+    expectPairs(
+        "have no stamp", [](int k) { return k % 2 == 0 ? 0.0 : kBegin + kDt * k; }, stamped);
+  }
+  expectPairs(
+      "two clocks", [](int k) { return 500.0 + kDt * k; }, /*stamped=*/true);
+}
+
+TEST_F(OtherBags, StampsOfTwoClocksThatOverlapAreReported) {
+  writeImagePerFrame([](int k) { return kBegin + kDt * k - 0.7; });
+  writeTorquePerFrame([](double time, double u) {
+    auto message = jointsOf({"arm"}, {u});
+    message.header.stamp = ros::Time(time);
+    return message;
+  });
+  close();
+  EXPECT_EQ(read().data.numFrames(), kFrames - 7);
+  const std::vector<std::string> all = read().notes;
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_TRUE(testing::names(all[0], {"0.7 s after their stamps", "0 s after theirs"}));
+  EXPECT_TRUE(testing::names(all[1], {"7 image(s)", "before the first torque"}));
+}
+
+TEST_F(OtherBags, ARobotAtRestSendsTheSameImageAndEachCounts) {
+  for (int k = 0; k < kFrames; ++k) {
+    write("camera/image_raw", kBegin + kDt * k, imageMessage(7.0, toyImage(1.0)));
+  }
+  writeTorquePerFrame([](double, double u) { return floatOf(u); });
+  close();
+  EXPECT_EQ(read().data.numFrames(), kFrames);
 }
 
 TEST_F(OtherBags, AStampCountsMoreThanTheTimeOfTheRecording) {
@@ -227,20 +364,6 @@ TEST_F(OtherBags, ADroppedImageIsReplacedByItsNeighbourOrSplitsTheBag) {
   EXPECT_EQ(content.data.numFrames(), kFrames - 2);
 }
 
-TEST_F(OtherBags, WhereTorquesFallSilentThereIsNoFrame) {
-  writeImages();
-  for (double time = kLatency; time < kDt * kFrames; time += 0.02) {
-    if (time < 0.52 || time > 0.8) write("command", kBegin + time, floatOf(commandedAt(time)));
-  }
-  close();
-  const BagContent content = read();
-  EXPECT_EQ(content.data.segments().size(), 2u);
-  EXPECT_EQ(content.data.numFrames() + static_cast<int>(content.images_without_torque.size()),
-            kFrames);
-  ASSERT_EQ(content.images_without_torque.size(), 2u);
-  EXPECT_NEAR(content.images_without_torque[0], 0.6, 1e-6);
-}
-
 TEST_F(OtherBags, ATorqueThatIsSaidOnceHoldsUntilTheNext) {
   writeImages();
   for (const int k : {0, 4, 8, 12, 16}) write("command", kBegin + kDt * k, floatOf(k));
@@ -248,6 +371,22 @@ TEST_F(OtherBags, ATorqueThatIsSaidOnceHoldsUntilTheNext) {
   const BagContent content = read();
   ASSERT_EQ(content.data.numFrames(), kFrames);
   for (int k = 0; k < kFrames; ++k) EXPECT_EQ(content.data.torques()(0, k), k / 4 * 4) << k;
+}
+
+TEST_F(OtherBags, ATorqueHoldsHoweverLongItTakesAndImagesBeforeTheFirstAreDropped) {
+  writeImages();
+  for (const int k : {3, 4, 5, 13}) write("command", kBegin + kDt * k + kLatency, floatOf(k));
+  close();
+  const BagContent content = read();
+  ASSERT_EQ(content.data.numFrames(), kFrames - 3);
+  EXPECT_EQ(content.data.segments().size(), 1U);
+  EXPECT_EQ(content.data.image(0), toyImage(angleOf(3 * kImagesPerFrame)));
+  for (int k = 3; k < kFrames; ++k) {
+    EXPECT_EQ(content.data.torques()(0, k - 3), k < 5 ? k : k < 13 ? 5 : 13) << k;
+  }
+  ASSERT_EQ(content.notes.size(), 2U);
+  EXPECT_TRUE(testing::names(content.notes[0], {"3 image(s)", "before the first torque"}));
+  EXPECT_TRUE(testing::names(content.notes[1], {"13 of 17 frames", "0.79 s", "until the next"}));
 }
 
 TEST_F(OtherBags, TorquesBeforeTheFirstImageAreCounted) {
@@ -267,7 +406,18 @@ TEST_F(OtherBags, TwoControllersAtOnceAreRefused) {
     write("command", kBegin + 0.1 * i, floatOf(1.0), i % 2 == 0 ? "/teleop" : "/controller");
   }
   close();
-  EXPECT_TRUE(isRefused({"command", "/controller and /teleop"}));
+  EXPECT_TRUE(isRefused({"command", "/teleop (10 from 10.0", "/controller (10 from 10.1"}));
+}
+
+TEST_F(OtherBags, ControllersOneAfterTheOtherAndThoseWithoutANameAreNoTwoAtOnce) {
+  writeImages();
+  for (int k = 0; k < kFrames; ++k) {
+    const char* const publisher = k % 5 == 1 ? "" : k < 10 ? "/first" : "/second";
+    write("command", kBegin + kDt * k + kLatency, floatOf(torqueOf(k)), publisher);
+  }
+  close();
+  expectAllFrames();
+  EXPECT_TRUE(notes({"/first (8 from 10.0", "/second (8 from 11.0", "one after the other"}));
 }
 
 TEST_F(OtherBags, TheTimeBetweenFramesMustBeGivenAndSuitTheCamera) {
@@ -328,7 +478,66 @@ TEST_F(OtherBags, ACompressedImageThatIsNoneIsRefused) {
   write("camera/image_raw", kBegin, message);
   write("command", kBegin, floatOf(1.0));
   close();
-  EXPECT_TRUE(isRefused({"camera/image_raw", "3 bytes of format 'jpeg'", "JPEG or PNG"}));
+  EXPECT_TRUE(isRefused({"image at 10.0", "3 bytes of format 'jpeg'", "JPEG or PNG"}));
+}
+
+TEST_F(OtherBags, ABrokenJpegLeavesAGapThatIsTold) {
+  const std::string picture = folder_.file("picture.jpg");
+  writePicture(picture, imageMessage(0.0, toyImage(1.0, 64), 64));
+  const std::string bytes = readFile(picture);
+  for (const double part : {0.05, 0.7}) {  // of the header alone, and of the pixels
+    bag_ = std::make_unique<rosbag::Bag>(path_, rosbag::bagmode::Write);
+    for (int k = 0; k < kFrames; ++k) {
+      sensor_msgs::CompressedImage message;
+      message.header.stamp = ros::Time(kBegin + kDt * k);
+      message.format = "jpeg";
+      const double size = static_cast<double>(bytes.size()) * (k == 12 ? part : 1.0);
+      message.data.assign(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+      write("camera/image_raw/compressed", kBegin + kDt * k, message);
+    }
+    writeTorquePerFrame([](double, double u) { return floatOf(u); });
+    close();
+    const BagContent content = read();
+    ASSERT_EQ(content.data.segments().size(), 2U);
+    EXPECT_EQ(content.data.segments()[0].size, 12);
+    EXPECT_EQ(content.data.torques()(0, 12), torqueOf(13));
+    EXPECT_TRUE(notes({"1 image(s)", "at 11.2"}));
+  }
+}
+
+TEST_F(OtherBags, TransportsOfAnImageTopicAreFoundByItsNameOrNamed) {
+  writeImages();
+  sensor_msgs::CompressedImage broken;
+  write("camera/image_raw/compressed", kBegin, broken);
+  writeFloats();
+  close();
+  expectAllFrames();  // of the raw ones
+  bag_ = std::make_unique<rosbag::Bag>(path_, rosbag::bagmode::Write);
+  write("/robot/camera/image_raw/theora", kBegin, std_msgs::String());
+  writeFloats();
+  close();
+  EXPECT_TRUE(isRefused({"/robot/camera/image_raw/theora", "transport theora", "republish"}));
+  bag_ = std::make_unique<rosbag::Bag>(path_, rosbag::bagmode::Write);
+  write("/left/camera/image_raw", kBegin, imageMessage(kBegin, toyImage(0.0)));
+  write("/right/camera/image_raw/compressed", kBegin, broken);
+  writeFloats();
+  close();
+  EXPECT_TRUE(isRefused({"/left/camera/image_raw", "/right/camera/image_raw/compressed", "both"}));
+}
+
+TEST_F(OtherBags, ImagesThatUseFewOfTheirGreyValuesAreReported) {
+  for (int k = 0; k < kFrames; ++k) {
+    sensor_msgs::Image image = imageMessage(kBegin + kDt * k, toyImage(0.0));
+    image.encoding = "mono16";
+    image.step = 2 * kToySize;
+    image.data.assign(128, 0);
+    for (int i = 0; i < 64; ++i)
+      image.data[2 * i + 1] = static_cast<std::uint8_t>(i / 4);  // 12 bits
+    write("camera/image_raw", kBegin + kDt * k, image);
+  }
+  writeTorquePerFrame([](double, double u) { return floatOf(u); });
+  close();
+  EXPECT_TRUE(notes({"8x8 mono16", "from 0 to 15 of 255"}));
 }
 
 TEST_F(OtherBags, ThePartOfTheImageIsTakenThatCounts) {

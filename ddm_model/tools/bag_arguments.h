@@ -21,9 +21,9 @@ class BagArguments {
           text);
     };
     add("image-topic", "image_topic", "TOPIC",
-        "data_set/image_topic: sensor_msgs/Image or CompressedImage");
+        "data_set/image_topic: sensor_msgs/Image or CompressedImage, also without /compressed");
     add("torque-topic", "torque_topic", "TOPIC",
-        "data_set/torque_topic: ddm_msgs/Torque, std_msgs/Float64 or Float64MultiArray, "
+        "data_set/torque_topic: ddm_msgs/Torque, std_msgs/Float64, Float32 or arrays of them, "
         "geometry_msgs/WrenchStamped, sensor_msgs/JointState");
     add("dt", "dt", "S", "data_set/dt: time between frames [s], but for ddm_msgs/Torque");
     add("motors", "motors", "A,B,...",

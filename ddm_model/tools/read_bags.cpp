@@ -40,7 +40,9 @@ bool parse(int argc, char** argv, Arguments* arguments) {
       "header,\n"
       "        frame by frame: images (grey values, 8 bit), torques [N m] and times [s] "
       "(doubles).\n"
-      "        Likewise the times images_without_torque and torques_without_image.\n\noptions");
+      "        Likewise the times images_without_torque and torques_without_image.\n"
+      "        What to know about a bag is in the notes of bag.yaml and on standard error.\n\n"
+      "options");
   options.add_options()("image-size",
                         po::value(&arguments->image_size)->required()->value_name("N"),
                         "images are brought to N x N pixels");
@@ -77,6 +79,7 @@ void writeBag(const ddm::BagContent& content, const std::string& folder) {
   for (const ddm::Segment& segment : data.segments()) bag["segment_sizes"].push_back(segment.size);
   bag["interval_s"] = ddm::formatDouble(content.interval);
   bag["goal"] = data.hasGoal() ? 1 : 0;
+  bag["notes"] = content.notes;
   ddm::writeFileAtomically(folder + "/bag.yaml", YAML::Dump(bag) + "\n");
 }
 
@@ -87,12 +90,17 @@ void run(const Arguments& arguments) {
   ddm::ParamReader params(blocks, boost::algorithm::join(arguments.configs, ", "));
   const auto topics = params.read<ddm::BagOptions>("data_set");
   params.requireValid();
+  ddm::requireDifferentBags(arguments.bags);
   const bool live = ::isatty(STDERR_FILENO) != 0;
   const std::size_t number = arguments.bags.size();
   for (std::size_t i = 0; i < number; ++i) {
     if (live) std::cerr << "\rbag " << i + 1 << " of " << number << (i + 1 == number ? "\n" : "");
-    writeBag(ddm::readBag(arguments.bags[i], arguments.image_size, topics),
-             arguments.out + "/" + std::to_string(i));
+    const std::string& bag = arguments.bags[i];
+    const ddm::BagContent content = ddm::readBag(bag, arguments.image_size, topics);
+    for (const std::string& note : content.notes) {
+      std::cerr << (live ? "\n" : "") << "warning: bag " << bag << ": " << note << "\n";
+    }
+    writeBag(content, arguments.out + "/" + std::to_string(i));
   }
 }
 

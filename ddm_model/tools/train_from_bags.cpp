@@ -44,8 +44,9 @@ bool parse(int argc, char** argv, Arguments* arguments) {
                         "YAML file with blocks image, model, training, data_set; repeatable, later "
                         "files win. The limits of the motors are model/max_torque, else those of "
                         "a block robot or plant");
-  options.add_options()("goal", po::value(&arguments->goal),
-                        "goal image, cropped like theirs; else the goal_image of the bags");
+  options.add_options()(
+      "goal", po::value(&arguments->goal),
+      "goal image, cropped like theirs; else the goal_image of the last bag that has one");
   options.add_options()("seed", po::value(&arguments->seed)->default_value(0),
                         "seed of the initial parameters");
   options.add_options()("out", po::value(&arguments->out), "model file to write");
@@ -97,7 +98,8 @@ void run(const Arguments& arguments) {
                           boost::algorithm::join(arguments.configs, ", "));
   const ddm::ModelConfig config = ddm::readModelConfig(&params);
   params.requireValid();
-  ddm::DataSet data = ddm::BagCache(config.image.size, config.data_set).read(arguments.bags);
+  const auto warn = [](const std::string& note) { std::cerr << "warning: " << note << "\n"; };
+  ddm::DataSet data = ddm::BagCache(config.image.size, config.data_set, warn).read(arguments.bags);
   if (!arguments.goal.empty()) {
     data.setGoal(ddm::greyOf(ddm::readPicture(arguments.goal), config.image.size, config.data_set));
   }

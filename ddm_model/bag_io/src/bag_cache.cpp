@@ -4,9 +4,9 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <set>
 #include <stdexcept>
 
 namespace ddm {
@@ -26,19 +26,24 @@ const BagContent& BagCache::contentOf(const std::string& path) {
   }
   entries_.erase(path);
   Entry entry{modified, bytes, readBag(path, image_size_, options_)};
+  for (const std::string& note : entry.content.notes) {
+    if (warn_) warn_("bag " + path + ": " + note);
+  }
   return entries_.emplace(path, std::move(entry)).first->second.content;
 }
 
-DataSet BagCache::read(const std::vector<std::string>& paths) {
+DataSet BagCache::read(const std::vector<std::string>& paths, const KeepGoing& keep_going) {
   if (paths.empty()) throw std::runtime_error("no bag was given: there is nothing to learn from");
+  requireDifferentBags(paths);
+  for (auto entry = entries_.begin(); entry != entries_.end();) {
+    const bool wanted = std::find(paths.begin(), paths.end(), entry->first) != paths.end();
+    entry = wanted ? std::next(entry) : entries_.erase(entry);
+  }
   const std::string camera = contentOf(paths.front()).camera;
   const int torque_dim = contentOf(paths.front()).data.torqueDim();
   DataSet data(image_size_, torque_dim);
-  std::set<std::string> seen;
   for (const std::string& path : paths) {
-    if (!seen.insert(path).second) {
-      throw std::runtime_error("bag " + path + " is given twice: it would count twice");
-    }
+    if (keep_going && !keep_going()) throw std::runtime_error("reading bags was cancelled");
     const BagContent& content = contentOf(path);
     const bool fits = content.camera == camera || options_.ofOthers();
     if (!fits || content.data.torqueDim() != torque_dim) {

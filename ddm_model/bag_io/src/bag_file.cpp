@@ -17,6 +17,35 @@ namespace {
 constexpr char kMagic[] = "#ROSBAG V2.0\n";
 constexpr char kRemedy[] = ": it is cut short, damaged or no bag; copy it again or leave it out";
 
+/// What people take for a bag, by its first bytes.
+struct OtherFormat {
+  std::string magic;
+  const char* what;
+  const char* remedy;
+};
+const OtherFormat kOtherFormats[] = {
+    {"\x89MCAP0\r\n", "a recording of ROS 2 or Foxglove (MCAP)",
+     "convert it with `rosbags-convert --src FILE.mcap --dst FILE.bag` (pip install rosbags)"},
+    {std::string("SQLite format 3\0", 16), "a recording of ROS 2 (SQLite, .db3)",
+     "convert its folder with `rosbags-convert --src FOLDER --dst FILE.bag` (pip install rosbags)"},
+    {"version https://git-lfs", "a pointer of Git LFS instead of the file",
+     "download the file with `git lfs pull`"},
+    {"#ROSBAG V1", "a bag of format 1, which ROS wrote until 2010",
+     "convert it with `rosbag filter OLD.bag NEW.bag True`"},
+    {"#ROSRECORD V1", "a bag of format 1, which ROS wrote until 2010",
+     "convert it with `rosbag filter OLD.bag NEW.bag True`"},
+    {"\x1f\x8b", "compressed as a whole (gzip)", "unpack it with `gunzip` or `tar xzf`"},
+    {"PK\x03\x04", "a zip archive", "unpack it with `unzip`"},
+    {"BZh", "compressed as a whole (bzip2)", "unpack it with `bunzip2` or `tar xjf`"},
+    {std::string("\xfd"
+                 "7zXZ\0",
+                 6),
+     "compressed as a whole (xz)", "unpack it with `unxz` or `tar xJf`"},
+    {"\x28\xb5\x2f\xfd", "compressed as a whole (Zstandard)", "unpack it with `unzstd`"},
+    {"<!DOCTYPE", "a web page instead of the file", "download the file itself"},
+    {"<html", "a web page instead of the file", "download the file itself"}};
+constexpr std::uint32_t kLongestMagic = 32;
+
 enum class Kind : std::uint8_t {
   kMessage = 2,
   kBagHeader = 3,
@@ -26,7 +55,23 @@ enum class Kind : std::uint8_t {
   kConnection = 7
 };
 
-[[noreturn]] void refuse(const std::string& what) { throw std::runtime_error(what + kRemedy); }
+/// To tell it from what is wrong with a message.
+struct Damage : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+[[noreturn]] void refuse(const std::string& what) { throw Damage(what + kRemedy); }
+
+void requireBag(const std::string& front) {
+  for (const OtherFormat& format : kOtherFormats) {
+    if (front.compare(0, format.magic.size(), format.magic) != 0) continue;
+    throw std::runtime_error(std::string("is ") + format.what +
+                             "; only bags of format 2.0 (ROS 1) are read: " + format.remedy);
+  }
+  if (front.compare(0, sizeof(kMagic) - 1, kMagic) != 0) {
+    refuse("does not begin as a bag of format 2.0");
+  }
+}
 
 /// A file, or what a record of it holds, from some position on.
 class Bytes {
@@ -131,14 +176,13 @@ constexpr std::size_t kBz2Chunk = 65536;
 
 std::string fromLz4(std::string data, std::uint32_t size) {
   if (size > kLz4Ratio * data.size()) {
-    refuse("a chunk of " + std::to_string(data.size()) + " bytes of LZ4 announces " +
-           std::to_string(size));
+    refuse(std::to_string(data.size()) + " bytes of LZ4 announce " + std::to_string(size));
   }
   std::string out(size, '\0');
   unsigned written = size;
   const int result =
       roslz4_buffToBuffDecompress(&data[0], static_cast<unsigned>(data.size()), &out[0], &written);
-  if (result != ROSLZ4_OK || written != size) refuse("a chunk of LZ4 is damaged");
+  if (result != ROSLZ4_OK || written != size) refuse("its LZ4 is damaged");
   return out;
 }
 
@@ -170,7 +214,7 @@ std::string fromBz2(std::string data, std::uint32_t size) {
   }
   const bool whole = result == BZ_STREAM_END && stream.avail_in == 0;
   BZ2_bzDecompressEnd(&stream);
-  if (!whole || out.size() != size) refuse("a chunk of BZ2 is damaged");
+  if (!whole || out.size() != size) refuse("its BZ2 is damaged");
   return out;
 }
 
@@ -183,11 +227,10 @@ std::string decompressChunk(const std::string& compression, const std::string& d
     if (compression == "lz4") return fromLz4(data, size);
     if (compression == "bz2") return fromBz2(data, size);
   } catch (const std::bad_alloc&) {
-    throw std::runtime_error("not enough memory for a chunk (" + compression + ") of " +
-                             std::to_string(size) +
-                             " bytes: end other programs, then read it again");
+    throw Damage("not enough memory for its " + std::to_string(size) + " bytes (" + compression +
+                 "): end other programs, then read it again");
   }
-  refuse("a chunk has the compression '" + compression + "', known are none, lz4 and bz2");
+  refuse("it has the compression '" + compression + "', known are none, lz4 and bz2");
 }
 
 }  // namespace
@@ -199,46 +242,63 @@ BagFile::BagFile(std::istream* in) : in_(in) {
   if (end < 0) refuse("cannot be read");
   size_ = static_cast<std::uint64_t>(end);
   Bytes front(in_, 0, size_);
-  if (front.take(sizeof(kMagic) - 1) != kMagic) refuse("does not begin as a bag of format 2.0");
+  requireBag(front.take(static_cast<std::uint32_t>(std::min<std::uint64_t>(kLongestMagic, size_))));
+  front.goTo(sizeof(kMagic) - 1);
   const Fields header(front.take(takeSize(&front)));
   if (header.kind() != Kind::kBagHeader) refuse("has no header");
+  if (header.has("encryptor") && !header.text("encryptor").empty()) {
+    throw std::runtime_error("is encrypted by " + header.text("encryptor") +
+                             ": decrypt it with `rosbag decrypt`");
+  }
   front.skip(takeSize(&front));  // blanks, so that the header can be written again
   first_ = front.at();
   index_ = header.number<std::uint64_t>("index_pos");
-  if (index_ == 0) throw std::runtime_error("was not closed; run `rosbag reindex` on it");
+  if (index_ == 0) {
+    throw std::runtime_error("was not closed: run `rosbag reindex` on it, then read it again");
+  }
   if (index_ < first_ || index_ > size_) {
     refuse("its header puts the index at byte " + std::to_string(index_) +
            ", it must lie between byte " + std::to_string(first_) + " and the end of the file at " +
            std::to_string(size_));
   }
-  readIndex();
-  const auto num_connections = header.number<std::uint32_t>("conn_count");
-  const auto num_chunks = header.number<std::uint32_t>("chunk_count");
-  if (connections_.size() != num_connections || chunks_.size() != num_chunks) {
+  readIndex(header.number<std::uint32_t>("conn_count"),
+            header.number<std::uint32_t>("chunk_count"));
+}
+
+/// As many records as the header announces; rosbag does not look at what may follow them.
+void BagFile::readIndex(std::size_t num_connections, std::size_t num_chunks) {
+  Bytes bytes(in_, index_, size_);
+  const auto complete = [&] {
+    return connections_.size() == num_connections && chunks_.size() == num_chunks;
+  };
+  while (!bytes.done()) {
+    const std::uint64_t position = bytes.at();
+    try {
+      const Fields fields(bytes.take(takeSize(&bytes)));
+      const std::string data = bytes.take(takeSize(&bytes));
+      if (fields.kind() == Kind::kConnection) {
+        connections_[fields.number<std::uint32_t>("conn")] = connectionOf(fields, data);
+      } else if (fields.kind() == Kind::kChunkInfo) {
+        Numbers& numbers = chunks_[fields.number<std::uint64_t>("chunk_pos")];
+        std::istringstream in(data);
+        Bytes counts(&in, 0, data.size());
+        while (!counts.done()) {  // number of a connection, number of its messages
+          numbers.insert(numberOf<std::uint32_t>(counts.take(4)));
+          counts.skip(4);
+        }
+      } else {
+        fields.refuseKind("in its index");
+      }
+    } catch (const Damage& e) {
+      if (complete()) break;  // something else follows the index
+      throw std::runtime_error("record of the index at byte " + std::to_string(position) + ": " +
+                               e.what());
+    }
+  }
+  if (!complete()) {
     refuse("its header announces " + std::to_string(num_connections) + " connections and " +
            std::to_string(num_chunks) + " chunks, its index lists " +
            std::to_string(connections_.size()) + " and " + std::to_string(chunks_.size()));
-  }
-}
-
-void BagFile::readIndex() {
-  Bytes bytes(in_, index_, size_);
-  while (!bytes.done()) {
-    const Fields fields(bytes.take(takeSize(&bytes)));
-    const std::string data = bytes.take(takeSize(&bytes));
-    if (fields.kind() == Kind::kConnection) {
-      connections_[fields.number<std::uint32_t>("conn")] = connectionOf(fields, data);
-    } else if (fields.kind() == Kind::kChunkInfo) {
-      Numbers& numbers = chunks_[fields.number<std::uint64_t>("chunk_pos")];
-      std::istringstream in(data);
-      Bytes counts(&in, 0, data.size());
-      while (!counts.done()) {  // number of a connection, number of its messages
-        numbers.insert(numberOf<std::uint32_t>(counts.take(4)));
-        counts.skip(4);
-      }
-    } else {
-      fields.refuseKind("in its index");
-    }
   }
 }
 
@@ -267,60 +327,57 @@ void BagFile::forEachMessageIn(std::istream* chunk, std::uint64_t begin, std::ui
   }
 }
 
+void BagFile::forEachMessageInChunk(std::uint64_t position, const Numbers& listed,
+                                    const Numbers& wanted, const TakeMessage& take) const {
+  if (position < first_ || position >= index_) {
+    refuse("it must lie between byte " + std::to_string(first_) + " and the index at " +
+           std::to_string(index_));
+  }
+  Bytes bytes(in_, position, index_);
+  const Fields fields(bytes.take(takeSize(&bytes)));
+  const std::uint32_t size = takeSize(&bytes);
+  const std::uint64_t begin = bytes.at();
+  if (fields.kind() != Kind::kChunk) fields.refuseKind("among its chunks");
+  bytes.skip(size);
+  for (std::size_t i = 0; i < listed.size(); ++i) {  // each connection's messages in this chunk
+    const Fields index(bytes.take(takeSize(&bytes)));
+    if (index.kind() != Kind::kIndex || listed.count(index.number<std::uint32_t>("conn")) == 0) {
+      refuse("the two indices disagree about it");
+    }
+    bytes.skip(takeSize(&bytes));
+  }
+  const auto isWanted = [&wanted](std::uint32_t number) { return wanted.count(number) > 0; };
+  if (std::none_of(listed.begin(), listed.end(), isWanted)) return;
+  const std::string& compression = fields.text("compression");
+  const auto chunk_size = fields.number<std::uint32_t>("size");
+  if (compression == "none") {
+    if (size != chunk_size) {
+      refuse("it has " + std::to_string(size) + " bytes and announces " +
+             std::to_string(chunk_size));
+    }
+    return forEachMessageIn(in_, begin, begin + size, wanted, take);
+  }
+  if (chunk_size > kMaxChunk) {
+    refuse("it announces " + std::to_string(chunk_size) + " bytes, at most " +
+           std::to_string(kMaxChunk) + " are allowed");
+  }
+  bytes.goTo(begin);
+  const std::string chunk = decompressChunk(compression, bytes.take(size), chunk_size);
+  std::istringstream in(chunk);
+  forEachMessageIn(&in, 0, chunk.size(), wanted, take);
+}
+
 void BagFile::forEachMessage(const std::set<std::string>& topics, const TakeMessage& take) {
   Numbers wanted;
   for (const auto& entry : connections_) {
     if (topics.count(entry.second.topic) > 0) wanted.insert(entry.first);
   }
-  const auto isWanted = [&wanted](std::uint32_t number) { return wanted.count(number) > 0; };
-  std::size_t num_chunks = 0;
-  bool unpacked = false;  // the last chunk
-  Bytes bytes(in_, first_, index_);
-  while (!bytes.done()) {
-    const std::uint64_t position = bytes.at();
-    const Fields fields(bytes.take(takeSize(&bytes)));
-    const std::uint32_t size = takeSize(&bytes);
-    const std::uint64_t begin = bytes.at();
-    if (fields.kind() != Kind::kChunk && fields.kind() != Kind::kIndex) {
-      fields.refuseKind("among its chunks");
+  for (const auto& chunk : chunks_) {
+    try {
+      forEachMessageInChunk(chunk.first, chunk.second, wanted, take);
+    } catch (const Damage& e) {
+      throw std::runtime_error("chunk at byte " + std::to_string(chunk.first) + ": " + e.what());
     }
-    bytes.skip(size);
-    if (fields.kind() == Kind::kIndex) {  // what is in the last chunk, once more
-      if (!unpacked && isWanted(fields.number<std::uint32_t>("conn"))) {
-        refuse("its two indices disagree about the chunk before byte " + std::to_string(position));
-      }
-      continue;
-    }
-    ++num_chunks;
-    const auto listed = chunks_.find(position);
-    if (listed == chunks_.end()) {
-      refuse("the chunk at byte " + std::to_string(position) + " is not in its index");
-    }
-    unpacked = std::any_of(listed->second.begin(), listed->second.end(), isWanted);
-    if (!unpacked) continue;
-    const std::string& compression = fields.text("compression");
-    const auto chunk_size = fields.number<std::uint32_t>("size");
-    if (chunk_size > kMaxChunk) {
-      refuse("a chunk announces " + std::to_string(chunk_size) + " bytes, at most " +
-             std::to_string(kMaxChunk) + " are allowed");
-    }
-    if (compression == "none") {
-      if (size != chunk_size) {
-        refuse("a chunk has " + std::to_string(size) + " bytes, it announces " +
-               std::to_string(chunk_size));
-      }
-      forEachMessageIn(in_, begin, begin + size, wanted, take);
-    } else {
-      bytes.goTo(begin);
-      const std::string chunk = decompressChunk(compression, bytes.take(size), chunk_size);
-      std::istringstream in(chunk);
-      forEachMessageIn(&in, 0, chunk.size(), wanted, take);
-    }
-    bytes.goTo(begin + size);
-  }
-  if (num_chunks != chunks_.size()) {
-    refuse("its index lists " + std::to_string(chunks_.size()) + " chunks, it holds " +
-           std::to_string(num_chunks));
   }
 }
 

@@ -27,11 +27,12 @@ struct BagMessage {
   std::string bytes;
 };
 
-/// Reads bags of format 2.0 from front to back. rosbag follows positions and sizes in the file
-/// wherever they lead, be it out of its memory; here each size is compared with what is there
-/// before memory is taken, and what nobody asked for is stepped over.
+/// Reads bags of format 2.0. As rosbag does, it goes from the index to the chunks, so that bytes
+/// which no index names (older versions of `rosbag reindex` leave some) do not count. Unlike rosbag,
+/// which follows positions and sizes beyond its memory and then ends the process, it compares each of
+/// them with what is there before it takes memory.
 ///
-/// All functions throw std::runtime_error with the fault and the remedy.
+/// All functions throw std::runtime_error with the fault, its position and the remedy.
 class BagFile {
  public:
   using TakeMessage = std::function<void(const BagMessage&)>;
@@ -45,18 +46,20 @@ class BagFile {
   const std::map<std::uint32_t, BagConnection>& connections() const { return connections_; }
 
   /// Calls `take` with each message of these topics, in the order of the file. Chunks without any
-  /// are not unpacked.
+  /// are not decompressed.
   void forEachMessage(const std::set<std::string>& topics, const TakeMessage& take);
 
  private:
-  void readIndex();
+  void readIndex(std::size_t num_connections, std::size_t num_chunks);
+  void forEachMessageInChunk(std::uint64_t position, const Numbers& listed, const Numbers& wanted,
+                             const TakeMessage& take) const;
   void forEachMessageIn(std::istream* chunk, std::uint64_t begin, std::uint64_t end,
                         const Numbers& wanted, const TakeMessage& take) const;
 
   std::istream* in_;
   std::uint64_t size_;                       // of the file
-  std::uint64_t first_;                      // position of the first chunk
-  std::uint64_t index_;                      // position after the last chunk
+  std::uint64_t first_;                      // position where chunks may begin
+  std::uint64_t index_;                      // position of the index, after the last chunk
   std::map<std::uint64_t, Numbers> chunks_;  // by their positions: what the index says is in them
   std::map<std::uint32_t, BagConnection> connections_;
 };

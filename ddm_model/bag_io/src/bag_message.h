@@ -11,7 +11,7 @@
 
 namespace ddm {
 
-/// @throws std::runtime_error with the topic and the fault
+/// @throws std::runtime_error with the topic, the time and the fault
 template <class Message>
 Message parse(const BagMessage& message) {
   const BagConnection& connection = message.connection;
@@ -22,7 +22,8 @@ Message parse(const BagMessage& message) {
   try {
     return messageFromBytes<Message>(message.bytes.data(), message.bytes.size());
   } catch (const std::exception& e) {
-    throw std::runtime_error("a message of topic " + connection.topic + " " + e.what() +
+    throw std::runtime_error("the message of topic " + connection.topic + " recorded at " +
+                             std::to_string(message.recorded.toSec()) + " s " + e.what() +
                              ": leave this bag out");
   }
 }

@@ -6,17 +6,21 @@
 #include <ddm_images/image_codec.h>
 #include <ddm_params/option_checks.h>
 #include <sensor_msgs/CompressedImage.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
 #include <boost/algorithm/string/predicate.hpp>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "bag_file.h"
@@ -48,26 +52,40 @@ struct Topic {
   std::string type;
 };
 
-/// The recorded topic that `name` means: the one of this name, else one in some namespace.
+constexpr char kCompressed[] = "/compressed";  // of image_transport
+
+/// The topic that image_transport made this one of.
+std::string baseOf(const std::string& topic) {
+  return boost::algorithm::ends_with(topic, kCompressed)
+             ? topic.substr(0, topic.size() - (sizeof(kCompressed) - 1))
+             : topic;
+}
+
+/// The recorded topic that `name` means: the one of this name, else one in some namespace; of an
+/// image, that name or its compressed form.
 Topic findTopic(const Connections& connections, const std::string& name, const Types& types,
                 const std::string& key) {
-  std::set<std::string> found;
+  std::map<std::string, std::set<std::string>> found;  // by the name without transport
   bool exact = false;
   for (const auto& entry : connections) {
-    const bool is_exact = absolute(entry.second.topic) == absolute(name);
-    if (!is_exact &&
-        (exact || !boost::algorithm::ends_with(absolute(entry.second.topic), absolute(name))))
-      continue;
-    if (is_exact && !exact) found.clear();
-    exact = is_exact;
-    found.insert(entry.second.topic);
+    const std::string& topic = entry.second.topic;
+    for (const std::string& base : {topic, baseOf(topic)}) {
+      const bool is_exact = absolute(base) == absolute(name);
+      if (!is_exact && (exact || !boost::algorithm::ends_with(absolute(base), absolute(name)))) {
+        continue;
+      }
+      if (is_exact && !exact) found.clear();
+      exact = is_exact;
+      found[base].insert(topic);
+    }
   }
   if (found.size() > 1) {
-    throw std::runtime_error("topics " + *found.begin() + " and " + *found.rbegin() +
-                             " both match: set data_set/" + key + " to one of them");
+    throw std::runtime_error("topics " + *found.begin()->second.begin() + " and " +
+                             *found.rbegin()->second.begin() + " both match: set data_set/" + key +
+                             " to one of them");
   }
   if (found.empty()) return {};
-  Topic topic{*found.begin(), ""};
+  Topic topic{*found.begin()->second.begin(), ""};  // the raw one sorts first
   for (const auto& entry : connections) {
     const BagConnection& connection = entry.second;
     if (connection.topic != topic.name) continue;
@@ -91,41 +109,118 @@ Topic requireTopic(const Connections& connections, const std::string& name, cons
   if (!topic.name.empty()) return topic;
   std::set<std::string> topics;
   for (const auto& entry : connections) {
-    topics.insert(entry.second.topic);
+    const std::string& other = entry.second.topic;
+    topics.insert(other + " (" + entry.second.type + ")");
+    const std::string base = absolute(other.substr(0, other.rfind('/')));
+    if (key != "image_topic" || !boost::algorithm::ends_with(base, absolute(name))) continue;
+    const std::string transport = other.substr(other.rfind('/') + 1);
+    throw std::runtime_error(
+        "topic " + other + " has images of the transport " + transport + " (" + entry.second.type +
+        "), which cannot be read: record " + base + " or " + base +
+        "/compressed, or play the bag with `rosrun image_transport republish " + transport +
+        " in:=" + base + " raw out:=/image_raw` and record that");
   }
   throw std::runtime_error("no topic " + name + " (it holds: " +
-                           (topics.empty() ? "nothing" : boost::algorithm::join(topics, " ")) +
+                           (topics.empty() ? "nothing" : boost::algorithm::join(topics, ", ")) +
                            "): record it, or set data_set/" + key);
 }
 
 const Types kImages = {"sensor_msgs/Image", "sensor_msgs/CompressedImage"};
 
-/// Stamp of the header that images begin with.
-ros::Time stampOf(const BagMessage& message) {
+/// Tells the stamp of an image, and what is the same in images with the same content.
+void takeTimeOf(const BagMessage& message, TrialMessages* messages) {
   MessageBytes bytes(message.bytes.data(), message.bytes.size());
   std_msgs::Header header;
   try {
     bytes.next(header);
   } catch (const std::exception& e) {
-    throw std::runtime_error("a message of topic " + message.connection.topic + " " + e.what() +
+    throw std::runtime_error("the message of topic " + message.connection.topic + " recorded at " +
+                             std::to_string(message.recorded.toSec()) + " s " + e.what() +
                              ": leave this bag out");
   }
-  return header.stamp;
+  const std::string_view content(message.bytes.data() + message.bytes.size() - bytes.left(),
+                                 bytes.left());
+  messages->takeImageTime(header.stamp, message.recorded, std::hash<std::string_view>()(content));
 }
 
-/// An image and its encoding, as the camera sent it.
-std::pair<sensor_msgs::Image, std::string> imageOf(const BagMessage& message) {
+void takeImage(const BagMessage& message, std::size_t number, TrialMessages* messages) {
   if (message.connection.type == kImages[0]) {
-    auto image = parse<sensor_msgs::Image>(message);
-    std::string encoding = image.encoding;
-    return {std::move(image), std::move(encoding)};
+    const auto image = parse<sensor_msgs::Image>(message);
+    return messages->takeImage(number, image, image.encoding);
   }
   const auto compressed = parse<sensor_msgs::CompressedImage>(message);
+  sensor_msgs::Image image;
   try {
-    return {unpacked(compressed), compressed.format};
-  } catch (const std::exception& e) {
-    throw std::runtime_error("topic " + message.connection.topic + ": " + e.what());
+    image = unpacked(compressed);
+  } catch (const std::invalid_argument& e) {
+    return messages->takeBrokenImage(number, e.what());
   }
+  messages->takeImage(number, image, compressed.format);
+}
+
+void takeGoal(const BagMessage& message, TrialMessages* messages) {
+  const bool raw = message.connection.type == kImages[0];
+  try {
+    messages->takeGoal(raw ? parse<sensor_msgs::Image>(message)
+                           : unpacked(parse<sensor_msgs::CompressedImage>(message)));
+  } catch (const std::exception& e) {
+    throw std::runtime_error("goal image on " + message.connection.topic + ": " + e.what());
+  }
+}
+
+/// Who published torques, and when.
+class Publishers {
+ public:
+  void take(const std::string& name, const ros::Time& time) {
+    Span& span = spans_.try_emplace(name, Span{time, time, 0}).first->second;
+    span.first = std::min(span.first, time);
+    span.last = std::max(span.last, time);
+    ++span.number;
+  }
+  bool empty() const { return spans_.empty(); }
+
+  /// A publisher without a name is not known to be another one: rosbag leaves it out in some
+  /// latched messages.
+  /// @return a note if there are several, one after the other; else empty
+  /// @throws std::runtime_error if two published at the same time
+  std::string requireOneAtATime(const std::string& topic) const {
+    std::vector<std::pair<std::string, Span>> named;
+    std::vector<std::string> texts;
+    for (const auto& entry : spans_) {
+      if (!entry.first.empty()) named.push_back(entry);
+    }
+    std::sort(named.begin(), named.end(),
+              [](const auto& a, const auto& b) { return a.second.first < b.second.first; });
+    bool overlap = false;
+    for (std::size_t i = 0; i < named.size(); ++i) {
+      const Span& span = named[i].second;
+      texts.push_back(named[i].first + " (" + std::to_string(span.number) + " from " +
+                      std::to_string(span.first.toSec()) + " s to " +
+                      std::to_string(span.last.toSec()) + " s)");
+      overlap = overlap || (i > 0 && span.first <= named[i - 1].second.last);
+    }
+    const std::string what =
+        "topic " + topic + " has torques of " + boost::algorithm::join(texts, " and ");
+    if (overlap) throw std::runtime_error(what + ": record the one that moves the motor");
+    return named.size() > 1 ? what + ", one after the other: all of them count" : "";
+  }
+
+ private:
+  struct Span {
+    ros::Time first, last;
+    std::size_t number;
+  };
+  std::map<std::string, Span> spans_;
+};
+
+/// "12 messages of /driver"
+std::string countsOf(const std::map<std::string, std::size_t>& messages) {
+  std::vector<std::string> texts;
+  for (const auto& entry : messages) {
+    texts.push_back(std::to_string(entry.second) + " messages of " +
+                    (entry.first.empty() ? "an unnamed node" : entry.first));
+  }
+  return boost::algorithm::join(texts, " and ");
 }
 
 }  // namespace
@@ -139,6 +234,14 @@ std::vector<std::string> BagOptions::problems() const {
   requireTopicName("image_topic", image_topic);
   requireTopicName("torque_topic", torque_topic);
   requireTopicName("goal_topic", goal_topic);
+  const auto requireOther = [&data_set](const std::string& key, const std::string& topic,
+                                        const std::string& other_key, const std::string& other) {
+    data_set.require(absolute(topic) != absolute(other), key,
+                     "be another topic than data_set/" + other_key, "'" + topic + "' for both");
+  };
+  requireOther("goal_topic", goal_topic, "image_topic", image_topic);
+  requireOther("torque_topic", torque_topic, "image_topic", image_topic);
+  requireOther("torque_topic", torque_topic, "goal_topic", goal_topic);
   data_set.requireNotNegative("dt", dt);
   data_set.require(std::none_of(motors.begin(), motors.end(),
                                 [](const std::string& motor) { return motor.empty(); }),
@@ -169,38 +272,42 @@ BagContent readBagBytes(std::istream* in, int image_size, const BagOptions& opti
                              ", which does not say which image it answers: set data_set/dt, the "
                              "time between frames [s]");
   }
-  const auto timeOf = [by_stamp](const BagMessage& image) {
-    const ros::Time stamp = stampOf(image);
-    return by_stamp || !stamp.isZero() ? stamp : image.recorded;
-  };
+  if (goal.name == images.name) {
+    throw std::runtime_error(
+        "topic " + goal.name +
+        " is meant by data_set/image_topic and data_set/goal_topic: set one of "
+        "them to another topic");
+  }
   TrialMessages messages(image_size, options);
   TorqueReader reader(options.motors);
-  std::set<std::string> publishers;
+  Publishers publishers;
   bag.forEachMessage({images.name, torques.name}, [&](const BagMessage& message) {
-    if (message.connection.topic == images.name) return messages.takeImageTime(timeOf(message));
+    if (message.connection.topic == images.name) return takeTimeOf(message, &messages);
     const std::optional<TimedTorque> torque = reader.read(message);
     if (!torque) return;
     messages.takeTorque(*torque);
-    publishers.insert(message.connection.publisher);
+    publishers.take(message.connection.publisher, torque->recorded);
   });
+  const std::string without_effort = countsOf(reader.withoutEffort());
   if (publishers.empty()) {
     throw std::runtime_error(
         "topic " + torques.name + " has no torque" +
         (options.motors.empty() ? "" : " of " + boost::algorithm::join(options.motors, " and ")) +
+        (without_effort.empty() ? "" : " (" + without_effort + " have no effort of them)") +
         ": leave this bag out, or set data_set/torque_topic and motors");
   }
-  if (publishers.size() > 1) {
-    throw std::runtime_error("topic " + torques.name + " has torques of " +
-                             boost::algorithm::join(publishers, " and ") +
-                             ": record the one that moves the motor");
+  if (!without_effort.empty()) {
+    messages.note("topic " + torques.name + ": " + without_effort +
+                  " have no effort of the motors and do not count");
   }
+  const std::string publisher_note = publishers.requireOneAtATime(torques.name);
+  if (!publisher_note.empty()) messages.note(publisher_note);
   messages.pair(by_stamp ? 0.0 : options.dt);
+  std::size_t number = 0;
   bag.forEachMessage({images.name, goal.name}, [&](const BagMessage& message) {
-    if (message.connection.topic == goal.name) return messages.takeGoal(imageOf(message).first);
-    const ros::Time time = timeOf(message);
-    if (!messages.wants(time)) return;
-    const auto image = imageOf(message);
-    messages.takeImage(time, image.first, image.second);
+    if (message.connection.topic == goal.name) return takeGoal(message, &messages);
+    if (messages.wants(number)) takeImage(message, number, &messages);
+    ++number;
   });
   return messages.frames();
 }
@@ -212,6 +319,13 @@ BagContent readBag(const std::string& path, int image_size, const BagOptions& op
         ": its recording was not completed; `rosbag reindex` recovers what was "
         "written, then rename it to *.bag");
   }
+  if (std::filesystem::exists(path + "/metadata.yaml")) {
+    throw std::runtime_error(
+        "bag " + path +
+        ": is the folder of a recording of ROS 2; only bags of format 2.0 (ROS "
+        "1) are read: convert it with `rosbags-convert --src FOLDER --dst FILE.bag` (pip "
+        "install rosbags)");
+  }
   try {
     requirePlainFile(path);
     std::ifstream in(path, std::ios::binary);
@@ -219,6 +333,20 @@ BagContent readBag(const std::string& path, int image_size, const BagOptions& op
     return readBagBytes(&in, image_size, options);
   } catch (const std::exception& e) {
     throw std::runtime_error("bag " + path + ": " + e.what());
+  }
+}
+
+void requireDifferentBags(const std::vector<std::string>& paths) {
+  std::map<std::pair<dev_t, ino_t>, std::string> seen;
+  for (const std::string& path : paths) {
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0) continue;  // whoever reads it says so
+    const auto added = seen.emplace(std::make_pair(status.st_dev, status.st_ino), path);
+    if (added.second) continue;
+    const std::string& before = added.first->second;
+    throw std::runtime_error("bag " + path + " is given twice" +
+                             (before == path ? "" : ", also as " + before) +
+                             ": it would count twice, so leave one of them out");
   }
 }
 

@@ -3,9 +3,11 @@
 #include "pairing.h"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace ddm {
 namespace {
@@ -14,6 +16,13 @@ constexpr double kGap = 1.5;         // in median intervals
 constexpr double kTolerance = 0.25;  // of dt: how far an image may be from where it is due
 
 bool isEarlier(const TimedTorque& a, const TimedTorque& b) { return a.time < b.time; }
+
+template <class Item>
+std::vector<ros::Time> timesOf(const std::vector<Item>& items) {
+  std::vector<ros::Time> times;
+  for (const Item& item : items) times.push_back(item.time);
+  return times;
+}
 
 /// [s]; 0 if there are fewer than two.
 double medianInterval(const std::vector<ros::Time>& times) {
@@ -28,34 +37,34 @@ double medianInterval(const std::vector<ros::Time>& times) {
   return *middle;
 }
 
-/// The image nearest to a time.
-/// @param images  at least one
-std::set<ros::Time>::const_iterator nearest(const std::set<ros::Time>& images,
-                                            const ros::Time& time) {
-  auto later = images.lower_bound(time);
-  if (later == images.begin()) return later;
-  const auto earlier = std::prev(later);
-  return later == images.end() || time - *earlier < *later - time ? earlier : later;
+/// The position of the time that is nearest to another.
+/// @param times  sorted, at least one
+std::size_t nearest(const std::vector<ros::Time>& times, const ros::Time& time) {
+  const auto later = std::lower_bound(times.begin(), times.end(), time);
+  const auto at = static_cast<std::size_t>(later - times.begin());
+  if (at == 0) return at;
+  return later == times.end() || time - times[at - 1] < *later - time ? at - 1 : at;
 }
 
-/// Images dt apart; bool: whether a new segment begins.
-std::vector<std::pair<ros::Time, bool>> pickImages(const std::set<ros::Time>& images, double dt) {
-  std::vector<std::pair<ros::Time, bool>> picked;
-  for (auto image = images.begin(); image != images.end();) {
-    const bool due = !picked.empty();
-    if (due) {
-      const ros::Time time = picked.back().first + ros::Duration(dt);
-      const auto candidate = nearest(images, time);
-      const double off = (*candidate - time).toSec();
-      if (std::abs(off) <= kTolerance * dt) {
-        picked.emplace_back(*candidate, false);
-        image = std::next(candidate);
+/// Positions of images dt apart; bool: whether a new segment begins.
+std::vector<std::pair<std::size_t, bool>> pickImages(const std::vector<ros::Time>& times,
+                                                     double dt) {
+  std::vector<std::pair<std::size_t, bool>> picked;
+  for (std::size_t image = 0; image < times.size();) {
+    if (!picked.empty()) {
+      const ros::Time due = times[picked.back().first] + ros::Duration(dt);
+      const std::size_t candidate = nearest(times, due);
+      if (candidate > picked.back().first &&
+          std::abs((times[candidate] - due).toSec()) <= kTolerance * dt) {
+        picked.emplace_back(candidate, false);
+        image = candidate + 1;
         continue;
       }
-      image = images.upper_bound(time);  // after the gap
-      if (image == images.end()) break;
+      const auto after = std::upper_bound(times.begin(), times.end(), due);  // after the gap
+      image = std::max(image, static_cast<std::size_t>(after - times.begin()));
+      if (image == times.size()) break;
     }
-    picked.emplace_back(*image, true);
+    picked.emplace_back(image, true);
     ++image;
   }
   return picked;
@@ -63,45 +72,54 @@ std::vector<std::pair<ros::Time, bool>> pickImages(const std::set<ros::Time>& im
 
 }  // namespace
 
-double Pairs::interval() const {
-  std::vector<ros::Time> times;
-  for (const Frame& frame : frames) times.push_back(frame.image);
-  return medianInterval(times);
-}
+double Pairs::interval() const { return medianInterval(timesOf(frames)); }
 
-Pairs pairByStamp(const std::set<ros::Time>& images, std::vector<TimedTorque> torques) {
-  std::stable_sort(torques.begin(), torques.end(), isEarlier);
-  Pairs pairs;
-  bool new_segment = true;
-  auto image = images.begin();
-  for (size_t i = 0; i < torques.size(); ++i) {
-    if (i > 0 && torques[i].time == torques[i - 1].time) {
-      if (torques[i].torque == torques[i - 1].torque) continue;  // recorded twice
+Pairs pairByStamp(const std::vector<TimedImage>& images, std::vector<TimedTorque> torques) {
+  const auto byStamp = [](const TimedTorque& a, const TimedTorque& b) { return a.stamp < b.stamp; };
+  std::stable_sort(torques.begin(), torques.end(), byStamp);
+  for (size_t i = 1; i < torques.size(); ++i) {
+    if (torques[i].stamp == torques[i - 1].stamp && torques[i].torque != torques[i - 1].torque) {
       throw std::runtime_error("two different torques have the stamp " +
-                               std::to_string(torques[i].time.toSec()) + " s");
+                               std::to_string(torques[i].stamp.toSec()) + " s");
     }
-    for (; image != images.end() && *image < torques[i].time; ++image) {
-      pairs.images_without_torque.push_back(*image);
+  }
+  const auto isSame = [](const TimedTorque& a, const TimedTorque& b) { return a.stamp == b.stamp; };
+  torques.erase(std::unique(torques.begin(), torques.end(), isSame), torques.end());
+  Pairs pairs;
+  std::vector<bool> paired(torques.size(), false);
+  bool new_segment = true;
+  for (const TimedImage& image : images) {
+    const auto torque = std::lower_bound(torques.begin(), torques.end(),
+                                         TimedTorque{image.stamp, {}, {}, {}}, byStamp);
+    if (torque == torques.end() || torque->stamp != image.stamp) {
+      pairs.images_without_torque.push_back(image.time);
       new_segment = true;
-    }
-    if (image == images.end() || *image != torques[i].time) {
-      pairs.torques_without_image.push_back(torques[i].time);
       continue;
     }
-    pairs.frames.push_back({*image++, torques[i].torque, new_segment});
+    auto is_paired = paired[static_cast<std::size_t>(torque - torques.begin())];
+    if (is_paired) {
+      throw std::runtime_error("two different images have the stamp " +
+                               std::to_string(image.stamp.toSec()) + " s");
+    }
+    is_paired = true;
+    pairs.frames.push_back({image.number, image.time, torque->torque, new_segment});
     new_segment = false;
   }
-  pairs.images_without_torque.insert(pairs.images_without_torque.end(), image, images.end());
+  for (size_t i = 0; i < torques.size(); ++i) {
+    if (!paired[i]) pairs.torques_without_image.push_back(torques[i].time);
+  }
   const double gap = kGap * pairs.interval();
   for (size_t i = 1; i < pairs.frames.size(); ++i) {
-    const double interval = (pairs.frames[i].image - pairs.frames[i - 1].image).toSec();
+    const double interval = (pairs.frames[i].time - pairs.frames[i - 1].time).toSec();
     pairs.frames[i].new_segment = pairs.frames[i].new_segment || interval > gap;
   }
   return pairs;
 }
 
-Pairs pairInTime(const std::set<ros::Time>& images, std::vector<TimedTorque> torques, double dt) {
-  const double apart = medianInterval({images.begin(), images.end()});
+Pairs pairInTime(const std::vector<TimedImage>& images, std::vector<TimedTorque> torques,
+                 double dt) {
+  const std::vector<ros::Time> image_times = timesOf(images);
+  const double apart = medianInterval(image_times);
   if (apart > (1.0 + kTolerance) * dt) {
     std::ostringstream text;
     text << "its images are " << apart << " s apart, and frames must be data_set/dt = " << dt
@@ -109,33 +127,32 @@ Pairs pairInTime(const std::set<ros::Time>& images, std::vector<TimedTorque> tor
     throw std::runtime_error(text.str());
   }
   std::stable_sort(torques.begin(), torques.end(), isEarlier);
-  std::vector<ros::Time> times;
-  for (const TimedTorque& torque : torques) times.push_back(torque.time);
-  const double in_force = std::max(dt, kGap * medianInterval(times));
+  const std::vector<ros::Time> times = timesOf(torques);
 
-  const auto picked = pickImages(images, dt);
+  const auto picked = pickImages(image_times, dt);
   Pairs pairs;
-  bool broken = true;      // the chain of frames
+  pairs.usual_age = std::max(dt, kGap * medianInterval(times));
   size_t next_torque = 0;  // the first that is not counted yet
   for (size_t i = 0; i < picked.size(); ++i) {
-    const ros::Time begin = picked[i].first;
+    const TimedImage& image = images[picked[i].first];
     const bool continued = i + 1 < picked.size() && !picked[i + 1].second;
-    const ros::Time end = continued ? picked[i + 1].first : begin + ros::Duration(dt);
+    const ros::Time end =
+        continued ? images[picked[i + 1].first].act : image.act + ros::Duration(dt);
     const auto after = std::lower_bound(times.begin(), times.end(), end);
-    const bool acts = after != times.begin() && (end - *std::prev(after)).toSec() <= in_force;
-    broken = broken || picked[i].second;
-    if (!acts) {
-      pairs.images_without_torque.push_back(begin);
-      broken = true;
+    if (after == times.begin()) {  // before the first torque
+      pairs.images_without_torque.push_back(image.time);
       continue;
     }
     const auto last = static_cast<size_t>(after - times.begin()) - 1;
-    for (; next_torque < times.size() && times[next_torque] < begin; ++next_torque) {
+    const double age = (end - times[last]).toSec();
+    pairs.num_held += age > pairs.usual_age ? 1 : 0;
+    pairs.longest_held = std::max(pairs.longest_held, age);
+    for (; next_torque < times.size() && times[next_torque] < image.act; ++next_torque) {
       if (next_torque != last) pairs.torques_without_image.push_back(times[next_torque]);
     }
     next_torque = std::max(next_torque, last + 1);
-    pairs.frames.push_back({begin, torques[last].torque, broken});
-    broken = false;
+    pairs.frames.push_back(
+        {image.number, image.time, torques[last].torque, picked[i].second || pairs.frames.empty()});
   }
   pairs.torques_without_image.insert(pairs.torques_without_image.end(),
                                      times.begin() + static_cast<std::ptrdiff_t>(next_torque),

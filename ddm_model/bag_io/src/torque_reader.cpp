@@ -5,6 +5,8 @@
 #include <ddm_msgs/Torque.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <sensor_msgs/JointState.h>
+#include <std_msgs/Float32.h>
+#include <std_msgs/Float32MultiArray.h>
 #include <std_msgs/Float64.h>
 #include <std_msgs/Float64MultiArray.h>
 
@@ -27,17 +29,13 @@ bool anyIn(const std::vector<std::string>& names, const std::vector<std::string>
          names.end();
 }
 
-/// Those of its header, unless nobody filled it in.
-ros::Time timeOf(const std_msgs::Header& header, const BagMessage& message) {
-  return header.stamp.isZero() ? message.recorded : header.stamp;
-}
-
 }  // namespace
 
 const std::vector<std::string>& TorqueReader::types() {
   static const std::vector<std::string> types = {
-      "ddm_msgs/Torque", "std_msgs/Float64", "std_msgs/Float64MultiArray",
-      "geometry_msgs/WrenchStamped", "sensor_msgs/JointState"};
+      "ddm_msgs/Torque",       "std_msgs/Float64",           "std_msgs/Float64MultiArray",
+      "std_msgs/Float32",      "std_msgs/Float32MultiArray", "geometry_msgs/WrenchStamped",
+      "sensor_msgs/JointState"};
   return types;
 }
 
@@ -65,15 +63,20 @@ std::optional<TimedTorque> TorqueReader::read(const BagMessage& message) {
     throw std::runtime_error("topic " + connection.topic + " has type " + connection.type +
                              ", whose numbers have no names: leave data_set/motors empty");
   }
-  TimedTorque out{message.recorded, {}};
+  TimedTorque out{ros::Time(), message.recorded, ros::Time(), {}};
   if (connection.type == "std_msgs/Float64") {
     out.torque = {parse<std_msgs::Float64>(message).data};
   } else if (connection.type == "std_msgs/Float64MultiArray") {
     out.torque = parse<std_msgs::Float64MultiArray>(message).data;
+  } else if (connection.type == "std_msgs/Float32") {
+    out.torque = {parse<std_msgs::Float32>(message).data};
+  } else if (connection.type == "std_msgs/Float32MultiArray") {
+    const std::vector<float> data = parse<std_msgs::Float32MultiArray>(message).data;
+    out.torque.assign(data.begin(), data.end());
   } else if (connection.type == "geometry_msgs/WrenchStamped") {
     const auto wrench = parse<geometry_msgs::WrenchStamped>(message);
     const geometry_msgs::Vector3 &f = wrench.wrench.force, &t = wrench.wrench.torque;
-    out.time = timeOf(wrench.header, message);
+    out.stamp = wrench.header.stamp;
     const std::vector<std::string> names = {"force.x",  "force.y",  "force.z",
                                             "torque.x", "torque.y", "torque.z"};
     out.torque = byName(names, {f.x, f.y, f.z, t.x, t.y, t.z}, connection.topic);
@@ -83,14 +86,18 @@ std::optional<TimedTorque> TorqueReader::read(const BagMessage& message) {
     }
   } else if (connection.type == "sensor_msgs/JointState") {
     const auto joints = parse<sensor_msgs::JointState>(message);
-    out.time = timeOf(joints.header, message);
+    out.stamp = joints.header.stamp;
+    if (!motors_.empty() && !anyIn(joints.name, motors_)) return std::nullopt;
+    if (joints.effort.empty()) {  // as the message says that they are not known
+      ++without_effort_[connection.publisher];
+      return std::nullopt;
+    }
     if (names_.empty()) names_ = joints.name;
     if (motors_.empty() && joints.name != names_) {
       throw std::runtime_error("the joints of topic " + connection.topic + " change from " +
                                listOf(names_) + " to " + listOf(joints.name) +
                                ": set data_set/motors to those of the motors");
     }
-    if (!motors_.empty() && !anyIn(joints.name, motors_)) return std::nullopt;
     if (joints.effort.size() != joints.name.size()) {
       throw std::runtime_error("topic " + connection.topic + " has " +
                                std::to_string(joints.effort.size()) + " effort(s) for " +
@@ -99,13 +106,19 @@ std::optional<TimedTorque> TorqueReader::read(const BagMessage& message) {
     }
     out.torque =
         motors_.empty() ? joints.effort : byName(joints.name, joints.effort, connection.topic);
+    if (std::all_of(out.torque.begin(), out.torque.end(),
+                    [](double effort) { return std::isnan(effort); })) {
+      ++without_effort_[connection.publisher];
+      return std::nullopt;
+    }
   } else {
     const auto torque = parse<ddm_msgs::Torque>(message);
-    out.time = torque.header.stamp;  // that of the image, even if it is 0
-    out.torque = torque.torque;      // empty: applied_torque says so where none acted in time
+    out.stamp = torque.header.stamp;  // that of the image, even if it is 0
+    out.torque = torque.torque;       // empty: applied_torque says so where none acted in time
   }
   if (out.torque.empty()) return std::nullopt;
-  const std::string time = std::to_string(out.time.toSec()) + " s";
+  const std::string time =
+      std::to_string((out.stamp.isZero() ? out.recorded : out.stamp).toSec()) + " s";
   for (const double value : out.torque) {
     if (std::isfinite(value)) continue;
     throw std::runtime_error("the torque at " + time + " must be finite, got " +

@@ -4,18 +4,15 @@
 
 #include <ros/time.h>
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "bag_file.h"
+#include "pairing.h"
 
 namespace ddm {
-
-struct TimedTorque {
-  ros::Time time;              ///< of the header; of the recording where there is none
-  std::vector<double> torque;  ///< one of each motor [N m]
-};
 
 /// Reads the torques of one bag.
 class TorqueReader {
@@ -28,10 +25,14 @@ class TorqueReader {
   /// @param motors  see BagOptions
   explicit TorqueReader(std::vector<std::string> motors) : motors_(std::move(motors)) {}
 
-  /// @return nothing for a message about other joints, and where no torque acted
+  /// @return nothing for a message about other joints or without their effort, and where no torque
+  ///         acted
   /// @throws std::runtime_error with the time, the fault and the remedy: a torque that is not
   ///         finite, another number of motors than before, motors that are not in the message
   std::optional<TimedTorque> read(const BagMessage& message);
+
+  /// How many messages of each publisher have no effort of the motors.
+  const std::map<std::string, std::size_t>& withoutEffort() const { return without_effort_; }
 
  private:
   using Values = std::vector<double>;
@@ -42,6 +43,7 @@ class TorqueReader {
   std::vector<std::string> motors_;
   std::vector<std::string> names_;  // of the joints of the first message
   std::size_t dim_ = 0;             // 0: no torque yet
+  std::map<std::string, std::size_t> without_effort_;
 };
 
 }  // namespace ddm

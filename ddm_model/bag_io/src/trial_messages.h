@@ -8,18 +8,16 @@
 #include <sensor_msgs/Image.h>
 
 #include <map>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "ddm_bag_io/bag_reader.h"
 #include "pairing.h"
-#include "torque_reader.h"
 
 namespace ddm {
 
-/// Takes messages in any order, in two rounds: only images that become frames are decoded. All
-/// functions throw std::runtime_error with stamp, fault and remedy.
+/// Takes messages in the order of the file, in two rounds: only images that become frames are
+/// decoded. All functions throw std::runtime_error with stamp, fault and remedy.
 class TrialMessages {
  public:
   /// @param image_size  images are converted to image_size x image_size grey values
@@ -27,30 +25,51 @@ class TrialMessages {
       : image_size_(image_size), options_(options) {}
 
   /// First round.
-  void takeImageTime(const ros::Time& time);
-  void takeTorque(TimedTorque torque);
+  /// @param content  the same number for images with the same bytes
+  void takeImageTime(const ros::Time& stamp, const ros::Time& recorded, std::size_t content);
+  void takeTorque(TimedTorque torque) { torques_.push_back(std::move(torque)); }
   /// Ends it. dt: see BagOptions [s]; 0: what belongs together has the same stamp.
   void pair(double dt);
 
-  /// Second round. Whether the image of that time becomes a frame.
-  bool wants(const ros::Time& time) const { return images_.count(time) > 0; }
+  /// Second round. Whether an image becomes a frame.
+  /// @param number  of takeImageTime(), from 0
+  bool wants(std::size_t number) const { return frame_of_.count(number) > 0; }
   /// @param encoding  as the camera sent it, for messages
-  void takeImage(const ros::Time& time, const sensor_msgs::Image& image,
-                 const std::string& encoding);
+  void takeImage(std::size_t number, const sensor_msgs::Image& image, const std::string& encoding);
+  /// An image that cannot be decoded leaves a gap.
+  void takeBrokenImage(std::size_t number, const std::string& fault);
   void takeGoal(const sensor_msgs::Image& image);
+  /// @throws std::runtime_error also if more images are broken than whole
   BagContent frames() const;
 
+  /// What a user should know about the bag; all of them are in BagContent.
+  void note(const std::string& text) { notes_.push_back(text); }
+
  private:
-  Grey decode(const sensor_msgs::Image& image, const std::string& what) const;
+  struct Image {
+    ros::Time stamp;
+    ros::Time recorded;
+    std::size_t content;
+  };
+
+  std::vector<std::size_t> imagesInOrder(double dt) const;
+  std::string clockFault(const std::vector<std::size_t>& order, bool by_stamp) const;
+  std::string torqueClockFault() const;
+  void pairByClocks(double dt, const std::vector<std::size_t>& order);
 
   int image_size_;
   BagOptions options_;
-  std::set<ros::Time> times_;         // of all images
+  std::vector<Image> all_images_;
   std::vector<TimedTorque> torques_;  // all
+  double lag_ = 0.0;                  // of the torques' clock behind that of the images [s]
   Pairs pairs_;
-  std::map<ros::Time, Grey> images_;  // of the frames; empty until they come
+  std::map<std::size_t, std::size_t> frame_of_;  // by the number of the image
+  std::vector<Grey> greys_;                      // of the frames; empty until they come
+  std::size_t num_broken_ = 0;
+  std::string first_broken_;
   Grey goal_;
   std::string camera_;
+  std::vector<std::string> notes_;
 };
 
 }  // namespace ddm

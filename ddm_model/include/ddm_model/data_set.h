@@ -38,8 +38,8 @@ class DataSet {
   /// @throws std::invalid_argument for a wrong size or a torque that is not finite
   void append(const Grey& grey, const Eigen::VectorXd& torque, bool new_segment);
 
-  /// Appends all frames of another data set; no pair straddles the seam. Takes over its goal image
-  /// where this one has none.
+  /// Appends all frames of another data set; no pair straddles the seam. Takes over its goal image if
+  /// it has one: the last one counts.
   /// @throws std::invalid_argument if image size or torque dimension differ
   void append(const DataSet& other);
 

@@ -16,8 +16,8 @@ from ddm_model.verdict import limits, summary, verdict
 
 # Shorthands for keys of the block data_set, see read_bags.
 DATA_SET_OPTIONS = (
-    ("--image-topic", "TOPIC", "sensor_msgs/Image or CompressedImage"),
-    ("--torque-topic", "TOPIC", "ddm_msgs/Torque, std_msgs/Float64 or Float64MultiArray, geometry_msgs/WrenchStamped, "
+    ("--image-topic", "TOPIC", "sensor_msgs/Image or CompressedImage, also without /compressed"),
+    ("--torque-topic", "TOPIC", "ddm_msgs/Torque, std_msgs/Float64, Float32 or arrays of them, geometry_msgs/WrenchStamped, "
      "sensor_msgs/JointState"),
     ("--dt", "S", "time between frames [s], but for ddm_msgs/Torque"),
     ("--motors", "A,B,...", "joints of a JointState, or parts (torque.z) of a wrench"),
@@ -116,6 +116,8 @@ def build_page(data, path):
     sections += ["<h2>Facts</h2>", facts_table(data, path)]
     if data.bags is not None:
         sections += ["<p></p>", bags_table(data)]
+    if data.notes:
+        sections += ["<p></p>", report.table(["bag", "what to know about it"], data.notes)]
     drawn = figures_of(data)
     for i, (title, draw, caption) in enumerate(drawn):
         say("drawing %d of %d: %s" % (i + 1, len(drawn), title))

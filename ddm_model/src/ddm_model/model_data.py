@@ -20,8 +20,8 @@ class ModelDataError(Exception):
 
 
 def read_bags(paths, image_size, options=()):
-    """What the program read_bags finds in each bag, by name: camera, interval_s, goal, segment_sizes; images [N x size x size],
-    torques [N x torque_dim, N m], times and those of what could not be paired [s]. Its errors go to our standard error.
+    """What the program read_bags finds in each bag, by name: camera, interval_s, goal, segment_sizes, notes;
+    images [N x size x size], torques [N x torque_dim, N m], times and those of what could not be paired [s]. Its errors go to our standard error.
     """
     programs = roslib.packages.find_node("ddm_model", "read_bags")
     if not programs:
@@ -126,7 +126,7 @@ Prediction = collections.namedtuple("Prediction", "frame features images")
 
 class ModelData:
     """A Model and what it makes of bags. Without bags `bags` and what comes after it are None, and tables is empty.
-    unpaired: {what: number of the bag and time since its first frame [s]  [2 x N]}.
+    unpaired: {what: number of the bag and time since its first frame [s]  [2 x N]}. notes: (bag, what to know about it).
     """
 
     def __init__(self, model, bags=(), steps=15, options=(), say=lambda text: None):
@@ -134,6 +134,7 @@ class ModelData:
         self.model = model
         self.bags = self.frames = self.features = self.torques = self.spectrum = self.errors = None
         self.variation = self.unpaired = None
+        self.notes = []
         self.tables, self.predictions = {}, {}
         if bags:
             say("reading %d bag(s)" % len(bags))
@@ -157,6 +158,7 @@ class ModelData:
                      **{key: np.array([len(bag[name]) for bag in bags])
                         for key, name in (("frames", "times"), ("segments", "segment_sizes"), *zip(unpaired, unpaired))},
                      **{name: np.array([bag[name] for bag in bags]) for name in ("interval_s", "goal")}}
+        self.notes = [(path, note) for path, bag in zip(paths, bags) for note in bag["notes"]]
         self.tables["bags.csv"] = self.bags
         return segment_sizes, times
 

@@ -7,12 +7,14 @@
 #include <sensor_msgs/image_encodings.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/case_conv.hpp>
 #include <boost/make_shared.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
@@ -26,14 +28,22 @@ namespace encodings = sensor_msgs::image_encodings;
 
 constexpr int kMaxSize = 16384;
 
-/// Encodings that are accepted -> the encoding that cv_bridge shall take the pixels for.
+// YUV 4:2:2: two bytes a pixel, of which one is the luma.
+constexpr char kLumaFirst[] = "yuyv";
+constexpr char kLumaSecond[] = "uyvy";
+
+/// Encodings that are accepted, in small letters -> the encoding that the pixels are taken for.
 const std::map<std::string, std::string>& acceptedEncodings() {
   static const std::map<std::string, std::string> accepted = [] {
     // OpenCV's own names say nothing about colours; cv_bridge would refuse to turn them into grey.
+    // Drivers have many names for the two orders of YUV 4:2:2: luma first, or second (ROS's yuv422).
     std::map<std::string, std::string> out = {
-        {"8UC1", "mono8"},    {"8UC3", "bgr8"},   {"8UC4", "bgra8"},
-        {"16UC1", "mono16"},  {"16UC3", "bgr16"}, {"16UC4", "bgra16"},
-        {"yuv422", "yuv422"}, {"32FC1", "32FC1"}, {"64FC1", "64FC1"}};
+        {"8uc1", "mono8"},           {"8uc3", "bgr8"},        {"8uc4", "bgra8"},
+        {"16uc1", "mono16"},         {"16uc3", "bgr16"},      {"16uc4", "bgra16"},
+        {"32fc1", "32FC1"},          {"64fc1", "64FC1"},      {"yuyv", kLumaFirst},
+        {"yuy2", kLumaFirst},        {"yuyv422", kLumaFirst}, {"yuv422_yuy2", kLumaFirst},
+        {"yuv422", kLumaSecond},     {"uyvy", kLumaSecond},   {"uyvy422", kLumaSecond},
+        {"yuv422_uyvy", kLumaSecond}};
     for (const char* layout : {"mono", "rgb", "bgr", "rgba", "bgra", "bayer_rggb", "bayer_bggr",
                                "bayer_gbrg", "bayer_grbg"}) {
       for (const char* bits : {"8", "16"}) {
@@ -57,9 +67,17 @@ std::string extent(const sensor_msgs::Image& image) {
   return std::to_string(image.width) + " x " + std::to_string(image.height) + " " + image.encoding;
 }
 
+bool isYuv422(const std::string& encoding) {
+  return encoding == kLumaFirst || encoding == kLumaSecond;
+}
+
+std::size_t depthBytes(const std::string& encoding) {
+  return isYuv422(encoding) ? 1 : encodings::bitDepth(encoding) / 8;
+}
+
 /// The encoding to read the pixels as. Throws unless every pixel lies within the data.
 std::string checkedEncoding(const sensor_msgs::Image& image) {
-  const auto found = acceptedEncodings().find(image.encoding);
+  const auto found = acceptedEncodings().find(boost::algorithm::to_lower_copy(image.encoding));
   if (found == acceptedEncodings().end()) {
     std::string known;
     for (const auto& entry : acceptedEncodings()) known += " " + entry.first;
@@ -70,8 +88,8 @@ std::string checkedEncoding(const sensor_msgs::Image& image) {
            extent(image));
   }
   const std::string& encoding = found->second;
-  const std::size_t depth_bytes = encodings::bitDepth(encoding) / 8;
-  const std::size_t row_bytes = image.width * depth_bytes * encodings::numChannels(encoding);
+  const std::size_t channels = isYuv422(encoding) ? 2 : encodings::numChannels(encoding);
+  const std::size_t row_bytes = image.width * depthBytes(encoding) * channels;
   if (image.step < row_bytes) {
     refuse("step must be at least " + std::to_string(row_bytes) + " bytes for " + extent(image) +
            ", got " + std::to_string(image.step));
@@ -81,16 +99,12 @@ std::string checkedEncoding(const sensor_msgs::Image& image) {
     refuse("data must hold step * height = " + std::to_string(data_bytes) + " bytes for " +
            extent(image) + ", got " + std::to_string(image.data.size()));
   }
-  if (image.is_bigendian && depth_bytes > 1) {
-    refuse("big-endian pixels are not supported, got " + extent(image) +
-           "; publish little-endian or 8 bit");
-  }
-  // OpenCV leaves a mosaic black that is smaller than its filter, and pairs the columns of yuv422.
+  // OpenCV leaves a mosaic black that is smaller than its filter.
   if (encodings::isBayer(encoding) && (image.width < 3 || image.height < 3)) {
     refuse("a Bayer mosaic needs at least 3 x 3 pixels, got " + extent(image));
   }
-  if (encodings::numChannels(encoding) == 2 && image.width % 2 != 0) {
-    refuse("yuv422 needs an even width, got " + extent(image));
+  if (isYuv422(encoding) && image.width % 2 != 0) {
+    refuse("YUV 4:2:2 needs an even width, got " + extent(image));
   }
   return encoding;
 }
@@ -103,14 +117,40 @@ void requireUnitRange(const cv::Mat& grey) {
       if (value >= Real{0} && value <= Real{1}) continue;  // so that NaN does not pass
       std::ostringstream out;
       out << "float grey values must lie in [0, 1], got " << value << " at row " << row
-          << ", column " << col;
+          << ", column " << col << "; scale them, for instance a depth, before they are recorded";
       refuse(out.str());
     }
   }
 }
 
+/// The image with the byte order of this computer.
+sensor_msgs::Image littleEndian(sensor_msgs::Image image, const std::string& encoding) {
+  const std::size_t bytes = depthBytes(encoding);
+  for (std::size_t row = 0; row < image.height; ++row) {
+    const auto begin = image.data.begin() + static_cast<std::ptrdiff_t>(row * image.step);
+    for (std::size_t at = 0; at + bytes <= image.step; at += bytes) {
+      const auto value = begin + static_cast<std::ptrdiff_t>(at);
+      std::reverse(value, value + static_cast<std::ptrdiff_t>(bytes));
+    }
+  }
+  image.is_bigendian = 0;
+  return image;
+}
+
 /// One channel, of the depth that the image has.
 cv::Mat greyImage(const sensor_msgs::Image& image, const std::string& encoding) {
+  if (image.is_bigendian && depthBytes(encoding) > 1) {
+    return greyImage(littleEndian(image, encoding), encoding);
+  }
+  if (isYuv422(encoding)) {
+    // OpenCV has no view of constant pixels; they are only read.
+    auto* const bytes = const_cast<std::uint8_t*>(image.data.data());
+    const cv::Mat pixels(static_cast<int>(image.height), static_cast<int>(image.width), CV_8UC2,
+                         bytes, image.step);
+    cv::Mat luma;
+    cv::extractChannel(pixels, luma, encoding == kLumaFirst ? 0 : 1);
+    return luma;
+  }
   // The view shares the caller's bytes and does not outlive this function.
   const cv::Mat pixels = cv_bridge::toCvShare(image, boost::shared_ptr<void const>())->image;
   if (pixels.depth() == CV_32F || pixels.depth() == CV_64F) {
@@ -182,17 +222,40 @@ std::vector<std::uint8_t> decodeImage(const sensor_msgs::Image& image, int size,
   return out;
 }
 
+namespace {
+
+/// Whether these are the bytes of a JPEG that was cut short: OpenCV makes grey of what is missing.
+/// The mark of its end is looked for after the headers, which may hold a smaller JPEG.
+bool isJpegCutShort(const std::vector<std::uint8_t>& data) {
+  constexpr std::uint8_t kMark = 0xff, kBegin = 0xd8, kScan = 0xda, kEnd = 0xd9;
+  if (data.size() < 2 || data[0] != kMark || data[1] != kBegin) return false;
+  std::size_t at = 2;
+  while (at + 4 <= data.size() && data[at] == kMark && data[at + 1] != kScan) {
+    at += data[at + 1] == kMark ? 1 : 2 + 256U * data[at + 2] + data[at + 3];  // 1: a fill byte
+  }
+  const std::uint8_t end[] = {kMark, kEnd};
+  return at >= data.size() || std::search(data.begin() + static_cast<std::ptrdiff_t>(at),
+                                          data.end(), end, end + 2) == data.end();
+}
+
+}  // namespace
+
 sensor_msgs::Image unpacked(const sensor_msgs::CompressedImage& image) {
+  const bool cut_short = isJpegCutShort(image.data);
   cv::Mat pixels;
   try {
-    if (!image.data.empty()) pixels = cv::imdecode(image.data, cv::IMREAD_COLOR);
+    if (!image.data.empty() && !cut_short) {
+      pixels = cv::imdecode(image.data, cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH);
+    }
   } catch (const cv::Exception&) {  // what is said below says more than its text
   }
-  if (pixels.empty()) {
+  if (pixels.empty() || (pixels.depth() != CV_8U && pixels.depth() != CV_16U)) {
     refuse(std::to_string(image.data.size()) + " bytes of format '" + image.format +
-           "' cannot be unpacked: record JPEG or PNG");
+           "' cannot be unpacked" + (cut_short ? ", since they end early" : "") +
+           ": record JPEG or PNG");
   }
-  return *cv_bridge::CvImage(image.header, "bgr8", pixels).toImageMsg();
+  const char* encoding = pixels.depth() == CV_16U ? "bgr16" : "bgr8";
+  return *cv_bridge::CvImage(image.header, encoding, pixels).toImageMsg();
 }
 
 sensor_msgs::Image encodeImage(const std::vector<std::uint8_t>& grey, int size,

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <clocale>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -13,6 +14,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "ddm_params/parse_number.h"
 
 namespace ddm {
 namespace {
@@ -151,6 +154,20 @@ TEST(ParamValue, PrintsEveryFiniteDoubleSoThatItReadsBackExactly) {
 struct DecimalComma : std::numpunct<char> {
   char do_decimal_point() const override { return ','; }
 };
+
+TEST(ParamValue, TextIsANumberUnderALocaleOfCWithADecimalCommaToo) {
+  bool found = false;
+  for (const char* name :
+       {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "fr_FR.utf8", "nl_NL.UTF-8"}) {
+    found = found || std::setlocale(LC_NUMERIC, name) != nullptr;
+  }
+  if (!found) GTEST_SKIP() << "no such locale is installed";
+  double value = 0.0;
+  const bool parsed = parseNumber("1.5", &value);
+  std::setlocale(LC_NUMERIC, "C");
+  EXPECT_TRUE(parsed);
+  EXPECT_EQ(value, 1.5);
+}
 
 TEST(ParamValue, IsTheSameUnderALocaleWithADecimalComma) {
   const std::locale before = std::locale::global(std::locale(std::locale(), new DecimalComma));

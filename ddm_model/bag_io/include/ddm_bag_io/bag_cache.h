@@ -5,6 +5,7 @@
 #include <ddm_model/data_set.h>
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -13,16 +14,22 @@
 
 namespace ddm {
 
-/// Keeps what it has read of a bag until the file changes.
+/// Keeps what it has read of a bag until the file changes or is no longer asked for.
 class BagCache {
  public:
-  BagCache(int image_size, BagOptions options)
-      : image_size_(image_size), options_(std::move(options)) {}
+  using Warn = std::function<void(const std::string& note)>;
+  using KeepGoing = std::function<bool()>;
 
-  /// All bags as one data set, each a trial of its own, in the order given.
+  /// @param warn  (optional) is told the notes of each bag when it is read, see BagContent
+  BagCache(int image_size, BagOptions options, Warn warn = nullptr)
+      : image_size_(image_size), options_(std::move(options)), warn_(std::move(warn)) {}
+
+  /// All bags as one data set, each a trial of its own, in the order given. The goal image is that of
+  /// the last bag that has one.
   /// @throws std::runtime_error as readBag() does, or if camera or number of torques differ between
   ///         bags, or if there is no bag or one is given twice
-  DataSet read(const std::vector<std::string>& paths);
+  /// @param keep_going  (optional) asked before each bag; false ends in an exception
+  DataSet read(const std::vector<std::string>& paths, const KeepGoing& keep_going = nullptr);
 
  private:
   struct Entry {
@@ -35,6 +42,7 @@ class BagCache {
 
   int image_size_;
   BagOptions options_;
+  Warn warn_;
   std::map<std::string, Entry> entries_;
 };
 

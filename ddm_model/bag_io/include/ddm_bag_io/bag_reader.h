@@ -52,29 +52,37 @@ struct BagContent {
   double interval = 0.0;        ///< median of those between frames [s]; 0 if there is only one
   std::vector<double> images_without_torque{};  ///< their times, since the first frame [s]
   std::vector<double> torques_without_image{};  ///< likewise
+  /// What a user should know: what does not count and why, clocks that cannot be trusted, and so on.
+  std::vector<std::string> notes{};
 };
 
 /// Reads one bag: ours, or one made with plain `rosbag record`.
 ///
 /// Torques are ddm_msgs/Torque: an image and a torque are a frame if their header stamps are equal,
 /// and a new segment begins after an image without a torque, and after a gap of more than 1.5 times
-/// the median interval. Or they are std_msgs/Float64 or Float64MultiArray, the effort of a
+/// the median interval. Or they are std_msgs/Float64 or Float32, arrays of them, the effort of a
 /// sensor_msgs/JointState, or parts of a geometry_msgs/WrenchStamped: then images are taken dt
-/// apart, each with the torque in force until the next, and what has no header stamp has the time
-/// at which it was recorded.
+/// apart, each with the torque in force until the next, and a torque is in force until there is
+/// another. Stamps count where images and torques have them and they can be trusted, else the times
+/// at which messages were recorded.
 ///
-/// A topic is found under its name or under any namespace. The goal image is the last on its topic.
+/// A topic is found under its name or under any namespace, that of images also with /compressed
+/// behind it. The goal image is the last on its topic. An image that cannot be decoded leaves a gap.
 /// Memory is that of the frames and of the largest chunk; chunks without these topics are skipped.
 /// @param image_size  images are cropped and converted to image_size x image_size grey values; one
 ///                    of that size is not cropped
 /// @throws std::runtime_error naming the bag, the fault and the remedy: unreadable, cut short,
 ///         still active, without a topic, a topic of another type, images that change size or
-///         encoding, torques that are not finite or change dimension, no image with a torque,
-///         images farther apart than dt, torques of two nodes
+///         encoding, more broken images than whole ones, torques that are not finite or change
+///         dimension, no image with a torque, images farther apart than dt, torques of two nodes at
+///         the same time
 BagContent readBag(const std::string& path, int image_size, const BagOptions& options);
 
 /// The same from any stream; messages do not name it.
 /// @param in  binary, can be positioned
 BagContent readBagBytes(std::istream* in, int image_size, const BagOptions& options);
+
+/// @throws std::runtime_error if two paths are the same file
+void requireDifferentBags(const std::vector<std::string>& paths);
 
 }  // namespace ddm

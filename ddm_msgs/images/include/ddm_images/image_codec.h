@@ -29,10 +29,12 @@ struct ImageCrop {
 /// column or row is left out on the right or at the bottom), then resized by area averaging
 /// (cv::INTER_AREA).
 ///
-/// Encodings: mono8, mono16, rgb8, bgr8, rgba8, bgra8 and their 16 bit forms; bayer_*8, bayer_*16;
-/// yuv422 (luma as it is sent); 8UC1/3/4 and 16UC1/3/4 (three channels in OpenCV's
-/// order blue, green, red); 32FC1 and 64FC1 with grey values in [0, 1]. 16 bit is divided by 257,
-/// so that 65535 becomes 255. Floats become k = round(255 grey).
+/// Encodings, in small or capital letters: mono8, mono16, rgb8, bgr8, rgba8, bgra8 and their 16 bit
+/// forms; bayer_*8, bayer_*16; YUV 4:2:2, whose luma is used as it is sent, under the names yuv422,
+/// uyvy, uyvy422, yuv422_uyvy and yuyv, yuy2, yuyv422, yuv422_yuy2; 8UC1/3/4 and 16UC1/3/4 (three
+/// channels in OpenCV's order blue, green, red); 32FC1 and 64FC1 with grey values in [0, 1]. 16 bit
+/// is divided by 257, so that 65535 becomes 255. Floats become k = round(255 grey). Pixels may be
+/// big-endian.
 ///
 /// @param image  as it came over the wire; nothing in it is trusted
 /// @param size   width and height of the result                                 [1 ... 16384]
@@ -40,13 +42,12 @@ struct ImageCrop {
 /// @return       grey values k                                                  [size * size]
 /// @throws std::invalid_argument if the size is out of range, the image is empty or larger than
 ///         16384 x 16384, its encoding is not one of the above, its step or data do not fit its
-///         size, its 16 bit or float pixels are big-endian, a float is outside [0, 1] or NaN, or
-///         the crop reaches beyond the image
+///         size, a float is outside [0, 1] or NaN, or the crop reaches beyond the image
 std::vector<std::uint8_t> decodeImage(const sensor_msgs::Image& image, int size,
                                       const ImageCrop& crop = ImageCrop());
 
-/// An image from its JPEG, PNG or other bytes, in colour: bgr8.
-/// @throws std::invalid_argument if OpenCV cannot read them
+/// An image from its JPEG, PNG or other bytes, in colour: bgr8, or bgr16 if they have 16 bits.
+/// @throws std::invalid_argument if OpenCV cannot read them, or a JPEG ends early
 sensor_msgs::Image unpacked(const sensor_msgs::CompressedImage& image);
 
 /// The inverse of decodeImage(): a mono8 image without padding. decodeImage(encodeImage(k, size, ...), size) == k.

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <locale.h>
+
 #include <boost/algorithm/string/trim.hpp>
+#include <clocale>
 #include <cmath>
 #include <cstdlib>
 #include <string>
@@ -16,8 +19,10 @@ inline bool parseNumber(const std::string& text, double* value) {
   const std::string word = boost::trim_copy(text);
   // strtod also takes nan, inf and hexadecimal; their letters are kept out here.
   if (word.empty() || word.find_first_not_of("+-.0123456789eE") != std::string::npos) return false;
+  // A program that is embedded in another one may have a locale with a decimal comma.
+  static const locale_t kClassic = ::newlocale(LC_ALL_MASK, "C", nullptr);
   char* end = nullptr;
-  const double number = std::strtod(word.c_str(), &end);
+  const double number = ::strtod_l(word.c_str(), &end, kClassic);
   if (*end != '\0' || !std::isfinite(number)) return false;
   *value = number;
   return true;
