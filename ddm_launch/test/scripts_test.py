@@ -2,6 +2,7 @@
 # demo.sh, test.sh, what they share, and fresh_root.sh: what they refuse, with which words, and that they do nothing twice.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
+import re
 import shlex
 import socket
 import subprocess
@@ -163,6 +164,20 @@ class ScriptsTest(ScratchCase):
                               ("ROS_IP= ROS_HOSTNAME=robot", "")):
             self.assertEqual(self.callFunction("export %s; use_system_environment; printf %%s \"$ROS_IP\"" % told),
                              (0, address))
+
+    def test_the_image_keeps_nodes_to_itself_unless_the_caller_names_a_master_or_an_address(self):
+        with open(os.path.join(CHECKOUT, "Dockerfile")) as stream:
+            dockerfile = stream.read()
+        self.assertNotIn("ROS_IP", dockerfile)
+        entry = re.search(r'ENTRYPOINT \["bash", "/ddm/(.*)"\]', dockerfile).group(1)
+        os.chmod(self.write("ws/devel/env.sh", '#!/bin/sh\necho "${ROS_MASTER_URI-}" "${ROS_IP-}" "${ROS_HOSTNAME-}" "$@"\n'), 0o755)
+        clean = ["/usr/bin/env", "-u", "ROS_MASTER_URI", "-u", "ROS_IP", "-u", "ROS_HOSTNAME"]
+        robot = "http://10.0.0.1:11311"
+        for given, printed in (([], " 127.0.0.1  a 'b c'"), (["ROS_IP=10.0.0.2"], " 10.0.0.2  a 'b c'"),
+                               (["ROS_HOSTNAME=pc"], "  pc a 'b c'"), (["ROS_MASTER_URI=" + robot], robot + "   a 'b c'"),
+                               (["ROS_MASTER_URI=" + robot, "ROS_IP=10.0.0.2"], robot + " 10.0.0.2  a 'b c'")):
+            command = clean + given + ["/bin/bash", os.path.join(CHECKOUT, entry), "a", "'b c'"]
+            self.assertEqual(self.call(*command), (0, printed + "\n"))
 
     def test_a_system_that_knows_localhost_is_left_alone(self):
         self.assertEqual(self.callFunction("as_root() { echo CALLED; }; getent() { true; }; ensure_localhost_resolves"),
