@@ -12,11 +12,9 @@ option(DDM_AVX2 "On x86-64, build for processors with AVX2 and FMA, which most h
 option(DDM_WERROR "Treat warnings as errors" OFF)
 set(DDM_SANITIZE "" CACHE STRING "Sanitizers: empty for none, address (with undefined behaviour) or thread")
 
-# The catkin of Debian 11 takes gtest from GMockConfig.cmake, whose targets exist in the first package of a workspace only.
-# Without that file it builds gtest itself, once for all packages. Newer ones, with CMake 3.19, do not ask for the file.
-if(CMAKE_VERSION VERSION_LESS 3.19)
-  set(CMAKE_DISABLE_FIND_PACKAGE_GMock ON CACHE INTERNAL "see ddm_build.cmake of ddm_msgs")
-endif()
+# The catkin of Debian 11 keeps in the cache that it has found gtest and gmock, but not their targets. Without this line it would
+# not look for them when a workspace is configured again, and no test would link.
+unset(GMOCK_FOUND CACHE)
 
 set(CMAKE_CXX_STANDARD 17)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
