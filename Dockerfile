@@ -8,11 +8,10 @@ COPY ddm_launch/scripts/workspace.sh /ddm/ddm_launch/scripts/
 RUN bash -euc '. /ddm/ddm_launch/scripts/workspace.sh; check_system; install_packages "${packages_to_run[@]}"' && \
     rm -rf /var/lib/apt/lists/* /var/cache/apt/archives/*.deb
 
-# nodes keep to the container, whose name need not resolve
-ENV DDM_WS=/ddm_ws ROS_IP=127.0.0.1
+ENV DDM_WS=/ddm_ws
 COPY . /ddm
-RUN bash -euc '. /ddm/ddm_launch/scripts/workspace.sh; use_system_environment; make_workspace; build_release'
+RUN bash -euc '. /ddm/ddm_launch/scripts/workspace.sh; use_system_environment; make_workspace; install_by_rosdep; build_release'
 
 WORKDIR /runs
-ENTRYPOINT ["/ddm_ws/devel/env.sh"]
+ENTRYPOINT ["bash", "/ddm/ddm_launch/scripts/entrypoint.sh"]
 CMD ["bash", "/ddm/ddm_launch/scripts/demo.sh", "--runs", "/runs/demo"]

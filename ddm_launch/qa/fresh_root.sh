@@ -6,10 +6,10 @@ set -euo pipefail
 
 usage() {
   cat <<TEXT
-usage: bash fresh_root.sh bookworm|trixie [demo|test|image]...
+usage: bash fresh_root.sh bullseye|bookworm|trixie [demo|test|image]...
 
-Makes an empty Debian 12 (bookworm) or 13 (trixie) by debootstrap, puts the files of the commit HEAD into it, and runs
-there what a newcomer would run. Closes with a verdict and a time for each, and removes everything that it made.
+Makes an empty Debian 11 (bullseye), 12 (bookworm) or 13 (trixie) by debootstrap, puts the files of the commit HEAD into
+it, and runs there what a newcomer would run. Closes with a verdict and a time for each, and removes everything that it made.
 Needs root, debootstrap, and for image buildah.
 
   demo     bash ddm_launch/scripts/demo.sh
@@ -34,7 +34,8 @@ parse_arguments() {
   local word
   for word in "$@"; do [[ $word != --help && $word != -h ]] || { usage && exit 0; }; done
   suite=${1:-}
-  [[ $suite == bookworm || $suite == trixie ]] || refuse "the first argument must be bookworm or trixie, got '$suite'"
+  [[ $suite =~ ^(bullseye|bookworm|trixie)$ ]] ||
+    refuse "the first argument must be bullseye, bookworm or trixie, got '$suite'"
   shift
   parts=("$@")
   ((${#parts[@]})) || parts=(demo test)

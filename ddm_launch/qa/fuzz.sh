@@ -10,7 +10,7 @@ usage() {
   cat <<TEXT
 usage: bash ddm_launch/qa/fuzz.sh --out DIR [--runs N] [--only TARGET...] [--jobs N] [--seed S]
 
-Installs the Debian packages that are missing (as root, or through sudo), builds the fuzz targets with clang into
+Installs the packages that are missing (as root, or through sudo), builds the fuzz targets with clang into
 \$DDM_WS/debug, and runs them. The same call again goes on where it ended.
 
   DDM_WS              catkin workspace to make or use, default ~/ddm_ws
@@ -29,6 +29,7 @@ main() {
   check_system
   make_workspace
   install_packages "${packages_to_run[@]}" "${packages_to_test[@]}"
+  install_by_rosdep
   build_sanitized address -DDDM_PILCO=ON fuzz_targets
   run_fuzzing "$@"
 }

@@ -26,16 +26,11 @@ build_sanitized() {  # address|thread [-DDDM_PILCO=ON] TARGET...
   local folder jobs
   folder=$(sanitized_folder "$1")
   read -ra jobs < <(job_flags)
-  mkdir -p "$folder"
-  local configure=(catkin_make -C "$DDM_WS" --build "$folder/build" "${jobs[@]}"
-    -DCATKIN_DEVEL_PREFIX="$folder/devel" -DCMAKE_INSTALL_PREFIX="$folder/install" -DCMAKE_CXX_COMPILER=clang++
-    -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-O1 -gline-tables-only' -DDDM_AVX2=OFF -DDDM_WERROR=ON
-    -DDDM_SANITIZE="$1" -DDDM_PILCO=OFF "${unity_flags[@]}")
-  "${configure[@]}" "${@:2}" || return
-  # as in build_release
-  if ! grep -q "PYTHONPATH=.*$folder/devel/lib" "$folder/build/catkin_generated/setup_cached.sh"; then
-    "${configure[@]}" --force-cmake "${@:2}"
-  fi
+  make_devel_space "$folder/devel"
+  catkin_make -C "$DDM_WS" --build "$folder/build" "${jobs[@]}" \
+    -DCATKIN_DEVEL_PREFIX="$folder/devel" -DCMAKE_INSTALL_PREFIX="$folder/install" -DCMAKE_CXX_COMPILER=clang++ \
+    -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-O1 -gline-tables-only' -DDDM_AVX2=OFF -DDDM_WERROR=ON \
+    -DDDM_SANITIZE="$1" -DDDM_PILCO=OFF "${unity_flags[@]}" "${@:2}"
 }
 
 # A short experiment by each driver and evaluations side by side. What does not reach its end is a report, too.
@@ -45,9 +40,7 @@ short_loop() {  # address|thread REPORTS
   out=$folder/loop
   rm -rf "$out"
   mkdir -p "$out"
-  set +u  # catkin's setup file reads variables that need not exist
-  . "$folder/devel/setup.bash"
-  set -u
+  source_setup "$folder/devel/setup.bash"
   local port programs=$folder/devel/lib/ddm_launch
   port=$(PYTHONPATH=$PYTHONPATH:$checkout/ddm_launch/qa /usr/bin/python3 -c \
     'from ddm_qa.processes import free_port; print(free_port())')

@@ -10,7 +10,7 @@ usage() {
   cat <<TEXT
 usage: bash test.sh [--debug | --thread-sanitizer]
 
-Installs the Debian packages that are missing (as root, or through sudo), builds the workspace \$DDM_WS, and
+Installs the packages that are missing (as root, or through sudo), builds the workspace \$DDM_WS, and
 runs every test: gtest, rosunit, rostest, roslaunch-check and the linters on the Release build; the gtests of the core
 once more, a short experiment and short fuzzing on a Debug build by clang, with Eigen's assertions, AddressSanitizer,
 UndefinedBehaviorSanitizer, and warnings as errors. A case that runs in several builds counts once; one that is
@@ -45,9 +45,10 @@ parse_arguments() {
 # alone. What failed is told by the results.
 run_tests() {  # BUILD_FOLDER PATTERN
   cd "$1" || return
-  rm -rf test_results/* tests_declared.json tests_run.xml  # results of an earlier call must not count
+  rm -rf test_results/* tests_declared.json Testing/TAG  # results of an earlier call must not count
   ctest -R "$2" --show-only=json-v1 >tests_declared.json
-  ctest -j "$(nproc)" -R "$2" --output-on-failure --timeout 600 --output-junit "$1/tests_run.xml" </dev/null && return
+  : >DartConfiguration.tcl  # -T asks for this file, whose settings are all optional
+  ctest -T Test -j "$(nproc)" -R "$2" --output-on-failure --timeout 600 </dev/null && return
   # what failed, now and not only when the other builds are done
   /usr/bin/python3 "$checkout/ddm_launch/qa/test_report.py" "$1" | grep -A 40 '^FAILED' || true
 }
@@ -139,6 +140,7 @@ main() {
   ensure_localhost_resolves
   make_workspace
   phase "Packages" install_packages "${packages_to_run[@]}" "${packages_to_test[@]}"
+  install_by_rosdep
   local build
   for build in "${builds[@]}"; do run_build "$build"; done
   say "Time"

@@ -3,9 +3,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """usage: test_report.py BUILD_FOLDER [BUILD_FOLDER ...]
 
-Each folder holds test_results/PACKAGE/*.xml (JUnit), tests_declared.json (ctest --show-only=json-v1) and
-tests_run.xml (ctest --output-junit); one with sanitizers also sanitizer_reports/, where each file is a failure.
-Prints the ten slowest tests and each failure, then "N passed, N failed"; returns 1 if any failed.
+Each folder holds test_results/PACKAGE/*.xml (JUnit), tests_declared.json (ctest --show-only=json-v1) and what
+ctest -T Test leaves in Testing/; one with sanitizers also sanitizer_reports/, where each file is a failure.
+Prints the ten slowest tests, each failure and each skipped case, then "N passed, N failed"; returns 1 if any failed.
 A case that ran in several builds (same package, result file and name) counts once and must pass in all of them.
 """
 import glob
@@ -24,7 +24,8 @@ class Report:
     """Verdicts by case: a case is (package, result file, name)."""
 
     def __init__(self):
-        self.passed, self.skipped = set(), set()
+        self.passed = set()
+        self.skipped = {}  # case -> reason
         self.failures = {}  # case -> list of messages
 
     def fail(self, case, message):
@@ -36,7 +37,9 @@ class Report:
             lines.append("FAILED  %s: %s (%s)" % (case[0], case[2], case[1]))
             for message in self.failures[case]:
                 lines += ["        " + line for line in message.splitlines()[:40]]
-        lines += ["skipped %s: %s (%s)" % (c[0], c[2], c[1]) for c in sorted(self.skipped - self.passed)]
+        skipped = sorted(set(self.skipped) - self.passed)
+        lines += ["skipped %s: %s (%s): %s" % (c[0], c[2], c[1], self.skipped[c]) for c in skipped]
+        lines += ["%d skipped" % len(skipped)] if skipped else []
         return lines + ["%d passed, %d failed" % (len(self.passed - set(self.failures)), len(self.failures))]
 
 
@@ -56,10 +59,12 @@ def read_results(report, path, build):
         for problem in problems:
             report.fail(case, "[%s] %s" % (build, problem.text or problem.get("message") or "no message"))
         failed += bool(problems)
+        skip = element.find("skipped")
         if element.get("classname") == ROSTEST_WRAPPER:
             wrapped.append(element.get("name")[len("test"):])
-        elif element.find("skipped") is not None or element.get("status") == "notrun":
-            report.skipped.add(case)
+        elif skip is not None or element.get("result") == "skipped" or element.get("status") == "notrun":
+            reason = (skip.get("message") if skip is not None else None) or "see its log"  # older gtest gives none
+            report.skipped[case] = " ".join(reason.split())
         elif not problems:
             report.passed.add(case)
     # rosunit leaves a failed subTest out of the cases, but not out of the sum
@@ -84,19 +89,26 @@ def declared_tests(build_folder):
 
 
 def ctest_cases(build_folder):
-    return ElementTree.parse(os.path.join(build_folder, "tests_run.xml")).getroot().iter("testcase")
+    """(name, verdict or None if it passed, seconds) of each test that ctest ran last."""
+    with open(os.path.join(build_folder, "Testing", "TAG")) as stream:
+        tag = stream.readline().strip()
+    cases = []
+    for element in ElementTree.parse(os.path.join(build_folder, "Testing", tag, "Test.xml")).iterfind("Testing/Test"):
+        measured = {value.get("name"): value.findtext("Value") for value in element.iter("NamedMeasurement")}
+        end = measured.get("Exit Code") or measured.get("Completion Status")  # a program that is not there has no code
+        cases.append((element.findtext("Name"), None if element.get("Status") == "passed" else end,
+                      float(measured.get("Execution Time", 0))))
+    return cases
 
 
 def failed_tests(build_folder):
     """{name of each ctest test that did not pass: how it ended}."""
-    return {element.get("name"): element.find("failure").get("message") if element.find("failure") is not None
-            else "exit code not 0" for element in ctest_cases(build_folder) if element.get("status") != "run"}
+    return {name: end for name, end, _ in ctest_cases(build_folder) if end}
 
 
 def slowest_tests(build_folders, count=10):
     """Lines with the wall time and the name of the slowest tests of all builds."""
-    times = [(float(element.get("time")), element.get("name"), build_name(folder)) for folder in build_folders
-             for element in ctest_cases(folder) if element.get("time")]
+    times = [(seconds, name, build_name(folder)) for folder in build_folders for name, _, seconds in ctest_cases(folder)]
     slowest = ["%6.0f s  %s [%s]" % test for test in sorted(times, reverse=True)[:count]]
     return ["slowest tests:"] + slowest if slowest else []
 

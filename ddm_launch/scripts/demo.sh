@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From a clean Debian to a learned swing-up: installs, builds, runs an experiment, draws the result.
+# From a clean system to a learned swing-up: installs, builds, runs an experiment, draws the result.
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/workspace.sh"
@@ -8,7 +8,7 @@ usage() {
   cat <<TEXT
 usage: bash demo.sh [--rviz] [--runs FOLDER] [--trials N]
 
-Learns to hold a pendulum at the target from its camera images alone: installs the Debian packages that are
+Learns to hold a pendulum at the target from its camera images alone: installs the packages that are
 missing (as root, or through sudo), builds the workspace \$DDM_WS, runs one experiment with the real ROS nodes
 and draws a learning curve and a film strip. Called again on the same run folder, it resumes.
 
@@ -131,11 +131,10 @@ main() {
   make_workspace
   runs=${runs:-$DDM_WS/runs/demo}
   install_packages "${packages_to_run[@]}"
+  install_by_rosdep
   say "Building (Release) into $DDM_WS/devel"
   build_release || fail "the build failed: see the first error above."
-  set +u  # catkin's setup file reads variables that need not exist
-  . "$DDM_WS/devel/setup.bash"
-  set -u
+  source_setup "$DDM_WS/devel/setup.bash"
   run_experiment
   draw_pictures
   print_result

@@ -10,10 +10,37 @@ fail() {
   exit 1
 }
 
-# Packages of Debian 12 and 13 to build and run everything, tests included (both scripts share one build).
+warn() { printf '\nWARNING: %s\n' "$*" >&2; }
+
+opt_ros=${opt_ros:-/opt/ros}  # where ROS's own packages (Noetic) and those of ROS-O put ROS; Debian's own are in /usr
+
+# Prints the setup file of a ROS 1 in $opt_ros, if there is one.
+ros_setup() {
+  local setup
+  for setup in "$opt_ros"/{noetic,one}/setup.bash; do
+    [[ ! -f $setup ]] || { echo "$setup" && return; }
+  done
+}
+
+# Names of Debian and Ubuntu for what builds and runs everything, tests included (both scripts share one build).
 packages_to_run=(
   # compiler, build tool
-  build-essential cmake catkin python3-catkin-pkg python3-setuptools
+  build-essential cmake python3-setuptools
+  # libraries
+  libopencv-imgproc-dev libopencv-imgcodecs-dev libeigen3-dev libceres-dev libyaml-cpp-dev libbz2-dev
+  libboost-dev libboost-program-options-dev libboost-filesystem-dev libbenchmark-dev
+  # plants of model files: their physics, and their pictures without a screen
+  libmujoco-dev libegl-dev libegl1 libgl1-mesa-dri
+  # tests
+  libgtest-dev
+  # figures
+  python3-matplotlib python3-numpy python3-pandas python3-pil python3-tqdm python3-yaml
+  # sweeps
+  parallel
+)
+# ROS 1 as Debian packages it. Any other ROS brings its own packages: rosdep finds them by package.xml.
+[[ -n $(ros_setup) ]] || packages_to_run+=(
+  catkin python3-catkin-pkg
   # messages: the .msg files, then their C++ headers
   ros-message-generation ros-message-runtime
   ros-std-msgs ros-sensor-msgs ros-geometry-msgs ros-actionlib-msgs ros-rosgraph-msgs ros-diagnostic-msgs
@@ -24,58 +51,56 @@ packages_to_run=(
   ros-std-srvs libstd-srvs-dev python3-std-srvs
   libroscpp-dev libactionlib-dev librosbag-dev libroslz4-dev libcv-bridge-dev libimage-transport-dev libroslib-dev
   libdiagnostic-updater-dev libdynamic-reconfigure-config-init-mutex-dev pluginlib-dev libtf2-ros-dev
-  # libraries
-  libopencv-imgproc-dev libopencv-imgcodecs-dev libeigen3-dev libceres-dev libyaml-cpp-dev libbz2-dev
-  libboost-dev libboost-program-options-dev libboost-filesystem-dev libbenchmark-dev
-  # plants of model files: their physics, and their pictures without a screen
-  libmujoco-dev libegl-dev libegl1 libgl1-mesa-dri
   # tests
-  libgtest-dev librostest-dev python3-rostest python3-rosunit
+  librostest-dev python3-rostest python3-rosunit
   # ROS in Python and its command line tools
   python3-rospy python3-std-msgs python3-sensor-msgs python3-actionlib python3-cv-bridge
   python3-roslaunch python3-rosbag python3-rostopic python3-rosnode python3-rosservice
   python3-rosparam python3-rosmsg python3-dynamic-reconfigure python3-diagnostic-msgs python3-visualization-msgs
-  rosbash rospack-tools
-  # what one sees: rviz and figures
-  rviz python3-matplotlib python3-numpy python3-pandas python3-pil python3-tqdm python3-yaml
-  # sweeps
-  parallel
+  rosbash rospack-tools rviz
 )
+# Those that some systems do not have; each says here what is left out without it.
+optional_packages=(libmujoco-dev)  # plants of model files: not in Debian 11 and Ubuntu 22.04
 
-# Debian's own tools and libraries come first, whatever Python or ROS environment the caller has active.
+# Sources a catkin setup file, which reads variables that need not exist.
+source_setup() {  # FILE
+  local setup=$1
+  shift  # it takes the arguments of its caller for its own
+  set +u
+  . "$setup"
+  set -u
+}
+
+# The system's own tools and libraries come first, whatever Python or ROS environment the caller has active.
 use_system_environment() {
   export PATH=/usr/bin:/bin:/usr/sbin:/sbin:$PATH
   unset PYTHONPATH PYTHONHOME LD_LIBRARY_PATH CMAKE_PREFIX_PATH
   unset ROS_PACKAGE_PATH ROS_ROOT ROS_DISTRO ROS_MASTER_URI
+  local setup
+  setup=$(ros_setup)
+  [[ -z $setup ]] || source_setup "$setup"
   export PYTHONNOUSERSITE=1
   export PYTHONUNBUFFERED=1 ROSCONSOLE_STDOUT_LINE_BUFFERED=1  # progress shows at once, through pipes too
   # only this machine reaches master and nodes, unless the caller names an address
   [[ -n ${ROS_IP:-}${ROS_HOSTNAME:-} ]] || export ROS_IP=127.0.0.1
 }
 
-# Stops unless this is a system that everything is tested on. Argument: an os-release file.
+# Says which system this is, and warns if it is none that everything is tested on. Argument: an os-release file.
 check_system() {
-  local file=${1:-/etc/os-release} id='' version='' name='an unknown system'
+  local file=${1:-/etc/os-release} id='' version='' name='an unknown system' setup
+  setup=$(ros_setup)
   if [[ -r $file ]]; then
     id=$(. "$file" && printf %s "${ID:-}")
     version=$(. "$file" && printf %s "${VERSION_ID:-}")
     name=$(. "$file" && printf %s "${PRETTY_NAME:-$name}")
   fi
-  if [[ $id == debian && $version =~ ^1[23]$ ]]; then
+  if [[ $id == debian && $version =~ ^1[123]$ && -z $setup ]]; then
     echo "System: $name"
-    return
-  fi
-  local known="What other systems need: $checkout/doc/install.md"
-  if [[ $id == ubuntu && $version == 20.04 ]]; then
-    known="The code keeps to the compiler and libraries of Ubuntu 20.04 with ROS Noetic, but has not been run
-there, and the package names of this script are Debian's. To try it, with Noetic sourced:
-    rosdep install --from-paths $checkout --ignore-src
-    catkin_make -DCMAKE_BUILD_TYPE=Release      (in a workspace whose src/ links $checkout)"
-  fi
-  fail "this is $name, but the scripts are tested on Debian 12 and 13 with Debian's own ROS 1 packages.
-$known
-Remedy: use one of them, for example in a container:
+  else
+    warn "this is $name${setup:+ with $setup}. DDM is tested on Debian 11, 12 and 13 with Debian's own ROS 1 packages, not here.
+If something fails, see 'Other systems' in $checkout/doc/install.md, or use a container:
     docker run --rm -it -v $checkout:/ddm debian:12 bash /ddm/ddm_launch/scripts/${0##*/}"
+  fi
 }
 
 # Prints those of its arguments that are not installed.
@@ -105,21 +130,64 @@ Remedy: have an administrator run, then call this script again:
 
 around_apt=()  # a command that runs apt-get: qa/packages.sh sets it
 
-# Installs what is missing of its arguments; asks for no password and no network when nothing is.
+# Installs packages by apt-get. Arguments: what apt-get is to do before, or nothing; the packages.
+apt_install() {
+  local before=$1
+  shift
+  (($#)) || return 0
+  # one command, so that whoever lacks the rights can hand it on as it is printed; waits for another apt to end
+  local apt='apt-get -o DPkg::Lock::Timeout=300'
+  echo "Installing $# missing packages: $*"
+  as_root "install packages" env DEBIAN_FRONTEND=noninteractive "${around_apt[@]}" sh -c \
+    "${before:+$apt $before && }$apt install -y --no-install-recommends $*" </dev/null ||
+    fail "the packages could not be installed: see apt-get's lines above.
+Remedy: check the network and /etc/apt, then call this script again. If this system has no such package, see
+'Other systems' in $checkout/doc/install.md."
+}
+
+# Prints those of its arguments that the package lists of this system have.
+available_packages() {
+  local package
+  for package in "$@"; do
+    ! apt-cache show "$package" >/dev/null 2>&1 || echo "$package"
+  done
+}
+
+# Installs what is missing of its arguments; asks for no password and no network when nothing is. Optional packages that
+# this system does not have are named and left out.
 install_packages() {
-  local missing
+  local package missing required=() optional=() available
   mapfile -t missing < <(missing_packages "$@")
   if ((${#missing[@]} == 0)); then
     echo "Packages: all $# installed"
     return
   fi
-  echo "Installing ${#missing[@]} missing Debian packages: ${missing[*]}"
-  # one command, so that whoever lacks the rights can hand it on as it is printed; waits for another apt to end
-  local apt='apt-get -o DPkg::Lock::Timeout=300'
-  as_root "install packages" env DEBIAN_FRONTEND=noninteractive "${around_apt[@]}" sh -c \
-    "$apt update && $apt install -y --no-install-recommends ${missing[*]}" </dev/null ||
-    fail "the packages could not be installed: see apt-get's lines above.
-Remedy: check the network and /etc/apt, then call this script again."
+  if ! command -v apt-get >/dev/null; then
+    warn "this system has no apt-get, so nothing is installed. The build needs, by the names of Debian: $*"
+    return
+  fi
+  for package in "${missing[@]}"; do
+    if [[ " ${optional_packages[*]} " == *" $package "* ]]; then optional+=("$package"); else required+=("$package"); fi
+  done
+  apt_install update "${required[@]}"
+  mapfile -t available < <(available_packages "${optional[@]}")
+  apt_install '' "${available[@]}"
+  for package in "${optional[@]}"; do
+    [[ " ${available[*]} " == *" $package "* ]] || echo "Not available on this system, and left out: $package"
+  done
+}
+
+# Installs what package.xml lists where ROS is not Debian's own. The build tells what is missing if rosdep cannot.
+install_by_rosdep() {
+  [[ -n $(ros_setup) ]] || return 0
+  if ! command -v rosdep >/dev/null; then
+    warn "rosdep is not installed, so the packages that package.xml lists are not installed either.
+Remedy, if the build misses one: install rosdep (python3-rosdep), run 'sudo rosdep init', and call this script again."
+    return
+  fi
+  { rosdep update --rosdistro "$ROS_DISTRO" &&
+    rosdep install --from-paths "$checkout" --ignore-src --rosdistro "$ROS_DISTRO" -y -r; } ||
+    warn "rosdep did not install everything that package.xml lists: see its lines above. The build is tried all the same."
 }
 
 # ROS needs the name localhost, which a bare system (made by debootstrap, say) does not know.
@@ -164,15 +232,18 @@ job_flags() {
 # From nothing, a target is built fastest from all its sources at once: most of the time goes into headers.
 unity_flags=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0)
 
+# Makes a devel space with the folders whose paths catkin writes into the environment of tests. It does so once, at the
+# first configuration, and leaves out those that are not there.
+make_devel_space() {  # FOLDER
+  mkdir -p "$1/bin" "$1/lib/pkgconfig" "$1/lib/python3/dist-packages"
+}
+
 # The Release build, in $DDM_WS/build and $DDM_WS/devel. Arguments: make targets, or none for all programs.
 # demo.sh and test.sh must pass the same flags, or each would rebuild what the other built.
 build_release() {
   local flags=(-DCMAKE_BUILD_TYPE=Release -DDDM_AVX2="${DDM_AVX2:-ON}" -DDDM_WERROR=OFF "${unity_flags[@]}") jobs
   [[ -z ${CI:-} ]] || flags[2]=-DDDM_WERROR=ON
   read -ra jobs < <(job_flags)
-  catkin_make -C "$DDM_WS" "${jobs[@]}" "${flags[@]}" "$@" || return
-  # catkin freezes the environment of tests at the first configuration, when the devel space is still empty.
-  if ! grep -q "PYTHONPATH=.*$DDM_WS/devel/lib" "$DDM_WS/build/catkin_generated/setup_cached.sh"; then
-    catkin_make -C "$DDM_WS" --force-cmake "${jobs[@]}" "${flags[@]}" "$@"
-  fi
+  make_devel_space "$DDM_WS/devel"
+  catkin_make -C "$DDM_WS" "${jobs[@]}" "${flags[@]}" "$@"
 }

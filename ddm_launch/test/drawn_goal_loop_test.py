@@ -4,14 +4,13 @@
 import math
 import os
 import sys
-import unittest
 
 import rosbag
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from both_drivers_case import BothDriversCase  # noqa: E402
-from processes import has_mujoco  # noqa: E402
+from processes import needs_mujoco  # noqa: E402
 from run_files import read_rows, read_yaml  # noqa: E402
 
 TRIALS = 1
@@ -28,14 +27,13 @@ def goal_pictures(folder, run):
         return [message.data for _, message, _ in bag.read_messages(topics=["goal_image"])]
 
 
+@needs_mujoco
 class DrawnGoalLoopTest(BothDriversCase):
     """Policy, bags and evaluation go by the goal of their run."""
 
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        if not has_mujoco():
-            raise unittest.SkipTest("ddm_sim was built without MuJoCo")
         cls.runBothDrivers(4, TRIALS, {"preset": "debug", "plant": "suite_reacher_hard"}, QUICK)
 
     def test_both_finish_with_equal_files(self):

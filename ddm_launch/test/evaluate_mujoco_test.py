@@ -3,12 +3,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import sys
-import unittest
 
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import call, find_program, has_mujoco, run_experiment  # noqa: E402
+from processes import call, find_program, needs_mujoco, run_experiment  # noqa: E402
 from run_files import read_rows, read_yaml  # noqa: E402
 from scratch_case import SharedScratchCase  # noqa: E402
 
@@ -17,12 +16,11 @@ PLANT = ["--preset", "debug", "--plant", "suite_reacher_hard"]  # draws goals an
 SHORT = "training: {num_starts: 1, max_iterations: 20}\nevaluation: {num_steps: 40}\n"
 
 
+@needs_mujoco
 class EvaluateMujocoTest(SharedScratchCase):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        if not has_mujoco():
-            raise unittest.SkipTest("ddm_sim was built without MuJoCo")
         cls.config = os.path.join(cls.class_scratch, "short.yaml")
         with open(cls.config, "w") as stream:
             stream.write(SHORT)

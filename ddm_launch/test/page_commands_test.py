@@ -16,7 +16,7 @@ import rosunit
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import page_commands  # noqa: E402
 import pages  # noqa: E402
-from processes import call, find_program, free_port, has_mujoco, line_by_line, run_experiment  # noqa: E402
+from processes import call, find_program, free_port, needs_mujoco, line_by_line, run_experiment  # noqa: E402
 from scratch_case import SharedScratchCase  # noqa: E402
 
 LIMIT_S = 300.0  # for the commands of a page
@@ -92,10 +92,16 @@ class PageCommandsTest(SharedScratchCase):
     def test_the_commands_of_all_pages_run_in_their_order(self):
         with_commands = [page for page in pages.page_paths() if page_commands.block_commands(pages.read(page))]
         self.assertGreater(len(with_commands), 10)
-        if not has_mujoco():
-            with_commands = [page for page in with_commands if page not in NEED_MUJOCO]
+        self.assertLessEqual(set(NEED_MUJOCO), set(with_commands))
+        self.assertPagesRun(page for page in with_commands if page not in NEED_MUJOCO)
+
+    @needs_mujoco
+    def test_the_commands_of_pages_on_model_files_run_in_their_order(self):
+        self.assertPagesRun(NEED_MUJOCO)
+
+    def assertPagesRun(self, names):
         with ThreadPoolExecutor(2) as pool:
-            done = list(pool.map(self.runPage, with_commands))
+            done = list(pool.map(self.runPage, names))
         failed = [(page, output[-3000:]) for page, code, output in done if code != 0]
         for page, output in failed:
             print("== %s\n%s" % (page, output))

@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import contextlib
 import io
+import unittest
 
 import rooms  # noqa: F401
+import skips  # noqa: F401
 from ddm_launch.command import find_program
 from ddm_qa.processes import Process, free_port, line_by_line, start_roslaunch  # noqa: F401
 
@@ -15,10 +17,15 @@ def call(command, limit_s=60.0, **kwargs):
 
 
 def has_mujoco():
-    """Whether ddm_sim was built with MuJoCo, which Ubuntu 20.04 does not have."""
+    """Whether ddm_sim was built with MuJoCo, which some systems do not have."""
     code, output = call([find_program("simulate", "ddm_sim"), "--plant", "mujoco_pendulum", "--describe"])
     assert code == 0 or "libmujoco-dev" in output, output
     return code == 0
+
+
+def needs_mujoco(case):
+    """Decorator of a test or a class of tests that simulate model files."""
+    return unittest.skipUnless(has_mujoco(), "ddm_sim was built without MuJoCo")(case)
 
 
 def call_main(main, *arguments):

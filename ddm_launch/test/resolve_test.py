@@ -10,7 +10,7 @@ import rosunit
 import yaml
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import call, find_program, has_mujoco  # noqa: E402
+from processes import call, find_program, needs_mujoco  # noqa: E402
 from scratch_case import ScratchCase  # noqa: E402
 
 
@@ -54,9 +54,8 @@ class ResolveTest(ScratchCase):
         self.assertEqual(blocks["robot"]["goal_file"], self.file("goal.png"))
         self.assertEqual(blocks["access"]["bags"], [self.file("runs/one")] + bags)
 
+    @needs_mujoco
     def test_a_model_file_is_found_from_any_folder_and_brings_its_motors(self):
-        if not has_mujoco():
-            self.skipTest("ddm_sim was built without MuJoCo")
         with open(os.path.join(roslib.packages.get_pkg_dir("ddm_sim"), "models", "arm.urdf")) as urdf:
             self.write("robot.urdf", urdf.read())
         os.makedirs(self.file("here"))

@@ -6,11 +6,15 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 import xml.etree.ElementTree
 
 import rosunit
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import skips  # noqa: E402, F401
 
 CHECKOUT = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 PACKAGES = sorted(os.path.dirname(path) for pattern in ("*", "examples/*")
@@ -79,9 +83,20 @@ class SourceRulesTest(unittest.TestCase):
     def test_cpp_files_are_formatted_by_clang_format(self):
         self.assertRuns("clang-format", "--dry-run", "-Werror", *CPP_FILES)
 
+    @unittest.skipUnless(shutil.which("catkin_lint"), "catkin_lint is not installed")
     def test_catkin_lint_finds_nothing(self):
         with tempfile.TemporaryDirectory() as no_rosdep:  # the verdict must not depend on a rosdep database
-            self.assertRuns("catkin_lint", "--strict", "--offline", "--rosdep-cache-path", no_rosdep, *PACKAGES)
+            self.assertRuns("env", "ROS_HOME=" + no_rosdep, "catkin_lint", "--strict", "--offline", *PACKAGES)
+
+    def test_python_tests_that_may_be_skipped_report_it(self):
+        silent = []
+        for path in scripts("python3"):
+            with open(path) as stream:
+                text = stream.read()
+            if path.endswith("_test.py") and re.search(r"unittest\.skip|self\.skipTest|SkipTest", text) and \
+                    not re.search(r"^import skips|^from processes import", text, re.MULTILINE):
+                silent.append(path)
+        self.assertEqual(silent, [])
 
     def test_shell_scripts_parse(self):
         for path in scripts("bash"):

@@ -12,6 +12,10 @@ option(DDM_AVX2 "On x86-64, build for processors with AVX2 and FMA, which most h
 option(DDM_WERROR "Treat warnings as errors" OFF)
 set(DDM_SANITIZE "" CACHE STRING "Sanitizers: empty for none, address (with undefined behaviour) or thread")
 
+# The catkin of Debian 11 keeps in the cache that it has found gtest and gmock, but not their targets. Without this line it would
+# not look for them when a workspace is configured again, and no test would link.
+unset(GMOCK_FOUND CACHE)
+
 set(CMAKE_CXX_STANDARD 17)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
