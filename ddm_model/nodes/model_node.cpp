@@ -44,6 +44,12 @@ class ModelNode {
     try {
       for (const std::string& bag : goal->bags) access_.require(bag);
       ROS_INFO("trial %u: reads %zu bags, then trains", goal->trial, goal->bags.size());
+      for (const std::string& bag : goal->bags) {
+        if (!reportProgress(TrainingProgress())) {
+          return cancel(result, "training was cancelled while bags were read");
+        }
+        bags_.read({bag});  // which keeps it
+      }
       const DataSet data = bags_.read(goal->bags);
       if (!data.hasGoal()) {
         ROS_WARN("no bag holds a goal image: the model can predict, but not be planned with");
@@ -52,8 +58,7 @@ class ModelNode {
       result.train_time = training.seconds;
       result.evaluations = training.evaluations;
       if (training.cancelled) {
-        health_.cancel();
-        server_.setPreempted(result, training.message);
+        cancel(result, training.message);
       } else if (!training.model) {
         ROS_ERROR_STREAM("trial " << goal->trial << ": " << training.message);
         health_.fail(training.message);
@@ -70,6 +75,11 @@ class ModelNode {
       health_.fail(e.what());
       server_.setAborted(result, e.what());
     }
+  }
+
+  void cancel(const ddm_msgs::TrainResult& result, const std::string& message) {
+    health_.cancel();
+    server_.setPreempted(result, message);
   }
 
   TrainingResult trainOn(const DataSet& data, const ddm_msgs::TrainGoal& goal) {
