@@ -27,6 +27,10 @@ class InProcessDriver : public Driver {
     return method_->train(bags, id, progress);
   }
   bool useModel(const std::string& path) override { return method_->useModel(path); }
+  bool resume(const std::string& folder, const std::vector<std::string>& bags,
+              const TrialId& id) override {
+    return method_->resume(folder, bags, id);
+  }
 
  private:
   const Configuration& configuration_;

@@ -13,14 +13,30 @@
 
 namespace ddm {
 
-std::string csvCell(double value) { return formatDouble(value); }
+namespace {
+
+void requireFinite(double value) {
+  if (std::isfinite(value)) return;
+  throw std::range_error("a number of a table must be finite, got " + formatDouble(value) +
+                         ": nothing is written");
+}
+
+}  // namespace
+
+std::string csvCell(double value) {
+  requireFinite(value);
+  return formatDouble(value);
+}
 
 std::string csvCell(const std::optional<double>& value) { return value ? csvCell(*value) : ""; }
 
 std::string csvCell(const Eigen::VectorXd& values) {
   std::ostringstream text;
   text.precision(17);
-  for (Eigen::Index i = 0; i < values.size(); ++i) text << (i == 0 ? "" : ",") << values[i];
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    requireFinite(values[i]);
+    text << (i == 0 ? "" : ",") << values[i];
+  }
   return text.str();
 }
 

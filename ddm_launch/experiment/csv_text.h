@@ -14,6 +14,7 @@ namespace ddm {
 
 /// The text of a cell. Numbers have all digits, an empty optional is an empty cell, and of a list
 /// each entry is a cell.
+/// @throws std::range_error if a number is not finite, since csvNumber() would refuse it
 inline std::string csvCell(const std::string& text) { return text; }
 std::string csvCell(double value);
 std::string csvCell(const std::optional<double>& value);

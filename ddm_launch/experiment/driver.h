@@ -5,6 +5,7 @@
 #include <ddm_mpc/policy.h>
 
 #include <Eigen/Core>
+#include <boost/filesystem.hpp>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -56,6 +57,14 @@ class Learner {
   /// Acts by a saved model in the trials to come, until one is trained.
   /// @return false if it acts by what cannot be saved: nothing has changed
   virtual bool useModel(const std::string& /*path*/) { return false; }
+
+  /// Acts as after train(bags, id), by the files that this training left in a folder.
+  /// @return false if they are not enough for that: nothing has changed
+  virtual bool resume(const std::string& folder, const std::vector<std::string>& /*bags*/,
+                      const TrialId& /*id*/) {
+    const std::string model = folder + "/model.ddm";
+    return boost::filesystem::exists(model) && useModel(model);
+  }
 };
 
 class Driver : public Learner {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation.h"
 
+#include <ddm_params/param_value.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -30,6 +32,14 @@ Evaluation settled(const std::vector<double>& errors, double tolerance,
   return evaluation;
 }
 
+/// @return value
+double requireFinite(double value, const std::string& what, const Plant& plant, std::size_t frame) {
+  if (std::isfinite(value)) return value;
+  throw std::range_error("plant " + plant.info().type + ": the " + what + " of frame " +
+                         std::to_string(frame) + " must be finite, got " + formatDouble(value) +
+                         ": correct the plant; the same command resumes with this evaluation");
+}
+
 /// Time steps between a frame and the next one; 1 after the last.
 int stepsAfter(std::size_t frame, const std::vector<double>& times, double dt) {
   if (frame + 1 >= times.size()) return 1;
@@ -45,7 +55,7 @@ std::optional<double> totalReward(const Plant& plant, const std::vector<Eigen::V
   for (std::size_t t = 0; t < states.size() && t < torques.size() && steps_left > 0; ++t) {
     const int num_steps = std::min(stepsAfter(t, times, plant.info().dt), steps_left);
     const std::optional<double> reward = plant.stepReward(states[t], torques[t], num_steps);
-    if (reward) sum = sum.value_or(0.0) + *reward;
+    if (reward) sum = sum.value_or(0.0) + requireFinite(*reward, "reward", plant, t);
     steps_left -= num_steps;
   }
   return sum;
@@ -58,7 +68,9 @@ Evaluation evaluate(const Plant& plant, const std::vector<Eigen::VectorXd>& stat
                     const std::vector<double>& times) {
   if (states.empty()) return Evaluation();
   std::vector<double> errors;
-  for (const Eigen::VectorXd& state : states) errors.push_back(plant.goalError(state));
+  for (const Eigen::VectorXd& state : states) {
+    errors.push_back(requireFinite(plant.goalError(state), "error", plant, errors.size()));
+  }
   Evaluation evaluation = settled(errors, options.tolerance, options);
   evaluation.final_error = errors.back();
   evaluation.total_reward = totalReward(plant, states, torques, times);

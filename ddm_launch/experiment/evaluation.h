@@ -33,6 +33,7 @@ struct Evaluation {
 /// @param options  completed by those of the plant
 /// @param times    of the frames [s], each torque acts until the next one; empty: none was lost
 /// @throws std::invalid_argument if there are fewer frames than settled_steps_strict
+/// @throws std::range_error with plant, frame and value if an error or reward is not finite
 Evaluation evaluate(const Plant& plant, const std::vector<Eigen::VectorXd>& states,
                     const std::vector<Eigen::VectorXd>& torques, const EvaluationOptions& options,
                     const std::vector<double>& times = {});

@@ -5,8 +5,8 @@
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_sim/plant_factory.h>
 
-#include <boost/filesystem.hpp>
 #include <chrono>
+#include <optional>
 #include <stdexcept>
 
 #include "evaluation.h"
@@ -26,7 +26,7 @@ class Loop {
         update_([progress](double fraction) { progress->update(fraction); }) {}
 
   /// What trial 0 explores with.
-  void start() {
+  void startFirstTrial() {
     const StartOptions& start = configuration_.start;
     if (!start.model.empty()) {
       if (!driver_.useModel(start.model)) {
@@ -35,17 +35,35 @@ class Loop {
       }
     } else if (!start.bags.empty()) {
       progress_.beginPhase(0, "train");
-      driver_.train(start.bags, requestFor(configuration_, 0, /*evaluation=*/false).id, update_);
+      driver_.train(start.bags, idOf(0), update_);
     }
   }
 
-  /// Goes on after this trial: with its model, which is trained again only where none was saved. A
-  /// bag that the next training could not read is refused here, before anything moves.
-  void resumeAfter(int trial) {
+  /// Prepares a trial that an earlier call may have begun. A bag that its training could not read is
+  /// refused here, before anything moves.
+  void resume(int trial) {
     const ModelConfig& learner = configuration_.model;
-    BagCache(learner.image.size, learner.data_set).read(bagsUpTo(trial));
-    const std::string model = folder_.modelPath(trial);
-    if (!boost::filesystem::exists(model) || !driver_.useModel(model)) train(trial);
+    BagCache cache(learner.image.size, learner.data_set);
+    std::vector<std::string> bags = bagsUpTo(trial - 1);
+    if (trial > 0) cache.read(bags);
+    int num_recorded = 0;
+    for (int episode = 0; episode < configuration_.trial.episodes; ++episode) {
+      if (!folder_.isRecorded({trial, /*evaluation=*/false, episode})) continue;
+      ++num_recorded;
+      bags.push_back(folder_.bagPath(trial, episode));
+      try {
+        cache.read(bags);
+      } catch (const std::exception& e) {
+        throw std::runtime_error(std::string(e.what()) + "; this bag is the recording of trial " +
+                                 std::to_string(trial) + ", which is not finished: repair it, or " +
+                                 "move it away and the trial is run again");
+      }
+    }
+    if (num_recorded == configuration_.trial.episodes) return;  // nothing is left to explore
+    if (trial == 0) return startFirstTrial();
+    if (!driver_.resume(folder_.trainingPath(trial - 1), bagsUpTo(trial - 1), idOf(trial - 1))) {
+      train(trial - 1);
+    }
   }
 
   void recordTrial(int trial) {
@@ -53,6 +71,11 @@ class Loop {
     progress_.beginPhase(trial, random ? "random" : "explore");
     const int episodes = configuration_.trial.episodes;
     for (int episode = 0; episode < episodes; ++episode) {
+      if (folder_.isRecorded({trial, /*evaluation=*/false, episode})) {
+        progress_.note("trial " + std::to_string(trial) + " is recorded already, in " +
+                       folder_.bagPath(trial, episode));
+        continue;
+      }
       TrialRequest request = requestFor(configuration_, trial, /*evaluation=*/false);
       request.id.trial = static_cast<std::uint32_t>(trial * episodes + episode);  // its own draws
       request.epsilon = random ? 1.0 : configuration_.mpc.epsilon;
@@ -64,10 +87,16 @@ class Loop {
     }
   }
 
-  TrainingOutcome train(int trial) {
-    progress_.beginPhase(trial, "train");
-    return driver_.train(bagsUpTo(trial),
-                         requestFor(configuration_, trial, /*evaluation=*/false).id, update_);
+  /// Trains on all bags, unless an earlier call did.
+  TrainingOutcome learn(int trial) {
+    const std::optional<TrainingOutcome> saved = folder_.savedTraining(trial);
+    if (saved && driver_.resume(folder_.trainingPath(trial), bagsUpTo(trial), idOf(trial))) {
+      progress_.note("trial " + std::to_string(trial) + " is trained already");
+      return *saved;
+    }
+    const TrainingOutcome outcome = train(trial);
+    folder_.writeTraining(trial, outcome);
+    return outcome;
   }
 
   TrialOutcome evaluateGreedily(int trial) {
@@ -91,6 +120,16 @@ class Loop {
   }
 
  private:
+  TrainingOutcome train(int trial) {
+    progress_.beginPhase(trial, "train");
+    return driver_.train(bagsUpTo(trial), idOf(trial), update_);
+  }
+
+  /// Of the training after a trial.
+  TrialId idOf(int trial) const {
+    return requestFor(configuration_, trial, /*evaluation=*/false).id;
+  }
+
   std::vector<std::string> bagsUpTo(int trial) const {
     std::vector<std::string> bags = configuration_.start.bags;
     for (int k = 0; k <= trial; ++k) {
@@ -140,16 +179,18 @@ void runExperiment(const Configuration& configuration, Driver* driver, RunFolder
   const int num_finished = static_cast<int>(folder->rows().size());
   show(folder->rows());
   const bool all_done = num_finished > configuration.experiment.trials;
-  if (num_finished > 0) {
-    progress->note("resuming after trial " + std::to_string(num_finished - 1));
-    if (!all_done) loop.resumeAfter(num_finished - 1);
+  if (all_done) {
+    progress->note("all " + std::to_string(num_finished) +
+                   " trials are finished already: nothing is run");
   } else {
-    loop.start();
+    if (num_finished > 0) {
+      progress->note("resuming after trial " + std::to_string(num_finished - 1));
+    }
+    loop.resume(num_finished);
   }
   for (int trial = num_finished; trial <= configuration.experiment.trials; ++trial) {
     loop.recordTrial(trial);
-    const TrainingOutcome training = loop.train(trial);
-    folder->writeTraining(trial, training);
+    const TrainingOutcome training = loop.learn(trial);
     const TrialOutcome greedy = loop.evaluateGreedily(trial);
     folder->writeRun({trial, /*evaluation=*/true}, greedy);
     loop.finish(trial, training, greedy);
@@ -157,7 +198,7 @@ void runExperiment(const Configuration& configuration, Driver* driver, RunFolder
   }
   const double wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (!all_done || !folder->isFinished()) folder->writeSummary(wall_s);
+  if (!all_done || !folder->confirmSummary()) folder->writeSummary(wall_s);
   progress->summary(folder->rows(), folder->path(), wall_s);
 }
 

@@ -18,9 +18,10 @@ namespace ddm {
 /// Where the configuration has a start, its bags are trials before the first one, and that one is
 /// epsilon-greedy, not random: with the model of the start, else with one trained on its bags.
 ///
-/// Takes up after the last trial that the folder says is finished, with the model of that trial. If
-/// it was not saved, training on the bags gives the same model: nothing but bags has to survive an
-/// interruption. If all trials are finished already, and the verdict is there, nothing is written.
+/// Resumes where an earlier call on the folder ended, however it ended. A complete recording is never
+/// repeated, and a training whose files are there is not either; a model that cannot be saved is
+/// trained again from the bags, with the same result. If all trials are finished already, only the
+/// time of the verdict changes.
 /// @param show  called with the rows of all finished trials, at the start and after each trial
 /// @throws std::runtime_error with what failed; all finished trials are kept
 void runExperiment(

@@ -7,6 +7,7 @@
 #include <ddm_plant_plugin/plant_config.h>
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <boost/filesystem.hpp>
@@ -133,6 +134,7 @@ void ResultsFolder::compareWith(const std::string& file) {
     throw std::runtime_error("the folder " + path_ +
                              " holds another experiment, use another folder:" + differences);
   }
+  recordings_fit_ = YAML::Dump(there["robot"]) == YAML::Dump(configuration_["robot"]);
   version_ = there["version"].IsDefined() ? there["version"].Scalar() : "?";
   if (version_ != codeVersion()) {
     warn("the folder " + path_ + " was begun by version " + version_ + " of the code, this is " +
@@ -176,6 +178,12 @@ bool ResultsFolder::isFinished() const {
   } catch (const YAML::Exception&) {
     return false;
   }
+}
+
+bool ResultsFolder::confirmSummary() const {
+  if (!isFinished()) return false;
+  ::utimensat(AT_FDCWD, (path_ + "/summary.yaml").c_str(), nullptr, 0);
+  return true;
 }
 
 void ResultsFolder::finish(const YAML::Node& summary) {

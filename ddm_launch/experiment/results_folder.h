@@ -55,8 +55,18 @@ class ResultsFolder {
   /// Whether there is a summary.yaml that says so.
   bool isFinished() const;
 
+  /// Where isFinished(), sets the time of summary.yaml to now and changes nothing else: its caller
+  /// can tell a call that found everything finished from one that was refused.
+  /// @return isFinished()
+  bool confirmSummary() const;
+
   /// Writes summary.yaml, which begins with `finished: true` and ends with the version.
   void finish(const YAML::Node& summary);
+
+ protected:
+  /// False if crop or goal of the robot have been chosen anew since config.yaml was written: images
+  /// recorded before do not go with those to come.
+  bool recordingsFit() const { return recordings_fit_; }
 
  private:
   void compareWith(const std::string& file);
@@ -66,6 +76,7 @@ class ResultsFolder {
   std::string version_ = codeVersion();  // of the code that began
   std::shared_ptr<const int> lock_;      // null: the folder is not there yet
   bool begun_ = false;
+  bool recordings_fit_ = true;
   std::vector<std::string> warnings_;
 };
 

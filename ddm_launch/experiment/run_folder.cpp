@@ -4,6 +4,7 @@
 
 #include <ddm_files/plain_file.h>
 #include <ddm_params/param_value.h>
+#include <ddm_params/yaml_text.h>
 
 #include <boost/filesystem.hpp>
 #include <boost/format.hpp>
@@ -20,6 +21,7 @@ namespace fs = boost::filesystem;
 
 constexpr char kRows[] = "trials.csv";
 constexpr char kChecksums[] = ".trials.crc32";
+constexpr char kTraining[] = "training.yaml";
 
 /// Gives a file of an earlier try another name: "trial.bag" is "trial.1.bag" then, or
 /// "trial.2.bag".
@@ -82,9 +84,15 @@ std::string RunFolder::bagPath(int trial, int episode) const {
   return path() + "/" + runName({trial, /*evaluation=*/false, episode}) + "/trial.bag";
 }
 
-std::string RunFolder::modelPath(int trial) const {
-  return path() + "/" + runName({trial}) + "/model.ddm";
+bool RunFolder::isRecorded(const RunId& run) const {
+  const std::string folder = path() + "/" + runName(run);
+  if (!recordingsFit() || !fs::exists(folder + "/trial.bag")) return false;
+  // Written after the bag. Lock-step gives the same torques again; in real time the bag has to do.
+  const bool repeatable = configuration_.sim.lockstep && !configuration_.robot;
+  return !repeatable || fs::exists(folder + "/torques.csv");
 }
+
+std::string RunFolder::trainingPath(int trial) const { return path() + "/" + runName({trial}); }
 
 std::string RunFolder::beginRun(const RunId& run, std::vector<std::string>* kept) {
   const std::string folder = runName(run);
@@ -94,6 +102,7 @@ std::string RunFolder::beginRun(const RunId& run, std::vector<std::string>* kept
     const std::string kept_as = keep(stem, ending);
     if (!kept_as.empty() && kept != nullptr) kept->push_back(kept_as);
   }
+  if (!run.evaluation) fs::remove(trainingPath(run.trial) + "/" + kTraining);
   return stem + ".bag";
 }
 
@@ -101,12 +110,34 @@ void RunFolder::writeTraining(int trial, const TrainingOutcome& outcome) {
   for (const auto& file : outcome.files) {
     write(runName({trial}) + "/" + file.first, file.second);
   }
+  YAML::Node training(YAML::NodeType::Map);
+  training["frames"] = outcome.frames;
+  if (outcome.v_r) training["v_r"] = valueToYaml(*outcome.v_r);
+  if (outcome.v_p) training["v_p"] = valueToYaml(*outcome.v_p);
+  training["train_s"] = valueToYaml(outcome.seconds);
+  training["train_evaluations"] = outcome.evaluations;
+  write(runName({trial}) + "/" + kTraining, YAML::Dump(training) + "\n");
+}
+
+std::optional<TrainingOutcome> RunFolder::savedTraining(int trial) const {
+  const std::string file = trainingPath(trial) + "/" + kTraining;
+  if (!fs::exists(file)) return std::nullopt;
+  try {
+    const YAML::Node training = parseYaml(readFile(file), file);
+    TrainingOutcome outcome;
+    outcome.frames = training["frames"].as<std::uint32_t>();
+    if (training["v_r"].IsDefined()) outcome.v_r = training["v_r"].as<double>();
+    if (training["v_p"].IsDefined()) outcome.v_p = training["v_p"].as<double>();
+    outcome.seconds = training["train_s"].as<double>();
+    outcome.evaluations = training["train_evaluations"].as<std::uint32_t>();
+    return outcome;
+  } catch (const std::exception&) {  // damaged: a training on the bags gives it again
+    return std::nullopt;
+  }
 }
 
 void RunFolder::writeRun(const RunId& run, const TrialOutcome& outcome) {
   const std::string folder = runName(run);
-  write(folder + "/torques.csv",
-        formatTorquesCsv({outcome.torques, outcome.exploratory}, torqueNames(configuration_)));
   if (!outcome.states.empty()) {
     write(folder + "/trajectory.csv", formatTrajectoryCsv(outcome.times, outcome.states,
                                                           configuration_.plant_info.state_names));
@@ -117,6 +148,9 @@ void RunFolder::writeRun(const RunId& run, const TrialOutcome& outcome) {
     }
     write(folder + "/goal_distance.csv", text);
   }
+  // Last: see isRecorded().
+  write(folder + "/torques.csv",
+        formatTorquesCsv({outcome.torques, outcome.exploratory}, torqueNames(configuration_)));
 }
 
 void RunFolder::finishTrial(const TrialRow& row) {

@@ -44,6 +44,7 @@ std::string runName(const RunId& run);
 ///   trials.csv                           one row per finished trial
 ///   .trials.crc32                        its checksums
 ///   trial_NNN/{trial.bag,torques.csv,trajectory.csv} and the files of the training, model.ddm
+///   trial_NNN/training.yaml              written last: the training is done, its part of the row
 ///   evaluation_NNN/{torques.csv,trajectory.csv}, and trial.bag with evaluation/record
 ///   evaluation_NNN/goal_distance.csv     instead of the trajectory, where nobody tells it
 ///   trial_NNN/episode_EEE/               the same of its second, third, ... episode, where it has them
@@ -61,15 +62,22 @@ class RunFolder : public ResultsFolder {
   const std::vector<TrialRow>& rows() const { return rows_; }
 
   std::string bagPath(int trial, int episode = 0) const;
-  /// Where a training leaves its model, if it can be saved.
-  std::string modelPath(int trial) const;
-  /// Makes the folder of a run of a trial that has not been finished. Bags of an earlier try,
-  /// complete or not, are kept under other names: they may be all that is left of it.
+  /// Whether an earlier call recorded this run completely, so that it is not to be repeated.
+  bool isRecorded(const RunId& run) const;
+  /// Folder where a training leaves its files.
+  std::string trainingPath(int trial) const;
+  /// Its model, if it can be saved.
+  std::string modelPath(int trial) const { return trainingPath(trial) + "/model.ddm"; }
+  /// Makes the folder of a run of a trial that is to be recorded. Bags of an earlier try, complete
+  /// or not, are kept under other names: they may be all that is left of it.
   /// @param kept  (optional) out: their new names are added
   /// @return      path of its bag, where nothing is
   std::string beginRun(const RunId& run, std::vector<std::string>* kept = nullptr);
   void writeRun(const RunId& run, const TrialOutcome& outcome);
   void writeTraining(int trial, const TrainingOutcome& outcome);
+  /// What was written, without the files; empty if this training has not been finished on the bags
+  /// that are there now.
+  std::optional<TrainingOutcome> savedTraining(int trial) const;
   /// Ends a trial: from here on it is never run again.
   void finishTrial(const TrialRow& row);
   void writeSummary(double wall_s);

@@ -68,11 +68,17 @@ for port in (11311, 0):
 PYTHON
 }
 
-# Stops unless FOLDER/summary.yaml says that the experiment finished, with at least TRIALS trials. roslaunch returns 0
-# whatever happened, so this file is the verdict. It may be of an earlier call: where all is done, nothing is written.
-check_summary() {  # FOLDER TRIALS
+# Which file a path names, and when it was changed last; empty if there is none.
+identity() {
+  stat -c '%i %y' -- "$1" 2>/dev/null || true
+}
+
+# Stops unless this call brought FOLDER/summary.yaml, which says that the experiment finished, with at least TRIALS trials.
+# roslaunch returns 0 whatever happened, so this file is the verdict. An experiment that is refused leaves that of an
+# earlier call as it is; one that finds all trials finished gives it a new time.
+check_summary() {  # FOLDER TRIALS IDENTITY_BEFORE
   local summary=$1/summary.yaml again="the same command goes on after the last finished trial."
-  [[ -f $summary ]] || fail "the experiment wrote no $summary: it did not finish.
+  [[ -f $summary && $(identity "$summary") != "$3" ]] || fail "the experiment wrote no new $summary: it did not finish.
 Remedy: read the lines above; $again"
   awk -v least="$2" '$0 == "finished: true" {finished = 1} $1 == "trials:" {trials = $2}
     END {exit !(finished && trials >= least)}' "$summary" ||
@@ -90,10 +96,12 @@ that were, how well the model draws them (V_R) and predicts them (V_P, less is b
 pendulum was in the end; "success" is less than 10 degrees.
 TEXT
   ((port == 11311)) || echo "Another program has port 11311: use ROS_MASTER_URI=http://localhost:$port to look in."
+  local before
+  before=$(identity "$runs/summary.yaml")
   mkdir -p "$runs" || fail "cannot make the run folder $runs. Remedy: choose another with --runs FOLDER."
   roslaunch -p "$port" ddm_launch experiment.launch preset:=efficient plant:=pendulum seed:=3 \
     trials:="$trials" runs:="$runs" rviz:="$rviz" || fail "roslaunch failed: see its lines above."
-  check_summary "$runs" "$trials"
+  check_summary "$runs" "$trials" "$before"
 }
 
 draw_pictures() {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <boost/filesystem.hpp>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <sstream>
 
@@ -276,16 +277,22 @@ TEST_F(ExperimentTest, GreedyRunsAreRecordedOnRequest) {
   }
 }
 
-TEST_F(ExperimentTest, AFinishedExperimentIsSummedUpAndNothingIsWritten) {
+TEST_F(ExperimentTest, AFinishedExperimentIsSummedUpAndOnlyTheTimeOfItsVerdictChanges) {
   run();
-  const auto before = testing::fingerprintOf(scratch_.file("run"));
+  const std::string summary = textOf(file("summary.yaml"));
+  auto before = testing::fingerprintOf(scratch_.file("run"));
   driver_.calls.clear();
   for (const int trials : {2, 1}) {
     configuration_.experiment.trials = trials;
     run();
     EXPECT_EQ(driver_.calls, Calls());
+    EXPECT_NE(terminal_.find("finished already"), std::string::npos) << terminal_;
     EXPECT_NE(terminal_.find("3 models trained"), std::string::npos) << terminal_;
-    EXPECT_EQ(testing::fingerprintOf(scratch_.file("run")), before);
+    auto after = testing::fingerprintOf(scratch_.file("run"));
+    EXPECT_NE(after[file("summary.yaml")], before[file("summary.yaml")]);
+    EXPECT_EQ(textOf(file("summary.yaml")), summary);
+    before[file("summary.yaml")] = after[file("summary.yaml")];
+    EXPECT_EQ(after, before);
   }
 }
 
@@ -316,12 +323,70 @@ TEST_F(ExperimentTest, ADriverThatFailsBeforeTheFirstResultLeavesTheFolderAsItWa
 }
 
 TEST_F(ExperimentTest, ATrialThatIsRunAgainSaysWhereItsBagIs) {
-  driver_.fails_at = 2;  // train 0
+  driver_.fails_at = 1;  // run 0
   EXPECT_THROW(run(), std::runtime_error);
+  testing::writeText(file("trial_000/trial.bag.active"), "half a bag");
   driver_ = ObedientDriver();
   run();
-  EXPECT_NE(terminal_.find(file("trial_000/trial.1.bag")), std::string::npos) << terminal_;
-  EXPECT_TRUE(fs::exists(file("trial_000/trial.1.bag")));
+  EXPECT_NE(terminal_.find(file("trial_000/trial.1.bag.active")), std::string::npos) << terminal_;
+  EXPECT_EQ(textOf(file("trial_000/trial.1.bag.active")), "half a bag");
+}
+
+TEST_F(ExperimentTest, OnlyTheEpisodesThatAreNotRecordedAreRunAgain) {
+  configuration_.trial.episodes = 2;
+  configuration_.experiment.trials = 0;
+  driver_.fails_at = 2;  // run 1, the second episode of trial 0
+  EXPECT_THROW(run(), std::runtime_error);
+  const std::string bag = textOf(file("trial_000/trial.bag"));
+  driver_ = ObedientDriver();
+  run();
+  EXPECT_EQ(driver_.calls, (Calls{"run 1", "train 0", "evaluate 0"}));
+  EXPECT_EQ(textOf(file("trial_000/trial.bag")), bag);
+}
+
+TEST_F(ExperimentTest, ARecordingThatCannotBeReadIsRefusedAndKept) {
+  driver_.fails_at = 2;  // train 0
+  EXPECT_THROW(run(), std::runtime_error);
+  testing::writeText(file("trial_000/trial.bag"), "no bag");
+  driver_ = ObedientDriver();
+  EXPECT_TRUE(throwsNaming<std::runtime_error>(
+      [this] { run(); }, {file("trial_000/trial.bag"), "trial 0", "move it away"}));
+  EXPECT_EQ(driver_.calls, Calls());
+  EXPECT_EQ(textOf(file("trial_000/trial.bag")), "no bag");
+}
+
+TEST_F(ExperimentTest, ATrainingIsRepeatedWhereItsTrialIsRecordedAgain) {
+  driver_.fails_at = 3;  // evaluate 0
+  EXPECT_THROW(run(), std::runtime_error);
+  fs::remove(file("trial_000/trial.bag"));
+  driver_ = ObedientDriver();
+  driver_.fails_at = 2;  // train 0
+  EXPECT_THROW(run(), std::runtime_error);
+  EXPECT_EQ(driver_.calls, (Calls{"run 0", "train 0"}));
+  driver_ = ObedientDriver();
+  configuration_.experiment.trials = 0;
+  run();
+  EXPECT_EQ(driver_.calls, (Calls{"train 0", "evaluate 0"}));
+}
+
+TEST_F(ExperimentTest, AnErrorOfThePlantThatIsNotFiniteIsRefusedWithPlantFrameAndValue) {
+  testing::ToyPlant::Traits traits;
+  traits.distance = [](const Eigen::VectorXd& state, const Eigen::VectorXd& goal) {
+    return state[0] == 7.0 ? std::nan("") : std::abs(state[0] - goal[0]);
+  };
+  testing::usePlant(testing::plantOf(traits), &configuration_);
+  driver_.state = Eigen::Vector2d(7.0, 0.0);
+  EXPECT_TRUE(throwsNaming<std::range_error>([this] { run(); },
+                                             {"their_package/Toy", "error", "frame 0", "nan"}));
+  EXPECT_FALSE(fs::exists(file("trials.csv")));
+  traits.distance = testing::ToyPlant::Traits().distance;
+  traits.reward = [](const Eigen::VectorXd&, const Eigen::VectorXd& torque) {
+    return torque[0] == 0.1 * 3 ? std::numeric_limits<double>::infinity() : 0.0;
+  };
+  testing::usePlant(testing::plantOf(traits), &configuration_);
+  EXPECT_TRUE(throwsNaming<std::range_error>([this] { run(); },
+                                             {"their_package/Toy", "reward", "frame 3", "inf"}));
+  EXPECT_FALSE(fs::exists(file("trials.csv")));
 }
 
 TEST_F(ExperimentTest, AFolderThatCannotBeWrittenIsNamedBeforeAnythingRuns) {
@@ -331,7 +396,12 @@ TEST_F(ExperimentTest, AFolderThatCannotBeWrittenIsNamedBeforeAnythingRuns) {
   EXPECT_EQ(driver_.calls, Calls());
 }
 
-TEST_F(ExperimentTest, ADriverThatFailsLeavesTheFinishedTrialsAndNoVerdict) {
+TEST_F(ExperimentTest, ADriverThatFailsLeavesFinishedWorkToWhichTheSameCallAddsTheRest) {
+  run();
+  const std::string uninterrupted = textOf(file("trials.csv"));
+  const Calls rest[] = {{"use " + file("trial_000/model.ddm"), "run 1", "train 1", "evaluate 1"},
+                        {"train 1", "evaluate 1", "run 2", "train 2"},
+                        {"use " + file("trial_001/model.ddm"), "evaluate 1", "run 2", "train 2"}};
   for (const size_t call : {4, 5, 6}) {  // run 1, train 1, evaluate 1
     fs::remove_all(scratch_.file("run"));
     driver_ = ObedientDriver();
@@ -342,9 +412,9 @@ TEST_F(ExperimentTest, ADriverThatFailsLeavesTheFinishedTrialsAndNoVerdict) {
     EXPECT_FALSE(fs::exists(file("summary.yaml")));
     driver_ = ObedientDriver();
     run();
-    EXPECT_EQ(driver_.calls[0], "use " + file("trial_000/model.ddm"));
-    EXPECT_EQ(driver_.calls[1], "run 1");
-    EXPECT_EQ(numRows(), 3u);
+    EXPECT_EQ(Calls(driver_.calls.begin(), driver_.calls.begin() + 4), rest[call - 4]);
+    EXPECT_EQ(textOf(file("trials.csv")), uninterrupted);
+    EXPECT_FALSE(fs::exists(file("trial_001/trial.1.bag")));
   }
 }
 

@@ -102,6 +102,22 @@ class LoopTest(SharedScratchCase):
         self.assertIn("after trial %d" % (finished - 1), output)
         self.assertSameAsOneProcess(self.out, finished)
 
+    def test_a_trial_that_is_recorded_or_trained_already_is_not_repeated(self):
+        for said, removed in (("trained already", []), ("recorded already", ["training.yaml", "model.ddm"])):
+            shutil.rmtree(self.out, ignore_errors=True)
+            shutil.copytree(self.reference, self.out)  # as if it had been killed in the last evaluation or training
+            for name in ["summary.yaml"] + ["trial_%03d/%s" % (TRIALS, name) for name in removed]:
+                os.remove(os.path.join(self.out, name))
+            shutil.rmtree(os.path.join(self.out, "evaluation_%03d" % TRIALS))
+            rows = read_bytes(self.out, "trials.csv").splitlines(keepends=True)
+            with open(os.path.join(self.out, "trials.csv"), "wb") as stream:
+                stream.writelines(rows[:-1])
+            _, output = roslaunch(self.scratch, *self.experiment(self.out, TRIALS))
+            self.assertIn(said, output)
+            bag = "trial_%03d/trial.bag" % TRIALS
+            self.assertEqual(read_bytes(self.out, bag), read_bytes(self.reference, bag))
+            self.assertSameAsOneProcess(self.out, TRIALS)
+
     def test_a_node_that_dies_ends_the_experiment_without_a_verdict(self):
         launch = start_roslaunch(self.scratch, *self.experiment(self.out, 999))
         self.addCleanup(launch.stop)

@@ -63,7 +63,7 @@ class RobotLoopTest(ScratchCase):
         self.assertEqual(files_in(self.out), sorted(
             [".trials.crc32", "config.yaml", "robot_check.yaml", "summary.yaml", "trials.csv",
              "evaluation_000/goal_distance.csv", "evaluation_000/torques.csv", "evaluation_000/trial.bag",
-             "trial_000/model.ddm", "trial_000/torques.csv", "trial_000/trial.bag",
+             "trial_000/model.ddm", "trial_000/torques.csv", "trial_000/training.yaml", "trial_000/trial.bag",
              "trial_000/trial.1.bag.active"]))  # of the trial that was stopped
         self.assertPaired(0, 0.2)
         with rosbag.Bag(os.path.join(self.out, "trial_000", "trial.bag")) as bag:

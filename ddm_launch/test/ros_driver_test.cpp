@@ -57,6 +57,13 @@ class Peers {
     truth_ = ros::NodeHandle().advertise<sensor_msgs::JointState>(topics::kGroundTruth, 0);
   }
 
+  /// The publisher of ground truth leaves before the trial ends, with or without having told it.
+  void leaveEarly(bool tell) {
+    truth_ = ros::NodeHandle().advertise<sensor_msgs::JointState>(topics::kGroundTruth, 0);
+    tells_ = tell;
+    leaves_ = true;
+  }
+
   std::uint32_t numTruths() const { return num_truths_; }
 
   /// The trials to come begin and end with images of these stamps.
@@ -112,13 +119,15 @@ class Peers {
     do {
       feedback.step = 1;
       server_.publishFeedback(feedback);
-      for (int i = 0; truth_ && i < 50; ++i) truth_.publish(nextTruth());
+      for (int i = 0; truth_ && tells_ && i < 50; ++i) truth_.publish(nextTruth());
     } while (endless_ && end_.wait_for(std::chrono::milliseconds(10)) != std::future_status::ready);
     ddm_msgs::RunTrialResult result;
     result.num_steps = kSteps;
     result.exploratory.resize(kSteps);
     result.stamp.resize(kSteps);
-    for (std::uint32_t i = 0; truth_ && i < result.stamp.size(); ++i) result.stamp[i] = stampOf(i);
+    if (leaves_) truth_.shutdown();
+    for (std::uint32_t i = 0; (truth_ || leaves_) && i < result.stamp.size(); ++i)
+      result.stamp[i] = stampOf(i);
     result.torque.resize(kSteps);
     {
       const std::lock_guard<std::mutex> lock(mutex_);
@@ -141,6 +150,8 @@ class Peers {
   std::atomic<std::uint32_t> num_truths_{0};
   std::atomic<double> answer_time_{0.0};
   std::atomic<bool> endless_{false};
+  std::atomic<bool> tells_{true};
+  std::atomic<bool> leaves_{false};
   std::atomic<bool> released_{false};
   mutable std::mutex mutex_;  // guards these three
   ros::Time first_, last_;
@@ -253,6 +264,33 @@ TEST(RosDriverTest, HearsItsPeersWhileItsProgressIsHeldUp) {
   EXPECT_EQ(reporters, std::set<std::thread::id>{std::this_thread::get_id()});
   EXPECT_GT(peers.numTruths(), 2000u);  // more than any queue of a fixed length had taken
   EXPECT_EQ(outcome.states.size(), static_cast<size_t>(kSteps));
+}
+
+TEST(RosDriverTest, DoesNotDoWithoutTheGroundTruthOfASimulatorThatLeavesEarly) {
+  for (const bool tells : {true, false}) {
+    Peers peers;
+    peers.leaveEarly(tells);
+    RosDriver driver(ros::NodeHandle(), 1.0, {/*recorder=*/false, /*trainer=*/false});
+    if (tells) {
+      EXPECT_EQ(driver.runTrial(trial(), [](double) {}).states.size(), size_t{kSteps});
+    } else {
+      EXPECT_TRUE(testing::names(errorOf(&driver, trial()), {"ground truth", "incomplete"}));
+    }
+  }
+}
+
+/// Copies of a client share one connection: who gives up must not close it under who still calls.
+TEST(ServiceCall, LeavesTheConnectionToTheCallThatIsUnderWay) {
+  Peers peers;
+  peers.answerAfter(60.0);
+  ros::ServiceClient client =
+      ros::NodeHandle().serviceClient<ddm_msgs::Reset>(topics::kReset, /*persistent=*/true);
+  const ros::ServiceClient under_way = client;
+  ddm_msgs::Reset service;
+  EXPECT_TRUE(testing::throwsNaming<std::runtime_error>(
+      [&] { callService("/reset", &client, &service, 0.5); }, {"/reset", "0.5 s"}));
+  EXPECT_TRUE(under_way.isValid());
+  EXPECT_FALSE(client.isValid());
 }
 
 TEST(ServiceCall, LeavesAConnectionBehindThatIsNeverMade) {

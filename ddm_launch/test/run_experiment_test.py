@@ -6,6 +6,7 @@ import pty
 import shutil
 import signal
 import sys
+import time
 
 import rosunit
 
@@ -16,6 +17,14 @@ from run_files import (COLUMNS, changes, differences, expected_files, files_in, 
 from scratch_case import SharedScratchCase  # noqa: E402
 
 TRIALS = 2
+
+
+def wait_for_file(path, limit_s):
+    end = time.monotonic() + limit_s
+    while not os.path.exists(path):
+        if time.monotonic() > end:
+            raise TimeoutError("%s was not written within %g s" % (path, limit_s))
+        time.sleep(0.001)
 
 
 class RunExperimentTest(SharedScratchCase):
@@ -119,12 +128,30 @@ class RunExperimentTest(SharedScratchCase):
         self.assertRuns(*self.debug(trials, out=uninterrupted))
         self.assertEqual(differences(uninterrupted, self.out, expected_files(trials)), [])
 
+    def test_a_run_that_was_killed_in_a_training_or_evaluation_does_not_repeat_the_recording(self):
+        slow = self.write("slow.yaml", "training: {max_iterations: 15000, function_tolerance: 0.0}\n"
+                                       "evaluation: {num_steps: 2000}\n")
+        for trial, last, said in ((0, "torques.csv", "is recorded already"), (1, "training.yaml", "is trained already")):
+            arguments = ["--config", slow] + self.debug(trials=trial)
+            folder = os.path.join(self.out, "trial_%03d" % trial)
+            process = Process([find_program("run_experiment")] + arguments)
+            wait_for_file(os.path.join(folder, last), 60.0)
+            process.send(signal.SIGKILL)
+            process.waitForEnd(10.0)
+            before = read_bytes(folder, "trial.bag")
+            self.assertIn(said, self.assertRuns(*arguments))
+            self.assertEqual(read_bytes(folder, "trial.bag"), before)
+        uninterrupted = self.file("uninterrupted")
+        self.assertRuns("--config", slow, *self.debug(trials=1, out=uninterrupted))
+        self.assertEqual(differences(uninterrupted, self.out, expected_files(1)), [])
+
     def test_a_finished_run_is_not_changed_by_the_same_command(self):
         shutil.copytree(self.reference, self.out)
         before = fingerprint(self.out)
         output = self.assertRuns(*self.debug())
         self.assertIn("%d models trained" % (TRIALS + 1), output)
-        self.assertEqual(changes(before, fingerprint(self.out)), [])
+        self.assertEqual(changes(before, fingerprint(self.out)), [os.path.join(self.out, "summary.yaml")])
+        self.assertEqual(differences(self.reference, self.out, expected_files(TRIALS)), [])
 
     def test_a_saved_configuration_can_be_given_again(self):
         self.assertRuns("--preset", "paper", "--config", os.path.join(self.reference, "config.yaml"), "--seed", 1,

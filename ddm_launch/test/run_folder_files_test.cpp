@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <boost/filesystem.hpp>
+#include <cmath>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -98,7 +100,8 @@ TEST_F(RunFolderFilesTest, NothingButTheFilesOfTheContractIsLeft) {
   EXPECT_EQ(names, (std::vector<std::string>{
                        ".trials.crc32", "config.yaml", "evaluation_000/torques.csv",
                        "evaluation_000/trajectory.csv", "summary.yaml", "trial_000/model.ddm",
-                       "trial_000/torques.csv", "trial_000/trajectory.csv", "trials.csv"}));
+                       "trial_000/torques.csv", "trial_000/training.yaml",
+                       "trial_000/trajectory.csv", "trials.csv"}));
 }
 
 TEST_F(RunFolderFilesTest, DistancesInFeaturesAreWrittenWhereTheTrueStateIsNotKnown) {
@@ -141,6 +144,39 @@ TEST_F(RunFolderFilesTest, TorquesOfARobotAreThoseOfItsMotorsWhateverThePlantIs)
   configuration_.robot->max_torque = {6.0};
   testing::usePlant(testing::plantOf("{type: moving_tile}"), &configuration_);
   EXPECT_EQ(written("one_motor"), "step,torque_nm,exploratory\n0,0.5,1\n");
+}
+
+TEST_F(RunFolderFilesTest, ATrainingIsReadBackDigitByDigitUnlessItIsDamaged) {
+  TrainingOutcome training;
+  training.frames = 30;
+  training.v_r = 1.0 / 3.0;
+  training.v_p = 1e-7;
+  training.seconds = 0.1;
+  training.evaluations = 26;
+  RunFolder folder(configuration_);
+  EXPECT_FALSE(folder.savedTraining(0));
+  folder.writeTraining(0, training);
+  const TrainingOutcome saved = folder.savedTraining(0).value();
+  EXPECT_EQ(saved.frames, 30u);
+  EXPECT_EQ(saved.v_r, training.v_r);
+  EXPECT_EQ(saved.v_p, training.v_p);
+  EXPECT_EQ(saved.seconds, 0.1);
+  EXPECT_EQ(saved.evaluations, 26u);
+  writeText(file("trial_000/training.yaml"), "frames: 30\n");
+  EXPECT_FALSE(folder.savedTraining(0));
+}
+
+TEST_F(RunFolderFilesTest, NumbersThatNoReaderTakesAreNotWritten) {
+  RunFolder folder(configuration_);
+  TrialOutcome outcome;
+  outcome.torques = {Eigen::VectorXd::Constant(1, std::nan(""))};
+  outcome.exploratory = {false};
+  EXPECT_TRUE(throwsNaming<std::range_error>([&] { folder.writeRun({0}, outcome); }, {"nan"}));
+  EXPECT_FALSE(fs::exists(file("trial_000/torques.csv")));
+  TrialRow row = toyRow(0);
+  row.v_p = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(throwsNaming<std::range_error>([&] { folder.finishTrial(row); }, {"inf"}));
+  EXPECT_FALSE(fs::exists(file("trials.csv")));
 }
 
 TEST_F(RunFolderFilesTest, TheVerdictOfAnEarlierCallIsRemovedBeforeTheNextTrial) {

@@ -188,6 +188,24 @@ TEST_F(RunFolderTest, CropAndGoalOfARobotMayChangeUntilATrialIsFinished) {
   }
 }
 
+TEST_F(RunFolderTest, InLockStepARunIsRecordedWithItsTablesAndOnARobotWithItsBagAlone) {
+  const RunId run{0};
+  const auto isRecorded = [&] { return RunFolder(configuration_).isRecorded(run); };
+  for (const bool robot : {false, true}) {
+    configuration_.experiment.runs = scratch_.file(robot ? "robot" : "run");
+    if (robot) configuration_.robot = RobotOptions();
+    EXPECT_FALSE(isRecorded());
+    const std::string bag = RunFolder(configuration_).beginRun(run);
+    EXPECT_FALSE(isRecorded());
+    writeText(bag, "a bag");
+    EXPECT_EQ(isRecorded(), robot);
+    RunFolder(configuration_).writeRun(run, {});
+    EXPECT_TRUE(isRecorded());
+  }
+  configuration_.robot->crop_x = 8;  // images of another crop do not go with those to come
+  EXPECT_FALSE(isRecorded());
+}
+
 TEST_F(RunFolderTest, NothingElseMayChangeBeforeATrialIsFinished) {
   configuration_.robot = RobotOptions();
   const Configuration there = configuration_;

@@ -296,7 +296,25 @@ class ScriptsTest(ScratchCase):
     def checkSummary(self, text):
         if text is not None:
             self.write("summary.yaml", text)
-        return self.callFunction("check_summary %s 15" % self.scratch, "demo.sh")
+        return self.callFunction("check_summary %s 15 ''" % self.scratch, "demo.sh")
+
+    def runExperiment(self, launch):
+        """The experiment of demo.sh with bash code in the place of roslaunch."""
+        return self.callFunction("roslaunch() { %s; }; runs=%s trials=15 rviz=false; run_experiment"
+                                 % (launch, shlex.quote(self.scratch)), "demo.sh")
+
+    def test_the_summary_of_an_earlier_call_is_no_success(self):
+        summary = self.write("summary.yaml", "finished: true\ntrials: 15\n")
+        for launch in ("echo refused", "rm %s" % summary):
+            code, output = self.runExperiment(launch)
+            self.assertEqual(code, 1, output)
+            self.assertIn("summary.yaml", output)
+
+    def test_a_call_that_finds_everything_finished_is_a_success(self):
+        summary = self.write("summary.yaml", "finished: true\ntrials: 15\n")
+        for launch in ("touch %s" % summary, "cp {0} {0}.new && mv {0}.new {0}".format(summary)):
+            code, output = self.runExperiment(launch)
+            self.assertEqual(code, 0, output)
 
     def test_a_finished_experiment_is_a_success(self):
         for trials in (15, 20):

@@ -53,8 +53,7 @@ class ModelNode {
       result.train_time = training.seconds;
       result.evaluations = training.evaluations;
       if (training.cancelled) {
-        health_.cancel();
-        server_.setPreempted(result, training.message);
+        cancel(result, training.message);
       } else if (!training.model) {
         ROS_ERROR_STREAM("trial " << goal->trial << ": " << training.message);
         health_.fail(training.message);
@@ -68,14 +67,18 @@ class ModelNode {
       }
     } catch (const std::exception& e) {
       if (!isWanted()) {
-        health_.cancel();
-        server_.setPreempted(result, e.what());
+        cancel(result, e.what());
         return;
       }
       ROS_ERROR_STREAM("trial " << goal->trial << ": cannot train: " << e.what());
       health_.fail(e.what());
       server_.setAborted(result, e.what());
     }
+  }
+
+  void cancel(const ddm_msgs::TrainResult& result, const std::string& message) {
+    health_.cancel();
+    server_.setPreempted(result, message);
   }
 
   TrainingResult trainOn(const DataSet& data, const ddm_msgs::TrainGoal& goal) {

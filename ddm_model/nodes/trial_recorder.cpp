@@ -80,21 +80,23 @@ bool TrialRecorder::start(ddm_msgs::StartRecording::Request& request,
     response.success = true;
     return true;
   }
+  std::unique_ptr<BagWriter> bag;
+  try {
+    access_.requireNew(request.path);
+    bag = std::make_unique<BagWriter>(request.path, bag_options_);
+  } catch (const std::exception& e) {
+    response.message = e.what() + std::string(bag_ == nullptr ? "" : "; the recording goes on");
+    ROS_ERROR_STREAM(response.message);
+    return true;
+  }
   if (bag_ != nullptr) ROS_WARN("a recording was not stopped: its bag stays *.active");
-  bag_.reset();
+  bag_ = std::move(bag);
   ++num_recordings_;
   changed_.notify_all();  // a stop that still waits for the old one
   error_.clear();
   after_ = request.after;
   unanswered_.clear();
-  try {
-    access_.requireNew(request.path);
-    bag_ = std::make_unique<BagWriter>(request.path, bag_options_);
-    response.success = true;
-  } catch (const std::exception& e) {
-    response.message = e.what();
-    ROS_ERROR_STREAM(response.message);
-  }
+  response.success = true;
   return true;
 }
 

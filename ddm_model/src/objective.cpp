@@ -3,6 +3,7 @@
 #include "ddm_model/objective.h"
 
 #include <algorithm>
+#include <exception>
 #include <stdexcept>
 
 namespace ddm {
@@ -58,12 +59,6 @@ JointObjective<Scalar>::JointObjective(const Networks<Scalar>& networks, Trainin
       part.segment_end.push_back(segment.begin + segment.size - part.first);
     }
   }
-  if (numPredictions() == 0) {
-    throw std::invalid_argument(
-        "no prediction can be learned: each segment of the data (frames without a gap, each with "
-        "its torque) needs more than model/order + model/delay = " +
-        std::to_string(f.memory()) + " frames");
-  }
   weight_ = 1.0 / std::max(1e-30, static_cast<double>(data_.scores.squaredNorm()));
   lanes_ = std::vector<Lane>(std::min(parts_.size(), kLanes), Lane(f));
   features_.resize(f.featureDim(), num_images);
@@ -74,6 +69,15 @@ Eigen::Index JointObjective<Scalar>::numPredictions() const {
   size_t sum = 0;
   for (const Part& part : parts_) sum += part.targets.size();
   return static_cast<Eigen::Index>(sum);
+}
+
+template <class Scalar>
+void JointObjective<Scalar>::requirePredictions() const {
+  if (numPredictions() > 0) return;
+  throw std::invalid_argument(
+      "no prediction can be learned: each segment of the data (frames without a gap, each with "
+      "its torque) needs more than model/order + model/delay = " +
+      std::to_string(networks_.prediction_model.memory()) + " frames");
 }
 
 /// Memory for predictions so many steps ahead.
@@ -146,8 +150,7 @@ void JointObjective<Scalar>::sumOverParts(const Vector& theta, const Terms& term
                                           const std::uint64_t* error_seed) {
   reserve(terms.prediction_steps);
   const auto num_lanes = static_cast<int>(lanes_.size());
-#pragma omp parallel for schedule(static, 1) if (num_lanes > 1)
-  for (int i = 0; i < num_lanes; ++i) {
+  const auto sumLane = [&](int i) {
     Lane& lane = lanes_[i];
     lane.value = Value();
     lane.d_theta.setZero();
@@ -166,7 +169,19 @@ void JointObjective<Scalar>::sumOverParts(const Vector& theta, const Terms& term
       }
       if (gradient) backward(parts_[p], theta.data(), terms, &lane);
     }
+  };
+  std::exception_ptr
+      failure;  // lack of memory: an exception that left the loop would end the process
+#pragma omp parallel for schedule(static, 1) if (num_lanes > 1)
+  for (int i = 0; i < num_lanes; ++i) {
+    try {
+      sumLane(i);
+    } catch (...) {
+#pragma omp critical
+      failure = std::current_exception();
+    }
   }
+  if (failure) std::rethrow_exception(failure);
 }
 
 /// Reconstructions of a part's images and the predictions of them go through the decoder together.

@@ -105,7 +105,8 @@ Eigen::VectorXd Projection::operator()(const Grey& grey) const {
   return filters_ * pixels.cast<double>() - offset_;
 }
 
-Pca fitPca(const DataSet& data, int dim, double score_std, const Blur& blur) {
+Pca fitPca(const DataSet& data, int dim, double score_std, const Blur& blur,
+           const std::function<void()>& check) {
   const Eigen::Index num_images = data.numImages();
   if (data.numPixels() < dim) {
     throw std::invalid_argument("PCA to model/pca_dim = " + std::to_string(dim) + " of images of " +
@@ -134,6 +135,7 @@ Pca fitPca(const DataSet& data, int dim, double score_std, const Blur& blur) {
   double captured = 0.0;  // variance within the first `dim` directions of the subspace
   bool settled = false;
   for (int sweep = 0; sweep < kMaxSweeps && !settled; ++sweep) {
+    if (check) check();
     basis = orthonormalised(next);
     next = images.covarianceTimes(basis);
     ritz.compute(basis.cast<double>().transpose() * next.cast<double>());

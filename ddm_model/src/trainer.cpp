@@ -104,15 +104,26 @@ struct Problem {
   Problem(ModelOptions model, const TrainingData<float>& data)
       : options(std::move(model)),
         networks(options, static_cast<int>(data.torques.rows())),
-        objective(networks, data) {}
+        objective(networks, data),
+        num_frames(data.torques.cols()) {}
 
   ModelOptions options;
   Networks<float> networks;
   JointObjective<float> objective;
+  Eigen::Index num_frames;
 
   /// w times the terms.
   double cost(const Eigen::VectorXd& theta, const Terms& terms) {
     return objective.weight() * objective.evaluate(theta.cast<float>(), nullptr, terms).of(terms);
+  }
+
+  /// The same with as many predictions as there are frames, so that delays can be compared: a longer
+  /// one leaves fewer predictions, but as many images and weights.
+  double errorOfAllFrames(const Eigen::VectorXd& theta, const Terms& terms) {
+    Value value = objective.evaluate(theta.cast<float>(), nullptr, terms);
+    const auto num_predictions = static_cast<double>(objective.numPredictions());
+    if (terms.v_p) value.v_p *= static_cast<double>(num_frames) / num_predictions;
+    return objective.weight() * value.of(terms);
   }
 };
 
@@ -129,12 +140,21 @@ struct Candidate {
   std::exception_ptr refusal;  ///< of its data
 };
 
+/// The largest delay that is tried: up to training/max_delay, as long as there is something to predict.
+int largestDelayOf(const DataSet& data, const ModelOptions& model,
+                   const TrainingOptions& training) {
+  Eigen::Index longest = 0;
+  for (const Segment& segment : data.segments()) longest = std::max(longest, segment.size);
+  const auto possible = static_cast<int>(longest) - 1 - model.order;
+  return std::max(model.delay, std::min(largestDelay(model, training), possible));
+}
+
 /// Each start with each delay that is tried.
-std::vector<Candidate> makeCandidates(const ModelOptions& model, const TrainingOptions& training,
+std::vector<Candidate> makeCandidates(const ModelOptions& model, int largest_delay,
                                       const std::vector<Eigen::VectorXd>& starts) {
   std::vector<Candidate> candidates;
   for (const Eigen::VectorXd& theta : starts) {
-    for (int delay = model.delay; delay <= largestDelay(model, training); ++delay) {
+    for (int delay = model.delay; delay <= largest_delay; ++delay) {
       candidates.emplace_back();
       candidates.back().model = model;
       candidates.back().model.delay = delay;
@@ -161,6 +181,8 @@ void run(const Schedule& schedule, const TrainingOptions& training, const Traini
          Progress* progress, Candidate* candidate) {
   if (progress->cancelled()) return;
   Problem problem(candidate->model, data);
+  const Terms selection = selectionTerms(schedule, training);
+  if (schedule.terms().v_p || selection.v_p) problem.objective.requirePredictions();
   candidate->initial_cost = problem.cost(candidate->theta, schedule.terms());
   const std::vector<Stage>& stages = schedule.stages;
   for (size_t i = 0; i < stages.size(); ++i) {
@@ -175,9 +197,7 @@ void run(const Schedule& schedule, const TrainingOptions& training, const Traini
       return;
     }
   }
-  // A longer delay leaves fewer predictions to learn from.
-  candidate->error = problem.cost(candidate->theta, selectionTerms(schedule, training)) /
-                     static_cast<double>(problem.objective.numPredictions());
+  candidate->error = problem.errorOfAllFrames(candidate->theta, selection);
   if (!std::isfinite(candidate->error)) {  // a roll-out that grows without bound
     candidate->error = std::numeric_limits<double>::max();
   }
@@ -258,15 +278,18 @@ void fillIn(Problem* problem, const Candidate& best, const DataSet& data, const 
                         data.goal(), info);
 }
 
-}  // namespace
+/// Thrown before there is an iteration.
+struct Cancelled {};
 
-TrainingResult train(const DataSet& data, const ModelOptions& model,
-                     const TrainingOptions& training, ModelInfo info,
-                     const TrainingCallback& callback) {
-  const auto began = std::chrono::steady_clock::now();
+/// See train(). @throws Cancelled also
+TrainingResult trainUnlessCancelled(const DataSet& data, const ModelOptions& model,
+                                    const TrainingOptions& training, ModelInfo info,
+                                    const TrainingCallback& callback) {
   const Networks<double> initial_networks(model, data.torqueDim());
   const Pca pca =
-      fitPca(data, model.pca_dim, training.score_std, Blur(data.imageSize(), model.blur));
+      fitPca(data, model.pca_dim, training.score_std, Blur(data.imageSize(), model.blur), [&] {
+        if (callback && !callback(TrainingProgress())) throw Cancelled();
+      });
   const TrainingData<float> training_data = makeTrainingData(data, pca);
   const Eigen::MatrixXd scores = training_data.scores.cast<double>();
   const Schedule schedule = makeSchedule(training);
@@ -275,9 +298,10 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
   for (int i = 0; i < training.num_starts; ++i) {
     starts.push_back(initialTheta(initial_networks, scores, training, schedule.pca_start, &rng));
   }
-  std::vector<Candidate> candidates = makeCandidates(model, training, starts);
+  const int largest_delay = largestDelayOf(data, model, training);
+  std::vector<Candidate> candidates = makeCandidates(model, largest_delay, starts);
   Progress progress(callback, schedule, candidates.size(), pca);
-  const int longer_than = model.order + largestDelay(model, training);
+  const int longer_than = model.order + largest_delay;
   runAll(schedule, training,
          schedule.finish && training.selection_frames > 0
              ? evenPart(training_data, training.selection_frames, longer_than)
@@ -293,6 +317,15 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
         finish(schedule, training, training_data, longer_than, &progress, &best);
     if (!progress.cancelled()) {
       fillIn(problem.get(), best, data, pca, schedule, std::move(info), &result);
+      const ModelInfo& errors = result.model->info();
+      if (!std::isfinite(errors.v_r + errors.v_p)) {
+        std::ostringstream text;
+        text << "the errors of the model must be finite, got V_R " << errors.v_r << " and V_P "
+             << errors.v_p << ": check the bags, or leave the block training at its defaults";
+        best.message = text.str();
+        result.model.reset();
+        result.final_cost = 0.0;
+      }
     }
   }
   for (const Candidate& candidate : candidates) {
@@ -300,10 +333,23 @@ TrainingResult train(const DataSet& data, const ModelOptions& model,
     result.evaluations += candidate.evaluations;
   }
   result.message = best.message;
-  if (progress.cancelled()) {
-    result.message = "training was cancelled";
+  result.cancelled = progress.cancelled();
+  return result;
+}
+
+}  // namespace
+
+TrainingResult train(const DataSet& data, const ModelOptions& model,
+                     const TrainingOptions& training, ModelInfo info,
+                     const TrainingCallback& callback) {
+  const auto began = std::chrono::steady_clock::now();
+  TrainingResult result;
+  try {
+    result = trainUnlessCancelled(data, model, training, std::move(info), callback);
+  } catch (const Cancelled&) {
     result.cancelled = true;
   }
+  if (result.cancelled) result.message = "training was cancelled";
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return result;
 }

@@ -7,7 +7,8 @@
 namespace ddm {
 namespace {
 
-constexpr Eigen::Index kStretch = 100;  // frames
+constexpr Eigen::Index kStretch = 100;     // frames
+constexpr Eigen::Index kMinStretches = 4;  // so that even few frames come from several places
 
 }  // namespace
 
@@ -15,13 +16,16 @@ TrainingData<float> evenPart(const TrainingData<float>& data, Eigen::Index max_f
                              Eigen::Index longer_than) {
   const Eigen::Index num_frames = data.torques.cols();
   if (num_frames <= max_frames) return data;
+  // Stretches of 100 frames could not be spread over fewer frames than that.
+  const Eigen::Index length =
+      max_frames >= kStretch ? kStretch : std::max(longer_than + 1, max_frames / kMinStretches);
   std::vector<Segment> chosen;
   Eigen::Index seen = 0, taken = 0;
   for (const Segment& segment : data.segments) {
-    for (Eigen::Index at = 0; at < segment.size; at += kStretch) {
-      const Segment stretch{segment.begin + at, std::min(kStretch, segment.size - at)};
+    for (Eigen::Index at = 0; at < segment.size; at += length) {
+      const Segment stretch{segment.begin + at, std::min(length, segment.size - at)};
       seen += stretch.size;
-      // Taken are those that keep to the share max_frames / num_frames of what was seen.
+      // Keeps stretches until their share of all frames so far is max_frames / num_frames.
       const bool due = (taken + stretch.size) * num_frames <= seen * max_frames;
       if (!due || stretch.size <= longer_than) continue;
       taken += stretch.size;

@@ -383,11 +383,12 @@ TEST(JointObjective, ItsWeightMakesAUselessModelCostAboutOne) {
   EXPECT_NEAR(objective.weight() * objective.evaluate(nothing, nullptr).v_r, 1.0, 1e-12);
 }
 
-TEST(JointObjective, RefusesDataInWhichNoSegmentIsLongEnough) {
+TEST(JointObjective, NamesWhatPredictionsNeedWhereNoSegmentIsLongEnough) {
   const Networks<double> nets(tinyOptions(), 1);
   EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
       [&] {
-        JointObjective<double>(nets, randomData(4, 1, 6, true, {{0, 2}, {2, 2}, {4, 1}}));
+        JointObjective<double>(nets, randomData(4, 1, 6, true, {{0, 2}, {2, 2}, {4, 1}}))
+            .requirePredictions();
       },
       {"model/order", "= 2 frames"}));
 }

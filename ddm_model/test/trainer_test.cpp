@@ -298,6 +298,22 @@ TEST(EvenPart, HasStretchesSpreadOverAllFramesAndTheGoal) {
   EXPECT_EQ(evenPart(data, 200, 100).torques, data.torques) << "no stretch is long enough";
 }
 
+TEST(EvenPart, HasFewFramesFromSeveralPlaces) {
+  TrainingData<float> data;
+  data.scores = Eigen::RowVectorXf::LinSpaced(400, 0.0F, 399.0F);
+  data.torques = Eigen::RowVectorXd::LinSpaced(400, 0.0, 399.0);
+  data.segments = {{0, 100}, {100, 100}, {200, 200}};
+  for (const Eigen::Index max_frames : {20, 50, 80, 99}) {
+    const TrainingData<float> part = evenPart(data, max_frames, 2);
+    EXPECT_LE(part.torques.cols(), max_frames);
+    EXPECT_GT(part.torques.cols(), max_frames / 2);
+    EXPECT_GE(part.segments.size(), 3U);
+    EXPECT_LT(part.torques(0, 0), 200.0);
+    EXPECT_GE(part.torques(0, part.torques.cols() - 1), 200.0);
+  }
+  EXPECT_EQ(evenPart(data, 2, 2).torques, data.torques) << "too few for a prediction";
+}
+
 TEST_F(Trainer, KeepsTheDelayItIsGivenWhereNoOtherIsTried) {
   model_.delay = 1;
   EXPECT_EQ(run().model->options().delay, 1);
@@ -383,7 +399,7 @@ TEST_F(Trainer, TellsItsProgress) {
   training_.function_tolerance = 0.0;  // line searches get difficult
   std::vector<TrainingProgress> told;
   const TrainingResult result = run([&told](const TrainingProgress& progress) {
-    told.push_back(progress);
+    if (progress.v_r > 0.0) told.push_back(progress);  // not while there is no theta yet
     return true;
   });
   ASSERT_GE(told.size(), 10U);
@@ -405,6 +421,56 @@ TEST_F(Trainer, StopsWithoutAModelWhereTheCallbackSaysSo) {
   EXPECT_EQ(calls, 4);
   EXPECT_FALSE(result.model);
   EXPECT_TRUE(result.cancelled) << result.message;
+}
+
+TEST_F(Trainer, StopsBeforeItsPrincipalComponentsAreThere) {
+  const TrainingResult result = run([](const TrainingProgress&) { return false; });
+  EXPECT_TRUE(result.cancelled);
+  EXPECT_FALSE(result.model);
+  EXPECT_EQ(result.evaluations, 0);
+}
+
+TEST_F(Trainer, DoesNotTryADelayThatLeavesNothingToPredict) {
+  DataSet segments(testing::kToySize, 1);
+  for (unsigned seed = 1; seed <= 10; ++seed) segments.append(testing::toyTrial(5, seed));
+  data_ = segments;
+  model_.order = 2;
+  training_.max_delay = 2;  // order + delay < 5
+  const TrainingResult possible = run();
+  ASSERT_TRUE(possible.model) << possible.message;
+  training_.max_delay = 7;
+  const TrainingResult more = run();
+  ASSERT_TRUE(more.model) << more.message;
+  EXPECT_EQ(more.model->theta(), possible.model->theta());
+  EXPECT_EQ(more.iterations, possible.iterations);
+  model_.delay = 3;
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { run(); }, {"model/delay"}));
+}
+
+TEST_F(Trainer, ComparesDelaysByHowWellAndNotByHowOftenTheyPredict) {
+  const DataSet whole = lateTrial(1, 1);
+  DataSet segments(testing::kToySize, 1);  // of which a longer delay leaves much less to predict
+  for (int t = 0; t < whole.numFrames(); ++t) {
+    segments.append(whole.image(t), whole.torques().col(t), t % 5 == 0);
+  }
+  data_ = segments;
+  model_.order = 1;
+  training_.max_delay = 1;
+  training_.max_iterations = 60;
+  training_.weight_decay = 1.0;
+  const TrainingResult result = run();
+  ASSERT_TRUE(result.model) << result.message;
+  EXPECT_EQ(result.model->options().delay, 1);
+}
+
+TEST_F(Trainer, AnAutoEncoderAloneNeedsNothingToPredict) {
+  DataSet segments(testing::kToySize, 1);
+  for (unsigned seed = 1; seed <= 20; ++seed) segments.append(testing::toyTrial(2, seed));
+  data_ = segments;
+  training_.schedule = "v_r_only";
+  const TrainingResult result = run();
+  ASSERT_TRUE(result.model) << result.message;
+  EXPECT_LT(result.final_cost, result.initial_cost);
 }
 
 TEST_F(Trainer, RefusesTooLittleData) {

@@ -316,12 +316,26 @@ TEST_F(TrialRecorderTest, ASecondStartLeavesTheFirstBagActive) {
 
 TEST_F(TrialRecorderTest, AStartEndsAStopThatStillWaits) {
   ASSERT_TRUE(start(path_)) << message_;
-  auto stopping = std::async(std::launch::async, [] { return stop(5); });
-  EXPECT_FALSE(start(folder_.file("missing/trial.bag")));  // drops the recording, makes no other
+  auto stopping = stopTwice(5).first;  // it waits, since the other one was refused
+  EXPECT_TRUE(start(folder_.file("second.bag"))) << message_;
   const auto response = stopping.get();
   EXPECT_FALSE(response.success);
   EXPECT_FALSE(response.message.empty());
-  EXPECT_FALSE(stop(0).success);  // the node is alive and not recording
+  EXPECT_TRUE(stop(0).success);
+}
+
+TEST_F(TrialRecorderTest, AStartThatIsRefusedLeavesTheRecordingUnderWayAlone) {
+  ASSERT_TRUE(start(path_)) << message_;
+  publishFrames(3);
+  for (const std::string& wrong :
+       {folder_.file("missing/trial.bag"), path_, std::string("/x.bag")}) {
+    EXPECT_FALSE(start(wrong));
+    EXPECT_TRUE(contains(message_, wrong) && contains(message_, "goes on")) << message_;
+  }
+  publishImage(3);
+  publishTorque(3);
+  EXPECT_TRUE(stop(4).success);
+  EXPECT_EQ(readBag(path_, testing::kToySize, BagOptions()).data.numFrames(), 4);
 }
 
 TEST_F(TrialRecorderTest, RefusesASecondStopWhileOneWaits) {

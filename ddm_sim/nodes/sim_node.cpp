@@ -97,15 +97,17 @@ bool SimNode::onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Respon
   if (!request.start.empty()) start = toEigen(request.start);
   try {
     seen_ = rig_->reset(request.seed, request.trial, request.evaluation, start);
+    response.start = beginTrial(request);
+    response.goal = goal_stamp_;
+    response.success = true;
   } catch (const std::invalid_argument& e) {
-    response.success = false;
     response.message = e.what();
     ROS_WARN_STREAM("reset refused, nothing has changed: " << response.message);
-    return true;
+  } catch (const std::exception& e) {  // of a renderer, for example: roscpp would tell nobody why
+    response.message =
+        "the plant failed in the reset, no trial has begun: " + std::string(e.what());
+    ROS_ERROR_STREAM(response.message);
   }
-  response.start = beginTrial(request);
-  response.goal = goal_stamp_;
-  response.success = true;
   return true;
 }
 

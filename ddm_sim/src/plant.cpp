@@ -81,9 +81,9 @@ Eigen::VectorXd Plant::step(const Eigen::VectorXd& torque) {
   }
   if (!next.allFinite()) {
     std::ostringstream message;
-    message << "plant: the state [" << state_.transpose()
-            << "] leaves the range of double within one step; use a smaller state or other plant "
-               "parameters";
+    message << "plant " << info_.type << ": the state " << fewNumbers(state_) << " is followed by "
+            << fewNumbers(next)
+            << ", and states must be finite: use a smaller state or other plant parameters";
     throw std::range_error(message.str());
   }
   state_ = next;

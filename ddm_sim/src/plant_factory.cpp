@@ -200,7 +200,10 @@ std::unique_ptr<Plant> makePlant(const PlantMaker& maker) {
   std::unique_ptr<Plant> plant = maker.make();
   const std::vector<std::string> problems =
       brokenRules(plant.get(), maker.make().get(), maker.drawsCheaply());
-  if (problems.empty()) return plant;
+  if (problems.empty()) {
+    plant->setType(maker.type());
+    return plant;
+  }
   std::string text = "plant " + maker.type() + " breaks the rules of a plant:";
   for (const std::string& problem : problems) text += "\n- " + problem;
   throw std::invalid_argument(text + "\nCorrect its class: doc/your_plant.md has the rules");

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/rig.h"
 
+#include <ddm_msgs/testing/expect_error.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -175,7 +176,9 @@ TEST(Rig, StaysAtTheLastStateWhereThePlantHasNoNext) {
   Rig rig(std::make_unique<ToyPlant>(traits), CameraOptions());
   rig.reset(0, 0, false, Eigen::Vector2d(0.0, 0.0));
   for (int t = 0; t < 3; ++t) rig.stepUntilSeen(torqueOf(1.0));
-  EXPECT_THROW(rig.stepUntilSeen(torqueOf(1.0)), std::range_error);
+  EXPECT_TRUE(
+      testing::throwsNaming<std::range_error>([&] { rig.stepUntilSeen(torqueOf(1.0)); },
+                                              {"plant of a test", "[3 3]", "[inf inf]", "step 3"}));
   EXPECT_EQ(rig.plant().state(), Eigen::Vector2d(3.0, 3.0));
   EXPECT_EQ(rig.numSteps(), 3U);
 }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <boost/optional.hpp>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -130,6 +131,11 @@ std::string csvRow(const Plant& plant, std::size_t row, const std::optional<doub
   };
   std::string text = std::to_string(row) + number(static_cast<double>(row) * plant.info().dt);
   for (Eigen::Index i = 0; i < plant.state().size(); ++i) text += number(plant.state()[i]);
+  if (reward && !std::isfinite(*reward)) {
+    throw std::range_error("plant " + plant.info().type + ": the reward of row " +
+                           std::to_string(row) + " must be finite, got " + formatDouble(*reward) +
+                           ": correct the plant");
+  }
   if (reward) text += number(*reward);
   return text + "\n";
 }

@@ -21,6 +21,7 @@
 namespace ddm {
 namespace {
 
+constexpr char kModelFile[] = "model.ddm";
 constexpr int kRate = 0;  // places in x
 constexpr int kAngle = 1;
 constexpr double kUprightWithin = 1e-9;  // [rad]
@@ -149,13 +150,25 @@ Eigen::MatrixXd FeatureObservation::learn(const std::vector<std::string>& /*bags
   const TrainingResult result = train(data, config_.model, config_.training, info);
   if (!result.model) throw std::runtime_error("auto-encoder: " + result.message);
   model_ = *result.model;
+  return observeAll(data);
+}
+
+void FeatureObservation::resume(const std::string& folder, const std::vector<std::string>& /*bags*/,
+                                const DataSet& data, const TrialId& /*id*/) {
+  const std::string file = folder + "/" + kModelFile;
+  model_ = deserialiseModel(readFile(file), file);
+  observeAll(data);
+}
+
+/// Sets task_. @return features of all frames  [feature_dim x N]
+Eigen::MatrixXd FeatureObservation::observeAll(const DataSet& data) {
   const Eigen::MatrixXd Z = encodeAll(*model_, data);
   task_ = imageTask(Z, data.segments(), model_->goalFeature(), options_);
   return Z;
 }
 
 std::map<std::string, std::string> FeatureObservation::files() const {
-  return {{"model.ddm", serialiseModel(*model_)}};
+  return {{kModelFile, serialiseModel(*model_)}};
 }
 
 std::vector<std::string> PcaObservation::names() const {

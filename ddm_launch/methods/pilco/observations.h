@@ -47,6 +47,13 @@ class Observation {
   virtual Eigen::MatrixXd learn(const std::vector<std::string>& bags, const DataSet& data,
                                 const TrialId& id) = 0;
 
+  /// Observes as after learn() with the same arguments, by the files() that it left in a folder.
+  /// @throws std::runtime_error as learn(), or if a file is damaged
+  virtual void resume(const std::string& /*folder*/, const std::vector<std::string>& bags,
+                      const DataSet& data, const TrialId& id) {
+    learn(bags, data, id);
+  }
+
   /// The coordinates of x are the same after each learn(): what was learned in them stays true.
   virtual bool keepsCoordinates() const = 0;
 
@@ -132,10 +139,14 @@ class FeatureObservation : public ImageObservation {
   std::vector<std::string> names() const override;
   Eigen::MatrixXd learn(const std::vector<std::string>& bags, const DataSet& data,
                         const TrialId& id) override;
+  void resume(const std::string& folder, const std::vector<std::string>& bags, const DataSet& data,
+              const TrialId& id) override;
   std::map<std::string, std::string> files() const override;
   Eigen::VectorXd observe(const Grey& grey) override { return model_->encode(grey); }
 
  private:
+  Eigen::MatrixXd observeAll(const DataSet& data);
+
   std::optional<Ddm> model_;
 };
 

@@ -65,7 +65,13 @@ Transitions transitions(const DataSet& data, const Eigen::MatrixXd& X,
 }
 
 /// A matrix as a list of its columns.
+/// @throws std::runtime_error if it is not finite, since matrixOf() would refuse it
 YAML::Node matrixToYaml(const Eigen::MatrixXd& matrix) {
+  if (!matrix.allFinite()) {
+    throw std::runtime_error(
+        "PILCO: the policy or the GPs that were found are not finite: check the bags, or lower "
+        "policy_search/max_iterations or gp/max_iterations");
+  }
   YAML::Node out(YAML::NodeType::Sequence);
   for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
     YAML::Node column(YAML::NodeType::Sequence);
@@ -103,6 +109,14 @@ Eigen::VectorXd vectorOf(const YAML::Node& memory, const std::string& key, size_
   const Eigen::MatrixXd matrix = matrixOf(memory, key, max_numbers);
   if (matrix.cols() != 1) throw std::runtime_error(key + " must be one column");
   return matrix.col(0);
+}
+
+void requireParameters(const Eigen::VectorXd& parameters, const pilco::SquashedPolicy& policy,
+                       const std::string& file) {
+  if (parameters.size() == policy.numParameters()) return;
+  throw std::runtime_error(pilco::message(file, ": policy must have ", policy.numParameters(),
+                                          " parameters, got ", parameters.size(),
+                                          ": use another run folder"));
 }
 
 }  // namespace
@@ -153,6 +167,27 @@ TrainingOutcome PilcoMethod::train(const std::vector<std::string>& bags, const T
   return outcome;
 }
 
+bool PilcoMethod::resume(const std::string& folder, const std::vector<std::string>& bags,
+                         const TrialId& id) {
+  const std::string file = folder + "/" + kMemoryFile;
+  if (!boost::filesystem::exists(file)) return false;
+  const PilcoMemory memory = readMemory(readFile(file), file);
+  const DataSet data = bags_.read(bags);
+  observation_->resume(folder, bags, data, id);
+  const auto features = pilco::replaceAngles(static_cast<int>(observation_->names().size()),
+                                             observation_->task().angles);
+  makePolicy(features.outputDim(), data.torqueDim());
+  requireParameters(memory.policy, *policy_, file);
+  policy_->setParameters(memory.policy);
+  return true;
+}
+
+void PilcoMethod::makePolicy(int num_features, int torque_dim) {
+  policy_ = std::make_shared<pilco::SquashedPolicy>(
+      std::make_unique<pilco::RbfPolicy>(num_features, torque_dim, pilco_.pilco.num_centres),
+      perMotor(configuration_.mpc.max_torque, torque_dim, "mpc/max_torque"));
+}
+
 pilco::Propagation PilcoMethod::learnDynamics(const DataSet& data, const Eigen::MatrixXd& X,
                                               const PilcoTask& task, Training* training) const {
   const Clock::time_point start = Clock::now();
@@ -188,19 +223,15 @@ pilco::LongTermCost PilcoMethod::improvePolicy(pilco::Propagation dynamics, cons
   const pilco::Augmentation features = dynamics.features();
   const int torque_dim = dynamics.controlDim();
   const int num_centres = pilco_.pilco.num_centres;
-  policy_ = std::make_shared<pilco::SquashedPolicy>(
-      std::make_unique<pilco::RbfPolicy>(features.outputDim(), torque_dim, num_centres),
-      perMotor(configuration_.mpc.max_torque, torque_dim, "mpc/max_torque"));
+  makePolicy(features.outputDim(), torque_dim);
   const auto drawStart = [&] {
     return drawPolicyStart(task, features, num_centres, torque_dim, &training->rng);
   };
   Eigen::VectorXd& parameters = training->memory.policy;
-  if (parameters.size() == 0) parameters = drawStart();
-  if (parameters.size() != policy_->numParameters()) {
-    const std::string file = memoryFile(bags, configuration_.trial.episodes);
-    throw std::runtime_error(pilco::message(file, ": policy must have ", policy_->numParameters(),
-                                            " parameters, got ", parameters.size(),
-                                            ": use another run folder"));
+  if (parameters.size() == 0) {
+    parameters = drawStart();
+  } else {
+    requireParameters(parameters, *policy_, memoryFile(bags, configuration_.trial.episodes));
   }
   pilco::LongTermCost cost(std::move(dynamics), task.cost, policy_.get(), task.start,
                            pilco_.pilco.horizon);
@@ -221,8 +252,8 @@ pilco::LongTermCost PilcoMethod::improvePolicy(pilco::Propagation dynamics, cons
     parameters = drawStart();
     result = search();
   }
-  if (result.reason == MinimumReason::kStartFailed) {  // more data may mend it
-    result.initial_cost = result.cost = std::nan("");
+  const bool failed = result.reason == MinimumReason::kStartFailed;
+  if (failed) {  // more data may mend it
     result.message = "a first policy is kept, since its cost is not finite either";
   }
   parameters = result.x;
@@ -232,8 +263,8 @@ pilco::LongTermCost PilcoMethod::improvePolicy(pilco::Propagation dynamics, cons
   report["policy_search_s"] = valueToYaml(secondsSince(start));
   report["iterations"] = result.iterations;
   report["evaluations"] = result.evaluations;
-  report["cost_before"] = valueToYaml(result.initial_cost);
-  report["cost_after"] = valueToYaml(result.cost);
+  report["cost_before"] = failed ? YAML::Node() : valueToYaml(result.initial_cost);
+  report["cost_after"] = failed ? YAML::Node() : valueToYaml(result.cost);
   report["message"] =
       (afresh ? "started afresh, the last policy's cost is not finite; " : "") + result.message;
   return cost;

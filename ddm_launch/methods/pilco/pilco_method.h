@@ -50,11 +50,16 @@ class PilcoMethod : public Method {
   /// @throws std::runtime_error if a file cannot be read or the GPs cannot be trained
   TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,
                         const PhaseCallback& progress) override;
+  /// By the policy in pilco.yaml; GPs are needed for training alone.
+  /// @throws std::runtime_error if a file is damaged
+  bool resume(const std::string& folder, const std::vector<std::string>& bags,
+              const TrialId& id) override;
   std::shared_ptr<Policy> policy() const override;
 
  private:
   struct Training;
 
+  void makePolicy(int num_features, int torque_dim);
   PilcoMemory lastMemory(const std::vector<std::string>& bags) const;
   pilco::Propagation learnDynamics(const DataSet& data, const Eigen::MatrixXd& X,
                                    const PilcoTask& task, Training* training) const;

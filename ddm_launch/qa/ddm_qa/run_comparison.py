@@ -15,7 +15,8 @@ def expected_files(num_trials):
     """Every file of a finished experiment with this many epsilon-greedy trials."""
     files = [CHECKSUMS, "config.yaml", "summary.yaml", "trials.csv"]
     for k in range(num_trials + 1):
-        files += ["trial_%03d/%s" % (k, name) for name in ("model.ddm", "torques.csv", "trajectory.csv", "trial.bag")]
+        files += ["trial_%03d/%s" % (k, name)
+                  for name in ("model.ddm", "torques.csv", "training.yaml", "trajectory.csv", "trial.bag")]
         files += ["evaluation_%03d/%s" % (k, name) for name in ("torques.csv", "trajectory.csv")]
     return sorted(files)
 

@@ -55,7 +55,7 @@ class JointObjective {
   };
 
   /// @param networks  shapes; outlives the objective
-  /// @throws std::invalid_argument if shapes do not fit, or no segment is longer than n + d frames
+  /// @throws std::invalid_argument if shapes do not fit
   JointObjective(const Networks<Scalar>& networks, TrainingData<Scalar> data);
 
   /// @param theta    parameters                                            [P]
@@ -80,6 +80,8 @@ class JointObjective {
   double weight() const { return weight_; }
   /// @return number of one-step predictions
   Eigen::Index numPredictions() const;
+  /// @throws std::invalid_argument if there are none: no segment is longer than n + d frames
+  void requirePredictions() const;
 
  private:
   /// Images [begin, end), with those from `first` on to predict them from. Frames are counted from `first`.

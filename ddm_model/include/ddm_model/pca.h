@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 
 #include "ddm_model/blur.h"
 #include "ddm_model/data_set.h"
@@ -62,7 +63,9 @@ class Projection {
 /// @param dim        number of components
 /// @param score_std  standard deviation of the leading score; fixes the scale
 /// @param blur       through which all images are seen
+/// @param check      (optional) called before each sweep; may throw to end the search
 /// @throws std::invalid_argument if there are too few images or they are all the same
-Pca fitPca(const DataSet& data, int dim, double score_std, const Blur& blur = Blur());
+Pca fitPca(const DataSet& data, int dim, double score_std, const Blur& blur = Blur(),
+           const std::function<void()>& check = nullptr);
 
 }  // namespace ddm

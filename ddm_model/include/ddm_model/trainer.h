@@ -23,8 +23,8 @@ struct TrainingProgress {
   double fraction_done = 0.0;  ///< iterations over their caps, of all starts and stages
 };
 
-/// Called after each iteration, of whichever start has moved on: from any thread, but never from two at a time. False ends the
-/// training without a model.
+/// Called now and then while the principal components are computed, with nothing but zeros, and after each iteration, of
+/// whichever start has moved on: from any thread, but never from two at a time. False ends the training without a model.
 using TrainingCallback = std::function<bool(const TrainingProgress&)>;
 
 /// What a training came to. Numerical trouble is reported here, never thrown.
@@ -41,7 +41,7 @@ struct TrainingResult {
 
 /// Trains a model from scratch on all data (a warm start from the last optimum gets stuck) by the
 /// schedule of `training`, from num_starts starts with each delay that is tried, and keeps the best.
-/// Its model/delay is in the model's options.
+/// Its model/delay is in the model's options. Delays for which no segment is long enough are not tried.
 /// @param info  seed, trial and config are kept; frames, V_R, V_P and the spread are filled in
 /// @throws std::invalid_argument if the data are too few for the options, or all the same
 TrainingResult train(const DataSet& data, const ModelOptions& model,

@@ -23,7 +23,7 @@ inline TrainingData<float> makeTrainingData(const DataSet& data, const Pca& pca)
 }
 
 /// Stretches of up to 100 frames, spread evenly over all and at most so many frames together, and the goal.
-/// @param max_frames  more than there are: all
+/// @param max_frames  more than there are: all; fewer than 100: the stretches are shorter
 /// @param longer_than  shorter stretches are left out [frames]
 /// @return             all of the data, if no stretch is long enough
 TrainingData<float> evenPart(const TrainingData<float>& data, Eigen::Index max_frames,

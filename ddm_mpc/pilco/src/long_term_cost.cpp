@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_pilco/long_term_cost.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -74,7 +75,7 @@ double LongTermCost::evaluate(const Eigen::VectorXd& parameters, Eigen::VectorXd
 std::vector<double> LongTermCost::costStandardDeviations() const {
   std::vector<double> out;
   for (std::size_t t = 1; t < states_.size(); ++t) {
-    out.push_back(std::sqrt(cost_.variance(states_[t])));
+    out.push_back(std::sqrt(std::max(0.0, cost_.variance(states_[t]))));  // rounded below 0
   }
   return out;
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <random>
+#include <string>
 
 #include "ddm_sim/camera_model.h"
 #include "ddm_sim/picture.h"
@@ -30,6 +31,7 @@ class Plant {
   Plant& operator=(const Plant&) = delete;
 
   const PlantInfo& info() const { return info_; }
+  void setType(const std::string& type) { info_.type = type; }
   int stateDim() const { return info_.stateDim(); }
   int torqueDim() const { return info_.torqueDim(); }
 
@@ -59,7 +61,7 @@ class Plant {
   /// @param torque  u, saturated at +-max_torque                                [torqueDim() x 1]
   /// @return the torque as it was applied, after the saturation                 [torqueDim() x 1]
   /// @throws std::invalid_argument if it is not [torqueDim() x 1] or not finite
-  /// @throws std::range_error if the state would leave the range of double
+  /// @throws std::range_error if the state would not be finite
   /// @throws std::logic_error if advance() returns another number of components. In each case
   ///         nothing has changed
   Eigen::VectorXd step(const Eigen::VectorXd& torque);

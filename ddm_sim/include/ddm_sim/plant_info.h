@@ -16,6 +16,8 @@ struct Joint {
 };
 
 struct PlantInfo {
+  std::string type = "of a test";  ///< plant/type, for messages; makePlant() fills it in
+
   std::vector<Joint> joints;  ///< in the order of their positions in the state
 
   /// Components of a state with their units, the headers of CSV files: "angle_rad". Positions come

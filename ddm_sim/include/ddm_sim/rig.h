@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "ddm_sim/camera.h"
@@ -45,7 +47,12 @@ class Rig {
   /// @return what the camera shows now, or nothing if that frame is lost
   /// @throws as Plant::step(); nothing has changed
   std::optional<Picture> step(const Eigen::VectorXd& torque) {
-    applied_ = plant_->step(torque);
+    try {
+      applied_ = plant_->step(torque);
+    } catch (const std::range_error& e) {
+      throw std::range_error(std::string(e.what()) + " (in step " + std::to_string(num_steps_) +
+                             " since the reset)");
+    }
     ++num_steps_;
     return camera_.photograph(plant_->render(plant_->state()));
   }

@@ -10,6 +10,10 @@ namespace ddm {
 namespace testing {
 
 inline std::atomic<long> allocations{0};
+inline std::atomic<long> refused_allocation{-1};  ///< this one finds no memory; -1: none
+
+/// @return whether there is memory for one more
+inline bool countAllocation() { return allocations++ != refused_allocation; }
 
 /// How often `work` asks for memory: operator new and Eigen do so through malloc.
 inline long allocationsOf(const std::function<void()>& work) {
@@ -28,8 +32,7 @@ void* __libc_realloc(void* old, std::size_t size);               // NOLINT
 void* __libc_memalign(std::size_t alignment, std::size_t size);  // NOLINT
 
 void* malloc(std::size_t size) {
-  ++ddm::testing::allocations;
-  return __libc_malloc(size);
+  return ddm::testing::countAllocation() ? __libc_malloc(size) : nullptr;
 }
 void* calloc(std::size_t count, std::size_t size) {
   ++ddm::testing::allocations;

@@ -74,7 +74,9 @@ void callService(const std::string& name, ros::ServiceClient* client, Service* s
     return call->client.call(call->service);
   });
   if (!success) {
-    client->shutdown();  // the next call begins with a connection of its own
+    // The next call begins with a connection of its own. Not shutdown(): copies of a client share one
+    // connection, and the thread that is left behind may be using it.
+    *client = ros::ServiceClient();
     throw std::runtime_error("service " + name + " does not answer" + waited(limit));
   }
   *client = call->client;
