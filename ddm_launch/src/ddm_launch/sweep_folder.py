@@ -28,7 +28,7 @@ class SweepFolder:
       seed_NNNN/           the results of a seed, by the program itself
       logs/seed_NNNN.log   what the program said when it ran last
       joblog.tsv           GNU parallel's job log of the last call
-      slurm_job            number of the job array while it is in the hands of Slurm
+      slurm_job            number, cluster and seeds of the job array while it is in the hands of Slurm
       sweep.csv            the rows of all finished seeds
 
     A context manager: at most one sweep holds the folder at a time.
@@ -97,7 +97,7 @@ class SweepFolder:
             with open(self.log(seed), errors="replace") as stream:
                 lines = [line.strip() for line in stream if line.strip()]
         except OSError:
-            return "it was not started"
+            return "it has not written anything yet"
         if lines:
             return "%s (%s)" % (lines[-1], self.log(seed))
         is_full = shutil.disk_usage(self.path).free < FULL_BYTES
