@@ -72,7 +72,7 @@ class SlurmTest(SharedScratchCase):
         self.assertEqual(jobs.count("JobState=COMPLETED"), 4)
         self.assertTableIsComplete(range(4), 1)
         own = [name for name in files_in(self.out) if not name.startswith(("seed_", "logs/"))]
-        self.assertEqual(own, [".lock", "run_seed.sh", "sweep.csv", "sweep.yaml"])
+        self.assertEqual(own, ["run_seed.sh", "sweep.csv", "sweep.yaml"])
         single = self.file("single")
         run_experiment("--preset", "debug", "--seed", 3, "--trials", 1, "--out", single)
         self.assertEqual(differences(single, seed_folder(self.out, 3), expected_files(1)), [])
