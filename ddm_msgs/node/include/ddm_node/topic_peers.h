@@ -16,6 +16,12 @@ namespace ddm {
 std::optional<XmlRpc::XmlRpcValue> askMaster(const std::string& method,
                                              const XmlRpc::XmlRpcValue& request);
 
+/// When a node registers, the master ends the one that had its name: a second launch would end the
+/// nodes of the first, and take the motors from a robot. To be called after ros::init() and before the
+/// first node handle, which registers. Where two nodes start at once, both may pass.
+/// @throws std::runtime_error with name and address if a node with the name of this one answers
+void requireFreeName();
+
 /// "publisher(s) of /torque: /mpc_node" or "nobody publishes /torque", as the master knows it.
 /// @param topic  resolved name
 std::string describePublishers(const std::string& topic);
