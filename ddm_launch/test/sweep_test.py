@@ -233,6 +233,12 @@ class SweepTest(SharedScratchCase):
                         "--", "--config", config)
         self.assertTableIsComplete([0])
 
+    def test_single_values_are_those_of_all_seeds(self):
+        self.assertEnds(0, [], *self.debug("0:1", 0), "--set", "mpc/epsilon=0.3", "--set", "model/encoder_widths=[30, 12]")
+        config = read_yaml(seed_folder(self.out, 0), "config.yaml")
+        self.assertEqual((config["mpc"]["epsilon"], config["model"]["encoder_widths"]), (0.3, [30, 12]))
+        self.assertEnds(1, ["another sweep", "mpc/epsilon=0.2"], *self.debug("0:1", 0), "--set", "mpc/epsilon=0.2")
+
     def test_a_table_that_makes_no_sense_is_named(self):
         self.copyReference()
         path = os.path.join(seed_folder(self.out, 2), "trials.csv")

@@ -6,7 +6,7 @@ import re
 import sys
 import time
 
-from ddm_launch.command import Failure, Interrupted, number, program_parser, run_program
+from ddm_launch.command import Failure, Interrupted, expand_home, number, program_parser, run_program
 from ddm_launch.gnu_parallel import GnuParallel
 from ddm_launch.seed_script import TABLES, SeedProgram
 from ddm_launch.slurm import SlurmArray, indices, job_file, remembered
@@ -64,6 +64,8 @@ def make_parser():
     parser.add_argument("--seeds", type=seed_range, required=True, metavar="A:B", help="seeds A ... B - 1")
     parser.add_argument("--trials", type=int, metavar="T", help="of run_experiment; default 15")
     parser.add_argument("--out", required=True, metavar="DIR", help="folder for the results")
+    parser.add_argument("--set", action="append", default=[], metavar="BLOCK/KEY=VALUE",
+                        help="a value that wins over all files; a list is [A, B]; repeatable")
     parser.add_argument("--jobs", type=number(int, 1), metavar="N",
                         help="seeds at a time on each host, default one per core; with --slurm in all, default any")
     parser.add_argument("--hosts", metavar="FILE", help="spread over ssh hosts")
@@ -77,7 +79,9 @@ def parse(arguments):
     """(options, words for the program). Ends the process with code 2 and a message if they make no sense."""
     parser = make_parser()
     split = arguments.index("--") if "--" in arguments else len(arguments)
-    options, more = parser.parse_args(arguments[:split]), arguments[split + 1:]
+    options, more = parser.parse_args(arguments[:split]), [expand_home(word) for word in arguments[split + 1:]]
+    for value in options.set:
+        more += ["--set", value]
     for word in more:
         if re.match(r"(-h|--(help|preset|plant|seed|trials|out)(=.*)?)$", word):
             parser.error("%s after '--': only options that sweep itself does not have may follow it" % word)
