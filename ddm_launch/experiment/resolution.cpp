@@ -254,6 +254,12 @@ boost::program_options::options_description configurationOptions(const std::stri
       "scene_background, scene_camera, scene_colours, scene_light; repeatable");
   add("config", boost::program_options::value(&arguments->configs)->composing(),
       "YAML file with overrides, or config.yaml of an experiment; repeatable, later files win");
+  const auto set_all = [arguments](const std::vector<std::string>& all) {
+    for (const std::string& one : all) setValue(one, &arguments->values);
+  };
+  add("set",
+      boost::program_options::value<std::vector<std::string>>()->composing()->notifier(set_all),
+      "BLOCK/KEY=VALUE, wins over all files; a list is [A, B]; repeatable");
   return options;
 }
 

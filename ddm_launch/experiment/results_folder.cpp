@@ -6,13 +6,9 @@
 #include <ddm_params/config_blocks.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <boost/filesystem.hpp>
-#include <cerrno>
-#include <cstring>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -55,25 +51,6 @@ void makeFolders(const std::string& path) {
   }
 }
 
-/// Holds an existing folder while the result lives, or until the process ends, however it ends. The
-/// lock is on the folder itself and leaves no file in it.
-std::shared_ptr<const int> lockFolder(const std::string& folder) {
-  const std::shared_ptr<const int> descriptor(
-      new int(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)), [](const int* opened) {
-        ::close(*opened);
-        delete opened;
-      });
-  if (*descriptor < 0) {
-    throw std::runtime_error("cannot open the folder " + folder + ": " + std::strerror(errno));
-  }
-  if (::flock(*descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
-  if (errno == EWOULDBLOCK) {
-    throw std::runtime_error("another experiment is running in the folder " + folder +
-                             ": wait for it, or use another folder");
-  }
-  throw std::runtime_error("cannot lock the folder " + folder + ": " + std::strerror(errno));
-}
-
 }  // namespace
 
 std::string differencesOf(const YAML::Node& there, const YAML::Node& here, bool trial_finished) {
@@ -113,7 +90,7 @@ ResultsFolder::ResultsFolder(std::string path, YAML::Node configuration)
     : path_(std::move(path)), configuration_(std::move(configuration)) {
   if (path_.empty()) throw std::runtime_error("no folder was given for the results");
   if (!fs::exists(path_)) return;
-  lock_ = lockFolder(path_);
+  lock_ = std::make_unique<FolderLock>(path_);
   if (fs::exists(path_ + "/config.yaml")) {
     compareWith(path_ + "/config.yaml");
   } else if (fs::exists(path_ + "/trials.csv")) {
@@ -146,12 +123,13 @@ void ResultsFolder::begin() {
   if (begun_) return;
   if (lock_ == nullptr) {
     makeFolders(path_);
-    lock_ = lockFolder(path_);
+    lock_ = std::make_unique<FolderLock>(path_);
     if (fs::exists(path_ + "/config.yaml")) {
       throw std::runtime_error("another experiment was begun in the folder " + path_ +
                                " meanwhile: use another folder");
     }
   }
+  removeUnfinished(path_);
   YAML::Node versioned(YAML::NodeType::Map);
   versioned["version"] = version_;
   for (const auto& block : configuration_) versioned[block.first] = block.second;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_files/folder_lock.h>
 #include <yaml-cpp/yaml.h>
 
 #include <memory>
@@ -23,8 +24,8 @@ std::string codeVersion();
 /// the end summary.yaml. All files appear under their names only when they are complete.
 class ResultsFolder {
  public:
-  /// Looks at the folder, which need not exist, and changes nothing. If it is there, no other
-  /// process gets it while this object lives.
+  /// Looks at the folder, which need not exist, and changes nothing. If it is there, it is locked
+  /// while this object lives, by the file .lock.
   /// @param path           folder
   /// @param configuration  blocks by name
   /// @throws std::runtime_error if it is held by another process, or holds results of another
@@ -73,8 +74,8 @@ class ResultsFolder {
 
   std::string path_;
   YAML::Node configuration_;
-  std::string version_ = codeVersion();  // of the code that began
-  std::shared_ptr<const int> lock_;      // null: the folder is not there yet
+  std::string version_ = codeVersion();     // of the code that began
+  std::unique_ptr<const FolderLock> lock_;  // null: the folder is not there yet
   bool begun_ = false;
   bool recordings_fit_ = true;
   std::vector<std::string> warnings_;

@@ -58,7 +58,6 @@ void parseSeeds(const std::string& text, Request* request) {
 /// @return false where --help was asked for and has been printed
 bool configure(int argc, char** argv, Request* request, ddm::Configuration* configuration) {
   ddm::Arguments arguments;
-  arguments.set("experiment/method", std::string("ddm"));  // who acts by such a model
   std::string seeds;
   const int num_cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   po::options_description options = ddm::configurationOptions(kAbout, &arguments);
@@ -73,6 +72,7 @@ bool configure(int argc, char** argv, Request* request, ddm::Configuration* conf
   if (request->jobs < 1) {
     throw po::error("--jobs must be >= 1, got " + std::to_string(request->jobs));
   }
+  arguments.set("experiment/method", std::string("ddm"));  // who acts by such a model
   ddm::ParamReader reader = ddm::resolve(arguments).reader();
   *configuration = ddm::readWithMethod(&reader);
   return true;
@@ -134,17 +134,38 @@ std::string csvOf(const std::vector<ddm::TrialRow>& rows) {
   return text;
 }
 
+/// Entries of a YAML map. Texts are in quotes: to readers of YAML 1.1 such as PyYAML, 20:40 is a number,
+/// and so is an id of digits.
+class Summary {
+ public:
+  Summary() { out_ << YAML::BeginMap; }
+  void add(const std::string& key, const std::string& text) {
+    out_ << YAML::Key << key << YAML::Value << YAML::DoubleQuoted << text;
+  }
+  template <class Numbers>
+  void addNumbers(const std::string& key, const Numbers& numbers) {
+    out_ << YAML::Key << key << YAML::Value << ddm::valueToYaml(numbers);
+  }
+  std::string text() {
+    out_ << YAML::EndMap;
+    return out_.c_str();
+  }
+
+ private:
+  YAML::Emitter out_;
+};
+
 /// A rate with the interval that it does not speak against.
 void addRate(const std::vector<ddm::TrialRow>& rows, const std::string& name,
-             bool ddm::Evaluation::*measure, YAML::Node* summary) {
+             bool ddm::Evaluation::*measure, Summary* summary) {
   int successes = 0;
   for (const ddm::TrialRow& row : rows) successes += row.evaluation.*measure ? 1 : 0;
   const auto n = static_cast<int>(rows.size());
   const auto interval = ddm::wilsonInterval(successes, n);
-  (*summary)[name] = std::to_string(successes) + " of " + std::to_string(n);
-  (*summary)[name + "_rate"] = ddm::valueToYaml(rounded(static_cast<double>(successes) / n));
-  (*summary)[name + "_interval_95"] =
-      ddm::valueToYaml(std::vector<double>{rounded(interval.first), rounded(interval.second)});
+  summary->add(name, std::to_string(successes) + " of " + std::to_string(n));
+  summary->addNumbers(name + "_rate", rounded(static_cast<double>(successes) / n));
+  summary->addNumbers(name + "_interval_95",
+                      std::vector<double>{rounded(interval.first), rounded(interval.second)});
 }
 
 void run(const Request& request, ddm::Configuration configuration) {
@@ -158,12 +179,12 @@ void run(const Request& request, ddm::Configuration configuration) {
   ddm::requireModelFits(model, request.model, configuration);
   const std::vector<ddm::TrialRow> rows =
       evaluateAll(configuration, request, static_cast<int>(model->info().trial));
-  YAML::Node summary(YAML::NodeType::Map);
-  summary["model"] = request.model;
-  summary["id"] = ddm::modelId(ddm::readFile(request.model));
-  summary["plant"] = configuration.experiment.plant;
-  summary["preset"] = configuration.experiment.preset;
-  summary["seeds"] = std::to_string(request.first_seed) + ":" + std::to_string(request.end_seed);
+  Summary summary;
+  summary.add("model", request.model);
+  summary.add("id", ddm::modelId(ddm::readFile(request.model)));
+  summary.add("plant", configuration.experiment.plant);
+  summary.add("preset", configuration.experiment.preset);
+  summary.add("seeds", std::to_string(request.first_seed) + ":" + std::to_string(request.end_seed));
   addRate(rows, "success", &ddm::Evaluation::success, &summary);
   addRate(rows, "success_strict", &ddm::Evaluation::success_strict, &summary);
   std::vector<double> errors, returns;
@@ -171,13 +192,14 @@ void run(const Request& request, ddm::Configuration configuration) {
     errors.push_back(row.evaluation.final_error.value());
     if (row.evaluation.total_reward) returns.push_back(*row.evaluation.total_reward);
   }
-  summary["error_unit"] = configuration.evaluation.error_unit;
-  summary["final_error_median"] = ddm::valueToYaml(ddm::quantile(errors, 0.5));
-  if (!returns.empty()) summary["return_median"] = ddm::valueToYaml(ddm::quantile(returns, 0.5));
+  summary.add("error_unit", configuration.evaluation.error_unit);
+  summary.addNumbers("final_error_median", ddm::quantile(errors, 0.5));
+  if (!returns.empty()) summary.addNumbers("return_median", ddm::quantile(returns, 0.5));
   boost::filesystem::create_directories(boost::filesystem::absolute(folder));  // refuses a mere "."
   ddm::writeFileAtomically(folder + "/evaluation.csv", csvOf(rows));
-  ddm::writeFileAtomically(folder + "/evaluation.yaml", YAML::Dump(summary) + "\n");
-  std::cout << YAML::Dump(summary) << "\nrows: " << folder << "/evaluation.csv\n";
+  const std::string text = summary.text();
+  ddm::writeFileAtomically(folder + "/evaluation.yaml", text + "\n");
+  std::cout << text << "\nrows: " << folder << "/evaluation.csv\n";
 }
 
 }  // namespace

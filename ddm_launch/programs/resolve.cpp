@@ -4,9 +4,11 @@
 #include <ddm_plant_plugin/plant_config.h>
 #include <ddm_sim/plant_factory.h>
 
+#include <algorithm>
 #include <boost/filesystem.hpp>
 #include <cstdio>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -20,6 +22,7 @@ namespace ddm {
 namespace {
 
 namespace po = boost::program_options;
+namespace fs = boost::filesystem;
 
 constexpr char kAbout[] =
     "Prints the configuration that arguments and files make up, as YAML. The launch files set it\n"
@@ -31,19 +34,8 @@ struct Request {
   Arguments arguments;
   std::vector<std::string> access;
   std::string print;
+  std::string path;
 };
-
-/// BLOCK/KEY=VALUE
-void setValue(const std::string& text, Arguments* arguments) {
-  const std::string::size_type equals = text.find('=');
-  const std::string::size_type slash = text.find('/');
-  if (equals == std::string::npos || slash == std::string::npos || slash > equals) {
-    throw po::error("--set must be BLOCK/KEY=VALUE, got '" + text + "'");
-  }
-  const std::string key = text.substr(slash + 1, equals - slash - 1);
-  const std::string value = text.substr(equals + 1);
-  if (!value.empty()) arguments->values[text.substr(0, slash)][key] = value;
-}
 
 /// X,Y,WIDTH,HEIGHT of a robot's camera.
 void setCrop(const std::string& text, Arguments* arguments) {
@@ -57,6 +49,50 @@ void setCrop(const std::string& text, Arguments* arguments) {
   arguments->set("robot/crop_y", crop[1]);
   arguments->set("robot/crop_width", crop[2]);
   arguments->set("robot/crop_height", crop[3]);
+}
+
+/// Words with blanks between them, in quotes where a word has a blank itself.
+std::vector<std::string> splitQuoted(const std::string& text) {
+  std::vector<std::string> words;
+  bool in_word = false;
+  char quote = 0;
+  for (const char c : text) {
+    const bool blank = c == ' ' || c == '\t';
+    if (quote == 0 && blank) {
+      in_word = false;
+      continue;
+    }
+    if (!in_word) words.emplace_back();
+    in_word = true;
+    if (quote == 0 && (c == '\'' || c == '"')) {
+      quote = c;
+    } else if (c == quote) {
+      quote = 0;
+    } else {
+      words.back() += c;
+    }
+  }
+  if (quote == 0) return words;
+  throw po::error("bags must be paths with a blank between two, got a quote without its end: " +
+                  text);
+}
+
+/// The bags in the text of a launch argument: one, or several with blanks between them.
+std::vector<std::string> splitBags(const std::string& text) {
+  const auto exists = [](const std::string& bag) { return fs::exists(expandHome(bag)); };
+  if (exists(text)) return {text};
+  std::istringstream in(text);
+  const std::istream_iterator<std::string> first(in), end;
+  const std::vector<std::string> bags(first, end);
+  return std::all_of(bags.begin(), bags.end(), exists) ? bags : splitQuoted(text);
+}
+
+void setBags(const std::vector<std::string>& texts, Arguments* arguments) {
+  std::vector<std::string> all;
+  for (const std::string& text : texts) {
+    for (const std::string& bag : splitBags(text)) all.push_back(expandHome(bag));
+  }
+  arguments->set("start/bags", all);
 }
 
 /// The robot is a stand-in: this plant, simulated.
@@ -77,7 +113,9 @@ std::vector<char*> givenWords(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     const std::string next = i + 1 < argc ? argv[i + 1] : "";
-    const bool lacks_value = isOption(word) && word != "--help" && (next.empty() || isOption(next));
+    const bool lacks_value = isOption(word) && word != "--help" &&
+                             word.find('=') == std::string::npos &&
+                             (next.empty() || isOption(next));
     if (!word.empty() && !lacks_value) given.push_back(argv[i]);
   }
   return given;
@@ -95,19 +133,22 @@ bool configure(int argc, char** argv, Request* request) {
   auto add = options.add_options();
   add("runs", given<Text>("experiment/runs", arguments), "folder of an experiment");
   add("model", given<Text>("start/model", arguments), "saved model that trial 0 explores with");
-  add("bags", given<Texts>("start/bags", arguments)->multitoken(),
-      "bags that count as trials before trial 0");
+  add("bags", po::value<Texts>()->multitoken()->notifier([arguments](const Texts& texts) {
+    setBags(texts, arguments);
+  }),
+      "bags that count as trials before trial 0; a word may name several, a blank between two");
   add("crop", call(setCrop), "X,Y,WIDTH,HEIGHT: the part of a robot's camera image that counts");
   add("motors-of", call(setMotors),
       "plant whose motors the robot has: robot/max_torque is that of its file");
-  const auto set_all = [arguments](const Texts& all) {
-    for (const Text& one : all) setValue(one, arguments);
-  };
-  add("set", po::value<Texts>()->composing()->notifier(set_all),
-      "BLOCK/KEY=VALUE, wins over all files; repeatable");
   add("access", po::value(&request->access)->multitoken(),
       "folders and bags that requests to the nodes may name, with those of the experiment");
-  add("print", po::value(&request->print), "BLOCK/KEY: print this value alone");
+  add("record", po::value<Text>()->notifier([request](const Text& bag) {
+    request->access.push_back(fs::absolute(bag).lexically_normal().parent_path().string());
+  }),
+      "bag that is to be recorded: requests may name bags in its folder");
+  add("print", po::value(&request->print),
+      "BLOCK/KEY: print this value alone; status_frequency: of the action run_trial [Hz]");
+  add("path", po::value(&request->path), "print this path alone, absolute and without ~");
   std::vector<char*> words = givenWords(argc, argv);
   return parseCommandLine(static_cast<int>(words.size()), words.data(), options);
 }
@@ -115,7 +156,7 @@ bool configure(int argc, char** argv, Request* request) {
 /// Nodes run in another folder.
 void makeAbsolute(YAML::Node path) {
   if (!path.IsDefined() || !path.IsScalar() || path.Scalar().empty()) return;
-  path = boost::filesystem::absolute(path.Scalar()).lexically_normal().string();
+  path = fs::absolute(path.Scalar()).lexically_normal().string();
 }
 
 /// Adds to what requests to the nodes may name; the default, the folder in which a node runs, goes.
@@ -145,6 +186,10 @@ void requirePatience(const RobotOptions& robot, const YAML::Node& blocks) {
 }
 
 void run(const Request& request) {
+  if (!request.path.empty()) {
+    std::cout << fs::absolute(request.path).lexically_normal().string();
+    return;
+  }
   ResolvedConfiguration resolved = resolve(request.arguments);
   ParamReader reader = resolved.reader();
   const Configuration all = readEachBlock(&reader);
@@ -168,6 +213,11 @@ void run(const Request& request) {
   if (!access.empty()) allowAccess(access, &blocks);
   if (request.print.empty()) {
     std::cout << YAML::Dump(blocks) << "\n";
+    return;
+  }
+  if (request.print == "status_frequency") {
+    // In simulated time actionlib's usual 5 Hz are a message for each frame.
+    std::cout << (blocks["sim"]["lockstep"].as<bool>(true) ? "0.1" : "5.0") << "\n";
     return;
   }
   const std::string::size_type slash = request.print.find('/');

@@ -26,6 +26,7 @@ class LearningCurveTest(ScratchCase):
     def makeRun(self, name, successes, errors_deg=None):
         folder = self.file(name)
         synthetic_run.write_trials(folder, successes, errors_deg or ["12.5"] * len(successes))
+        synthetic_run.write_config(folder)
         return folder
 
     def callMain(self, *arguments):
@@ -63,7 +64,7 @@ class LearningCurveTest(ScratchCase):
         out = self.file("curve.png")
         self.assertEqual(self.callMain(*folders, "--out", out)[0], 0)
         self.assertTrue(os.path.getsize(out) > 0)
-        self.assertEqual([os.listdir(folder) for folder in folders], [["trials.csv"]] * 2)
+        self.assertEqual([sorted(os.listdir(folder)) for folder in folders], [["config.yaml", "trials.csv"]] * 2)
 
     def live(self, successes, errors_deg):
         """{colour: (rows, columns) of its pixels} in the picture of an experiment under way."""
@@ -92,9 +93,19 @@ class LearningCurveTest(ScratchCase):
         self.assertLess(np.median(upper["blue"]), np.median(upper["red"]))
         self.assertEqual(len(self.live(["", ""], ["", ""])["blue"][0]), 0)
 
+    def test_a_run_that_does_not_tell_its_goal_is_refused(self):
+        folder = self.makeRun("run", ["1"], ["0.04"])
+        config = os.path.join(folder, "config.yaml")
+        for text in ("evaluation: [\n", "plant: {dt: 0.1}\n", "evaluation: {tolerance: 0.05}\n", "7\n", None):
+            self.write(config, text or "")
+            if text is None:
+                os.remove(config)
+            code, output = self.callMain(folder)
+            self.assertEqual(code, 1, output)
+            self.assertIn(config, output)
+
     def test_errors_are_in_the_unit_of_the_run_and_in_degrees_in_runs_of_older_versions(self):
         folder = self.makeRun("run", ["1"], ["0.04"])
-        self.assertEqual(read_goal(folder), ("deg", 10.0))
         for text, goal in (("evaluation: {tolerance: 0.05, error_unit: m}\n", ("m", 0.05)),
                            ("evaluation: {tolerance_deg: 5.0}\n", ("deg", 5.0))):
             self.write(os.path.join("run", "config.yaml"), text)

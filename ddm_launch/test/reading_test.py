@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 # Reading never writes: a finished run keeps every byte, whatever reads it and whatever is refused.
 # SPDX-License-Identifier: BSD-3-Clause
-import fcntl
 import os
 import shutil
 import sys
@@ -10,6 +9,7 @@ import roslib.packages
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from ddm_launch.folder_lock import FolderLock  # noqa: E402
 from processes import call, find_program, roslaunch, run_experiment  # noqa: E402
 from run_files import changes, fingerprint  # noqa: E402
 from scratch_case import SharedScratchCase  # noqa: E402
@@ -152,11 +152,9 @@ class ReadingTest(SharedScratchCase):
         more = TRIALS + 1
         self.assertRefused("experiment/seed: 1 there, 2 here", folder, *self.experiment(folder, 2, more))
         self.assertRefused("experiment/plant", folder, *self.experiment(folder, 1, more), "--plant", "pendulum_gravity")
-        held = os.open(folder, os.O_RDONLY)
-        self.addCleanup(os.close, held)
-        fcntl.flock(held, fcntl.LOCK_EX)
+        lock = FolderLock(folder)
         self.assertRefused("is running", folder, *self.experiment(folder, 1, more))
-        fcntl.flock(held, fcntl.LOCK_UN)
+        lock.release()
         bag = os.path.join(folder, "trial_000", "trial.bag")
         size = os.path.getsize(bag)
         os.truncate(bag, size // 2)

@@ -16,8 +16,9 @@ from scratch_case import ScratchCase  # noqa: E402
 
 class ResolveTest(ScratchCase):
     def resolve(self, *arguments):
-        """What is printed, read as YAML."""
-        code, output = call([find_program("resolve")] + list(arguments), folder=self.scratch)
+        """What is printed, read as YAML. The home folder is that of the test."""
+        code, output = call([find_program("resolve")] + list(arguments), folder=self.scratch,
+                            environment=dict(os.environ, HOME=self.scratch))
         self.assertEqual(code, 0, output)
         return yaml.safe_load(output)
 
@@ -106,6 +107,39 @@ class ResolveTest(ScratchCase):
         self.assertIs(self.resolve("--print", "sim/lockstep"), True)
         self.write("real_time.yaml", "sim: {lockstep: false}\n")
         self.assertIs(self.resolve("--config", "real_time.yaml", "--print", "sim/lockstep"), False)
+
+    def test_a_value_may_be_a_list(self):
+        model = self.resolve("--set", "model/encoder_widths=[30, 12]", "--set", "model/max_torque=[2.5]")["model"]
+        self.assertEqual((model["encoder_widths"], model["max_torque"]), ([30, 12], [2.5]))
+        self.assertRefused(["--set model/encoder_widths=[30"], "--set", "model/encoder_widths=[30, {]")
+
+    def test_a_tilde_is_the_home_folder_where_no_shell_has_expanded_it(self):
+        blocks = self.resolve("--runs=~/runs", "--model", "~/m.ddm", "--bags", "~/a.bag", "--set", "robot/goal_file=~/g.png")
+        self.assertEqual(blocks["experiment"]["runs"], self.file("runs"))
+        self.assertEqual((blocks["start"]["model"], blocks["start"]["bags"]), (self.file("m.ddm"), [self.file("a.bag")]))
+        self.assertEqual(blocks["robot"]["goal_file"], self.file("g.png"))
+        self.assertEqual(self.resolve("--path", "~root/a"), os.path.expanduser("~root/a"))
+        self.assertEqual(self.resolve("--path", "./~/a"), self.file("~/a"))
+
+    def test_bags_may_be_one_text(self):
+        for name in ("a b.bag", "it's.bag", "c.bag"):
+            self.write(name, "")
+        for text, names in (("a b.bag", ["a b.bag"]), ("it's.bag  c.bag", ["it's.bag", "c.bag"]),
+                            ("'no such.bag' \"it's.bag\"", ["no such.bag", "it's.bag"]), ("~/c.bag x.bag", ["c.bag", "x.bag"])):
+            self.assertEqual(self.resolve("--bags", text)["start"]["bags"], [self.file(name) for name in names])
+
+    def test_a_shipped_preset_is_known_where_no_workspace_is_sourced(self):
+        preset = os.path.join(roslib.packages.get_pkg_dir("ddm_launch"), "config", "presets", "efficient.yaml")
+        code, output = call([find_program("train_from_bags", "ddm_model"), "--config", preset, "--out", self.file("m.ddm"),
+                             "no.bag"], environment={"HOME": self.scratch})
+        self.assertEqual(code, 1)
+        self.assertIn("no.bag", output)
+        self.assertNotIn("unknown block", output)
+
+    def test_the_status_of_actions_is_rare_in_simulated_time(self):
+        self.write("real_time.yaml", "sim: {lockstep: false}\n")
+        self.assertEqual(self.resolve("--print", "status_frequency"), 0.1)
+        self.assertEqual(self.resolve("--config", "real_time.yaml", "--print", "status_frequency"), 5.0)
 
     def test_bad_arguments_and_files_are_named(self):
         self.assertRefused(["--set", "seed"], "--set", "seed")

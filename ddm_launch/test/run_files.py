@@ -10,10 +10,10 @@ from ddm_qa.run_comparison import (COLUMNS, TIME_COLUMNS, comparable, difference
 
 
 def fingerprint(folder):
-    """{path: (size, time of the last change [ns], bytes)} of a folder and all in it. Two are equal if nothing was
-    written in between."""
-    paths = [folder] + [os.path.join(parent, name) for parent, folders, files in os.walk(folder)
-                        for name in folders + files]
+    """{path: (size, time of the last change [ns], bytes)} of all in a folder. Two are equal if nothing was written in
+    between, but for the lock of a process that had the folder."""
+    paths = [os.path.join(parent, name) for parent, folders, files in os.walk(folder)
+             for name in folders + files]
     found = {}
     for path in paths:
         status = os.lstat(path)

@@ -65,8 +65,7 @@ TEST_F(RunFolderTest, OpeningAFolderChangesNothingInIt) {
   RunFolder(configuration_).writeSummary(1.0);
   const auto before = fingerprintOf(scratch_.file("run"));
   configuration_.experiment.trials = 5;
-  const RunFolder folder(configuration_);
-  EXPECT_TRUE(folder.isFinished());
+  EXPECT_TRUE(RunFolder(configuration_).isFinished());
   EXPECT_EQ(fingerprintOf(scratch_.file("run")), before);
 }
 
@@ -273,7 +272,7 @@ TEST_F(RunFolderTest, OfTwoExperimentsInOneNewFolderTheFirstThatWritesHasIt) {
   RunFolder second(configuration_);
   first.beginRun({0});
   EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { second.beginRun({0}); },
-                                               {scratch_.file("run"), "another experiment"}));
+                                               {scratch_.file("run"), "another process"}));
   auto third = std::make_unique<RunFolder>(toyConfiguration(scratch_.file("new")));
   RunFolder fourth(toyConfiguration(scratch_.file("new")));
   third->beginRun({0});

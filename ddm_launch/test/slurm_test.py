@@ -72,7 +72,7 @@ class SlurmTest(SharedScratchCase):
         self.assertEqual(jobs.count("JobState=COMPLETED"), 4)
         self.assertTableIsComplete(range(4), 1)
         own = [name for name in files_in(self.out) if not name.startswith(("seed_", "logs/"))]
-        self.assertEqual(own, [".lock", "run_seed.sh", "sweep.csv", "sweep.yaml"])
+        self.assertEqual(own, ["run_seed.sh", "sweep.csv", "sweep.yaml"])
         single = self.file("single")
         run_experiment("--preset", "debug", "--seed", 3, "--trials", 1, "--out", single)
         self.assertEqual(differences(single, seed_folder(self.out, 3), expected_files(1)), [])
@@ -104,7 +104,7 @@ class SlurmTest(SharedScratchCase):
         self.assertTableIsComplete(range(4), 12)
         self.assertNothingRuns()
 
-    def test_a_signal_cancels_the_job(self):
+    def test_ctrl_c_cancels_the_job(self):
         process = self.start(*self.debug("0:2", 999), "--jobs", 1)
         process.waitForText("Slurm job ", 30.0)
         wait_for(lambda: programs_of(seed_folder(self.out, 0)), "the program of seed 0")
@@ -115,17 +115,23 @@ class SlurmTest(SharedScratchCase):
         self.assertEqual(process.waitForEnd(30.0), 130, process.output)
         self.assertNothingRuns()
 
-    def test_the_job_of_a_sweep_that_was_killed_is_ended_by_the_next_one(self):
+    def test_the_job_of_a_sweep_that_has_ended_goes_on_and_is_waited_for(self):
         process = self.start(*self.debug("0:2", 12), "--jobs", 1)
         wait_for(lambda: is_finished(self.out, 0) and programs_of(seed_folder(self.out, 1)), "the middle of the sweep")
         job = self.jobOf(process.output)
         process.kill_group()
         self.assertEqual(self.cluster.tasks(), ["RUNNING"])
         before = snapshot(seed_folder(self.out, 0))
-        self.assertEnds(0, ["Slurm job %s " % job, "2 of 2 seeds finished"], *self.debug("0:2", 12))
-        self.assertRegex(self.cluster.call("scontrol", "show", "job", job + "_1"), "JobState=CANCELLED")
+        process = self.start(*self.debug("0:3", 12))
+        process.waitForText("Slurm job %s\n" % job, 30.0)
+        process.send(signal.SIGTERM)
+        self.assertEqual(process.waitForEnd(30.0), 143, process.output)
+        output = self.assertEnds(0, ["Slurm job %s\n" % job, "1 of 3 seeds to run", "3 of 3 seeds finished"],
+                                 *self.debug("0:3", 12))
+        self.assertRegex(self.cluster.call("scontrol", "show", "job", job + "_1"), "JobState=COMPLETED")
+        self.assertNotIn("CANCELLED", output)
         self.assertEqual(snapshot(seed_folder(self.out, 0)), before)
-        self.assertTableIsComplete(range(2), 12)
+        self.assertTableIsComplete(range(3), 12)
         self.assertNothingRuns()
 
     def test_what_sbatch_refuses_is_told_with_its_words(self):

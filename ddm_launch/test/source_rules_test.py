@@ -4,6 +4,7 @@
 import glob
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -12,6 +13,7 @@ import unittest
 import xml.etree.ElementTree
 
 import rosunit
+import yaml
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import skips  # noqa: E402, F401
@@ -82,6 +84,24 @@ class SourceRulesTest(unittest.TestCase):
     @unittest.skipUnless(CLANG_FORMAT == 14, "clang-format 14 judges, and this is %s: others break lines elsewhere" % CLANG_FORMAT)
     def test_cpp_files_are_formatted_by_clang_format(self):
         self.assertRuns("clang-format", "--dry-run", "-Werror", *CPP_FILES)
+
+    def test_a_commit_is_formatted_by_clang_format_14_or_refused(self):
+        with open(os.path.join(CHECKOUT, ".pre-commit-config.yaml")) as stream:
+            hook = yaml.safe_load(stream)["repos"][0]["hooks"][0]
+        for versions, formats in (({"clang-format": 14}, "clang-format"), ({"clang-format": 19}, None), ({}, None),
+                                  ({"clang-format": 19, "clang-format-14": 14}, "clang-format-14")):
+            with tempfile.TemporaryDirectory() as folder:
+                for name, version in versions.items():
+                    path = os.path.join(folder, name)
+                    with open(path, "w") as stream:
+                        stream.write("#!/bin/sh\n[ $1 = -i ] && echo formatted by %s $2\necho version %d.0.6\n" % (name, version))
+                    os.chmod(path, 0o755)
+                for name in ("bash", "sh", "grep"):
+                    os.symlink(shutil.which(name), os.path.join(folder, name))
+                done = subprocess.run(shlex.split(hook["entry"]) + ["a.cpp"], env={"PATH": folder}, stdout=subprocess.PIPE,
+                                      universal_newlines=True)
+            self.assertEqual(done.returncode == 0, formats is not None)
+            self.assertIn("formatted by %s a.cpp" % formats if formats else "apt-get install clang-format-14", done.stdout)
 
     @unittest.skipUnless(shutil.which("catkin_lint"), "catkin_lint is not installed")
     def test_catkin_lint_finds_nothing(self):

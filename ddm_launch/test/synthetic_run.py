@@ -19,7 +19,7 @@ def write_trials(folder, successes, errors_deg, seed=1):
 
 def write_config(folder, plant="pendulum"):
     with open(os.path.join(folder, "config.yaml"), "w") as stream:
-        stream.write("experiment: {plant: %s, seed: 1}\nplant: {type: %s}\n" % (
+        stream.write("experiment: {plant: %s, seed: 1}\nplant: {type: %s}\nevaluation: {tolerance: 10.0, error_unit: deg}\n" % (
             plant, plant if plant == "moving_tile" else "pendulum"))
 
 

@@ -54,6 +54,15 @@ class TaskDiagnosisTest(ScratchCase):
         self.assertIn("%s must have two trials at least, got 1" % self.run_folder, output)
         self.assertFalse(os.path.exists(self.table))
 
+    def test_a_damaged_bag_is_named(self):
+        self.makeRun(1)
+        bag = os.path.join(self.run_folder, "trial_001", "trial.bag")
+        os.truncate(bag, os.path.getsize(bag) // 2)
+        code, output = self.call()
+        self.assertEqual(code, 1, output)
+        self.assertIn(bag, output)
+        self.assertNotIn("Traceback", output)
+
     def test_a_plant_in_pixels_is_refused(self):
         self.makeRun(1, "moving_tile")
         code, output = self.call()

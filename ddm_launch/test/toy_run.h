@@ -129,7 +129,7 @@ inline void writeText(const std::string& path, const std::string& text) {
   std::ofstream(path) << text;
 }
 
-/// Name, time of the last change and bytes of all that is in a folder, and of the folder itself.
+/// Name, time of the last change and bytes of all that is in a folder.
 inline std::map<std::string, std::string> fingerprintOf(const std::string& folder) {
   namespace fs = boost::filesystem;
   std::map<std::string, std::string> found;
@@ -139,7 +139,6 @@ inline std::map<std::string, std::string> fingerprintOf(const std::string& folde
     found[path.string()] = std::to_string(status.st_mtim.tv_sec) + "." +
                            std::to_string(status.st_mtim.tv_nsec) + " " + textOf(path.string());
   };
-  take(folder);
   for (const auto& entry : fs::recursive_directory_iterator(folder)) take(entry.path());
   return found;
 }

@@ -10,7 +10,7 @@ import unittest
 
 import rosunit
 
-from ddm_model.plain_file import write_file
+from ddm_model.plain_file import remove_unfinished, write_file
 
 NUM_WRITES = 200
 CONTENTS = [b"a" * 300000, b"b" * 500000]
@@ -64,6 +64,12 @@ class PlainFileTest(unittest.TestCase):
         write_file(self.path, "new")
         with open(others) as stream:
             self.assertEqual(stream.read(), "of another process")
+
+    def test_what_killed_writers_left_behind_is_removed_on_request(self):
+        for name in (".unfinished.0f", ".unfinished", ".unfinished.txt"):
+            write_file(self.path + name, "half")
+        remove_unfinished(self.folder)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["a.txt.unfinished", "a.txt.unfinished.txt"])
 
     def test_permissions_follow_the_umask(self):
         before = os.umask(0o027)

@@ -26,6 +26,7 @@ namespace {
 
 struct Arguments {
   std::vector<std::string> configs;
+  std::vector<std::string> values;
   std::string goal;
   std::int64_t seed = 0;  // signed: -1 is to be refused, not to become a huge number
   std::string out;
@@ -44,9 +45,11 @@ bool parse(int argc, char** argv, Arguments* arguments) {
                         "YAML file with blocks image, model, training, data_set; repeatable, later "
                         "files win. The limits of the motors are model/max_torque, else those of "
                         "a block robot or plant");
-  options.add_options()(
-      "goal", po::value(&arguments->goal),
-      "goal image, cropped like theirs; else the goal_image of the last bag that has one");
+  options.add_options()("set", po::value(&arguments->values)->composing(),
+                        "BLOCK/KEY=VALUE, wins over all files; a list is [A, B]; repeatable");
+  options.add_options()("goal", po::value(&arguments->goal),
+                        "goal image, cropped like theirs; else the goal_image of the last bag that "
+                        "has one");
   options.add_options()("seed", po::value(&arguments->seed)->default_value(0),
                         "seed of the initial parameters");
   options.add_options()("out", po::value(&arguments->out), "model file to write");
@@ -77,6 +80,7 @@ YAML::Node readConfigs(const Arguments& arguments, std::string* limits_from) {
   YAML::Node blocks(YAML::NodeType::Map);
   for (const std::string& file : arguments.configs) ddm::overlay(ddm::readBlocks(file), &blocks);
   arguments.data_set.overlayOn(&blocks);
+  for (const std::string& value : arguments.values) ddm::setValue(value, &blocks);
   const std::string owner =
       ddm::hasKey(blocks, "model", "max_torque") ? "model" : ddm::ownerOfMotors(blocks);
   if (owner.empty() && ddm::hasKey(blocks, "plant", "model")) {

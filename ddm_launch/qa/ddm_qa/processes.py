@@ -130,8 +130,6 @@ def start_roslaunch(log_folder, *arguments, port=None, folder=None, options=(), 
     """Starts `roslaunch ddm_launch ...` with a master of its own; port 0 joins the master that runs already.
     options: of roslaunch itself. variables: of its environment."""
     environment = dict(line_by_line(), ROS_HOME=log_folder, **(variables or {}))
-    if folder:
-        environment["PWD"] = folder  # as a shell would set it
     own_master = [] if port == 0 else ["-p", str(port or free_port())]
     if own_master:
         environment.pop("ROS_MASTER_URI", None)

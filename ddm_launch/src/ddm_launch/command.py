@@ -70,9 +70,21 @@ def run_program(name, work):
     return code
 
 
+class Parser(argparse.ArgumentParser):
+    """Reads `--out=~/x` and `'~/x'` as a shell reads `~/x`."""
+
+    def parse_known_args(self, args=None, namespace=None):
+        return super().parse_known_args([expand_home(word) for word in (sys.argv[1:] if args is None else args)], namespace)
+
+
+def expand_home(word):
+    option, equals, value = word.partition("=") if word.startswith("--") else ("", "", word)
+    return option + equals + os.path.expanduser(value)
+
+
 def program_parser(name, about, epilog=None, **more):
     """Whose help keeps the lines of both texts."""
-    return argparse.ArgumentParser(prog=name, description=about, epilog=epilog,
+    return Parser(prog=name, description=about, epilog=epilog,
                                    formatter_class=argparse.RawDescriptionHelpFormatter, **more)
 
 

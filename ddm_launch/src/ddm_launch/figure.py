@@ -1,10 +1,9 @@
 # figure NAME: every figure that is made of run folders and of what programs leave.
 # SPDX-License-Identifier: BSD-3-Clause
-import argparse
 import sys
 
 from ddm_launch import film, film_strip, learning_curve, success_rate
-from ddm_launch.command import run_program
+from ddm_launch.command import Parser, run_program
 
 
 def program(name, about, figures):
@@ -16,7 +15,7 @@ def program(name, about, figures):
       SUFFIX                 of that file, where it is not .png
     """
     def main(arguments=None):
-        parser = argparse.ArgumentParser(prog=name, description=about)
+        parser = Parser(prog=name, description=about)
         names = parser.add_subparsers(dest="figure", metavar="FIGURE", required=True)
         for module in figures:
             figure = module.__name__.split(".")[-1]

@@ -34,10 +34,14 @@ def draw_images(command, text):
 
 
 def recorded_images(bag):
-    """The grey images of a recorded trial, as the learner got them  [N x size x size]."""
-    with rosbag.Bag(bag) as recording:
-        return np.array([np.frombuffer(message.data, np.uint8).reshape(message.height, message.width)
-                         for topic, message, _ in recording.read_messages() if topic.endswith("image_raw")])
+    """The grey images of a recorded trial, as the learner got them  [N x size x size]. Raises Failure, which names the bag,
+    if it cannot be read."""
+    try:
+        with rosbag.Bag(bag) as recording:
+            return np.array([np.frombuffer(message.data, np.uint8).reshape(message.height, message.width)
+                             for topic, message, _ in recording.read_messages() if topic.endswith("image_raw")])
+    except Exception as error:  # rosbag has a dozen types for what is damaged, and takes others from Python
+        raise Failure("%s cannot be read (%s): `rosbag check` tells whether it is damaged" % (bag, error)) from error
 
 
 class Camera:

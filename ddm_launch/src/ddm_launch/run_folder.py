@@ -7,7 +7,7 @@ import os
 import yaml
 
 from ddm_launch.command import Failure
-from ddm_launch.settings import read_yaml
+from ddm_launch.settings import LOADER, read_yaml
 from ddm_launch.tables import convert, optional, read_csv, unreadable
 
 # One row of trials.csv: the model after a trial, and its greedy evaluation. frames: image-torque pairs learned from.
@@ -24,7 +24,6 @@ TRIAL_COLUMNS = {"trial": int, "frames": int, "success": FLAG,
 # Older versions measured angles only, and wrote neither of the columns that came later.
 OLD_COLUMNS = {"final_error_deg": "final_error"}
 LATER_COLUMNS = {"version": "?", "return": ""}
-OLD_GOAL = Goal("deg", 10.0)
 
 
 def in_todays_columns(lines):
@@ -48,12 +47,19 @@ def read_trials(folder):
 
 
 def read_goal(folder):
-    """The Goal of a run, from FOLDER/config.yaml."""
-    evaluation = read_yaml(os.path.join(folder, "config.yaml")).get("evaluation")
-    if not isinstance(evaluation, dict):
-        return OLD_GOAL
-    return Goal(str(evaluation.get("error_unit") or OLD_GOAL.unit),
-                float(evaluation.get("tolerance") or evaluation.get("tolerance_deg") or OLD_GOAL.tolerance))
+    """The Goal of a run, from FOLDER/config.yaml. Raises Failure if that file does not tell it."""
+    path = os.path.join(folder, "config.yaml")
+    try:
+        with open(path) as stream:
+            evaluation = yaml.load(stream, Loader=LOADER)["evaluation"]
+        if "tolerance_deg" in evaluation:  # of an older version, which measured angles only
+            return Goal("deg", float(evaluation["tolerance_deg"]))
+        return Goal(str(evaluation["error_unit"]), float(evaluation["tolerance"]))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        raise unreadable(path, error)
+    except (KeyError, TypeError, ValueError):
+        raise Failure("%s does not tell what counts as success (keys evaluation/error_unit and evaluation/tolerance): take a "
+                      "run folder with its own config.yaml" % path) from None
 
 
 def read_sweep(path, remedy="give a trials.csv or sweep.csv"):

@@ -5,14 +5,20 @@ import contextlib
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import time
 
-from ddm_launch.command import Failure, held_back
+from ddm_launch.command import Failure, Interrupted, held_back
 from ddm_model.plain_file import write_file
 
-END_LIMIT_S = 120.0  # Slurm itself kills what does not end by KillWait, 30 s by default
+END_LIMIT_S = 60.0  # Slurm itself kills what does not end by KillWait, 30 s by default
+ANSWER_LIMIT_S = 300.0  # the commands of Slurm give up by themselves before that
+
+# States of tasks that have ended. squeue lists such tasks only briefly, or never.
+ENDED = {"BOOT_FAIL", "CANCELLED", "COMPLETED", "DEADLINE", "FAILED", "NODE_FAIL", "OUT_OF_MEMORY", "PREEMPTED", "REVOKED",
+         "TIMEOUT"}
 
 
 def index_ranges(seeds):
@@ -26,12 +32,21 @@ def index_ranges(seeds):
     return ",".join("%d" % a if a == b else "%d-%d" % (a, b) for a, b in ranges)
 
 
+def indices(ranges):
+    """The set of seeds that index_ranges() wrote."""
+    bounds = (part.split("-") for part in ranges.split(",") if part)
+    return {seed for bound in bounds for seed in range(int(bound[0]), int(bound[-1]) + 1)}
+
+
 def call(*command):
     """Runs a command of Slurm. Returns (exit code, stdout, stderr)."""
     # what a user has set for squeue by hand must not hide tasks from us
     environment = {key: value for key, value in os.environ.items() if not key.startswith("SQUEUE_")}
-    done = subprocess.run(command, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, universal_newlines=True)
+    try:
+        done = subprocess.run(command, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, universal_newlines=True, errors="replace", timeout=ANSWER_LIMIT_S)
+    except subprocess.TimeoutExpired:
+        return 1, "", "%s timed out after %d s" % (command[0], ANSWER_LIMIT_S)
     return done.returncode, done.stdout, done.stderr.strip()
 
 
@@ -42,28 +57,53 @@ def require_commands():
                              "cluster" % name)
 
 
-def task_states(job):
-    """How many tasks of a job are in each state, for those not at their end. None if Slurm does not answer."""
-    code, output, error = call("squeue", "--noheader", "--array", "--jobs", job, "--format", "%T")
-    if code == 0:
-        return collections.Counter(output.split())
-    return collections.Counter() if "Invalid job id" in error else None  # it forgets a job minutes after its end
+class Job(collections.namedtuple("Job", "number cluster ranges")):
+    """A job array. cluster: empty for the one that Slurm's commands address by default. ranges: its seeds, as sbatch
+    writes them."""
 
+    def __str__(self):
+        return "Slurm job %s%s" % (self.number, self.cluster and " of cluster " + self.cluster)
 
-def cancel(job):
-    """Ends all tasks of a job. Returns when they have ended; raises Failure if they do not."""
-    _, _, error = call("scancel", job)
-    end = time.monotonic() + END_LIMIT_S
-    while task_states(job) != collections.Counter():
-        if time.monotonic() > end:
-            raise Failure("Slurm has not ended job %s within %d s (%s): end it with 'scancel %s' before the next "
-                             "sweep in this folder" % (job, END_LIMIT_S, error or "scancel said nothing", job))
-        time.sleep(0.2)
+    def _command(self, name, *words):
+        return [name] + (["-M", self.cluster] if self.cluster else []) + list(words)
+
+    def states(self):
+        """(how many tasks are in each state, for those that have not ended; None). Where Slurm does not answer, so that
+        tasks may be running or not: (None, what it said)."""
+        code, output, error = call(*self._command("squeue", "--noheader", "--array", "--jobs", self.number,
+                                                  "--format", "%T"))
+        # the name of the cluster or a site's banner may surround the states
+        lines = [line.strip() for line in output.splitlines()]
+        states = collections.Counter(line for line in lines if re.match(r"[A-Z_]+$", line) and line not in ENDED)
+        failed = code != 0 or (not states and "error" in error.lower())
+        if failed and "invalid job id" not in (output + error).lower():  # that one Slurm has forgotten after its end
+            return None, error or output.strip() or "squeue ended with code %d" % code
+        return states, None
+
+    def cancel(self):
+        """Ends all tasks. Returns when they have ended; raises Failure if they do not."""
+        command = self._command("scancel", self.number)
+        _, _, error = call(*command)
+        end = time.monotonic() + END_LIMIT_S
+        while self.states()[0] != collections.Counter():
+            if time.monotonic() > end:
+                raise Failure("%s may still be running %d s after it was cancelled (%s): end it with '%s' before the "
+                              "next sweep in this folder" % (self, END_LIMIT_S, error or "scancel said nothing",
+                                                             " ".join(command)))
+            time.sleep(0.2)
+
+    def how_to_go_on(self):
+        return ("%s may be running: the same command waits for it again, '%s' cancels it"
+                % (self, " ".join(self._command("scancel", self.number))))
 
 
 def job_file(folder):
-    """DIR/slurm_job: the job array in the hands of Slurm, which goes on when the sweep that sent it is killed."""
+    """DIR/slurm_job: the job array in the hands of Slurm, which goes on without the sweep that sent it."""
     return os.path.join(folder.path, "slurm_job")
+
+
+def remember(job, folder):
+    write_file(job_file(folder), "%s;%s\n%s\n" % job)
 
 
 def forget(folder):
@@ -71,16 +111,17 @@ def forget(folder):
         os.remove(job_file(folder))
 
 
-def end_left_over(folder):
-    """Ends the job array that a killed sweep has left in this folder. Returns its number, or None."""
-    if not os.path.exists(job_file(folder)):
+def remembered(folder):
+    """The job array of this folder that may be running, or None."""
+    try:
+        with open(job_file(folder)) as stream:
+            match = re.match(r"(\d+)(?:;(\S*))?\n([\d,-]*)", stream.read())
+    except FileNotFoundError:
         return None
-    require_commands()
-    with open(job_file(folder)) as stream:
-        job = stream.read().strip()
-    cancel(job)
-    forget(folder)
-    return job
+    if match is None:
+        raise Failure("%s must hold the number of a job array: make sure by 'squeue --me' that none runs in this folder, "
+                      "then delete the file" % job_file(folder))
+    return Job(match.group(1), match.group(2) or "", match.group(3))
 
 
 class SlurmArray:
@@ -92,50 +133,74 @@ class SlurmArray:
         require_commands()
 
     def _submit(self, folder, seeds):
-        array = index_ranges(seeds) + ("" if self.jobs is None else "%%%d" % self.jobs)
+        ranges = index_ranges(seeds)
+        array = ranges + ("" if self.jobs is None else "%%%d" % self.jobs)
         log = os.path.join(folder.path, "logs", "seed_").replace("%", "%%") + "%4a.log"
         code, output, error = call("sbatch", "--parsable", "--array", array, "--job-name", "ddm_sweep",
                                    "--ntasks", "1", "--cpus-per-task", "1", "--output", log, "--open-mode", "append",
                                    folder.script)
-        job = output.strip().split(";")[0]
-        if code != 0 or not re.match(r"\d+$", job):
-            raise Failure("sbatch refused the job array %s: %s\nRemedy: set what your cluster wants in the "
-                             "variables that sbatch reads (SBATCH_PARTITION, ...). Seeds are indices of the array: "
-                             "they must be less than MaxArraySize, see 'scontrol show config'." % (array, error))
-        return job
+        # a site may print lines before and after the one of --parsable
+        found = re.findall(r"^[ \t]*(\d+)(?:;(\S*))?[ \t\r]*$", output, re.MULTILINE)
+        if code == 0 and found:
+            return Job(*found[-1], ranges)
+        said = "\n".join(text for text in (output.strip(), error) if text) or "it said nothing"
+        if code == 0 or "timed out" in said:
+            raise Failure("sbatch has not told the number of the job array %s, which may be running: %s\nRemedy: look for "
+                          "the array with 'squeue --me --name ddm_sweep'. If it is there, cancel it with scancel before "
+                          "the next sweep in this folder." % (array, said))
+        raise Failure("sbatch refused the job array %s: %s\nRemedy: set what your cluster wants in the "
+                         "variables that sbatch reads (SBATCH_PARTITION, ...). Seeds are indices of the array: "
+                         "they must be less than MaxArraySize, see 'scontrol show config'." % (array, said))
 
     def run(self, folder, seeds, tick):
         """Returns when all tasks have ended, well or not. Calls tick(), which returns what to show, now and then.
 
-        An exception out of tick(), or out of a signal handler, cancels the job first.
+        Only SIGINT, the Ctrl-C of a person, cancels the job. It outlives any other exception, such as the SIGHUP of a
+        connection that has dropped: remembered() then returns it.
         """
-        job = None
-        try:
-            with held_back():  # a job without a number could not be ended
+        with self._cancelled_by_ctrl_c(folder):
+            with held_back():  # a job without a number could not be waited for
                 job = self._submit(folder, seeds)
-                write_file(job_file(folder), job + "\n")
-            if not self.terminal:
-                print("Slurm job %s" % job, flush=True)
-            self._wait(job, tick)
-        except BaseException:
-            if job is not None:
-                cancel(job)
+                remember(job, folder)
+            self._watch(job, tick)
+        forget(folder)
+
+    def wait(self, folder, job, tick):
+        """As run(), for a job array that was remembered()."""
+        with self._cancelled_by_ctrl_c(folder):
+            self._watch(job, tick)
+        forget(folder)
+
+    @contextlib.contextmanager
+    def _cancelled_by_ctrl_c(self, folder):
+        try:
+            yield
+        except Interrupted as interruption:
+            job = remembered(folder)
+            if interruption.number == signal.SIGINT and job is not None:
+                job.cancel()
                 forget(folder)
             raise
         finally:
             if self.terminal:
-                sys.stderr.write("\n")
-        forget(folder)
+                with contextlib.suppress(OSError):  # it may be gone
+                    sys.stderr.write("\n")
 
-    def _wait(self, job, tick):
-        pause_s = 0.5
+    def _watch(self, job, tick):
+        pause_s, silent = 0.5, False
+        if not self.terminal:
+            print(job, flush=True)
         while True:
-            states, text = task_states(job), tick()
+            (states, silence), text = job.states(), tick()
             if self.terminal:
                 counts = "Slurm does not answer" if states is None else ", ".join(
                     "%d %s" % (count, state.lower()) for state, count in sorted(states.items()))
-                sys.stderr.write("\r\033[KSlurm job %s: %s finished%s" % (job, text, counts and "; " + counts))
+                sys.stderr.write("\r\033[K%s: %s finished%s" % (job, text, counts and "; " + counts))
                 sys.stderr.flush()
+            elif silence and not silent:
+                print("waiting for Slurm, which does not say whether %s is running: %s" % (job, silence),
+                      file=sys.stderr, flush=True)
+            silent = states is None
             if states == collections.Counter():
                 return
             time.sleep(pause_s)

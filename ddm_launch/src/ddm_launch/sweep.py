@@ -6,10 +6,10 @@ import re
 import sys
 import time
 
-from ddm_launch.command import Interrupted, number, program_parser, run_program
+from ddm_launch.command import Failure, Interrupted, expand_home, number, program_parser, run_program
 from ddm_launch.gnu_parallel import GnuParallel
 from ddm_launch.seed_script import TABLES, SeedProgram
-from ddm_launch.slurm import SlurmArray, end_left_over
+from ddm_launch.slurm import SlurmArray, indices, job_file, remembered
 from ddm_launch.sweep_folder import SweepFolder
 
 MAX_SEEDS = 100000
@@ -41,7 +41,8 @@ hosts (--hosts FILE):
 Slurm (--slurm):
   One task of one core for each seed. Everything else that sbatch must know goes into the variables that it reads itself:
   SBATCH_PARTITION, SBATCH_TIMELIMIT, SBATCH_ACCOUNT, SBATCH_QOS, SBATCH_MEM_PER_CPU and so on. Tasks see this workspace
-  and DIR under the same paths."""
+  and DIR under the same paths. Ctrl-C cancels the job array. It goes on if the sweep ends otherwise, for example because
+  the connection drops; the same command then waits for it again."""
 
 
 def seed_range(text):
@@ -63,6 +64,8 @@ def make_parser():
     parser.add_argument("--seeds", type=seed_range, required=True, metavar="A:B", help="seeds A ... B - 1")
     parser.add_argument("--trials", type=int, metavar="T", help="of run_experiment; default 15")
     parser.add_argument("--out", required=True, metavar="DIR", help="folder for the results")
+    parser.add_argument("--set", action="append", default=[], metavar="BLOCK/KEY=VALUE",
+                        help="a value that wins over all files; a list is [A, B]; repeatable")
     parser.add_argument("--jobs", type=number(int, 1), metavar="N",
                         help="seeds at a time on each host, default one per core; with --slurm in all, default any")
     parser.add_argument("--hosts", metavar="FILE", help="spread over ssh hosts")
@@ -76,7 +79,9 @@ def parse(arguments):
     """(options, words for the program). Ends the process with code 2 and a message if they make no sense."""
     parser = make_parser()
     split = arguments.index("--") if "--" in arguments else len(arguments)
-    options, more = parser.parse_args(arguments[:split]), arguments[split + 1:]
+    options, more = parser.parse_args(arguments[:split]), [expand_home(word) for word in arguments[split + 1:]]
+    for value in options.set:
+        more += ["--set", value]
     for word in more:
         if re.match(r"(-h|--(help|preset|plant|seed|trials|out)(=.*)?)$", word):
             parser.error("%s after '--': only options that sweep itself does not have may follow it" % word)
@@ -94,7 +99,10 @@ def parse(arguments):
 def report(folder, seeds, start):
     """Collects, says how it went, and returns whether all seeds are finished."""
     last_rows, problems = folder.collect(seeds)
-    if problems:
+    job = remembered(folder)
+    if job is not None:
+        print("sweep: %s" % job.how_to_go_on(), file=sys.stderr)
+    elif problems:
         print("sweep: not finished:", file=sys.stderr)
         for seed, problem in problems.items():
             print("  seed %d: %s" % (seed, problem), file=sys.stderr)
@@ -114,24 +122,32 @@ def report(folder, seeds, start):
 
 def run(engine, folder, seeds, terminal):
     """Runs those seeds that are not finished."""
-    left_over = end_left_over(folder)
-    if left_over:
-        print("ended the Slurm job %s of an earlier call that was killed" % left_over)
+    job = remembered(folder)
+    if job is not None and not isinstance(engine, SlurmArray):
+        raise Failure("%s. Or delete %s if no such job is left" % (job.how_to_go_on(), job_file(folder)))
     pending = [seed for seed in seeds if not folder.is_finished(seed)]
-    print("%s, preset %s, plant %s: %d of %d seeds to run" % (
-        folder.program.name, folder.program.preset, folder.program.plant, len(pending), len(seeds)), flush=True)
-    if pending:
-        folder.prepare(pending)
 
-        def tell():
-            """A line for each seed that finishes; none on a terminal, where the engine has a line of its own. Returns how
-            far the sweep is, in words."""
-            for seed in [seed for seed in pending if folder.is_finished(seed)]:
-                pending.remove(seed)
-                if not (terminal and sys.stdout.isatty()):
-                    print("seed %d finished (%d of %d)" % (seed, len(seeds) - len(pending), len(seeds)), flush=True)
-            return "%d of %d" % (len(seeds) - len(pending), len(seeds))
-        engine.run(folder, list(pending), tell)
+    def tell():
+        """A line for each seed that finishes; none on a terminal, where the engine has a line of its own. Returns how
+        far the sweep is, in words."""
+        for seed in [seed for seed in pending if folder.is_finished(seed)]:
+            pending.remove(seed)
+            if not (terminal and sys.stdout.isatty()):
+                print("seed %d finished (%d of %d)" % (seed, len(seeds) - len(pending), len(seeds)), flush=True)
+        return "%d of %d" % (len(seeds) - len(pending), len(seeds))
+
+    under_way = set()
+    if job is not None:
+        print("waiting for the job array that an earlier call has submitted", flush=True)
+        engine.wait(folder, job, tell)
+        tell()
+        under_way = indices(job.ranges)  # a seed that failed there is left to the next call, as without an interruption
+    to_run = [seed for seed in pending if seed not in under_way]
+    print("%s, preset %s, plant %s: %d of %d seeds to run" % (
+        folder.program.name, folder.program.preset, folder.program.plant, len(to_run), len(seeds)), flush=True)
+    if to_run:
+        folder.prepare(to_run)
+        engine.run(folder, to_run, tell)
         tell()
 
 

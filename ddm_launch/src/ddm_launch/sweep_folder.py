@@ -2,16 +2,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import contextlib
 import csv
-import fcntl
 import os
 import shutil
 
 import yaml
 
 from ddm_launch.command import Failure
+from ddm_launch.folder_lock import FolderLock
 from ddm_launch.run_folder import in_todays_columns
 from ddm_launch.settings import differences, read_yaml
-from ddm_model.plain_file import write_file
+from ddm_model.plain_file import remove_unfinished, write_file
 
 # Keys of config.yaml in which the seeds of one sweep may differ.
 MAY_DIFFER = {"version", "experiment/seed", "experiment/trials", "experiment/runs", "experiment/timeout",
@@ -28,7 +28,7 @@ class SweepFolder:
       seed_NNNN/           the results of a seed, by the program itself
       logs/seed_NNNN.log   what the program said when it ran last
       joblog.tsv           GNU parallel's job log of the last call
-      slurm_job            number of the job array while it is in the hands of Slurm
+      slurm_job            number, cluster and seeds of the job array while it is in the hands of Slurm
       sweep.csv            the rows of all finished seeds
 
     A context manager: at most one sweep holds the folder at a time.
@@ -41,15 +41,12 @@ class SweepFolder:
             os.path.join(self.path, name) for name in ("run_seed.sh", "sweep.csv", "joblog.tsv"))
         try:
             os.makedirs(os.path.join(self.path, "logs"), exist_ok=True)
-            self._lock = open(os.path.join(self.path, ".lock"), "a")
+            self._lock = FolderLock(self.path)
         except OSError as error:
             raise Failure("cannot write into the folder %s (%s): choose another with --out" % (self.path, error.strerror))
         with contextlib.ExitStack() as stack:
-            stack.callback(self._lock.close)
-            try:
-                fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError:
-                raise Failure("another sweep is running in the folder %s: wait for it, or use another folder" % self.path)
+            stack.callback(self._lock.release)
+            remove_unfinished(self.path)
             self._compare()
             stack.pop_all()
 
@@ -57,7 +54,7 @@ class SweepFolder:
         return self
 
     def __exit__(self, *_):
-        self._lock.close()
+        self._lock.release()
 
     def _compare(self):
         path = os.path.join(self.path, "sweep.yaml")
@@ -97,7 +94,7 @@ class SweepFolder:
             with open(self.log(seed), errors="replace") as stream:
                 lines = [line.strip() for line in stream if line.strip()]
         except OSError:
-            return "it was not started"
+            return "it has not written anything yet"
         if lines:
             return "%s (%s)" % (lines[-1], self.log(seed))
         is_full = shutil.disk_usage(self.path).free < FULL_BYTES

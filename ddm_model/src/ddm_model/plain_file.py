@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import contextlib
 import os
+import re
 import secrets
 
 
@@ -28,3 +29,12 @@ def write_file(path, content):
     finally:
         with contextlib.suppress(OSError):
             os.remove(unfinished)  # already renamed if all went well
+
+
+def remove_unfinished(folder):
+    """Removes what write_file() left behind in a folder when its process was killed. Only for a folder in which nobody else
+    writes."""
+    for name in os.listdir(folder):
+        if re.search(r"\.unfinished\.[0-9a-f]+$", name):
+            with contextlib.suppress(OSError):
+                os.remove(os.path.join(folder, name))

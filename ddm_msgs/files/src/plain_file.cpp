@@ -8,8 +8,10 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <random>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 
@@ -116,6 +118,19 @@ void writeFileAtomically(const std::string& path, const std::string& bytes) {
   ::unlink(unfinished.c_str());
   errno = error;
   cannot("write", path);
+}
+
+void removeUnfinished(const std::string& folder) {
+  namespace fs = std::filesystem;
+  static const std::regex kUnfinished(".*\\.unfinished\\.[0-9a-f]+");
+  std::error_code ignored;  // what cannot be removed does no harm
+  const auto options = fs::directory_options::skip_permission_denied;
+  for (fs::recursive_directory_iterator entry(folder, options, ignored), end; entry != end;
+       entry.increment(ignored)) {
+    if (std::regex_match(entry->path().filename().string(), kUnfinished)) {
+      fs::remove(entry->path(), ignored);
+    }
+  }
 }
 
 void renameDurably(const std::string& from, const std::string& to) {

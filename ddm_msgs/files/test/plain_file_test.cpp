@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -95,6 +96,20 @@ TEST_F(PlainFile, FilesOfOtherWritersAreNotTouched) {
   writeFileAtomically(path_, "new");
   EXPECT_EQ(readFile(others), "of another process");
   EXPECT_EQ(readFile(path_), "new");
+}
+
+TEST_F(PlainFile, WhatKilledWritersLeftBehindIsRemovedOnRequest) {
+  std::filesystem::create_directory(folder_.file("trial_000"));
+  const std::vector<std::string> others = {"file.unfinished.txt", "unfinished.0f",
+                                           "trial_000/a.csv"};
+  const std::vector<std::string> left = {"file.unfinished.0f12",
+                                         "trial_000/model.ddm.unfinished.9"};
+  for (const auto& names : {others, left}) {
+    for (const std::string& name : names) std::ofstream(folder_.file(name)) << "half";
+  }
+  removeUnfinished(folder_.file(""));
+  for (const std::string& name : others) EXPECT_TRUE(std::filesystem::exists(folder_.file(name)));
+  for (const std::string& name : left) EXPECT_FALSE(std::filesystem::exists(folder_.file(name)));
 }
 
 TEST_F(PlainFile, PermissionsFollowTheUmask) {

@@ -112,7 +112,7 @@ void NodeWatch::watch(const std::shared_ptr<State>& state) {
     watched = node;
     connection.reset();
     if (const auto address = addressOf(node)) {
-      connection = std::make_unique<Connection>(address->first, address->second);
+      connection = std::make_unique<Connection>(address->host, address->port);
       if (!connection->isOpen()) connection.reset();
     }
     const std::lock_guard<std::mutex> lock(state->mutex);

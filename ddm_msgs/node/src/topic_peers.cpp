@@ -12,8 +12,11 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
+#include <chrono>
 #include <map>
 #include <set>
+#include <stdexcept>
+#include <thread>
 
 #include "ddm_node/waiting.h"
 
@@ -23,7 +26,8 @@ namespace {
 using NodesByTopic = std::map<std::string, std::set<std::string>>;
 using Connections = std::set<std::pair<std::string, std::string>>;  // topic, subscriber
 
-constexpr std::chrono::seconds kLimit(5);  // who was stopped never answers
+constexpr std::chrono::seconds kLimit(5);   // who was stopped never answers
+constexpr std::chrono::seconds kEnding(3);  // a node that is ending may answer for a while
 
 /// Who publishes and who subscribes, as the master knows it; empty if it does not answer.
 std::optional<std::pair<NodesByTopic, NodesByTopic>> publishersAndSubscribers() {
@@ -69,11 +73,22 @@ Connections outgoingConnectionsAt(const std::string& host, std::uint32_t port) {
 }
 
 Connections outgoingConnections(const std::string& node) {
-  const std::optional<std::pair<std::string, std::uint32_t>> address = addressOf(node);
+  const std::optional<NodeAddress> address = addressOf(node);
   if (!address) return {};
-  return callWithin(kLimit,
-                    [address] { return outgoingConnectionsAt(address->first, address->second); })
+  return callWithin(kLimit, [at = *address] { return outgoingConnectionsAt(at.host, at.port); })
       .value_or(Connections());
+}
+
+/// Whether a node answers at this address.
+bool answersAt(const std::string& host, std::uint32_t port) {
+  XmlRpc::XmlRpcValue caller, response;
+  caller[0] = ros::this_node::getName();
+  XmlRpc::XmlRpcClient* const client =
+      ros::XMLRPCManager::instance()->getXMLRPCClient(host, static_cast<int>(port), "/");
+  if (client == nullptr) return false;
+  const bool answers = client->execute("getPid", caller, response);
+  ros::XMLRPCManager::instance()->releaseXMLRPCClient(client);
+  return answers;
 }
 
 }  // namespace
@@ -91,14 +106,13 @@ std::optional<XmlRpc::XmlRpcValue> askMaster(const std::string& method,
   return answer ? *answer : std::nullopt;
 }
 
-std::optional<std::pair<std::string, std::uint32_t>> addressOf(const std::string& node) {
+std::optional<NodeAddress> addressOf(const std::string& node) {
   XmlRpc::XmlRpcValue request;
   request[0] = ros::this_node::getName();
   request[1] = node;
   std::optional<XmlRpc::XmlRpcValue> uri = askMaster("lookupNode", request);
-  std::pair<std::string, std::uint32_t> address;
-  if (!uri ||
-      !ros::network::splitURI(static_cast<std::string>(*uri), address.first, address.second)) {
+  NodeAddress address;
+  if (!uri || !ros::network::splitURI(static_cast<std::string>(*uri), address.host, address.port)) {
     return std::nullopt;
   }
   return address;
@@ -188,6 +202,24 @@ std::vector<std::string> sharedTopics(const std::vector<std::string>& topics) {
     shared.push_back(topic + ": " + boost::algorithm::join(publishers, ", "));
   }
   return shared;
+}
+
+void requireFreeName() {
+  const std::string name = ros::this_node::getName();
+  const auto end = std::chrono::steady_clock::now() + kEnding;
+  std::optional<NodeAddress> address;
+  while ((address = addressOf(name)) && callWithin(kLimit, [at = *address] {
+                                          return answersAt(at.host, at.port);
+                                        }).value_or(false)) {
+    if (std::chrono::steady_clock::now() > end) {
+      throw std::runtime_error(
+          "node " + name + " is running already, at " + address->host + ":" +
+          std::to_string(address->port) +
+          ", and the ROS master would end that one: end its launch first, or set ROS_NAMESPACE or "
+          "ROS_MASTER_URI for this one");
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
 }
 
 }  // namespace ddm

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "ddm_params/home.h"
 #include "ddm_params/renamed_keys.h"
 #include "ddm_params/yaml_text.h"
 
@@ -78,6 +79,21 @@ void overlay(const YAML::Node& above, YAML::Node* below) {
       (*below)[name] = YAML::Clone(block.second);  // or an alias would change with its anchor
     }
   }
+}
+
+void setValue(const std::string& text, YAML::Node* blocks) {
+  const std::size_t equals = text.find('=');
+  const std::size_t slash = text.find('/');
+  if (slash == std::string::npos || equals == std::string::npos || slash == 0 ||
+      slash + 1 >= equals) {
+    throw std::invalid_argument("--set must be BLOCK/KEY=VALUE, got '" + text + "'");
+  }
+  const std::string key = text.substr(slash + 1, equals - slash - 1);
+  const std::string value = expandHome(text.substr(equals + 1));
+  if (value.empty()) return;
+  const bool list = value.front() == '[' && value.back() == ']';
+  (*blocks)[text.substr(0, slash)][key] =
+      list ? parseYaml(value, "--set " + text) : YAML::Node(value);
 }
 
 bool hasKey(const YAML::Node& blocks, const std::string& block, const std::string& key) {

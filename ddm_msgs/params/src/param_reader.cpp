@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_params/param_reader.h"
 
+#include <dlfcn.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -19,12 +21,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::string sourcedWorkspaces() {
+  const char* const prefixes = std::getenv("CMAKE_PREFIX_PATH");
+  return prefixes == nullptr ? "" : prefixes;
+}
+
+/// The workspace of this library, PREFIX of PREFIX/lib/libddm_params.so; in a devel space of catkin tools
+/// that is WORKSPACE/.private/ddm_msgs.
+std::string ownPrefixes() {
+  Dl_info library{};
+  std::error_code ignored;
+  if (::dladdr(reinterpret_cast<void*>(&ownPrefixes), &library) == 0) return "";
+  const std::string prefix =
+      fs::canonical(library.dli_fname, ignored).parent_path().parent_path().string();
+  return prefix + ":" + prefix + "/../..";
+}
+
 /// The blocks of all packages: those in the manuals that ddm_register_manuals() of
-/// ddm_msgs/cmake/ddm_build.cmake has registered, in each workspace that was sourced.
+/// ddm_msgs/cmake/ddm_build.cmake has registered, in each workspace that was sourced and, since services
+/// and cron jobs source none, in that of this library.
 std::set<std::string> registeredBlocks() {
   std::set<std::string> blocks;
-  const char* const workspaces = std::getenv("CMAKE_PREFIX_PATH");
-  std::istringstream prefixes(workspaces == nullptr ? "" : workspaces);
+  std::istringstream prefixes(sourcedWorkspaces() + ":" + ownPrefixes());
   std::error_code ignored;  // a workspace without manuals
   for (std::string prefix, block; std::getline(prefixes, prefix, ':');) {
     for (const auto& package : fs::directory_iterator(prefix + "/share/ddm_params", ignored)) {
@@ -106,7 +124,8 @@ void ParamReader::report(const std::string& problem) {
 std::vector<std::string> ParamReader::problems() const {
   std::vector<std::string> out = problems_;
   std::set<std::string> known = registeredBlocks();
-  const char* const remedy = known.empty() ? ": source the setup.bash of its workspace" : "";
+  const char* const remedy =
+      sourcedWorkspaces().empty() ? ": source the setup.bash of its workspace" : "";
   known.insert(read_.begin(), read_.end());
   for (const auto& entry : root_) {
     const std::string name = oneLine(entry.first);

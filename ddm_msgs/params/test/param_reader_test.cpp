@@ -229,9 +229,8 @@ TEST(ParamReader, LeavesBlocksAloneThatPackagesOfAnySourcedWorkspaceHaveRegister
   const Workspaces sourced(below.file(""));
   ASSERT_EQ(mpcProblems(yaml).size(), 1u);
   EXPECT_TRUE(contains(mpcProblems(yaml)[0], " my_robot "));
-  const Workspaces none("");
-  EXPECT_EQ(mpcProblems(yaml).size(), 4u);
-  EXPECT_TRUE(contains(mpcProblems(yaml)[0], "setup.bash"));
+  const Workspaces none("");  // but that of the library
+  EXPECT_TRUE(testing::names(mpcProblems("my_robot: 1").at(0), {" my_robot ", "setup.bash"}));
 }
 
 TEST(ParamReader, IgnoresAForeignBlockOnlyIfTold) {

@@ -154,7 +154,7 @@ def files():
     yield from cases([AT_REST], ("other seed", STAYS, "holds another experiment", "experiment/seed"),
                      ("unfinished bag", REFUSED_AND_KEPT, "new.bag.active", "rosbag reindex"),
                      ("unfinished trial", "finished, kept, equal"), ("two writers", "one is whole"))
-    yield from cases([EXPLORING, FIRST], ("begin experiment", NOTICED, "another experiment is running in the folder"))
+    yield from cases([EXPLORING, FIRST], ("begin experiment", NOTICED, "another process is running in the folder"))
 
 
 CASES = [case for group in (processes, missed, messages, real_time, robot, values, files) for case in group()]

@@ -20,6 +20,10 @@ std::string readFile(const std::string& path);
 ///         that is not a regular file; then nothing has changed, unless the disk fails at the end
 void writeFileAtomically(const std::string& path, const std::string& bytes);
 
+/// Removes what writeFileAtomically() left behind in a folder, and in those within, when its process
+/// was killed. Only for a folder in which no other process writes.
+void removeUnfinished(const std::string& folder);
+
 /// Renames a file that somebody else wrote and closed. Its bytes are on the disk before it has the
 /// name, and the name is when this returns: after a power cut nothing incomplete has it.
 /// @throws std::runtime_error with the path and the reason

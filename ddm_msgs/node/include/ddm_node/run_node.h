@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "ddm_node/node_params.h"
+#include "ddm_node/topic_peers.h"
 #include "ddm_params/param_reader.h"
 
 namespace ddm {
@@ -87,6 +88,8 @@ void runUntilEnd(const Look& look, const Stop& stop) {
 ///     ros::spin();
 ///   });
 ///
+/// A node whose name is taken is refused, see requireFreeName().
+///
 /// @param run  (node handle, private node handle, reader of its parameters)
 /// @return exit code: 1 if `run` threw an exception, whose text is logged. After `run`, the process
 ///         ends within ten seconds: ROS tells the master for each topic that it goes, and a master
@@ -100,6 +103,12 @@ int runNode(const std::string& name, int argc, char** argv, const Run& run,
     ros::XMLRPCManager::instance()->bind("shutdown", internal::onShutdownRequest);
   } else {
     ros::init(argc, argv, name);
+  }
+  try {
+    requireFreeName();
+  } catch (const std::exception& e) {
+    ROS_FATAL_STREAM(name << ": " << e.what());
+    return EXIT_FAILURE;
   }
   ros::NodeHandle nh;
   ros::NodeHandle pnh("~");  // outside the try: its destructor shuts the log down

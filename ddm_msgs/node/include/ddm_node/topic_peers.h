@@ -7,10 +7,14 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace ddm {
+
+struct NodeAddress {
+  std::string host;
+  std::uint32_t port = 0;
+};
 
 /// Calls a method of the master's interface.
 /// @return its answer; empty if there is no master, or none within five seconds: one that was
@@ -18,10 +22,16 @@ namespace ddm {
 std::optional<XmlRpc::XmlRpcValue> askMaster(const std::string& method,
                                              const XmlRpc::XmlRpcValue& request);
 
-/// Host and port at which a node answers others; empty if the master does not know it, or does not
+/// Where a node was when it registered; empty if the master does not know it, or does not
 /// answer.
 /// @param node  resolved name
-std::optional<std::pair<std::string, std::uint32_t>> addressOf(const std::string& node);
+std::optional<NodeAddress> addressOf(const std::string& node);
+
+/// When a node registers, the master ends the one that had its name: a second launch would end the
+/// nodes of the first, and take the motors from a robot. To be called after ros::init() and before the
+/// first node handle, which registers. Where two nodes start at once, both may pass.
+/// @throws std::runtime_error with name and address if a node with the name of this one answers
+void requireFreeName();
 
 /// "publisher(s) of /torque: /mpc_node" or "nobody publishes /torque", as the master knows it.
 /// @param topic  resolved name

@@ -25,6 +25,11 @@ YAML::Node parseBlocks(const std::string& text, const std::string& source);
 /// and a block without a value changes nothing.
 void overlay(const YAML::Node& above, YAML::Node* below);
 
+/// Sets one value from the command line, an option --set BLOCK/KEY=VALUE. A list is [A, B]. With an empty
+/// value nothing is set: launch files pass an argument that was not given like that.
+/// @throws std::invalid_argument if the text is of another form
+void setValue(const std::string& text, YAML::Node* blocks);
+
 /// Whether a block is a map that gives this key.
 bool hasKey(const YAML::Node& blocks, const std::string& block, const std::string& key);
 

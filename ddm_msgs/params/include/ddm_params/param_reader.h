@@ -35,7 +35,7 @@ YAML::Node toYaml(const Options& options) {
 /// A block that another package has registered is left alone, so that each program can be given the
 /// same files. A block that nobody knows is a mistake. A package registers its blocks by the manual
 /// in its CMakeLists.txt, ddm_register_manuals(config/mpc.yaml); they are found in the workspaces
-/// that setup.bash has put into CMAKE_PREFIX_PATH.
+/// that setup.bash has put into CMAKE_PREFIX_PATH, and in that of this library.
 class ParamReader {
  public:
   /// @param root    blocks by name; nothing at all is an empty configuration

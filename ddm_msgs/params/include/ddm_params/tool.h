@@ -7,6 +7,9 @@
 #include <iostream>
 #include <optional>
 #include <string>
+#include <vector>
+
+#include "ddm_params/home.h"
 
 namespace ddm {
 
@@ -37,7 +40,9 @@ inline bool parseCommandLine(
     names.add(positional->name, positional->max_count);
   }
   po::variables_map values;
-  po::command_line_parser parser(argc, argv);
+  std::vector<std::string> words;
+  for (int i = 1; i < argc; ++i) words.push_back(expandHome(argv[i]));
+  po::command_line_parser parser(words);
   po::store(parser.options(all).positional(names).style(style).run(), values);
   if (values.count("help") > 0) {
     std::cout << options << "\n";
