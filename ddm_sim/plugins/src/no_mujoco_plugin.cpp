@@ -8,8 +8,9 @@ namespace ddm {
 
 std::shared_ptr<PlantPlugin> makeMujocoPlugin() {
   throw std::invalid_argument(
-      "plant/type mujoco needs MuJoCo and EGL, which ddm_sim was built without: install "
-      "libmujoco-dev and libegl-dev, then configure and build the workspace again");
+      "plant/type mujoco needs MuJoCo, EGL and TinyXML-2, which ddm_sim was built without: install "
+      "libmujoco-dev, libegl-dev and libtinyxml2-dev, then configure and build the workspace "
+      "again");
 }
 
 }  // namespace ddm
