@@ -165,20 +165,17 @@ std::string resolved(const std::string& name, const FindPackage& find_package) {
       " in ROS_PACKAGE_PATH, or a relative path, which counts from the folder of the model file");
 }
 
+bool isMeshKind(const std::string& file) {
+  const std::string kind = boost::to_lower_copy(fs::path(file).extension().string());
+  return kind == ".stl" || kind == ".obj" || kind == ".msh";
+}
+
 void requireMesh(const XMLElement& element, const std::string& named, const std::string& file) {
   const std::string line =
       "the mesh \"" + named + "\" in line " + std::to_string(element.GetLineNum()) + " ";
   if (!fs::is_regular_file(file)) {
     throw std::invalid_argument(line + "is not there: no file " + file +
                                 "; correct its name, or fetch the package that holds it");
-  }
-  const std::string kind = boost::to_lower_copy(fs::path(file).extension().string());
-  if (kind != ".stl" && kind != ".obj" && kind != ".msh") {
-    throw std::invalid_argument(
-        line +
-        "is no STL, OBJ or MSH file, which MuJoCo reads: convert it, for example `assimp export " +
-        fs::path(file).filename().string() + " " + fs::path(file).stem().string() +
-        ".stl` (Debian's assimp-utils), and name the new file in the model");
   }
   std::string first(12, '\0');
   std::ifstream(file, std::ios::binary).read(first.data(), 12);
@@ -203,6 +200,9 @@ std::string hintFor(const std::string& error) {
            "(ASCII STL) must be saved as binary STL";
   }
   if (has(error, "ASCII file")) return "save the mesh as binary STL";
+  if (has(error, "problem reading attribute") || has(error, "bad format in attribute")) {
+    return "the value of this attribute must be numbers, separated by blanks";
+  }
   if (has(error, "llocate")) {
     return "it needs more memory than the 4 GB that it may: make its <size>, meshes or textures "
            "smaller";

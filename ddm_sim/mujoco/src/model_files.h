@@ -41,9 +41,11 @@ ModelText readMjcf(const std::string& text, const std::string& path,
 /// @throws std::invalid_argument with the name and what helps, if the package cannot be found
 std::string resolved(const std::string& name, const FindPackage& find_package);
 
+/// Whether MuJoCo reads this kind of mesh, by the end of its name.
+bool isMeshKind(const std::string& file);
+
 /// @param named  the file as the model has it, for the message
-/// @throws std::invalid_argument naming the file and what helps, if MuJoCo cannot read this kind of
-///         mesh
+/// @throws std::invalid_argument naming the file and what helps, if there is no such mesh
 void requireMesh(const tinyxml2::XMLElement& element, const std::string& named,
                  const std::string& file);
 

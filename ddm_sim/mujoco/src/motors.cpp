@@ -81,6 +81,10 @@ std::vector<Motor> motorsOf(const MujocoModel& model, const MujocoOptions& optio
     if (motor.limit) *motor.limit /= std::abs(motor.gear);
     motors.push_back(motor);
   }
+  if (model.get().njnt == 0) {
+    throw std::invalid_argument("plant/model must have a joint that moves, got none in " +
+                                model.uri());
+  }
   if (motors.empty()) {
     std::string joints;
     for (const std::string& joint : model.names(mjOBJ_JOINT)) {

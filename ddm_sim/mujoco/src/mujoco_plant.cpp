@@ -363,6 +363,7 @@ void requireVisible(const std::shared_ptr<const MujocoModel>& model, const Mujoc
 }
 
 MujocoOptions completed(MujocoOptions options, const MujocoModel& model) {
+  requirePositionsAndRates(model);
   std::string digest;
   try {
     digest = digestWith(model.digest(), options.scene.background_pictures);

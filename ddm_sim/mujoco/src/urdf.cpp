@@ -235,6 +235,10 @@ class MeshNames {
     const std::string file = in_folder && fs::is_regular_file(folder_ / *in_folder)
                                  ? (folder_ / *in_folder).string()
                                  : fileOf(*mesh, "filename", folder_, find_package_);
+    if (!isMeshKind(file)) {
+      unreadable_.insert(named);
+      return;
+    }
     requireMesh(*mesh, named, file);
     std::string& name = names_[{file, attribute(*mesh, "scale")}];
     if (name.empty()) {
@@ -245,6 +249,17 @@ class MeshNames {
     mesh->SetAttribute("filename", name.c_str());
   }
 
+  /// @throws std::invalid_argument with all files that MuJoCo does not read
+  void requireReadable() const {
+    if (unreadable_.empty()) return;
+    const fs::path first(*unreadable_.begin());
+    throw std::invalid_argument(
+        "it has meshes that are no STL, OBJ or MSH files, which MuJoCo reads: " +
+        join(unreadable_, ", ") + "; convert each, for example by `assimp export " +
+        first.filename().string() + " " + first.stem().string() +
+        ".stl` (Debian's assimp-utils), and name the new files in the model");
+  }
+
   std::vector<std::pair<std::string, std::string>> files;  ///< by their new names
 
  private:
@@ -252,6 +267,7 @@ class MeshNames {
   const FindPackage& find_package_;
   const XMLElement* compiler_;
   std::map<std::pair<std::string, std::string>, std::string> names_;  // by file and scale
+  std::set<std::string> unreadable_;
 };
 
 /// MuJoCo by default drops visual shapes, takes the mass of a link from its shapes where it has no
@@ -367,6 +383,7 @@ Urdf readUrdf(const std::string& text, const std::string& path, const FindPackag
       }
     }
   }
+  meshes.requireReadable();
   urdf.model.meshes = meshes.files;
   completeCompiler(compiler);
   urdf.model.path = path;

@@ -117,6 +117,15 @@ int tryPlant(const std::string& plant_file) {
   return brightest;
 }
 
+std::vector<std::string> meshesIn(const std::string& folder) {
+  std::vector<std::string> meshes;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const fs::path kind = entry.path().extension();
+    if (kind == ".obj" || kind == ".stl") meshes.push_back(entry.path().string());
+  }
+  return meshes;
+}
+
 void writeModels(const testing::ModelFolder& folder) {
   const std::string plant = "plant: {type: mujoco, dt: 0.1, tolerance: 10.0, model: ";
   folder.write("base.obj", testing::kTetrahedron);
@@ -163,10 +172,12 @@ TEST(DamagedModels, AreDrawnOrRefusedWithAReason) {
     fs::current_path(scratch.path());
     const fs::path plant = plants[static_cast<std::size_t>(copy) % plants.size()].filename();
     const YAML::Node block = YAML::LoadFile(plant.string())["plant"];
-    std::string file = block["model"].as<std::string>();
-    if (copy % 10 == 9 && fs::exists("base.obj")) file = "base.obj";  // sometimes a mesh
-    const std::string text = readModelFile(file);
-    std::ofstream(file, std::ios::binary) << Damage(static_cast<unsigned int>(copy))(text);
+    std::vector<std::string> files = {block["model"].as<std::string>()};
+    if (copy % 5 == 4) files = meshesIn(".");
+    for (const std::string& file : files) {
+      const std::string damaged = Damage(static_cast<unsigned int>(copy))(readModelFile(file));
+      std::ofstream(file, std::ios::binary) << damaged;
+    }
     try {
       EXPECT_GE(tryPlant(plant.string()), 10) << "black: copy " << copy << " of " << plant;
       ++outcomes["loaded"];

@@ -199,6 +199,14 @@ TEST(MujocoOptions, AreCompletedByLimitsAndDigestAndRefuseThatOfAnotherFile) {
   }
 }
 
+TEST(MujocoOptions, AreRefusedForAFreeJointBeforeAnythingElseOfTheModel) {
+  const ModelFolder folder;
+  const auto model = folder.loadText(
+      armText("<worldbody><body><freejoint name='loose'/><geom size='0.1'/></body></worldbody>"));
+  EXPECT_TRUE(testing::names(refusalOf([&] { completed(armOptions(), *model); }),
+                             {"plant/model", "free joint", "loose"}));
+}
+
 TEST(MujocoOptions, HaveADigestOfTheBackgroundsPicturesToo) {
   const ModelFolder folder;
   const auto model = folder.loadText(armText());

@@ -270,7 +270,10 @@ TEST_F(UrdfTest, NamesAMeshThatMujocoCannotRead) {
   folder_.write("lfs.stl", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n");
   Leg leg;
   leg.shape = "<mesh filename='arm.DAE'/>";
-  EXPECT_TRUE(isRefused(leg, {"\"arm.DAE\"", "STL", "assimp"}));
+  leg.more =
+      "<link name='hand'><visual><geometry><mesh filename='b.dae'/></geometry></visual></link>" +
+      joint("grip", "fixed", "thigh", "hand");
+  EXPECT_TRUE(isRefused(leg, {"arm.DAE, b.dae", "STL", "assimp export arm.DAE"}));
   leg.shape = "<mesh filename='lfs.stl'/>";
   EXPECT_TRUE(isRefused(leg, {"\"lfs.stl\"", "git lfs pull"}));
   leg.shape = "<mesh filename='gone.stl'/>";
