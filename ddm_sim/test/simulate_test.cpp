@@ -234,6 +234,7 @@ TEST_F(Simulate, DescribesAModelFile) {
   EXPECT_EQ(about["torque"][0].as<std::string>(), "force_n");
   EXPECT_EQ(about["joints"][0]["kind"].as<std::string>(), "length");
   EXPECT_EQ(about["evaluation_steps"].as<int>(), 200);
+  EXPECT_TRUE(contains(about["renderer"].as<std::string>(), "llvmpipe"));  // software
 }
 
 TEST_F(Simulate, TakesThePlantOfAFile) {

@@ -31,6 +31,14 @@ rlim_t addressSpace() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc == 2 && std::string(argv[1]) == "--help") {
+    std::cout
+        << "usage: try_model PATH [NAME FILE]... < TEXT\n\nReads the text of a model file as "
+           "MuJoCo "
+           "does and prints ok, or the reason for which a plant\nrefuses it. Plants of the type "
+           "mujoco run this program before they read a model themselves.\n";
+    return EXIT_SUCCESS;
+  }
   constexpr rlim_t kMemory = rlim_t{4} << 30;  // more than this program needs by itself [bytes]
   constexpr rlim_t kComputing = 60;            // [s]
   constexpr unsigned int kWaiting = 300;       // for a loaded machine or a file that never ends [s]
