@@ -215,7 +215,7 @@ ResolvedConfiguration resolve(const Arguments& arguments) {
     overlay(layer.blocks, &resolved.blocks);
     resolved.sources += (resolved.sources.empty() ? "" : ", ") + layer.file;
   }
-  resolved.blocks.remove("version");  // of the code that saved a file
+  for (const char* made_by : {"version", "renderer"}) resolved.blocks.remove(made_by);
   forgetChecksums(values, &resolved.blocks);
   overlay(values, &resolved.blocks);
   follow("experiment", "plant", YAML::Node(plant), &resolved.blocks);

@@ -45,8 +45,20 @@ std::string runName(const RunId& run) {
   return name;
 }
 
+namespace {
+
+/// The configuration, with the driver that draws the images where their pixels depend on it.
+YAML::Node withRenderer(const Configuration& configuration) {
+  YAML::Node blocks = toYaml(configuration);
+  const std::string renderer = configuration.robot ? "" : configuration.plant->renderer();
+  if (!renderer.empty()) blocks["renderer"] = renderer;
+  return blocks;
+}
+
+}  // namespace
+
 RunFolder::RunFolder(const Configuration& configuration)
-    : ResultsFolder(configuration.experiment.runs, toYaml(configuration)),
+    : ResultsFolder(configuration.experiment.runs, withRenderer(configuration)),
       configuration_(configuration) {
   readRows(path() + "/" + kRows);
 }

@@ -30,7 +30,7 @@ packages_to_run=(
   libopencv-imgproc-dev libopencv-imgcodecs-dev libeigen3-dev libceres-dev libyaml-cpp-dev libbz2-dev
   libboost-dev libboost-program-options-dev libboost-filesystem-dev libbenchmark-dev
   # plants of model files: their physics, and their pictures without a screen
-  libmujoco-dev libegl-dev libegl1 libgl1-mesa-dri
+  libmujoco-dev libegl-dev libegl1 libgl1-mesa-dri libtinyxml2-dev
   # tests
   libgtest-dev
   # figures

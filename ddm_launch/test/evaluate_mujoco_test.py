@@ -27,6 +27,7 @@ class EvaluateMujocoTest(SharedScratchCase):
         folder = os.path.join(cls.class_scratch, "run")
         code, output = run_experiment(*PLANT, "--config", cls.config, "--trials", "0", "--out", folder)
         assert code == 0, output
+        cls.run_folder = folder
         cls.model = os.path.join(folder, "trial_000", "model.ddm")
 
     def evaluate(self, jobs):
@@ -40,6 +41,12 @@ class EvaluateMujocoTest(SharedScratchCase):
         for row in rows:
             del row["plan_ms_median"], row["plan_ms_p99"]
         return rows, read_yaml(folder, "evaluation.yaml")
+
+    def test_the_configuration_names_the_renderer_and_can_be_used_again(self):
+        self.assertIn("llvmpipe", read_yaml(self.run_folder, "config.yaml")["renderer"])
+        code, output = run_experiment("--config", os.path.join(self.run_folder, "config.yaml"), "--out",
+                                      self.file("again"))
+        self.assertEqual(code, 0, output)
 
     def test_jobs_change_nothing_but_the_time_it_takes(self):
         one = self.evaluate(1)

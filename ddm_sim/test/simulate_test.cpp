@@ -241,6 +241,7 @@ TEST_F(SimulateModelFile, DescribesAModelFile) {
   EXPECT_EQ(about["torque"][0].as<std::string>(), "force_n");
   EXPECT_EQ(about["joints"][0]["kind"].as<std::string>(), "length");
   EXPECT_EQ(about["evaluation_steps"].as<int>(), 200);
+  EXPECT_TRUE(contains(about["renderer"].as<std::string>(), "llvmpipe"));  // software
 }
 
 TEST_F(SimulateModelFile, TakesThePlantOfAFile) {

@@ -82,7 +82,7 @@ bool parse(int argc, char** argv, Arguments* arguments) {
       "folder is made if need be; pictures of these names in it are replaced");
   add("describe", po::bool_switch(&arguments->describe),
       "print as YAML what the plant says of itself, its joints, units, limits, start, goal and "
-      "tolerance, and exit");
+      "tolerance, and what draws it, and exit");
   add("config", po::value(&arguments->configs)->value_name("FILE")->composing(),
       "YAML file with overrides of the block `plant`; repeatable, later wins");
   std::vector<std::string> words;
@@ -108,11 +108,11 @@ std::vector<std::string> configFiles(const Arguments& arguments) {
   return files;
 }
 
-std::unique_ptr<Plant> configuredPlant(const Arguments& arguments) {
+std::shared_ptr<const PlantPlugin> configuredPlant(const Arguments& arguments) {
   ParamReader params = ParamReader::fromFiles(configFiles(arguments));
   const auto plant = readPlant(&params);
   params.requireValid();
-  return makePlant(*plant);
+  return plant;
 }
 
 void writeFrame(const Plant& plant, const std::string& folder, std::size_t row) {
@@ -195,7 +195,8 @@ YAML::Node numbers(const Eigen::VectorXd& values) {
 
 /// What a plant says of itself, as YAML. Numbers are in the units that the names in `state` and
 /// `torque` end with.
-std::string describe(const PlantInfo& info) {
+/// @param renderer  empty: the images do not depend on a driver
+std::string describe(const PlantInfo& info, const std::string& renderer) {
   YAML::Node about;
   for (const Joint& joint : info.joints) {
     YAML::Node entry;
@@ -214,13 +215,15 @@ std::string describe(const PlantInfo& info) {
   about["error_unit"] = info.error_unit;
   about["tolerance"] = valueToYaml(info.tolerance);
   if (info.evaluation_steps > 0) about["evaluation_steps"] = info.evaluation_steps;
+  if (!renderer.empty()) about["renderer"] = renderer;
   return YAML::Dump(about) + "\n";
 }
 
 void simulate(const Arguments& arguments) {
-  const std::unique_ptr<Plant> plant = configuredPlant(arguments);
+  const std::shared_ptr<const PlantPlugin> maker = configuredPlant(arguments);
+  const std::unique_ptr<Plant> plant = makePlant(*maker);
   if (arguments.describe) {
-    std::cout << describe(plant->info());
+    std::cout << describe(plant->info(), maker->renderer());
     return;
   }
   setStart(arguments, plant.get());

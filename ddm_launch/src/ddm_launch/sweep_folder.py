@@ -14,7 +14,7 @@ from ddm_launch.settings import differences, read_yaml
 from ddm_model.plain_file import remove_unfinished, write_file
 
 # Keys of config.yaml in which the seeds of one sweep may differ.
-MAY_DIFFER = {"version", "experiment/seed", "experiment/trials", "experiment/runs", "experiment/timeout",
+MAY_DIFFER = {"version", "renderer", "experiment/seed", "experiment/trials", "experiment/runs", "experiment/timeout",
               "sim/watchdog"}
 
 FULL_BYTES = 1 << 20  # free space below which a disk may be why nothing was said

@@ -13,6 +13,8 @@ namespace ddm {
 namespace {
 
 constexpr unsigned int kMaxRenderbufferSize = 0x84E8;  // GL_MAX_RENDERBUFFER_SIZE
+constexpr unsigned int kRenderer = 0x1F01;             // GL_RENDERER
+constexpr unsigned int kVersion = 0x1F02;              // GL_VERSION
 
 [[noreturn]] void refuse(const std::string& step) {
   std::ostringstream message;
@@ -23,11 +25,14 @@ constexpr unsigned int kMaxRenderbufferSize = 0x84E8;  // GL_MAX_RENDERBUFFER_SI
 }
 
 /// The one display of this process. It stays open until the process ends: drivers do not survive
-/// being closed while a context of another thread lives.
-/// Mesa's llvmpipe draws on the caller's thread, unless LP_NUM_THREADS asks for more: with threads of its own, version 22.3.6
-/// has crashed (in a search of the resources of a scene), and small pictures are not drawn faster.
+/// being closed while a context of another thread lives. Mesa's llvmpipe draws on the caller's
+/// thread, unless LP_NUM_THREADS asks for more: with threads of its own, version 22.3.6 has crashed
+/// (in a search of the resources of a scene), and small pictures are not drawn faster. Software
+/// draws unless LIBGL_ALWAYS_SOFTWARE says otherwise: graphics cards draw other pixels, each its
+/// own, and a model that has learned from the one's images sees new things in the other's.
 /// @throws std::runtime_error; the next call tries again
 EGLDisplay openDisplay() {
+  setenv("LIBGL_ALWAYS_SOFTWARE", "1", /*overwrite=*/0);
   setenv("LP_NUM_THREADS", "0", /*overwrite=*/0);
   const auto platform_display = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
       eglGetProcAddress("eglGetPlatformDisplayEXT"));
@@ -73,6 +78,18 @@ int EglContext::maxSize() const {
   int size = 0;
   if (get != nullptr) get(kMaxRenderbufferSize, &size);
   return size;
+}
+
+std::string EglContext::renderer() const {
+  using GetString = const unsigned char* (*)(unsigned int);
+  const auto get = reinterpret_cast<GetString>(eglGetProcAddress("glGetString"));
+  std::string text;
+  for (const unsigned int name : {kRenderer, kVersion}) {
+    const unsigned char* const part = get == nullptr ? nullptr : get(name);
+    text += (text.empty() ? "" : ", ") +
+            std::string(part == nullptr ? "unknown" : reinterpret_cast<const char*>(part));
+  }
+  return text;
 }
 
 EglContext::Current::Current(const EglContext& context)

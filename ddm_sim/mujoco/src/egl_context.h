@@ -4,6 +4,8 @@
 
 #include <EGL/egl.h>
 
+#include <string>
+
 namespace ddm {
 
 /// A context of its own, current on a thread only while a Current is alive there. OpenGL calls
@@ -36,6 +38,10 @@ class EglContext {
   /// Largest side of a picture that this driver can draw [pixels].
   /// @pre this context is current
   int maxSize() const;
+
+  /// GL_RENDERER and GL_VERSION: "llvmpipe (LLVM 15.0.6, 256 bits), 4.5 (...) Mesa 22.3.6".
+  /// @pre this context is current
+  std::string renderer() const;
 
  private:
   EGLDisplay display_;

@@ -2,45 +2,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "model_files.h"
 
+#include <boost/algorithm/string/case_conv.hpp>
 #include <boost/crc.hpp>
-#include <boost/property_tree/ptree.hpp>
-#include <boost/property_tree/xml_parser.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
-#include <regex>
 #include <set>
-#include <sstream>
 #include <stdexcept>
-#include <vector>
+
+#include "xml_text.h"
 
 namespace ddm {
 namespace {
 
 namespace fs = std::filesystem;
+using tinyxml2::XMLElement;
 
 std::string digestOf(const boost::crc_32_type& crc) {
   char digest[32];
   std::snprintf(digest, sizeof(digest), "crc32-%08x", crc.checksum());  // no reader's number
   return digest;
-}
-
-/// Values of the attributes of elements, where both names match.
-std::vector<std::string> attributes(const std::string& text, const std::string& element,
-                                    const std::string& name) {
-  const std::regex tag("<(?:" + element + ")\\s[^<>]{1,10000}>");
-  const std::regex attribute("\\b(?:" + name + ")\\s*=\\s*[\"']([^\"']{1,1000})[\"']");
-  const std::sregex_iterator end;
-  std::vector<std::string> values;
-  for (std::sregex_iterator match(text.begin(), text.end(), tag); match != end; ++match) {
-    const std::string inside = match->str();
-    for (std::sregex_iterator value(inside.begin(), inside.end(), attribute); value != end;
-         ++value) {
-      values.push_back((*value)[1]);
-    }
-  }
-  return values;
 }
 
 /// Finds files as MuJoCo does: beside the model, or in its folders of meshes and textures.
@@ -54,14 +35,16 @@ class Collector {
     const std::string bytes = readModelFile(file.string());
     crc_.process_bytes(bytes.data(), bytes.size());
     if (file.extension() != ".xml" && file.extension() != ".urdf") return;
-    const std::string text = withoutPackageUris(bytes, find_package_);
-    for (const std::string& more : attributes(text, "compiler", "meshdir|texturedir|assetdir")) {
-      folders_.insert(folder_ / more);
-    }
-    for (const std::string& name :
-         attributes(text, "include|mesh|texture|hfield|skin", "file\\w*")) {
-      names_.insert(name);
-    }
+    const XmlDocument document = parseXml(bytes);
+    forEachElement(document->RootElement(), [this](XMLElement* element) { addFolders(*element); });
+    forEachFile(document->RootElement(), [this](XMLElement* element, const std::string& name) {
+      const std::string file = attribute(*element, name.c_str());
+      try {
+        names_.insert(resolved(file, find_package_));
+      } catch (const std::invalid_argument&) {  // refused where MuJoCo is to read it
+        names_.insert(file);
+      }
+    });
     addNamed();
   }
 
@@ -74,6 +57,16 @@ class Collector {
   }
 
  private:
+  void addFolders(const XMLElement& element) {
+    if (std::string(element.Value()) == "include" && element.Attribute("file") != nullptr) {
+      names_.insert(attribute(element, "file"));
+    }
+    if (std::string(element.Value()) != "compiler") return;
+    for (const char* name : {"meshdir", "texturedir", "assetdir"}) {
+      if (element.Attribute(name) != nullptr) folders_.insert(folder_ / element.Attribute(name));
+    }
+  }
+
   std::set<std::string> pathsOf(const std::string& name) const {
     std::set<std::string> paths;
     for (const fs::path& folder : folders_) {
@@ -97,28 +90,26 @@ class Collector {
   boost::crc_32_type crc_;
 };
 
-constexpr char kScheme[] = "package://";
+constexpr char kPackage[] = "package://";
+constexpr char kFile[] = "file://";
 
-/// MuJoCo by default drops visual shapes and the folders of meshes, takes the mass of a link from
-/// its shapes where it has no <inertial>, and refuses inertias that rounding has made impossible.
-constexpr char kCompiler[] =
-    "<mujoco><compiler discardvisual=\"false\" strippath=\"false\" inertiafromgeom=\"false\" "
-    "balanceinertia=\"true\"/></mujoco>";
+bool has(const std::string& text, const std::string& word) {
+  return text.find(word) != std::string::npos;
+}
 
-bool has(const std::string& text, const char* word) { return text.find(word) != std::string::npos; }
+/// What stands between the first two quotation marks behind a word; empty if the word is not there.
+std::string quotedAfter(const std::string& text, const std::string& word) {
+  const std::size_t begin = text.find('\'', std::min(text.find(word), text.size()));
+  if (begin == std::string::npos) return "";
+  return text.substr(begin, text.find('\'', begin + 1) + 1 - begin);
+}
 
 }  // namespace
 
-std::string readModelFile(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  if (!in || in.bad()) throw std::invalid_argument(path + " cannot be read");
-  return bytes;
-}
-
-ModelFiles filesOf(const std::string& path, const FindPackage& find_package) {
-  Collector files(fs::absolute(path).parent_path(), find_package);
-  files.add(fs::absolute(path));
+ModelFiles filesOf(const ModelText& model, const FindPackage& find_package) {
+  Collector files(fs::absolute(model.path).parent_path(), find_package);
+  files.add(fs::absolute(model.path));
+  for (const auto& mesh : model.meshes) files.add(mesh.second);
   return files.files();
 }
 
@@ -133,63 +124,104 @@ std::string digestWith(const std::string& digest, const std::vector<std::string>
   return digestOf(crc);
 }
 
-bool isUrdf(const std::string& text) { return has(text, "<robot") && has(text, "</robot>"); }
-
-bool hasMujocoBlock(const std::string& text) { return has(text, "<mujoco"); }
-
-std::string urdfForMujoco(const std::string& text) {
-  if (hasMujocoBlock(text)) return text;
-  std::string out = text;
-  return out.insert(out.rfind("</robot>"), kCompiler);
+std::string rootOf(const std::string& text) {
+  return boost::to_lower_copy(std::string(parseXml(text)->RootElement()->Value()));
 }
 
-std::string hintFor(const std::string& text, const std::string& error) {
-  if (has(text, "<xacro:") || has(text, "${")) {
-    return "this is xacro: make URDF of it, xacro FILE > robot.urdf";
+ModelText readMjcf(const std::string& text, const std::string& path,
+                   const FindPackage& find_package) {
+  const XmlDocument document = parseXml(text);
+  XMLElement* const root = document->RootElement();
+  forEachFile(root, [&find_package](XMLElement* element, const std::string& name) {
+    element->SetAttribute(name.c_str(),
+                          resolved(attribute(*element, name.c_str()), find_package).c_str());
+  });
+  // As newer versions of MuJoCo do: without it, version 2.2.2 refuses a range that has no
+  // `limited`.
+  XMLElement* const compiler = document->NewElement("compiler");
+  compiler->SetAttribute("autolimits", "true");
+  root->InsertFirstChild(compiler);
+  return {path, xmlText(*document), {}};
+}
+
+std::string resolved(const std::string& name, const FindPackage& find_package) {
+  if (name.rfind(kFile, 0) == 0) return name.substr(sizeof(kFile) - 1);
+  if (name.rfind(kPackage, 0) != 0) {
+    if (!has(name, "://")) return name;
+    throw std::invalid_argument("names \"" + name +
+                                "\", which must be a path, package://PACKAGE/PATH or file://PATH");
   }
+  const std::size_t begin = sizeof(kPackage) - 1;
+  const std::size_t end = std::min(name.find('/', begin), name.size());
+  const std::string package = name.substr(begin, end - begin);
+  const std::string folder = package.empty() ? "" : find_package(package);
+  if (!folder.empty()) return folder + name.substr(end);
+  throw std::invalid_argument(
+      "names \"" + name + "\", in which " +
+      (package.empty()
+           ? "the package has no name: write package://PACKAGE/PATH with a package"
+           : "the package " + package +
+                 " cannot be found: source the setup.bash of its workspace, or use a package") +
+      " in ROS_PACKAGE_PATH, or a relative path, which counts from the folder of the model file");
+}
+
+bool isMeshKind(const std::string& file) {
+  const std::string kind = boost::to_lower_copy(fs::path(file).extension().string());
+  return kind == ".stl" || kind == ".obj" || kind == ".msh";
+}
+
+void requireMesh(const XMLElement& element, const std::string& named, const std::string& file) {
+  const std::string line =
+      "the mesh \"" + named + "\" in line " + std::to_string(element.GetLineNum()) + " ";
+  if (!fs::is_regular_file(file)) {
+    throw std::invalid_argument(line + "is not there: no file " + file +
+                                "; correct its name, or fetch the package that holds it");
+  }
+  std::string first(12, '\0');
+  std::ifstream(file, std::ios::binary).read(first.data(), 12);
+  if (first == "version http") {
+    throw std::invalid_argument(
+        line +
+        "is a pointer of Git LFS without the mesh: run `git lfs pull` in the "
+        "repository that holds " +
+        file);
+  }
+}
+
+std::string hintFor(const std::string& error) {
   if (has(error, "mesh file type")) {
-    return "MuJoCo reads STL, OBJ and MSH: convert the mesh, or leave this shape out";
+    return "MuJoCo reads STL, OBJ and MSH: convert the mesh, for example with `assimp export` of "
+           "Debian's "
+           "assimp-utils, or leave this shape out";
   }
-  if (has(error, "mass and inertia of moving bodies") && isUrdf(text)) {
-    return "each link that a joint moves must have an <inertial>";
+  if (has(error, "number of faces should be")) {
+    return "make the mesh smaller, at most 200000 triangles, for example with MeshLab; a file of "
+           "text "
+           "(ASCII STL) must be saved as binary STL";
+  }
+  if (has(error, "ASCII file")) return "save the mesh as binary STL";
+  if (has(error, "problem reading attribute") || has(error, "bad format in attribute")) {
+    return "the value of this attribute must be numbers, separated by blanks";
+  }
+  if (has(error, "llocate")) {
+    return "it needs more memory than the 4 GB that it may: make its <size>, meshes or textures "
+           "smaller";
+  }
+  if (has(error, "mass and inertia") || has(error, "inertia must")) {
+    return "each body (link) that a joint moves needs a mass and inertias > 0 that a body can "
+           "have: give it an "
+           "<inertial>, or in MJCF a geom with mass";
+  }
+  for (const char* what :
+       {"unrecognized attribute", "unrecognized element", "unrecognized model element",
+        "unrecognized actuator type", "unrecognized equality", "invalid keyword"}) {
+    if (!has(error, what)) continue;
+    const std::string word = quotedAfter(error, what);
+    return "this is MuJoCo " + std::string(mj_versionString()) + ", which does not know " +
+           (word.empty() ? "this" : word) +
+           ": it came later, or is misspelt; leave it out, or use a file for this version";
   }
   return "";
-}
-
-std::map<std::string, double> effortLimits(const std::string& text) {
-  namespace pt = boost::property_tree;
-  std::istringstream in(text);
-  pt::ptree root;
-  try {
-    pt::read_xml(in, root);
-  } catch (const pt::xml_parser_error& e) {
-    throw std::invalid_argument("line " + std::to_string(e.line()) + ": " + e.message());
-  }
-  std::map<std::string, double> limits;
-  const auto robot = root.get_child_optional("robot");
-  if (!robot) return limits;
-  for (const auto& child : *robot) {
-    if (child.first != "joint") continue;
-    const auto effort = child.second.get_optional<double>("limit.<xmlattr>.effort");
-    if (effort) limits[child.second.get("<xmlattr>.name", "")] = *effort;
-  }
-  return limits;
-}
-
-std::string withoutPackageUris(std::string text, const FindPackage& find_package) {
-  for (std::size_t at = 0; (at = text.find(kScheme, at)) != std::string::npos;) {
-    const std::size_t name = at + sizeof(kScheme) - 1;
-    const std::size_t end = text.find_first_of("/\"'<> \n", name);
-    const std::string package = text.substr(name, end - name);
-    const std::string folder = find_package(package);
-    if (folder.empty()) {
-      throw std::invalid_argument("package " + package +
-                                  " cannot be found: source the setup.bash of its workspace");
-    }
-    text.replace(at, end - at, folder);
-    at += folder.size();
-  }
-  return text;
 }
 
 }  // namespace ddm

@@ -32,15 +32,24 @@ Motor actuator(const MujocoModel& model, int i) {
   }
   Motor motor;
   motor.joint = m.actuator_trnid[2 * i];
-  double limit = std::numeric_limits<double>::infinity();
-  const auto bound = [&limit](const mjtNum* range, double unit) {
-    limit = std::min({limit, std::abs(range[0]) * unit, std::abs(range[1]) * unit});
+  const auto bound = [&](const char* name, const mjtNum* range, double unit) {
+    if (range[0] != -range[1]) {
+      throw std::invalid_argument(
+          "actuator " + model.name(mjOBJ_ACTUATOR, i) + " of " + model.uri() + " has the " + name +
+          " [" + text(range[0]) + ", " + text(range[1]) +
+          "]: it must be symmetric about 0, as plant/max_torque is; make it so, or list the joint "
+          "in "
+          "plant/motors and give plant/max_torque, which leaves this actuator switched off");
+    }
+    const double limit = std::abs(range[1]) * unit;
+    motor.limit = std::min(motor.limit.value_or(limit), limit);
   };
-  if (m.actuator_ctrllimited[i]) bound(&m.actuator_ctrlrange[2 * i], std::abs(strength));
-  if (m.actuator_forcelimited[i]) {
-    bound(&m.actuator_forcerange[2 * i], std::abs(m.actuator_gear[6 * i]));
+  if (m.actuator_ctrllimited[i]) {
+    bound("ctrlrange", &m.actuator_ctrlrange[2 * i], std::abs(strength));
   }
-  motor.limit = std::isfinite(limit) ? limit : 0.0;
+  if (m.actuator_forcelimited[i]) {
+    bound("forcerange", &m.actuator_forcerange[2 * i], std::abs(m.actuator_gear[6 * i]));
+  }
   return motor;
 }
 
@@ -68,8 +77,13 @@ std::vector<Motor> motorsOf(const MujocoModel& model, const MujocoOptions& optio
     Motor motor;
     motor.joint = model.id(mjOBJ_JOINT, options.motors[i], "plant/motors");
     if (!options.gear.empty()) motor.gear = options.gear.at(i);
-    motor.limit = model.effortLimit(options.motors[i]) / std::abs(motor.gear);
+    motor.limit = model.effortLimit(options.motors[i]);
+    if (motor.limit) *motor.limit /= std::abs(motor.gear);
     motors.push_back(motor);
+  }
+  if (model.get().njnt == 0) {
+    throw std::invalid_argument("plant/model must have a joint that moves, got none in " +
+                                model.uri());
   }
   if (motors.empty()) {
     std::string joints;
@@ -93,17 +107,20 @@ std::vector<double> limitsOf(const MujocoModel& model, const MujocoOptions& opti
   }
   std::vector<double> limits;
   for (std::size_t i = 0; i < motors.size(); ++i) {
-    const double limit = given.empty() ? motors[i].limit : given[given.size() == 1 ? 0 : i];
-    const std::string joint = nameOf(model, motors[i]);
-    if (limit == 0.0) {
+    const Motor& motor = motors[i];
+    const std::string joint = nameOf(model, motor);
+    if (given.empty() && motor.limit.value_or(0.0) == 0.0) {
       throw std::invalid_argument(
           "plant/max_torque must be given, because " + model.uri() +
-          " has no limit for the motor of the joint " + joint +
+          (motor.limit ? " has a limit of 0" : " has no limit") + " for the motor of the joint " +
+          joint +
           ": write it there, or give the joint an effort (URDF) or the motor a ctrlrange (MJCF)");
     }
-    if (motors[i].limit > 0.0 && limit > motors[i].limit * (1.0 + 1e-9)) {
+    const double limit = given.empty() ? *motor.limit : given[given.size() == 1 ? 0 : i];
+    // Files that were made by a drawing program often say effort 0 for what is not known.
+    if (motor.limit.value_or(0.0) > 0.0 && limit > *motor.limit * (1.0 + 1e-9)) {
       throw std::invalid_argument("plant/max_torque must be at most what " + model.uri() +
-                                  " allows, " + text(motors[i].limit) + " at the joint " + joint +
+                                  " allows, " + text(*motor.limit) + " at the joint " + joint +
                                   ", got " + text(limit));
     }
     limits.push_back(limit);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "ddm_mujoco/mujoco_model.h"
@@ -10,9 +11,10 @@
 namespace ddm {
 
 struct Motor {
-  int joint = 0;       ///< that it turns or shifts
-  double gear = 1.0;   ///< torque at the joint for one of the motor
-  double limit = 0.0;  ///< of its torque by the file [N m or N]; 0: the file does not say
+  int joint = 0;      ///< that it turns or shifts
+  double gear = 1.0;  ///< torque at the joint for one of the motor
+  std::optional<double>
+      limit;  ///< of its torque by the file [N m or N]; none: the file does not say
 };
 
 /// Those of `motors`, or the actuators of the file in its order.

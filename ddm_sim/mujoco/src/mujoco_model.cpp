@@ -5,25 +5,24 @@
 #include <ddm_params/option_checks.h>
 
 #include <algorithm>
-#include <cstring>
+#include <boost/algorithm/string/replace.hpp>
+#include <boost/algorithm/string/trim.hpp>
 #include <filesystem>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "model_files.h"
+#include "urdf.h"
 
 namespace ddm {
 namespace {
 
 namespace fs = std::filesystem;
 
-void throwError(const char* text) { throw std::runtime_error(std::string("MuJoCo: ") + text); }
-
-void ignoreWarning(const char* /*text*/) {}  // mjData::warning counts them, see requireStable()
-
 /// @throws std::invalid_argument if there is no such file, naming those in its folder
 std::string pathOf(const std::string& uri, const FindPackage& find_package) {
-  const std::string path = withoutPackageUris(uri, find_package);
+  const std::string path = resolved(uri, find_package);
   if (fs::is_regular_file(path)) return path;
   std::vector<std::string> there;
   std::error_code none;
@@ -37,36 +36,8 @@ std::string pathOf(const std::string& uri, const FindPackage& find_package) {
                               suggestion(fs::path(path).filename().string(), there));
 }
 
-/// A file in memory, for MuJoCo's reader.
-class MemoryFile {
- public:
-  MemoryFile(const std::string& path, const std::string& text) : vfs_(new mjVFS) {
-    mj_defaultVFS(vfs_.get());
-    const int failed = mj_makeEmptyFileVFS(vfs_.get(), fs::path(path).filename().c_str(),
-                                           static_cast<int>(text.size()));
-    if (failed != 0) throw std::invalid_argument("it does not fit into memory");
-    std::memcpy(vfs_->filedata[0], text.data(), text.size());
-  }
-  ~MemoryFile() { mj_deleteVFS(vfs_.get()); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-
-  const mjVFS* get() const { return vfs_.get(); }
-
- private:
-  std::unique_ptr<mjVFS> vfs_;  // 2 MB, too much for a stack
-};
-
-/// @throws std::invalid_argument with MuJoCo's reason
-std::unique_ptr<mjModel, void (*)(mjModel*)> compile(const std::string& path, const mjVFS* files) {
-  char error[1000] = "";
-  mjModel* const model = mj_loadXML(path.c_str(), files, error, sizeof(error));
-  if (model == nullptr) throw std::invalid_argument(error);
-  return {model, mj_deleteModel};
-}
-
-/// Does not draw the collision shapes (group 0) of links that have visual ones (group 1): they lie on
-/// these and would hide them.
+/// Does not draw the collision shapes (group 0) of links that have visual ones (group 1): they lie
+/// on these and would hide them.
 void hideCollisionShapes(mjModel* model) {
   constexpr int kNotDrawn = 3;  // groups 0, 1 and 2 are drawn
   std::set<int> seen;           // links with visual shapes
@@ -79,18 +50,91 @@ void hideCollisionShapes(mjModel* model) {
   }
 }
 
-std::shared_ptr<const mjModel> compileUrdf(const std::string& path, const std::string& text,
-                                           const FindPackage& find_package) {
-  const MemoryFile file(path, withoutPackageUris(urdfForMujoco(text), find_package));
-  auto model = compile(path, file.get());
-  if (hasMujocoBlock(text)) return model;
-  // What a URDF cannot say. Neighbouring links overlap in most of them, and all are in the dark.
-  model->opt.disableflags |= mjDSBL_CONTACT;
-  hideCollisionShapes(model.get());
+bool isLit(const mjModel& model) {
+  const auto& head = model.vis.headlight;
+  const auto shines = [](float value) { return value > 0.0F; };
+  return std::any_of(model.light_active, model.light_active + model.nlight,
+                     [](mjtByte active) { return active != 0; }) ||
+         (head.active != 0 && (std::any_of(head.ambient, head.ambient + 3, shines) ||
+                               std::any_of(head.diffuse, head.diffuse + 3, shines)));
+}
+
+void light(mjModel* model) {
+  model->vis.headlight.active = 1;
   std::fill_n(model->vis.headlight.ambient, 3, 0.4F);
   std::fill_n(model->vis.headlight.diffuse, 3, 0.6F);
   std::fill_n(model->vis.headlight.specular, 3, 0.1F);
+}
+
+/// A model with equality constraints in arrays of its own; everything else is that of `base`.
+struct CoupledModel {
+  std::shared_ptr<const mjModel> base;
+  mjModel model;
+  std::vector<int> types, followers, leaders, names;
+  std::vector<mjtByte> active;
+  std::vector<mjtNum> solref, solimp, data;
+};
+
+std::shared_ptr<const mjModel> coupled(std::shared_ptr<const mjModel> base,
+                                       const std::vector<Coupling>& couplings) {
+  if (couplings.empty()) return base;
+  const auto own = std::make_shared<CoupledModel>();
+  own->base = std::move(base);
+  mjModel& m = own->model = *own->base;
+  for (const Coupling& one : couplings) {
+    own->types.push_back(mjEQ_JOINT);
+    own->followers.push_back(mj_name2id(&m, mjOBJ_JOINT, one.follower.c_str()));
+    own->leaders.push_back(mj_name2id(&m, mjOBJ_JOINT, one.leader.c_str()));
+    own->names.push_back(0);
+    own->active.push_back(1);
+    mjtNum solref[mjNREF], solimp[mjNIMP];
+    mj_defaultSolRefImp(solref, solimp);
+    own->solref.insert(own->solref.end(), solref, solref + mjNREF);
+    own->solimp.insert(own->solimp.end(), solimp, solimp + mjNIMP);
+    std::vector<mjtNum> data(mjNEQDATA, 0.0);
+    data[0] = one.offset;
+    data[1] = one.multiplier;
+    own->data.insert(own->data.end(), data.begin(), data.end());
+  }
+  m.neq = static_cast<int>(couplings.size());  // a URDF has no others
+  m.nemax += m.neq;
+  m.njmax += m.neq;
+  m.nstack += 10 * (m.njmax + m.nv) * m.neq;
+  m.eq_type = own->types.data();
+  m.eq_obj1id = own->followers.data();
+  m.eq_obj2id = own->leaders.data();
+  m.name_eqadr = own->names.data();
+  m.eq_active = own->active.data();
+  m.eq_solref = own->solref.data();
+  m.eq_solimp = own->solimp.data();
+  m.eq_data = own->data.data();
+  return {own, &m};
+}
+
+std::shared_ptr<const mjModel> compileMjcf(const ModelText& text) {
+  tryInOwnProcess(text);
+  auto model = compile(text);
+  if (!isLit(*model)) light(model.get());
   return model;
+}
+
+/// Adds what a URDF cannot say. Neighbouring links overlap in most of them, and all are in the
+/// dark.
+std::shared_ptr<const mjModel> compileUrdf(const Urdf& urdf) {
+  tryInOwnProcess(urdf.model);
+  auto model = compile(urdf.model);
+  if (!urdf.contacts) model->opt.disableflags |= mjDSBL_CONTACT;
+  hideCollisionShapes(model.get());
+  light(model.get());
+  return coupled(std::move(model), urdf.couplings);
+}
+
+/// In one line, with the files of meshes in the place of the names that MuJoCo was given.
+std::string readable(std::string error, const ModelText& text) {
+  for (const auto& mesh : text.meshes) boost::replace_all(error, mesh.first, mesh.second);
+  boost::trim(error);
+  boost::replace_all(error, "\n", " ");
+  return error;
 }
 
 int countOf(const mjModel& model, mjtObj type) {
@@ -108,11 +152,6 @@ int countOf(const mjModel& model, mjtObj type) {
 
 }  // namespace
 
-void installMujocoHandlers() {
-  mju_user_error = throwError;
-  mju_user_warning = ignoreWarning;
-}
-
 MujocoModel::MujocoModel(const std::string& uri, const FindPackage& find_package) : uri_(uri) {
   installMujocoHandlers();
   if (uri.empty()) {
@@ -121,22 +160,33 @@ MujocoModel::MujocoModel(const std::string& uri, const FindPackage& find_package
         "package://PACKAGE/robot.urdf");
   }
   std::string text, missing;
+  ModelText given;
   try {
     const std::string path = pathOf(uri, find_package);
     text = readModelFile(path);
-    const ModelFiles files = filesOf(path, find_package);
-    digest_ = files.digest;
-    missing = files.missing;
-    if (isUrdf(text)) {
-      efforts_ = effortLimits(text);
-      model_ = compileUrdf(path, text, find_package);
+    const std::string root = rootOf(text);
+    if (root == "robot") {
+      const Urdf urdf = readUrdf(text, path, find_package);
+      given = urdf.model;
+      efforts_ = urdf.efforts;
+      fixed_ = urdf.fixed;
+      digest_ = filesOf(given, find_package).digest;
+      model_ = compileUrdf(urdf);
+    } else if (root == "mujoco") {
+      given = readMjcf(text, path, find_package);
+      const ModelFiles files = filesOf(given, find_package);
+      digest_ = files.digest;
+      missing = files.missing;
+      model_ = compileMjcf(given);
     } else {
-      model_ = compile(path, nullptr);
+      throw std::invalid_argument(
+          "its outermost element must be <mujoco> (MJCF) or <robot> (URDF), got <" + root + ">");
     }
   } catch (const std::exception& e) {
-    const std::string hint = hintFor(text, e.what());
+    const std::string hint = hintFor(e.what());
     throw std::invalid_argument(
-        "plant/model must be a model that MuJoCo can read, got " + uri + ": " + e.what() +
+        "plant/model must be a model that MuJoCo can read, got " + uri + ": " +
+        readable(e.what(), given) +
         (missing.empty() ? "" : "; it names files that are not there: " + missing) +
         (hint.empty() ? "" : "; " + hint));
   }
@@ -153,6 +203,17 @@ Place MujocoModel::place(const std::string& name, const std::string& key) const 
   for (const mjtObj type : {mjOBJ_SITE, mjOBJ_BODY}) {
     const int id = mj_name2id(model_.get(), type, name.c_str());
     if (id >= 0) return {type, id};
+  }
+  if (fixed_.count(name) > 0) {
+    std::string parent = name;
+    while (fixed_.count(parent) > 0) parent = fixed_.at(parent);
+    const bool moves = mj_name2id(model_.get(), mjOBJ_BODY, parent.c_str()) > 0;
+    throw std::invalid_argument(
+        key + " must name a link of " + uri_ + " that a joint moves, got " + name +
+        ", which is behind a fixed joint: links behind fixed joints are merged into their "
+        "parent; " +
+        (moves ? "name that one, " + parent + ", or " : "this one does not move; ") +
+        "keep them apart by <mujoco><compiler fusestatic=\"false\"/></mujoco> in the URDF");
   }
   std::vector<std::string> known = names(mjOBJ_SITE);
   for (const std::string& body : names(mjOBJ_BODY)) known.push_back(body);
@@ -173,9 +234,9 @@ std::vector<std::string> MujocoModel::names(mjtObj type) const {
   return out;
 }
 
-double MujocoModel::effortLimit(const std::string& joint) const {
+std::optional<double> MujocoModel::effortLimit(const std::string& joint) const {
   const auto found = efforts_.find(joint);
-  return found == efforts_.end() ? 0.0 : found->second;
+  return found == efforts_.end() ? std::nullopt : std::make_optional(found->second);
 }
 
 std::string suggestion(const std::string& name, const std::vector<std::string>& known) {

@@ -34,6 +34,7 @@ std::vector<std::string> MujocoOptions::problems() const {
       "goal_distance", "be the least and the largest distance", goal_distance.size());
   plant.require(error_joints.empty() || error_sites.empty(), "error_sites",
                 "be left out where plant/error_joints is given", error_sites.size());
+  plant.require(isNotNegative(timestep), "timestep", "be >= 0 and finite [s]", timestep);
   plant.require(isPositive(tolerance), "tolerance", "be given, > 0 and finite [deg, or m]",
                 tolerance);
   plant.require(episode_frames >= 0 && episode_frames <= 10000000, "episode_frames",

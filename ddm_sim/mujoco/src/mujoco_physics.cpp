@@ -19,15 +19,25 @@ namespace {
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// @throws std::runtime_error if there is not enough memory
-mjData* workspaceOf(const MujocoModel& model) {
+mjData* workspaceOf(const MujocoModel& model, const mjModel& physics) {
   try {
-    if (mjData* const data = mj_makeData(&model.get())) return data;
+    if (mjData* const data = mj_makeData(&physics)) return data;
   } catch (const std::runtime_error&) {  // said below
   }
   throw std::runtime_error("not enough memory for " + model.uri() + ", whose workspace has " +
                            std::to_string(model.get().nstack / 131072) +
                            " MB: give it a smaller <size nstack, njmax, nconmax>");
 }
+
+/// Where the options name motors, MuJoCo computes no actuator of the file, of whatever kind.
+mjModel physicsOf(const MujocoModel& model, const MujocoOptions& options) {
+  mjModel physics = model.get();
+  physics.opt.timestep = timestepOf(model, options);
+  if (!options.motors.empty()) physics.opt.disableflags |= mjDSBL_ACTUATION;
+  return physics;
+}
+
+}  // namespace
 
 void requirePositionsAndRates(const MujocoModel& model) {
   const mjModel& m = model.get();
@@ -43,14 +53,15 @@ void requirePositionsAndRates(const MujocoModel& model) {
   }
 }
 
-}  // namespace
-
-MujocoPhysics::MujocoPhysics(std::shared_ptr<const MujocoModel> model, std::vector<Motor> motors)
-    : model_(std::move(model)),
-      motors_(std::move(motors)),
-      data_(workspaceOf(*model_), mj_deleteData) {
-  requirePositionsAndRates(*model_);
+double timestepOf(const MujocoModel& model, const MujocoOptions& options) {
+  return options.timestep > 0.0 ? options.timestep : model.get().opt.timestep;
 }
+
+MujocoPhysics::MujocoPhysics(std::shared_ptr<const MujocoModel> model, const MujocoOptions& options)
+    : model_(std::move(model)),
+      physics_(physicsOf(*model_, options)),
+      motors_(motorsOf(*model_, options)),
+      data_(workspaceOf(*model_, physics_), mj_deleteData) {}
 
 /// Everything that the next frame depends on. Setting these costs a hundredth of mj_resetData().
 void MujocoPhysics::set(const Eigen::VectorXd& state) const {
@@ -60,8 +71,12 @@ void MujocoPhysics::set(const Eigen::VectorXd& state) const {
   std::copy_n(state.data() + n, n, data->qvel);
   std::fill_n(data->qacc_warmstart, n, 0.0);
   std::fill_n(data->qfrc_applied, n, 0.0);
-  std::fill_n(data->ctrl, model_->get().nu, 0.0);
-  std::fill_n(data->act, model_->get().na, 0.0);
+  std::fill_n(data->ctrl, physics_.nu, 0.0);
+  std::fill_n(data->act, physics_.na, 0.0);
+  for (int i = 0; i < physics_.nbody; ++i) {
+    if (physics_.body_mocapid[i] < 0) continue;
+    std::copy_n(physics_.body_pos + 3 * i, 3, data->mocap_pos + 3 * physics_.body_mocapid[i]);
+  }
   data->time = 0.0;
   data->pstack = 0;  // an error may have left it in use
   for (mjWarningStat& warning : data->warning) warning.number = 0;
@@ -75,7 +90,8 @@ void MujocoPhysics::requireStable(int frame, const Eigen::VectorXd& state) const
     text << "plant: the simulation of " << model_->uri() << " is unstable, MuJoCo says \""
          << mju_warningText(i, warning.lastinfo) << "\" in frame " << frame + 1
          << " of the step from the state " << fewNumbers(state)
-         << ": use a smaller timestep, more damping or armature, or a smaller plant/max_torque";
+         << ": use a smaller plant/timestep than " << physics_.opt.timestep
+         << " s, more damping or armature in the file, or a smaller plant/max_torque";
     throw std::range_error(text.str());
   }
 }
@@ -89,7 +105,7 @@ Eigen::MatrixXd MujocoPhysics::frames(const Eigen::VectorXd& state, const Eigen:
     data_->qfrc_applied[motors_[i].joint] = motors_[i].gear * torque[static_cast<Eigen::Index>(i)];
   }
   for (int frame = 0; frame < num_frames; ++frame) {
-    mj_step(&model_->get(), data_.get());
+    mj_step(&physics_, data_.get());
     requireStable(frame, state);  // MuJoCo has begun anew at its first pose if it is not
     std::copy_n(data_->qpos, n, states.col(frame).data());
     std::copy_n(data_->qvel, n, states.col(frame).data() + n);
@@ -97,12 +113,16 @@ Eigen::MatrixXd MujocoPhysics::frames(const Eigen::VectorXd& state, const Eigen:
   return states;
 }
 
-const mjData& MujocoPhysics::placed(const Eigen::VectorXd& state) const {
+const mjData& MujocoPhysics::placed(const Eigen::VectorXd& state,
+                                    const std::optional<Eigen::Vector2d>& target) const {
   set(state);
-  mj_kinematics(&model_->get(), data_.get());
-  mj_comPos(&model_->get(), data_.get());
-  mj_camlight(&model_->get(), data_.get());
-  mj_tendon(&model_->get(), data_.get());
+  const int body = target ? mj_name2id(&physics_, mjOBJ_BODY, "target") : -1;
+  const int mocap = body < 0 ? -1 : physics_.body_mocapid[body];
+  if (mocap >= 0) std::copy_n(target->data(), 2, data_->mocap_pos + 3 * mocap);
+  mj_kinematics(&physics_, data_.get());
+  mj_comPos(&physics_, data_.get());
+  mj_camlight(&physics_, data_.get());
+  mj_tendon(&physics_, data_.get());
   return *data_;
 }
 
@@ -118,14 +138,8 @@ Eigen::VectorXd MujocoPhysics::places(const std::vector<Place>& places,
   return out;
 }
 
-void MujocoPhysics::showTarget(const Eigen::Vector2d& point) const {
-  const int body = mj_name2id(&model_->get(), mjOBJ_BODY, "target");
-  const int target = body < 0 ? -1 : model_->get().body_mocapid[body];
-  if (target >= 0) std::copy_n(point.data(), 2, data_->mocap_pos + 3 * target);
-}
-
 Eigen::VectorXd MujocoPhysics::bodies(const Eigen::VectorXd& state) const {
-  const mjModel& m = model_->get();
+  const mjModel& m = physics_;
   const mjData& data = placed(state);
   std::vector<double> out;
   for (int i = 1; i < m.nbody; ++i) {
@@ -136,7 +150,7 @@ Eigen::VectorXd MujocoPhysics::bodies(const Eigen::VectorXd& state) const {
 }
 
 bool MujocoPhysics::withinRanges(const Eigen::VectorXd& state) const {
-  const mjModel& m = model_->get();
+  const mjModel& m = physics_;
   for (int i = 0; i < m.njnt; ++i) {
     if (!m.jnt_limited[i]) continue;
     if (state[i] < m.jnt_range[2 * i] || state[i] > m.jnt_range[2 * i + 1]) return false;
@@ -151,7 +165,7 @@ bool MujocoPhysics::approach(const Place& place, const Eigen::Vector2d& point,
   constexpr int kIterations = 100;
   constexpr double kReached = 1e-14;
   constexpr double kDamping = 1e-12;  // far below a link's length squared
-  const mjModel& m = model_->get();
+  const mjModel& m = physics_;
   const int n = m.nv;
   RowMajor jacobian(3, n);
   for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -175,7 +189,7 @@ bool MujocoPhysics::approach(const Place& place, const Eigen::Vector2d& point,
 Eigen::VectorXd MujocoPhysics::reach(const Place& place, const Eigen::Vector2d& point,
                                      const Eigen::VectorXd& guess) const {
   constexpr int kTries = 100;
-  const mjModel& m = model_->get();
+  const mjModel& m = physics_;
   std::mt19937_64 engine(0);  // the pose depends on the point alone
   for (int i = 0; i < kTries; ++i) {
     Eigen::VectorXd state = guess;

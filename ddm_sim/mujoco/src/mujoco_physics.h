@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "ddm_mujoco/mujoco_model.h"
@@ -11,15 +12,24 @@
 
 namespace ddm {
 
+/// @throws std::invalid_argument naming a joint that is neither hinge nor slide, or if there is no
+///         joint
+void requirePositionsAndRates(const MujocoModel& model);
+
+/// Time of a physics frame: that of the options, else of the file [s].
+double timestepOf(const MujocoModel& model, const MujocoOptions& options);
+
 /// A model with a workspace of its own; for one thread at a time. What it returns depends on its
 /// arguments alone.
+///
+/// The torques of `motors` act alone: where the options name motors, all actuators of the file are
+/// switched off.
 class MujocoPhysics {
  public:
-  /// @throws std::invalid_argument naming a joint that is neither hinge nor slide, or something else
-  ///         whose state is more than positions and rates
-  MujocoPhysics(std::shared_ptr<const MujocoModel> model, std::vector<Motor> motors);
+  /// @throws std::invalid_argument as motorsOf()
+  MujocoPhysics(std::shared_ptr<const MujocoModel> model, const MujocoOptions& options);
 
-  int numJoints() const { return model_->get().njnt; }
+  int numJoints() const { return physics_.njnt; }
 
   /// The states after each of `num_frames` frames under a constant torque.
   /// @param torque  of each motor                                                      [m x 1]
@@ -29,14 +39,13 @@ class MujocoPhysics {
                          int num_frames) const;
 
   /// The model in this state, as far as positions go: bodies, sites, cameras and lights.
-  const mjData& placed(const Eigen::VectorXd& state) const;
+  /// @param target  (optional) where to put the mocap body `target`, if the model has one [m].
+  ///                Without it, this body is where the file puts it.
+  const mjData& placed(const Eigen::VectorXd& state,
+                       const std::optional<Eigen::Vector2d>& target = std::nullopt) const;
 
   /// Where these are in the world [m].                                              [3 n x 1]
   Eigen::VectorXd places(const std::vector<Place>& places, const Eigen::VectorXd& state) const;
-
-  /// Moves the mocap body `target`, which people may see, if the model has one: nothing else
-  /// depends on it.
-  void showTarget(const Eigen::Vector2d& point) const;
 
   /// Centres of mass of all bodies that a joint can move [m].                       [3 n x 1]
   Eigen::VectorXd bodies(const Eigen::VectorXd& state) const;
@@ -54,6 +63,7 @@ class MujocoPhysics {
   bool withinRanges(const Eigen::VectorXd& state) const;
 
   std::shared_ptr<const MujocoModel> model_;
+  mjModel physics_;  // shares all arrays with model_
   std::vector<Motor> motors_;
   std::unique_ptr<mjData, void (*)(mjData*)> data_;
 };

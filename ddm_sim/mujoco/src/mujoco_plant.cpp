@@ -43,12 +43,14 @@ Eigen::VectorXd stateOf(const std::vector<double>& numbers, int num_joints, cons
 }
 
 /// Frames of the physics in one time step.
-int framesOf(const MujocoModel& model, double dt) {
-  const double step = model.get().opt.timestep;
+int framesOf(const MujocoModel& model, const MujocoOptions& options) {
+  const double dt = options.dt;
+  const double step = timestepOf(model, options);
   const double frames = std::max(1.0, std::round(dt / step));
   if (std::abs(frames * step - dt) <= 1e-9 * dt) return static_cast<int>(frames);
   std::ostringstream rule, got;
-  rule << "be a whole multiple of the timestep of " << model.uri() << ", " << step << " s";
+  rule << "be a whole multiple of the timestep of "
+       << (options.timestep > 0.0 ? "plant/timestep" : model.uri()) << ", " << step << " s";
   got << dt << ": the nearest is " << frames * step;
   refuse("dt", rule.str(), got.str());
 }
@@ -127,7 +129,7 @@ PlantInfo infoOf(const MujocoModel& model, const MujocoOptions& options) {
   const std::vector<int> joints = errorJoints(model, options);
   info.error_unit = !joints.empty() && isHinge(model, joints[0]) ? "deg" : "m";
   info.tolerance = options.tolerance;
-  info.evaluation_steps = evaluationSteps(options, framesOf(model, options.dt));
+  info.evaluation_steps = evaluationSteps(options, framesOf(model, options));
   return info;
 }
 
@@ -152,6 +154,46 @@ std::unique_ptr<Renderer> viewOf(const MujocoModel& model, const MujocoOptions& 
   return std::make_unique<Renderer>(model.share(), look, options.scene);
 }
 
+std::string point(const Eigen::Vector3d& at) {
+  std::ostringstream text;
+  const Eigen::Vector3d rounded = (1e3 * at.array()).round() / 1e3 + 0.0;
+  text << '(' << rounded[0] << ", " << rounded[1] << ", " << rounded[2] << ')';
+  return text.str();
+}
+
+/// Whether a pixel differs by more than rounding and shadows of nothing.
+bool differ(const Picture& a, const Picture& b) {
+  constexpr int kSeen = 3;
+  for (std::size_t i = 0; i < a.bytes.size(); ++i) {
+    if (std::abs(a.bytes[i] - b.bytes[i]) > kSeen) return true;
+  }
+  return false;
+}
+
+/// The likely cause of images that do not change.
+std::string whyUnseen(const mjModel& model, const Picture& picture) {
+  int moving = 0, drawn = 0;
+  for (int i = 0; i < model.ngeom; ++i) {
+    moving += model.body_weldid[model.geom_bodyid[i]] != 0 ? 1 : 0;
+    drawn += isDrawnAndMoves(model, i) ? 1 : 0;
+  }
+  if (moving == 0) {
+    return "no link that a joint moves has a shape; give one a <visual> (URDF) or a <geom> (MJCF)";
+  }
+  if (drawn == 0)
+    return "all shapes that move are transparent; give them an opacity (rgba) above 0";
+  const auto ends = std::minmax_element(picture.bytes.begin(), picture.bytes.end());
+  if (*ends.second < 10) {
+    return "they are black; nothing is before the camera, or no light falls on it. Move the camera "
+           "(plant/camera_position, plant/camera_look_at), or add a <light>";
+  }
+  return std::string(*ends.first == *ends.second
+                         ? "the camera sees one colour, nothing or a surface "
+                           "that fills the image"
+                         : "what the camera sees does not move") +
+         "; move it (plant/camera_position, plant/camera_look_at, plant/camera_field_of_view)";
+}
+
 const Reward* rewardOf(const MujocoOptions& options, const PlantInfo& info) {
   for (const Reward& reward : rewards()) {
     if (reward.name != options.reward) continue;
@@ -169,10 +211,10 @@ const Reward* rewardOf(const MujocoOptions& options, const PlantInfo& info) {
 }  // namespace
 
 MujocoPlant::MujocoPlant(std::shared_ptr<const MujocoModel> model, const MujocoOptions& options)
-    : Plant((checked(options), MujocoPhysics(model, {}), infoOf(*model, options))),
+    : Plant((checked(options), requirePositionsAndRates(*model), infoOf(*model, options))),
       model_(std::move(model)),
-      physics_(std::make_unique<MujocoPhysics>(model_, motorsOf(*model_, options))),
-      num_frames_(framesOf(*model_, options.dt)),
+      physics_(std::make_unique<MujocoPhysics>(model_, options)),
+      num_frames_(framesOf(*model_, options)),
       start_normal_(forEach(options.start_std, stateDim(), "plant/start_std")),
       start_uniform_(stateOf(options.start_uniform, physics_->numJoints(), "start_uniform")),
       error_joints_(errorJoints(*model_, options)),
@@ -186,7 +228,8 @@ MujocoPlant::MujocoPlant(std::shared_ptr<const MujocoModel> model, const MujocoO
       reward_scale_(info().max_torque) {
   const std::vector<Motor> motors = motorsOf(*model_, options);
   for (std::size_t i = 0; i < motors.size(); ++i) {
-    if (motors[i].limit > 0.0) reward_scale_[static_cast<Eigen::Index>(i)] = motors[i].limit;
+    const double limit = motors[i].limit.value_or(0.0);
+    if (limit > 0.0) reward_scale_[static_cast<Eigen::Index>(i)] = limit;
   }
 }
 
@@ -274,15 +317,53 @@ std::optional<CameraModel> MujocoPlant::viewModel() const {
 }
 
 Picture MujocoPlant::view(const Eigen::VectorXd& state) const {
-  if (!goal_site_.empty()) physics_->showTarget(physics_->places(goal_site_, goal()).head(2));
-  return view_->draw(physics_->placed(state));
+  if (goal_site_.empty()) return view_->draw(physics_->placed(state));
+  const Eigen::Vector2d target = physics_->places(goal_site_, goal()).head(2);
+  return view_->draw(physics_->placed(state, target));
 }
 
 Eigen::VectorXd MujocoPlant::locate(const Eigen::VectorXd& state) const {
   return visible_sites_.empty() ? physics_->bodies(state) : physics_->places(visible_sites_, state);
 }
 
+void requireVisible(const std::shared_ptr<const MujocoModel>& model, const MujocoOptions& options) {
+  constexpr int kPoses = 8;
+  const mjModel& m = model->get();
+  const MujocoPhysics physics(model, options);
+  const std::unique_ptr<Renderer> renderer = pictureOf(*model, options);
+  const Eigen::VectorXd start = infoOf(*model, options).start;
+  std::mt19937_64 engine(0);
+  Picture first;
+  try {
+    first = renderer->draw(physics.placed(start));
+    for (int pose = 0; pose < kPoses; ++pose) {
+      Eigen::VectorXd state = start;
+      for (int i = 0; i < m.njnt; ++i) {
+        const double reach = isHinge(*model, i) ? kPi : m.stat.extent;
+        const bool limited = m.jnt_limited[i] != 0;
+        const double from = limited ? m.jnt_range[2 * i] : start[i] - reach;
+        const double to = limited ? m.jnt_range[2 * i + 1] : start[i] + reach;
+        state[i] = std::uniform_real_distribution<double>(from, to)(engine);
+      }
+      if (differ(first, renderer->draw(physics.placed(state)))) return;
+    }
+  } catch (const std::runtime_error&) {  // who draws, hears it
+    return;
+  }
+  const CameraModel camera = renderer->camera(physics.placed(start));
+  std::ostringstream text;
+  text << "plant/camera must show the motion of " << model->uri()
+       << ", but its images are equal in all poses: " << whyUnseen(m, first)
+       << ". The camera is at " << point(camera.position) << ", looks along "
+       << point(camera.rotation.col(2)) << " and sees " << std::round(camera.fovy * 180.0 / kPi)
+       << " deg; the middle of the model is at "
+       << point(Eigen::Map<const Eigen::Vector3d>(m.stat.center)) << ", its size is "
+       << std::round(1e3 * m.stat.extent) / 1e3 << " m";
+  throw std::invalid_argument(text.str());
+}
+
 MujocoOptions completed(MujocoOptions options, const MujocoModel& model) {
+  requirePositionsAndRates(model);
   std::string digest;
   try {
     digest = digestWith(model.digest(), options.scene.background_pictures);

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <limits>
 #include <mutex>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -27,6 +28,26 @@ namespace {
 constexpr double kDegree = kPi / 180.0;
 constexpr int kMaxDecor = 1000;  // drawn things that are not geoms: sites, tendons, joints
 constexpr int kNoCamera = -1;
+constexpr int kNumShown = 3;  // groups of geoms that MuJoCo draws, from 0
+
+/// Whether a geom belongs to a body that a joint can move, and is not transparent.
+bool couldBeSeen(const mjModel& model, int geom) {
+  const float* rgba = model.geom_rgba + 4 * geom;
+  const int material = model.geom_matid[geom];
+  if (material >= 0 && std::equal(kUnset.begin(), kUnset.end(), rgba)) {
+    rgba = model.mat_rgba + 4 * material;
+  }
+  return rgba[3] > 0.0F && model.body_weldid[model.geom_bodyid[geom]] != 0;
+}
+
+/// The group of geoms that is drawn although it is hidden by default; -1: none.
+int groupToShow(const mjModel& model) {
+  std::set<int> groups;
+  for (int i = 0; i < model.ngeom; ++i) {
+    if (couldBeSeen(model, i)) groups.insert(model.geom_group[i]);
+  }
+  return groups.empty() || *groups.begin() < kNumShown ? -1 : *groups.begin();
+}
 
 /// @return index of the camera, kNoCamera for one that the options place
 int findCamera(const mjModel& model, const RenderOptions& options) {
@@ -91,6 +112,17 @@ Picture averaged(const std::vector<std::uint8_t>& drawn, int width, int height, 
 
 }  // namespace
 
+std::string openGlRenderer() {
+  const EglContext context;
+  const EglContext::Current current(context);
+  return context.renderer();
+}
+
+bool isDrawnAndMoves(const mjModel& model, int geom) {
+  const int group = model.geom_group[geom];
+  return couldBeSeen(model, geom) && (group < kNumShown || group == groupToShow(model));
+}
+
 Picture greyOf(const Picture& picture) {
   if (picture.channels == 1) return picture;
   Picture grey = picture;
@@ -128,6 +160,8 @@ class Renderer::Implementation {
       shown_.geomgroup[RenderOptions::kPeopleGroup] = 1;
       shown_.sitegroup[RenderOptions::kPeopleGroup] = 1;
     }
+    const int group = groupToShow(look);
+    if (group >= 0) shown_.geomgroup[group] = 1;
     mjv_defaultScene(&drawn_);
     mjv_makeScene(&look, &drawn_, look.ngeom + kMaxDecor);
     drawn_.flags[mjRND_SHADOW] = options_.shadows ? 1 : 0;

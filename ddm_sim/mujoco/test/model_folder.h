@@ -17,6 +17,10 @@
 namespace ddm {
 namespace testing {
 
+/// A mesh as OBJ.
+constexpr char kTetrahedron[] =
+    "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
 /// Of the only package that there is, `robots`.
 class ModelFolder {
  public:
@@ -66,7 +70,7 @@ inline std::string armText(const std::string& more = "") {
     </worldbody>
     <actuator>
       <motor name="first" joint="shoulder" gear="2" ctrllimited="true" ctrlrange="-0.5 0.5"/>
-      <motor name="second" joint="elbow" gear="0.4" ctrllimited="true" ctrlrange="-1 2"/>
+      <motor name="second" joint="elbow" gear="0.4" ctrllimited="true" ctrlrange="-1 1"/>
     </actuator>)" +
          more + "</mujoco>";
 }

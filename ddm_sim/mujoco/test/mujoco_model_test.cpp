@@ -17,12 +17,9 @@ namespace {
 namespace fs = std::filesystem;
 using testing::armText;
 using testing::armUrdf;
+using testing::kTetrahedron;
 using testing::ModelFolder;
 using testing::refusalOf;
-
-/// A tetrahedron.
-constexpr char kMesh[] =
-    "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
 class MujocoModelTest : public ::testing::Test {
  protected:
@@ -83,11 +80,11 @@ TEST_F(MujocoModelTest, ReadsAUrdfWithItsVisualShapesAndLimits) {
   EXPECT_EQ(model->names(mjOBJ_JOINT), (std::vector<std::string>{"shoulder", "elbow"}));
   EXPECT_EQ(model->get().ngeom, 2);
   EXPECT_EQ(model->effortLimit("elbow"), 3.0);
-  EXPECT_EQ(model->effortLimit("shoulder"), 0.0);
+  EXPECT_FALSE(model->effortLimit("shoulder"));
 }
 
 TEST_F(MujocoModelTest, FindsTheMeshesOfAUrdfInPackagesAndBesideIt) {
-  folder_.write("meshes/base.obj", kMesh);
+  folder_.write("meshes/base.obj", kTetrahedron);
   for (const char* mesh : {"package://robots/meshes/base.obj", "../meshes/base.obj"}) {
     const auto model = folder_.loadText(armUrdf(mesh), "urdf/arm.urdf");
     EXPECT_EQ(model->get().nmesh, 1) << mesh;
@@ -158,8 +155,61 @@ TEST_F(MujocoModelTest, LeavesAMujocoBlockOfAUrdfAsItIs) {
   EXPECT_EQ(model->get().opt.timestep, 0.004);
 }
 
+TEST_F(MujocoModelTest, SaysThatAWordMayBeOfANewerMujoco) {
+  const std::string version = mj_versionString();
+  EXPECT_TRUE(
+      isRefused(folder_.write("a.xml", armText("<flexcomp/>")), {version, "element", "later"}));
+  EXPECT_TRUE(isRefused(folder_.write("b.xml", armText("<option jacobi='on'/>")),
+                        {version, "jacobi", "later"}));
+  EXPECT_TRUE(isRefused(folder_.write("c.xml", armText("<option integrator='implicitfast'/>")),
+                        {version, "implicitfast", "later"}));
+}
+
+TEST_F(MujocoModelTest, TakesARangeForALimitAsNewerVersionsDo) {
+  std::string text = armText();
+  text.erase(text.find("limited=\"true\" range"), 15);
+  EXPECT_EQ(folder_.loadText(text)->get().jnt_limited[1], 1);
+}
+
+TEST_F(MujocoModelTest, FindsPackagesInMeshesOfAnMjcfButNotInItsComments) {
+  folder_.write("meshes/base.obj", kTetrahedron);
+  const auto model =
+      folder_.loadText(armText("<!-- package://gone/a.obj --><asset><mesh name='m' "
+                               "file='package://robots/meshes/base.obj'/></asset>"));
+  EXPECT_EQ(model->get().nmesh, 1);
+}
+
+TEST_F(MujocoModelTest, NamesWhatIsNoModel) {
+  EXPECT_TRUE(isRefused(folder_.write("a.sdf", "<sdf version='1.6'><model/></sdf>"),
+                        {"plant/model", "<sdf>", "<robot>"}));
+}
+
+TEST_F(MujocoModelTest, RefusesNumbersThatAreNotFinite) {
+  std::string text = armText();
+  text.replace(text.find("damping=\"0.1\""), 13, "damping=\"nan\"");
+  EXPECT_TRUE(
+      isRefused(folder_.write("a.xml", text), {"plant/model", "not finite", "dof_damping"}));
+}
+
+TEST_F(MujocoModelTest, SurvivesWhatCrashesMujoco) {
+  // A face of a vertex that does not exist.
+  std::string mesh = kTetrahedron;
+  mesh.replace(mesh.rfind("2 3 4"), 5, "2 3 400000000");
+  folder_.write("base.obj", mesh);
+  EXPECT_TRUE(isRefused(folder_.write("a.urdf", armUrdf("base.obj")), {"plant/model", "a.urdf"}));
+}
+
+TEST_F(MujocoModelTest, RefusesAModelThatNeedsTooMuchMemory) {
+  EXPECT_TRUE(
+      isRefused(folder_.write("a.xml", armText("<asset><texture name='t' type='2d' builtin='flat' "
+                                               "width='60000' height='60000'/></asset>")),
+                {"plant/model", "a.xml"}));
+  EXPECT_TRUE(isRefused(folder_.write("b.xml", armText("<size nstack='2000000000'/>")),
+                        {"plant/model", "memory", "<size"}));
+}
+
 TEST_F(MujocoModelTest, HasADigestOfAllFilesThatItNames) {
-  folder_.write("assets/base.obj", kMesh);
+  folder_.write("assets/base.obj", kTetrahedron);
   folder_.write("look.xml", "<mujocoinclude><visual/></mujocoinclude>");
   const std::string text = armText(
       "<include file=\"look.xml\"/><compiler meshdir='assets'/>"
@@ -170,7 +220,7 @@ TEST_F(MujocoModelTest, HasADigestOfAllFilesThatItNames) {
   folder_.write("look.xml", "<mujocoinclude><visual/><size/></mujocoinclude>");
   const std::string with_size = folder_.loadText(text)->digest();
   EXPECT_NE(with_size, digest);
-  folder_.write("assets/base.obj", std::string(kMesh) + "# painted\n");
+  folder_.write("assets/base.obj", std::string(kTetrahedron) + "# painted\n");
   EXPECT_NE(folder_.loadText(text)->digest(), with_size);
 }
 

@@ -1,4 +1,5 @@
-// Tests of the options of a plant that a model file describes: what is refused, by name, and what completes them.
+// Tests of the options of a plant that a model file describes: what is refused, by name, and what
+// completes them.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/mujoco_options.h"
 
@@ -124,6 +125,7 @@ std::vector<Flaw> options() {
        }),
        {"plant/state_names", "2"}},
       {"NoTolerance", armWith([](O* o) { o->tolerance = 0.0; }), {"plant/tolerance"}},
+      {"NegativeTimestep", armWith([](O* o) { o->timestep = -0.01; }), {"plant/timestep", "-0.01"}},
       {"GearWithoutMotors", armWith([](O* o) { o->gear = {2.0}; }), {"plant/gear"}},
   };
 }
@@ -159,6 +161,13 @@ std::vector<Flaw> files() {
        fileWith("<motor name=\"first\" joint=\"shoulder\" gear=\"2\"",
                 "<position name=\"first\" joint=\"shoulder\""),
        {"actuator first", "motor", "plant/motors"}},
+      {"OnewayControl",
+       fileWith("ctrlrange=\"-0.5 0.5\"", "ctrlrange=\"0 0.5\""),
+       {"actuator first", "ctrlrange [0, 0.5]", "symmetric", "plant/motors"}},
+      {"LopsidedForce",
+       fileWith("ctrlrange=\"-0.5 0.5\"",
+                "ctrlrange=\"-0.5 0.5\" forcelimited=\"true\" forcerange=\"-3 1\""),
+       {"actuator first", "forcerange [-3, 1]", "symmetric"}},
       {"FreeJoint",
        fileWith("<worldbody>",
                 "<worldbody><body><freejoint name=\"loose\"/><geom size=\"0.1\"/></body>"),
@@ -188,6 +197,14 @@ TEST(MujocoOptions, AreCompletedByLimitsAndDigestAndRefuseThatOfAnotherFile) {
        {std::string("plant/model_digest"), model->digest(), changed->digest(), changed->uri()}) {
     EXPECT_NE(text.find(word), std::string::npos) << word << " is not in: " << text;
   }
+}
+
+TEST(MujocoOptions, AreRefusedForAFreeJointBeforeAnythingElseOfTheModel) {
+  const ModelFolder folder;
+  const auto model = folder.loadText(
+      armText("<worldbody><body><freejoint name='loose'/><geom size='0.1'/></body></worldbody>"));
+  EXPECT_TRUE(testing::names(refusalOf([&] { completed(armOptions(), *model); }),
+                             {"plant/model", "free joint", "loose"}));
 }
 
 TEST(MujocoOptions, HaveADigestOfTheBackgroundsPicturesToo) {

@@ -38,7 +38,7 @@ TEST(MujocoPlant, HasTheColumnsLimitsAndJointsOfItsFile) {
   EXPECT_EQ(info.torque_names, (Names{"shoulder_nm", "elbow_nm"}));
   EXPECT_EQ(info.joints[1].name, "elbow");
   EXPECT_DOUBLE_EQ(info.max_torque[0], 1.0);  // gear times ctrlrange
-  EXPECT_DOUBLE_EQ(info.max_torque[1], 0.4);  // the weaker side
+  EXPECT_DOUBLE_EQ(info.max_torque[1], 0.4);
   EXPECT_EQ(info.error_unit, "deg");
   EXPECT_EQ(info.goal, Eigen::Vector4d(1.0, 0.5, 0.0, 0.0));
 }
@@ -204,6 +204,34 @@ TEST(MujocoPlant, ShowsTheTargetToPeopleAlone) {
   plant->setGoal(plant->goalAt(Eigen::Vector2d(-0.2, 0.1)));
   EXPECT_NE(plant->view(state).bytes, view.bytes);
   EXPECT_EQ(plant->render(state).bytes, picture.bytes);
+}
+
+TEST(MujocoPlant, DoesNotMoveTheTargetOfTheLearnersImageWhenPeopleLook) {
+  MujocoOptions options = armOptions();
+  options.goal_site = "tip";
+  options.goal_distance = {0.15, 0.25};
+  const std::string ball = R"(<worldbody><body name="target" mocap="true" pos="-0.1 -0.1 0">
+      <geom size="0.03" contype="0" conaffinity="0"/></body></worldbody>)";  // the learner sees it
+  const auto plant = plantOf(armText(ball), options);
+  const Picture picture = plant->render(plant->state());
+  plant->setGoal(plant->goalAt(Eigen::Vector2d(-0.2, 0.1)));
+  plant->view(plant->state());
+  EXPECT_EQ(plant->render(plant->state()).bytes, picture.bytes);
+}
+
+TEST(MujocoPlant, HasTheTimestepOfItsOptions) {
+  MujocoOptions options = armOptions();
+  options.timestep = 0.0125;
+  options.dt = 0.025;  // no multiple of the file's 0.01 s
+  const auto coarse = arm(options);
+  options.timestep = 0.00125;
+  const auto fine = arm(options);
+  for (const auto& plant : {coarse.get(), fine.get()}) plant->step(Eigen::Vector2d(0.5, 0.0));
+  EXPECT_NE(coarse->state()[0], fine->state()[0]);
+  EXPECT_NEAR(coarse->state()[0], fine->state()[0], 0.5 * std::abs(fine->state()[0]));
+  options.timestep = 0.01;
+  EXPECT_TRUE(
+      testing::names(refusalOf([&] { arm(options); }), {"plant/dt", "plant/timestep", "0.01"}));
 }
 
 TEST(MujocoPlant, MeasuresTheErrorOfTheJointsOrSitesThatCount) {

@@ -6,6 +6,7 @@
 #include <ros/package.h>
 
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 
 namespace ddm {
@@ -31,6 +32,7 @@ class MujocoPlugin : public PlantPlugin {
     model_ = std::make_shared<MujocoModel>(
         options_.model, [](const std::string& package) { return ros::package::getPath(package); });
     options_ = completed(options_, *model_);
+    requireVisible(model_, options_);
   }
 
   YAML::Node block() const override { return toYaml(options_); }
@@ -40,6 +42,14 @@ class MujocoPlugin : public PlantPlugin {
   }
 
   bool drawsCheaply() const override { return false; }
+
+  std::string renderer() const override {
+    try {
+      return openGlRenderer();
+    } catch (const std::runtime_error& e) {
+      return std::string("none: ") + e.what();
+    }
+  }
 
  private:
   MujocoOptions options_;

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,8 @@ using FindPackage = std::function<std::string(const std::string& package)>;
 /// harmless when called again. MujocoModel does it.
 void installMujocoHandlers();
 
-/// What has a position in the world: a site, or the centre of mass of a body, which URDF calls link.
-/// Its origin would be the joint that turns it, where a pole is at any angle.
+/// What has a position in the world: a site, or the centre of mass of a body, which URDF calls
+/// link. Its origin would be the joint that turns it, where a pole is at any angle.
 struct Place {
   mjtObj type;  ///< mjOBJ_SITE or mjOBJ_BODY
   int id;
@@ -29,9 +30,13 @@ struct Place {
 
 /// A compiled model. Nobody changes it, so that all plants of one maker share it.
 ///
-/// A URDF is taken as its author meant it: its visual shapes are kept, `package://` in mesh names is
-/// resolved, fixed links are fused. Nothing touches anything, and there is light. A <mujoco> block
-/// of its own overrides all but `package://`.
+/// A URDF is taken as its author meant it: its visual shapes are kept, `package://` in mesh names
+/// is resolved, links behind fixed joints are merged into their parents, continuous joints turn
+/// without end, and joints follow those that they <mimic>. Nothing touches anything, and there is
+/// light. A <mujoco> block of the file overrides what it names.
+///
+/// The file is first read in a process of its own, so that nothing that MuJoCo does with it ends
+/// this one.
 class MujocoModel {
  public:
   /// @param uri           path, or package://PACKAGE/PATH
@@ -44,7 +49,8 @@ class MujocoModel {
   const mjModel& get() const { return *model_; }
   std::shared_ptr<const mjModel> share() const { return model_; }
 
-  /// Of the bytes of the file and of all files that it names: "crc32-" and eight hexadecimal digits.
+  /// Of the bytes of the file and of all files that it names: "crc32-" and eight hexadecimal
+  /// digits.
   const std::string& digest() const { return digest_; }
 
   /// Number of the object of this name.
@@ -57,8 +63,9 @@ class MujocoModel {
   /// @throws std::invalid_argument as id()
   Place place(const std::string& name, const std::string& key) const;
 
-  /// Largest torque of a joint by a URDF [N m or N]; 0 if the file does not say.
-  double effortLimit(const std::string& joint) const;
+  /// Largest torque of a joint by a URDF [N m or N]; none if the file does not say. Many files say
+  /// 0.
+  std::optional<double> effortLimit(const std::string& joint) const;
 
   /// Name of an object; "joint_2" if it has none.
   std::string name(mjtObj type, int id) const;
@@ -70,6 +77,8 @@ class MujocoModel {
   std::string uri_;
   std::string digest_;
   std::map<std::string, double> efforts_;
+  std::map<std::string, std::string>
+      fixed_;  // links behind fixed joints, and what they are fixed to
   std::shared_ptr<const mjModel> model_;
 };
 

@@ -16,6 +16,8 @@ struct MujocoOptions : PlantOptions {
   std::string model;         ///< MJCF or URDF: a path, or package://PACKAGE/PATH
   std::string model_digest;  ///< of the model and all files that are named; filled in
 
+  double timestep = 0.0;  ///< of MuJoCo [s]; 0: that of the file
+
   std::vector<std::string> motors;  ///< joints that have one; empty: the actuators of the file
   std::vector<double> gear;         ///< torque at the joint for one of the motor; empty: 1 for all
 
@@ -47,6 +49,7 @@ struct MujocoOptions : PlantOptions {
     PlantOptions::visit(visitor);
     visitor("model", model);
     visitor("model_digest", model_digest);
+    visitor("timestep", timestep);
     visitor("motors", motors);
     visitor("gear", gear);
     visitor("start", start);

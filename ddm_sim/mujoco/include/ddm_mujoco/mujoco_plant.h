@@ -19,8 +19,8 @@ namespace ddm {
 class MujocoPhysics;
 
 /// The state is all positions, then all rates, in the order of the joints in the file; hinges [rad]
-/// and slides [m] alone, an angle is never wrapped. A step is dt / h physics frames, h the time step
-/// of the file, under
+/// and slides [m] alone, an angle is never wrapped. A step is dt / h physics frames, h the time
+/// step of the file, under
 ///
 ///   torque at joint i = gear_i u_i
 ///
@@ -71,10 +71,15 @@ class MujocoPlant : public Plant {
   Eigen::VectorXd reward_scale_;       // torque of each motor that is a control of 1
 };
 
-/// The options with what the files say where they are silent: limits of motors, and the digest of model and
-/// pictures.
-/// @throws std::invalid_argument if the digest is that of other files, a picture cannot be read, or as
-///         MujocoPlant
+/// Draws a few poses of a plant, which takes as long as opening the renderer.
+/// @throws std::invalid_argument with the likely cause if the images of all poses are equal.
+///         Nothing is checked, and nothing thrown, where OpenGL cannot draw.
+void requireVisible(const std::shared_ptr<const MujocoModel>& model, const MujocoOptions& options);
+
+/// The options with what the files say where they are silent: limits of motors, and the digest of
+/// model and pictures.
+/// @throws std::invalid_argument if the digest is that of other files, a picture cannot be read, or
+///         as MujocoPlant
 MujocoOptions completed(MujocoOptions options, const MujocoModel& model);
 
 }  // namespace ddm

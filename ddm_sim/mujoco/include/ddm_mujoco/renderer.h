@@ -7,6 +7,7 @@
 #include <mujoco/mujoco.h>
 
 #include <memory>
+#include <string>
 
 #include "ddm_mujoco/render_options.h"
 
@@ -18,6 +19,12 @@ namespace ddm {
 /// A grey value is that of the colour picture's bytes, as image_codec turns colour into grey:
 ///
 ///   grey = (9798 red + 19235 green + 3735 blue + 16384) div 32768        (0.299, 0.587, 0.114)
+///
+/// Software draws (Mesa's llvmpipe) unless the environment variable LIBGL_ALWAYS_SOFTWARE is 0.
+///
+/// Geoms of the groups 0 to 2 are drawn, as in MuJoCo's viewer. If nothing that moves is among
+/// them, those of the first other group with something that moves are drawn, too: a file that has
+/// collision shapes alone is not invisible.
 ///
 /// Nothing is drawn, and no context made, before the first draw().
 class Renderer {
@@ -43,6 +50,15 @@ class Renderer {
   class Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
+
+/// What draws in this process, GL_RENDERER and GL_VERSION. Pixels differ from one driver to
+/// another.
+/// @throws std::runtime_error naming the step of EGL that fails
+std::string openGlRenderer();
+
+/// Whether a geom belongs to a body that a joint moves, and is drawn: not transparent, and in one
+/// of the groups that a Renderer shows.
+bool isDrawnAndMoves(const mjModel& model, int geom);
 
 /// Grey of a colour picture, byte by byte as above; a grey one as it is.
 Picture greyOf(const Picture& picture);

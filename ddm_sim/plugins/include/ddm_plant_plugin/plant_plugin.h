@@ -18,6 +18,9 @@ class PlantPlugin : public PlantMaker {
   virtual void read(ParamReader* reader) = 0;
 
   virtual YAML::Node block() const = 0;  ///< effective values of all keys
+
+  /// The driver that draws the images, if their pixels depend on one; else empty.
+  virtual std::string renderer() const { return ""; }
 };
 
 /// The plugin of a plant with these constructor and options:

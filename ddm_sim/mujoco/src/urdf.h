@@ -1,0 +1,37 @@
+// A URDF, checked where MuJoCo does not, and as MuJoCo has to be given it to take it as its author
+// meant it.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "ddm_mujoco/mujoco_model.h"
+#include "load_model.h"
+
+namespace ddm {
+
+/// Two joints of which one follows the other, as a <mimic> says: q_follower = multiplier q_leader +
+/// offset.
+struct Coupling {
+  std::string follower;
+  std::string leader;
+  double multiplier = 1.0;
+  double offset = 0.0;
+};
+
+struct Urdf {
+  ModelText model;
+  std::map<std::string, double> efforts;  ///< of joints that have one [N m or N]
+  std::map<std::string, std::string>
+      fixed;                        ///< links behind fixed joints, and what they are fixed to
+  std::vector<Coupling> couplings;  ///< <mimic>
+  bool contacts = false;            ///< a <mujoco> block asks for them
+};
+
+/// @param path  of the file, from whose folder relative names count
+/// @throws std::invalid_argument naming element, value, rule and remedy
+Urdf readUrdf(const std::string& text, const std::string& path, const FindPackage& find_package);
+
+}  // namespace ddm

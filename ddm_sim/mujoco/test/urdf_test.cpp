@@ -1,0 +1,298 @@
+// Tests of URDF files as people have them: what is refused by name, and what is taken as its author
+// meant it.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_msgs/testing/expect_error.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "ddm_mujoco/mujoco_model.h"
+#include "model_folder.h"
+
+namespace ddm {
+namespace {
+
+using testing::ModelFolder;
+using testing::refusalOf;
+using testing::urdfOptions;
+
+/// A base, an arm on it by the joint `hip`, and what a test adds.
+struct Leg {
+  std::string type = "continuous";
+  std::string mass = "<mass value='1'/>";
+  std::string inertia = "<inertia ixx='0.1' iyy='0.1' izz='0.1' ixy='0' ixz='0' iyz='0'/>";
+  std::string shape = "<box size='0.2 0.1 0.6'/>";
+  std::string in_joint;
+  std::string more;
+
+  std::string text() const {
+    return "<robot name='leg'>\n<link name='base'/>\n<link name='thigh'><inertial>" + mass +
+           inertia + "</inertial><visual><geometry>" + shape +
+           "</geometry></visual></link>\n<joint name='hip'" +
+           (type.empty() ? "" : " type='" + type + "'") +
+           "><parent link='base'/><child link='thigh'/><axis xyz='0 1 0'/>" + in_joint +
+           "</joint>\n" + more + "</robot>";
+  }
+};
+
+std::string joint(const std::string& name, const std::string& type, const std::string& parent,
+                  const std::string& child, const std::string& more = "") {
+  return "<joint name='" + name + "' type='" + type + "'><parent link='" + parent +
+         "'/><child link='" + child + "'/><axis xyz='0 1 0'/>" + more + "</joint>";
+}
+
+std::string link(const std::string& name) {
+  return "<link name='" + name +
+         "'><inertial><mass value='0.1'/><inertia ixx='0.01' iyy='0.01' izz='0.01' ixy='0' ixz='0' "
+         "iyz='0'/></inertial></link>";
+}
+
+class UrdfTest : public ::testing::Test {
+ protected:
+  ::testing::AssertionResult isRefused(const Leg& leg,
+                                       const std::vector<std::string>& words) const {
+    return testing::names(refusalOf([&] { folder_.loadText(leg.text(), "leg.urdf"); }), words);
+  }
+
+  ::testing::AssertionResult isRefusedWith(const std::string& more,
+                                           const std::vector<std::string>& words) const {
+    Leg leg;
+    leg.more = more;
+    return isRefused(leg, words);
+  }
+
+  std::shared_ptr<const MujocoModel> load(const Leg& leg) const {
+    return folder_.loadText(leg.text(), "urdf/leg.urdf");
+  }
+
+  std::shared_ptr<const MujocoModel> loadWith(const std::string& more) const {
+    Leg leg;
+    leg.more = more;
+    return load(leg);
+  }
+
+  /// A box as STL.
+  void writeBox(const std::string& name, double size, bool ascii) const {
+    const int faces[12][3] = {{0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}, {0, 4, 5}, {0, 5, 1},
+                              {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
+    const auto at = [size](int corner, int axis) {
+      return static_cast<float>(((corner >> (2 - axis)) & 1) * size);
+    };
+    std::ostringstream text;
+    text << "solid box\n";
+    std::string binary = "solid" + std::string(75, ' ') + std::string("\x0c\0\0\0", 4);
+    for (const auto& face : faces) {
+      text << "facet normal 0 0 0\nouter loop\n";
+      float numbers[12] = {0, 0, 0};
+      for (int k = 0; k < 3; ++k) {
+        for (int axis = 0; axis < 3; ++axis) numbers[3 + 3 * k + axis] = at(face[k], axis);
+        text << "vertex " << numbers[3 + 3 * k] << ' ' << numbers[4 + 3 * k] << ' '
+             << numbers[5 + 3 * k] << '\n';
+      }
+      text << "endloop\nendfacet\n";
+      char raw[50] = {};
+      std::memcpy(raw, numbers, sizeof(numbers));
+      binary.append(raw, sizeof(raw));
+    }
+    folder_.write(name, ascii ? text.str() + "endsolid box\n" : binary);
+  }
+
+  ModelFolder folder_;
+};
+
+TEST_F(UrdfTest, NamesAJointOfAnUnknownTypeAndThoseThatThereAre) {
+  for (const char* type : {"Revolute", "ball", "hinge", "CONTINUOUS"}) {
+    Leg leg;
+    leg.type = type;
+    EXPECT_TRUE(isRefused(leg, {"hip", type, "line 4", "revolute", "continuous", "prismatic",
+                                "fixed", "floating", "planar"}));
+  }
+  Leg leg;
+  leg.type = "";
+  EXPECT_TRUE(isRefused(leg, {"hip", "none", "revolute"}));
+  for (const char* type : {"floating", "planar"}) {
+    leg.type = type;
+    EXPECT_TRUE(isRefused(leg, {"hip", type, "hinges and slides"}));
+  }
+}
+
+TEST_F(UrdfTest, NamesWhatIsWrongWithTheTree) {
+  EXPECT_TRUE(isRefusedWith(joint("weld", "fixed", "world", "base"),
+                            {"weld", "world", "not declared", "<link name=\"world\"/>"}));
+  EXPECT_TRUE(
+      isRefusedWith(joint("knee", "continuous", "thigh", "shank"), {"knee", "child", "shank"}));
+  EXPECT_TRUE(isRefusedWith(link("stray"), {"root", "base", "stray", "fixed joints"}));
+  EXPECT_TRUE(isRefusedWith(link("other") + joint("second", "fixed", "other", "thigh"),
+                            {"second", "thigh", "hip", "one parent"}));
+  EXPECT_TRUE(isRefusedWith(joint("back", "fixed", "thigh", "base"), {"back", "base", "cycle"}));
+  EXPECT_TRUE(isRefusedWith(link("thigh"), {"thigh", "name"}));
+  EXPECT_TRUE(isRefusedWith("<joint name='knee' type='fixed'><parent link='base'/></joint>",
+                            {"knee", "child"}));
+}
+
+TEST_F(UrdfTest, KeepsALinkThatIsCalledWorld) {
+  const auto model = loadWith("<link name='world'/>" + joint("weld", "fixed", "world", "base"));
+  EXPECT_EQ(model->get().njnt, 1);
+}
+
+TEST_F(UrdfTest, NamesALinkWithoutMassOrInertia) {
+  Leg leg;
+  leg.inertia = "<inertia ixx='0' iyy='0' izz='0' ixy='0' ixz='0' iyz='0'/>";
+  EXPECT_TRUE(isRefused(leg, {"inertia", "thigh", "point mass"}));
+  leg.mass = "<mass value='0'/>";
+  EXPECT_TRUE(isRefused(leg, {"mass", "thigh", "> 0"}));
+}
+
+TEST_F(UrdfTest, NamesAShapeThatUrdfDoesNotHave) {
+  Leg leg;
+  leg.shape = "<capsule radius='0.05' length='1'/>";
+  EXPECT_TRUE(isRefused(leg, {"thigh", "capsule", "cylinder"}));
+  leg.shape = "";
+  EXPECT_TRUE(isRefused(leg, {"thigh", "geometry", "nothing"}));
+}
+
+TEST_F(UrdfTest, LetsContinuousJointsTurnWithoutEnd) {
+  Leg leg;
+  leg.in_joint = "<limit lower='-1' upper='1' effort='5' velocity='1'/>";
+  EXPECT_EQ(load(leg)->get().jnt_limited[0], 0);
+  EXPECT_EQ(load(leg)->effortLimit("hip"), 5.0);
+  leg.type = "revolute";
+  EXPECT_EQ(load(leg)->get().jnt_limited[0], 1);
+}
+
+TEST_F(UrdfTest, NamesLimitsThatCannotBe) {
+  Leg leg;
+  leg.type = "revolute";
+  leg.in_joint = "<limit lower='1' upper='-1' effort='5' velocity='1'/>";
+  EXPECT_TRUE(isRefused(leg, {"hip", "lower", "\"1\"", "\"-1\""}));
+  leg.in_joint = "<limit lower='-1' upper='1' effort='-5' velocity='1'/>";
+  EXPECT_TRUE(isRefused(leg, {"hip", "effort", "\"-5\""}));
+  leg.in_joint = "<limit lower='-1' upper='1' effort='much' velocity='1'/>";
+  EXPECT_TRUE(isRefused(leg, {"hip", "effort", "\"much\""}));
+}
+
+TEST_F(UrdfTest, TakesAnEffortOfZeroForUnknown) {
+  Leg leg;
+  leg.in_joint = "<limit effort='0' velocity='1'/>";
+  MujocoOptions options = urdfOptions();
+  options.motors = {"hip"};
+  options.goal = {1.0};
+  options.max_torque.clear();
+  EXPECT_TRUE(testing::names(refusalOf([&] { MujocoPlant(load(leg), options); }),
+                             {"plant/max_torque", "limit of 0", "hip"}));
+  options.max_torque = {2.0};
+  EXPECT_EQ(MujocoPlant(load(leg), options).info().max_torque[0], 2.0);
+}
+
+TEST_F(UrdfTest, LetsAJointFollowTheOneThatItMimics) {
+  const auto follower = [](const std::string& mimic) {
+    return link("finger") + joint("curl", "continuous", "thigh", "finger", mimic);
+  };
+  const auto model = loadWith(follower("<mimic joint='hip' multiplier='-0.5' offset='0.2'/>"));
+  MujocoOptions options = urdfOptions();
+  options.motors = {"hip"};
+  options.max_torque = {1.0};
+  options.start = {0.0, 0.2};
+  MujocoPlant plant(model, options);
+  for (int t = 0; t < 30; ++t) plant.step(Eigen::VectorXd::Constant(1, 0.1));
+  EXPECT_GT(std::abs(plant.state()[0]), 0.2);
+  EXPECT_NEAR(plant.state()[1], -0.5 * plant.state()[0] + 0.2, 0.01);
+  EXPECT_TRUE(isRefusedWith(follower("<mimic joint='hop'/>"), {"curl", "hop", "hip"}));
+}
+
+TEST_F(UrdfTest, TakesAMujocoBlockForWhatItNamesAndIgnoresOneInAComment) {
+  const auto with_block = loadWith("<mujoco><option timestep='0.001'/></mujoco>");
+  EXPECT_EQ(with_block->get().opt.timestep, 0.001);
+  EXPECT_EQ(with_block->get().ngeom, 1);
+  EXPECT_NE(with_block->get().opt.disableflags & mjDSBL_CONTACT, 0);
+  EXPECT_EQ(loadWith("<!-- <mujoco><compiler/></mujoco> -->")->get().ngeom, 1);
+  const auto touching = loadWith("<mujoco><option><flag contact='enable'/></option></mujoco>");
+  EXPECT_EQ(touching->get().opt.disableflags & mjDSBL_CONTACT, 0);
+}
+
+TEST_F(UrdfTest, LooksForPackagesInMeshesAlone) {
+  EXPECT_EQ(loadWith("<!-- <mesh filename='package://gone/x.dae'/> -->")->get().ngeom, 1);
+  EXPECT_EQ(loadWith("<gazebo><plugin path='package://gone/x.so'/></gazebo>")->get().ngeom, 1);
+  Leg leg;
+  leg.shape = "<mesh filename='package:///meshes/x.stl'/>";
+  EXPECT_TRUE(isRefused(leg, {"\"package:///meshes/x.stl\"", "ROS_PACKAGE_PATH", "relative path"}));
+  leg.shape = "<mesh filename='package://gone/meshes/x.stl'/>";
+  EXPECT_TRUE(
+      isRefused(leg, {"\"package://gone/meshes/x.stl\"", "ROS_PACKAGE_PATH", "relative path"}));
+  leg.shape = "<mesh filename='http://gone/x.stl'/>";
+  EXPECT_TRUE(isRefused(leg, {"\"http://gone/x.stl\"", "package://"}));
+}
+
+TEST_F(UrdfTest, DrawsTheVisualMeshOfTwoThatHaveOneName) {
+  writeBox("visual/box.stl", 0.1, false);
+  writeBox("collision/box.stl", 0.4, false);
+  Leg leg;
+  leg.shape =
+      "<mesh filename='../visual/box.stl'/></geometry></visual><collision><geometry>"
+      "<mesh filename='../collision/box.stl'/></geometry></collision>"
+      "<visual><geometry><mesh filename='../visual/box.stl' scale='2 2 2'/>";
+  const auto model = load(leg);
+  EXPECT_EQ(model->get().nmesh, 3);
+  std::vector<double> drawn;
+  for (int i = 0; i < model->get().ngeom; ++i) {
+    if (model->get().geom_group[i] < 3) drawn.push_back(model->get().geom_rbound[i]);
+  }
+  ASSERT_EQ(drawn.size(), 2U);
+  EXPECT_LT(drawn[0], 0.2);
+  EXPECT_NEAR(drawn[1], 2.0 * drawn[0], 1e-6);
+}
+
+TEST_F(UrdfTest, ReadsMeshesByAnyNameAndInText) {
+  writeBox("meshes/UPPER.STL", 0.1, false);
+  writeBox("meshes/text.stl", 0.1, true);
+  const std::string whole = "file://" + folder_.path() + "/meshes/UPPER.STL";
+  for (const std::string& name :
+       {std::string("../meshes/UPPER.STL"), std::string("../meshes/text.stl"),
+        std::string("package://robots/meshes/UPPER.STL"), whole}) {
+    Leg leg;
+    leg.shape = "<mesh filename='" + name + "'/>";
+    const auto model = load(leg);
+    EXPECT_EQ(model->get().nmesh, 1) << name;
+    EXPECT_EQ(model->get().nmeshvert, 8) << name;
+  }
+  Leg leg;
+  leg.shape = "<mesh filename='package://elsewhere/UPPER.STL'/>";
+  leg.more = "<mujoco><compiler meshdir='../meshes'/></mujoco>";
+  EXPECT_EQ(load(leg)->get().nmesh, 1);
+}
+
+TEST_F(UrdfTest, NamesAMeshThatMujocoCannotRead) {
+  folder_.write("arm.DAE", "<COLLADA/>");
+  folder_.write("lfs.stl", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n");
+  Leg leg;
+  leg.shape = "<mesh filename='arm.DAE'/>";
+  leg.more =
+      "<link name='hand'><visual><geometry><mesh filename='b.dae'/></geometry></visual></link>" +
+      joint("grip", "fixed", "thigh", "hand");
+  EXPECT_TRUE(isRefused(leg, {"arm.DAE, b.dae", "STL", "assimp export arm.DAE"}));
+  leg.shape = "<mesh filename='lfs.stl'/>";
+  EXPECT_TRUE(isRefused(leg, {"\"lfs.stl\"", "git lfs pull"}));
+  leg.shape = "<mesh filename='gone.stl'/>";
+  EXPECT_TRUE(isRefused(leg, {"\"gone.stl\"", "not there"}));
+}
+
+TEST_F(UrdfTest, NamesTheParentOfALinkBehindAFixedJoint) {
+  const std::string tip = link("tip") + joint("weld", "fixed", "thigh", "tip");
+  const auto model = loadWith(tip);
+  EXPECT_TRUE(testing::names(refusalOf([&] { model->place("tip", "plant/error_sites"); }),
+                             {"plant/error_sites", "tip", "fixed joint", "thigh", "fusestatic"}));
+  const auto apart = loadWith(tip + "<mujoco><compiler fusestatic='false'/></mujoco>");
+  EXPECT_GT(apart->place("tip", "plant/error_sites").id, 0);
+}
+
+TEST_F(UrdfTest, AsksForXacroToBeRun) {
+  EXPECT_TRUE(isRefusedWith("<xacro:include filename='x'/>", {"line 5", "xacro", "run xacro"}));
+  EXPECT_TRUE(isRefusedWith(joint("knee", "${kind}", "thigh", "shank"), {"${kind}", "run xacro"}));
+}
+
+}  // namespace
+}  // namespace ddm
