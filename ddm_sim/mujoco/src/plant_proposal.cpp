@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
-#include <boost/property_tree/ptree.hpp>
-#include <boost/property_tree/xml_parser.hpp>
 #include <cmath>
 #include <random>
 #include <sstream>
@@ -16,6 +14,7 @@
 #include "ddm_sim/angles.h"
 #include "motors.h"
 #include "mujoco_physics.h"
+#include "xml_text.h"
 
 namespace ddm {
 namespace {
@@ -513,16 +512,13 @@ std::vector<ModelJoint> jointsOf(const std::shared_ptr<const MujocoModel>& model
 }
 
 std::vector<std::string> transmissionJoints(const std::string& text) {
-  namespace pt = boost::property_tree;
-  std::istringstream in(text);
-  pt::ptree root;
-  pt::read_xml(in, root);
+  const XmlDocument document = parseXml(text);
+  const tinyxml2::XMLElement* const root = document->RootElement();
   std::vector<std::string> names;
-  for (const auto& child : root.get_child("robot", pt::ptree())) {
-    if (child.first != "transmission") continue;
-    for (const auto& part : child.second) {
-      if (part.first == "joint") names.push_back(part.second.get("<xmlattr>.name", ""));
-    }
+  for (const auto* one = root->FirstChildElement("transmission"); one != nullptr;
+       one = one->NextSiblingElement("transmission")) {
+    const tinyxml2::XMLElement* const joint = one->FirstChildElement("joint");
+    if (joint != nullptr) names.push_back(attribute(*joint, "name"));
   }
   return names;
 }
