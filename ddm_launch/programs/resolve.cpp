@@ -27,7 +27,9 @@ namespace fs = boost::filesystem;
 constexpr char kAbout[] =
     "Prints the configuration that arguments and files make up, as YAML. The launch files set it\n"
     "as the parameter `configuration`, which all their nodes read. An option with an empty value\n"
-    "counts as not given. Relative paths start at the current folder.\n\n"
+    "counts as not given. Relative paths in arguments start at the current folder, those in a file "
+    "at\n"
+    "the folder of that file.\n\n"
     "usage: rosrun ddm_launch resolve --preset paper --plant pendulum --config my.yaml";
 
 struct Request {

@@ -8,7 +8,7 @@ import pages
 # Programs and launch files that page_commands_test runs as the page says, but for CHEAPER.
 RUN_HERE = {"run_experiment", "sweep", "feature_space", "study_figure pendulum_feature_space", "figure film",
             "figure film_strip", "figure learning_curve", "figure success_rate", "evaluate", "train_from_bags", "inspect",
-            "export", "simulate", "sim_node", "mpc_node", "dynparam", "experiment.launch", "record.launch",
+            "export", "new_plant", "simulate", "sim_node", "mpc_node", "dynparam", "experiment.launch", "record.launch",
             "control.launch", "replay.launch", "demo.sh"}
 
 # Those that another test runs, with all that takes long or needs more than one machine: the test must name it.

@@ -76,6 +76,17 @@ class ResolveTest(ScratchCase):
             self.assertEqual([blocks[block]["max_torque"] for block in ("model", "mpc")], [[0.05, 0.05]] * 2)
             self.assertEqual(blocks["controller"]["torque_dim"], 2)
 
+    def test_paths_in_a_file_start_at_its_folder_and_those_of_arguments_where_it_was_called(self):
+        self.write("plants/robot.yaml", "plant: {max_torque: 2.0}\nrobot: {goal_file: goal.png}\n")
+        self.write("more/start.yaml", "start: {bags: [a.bag]}\n")
+        blocks = self.resolve("--plant", "plants/robot.yaml", "--config", "more/start.yaml")
+        self.assertEqual(blocks["experiment"]["plant"], self.file("plants/robot.yaml"))
+        self.assertEqual(blocks["robot"]["goal_file"], self.file("plants/goal.png"))
+        self.assertEqual(blocks["start"]["bags"], [self.file("more/a.bag")])
+        blocks = self.resolve("--plant", "plants/robot.yaml", "--set", "robot/goal_file=goal.png", "--bags", "a.bag")
+        self.assertEqual(blocks["robot"]["goal_file"], self.file("goal.png"))
+        self.assertEqual(blocks["start"]["bags"], [self.file("a.bag")])
+
     def test_a_trial_without_a_bag_gives_the_nodes_access_to_no_other_folder(self):
         for launch, folders in (("control.launch model:=/here/model.ddm", ["."]), ("record.launch bag:=/there/a.bag", ["/there"]),
                                 ("record.launch bag:=/a.bag", ["/"])):

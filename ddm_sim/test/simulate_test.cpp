@@ -252,6 +252,16 @@ TEST_F(SimulateModelFile, TakesThePlantOfAFile) {
   EXPECT_EQ(rows(result.out, "step,time_s,pendulum_rad,pendulum_rad_per_s").size(), 2U);
 }
 
+TEST_F(SimulateModelFile, FindsTheModelBesideThePlantFileFromAnyFolder) {
+  fs::copy(DDM_SIM_SOURCE_DIR "/models/arm.urdf", folder_ / "arm.urdf");
+  std::ofstream(folder_ / "arm.yaml")
+      << "plant: {type: mujoco, model: arm.urdf, motors: [elbow], tolerance: 5, "
+         "camera_position: [0, 0, 2], camera_look_at: [0, 0, 0]}";
+  const Outcome result = run("--plant " + folder_.string() + "/arm.yaml --describe", "");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(YAML::Load(result.out)["max_torque"][0].as<double>(), 0.4);  // of the model file
+}
+
 #if !DDM_HAS_MUJOCO
 TEST_F(Simulate, SaysWhatIsMissingForAModelFile) {
   const Outcome result = run("--plant suite_pendulum", "torque_nm\n");

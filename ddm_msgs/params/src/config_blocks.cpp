@@ -7,6 +7,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "ddm_params/home.h"
 #include "ddm_params/renamed_keys.h"
@@ -48,10 +49,40 @@ std::string readText(const std::string& path) {
                            " bytes: it is not a configuration file");
 }
 
+/// Keys whose values name files.
+constexpr std::pair<const char*, const char*> kFileKeys[] = {{"plant", "model"},
+                                                             {"plant", "background_pictures"},
+                                                             {"robot", "goal_file"},
+                                                             {"start", "model"},
+                                                             {"start", "bags"}};
+
+/// A plant is named by its file if the name ends in .yaml.
+bool isPlantFile(const YAML::Node& name) {
+  return name.IsScalar() && std::filesystem::path(name.Scalar()).extension() == ".yaml";
+}
+
+/// Makes a relative path, or each one of a list, start at `folder`; package:// stays as it is.
+void resolvePaths(const std::filesystem::path& folder, YAML::Node value) {
+  if (value.IsSequence()) {
+    for (const YAML::Node& one : value) resolvePaths(folder, one);
+  } else if (value.IsScalar() && !value.Scalar().empty() &&
+             value.Scalar().find("://") == std::string::npos) {
+    value = (folder / value.Scalar()).lexically_normal().string();
+  }
+}
+
 }  // namespace
 
 YAML::Node readBlocks(const std::string& path) {
-  return withTodaysKeys(parseBlocks(readText(path), path));
+  const YAML::Node blocks = withTodaysKeys(parseBlocks(readText(path), path));
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  for (const auto& [block, key] : kFileKeys) {
+    if (hasKey(blocks, block, key)) resolvePaths(folder, blocks[block][key]);
+  }
+  if (hasKey(blocks, "experiment", "plant") && isPlantFile(blocks["experiment"]["plant"])) {
+    resolvePaths(folder, blocks["experiment"]["plant"]);
+  }
+  return blocks;
 }
 
 YAML::Node parseBlocks(const std::string& text, const std::string& source) {

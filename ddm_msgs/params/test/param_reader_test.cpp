@@ -15,6 +15,7 @@
 
 #include "ddm_msgs/testing/expect_error.h"
 #include "ddm_msgs/testing/temp_folder.h"
+#include "ddm_params/config_blocks.h"
 
 namespace ddm {
 namespace {
@@ -317,6 +318,34 @@ TEST(ParamReaderFiles, LetsTheLaterFileWinKeyByKey) {
   EXPECT_EQ(options.starts, std::vector<int>({9}));
   EXPECT_EQ(reader.read<TrialOptions>("trial").num_steps, 7);
   EXPECT_NO_THROW(reader.requireValid());
+}
+
+TEST(ParamReaderFiles, StartsRelativePathsAtTheFolderOfTheFileThatGivesThem) {
+  const testing::TempFolder folder;
+  std::filesystem::create_directories(folder.file("plants"));
+  const std::string file = folder.file("plants/robot.yaml");
+  std::ofstream(file) << "plant: {model: ../arm.urdf, background_pictures: [office.jpg, /b.png]}\n"
+                         "robot: {goal_file: goal.png}\n"
+                         "start: {model: package://robots/m.ddm, bags: a.bag}\n"
+                         "experiment: {plant: ./arm.yaml}";
+  const YAML::Node blocks = readBlocks(file);
+  const auto text = [&blocks](const char* block, const char* key) {
+    return YAML::Dump(blocks[block][key]);
+  };
+  EXPECT_EQ(text("plant", "model"), folder.file("arm.urdf"));
+  EXPECT_EQ(text("plant", "background_pictures"),
+            "[" + folder.file("plants/office.jpg") + ", /b.png]");
+  EXPECT_EQ(text("robot", "goal_file"), folder.file("plants/goal.png"));
+  EXPECT_EQ(text("start", "model"), "package://robots/m.ddm");
+  EXPECT_EQ(text("start", "bags"), folder.file("plants/a.bag"));
+  EXPECT_EQ(text("experiment", "plant"), folder.file("plants/arm.yaml"));
+}
+
+TEST(ParamReaderFiles, LeavesNamesAndValuesOfOtherTypesAsTheyAre) {
+  const ScratchFile file("names.yaml",
+                         "experiment: {plant: pendulum}\nplant: {model: \"\"}\nstart: {bags: []}");
+  EXPECT_EQ(YAML::Dump(readBlocks(file.path())),
+            "experiment: {plant: pendulum}\nplant: {model: \"\"}\nstart: {bags: []}");
 }
 
 TEST(ParamReaderFiles, KeepsABlockThatALaterFileLeavesEmpty) {

@@ -1,0 +1,191 @@
+// Where a camera has to stand to see all poses of a model.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "camera_placement.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "ddm_mujoco/renderer.h"
+#include "ddm_sim/angles.h"
+
+namespace ddm {
+namespace {
+
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+
+constexpr double kMargin = 0.06;      // of half the picture, on each side
+constexpr double kAlmostBest = 0.05;  // of the motion that a direction shows
+constexpr std::size_t kMaxPlaces = 6;
+
+/// Half the sides of the box around a geom, in its own frame.
+Vector3d halfSides(const mjModel& m, int geom) {
+  const mjtNum* const size = m.geom_size + 3 * geom;
+  switch (m.geom_type[geom]) {
+    case mjGEOM_SPHERE:
+      return Vector3d::Constant(size[0]);
+    case mjGEOM_CAPSULE:
+      return {size[0], size[0], size[0] + size[1]};
+    case mjGEOM_CYLINDER:
+      return {size[0], size[0], size[1]};
+    case mjGEOM_ELLIPSOID:
+    case mjGEOM_BOX:
+      return {size[0], size[1], size[2]};
+    default:
+      break;
+  }
+  const int mesh = m.geom_type[geom] == mjGEOM_MESH ? m.geom_dataid[geom] : -1;
+  if (mesh < 0) return Vector3d::Constant(m.geom_rbound[geom]);
+  Eigen::Vector3f half = Eigen::Vector3f::Zero();
+  for (int i = 0; i < m.mesh_vertnum[mesh]; ++i) {
+    const float* const vertex = m.mesh_vert + 3 * (m.mesh_vertadr[mesh] + i);
+    half = half.cwiseMax(Eigen::Map<const Eigen::Vector3f>(vertex).cwiseAbs());
+  }
+  return half.cast<double>();
+}
+
+/// Drawn geoms that a joint can move; where none of them is drawn, all.
+std::vector<int> movingGeoms(const mjModel& m) {
+  std::vector<int> all, drawn;
+  for (int i = 0; i < m.ngeom; ++i) {
+    if (m.body_weldid[m.geom_bodyid[i]] == 0 || m.geom_type[i] == mjGEOM_PLANE) continue;
+    all.push_back(i);
+    if (isDrawnAndMoves(m, i)) drawn.push_back(i);
+  }
+  return drawn.empty() ? all : drawn;
+}
+
+bool moves(const mjModel& m, int joint, int body) {
+  for (; body > 0; body = m.body_parentid[body]) {
+    if (body == m.jnt_bodyid[joint]) return true;
+  }
+  return false;
+}
+
+/// Share of a joint's motion that is seen from each direction; least over all joints.
+Eigen::VectorXd motionSeen(const MujocoModel& model, const PlaceModel& place,
+                           const std::vector<Eigen::VectorXd>& poses,
+                           const std::vector<Vector3d>& directions) {
+  const mjModel& m = model.get();
+  const auto num_directions = static_cast<Eigen::Index>(directions.size());
+  Eigen::MatrixXd seen = Eigen::MatrixXd::Zero(num_directions, m.njnt);
+  Eigen::RowVectorXd all = Eigen::RowVectorXd::Zero(m.njnt);
+  const std::vector<int> geoms = movingGeoms(m);
+  for (const Eigen::VectorXd& pose : poses) {
+    const mjData& data = place(pose);
+    const Matrix3Xd corners = movingCorners(model, data);
+    for (Eigen::Index i = 0; i < corners.cols(); ++i) {
+      const int body = m.geom_bodyid[geoms[static_cast<std::size_t>(i / 8)]];
+      for (int joint = 0; joint < m.njnt; ++joint) {
+        if (!moves(m, joint, body)) continue;
+        const Vector3d axis = Eigen::Map<const Vector3d>(data.xaxis + 3 * joint);
+        const Vector3d arm = corners.col(i) - Eigen::Map<const Vector3d>(data.xanchor + 3 * joint);
+        const Vector3d velocity = m.jnt_type[joint] == mjJNT_SLIDE ? axis : axis.cross(arm);
+        all[joint] += velocity.norm();
+        for (Eigen::Index k = 0; k < num_directions; ++k) {
+          seen(k, joint) += velocity.cross(directions[static_cast<std::size_t>(k)]).norm();
+        }
+      }
+    }
+  }
+  const Eigen::RowVectorXd scale = (all.array() > 0.0).select(all.cwiseInverse(), 0.0);
+  return (seen * scale.asDiagonal()).rowwise().minCoeff();
+}
+
+/// From the model to the camera: along the axes of the world and of the joints, then from above at
+/// an angle.
+std::vector<Vector3d> directionsOf(const MujocoModel& model, const mjData& placed) {
+  std::vector<Vector3d> directions = {{0, -1, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}};
+  for (int i = 0; i < model.get().njnt; ++i) {
+    Vector3d axis = Eigen::Map<const Vector3d>(placed.xaxis + 3 * i);
+    axis = (axis.array().abs() < 1e-3).select(0.0, axis).normalized();
+    for (const Vector3d& one : {axis, Vector3d(-axis)}) {
+      const bool from_below = one.z() < -0.5;
+      const bool known = std::any_of(directions.begin(), directions.end(),
+                                     [&](const Vector3d& x) { return (x - one).norm() < 1e-3; });
+      if (!from_below && !known) directions.push_back(one);
+    }
+  }
+  for (const double elevation : {30.0, 60.0}) {
+    for (const double azimuth : {-90.0, -45.0, -135.0, 0.0, 180.0, 45.0, 135.0, 90.0}) {
+      const double up = elevation * kPi / 180.0, around = azimuth * kPi / 180.0;
+      directions.emplace_back(std::cos(up) * std::cos(around), std::cos(up) * std::sin(around),
+                              std::sin(up));
+    }
+  }
+  return directions;
+}
+
+/// Numbers for people: to a thousandth of the distance.
+Vector3d rounded(const Vector3d& point, double distance) {
+  const double unit = std::pow(10.0, std::floor(std::log10(distance)) - 3.0);
+  return (point / unit).array().round() * unit;
+}
+
+/// The camera in this direction in whose picture the corners fit, with a margin.
+CameraPlace placeFor(const Vector3d& direction, const Matrix3Xd& corners, double field_of_view) {
+  const bool vertical = direction.head<2>().isZero();
+  const Vector3d above = vertical ? Vector3d::UnitY() : Vector3d::UnitZ();
+  Eigen::Matrix3d axes;  // right, up and towards the camera
+  axes.row(0) = above.cross(direction).normalized();
+  axes.row(1) = direction.cross(axes.row(0).transpose());
+  axes.row(2) = direction;
+  Matrix3Xd seen = axes * corners;
+  const Vector3d middle = 0.5 * (seen.rowwise().minCoeff() + seen.rowwise().maxCoeff());
+  seen.colwise() -= middle;
+  const double widest = (1.0 - kMargin) * std::tan(0.5 * field_of_view * kPi / 180.0);
+  const Eigen::RowVectorXd reach = seen.topRows(2).cwiseAbs().colwise().maxCoeff();
+  const double distance = std::max(1e-3, (reach / widest + seen.row(2)).maxCoeff());
+  const Vector3d look_at = rounded(axes.transpose() * middle, distance);
+  return {look_at + rounded(distance * direction, distance), look_at};
+}
+
+}  // namespace
+
+Matrix3Xd movingCorners(const MujocoModel& model, const mjData& placed) {
+  const mjModel& m = model.get();
+  const std::vector<int> geoms = movingGeoms(m);
+  Matrix3Xd corners(3, 8 * static_cast<Eigen::Index>(geoms.size()));
+  Eigen::Index column = 0;
+  for (const int geom : geoms) {
+    const Vector3d half = halfSides(m, geom);
+    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> axes(placed.geom_xmat +
+                                                                              9 * geom);
+    const Vector3d middle = Eigen::Map<const Vector3d>(placed.geom_xpos + 3 * geom);
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vector3d signs((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
+                           (corner & 4) != 0 ? 1 : -1);
+      corners.col(column++) = middle + axes * half.cwiseProduct(signs);
+    }
+  }
+  return corners;
+}
+
+std::vector<CameraPlace> cameraPlaces(const MujocoModel& model, const PlaceModel& place,
+                                      const std::vector<Eigen::VectorXd>& poses,
+                                      double field_of_view) {
+  Matrix3Xd corners;
+  for (const Eigen::VectorXd& pose : poses) {
+    const Matrix3Xd here = movingCorners(model, place(pose));
+    corners.conservativeResize(3, corners.cols() + here.cols());
+    corners.rightCols(here.cols()) = here;
+  }
+  if (corners.cols() == 0) {
+    throw std::invalid_argument(
+        model.uri() +
+        " has no shape that a joint moves, so no image could show its pose: "
+        "give the moving links a <visual>, the moving bodies a <geom>");
+  }
+  const std::vector<Vector3d> directions = directionsOf(model, place(poses.front()));
+  const Eigen::VectorXd seen = motionSeen(model, place, poses, directions);
+  std::vector<CameraPlace> places;
+  for (std::size_t i = 0; i < directions.size() && places.size() < kMaxPlaces; ++i) {
+    if (seen[static_cast<Eigen::Index>(i)] < seen.maxCoeff() - kAlmostBest) continue;
+    places.push_back(placeFor(directions[i], corners, field_of_view));
+  }
+  return places;
+}
+
+}  // namespace ddm

@@ -1,0 +1,203 @@
+// Tests of the plant that is proposed for a model file.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_mujoco/plant_proposal.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "ddm_mujoco/mujoco_plant.h"
+#include "ddm_sim/angles.h"
+#include "model_folder.h"
+
+namespace ddm {
+namespace {
+
+using testing::ModelFolder;
+using Texts = std::vector<std::string>;
+
+/// A rod of 1 m and 1 kg on a joint, below which it hangs at 0.
+std::string rodLink(const std::string& name) {
+  return "<link name='" + name +
+         "'><inertial><origin xyz='0 0 -0.5'/><mass value='1'/><inertia ixx='0.083' iyy='0.083' "
+         "izz='0.002' ixy='0' ixz='0' iyz='0'/></inertial><visual><origin xyz='0 0 "
+         "-0.5'/><geometry>"
+         "<box size='0.1 0.1 1'/></geometry></visual></link>";
+}
+
+std::string jointOf(const std::string& name, const std::string& type, const std::string& parent,
+                    const std::string& child, const std::string& axis, const std::string& limit) {
+  return "<joint name='" + name + "' type='" + type + "'><parent link='" + parent +
+         "'/><child link='" + child + "'/><axis xyz='" + axis + "'/><dynamics damping='0.1'/>" +
+         limit + "</joint>";
+}
+
+std::string robot(const std::string& parts) {
+  return "<robot name='r'><link name='base'/>" + parts + "</robot>";
+}
+
+std::string pendulum(const std::string& limit, const std::string& axis = "0 1 0") {
+  return robot(rodLink("rod") + jointOf("hinge", "continuous", "base", "rod", axis, limit));
+}
+
+/// A cart on a rail along x, and a pole on it.
+std::string cartPole(const std::string& rail) {
+  return robot(
+      "<link name='cart'><inertial><mass value='1'/><inertia ixx='0.01' iyy='0.01' izz='0.01' "
+      "ixy='0' ixz='0' iyz='0'/></inertial><visual><geometry><box size='0.3 0.2 0.1'/>"
+      "</geometry></visual></link>" +
+      rodLink("pole") + jointOf("rail", "prismatic", "base", "cart", "1 0 0", rail) +
+      jointOf("pivot", "continuous", "cart", "pole", "0 1 0", ""));
+}
+
+class Proposal : public ::testing::Test {
+ protected:
+  MotorChoice choose(const std::string& text, const std::string& name = "robot.urdf") {
+    model_ = folder_.loadText(text, name);
+    return chooseMotors(*model_, jointsOf(model_), transmissionJoints(text));
+  }
+
+  PlantProposal propose(const std::string& text, const std::string& name = "robot.urdf") {
+    const MotorChoice choice = choose(text, name);
+    EXPECT_FALSE(choice.joints.empty());
+    return proposePlant(model_, choice, {});
+  }
+
+  ModelFolder folder_;
+  std::shared_ptr<const MujocoModel> model_;
+};
+
+Eigen::Vector3d viewOf(const PlantProposal& proposal) {
+  const RenderOptions& look = proposal.options.look;
+  const Eigen::Vector3d position(look.position.data()), at(look.look_at.data());
+  return (at - position).normalized();
+}
+
+TEST_F(Proposal, MotorsAreTheTransmissionsOfAUrdfThenItsJointsWithAnEffortLimit) {
+  const std::string strong = "<limit effort='5' velocity='1'/>",
+                    weak = "<limit effort='0' velocity='1'/>";
+  const auto two = [](const std::string& upper, const std::string& lower, const std::string& more) {
+    return robot(rodLink("a") + rodLink("b") +
+                 jointOf("upper", "continuous", "base", "a", "0 1 0", upper) +
+                 jointOf("lower", "continuous", "a", "b", "0 1 0", lower) + more);
+  };
+  EXPECT_EQ(choose(two(strong, weak, "")).joints, Texts({"upper"}));
+  EXPECT_EQ(choose(two(strong, strong, "")).joints, Texts({"upper", "lower"}));
+  EXPECT_EQ(choose(two(strong, weak, "<transmission name='t'><joint name='lower'/></transmission>"))
+                .joints,
+            Texts({"lower"}));
+  const MotorChoice unclear = choose(two(weak, weak, ""));
+  EXPECT_TRUE(unclear.joints.empty());
+  EXPECT_EQ(unclear.candidates, Texts({"upper", "lower"}));
+  EXPECT_EQ(choose(pendulum("")).joints, Texts({"hinge"}));  // the only joint
+}
+
+TEST_F(Proposal, MotorsOfAnMjcfFileAreItsActuatorsAndServosBecomeTorques) {
+  const auto arm = [](const std::string& actuator) {
+    return "<mujoco><worldbody><body><joint name='swing' axis='0 1 0'/><geom type='capsule' "
+           "size='.05 .4'/>"
+           "</body></worldbody><actuator>" +
+           actuator + "</actuator></mujoco>";
+  };
+  const MotorChoice motor =
+      choose(arm("<motor joint='swing' ctrllimited='true' ctrlrange='-1 1'/>"), "m.xml");
+  EXPECT_TRUE(motor.by_actuators);
+  EXPECT_EQ(motor.joints, Texts({"swing"}));
+  const MotorChoice servo = choose(arm("<position joint='swing' kp='10'/>"), "s.xml");
+  EXPECT_FALSE(servo.by_actuators);
+  EXPECT_EQ(servo.joints, Texts({"swing"}));
+}
+
+TEST_F(Proposal, APendulumStartsHangingAndItsGoalIsUpright) {
+  const PlantProposal proposal = propose(pendulum("<limit effort='5' velocity='1'/>"));
+  EXPECT_EQ(proposal.options.start, std::vector<double>({0.0}));
+  EXPECT_NEAR(std::abs(proposal.options.goal.at(0)), kPi, 1e-12);
+  EXPECT_EQ(proposal.to_set, Texts({"goal", "tolerance"}));
+}
+
+TEST_F(Proposal, ATorqueIsEstimatedFromTheWeightWhereTheFileHasNoLimitOrAHugeOne) {
+  for (const char* limit :
+       {"", "<limit effort='0' velocity='1'/>", "<limit effort='1000' velocity='1'/>"}) {
+    const PlantProposal proposal = propose(pendulum(limit));
+    EXPECT_GT(proposal.options.max_torque.at(0), 9.81 * 0.5) << limit;
+    EXPECT_LT(proposal.options.max_torque.at(0), 20.0) << limit;
+    EXPECT_NE(proposal.reasons.at("max_torque").find("estimated"), std::string::npos) << limit;
+  }
+  EXPECT_EQ(propose(pendulum("<limit effort='5' velocity='1'/>")).options.max_torque,
+            std::vector<double>({5.0}));
+}
+
+TEST_F(Proposal, TheCameraLooksAlongTheAxesOfParallelHinges) {
+  for (const char* axis : {"0 1 0", "0 -1 0", "1 0 0", "0.6 0.8 0"}) {
+    const PlantProposal proposal = propose(pendulum("", axis));
+    double x = 0.0, y = 0.0, z = 0.0;
+    std::istringstream(axis) >> x >> y >> z;
+    EXPECT_GT(std::abs(viewOf(proposal).dot(Eigen::Vector3d(x, y, z))), 0.99) << axis;
+  }
+  const PlantProposal proposal =
+      propose(cartPole("<limit lower='-1' upper='1' effort='9' velocity='1'/>"));
+  EXPECT_GT(std::abs(viewOf(proposal).y()), 0.99);
+}
+
+TEST_F(Proposal, AllPosesAreInTheImage) {
+  const PlantProposal proposal =
+      propose(cartPole("<limit lower='-1' upper='1' effort='9' velocity='1'/>"));
+  MujocoPlant plant(model_, proposal.options);
+  std::vector<Eigen::VectorXd> poses = proposal.poses;
+  for (const double x : {-1.0, 1.0}) {
+    for (int k = 0; k < 8; ++k) poses.push_back(Eigen::Vector4d(x, k * kPi / 4.0, 0.0, 0.0));
+  }
+  for (const Eigen::VectorXd& pose : poses) {
+    const Picture picture = plant.render(pose);
+    int brightest = 0;
+    for (int i = 0; i < picture.width; ++i) {
+      for (const int pixel : {i, (picture.height - 1) * picture.width + i, i * picture.width,
+                              i * picture.width + picture.width - 1}) {
+        brightest = std::max<int>(brightest, picture.bytes[static_cast<std::size_t>(pixel)]);
+      }
+    }
+    EXPECT_EQ(brightest, 0) << pose.transpose();  // the edge shows the background
+  }
+}
+
+TEST_F(Proposal, ALongRailIsShownInPartSoThatTheRobotIsNotTiny) {
+  const PlantProposal proposal =
+      propose(cartPole("<limit lower='-50' upper='50' effort='9' velocity='1'/>"));
+  EXPECT_TRUE(proposal.joints.at(0).shownInPart());
+  EXPECT_LT(proposal.joints.at(0).shown_upper, 4.0);
+  EXPECT_EQ(proposal.options.error_joints, Texts({"pivot"}));  // degrees and metres do not mix
+  MujocoPlant plant(model_, proposal.options);
+  EXPECT_GT(checkPlant(proposal, &plant).changed_pixels, 50);
+}
+
+TEST_F(Proposal, TheTimeStepIsShortWhereTheRobotIsFast) {
+  const auto scaled = [](double scale) {
+    std::ostringstream text;
+    text << "<mujoco><worldbody><body><joint name='swing' axis='0 1 0'/><geom type='capsule' size='"
+         << 0.1 * scale << "' fromto='0 0 0 0 0 " << -scale
+         << "'/></body></worldbody><actuator><motor joint='swing'/></actuator></mujoco>";
+    return text.str();
+  };
+  const PlantProposal large = propose(scaled(2.0), "large.xml");
+  const PlantProposal small = propose(scaled(0.05), "small.xml");
+  EXPECT_LT(small.options.dt, large.options.dt);
+  EXPECT_GE(small.options.dt, 0.02);
+}
+
+TEST_F(Proposal, TheCheckNamesAJointThatTheImageDoesNotShow) {
+  const PlantProposal proposal = propose(
+      "<mujoco><worldbody><body><joint name='swing' axis='0 1 0'/><geom type='capsule' size='.05' "
+      "fromto='0 0 0 0 0 -.5'/><body pos='0 0 -.5'><joint name='wheel' axis='0 1 0'/><geom "
+      "type='cylinder' size='.2 .05' zaxis='0 1 0'/></body></body></worldbody><actuator><motor "
+      "joint='wheel' ctrllimited='true' ctrlrange='-1 1'/></actuator></mujoco>",
+      "wheel.xml");
+  MujocoPlant plant(model_, proposal.options);
+  EXPECT_EQ(checkPlant(proposal, &plant).unseen, Texts({"wheel"}));
+}
+
+}  // namespace
+}  // namespace ddm

@@ -1,0 +1,463 @@
+// new_plant: makes a plant file from a model file, and shows what it proposes.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_files/plain_file.h>
+#include <ddm_images/image_codec.h>
+#include <ddm_mujoco/plant_proposal.h>
+#include <ddm_plant_plugin/picture_message.h>
+#include <ddm_plant_plugin/plant_config.h>
+#include <ros/package.h>
+
+#include <boost/algorithm/string/join.hpp>
+#include <boost/algorithm/string/split.hpp>
+#include <boost/optional.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <opencv2/imgproc.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "ddm_params/param_reader.h"
+#include "ddm_params/parse_number.h"
+#include "ddm_params/tool.h"
+
+namespace ddm {
+namespace {
+
+namespace fs = std::filesystem;
+namespace po = boost::program_options;
+
+using boost::algorithm::join;
+using Texts = std::vector<std::string>;
+
+constexpr char kAbout[] =
+    "Makes a plant of a robot's model file: proposes motors, torques, time step, start, goal and\n"
+    "camera, simulates it, and writes a plant file that simulate, run_experiment and the launch\n"
+    "files accept as it is. The values that it cannot know are marked SET in that file.\n\n"
+    "usage: rosrun ddm_sim new_plant ROBOT.urdf|ROBOT.xml --out my_plant.yaml [options]\n\n"
+    "Also writes my_plant.png beside it: the start, the goal and random poses, large and as the\n"
+    "learner sees them.\n"
+    "Exit:   0 done, 1 the model cannot be a plant, 2 bad options or motors that have to be "
+    "named.\n\n"
+    "Options";
+
+struct Arguments {
+  std::string model;
+  std::string out;
+  Texts motors;
+  std::vector<double> max_torque;
+  bool force = false;
+};
+
+Texts partsOf(const std::string& text) {
+  Texts parts;
+  boost::algorithm::split(parts, text, [](char c) { return c == ','; });
+  return parts;
+}
+
+/// @return false if only help was asked for, and printed
+/// @throws po::error for wrong use
+bool parse(int argc, char** argv, Arguments* arguments) {
+  std::string motors, max_torque;
+  po::options_description options(kAbout);
+  auto add = options.add_options();
+  add("out", po::value(&arguments->out)->required()->value_name("FILE.yaml"),
+      "plant file to write");
+  add("motors", po::value(&motors)->value_name("A,B"),
+      "joints that have a motor; without it the file's actuators, or for a URDF the joints with an "
+      "effort limit if these are one or two");
+  add("max-torque", po::value(&max_torque)->value_name("V1,V2"),
+      "limit of each motor, in their order [N m, slides N]; without it the file's limits, or "
+      "estimates from weight and inertia");
+  add("force", po::bool_switch(&arguments->force), "replace files that are there");
+  if (!parseCommandLine(argc, argv, options,
+                        Positional{"model", po::value(&arguments->model), 1})) {
+    return false;
+  }
+  if (arguments->model.empty()) throw po::error("the model file is missing: a URDF or MJCF file");
+  if (!motors.empty()) arguments->motors = partsOf(motors);
+  for (const std::string& part : max_torque.empty() ? Texts() : partsOf(max_torque)) {
+    double value = 0.0;
+    if (!parseNumber(part, &value) || value <= 0.0) {
+      throw po::error("option --max-torque must be numbers > 0, one for each motor, got \"" +
+                      max_torque + "\"");
+    }
+    arguments->max_torque.push_back(value);
+  }
+  if (!namesPlantFile(arguments->out)) {
+    throw po::error("option --out must name a file that ends in .yaml, got \"" + arguments->out +
+                    "\"");
+  }
+  return true;
+}
+
+std::string pictureFile(const Arguments& arguments) {
+  return fs::path(arguments.out).replace_extension(".png").string();
+}
+
+/// @throws po::error naming what is there and must not be replaced
+void requireRoom(const Arguments& arguments) {
+  const fs::path folder = fs::absolute(arguments.out).parent_path();
+  if (!fs::is_directory(folder)) {
+    throw po::error("option --out must be in a folder that exists, got " + folder.string() +
+                    ": make it first");
+  }
+  for (const std::string& file : {arguments.out, pictureFile(arguments)}) {
+    if (arguments.force || !fs::exists(file)) continue;
+    throw po::error(file + " is there already: choose another name, or replace it by --force");
+  }
+}
+
+std::string number(double value, const char* format = "%.7g") {
+  char text[32];
+  std::snprintf(text, sizeof(text), format, value);
+  return text;
+}
+
+std::string list(const std::vector<double>& values) {
+  Texts texts;
+  for (const double value : values) texts.push_back(number(value));
+  return "[" + join(texts, ", ") + "]";
+}
+
+std::string unitOf(const ModelJoint& joint) {
+  return joint.kind == JointKind::kAngle ? "rad" : "m";
+}
+
+std::string rangeOf(const ModelJoint& joint) {
+  if (!joint.limited) return "no limits";
+  return number(joint.lower, "%.4g") + " to " + number(joint.upper, "%.4g") + " " + unitOf(joint);
+}
+
+/// Motors as the joints that they move, with units of their torques.
+Texts motorNames(const PlantProposal& proposal, const MotorChoice& choice) {
+  Texts out;
+  for (const std::string& name : choice.joints) {
+    for (const ModelJoint& joint : proposal.joints) {
+      if (joint.name != name) continue;
+      out.push_back(name + (joint.kind == JointKind::kAngle ? " [N m]" : " [N]"));
+    }
+  }
+  return out;
+}
+
+/// Relative where the model lies with the plant file or below, so that their folder can be moved.
+std::string modelPath(const Arguments& arguments) {
+  if (arguments.model.rfind("package://", 0) == 0) return arguments.model;
+  const fs::path model = fs::absolute(arguments.model).lexically_normal();
+  const fs::path folder = fs::absolute(arguments.out).lexically_normal().parent_path();
+  const std::string near = model.lexically_relative(folder).string();
+  return near.empty() || near.rfind("..", 0) == 0 ? model.string() : near;
+}
+
+std::string quoted(const std::string& text) {
+  YAML::Emitter out;
+  out << YAML::DoubleQuoted << text;
+  return out.c_str();
+}
+
+std::string quoted(const Texts& texts) {
+  Texts all;
+  for (const std::string& one : texts) all.push_back(quoted(one));
+  return "[" + join(all, ", ") + "]";
+}
+
+/// A comment, broken into lines.
+std::string comment(const std::string& text, const std::string& indent = "  ") {
+  constexpr std::size_t kColumns = 100;
+  std::istringstream words(text);
+  std::string out, line = indent + "#";
+  for (std::string word; words >> word;) {
+    if (line.size() + 1 + word.size() > kColumns) {
+      out += line + "\n";
+      line = indent + "#";
+    }
+    line += " " + word;
+  }
+  return out + line + "\n";
+}
+
+std::string plantText(const Arguments& arguments, const PlantProposal& proposal,
+                      const MotorChoice& choice) {
+  const MujocoOptions& options = proposal.options;
+  const auto why = [&proposal](const char* key) {
+    const auto found = proposal.reasons.find(key);
+    return found == proposal.reasons.end() ? std::string() : found->second;
+  };
+  const auto set = [&proposal](const char* key) {
+    const Texts& keys = proposal.to_set;
+    return std::string(std::count(keys.begin(), keys.end(), key) > 0 ? "SET: " : "");
+  };
+  Texts joints, wide;
+  for (const ModelJoint& joint : proposal.joints) {
+    joints.push_back(joint.name + " [" + unitOf(joint) + "], " + rangeOf(joint));
+    if (joint.shownInPart() || (!joint.limited && joint.kind == JointKind::kLength)) {
+      wide.push_back(joint.name + " from " + number(joint.shown_lower, "%.3g") + " to " +
+                     number(joint.shown_upper, "%.3g") + " m");
+    }
+  }
+  std::ostringstream out;
+  out << comment("A plant of " + fs::path(arguments.model).filename().string() +
+                     ", proposed by new_plant. It works as it is; lines with SET are values that "
+                     "the model file does not say. Pictures: " +
+                     fs::path(pictureFile(arguments)).filename().string() +
+                     ". All keys: config/mujoco_pendulum.yaml of ddm_sim.",
+                 "")
+      << "#\n"
+      << comment("Joints, in the order of start and goal: " + join(joints, "; ") + ".", "")
+      << "\nplant:\n  type: mujoco\n"
+      << comment("A relative path starts at the folder of this file.")
+      << "  model: " << quoted(modelPath(arguments)) << "\n\n"
+      << comment("Motors: " + join(motorNames(proposal, choice), ", ") + "; " + why("motors") + ".")
+      << "  motors: " << quoted(options.motors) << "\n"
+      << comment(set("max_torque") + "the largest torque of each motor. " + why("max_torque") + ".")
+      << "  max_torque: " << list(options.max_torque) << "\n\n"
+      << comment("Seconds between two images; " + why("dt") + ".")
+      << "  dt: " << number(options.dt, "%.12g") << "\n"
+      << (options.timestep > 0.0 ? comment("Time step of the physics; " + why("timestep") + ".") +
+                                       "  timestep: " + number(options.timestep, "%.12g") + "\n"
+                                 : "")
+      << "\n"
+      << comment("Each episode starts near this pose: " + why("start") +
+                 ". start_std: standard deviation of each position and rate.")
+      << "  start: " << list(options.start) << "\n  start_std: " << list(options.start_std)
+      << "\n\n"
+      << comment("SET: the pose to reach, which the learner is shown as an image. " + why("goal") +
+                 ".")
+      << "  goal: " << list(options.goal) << "\n"
+      << comment(std::string("SET: the goal is reached within this error of each joint ") +
+                 (proposal.joints.front().kind == JointKind::kLength && options.error_joints.empty()
+                      ? "[m]"
+                      : "[deg]") +
+                 ".")
+      << "  tolerance: " << number(options.tolerance) << "\n";
+  if (!options.error_joints.empty()) {
+    out << comment("Joints whose error counts; " + why("error_joints") + ".")
+        << "  error_joints: " << quoted(options.error_joints) << "\n";
+  }
+  out << "\n"
+      << comment("The camera sees all poses" +
+                 (wide.empty()
+                      ? std::string(".")
+                      : " of " + join(wide, ", ") + "; farther away the robot leaves the image.") +
+                 " An MJCF file's own camera: `camera: NAME` instead of these three lines.")
+      << "  camera_position: " << list(options.look.position)
+      << "\n  camera_look_at: " << list(options.look.look_at)
+      << "\n  camera_field_of_view: " << number(options.look.field_of_view)
+      << "\n  supersampling: " << options.look.supersampling << "\n";
+  if (proposal.feature_dim > 2) {
+    out << "\n"
+        << comment("Two features for a joint that turns far, one for another one.", "")
+        << "model:\n  feature_dim: " << proposal.feature_dim << "\n";
+  }
+  return out.str();
+}
+
+/// As configured by a file.
+std::unique_ptr<Plant> plantOf(const std::string& file) {
+  ParamReader params =
+      ParamReader::fromFiles({ros::package::getPath("ddm_sim") + "/config/sim.yaml", file});
+  const auto plugin = readPlant(&params);
+  params.requireValid();
+  return makePlant(*plugin);
+}
+
+/// A file that goes unless it is kept.
+class Draft {
+ public:
+  /// In the folder of the file that it will be, where its relative paths start.
+  Draft(const std::string& file, const std::string& text)
+      : file_(file), draft_(file + ".unfinished") {
+    writeFileAtomically(draft_, text);
+  }
+  ~Draft() {
+    std::error_code ignored;
+    fs::remove(draft_, ignored);
+  }
+  Draft(const Draft&) = delete;
+  Draft& operator=(const Draft&) = delete;
+
+  const std::string& path() const { return draft_; }
+  void keep() { renameDurably(draft_, file_); }
+
+ private:
+  std::string file_;
+  std::string draft_;
+};
+
+constexpr int kCell = 204;  // four times the learner's image [pixels]
+constexpr int kColumns = 6;
+constexpr int kLine = 22;  // of text
+
+cv::Mat colourOf(Picture picture) {
+  const cv::Mat grey_or_rgb(picture.height, picture.width,
+                            picture.channels == 1 ? CV_8UC1 : CV_8UC3, picture.bytes.data());
+  cv::Mat out;
+  if (picture.channels == 1) {
+    cv::cvtColor(grey_or_rgb, out, cv::COLOR_GRAY2RGB);
+  } else {
+    out = grey_or_rgb.clone();
+  }
+  return out;
+}
+
+/// Poses in rows: large, and below as the learner sees them.
+void writeContactSheet(const PlantProposal& proposal, const Plant& plant, const std::string& file) {
+  std::vector<std::pair<std::string, Eigen::VectorXd>> poses = {{"start", plant.info().start},
+                                                                {"goal", plant.info().goal}};
+  for (std::size_t i = 0; poses.size() < 2 * kColumns; ++i) {
+    poses.emplace_back("pose " + std::to_string(i + 1), proposal.poses.at(i));
+  }
+  const int rows = static_cast<int>(poses.size()) / kColumns;
+  cv::Mat sheet((2 * kCell + kLine + 4) * rows, (kCell + 4) * kColumns, CV_8UC3,
+                cv::Scalar::all(255));
+  for (int i = 0; i < static_cast<int>(poses.size()); ++i) {
+    const auto& [name, state] = poses[static_cast<std::size_t>(i)];
+    const int x = (kCell + 4) * (i % kColumns), y = (2 * kCell + kLine + 4) * (i / kColumns);
+    cv::putText(sheet, name, {x + 4, y + 16}, cv::FONT_HERSHEY_SIMPLEX, 0.5, cv::Scalar::all(0), 1,
+                cv::LINE_AA);
+    const cv::Mat view = colourOf(plant.view(state));
+    const int side = std::min(view.rows, view.cols);
+    const cv::Rect middle((view.cols - side) / 2, (view.rows - side) / 2, side, side);
+    cv::resize(view(middle), sheet(cv::Rect(x, y + kLine, kCell, kCell)), {kCell, kCell}, 0, 0,
+               cv::INTER_AREA);
+    cv::resize(colourOf(plant.render(state)), sheet(cv::Rect(x, y + kLine + kCell, kCell, kCell)),
+               {kCell, kCell}, 0, 0, cv::INTER_NEAREST);
+  }
+  Picture picture;
+  picture.width = sheet.cols;
+  picture.height = sheet.rows;
+  picture.channels = 3;
+  picture.bytes.assign(sheet.data, sheet.data + sheet.total() * sheet.elemSize());
+  writePicture(file, imageMessage(picture, ros::Time()));
+}
+
+/// The text of a model file that has been read already.
+std::string textOf(const std::string& model) {
+  constexpr char kScheme[] = "package://";
+  if (model.rfind(kScheme, 0) != 0) return readFile(model);
+  const std::size_t name = sizeof(kScheme) - 1, end = model.find('/', name);
+  return readFile(ros::package::getPath(model.substr(name, end - name)) + model.substr(end));
+}
+
+/// The motors that were asked for, or those of the file.
+/// @throws po::error listing the candidates if somebody has to choose
+MotorChoice motorsFor(const Arguments& arguments, const MujocoModel& model,
+                      const std::vector<ModelJoint>& joints) {
+  MotorChoice choice = chooseMotors(model, joints, transmissionJoints(textOf(arguments.model)));
+  if (!arguments.motors.empty()) {
+    choice.joints = arguments.motors;
+    choice.by_actuators = false;
+    choice.why = "as given";
+  }
+  if (!choice.joints.empty()) return choice;
+  throw po::error(
+      "name the joints that have a motor, because the file does not say which one or "
+      "two: --motors with some of " +
+      join(choice.candidates, ","));
+}
+
+void printJoints(const std::vector<ModelJoint>& joints, const MotorChoice* choice) {
+  for (const ModelJoint& joint : joints) {
+    const bool motor = choice != nullptr &&
+                       std::count(choice->joints.begin(), choice->joints.end(), joint.name) > 0;
+    std::cout << "  " << joint.name << ": " << (joint.kind == JointKind::kAngle ? "hinge" : "slide")
+              << ", " << rangeOf(joint) << ", "
+              << (joint.effort > 0.0 ? "effort limit " + number(joint.effort, "%.4g") +
+                                           (joint.kind == JointKind::kAngle ? " N m" : " N")
+                                     : std::string("no effort limit"))
+              << (motor ? ", motor" : "") << "\n";
+  }
+}
+
+void printCheck(const PlantProposal& proposal, const PlantCheck& check) {
+  std::cout << "simulation: stable; fastest joint " << number(check.still_speed, "%.2g")
+            << " rad/s or m/s in 2 s without torque, " << number(check.random_speed, "%.2g")
+            << " under random torques\nimage: " << check.changed_pixels
+            << " of 2601 pixels differ between two poses, by up to " << check.contrast
+            << " of 255 grey levels\n";
+  constexpr int kFewPixels = 25, kLittleContrast = 40;
+  const auto warn = [](const std::string& text) { std::cout << "warning: " << text << "\n"; };
+  if (!check.unseen.empty()) {
+    warn("the image does not change with " + join(check.unseen, ", ") +
+         ": a learner cannot see this joint; give its link a shape that is not symmetric about the "
+         "axis, or another camera_position");
+  }
+  if (check.changed_pixels < kFewPixels) {
+    warn(
+        "the robot is small or thin in the image: a learner sees little of it; thicken its "
+        "shapes, narrow the joints' limits, or bring the camera nearer");
+  }
+  if (check.contrast < kLittleContrast) {
+    warn("the robot hardly differs from what is behind it: give it a brighter material");
+  }
+  constexpr double kOften = 0.1;
+  if (check.share_outside > kOften) {
+    warn("in " + number(100.0 * check.share_outside, "%.2g") +
+         " % of the images of random trials a slide is beyond what the camera shows: shorten "
+         "trial/num_steps, lower plant/max_torque, or limit the joint in the model file");
+  }
+  for (const ModelJoint& joint : proposal.joints) {
+    if (!joint.shownInPart()) continue;
+    warn("the camera shows " + joint.name + " from " + number(joint.shown_lower, "%.3g") + " to " +
+         number(joint.shown_upper, "%.3g") + " m of " + rangeOf(joint) +
+         ", or the robot would be tiny: limit the joint in the model file to what you need");
+  }
+}
+
+void newPlant(const Arguments& arguments) {
+  requireRoom(arguments);
+  const auto model = std::make_shared<MujocoModel>(
+      arguments.model, [](const std::string& package) { return ros::package::getPath(package); });
+  const std::vector<ModelJoint> joints = jointsOf(model);
+  std::cout << arguments.model << ": " << joints.size() << " joint(s), " << model->get().nu
+            << " actuator(s)\n";
+  MotorChoice choice;
+  try {
+    choice = motorsFor(arguments, *model, joints);
+  } catch (const po::error&) {
+    printJoints(joints, nullptr);
+    throw;
+  }
+  const PlantProposal proposal = proposePlant(model, choice, arguments.max_torque);
+  printJoints(proposal.joints, &choice);
+  std::cout << "motors: " << join(choice.joints, ", ") << " (" << choice.why
+            << ")\nmax_torque: " << list(proposal.options.max_torque) << " ("
+            << proposal.reasons.at("max_torque") << ")\ndt: " << number(proposal.options.dt)
+            << " s\n";
+
+  Draft draft(arguments.out, plantText(arguments, proposal, choice));
+  const std::unique_ptr<Plant> plant = plantOf(draft.path());
+  const PlantCheck check = checkPlant(proposal, plant.get());
+  printCheck(proposal, check);
+  writeContactSheet(proposal, *plant, pictureFile(arguments));
+  draft.keep();
+
+  std::cout << "\nwrote " << arguments.out << " and " << pictureFile(arguments) << "\nset in "
+            << arguments.out << ":";
+  for (const std::string& key : proposal.to_set) std::cout << " plant/" << key;
+  const std::string name =
+      (arguments.out.find('/') == std::string::npos ? "./" : "") + arguments.out;
+  std::cout << "\nthen:\n  rosrun ddm_launch run_experiment --preset efficient --plant " << name
+            << " --seed 1 --trials 5 --out " << fs::path(arguments.out).stem().string() << "_run\n";
+}
+
+}  // namespace
+}  // namespace ddm
+
+int main(int argc, char** argv) {
+  try {
+    ddm::Arguments arguments;
+    if (ddm::parse(argc, argv, &arguments)) ddm::newPlant(arguments);
+  } catch (const boost::program_options::error& e) {
+    std::cerr << "new_plant: " << e.what() << "\nnew_plant --help lists the options\n";
+    return ddm::kUsageError;
+  } catch (const std::exception& e) {
+    std::cerr << "new_plant: " << e.what() << '\n';
+    return EXIT_FAILURE;
+  }
+  return EXIT_SUCCESS;
+}
