@@ -26,6 +26,7 @@ class ShootingPolicy : public ddm::Policy {
     x_.clear();
     rng_ = ddm::randomStream(id, ddm::StreamRole::kPlannerStarts);  // equal trials, equal torques
   }
+  void startSegment() override { x_.clear(); }
   void setGoal(const ddm::Grey& goal) override { z_ref_ = model_->encode(goal); }
   void observe(const ddm::Grey& grey) override { x_.observe(model_->encode(grey)); }
   void apply(const Eigen::VectorXd& u) override { x_.apply(u); }

@@ -28,7 +28,11 @@ void runClosedLoop(Rig* rig, EpsilonGreedy* policy, const TrialId& id, int image
   const std::string optical_frame = opticalFrame(rig->plant().cameraModel());
   ClosedLoopFrame frame;
   for (frame.index = 0; frame.index < num_frames; ++frame.index) {
-    if (frame.index > 0) picture = rig->stepUntilSeen(frame.decision.torque);
+    if (frame.index > 0) {
+      const std::uint64_t steps = rig->numSteps();
+      picture = rig->stepUntilSeen(frame.decision.torque);
+      if (rig->numSteps() > steps + 1) policy->startSegment();  // the camera lost a frame
+    }
     frame.image = imageMessage(picture, stampOf(*rig), optical_frame);
     frame.grey = decodeImage(frame.image, image_size);
     frame.decision = policy->decide(frame.grey);

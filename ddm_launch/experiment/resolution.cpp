@@ -171,14 +171,26 @@ void shareMotors(const Given& given, YAML::Node* blocks) {
                               std::to_string(*torque_dim) + ": leave it out");
 }
 
-/// In real time a plan has to be there before the next image.
-void boundPlanning(const Given& given, YAML::Node* blocks) {
+/// The controller's time step is that of what it controls. In real time a plan has to be there
+/// before the next image.
+void shareTimeStep(const Given& given, YAML::Node* blocks) {
   const bool robot = (*blocks)["robot"].IsDefined();
-  const bool lockstep = valueAt<bool>(*blocks, "sim", "lockstep").value_or(true);
-  if (given("mpc", "time_budget") || (!robot && lockstep)) return;
   auto dt = valueAt<double>(*blocks, robot ? "robot" : "plant", "dt");
   if (robot && !dt) dt = RobotOptions().dt;  // robot.yaml is read where robot_node runs
-  if (dt) follow("mpc", "time_budget", valueToYaml(0.5 * *dt), blocks);
+  if (!dt) return;
+  follow("controller", "dt", valueToYaml(*dt), blocks);
+  const bool lockstep = valueAt<bool>(*blocks, "sim", "lockstep").value_or(true);
+  if (given("mpc", "time_budget") || (!robot && lockstep)) return;
+  follow("mpc", "time_budget", valueToYaml(0.5 * *dt), blocks);
+}
+
+/// @throws std::invalid_argument if torques could reach a robot's motors without its guards
+void requireOneWayToTheMotors(const YAML::Node& blocks) {
+  if (!blocks["robot"].IsDefined()) return;
+  if (!valueAt<bool>(blocks, "controller", "publish_effort").value_or(false)) return;
+  throw std::invalid_argument(
+      "controller/publish_effort must be false where robot_node guards the motors, got true: leave "
+      "it out");
 }
 
 }  // namespace
@@ -226,7 +238,8 @@ ResolvedConfiguration resolve(const Arguments& arguments) {
   };
   askPlantForMotors(&resolved.blocks);
   shareMotors(given, &resolved.blocks);
-  boundPlanning(given, &resolved.blocks);
+  shareTimeStep(given, &resolved.blocks);
+  requireOneWayToTheMotors(resolved.blocks);
   return resolved;
 }
 

@@ -29,7 +29,8 @@ COMMANDS_ELSEWHERE = [
     (r"rosservice call /take_goal", "robot_reset_test.py", "take_goal"),
     (r"rosservice call /enable", "robot_motor_test.py", "enable"),
     (r"--method pilco_state", "pilco_test.py", "pilco_state"),
-    (r"effort:=/nobody", "robot_loop_test.py", "effort:=/nobody"),
+    (r"effort:=/rehearsal", "robot_loop_test.py", "effort:=/rehearsal"),
+    (r"rostopic echo /rehearsal", "robot_loop_test.py", "/rehearsal"),
     (r"replay.launch .*my_robot/", "robot_loop_test.py", "replay.launch"),
     (r"my_robot/", "robot_loop_test.py", "robot.launch"),  # what a robot has left
     (r"/install/setup.bash", "install_test.py", "setup.bash")]

@@ -10,7 +10,7 @@ import rosgraph
 import rospy
 import rosunit
 from sensor_msgs.msg import Image
-from std_msgs.msg import Header
+from std_msgs.msg import Float64, Header
 from std_srvs.srv import SetBool, Trigger
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -81,14 +81,16 @@ class RobotLoopTest(ScratchCase):
         self.assertLess(check["deadline_misses"], STEPS)  # none on a machine that has nothing else to do
         self.assertEqual([row["trial"] for row in check["evaluations"]], [0])
 
-    def test_a_rehearsal_runs_to_its_end_and_no_motor_listens(self):
-        """As the tutorial says: armed, with effort:=/nobody. Then what it recorded is replayed."""
+    def test_a_rehearsal_runs_to_its_end_with_a_listener_in_the_place_of_the_motor(self):
+        """As the tutorial says: enabled, with effort:=/rehearsal. Then what it recorded is replayed."""
+        listener = rospy.Subscriber("/rehearsal", Float64, lambda _: None)
+        self.addCleanup(listener.unregister)
         config = self.write("my_robot.yaml", "robot: {max_torque: 2.0}\n")
         camera = rospy.Publisher("/usb_cam/image_raw", Image, queue_size=1)
         shown = rospy.Timer(rospy.Duration(0.04), lambda _: camera.publish(Image(
             header=Header(stamp=rospy.Time.now()), width=64, height=64, step=64, encoding="mono8", data=os.urandom(64 * 64))))
         self.addCleanup(shown.shutdown)
-        launch = start_roslaunch(self.scratch, "robot.launch", "camera:=/usb_cam/image_raw", "effort:=/nobody", "preset:=debug",
+        launch = start_roslaunch(self.scratch, "robot.launch", "camera:=/usb_cam/image_raw", "effort:=/rehearsal", "preset:=debug",
                                  "trials:=0", "config:=" + config, "runs:=" + self.out, port=0)
         self.addCleanup(launch.stop)
         launch.waitForText("call service take_goal", LIMIT_S)
@@ -97,10 +99,9 @@ class RobotLoopTest(ScratchCase):
         launch.waitForText("reset_done", LIMIT_S)
         self.assertTrue(rospy.ServiceProxy("reset_done", Trigger)().success)
         launch.waitForText("motors follow", LIMIT_S)
-        publishers, subscribers, _ = rosgraph.Master("/robot_loop_test").getSystemState()
-        self.assertEqual(dict(publishers)["/nobody"], ["/robot_node"])
-        self.assertEqual([name for name, _ in publishers if name.endswith("effort_command")], ["/mpc_node/effort_command"])
-        self.assertEqual([name for name, _ in subscribers if name == "/nobody" or name.endswith("effort_command")], [])
+        publishers, _, _ = rosgraph.Master("/robot_loop_test").getSystemState()
+        self.assertEqual(dict(publishers)["/rehearsal"], ["/robot_node"])
+        self.assertEqual([name for name, _ in publishers if name.endswith("effort_command")], [])
         deadline = time.monotonic() + LIMIT_S
         while not rospy.ServiceProxy("reset_done", Trigger)().success:  # for the evaluation, after the training
             self.assertLess(time.monotonic(), deadline)

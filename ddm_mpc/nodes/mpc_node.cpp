@@ -22,6 +22,8 @@ namespace ddm {
 namespace {
 
 constexpr int kQueue = 10;
+constexpr std::chrono::milliseconds kAppliedLimit(20);
+constexpr std::size_t kMaxApplied = 100;
 const ros::WallDuration kPlanLogPeriod(5.0);
 const ros::WallDuration kTick(0.1);  // of feedback too: for each frame it would be a load
 
@@ -57,7 +59,6 @@ MpcNode::MpcNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size, const 
       mpc_(mpc),
       transport_(withQueue(nh, &image_queue_)),
       torque_pub_(nh.advertise<ddm_msgs::Torque>(topics::kTorque, kQueue)),
-      effort_(nh, controller.torque_dim),
       plan_pub_(nh.advertise<ddm_msgs::Plan>(topics::kPlan, kQueue)),
       scalars_pub_(nh.advertise<ddm_msgs::PlanScalars>(topics::kPlanScalars, kQueue)),
       live_(withQueue(ros::NodeHandle(pnh, "mpc"), &options_queue_), mpc,
@@ -69,15 +70,21 @@ MpcNode::MpcNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size, const 
       })),
       finish_(boost::make_shared<Callback>([this] { onFinish(); })),
       image_spinner_(/*thread_count=*/1, &image_queue_),
+      applied_spinner_(/*thread_count=*/1, &applied_queue_),
       options_spinner_(/*thread_count=*/1, &options_queue_) {
+  if (controller.publish_effort) effort_.emplace(nh, controller.torque_dim);
   server_.registerGoalCallback([this] { onGoal(); });
   server_.registerPreemptCallback([this] { onPreempt(); });
   model_sub_ = nh.subscribe(topics::kModel, 1, &MpcNode::onModel, this);
   goal_image_sub_ = nh.subscribe(topics::kGoalImage, 1, &MpcNode::onGoalImage, this);
   timer_ = nh.createSteadyTimer(kTick, [this](const ros::SteadyTimerEvent&) { onTick(); });
+  applied_sub_ = withQueue(nh, &applied_queue_)
+                     .subscribe(topics::kAppliedTorque, kQueue, &MpcNode::onApplied, this,
+                                ros::TransportHints().tcpNoDelay());
   image_sub_ = transport_.subscribe(
       topics::kImage, 1, &MpcNode::onImage, this,
       image_transport::TransportHints("raw", ros::TransportHints().tcpNoDelay()));
+  applied_spinner_.start();
   image_spinner_.start();
   options_spinner_.start();
   server_.start();  // last: whoever sees the action finds everything else in place
@@ -86,6 +93,7 @@ MpcNode::MpcNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size, const 
 MpcNode::~MpcNode() {
   stop();                 // else the spinner would wait for a plan
   image_spinner_.stop();  // no callback is running from here on
+  applied_spinner_.stop();
   options_spinner_.stop();
 }
 
@@ -101,6 +109,17 @@ void MpcNode::onGoal() {
   goal_ = server_.acceptNewGoal();
   health_.expect(ControlHealth::Expected::kModel);
   last_progress_ = ros::SteadyTime::now();
+  if (effort_) {
+    const std::string others = otherPublishers(effort_->topic());
+    if (!others.empty()) {
+      lock.unlock();
+      abort({"trial refused: " + others + " also publish(es) " + effort_->topic() +
+                 ", and a motor must have one master: set controller/publish_effort to false, as "
+                 "next to robot_node",
+             ""});
+      return;
+    }
+  }
   beginIfReady(std::move(lock));
 }
 
@@ -149,6 +168,8 @@ void MpcNode::beginIfReady(std::unique_lock<std::mutex> lock) {
     trial_ =
         std::make_shared<TrialRun>(*goal_, goal_->model_id.empty() ? nullptr : model_, goal_image_,
                                    image_size_, mpc_, controller_, turned_epsilon_);
+    const std::lock_guard<std::mutex> applied_lock(applied_mutex_);
+    applied_.clear();  // a simulator that was started again uses its stamps again
     turned_ = false;
     goal_changed_ = false;
     last_progress_ = ros::SteadyTime::now();
@@ -229,7 +250,7 @@ std::shared_ptr<TrialRun> MpcNode::trialToAnswer(Changes* changes) {
 std::optional<Decision> MpcNode::decide(TrialRun* trial, const Changes& changes,
                                         const sensor_msgs::Image& image,
                                         std::chrono::steady_clock::time_point arrival,
-                                        Trouble* trouble) const {
+                                        Trouble* trouble) {
   if (image_sub_.getNumPublishers() > 1) {
     trouble->text = "image refused: only one node may publish images: stop the others";
     trouble->topic = image_sub_.getTopic();
@@ -238,11 +259,35 @@ std::optional<Decision> MpcNode::decide(TrialRun* trial, const Changes& changes,
   try {
     if (changes.mpc) trial->turn(*changes.mpc, changes.epsilon);
     if (changes.goal_image != nullptr) trial->setGoal(*changes.goal_image);
+    if (const std::optional<ros::Time> last = trial->lastAnswered()) {
+      const ddm_msgs::TorqueConstPtr applied = waitForApplied(*last);
+      if (applied != nullptr) trial->takeApplied(*applied);
+    }
     return trial->decide(image, arrival);
   } catch (const std::exception& e) {
     trouble->text = std::string("image refused: ") + e.what();
     return std::nullopt;
   }
+}
+
+void MpcNode::onApplied(const ddm_msgs::TorqueConstPtr& applied) {
+  {
+    const std::lock_guard<std::mutex> lock(applied_mutex_);
+    applied_[applied->header.stamp] = applied;
+    if (applied_.size() > kMaxApplied) applied_.erase(applied_.begin());
+  }
+  applied_came_.notify_one();
+}
+
+/// What acted after an image. It is sent at about the time of the next image, and may come later.
+/// @return null if nobody says so: then what was decided is taken to have acted
+ddm_msgs::TorqueConstPtr MpcNode::waitForApplied(const ros::Time& stamp) {
+  if (applied_sub_.getNumPublishers() == 0) return nullptr;
+  std::unique_lock<std::mutex> lock(applied_mutex_);
+  applied_came_.wait_for(lock, kAppliedLimit,
+                         [&] { return applied_.lower_bound(stamp) != applied_.end(); });
+  const auto found = applied_.find(stamp);
+  return found == applied_.end() ? nullptr : found->second;
 }
 
 void MpcNode::publish(const std_msgs::Header& header, const Decision& decision) {
@@ -263,7 +308,7 @@ void MpcNode::publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torqu
   message.exploratory = exploratory;
   torque_pub_.publish(message);
   health_.countTorque();
-  effort_.publish(message.torque);
+  if (effort_) effort_->publish(message.torque);
 }
 
 void MpcNode::publishPlan(const ros::Time& stamp, const Plan& plan) {
@@ -365,7 +410,7 @@ ddm_msgs::RunTrialResult MpcNode::endTrial() {
   }
   trial_.reset();
   finished_.reset();
-  effort_.publishZero();
+  if (effort_) effort_->publishZero();
   return result;
 }
 
@@ -373,7 +418,11 @@ ddm_msgs::RunTrialResult MpcNode::endTrial() {
 void MpcNode::abort(const Trouble& trouble) {
   const ddm_msgs::RunTrialResult result = endTrial();
   std::string reason = trouble.text;
-  if (!trouble.topic.empty()) reason += ": " + describePublishers(trouble.topic);
+  if (trouble.topic == image_sub_.getTopic()) {
+    reason += ": " + describeImagePublishers(trouble.topic, "camera/image_raw:=");
+  } else if (!trouble.topic.empty()) {
+    reason += ": " + describePublishers(trouble.topic);
+  }
   log_.error(reason);
   server_.setAborted(result, reason);
 }

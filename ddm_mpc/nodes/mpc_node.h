@@ -6,6 +6,7 @@
 #include <ddm_model/ddm.h>
 #include <ddm_msgs/Model.h>
 #include <ddm_msgs/RunTrialAction.h>
+#include <ddm_msgs/Torque.h>
 #include <ddm_node/effort_publisher.h>
 #include <ddm_node/log_thread.h>
 #include <image_transport/image_transport.h>
@@ -13,7 +14,9 @@
 #include <ros/ros.h>
 
 #include <chrono>
+#include <condition_variable>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -30,8 +33,8 @@
 namespace ddm {
 
 /// Action `run_trial`: each image of the trial is answered on `torque` with the image's stamp.
-/// Images have a thread of their own, which plans, and so have options that are turned, which wait
-/// for the master and a terminal. Everything else, such as a goal that is cancelled or a trial that
+/// Images have a thread of their own, which plans, and so have applied torques, which that thread
+/// needs, and options that are turned, which wait for the master and a terminal. Everything else, such as a goal that is cancelled or a trial that
 /// times out, is for the thread that spins the global queue, and waits for none of these.
 class MpcNode {
  public:
@@ -95,11 +98,14 @@ class MpcNode {
   std::shared_ptr<TrialRun> trialToAnswer(Changes* changes);
   std::optional<Decision> decide(TrialRun* trial, const Changes& changes,
                                  const sensor_msgs::Image& image,
-                                 std::chrono::steady_clock::time_point arrival,
-                                 Trouble* trouble) const;
+                                 std::chrono::steady_clock::time_point arrival, Trouble* trouble);
   void publish(const std_msgs::Header& header, const Decision& decision);
   void publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torque, bool exploratory);
   void publishPlan(const ros::Time& stamp, const Plan& plan);
+  ddm_msgs::TorqueConstPtr waitForApplied(const ros::Time& stamp);
+
+  // In the thread of applied torques.
+  void onApplied(const ddm_msgs::TorqueConstPtr& applied);
 
   LogThread log_;  // a terminal that is stopped must not be in the way of a stop
   const int image_size_;
@@ -127,14 +133,20 @@ class MpcNode {
   ros::SteadyTime last_progress_;
   std::optional<ros::SteadyTime> deciding_since_;
 
+  std::mutex applied_mutex_;
+  std::condition_variable applied_came_;
+  std::map<ros::Time, ddm_msgs::TorqueConstPtr> applied_;  // by stamp, the newest kMaxApplied
+
   ros::CallbackQueue image_queue_;
+  ros::CallbackQueue applied_queue_;
   ros::CallbackQueue options_queue_;
   image_transport::ImageTransport transport_;
   ros::Publisher torque_pub_;
-  EffortPublisher effort_;
+  std::optional<EffortPublisher> effort_;  // empty: robot_node or a simulator has the motors
   ros::Publisher plan_pub_;
   ros::Publisher scalars_pub_;
   image_transport::Subscriber image_sub_;
+  ros::Subscriber applied_sub_;
   ros::Subscriber model_sub_;
   ros::Subscriber goal_image_sub_;
   ros::SteadyTimer timer_;
@@ -145,6 +157,7 @@ class MpcNode {
   const ros::CallbackInterfacePtr finish_;             // for the global queue
   // Last: they end before anything that they use.
   ros::AsyncSpinner image_spinner_;
+  ros::AsyncSpinner applied_spinner_;
   ros::AsyncSpinner options_spinner_;
 };
 

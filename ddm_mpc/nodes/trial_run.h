@@ -6,10 +6,13 @@
 #include <ddm_model/ddm.h>
 #include <ddm_model/per_motor.h>
 #include <ddm_msgs/RunTrialAction.h>
+#include <ddm_msgs/Torque.h>
 #include <sensor_msgs/Image.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -36,6 +39,7 @@ class TrialRun {
            const ControllerOptions& controller, const std::optional<double>& epsilon)
       : num_steps_(goal.num_steps),
         image_size_(image_size),
+        dt_(controller.dt),
         evaluation_(goal.evaluation != 0),
         greedy_(makePolicy(std::move(model), image_size, mpc, controller)),
         policy_(greedy_, explorationOf(goal, mpc, controller, epsilon),
@@ -71,10 +75,29 @@ class TrialRun {
     if (camera != camera_) {
       throw std::invalid_argument("the images change from " + camera_ + " to " + camera);
     }
+    const double interval = (image.header.stamp - last_stamp_).toSec();
+    if (answered_ && isGap(interval)) policy_.startSegment();
     if (greedy_ != nullptr) greedy_->setArrival(arrival);
     Decision decision = policy_.decide(decodeImage(image, image_size_));
     last_stamp_ = image.header.stamp;
+    answered_ = true;
     return decision;
+  }
+
+  /// Stamp of the last image that was answered; empty before the first.
+  std::optional<ros::Time> lastAnswered() const {
+    return answered_ ? std::make_optional(last_stamp_) : std::nullopt;
+  }
+
+  /// What acted after the last image that was answered, see topic `applied_torque`.
+  /// @throws std::invalid_argument if it is neither empty nor one finite number for each motor
+  void takeApplied(const ddm_msgs::Torque& applied) {
+    if (applied.torque.empty()) {
+      policy_.startSegment();
+    } else {
+      policy_.correctTorque(Eigen::Map<const Eigen::VectorXd>(
+          applied.torque.data(), static_cast<Eigen::Index>(applied.torque.size())));
+    }
   }
 
   /// From the next image on, plans with these, and explores with this epsilon instead of the
@@ -116,6 +139,15 @@ class TrialRun {
   const ddm_msgs::RunTrialResult& result() const { return result_; }
 
  private:
+  static constexpr double kGap = 1.5;  // in time steps, as where bags are read
+
+  /// Whether images are missing in between.
+  /// @param interval  between two images [s]
+  bool isGap(double interval) {
+    shortest_interval_ = std::min(shortest_interval_, interval);
+    return interval > kGap * (dt_ > 0.0 ? dt_ : shortest_interval_);
+  }
+
   static std::shared_ptr<MpcPolicy> makePolicy(std::shared_ptr<const Ddm> model, int image_size,
                                                const MpcOptions& mpc,
                                                const ControllerOptions& controller) {
@@ -143,8 +175,11 @@ class TrialRun {
 
   std::uint32_t num_steps_;
   int image_size_;
+  double dt_;  // 0: not known [s]
   bool evaluation_;
-  ros::Time last_stamp_;               // images up to this one do not count
+  ros::Time last_stamp_;   // images up to this one do not count
+  bool answered_ = false;  // an image of this trial
+  double shortest_interval_ = std::numeric_limits<double>::infinity();  // between images [s]
   std::string camera_;                 // size and encoding of the images
   std::shared_ptr<MpcPolicy> greedy_;  // null: a random trial
   EpsilonGreedy policy_;

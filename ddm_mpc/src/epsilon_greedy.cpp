@@ -39,7 +39,23 @@ void EpsilonGreedy::setGoal(const Grey& goal) {
   if (policy_ != nullptr) policy_->setGoal(goal);
 }
 
+void EpsilonGreedy::correctTorque(const Eigen::VectorXd& torque) {
+  if (torque.size() != options_.max_torque.size() || !torque.allFinite()) {
+    throw std::invalid_argument(
+        "an applied torque must be " + std::to_string(options_.max_torque.size()) +
+        " finite number(s), one for each motor, got " + std::to_string(torque.size()));
+  }
+  if (acted_) acted_ = torque;
+}
+
+void EpsilonGreedy::startSegment() {
+  acted_.reset();
+  if (policy_ != nullptr) policy_->startSegment();
+}
+
 Decision EpsilonGreedy::decide(const Grey& grey) {
+  if (policy_ != nullptr && acted_) policy_->apply(*acted_);
+  acted_.reset();
   if (policy_ != nullptr) policy_->observe(grey);
   Decision decision;
   if (policy_ != nullptr) decision.goal_distance = policy_->goalDistance();
@@ -64,7 +80,7 @@ Decision EpsilonGreedy::decide(const Grey& grey) {
     decision.solve_time = answer.solve_time;
     decision.plan = std::move(answer.plan);
   }
-  if (policy_ != nullptr) policy_->apply(decision.torque);
+  acted_ = decision.torque;
   return decision;
 }
 

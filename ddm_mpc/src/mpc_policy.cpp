@@ -61,6 +61,11 @@ void MpcPolicy::startTrial(const TrialId& id) {
   rng_ = randomStream(id, StreamRole::kPlannerStarts);
 }
 
+void MpcPolicy::startSegment() {
+  x_.clear();
+  predicted_.resize(0);
+}
+
 void MpcPolicy::observe(const Grey& grey) {
   began_ = arrival_.value_or(std::chrono::steady_clock::now());
   arrival_.reset();

@@ -28,6 +28,7 @@ class ConstantPolicy : public Policy {
     return answer;
   }
   void apply(const Eigen::VectorXd& u) override { applied.push_back(u[0]); }
+  void startSegment() override { ++num_segments; }
   void setExploring(bool on) override { exploring.push_back(on); }
 
   static constexpr double kTorque = 1.25;
@@ -35,6 +36,7 @@ class ConstantPolicy : public Policy {
   std::vector<double> applied;
   std::vector<bool> exploring;
   int num_images = 0;
+  int num_segments = 0;
 };
 
 EpsilonGreedy::Options explore(double epsilon, int hold_steps = 1) {
@@ -69,6 +71,21 @@ TEST(EpsilonGreedy, LetsThePolicyExploreWhereRandomTorquesAreWantedAndNowhereEls
   EpsilonGreedy exploring(constant, explore(0.2), TrialId());
   exploring.setEpsilon(0.0);
   EXPECT_EQ(constant->exploring, (std::vector<bool>{false, true, false}));
+}
+
+TEST(EpsilonGreedy, TellsThePolicyWhatActedBeforeTheNextImage) {
+  const auto onlooker = std::make_shared<ConstantPolicy>();
+  EpsilonGreedy policy(onlooker, explore(0.0), TrialId());
+  policy.decide(randomGrey(8, 1));
+  policy.decide(randomGrey(8, 2));  // the first decision acted
+  policy.correctTorque(Eigen::VectorXd::Constant(1, 0.5));
+  policy.decide(randomGrey(8, 3));
+  policy.startSegment();  // no single torque acted
+  policy.decide(randomGrey(8, 4));
+  EXPECT_EQ(onlooker->applied, (std::vector<double>{ConstantPolicy::kTorque, 0.5}));
+  EXPECT_EQ(onlooker->num_segments, 1);
+  EXPECT_EQ(onlooker->num_images, 4);
+  EXPECT_THROW(policy.correctTorque(Eigen::VectorXd::Zero(2)), std::invalid_argument);
 }
 
 TEST(EpsilonGreedy, NeverExploresAtEpsilonZero) {
@@ -163,7 +180,8 @@ TEST(EpsilonGreedy, DrawsEachMotorsTorqueByItself) {
 TEST(EpsilonGreedy, TellsThePolicyOfEachImageAndEachTorque) {
   auto constant = std::make_shared<ConstantPolicy>();
   EpsilonGreedy policy(constant, explore(0.5), TrialId{1, 9, false});
-  const std::vector<double> u = torques(decide(&policy, 40));
+  std::vector<double> u = torques(decide(&policy, 40));
+  u.pop_back();  // has not acted yet
   EXPECT_EQ(constant->trials, std::vector<std::uint32_t>{9});
   EXPECT_EQ(constant->num_images, 40);
   EXPECT_EQ(constant->applied, u);

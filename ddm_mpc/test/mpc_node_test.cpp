@@ -77,6 +77,59 @@ TEST_F(MpcNodeTest, WaitsForTheModelOfTheGoalAndThenPlans) {
   EXPECT_EQ(action_.getResult()->solve_time.size(), 4U);
 }
 
+/// A plant that says which torque acted after each image.
+class MpcNodeOfAPlantTest : public MpcNodeTest {
+ protected:
+  void SetUp() override {
+    MpcNodeTest::SetUp();
+    ASSERT_TRUE(waitUntil([this] { return applied_.getNumSubscribers() > 0; }));
+  }
+
+  /// A greedy trial of two images.
+  /// @param applied  by the last torque instead of what was decided; empty: what was decided
+  /// @param wait     before the second image, more than the time step [s]
+  /// @return         torque that answers the second image
+  double secondTorque(const std::vector<double>& applied, bool nothing_acts, double wait) {
+    const ddm_msgs::Model model = modelOfSeed(11);
+    client_.publish(model);
+    torque_.messages.clear();
+    begin(trialGoal(3, 0.0, model.id));
+    EXPECT_TRUE(waitUntil([this] {  // the goal may have come before the model
+      if (torque_.messages.empty()) client_.publishImage(kSize, 0);
+      return !torque_.messages.empty();
+    }));
+    for (std::size_t step = 1; step < 3; ++step) {
+      ddm_msgs::Torque message = torque_.messages.back();
+      if (step == 2 && !applied.empty()) message.torque = applied;
+      if (step == 2 && nothing_acts) message.torque.clear();
+      applied_.publish(message);
+      if (step == 2) client_.passTime(wait);
+      client_.publishImage(kSize, step);
+      EXPECT_TRUE(waitUntil([&] { return torque_.messages.size() > step; }));
+    }
+    expectEnd(State::SUCCEEDED);
+    return torque_.messages.back().torque.at(0);
+  }
+
+  ros::Publisher applied_ = client_.nh.advertise<ddm_msgs::Torque>(topics::kAppliedTorque, 10);
+};
+
+TEST_F(MpcNodeOfAPlantTest, TakesWhatActedAndWhatWasNotSeenIntoItsState) {
+  const double usual = secondTorque({}, false, 0.0);
+  EXPECT_EQ(secondTorque({}, false, 0.0), usual);
+  EXPECT_NE(secondTorque({4.0}, false, 0.0), usual);
+  const double anew = secondTorque({}, true, 0.0);
+  EXPECT_NE(anew, usual) << "no torque acted";
+  EXPECT_EQ(secondTorque({}, false, 0.2), anew) << "an image is missing";
+  EXPECT_EQ(secondTorque({}, false, 0.05), usual) << "an image is a little late";
+}
+
+TEST_F(MpcNodeTest, RefusesATrialWhereAnotherNodeCommandsTheMotors) {
+  const ros::Publisher other = client_.nh.advertise<std_msgs::Float64>(topics::kEffortCommand, 1);
+  begin(trialGoal(2, 1.0));
+  expectEnd(State::ABORTED, {"effort_command", "controller/publish_effort"});
+}
+
 TEST_F(MpcNodeTest, PublishesZeroTorqueAndSaysSoWhereThePlanFails) {
   RandomModelOptions options;
   options.gain = 1e200;

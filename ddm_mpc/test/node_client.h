@@ -86,6 +86,9 @@ class NodeClient {
     return stamp_;
   }
 
+  /// More than usual, before the next image [s].
+  void passTime(double seconds) { stamp_ += ros::Duration(seconds); }
+
   void publish(const ddm_msgs::Model& model) { model_.publish(model); }
 
   /// @return its stamp

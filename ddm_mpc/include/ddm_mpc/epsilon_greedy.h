@@ -41,6 +41,14 @@ class EpsilonGreedy {
   /// See Policy::setGoal().
   void setGoal(const Grey& goal);
 
+  /// Another torque acted than the last one decided. To be called before the next decide().
+  /// @param torque  [N m]                                                          [torque_dim]
+  /// @throws std::invalid_argument if it is not one finite number for each motor
+  void correctTorque(const Eigen::VectorXd& torque);
+
+  /// See Policy::startSegment(). To be called before the next decide().
+  void startSegment();
+
   /// @param grey  the image just seen
   /// @throws std::invalid_argument for a wrong number of pixels
   Decision decide(const Grey& grey);
@@ -49,6 +57,7 @@ class EpsilonGreedy {
   std::shared_ptr<Policy> policy_;
   Options options_;
   std::mt19937_64 rng_;
+  std::optional<Eigen::VectorXd> acted_;  // between the last image and the next; empty: unknown
   Eigen::VectorXd held_torque_;
   int held_steps_left_ = 0;
 };

@@ -46,6 +46,7 @@ class MpcPolicy : public Policy {
   void setStop(std::function<bool()> stop) { stop_ = std::move(stop); }
 
   void startTrial(const TrialId& id) override;
+  void startSegment() override;
   void setExploring(bool exploring) override { cost_.setExploring(exploring); }
   void setGoal(const Grey& goal) override {
     z_ref_ = model_->encode(goal);

@@ -30,6 +30,7 @@ inline Answer answerWith(Plan plan) {
 }
 
 /// Called in turn for each frame: observe(y_t), answer() unless something else decides, apply(u_t).
+/// apply() comes before the next observe(), when it is known which torque acted.
 class Policy {
  public:
   virtual ~Policy() = default;
@@ -41,6 +42,10 @@ class Policy {
   /// to reach one goal, or know the true one.
   /// @throws std::invalid_argument for a wrong number of pixels
   virtual void setGoal(const Grey& /*goal*/) {}
+
+  /// The next image does not follow the last one by a time step, or no single torque acted between
+  /// them: no state may be made from both, as in training. Ignored by policies without a memory.
+  virtual void startSegment() {}
 
   /// Whether random torques are wanted too: only then may a policy go where it knows little.
   virtual void setExploring(bool /*exploring*/) {}
