@@ -263,7 +263,7 @@ TEST(Configuration, WhatContradictsIsRefused) {
       {"mpc: {max_torque: 6.0}\nmodel: {max_torque: 5.0}",
        {"mpc/max_torque", "model/max_torque", "got 6"}},
       {"mpc: {cost: time}\nrobot: {max_torque: [6, 6, 6, 6, 6, 6]}",
-       {"mpc/cost must be distance", "more than 5 motors",
+       {"mpc/cost must be distance", "more than 3 motors",
         "got time with the 6 of robot/max_torque"}},
       {"mpc: {time_budget: 0.3}", {"mpc/time_budget", "plant/dt", "got 0.3"}},
       {"mpc: {time_budget: 0.15}\nrobot: {dt: 0.1}", {"mpc/time_budget", "robot/dt", "got 0.15"}},

@@ -397,6 +397,7 @@ TEST_F(ExperimentTest, AFolderThatCannotBeWrittenIsNamedBeforeAnythingRuns) {
 }
 
 TEST_F(ExperimentTest, ADriverThatFailsLeavesFinishedWorkToWhichTheSameCallAddsTheRest) {
+  driver_ = ObedientDriver();
   run();
   const std::string uninterrupted = textOf(file("trials.csv"));
   const Calls rest[] = {{"use " + file("trial_000/model.ddm"), "run 1", "train 1", "evaluate 1"},

@@ -133,13 +133,13 @@ std::shared_ptr<const Ddm> modelWithMotors(int torque_dim) {
                                      random.theta(), random.goal(), info);
 }
 
-TEST(MpcPolicy, PlansByTimeForAtMostFiveMotorsAndNamesTheRemedy) {
+TEST(MpcPolicy, PlansByTimeForAtMostThreeMotorsAndNamesTheRemedy) {
   MpcOptions options;
   options.cost = "time";
-  EXPECT_NO_THROW(MpcPolicy(modelWithMotors(5), options));
+  EXPECT_NO_THROW(MpcPolicy(modelWithMotors(3), options));
   EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
-      [&options] { MpcPolicy policy(modelWithMotors(6), options); },
-      {"mpc/cost time", "at most 5 motors", "got 6", "set mpc/cost to distance"}));
+      [&options] { MpcPolicy policy(modelWithMotors(4), options); },
+      {"mpc/cost time", "at most 3 motors", "got 4", "set mpc/cost to distance"}));
   options.cost = "distance";
   EXPECT_NO_THROW(MpcPolicy(modelWithMotors(6), options));
 }

@@ -4,6 +4,7 @@
 
 #include <ddm_model/testing/gradient_check.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
 #include <vector>
@@ -264,6 +265,31 @@ TEST(PlansWithDistance, HaveNoProposal) {
   const Ddm model = pushedModel(line());
   DdmPlanCost cost(model, 3, 0.01);
   EXPECT_FALSE(cost.proposal().has_value());
+}
+
+/// Features that hardly move, so that all landmarks have a weight in each of the others.
+TEST(TimeToGoal, TakesAtMostTwoSecondsAndHalfAGigabyteForTheMostMotorsAndLandmarks) {
+  RandomModelOptions options;
+  options.torque_dim = TimeToGoal::kMaxMotors;
+  options.gain = 0.1;
+  const Ddm random = randomModel(options);
+  ModelInfo info;
+  info.landmarks = testing::randomMatrix(2 + 2 + options.torque_dim, 1000, 7).cast<float>();
+  const Ddm model(random.options(), random.imageSize(), options.torque_dim, random.pca(),
+                  random.theta(), random.goal(), info);
+  const auto used = [] {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage;
+  };
+  const rusage before = used();
+  TimeToGoal time(model, Eigen::VectorXd::Ones(options.torque_dim));
+  time.setGoal(Eigen::VectorXd::Zero(2), /*exploring=*/false);
+  const rusage after = used();
+  EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 500 * 1024);  // [KiB]
+#ifdef NDEBUG
+  EXPECT_LT(after.ru_utime.tv_sec - before.ru_utime.tv_sec, 3);  // 2 s, and rounded up
+#endif
 }
 
 }  // namespace

@@ -33,7 +33,9 @@ class TimeToGoal {
  public:
   static constexpr int kHoldSteps = 4;    ///< m
   static constexpr double kWidth = 0.25;  ///< w
-  static constexpr int kMaxMotors = 5;    ///< 3^5 sets of torques for each of up to 1000 landmarks
+  /// 3^3 sets of torques for each of up to 1000 landmarks, each with up to 1000 weights: up to half a
+  /// gigabyte, which takes two seconds. One motor more takes three times as much of both.
+  static constexpr int kMaxMotors = 3;
 
   /// @param model       has at least two landmarks, and at most kMaxMotors motors; is not needed afterwards
   /// @param max_torque  of each motor [N m]  [torque_dim]
