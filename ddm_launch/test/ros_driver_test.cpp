@@ -60,6 +60,8 @@ class Peers {
   /// The publisher of ground truth leaves before the trial ends, with or without having told it.
   void leaveEarly(bool tell) {
     truth_ = ros::NodeHandle().advertise<sensor_msgs::JointState>(topics::kGroundTruth, 0);
+    heard_ = withQueue().subscribe<sensor_msgs::JointState>(
+        topics::kGroundTruth, 0, [this](const sensor_msgs::JointStateConstPtr&) { ++num_heard_; });
     tells_ = tell;
     leaves_ = true;
   }
@@ -125,6 +127,8 @@ class Peers {
     result.num_steps = kSteps;
     result.exploratory.resize(kSteps);
     result.stamp.resize(kSteps);
+    // What is published arrives a little later, at all subscribers.
+    while (leaves_ && tells_ && num_heard_ < kSteps) std::this_thread::yield();
     if (leaves_) truth_.shutdown();
     for (std::uint32_t i = 0; (truth_ || leaves_) && i < result.stamp.size(); ++i)
       result.stamp[i] = stampOf(i);
@@ -148,6 +152,8 @@ class Peers {
   ros::CallbackQueue callbacks_;
   ros::Publisher truth_;
   std::atomic<std::uint32_t> num_truths_{0};
+  ros::Subscriber heard_;
+  std::atomic<int> num_heard_{0};
   std::atomic<double> answer_time_{0.0};
   std::atomic<bool> endless_{false};
   std::atomic<bool> tells_{true};
