@@ -213,7 +213,7 @@ std::string plantText(const Arguments& arguments, const PlantProposal& proposal,
       << "  model: " << quoted(modelPath(arguments)) << "\n\n"
       << comment("Motors: " + join(motorNames(proposal, choice), ", ") + "; " + why("motors") + ".")
       << "  motors: " << quoted(options.motors) << "\n"
-      << comment(set("max_torque") + "the largest torque of each motor. " + why("max_torque") + ".")
+      << comment(set("max_torque") + "The largest torque of each motor. " + why("max_torque") + ".")
       << "  max_torque: " << list(options.max_torque) << "\n\n"
       << comment("Seconds between two images; " + why("dt") + ".")
       << "  dt: " << number(options.dt, "%.12g") << "\n"
@@ -225,10 +225,10 @@ std::string plantText(const Arguments& arguments, const PlantProposal& proposal,
                  ". start_std: standard deviation of each position and rate.")
       << "  start: " << list(options.start) << "\n  start_std: " << list(options.start_std)
       << "\n\n"
-      << comment("SET: the pose to reach, which the learner is shown as an image. " + why("goal") +
+      << comment("SET: The pose to reach, which the learner is shown as an image. " + why("goal") +
                  ".")
       << "  goal: " << list(options.goal) << "\n"
-      << comment(std::string("SET: the goal is reached within this error of each joint ") +
+      << comment(std::string("SET: The goal is reached within this error of each joint ") +
                  (proposal.joints.front().kind == JointKind::kLength && options.error_joints.empty()
                       ? "[m]"
                       : "[deg]") +

@@ -123,20 +123,22 @@ class Mechanism {
     return *data_;
   }
 
-  /// Torque of gravity and springs at rest: the gradient of the energy.                  [n x 1]
+  /// Torque that the weight asks for at rest: the gradient of energy().                  [n x 1]
   VectorXd load(const VectorXd& position) const {
     place(position);
     mj_fwdVelocity(&model_->get(), data_.get());
-    const auto n = position.size();
-    return Eigen::Map<const VectorXd>(data_->qfrc_bias, n) -
-           Eigen::Map<const VectorXd>(data_->qfrc_passive, n);
+    return Eigen::Map<const VectorXd>(data_->qfrc_bias, position.size());
   }
 
-  /// Of gravity and springs [J].
+  /// Of the weight [J].
   double energy(const VectorXd& position) const {
+    const mjModel& m = model_->get();
     place(position);
-    mj_energyPos(&model_->get(), data_.get());
-    return data_->energy[0];
+    double energy = 0.0;
+    for (int i = 1; i < m.nbody; ++i) {
+      energy -= m.body_mass[i] * mju_dot3(m.opt.gravity, data_->xipos + 3 * i);
+    }
+    return energy;
   }
 
   /// Inertia that a motor of this joint feels [kg m^2, kg].
@@ -304,8 +306,8 @@ class Proposer {
     out_.options.goal = listOf(goal);
     out_.reasons["start"] =
         gravity ? "where the mechanism comes to rest by its weight" : "pose 0 of the file";
-    out_.reasons["goal"] = upright ? "proposed: the highest pose"
-                                   : "proposed: the motors' joints a quarter of their way on";
+    out_.reasons["goal"] = upright ? "Proposed: the highest pose"
+                                   : "Proposed: the motors' joints a quarter of their way on";
     out_.to_set.push_back("goal");
   }
 
@@ -367,7 +369,7 @@ class Proposer {
                         (allowed > 0.0
                              ? "allows " + shortText(allowed) + ", far more than the joint needs"
                              : "has no limit"));
-      if (allowed == 0.0) out_.to_set.push_back("max_torque");
+      if (allowed == 0.0 && out_.to_set.back() != "max_torque") out_.to_set.push_back("max_torque");
     }
     out_.reasons["max_torque"] = join(reasons, "; ");
   }
