@@ -66,12 +66,10 @@ class ModelNode {
         health_.succeed(result);
         server_.setSucceeded(result);
       }
+    } catch (const ReadingCancelled& e) {
+      health_.cancel();
+      server_.setPreempted(result, e.what());
     } catch (const std::exception& e) {
-      if (!isWanted()) {
-        health_.cancel();
-        server_.setPreempted(result, e.what());
-        return;
-      }
       ROS_ERROR_STREAM("trial " << goal->trial << ": cannot train: " << e.what());
       health_.fail(e.what());
       server_.setAborted(result, e.what());
