@@ -65,11 +65,9 @@ class ModelNode {
         health_.succeed(result);
         server_.setSucceeded(result);
       }
+    } catch (const ReadingCancelled& e) {
+      cancel(result, e.what());
     } catch (const std::exception& e) {
-      if (!isWanted()) {
-        cancel(result, e.what());
-        return;
-      }
       ROS_ERROR_STREAM("trial " << goal->trial << ": cannot train: " << e.what());
       health_.fail(e.what());
       server_.setAborted(result, e.what());

@@ -43,7 +43,9 @@ DataSet BagCache::read(const std::vector<std::string>& paths, const KeepGoing& k
   const int torque_dim = contentOf(paths.front()).data.torqueDim();
   DataSet data(image_size_, torque_dim);
   for (const std::string& path : paths) {
-    if (keep_going && !keep_going()) throw std::runtime_error("reading bags was cancelled");
+    if (&path != &paths.front() && keep_going && !keep_going()) {
+      throw ReadingCancelled("reading bags was cancelled");
+    }
     const BagContent& content = contentOf(path);
     const bool fits = content.camera == camera || options_.ofOthers();
     if (!fits || content.data.torqueDim() != torque_dim) {

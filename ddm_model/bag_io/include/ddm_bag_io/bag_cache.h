@@ -7,12 +7,18 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "ddm_bag_io/bag_reader.h"
 
 namespace ddm {
+
+/// What BagCache::read() throws if it is told to end.
+struct ReadingCancelled : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 /// Keeps what it has read of a bag until the file changes or is no longer asked for.
 class BagCache {
@@ -28,7 +34,8 @@ class BagCache {
   /// the last bag that has one.
   /// @throws std::runtime_error as readBag() does, or if camera or number of torques differ between
   ///         bags, or if there is no bag or one is given twice
-  /// @param keep_going  (optional) asked before each bag; false ends in an exception
+  /// @param keep_going  (optional) asked between two bags
+  /// @throws ReadingCancelled if keep_going returns false
   DataSet read(const std::vector<std::string>& paths, const KeepGoing& keep_going = nullptr);
 
  private:
