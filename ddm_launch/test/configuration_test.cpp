@@ -318,7 +318,7 @@ TEST(Configuration, WhatJustFitsIsAccepted) {
   EXPECT_NO_THROW(readText("trial: {num_steps: 51}\nevaluation: {settled_steps_strict: 51}\n"));
   EXPECT_NO_THROW(readText("trial: {num_steps: 30}\nmodel: {pca_dim: 10, order: 29}\n"));
   EXPECT_NO_THROW(readText("mpc: {time_budget: 0.2}\n"));
-  EXPECT_NO_THROW(readText("mpc: {cost: time}\nrobot: {max_torque: [6, 6, 6, 6, 6]}\n"));
+  EXPECT_NO_THROW(readText("mpc: {cost: time}\nrobot: {max_torque: [6, 6, 6]}\n"));
   EXPECT_NO_THROW(readText("robot: {max_torque: [6, 6, 6, 6, 6, 6]}\n"));  // cost: distance
 }
 
