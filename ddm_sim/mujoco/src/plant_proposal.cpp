@@ -49,7 +49,7 @@ double rounded(double number) { return std::stod(shortText(number, "%.2g")); }
 double roundedPosition(double position, bool angle) {
   const double quarters = std::round(position / (0.5 * kPi));
   if (angle && std::abs(position - 0.5 * kPi * quarters) < 3e-3) return 0.5 * kPi * quarters;
-  return std::round(position * 1e3) / 1e3;
+  return std::round(position * 1e3) / 1e3 + 0.0;  // + 0.0: never -0
 }
 
 /// A model at rest: where its joints may be, and what pulls at them.
