@@ -42,11 +42,18 @@ Eigen::VectorXd stateOf(const std::vector<double>& numbers, int num_joints, cons
   return state;
 }
 
+constexpr double kMaxFrames = 1e6;  // a step takes about a second then
+
 /// Frames of the physics in one time step.
 int framesOf(const MujocoModel& model, const MujocoOptions& options) {
   const double dt = options.dt;
   const double step = timestepOf(model, options);
   const double frames = std::max(1.0, std::round(dt / step));
+  if (!(frames <= kMaxFrames)) {
+    std::ostringstream got;
+    got << step << " s, which is " << frames << " frames in plant/dt: use a larger plant/timestep";
+    refuse("timestep", "divide plant/dt into at most 1000000 frames", got.str());
+  }
   if (std::abs(frames * step - dt) <= 1e-9 * dt) return static_cast<int>(frames);
   std::ostringstream rule, got;
   rule << "be a whole multiple of the timestep of "

@@ -126,6 +126,9 @@ std::vector<Flaw> options() {
        {"plant/state_names", "2"}},
       {"NoTolerance", armWith([](O* o) { o->tolerance = 0.0; }), {"plant/tolerance"}},
       {"NegativeTimestep", armWith([](O* o) { o->timestep = -0.01; }), {"plant/timestep", "-0.01"}},
+      {"TinyTimestep",
+       armWith([](O* o) { o->timestep = 1e-300; }),
+       {"plant/timestep", "1000000", "1e-300"}},
       {"GearWithoutMotors", armWith([](O* o) { o->gear = {2.0}; }), {"plant/gear"}},
   };
 }
