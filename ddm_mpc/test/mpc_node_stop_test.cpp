@@ -195,6 +195,7 @@ class InterruptedNode : public TwoMotors {
   void SetUp() override {
     ros::param::set("/interrupted/mpc_node/image/size", kSize);
     ros::param::set("/interrupted/mpc_node/controller/torque_dim", 2);
+    ros::param::set("/interrupted/mpc_node/controller/publish_effort", true);
     node_ = fork();
     ASSERT_GE(node_, 0);
     if (node_ == 0) {

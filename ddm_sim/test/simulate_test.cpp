@@ -259,7 +259,7 @@ TEST_F(SimulateModelFile, FindsTheModelBesideThePlantFileFromAnyFolder) {
          "camera_position: [0, 0, 2], camera_look_at: [0, 0, 0]}";
   const Outcome result = run("--plant " + folder_.string() + "/arm.yaml --describe", "");
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(YAML::Load(result.out)["max_torque"][0].as<double>(), 0.4);  // of the model file
+  EXPECT_EQ(YAML::Load(result.out)["max_torque"].as<double>(), 0.4);  // of the model file
 }
 
 #if !DDM_HAS_MUJOCO

@@ -461,13 +461,30 @@ class Proposer {
     out_.to_set.push_back("tolerance");
   }
 
+  /// The poses, and each of them with all joints that have limits at the nearer one: no pose reaches
+  /// farther.
+  std::vector<VectorXd> withLimits() const {
+    std::vector<VectorXd> poses = positions_;
+    for (VectorXd position : positions_) {
+      for (std::size_t i = 0; i < out_.joints.size(); ++i) {
+        const ModelJoint& joint = out_.joints[i];
+        if (!joint.limited) continue;
+        double& value = position[static_cast<Eigen::Index>(i)];
+        const bool low = value - joint.shown_lower < joint.shown_upper - value;
+        value = low ? joint.shown_lower : joint.shown_upper;
+      }
+      poses.push_back(mechanism_.coupled(position));
+    }
+    return poses;
+  }
+
   void proposeCamera() {
     MujocoOptions& options = out_.options;
     options.look.supersampling = 4;
     const std::vector<CameraPlace> places = cameraPlaces(
         *model_,
         [this](const VectorXd& position) -> const mjData& { return mechanism_.place(position); },
-        positions_, options.look.field_of_view);
+        withLimits(), options.look.field_of_view);
     double best = -1.0;
     for (const CameraPlace& place : places) {
       RenderOptions look = options.look;
