@@ -73,6 +73,14 @@ class ReadingTest(SharedScratchCase):
         for folder, before in self.before.items():
             self.assertEqual(changes(before, fingerprint(folder)), [], words)
 
+    def assertSummedUp(self, words):
+        """Only the time of summary.yaml has changed, by which demo.sh knows that this call found the experiment finished."""
+        summary = os.path.join(self.run_folder, "summary.yaml")
+        before = self.before[self.run_folder][summary][1]
+        self.assertGreater(os.stat(summary).st_mtime_ns, before)
+        os.utime(summary, ns=(before, before))
+        self.assertUnchanged(words)
+
     def assertReads(self, package, name, *arguments):
         """The program succeeds and leaves the folders as they are."""
         code, output = call([find_program(name, package)] + list(arguments), LIMIT_S, folder=self.scratch)
@@ -141,11 +149,11 @@ class ReadingTest(SharedScratchCase):
         code, output = run_experiment(*self.experiment(self.run_folder))
         self.assertEqual(code, 0, output)
         self.assertIn("%d models trained" % (TRIALS + 1), output)
-        self.assertUnchanged(output)
+        self.assertSummedUp(output)
         _, output = roslaunch(self.scratch, "experiment.launch", "preset:=debug", "seed:=1", "trials:=%d" % TRIALS,
                               "config:=" + self.config, "runs:=" + self.run_folder)
         self.assertIn("%d models trained" % (TRIALS + 1), output)
-        self.assertUnchanged(output)
+        self.assertSummedUp(output)
 
     def test_a_refused_experiment_leaves_the_run_as_it_is(self):
         folder = self.copyRun()
