@@ -10,6 +10,7 @@ import unittest
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import skips  # noqa: E402, F401
 from scratch_case import ScratchCase  # noqa: E402
 
 SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "cmake", "write_version.cmake")

@@ -1,5 +1,4 @@
-// try_model PATH [NAME FILE]... < TEXT: tries a model on behalf of tryInOwnProcess(), and prints
-// `ok` or the reason.
+// Program try_model PATH [NAME FILE]... < TEXT, run by tryInOwnProcess(): prints `ok` or a reason.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <sys/resource.h>
 #include <unistd.h>

@@ -1,5 +1,4 @@
-// A URDF, checked where MuJoCo does not, and as MuJoCo has to be given it to take it as its author
-// meant it.
+// Checks a URDF file, and changes what MuJoCo would read in another way than the author meant.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
