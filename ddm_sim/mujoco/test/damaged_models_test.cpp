@@ -1,8 +1,8 @@
 // Test with damaged model files: none may crash, hang, or be drawn black without a message.
+// SPDX-License-Identifier: BSD-3-Clause
 //
 // DDM_DAMAGED_FOLDER names another folder with plant files NAME.yaml, and DDM_DAMAGED_COPIES how
 // many damaged copies are tried.
-// SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_params/param_reader.h>
 #include <gtest/gtest.h>
 #include <tinyxml2.h>

@@ -1,5 +1,4 @@
-// Tests of the options of a plant that a model file describes: what is refused, by name, and what
-// completes them.
+// Tests of the options of plants from model files: what is refused by name, what completes them.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/mujoco_options.h"
 

@@ -1,5 +1,4 @@
-// Tests of URDF files as people have them: what is refused by name, and what is taken as its author
-// meant it.
+// Tests of URDF files as people have them: which are refused by name, and how others are read.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/testing/expect_error.h>
 #include <gtest/gtest.h>

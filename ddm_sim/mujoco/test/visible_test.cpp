@@ -1,5 +1,4 @@
-// Tests of what a plant's images show: hidden groups, files without light, and refusals of images
-// that do not change.
+// Tests of what images show: hidden groups, files without light, images that do not change.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/testing/expect_error.h>
 #include <gtest/gtest.h>
