@@ -93,11 +93,10 @@ class MpcNodeOfAPlantTest : public MpcNodeTest {
     const ddm_msgs::Model model = modelOfSeed(11);
     client_.publish(model);
     torque_.messages.clear();
-    begin(trialGoal(3, 0.0, model.id));
-    EXPECT_TRUE(waitUntil([this] {  // the goal may have come before the model
-      if (torque_.messages.empty()) client_.publishImage(kSize, 0);
-      return !torque_.messages.empty();
-    }));
+    ddm_msgs::RunTrialGoal goal = trialGoal(3, 0.0, model.id);
+    goal.start = client_.publishImage(kSize, 0);  // answered once, whatever comes first
+    begin(goal);
+    EXPECT_TRUE(waitUntil([this] { return torque_.messages.size() == 1; }));
     for (std::size_t step = 1; step < 3; ++step) {
       ddm_msgs::Torque message = torque_.messages.back();
       if (step == 2 && !applied.empty()) message.torque = applied;
