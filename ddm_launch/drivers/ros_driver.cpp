@@ -292,8 +292,8 @@ ddm_msgs::RunTrialResult RosDriver::runPolicy(const TrialRequest& request,
   return result;
 }
 
-/// State at each frame that was answered. In real time there are others. A simulator that has left
-/// since the trial began is no reason to do without: nobody could tell later how the run ended.
+/// Stores the true state at each image that was answered; in real time there are states in between.
+/// If the simulator has left since the trial began, this fails, because success would stay unknown.
 void RosDriver::takeGroundTruth(const std::vector<ros::Time>& stamps, TrialOutcome* outcome) {
   waitFor(
       [&] {

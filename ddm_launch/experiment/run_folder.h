@@ -75,8 +75,8 @@ class RunFolder : public ResultsFolder {
   std::string beginRun(const RunId& run, std::vector<std::string>* kept = nullptr);
   void writeRun(const RunId& run, const TrialOutcome& outcome);
   void writeTraining(int trial, const TrainingOutcome& outcome);
-  /// What was written, without the files; empty if this training has not been finished on the bags
-  /// that are there now.
+  /// The result of a training as training.yaml holds it, without the model's file. Empty if no
+  /// training has been finished on the bags that are in the folder now.
   std::optional<TrainingOutcome> savedTraining(int trial) const;
   /// Ends a trial: from here on it is never run again.
   void finishTrial(const TrialRow& row);

@@ -59,7 +59,7 @@ packages_to_run=(
   python3-rosparam python3-rosmsg python3-dynamic-reconfigure python3-diagnostic-msgs python3-visualization-msgs
   rosbash rospack-tools rviz
 )
-# Those that some systems do not have; each says here what is left out without it.
+# Packages that some systems do not have. The comment behind a package says what is left out without it.
 optional_packages=(libmujoco-dev)  # plants of model files: not in Debian 11 and Ubuntu 22.04
 
 # Sources a catkin setup file, which reads variables that need not exist.
@@ -135,7 +135,7 @@ apt_install() {
   local before=$1
   shift
   (($#)) || return 0
-  # one command, so that whoever lacks the rights can hand it on as it is printed; waits for another apt to end
+  # One command, so that a user without root can give the printed line to an administrator. It waits for another apt to end.
   local apt='apt-get -o DPkg::Lock::Timeout=300'
   echo "Installing $# missing packages: $*"
   as_root "install packages" env DEBIAN_FRONTEND=noninteractive "${around_apt[@]}" sh -c \

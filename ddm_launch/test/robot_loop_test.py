@@ -82,7 +82,7 @@ class RobotLoopTest(ScratchCase):
         self.assertEqual([row["trial"] for row in check["evaluations"]], [0])
 
     def test_a_rehearsal_runs_to_its_end_with_a_listener_in_the_place_of_the_motor(self):
-        """As the tutorial says: enabled, with effort:=/rehearsal. Then what it recorded is replayed."""
+        """Runs the rehearsal of the tutorial, with the motors enabled, and replays the bag that it recorded."""
         listener = rospy.Subscriber("/rehearsal", Float64, lambda _: None)
         self.addCleanup(listener.unregister)
         config = self.write("my_robot.yaml", "robot: {max_torque: 2.0}\n")

@@ -127,7 +127,7 @@ class Peers {
     result.num_steps = kSteps;
     result.exploratory.resize(kSteps);
     result.stamp.resize(kSteps);
-    // What is published arrives a little later, at all subscribers.
+    // Messages arrive at all subscribers some time after they are published.
     while (leaves_ && tells_ && num_heard_ < kSteps) std::this_thread::yield();
     if (leaves_) truth_.shutdown();
     for (std::uint32_t i = 0; (truth_ || leaves_) && i < result.stamp.size(); ++i)

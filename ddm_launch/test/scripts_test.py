@@ -299,7 +299,7 @@ class ScriptsTest(ScratchCase):
         return self.callFunction("check_summary %s 15 ''" % self.scratch, "demo.sh")
 
     def runExperiment(self, launch):
-        """The experiment of demo.sh with bash code in the place of roslaunch."""
+        """Runs the experiment of demo.sh with bash code instead of roslaunch."""
         return self.callFunction("roslaunch() { %s; }; runs=%s trials=15 rviz=false; run_experiment"
                                  % (launch, shlex.quote(self.scratch)), "demo.sh")
 

@@ -33,7 +33,7 @@ class VersionTest(ScratchCase):
         return done.stdout.strip()
 
     def version(self, **environment):
-        """What a build would record. It must not change the checkout."""
+        """Returns the version that a build would record, and checks that the checkout does not change."""
         before = sorted(os.walk(self.file("checkout")))
         out = self.file("version.h")
         subprocess.run([shutil.which("cmake"), "-DSOURCE=" + self.source, "-DOUT=" + out, "-DPACKAGE_VERSION=1.2.3", "-P",

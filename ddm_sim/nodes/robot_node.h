@@ -93,7 +93,7 @@ class RobotNode {
   std::string camera_format_;     // size and encoding that the crop was used with; empty: not yet
   bool has_goal_ = false;
   bool routine_runs_ = false;   // the user's reset service has been called and has not answered
-  bool routine_moves_ = false;  // it has the motors, and no effort is published
+  bool routine_moves_ = false;  // the service has the motors, and no effort is published
   ddm_msgs::Torque acting_;     // what is not yet published as applied; no torque: nothing is
   ros::SteadyTime last_frame_log_;
   bool was_armed_ = false;
