@@ -36,7 +36,8 @@ COMMANDS_ELSEWHERE = [
     (r"/install/setup.bash", "install_test.py", "setup.bash")]
 
 # Run by nobody: what they need is no package of the tests.
-NOT_RUN = {r"^perf (record|report)": "a profiler, which needs rights on the kernel"}
+NOT_RUN = {r"^perf (record|report)": "a profiler, which needs rights on the kernel",
+           r"image_transport republish": "a program of another package, which needs a camera that compresses"}
 
 # The same programs and options, less work. What is left out here has a test of its own: reproduce_paper_test, rviz_test.
 CHEAPER = [

@@ -197,12 +197,14 @@ class Injector(Injection):
                 return
             self.done = True
             self.motor.fault_begins(time.time(), self.stamp.to_sec())
+        self.tell()  # first: the fault may end this node
         if self.verb == "kill":
-            self.tell()  # first: this node ends with the other
             self.killed = True
             os.kill(self.pid, signal.SIGKILL)
-            return
-        self.tell((self.stop if self.verb in STOPS else getattr(self, "do_" + self.verb))() or "")
+        else:
+            said = (self.stop if self.verb in STOPS else getattr(self, "do_" + self.verb))()
+            if said:
+                self.add_to_report(said=said)
 
     def stop(self):
         block, key = LIMITS.get(self.what, OTHER_LIMIT)
