@@ -31,7 +31,7 @@ double slowCost(const Ddm& model, const History& x, const Eigen::VectorXd& goal,
     torques.push_front(U.col(k));
     std::vector<double> h;
     for (int lag = 0; lag < model.options().order; ++lag) {
-      for (const double z : features[lag]) h.push_back(z);
+      h.insert(h.end(), features[lag].data(), features[lag].data() + features[lag].size());
       const Eigen::VectorXd& torque = torques[lag + model.options().delay];
       for (Eigen::Index i = 0; i < torque.size(); ++i) {
         h.push_back(torque[i] / model.predictionModel().maxTorque()[i]);
