@@ -40,6 +40,9 @@ class Connection {
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
+  /// Whether nobody listens at the address, as after the end of a process.
+  bool wasRefused() const { return refused_; }
+
   /// The other side has not ended it. Nobody sends anything here.
   bool isOpen() const {
     char byte = 0;
@@ -58,6 +61,7 @@ class Connection {
       socklen_t size = sizeof(error);
       ::getsockopt(socket_, SOL_SOCKET, SO_ERROR, &error, &size);
     }
+    refused_ = error == ECONNREFUSED;
     if (error != 0) close();
   }
   void close() {
@@ -66,13 +70,15 @@ class Connection {
   }
 
   int socket_ = -1;
+  bool refused_ = false;
 };
 
 }  // namespace
 
 struct NodeWatch::State {
   std::mutex mutex;
-  std::string node;  // that was heard last; empty: none yet
+  std::string node;     // that was heard last; empty: none yet
+  bool is_new = false;  // to the thread: another node, or one that was dead
   bool died = false;
   bool ended = false;
 };
@@ -86,8 +92,10 @@ NodeWatch::~NodeWatch() {
 
 void NodeWatch::hear(const std::string& node) {
   const std::lock_guard<std::mutex> lock(state_->mutex);
+  if (state_->node == node && !state_->died) return;
   state_->node = node;
   state_->died = false;
+  state_->is_new = true;
 }
 
 bool NodeWatch::died() const {
@@ -98,26 +106,32 @@ bool NodeWatch::died() const {
 void NodeWatch::watch(const std::shared_ptr<State>& state) {
   std::string watched;
   std::unique_ptr<Connection> connection;  // null: none, or the process of `watched` has ended
+  std::chrono::steady_clock::time_point next_try;
   for (;;) {
-    std::this_thread::sleep_for(watched.empty() || connection != nullptr ? kLook : kRetry);
+    std::this_thread::sleep_for(kLook);
     std::string node;
+    bool is_new = false;
     {
       const std::lock_guard<std::mutex> lock(state->mutex);
       if (state->ended) return;
       node = state->node;
+      std::swap(is_new, state->is_new);
     }
-    if (node.empty()) continue;
+    const auto now = std::chrono::steady_clock::now();
+    if (node.empty() || (!is_new && connection == nullptr && now < next_try)) continue;
     if (node == watched && connection != nullptr && connection->isOpen()) continue;
-    const bool was_open = node == watched && connection != nullptr;
+    bool is_gone = node == watched && connection != nullptr;
     watched = node;
+    next_try = now + kRetry;
     connection.reset();
     if (const auto address = addressOf(node)) {
       connection = std::make_unique<Connection>(address->host, address->port);
+      is_gone = is_gone || connection->wasRefused();  // what was heard came from a process there
       if (!connection->isOpen()) connection.reset();
     }
     const std::lock_guard<std::mutex> lock(state->mutex);
-    // A node that has never been in reach is not called dead.
-    if (was_open && connection == nullptr && state->node == node) state->died = true;
+    // A node that has never been in reach, as behind a firewall, is not called dead.
+    if (is_gone && connection == nullptr && state->node == node) state->died = true;
   }
 }
 

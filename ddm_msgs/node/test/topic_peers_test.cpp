@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_node/topic_peers.h"
 
+#include <ddm_node/node_watch.h>
 #include <gtest/gtest.h>
 #include <ros/ros.h>
 #include <signal.h>
@@ -43,6 +44,26 @@ class TopicPeersTest : public ::testing::Test {
   ros::NodeHandle nh_;
   ros::Subscriber listener_ = nh_.subscribe<std_msgs::Float64>("/spoken", 1, &listen);
 };
+
+TEST_F(TopicPeersTest, ANodeThatDiedBeforeItsProcessCouldBeWatchedIsNoticed) {
+  XmlRpc::XmlRpcValue ghost;
+  ghost[0] = "/dead";
+  ghost[1] = "/last_words";
+  ghost[2] = "std_msgs/Float64";
+  ghost[3] = "http://localhost:1/";  // where nobody is any more
+  ASSERT_TRUE(askMaster("registerPublisher", ghost).has_value());
+  NodeWatch watch;
+  watch.hear("/dead");
+  EXPECT_EQ(eventually({"died"}, [&watch] { return Lines{watch.died() ? "died" : "lives"}; }),
+            Lines{"died"});
+  watch.hear("/alone");
+  EXPECT_FALSE(watch.died());
+  XmlRpc::XmlRpcValue leaving;
+  leaving[0] = ghost[0];
+  leaving[1] = ghost[1];
+  leaving[2] = ghost[3];
+  ASSERT_TRUE(askMaster("unregisterPublisher", leaving).has_value());
+}
 
 TEST_F(TopicPeersTest, APublisherInPythonIsFoundToBeConnected) {
   EXPECT_EQ(eventually({}, [] { return missingConnections({"/spoken"}); }), Lines());
