@@ -4,7 +4,7 @@
 # Linters, the check of .rosinstall, sanitizers with symbols in their reports, a compiler for arm64, a screen for rviz, and
 # other machines, played by this one.
 packages_to_test=(
-  catkin-lint catkin-tools python3-wstool clang-format git
+  catkin-lint catkin-tools python3-wstool clang-format git python3-pytest
   clang libclang-rt-dev libomp-dev llvm
   g++-aarch64-linux-gnu
   xvfb imagemagick

@@ -1,18 +1,12 @@
-#!/usr/bin/python3
 # What benchmark runs, for a short time: nodes, kernels and growth give what its table needs.
 # SPDX-License-Identifier: BSD-3-Clause
-import os
-import sys
 from unittest import mock
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import rooms  # noqa: E402, F401
-from ddm_launch.command import distribution, processor  # noqa: E402
-from ddm_qa import benchmark, growth  # noqa: E402
-from processes import call, find_program, run_experiment  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
+from ddm_launch.command import distribution, processor
+from ddm_qa import benchmark, growth
+from processes import call, find_program, run_experiment
+from scratch_case import ScratchCase
 
 
 class BenchmarkProgramsTest(ScratchCase):
@@ -82,7 +76,3 @@ class BenchmarkProgramsTest(ScratchCase):
         code, output = call([find_program("rendering_time"), "pendulumm"], 60.0)
         self.assertEqual(code, 1)
         self.assertIn("pendulumm", output)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "benchmark_programs", BenchmarkProgramsTest)
