@@ -2,15 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 
 # Linters, the check of .rosinstall, sanitizers with symbols in their reports, a compiler for arm64, a screen for rviz, and
-# other machines, played by this one; PyTorch, which ours is compared with.
+# other machines, played by this one.
 packages_to_test=(
-  catkin-lint catkin-tools python3-wstool clang-format git
+  catkin-lint catkin-tools python3-wstool clang-format git python3-pytest
   clang libclang-rt-dev libomp-dev llvm
   g++-aarch64-linux-gnu
   xvfb imagemagick
   openssh-client openssh-server iproute2 nftables
   slurmctld slurmd slurm-client munge
-  python3-torch libtorch-dev libopenblas0-pthread
 )
 optional_packages+=(
   catkin-lint catkin-tools  # Debian 11 has no catkin-tools; with Noetic they have other names

@@ -1,17 +1,11 @@
-#!/usr/bin/python3
 # Angle trajectories by trial: panels, lines, who counts as upright, and what is refused.
 # SPDX-License-Identifier: BSD-3-Clause
 import math
-import os
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import rooms  # noqa: E402, F401
-from ddm_study import angle_trajectories  # noqa: E402
-from ddm_launch.figure_style import BLUE, PAGE_WIDTH, VERMILLION, new_figure  # noqa: E402
-import figure_case  # noqa: E402
+from ddm_study import angle_trajectories
+from ddm_launch.figure_style import BLUE, PAGE_WIDTH, VERMILLION, new_figure
+import figure_case
 
 HEADER = "seed,frames,success,step,time_s,angle_rad"
 
@@ -80,7 +74,3 @@ class AngleTrajectoriesTest(figure_case.FigureCase):
     def test_a_step_that_is_there_twice_is_refused(self):
         path = self.writeLines("angles.csv", HEADER, *(rows(1, 1, 1.0) + rows(1, 1, 2.0)))
         self.assertRefused(angle_trajectories, [path], "seed 1, frames 1, step 0")
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "angle_trajectories_test", AngleTrajectoriesTest)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # The core libraries compile for arm64, with the build settings of all packages and with no header of ROS.
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
@@ -6,14 +5,10 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 import unittest
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import skips  # noqa: E402, F401
-from scratch_case import ScratchCase  # noqa: E402
+from scratch_case import ScratchCase
 
 CHECKOUT = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 COMPILER = "aarch64-linux-gnu-g++"
@@ -58,7 +53,3 @@ class Arm64Test(ScratchCase):
         for path in objects:
             with open(path, "rb") as stream:
                 self.assertEqual(stream.read(20)[18:], ELF_AARCH64, path)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "arm64_test", Arm64Test)

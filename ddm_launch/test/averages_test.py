@@ -1,9 +1,7 @@
-#!/usr/bin/python3
 # Means over experiments: standard errors, Wilson's intervals against published ones, and tests by hand.
 # SPDX-License-Identifier: BSD-3-Clause
 import unittest
 
-import rosunit
 
 from ddm_launch.averages import holm, mean_and_error, sign_test, success_rates, wilson_interval
 from ddm_launch.run_folder import Trial
@@ -55,7 +53,3 @@ class AveragesTest(unittest.TestCase):
             self.assertAlmostEqual(p, expected)
         self.assertEqual(holm([0.6, 0.5]), [1.0, 1.0])
         self.assertEqual(holm([]), [])
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "averages", AveragesTest)

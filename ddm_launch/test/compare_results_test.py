@@ -1,16 +1,11 @@
-#!/usr/bin/python3
 # compare_results: equal rows, other rows, rows that are missing, and folders that it cannot compare.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import rooms  # noqa: E402, F401
-from ddm_study import compare_results  # noqa: E402
-from processes import call_main  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
+from ddm_study import compare_results
+from processes import call_main
+from scratch_case import ScratchCase
 
 HEADER = "seed,trial,v_r,train_s,version\n"
 
@@ -73,7 +68,3 @@ class CompareResultsTest(ScratchCase):
         code, output = self.call("nowhere")
         self.assertEqual(code, 1)
         self.assertIn("there is no folder " + self.file("nowhere"), output)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "compare_results_test", CompareResultsTest)

@@ -1,23 +1,20 @@
-#!/usr/bin/python3
 # The core libraries know nothing of ROS: neither what they include nor what they link.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import re
 import subprocess
-import sys
 import unittest
 
 import rospkg
-import rosunit
 
 # library -> folders with its sources and headers: a package, and where in it
 CORES = {"ddm_files": ("ddm_msgs", "files/include", "files/src"),
          "ddm_params": ("ddm_msgs", "params/include", "params/src"),
          "ddm_sim": ("ddm_sim", "include", "src"), "ddm_model": ("ddm_model", "include", "src"),
-         "ddm_mpc": ("ddm_mpc", "include", "src"), "ddm_pilco": ("ddm_mpc", "pilco/include", "pilco/src"),
-         "ddm_robot": ("ddm_sim", "robot/include", "robot/src")}
-if "pilco:=OFF" in sys.argv:
-    del CORES["ddm_pilco"]
+         "ddm_mpc": ("ddm_mpc", "include", "src"), "ddm_robot": ("ddm_sim", "robot/include", "robot/src")}
+# These may be left out of a build.
+OPTIONAL = {"ddm_pilco": ("ddm_mpc", "pilco/include", "pilco/src"),
+            "ddm_mujoco": ("ddm_sim", "mujoco/include", "mujoco/src")}
 ROS_INCLUDE = re.compile(
     r'^\s*#\s*include\s*[<"]((?:ros|xmlrpcpp|\w+_msgs|actionlib|cv_bridge|image_transport|dynamic_reconfigure'
     r'|diagnostic_updater|nodelet|pluginlib|class_loader|tf2?(?:_ros)?|ros\w+|ddm_bag_io'
@@ -43,9 +40,8 @@ def rosIncludes(path):
 
 
 def libraryPath(name):
-    """The library in the workspace that this test was built in, or where its caller says."""
-    folders = [argument for argument in sys.argv[1:] if os.path.isdir(argument)]
-    folders += [os.path.join(prefix, "lib") for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(":") if prefix]
+    """The library in the workspace that this test was built in."""
+    folders = [os.path.join(prefix, "lib") for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(":") if prefix]
     folders += os.environ.get("LD_LIBRARY_PATH", "").split(":")
     for folder in folders:
         path = os.path.join(folder, "lib%s.so" % name)
@@ -54,11 +50,12 @@ def libraryPath(name):
     raise AssertionError("lib%s.so is in none of %s: build it first" % (name, folders))
 
 
-try:
-    libraryPath("ddm_mujoco")
-    CORES["ddm_mujoco"] = ("ddm_sim", "mujoco/include", "mujoco/src")
-except AssertionError:
-    pass  # built without MuJoCo
+for name, places in OPTIONAL.items():
+    try:
+        libraryPath(name)
+    except AssertionError:
+        continue
+    CORES[name] = places
 
 
 def linkedLibraries(name):
@@ -104,7 +101,3 @@ class CoreIsRosFreeTest(unittest.TestCase):
     def test_libraries_of_the_bag_reader_are_seen_as_ros(self):
         libraries = ROS_LIBRARY.findall(linkedLibraries("ddm_bag_io"))
         self.assertTrue(any(name.startswith("librosbag_storage.so") for name in libraries), libraries)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "core_is_ros_free_test", CoreIsRosFreeTest)

@@ -1,19 +1,14 @@
-#!/usr/bin/python3
 # The ablation's figure and that of the nuisances: their dots and bars, the order of rows, and what is refused.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import sys
 
 import numpy as np
 from PIL import Image
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import rooms  # noqa: E402, F401
-from ddm_study import ablation_compared, nuisances_compared, reproduce_efficient  # noqa: E402
-from ddm_study.dot_plot import draw_figure_of_dots  # noqa: E402
-from ddm_launch.figure_style import COLUMN_WIDTH, new_figure  # noqa: E402
-import figure_case  # noqa: E402
+from ddm_study import ablation_compared, nuisances_compared, reproduce_efficient
+from ddm_study.dot_plot import draw_figure_of_dots
+from ddm_launch.figure_style import COLUMN_WIDTH, new_figure
+import figure_case
 
 ABLATION = "variant,label,frames,seeds,success,success_se,difference,difference_se"
 NUISANCES = "nuisance,frames,runs,success,low,high,success_strict,strict_low,strict_high"
@@ -158,7 +153,3 @@ class DotPlotsTest(figure_case.FigureCase):
     def test_missing_tables_are_named_with_the_remedy(self):
         for module in (ablation_compared, nuisances_compared):
             self.assertRefused(module, ["missing.csv"], "missing.csv", "rosrun ddm_launch reproduce_efficient")
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "dot_plots_test", DotPlotsTest)

@@ -1,17 +1,13 @@
-#!/usr/bin/python3
 # Plant `suite_reacher_hard`, which draws a goal with each start; the nodes and run_experiment give the same.
 # SPDX-License-Identifier: BSD-3-Clause
 import math
 import os
-import sys
 
 import rosbag
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from both_drivers_case import BothDriversCase  # noqa: E402
-from processes import needs_mujoco  # noqa: E402
-from run_files import read_rows, read_yaml  # noqa: E402
+from both_drivers_case import BothDriversCase
+from processes import needs_mujoco
+from run_files import read_rows, read_yaml
 
 TRIALS = 1
 QUICK = """training: {num_starts: 1, max_iterations: 20}
@@ -66,7 +62,3 @@ class DrawnGoalLoopTest(BothDriversCase):
             # targets lie between 0.05 and 0.20 m from the middle
             self.assertLessEqual(error, math.hypot(*finger) + 0.2)
             self.assertGreaterEqual(error, max(0.0, math.hypot(*finger) - 0.2))
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "drawn_goal_loop", DrawnGoalLoopTest)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # reproduce_efficient with a stand-in for sweep: what it runs, keeps, resumes and refuses, and what it makes of it.
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
@@ -6,19 +5,14 @@ import contextlib
 import io
 import os
 import shutil
-import sys
 from unittest import mock
 
-import rosunit
+from ddm_study import reproduce_efficient, step_runner
+from processes import call_main
+from run_files import read_bytes, read_rows, read_yaml
+from scratch_case import ScratchCase
 
 TEST = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, TEST)
-import rooms  # noqa: E402, F401
-from ddm_study import reproduce_efficient, step_runner  # noqa: E402
-from processes import call_main  # noqa: E402
-from run_files import read_bytes, read_rows, read_yaml  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
-
 PACKAGE = os.path.dirname(TEST)
 WIDTHS = "encoder_widths: [25, 12, 6]"  # those of the stand-in's config.yaml
 # Two episodes of what is asked for by: --config FILE --model FILE --seeds A:B --out DIR.
@@ -29,8 +23,6 @@ DIAGNOSIS = """while [ $# -gt 2 ]; do echo "$1"; shift; done > "$out"
 """
 PLANTS = sorted({task.plant for task in reproduce_efficient.TASKS.values()})
 SEEDS = ["--seeds", "100:125", "--ablation-seeds", "0:4"]
-
-
 class EfficientReproductionTest(ScratchCase):
     def setUp(self):
         super().setUp()
@@ -416,7 +408,3 @@ class EfficientReproductionTest(ScratchCase):
         for arguments in (["--only", "figures"], ["--seeds", "100"], ["--pilco-minutes", "0"], ["--pilco-seeds", "-1"]):
             self.assertEqual(self.call(*arguments)[0], 2)
         self.assertFalse(os.path.exists(self.out))
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "efficient_reproduction", EfficientReproductionTest)

@@ -1,19 +1,14 @@
-#!/usr/bin/python3
 # Tables of reproduce_efficient: what they say of made-up results, and which targets these reach.
 # SPDX-License-Identifier: BSD-3-Clause
 import csv
 import os
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import rooms  # noqa: E402, F401
-from ddm_launch.command import Failure  # noqa: E402
-from ddm_launch.run_folder import read_sweep  # noqa: E402
-from ddm_study import efficient_tables  # noqa: E402
-import figure_case  # noqa: E402
-from run_files import COLUMNS  # noqa: E402
+from ddm_launch.command import Failure
+from ddm_launch.run_folder import read_sweep
+from ddm_study import efficient_tables
+import figure_case
+from run_files import COLUMNS
 
 
 class EfficientTablesTest(figure_case.FigureCase):
@@ -225,7 +220,3 @@ class EfficientTablesTest(figure_case.FigureCase):
         self.assertEqual({point: holds for point, (_, holds) in self.targets().items()}, {
             "mean success of the nuisances, 100 frames": "yes", "mean success of the nuisances, 200 to 500 frames": "no"})
         self.assertEqual([row["holds"] for row in self.readTable("targets.csv")], ["yes", "no"])
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "efficient_tables", EfficientTablesTest)

@@ -1,14 +1,7 @@
-#!/usr/bin/python3
 # Episodes, time to the goal, a choice of the delay and blur: the nodes and run_experiment give the same.
 # SPDX-License-Identifier: BSD-3-Clause
-import os
-import sys
-
-import rosunit
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from both_drivers_case import BothDriversCase  # noqa: E402
-from run_files import read_rows  # noqa: E402
+from both_drivers_case import BothDriversCase
+from run_files import read_rows
 
 TRIALS = 1
 CONFIG = """\
@@ -35,7 +28,3 @@ class EpisodesLoopTest(BothDriversCase):
         starts = {tuple(read_rows(self.nodes, "trial_%03d" % k, *episode, "trajectory.csv")[1][2:])
                   for k in range(TRIALS + 1) for episode in ((), ("episode_001",))}
         self.assertEqual(len(starts), 2 * (TRIALS + 1))
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "episodes_loop_test", EpisodesLoopTest)

@@ -1,15 +1,11 @@
-#!/usr/bin/python3
 # evaluate on a plant of a model file: the same rows however many runs there are at a time.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import call, find_program, needs_mujoco, run_experiment  # noqa: E402
-from run_files import read_rows, read_yaml  # noqa: E402
-from scratch_case import SharedScratchCase  # noqa: E402
+from processes import call, find_program, needs_mujoco, run_experiment
+from run_files import read_rows, read_yaml
+from scratch_case import SharedScratchCase
 
 SEEDS = 6
 PLANT = ["--preset", "debug", "--plant", "suite_reacher_hard"]  # draws goals and has a reward
@@ -54,7 +50,3 @@ class EvaluateMujocoTest(SharedScratchCase):
         self.assertTrue(all(0.0 <= float(row["return"]) <= 200.0 for row in one[0]), one)
         for jobs in (2, SEEDS):
             self.assertEqual(self.evaluate(jobs), one)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "evaluate_mujoco", EvaluateMujocoTest)

@@ -1,23 +1,18 @@
-#!/usr/bin/python3
 # Faults of each class come to what is expected of them, and a case that does not fails.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import sys
 
-import rosunit
 from std_msgs.msg import Float64
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import rooms  # noqa: E402, F401
-from ddm_qa import fault_table as table  # noqa: E402
-from ddm_qa.faults.cases import CASES, RECOVERS, STAYS, Case  # noqa: E402
-from ddm_qa.faults.damage import damage, find_record  # noqa: E402
-from ddm_qa.faults.finished import Finished  # noqa: E402
-from ddm_qa.faults.run import FaultBench  # noqa: E402
-from ddm_qa.faults.watches import Effort, MotorWatch, OrderWatch  # noqa: E402
-from processes import call, find_program, run_experiment  # noqa: E402
-from run_files import read_rows  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
+from ddm_qa import fault_table as table
+from ddm_qa.faults.cases import CASES, RECOVERS, STAYS, Case
+from ddm_qa.faults.damage import damage, find_record
+from ddm_qa.faults.finished import Finished
+from ddm_qa.faults.run import FaultBench
+from ddm_qa.faults.watches import Effort, MotorWatch, OrderWatch
+from processes import call, find_program, run_experiment
+from run_files import read_rows
+from scratch_case import ScratchCase
 
 
 class FaultTableTest(ScratchCase):
@@ -129,7 +124,3 @@ class FaultTableTest(ScratchCase):
             with open(path, "wb") as stream:
                 stream.write(content)
         self.assertEqual(len(sizes), 6)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "fault_table_test", FaultTableTest)

@@ -1,19 +1,14 @@
-#!/usr/bin/python3
 # The feature plane: what is drawn where, the decoded grid, and what it refuses.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import shutil
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch.command import Failure  # noqa: E402
-from ddm_launch.figure_style import COLUMN_WIDTH, PAGE_WIDTH, new_figure  # noqa: E402
-from ddm_model.feature_grid import BRIGHTEST, DARKEST, FeatureGrid  # noqa: E402
-import figure_case  # noqa: E402
-import rooms  # noqa: E402, F401
-from ddm_study import feature_plane  # noqa: E402
+from ddm_launch.command import Failure
+from ddm_launch.figure_style import COLUMN_WIDTH, PAGE_WIDTH, new_figure
+from ddm_model.feature_grid import BRIGHTEST, DARKEST, FeatureGrid
+import figure_case
+from ddm_study import feature_plane
 
 HEADER = "frame,set,x_px,y_px,z_1,z_2"
 ROWS = ("0,training,1,1,-1.0,0.0", "1,training,1,1,1.0,0.5", "2,held_out,1,1,0.0,0.25")
@@ -92,7 +87,3 @@ class FeaturePlaneTest(figure_case.FigureCase):
     def test_a_folder_without_features_is_named_with_the_remedy(self):
         self.writeLines("config.yaml", "training: {schedule: joint}")
         self.assertRefused(feature_plane, [self.scratch], "features.csv", "prediction_experiment")
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "feature_plane_test", FeaturePlaneTest)

@@ -1,19 +1,15 @@
-#!/usr/bin/python3
 # What all figures for print share: their letters, their files, and means with standard errors.
 # SPDX-License-Identifier: BSD-3-Clause
 import errno
 import os
-import sys
 
 from PIL import Image
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch import figure_style  # noqa: E402
-from ddm_launch.averages import mean_and_error  # noqa: E402
-from ddm_launch.command import Failure, run_program  # noqa: E402
-from figure_case import FigureCase  # noqa: E402
-from processes import call_main  # noqa: E402
+from ddm_launch import figure_style
+from ddm_launch.averages import mean_and_error
+from ddm_launch.command import Failure, run_program
+from figure_case import FigureCase
+from processes import call_main
 
 
 class FigureStyleTest(FigureCase):
@@ -77,7 +73,3 @@ class FigureStyleTest(FigureCase):
         self.assertAlmostEqual(mean, 3.0)
         self.assertAlmostEqual(error, (14.0 / 2.0 / 3.0) ** 0.5)
         self.assertEqual(mean_and_error([4.0]), (4.0, 0.0))
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "figure_style_test", FigureStyleTest)

@@ -1,21 +1,17 @@
-#!/usr/bin/python3
 # The film strip: which trial and steps it shows, its pictures, and what it refuses.
 # SPDX-License-Identifier: BSD-3-Clause
 import math
 import os
-import sys
 from unittest import mock
 
 from PIL import Image
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch import film_strip  # noqa: E402
-from ddm_launch.run_folder import read_trials  # noqa: E402
-from figure_case import call_figure  # noqa: E402
-from run_files import changes, fingerprint  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
-import synthetic_run  # noqa: E402
+from ddm_launch import film_strip
+from ddm_launch.run_folder import read_trials
+from figure_case import call_figure
+from run_files import changes, fingerprint
+from scratch_case import ScratchCase
+import synthetic_run
 
 
 class GreyCamera:
@@ -142,7 +138,3 @@ class FilmStripTest(ScratchCase):
         code, output = self.callMain(make_camera=film_strip.Camera)
         self.assertEqual(code, 1)
         self.assertIn(path, output)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "film_strip_test", FilmStripTest)

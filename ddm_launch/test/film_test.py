@@ -1,20 +1,16 @@
-#!/usr/bin/python3
 # The film: what it shows of a run that both programs made, how long, and what it refuses.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import shutil
-import sys
 
 import numpy as np
 from PIL import Image
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch import film  # noqa: E402
-from ddm_model.model import load  # noqa: E402
-from figure_case import call_figure  # noqa: E402
-from processes import run_experiment  # noqa: E402
-from scratch_case import SharedScratchCase  # noqa: E402
+from ddm_launch import film
+from ddm_model.model import load
+from figure_case import call_figure
+from processes import run_experiment
+from scratch_case import SharedScratchCase
 
 DT, STEPS = 0.2, 5  # the pendulum's, and a second of it
 
@@ -77,7 +73,3 @@ class FilmTest(SharedScratchCase):
         code, output = call_figure(film, self.evaluation(0), "--out", self.file("film.png"))
         self.assertEqual(code, 1)
         self.assertIn(".webp", output)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "film", FilmTest)

@@ -1,20 +1,16 @@
-#!/usr/bin/python3
 # Folders that one process at a time writes into: sweeps in Python, experiments in C++.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import signal
 import subprocess
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch.command import Failure  # noqa: E402
-from ddm_launch.folder_lock import FolderLock, text_of, this_process  # noqa: E402
-from processes import Process, find_program, run_experiment  # noqa: E402
-from run_files import expected_files, files_in, read_bytes  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
-from sweeps import seed_folder, sweep, wait_for  # noqa: E402
+from ddm_launch.command import Failure
+from ddm_launch.folder_lock import FolderLock, text_of, this_process
+from processes import Process, find_program, run_experiment
+from run_files import expected_files, files_in, read_bytes
+from scratch_case import ScratchCase
+from sweeps import seed_folder, sweep, wait_for
 
 # A file system without locks of the kernel, as on some clusters.
 NO_LOCKS = """
@@ -93,7 +89,3 @@ class FolderLockTest(ScratchCase):
                              environment={"LD_PRELOAD": library})
         self.assertEqual(code, 0, output)
         self.assertEqual(files_in(seed_folder(self.out, 0)), expected_files(0))
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "folder_lock_test", FolderLockTest)

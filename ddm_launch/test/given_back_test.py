@@ -1,15 +1,11 @@
-#!/usr/bin/python3
 # config.yaml of an experiment, given back, is the same experiment again, in both drivers.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import roslaunch, run_experiment  # noqa: E402
-from run_files import differences, expected_files, read_yaml  # noqa: E402
-from scratch_case import SharedScratchCase  # noqa: E402
+from processes import roslaunch, run_experiment
+from run_files import differences, expected_files, read_yaml
+from scratch_case import SharedScratchCase
 
 TRIALS = 1
 PLANT = "pendulum_gravity"
@@ -65,7 +61,3 @@ class GivenBackTest(SharedScratchCase):
         self.assertIn(self.config, output)
         self.assertIn(PLANT, output)
         self.assertFalse(os.path.exists(self.out))
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "given_back_test", GivenBackTest)

@@ -1,24 +1,20 @@
-#!/usr/bin/python3
 # The install space has everything and needs nothing else: it runs where sources, build and devel space are gone.
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
 import os
 import re
-import sys
 import unittest
 from concurrent.futures import ThreadPoolExecutor
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from namespaces import hiding, why_not  # noqa: E402
-from processes import call, free_port, has_mujoco  # noqa: E402
-from run_files import differences, expected_files, files_in, read_rows, torque_files  # noqa: E402
-from scratch_case import SharedScratchCase  # noqa: E402
+from namespaces import hiding, why_not
+from processes import call, free_port, has_mujoco
+from run_files import differences, expected_files, files_in, read_rows, torque_files
+from scratch_case import SharedScratchCase
 
 PACKAGES = ["ddm_launch", "ddm_model", "ddm_mpc", "ddm_msgs", "ddm_sim"]
 CHECKOUT = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
-BUILD = next(word.split(":=")[1] for word in sys.argv if word.startswith("build:="))
+BUILD = os.environ["DDM_BUILD"]
 SHARED_FOLDERS = ["config", "launch", "rviz"]  # those in a package's share folder
 TRIALS = 1
 
@@ -159,7 +155,3 @@ class InstallTest(SharedScratchCase):
         output = self.assertRuns("rosrun", "ddm_launch", "sweep", "--preset", "debug", "--seeds", "0:2", "--trials", 0,
                                  "--out", self.out)
         self.assertEqual(len(read_rows(self.out, "sweep.csv")), 3, output)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "install_test", InstallTest)

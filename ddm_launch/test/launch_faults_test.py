@@ -1,14 +1,10 @@
-#!/usr/bin/python3
 # What is wrong in the arguments or files of a launch is named on the terminal, and leaves no folder.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import roslaunch  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
+from processes import roslaunch
+from scratch_case import ScratchCase
 
 
 class LaunchFaultsTest(ScratchCase):
@@ -68,7 +64,3 @@ class LaunchFaultsTest(ScratchCase):
 
     def test_a_misspelt_key_of_the_recorder_is_named(self):
         self.assertConfigRefused("recorder: {timeot: 1.0}\n", ["recorder/timeot", "timeout"])
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "launch_faults_test", LaunchFaultsTest)

@@ -1,17 +1,13 @@
-#!/usr/bin/python3
 # Launch files with paths that mean something to a shell, to YAML or to roslaunch.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import subprocess
-import sys
 
-import rosunit
 import yaml
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import call, find_program, roslaunch  # noqa: E402
-from run_files import expected_files, files_in, read_yaml  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
+from processes import call, find_program, roslaunch
+from run_files import expected_files, files_in, read_yaml
+from scratch_case import ScratchCase
 
 ODD = "it's a \"run\" #1: {x}, \\y & 100%"
 
@@ -80,7 +76,3 @@ class LaunchPathsTest(ScratchCase):
         self.assertIsInstance(summary["success_rate"], float)
         _, output = self.launch("record.launch", "preset:=debug", "num_steps:=5", "bag:=~/%s/new.bag" % ODD)
         self.assertIn("new.bag", files_in(self.odd), output)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "launch_paths_test", LaunchPathsTest)

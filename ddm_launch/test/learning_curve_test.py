@@ -1,25 +1,21 @@
-#!/usr/bin/python3
 # The learning curve: its numbers, its pictures, and what it refuses.
 # SPDX-License-Identifier: BSD-3-Clause
 import errno
 import math
 import os
 import re
-import sys
 
 import numpy as np
 from PIL import Image
-import rosunit
 import yaml
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from figure_case import call_figure  # noqa: E402
-from ddm_launch import figure_style, learning_curve  # noqa: E402
-from ddm_launch.learning_curve_node import picture  # noqa: E402
-from ddm_launch.run_folder import in_todays_columns, read_goal, read_trials  # noqa: E402
-from run_files import changes, fingerprint  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
-import synthetic_run  # noqa: E402
+from figure_case import call_figure
+from ddm_launch import figure_style, learning_curve
+from ddm_launch.learning_curve_node import picture
+from ddm_launch.run_folder import in_todays_columns, read_goal, read_trials
+from run_files import changes, fingerprint
+from scratch_case import ScratchCase
+import synthetic_run
 
 
 class LearningCurveTest(ScratchCase):
@@ -163,7 +159,3 @@ class LearningCurveTest(ScratchCase):
         code, errors = self.callMain(self.makeRun("run", ["1"]), "--out", self.file("curve.nonsense"))
         self.assertEqual(code, 1)
         self.assertIn("nonsense", errors)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "learning_curve_test", LearningCurveTest)

@@ -1,18 +1,14 @@
-#!/usr/bin/python3
 # The whole loop with the real nodes: files, terminal, bags, how it resumes, ends and refuses.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import re
 import shutil
 import signal
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import roslaunch, run_experiment, start_roslaunch  # noqa: E402
-from run_files import differences, expected_files, files_in, read_bag, read_bytes, read_rows, read_yaml  # noqa: E402
-from scratch_case import SharedScratchCase  # noqa: E402
+from processes import roslaunch, run_experiment, start_roslaunch
+from run_files import differences, expected_files, files_in, read_bag, read_bytes, read_rows, read_yaml
+from scratch_case import SharedScratchCase
 
 TRIALS = 2
 
@@ -127,7 +123,3 @@ class LoopTest(SharedScratchCase):
         launch.waitForEnd(30.0)
         self.assertIn("REQUIRED process [mpc_node", launch.output)
         self.assertNotIn("summary.yaml", files_in(self.out))
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "loop_test", LoopTest)

@@ -1,19 +1,15 @@
-#!/usr/bin/python3
 # new_plant: its plant file works as it is, in every program and from every folder; what cannot be a plant is refused.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import struct
 import subprocess
-import sys
 import unittest
 
-import rosunit
 import yaml
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import call, find_program, has_mujoco, run_experiment  # noqa: E402
-from run_files import read_rows, read_yaml  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
+from processes import call, find_program, has_mujoco, run_experiment
+from run_files import read_rows, read_yaml
+from scratch_case import ScratchCase
 
 INERTIAL = ('<inertial><origin xyz="0 0 -0.2"/><mass value="0.5"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" '
             'ixz="0" iyz="0"/></inertial>')
@@ -167,7 +163,3 @@ class NewPlantTest(ScratchCase):
         self.assertEqual(code, 0, output)
         for word in ("--motors", "--max-torque", "--force", "--out"):
             self.assertIn(word, output)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "new_plant_test", NewPlantTest)

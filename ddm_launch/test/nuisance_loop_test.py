@@ -1,14 +1,10 @@
-#!/usr/bin/python3
 # All nuisances and all that is not the paper's at once: nodes and run_experiment still agree, torque by torque.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from both_drivers_case import BothDriversCase  # noqa: E402
-from run_files import read_bag, read_rows, read_yaml  # noqa: E402
+from both_drivers_case import BothDriversCase
+from run_files import read_bag, read_rows, read_yaml
 
 TRIALS = 1
 STEP_NS = 200000000
@@ -48,7 +44,3 @@ class NuisanceLoopTest(BothDriversCase):
 
     def test_a_trial_counts_the_frames_that_are_seen(self):
         self.assertEqual([row[2] for row in read_rows(self.nodes, "trials.csv")[1:]], ["30", "60"])
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "nuisance_loop", NuisanceLoopTest)

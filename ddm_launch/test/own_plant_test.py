@@ -1,16 +1,12 @@
-#!/usr/bin/python3
 # The example of a plant from outside: built in a workspace of its own on top of ours, it works in both drivers.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import subprocess
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from both_drivers_case import BothDriversCase  # noqa: E402
-from processes import call, find_program, run_experiment  # noqa: E402
-from run_files import read_rows, read_yaml  # noqa: E402
+from both_drivers_case import BothDriversCase
+from processes import call, find_program, run_experiment
+from run_files import read_rows, read_yaml
 
 EXAMPLE = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../examples/ddm_cart"))
 PLANT_KEYS = ["type", "max_torque", "dt", "start_std", "picture_size", "mass", "friction", "track", "goal", "half_width",
@@ -124,7 +120,3 @@ class OwnPlantTest(BothDriversCase):
         x = [float(row[2]) for row in read_rows(self.out, "evaluation_000", "trajectory.csv")[1:]]
         self.assertLess(abs(x[0]), 0.4)
         self.assertLess(max(abs(position - 0.6) for position in x[-25:]), 0.05)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "own_plant_test", OwnPlantTest)

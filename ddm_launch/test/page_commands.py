@@ -13,12 +13,12 @@ RUN_HERE = {"run_experiment", "sweep", "feature_space", "study_figure pendulum_f
 
 # Those that another test runs, with all that takes long or needs more than one machine: the test must name it.
 ELSEWHERE = {"reproduce_paper": "reproduce_paper_test.py", "reproduce_efficient": "reproduce_efficient_test.py",
-             "benchmark": "benchmark_test.py", "planning_budget": "benchmark_programs_test.py",
-             "growth": "growth_test.py", "fault_table": "fault_table_test.py", "soak": "soak_test.py",
+             "benchmark": "benchmark_programs_test.py", "planning_budget": "benchmark_programs_test.py",
+             "growth": "benchmark_programs_test.py", "fault_table": "fault_table_test.py", "soak": "soak_test.py",
              "rviz_screenshot": "rviz_test.py", "task_diagnosis": "task_diagnosis_test.py",
              "compare_results": "compare_results_test.py",
              "robot.launch": "robot_loop_test.py", "robot_check.launch": "robot_loop_test.py",
-             "part.launch": "several_machines_test.py", "test.sh": "scripts_test.py", "fuzz.sh": "fuzzing_test.py",
+             "part.launch": "several_machines_test.py", "test.sh": "scripts_test.py",
              "read_bags": "reading_test.py", "pilco_check": "../../ddm_mpc/pilco/test/pilco_check_test.cpp"}
 
 # Whole commands that another test runs: its words for them.
@@ -35,8 +35,9 @@ COMMANDS_ELSEWHERE = [
     (r"my_robot/", "robot_loop_test.py", "robot.launch"),  # what a robot has left
     (r"/install/setup.bash", "install_test.py", "setup.bash")]
 
-# Run by nobody: what they need is no package of the tests.
+# Run by no test.
 NOT_RUN = {r"^perf (record|report)": "a profiler, which needs rights on the kernel",
+           r"qa/fuzz\.sh": "hours of random input; test.sh gives each target some seconds of it",
            r"image_transport republish": "a program of another package, which needs a camera that compresses"}
 
 # The same programs and options, less work. What is left out here has a test of its own: reproduce_paper_test, rviz_test.

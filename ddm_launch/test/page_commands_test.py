@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # Every command in every page works: it is run here, or by the test that page_commands.py names.
 # SPDX-License-Identifier: BSD-3-Clause
 from concurrent.futures import ThreadPoolExecutor
@@ -6,18 +5,15 @@ import glob
 import os
 import re
 import shutil
-import sys
 import tempfile
 import unittest.mock
 import xml.etree.ElementTree
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import page_commands  # noqa: E402
-import pages  # noqa: E402
-from processes import call, find_program, free_port, needs_mujoco, line_by_line, run_experiment  # noqa: E402
-from scratch_case import SharedScratchCase  # noqa: E402
+import page_commands
+import pages
+from processes import call, find_program, free_port, needs_mujoco, line_by_line, run_experiment
+from scratch_case import SharedScratchCase
 
 LIMIT_S = 300.0  # for the commands of a page
 # What a reader has before: files that a page begins with.
@@ -192,7 +188,3 @@ class PageCommandsTest(SharedScratchCase):
                          "rosrun ddm_launch run_experiment --trials 1 --preset debug --seed 1 --out a")
         self.assertEqual(page_commands.cheaper("roslaunch ddm_launch control.launch model:=m"),
                          "roslaunch ddm_launch control.launch preset:=debug model:=m")
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "page_commands_test", PageCommandsTest)

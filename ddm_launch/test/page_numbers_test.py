@@ -1,18 +1,14 @@
-#!/usr/bin/python3
 # Numbers on pages are those of the committed tables: page_numbers.yaml says which number comes from where.
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
 import os
 import re
-import sys
 import tempfile
 import unittest
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import pages  # noqa: E402
-from page_numbers import RESULTS, Page, agree, checked_pages, read_rows  # noqa: E402
+import pages
+from page_numbers import RESULTS, Page, agree, checked_pages, read_rows
 
 
 class PageNumbersTest(unittest.TestCase):
@@ -78,7 +74,3 @@ class PageNumbersTest(unittest.TestCase):
         self.assertIn("p.md: no claim has all numbers of '| ours | 2 | 3 |'", self.problems())
         self.assertIn("p.md: without_csv: 'B' is not on the page", self.problems(B="gone"))
         self.assertIn("No such file", "".join(Page("p.md", self.PAGE, {"no.csv": ["of {count(a)}."]}).problems))
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "page_numbers_test", PageNumbersTest)

@@ -1,17 +1,13 @@
-#!/usr/bin/python3
 # What the pages say is so: links lead somewhere, and quoted messages are those of the programs.
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
 import os
 import re
 import subprocess
-import sys
 import unittest
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import pages  # noqa: E402
+import pages
 
 TROUBLES = "doc/troubleshooting.md"
 DIST = "/usr/lib/python3/dist-packages"
@@ -128,7 +124,3 @@ class PagesTest(unittest.TestCase):
     def test_the_headings_of_a_page_are_what_links_call_them(self):
         self.assertEqual(pages.anchors("# A b\n```\n# no\n```\n## `c_d`: E (f), [g](h)\n# A b\n"),
                          ["a-b", "c_d-e-f-g", "a-b-1"])
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "pages_test", PagesTest)

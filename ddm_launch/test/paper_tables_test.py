@@ -1,19 +1,14 @@
-#!/usr/bin/python3
 # Tables of the reproduction: what they say of made-up results.
 # SPDX-License-Identifier: BSD-3-Clause
 import csv
 import os
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from run_files import COLUMNS  # noqa: E402
-import rooms  # noqa: E402, F401
-from ddm_study import paper_tables  # noqa: E402
-from ddm_launch.run_folder import read_sweep  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
-import synthetic_run  # noqa: E402
+from run_files import COLUMNS
+from ddm_study import paper_tables
+from ddm_launch.run_folder import read_sweep
+from scratch_case import ScratchCase
+import synthetic_run
 
 PUBLISHED = [(100 * k, 0.5, 0.1) for k in range(0, 16)]
 
@@ -163,7 +158,3 @@ class PaperTablesTest(ScratchCase):
             text = stream.read()
         self.assertIn("\n\"PILCO on 2-D features, 10 trials\",1000,10,", text)
         self.assertIn("\n\"PILCO, state: of it policy search\",1250,4,4,s,", text)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "paper_tables", PaperTablesTest)

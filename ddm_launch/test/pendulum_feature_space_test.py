@@ -1,17 +1,9 @@
-#!/usr/bin/python3
 # The pendulum's feature space: experience, current frame, goal and plan over the decoded grid.
 # SPDX-License-Identifier: BSD-3-Clause
-import os
-import sys
-
-import rosunit
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch.command import Failure  # noqa: E402
-from ddm_launch.figure_style import COLUMN_WIDTH, new_figure  # noqa: E402
-import figure_case  # noqa: E402
-import rooms  # noqa: E402, F401
-from ddm_study import pendulum_feature_space  # noqa: E402
+from ddm_launch.command import Failure
+from ddm_launch.figure_style import COLUMN_WIDTH, new_figure
+import figure_case
+from ddm_study import pendulum_feature_space
 
 HEADER = "kind,step,z_1,z_2"
 ROWS = ["experience,0,0.5,0.5", "experience,1,-0.5,0.5", "current,7,0.1,0.2", "goal,,0.9,0.8",
@@ -63,7 +55,3 @@ class PendulumFeatureSpaceTest(figure_case.FigureCase):
                            "rosrun ddm_launch feature_space")
         path = self.writeLines("space.csv", HEADER, *ROWS)
         self.assertRefused(pendulum_feature_space, [path, "--model", "no.ddm"], "no.ddm")
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "pendulum_feature_space_test", PendulumFeatureSpaceTest)

@@ -1,19 +1,14 @@
-#!/usr/bin/python3
 # What is kept of PILCO's run folders, and that all readers accept its trials.csv with empty columns.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import rooms  # noqa: E402, F401
-from ddm_launch import learning_curve, success_rate  # noqa: E402
-from ddm_launch.command import Failure  # noqa: E402
-from ddm_launch.run_folder import read_sweep, read_trials  # noqa: E402
-from ddm_study import pilco_runs  # noqa: E402
-import figure_case  # noqa: E402
-import synthetic_run  # noqa: E402
+from ddm_launch import learning_curve, success_rate
+from ddm_launch.command import Failure
+from ddm_launch.run_folder import read_sweep, read_trials
+from ddm_study import pilco_runs
+import figure_case
+import synthetic_run
 
 
 class PilcoRunsTest(figure_case.FigureCase):
@@ -72,7 +67,3 @@ class PilcoRunsTest(figure_case.FigureCase):
             stream.write("step,time_s,z_1_mean,z_1_std,cost_mean,cost_std\n0,0,0.1,0.1,,\n")
         with self.assertRaisesRegex(Failure, "trial_000/prediction.csv.*angle_rad_mean"):
             pilco_runs.distribution_rows({7: self.run_folder}, [0])
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "pilco_runs", PilcoRunsTest)

@@ -1,18 +1,13 @@
-#!/usr/bin/python3
 # Tables of PILCO: counts, times and verdicts of made-up results.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import rooms  # noqa: E402, F401
-from ddm_launch import success_rate  # noqa: E402
-from ddm_launch.command import Failure  # noqa: E402
-from ddm_study import pilco_tables  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
-import synthetic_run  # noqa: E402
+from ddm_launch import success_rate
+from ddm_launch.command import Failure
+from ddm_study import pilco_tables
+from scratch_case import ScratchCase
+import synthetic_run
 
 FIRST = "PILCO, state: successes of policy 1"
 LATER = "PILCO, state: successes of policy 2 to 6"
@@ -147,7 +142,3 @@ class PilcoTablesTest(ScratchCase):
         names = {row[0] for row in success_rate.METHODS}
         for method in ("pilco_state", "pilco_features", "pilco_pca"):
             self.assertIn(pilco_tables.LABELS[method], names)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "pilco_tables", PilcoTablesTest)

@@ -1,16 +1,12 @@
-#!/usr/bin/python3
 # run_experiment with PILCO: its files, that an interruption changes nothing, and what it refuses.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import signal
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import Process, find_program, run_experiment  # noqa: E402
-from run_files import differences, files_in, read_rows  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
+from processes import Process, find_program, run_experiment
+from run_files import differences, files_in, read_rows
+from scratch_case import ScratchCase
 
 
 class PilcoTest(ScratchCase):
@@ -66,7 +62,3 @@ class PilcoTest(ScratchCase):
         self.assertRuns("--config", os.path.join(self.out, "config.yaml"), "--seed", 1, "--trials", 0, "--out", again)
         names = ["trial_000/prediction.csv", "evaluation_000/torques.csv"]
         self.assertEqual(differences(self.out, again, names), [])
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "pilco_test", PilcoTest)

@@ -1,17 +1,13 @@
-#!/usr/bin/python3
 # prediction_experiment and feature_space: their files, what a seed fixes, what they refuse.
 # SPDX-License-Identifier: BSD-3-Clause
 import csv
 import math
 import os
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import call, find_program, run_experiment  # noqa: E402
-from run_files import files_in, read_bytes, read_rows, read_yaml  # noqa: E402
-from scratch_case import SharedScratchCase  # noqa: E402
+from processes import call, find_program, run_experiment
+from run_files import files_in, read_bytes, read_rows, read_yaml
+from scratch_case import SharedScratchCase
 
 FILES = ["config.yaml", "features.csv", "model.ddm", "predictions.csv", "strip.csv", "summary.yaml"]
 QUICK = "training: {max_iterations: 20, num_starts: 1}\nprediction: {training_frames: 60, held_out_frames: 30}\n"
@@ -193,7 +189,3 @@ class PredictionExperimentTest(SharedScratchCase):
         code, output = call([find_program("feature_space"), run, "--trial", 0, "--step", 29,
                              "--out", self.out])
         self.assertEqual(code, 0, output)  # each torque up to there was the recorded one
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "prediction_experiment", PredictionExperimentTest)

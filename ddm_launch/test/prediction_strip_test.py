@@ -1,20 +1,15 @@
-#!/usr/bin/python3
 # The strip of long-term predictions: which images stand where, the real image programs, and what it refuses.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import shutil
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch.command import Failure  # noqa: E402
-from ddm_launch.figure_style import PAGE_WIDTH, new_figure  # noqa: E402
-from ddm_launch.images import Camera, Decoder  # noqa: E402
-import figure_case  # noqa: E402
-import rooms  # noqa: E402, F401
-import synthetic_run  # noqa: E402
-from ddm_study import prediction_strip  # noqa: E402
+from ddm_launch.command import Failure
+from ddm_launch.figure_style import PAGE_WIDTH, new_figure
+from ddm_launch.images import Camera, Decoder
+import figure_case
+import synthetic_run
+from ddm_study import prediction_strip
 
 
 class PredictionStripTest(figure_case.FigureCase):
@@ -87,7 +82,3 @@ class PredictionStripTest(figure_case.FigureCase):
             self.writeStrip("0,0,0,0,%s" % word)
             with self.assertRaisesRegex(Failure, "column z_2 .*got '%s'" % word):
                 prediction_strip.Strip(self.scratch)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "prediction_strip_test", PredictionStripTest)

@@ -1,19 +1,15 @@
-#!/usr/bin/python3
 # A run folder in pandas: the README's lines, every step of every episode, and folders that are none.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import re
-import sys
 
 import numpy as np
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import ddm_model  # noqa: E402
-from processes import run_experiment  # noqa: E402
-from rooms import PACKAGE  # noqa: E402
-from run_files import read_rows  # noqa: E402
-from scratch_case import SharedScratchCase  # noqa: E402
+import ddm_model
+from processes import run_experiment
+from rooms import PACKAGE
+from run_files import read_rows
+from scratch_case import SharedScratchCase
 
 EPISODES, TRIALS, STEPS = 2, 1, 30
 
@@ -78,7 +74,3 @@ class ReadRunTest(SharedScratchCase):
                 stream.write(content)
         with self.assertRaisesRegex(ddm_model.RunFolderError, "config.yaml must hold the blocks .* 'just words'"):
             ddm_model.read_run(folder)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "read_run_test", ReadRunTest)

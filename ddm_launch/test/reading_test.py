@@ -1,18 +1,14 @@
-#!/usr/bin/python3
 # Reading never writes: a finished run keeps every byte, whatever reads it and whatever is refused.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import shutil
-import sys
 
 import roslib.packages
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch.folder_lock import FolderLock  # noqa: E402
-from processes import call, find_program, roslaunch, run_experiment  # noqa: E402
-from run_files import changes, fingerprint  # noqa: E402
-from scratch_case import SharedScratchCase  # noqa: E402
+from ddm_launch.folder_lock import FolderLock
+from processes import call, find_program, roslaunch, run_experiment
+from run_files import changes, fingerprint
+from scratch_case import SharedScratchCase
 
 PACKAGE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 TRIALS = 1
@@ -192,7 +188,3 @@ class ReadingTest(SharedScratchCase):
             self.assertIn("exit code 1", output)
         self.assertEqual(changes(before, fingerprint(folder)), [])
         self.assertFalse(os.path.exists(new))
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "reading_test", ReadingTest)

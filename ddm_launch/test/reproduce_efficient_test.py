@@ -1,17 +1,12 @@
-#!/usr/bin/python3
 # reproduce_efficient with the programs themselves, in the debug preset; and whether they accept each variant.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import rooms  # noqa: E402, F401
-from ddm_study.reproduce_efficient import TASKS, VARIANTS, yaml_names  # noqa: E402
-from processes import call, find_program, run_experiment  # noqa: E402
-from run_files import COLUMNS, read_rows, read_yaml  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
+from ddm_study.reproduce_efficient import TASKS, VARIANTS, yaml_names
+from processes import call, find_program, run_experiment
+from run_files import COLUMNS, read_rows, read_yaml
+from scratch_case import ScratchCase
 
 
 class ReproduceEfficientTest(ScratchCase):
@@ -53,7 +48,3 @@ class ReproduceEfficientTest(ScratchCase):
             self.assertGreater(os.path.getsize(os.path.join(self.out, name + ".png")), 1000)
         self.assertIn("config/ablations/residual.yaml", output)
         self.assertNotIn("config/ablations/auto_encoder_widths.yaml", output)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "reproduce_efficient", ReproduceEfficientTest)

@@ -1,16 +1,12 @@
-#!/usr/bin/python3
 # reproduce_paper: the whole path in the debug preset, interrupted once, then to its end.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import signal
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import Process, call, find_program  # noqa: E402
-from run_files import COLUMNS, read_bytes, read_rows, read_yaml  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
+from processes import Process, call, find_program
+from run_files import COLUMNS, read_bytes, read_rows, read_yaml
+from scratch_case import ScratchCase
 
 FIGURES = ["angle_trajectories", "feature_plane", "pendulum_feature_space", "prediction_strip", "schedules_compared",
            "success_rate", "trajectory_distributions"]
@@ -113,7 +109,3 @@ class ReproducePaperTest(ScratchCase):
             code, output = call([find_program("reproduce_paper"), "--out", self.out] + arguments)
             self.assertEqual(code, 2, output)
         self.assertFalse(os.path.exists(self.out))
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "reproduce_paper", ReproducePaperTest)

@@ -1,18 +1,13 @@
-#!/usr/bin/python3
 # The steps of reproduce_paper, and what it keeps of PILCO's run folders: without running anything.
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
 import os
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import rooms  # noqa: E402, F401
-from ddm_study import reproduce_paper  # noqa: E402
-from run_files import read_bytes, read_rows  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
-import synthetic_run  # noqa: E402
+from ddm_study import reproduce_paper
+from run_files import read_bytes, read_rows
+from scratch_case import ScratchCase
+import synthetic_run
 
 PILCO = ["pilco_state", "pilco_state_sparse", "pilco_features", "pilco_pca"]
 
@@ -83,7 +78,3 @@ class ReproductionTest(ScratchCase):
         panels = sorted({(row[0], row[2]) for row in rows[1:]}, key=lambda panel: (panel[0], int(panel[1])))
         self.assertEqual(panels, [(seed, frames) for seed in "012" for frames in ("125", "250", "375", "500")])
         self.assertEqual(rows[2], ["0", "0", "125", "predicted", "1", "0.200", "1.0000", "0.2500"])
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "reproduction", ReproductionTest)

@@ -1,17 +1,13 @@
-#!/usr/bin/python3
 # resolve: what the launch files take their configuration from.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import subprocess
-import sys
 
 import roslib.packages
-import rosunit
 import yaml
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import call, find_program, needs_mujoco  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
+from processes import call, find_program, needs_mujoco
+from scratch_case import ScratchCase
 
 
 class ResolveTest(ScratchCase):
@@ -157,7 +153,3 @@ class ResolveTest(ScratchCase):
         self.assertRefused(["unknown preset 'papier'"], "--preset", "papier", code=1)
         self.assertRefused(["no.yaml"], "--config", "no.yaml", code=1)
         self.assertRefused(["mpc/horizon", "many"], "--set", "mpc/horizon=many", code=1)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "resolve_test", ResolveTest)

@@ -1,14 +1,7 @@
-#!/usr/bin/python3
 # Preset `paper`: the nodes and run_experiment give the same, torque by torque.
 # SPDX-License-Identifier: BSD-3-Clause
-import os
-import sys
-
-import rosunit
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from both_drivers_case import BothDriversCase  # noqa: E402
-from run_files import read_rows, torque_files  # noqa: E402
+from both_drivers_case import BothDriversCase
+from run_files import read_rows, torque_files
 
 TRIALS = 3
 
@@ -25,7 +18,3 @@ class RosEqualsProcessTest(BothDriversCase):
         self.assertEqual(len(names), 8)
         for name in names:
             self.assertEqual(len(read_rows(self.nodes, name)), 1 + 100)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "ros_equals_process_test", RosEqualsProcessTest)

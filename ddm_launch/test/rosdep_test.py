@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # `rosdep install` finds everything that the packages ask for, on Debian, and with Noetic or ROS-O.
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
@@ -6,7 +5,6 @@ import os
 import unittest
 import xml.etree.ElementTree
 
-import rosunit
 import yaml
 
 TEST = os.path.dirname(os.path.realpath(__file__))
@@ -32,7 +30,3 @@ class RosdepTest(unittest.TestCase):
 
     def test_what_some_systems_do_not_have_is_no_dependency(self):
         self.assertEqual([key for key in tags("depend") if "mujoco" in key or "egl" in key], [])
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "rosdep_test", RosdepTest)

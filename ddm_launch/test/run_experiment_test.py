@@ -1,20 +1,16 @@
-#!/usr/bin/python3
 # run_experiment: its files, that a seed fixes them, that an interruption changes nothing, and what it refuses.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import pty
 import shutil
 import signal
-import sys
 import time
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import Process, call, find_program, run_experiment  # noqa: E402
-from run_files import (COLUMNS, changes, differences, expected_files, files_in, fingerprint, read_bag,  # noqa: E402
+from processes import Process, call, find_program, run_experiment
+from run_files import (COLUMNS, changes, differences, expected_files, files_in, fingerprint, read_bag,
                        read_bytes, read_rows, read_yaml)
-from scratch_case import SharedScratchCase  # noqa: E402
+from scratch_case import SharedScratchCase
 
 TRIALS = 2
 
@@ -277,7 +273,3 @@ class RunExperimentTest(SharedScratchCase):
         self.assertEqual(code, 0)
         for part in (b"random", b"train", b"evaluate", b"[....", b"\r"):
             self.assertIn(part, shown)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "run_experiment_test", RunExperimentTest)

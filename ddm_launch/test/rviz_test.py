@@ -1,20 +1,15 @@
-#!/usr/bin/python3
 # What rviz shows of an experiment: pictures of the real one, on a screen in memory.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import sys
 import tempfile
 import unittest
 
 import numpy as np
 from PIL import Image
-import rosunit
 
-import rooms  # noqa: E402, F401
 from ddm_qa.rviz_screenshot import DISPLAYS, HEIGHT, WIDTH, blank_displays
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import call, find_program  # noqa: E402
+from processes import call, find_program
 
 
 class RvizTest(unittest.TestCase):
@@ -46,7 +41,3 @@ class RvizTest(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("no_such_preset", output)
         self.assertIn("ended before the end of trial 5", output)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "rviz_test", RvizTest)

@@ -1,17 +1,12 @@
-#!/usr/bin/python3
 # The training schedules compared: means over paired seeds, the reference, and what is refused.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import rooms  # noqa: E402, F401
-from ddm_launch.command import Failure  # noqa: E402
-from ddm_launch.figure_style import PAGE_WIDTH, new_figure  # noqa: E402
-from ddm_study import schedules, schedules_compared  # noqa: E402
-import figure_case  # noqa: E402
+from ddm_launch.command import Failure
+from ddm_launch.figure_style import PAGE_WIDTH, new_figure
+from ddm_study import schedules, schedules_compared
+import figure_case
 
 NAMES = list(schedules.SCHEDULES)
 TRIALS = "seed,trial,frames,success,final_error_deg"
@@ -93,7 +88,3 @@ class SchedulesComparedTest(figure_case.FigureCase):
         self.writeLines("tile_predictions/joint/predictions.csv", PREDICTIONS, prediction(3, 1, 0.1, 0.1),
                         prediction(3, 1, 0.2, 0.1))
         self.assertRefused(schedules_compared, [self.scratch], "seed 3, steps 1")
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "schedules_compared_test", SchedulesComparedTest)

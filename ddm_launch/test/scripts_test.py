@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # demo.sh, test.sh, what they share, and fresh_root.sh: what they refuse, with which words, and that they do nothing twice.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
@@ -6,12 +5,9 @@ import re
 import shlex
 import socket
 import subprocess
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from scratch_case import ScratchCase  # noqa: E402
+from scratch_case import ScratchCase
 
 SCRIPTS = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "scripts"))
 CHECKOUT = os.path.dirname(os.path.dirname(SCRIPTS))
@@ -337,7 +333,3 @@ class ScriptsTest(ScratchCase):
             code, output = self.checkSummary(text)
             self.assertEqual(code, 1)
             self.assertIn("15 trials", output)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "scripts_test", ScriptsTest)

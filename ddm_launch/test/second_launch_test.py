@@ -1,16 +1,12 @@
-#!/usr/bin/python3
 # A launch whose nodes are running already, under the same master.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import free_port, start_roslaunch  # noqa: E402
-from run_files import files_in  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
-from sweeps import wait_for  # noqa: E402
+from processes import free_port, start_roslaunch
+from run_files import files_in
+from scratch_case import ScratchCase
+from sweeps import wait_for
 
 
 class SecondLaunchTest(ScratchCase):
@@ -39,7 +35,3 @@ class SecondLaunchTest(ScratchCase):
         self.waitForModel()
         self.assertNotIn("has died", self.first.output)
         self.assertNotIn("finished cleanly", self.first.output)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "second_launch_test", SecondLaunchTest)

@@ -1,18 +1,14 @@
-#!/usr/bin/python3
 # Plant, controller and trainer on three machines without a shared disk: the experiment is that of one process.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import signal
-import sys
 import unittest
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from namespaces import Network, nft_rule, why_no_nft  # noqa: E402
-from processes import Process, line_by_line, run_experiment  # noqa: E402
-from run_files import differences, expected_files, files_in  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
+from namespaces import Network, nft_rule, why_no_nft
+from processes import Process, line_by_line, run_experiment
+from run_files import differences, expected_files, files_in
+from scratch_case import ScratchCase
 
 TRIALS = 1
 HINDRANCE = why_no_nft()
@@ -61,7 +57,3 @@ class SeveralMachinesTest(ScratchCase):
         self.assertEqual(code, 0, output)
         names = [name for name in expected_files(TRIALS) if not name.endswith((".bag", "config.yaml"))]
         self.assertEqual(differences(self.reference, runs, names), [])
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "several_machines_test", SeveralMachinesTest)

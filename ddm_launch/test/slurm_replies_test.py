@@ -1,16 +1,12 @@
-#!/usr/bin/python3
 # Sweeps on clusters whose commands answer in other ways than the one of slurm_test.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import signal
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from run_files import files_in, read_bytes  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
-from sweeps import Sweep, wait_for  # noqa: E402
+from run_files import files_in, read_bytes
+from scratch_case import ScratchCase
+from sweeps import Sweep, wait_for
 
 QUEUED = "echo PENDING; echo RUNNING"
 FORGOTTEN = "echo slurm_load_jobs error: Invalid job id specified >&2; exit 1"
@@ -119,7 +115,3 @@ class SlurmRepliesTest(ScratchCase):
         process.send(signal.SIGTERM)
         process.waitForEnd(30.0)
         self.assertEnds(1, self.start(engine=()), ["4711 may be running", "scancel 4711", self.out + "/slurm_job"])
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "slurm_replies_test", SlurmRepliesTest)

@@ -1,20 +1,16 @@
-#!/usr/bin/python3
 # Sweeps as Slurm job arrays: their files, that an interruption changes nothing, and what they refuse.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import re
 import signal
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch.slurm import index_ranges  # noqa: E402
-from processes import run_experiment  # noqa: E402
-from run_files import differences, expected_files, files_in, read_bytes, read_rows  # noqa: E402
-from scratch_case import SharedScratchCase  # noqa: E402
-from slurm_cluster import SlurmCluster  # noqa: E402
-from sweeps import (Sweep, is_finished, processes_with, programs_of, seed_folder, snapshot, sweep,  # noqa: E402
+from ddm_launch.slurm import index_ranges
+from processes import run_experiment
+from run_files import differences, expected_files, files_in, read_bytes, read_rows
+from scratch_case import SharedScratchCase
+from slurm_cluster import SlurmCluster
+from sweeps import (Sweep, is_finished, processes_with, programs_of, seed_folder, snapshot, sweep,
                     wait_for)
 
 
@@ -148,7 +144,3 @@ class SlurmTest(SharedScratchCase):
     def test_indices_are_written_as_ranges(self):
         for seeds, text in (([3], "3"), ([0, 1, 2, 5], "0-2,5"), ([0, 2, 3, 7, 8], "0,2-3,7-8")):
             self.assertEqual(index_ranges(seeds), text)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "slurm_test", SlurmTest)

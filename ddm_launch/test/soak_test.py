@@ -1,21 +1,16 @@
-#!/usr/bin/python3
 # A short soak of both runs finds nothing, and a frame that is taken out of one of its bags is lost.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import sys
 from unittest import mock
 
 import rosbag
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import rooms  # noqa: E402, F401
-from ddm_launch.command import Failure  # noqa: E402
-from ddm_qa import soak  # noqa: E402
-from ddm_qa.soak_targets import count_frames  # noqa: E402
-from processes import call, find_program  # noqa: E402
-from run_files import read_bytes, read_rows  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
+from ddm_launch.command import Failure
+from ddm_qa import soak
+from ddm_qa.soak_targets import count_frames
+from processes import call, find_program
+from run_files import read_bytes, read_rows
+from scratch_case import ScratchCase
 
 NODES = {"experiment_node", "master", "model_node", "mpc_node", "rosout", "sim_node", "trial_recorder"}
 
@@ -58,7 +53,3 @@ class SoakTest(ScratchCase):
                 bag.write(topic, message, stamp)
         self.assertEqual([(row["trial"], row["part"]) for row in count_frames("lockstep", folder, 6) if row["lost"]],
                          [(3, "trial")])
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "soak", SoakTest)

@@ -1,16 +1,12 @@
-#!/usr/bin/python3
 # Experiments that start from a model and bags, and evaluate: the same by both drivers, resumed, and what is refused.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import shutil
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import call, find_program, roslaunch, run_experiment  # noqa: E402
-from run_files import differences, expected_files, files_in, read_rows, read_yaml  # noqa: E402
-from scratch_case import SharedScratchCase  # noqa: E402
+from processes import call, find_program, roslaunch, run_experiment
+from run_files import differences, expected_files, files_in, read_rows, read_yaml
+from scratch_case import SharedScratchCase
 
 STEPS = 30
 
@@ -174,7 +170,3 @@ class StartTest(SharedScratchCase):
             for word in words:
                 self.assertIn(word, output)
         self.assertFalse(os.path.exists(os.path.join(self.out, "evaluation.csv")))
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "start_test", StartTest)

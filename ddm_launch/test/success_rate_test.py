@@ -1,18 +1,14 @@
-#!/usr/bin/python3
 # Success rates against the paper's: the numbers of each curve, the published data, and what is refused.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import sys
 from unittest import mock
 
 from matplotlib.colors import to_rgb
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch import success_rate  # noqa: E402
-from ddm_launch.command import Failure  # noqa: E402
-from ddm_launch.figure_style import COLUMN_WIDTH, new_figure  # noqa: E402
-import figure_case  # noqa: E402
+from ddm_launch import success_rate
+from ddm_launch.command import Failure
+from ddm_launch.figure_style import COLUMN_WIDTH, new_figure
+import figure_case
 
 PUBLISHED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "results", "published", "success_rate.csv")
 HEADER = "seed,trial,frames,success,final_error_deg"
@@ -177,7 +173,3 @@ class SuccessRateTest(figure_case.FigureCase):
         self.assertRefused(success_rate, ["mine=missing.csv"], "missing.csv", "sweep.csv")
         self.assertRefused(success_rate, ["mine=" + self.writeSweep(), "--published", "no.csv"], "no.csv",
                            "results/published/success_rate.csv")
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "success_rate_test", SuccessRateTest)

@@ -1,16 +1,12 @@
-#!/usr/bin/python3
 # Sweeps over ssh hosts, played by this machine: seeds are spread, hosts may be gone, nothing is left running.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from run_files import read_rows  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
-from ssh_hosts import SshHosts  # noqa: E402
-from sweeps import Sweep, processes_with, programs_of, seed_folder, wait_for  # noqa: E402
+from run_files import read_rows
+from scratch_case import ScratchCase
+from ssh_hosts import SshHosts
+from sweeps import Sweep, processes_with, programs_of, seed_folder, wait_for
 
 
 class SweepHostsTest(ScratchCase):
@@ -47,7 +43,3 @@ class SweepHostsTest(ScratchCase):
         wait_for(lambda: programs_of(seed_folder(self.out, 0)), "the program of seed 0")
         process.kill_group()
         wait_for(lambda: not processes_with([self.out]), "the end of all processes", 10.0)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "sweep_hosts_test", SweepHostsTest)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # Sweeps by GNU parallel: their files, that an interruption changes nothing, and what they refuse.
 # SPDX-License-Identifier: BSD-3-Clause
 import errno
@@ -7,18 +6,15 @@ import pty
 import re
 import shutil
 import signal
-import sys
 import unittest.mock
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ddm_launch.seed_script import SeedProgram  # noqa: E402
-from ddm_launch.sweep_folder import SweepFolder  # noqa: E402
-from processes import call, find_program, run_experiment  # noqa: E402
-from run_files import COLUMNS, differences, expected_files, files_in, read_bytes, read_rows, read_yaml  # noqa: E402
-from scratch_case import SharedScratchCase  # noqa: E402
-from sweeps import (Sweep, is_finished, processes_with, programs_of, seed_folder, snapshot, sweep,  # noqa: E402
+from ddm_launch.seed_script import SeedProgram
+from ddm_launch.sweep_folder import SweepFolder
+from processes import call, find_program, run_experiment
+from run_files import COLUMNS, differences, expected_files, files_in, read_bytes, read_rows, read_yaml
+from scratch_case import SharedScratchCase
+from sweeps import (Sweep, is_finished, processes_with, programs_of, seed_folder, snapshot, sweep,
                     wait_for)
 
 LONG = 12  # trials: enough to see a seed at its work
@@ -323,7 +319,3 @@ class SweepTest(SharedScratchCase):
         self.assertEqual([row[:2] for row in rows[1:]], [["0", "1"], ["0", "2"], ["1", "1"], ["1", "2"]])
         self.assertEnds(0, ["0 of 2 seeds to run"], *arguments)
         self.assertEqual(read_yaml(self.out, "sweep.yaml")["program"], "prediction_experiment")
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "sweep_test", SweepTest)

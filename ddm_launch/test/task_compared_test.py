@@ -1,17 +1,9 @@
-#!/usr/bin/python3
 # The figure of a task: our returns over physics frames and those of published methods, and what is refused.
 # SPDX-License-Identifier: BSD-3-Clause
-import os
-import sys
-
-import rosunit
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import rooms  # noqa: E402, F401
-from ddm_launch.command import package_path  # noqa: E402
-from ddm_launch.figure_style import COLUMN_WIDTH, METHOD_STYLES, new_figure  # noqa: E402
-from ddm_study import task_compared  # noqa: E402
-import figure_case  # noqa: E402
+from ddm_launch.command import package_path
+from ddm_launch.figure_style import COLUMN_WIDTH, METHOD_STYLES, new_figure
+from ddm_study import task_compared
+import figure_case
 
 PUBLISHED = package_path("results", "published", "suite_returns.csv")
 
@@ -45,7 +37,3 @@ class TaskComparedTest(figure_case.FigureCase):
         empty = self.writeLines("empty.csv", "task,physics_frames,mean_return,return_se", "suite_reacher,2000,,")
         self.assertRefused(task_compared, [empty, "--task", "suite_reacher", "--published", PUBLISHED],
                            "empty.csv", "suite_reacher", "--only tasks")
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "task_compared_test", TaskComparedTest)

@@ -1,19 +1,14 @@
-#!/usr/bin/python3
 # task_diagnosis: what it says of a small run, and of what it cannot say anything.
 # SPDX-License-Identifier: BSD-3-Clause
 import csv
 import math
 import os
-import sys
 
 import numpy as np
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import rooms  # noqa: E402, F401
-from ddm_study import task_diagnosis  # noqa: E402
-from processes import call_main, run_experiment  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
+from ddm_study import task_diagnosis
+from processes import call_main, run_experiment
+from scratch_case import ScratchCase
 
 
 class TaskDiagnosisTest(ScratchCase):
@@ -82,7 +77,3 @@ class TaskDiagnosisTest(ScratchCase):
         near, far = math.radians(19.0), math.radians(21.0)
         self.assertEqual(joints.share_near_goal(np.array([[math.pi - near, near], [-math.pi + near, -near],
                                                           [math.pi - far, 0.0], [math.pi, far]])), 0.5)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "task_diagnosis_test", TaskDiagnosisTest)

@@ -1,14 +1,7 @@
-#!/usr/bin/python3
 # Plant `moving_tile` in a closed loop: two torques, lengths; the nodes and run_experiment give the same.
 # SPDX-License-Identifier: BSD-3-Clause
-import os
-import sys
-
-import rosunit
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from both_drivers_case import BothDriversCase  # noqa: E402
-from run_files import read_rows, read_yaml  # noqa: E402
+from both_drivers_case import BothDriversCase
+from run_files import read_rows, read_yaml
 
 TRIALS = 1
 QUICK = "training: {num_starts: 1, max_iterations: 20}\n"
@@ -37,7 +30,3 @@ class TileLoopTest(BothDriversCase):
         self.assertIn("success", read_yaml(self.nodes, "summary.yaml"))
         evaluation = read_yaml(self.nodes, "config.yaml")["evaluation"]
         self.assertEqual((evaluation["tolerance"], evaluation["error_unit"]), (2.0, "px"))
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "tile_loop", TileLoopTest)

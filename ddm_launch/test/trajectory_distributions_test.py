@@ -1,17 +1,11 @@
-#!/usr/bin/python3
 # Predicted distributions of the angle against actual runs: panels, bands, lines, axes, and what is refused.
 # SPDX-License-Identifier: BSD-3-Clause
 import math
-import os
-import sys
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import rooms  # noqa: E402, F401
-from ddm_study import pilco_runs, trajectory_distributions  # noqa: E402
-from ddm_launch.figure_style import PAGE_WIDTH, BLUE, ORANGE, VERMILLION, new_figure  # noqa: E402
-import figure_case  # noqa: E402
+from ddm_study import pilco_runs, trajectory_distributions
+from ddm_launch.figure_style import PAGE_WIDTH, BLUE, ORANGE, VERMILLION, new_figure
+import figure_case
 
 HEADER = ",".join(pilco_runs.DISTRIBUTION_COLUMNS)
 
@@ -98,7 +92,3 @@ class TrajectoryDistributionsTest(figure_case.FigureCase):
             self.assertEqual(code, 2)
             for part in ("--seconds", "> 0 [s]", "got '%s'" % text):
                 self.assertIn(part, output)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "trajectory_distributions_test", TrajectoryDistributionsTest)

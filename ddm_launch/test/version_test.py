@@ -1,17 +1,12 @@
-#!/usr/bin/python3
 # The version of the code that a build records, wherever the checkout comes from.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import shutil
 import subprocess
-import sys
 import unittest
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import skips  # noqa: E402, F401
-from scratch_case import ScratchCase  # noqa: E402
+from scratch_case import ScratchCase
 
 SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "cmake", "write_version.cmake")
 
@@ -67,7 +62,3 @@ class VersionTest(ScratchCase):
         self.assertEqual(self.version(**path), expected)
         shutil.rmtree(self.file("checkout", ".git"))
         self.assertEqual(self.version(), "1.2.3 (unknown commit)")
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "version_test", VersionTest)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # Which sockets of a launch other machines reach: as doc/reference/network.md says, and none with its rule.
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
@@ -8,15 +7,12 @@ import subprocess
 import sys
 import unittest
 
-import rosunit
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import rooms  # noqa: E402, F401
-from ddm_qa.processes import on_this_machine  # noqa: E402
-from namespaces import Network, nft_rule, why_no_nft  # noqa: E402
-from processes import Process, free_port, line_by_line  # noqa: E402
-from run_files import expected_files, files_in  # noqa: E402
-from scratch_case import ScratchCase  # noqa: E402
+from ddm_qa.processes import on_this_machine
+from namespaces import Network, nft_rule, why_no_nft
+from processes import Process, free_port, line_by_line
+from run_files import expected_files, files_in
+from scratch_case import ScratchCase
 
 NODES = ["experiment_node", "model_node", "mpc_node", "sim_node", "trial_recorder", "view_node"]
 LAUNCHERS = ["roslaunch", "rosmaster"]
@@ -187,7 +183,3 @@ class WhoCanReachTest(ScratchCase):
         self.assertFalse(os.path.exists(os.path.join(self.runs, "summary.yaml")), "it was over before the probe")
         launch.waitForEnd(LIMIT_S)
         self.assertEqual(files_in(self.runs), expected_files(TRIALS), launch.output)
-
-
-if __name__ == "__main__":
-    rosunit.unitrun("ddm_launch", "who_can_reach_test", WhoCanReachTest)

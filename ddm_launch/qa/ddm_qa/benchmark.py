@@ -1,13 +1,10 @@
-# Times what users wait for, and what they would use instead, in one table.
+# Times what users wait for, in one table.
 # SPDX-License-Identifier: BSD-3-Clause
-import importlib.util
 import json
 import os
 import statistics
-import sys
 import tempfile
 
-from roslib.packages import find_node
 from tqdm import tqdm
 import yaml
 
@@ -17,17 +14,11 @@ from ddm_launch.tables import write_csv
 from ddm_model.plain_file import write_file
 from ddm_qa.processes import Programs
 
-# Columns of PyTorch: how it runs.
-MODES = {"torch_eager_us": ["--eager", "--threads", "1"], "torch_script_us": ["--threads", "1"],
-         "torch_script_2_threads_us": ["--threads", "2"]}
-CPP = "torch_cpp_us"
-ONE_CORE = ("torch_eager_us", "torch_script_us", CPP)  # the best of these is the peer
 LOOPS = ("lockstep", "bare")
-COLUMNS = ["name", "median_us", "p99_us", "peer_median_us"] + list(MODES) + [CPP]
+COLUMNS = ["name", "median_us", "p99_us"]
 BUDGET_COLUMNS = ["preset", "load", "budget_ms", "plans", "cut_short", "median_ms", "p99_ms", "p999_ms", "max_ms",
                   "within_2_ms", "within_10_ms"]
-PEERS = os.path.join(os.path.dirname(__file__), "torch_peers.py")
-TRIALS, SEEDS, ITERATIONS, RESTARTS, NUM_FRAMES, NUM_PLANS = 15, 10, 200, 9, 10000, 2000
+TRIALS, SEEDS, RESTARTS, NUM_FRAMES, NUM_PLANS = 15, 10, 9, 10000, 2000
 
 ABOUT = """\
 Times objective and gradient, one retraining, PCA, encoding, plans, renderer and bag reading on the 1600 frames of an
@@ -56,27 +47,17 @@ DIR/speed.csv, one row a name; times in microseconds, of single calls unless sai
 DIR/planning_budget.csv  2000 decisions of presets paper and efficient that would take minutes, with mpc/time_budget at
                        5 ms, on the idle machine and with a busy process on each core: time from when an image is due to
                        its torque, and the fraction that took at most the budget and 2 ms, or 10 ms
-With --peers, torch_..._us is the time of the same mathematics in PyTorch with its own L-BFGS, the starts of a plan in one
-batch: eager or compiled by TorchScript, one thread or two; torch_cpp_us is training written in C++, where libtorch-dev was
-there when the workspace was built. peer_median_us is the best of one thread. Times count only if the losses agree with ours
-to 1e-5.
-DIR/machine.yaml       processor, versions, BLAS of PyTorch, iterations of a plan"""
-
-
-def blas_threads(number):
-    """Environment variables; OpenBLAS reads either, by its build."""
-    return {"OMP_NUM_THREADS": number, "OPENBLAS_NUM_THREADS": number}
+DIR/machine.yaml       processor, version, iterations of a plan"""
 
 
 class Benchmark:
-    def __init__(self, out, peers, scratch):
-        self.out, self.peers, self.scratch = os.path.abspath(out), peers, scratch
+    def __init__(self, out, scratch):
+        self.out, self.scratch = os.path.abspath(out), scratch
         self.programs = Programs(scratch)
         self.run = os.path.join(scratch, "experiment")
         self.rows = {}  # name: {column: [us]}
         self.wall_us = {}  # name: of each run
         self.plan_iterations = None
-        self.torch = {}  # what machine.yaml says of it
         self.budgets = []  # rows of planning_budget.csv
 
     def keep_wall_time(self, name, run):
@@ -124,33 +105,6 @@ class Benchmark:
         for kernel, found in times.items():
             self.rows[prefix + kernel] = {"median_us": found["median"], "p99_us": found["p99"]}
 
-    def peer(self):
-        for column, mode in MODES.items():
-            found = json.loads(self.torch_peers(mode[-1], ["--iterations", str(ITERATIONS), "--plan-iterations",
-                                                           "%.1f" % self.plan_iterations] + mode))
-            self.keep_peer(column, found["times"])
-            self.torch = {"torch": found["torch"], "torch_blas": found["blas"]}
-        in_cpp = find_node("ddm_launch", "torch_training")
-        if in_cpp:
-            saved = os.path.join(self.scratch, "peer.pt")
-            rank = self.torch_peers("1", ["--save", saved])
-            self.keep_peer(CPP, json.loads(self.programs.call("peer in C++", [in_cpp[0], saved, str(ITERATIONS), rank],
-                                                              **blas_threads("1"))))
-
-    def torch_peers(self, threads, arguments):
-        """The last line that it prints."""
-        path = os.pathsep.join([os.path.dirname(os.path.dirname(PEERS)), os.environ.get("PYTHONPATH", "")])
-        text = self.programs.call("peers", [sys.executable, PEERS, self.run] + arguments, PYTHONPATH=path,
-                                  **blas_threads(threads))
-        return text.splitlines()[-1]
-
-    def keep_peer(self, column, times):
-        for name, found in times.items():
-            row = self.rows[name]
-            row[column] = found["median_us"]
-            if column in ONE_CORE:
-                row["peer_median_us"] = min(found["median_us"], row.get("peer_median_us", found["median_us"]))
-
     def round_trips(self, progress):
         """Restarts of both loops, on all cores and on one, taking turns."""
         all_cores = os.sched_getaffinity(0)
@@ -189,7 +143,6 @@ class Benchmark:
         steps = [("experiment", self.experiment), ("kernels", self.kernels)]
         steps += [("efficient, seed %d" % seed, lambda seed=seed: self.efficient(seed)) for seed in range(SEEDS)]
         steps.append(("kernels of efficient", lambda: self.kernels("efficient_")))
-        steps += [("PyTorch", self.peer)] if self.peers else []
         steps += [("planning with a budget", self.planning_budget), ("roslaunch experiment", self.ros_experiment)]
         with tqdm(total=len(steps) + 2 * len(LOOPS) * RESTARTS, unit="step", dynamic_ncols=True, disable=None) as progress:
             for name, step in steps:
@@ -207,22 +160,18 @@ class Benchmark:
                    for name, row in self.rows.items()])
         write_csv(os.path.join(self.out, "planning_budget.csv"), BUDGET_COLUMNS, self.budgets)
         machine = {"cpu": processor(), "cores": os.cpu_count(), "plan_iterations": self.plan_iterations,
-                   "version": read_yaml(os.path.join(self.run, "config.yaml")).get("version", "?"), **self.torch}
+                   "version": read_yaml(os.path.join(self.run, "config.yaml")).get("version", "?")}
         write_file(os.path.join(self.out, "machine.yaml"), yaml.safe_dump(machine, sort_keys=False))
 
 
 def main(arguments=None):
     parser = program_parser("benchmark", ABOUT, EPILOG)
-    parser.add_argument("--peers", action="store_true", help="also time PyTorch, which must be installed")
     parser.add_argument("--out", default="speed", metavar="DIR", help="default speed")
     options = parser.parse_args(arguments)
 
     def work():
-        if options.peers and importlib.util.find_spec("torch") is None:
-            raise Failure("--peers needs PyTorch for %s: sudo apt install python3-torch libopenblas0-pthread, or leave the "
-                          "option out" % sys.executable)
         with tempfile.TemporaryDirectory() as scratch:
-            benchmark = Benchmark(options.out, options.peers, scratch)
+            benchmark = Benchmark(options.out, scratch)
             benchmark.work()
         print("results: %s" % benchmark.out)
     return run_program("benchmark", work)
