@@ -20,7 +20,7 @@ from sensor_msgs.msg import Image, JointState
 
 from ddm_launch.command import find_program
 from ddm_qa.faults import intruder
-from ddm_qa.faults.injection import FRAME, Injection, configuration
+from ddm_qa.faults.injection import FRAME, Injection, configuration, lose
 from ddm_qa.faults.robot import ON_A_ROBOT, RobotInjection
 from ddm_qa.faults.watches import MotorWatch, OrderWatch
 from ddm_qa.processes import pid_of
@@ -65,15 +65,6 @@ MESSAGE_FAULTS = {"drop": lambda message, before, how: [], "double": lambda mess
                   "late": lambda message, before, how: late(message),
                   "repeat": lambda message, before, how: [before, message],
                   "alter": lambda message, before, how: [altered(message, how)]}
-
-
-def has_ended(pid):
-    """Also of a process whose parent has not asked for its exit code yet."""
-    try:
-        with open("/proc/%d/stat" % pid) as stream:
-            return stream.read().rsplit(")", 1)[1].split()[0] == "Z"
-    except OSError:
-        return True
 
 
 class Injector(Injection):
@@ -215,17 +206,7 @@ class Injector(Injection):
                              start_new_session=True)
 
     def do_lose(self):
-        """Kills a node where no roslaunch sees it, as on another machine: the others must notice. roslaunch, which has
-        started all of them, sleeps until the experiment has ended."""
-        roslaunch = os.getppid()
-        os.kill(roslaunch, signal.SIGSTOP)
-        os.kill(self.pid, signal.SIGKILL)
-
-        def wake():
-            while not has_ended(self.experiment_pid):
-                time.sleep(0.05)
-            os.kill(roslaunch, signal.SIGCONT)
-        threading.Thread(target=wake, daemon=True).start()
+        lose(self.pid, self.experiment_pid)
 
     def do_mute(self):
         self.muted = self.what

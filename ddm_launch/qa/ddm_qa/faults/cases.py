@@ -113,14 +113,15 @@ def real_time():
 
 
 def robot():
-    """A wrong clock, old joint states, another camera or a joint beyond its limits must bring zero torque within two dt and
-    50 ms."""
+    """A wrong clock, old joint states, another camera, a dead controller or a joint beyond its limits must bring zero torque
+    within two dt and 50 ms."""
     return cases([run + ON_A_ROBOT for run in RUNS],
                  ("future image", ENDS_WITH_ZERO, "no image after step"),  # and then silence
                  ("set clock forward", GOES_ON_NAMED_AFTER_ZERO, "the camera's clock has jumped forward"),
                  ("set clock back", GOES_ON_NAMED_AFTER_ZERO, "before the one that came before it"),
                  ("age joints", GOES_ON_NAMED_AFTER_ZERO, "joint_states does not report"),
                  ("resize image", ENDS_WITH_ZERO, "the images have changed from", "no image after step"),
+                 ("lose mpc_node", ENDS_WITH_ZERO, "no node publishes torques", "action /run_trial shows no sign of life"),
                  ("exceed position", ENDS_WITH_ZERO, "robot/position_limits", "was cancelled"),
                  ("exceed speed", ENDS_WITH_ZERO, "robot/speed_limit", "was cancelled"))
 

@@ -1,6 +1,10 @@
 # What an injector of any fault does: knows its moment, passes messages on, and reports.
 # SPDX-License-Identifier: BSD-3-Clause
 import json
+import os
+import signal
+import threading
+import time
 
 import rospy
 import yaml
@@ -17,6 +21,29 @@ FRAME = 7  # of a trial or evaluation
 def configuration():
     """{block: {key: value}}, as all nodes of the launch have it."""
     return yaml.safe_load(rospy.get_param("configuration"))
+
+
+def has_ended(pid):
+    """Also of a process whose parent has not asked for its exit code yet."""
+    try:
+        with open("/proc/%d/stat" % pid) as stream:
+            return stream.read().rsplit(")", 1)[1].split()[0] == "Z"
+    except OSError:
+        return True
+
+
+def lose(pid, experiment_pid):
+    """Kills a node where no roslaunch sees it, as on another machine: the others must notice. roslaunch, which has
+    started all of them, sleeps until the experiment has ended."""
+    roslaunch = os.getppid()
+    os.kill(roslaunch, signal.SIGSTOP)
+    os.kill(pid, signal.SIGKILL)
+
+    def wake():
+        while not has_ended(experiment_pid):
+            time.sleep(0.05)
+        os.kill(roslaunch, signal.SIGCONT)
+    threading.Thread(target=wake, daemon=True).start()
 
 
 class Injection:

@@ -4,12 +4,14 @@
 import time
 
 from ddm_msgs.msg import RunTrialActionGoal, Torque
+import rosgraph
 import rospy
 from sensor_msgs.msg import Image, JointState
 from std_msgs.msg import Float64
 
-from ddm_qa.faults.injection import FRAME, Injection, configuration
+from ddm_qa.faults.injection import FRAME, Injection, configuration, lose
 from ddm_qa.faults.watches import Effort
+from ddm_qa.processes import pid_of
 from ddm_qa.robot_check import PlantGoal, show_goal_and_enable
 
 ON_A_ROBOT = " on a robot"  # end of a phase
@@ -24,7 +26,7 @@ IMAGE_BYTES = 1 << 24  # a camera's image is larger than what rospy reads at onc
 class RobotInjection(Injection):
     def __init__(self):
         super().__init__(ON_A_ROBOT)
-        self.effort, self.ends = Effort(), 0.0
+        self.effort, self.ends, self.pids = Effort(), 0.0, None
         self.images = rospy.Publisher("faults/image_raw", Image, queue_size=2, tcp_nodelay=True)
         self.joints = rospy.Publisher("faults/joint_states", JointState, queue_size=QUEUE, tcp_nodelay=True)
         rospy.Subscriber("effort_command", Float64, self.effort.take, queue_size=QUEUE, tcp_nodelay=True)
@@ -34,6 +36,9 @@ class RobotInjection(Injection):
         rospy.Subscriber("stand_in/image_raw", Image, self.on_image, queue_size=2, buff_size=IMAGE_BYTES)
 
     def on_goal(self, message):
+        if self.fault == "lose mpc_node" and self.pids is None:
+            master = rosgraph.Master(rospy.get_name())  # only now all nodes are sure to be there
+            self.pids = [pid_of(master, name) for name in ("mpc_node", "experiment_node")]
         self.run, self.frame = (message.goal.trial, message.goal.evaluation), 0
 
     def on_torque(self, _):
@@ -55,6 +60,10 @@ class RobotInjection(Injection):
                 self.begin(CLOCK_IS_WRONG_S)
             if time.monotonic() < self.ends:
                 image.header.stamp += HOUR if self.fault.endswith("forward") else -HOUR
+        elif self.fault == "lose mpc_node":
+            if self.is_due():
+                self.begin()
+                lose(*self.pids)
         elif self.fault == "resize image":
             if self.is_due():
                 self.begin()
