@@ -8,7 +8,7 @@ set -euo pipefail
 
 usage() {
   cat <<TEXT
-usage: bash test.sh [--debug | --thread-sanitizer]
+usage: bash test.sh [-R PATTERN | --debug | --thread-sanitizer]
 
 Installs the packages that are missing (as root, or through sudo), builds the workspace \$DDM_WS, and
 runs every test: gtest, rosunit, rostest, roslaunch-check and the linters on the Release build; the gtests of the core
@@ -17,6 +17,8 @@ UndefinedBehaviorSanitizer, and warnings as errors. A case that runs in several 
 skipped does not count and is named. Returns 1 if any case fails, if a test leaves no result, or if a sanitizer
 reports anything.
 
+  -R PATTERN          instead of all that: the Release build, and the tests whose names match this regular expression,
+                      for example -R 'python_film|ddm_mpc_test'
   --debug             instead of all that: the Debug build of everything, and all gtests on it
   --thread-sanitizer  instead of all that: what has several threads, on a Debug build with ThreadSanitizer
   --help              this text
@@ -34,6 +36,7 @@ TEXT
 parse_arguments() {
   (($# == 0)) && return
   [[ $1 == --help || $1 == -h ]] && usage && exit 0
+  [[ $1 == -R && $# == 2 ]] && builds=(part) && pattern=$2 && return
   [[ $1 == --debug && $# == 1 ]] && builds=(all_debug) && return
   [[ $1 == --thread-sanitizer && $# == 1 ]] && builds=(thread) && return
   printf 'test.sh: unknown argument %s\n\n' "'$1'" >&2
@@ -57,8 +60,13 @@ run_tests() {  # BUILD_FOLDER PATTERN
 builds=(release debug)
 debug_targets=("${loop_programs[@]}" "${gtest_programs[@]}" fuzz_targets)
 debug_tests="_gtest_($(IFS='|' && echo "${gtest_programs[*]}"))\$"
-run_build() {  # release|debug|all_debug|thread
+run_build() {  # release|part|debug|all_debug|thread
   case $1 in
+    part)
+      phase "Release build into $DDM_WS/devel" build_release all tests
+      phase "Tests on the Release build" run_tests "$DDM_WS/build" "$pattern"
+      results+=("$DDM_WS/build")
+      ;;
     release)
       phase "Release build into $DDM_WS/devel" build_release all tests
       # most tests wait for something, so the next build takes the processor time that they leave
