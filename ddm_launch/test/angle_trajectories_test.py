@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import math
 
-
 from ddm_study import angle_trajectories
 from ddm_launch.figure_style import BLUE, PAGE_WIDTH, VERMILLION, new_figure
 import figure_case
@@ -43,15 +42,6 @@ class AngleTrajectoriesTest(figure_case.FigureCase):
         self.assertAlmostEqual(trajectory.time_s[-1], 3.8)
         self.assertAlmostEqual(trajectory.end_s, 4.0)
         self.assertEqual(trajectory.angle_rad[0], 0.0)
-
-    def test_the_angle_is_labelled_in_half_turns_and_the_target_is_always_in_sight(self):
-        self.assertEqual([angle_trajectories.half_turns_text(count) for count in (-2, -1, 0, 1, 3)],
-                         ["$-2\\pi$", "$-\\pi$", "0", "$\\pi$", "$3\\pi$"])
-        low, high = self.panels(rows(1, 1, 0.1))[0][2]
-        self.assertLess(low, -1.2)
-        self.assertGreater(high, 1.2)
-        self.assertEqual(self.panels(rows(1, 1, 99.0))[0][2],
-                         (-angle_trajectories.MOST_TURNS, angle_trajectories.MOST_TURNS))
 
     def test_the_drawn_target_is_the_region_that_counts(self):
         with new_figure(PAGE_WIDTH, 3.0) as figure:

@@ -7,7 +7,6 @@ import shutil
 import subprocess
 import unittest
 
-
 from scratch_case import ScratchCase
 
 CHECKOUT = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))

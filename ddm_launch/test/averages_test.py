@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import unittest
 
-
 from ddm_launch.averages import holm, mean_and_error, sign_test, success_rates, wilson_interval
 from ddm_launch.run_folder import Trial
 

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from unittest import mock
 
-
 from ddm_launch.command import distribution, processor
 from ddm_qa import benchmark, growth
 from processes import call, find_program, run_experiment

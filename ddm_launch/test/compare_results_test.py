@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
-
 from ddm_study import compare_results
 from processes import call_main
 from scratch_case import ScratchCase

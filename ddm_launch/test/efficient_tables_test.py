@@ -3,7 +3,6 @@
 import csv
 import os
 
-
 from ddm_launch.command import Failure
 from ddm_launch.run_folder import read_sweep
 from ddm_study import efficient_tables

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
-
 from processes import call, find_program, needs_mujoco, run_experiment
 from run_files import read_rows, read_yaml
 from scratch_case import SharedScratchCase

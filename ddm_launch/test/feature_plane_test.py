@@ -3,9 +3,8 @@
 import os
 import shutil
 
-
 from ddm_launch.command import Failure
-from ddm_launch.figure_style import COLUMN_WIDTH, PAGE_WIDTH, new_figure
+from ddm_launch.figure_style import COLUMN_WIDTH, new_figure
 from ddm_model.feature_grid import BRIGHTEST, DARKEST, FeatureGrid
 import figure_case
 from ddm_study import feature_plane
@@ -43,17 +42,6 @@ class FeaturePlaneTest(figure_case.FigureCase):
             grey = DARKEST + (BRIGHTEST - DARKEST) * 3 * (9 * row + column) / 255.0
             self.assertAlmostEqual(picture[8 * row + 4, 8 * column + 4], grey, delta=0.03)
 
-    def test_training_and_held_out_features_are_drawn_with_shapes_and_colours_of_their_own(self):
-        self.writeLines("features.csv", HEADER, *ROWS)
-        with new_figure(COLUMN_WIDTH, 3.0) as figure:
-            axes = figure.add_subplot(1, 1, 1)
-            feature_plane.draw_plane(axes, feature_plane.read_features(self.scratch), figure_case.GreyDecoder(""))
-            self.assertEqual(figure_case.drawn_points(axes, "training frames"), [(-1.0, 0.0), (1.0, 0.5)])
-            self.assertEqual(figure_case.drawn_points(axes, "held-out frames"), [(0.0, 0.25)])
-            self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("feature $z_1$ [-]", "feature $z_2$ [-]"))
-        markers, colours = {row[1] for row in feature_plane.SETS}, {row[2] for row in feature_plane.SETS}
-        self.assertEqual((len(markers), len(colours)), (2, 2))
-
     def test_the_grid_covers_all_features_of_both_sets(self):
         left, right, bottom, top = feature_plane.grid_around([(-1.0, 0.0), (1.0, 0.5), (0.0, 2.0)]).extent
         self.assertLess(left, -1.0)
@@ -61,11 +49,6 @@ class FeaturePlaneTest(figure_case.FigureCase):
         self.assertLess(bottom, 0.0)
         self.assertGreater(top, 2.0)
         self.assertLess(right - left, 3.0)  # and not much more than that
-
-    def test_one_folder_fills_a_column_and_two_stand_side_by_side(self):
-        joint, sequential = self.makeFolder("a", "joint"), self.makeFolder("b", "sequential")
-        self.assertDrawn(feature_plane, [joint], COLUMN_WIDTH)
-        self.assertDrawn(feature_plane, [joint, sequential], PAGE_WIDTH)
 
     def test_features_that_lie_on_a_line_are_refused(self):
         with self.assertRaisesRegex(Failure, r"\[-1, 1\] x \[0.5, 0.5\]"):

@@ -1,9 +1,7 @@
-# What all figures for print share: their letters, their files, and means with standard errors.
+# What all figures for print share: their files, and means with standard errors.
 # SPDX-License-Identifier: BSD-3-Clause
 import errno
 import os
-
-from PIL import Image
 
 from ddm_launch import figure_style
 from ddm_launch.averages import mean_and_error
@@ -24,17 +22,6 @@ class FigureStyleTest(FigureCase):
     def test_the_same_figure_gives_the_same_bytes_and_another_one_others(self):
         self.assertEqual(self.draw("a.png"), self.draw("b.png"))
         self.assertNotEqual(self.draw("a.png"), self.draw("b.png", height=1.5))
-
-    def test_nothing_but_the_size_in_print_is_told_about_the_picture(self):
-        self.draw("a.png")
-        with Image.open(self.file("a.png")) as picture:
-            self.assertEqual(picture.size, (2 * figure_style.DPI, figure_style.DPI))
-            self.assertEqual(set(picture.info), {"dpi"})
-
-    def test_no_letter_is_smaller_than_seven_points(self):
-        sizes = [value for key, value in figure_style.SETTINGS.items() if key.endswith("size") and "marker" not in key]
-        self.assertGreater(len(sizes), 4)
-        self.assertGreaterEqual(min(sizes), 7)
 
     def test_a_picture_that_is_no_png_is_refused(self):
         with self.assertRaisesRegex(Failure, r"\.png.*a\.pdf"):

@@ -4,7 +4,6 @@ import os
 import signal
 import subprocess
 
-
 from ddm_launch.command import Failure
 from ddm_launch.folder_lock import FolderLock, text_of, this_process
 from processes import Process, find_program, run_experiment

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
-
 from processes import roslaunch, run_experiment
 from run_files import differences, expected_files, read_yaml
 from scratch_case import SharedScratchCase

@@ -6,7 +6,6 @@ import re
 import unittest
 from concurrent.futures import ThreadPoolExecutor
 
-
 from namespaces import hiding, why_not
 from processes import call, free_port, has_mujoco
 from run_files import differences, expected_files, files_in, read_rows, torque_files

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
-
 from processes import roslaunch
 from scratch_case import ScratchCase
 

@@ -5,13 +5,10 @@ import math
 import os
 import re
 
-import numpy as np
 from PIL import Image
-import yaml
 
 from figure_case import call_figure
 from ddm_launch import figure_style, learning_curve
-from ddm_launch.learning_curve_node import picture
 from ddm_launch.run_folder import in_todays_columns, read_goal, read_trials
 from run_files import changes, fingerprint
 from scratch_case import ScratchCase
@@ -61,33 +58,6 @@ class LearningCurveTest(ScratchCase):
         self.assertEqual(self.callMain(*folders, "--out", out)[0], 0)
         self.assertTrue(os.path.getsize(out) > 0)
         self.assertEqual([sorted(os.listdir(folder)) for folder in folders], [["config.yaml", "trials.csv"]] * 2)
-
-    def live(self, successes, errors_deg):
-        """{colour: (rows, columns) of its pixels} in the picture of an experiment under way."""
-        with open(os.path.join(self.makeRun("live", successes, errors_deg), "trials.csv")) as stream:
-            text = yaml.safe_dump({"evaluation": {"error_unit": "deg", "tolerance": 10.0}, "frames": 400,
-                                   "trials_csv": stream.read()})
-        image = picture(text)
-        self.assertEqual((image.width, image.height, image.encoding), (640, 480, "rgb8"))
-        pixels = np.frombuffer(image.data, np.uint8).reshape(480, 640, 3)
-        colours = {name: [int(code[k:k + 2], 16) for k in (1, 3, 5)] for name, code in (
-            ("blue", figure_style.BLUE), ("red", figure_style.VERMILLION), ("orange", figure_style.ORANGE))}
-        return {name: np.nonzero(np.all(pixels == colour, axis=2)) for name, colour in colours.items()}
-
-    def test_the_live_picture_grows_to_the_right_with_a_mark_for_each_trial(self):
-        self.assertEqual([len(rows) for rows, _ in self.live([], []).values()], [0, 0, 0])
-        failed, succeeded = self.live(["0"], ["90"]), self.live(["0", "1"], ["90", "3"])
-        self.assertGreater(len(failed["red"][0]), 10)
-        self.assertGreater(len(succeeded["blue"][0]), 10)
-        self.assertGreater(np.max(succeeded["orange"][1]), np.min(failed["red"][1]) + 50)
-        self.assertGreater(np.min(succeeded["orange"][0]), 265)  # the errors of the model stand below
-
-    def test_the_live_picture_shows_successes_above_failures_where_no_error_is_known(self):
-        seen = self.live(["0", "1"], ["", ""])
-        upper = {name: rows[rows < 265] for name, (rows, _) in seen.items()}
-        self.assertGreater(min(len(upper["blue"]), len(upper["red"])), 10)
-        self.assertLess(np.median(upper["blue"]), np.median(upper["red"]))
-        self.assertEqual(len(self.live(["", ""], ["", ""])["blue"][0]), 0)
 
     def test_a_run_that_does_not_tell_its_goal_is_refused(self):
         folder = self.makeRun("run", ["1"], ["0.04"])

@@ -5,7 +5,6 @@ import re
 import shutil
 import signal
 
-
 from processes import roslaunch, run_experiment, start_roslaunch
 from run_files import differences, expected_files, files_in, read_bag, read_bytes, read_rows, read_yaml
 from scratch_case import SharedScratchCase

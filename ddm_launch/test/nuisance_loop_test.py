@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
-
 from both_drivers_case import BothDriversCase
 from run_files import read_bag, read_rows, read_yaml
 

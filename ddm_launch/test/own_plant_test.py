@@ -3,7 +3,6 @@
 import os
 import subprocess
 
-
 from both_drivers_case import BothDriversCase
 from processes import call, find_program, run_experiment
 from run_files import read_rows, read_yaml

@@ -9,7 +9,6 @@ import tempfile
 import unittest.mock
 import xml.etree.ElementTree
 
-
 import page_commands
 import pages
 from processes import call, find_program, free_port, needs_mujoco, line_by_line, run_experiment

@@ -6,7 +6,6 @@ import re
 import tempfile
 import unittest
 
-
 import pages
 from page_numbers import RESULTS, Page, agree, checked_pages, read_rows
 

@@ -6,7 +6,6 @@ import re
 import subprocess
 import unittest
 
-
 import pages
 
 TROUBLES = "doc/troubleshooting.md"

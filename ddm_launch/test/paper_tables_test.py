@@ -3,7 +3,6 @@
 import csv
 import os
 
-
 from run_files import COLUMNS
 from ddm_study import paper_tables
 from ddm_launch.run_folder import read_sweep

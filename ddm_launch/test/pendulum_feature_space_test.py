@@ -29,16 +29,6 @@ class PendulumFeatureSpaceTest(figure_case.FigureCase):
     def test_the_plan_is_a_line_from_the_current_frame_in_the_order_of_its_steps(self):
         self.assertEqual(self.draw(ROWS)[2], [(0.1, 0.2), (0.2, 0.2), (0.3, 0.3), (0.4, 0.4)])
 
-    def test_the_axes_show_the_whole_grid_and_reach_further_only_for_features_outside(self):
-        self.assertEqual(self.draw(ROWS)[1], (-1.125, 1.125, -1.125, 1.125))
-        limits = self.draw(ROWS + ["experience,2,1.4,0.0"])[1]
-        self.assertGreater(limits[1], 1.4)
-        self.assertLess(limits[1], 1.6)
-
-    def test_all_kinds_differ_in_colour_and_in_shape(self):
-        for column in (0, 2):
-            self.assertEqual(len({kind[column] for kind in pendulum_feature_space.KINDS.values()}), 4)
-
     def test_a_real_model_makes_a_picture(self):
         model = figure_case.make_run(self.file("run"))
         path = self.writeLines("space.csv", HEADER, *ROWS)

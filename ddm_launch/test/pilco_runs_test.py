@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
-
 from ddm_launch import learning_curve, success_rate
 from ddm_launch.command import Failure
 from ddm_launch.run_folder import read_sweep, read_trials

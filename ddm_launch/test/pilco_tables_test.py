@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
-
 from ddm_launch import success_rate
 from ddm_launch.command import Failure
 from ddm_study import pilco_tables

@@ -3,7 +3,6 @@
 import os
 import signal
 
-
 from processes import Process, find_program, run_experiment
 from run_files import differences, files_in, read_rows
 from scratch_case import ScratchCase

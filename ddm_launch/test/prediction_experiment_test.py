@@ -4,7 +4,6 @@ import csv
 import math
 import os
 
-
 from processes import call, find_program, run_experiment
 from run_files import files_in, read_bytes, read_rows, read_yaml
 from scratch_case import SharedScratchCase

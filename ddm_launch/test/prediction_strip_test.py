@@ -3,7 +3,6 @@
 import os
 import shutil
 
-
 from ddm_launch.command import Failure
 from ddm_launch.figure_style import PAGE_WIDTH, new_figure
 from ddm_launch.images import Camera, Decoder

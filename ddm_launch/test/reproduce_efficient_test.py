@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
-
 from ddm_study.reproduce_efficient import TASKS, VARIANTS, yaml_names
 from processes import call, find_program, run_experiment
 from run_files import COLUMNS, read_rows, read_yaml

@@ -3,7 +3,6 @@
 import os
 import signal
 
-
 from processes import Process, call, find_program
 from run_files import COLUMNS, read_bytes, read_rows, read_yaml
 from scratch_case import ScratchCase

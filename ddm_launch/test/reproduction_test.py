@@ -3,7 +3,6 @@
 import argparse
 import os
 
-
 from ddm_study import reproduce_paper
 from run_files import read_bytes, read_rows
 from scratch_case import ScratchCase

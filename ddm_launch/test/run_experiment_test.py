@@ -6,7 +6,6 @@ import shutil
 import signal
 import time
 
-
 from processes import Process, call, find_program, run_experiment
 from run_files import (COLUMNS, changes, differences, expected_files, files_in, fingerprint, read_bag,
                        read_bytes, read_rows, read_yaml)

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
-
 from ddm_launch.command import Failure
 from ddm_launch.figure_style import PAGE_WIDTH, new_figure
 from ddm_study import schedules, schedules_compared
@@ -47,17 +46,6 @@ class SchedulesComparedTest(figure_case.FigureCase):
         self.assertAlmostEqual(repeat[7][1], 4.0)
         self.assertEqual(labels, ("steps ahead [-]", "RMSE over pixels [grey]"))
 
-    def test_success_rates_of_all_schedules_are_drawn_each_a_little_aside(self):
-        results = schedules.read_success(self.scratch)
-        with new_figure(PAGE_WIDTH, 3.0) as figure:
-            axes = figure.add_subplot(1, 1, 1)
-            schedules_compared.draw_success(axes, results)
-            drawn = [figure_case.drawn_points(axes, row[0]) for row in schedules_compared.STYLES]
-        self.assertEqual([[y for _, y in points] for points in drawn], [[0.5, 1.0]] + [[0.0, 0.5]] * 3)
-        self.assertEqual(len({points[0][0] for points in drawn}), 4)
-        for points in drawn:
-            self.assertAlmostEqual(points[0][0], 100, delta=25)
-
     def test_only_seeds_that_all_schedules_have_are_compared(self):
         self.writePredictions("tile_predictions", "joint", range(1, 5), 9.0)
         results = schedules.read_predictions(self.file("tile_predictions"))
@@ -68,10 +56,6 @@ class SchedulesComparedTest(figure_case.FigureCase):
         self.writePredictions("tile_predictions", "joint", [77], 9.0)
         with self.assertRaisesRegex(Failure, "predictions.*schedules"):
             schedules.read_predictions(self.file("tile_predictions"))
-
-    def test_no_two_schedules_share_marker_line_or_colour(self):
-        for column in range(4):
-            self.assertEqual(len({row[column] for row in schedules_compared.STYLES}), 4)
 
     def test_a_results_folder_makes_a_picture_as_wide_as_a_page(self):
         self.assertDrawn(schedules_compared, [self.scratch], PAGE_WIDTH)

@@ -6,7 +6,6 @@ import shlex
 import socket
 import subprocess
 
-
 from scratch_case import ScratchCase
 
 SCRIPTS = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "scripts"))

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
-
 from processes import free_port, start_roslaunch
 from run_files import files_in
 from scratch_case import ScratchCase

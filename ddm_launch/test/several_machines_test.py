@@ -4,7 +4,6 @@ import os
 import signal
 import unittest
 
-
 from namespaces import Network, nft_rule, why_no_nft
 from processes import Process, line_by_line, run_experiment
 from run_files import differences, expected_files, files_in

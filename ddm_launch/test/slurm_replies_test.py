@@ -3,7 +3,6 @@
 import os
 import signal
 
-
 from run_files import files_in, read_bytes
 from scratch_case import ScratchCase
 from sweeps import Sweep, wait_for

@@ -4,7 +4,6 @@ import os
 import re
 import signal
 
-
 from ddm_launch.slurm import index_ranges
 from processes import run_experiment
 from run_files import differences, expected_files, files_in, read_bytes, read_rows

@@ -3,7 +3,6 @@
 import os
 import shutil
 
-
 from processes import call, find_program, roslaunch, run_experiment
 from run_files import differences, expected_files, files_in, read_rows, read_yaml
 from scratch_case import SharedScratchCase

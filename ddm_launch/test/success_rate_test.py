@@ -1,9 +1,6 @@
 # Success rates against the paper's: the numbers of each curve, the published data, and what is refused.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-from unittest import mock
-
-from matplotlib.colors import to_rgb
 
 from ddm_launch import success_rate
 from ddm_launch.command import Failure
@@ -75,22 +72,6 @@ class SuccessRateTest(figure_case.FigureCase):
         band = success_rate.read_curve("oracle", self.file("oracle.csv"), wilson=True)
         self.assertEqual([len(edge) for edge in band.spread_to(1500).band], [2, 2])
 
-    def test_the_legend_fits_into_the_width_of_a_column(self):
-        path = self.writeSweep()
-        methods = [row[0] for row in success_rate.METHODS] + ["oracle"]
-        for names in (["mine"], ["a label of so many letters that only one fits"], methods):
-            ours, published = [success_rate.read_curve(name, path) for name in names], []
-            for published in ([], success_rate.read_published(PUBLISHED)):
-                with new_figure(COLUMN_WIDTH, 4.0) as figure:
-                    success_rate.draw_figure(figure, ours, published)
-                    figure.canvas.draw()
-                    legend = figure.axes[-1].get_legend().get_window_extent()
-                    self.assertGreaterEqual(legend.x0, 0.0)
-                    self.assertLessEqual(legend.x1, figure.bbox.width)
-                    self.assertGreaterEqual(legend.y0, 0.0)
-                    if names is methods and not published:  # two columns: no method's name is too long
-                        self.assertEqual(success_rate.num_legend_columns(ours, published), 2)
-
     def test_of_many_curves_those_that_are_mostly_zero_are_named_and_not_drawn(self):
         rows = ["%d,%d,%d,%d,1" % (seed, trial, 100 * (trial + 1), seed == trial == 4) for seed in range(5) for trial in range(5)]
         path = self.writeLines("zero.csv", HEADER, *rows)
@@ -110,36 +91,6 @@ class SuccessRateTest(figure_case.FigureCase):
         for last, is_mostly_zero in ((0.4, True), (0.5, False)):
             self.assertEqual(success_rate.Curve("slow", "1 seed", [1, 2, 3], [0.0, 0.0, last], None).is_mostly_zero(),
                              is_mostly_zero)
-
-    def draw(self, names):
-        """Draws curves of these names over the paper's. Returns {label: (colour, marker, line)}."""
-        path = self.writeSweep()
-        with new_figure(COLUMN_WIDTH, 3.0) as figure:
-            axes = figure.add_subplot(1, 1, 1)
-            success_rate.draw_curves(axes, [success_rate.read_curve(name, path) for name in names],
-                                     success_rate.read_published(PUBLISHED))
-            lines = {container.get_label(): container.lines[0] for container in axes.containers}
-            return {label: (to_rgb(line.get_color()), line.get_marker(), line.get_linestyle())
-                    for label, line in lines.items()}
-
-    def test_a_method_of_the_paper_has_the_colour_and_marker_of_its_published_curve(self):
-        names = [row[0] for row in success_rate.METHODS]
-        with mock.patch.object(success_rate, "MOST_CURVES", 9):
-            drawn = self.draw(["oracle"] + names[::-1])
-        for name in names:
-            ours, paper = drawn[name + " (4 seeds)"], drawn[name + " (paper)"]
-            self.assertEqual(paper[0], success_rate.lighter(ours[0]))
-            self.assertEqual((ours[1], ours[2], paper[2]), (paper[1], "-", "--"))
-        self.assertEqual(len(set(style[:2] for style in drawn.values())), 9)
-
-    def test_no_two_curves_share_colour_or_marker(self):
-        styles = success_rate.styles([row[0] for row in success_rate.METHODS] + ["a", "b", "c", "d"])
-        for part in zip(*styles):
-            self.assertEqual(len(set(part)), 8)
-
-    def test_lighter_is_half_way_to_white(self):
-        self.assertEqual(success_rate.lighter("#000000"), (0.5, 0.5, 0.5))
-        self.assertEqual(success_rate.lighter((1.0, 0.2, 0.0)), (1.0, 0.6, 0.5))
 
     def test_a_name_that_is_there_twice_is_refused(self):
         curve = "DDM + MPC=" + self.writeSweep()

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
-
 from run_files import read_rows
 from scratch_case import ScratchCase
 from ssh_hosts import SshHosts

@@ -8,7 +8,6 @@ import shutil
 import signal
 import unittest.mock
 
-
 from ddm_launch.seed_script import SeedProgram
 from ddm_launch.sweep_folder import SweepFolder
 from processes import call, find_program, run_experiment

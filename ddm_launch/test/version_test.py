@@ -5,7 +5,6 @@ import shutil
 import subprocess
 import unittest
 
-
 from scratch_case import ScratchCase
 
 SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "cmake", "write_version.cmake")

@@ -7,7 +7,6 @@ import subprocess
 import sys
 import unittest
 
-
 from ddm_qa.processes import on_this_machine
 from namespaces import Network, nft_rule, why_no_nft
 from processes import Process, free_port, line_by_line
