@@ -7,7 +7,6 @@
 #include <boost/algorithm/string.hpp>
 #include <boost/format.hpp>
 #include <boost/lexical_cast.hpp>
-#include <cstring>
 #include <stdexcept>
 
 #include "csv_text.h"
@@ -18,19 +17,6 @@ namespace {
 constexpr char kHeader[] =
     "seed,trial,frames,success,success_strict,final_error,v_r,v_p,train_s,train_evaluations,"
     "plan_ms_median,plan_ms_p99,version,return\n";
-
-/// Headers of older versions, and the cells that their rows lack.
-struct OldTable {
-  const char* header;
-  const char* missing_cells;
-};
-constexpr OldTable kOldTables[] = {
-    {"seed,trial,frames,success,success_strict,final_error_deg,v_r,v_p,train_s,train_evaluations,"
-     "plan_ms_median,plan_ms_p99,version\n",
-     ","},
-    {"seed,trial,frames,success,success_strict,final_error_deg,v_r,v_p,train_s,train_evaluations,"
-     "plan_ms_median,plan_ms_p99\n",
-     ",?,"}};
 
 std::string milliseconds(double value) { return boost::str(boost::format("%.3f") % value); }
 
@@ -97,18 +83,9 @@ std::string formatTrialsCsv(const std::vector<TrialRow>& rows) {
   return text;
 }
 
-std::string inTodaysColumns(const std::string& text) {
-  for (const OldTable& old : kOldTables) {
-    if (!boost::starts_with(text, old.header)) continue;
-    const std::string rows = text.substr(std::strlen(old.header));
-    return kHeader + boost::replace_all_copy(rows, "\n", std::string(old.missing_cells) + "\n");
-  }
-  return text;
-}
-
 std::vector<TrialRow> parseTrialsCsv(const std::string& text, const std::string& source) {
   std::vector<TrialRow> rows;
-  parseCsv(inTodaysColumns(text), kHeader, source,
+  parseCsv(text, kHeader, source,
            [&rows](const std::vector<std::string>& cells) { rows.push_back(parseRow(cells)); });
   return rows;
 }
@@ -127,8 +104,7 @@ bool isUnchanged(const std::string& trials_csv, size_t num_rows, const std::stri
   std::vector<std::string> lines;
   boost::split(lines, checksums, boost::is_any_of("\n"));
   if (num_rows == 0) return true;
-  return lines.size() >= num_rows && (lines[num_rows - 1] == checksum(trials_csv) ||
-                                      lines[num_rows - 1] == checksum(inTodaysColumns(trials_csv)));
+  return lines.size() >= num_rows && lines[num_rows - 1] == checksum(trials_csv);
 }
 
 }  // namespace ddm

@@ -14,11 +14,7 @@ namespace ddm {
 /// is in the unit evaluation/error_unit of config.yaml.
 std::string formatTrialsCsv(const std::vector<TrialRow>& rows);
 
-/// A table that an older version wrote, in the columns of today: the version is "?" where none was
-/// written. Other texts stay as they are.
-std::string inTodaysColumns(const std::string& text);
-
-/// The inverse of formatTrialsCsv(); also reads tables of older versions.
+/// The inverse of formatTrialsCsv().
 /// @param source  file, for messages
 /// @throws std::runtime_error with source, line and fault
 std::vector<TrialRow> parseTrialsCsv(const std::string& text, const std::string& source);
@@ -29,8 +25,7 @@ std::vector<TrialRow> parseTrialsCsv(const std::string& text, const std::string&
 std::string formatTrialsChecksums(const std::vector<TrialRow>& rows);
 
 /// @param trials_csv  the table, with `num_rows` rows
-/// @return            whether it is the one that the checksums were made of, be it in the columns
-///                    of an older version
+/// @return            whether it is the one that the checksums were made of
 bool isUnchanged(const std::string& trials_csv, size_t num_rows, const std::string& checksums);
 
 }  // namespace ddm

@@ -42,7 +42,7 @@ class EfficientTablesTest(figure_case.FigureCase):
         self.assertAlmostEqual(second[6] + second[7], 1.0)
 
     def test_a_file_without_strict_success_leaves_its_cells_empty(self):
-        path = self.writeLines("trials.csv", "seed,trial,frames,success,final_error_deg", "0,0,100,1,2")
+        path = self.writeLines("trials.csv", "seed,trial,frames,success,final_error", "0,0,100,1,2")
         self.assertEqual(efficient_tables.success_rows(read_sweep(path))[0][5:], ("", "", ""))
 
     def test_times_are_those_of_whole_experiments_with_median_and_largest(self):
@@ -147,7 +147,7 @@ class EfficientTablesTest(figure_case.FigureCase):
             efficient_tables.nuisance_rows(self.scratch, ["delay", "noise"])
 
     def test_a_nuisance_without_known_success_is_refused(self):
-        self.writeLines("nuisances/noise/trials.csv", "seed,trial,frames,success,final_error_deg", "0,0,100,,")
+        self.writeLines("nuisances/noise/trials.csv", "seed,trial,frames,success,final_error", "0,0,100,,")
         with self.assertRaisesRegex(Failure, "nuisances/noise/trials.csv.*success"):
             efficient_tables.nuisance_rows(self.scratch, ["noise"])
 

@@ -9,7 +9,7 @@ from PIL import Image
 
 from figure_case import call_figure
 from ddm_launch import figure_style, learning_curve
-from ddm_launch.run_folder import in_todays_columns, read_goal, read_trials
+from ddm_launch.run_folder import read_goal, read_trials
 from run_files import changes, fingerprint
 from scratch_case import ScratchCase
 import synthetic_run
@@ -70,29 +70,14 @@ class LearningCurveTest(ScratchCase):
             self.assertEqual(code, 1, output)
             self.assertIn(config, output)
 
-    def test_errors_are_in_the_unit_of_the_run_and_in_degrees_in_runs_of_older_versions(self):
+    def test_errors_are_in_the_unit_of_the_run(self):
         folder = self.makeRun("run", ["1"], ["0.04"])
-        for text, goal in (("evaluation: {tolerance: 0.05, error_unit: m}\n", ("m", 0.05)),
-                           ("evaluation: {tolerance_deg: 5.0}\n", ("deg", 5.0))):
-            self.write(os.path.join("run", "config.yaml"), text)
-            self.assertEqual(read_goal(folder), goal)
-            with figure_style.new_screen_figure(7.0, 4.2) as figure:
-                axes = figure.subplots()
-                learning_curve.draw_one(axes, read_trials(folder), read_goal(folder))
-                self.assertIn("[%s]" % goal[0].replace("deg", "°"), axes.get_ylabel())
-
-    def test_tables_of_older_versions_are_read(self):
-        folder = self.makeRun("run", ["1"], ["3"])
-        path = os.path.join(folder, "trials.csv")
-        with open(path) as stream:
-            lines = stream.read().splitlines()
-        trials = read_trials(folder)
-        old = [lines[0].replace("final_error", "final_error_deg")] + lines[1:]
-        self.write(path, "\n".join(old) + "\n")
-        self.assertEqual(read_trials(folder), trials)
-        today = in_todays_columns(old)
-        self.assertEqual(today, [lines[0] + ",version,return", lines[1] + ",?,"])
-        self.assertEqual(in_todays_columns(today), today)
+        self.write(os.path.join("run", "config.yaml"), "evaluation: {tolerance: 0.05, error_unit: m}\n")
+        self.assertEqual(read_goal(folder), ("m", 0.05))
+        with figure_style.new_screen_figure(7.0, 4.2) as figure:
+            axes = figure.subplots()
+            learning_curve.draw_one(axes, read_trials(folder), read_goal(folder))
+            self.assertIn("[m]", axes.get_ylabel())
 
     def test_a_folder_that_is_no_run_folder_is_named(self):
         code, errors = self.callMain(self.scratch)

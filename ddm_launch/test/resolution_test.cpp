@@ -220,18 +220,6 @@ TEST_F(Resolution, AnotherModelOrOtherBagsBringTheirOwnChecksums) {
   EXPECT_TRUE(read().start.bag_ids.empty());
 }
 
-TEST_F(Resolution, FilesWithTheKeysOfOlderVersionsStayGood) {
-  given_.configs = {file("old.yaml",
-                         "camera: {half_extent: 1.5, noise_std: 0.2}\n"
-                         "evaluation: {tolerance_deg: 5.0}\n")};
-  const Configuration all = read();
-  EXPECT_EQ(all.plant->block()["half_extent"].as<double>(), 1.5);
-  EXPECT_EQ(all.camera.noise_std, 0.2);
-  EXPECT_EQ(all.evaluation.tolerance, 5.0);
-  given_.configs = {file("both.yaml", "camera: {half_extent: 1.5}\nplant: {half_extent: 1.6}\n")};
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { read(); }, {"camera/half_extent"}));
-}
-
 TEST_F(Resolution, MessagesNameTheFiles) {
   given_.configs = {file("bad.yaml", "mpc: {horzion: 3}\n")};
   EXPECT_TRUE(

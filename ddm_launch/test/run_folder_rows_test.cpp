@@ -1,6 +1,5 @@
-// The rows of a run folder: none is lost, changed or taken from elsewhere, and those of older versions are read.
+// The rows of a run folder: none is lost, changed or taken from elsewhere.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_model/model_file.h>
 #include <gtest/gtest.h>
 
 #include <boost/filesystem.hpp>
@@ -18,7 +17,6 @@ namespace {
 namespace fs = boost::filesystem;
 using testing::textOf;
 using testing::toyRow;
-using testing::withoutVersions;
 using testing::writeText;
 
 using RunFolderRowsTest = testing::RunFolderCase;
@@ -43,75 +41,6 @@ TEST_F(RunFolderRowsTest, RowsOfWhichAnyByteHasChangedAreRefused) {
     expectRefused({"trials.csv"});
   }
   writeText(file("trials.csv"), rows);
-  EXPECT_EQ(RunFolder(configuration_).rows().size(), 2u);
-}
-
-/// @param rows  texts of trials.csv with 1, 2, ... rows
-std::string checksumsOf(const std::vector<std::string>& rows) {
-  std::string lines;
-  for (const std::string& text : rows) lines += checksum(text) + "\n";
-  return lines;
-}
-
-TEST_F(RunFolderRowsTest, ATableOfAnOlderVersionGoesOnInTodaysColumns) {
-  for (const auto& older : {testing::inDegrees, withoutVersions}) {
-    fs::remove_all(scratch_.file("run"));
-    finish(2);
-    const std::vector<std::string> old = {older(formatTrialsCsv({toyRow(0)})),
-                                          older(textOf(file("trials.csv")))};
-    writeText(file("trials.csv"), old[1]);
-    writeText(file(".trials.crc32"), checksumsOf(old));
-    const std::string version = older == withoutVersions ? "?" : toyRow(1).version;
-    {
-      RunFolder folder(configuration_);
-      ASSERT_EQ(folder.rows().size(), 2u);
-      EXPECT_EQ(folder.rows()[1].version, version);
-      EXPECT_EQ(folder.rows()[1].evaluation.final_error, toyRow(1).evaluation.final_error);
-      EXPECT_TRUE(folder.warnings().empty());
-      writeText(folder.beginRun({2}), "a bag");
-      folder.finishTrial(toyRow(2));
-    }
-    const RunFolder folder(configuration_);
-    EXPECT_EQ(folder.rows()[0].version, version);
-    EXPECT_EQ(folder.rows()[2].version, toyRow(2).version);
-  }
-}
-
-/// config.yaml as versions saved it whose cameras drew the rod and whose errors were angles.
-YAML::Node asSavedBefore(const YAML::Node& today) {
-  YAML::Node old = YAML::Clone(today);
-  old["camera"]["size"] = old["plant"]["picture_size"];
-  old["plant"].remove("picture_size");
-  for (const char* key : {"half_extent", "rod_half_width", "edge_softness"}) {
-    old["camera"][key] = old["plant"][key];
-    old["plant"].remove(key);
-  }
-  old["plant"]["tile_width"] = 9.0;
-  old["plant"]["tile_softness"] = 9.0;
-  old["evaluation"]["tolerance_deg"] = old["evaluation"]["tolerance"];
-  old["evaluation"].remove("tolerance");
-  old["evaluation"].remove("error_unit");
-  old["training"]["ensemble_size"] = "1";
-  old["mpc"]["terminal_weight"] = "1.0";
-  return old;
-}
-
-TEST_F(RunFolderRowsTest, AFolderOfAnOlderVersionIsTakenUp) {
-  finish(2);
-  const YAML::Node today = YAML::LoadFile(file("config.yaml"));
-  const YAML::Node old = asSavedBefore(today);
-  writeText(file("config.yaml"), YAML::Dump(old) + "\n");
-  EXPECT_EQ(RunFolder(configuration_).rows().size(), 2u);
-  configuration_.camera.noise_std = 0.3;
-  expectRefused({"camera/noise_std"});
-}
-
-TEST_F(RunFolderRowsTest, AFolderOfAnOlderVersionThatEndedBetweenTheChecksumAndItsRowIsTakenUp) {
-  finish(2);
-  writeText(file("trials.csv"), withoutVersions(textOf(file("trials.csv"))));
-  TrialRow rows[] = {toyRow(0), toyRow(1), toyRow(2)};
-  for (int i : {0, 1}) rows[i].version = "?";
-  writeText(file(".trials.crc32"), formatTrialsChecksums({rows[0], rows[1], rows[2]}));
   EXPECT_EQ(RunFolder(configuration_).rows().size(), 2u);
 }
 

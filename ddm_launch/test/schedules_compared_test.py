@@ -8,7 +8,7 @@ from ddm_study import schedules, schedules_compared
 import figure_case
 
 NAMES = list(schedules.SCHEDULES)
-TRIALS = "seed,trial,frames,success,final_error_deg"
+TRIALS = "seed,trial,frames,success,final_error"
 PREDICTIONS = "seed,steps,num_predictions,rmse,rmse_repeat,position_r2,v_r,v_p,train_s"
 
 

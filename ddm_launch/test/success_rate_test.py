@@ -8,7 +8,7 @@ from ddm_launch.figure_style import COLUMN_WIDTH, new_figure
 import figure_case
 
 PUBLISHED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "results", "published", "success_rate.csv")
-HEADER = "seed,trial,frames,success,final_error_deg"
+HEADER = "seed,trial,frames,success,final_error"
 
 
 class SuccessRateTest(figure_case.FigureCase):

@@ -109,13 +109,14 @@ class SweepTest(SharedScratchCase):
         self.assertEqual(after.pop("sweep.csv")[1], before.pop("sweep.csv")[1])
         self.assertEqual(after, before)
 
-    def test_seeds_of_older_code_are_collected_with_unknown_versions(self):
+    def test_seeds_of_other_versions_are_collected_and_told(self):
         self.copyReference()
         table = os.path.join(seed_folder(self.out, 1), "trials.csv")
         with open(table) as stream:
-            lines = [line.rsplit(",", 2)[0].replace("final_error", "final_error_deg") + "\n" for line in stream]
+            text = stream.read()
+        here = read_yaml(seed_folder(self.out, 0), "config.yaml")["version"]
         with open(table, "w") as stream:
-            stream.writelines(lines)
+            stream.write(text.replace(here, "0.0.1 (old)"))
         config = os.path.join(seed_folder(self.out, 1), "config.yaml")
         with open(config) as stream:
             text = re.sub("^version: .*$", "version: 0.0.1 (old)", stream.read(), flags=re.MULTILINE)
@@ -124,9 +125,8 @@ class SweepTest(SharedScratchCase):
         output = self.assertEnds(0, ["4 of 4 seeds finished", "2 versions", "0.0.1 (old)"], *self.debug())
         rows = read_rows(self.out, "sweep.csv")
         self.assertEqual(rows[0], COLUMNS)
-        here = read_yaml(seed_folder(self.out, 0), "config.yaml")["version"]
         versions = [row[COLUMNS.index("version")] for row in rows[1:]]
-        self.assertEqual(versions, [here] * 2 + ["?"] * 2 + [here] * 4, output)
+        self.assertEqual(versions, [here] * 2 + ["0.0.1 (old)"] * 2 + [here] * 4, output)
 
     def test_seeds_may_grow_and_any_range_of_them_be_collected(self):
         self.copyReference()

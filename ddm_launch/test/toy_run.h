@@ -101,23 +101,6 @@ inline TrialRow toyRow(int trial, int seed = 7) {
   return row;
 }
 
-/// trials.csv as versions wrote it that knew errors in degrees only, and no return.
-inline std::string inDegrees(const std::string& trials_csv) {
-  std::istringstream in(trials_csv);
-  std::string text;
-  for (std::string line; std::getline(in, line);) text += line.substr(0, line.rfind(',')) + "\n";
-  const std::string column = "final_error";
-  return text.insert(text.find(column) + column.size(), "_deg");
-}
-
-/// trials.csv as still older ones wrote it, which did not note the version either.
-inline std::string withoutVersions(const std::string& trials_csv) {
-  std::istringstream in(inDegrees(trials_csv));
-  std::string text;
-  for (std::string line; std::getline(in, line);) text += line.substr(0, line.rfind(',')) + "\n";
-  return text;
-}
-
 inline std::string textOf(const std::string& path) {
   const std::ifstream in(path);
   std::ostringstream text;

@@ -62,52 +62,6 @@ TEST(TrialsCsv, AFileThatIsReadAndWrittenStaysTheSame) {
   EXPECT_EQ(formatTrialsCsv(parseTrialsCsv(text, "trials.csv")), text);
 }
 
-/// Lines that older versions wrote, byte by byte.
-const char kInDegrees[] =
-    "seed,trial,frames,success,success_strict,final_error_deg,v_r,v_p,train_s,train_evaluations,"
-    "plan_ms_median,plan_ms_p99,version\n"
-    "7,0,30,0,0,170.5,0.5,0.25,2.000,26,15.000,30.000,0.9.0 (abcdef0)\n"
-    "7,1,60,,,,0.5,0.25,2.000,26,15.000,30.000,0.9.0 (abcdef0)\n";
-const char kWithoutVersions[] =
-    "seed,trial,frames,success,success_strict,final_error_deg,v_r,v_p,train_s,train_evaluations,"
-    "plan_ms_median,plan_ms_p99\n"
-    "7,0,30,0,0,170.5,0.5,0.25,2.000,26,15.000,30.000\n"
-    "7,1,60,,,,0.5,0.25,2.000,26,15.000,30.000\n";
-
-TEST(TrialsCsv, ATableInDegreesIsReadWithoutAReturn) {
-  const std::vector<TrialRow> read = parseTrialsCsv(kInDegrees, "trials.csv");
-  ASSERT_EQ(read.size(), 2u);
-  EXPECT_EQ(read[0].evaluation.final_error, 170.5);
-  EXPECT_TRUE(read[0].evaluation.known);
-  EXPECT_FALSE(read[1].evaluation.known);
-  for (const TrialRow& row : read) {
-    EXPECT_EQ(row.version, "0.9.0 (abcdef0)");
-    EXPECT_EQ(row.plan_ms_p99, 30.0);
-    EXPECT_FALSE(row.evaluation.total_reward.has_value());
-  }
-}
-
-TEST(TrialsCsv, ATableWithoutVersionsIsReadWithUnknownOnes) {
-  const std::vector<TrialRow> read = parseTrialsCsv(kWithoutVersions, "trials.csv");
-  ASSERT_EQ(read.size(), 2u);
-  EXPECT_EQ(read[0].evaluation.final_error, 170.5);
-  for (const TrialRow& row : read) {
-    EXPECT_EQ(row.version, "?");
-    EXPECT_EQ(row.plan_ms_p99, 30.0);
-  }
-}
-
-TEST(TrialsCsv, AnOldTableGetsTheColumnsOfTodayAndOneOfTodayStays) {
-  for (const char* old : {kInDegrees, kWithoutVersions}) {
-    const std::vector<TrialRow> read = parseTrialsCsv(old, "trials.csv");
-    EXPECT_EQ(inTodaysColumns(old), formatTrialsCsv(read));
-  }
-  const std::string text = formatTrialsCsv({toyRow(0), toyRow(1)});
-  EXPECT_EQ(inTodaysColumns(text), text);
-  EXPECT_EQ(inTodaysColumns("seed,trial\n7,0\n"), "seed,trial\n7,0\n");
-  EXPECT_EQ(inTodaysColumns(""), "");
-}
-
 TEST(TrialsCsv, AReturnIsTheLastColumn) {
   TrialRow row = toyRow(1);
   row.evaluation.total_reward = -12.5;

@@ -21,6 +21,9 @@ set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 
 add_compile_options(-Wall -Wextra)
+# Libraries of others, such as Ceres, hold functions of Eigen by the same names, compiled for another instruction set. If ours
+# were exported, the linker would let them call ours, whose loads fault on their less aligned memory.
+add_compile_options(-fvisibility-inlines-hidden)
 # Results are to repeat digit by digit on other processors: so one instruction set instead of -march=native, and Eigen must not
 # split its sums by the sizes of this processor's caches.
 add_compile_definitions(EIGEN_NO_CPUID)

@@ -21,21 +21,6 @@ FLAG = optional(lambda text: convert(text, float) > 0.5)
 TRIAL_COLUMNS = {"trial": int, "frames": int, "success": FLAG,
                  "final_error": optional(lambda text: abs(convert(text, float)))}
 
-# Older versions measured angles only, and wrote neither of the columns that came later.
-OLD_COLUMNS = {"final_error_deg": "final_error"}
-LATER_COLUMNS = {"version": "?", "return": ""}
-
-
-def in_todays_columns(lines):
-    """The lines of a trials.csv of any version, the header first, with today's columns. Other tables stay as they are."""
-    columns = [OLD_COLUMNS.get(name, name) for name in lines[0].split(",")] if lines else []
-    if "trial" not in columns:
-        return lines
-    later = [name for name in LATER_COLUMNS if name not in columns]
-    cells = [LATER_COLUMNS[name] for name in later]
-    return [",".join(columns + later)] + [",".join([line] + cells) for line in lines[1:]]
-
-
 def trial_of(row):
     """Older tables have no success_strict."""
     return Trial(row["trial"], row["frames"], row["success"], FLAG(row.get("success_strict")), row["final_error"])
@@ -43,7 +28,7 @@ def trial_of(row):
 
 def read_trials(folder):
     """All rows of FOLDER/trials.csv, oldest first."""
-    return [trial_of(row) for row in read_csv(os.path.join(folder, "trials.csv"), TRIAL_COLUMNS, renamed=OLD_COLUMNS)]
+    return [trial_of(row) for row in read_csv(os.path.join(folder, "trials.csv"), TRIAL_COLUMNS)]
 
 
 def read_goal(folder):
@@ -52,8 +37,6 @@ def read_goal(folder):
     try:
         with open(path) as stream:
             evaluation = yaml.load(stream, Loader=LOADER)["evaluation"]
-        if "tolerance_deg" in evaluation:  # of an older version, which measured angles only
-            return Goal("deg", float(evaluation["tolerance_deg"]))
         return Goal(str(evaluation["error_unit"]), float(evaluation["tolerance"]))
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         raise unreadable(path, error)
@@ -68,7 +51,7 @@ def read_sweep(path, remedy="give a trials.csv or sweep.csv"):
     Raises Failure as read_csv() does, and if a trial of a seed is there twice.
     """
     runs = {}
-    for row in read_csv(path, dict(TRIAL_COLUMNS, seed=int), remedy, ("seed", "trial"), OLD_COLUMNS):
+    for row in read_csv(path, dict(TRIAL_COLUMNS, seed=int), remedy, ("seed", "trial")):
         runs.setdefault(row["seed"], []).append(trial_of(row))
     return runs
 

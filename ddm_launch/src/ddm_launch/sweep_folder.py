@@ -9,7 +9,6 @@ import yaml
 
 from ddm_launch.command import Failure
 from ddm_launch.folder_lock import FolderLock
-from ddm_launch.run_folder import in_todays_columns
 from ddm_launch.settings import differences, read_yaml
 from ddm_model.plain_file import remove_unfinished, write_file
 
@@ -131,7 +130,7 @@ class SweepFolder:
         path = os.path.join(self.seed_folder(seed), self.program.table)
         try:
             with open(path, newline="") as stream:
-                lines = in_todays_columns(stream.read().splitlines())
+                lines = stream.read().splitlines()
         except (OSError, UnicodeDecodeError) as error:
             raise Failure("%s cannot be read (%s): remove the folder, and the seed is run again" % (path, error))
         count = len(lines) - 1 if self.program.trials is None else self.program.trials + 1

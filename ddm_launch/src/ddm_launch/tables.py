@@ -30,18 +30,18 @@ def optional(kind):
     return lambda text: convert(text, kind) if (text or "").strip() else None
 
 
-def read_csv(path, columns, remedy=None, once=(), renamed=None):
+def read_csv(path, columns, remedy=None, once=()):
     """The rows of a CSV file as dictionaries.
 
     columns: those that must be there; as {name: kind} their cells are converted by kind: str, int, float (finite) or a
     function of the text that raises ValueError. remedy: what to do if the file is missing, unless it is a run's.
-    once: columns whose cells name a row. renamed: {name of a column in older files: today's}. Raises Failure if the file
-    is missing, lacks a column, has no row, names a row twice, or if a cell cannot be converted.
+    once: columns whose cells name a row. Raises Failure if the file is missing,
+    lacks a column, has no row, names a row twice, or if a cell cannot be converted.
     """
     try:
         with open(path, newline="") as stream:
             reader = csv.DictReader(stream)
-            header = reader.fieldnames = [(renamed or {}).get(name, name) for name in reader.fieldnames or []]
+            header = reader.fieldnames or []
             rows = list(reader)
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise unreadable(path, error, remedy)

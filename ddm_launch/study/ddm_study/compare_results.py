@@ -4,7 +4,6 @@ import csv
 import os
 
 from ddm_launch.command import Failure, program_parser, run_program
-from ddm_launch.run_folder import LATER_COLUMNS, OLD_COLUMNS
 from ddm_launch.settings import read_yaml
 from ddm_launch.tables import read_csv
 
@@ -20,9 +19,9 @@ MAY_DIFFER = {"version", "train_s", "wall_s", "plan_ms_median", "plan_ms_p99", "
 
 
 def header_of(path):
-    """Its columns, as they are named today."""
+    """Its columns."""
     with open(path, newline="") as stream:
-        return [OLD_COLUMNS.get(name, name) for name in next(csv.reader(stream), [])]
+        return next(csv.reader(stream), [])
 
 
 def tables(committed, again):
@@ -41,13 +40,13 @@ def tables(committed, again):
 def compare(committed, again):
     """(number of rows, what differs first or None) of one table that was made again for some seeds."""
     old_columns, new_columns = (set(header_of(path)) - MAY_DIFFER for path in (committed, again))
-    in_one = (old_columns ^ new_columns) - set(LATER_COLUMNS)
+    in_one = old_columns ^ new_columns
     if in_one:
         return 0, "only one of the two files has the columns %s" % ", ".join(sorted(in_one))
     columns = [name for name in header_of(again) if name in old_columns & new_columns]
-    rows = read_csv(again, columns, renamed=OLD_COLUMNS)
+    rows = read_csv(again, columns)
     seeds = {row["seed"] for row in rows}
-    due = [row for row in read_csv(committed, columns, renamed=OLD_COLUMNS) if row["seed"] in seeds]
+    due = [row for row in read_csv(committed, columns) if row["seed"] in seeds]
     if len(due) != len(rows):
         return len(rows), "%d rows of these seeds are committed, and %d were made" % (len(due), len(rows))
     for number, (old, new) in enumerate(zip(due, rows), 1):

@@ -13,7 +13,7 @@ from tqdm import tqdm
 import yaml
 
 from ddm_launch.command import Failure, Interrupted, distribution, find_program, package_path, processor, run_program
-from ddm_launch.run_folder import in_todays_columns, is_finished, num_finished
+from ddm_launch.run_folder import is_finished, num_finished
 from ddm_launch.settings import differences, read_yaml
 from ddm_model.plain_file import write_file
 
@@ -244,7 +244,7 @@ class StepRunner:
             path = os.path.join(folder, "trials.csv")
             if os.path.exists(path):
                 with open(path) as stream:
-                    header, *rows = in_todays_columns(stream.read().splitlines())
+                    header, *rows = stream.read().splitlines()
                 lines += rows if lines else [header] + rows
         if lines:
             os.makedirs(os.path.dirname(table), exist_ok=True)

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "ddm_params/home.h"
-#include "ddm_params/renamed_keys.h"
 #include "ddm_params/yaml_text.h"
 
 namespace ddm {
@@ -74,7 +73,7 @@ void resolvePaths(const std::filesystem::path& folder, YAML::Node value) {
 }  // namespace
 
 YAML::Node readBlocks(const std::string& path) {
-  const YAML::Node blocks = withTodaysKeys(parseBlocks(readText(path), path));
+  const YAML::Node blocks = parseBlocks(readText(path), path);
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
   for (const auto& [block, key] : kFileKeys) {
     if (hasKey(blocks, block, key)) resolvePaths(folder, blocks[block][key]);

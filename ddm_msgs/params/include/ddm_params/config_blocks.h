@@ -8,8 +8,7 @@
 
 namespace ddm {
 
-/// The blocks of a configuration file by name, with today's keys, see withTodaysKeys(); an empty
-/// map if the file holds only comments. Relative paths of files that it names (model file, background
+/// The blocks of a configuration file by name; an empty map if the file holds only comments. Relative paths of files that it names (model file, background
 /// and goal pictures, bags, plant file) start at its folder, and are returned as absolute ones.
 ///
 /// @throws std::runtime_error with the path if the file cannot be read
