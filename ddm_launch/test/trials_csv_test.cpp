@@ -155,11 +155,6 @@ TEST(TrialsCsv, AFileThatIsCutShortIsRefused) {
   EXPECT_TRUE(throwsNaming<std::runtime_error>(
       [&] { parseTrialsCsv(text.substr(0, text.size() - 1), "trials.csv"); },
       {"trials.csv, line 3", "no end"}));
-  for (const std::string old : {kInDegrees, kWithoutVersions}) {
-    EXPECT_TRUE(throwsNaming<std::runtime_error>(
-        [&] { parseTrialsCsv(old.substr(0, old.size() - 1), "trials.csv"); },
-        {"trials.csv, line 3"}));
-  }
 }
 
 }  // namespace
