@@ -216,7 +216,7 @@ class Publishers {
       texts[kMostNamed] = std::to_string(texts.size() - kMostNamed) + " more";
       texts.resize(kMostNamed + 1);
     }
-    const std::string text = what + " of " + boost::algorithm::join(texts, " and ");
+    const std::string text = what + boost::algorithm::join(texts, " and ");
     if (overlap) throw std::runtime_error(text + ": " + remedy);
     return named.size() > 1 ? text + ", one after the other: all of them count" : "";
   }
@@ -322,9 +322,9 @@ BagContent readBagBytes(std::istream* in, int image_size, const BagOptions& opti
                   " have no effort or number of the motors and do not count");
   }
   for (const std::string& note :
-       {publishers.requireOneAtATime("topic " + torques.name + " has torques",
+       {publishers.requireOneAtATime("topic " + torques.name + " has torques of ",
                                      "record the one that moves the motor"),
-        cameras.requireOneAtATime("topic " + images.name + " has images",
+        cameras.requireOneAtATime("topic " + images.name + " has images of ",
                                   "record each camera on a topic of its own")}) {
     if (!note.empty()) messages.note(note);
   }
