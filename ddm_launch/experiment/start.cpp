@@ -31,7 +31,8 @@ void identify(std::string* path, std::string* id) {
 }
 
 /// A bag must have been recorded on such a plant or robot, whose images come at the model's size.
-void requireFits(const std::string& path, const Configuration& configuration, const Plant& plant) {
+void requireFits(const std::string& path, const Configuration& configuration, const Plant& plant,
+                 DifferentFrames* different) {
   const bool robot = configuration.robot.has_value();
   const int size = configuration.model.image.size;
   const Picture picture = robot ? Picture{size, size, 1, {}, {}} : plant.render(plant.state());
@@ -53,6 +54,7 @@ void requireFits(const std::string& path, const Configuration& configuration, co
   require(fits, "images", bag.camera, camera);
   const bool same_rate = bag.interval == 0.0 || std::abs(bag.interval - dt) <= kRateTolerance * dt;
   require(same_rate, "seconds between frames (dt)", bag.interval, dt);
+  different->require(path, bag);
   for (const std::string& note : bag.notes) {
     std::cerr << "warning: bag " << path << ": " << note << "\n";
   }
@@ -105,9 +107,10 @@ void prepareStart(Configuration* configuration) {
         "start/bag_ids must have one entry for each of start/bags, or none");
   }
   requireDifferentBags(start.bags);
+  DifferentFrames different;
   for (size_t i = 0; i < start.bags.size(); ++i) {
     identify(&start.bags[i], &start.bag_ids[i]);
-    requireFits(start.bags[i], *configuration, *plant);
+    requireFits(start.bags[i], *configuration, *plant, &different);
   }
 }
 

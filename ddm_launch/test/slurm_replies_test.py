@@ -57,7 +57,8 @@ class SlurmRepliesTest(ScratchCase):
 
     def test_the_number_is_found_among_the_lines_of_a_site(self):
         for reply in ("Welcome\\n--> 2 allocations: ok\\n4711\\n", "4711\\nPlease acknowledge us in 2026\\n",
-                      "sbatch: warning\\n 4711\\r\\n\\n", "12\\n4711\\n"):
+                      "sbatch: warning\\n 4711\\r\\n\\n", "12\\n4711\\n",
+                      "4711\\nYour quota [h]:\\n37\\n", "Your job:\\n4711\\n"):
             self.answer("sbatch", "echo a warning >&2; printf '%s'" % reply)
             self.answer("squeue", QUEUED)
             process = self.startAndWatch()
@@ -101,13 +102,27 @@ class SlurmRepliesTest(ScratchCase):
             asked = len(self.calls("squeue"))
             wait_for(lambda: len(self.calls("squeue")) > asked + 1, "more questions")
             self.assertTrue(process.isRunning())
-            self.answer("squeue", "echo Have a nice day; echo COMPLETED; echo CANCELLED")
+            self.answer("squeue", "echo NOTICE; echo MAINTENANCE; echo COMPLETED; echo CANCELLED")
             self.assertEnds(1, process, ["0 of 2 seeds finished"])
 
     def test_a_job_without_a_number_may_be_running(self):
-        for reply in ("echo Welcome", "echo 'error: Socket timed out on send/recv operation' >&2; exit 1"):
+        replies = [("echo Welcome", "Welcome"), ("kill -9 $$", "said nothing"), ("echo 4711; exit 1", "4711")]
+        for lost in ("Socket timed out on send/recv operation", "Zero Bytes were transmitted or received",
+                     "Unexpected message received", "Connection reset by peer", "Message receive failure",
+                     "Transport endpoint is not connected"):
+            replies.append(("echo 'sbatch: error: Batch job submission failed: %s' >&2; exit 1" % lost, lost))
+        for reply, said in replies:
             self.answer("sbatch", reply)
-            self.assertEnds(1, self.start(), ["may be running", "squeue --me", "Welcome" if "W" in reply else "timed out"])
+            self.assertEnds(1, self.start(), ["may be running", "squeue --me", said])
+
+    def test_a_task_that_lost_its_node_may_be_queued_again(self):
+        process = self.startAndWatch()
+        self.answer("squeue", "echo PREEMPTED; echo NODE_FAIL")
+        asked = len(self.calls("squeue"))
+        wait_for(lambda: len(self.calls("squeue")) > asked + 2, "more questions")
+        self.assertTrue(process.isRunning())
+        self.answer("squeue", FORGOTTEN)
+        self.assertEnds(1, process, ["0 of 2 seeds finished"])
 
     def test_another_engine_is_refused_while_a_job_may_be_running(self):
         process = self.startAndWatch()

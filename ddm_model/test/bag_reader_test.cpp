@@ -98,6 +98,31 @@ TEST_F(BagReader, AnImageWithoutTorqueSplitsTheTrial) {
   EXPECT_EQ(segmentSizes(), (Sizes{4, 5}));
   EXPECT_EQ(read().images_without_torque.size(), 1u);
   EXPECT_EQ(read().torques_without_image.size(), 1u);
+  EXPECT_TRUE(read().notes.empty());
+}
+
+TEST_F(BagReader, WhatHasNoPartnerIsToldOfBagsThatOthersRecorded) {
+  {
+    ToyBag bag(path_);
+    for (int t = 0; t < 10; ++t) {
+      const double stamp = 1.0 + 0.2 * t;
+      bag.image(stamp + 0.01, imageMessage(stamp, toyImage(0.1 * t)));
+      if (t != 4) bag.torque(stamp, {1.0});
+    }
+    bag.torque(50.0, {1.0});
+  }
+  const std::vector<std::string> notes = read().notes;
+  ASSERT_EQ(notes.size(), 2U);
+  EXPECT_TRUE(testing::names(notes[0], {"1 of 10 images", "1 of 10 torques", "stamp each"}));
+  EXPECT_TRUE(testing::names(notes[1], {"at 1 place(s)", "after 1.6", "2 segments"}));
+}
+
+TEST_F(BagReader, AClockThatLeapsFarSplitsTheTrial) {
+  {
+    ToyBag bag(path_);
+    for (double stamp : {1.0, 1.2, 1.4, 3e9, 3e9 + 0.2}) bag.frame(stamp, 0.1, 1.0);
+  }
+  EXPECT_EQ(segmentSizes(), (Sizes{3, 2}));
 }
 
 TEST_F(BagReader, ATorqueWithoutANumberIsNone) {

@@ -14,9 +14,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
+#include "ddm_bag_io/bag_cache.h"
 #include "ddm_bag_io/bag_reader.h"
 #include "ddm_files/plain_file.h"
 #include "ddm_msgs/testing/expect_error.h"
@@ -304,6 +306,30 @@ TEST_F(OtherBags, WhereTheCameraClockCannotBeTrustedRecordingTimesCount) {
       "two clocks", [](int k) { return 500.0 + kDt * k; }, /*stamped=*/true);
 }
 
+TEST_F(OtherBags, WhereTheTorqueClockCannotBeTrustedRecordingTimesCount) {
+  const auto expectPairs = [this](const char* what, const auto& stampOf) {
+    bag_ = std::make_unique<rosbag::Bag>(path_, rosbag::bagmode::Write);
+    writeImagePerFrame([](int k) { return kBegin + kDt * k; });
+    int frame = 0;
+    writeTorquePerFrame([&](double time, double u) {
+      auto message = jointsOf({"arm"}, {u});
+      message.header.stamp = ros::Time(stampOf(frame++, time));
+      return message;
+    });
+    close();
+    const BagContent content = read();
+    ASSERT_EQ(content.data.numFrames(), kFrames) << what;
+    for (int k = 0; k < kFrames; ++k) {
+      EXPECT_EQ(content.data.torques()(0, k), torqueOf(k)) << what << k;
+    }
+    EXPECT_TRUE(notes({what, "recorded count instead"}));
+  };
+  expectPairs("stamps leap", [](int k, double time) { return time + (k < 9 ? 0.0 : 100.0); });
+  expectPairs("go back from 10.8", [](int k, double time) { return time - (k < 9 ? 0.0 : 0.5); });
+  expectPairs("stand still at 10.5", [](int k, double time) { return k < 5 ? time : 10.5; });
+  expectPairs("stand still at 10.0", [](int k, double time) { return k < 19 ? 10.0 : time; });
+}
+
 TEST_F(OtherBags, StampsOfTwoClocksThatOverlapAreReported) {
   writeImagePerFrame([](int k) { return kBegin + kDt * k - 0.7; });
   writeTorquePerFrame([](double time, double u) {
@@ -362,6 +388,7 @@ TEST_F(OtherBags, ADroppedImageIsReplacedByItsNeighbourOrSplitsTheBag) {
   EXPECT_EQ(content.data.image(7), toyImage(angleOf(27)));
   EXPECT_DOUBLE_EQ(content.data.torques()(0, 7), torqueOf(9));
   EXPECT_EQ(content.data.numFrames(), kFrames - 2);
+  EXPECT_TRUE(notes({"at 1 place(s)", "after 10.6", "2 segments"}));
 }
 
 TEST_F(OtherBags, ATorqueThatIsSaidOnceHoldsUntilTheNext) {
@@ -400,6 +427,86 @@ TEST_F(OtherBags, TorquesBeforeTheFirstImageAreCounted) {
   expectAllFrames();
 }
 
+TEST_F(OtherBags, ATorqueFromBeforeTheFirstImageHolds) {
+  writeImages();
+  write("command", kBegin - 3.0, floatOf(2.5));
+  close();
+  const BagContent content = read();
+  ASSERT_EQ(content.data.numFrames(), kFrames);
+  EXPECT_EQ(content.data.torques()(0, 0), 2.5);
+  EXPECT_TRUE(notes({"20 of 20 frames", "at most 5 s"}));
+}
+
+TEST_F(OtherBags, AFewImagesThatTheRecorderGotLateMoveNoTorque) {
+  for (int k = 0; k < kFrames; ++k) {
+    const double time = kBegin + kDt * k;
+    write("camera/image_raw", time + (k % 5 == 2 ? 0.09 : 0.0),
+          imageMessage(time, toyImage(0.1 * k)));
+  }
+  writeTorquePerFrame([](double, double u) { return floatOf(u); });
+  close();
+  const BagContent content = read();
+  ASSERT_EQ(content.data.numFrames(), kFrames);
+  for (int k = 0; k < kFrames; ++k) EXPECT_EQ(content.data.torques()(0, k), torqueOf(k)) << k;
+  EXPECT_TRUE(content.notes.empty());
+}
+
+TEST_F(OtherBags, NumbersThatSayNothingAreReported) {
+  writeImages();
+  writeTorques([](double, double) { return floatOf(0.0); });
+  close();
+  EXPECT_TRUE(notes({"all its torques are 0"}));
+  bag_ = std::make_unique<rosbag::Bag>(path_, rosbag::bagmode::Write);
+  writeImages();
+  int number = 0;
+  writeTorques([&number](double, double u) {
+    std_msgs::Float64MultiArray message;
+    if (number++ % 2 == 0) message.data = {u};
+    return message;
+  });
+  close();
+  EXPECT_TRUE(notes({"topic command", "50 messages of /recorded", "no effort or number"}));
+}
+
+TEST_F(OtherBags, MessagesThatWereRecordedAtOneTimeAreRefused) {
+  for (int k = 0; k < kFrames; ++k) {
+    write("camera/image_raw", kBegin, imageMessage(kBegin + kDt * k, toyImage(angleOf(k))));
+    write("command", kBegin, floatOf(torqueOf(k)));
+  }
+  close();
+  EXPECT_TRUE(isRefused({"recorded at 10.0", "written again", "times of the original"}));
+}
+
+TEST_F(OtherBags, ARecordingCountsOnce) {
+  writeImages();
+  writeFloats();
+  close();
+  const std::string copy = folder_.file("copy.bag");
+  std::filesystem::copy_file(path_, copy);
+  const auto readBoth = [&] { BagCache(kToySize, options_).read({path_, copy}); };
+  EXPECT_TRUE(testing::throwsNaming<std::runtime_error>(
+      readBoth, {"bag " + copy, "20 of its 20 frames", path_, "count twice"}));
+}
+
+TEST_F(OtherBags, TwoCamerasAtOnceAreRefused) {
+  for (int k = 0; k < kFrames; ++k) {
+    const double time = kBegin + kDt * k;
+    write("camera/image_raw", time, imageMessage(time, toyImage(0.1)), k % 2 == 0 ? "/l" : "/r");
+  }
+  writeFloats();
+  close();
+  EXPECT_TRUE(isRefused({"camera/image_raw has images of /l (10", "/r (10", "topic of its own"}));
+}
+
+TEST_F(OtherBags, OfManyPublishersTwoAreNamed) {
+  writeImages();
+  for (int k = 0; k < kFrames; ++k) {
+    write("command", kBegin + kDt * k, floatOf(1.0), "/rostopic_" + std::to_string(k));
+  }
+  close();
+  EXPECT_TRUE(notes({"of /rostopic_0 (1 from", "/rostopic_1 (1 from", "and 18 more"}));
+}
+
 TEST_F(OtherBags, TwoControllersAtOnceAreRefused) {
   writeImages();
   for (int i = 0; i < 20; ++i) {
@@ -428,6 +535,10 @@ TEST_F(OtherBags, TheTimeBetweenFramesMustBeGivenAndSuitTheCamera) {
   EXPECT_TRUE(isRefused({"command", "std_msgs/Float64", "data_set/dt"}));
   options_.dt = 0.02;
   EXPECT_TRUE(isRefused({"0.0333", "data_set/dt = 0.02"}));
+  for (const double dt : {0.04, 0.05}) {  // frames too fast, and each image on its own
+    options_.dt = dt;
+    EXPECT_TRUE(isRefused({"every 0.0333 s", "data_set/dt = 0.0", "0.0333 or 0.0667"}));
+  }
   options_.dt = kDt / kImagesPerFrame;
   EXPECT_EQ(read().data.numFrames(), kFrames * kImagesPerFrame);
 }
@@ -448,7 +559,7 @@ TEST_F(OtherBags, CompressedImagesAreUnpacked) {
     const std::string bytes = readFile(picture);
     sensor_msgs::CompressedImage message;
     message.header.stamp = ros::Time(stamp);
-    message.format = suffix + 1;
+    message.format = stamp < kBegin + 0.5 ? suffix + 1 : "";  // drivers change what they call it
     message.data.assign(bytes.begin(), bytes.end());
     return message;
   };
@@ -517,6 +628,9 @@ TEST_F(OtherBags, TransportsOfAnImageTopicAreFoundByItsNameOrNamed) {
   writeFloats();
   close();
   EXPECT_TRUE(isRefused({"/robot/camera/image_raw/theora", "transport theora", "republish"}));
+  options_.image_topic = "/robot/camera/image_raw/theora";
+  EXPECT_TRUE(isRefused({"/robot/camera/image_raw/theora", "transport theora", "republish"}));
+  options_.image_topic = BagOptions().image_topic;
   bag_ = std::make_unique<rosbag::Bag>(path_, rosbag::bagmode::Write);
   write("/left/camera/image_raw", kBegin, imageMessage(kBegin, toyImage(0.0)));
   write("/right/camera/image_raw/compressed", kBegin, broken);

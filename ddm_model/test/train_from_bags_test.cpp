@@ -97,6 +97,10 @@ TEST_F(TrainFromBags, TakesTheLimitsOfItsMotorsFromTheRobotOrThePlantAndTellsWhi
             std::make_pair(Limits{2.0}, std::string("robot/max_torque")));
   EXPECT_EQ(limitAndKey("--config model.yaml --config robot.yaml"),
             std::make_pair(Limits{5.0}, std::string("model/max_torque")));
+  EXPECT_FALSE(contains(train("a.bag").err, "largest torque"));
+  EXPECT_TRUE(
+      testing::names(train("--set model/max_torque=0.01 a.bag").err,
+                     {"largest torque of motor 0", "limit is 0.01 N m (model/max_torque)"}));
   write("file.yaml",
         "plant: {type: mujoco, model: robot.xml}\n");  // which may know; this tool does not
   const Outcome outcome = train("--config file.yaml a.bag");

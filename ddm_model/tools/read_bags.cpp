@@ -93,10 +93,12 @@ void run(const Arguments& arguments) {
   ddm::requireDifferentBags(arguments.bags);
   const bool live = ::isatty(STDERR_FILENO) != 0;
   const std::size_t number = arguments.bags.size();
+  ddm::DifferentFrames different;
   for (std::size_t i = 0; i < number; ++i) {
     if (live) std::cerr << "\rbag " << i + 1 << " of " << number << (i + 1 == number ? "\n" : "");
     const std::string& bag = arguments.bags[i];
     const ddm::BagContent content = ddm::readBag(bag, arguments.image_size, topics);
+    different.require(bag, content);
     for (const std::string& note : content.notes) {
       std::cerr << (live ? "\n" : "") << "warning: bag " << bag << ": " << note << "\n";
     }

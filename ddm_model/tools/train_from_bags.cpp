@@ -15,6 +15,7 @@
 
 #include <boost/algorithm/string/join.hpp>
 #include <iostream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -106,6 +107,18 @@ void run(const Arguments& arguments) {
   ddm::DataSet data = ddm::BagCache(config.image.size, config.data_set, warn).read(arguments.bags);
   if (!arguments.goal.empty()) {
     data.setGoal(ddm::greyOf(ddm::readPicture(arguments.goal), config.image.size, config.data_set));
+  }
+  const Eigen::VectorXd limits =
+      ddm::perMotor(config.model.max_torque, data.torqueDim(), "model/max_torque");
+  Eigen::Index motor = 0;
+  const double excess =
+      (data.torques().cwiseAbs().rowwise().maxCoeff().array() / limits.array()).maxCoeff(&motor);
+  if (excess > 1.0) {
+    std::ostringstream text;
+    text << "the largest torque of motor " << motor << " in the bags is " << excess * limits(motor)
+         << " N m, its limit is " << limits(motor) << " N m (" << limits_from
+         << "): set model/max_torque to what the motor can do";
+    warn(text.str());
   }
   if (!data.hasGoal()) {
     std::cerr << "no --goal and no goal_image in the bags: the model can predict, but not be "

@@ -16,9 +16,14 @@ from ddm_model.plain_file import write_file
 END_LIMIT_S = 60.0  # Slurm itself kills what does not end by KillWait, 30 s by default
 ANSWER_LIMIT_S = 300.0  # the commands of Slurm give up by themselves before that
 
-# States of tasks that have ended. squeue lists such tasks only briefly, or never.
-ENDED = {"BOOT_FAIL", "CANCELLED", "COMPLETED", "DEADLINE", "FAILED", "NODE_FAIL", "OUT_OF_MEMORY", "PREEMPTED", "REVOKED",
-         "TIMEOUT"}
+# States of tasks that have not ended. One that lost its node or its place may be queued again.
+ALIVE = {"BOOT_FAIL", "COMPLETING", "CONFIGURING", "LAUNCH_FAILED", "NODE_FAIL", "PENDING", "POWER_UP_NODE", "PREEMPTED",
+         "RECONFIG_FAIL", "REQUEUED", "REQUEUE_FED", "REQUEUE_HOLD", "RESIZING", "RESV_DEL_HOLD", "RUNNING", "SIGNALING",
+         "SPECIAL_EXIT", "STAGE_OUT", "STOPPED", "SUSPENDED", "UPDATE_DB"}
+
+# What sbatch says when it has sent the job array and not heard the answer.
+LOST_ANSWERS = ("timed out", "zero bytes were transmitted", "unexpected message", "connection reset",
+                "message receive failure", "endpoint is not connected")
 
 
 def index_ranges(seeds):
@@ -74,7 +79,7 @@ class Job(collections.namedtuple("Job", "number cluster ranges")):
                                                   "--format", "%T"))
         # the name of the cluster or a site's banner may surround the states
         lines = [line.strip() for line in output.splitlines()]
-        states = collections.Counter(line for line in lines if re.match(r"[A-Z_]+$", line) and line not in ENDED)
+        states = collections.Counter(line for line in lines if line in ALIVE)
         failed = code != 0 or (not states and "error" in error.lower())
         if failed and "invalid job id" not in (output + error).lower():  # that one Slurm has forgotten after its end
             return None, error or output.strip() or "squeue ended with code %d" % code
@@ -139,15 +144,17 @@ class SlurmArray:
         code, output, error = call("sbatch", "--parsable", "--array", array, "--job-name", "ddm_sweep",
                                    "--ntasks", "1", "--cpus-per-task", "1", "--output", log, "--open-mode", "append",
                                    folder.script)
-        # a site may print lines before and after the one of --parsable
-        found = re.findall(r"^[ \t]*(\d+)(?:;(\S*))?[ \t\r]*$", output, re.MULTILINE)
+        # a site may print lines before and after the one of --parsable, also numbers below what they mean
+        number = r"^[ \t]*(\d+)(?:;(\S*))?[ \t\r]*$"
+        found = re.findall(r"(?<!:\n)" + number, output, re.MULTILINE) or re.findall(number, output, re.MULTILINE)
         if code == 0 and found:
             return Job(*found[-1], ranges)
         said = "\n".join(text for text in (output.strip(), error) if text) or "it said nothing"
-        if code == 0 or "timed out" in said:
-            raise Failure("sbatch has not told the number of the job array %s, which may be running: %s\nRemedy: look for "
-                          "the array with 'squeue --me --name ddm_sweep'. If it is there, cancel it with scancel before "
-                          "the next sweep in this folder." % (array, said))
+        killed = code < 0 or code > 128
+        if code == 0 or killed or found or any(text in said.lower() for text in LOST_ANSWERS):
+            raise Failure("sbatch has not made clear whether it took the job array %s, which may be running: %s\n"
+                          "Remedy: look for the array with 'squeue --me --name ddm_sweep'. If it is there, cancel it with "
+                          "scancel before the next sweep in this folder." % (array, said))
         raise Failure("sbatch refused the job array %s: %s\nRemedy: set what your cluster wants in the "
                          "variables that sbatch reads (SBATCH_PARTITION, ...). Seeds are indices of the array: "
                          "they must be less than MaxArraySize, see 'scontrol show config'." % (array, said))

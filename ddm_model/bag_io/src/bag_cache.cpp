@@ -42,6 +42,7 @@ DataSet BagCache::read(const std::vector<std::string>& paths, const KeepGoing& k
   const std::string camera = contentOf(paths.front()).camera;
   const int torque_dim = contentOf(paths.front()).data.torqueDim();
   DataSet data(image_size_, torque_dim);
+  DifferentFrames different;
   for (const std::string& path : paths) {
     if (&path != &paths.front() && keep_going && !keep_going()) {
       throw ReadingCancelled("reading bags was cancelled");
@@ -54,6 +55,7 @@ DataSet BagCache::read(const std::vector<std::string>& paths, const KeepGoing& k
                                paths.front() + " (" + camera + ", " + std::to_string(torque_dim) +
                                " torque(s)) are of different robots: train on one of them");
     }
+    different.require(path, content);
     data.append(content.data);
   }
   return data;

@@ -6,6 +6,8 @@
 #include <roslz4/lz4s.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/predicate.hpp>
+#include <boost/algorithm/string/trim.hpp>
 #include <cstring>
 #include <new>
 #include <sstream>
@@ -42,9 +44,12 @@ const OtherFormat kOtherFormats[] = {
                  6),
      "compressed as a whole (xz)", "unpack it with `unxz` or `tar xJf`"},
     {"\x28\xb5\x2f\xfd", "compressed as a whole (Zstandard)", "unpack it with `unzstd`"},
-    {"<!DOCTYPE", "a web page instead of the file", "download the file itself"},
-    {"<html", "a web page instead of the file", "download the file itself"}};
-constexpr std::uint32_t kLongestMagic = 32;
+    {"7z\xbc\xaf\x27\x1c", "a 7-Zip archive", "unpack it with `7z x`"},
+    {"Rar!\x1a\x07", "a RAR archive", "unpack it with `unrar x`"}};
+constexpr const char* kWebPages[] = {"<!doctype", "<html", "<?xml"};  // behind blanks, in any case
+constexpr char kTar[] = "ustar";
+constexpr std::size_t kTarAt = 257;
+constexpr std::uint32_t kLongestMagic = kTarAt + sizeof(kTar) - 1;
 
 enum class Kind : std::uint8_t {
   kMessage = 2,
@@ -62,11 +67,22 @@ struct Damage : std::runtime_error {
 
 [[noreturn]] void refuse(const std::string& what) { throw Damage(what + kRemedy); }
 
+[[noreturn]] void refuseFormat(const std::string& what, const std::string& remedy) {
+  throw std::runtime_error("is " + what + "; only bags of format 2.0 (ROS 1) are read: " + remedy);
+}
+
 void requireBag(const std::string& front) {
   for (const OtherFormat& format : kOtherFormats) {
     if (front.compare(0, format.magic.size(), format.magic) != 0) continue;
-    throw std::runtime_error(std::string("is ") + format.what +
-                             "; only bags of format 2.0 (ROS 1) are read: " + format.remedy);
+    refuseFormat(format.what, format.remedy);
+  }
+  for (const char* begin : kWebPages) {
+    if (boost::algorithm::istarts_with(boost::algorithm::trim_left_copy(front), begin)) {
+      refuseFormat("a web page instead of the file", "download the file itself");
+    }
+  }
+  if (front.size() > kTarAt && front.compare(kTarAt, sizeof(kTar) - 1, kTar) == 0) {
+    refuseFormat("a tar archive", "unpack it with `tar xf`");
   }
   if (front.compare(0, sizeof(kMagic) - 1, kMagic) != 0) {
     refuse("does not begin as a bag of format 2.0");
@@ -230,7 +246,9 @@ std::string decompressChunk(const std::string& compression, const std::string& d
     throw Damage("not enough memory for its " + std::to_string(size) + " bytes (" + compression +
                  "): end other programs, then read it again");
   }
-  refuse("it has the compression '" + compression + "', known are none, lz4 and bz2");
+  throw Damage("it has the compression '" + compression +
+               "', known are none, lz4 and bz2: write the bag again with one of them, or copy it "
+               "again if it is damaged");
 }
 
 }  // namespace
@@ -290,7 +308,10 @@ void BagFile::readIndex(std::size_t num_connections, std::size_t num_chunks) {
         fields.refuseKind("in its index");
       }
     } catch (const Damage& e) {
-      if (complete()) break;  // something else follows the index
+      if (complete()) {  // something else follows the index
+        after_index_ = size_ - position;
+        break;
+      }
       throw std::runtime_error("record of the index at byte " + std::to_string(position) + ": " +
                                e.what());
     }

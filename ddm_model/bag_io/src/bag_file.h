@@ -45,6 +45,9 @@ class BagFile {
   /// By their numbers in the file.
   const std::map<std::uint32_t, BagConnection>& connections() const { return connections_; }
 
+  /// That no record of the index names.
+  std::uint64_t bytesAfterIndex() const { return after_index_; }
+
   /// Calls `take` with each message of these topics, in the order of the file. Chunks without any
   /// are not decompressed.
   void forEachMessage(const std::set<std::string>& topics, const TakeMessage& take);
@@ -59,6 +62,7 @@ class BagFile {
   std::istream* in_;
   std::uint64_t size_;                       // of the file
   std::uint64_t first_;                      // position where chunks may begin
+  std::uint64_t after_index_ = 0;            // bytes
   std::uint64_t index_;                      // position of the index, after the last chunk
   std::map<std::uint64_t, Numbers> chunks_;  // by their positions: what the index says is in them
   std::map<std::uint32_t, BagConnection> connections_;

@@ -17,7 +17,8 @@ Message parse(const BagMessage& message) {
   const BagConnection& connection = message.connection;
   if (connection.md5sum != ros::message_traits::md5sum<Message>()) {
     throw std::runtime_error("topic " + connection.topic +
-                             " was recorded with another definition of " + connection.type);
+                             " was recorded with another definition of " + connection.type +
+                             ": convert the bag with `rosbag fix`, or record it again");
   }
   try {
     return messageFromBytes<Message>(message.bytes.data(), message.bytes.size());

@@ -61,6 +61,17 @@ std::string baseOf(const std::string& topic) {
              : topic;
 }
 
+[[noreturn]] void refuseTransport(const Topic& topic) {
+  const std::size_t slash = topic.name.rfind('/');
+  const std::string base = absolute(topic.name.substr(0, slash));
+  const std::string transport = topic.name.substr(slash + 1);
+  throw std::runtime_error("topic " + topic.name + " has images of the transport " + transport +
+                           " (" + topic.type + "), which cannot be read: record " + base + " or " +
+                           base +
+                           "/compressed, or play the bag with `rosrun image_transport republish " +
+                           transport + " in:=" + base + " raw out:=/image_raw` and record that");
+}
+
 /// The recorded topic that `name` means: the one of this name, else one in some namespace; of an
 /// image, that name or its compressed form.
 Topic findTopic(const Connections& connections, const std::string& name, const Types& types,
@@ -89,6 +100,11 @@ Topic findTopic(const Connections& connections, const std::string& name, const T
   for (const auto& entry : connections) {
     const BagConnection& connection = entry.second;
     if (connection.topic != topic.name) continue;
+    for (const char* transport : {"/theora", "/compressedDepth"}) {
+      if (key == "image_topic" && boost::algorithm::ends_with(topic.name, transport)) {
+        refuseTransport({topic.name, connection.type});
+      }
+    }
     if (std::find(types.begin(), types.end(), connection.type) == types.end()) {
       throw std::runtime_error("topic " + topic.name + " has type " + connection.type +
                                ", it must be " + boost::algorithm::join(types, " or ") +
@@ -112,13 +128,9 @@ Topic requireTopic(const Connections& connections, const std::string& name, cons
     const std::string& other = entry.second.topic;
     topics.insert(other + " (" + entry.second.type + ")");
     const std::string base = absolute(other.substr(0, other.rfind('/')));
-    if (key != "image_topic" || !boost::algorithm::ends_with(base, absolute(name))) continue;
-    const std::string transport = other.substr(other.rfind('/') + 1);
-    throw std::runtime_error(
-        "topic " + other + " has images of the transport " + transport + " (" + entry.second.type +
-        "), which cannot be read: record " + base + " or " + base +
-        "/compressed, or play the bag with `rosrun image_transport republish " + transport +
-        " in:=" + base + " raw out:=/image_raw` and record that");
+    if (key == "image_topic" && boost::algorithm::ends_with(base, absolute(name))) {
+      refuseTransport({other, entry.second.type});
+    }
   }
   throw std::runtime_error("no topic " + name + " (it holds: " +
                            (topics.empty() ? "nothing" : boost::algorithm::join(topics, ", ")) +
@@ -168,7 +180,7 @@ void takeGoal(const BagMessage& message, TrialMessages* messages) {
   }
 }
 
-/// Who published torques, and when.
+/// Who published on a topic, and when.
 class Publishers {
  public:
   void take(const std::string& name, const ros::Time& time) {
@@ -183,7 +195,8 @@ class Publishers {
   /// latched messages.
   /// @return a note if there are several, one after the other; else empty
   /// @throws std::runtime_error if two published at the same time
-  std::string requireOneAtATime(const std::string& topic) const {
+  /// @param remedy  for two at the same time
+  std::string requireOneAtATime(const std::string& what, const std::string& remedy) const {
     std::vector<std::pair<std::string, Span>> named;
     std::vector<std::string> texts;
     for (const auto& entry : spans_) {
@@ -199,13 +212,17 @@ class Publishers {
                       std::to_string(span.last.toSec()) + " s)");
       overlap = overlap || (i > 0 && span.first <= named[i - 1].second.last);
     }
-    const std::string what =
-        "topic " + topic + " has torques of " + boost::algorithm::join(texts, " and ");
-    if (overlap) throw std::runtime_error(what + ": record the one that moves the motor");
-    return named.size() > 1 ? what + ", one after the other: all of them count" : "";
+    if (texts.size() > kMostNamed + 1) {
+      texts[kMostNamed] = std::to_string(texts.size() - kMostNamed) + " more";
+      texts.resize(kMostNamed + 1);
+    }
+    const std::string text = what + boost::algorithm::join(texts, " and ");
+    if (overlap) throw std::runtime_error(text + ": " + remedy);
+    return named.size() > 1 ? text + ", one after the other: all of them count" : "";
   }
 
  private:
+  static constexpr std::size_t kMostNamed = 2;
   struct Span {
     ros::Time first, last;
     std::size_t number;
@@ -280,9 +297,12 @@ BagContent readBagBytes(std::istream* in, int image_size, const BagOptions& opti
   }
   TrialMessages messages(image_size, options);
   TorqueReader reader(options.motors);
-  Publishers publishers;
+  Publishers publishers, cameras;
   bag.forEachMessage({images.name, torques.name}, [&](const BagMessage& message) {
-    if (message.connection.topic == images.name) return takeTimeOf(message, &messages);
+    if (message.connection.topic == images.name) {
+      cameras.take(message.connection.publisher, message.recorded);
+      return takeTimeOf(message, &messages);
+    }
     const std::optional<TimedTorque> torque = reader.read(message);
     if (!torque) return;
     messages.takeTorque(*torque);
@@ -293,15 +313,26 @@ BagContent readBagBytes(std::istream* in, int image_size, const BagOptions& opti
     throw std::runtime_error(
         "topic " + torques.name + " has no torque" +
         (options.motors.empty() ? "" : " of " + boost::algorithm::join(options.motors, " and ")) +
-        (without_effort.empty() ? "" : " (" + without_effort + " have no effort of them)") +
+        (without_effort.empty() ? ""
+                                : " (" + without_effort + " have no effort or number of them)") +
         ": leave this bag out, or set data_set/torque_topic and motors");
   }
   if (!without_effort.empty()) {
     messages.note("topic " + torques.name + ": " + without_effort +
-                  " have no effort of the motors and do not count");
+                  " have no effort or number of the motors and do not count");
   }
-  const std::string publisher_note = publishers.requireOneAtATime(torques.name);
-  if (!publisher_note.empty()) messages.note(publisher_note);
+  for (const std::string& note :
+       {publishers.requireOneAtATime("topic " + torques.name + " has torques of ",
+                                     "record the one that moves the motor"),
+        cameras.requireOneAtATime("topic " + images.name + " has images of ",
+                                  "record each camera on a topic of its own")}) {
+    if (!note.empty()) messages.note(note);
+  }
+  if (bag.bytesAfterIndex() > 0) {
+    messages.note(std::to_string(bag.bytesAfterIndex()) +
+                  " bytes follow its index and do not count: if they are another bag, give each in "
+                  "a file of its own");
+  }
   messages.pair(by_stamp ? 0.0 : options.dt);
   std::size_t number = 0;
   bag.forEachMessage({images.name, goal.name}, [&](const BagMessage& message) {
@@ -326,6 +357,9 @@ BagContent readBag(const std::string& path, int image_size, const BagOptions& op
         "1) are read: convert it with `rosbags-convert --src FOLDER --dst FILE.bag` (pip "
         "install rosbags)");
   }
+  if (std::filesystem::is_directory(path)) {
+    throw std::runtime_error("bag " + path + ": is a folder: name the bags in it");
+  }
   try {
     requirePlainFile(path);
     std::ifstream in(path, std::ios::binary);
@@ -347,6 +381,22 @@ void requireDifferentBags(const std::vector<std::string>& paths) {
     throw std::runtime_error("bag " + path + " is given twice" +
                              (before == path ? "" : ", also as " + before) +
                              ": it would count twice, so leave one of them out");
+  }
+}
+
+void DifferentFrames::require(const std::string& path, const BagContent& content) {
+  std::map<std::string, std::size_t> shared;  // by bag
+  for (const std::size_t id : content.frame_ids) {
+    const auto added = seen_.emplace(id, path);
+    if (!added.second && added.first->second != path) ++shared[added.first->second];
+  }
+  const std::size_t all = content.frame_ids.size();
+  for (const auto& entry : shared) {
+    if (10 * entry.second <= all) continue;
+    throw std::runtime_error("bag " + path + ": " + std::to_string(entry.second) + " of its " +
+                             std::to_string(all) + " frames are also in bag " + entry.first +
+                             ", with the same times: they would count twice, so leave one of the "
+                             "bags out, or split the recording without an overlap");
   }
 }
 

@@ -12,8 +12,9 @@
 namespace ddm {
 namespace {
 
-constexpr double kGap = 1.5;         // in median intervals
-constexpr double kTolerance = 0.25;  // of dt: how far an image may be from where it is due
+constexpr double kGap = 1.5;            // in median intervals
+constexpr double kTolerance = 0.25;     // of dt: how far an image may be from where it is due
+constexpr double kRateTolerance = 0.1;  // of dt: how far the usual interval may be from it
 
 bool isEarlier(const TimedTorque& a, const TimedTorque& b) { return a.time < b.time; }
 
@@ -28,7 +29,7 @@ std::vector<ros::Time> timesOf(const std::vector<Item>& items) {
 double medianInterval(const std::vector<ros::Time>& times) {
   std::vector<double> intervals;
   for (size_t i = 1; i < times.size(); ++i) {
-    intervals.push_back((times[i] - times[i - 1]).toSec());
+    intervals.push_back(secondsBetween(times[i - 1], times[i]));
   }
   if (intervals.empty()) return 0.0;
   // The lower of two middle ones: a gap only ever lengthens an interval.
@@ -43,7 +44,9 @@ std::size_t nearest(const std::vector<ros::Time>& times, const ros::Time& time) 
   const auto later = std::lower_bound(times.begin(), times.end(), time);
   const auto at = static_cast<std::size_t>(later - times.begin());
   if (at == 0) return at;
-  return later == times.end() || time - times[at - 1] < *later - time ? at - 1 : at;
+  return later == times.end() || secondsBetween(times[at - 1], time) < secondsBetween(time, *later)
+             ? at - 1
+             : at;
 }
 
 /// Positions of images dt apart; bool: whether a new segment begins.
@@ -55,7 +58,7 @@ std::vector<std::pair<std::size_t, bool>> pickImages(const std::vector<ros::Time
       const ros::Time due = times[picked.back().first] + ros::Duration(dt);
       const std::size_t candidate = nearest(times, due);
       if (candidate > picked.back().first &&
-          std::abs((times[candidate] - due).toSec()) <= kTolerance * dt) {
+          std::abs(secondsBetween(due, times[candidate])) <= kTolerance * dt) {
         picked.emplace_back(candidate, false);
         image = candidate + 1;
         continue;
@@ -70,6 +73,28 @@ std::vector<std::pair<std::size_t, bool>> pickImages(const std::vector<ros::Time
   return picked;
 }
 
+/// The images of a camera whose rate does not fit dt are each where the one before lets them be due,
+/// so that frames come at another rate, or one by one.
+void requireRate(const Pairs& pairs, double apart, double dt) {
+  const auto& frames = pairs.frames;
+  std::size_t num_alone = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const bool last = i + 1 == frames.size() || frames[i + 1].new_segment;
+    num_alone += frames[i].new_segment && last ? 1 : 0;
+  }
+  const double interval = pairs.interval();
+  const bool fits =
+      std::abs(interval - dt) <= kRateTolerance * dt && 4 * num_alone <= frames.size();
+  if (fits || frames.size() < 2 || apart <= 0.0) return;
+  const double multiple = std::max(1.0, std::floor(dt / apart));
+  std::ostringstream text;
+  text.precision(3);
+  text << "its images come every " << apart << " s, which does not fit data_set/dt = " << dt
+       << ": set it (--dt) to a multiple, such as " << multiple * apart << " or "
+       << (multiple + 1.0) * apart;
+  throw std::runtime_error(text.str());
+}
+
 }  // namespace
 
 double Pairs::interval() const { return medianInterval(timesOf(frames)); }
@@ -79,8 +104,11 @@ Pairs pairByStamp(const std::vector<TimedImage>& images, std::vector<TimedTorque
   std::stable_sort(torques.begin(), torques.end(), byStamp);
   for (size_t i = 1; i < torques.size(); ++i) {
     if (torques[i].stamp == torques[i - 1].stamp && torques[i].torque != torques[i - 1].torque) {
-      throw std::runtime_error("two different torques have the stamp " +
-                               std::to_string(torques[i].stamp.toSec()) + " s");
+      throw std::runtime_error(
+          "two different torques of data_set/torque_topic have the stamp " +
+          std::to_string(torques[i].stamp.toSec()) +
+          " s: stamp each with the image it answers, and record each run of a simulation, whose "
+          "time begins anew, in a bag of its own");
     }
   }
   const auto isSame = [](const TimedTorque& a, const TimedTorque& b) { return a.stamp == b.stamp; };
@@ -98,8 +126,11 @@ Pairs pairByStamp(const std::vector<TimedImage>& images, std::vector<TimedTorque
     }
     auto is_paired = paired[static_cast<std::size_t>(torque - torques.begin())];
     if (is_paired) {
-      throw std::runtime_error("two different images have the stamp " +
-                               std::to_string(image.stamp.toSec()) + " s");
+      throw std::runtime_error(
+          "two different images of data_set/image_topic have the stamp " +
+          std::to_string(image.stamp.toSec()) +
+          " s: let the camera stamp each image anew, and record each run of a simulation, whose "
+          "time begins anew, in a bag of its own");
     }
     is_paired = true;
     pairs.frames.push_back({image.number, image.time, torque->torque, new_segment});
@@ -110,7 +141,7 @@ Pairs pairByStamp(const std::vector<TimedImage>& images, std::vector<TimedTorque
   }
   const double gap = kGap * pairs.interval();
   for (size_t i = 1; i < pairs.frames.size(); ++i) {
-    const double interval = (pairs.frames[i].time - pairs.frames[i - 1].time).toSec();
+    const double interval = secondsBetween(pairs.frames[i - 1].time, pairs.frames[i].time);
     pairs.frames[i].new_segment = pairs.frames[i].new_segment || interval > gap;
   }
   return pairs;
@@ -144,7 +175,7 @@ Pairs pairInTime(const std::vector<TimedImage>& images, std::vector<TimedTorque>
       continue;
     }
     const auto last = static_cast<size_t>(after - times.begin()) - 1;
-    const double age = (end - times[last]).toSec();
+    const double age = secondsBetween(times[last], end);
     pairs.num_held += age > pairs.usual_age ? 1 : 0;
     pairs.longest_held = std::max(pairs.longest_held, age);
     for (; next_torque < times.size() && times[next_torque] < image.act; ++next_torque) {
@@ -157,6 +188,7 @@ Pairs pairInTime(const std::vector<TimedImage>& images, std::vector<TimedTorque>
   pairs.torques_without_image.insert(pairs.torques_without_image.end(),
                                      times.begin() + static_cast<std::ptrdiff_t>(next_torque),
                                      times.end());
+  requireRate(pairs, apart, dt);
   return pairs;
 }
 

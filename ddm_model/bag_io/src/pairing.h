@@ -5,9 +5,18 @@
 #include <ros/time.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace ddm {
+
+/// [s], may be negative. A difference of ros::Time throws where clocks are 68 years apart.
+inline double secondsBetween(const ros::Time& from, const ros::Time& to) {
+  const std::int64_t seconds = std::int64_t{to.sec} - from.sec - (to.nsec < from.nsec ? 1 : 0);
+  const std::int64_t rest =
+      std::int64_t{to.nsec} - from.nsec + (to.nsec < from.nsec ? 1000000000 : 0);
+  return static_cast<double>(seconds) + 1e-9 * static_cast<double>(rest);
+}
 
 /// An image of a bag.
 struct TimedImage {
@@ -54,7 +63,7 @@ Pairs pairByStamp(const std::vector<TimedImage>& images, std::vector<TimedTorque
 /// segment begins where an image is missing.
 /// @param images  by their times
 /// @param dt      [s], > 0
-/// @throws std::runtime_error if images are farther apart than that
+/// @throws std::runtime_error if images do not come at a multiple of dt
 Pairs pairInTime(const std::vector<TimedImage>& images, std::vector<TimedTorque> torques,
                  double dt);
 

@@ -116,7 +116,10 @@ std::optional<TimedTorque> TorqueReader::read(const BagMessage& message) {
     out.stamp = torque.header.stamp;  // that of the image, even if it is 0
     out.torque = torque.torque;       // empty: applied_torque says so where none acted in time
   }
-  if (out.torque.empty()) return std::nullopt;
+  if (out.torque.empty()) {
+    if (connection.type != "ddm_msgs/Torque") ++without_effort_[connection.publisher];
+    return std::nullopt;
+  }
   const std::string time =
       std::to_string((out.stamp.isZero() ? out.recorded : out.stamp).toSec()) + " s";
   for (const double value : out.torque) {
@@ -127,8 +130,10 @@ std::optional<TimedTorque> TorqueReader::read(const BagMessage& message) {
   }
   if (dim_ == 0) dim_ = out.torque.size();
   if (out.torque.size() != dim_) {
-    throw std::runtime_error("the torque at " + time + " has " + std::to_string(out.torque.size()) +
-                             " value(s) where " + std::to_string(dim_) + " are due");
+    throw std::runtime_error("the torque of topic " + connection.topic + " at " + time + " has " +
+                             std::to_string(out.torque.size()) + " value(s) where " +
+                             std::to_string(dim_) +
+                             " are due: give each robot a topic, or leave this bag out");
   }
   return out;
 }

@@ -56,11 +56,13 @@ class TrialMessages {
   std::string clockFault(const std::vector<std::size_t>& order, bool by_stamp) const;
   std::string torqueClockFault() const;
   void pairByClocks(double dt, const std::vector<std::size_t>& order);
+  void noteGaps();
 
   int image_size_;
   BagOptions options_;
   std::vector<Image> all_images_;
   std::vector<TimedTorque> torques_;  // all
+  bool of_others_ = false;            // not recorded by this project
   double lag_ = 0.0;                  // of the torques' clock behind that of the images [s]
   Pairs pairs_;
   std::map<std::size_t, std::size_t> frame_of_;  // by the number of the image

@@ -81,7 +81,8 @@ std::string checkedEncoding(const sensor_msgs::Image& image) {
   if (found == acceptedEncodings().end()) {
     std::string known;
     for (const auto& entry : acceptedEncodings()) known += " " + entry.first;
-    refuse("unknown encoding '" + image.encoding + "', known are" + known);
+    refuse("unknown encoding '" + image.encoding + "', known are" + known +
+           ": record one of them, for instance with image_proc");
   }
   if (image.width < 1 || image.height < 1 || image.width > kMaxSize || image.height > kMaxSize) {
     refuse("width and height must lie in [1, " + std::to_string(kMaxSize) + "], got " +
@@ -142,17 +143,16 @@ cv::Mat greyImage(const sensor_msgs::Image& image, const std::string& encoding) 
   if (image.is_bigendian && depthBytes(encoding) > 1) {
     return greyImage(littleEndian(image, encoding), encoding);
   }
+  // The view shares the caller's bytes and does not outlive this function. OpenCV has none of
+  // constant pixels; they are only read.
+  const int type = isYuv422(encoding) ? CV_8UC2 : cv_bridge::getCvType(encoding);
+  const cv::Mat pixels(static_cast<int>(image.height), static_cast<int>(image.width), type,
+                       const_cast<std::uint8_t*>(image.data.data()), image.step);
   if (isYuv422(encoding)) {
-    // OpenCV has no view of constant pixels; they are only read.
-    auto* const bytes = const_cast<std::uint8_t*>(image.data.data());
-    const cv::Mat pixels(static_cast<int>(image.height), static_cast<int>(image.width), CV_8UC2,
-                         bytes, image.step);
     cv::Mat luma;
     cv::extractChannel(pixels, luma, encoding == kLumaFirst ? 0 : 1);
     return luma;
   }
-  // The view shares the caller's bytes and does not outlive this function.
-  const cv::Mat pixels = cv_bridge::toCvShare(image, boost::shared_ptr<void const>())->image;
   if (pixels.depth() == CV_32F || pixels.depth() == CV_64F) {
     if (pixels.depth() == CV_32F) requireUnitRange<float>(pixels);
     if (pixels.depth() == CV_64F) requireUnitRange<double>(pixels);

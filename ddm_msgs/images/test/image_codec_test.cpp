@@ -133,7 +133,8 @@ TEST(ImageCodec, WeighsTheColoursOfEveryEightBitLayout) {
   const Bytes red_is_76(4, 76);  // 0.299 * 255
   const std::vector<std::pair<std::string, Bytes>> red = {
       {"rgb8", {255, 0, 0}},      {"bgr8", {0, 0, 255}},      {"8UC3", {0, 0, 255}},
-      {"rgba8", {255, 0, 0, 13}}, {"bgra8", {0, 0, 255, 13}}, {"8UC4", {0, 0, 255, 13}}};
+      {"rgba8", {255, 0, 0, 13}}, {"bgra8", {0, 0, 255, 13}}, {"8UC4", {0, 0, 255, 13}},
+      {"RGB8", {255, 0, 0}},      {"BGR8", {0, 0, 255}}};
   for (const auto& layout : red) {
     EXPECT_EQ(decodeImage(makeUniform(layout.first, 2, 2, layout.second), 2), red_is_76)
         << layout.first;
@@ -155,7 +156,7 @@ TEST(ImageCodec, WeighsTheColoursOfEverySixteenBitLayout) {
 
 TEST(ImageCodec, DividesSixteenBitGreyBy257) {
   const std::vector<std::uint16_t> values = {0, 257 * 100, 257 * 100 + 128, 65535};
-  for (const char* encoding : {"mono16", "16UC1"}) {
+  for (const char* encoding : {"mono16", "16UC1", "MONO16"}) {
     EXPECT_EQ(decodeImage(makeImage(encoding, 2, 2, values), 2), Bytes({0, 100, 100, 255}))
         << encoding;
   }
@@ -163,6 +164,8 @@ TEST(ImageCodec, DividesSixteenBitGreyBy257) {
 
 TEST(ImageCodec, RoundsFloatGreyToTheNearestOf255) {
   EXPECT_EQ(decodeImage(makeImage<float>("32FC1", 2, 2, {0.0f, 1.0f, 0.5f, 0.1f / 255}), 2),
+            Bytes({0, 255, 128, 0}));
+  EXPECT_EQ(decodeImage(makeImage<float>("32fc1", 2, 2, {0.0f, 1.0f, 0.5f, 0.0f}), 2),
             Bytes({0, 255, 128, 0}));
   EXPECT_EQ(decodeImage(makeImage<double>("64FC1", 2, 2, {0.0, 1.0, 100.4 / 255, 100.6 / 255}), 2),
             Bytes({0, 255, 100, 101}));

@@ -7,6 +7,7 @@
 
 #include <istream>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace ddm {
@@ -49,7 +50,10 @@ struct BagContent {
   DataSet data;                 ///< frames: images with their torques
   std::string camera;           ///< size and encoding of the images, "51x51 mono8"
   std::vector<double> times{};  ///< of each frame, since the first one [s]
-  double interval = 0.0;        ///< median of those between frames [s]; 0 if there is only one
+  /// The same number for frames with the same time, image and torque. Empty for bags of this
+  /// project: each run of a simulator may begin at the same time.
+  std::vector<std::size_t> frame_ids{};
+  double interval = 0.0;  ///< median of those between frames [s]; 0 if there is only one
   std::vector<double> images_without_torque{};  ///< their times, since the first frame [s]
   std::vector<double> torques_without_image{};  ///< likewise
   /// What a user should know: what does not count and why, clocks that cannot be trusted, and so on.
@@ -84,5 +88,15 @@ BagContent readBagBytes(std::istream* in, int image_size, const BagOptions& opti
 
 /// @throws std::runtime_error if two paths are the same file
 void requireDifferentBags(const std::vector<std::string>& paths);
+
+/// Compares each bag with those before it: copies, and parts of a recording that overlap.
+class DifferentFrames {
+ public:
+  /// @throws std::runtime_error if more than a tenth of the frames were in another bag
+  void require(const std::string& path, const BagContent& content);
+
+ private:
+  std::unordered_map<std::size_t, std::string> seen_;  // bag of each frame
+};
 
 }  // namespace ddm
