@@ -34,7 +34,8 @@ class Collector {
     if (!seen_.insert(file.lexically_normal().string()).second) return;
     const std::string bytes = readModelFile(file.string());
     crc_.process_bytes(bytes.data(), bytes.size());
-    if (file.extension() != ".xml" && file.extension() != ".urdf") return;
+    const std::size_t begin = bytes.find_first_not_of("\xef\xbb\xbf \t\r\n");
+    if (begin == std::string::npos || bytes[begin] != '<') return;  // neither model nor include
     const XmlDocument document = parseXml(bytes);
     forEachElement(document->RootElement(), [this](XMLElement* element) { addFolders(*element); });
     forEachFile(document->RootElement(), [this](XMLElement* element, const std::string& name) {

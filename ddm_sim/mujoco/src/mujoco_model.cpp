@@ -170,6 +170,7 @@ MujocoModel::MujocoModel(const std::string& uri, const FindPackage& find_package
       given = urdf.model;
       efforts_ = urdf.efforts;
       fixed_ = urdf.fixed;
+      for (const Coupling& one : urdf.couplings) leaders_[one.follower] = one.leader;
       digest_ = filesOf(given, find_package).digest;
       model_ = compileUrdf(urdf);
     } else if (root == "mujoco") {
@@ -237,6 +238,11 @@ std::vector<std::string> MujocoModel::names(mjtObj type) const {
 std::optional<double> MujocoModel::effortLimit(const std::string& joint) const {
   const auto found = efforts_.find(joint);
   return found == efforts_.end() ? std::nullopt : std::make_optional(found->second);
+}
+
+std::string MujocoModel::leaderOf(const std::string& joint) const {
+  const auto found = leaders_.find(joint);
+  return found == leaders_.end() ? "" : found->second;
 }
 
 std::string suggestion(const std::string& name, const std::vector<std::string>& known) {

@@ -548,6 +548,7 @@ MotorChoice chooseMotors(const MujocoModel& model, const std::vector<ModelJoint>
   MotorChoice choice;
   std::vector<std::string> with_effort;
   for (const ModelJoint& joint : joints) {
+    if (!model.leaderOf(joint.name).empty()) continue;  // has no motor of its own
     choice.candidates.push_back(joint.name);
     if (joint.effort > 0.0) with_effort.push_back(joint.name);
   }
@@ -580,7 +581,8 @@ MotorChoice chooseMotors(const MujocoModel& model, const std::vector<ModelJoint>
     return choice;
   }
   if (decide(transmissions, "joints of the transmissions in the file") ||
-      decide(with_effort, "joints with an effort limit in the file") || joints.size() != 1) {
+      decide(with_effort, "joints with an effort limit in the file") ||
+      choice.candidates.size() != 1) {
     return choice;
   }
   decide(choice.candidates, "the only joint");

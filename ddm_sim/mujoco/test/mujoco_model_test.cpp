@@ -222,6 +222,9 @@ TEST_F(MujocoModelTest, HasADigestOfAllFilesThatItNames) {
   EXPECT_NE(with_size, digest);
   folder_.write("assets/base.obj", std::string(kTetrahedron) + "# painted\n");
   EXPECT_NE(folder_.loadText(text)->digest(), with_size);
+  const std::string with_paint = folder_.loadText(text, "arm.mjcf")->digest();
+  folder_.write("assets/base.obj", kTetrahedron);
+  EXPECT_NE(folder_.loadText(text, "arm.mjcf")->digest(), with_paint);
 }
 
 TEST_F(MujocoModelTest, SuggestsTheNearestNameAndAllOthers) {

@@ -94,6 +94,8 @@ TEST_F(Proposal, MotorsAreTheTransmissionsOfAUrdfThenItsJointsWithAnEffortLimit)
   EXPECT_TRUE(unclear.joints.empty());
   EXPECT_EQ(unclear.candidates, Texts({"upper", "lower"}));
   EXPECT_EQ(choose(pendulum("")).joints, Texts({"hinge"}));  // the only joint
+  EXPECT_EQ(choose(two(strong, strong + "<mimic joint='upper'/>", "")).joints, Texts({"upper"}));
+  EXPECT_EQ(choose(two(weak, weak + "<mimic joint='upper'/>", "")).joints, Texts({"upper"}));
 }
 
 TEST_F(Proposal, MotorsOfAnMjcfFileAreItsActuatorsAndServosBecomeTorques) {

@@ -146,6 +146,23 @@ TEST_F(UrdfTest, NamesALinkWithoutMassOrInertia) {
   EXPECT_TRUE(isRefused(leg, {"mass", "thigh", "> 0"}));
 }
 
+TEST_F(UrdfTest, NamesALinkWithAnInertiaThatNoBodyHasButTakesRounding) {
+  const auto with = [](const std::string& numbers) {
+    Leg leg;
+    leg.inertia = "<inertia " + numbers + " ixz='0' iyz='0'/>";
+    return leg;
+  };
+  for (const char* numbers :
+       {"ixx='0.02' iyy='0.02' izz='0.5' ixy='0'", "ixx='0.02' iyy='0.02' izz='0.01' ixy='0.5'",
+        "ixx='0.00002' iyy='0.00002' izz='1' ixy='0'"}) {
+    EXPECT_TRUE(isRefused(with(numbers), {"thigh", "line 3", "principal inertias"})) << numbers;
+  }
+  EXPECT_EQ(load(with("ixx='0.001' iyy='0.01' izz='0.0111' ixy='0'"))->get().njnt, 1);
+  Leg balanced = with("ixx='0.02' iyy='0.02' izz='0.5' ixy='0'");
+  balanced.more = "<mujoco><compiler balanceinertia='true'/></mujoco>";
+  EXPECT_EQ(load(balanced)->get().njnt, 1);
+}
+
 TEST_F(UrdfTest, NamesAShapeThatUrdfDoesNotHave) {
   Leg leg;
   leg.shape = "<capsule radius='0.05' length='1'/>";
@@ -168,6 +185,18 @@ TEST_F(UrdfTest, NamesLimitsThatCannotBe) {
   leg.type = "revolute";
   leg.in_joint = "<limit lower='1' upper='-1' effort='5' velocity='1'/>";
   EXPECT_TRUE(isRefused(leg, {"hip", "lower", "\"1\"", "\"-1\""}));
+  for (const char* type : {"revolute", "prismatic"}) {
+    leg.type = type;
+    for (const char* limit :
+         {"", "<limit effort='5' velocity='1'/>", "<limit lower='0' upper='0' effort='5'/>"}) {
+      leg.in_joint = limit;
+      EXPECT_TRUE(isRefused(leg, {"hip", "lower < upper", type, "fixed"})) << limit;
+    }
+  }
+  leg.in_joint = "<limit lower='-90' upper='90' effort='5' velocity='1'/>";
+  EXPECT_EQ(load(leg)->get().jnt_range[1], 90.0);  // m
+  leg.type = "revolute";
+  EXPECT_TRUE(isRefused(leg, {"hip", "\"90\"", "URDF has radians"}));
   leg.in_joint = "<limit lower='-1' upper='1' effort='-5' velocity='1'/>";
   EXPECT_TRUE(isRefused(leg, {"hip", "effort", "\"-5\""}));
   leg.in_joint = "<limit lower='-1' upper='1' effort='much' velocity='1'/>";
@@ -201,6 +230,22 @@ TEST_F(UrdfTest, LetsAJointFollowTheOneThatItMimics) {
   EXPECT_GT(std::abs(plant.state()[0]), 0.2);
   EXPECT_NEAR(plant.state()[1], -0.5 * plant.state()[0] + 0.2, 0.01);
   EXPECT_TRUE(isRefusedWith(follower("<mimic joint='hop'/>"), {"curl", "hop", "hip"}));
+  options.motors = {"hip", "curl"};
+  EXPECT_TRUE(testing::names(refusalOf([&] { MujocoPlant(model, options); }),
+                             {"plant/motors", "curl", "mimics the joint hip"}));
+  Leg cycle;
+  cycle.in_joint = "<mimic joint='curl'/>";
+  cycle.more = follower("<mimic joint='hip'/>");
+  EXPECT_TRUE(isRefused(cycle, {"curl -> hip -> curl", "remove one <mimic>"}));
+}
+
+TEST_F(UrdfTest, NamesWhatMujocoIgnoresInItsBlock) {
+  EXPECT_TRUE(isRefusedWith("<mujoco><actuator><motor joint='hip'/></actuator></mujoco>",
+                            {"<actuator>", "compiler, option, size", "MJCF"}));
+  EXPECT_TRUE(isRefusedWith("<mujoco><compiler balaceinertia='true'/></mujoco>",
+                            {"balaceinertia", "did you mean balanceinertia?"}));
+  EXPECT_TRUE(
+      isRefusedWith("<mujoco><compiler angle='degree'/></mujoco>", {"degree", "URDF has radians"}));
 }
 
 TEST_F(UrdfTest, TakesAMujocoBlockForWhatItNamesAndIgnoresOneInAComment) {
