@@ -23,13 +23,6 @@ std::string joined(const std::vector<std::string>& names) {
   return "\"" + boost::algorithm::join(names, ", ") + "\"";
 }
 
-/// A name becomes the header of a column in CSV files.
-bool usableName(const std::string& name) {
-  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
-    return c > ' ' && c < 127 && c != ',' && c != '"';
-  });
-}
-
 /// What a plant did in a few steps from one start.
 struct Rehearsal {
   std::vector<Eigen::VectorXd> states;
@@ -131,6 +124,8 @@ class PlantRules {
   void run(const std::string& functions, const std::function<void()>& check) {
     try {
       check();
+    } catch (const std::range_error& e) {  // an unstable simulation is no mistake of the class
+      throw std::invalid_argument(e.what());
     } catch (const std::exception& e) {
       problems_.push_back(functions + " failed: " + e.what());
     }
@@ -195,6 +190,12 @@ std::vector<std::string> brokenRules(Plant* plant, Plant* twin, bool draw) {
 }
 
 }  // namespace
+
+bool usableName(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return c > ' ' && c < 127 && c != ',' && c != '"';
+  });
+}
 
 std::unique_ptr<Plant> makePlant(const PlantMaker& maker) {
   std::unique_ptr<Plant> plant = maker.make();

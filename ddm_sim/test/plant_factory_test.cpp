@@ -283,6 +283,14 @@ TEST(PlantFactory, ReportsAllThatIsWrongWithAPlantAtOnce) {
   }
 }
 
+TEST(PlantFactory, DoesNotBlameTheClassForAnUnstableSimulation) {
+  Traits traits;
+  traits.advance = [](const Eigen::VectorXd&, const Eigen::VectorXd&) -> Eigen::VectorXd {
+    throw std::range_error("unstable: use a smaller timestep");
+  };
+  EXPECT_EQ(refusal(traits), "unstable: use a smaller timestep");
+}
+
 TEST(PlantFactory, RefusesAPlantThatIsAnotherOneEachTimeItIsMade) {
   double slope = 0.1;
   const std::string text = refusal(ToyMaker([&slope] {

@@ -132,6 +132,10 @@ void requireTree(const std::vector<XMLElement*>& links, const std::vector<XMLEle
                          suggestion(link, names));
     }
     const std::string child = linkOf(*joint, "child");
+    if (child == "world") {
+      refuse(*joint,
+             "has the child link world, which MuJoCo takes for the ground: rename the link");
+    }
     if (!to_parent.emplace(child, joint).second) {
       refuse(*joint, "has the child link " + child + ", which is already that of the joint " +
                          attribute(*to_parent[child], "name") + ": a link has one parent");
@@ -157,12 +161,30 @@ void requireTree(const std::vector<XMLElement*>& links, const std::vector<XMLEle
                               ": connect these links by fixed joints, or remove those of no use");
 }
 
+/// Sizes are positive; a mesh that is mirrored has a negative scale.
+void requireSizes(const XMLElement& link, const XMLElement& shape) {
+  for (const char* name : {"size", "radius", "length", "scale"}) {
+    std::istringstream in(attribute(shape, name));
+    in.imbue(std::locale::classic());
+    for (double number = 0.0; in >> number;) {
+      const bool scale = std::string(name) == "scale";
+      if (number > 0.0 || (scale && number < 0.0)) continue;
+      refuse(shape, "of the link " + attribute(link, "name") + " must have a " + name +
+                        (scale ? " without 0" : " > 0") + ", got \"" + attribute(shape, name) +
+                        "\": correct it, or leave the shape out");
+    }
+  }
+}
+
 XMLElement* requireShape(const XMLElement& link, const XMLElement& part) {
   const XMLElement* const geometry = part.FirstChildElement("geometry");
   auto* const shape =
       const_cast<XMLElement*>(geometry == nullptr ? nullptr : geometry->FirstChildElement());
   const std::string name = shape == nullptr ? "nothing" : shape->Value();
-  if (isOneOf(kShapes, name)) return shape;
+  if (isOneOf(kShapes, name)) {
+    requireSizes(link, *shape);
+    return shape;
+  }
   refuse(part,
          "of the link " + attribute(link, "name") +
              " must have a <geometry> of box, cylinder, sphere or mesh, got " + name +
@@ -179,14 +201,19 @@ void requireInertia(const std::string& link, const std::map<std::string, const X
     const XMLElement* const inertial = one.FirstChildElement("inertial");
     return inertial == nullptr ? 0.0 : numberOr(*inertial, "mass", "value", 0.0);
   };
+  std::string point_mass;
   for (const auto& one : fixed) {
     std::string parent = one.first;
     while (parent != link && fixed.count(parent) > 0) parent = fixed.at(parent);
-    if (parent == link && massOf(*links.at(one.first)) > 0.0) return;
+    const XMLElement& carried = *links.at(one.first);
+    if (parent != link || massOf(carried) <= 0.0) continue;
+    if (numberOr(*carried.FirstChildElement("inertial"), "inertia", "ixx", 0.0) > 0.0) return;
+    point_mass = " (the link " + one.first + ", which is fixed to it, is a point mass)";
   }
   const XMLElement* const inertial = moved.FirstChildElement("inertial");
   if (inertial == nullptr) {
-    refuse(moved, "is moved by a joint and has no <inertial>: give it a mass and an inertia");
+    refuse(moved, "is moved by a joint and has no <inertial>" + point_mass +
+                      ": give it a mass and an inertia");
   }
   if (massOf(moved) <= 0.0) {
     refuse(moved, "is moved by a joint and must have a mass > 0 in its <inertial>, got " +
@@ -236,6 +263,7 @@ class MeshNames {
     const std::string file = in_folder && fs::is_regular_file(folder_ / *in_folder)
                                  ? (folder_ / *in_folder).string()
                                  : fileOf(*mesh, "filename", folder_, find_package_);
+    if (fs::is_directory(file)) refuse(*mesh, "names a folder, " + file + ": name a mesh in it");
     if (!isMeshKind(file)) {
       unreadable_.insert(named);
       return;

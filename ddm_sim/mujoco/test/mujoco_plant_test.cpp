@@ -251,6 +251,22 @@ TEST(MujocoPlant, RefusesTimestepsAndResistancesOfAFileThatCannotBe) {
                              {"shoulder", "model.xml", "friction >= 0", "-3"}));
 }
 
+TEST(MujocoPlant, RefusesNamesOfJointsThatHeadNoColumn) {
+  for (const char* name : {"shoul der", "shoul,der", "shoul\xc3\xa9"}) {
+    std::string text = armText();
+    for (const char* attribute : {" name=", " joint="}) {
+      const std::string old = attribute + std::string("\"shoulder\"");
+      text.replace(text.find(old), old.size(), attribute + ("\"" + std::string(name) + "\""));
+    }
+    MujocoOptions options = armOptions();
+    EXPECT_TRUE(testing::names(refusalOf([&] { plantOf(text, options); }),
+                               {"the joint \"" + std::string(name), "model.xml", "rename it"}));
+    options.state_names = {"a", "b", "c", "d"};
+    options.torque_names = {"e", "f"};
+    EXPECT_EQ(refusalOf([&] { plantOf(text, options); }), "");
+  }
+}
+
 TEST(MujocoPlant, TakesTheLimitsOfActuatorsThatNamedMotorsReplace) {
   const auto limit = [](const std::string& actuators) {
     std::string text = armText();

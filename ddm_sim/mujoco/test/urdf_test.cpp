@@ -129,6 +129,8 @@ TEST_F(UrdfTest, NamesWhatIsWrongWithTheTree) {
                             {"second", "thigh", "hip", "one parent"}));
   EXPECT_TRUE(isRefusedWith(joint("back", "fixed", "thigh", "base"), {"back", "base", "cycle"}));
   EXPECT_TRUE(isRefusedWith(link("thigh"), {"thigh", "name"}));
+  EXPECT_TRUE(isRefusedWith(link("world") + joint("knee", "continuous", "thigh", "world"),
+                            {"knee", "child link world", "rename"}));
   EXPECT_TRUE(isRefusedWith("<joint name='knee' type='fixed'><parent link='base'/></joint>",
                             {"knee", "child"}));
 }
@@ -144,6 +146,10 @@ TEST_F(UrdfTest, NamesALinkWithoutMassOrInertia) {
   EXPECT_TRUE(isRefused(leg, {"inertia", "thigh", "point mass"}));
   leg.mass = "<mass value='0'/>";
   EXPECT_TRUE(isRefused(leg, {"mass", "thigh", "> 0"}));
+  EXPECT_TRUE(isRefusedWith(
+      "<link name='frame'/><link name='weight'><inertial><mass value='1'/></inertial></link>" +
+          joint("knee", "continuous", "thigh", "frame") + joint("weld", "fixed", "frame", "weight"),
+      {"frame", "no <inertial>", "weight", "point mass"}));
 }
 
 TEST_F(UrdfTest, NamesALinkWithAnInertiaThatNoBodyHasButTakesRounding) {
@@ -169,6 +175,13 @@ TEST_F(UrdfTest, NamesAShapeThatUrdfDoesNotHave) {
   EXPECT_TRUE(isRefused(leg, {"thigh", "capsule", "cylinder"}));
   leg.shape = "";
   EXPECT_TRUE(isRefused(leg, {"thigh", "geometry", "nothing"}));
+  for (const char* size : {"<box size='0.1 0 0.1'/>", "<sphere radius='0'/>",
+                           "<cylinder radius='0.1' length='-1'/>"}) {
+    leg.shape = size;
+    EXPECT_TRUE(isRefused(leg, {"thigh", "line 3", "> 0", "leave the shape out"})) << size;
+  }
+  leg.shape = "<mesh filename='a.stl' scale='1 1 0'/>";
+  EXPECT_TRUE(isRefused(leg, {"thigh", "scale without 0", "\"1 1 0\""}));
 }
 
 TEST_F(UrdfTest, LetsContinuousJointsTurnWithoutEnd) {
@@ -320,8 +333,17 @@ TEST_F(UrdfTest, NamesAMeshThatMujocoCannotRead) {
   EXPECT_TRUE(isRefused(leg, {"arm.DAE, b.dae", "STL", "assimp export arm.DAE"}));
   leg.shape = "<mesh filename='lfs.stl'/>";
   EXPECT_TRUE(isRefused(leg, {"\"lfs.stl\"", "git lfs pull"}));
+  folder_.write("page.stl", "<!DOCTYPE html>");
+  leg.shape = "<mesh filename='page.stl'/>";
+  EXPECT_TRUE(isRefused(leg, {"\"page.stl\"", "web page"}));
+  folder_.write("short.stl", std::string(80, '\0') + "\x0c" + std::string(103, '\0'));
+  leg.shape = "<mesh filename='.'/>";
+  EXPECT_TRUE(isRefused(leg, {"names a folder"}));
   leg.shape = "<mesh filename='gone.stl'/>";
   EXPECT_TRUE(isRefused(leg, {"\"gone.stl\"", "not there"}));
+  leg.more.clear();
+  leg.shape = "<mesh filename='short.stl'/>";
+  EXPECT_TRUE(isRefused(leg, {"short.stl has 184 bytes", "684", "export it again"}));
 }
 
 TEST_F(UrdfTest, NamesTheParentOfALinkBehindAFixedJoint) {
