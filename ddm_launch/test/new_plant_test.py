@@ -145,6 +145,15 @@ class NewPlantTest(ScratchCase):
         self.assertRefused(2, ["my_plant.png", "--force"], "swing.urdf", "--out", "my_plant.yaml")
         self.make("swing.urdf", swing(), "--force")
 
+    def test_what_the_proposal_cannot_know_is_said(self):
+        _, output = self.make("narrow.xml", TABLE.replace('range="-120 120"', 'range="-2.1 2.1"'))
+        self.assertIn("second is only -0.03665 to 0.03665 rad", output)
+        self.assertNotIn("<connect>", output)
+        tie = '<equality><connect body1="tip" body2="world" anchor="0.2 0 0"/></equality></mujoco>'
+        _, output = self.make("tied.xml", TABLE.replace('<body pos', '<body name="tip" pos').replace("</mujoco>", tie),
+                              "--force")
+        self.assertIn("ties bodies by <connect> or <weld>", output)
+
     def test_bad_options_and_models_are_refused_by_name(self):
         self.write("swing.urdf", swing())
         self.write("ball.xml", "<mujoco><worldbody><body><joint name='b' type='ball'/><geom size='.1'/></body>"

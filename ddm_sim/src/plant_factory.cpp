@@ -23,13 +23,6 @@ std::string joined(const std::vector<std::string>& names) {
   return "\"" + boost::algorithm::join(names, ", ") + "\"";
 }
 
-/// A name becomes the header of a column in CSV files.
-bool usableName(const std::string& name) {
-  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
-    return c > ' ' && c < 127 && c != ',' && c != '"';
-  });
-}
-
 /// What a plant did in a few steps from one start.
 struct Rehearsal {
   std::vector<Eigen::VectorXd> states;
@@ -196,6 +189,12 @@ std::vector<std::string> brokenRules(Plant* plant, Plant* twin, bool draw) {
 
 }  // namespace
 
+bool usableName(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return c > ' ' && c < 127 && c != ',' && c != '"';
+  });
+}
+
 std::unique_ptr<Plant> makePlant(const PlantMaker& maker) {
   std::unique_ptr<Plant> plant = maker.make();
   const std::vector<std::string> problems =
@@ -206,7 +205,9 @@ std::unique_ptr<Plant> makePlant(const PlantMaker& maker) {
   }
   std::string text = "plant " + maker.type() + " breaks the rules of a plant:";
   for (const std::string& problem : problems) text += "\n- " + problem;
-  throw std::invalid_argument(text + "\nCorrect its class: doc/your_plant.md has the rules");
+  const bool own = maker.type() != "mujoco";  // a model file has no class that somebody wrote
+  throw std::invalid_argument(text +
+                              (own ? "\nCorrect its class: doc/your_plant.md has the rules" : ""));
 }
 
 }  // namespace ddm

@@ -283,6 +283,21 @@ TEST(PlantFactory, ReportsAllThatIsWrongWithAPlantAtOnce) {
   }
 }
 
+TEST(PlantFactory, DoesNotBlameAClassForWhatAModelFileDoes) {
+  struct ModelMaker : ToyMaker {
+    using ToyMaker::ToyMaker;
+    std::string type() const override { return "mujoco"; }
+  };
+  Traits traits;
+  traits.advance = [](const Eigen::VectorXd&, const Eigen::VectorXd&) -> Eigen::VectorXd {
+    throw std::range_error("unstable: use a smaller timestep");
+  };
+  EXPECT_NE(refusal(ToyMaker(traits)).find("Correct its class"), std::string::npos);
+  const std::string text = refusal(ModelMaker(traits));
+  EXPECT_NE(text.find("unstable: use a smaller timestep"), std::string::npos) << text;
+  EXPECT_EQ(text.find("class"), std::string::npos) << text;
+}
+
 TEST(PlantFactory, RefusesAPlantThatIsAnotherOneEachTimeItIsMade) {
   double slope = 0.1;
   const std::string text = refusal(ToyMaker([&slope] {

@@ -7,6 +7,7 @@
 #include <ddm_plant_plugin/plant_config.h>
 #include <ros/package.h>
 
+#include <algorithm>
 #include <boost/algorithm/string/join.hpp>
 #include <boost/algorithm/string/split.hpp>
 #include <boost/optional.hpp>
@@ -373,7 +374,7 @@ void printJoints(const std::vector<ModelJoint>& joints, const MotorChoice* choic
   }
 }
 
-void printCheck(const PlantProposal& proposal, const PlantCheck& check) {
+void printCheck(const mjModel& model, const PlantProposal& proposal, const PlantCheck& check) {
   std::cout << "simulation: stable; fastest joint " << number(check.still_speed, "%.2g")
             << " rad/s or m/s in 2 s without torque, " << number(check.random_speed, "%.2g")
             << " under random torques\nimage: " << check.changed_pixels
@@ -393,6 +394,18 @@ void printCheck(const PlantProposal& proposal, const PlantCheck& check) {
   }
   if (check.contrast < kLittleContrast) {
     warn("the robot hardly differs from what is behind it: give it a brighter material");
+  }
+  if (std::any_of(model.eq_type, model.eq_type + model.neq,
+                  [](int type) { return type == mjEQ_CONNECT || type == mjEQ_WELD; })) {
+    warn(
+        "the file ties bodies by <connect> or <weld>, which the proposed start and goal ignore: "
+        "write positions that keep these ties into plant/start and plant/goal");
+  }
+  constexpr double kNarrow = 0.1;  // a usual range in radians, taken for degrees [rad]
+  for (const ModelJoint& joint : proposal.joints) {
+    if (joint.kind != JointKind::kAngle || joint.upper - joint.lower >= kNarrow) continue;
+    warn("the range of " + joint.name + " is only " + rangeOf(joint) +
+         ": MJCF has degrees unless the file has <compiler angle=\"radian\"/>");
   }
   constexpr double kOften = 0.1;
   if (check.share_outside > kOften) {
@@ -432,7 +445,7 @@ void newPlant(const Arguments& arguments) {
   Draft draft(arguments.out, plantText(arguments, proposal, choice));
   const std::unique_ptr<Plant> plant = plantOf(draft.path());
   const PlantCheck check = checkPlant(proposal, plant.get());
-  printCheck(proposal, check);
+  printCheck(model->get(), proposal, check);
   writeContactSheet(proposal, *plant, pictureFile(arguments));
   draft.keep();
 

@@ -23,6 +23,9 @@ class PlantMaker {
   virtual bool drawsCheaply() const { return true; }
 };
 
+/// Whether a name can head a column of CSV files: neither blanks nor commas nor quotes, ASCII alone.
+bool usableName(const std::string& name);
+
 /// A plant in the middle of its start states. It is moved for a few steps beside a second one, so
 /// that a plant that breaks the rules of class Plant is refused here and not in the middle of a
 /// run. The rules:

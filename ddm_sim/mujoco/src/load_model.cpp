@@ -37,13 +37,18 @@ void append(std::string* bytes, Value value) {
   bytes->append(raw, sizeof(value));
 }
 
+/// Of a binary file with the number of triangles that this one has [bytes].
+std::size_t sizeOfStl(const std::string& bytes) {
+  std::uint32_t triangles = 0;
+  if (bytes.size() >= kStlHeader) std::memcpy(&triangles, bytes.data() + 80, sizeof(triangles));
+  return kStlHeader + kStlTriangle * std::size_t{triangles};
+}
+
 /// MuJoCo reads binary STL alone. Some binary files begin as ASCII files do, so that the size
 /// decides.
 bool isAsciiStl(const std::string& bytes) {
   if (bytes.rfind("solid", 0) != 0 || bytes.find("facet") == std::string::npos) return false;
-  std::uint32_t triangles = 0;
-  if (bytes.size() >= kStlHeader) std::memcpy(&triangles, bytes.data() + 80, sizeof(triangles));
-  return bytes.size() != kStlHeader + kStlTriangle * std::size_t{triangles};
+  return bytes.size() != sizeOfStl(bytes);
 }
 
 std::string binaryStl(const std::string& ascii) {
@@ -121,7 +126,14 @@ std::unique_ptr<mjModel, void (*)(mjModel*)> compile(const ModelText& model) {
   MemoryFiles files;
   for (const auto& mesh : model.meshes) {
     const std::string bytes = readModelFile(mesh.second);
-    files.add(mesh.first, isAsciiStl(bytes) ? binaryStl(bytes) : bytes);
+    const bool ascii = isAsciiStl(bytes);
+    const bool binary = !ascii && fs::path(mesh.first).extension() == ".stl";
+    if (binary && !bytes.empty() && bytes.size() != sizeOfStl(bytes)) {
+      throw std::invalid_argument(mesh.second + " has " + std::to_string(bytes.size()) +
+                                  " bytes and must have " + std::to_string(sizeOfStl(bytes)) +
+                                  " for the triangles that it counts: fetch or export it again");
+    }
+    files.add(mesh.first, ascii ? binaryStl(bytes) : bytes);
   }
   // A name that no included file has: MuJoCo would take the text in memory for that file.
   const std::string path =

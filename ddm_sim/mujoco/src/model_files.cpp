@@ -34,16 +34,14 @@ class Collector {
     if (!seen_.insert(file.lexically_normal().string()).second) return;
     const std::string bytes = readModelFile(file.string());
     crc_.process_bytes(bytes.data(), bytes.size());
-    if (file.extension() != ".xml" && file.extension() != ".urdf") return;
+    const std::string mistaken = mistakenFor(bytes);
+    if (!mistaken.empty()) throw std::invalid_argument(file.string() + " " + mistaken);
+    const std::size_t begin = bytes.find_first_not_of("\xef\xbb\xbf \t\r\n");
+    if (begin == std::string::npos || bytes[begin] != '<') return;  // neither model nor include
     const XmlDocument document = parseXml(bytes);
     forEachElement(document->RootElement(), [this](XMLElement* element) { addFolders(*element); });
     forEachFile(document->RootElement(), [this](XMLElement* element, const std::string& name) {
-      const std::string file = attribute(*element, name.c_str());
-      try {
-        names_.insert(resolved(file, find_package_));
-      } catch (const std::invalid_argument&) {  // refused where MuJoCo is to read it
-        names_.insert(file);
-      }
+      insert(attribute(*element, name.c_str()));
     });
     addNamed();
   }
@@ -57,9 +55,17 @@ class Collector {
   }
 
  private:
+  void insert(const std::string& file) {
+    try {
+      names_.insert(resolved(file, find_package_));
+    } catch (const std::invalid_argument&) {  // refused where MuJoCo is to read it
+      names_.insert(file);
+    }
+  }
+
   void addFolders(const XMLElement& element) {
     if (std::string(element.Value()) == "include" && element.Attribute("file") != nullptr) {
-      names_.insert(attribute(element, "file"));
+      insert(attribute(element, "file"));
     }
     if (std::string(element.Value()) != "compiler") return;
     for (const char* name : {"meshdir", "texturedir", "assetdir"}) {
@@ -136,6 +142,12 @@ ModelText readMjcf(const std::string& text, const std::string& path,
     element->SetAttribute(name.c_str(),
                           resolved(attribute(*element, name.c_str()), find_package).c_str());
   });
+  forEachElement(root, [&](XMLElement* element) {
+    const std::string file = attribute(*element, "file");
+    if (std::string(element->Value()) != "include" || !has(file, "://")) return;
+    const fs::path folder = fs::absolute(path).parent_path();  // from where MuJoCo counts
+    element->SetAttribute("file", fs::relative(resolved(file, find_package), folder).c_str());
+  });
   // As newer versions of MuJoCo do: without it, version 2.2.2 refuses a range that has no
   // `limited`.
   XMLElement* const compiler = document->NewElement("compiler");
@@ -177,15 +189,9 @@ void requireMesh(const XMLElement& element, const std::string& named, const std:
     throw std::invalid_argument(line + "is not there: no file " + file +
                                 "; correct its name, or fetch the package that holds it");
   }
-  std::string first(12, '\0');
-  std::ifstream(file, std::ios::binary).read(first.data(), 12);
-  if (first == "version http") {
-    throw std::invalid_argument(
-        line +
-        "is a pointer of Git LFS without the mesh: run `git lfs pull` in the "
-        "repository that holds " +
-        file);
-  }
+  const std::string bytes = readModelFile(file);
+  const std::string mistaken = mistakenFor(bytes);
+  if (!mistaken.empty()) throw std::invalid_argument(line + mistaken + " (" + file + ")");
 }
 
 std::string hintFor(const std::string& error) {
@@ -193,6 +199,15 @@ std::string hintFor(const std::string& error) {
     return "MuJoCo reads STL, OBJ and MSH: convert the mesh, for example with `assimp export` of "
            "Debian's "
            "assimp-utils, or leave this shape out";
+  }
+  if (has(error, "Non-PNG texture")) {
+    return "MuJoCo reads PNG textures: convert the picture, for example by `convert` of "
+           "ImageMagick";
+  }
+  if (has(error, "qhull error")) {
+    return "the corners of this mesh lie in a plane or are too few, so that it has no hull: give "
+           "it "
+           "a thickness, or put a thin box in its place";
   }
   if (has(error, "number of faces should be")) {
     return "make the mesh smaller, at most 200000 triangles, for example with MeshLab; a file of "

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -18,13 +19,45 @@ std::string text(double number) {
   return out.str();
 }
 
-/// Actuator `i` of the file, if its torque is nothing but a multiple of its control.
-Motor actuator(const MujocoModel& model, int i) {
-  const mjModel& m = model.get();
+/// Torque at the joint for a control of 1 of actuator `i`; 0 if its torque is not just a multiple of
+/// its control.
+double strengthOf(const mjModel& m, int i) {
   const bool plain = m.actuator_trntype[i] == mjTRN_JOINT && m.actuator_dyntype[i] == mjDYN_NONE &&
                      m.actuator_gaintype[i] == mjGAIN_FIXED &&
                      m.actuator_biastype[i] == mjBIAS_NONE;
-  const double strength = plain ? m.actuator_gear[6 * i] * m.actuator_gainprm[mjNGAIN * i] : 0.0;
+  return plain ? m.actuator_gear[6 * i] * m.actuator_gainprm[mjNGAIN * i] : 0.0;
+}
+
+/// What the actuators of the file can do at a joint in both directions [N m or N]; none if there is
+/// none, or one of them has no limit.
+std::optional<double> limitOfActuators(const mjModel& m, int joint) {
+  double low = 0.0, high = 0.0;
+  for (int i = 0; i < m.nu; ++i) {
+    if (m.actuator_trntype[i] != mjTRN_JOINT || m.actuator_trnid[2 * i] != joint) continue;
+    const double endless = std::numeric_limits<double>::infinity();
+    double least = -endless, most = endless;
+    const auto bound = [&](const mjtNum* range, double unit) {
+      least = std::max(least, std::min(range[0] * unit, range[1] * unit));
+      most = std::min(most, std::max(range[0] * unit, range[1] * unit));
+    };
+    const double strength = strengthOf(m, i);
+    if (m.actuator_ctrllimited[i] && strength != 0.0) {
+      bound(&m.actuator_ctrlrange[2 * i], strength);
+    }
+    if (m.actuator_forcelimited[i]) {
+      bound(&m.actuator_forcerange[2 * i], m.actuator_gear[6 * i]);
+    }
+    low += least;
+    high += most;
+  }
+  const double limit = std::min(-low, high);
+  return limit > 0.0 && std::isfinite(limit) ? std::make_optional(limit) : std::nullopt;
+}
+
+/// Actuator `i` of the file, if its torque is nothing but a multiple of its control.
+Motor actuator(const MujocoModel& model, int i) {
+  const mjModel& m = model.get();
+  const double strength = strengthOf(m, i);
   if (strength == 0.0) {
     throw std::invalid_argument("actuator " + model.name(mjOBJ_ACTUATOR, i) + " of " + model.uri() +
                                 " must be a <motor> of a joint: make it one, or list the joints "
@@ -77,7 +110,14 @@ std::vector<Motor> motorsOf(const MujocoModel& model, const MujocoOptions& optio
     Motor motor;
     motor.joint = model.id(mjOBJ_JOINT, options.motors[i], "plant/motors");
     if (!options.gear.empty()) motor.gear = options.gear.at(i);
+    const std::string leader = model.leaderOf(options.motors[i]);
+    if (!leader.empty()) {
+      throw std::invalid_argument("plant/motors must list joints that move by themselves, got " +
+                                  options.motors[i] + " of " + model.uri() +
+                                  ", which mimics the joint " + leader + ": list that one");
+    }
     motor.limit = model.effortLimit(options.motors[i]);
+    if (!motor.limit) motor.limit = limitOfActuators(model.get(), motor.joint);
     if (motor.limit) *motor.limit /= std::abs(motor.gear);
     motors.push_back(motor);
   }

@@ -23,13 +23,24 @@ namespace fs = std::filesystem;
 /// @throws std::invalid_argument if there is no such file, naming those in its folder
 std::string pathOf(const std::string& uri, const FindPackage& find_package) {
   const std::string path = resolved(uri, find_package);
-  if (fs::is_regular_file(path)) return path;
-  std::vector<std::string> there;
   std::error_code none;
+  if (fs::is_regular_file(path, none)) return path;
+  if (fs::is_directory(path, none)) {
+    throw std::invalid_argument(path + " is a folder: name the model file in it");
+  }
+  if (fs::exists(path, none)) {
+    throw std::invalid_argument(path + " is a pipe or device: write the model into a file");
+  }
+  if (fs::is_symlink(path, none)) {
+    throw std::invalid_argument(path + " is a link to " + fs::read_symlink(path, none).string() +
+                                ", where there is no file: correct the link");
+  }
+  std::vector<std::string> there;
   for (const fs::directory_entry& entry :
        fs::directory_iterator(fs::absolute(path).parent_path(), none)) {
     const fs::path& name = entry.path().filename();
-    if (name.extension() == ".xml" || name.extension() == ".urdf") there.push_back(name.string());
+    const bool model = name.extension() == ".xml" || name.extension() == ".urdf";
+    if (model && entry.is_regular_file(none)) there.push_back(name.string());
   }
   std::sort(there.begin(), there.end());
   throw std::invalid_argument("there is no file " + path + ": " +
@@ -131,7 +142,11 @@ std::shared_ptr<const mjModel> compileUrdf(const Urdf& urdf) {
 
 /// In one line, with the files of meshes in the place of the names that MuJoCo was given.
 std::string readable(std::string error, const ModelText& text) {
-  for (const auto& mesh : text.meshes) boost::replace_all(error, mesh.first, mesh.second);
+  for (const auto& mesh : text.meshes) {
+    const fs::path beside = fs::absolute(text.path).parent_path() / mesh.first;
+    boost::replace_all(error, beside.string(), mesh.second);
+    boost::replace_all(error, mesh.first, mesh.second);
+  }
   boost::trim(error);
   boost::replace_all(error, "\n", " ");
   return error;
@@ -170,6 +185,7 @@ MujocoModel::MujocoModel(const std::string& uri, const FindPackage& find_package
       given = urdf.model;
       efforts_ = urdf.efforts;
       fixed_ = urdf.fixed;
+      for (const Coupling& one : urdf.couplings) leaders_[one.follower] = one.leader;
       digest_ = filesOf(given, find_package).digest;
       model_ = compileUrdf(urdf);
     } else if (root == "mujoco") {
@@ -180,14 +196,22 @@ MujocoModel::MujocoModel(const std::string& uri, const FindPackage& find_package
       model_ = compileMjcf(given);
     } else {
       throw std::invalid_argument(
-          "its outermost element must be <mujoco> (MJCF) or <robot> (URDF), got <" + root + ">");
+          "its outermost element must be <mujoco> (MJCF) or <robot> (URDF), got <" + root + ">" +
+          (root == "sdf" ? ": take the URDF or xacro that it was made from, or convert it to URDF"
+           : root == "collada" ? ": this is a mesh; name the URDF or MJCF file that uses it"
+           : root == "mujocoinclude"
+               ? ": this is a part of a model; name the MJCF file that includes it"
+               : ""));
     }
   } catch (const std::exception& e) {
     const std::string hint = hintFor(e.what());
     throw std::invalid_argument(
         "plant/model must be a model that MuJoCo can read, got " + uri + ": " +
         readable(e.what(), given) +
-        (missing.empty() ? "" : "; it names files that are not there: " + missing) +
+        (missing.empty() ? ""
+                         : "; it names files that are not there: " + missing +
+                               " (all paths count from the folder of the model file, also those in "
+                               "included files)") +
         (hint.empty() ? "" : "; " + hint));
   }
 }
@@ -195,8 +219,11 @@ MujocoModel::MujocoModel(const std::string& uri, const FindPackage& find_package
 int MujocoModel::id(mjtObj type, const std::string& name, const std::string& key) const {
   const int id = mj_name2id(model_.get(), type, name.c_str());
   if (id >= 0) return id;
+  const std::vector<std::string> all = names(type);  // with those that name() gives
+  const auto found = std::find(all.begin(), all.end(), name);
+  if (found != all.end()) return static_cast<int>(found - all.begin());
   throw std::invalid_argument(key + " must name a " + mju_type2Str(type) + " of " + uri_ +
-                              ", got " + name + ": " + suggestion(name, names(type)));
+                              ", got " + name + ": " + suggestion(name, all));
 }
 
 Place MujocoModel::place(const std::string& name, const std::string& key) const {
@@ -239,10 +266,19 @@ std::optional<double> MujocoModel::effortLimit(const std::string& joint) const {
   return found == efforts_.end() ? std::nullopt : std::make_optional(found->second);
 }
 
+std::string MujocoModel::leaderOf(const std::string& joint) const {
+  const auto found = leaders_.find(joint);
+  return found == leaders_.end() ? "" : found->second;
+}
+
 std::string suggestion(const std::string& name, const std::vector<std::string>& known) {
   if (known.empty()) return "there is none";
+  constexpr std::size_t kMost = 10;
   std::string all;
-  for (const std::string& one : known) all += (all.empty() ? "" : ", ") + one;
+  for (std::size_t i = 0; i < std::min(known.size(), kMost); ++i) {
+    all += (i == 0 ? "" : ", ") + known[i];
+  }
+  if (known.size() > kMost) all += " and " + std::to_string(known.size() - kMost) + " more";
   const std::string near = nearestName(name, known, std::max<std::size_t>(3, name.size() / 3 + 1));
   return (near.empty() ? "there are " : "did you mean " + near + "? There are ") + all;
 }

@@ -51,10 +51,31 @@ void requirePositionsAndRates(const MujocoModel& model) {
   if (m.njnt == 0) {
     throw std::invalid_argument("plant/model must have a joint, got none in " + model.uri());
   }
+  for (int i = 0; i < m.nv; ++i) {
+    const std::pair<const char*, mjtNum> resistances[] = {{"damping", m.dof_damping[i]},
+                                                          {"friction", m.dof_frictionloss[i]}};
+    for (const auto& one : resistances) {
+      if (one.second >= 0.0) continue;
+      std::ostringstream text;
+      text << "the joint " << model.name(mjOBJ_JOINT, m.dof_jntid[i]) << " of " << model.uri()
+           << " must have a " << one.first << " >= 0, got " << one.second
+           << ", which drives the joint: correct its sign";
+      throw std::invalid_argument(text.str());
+    }
+  }
 }
 
 double timestepOf(const MujocoModel& model, const MujocoOptions& options) {
-  return options.timestep > 0.0 ? options.timestep : model.get().opt.timestep;
+  constexpr double kSmallest = 2e-5;  // a second takes longer than a second then [s]
+  if (options.timestep > 0.0) return options.timestep;
+  const double timestep = model.get().opt.timestep;
+  if (timestep >= kSmallest) return timestep;
+  std::ostringstream text;
+  text << "the timestep of " << model.uri() << " must be at least " << kSmallest << " s, got "
+       << timestep
+       << ": write <option timestep=\"0.002\"/> in the file, or set plant/timestep in the plant "
+          "file";
+  throw std::invalid_argument(text.str());
 }
 
 MujocoPhysics::MujocoPhysics(std::shared_ptr<const MujocoModel> model, const MujocoOptions& options)

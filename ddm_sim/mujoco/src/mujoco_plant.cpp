@@ -12,6 +12,7 @@
 
 #include "ddm_sim/angles.h"
 #include "ddm_sim/few_numbers.h"
+#include "ddm_sim/plant_factory.h"
 #include "model_files.h"
 #include "motors.h"
 #include "mujoco_physics.h"
@@ -62,12 +63,22 @@ int framesOf(const MujocoModel& model, const MujocoOptions& options) {
   refuse("dt", rule.str(), got.str());
 }
 
+/// Name of a joint that heads columns of CSV files.
+std::string columnOf(const MujocoModel& model, int joint) {
+  const std::string name = model.name(mjOBJ_JOINT, joint);
+  if (usableName(name)) return name;
+  throw std::invalid_argument("the joint \"" + name + "\" of " + model.uri() +
+                              " must have a name of ASCII characters without blanks, commas and "
+                              "double quotes, because it heads columns of CSV files: rename it in "
+                              "the file, or give plant/state_names and plant/torque_names");
+}
+
 std::vector<std::string> stateNames(const MujocoModel& model, const MujocoOptions& options) {
   if (!options.state_names.empty()) return options.state_names;
   std::vector<std::string> names;
   for (const char* rate : {"", "_per_s"}) {
     for (int i = 0; i < model.get().njnt; ++i) {
-      names.push_back(model.name(mjOBJ_JOINT, i) + (isHinge(model, i) ? "_rad" : "_m") + rate);
+      names.push_back(columnOf(model, i) + (isHinge(model, i) ? "_rad" : "_m") + rate);
     }
   }
   return names;
@@ -77,8 +88,7 @@ std::vector<std::string> torqueNames(const MujocoModel& model, const MujocoOptio
   if (!options.torque_names.empty()) return options.torque_names;
   std::vector<std::string> names;
   for (const Motor& motor : motorsOf(model, options)) {
-    names.push_back(model.name(mjOBJ_JOINT, motor.joint) +
-                    (isHinge(model, motor.joint) ? "_nm" : "_n"));
+    names.push_back(columnOf(model, motor.joint) + (isHinge(model, motor.joint) ? "_nm" : "_n"));
   }
   return names;
 }
@@ -366,6 +376,12 @@ void requireVisible(const std::shared_ptr<const MujocoModel>& model, const Mujoc
        << " deg; the middle of the model is at "
        << point(Eigen::Map<const Eigen::Vector3d>(m.stat.center)) << ", its size is "
        << std::round(1e3 * m.stat.extent) / 1e3 << " m";
+  const double seen = m.vis.map.zfar * m.stat.extent;
+  const Eigen::Vector3d center(m.stat.center);
+  if ((camera.position - center).norm() > seen) {
+    text << "; nothing farther than " << seen
+         << " m is drawn: correct <statistic extent> or <map zfar> of the file";
+  }
   throw std::invalid_argument(text.str());
 }
 

@@ -123,19 +123,30 @@ class Mechanism {
     return *data_;
   }
 
-  /// Torque that the weight asks for at rest: the gradient of energy().                  [n x 1]
-  VectorXd load(const VectorXd& position) const {
+  /// Torque that weight and springs ask for at rest: the gradient of energy().           [n x 1]
+  VectorXd load(const VectorXd& position, bool springs = true) const {
     place(position);
     mj_fwdVelocity(&model_->get(), data_.get());
-    return Eigen::Map<const VectorXd>(data_->qfrc_bias, position.size());
+    VectorXd load = Eigen::Map<const VectorXd>(data_->qfrc_bias, position.size());
+    if (springs) load -= Eigen::Map<const VectorXd>(data_->qfrc_passive, position.size());
+    return load;
   }
 
-  /// Of the weight [J].
-  double energy(const VectorXd& position) const {
+  bool hasSprings() const {
     const mjModel& m = model_->get();
+    const auto pulls = [](mjtNum stiffness) { return stiffness != 0.0; };
+    return std::any_of(m.jnt_stiffness, m.jnt_stiffness + m.njnt, pulls) ||
+           std::any_of(m.tendon_stiffness, m.tendon_stiffness + m.ntendon, pulls);
+  }
+
+  /// Of weight and springs [J].
+  double energy(const VectorXd& position, bool springs = true) const {
+    mjModel m = model_->get();
+    m.opt.enableflags |= mjENBL_ENERGY;
     place(position);
-    double energy = 0.0;
-    for (int i = 1; i < m.nbody; ++i) {
+    mj_energyPos(&m, data_.get());
+    double energy = springs ? data_->energy[0] : 0.0;
+    for (int i = 1; i < m.nbody && !springs; ++i) {
       energy -= m.body_mass[i] * mju_dot3(m.opt.gravity, data_->xipos + 3 * i);
     }
     return energy;
@@ -147,30 +158,31 @@ class Mechanism {
     return data_->qM[model_->get().dof_Madr[joint]];
   }
 
-  /// Where the mechanism goes by its own weight if it is slow.
+  /// Where the mechanism goes by its weight and springs if it is slow.
   VectorXd settled(VectorXd position) const { return followed(std::move(position), -1.0); }
 
   /// The pose of the most energy that weight gives.
   VectorXd highest(const std::vector<VectorXd>& poses) const {
     const auto less = [this](const VectorXd& a, const VectorXd& b) {
-      return energy(a) < energy(b);
+      return energy(a, false) < energy(b, false);
     };
     return followed(*std::max_element(poses.begin(), poses.end(), less), 1.0);
   }
 
  private:
-  /// Follows the energy down (sign -1) or up (1).
+  /// Follows the energy down (sign -1) or up (1). Up, that of springs would have no end.
   VectorXd followed(VectorXd position, double sign) const {
-    double step = 0.1, best = sign * energy(position);
+    const bool springs = sign < 0.0;
+    double step = 0.1, best = sign * energy(position, springs);
     for (int i = 0; i < 1000 && step > 1e-6; ++i) {
-      VectorXd change = sign * load(position);
+      VectorXd change = sign * load(position, springs);
       for (Eigen::Index k = 0; k < change.size(); ++k) {
         change[k] /= std::max(1e-12, inertia(static_cast<int>(k), position));
       }
       const double largest = change.lpNorm<Eigen::Infinity>();
       if (largest < 1e-9) break;
       const VectorXd next = coupled(position + std::min(1.0, step / largest) * change);
-      const double energy_there = sign * energy(next);
+      const double energy_there = sign * energy(next, springs);
       if (energy_there > best) {
         best = energy_there;
         position = next;
@@ -260,10 +272,10 @@ class Proposer {
   bool gravityMatters() const {
     double least = 1e300, most = -1e300, load = 0.0;
     for (const VectorXd& position : positions_) {
-      const double energy = mechanism_.energy(position);
+      const double energy = mechanism_.energy(position, false);
       least = std::min(least, energy);
       most = std::max(most, energy);
-      load = std::max(load, mechanism_.load(position).lpNorm<Eigen::Infinity>());
+      load = std::max(load, mechanism_.load(position, false).lpNorm<Eigen::Infinity>());
     }
     return most - least > 1e-6 * std::max(1.0, std::abs(most)) && load > 1e-9;
   }
@@ -271,14 +283,16 @@ class Proposer {
   void proposeStartAndGoal() {
     const VectorXd zero = mechanism_.zero();
     const bool gravity = gravityMatters();
-    VectorXd start = zero, goal = zero;
+    const bool settles = gravity || mechanism_.hasSprings();
+    const VectorXd rest =
+        settles ? mechanism_.settled(mechanism_.coupled(zero.array() + 0.02)) : zero;
+    VectorXd start = rest, goal = rest;
     if (gravity) {
-      start = mechanism_.settled(mechanism_.coupled(zero.array() + 0.02));
       std::vector<VectorXd> candidates = positions_;
       for (VectorXd& one : candidates) {  // a joint that weight does not move stays where it starts
-        const VectorXd load = mechanism_.load(one);
+        const VectorXd load = mechanism_.load(one, false);
         for (Eigen::Index i = 0; i < one.size(); ++i) {
-          if (std::abs(load[i]) < 1e-9) one[i] = zero[i];
+          if (std::abs(load[i]) < 1e-9) one[i] = rest[i];
         }
       }
       goal = mechanism_.highest(candidates);
@@ -304,8 +318,8 @@ class Proposer {
     if (!upright) goal = elsewhere(start);
     out_.options.start = listOf(start);
     out_.options.goal = listOf(goal);
-    out_.reasons["start"] =
-        gravity ? "where the mechanism comes to rest by its weight" : "pose 0 of the file";
+    out_.reasons["start"] = settles ? "where the mechanism comes to rest by its weight and springs"
+                                    : "pose 0 of the file";
     out_.reasons["goal"] = upright ? "Proposed: the highest pose"
                                    : "Proposed: the motors' joints a quarter of their way on";
     out_.to_set.push_back("goal");
@@ -461,8 +475,8 @@ class Proposer {
     out_.to_set.push_back("tolerance");
   }
 
-  /// The poses, and each of them with all joints that have limits at the nearer one: no pose reaches
-  /// farther.
+  /// The poses, start and goal, and each pose with all joints that have limits at the nearer one: no
+  /// pose reaches farther.
   std::vector<VectorXd> withLimits() const {
     std::vector<VectorXd> poses = positions_;
     for (VectorXd position : positions_) {
@@ -474,6 +488,9 @@ class Proposer {
         value = low ? joint.shown_lower : joint.shown_upper;
       }
       poses.push_back(mechanism_.coupled(position));
+    }
+    for (const std::vector<double>* pose : {&out_.options.start, &out_.options.goal}) {
+      poses.push_back(Eigen::Map<const VectorXd>(pose->data(), positions_[0].size()));
     }
     return poses;
   }
@@ -548,6 +565,7 @@ MotorChoice chooseMotors(const MujocoModel& model, const std::vector<ModelJoint>
   MotorChoice choice;
   std::vector<std::string> with_effort;
   for (const ModelJoint& joint : joints) {
+    if (!model.leaderOf(joint.name).empty()) continue;  // has no motor of its own
     choice.candidates.push_back(joint.name);
     if (joint.effort > 0.0) with_effort.push_back(joint.name);
   }
@@ -580,7 +598,8 @@ MotorChoice chooseMotors(const MujocoModel& model, const std::vector<ModelJoint>
     return choice;
   }
   if (decide(transmissions, "joints of the transmissions in the file") ||
-      decide(with_effort, "joints with an effort limit in the file") || joints.size() != 1) {
+      decide(with_effort, "joints with an effort limit in the file") ||
+      choice.candidates.size() != 1) {
     return choice;
   }
   decide(choice.candidates, "the only joint");

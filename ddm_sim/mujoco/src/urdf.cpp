@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "urdf.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <boost/algorithm/string/case_conv.hpp>
 #include <boost/algorithm/string/join.hpp>
@@ -13,6 +14,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "ddm_sim/angles.h"
 #include "model_files.h"
 #include "xml_text.h"
 
@@ -130,6 +132,10 @@ void requireTree(const std::vector<XMLElement*>& links, const std::vector<XMLEle
                          suggestion(link, names));
     }
     const std::string child = linkOf(*joint, "child");
+    if (child == "world") {
+      refuse(*joint,
+             "has the child link world, which MuJoCo takes for the ground: rename the link");
+    }
     if (!to_parent.emplace(child, joint).second) {
       refuse(*joint, "has the child link " + child + ", which is already that of the joint " +
                          attribute(*to_parent[child], "name") + ": a link has one parent");
@@ -155,12 +161,30 @@ void requireTree(const std::vector<XMLElement*>& links, const std::vector<XMLEle
                               ": connect these links by fixed joints, or remove those of no use");
 }
 
+/// Sizes are positive; a mesh that is mirrored has a negative scale.
+void requireSizes(const XMLElement& link, const XMLElement& shape) {
+  for (const char* name : {"size", "radius", "length", "scale"}) {
+    std::istringstream in(attribute(shape, name));
+    in.imbue(std::locale::classic());
+    for (double number = 0.0; in >> number;) {
+      const bool scale = std::string(name) == "scale";
+      if (number > 0.0 || (scale && number < 0.0)) continue;
+      refuse(shape, "of the link " + attribute(link, "name") + " must have a " + name +
+                        (scale ? " without 0" : " > 0") + ", got \"" + attribute(shape, name) +
+                        "\": correct it, or leave the shape out");
+    }
+  }
+}
+
 XMLElement* requireShape(const XMLElement& link, const XMLElement& part) {
   const XMLElement* const geometry = part.FirstChildElement("geometry");
   auto* const shape =
       const_cast<XMLElement*>(geometry == nullptr ? nullptr : geometry->FirstChildElement());
   const std::string name = shape == nullptr ? "nothing" : shape->Value();
-  if (isOneOf(kShapes, name)) return shape;
+  if (isOneOf(kShapes, name)) {
+    requireSizes(link, *shape);
+    return shape;
+  }
   refuse(part,
          "of the link " + attribute(link, "name") +
              " must have a <geometry> of box, cylinder, sphere or mesh, got " + name +
@@ -177,14 +201,19 @@ void requireInertia(const std::string& link, const std::map<std::string, const X
     const XMLElement* const inertial = one.FirstChildElement("inertial");
     return inertial == nullptr ? 0.0 : numberOr(*inertial, "mass", "value", 0.0);
   };
+  std::string point_mass;
   for (const auto& one : fixed) {
     std::string parent = one.first;
     while (parent != link && fixed.count(parent) > 0) parent = fixed.at(parent);
-    if (parent == link && massOf(*links.at(one.first)) > 0.0) return;
+    const XMLElement& carried = *links.at(one.first);
+    if (parent != link || massOf(carried) <= 0.0) continue;
+    if (numberOr(*carried.FirstChildElement("inertial"), "inertia", "ixx", 0.0) > 0.0) return;
+    point_mass = " (the link " + one.first + ", which is fixed to it, is a point mass)";
   }
   const XMLElement* const inertial = moved.FirstChildElement("inertial");
   if (inertial == nullptr) {
-    refuse(moved, "is moved by a joint and has no <inertial>: give it a mass and an inertia");
+    refuse(moved, "is moved by a joint and has no <inertial>" + point_mass +
+                      ": give it a mass and an inertia");
   }
   if (massOf(moved) <= 0.0) {
     refuse(moved, "is moved by a joint and must have a mass > 0 in its <inertial>, got " +
@@ -234,6 +263,7 @@ class MeshNames {
     const std::string file = in_folder && fs::is_regular_file(folder_ / *in_folder)
                                  ? (folder_ / *in_folder).string()
                                  : fileOf(*mesh, "filename", folder_, find_package_);
+    if (fs::is_directory(file)) refuse(*mesh, "names a folder, " + file + ": name a mesh in it");
     if (!isMeshKind(file)) {
       unreadable_.insert(named);
       return;
@@ -314,6 +344,102 @@ Coupling couplingOf(const XMLElement& joint, const std::vector<XMLElement*>& joi
   return coupling;
 }
 
+/// @throws std::invalid_argument if a joint follows itself by way of others
+void requireNoCycle(const std::vector<Coupling>& couplings) {
+  std::map<std::string, std::string> leaders;
+  for (const Coupling& one : couplings) leaders[one.follower] = one.leader;
+  for (const auto& one : leaders) {
+    std::vector<std::string> chain = {one.first};
+    while (leaders.count(chain.back()) > 0 && chain.size() <= leaders.size()) {
+      chain.push_back(leaders[chain.back()]);
+      if (chain.back() != one.first) continue;
+      throw std::invalid_argument(
+          "the joints " + join(chain, " -> ") +
+          " mimic each other in a cycle: remove one <mimic>, so that one of "
+          "them moves by itself");
+    }
+  }
+}
+
+/// @throws std::invalid_argument for what MuJoCo would ignore in the <mujoco> block of a URDF
+void requireKnownBlock(const XMLElement& block) {
+  const std::vector<std::string> elements = {"compiler", "option", "size"};
+  for (const auto* one = block.FirstChildElement(); one != nullptr;
+       one = one->NextSiblingElement()) {
+    if (isOneOf(elements, one->Value())) continue;
+    refuse(*one, "must not be in the <mujoco> block of a URDF, in which MuJoCo reads " +
+                     join(elements, ", ") + " alone: leave it out, or write MJCF");
+  }
+  const std::vector<std::string> attributes = {
+      "angle",         "assetdir",        "autolimits",        "balanceinertia",
+      "boundinertia",  "boundmass",       "convexhull",        "coordinate",
+      "discardvisual", "eulerseq",        "exactmeshinertia",  "fitaabb",
+      "fusestatic",    "inertiafromgeom", "inertiagrouprange", "meshdir",
+      "settotalmass",  "strippath",       "texturedir",        "usethread"};
+  for (const XMLElement* compiler : children(block, "compiler")) {
+    for (auto* one = compiler->FirstAttribute(); one != nullptr; one = one->Next()) {
+      if (!isOneOf(attributes, one->Name())) {
+        refuse(*compiler, std::string("has the attribute ") + one->Name() +
+                              ", which MuJoCo ignores: " + suggestion(one->Name(), attributes));
+      }
+    }
+    if (attribute(*compiler, "angle") == "degree") {
+      refuse(
+          *compiler,
+          "has angle=\"degree\", which MuJoCo ignores in a URDF: URDF has radians; leave it out, "
+          "and write the limits in radians");
+    }
+  }
+}
+
+/// MuJoCo would let a joint without limits, or with equal ones, move without end.
+void requireLimits(const XMLElement& joint) {
+  const bool turns = attribute(joint, "type") == "revolute";
+  const XMLElement* const limit = joint.FirstChildElement("limit");
+  const double lower = numberOr(joint, "limit", "lower", 0.0);
+  const double upper = numberOr(joint, "limit", "upper", 0.0);
+  const auto text = [limit](const char* end) {
+    const bool given = limit != nullptr && limit->Attribute(end) != nullptr;
+    return given ? "\"" + attribute(*limit, end) + "\"" : std::string("none");
+  };
+  if (!(lower < upper)) {
+    refuse(joint, "is " + attribute(joint, "type") +
+                      " and must have a <limit> with lower < upper, got " + text("lower") +
+                      " and " + text("upper") + ": write them in " +
+                      (turns ? "rad, or make the joint continuous (no limits) or fixed"
+                             : "m, or make the joint fixed"));
+  }
+  if (turns && std::max(std::abs(lower), std::abs(upper)) > 4.0 * kPi) {
+    refuse(joint, "must have limits within two turns, got " + text("lower") + " and " +
+                      text("upper") +
+                      ": URDF has radians; convert degrees, or make the joint continuous");
+  }
+}
+
+/// MuJoCo would put the mean of the three into the place of inertias that no body has.
+void requirePossibleInertia(const XMLElement& link) {
+  const XMLElement* const inertial = link.FirstChildElement("inertial");
+  if (inertial == nullptr) return;
+  const auto at = [inertial](const char* name) {
+    return numberOr(*inertial, "inertia", name, 0.0);
+  };
+  Eigen::Matrix3d inertia;
+  inertia << at("ixx"), at("ixy"), at("ixz"), at("ixy"), at("iyy"), at("iyz"), at("ixz"), at("iyz"),
+      at("izz");
+  if (inertia.isZero(0.0)) return;
+  const Eigen::Vector3d principal =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  constexpr double kRounding = 1.01;
+  if (principal[0] > 0.0 && principal[2] <= kRounding * (principal[0] + principal[1])) return;
+  std::ostringstream got;
+  got << principal[0] << ", " << principal[1] << ", " << principal[2];
+  refuse(
+      link,
+      "must have an <inertia> that a body can have: principal inertias > 0, none larger than the "
+      "sum of the others, got " +
+          got.str() + "; correct ixx to izz, which are about the centre of mass");
+}
+
 }  // namespace
 
 Urdf readUrdf(const std::string& text, const std::string& path, const FindPackage& find_package) {
@@ -326,6 +452,8 @@ Urdf readUrdf(const std::string& text, const std::string& path, const FindPackag
   if (links.empty()) refuse(*robot, "has no <link>");
   requireNames(links);
   requireNames(joints);
+  XMLElement* const mujoco = firstChild(robot, "mujoco");
+  requireKnownBlock(*mujoco);
   for (const XMLElement* joint : joints) requireKnownType(*joint);
   requireTree(links, joints);
   Urdf urdf;
@@ -343,23 +471,19 @@ Urdf readUrdf(const std::string& text, const std::string& path, const FindPackag
       }
       urdf.efforts[name] = *effort;
     }
-    const double lower = numberOr(*joint, "limit", "lower", 0.0);
-    const double upper = numberOr(*joint, "limit", "upper", 0.0);
     if (type == "continuous") {  // has no positions to end at, whatever is written
       for (XMLElement* limit : children(*joint, "limit")) {
         limit->DeleteAttribute("lower");
         limit->DeleteAttribute("upper");
       }
-    } else if (lower > upper) {
-      refuse(*joint, "must have limits with lower <= upper, got \"" +
-                         attribute(*joint->FirstChildElement("limit"), "lower") + "\" and \"" +
-                         attribute(*joint->FirstChildElement("limit"), "upper") + "\"");
+    } else {
+      requireLimits(*joint);
     }
     if (joint->FirstChildElement("mimic") != nullptr) {
       urdf.couplings.push_back(couplingOf(*joint, joints));
     }
   }
-  XMLElement* const mujoco = firstChild(robot, "mujoco");
+  requireNoCycle(urdf.couplings);
   const XMLElement* const option = mujoco->FirstChildElement("option");
   const XMLElement* const flag = option == nullptr ? nullptr : option->FirstChildElement("flag");
   urdf.contacts = flag != nullptr && attribute(*flag, "contact") == "enable";
@@ -371,6 +495,9 @@ Urdf readUrdf(const std::string& text, const std::string& path, const FindPackag
     for (const XMLElement* joint : joints) {
       if (attribute(*joint, "type") == "fixed") continue;
       requireInertia(linkOf(*joint, "child"), by_name, urdf.fixed);
+      if (attribute(*compiler, "balanceinertia") != "true") {
+        requirePossibleInertia(*by_name[linkOf(*joint, "child")]);
+      }
     }
   }
   MeshNames meshes(fs::absolute(path).parent_path(), find_package, compiler);

@@ -3,6 +3,9 @@
 #include "xml_text.h"
 
 #include <algorithm>
+#include <boost/algorithm/string/case_conv.hpp>
+#include <boost/algorithm/string/trim.hpp>
+#include <boost/locale/utf.hpp>
 #include <stdexcept>
 #include <vector>
 
@@ -52,15 +55,81 @@ class Writer {
   int line_ = 1;
 };
 
+bool begins(const std::string& text, const std::string& word) {
+  return text.compare(0, word.size(), word) == 0;
+}
+
+bool isUtf8(const std::string& text) {
+  using boost::locale::utf::utf_traits;
+  for (auto next = text.begin(); next != text.end();) {
+    const auto code = utf_traits<char>::decode(next, text.end());
+    if (!boost::locale::utf::is_valid_codepoint(code)) return false;
+  }
+  return true;
+}
+
+void requireUtf8(const tinyxml2::XMLElement& element) {
+  for (auto* one = element.FirstAttribute(); one != nullptr; one = one->Next()) {
+    if (isUtf8(one->Value())) continue;
+    throw std::invalid_argument("the attribute " + std::string(one->Name()) + " in line " +
+                                std::to_string(element.GetLineNum()) +
+                                " is not in UTF-8: convert the file, for example by `iconv -f "
+                                "LATIN1 -t UTF-8 FILE > NEW_FILE`");
+  }
+}
+
+/// Why a text that begins as XML is none, as far as it is known.
+std::string whyBroken(const std::string& text) {
+  if (text.find("\n<<<<<<< ") != std::string::npos) {
+    return "; it has the marks of a merge conflict (<<<<<<<): resolve the conflict";
+  }
+  const std::size_t declaration = text.find("<?xml");
+  return declaration != std::string::npos && text.find('<') < declaration
+             ? "; <?xml must be the first in the file: move it up, or leave it out"
+             : "";
+}
+
 }  // namespace
 
+std::string mistakenFor(const std::string& bytes) {
+  const std::string first = boost::to_lower_copy(boost::trim_left_copy(bytes.substr(0, 1000)));
+  if (first.empty()) return "is empty: fetch or write it again";
+  if (begins(first, "version https://git-lfs")) {
+    return "is a pointer of Git LFS in the place of the file: run `git lfs pull` in its repository";
+  }
+  if (begins(first, "<!doctype html") || begins(first, "<html") || begins(first, "404")) {
+    return "is a web page: download the raw file";
+  }
+  if (begins(bytes, "PK\x03\x04") || begins(bytes, "\x1f\x8b\x08")) {
+    return "is an archive: unpack it by `unzip` or `gunzip`";
+  }
+  return "";
+}
+
 XmlDocument parseXml(const std::string& text) {
+  const std::string mistaken = mistakenFor(text);
+  if (!mistaken.empty()) throw std::invalid_argument("it " + mistaken);
+  const std::string zero(1, '\0');
+  for (const std::string& start : {std::string("\xff\xfe"), std::string("\xfe\xff"), "<" + zero}) {
+    if (!begins(text, start)) continue;
+    throw std::invalid_argument(
+        "it is in UTF-16: convert it by `iconv -f UTF-16 -t UTF-8 FILE > NEW_FILE`");
+  }
+  if (begins(text, "#usda") || begins(text, "PXR-USDC")) {
+    throw std::invalid_argument("it is USD: export it as URDF or MJCF");
+  }
+  if (begins(text, "solid") || text.find('\0') != std::string::npos) {
+    throw std::invalid_argument(
+        "it is no XML: if it is a mesh, name the URDF or MJCF file that uses it");
+  }
   auto document = std::make_unique<tinyxml2::XMLDocument>();
   if (document->Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
     throw std::invalid_argument("line " + std::to_string(document->ErrorLineNum()) +
-                                " is not XML: " + document->ErrorStr());
+                                " is not XML: " + document->ErrorStr() + whyBroken(text));
   }
   if (document->RootElement() == nullptr) throw std::invalid_argument("it has no XML element");
+  forEachElement(document->RootElement(),
+                 [](tinyxml2::XMLElement* element) { requireUtf8(*element); });
   return document;
 }
 

@@ -12,6 +12,10 @@ namespace ddm {
 
 using XmlDocument = std::unique_ptr<tinyxml2::XMLDocument>;
 
+/// What a file is that was taken for another one, by its first bytes, with what helps: "is a web page:
+/// ..."; empty if it is none of the usual ones.
+std::string mistakenFor(const std::string& bytes);
+
 /// @throws std::invalid_argument with the line and the reason if the text is not XML
 XmlDocument parseXml(const std::string& text);
 

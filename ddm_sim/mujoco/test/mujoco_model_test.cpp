@@ -49,7 +49,12 @@ TEST_F(MujocoModelTest, NamesAFileThatIsMissingAndTheNearestOne) {
   EXPECT_TRUE(isRefused(folder_.path() + "/robot_amr.xml",
                         {"plant/model", "robot_amr.xml", "robot_arm.xml?"}));
   EXPECT_TRUE(isRefused("/nowhere/arm.xml", {"plant/model", "/nowhere/arm.xml"}));
-  EXPECT_TRUE(isRefused(folder_.path(), {"plant/model", folder_.path()}));
+  EXPECT_TRUE(isRefused(folder_.path(), {"plant/model", folder_.path(), "is a folder"}));
+  fs::create_symlink("gone.urdf", folder_.path() + "/link.urdf");
+  EXPECT_TRUE(isRefused(folder_.path() + "/link.urdf", {"is a link to gone.urdf", "no file"}));
+  EXPECT_TRUE(isRefused("/dev/null", {"/dev/null is a pipe or device"}));
+  for (int i = 0; i < 12; ++i) folder_.write("a" + std::to_string(i) + ".xml", "");
+  EXPECT_TRUE(isRefused(folder_.path() + "/hand.xml", {"there are a0.xml", "and 3 more"}));
   EXPECT_TRUE(isRefused("", {"plant/model"}));
 }
 
@@ -61,6 +66,63 @@ TEST_F(MujocoModelTest, NamesTheLineOfABrokenFile) {
   EXPECT_TRUE(isRefused(folder_.write("c.urdf", "<robot name='x'><link></robot>"),
                         {"plant/model", "c.urdf", "line 1"}));
   EXPECT_TRUE(isRefused(folder_.write("empty.xml", ""), {"plant/model", "empty.xml"}));
+}
+
+TEST_F(MujocoModelTest, SaysWhatAFileIsThatIsNoModel) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> files = {
+      {" \n", {"it is empty"}},
+      {"version https://git-lfs.github.com/spec/v1\noid sha256:0\n", {"git lfs pull"}},
+      {"<!DOCTYPE html>\n<html/>", {"web page", "raw file"}},
+      {"404: Not Found", {"web page", "raw file"}},
+      {"PK\x03\x04zip", {"archive", "unzip"}},
+      {"\x1f\x8b\x08gz", {"archive", "gunzip"}},
+      {std::string("\xff\xfe<\0r\0", 6), {"UTF-16", "iconv -f UTF-16"}},
+      {"#usda 1.0\n", {"USD", "URDF or MJCF"}},
+      {"solid rod\nfacet", {"mesh", "URDF or MJCF file that uses it"}},
+      {std::string(684, '\0'), {"mesh", "URDF or MJCF file that uses it"}},
+      {"<robot name='r'>\n<<<<<<< HEAD\n<link/></robot>", {"line 2", "merge conflict"}},
+      {"<!-- made -->\n<?xml version='1.0'?><robot/>", {"line 2", "<?xml must be the first"}},
+      {"<robot name='charni\xe8re'/>", {"name in line 1", "UTF-8", "iconv -f LATIN1"}},
+      {"<sdf version='1.6'><model/></sdf>", {"<sdf>", "URDF or xacro"}},
+      {"<COLLADA/>", {"<collada>", "mesh"}},
+      {"<mujocoinclude/>", {"<mujocoinclude>", "includes it"}}};
+  for (const auto& one : files) {
+    EXPECT_TRUE(isRefused(folder_.write("a.urdf", one.first), one.second)) << one.first;
+  }
+}
+
+TEST_F(MujocoModelTest, SaysWhatHelpsWithAssetsOfAnMjcf) {
+  const auto isRefusedWith = [this](const std::string& asset,
+                                    const std::vector<std::string>& words) {
+    return isRefused(folder_.write("a.xml", armText("<asset>" + asset + "</asset>")), words);
+  };
+  folder_.write("lfs.stl", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n");
+  folder_.write("oak.jpg", "\xff\xd8\xff");
+  folder_.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 3 4\n");
+  EXPECT_TRUE(isRefusedWith("<mesh name='m' file='lfs.stl'/>", {"lfs.stl", "git lfs pull"}));
+  EXPECT_TRUE(isRefusedWith("<texture name='t' type='2d' file='oak.jpg'/>", {"oak.jpg", "PNG"}));
+  const std::string body = "<worldbody><geom type='mesh' mesh='m'/></worldbody>";
+  EXPECT_TRUE(isRefused(
+      folder_.write("b.xml", armText("<asset><mesh name='m' file='flat.obj'/></asset>" + body)),
+      {"plane", "thickness"}));
+}
+
+TEST_F(MujocoModelTest, FindsPackagesInIncludesAndSaysFromWherePathsCount) {
+  folder_.write("parts/look.xml",
+                "<mujocoinclude><asset><mesh name='m' file='gone.stl'/></asset>"
+                "</mujocoinclude>");
+  const std::string include = "<include file='package://robots/parts/look.xml'/>";
+  EXPECT_TRUE(isRefused(folder_.write("robot/a.xml", armText(include)),
+                        {"not there: gone.stl", "folder of the model file", "included"}));
+  folder_.write("parts/look.xml", "<mujocoinclude><option timestep='0.001'/></mujocoinclude>");
+  EXPECT_EQ(folder_.loadText(armText(include), "robot/a.xml")->get().opt.timestep, 0.001);
+}
+
+TEST_F(MujocoModelTest, FindsAJointByTheNameThatItIsGiven) {
+  std::string text = armText();
+  text.replace(text.find("name=\"shoulder\""), 15, "");
+  text.replace(text.find("joint=\"shoulder\""), 16, "joint=\"elbow\"");
+  EXPECT_EQ(folder_.loadText(text)->id(mjOBJ_JOINT, "joint_0", "plant/motors"), 0);
 }
 
 TEST_F(MujocoModelTest, NamesAMissingIncludeMeshOrTexture) {
@@ -222,6 +284,9 @@ TEST_F(MujocoModelTest, HasADigestOfAllFilesThatItNames) {
   EXPECT_NE(with_size, digest);
   folder_.write("assets/base.obj", std::string(kTetrahedron) + "# painted\n");
   EXPECT_NE(folder_.loadText(text)->digest(), with_size);
+  const std::string with_paint = folder_.loadText(text, "arm.mjcf")->digest();
+  folder_.write("assets/base.obj", kTetrahedron);
+  EXPECT_NE(folder_.loadText(text, "arm.mjcf")->digest(), with_paint);
 }
 
 TEST_F(MujocoModelTest, SuggestsTheNearestNameAndAllOthers) {

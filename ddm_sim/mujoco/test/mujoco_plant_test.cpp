@@ -234,6 +234,62 @@ TEST(MujocoPlant, HasTheTimestepOfItsOptions) {
       testing::names(refusalOf([&] { arm(options); }), {"plant/dt", "plant/timestep", "0.01"}));
 }
 
+TEST(MujocoPlant, RefusesTimestepsAndResistancesOfAFileThatCannotBe) {
+  const auto refusal = [](const std::string& from, const std::string& to) {
+    std::string text = armText();
+    text.replace(text.find(from), from.size(), to);
+    return refusalOf([&] { plantOf(text, armOptions()); });
+  };
+  for (const char* timestep : {"0", "1e-06", "-0.01"}) {
+    EXPECT_TRUE(
+        testing::names(refusal("timestep=\"0.01\"", "timestep=\"" + std::string(timestep) + "\""),
+                       {"timestep of", "model.xml", "at least 2e-05", timestep, "plant/timestep"}));
+  }
+  EXPECT_TRUE(testing::names(refusal("damping=\"0.1\"", "damping=\"-3\""),
+                             {"shoulder", "model.xml", "damping >= 0", "-3"}));
+  EXPECT_TRUE(testing::names(refusal("damping=\"0.1\"", "frictionloss=\"-3\""),
+                             {"shoulder", "model.xml", "friction >= 0", "-3"}));
+}
+
+TEST(MujocoPlant, RefusesNamesOfJointsThatHeadNoColumn) {
+  for (const char* name : {"shoul der", "shoul,der", "shoul\xc3\xa9"}) {
+    std::string text = armText();
+    for (const char* attribute : {" name=", " joint="}) {
+      const std::string old = attribute + std::string("\"shoulder\"");
+      text.replace(text.find(old), old.size(), attribute + ("\"" + std::string(name) + "\""));
+    }
+    MujocoOptions options = armOptions();
+    EXPECT_TRUE(testing::names(refusalOf([&] { plantOf(text, options); }),
+                               {"the joint \"" + std::string(name), "model.xml", "rename it"}));
+    options.state_names = {"a", "b", "c", "d"};
+    options.torque_names = {"e", "f"};
+    EXPECT_EQ(refusalOf([&] { plantOf(text, options); }), "");
+  }
+}
+
+TEST(MujocoPlant, TakesTheLimitsOfActuatorsThatNamedMotorsReplace) {
+  const auto limit = [](const std::string& actuators) {
+    std::string text = armText();
+    const std::size_t begin = text.find("<motor"), end = text.find("</actuator>");
+    text.replace(begin, end - begin, actuators);
+    MujocoOptions options = armOptions();
+    options.motors = {"elbow"};
+    return plantOf(text, options)->info().max_torque[0];
+  };
+  const std::string motor = "<motor joint='elbow' gear='2' ctrlrange='-1 1'/>";
+  EXPECT_EQ(limit(motor), 2.0);
+  EXPECT_EQ(limit(motor + motor), 4.0);
+  EXPECT_EQ(limit("<motor joint='elbow' gear='-2' ctrlrange='-1 3'/>"), 2.0);
+  EXPECT_EQ(limit("<position joint='elbow' gear='2' kp='9' ctrlrange='-1 1' forcerange='-3 3'/>"),
+            6.0);
+  EXPECT_EQ(limit("<motor joint='elbow' ctrlrange='0 1'/><motor joint='elbow' ctrlrange='-2 0'/>"),
+            1.0);
+  for (const char* none : {"<motor joint='shoulder' ctrlrange='-1 1'/>", "<motor joint='elbow'/>",
+                           "<position joint='elbow' kp='9' ctrlrange='-1 1'/>"}) {
+    EXPECT_TRUE(testing::names(refusalOf([&] { limit(none); }), {"has no limit", "elbow"})) << none;
+  }
+}
+
 TEST(MujocoPlant, MeasuresTheErrorOfTheJointsOrSitesThatCount) {
   const Eigen::Vector4d state(1.0 + 2.0 * kPi, 0.5 + 0.2, 9.0, 9.0);
   EXPECT_NEAR(arm()->goalError(state), 0.2 * 180.0 / kPi, 1e-9);

@@ -77,6 +77,19 @@ Eigen::Vector3d viewOf(const PlantProposal& proposal) {
   return (at - position).normalized();
 }
 
+/// Whether the edge of the image shows the background.
+bool showsAll(const MujocoPlant& plant, const Eigen::VectorXd& pose) {
+  const Picture picture = plant.render(pose);
+  int brightest = 0;
+  for (int i = 0; i < picture.width; ++i) {
+    for (const int pixel : {i, (picture.height - 1) * picture.width + i, i * picture.width,
+                            i * picture.width + picture.width - 1}) {
+      brightest = std::max<int>(brightest, picture.bytes[static_cast<std::size_t>(pixel)]);
+    }
+  }
+  return brightest == 0;
+}
+
 TEST_F(Proposal, MotorsAreTheTransmissionsOfAUrdfThenItsJointsWithAnEffortLimit) {
   const std::string strong = "<limit effort='5' velocity='1'/>",
                     weak = "<limit effort='0' velocity='1'/>";
@@ -94,6 +107,8 @@ TEST_F(Proposal, MotorsAreTheTransmissionsOfAUrdfThenItsJointsWithAnEffortLimit)
   EXPECT_TRUE(unclear.joints.empty());
   EXPECT_EQ(unclear.candidates, Texts({"upper", "lower"}));
   EXPECT_EQ(choose(pendulum("")).joints, Texts({"hinge"}));  // the only joint
+  EXPECT_EQ(choose(two(strong, strong + "<mimic joint='upper'/>", "")).joints, Texts({"upper"}));
+  EXPECT_EQ(choose(two(weak, weak + "<mimic joint='upper'/>", "")).joints, Texts({"upper"}));
 }
 
 TEST_F(Proposal, MotorsOfAnMjcfFileAreItsActuatorsAndServosBecomeTorques) {
@@ -151,17 +166,33 @@ TEST_F(Proposal, AllPosesAreInTheImage) {
   for (const double x : {-1.0, 1.0}) {
     for (int k = 0; k < 8; ++k) poses.push_back(Eigen::Vector4d(x, k * kPi / 4.0, 0.0, 0.0));
   }
-  for (const Eigen::VectorXd& pose : poses) {
-    const Picture picture = plant.render(pose);
-    int brightest = 0;
-    for (int i = 0; i < picture.width; ++i) {
-      for (const int pixel : {i, (picture.height - 1) * picture.width + i, i * picture.width,
-                              i * picture.width + picture.width - 1}) {
-        brightest = std::max<int>(brightest, picture.bytes[static_cast<std::size_t>(pixel)]);
-      }
-    }
-    EXPECT_EQ(brightest, 0) << pose.transpose();  // the edge shows the background
+  for (const Eigen::VectorXd& pose : poses) EXPECT_TRUE(showsAll(plant, pose)) << pose.transpose();
+}
+
+TEST_F(Proposal, TheCameraSeesStartAndGoalOfAChain) {
+  const std::string limit = "<limit effort='5' velocity='1'/>";
+  std::string parts, parent = "base";
+  for (const char* name : {"a", "b", "c", "d", "e", "f"}) {
+    parts += rodLink(name) + jointOf(std::string("j") + name, "continuous", parent, name, "0 1 0",
+                                     parent == "base" ? limit : "");
+    const std::size_t origin = parts.rfind("<axis");
+    if (parent != "base") parts.insert(origin, "<origin xyz='0 0 -1'/>");
+    parent = name;
   }
+  const PlantProposal proposal = propose(robot(parts));
+  MujocoPlant plant(model_, proposal.options);
+  EXPECT_TRUE(showsAll(plant, plant.info().start));
+  EXPECT_TRUE(showsAll(plant, plant.info().goal));
+}
+
+TEST_F(Proposal, SpringsPullTheStartWhereTheyAreAtRest) {
+  const PlantProposal proposal = propose(
+      "<mujoco><option gravity='0 0 0'/><worldbody><body><joint name='swing' axis='0 1 0' "
+      "stiffness='50' springref='60'/><geom type='capsule' size='.05' fromto='0 0 0 0 0 -.5'/>"
+      "</body></worldbody><actuator><motor joint='swing'/></actuator></mujoco>",
+      "spring.xml");
+  EXPECT_NEAR(proposal.options.start.at(0), kPi / 3.0, 0.01);
+  EXPECT_GT(proposal.options.max_torque.at(0), 20.0);  // 4 would move the link alone
 }
 
 TEST_F(Proposal, ALongRailIsShownInPartSoThatTheRobotIsNotTiny) {

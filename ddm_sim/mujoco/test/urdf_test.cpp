@@ -129,6 +129,8 @@ TEST_F(UrdfTest, NamesWhatIsWrongWithTheTree) {
                             {"second", "thigh", "hip", "one parent"}));
   EXPECT_TRUE(isRefusedWith(joint("back", "fixed", "thigh", "base"), {"back", "base", "cycle"}));
   EXPECT_TRUE(isRefusedWith(link("thigh"), {"thigh", "name"}));
+  EXPECT_TRUE(isRefusedWith(link("world") + joint("knee", "continuous", "thigh", "world"),
+                            {"knee", "child link world", "rename"}));
   EXPECT_TRUE(isRefusedWith("<joint name='knee' type='fixed'><parent link='base'/></joint>",
                             {"knee", "child"}));
 }
@@ -144,6 +146,27 @@ TEST_F(UrdfTest, NamesALinkWithoutMassOrInertia) {
   EXPECT_TRUE(isRefused(leg, {"inertia", "thigh", "point mass"}));
   leg.mass = "<mass value='0'/>";
   EXPECT_TRUE(isRefused(leg, {"mass", "thigh", "> 0"}));
+  EXPECT_TRUE(isRefusedWith(
+      "<link name='frame'/><link name='weight'><inertial><mass value='1'/></inertial></link>" +
+          joint("knee", "continuous", "thigh", "frame") + joint("weld", "fixed", "frame", "weight"),
+      {"frame", "no <inertial>", "weight", "point mass"}));
+}
+
+TEST_F(UrdfTest, NamesALinkWithAnInertiaThatNoBodyHasButTakesRounding) {
+  const auto with = [](const std::string& numbers) {
+    Leg leg;
+    leg.inertia = "<inertia " + numbers + " ixz='0' iyz='0'/>";
+    return leg;
+  };
+  for (const char* numbers :
+       {"ixx='0.02' iyy='0.02' izz='0.5' ixy='0'", "ixx='0.02' iyy='0.02' izz='0.01' ixy='0.5'",
+        "ixx='0.00002' iyy='0.00002' izz='1' ixy='0'"}) {
+    EXPECT_TRUE(isRefused(with(numbers), {"thigh", "line 3", "principal inertias"})) << numbers;
+  }
+  EXPECT_EQ(load(with("ixx='0.001' iyy='0.01' izz='0.0111' ixy='0'"))->get().njnt, 1);
+  Leg balanced = with("ixx='0.02' iyy='0.02' izz='0.5' ixy='0'");
+  balanced.more = "<mujoco><compiler balanceinertia='true'/></mujoco>";
+  EXPECT_EQ(load(balanced)->get().njnt, 1);
 }
 
 TEST_F(UrdfTest, NamesAShapeThatUrdfDoesNotHave) {
@@ -152,6 +175,13 @@ TEST_F(UrdfTest, NamesAShapeThatUrdfDoesNotHave) {
   EXPECT_TRUE(isRefused(leg, {"thigh", "capsule", "cylinder"}));
   leg.shape = "";
   EXPECT_TRUE(isRefused(leg, {"thigh", "geometry", "nothing"}));
+  for (const char* size : {"<box size='0.1 0 0.1'/>", "<sphere radius='0'/>",
+                           "<cylinder radius='0.1' length='-1'/>"}) {
+    leg.shape = size;
+    EXPECT_TRUE(isRefused(leg, {"thigh", "line 3", "> 0", "leave the shape out"})) << size;
+  }
+  leg.shape = "<mesh filename='a.stl' scale='1 1 0'/>";
+  EXPECT_TRUE(isRefused(leg, {"thigh", "scale without 0", "\"1 1 0\""}));
 }
 
 TEST_F(UrdfTest, LetsContinuousJointsTurnWithoutEnd) {
@@ -168,6 +198,18 @@ TEST_F(UrdfTest, NamesLimitsThatCannotBe) {
   leg.type = "revolute";
   leg.in_joint = "<limit lower='1' upper='-1' effort='5' velocity='1'/>";
   EXPECT_TRUE(isRefused(leg, {"hip", "lower", "\"1\"", "\"-1\""}));
+  for (const char* type : {"revolute", "prismatic"}) {
+    leg.type = type;
+    for (const char* limit :
+         {"", "<limit effort='5' velocity='1'/>", "<limit lower='0' upper='0' effort='5'/>"}) {
+      leg.in_joint = limit;
+      EXPECT_TRUE(isRefused(leg, {"hip", "lower < upper", type, "fixed"})) << limit;
+    }
+  }
+  leg.in_joint = "<limit lower='-90' upper='90' effort='5' velocity='1'/>";
+  EXPECT_EQ(load(leg)->get().jnt_range[1], 90.0);  // m
+  leg.type = "revolute";
+  EXPECT_TRUE(isRefused(leg, {"hip", "\"90\"", "URDF has radians"}));
   leg.in_joint = "<limit lower='-1' upper='1' effort='-5' velocity='1'/>";
   EXPECT_TRUE(isRefused(leg, {"hip", "effort", "\"-5\""}));
   leg.in_joint = "<limit lower='-1' upper='1' effort='much' velocity='1'/>";
@@ -201,6 +243,22 @@ TEST_F(UrdfTest, LetsAJointFollowTheOneThatItMimics) {
   EXPECT_GT(std::abs(plant.state()[0]), 0.2);
   EXPECT_NEAR(plant.state()[1], -0.5 * plant.state()[0] + 0.2, 0.01);
   EXPECT_TRUE(isRefusedWith(follower("<mimic joint='hop'/>"), {"curl", "hop", "hip"}));
+  options.motors = {"hip", "curl"};
+  EXPECT_TRUE(testing::names(refusalOf([&] { MujocoPlant(model, options); }),
+                             {"plant/motors", "curl", "mimics the joint hip"}));
+  Leg cycle;
+  cycle.in_joint = "<mimic joint='curl'/>";
+  cycle.more = follower("<mimic joint='hip'/>");
+  EXPECT_TRUE(isRefused(cycle, {"curl -> hip -> curl", "remove one <mimic>"}));
+}
+
+TEST_F(UrdfTest, NamesWhatMujocoIgnoresInItsBlock) {
+  EXPECT_TRUE(isRefusedWith("<mujoco><actuator><motor joint='hip'/></actuator></mujoco>",
+                            {"<actuator>", "compiler, option, size", "MJCF"}));
+  EXPECT_TRUE(isRefusedWith("<mujoco><compiler balaceinertia='true'/></mujoco>",
+                            {"balaceinertia", "did you mean balanceinertia?"}));
+  EXPECT_TRUE(
+      isRefusedWith("<mujoco><compiler angle='degree'/></mujoco>", {"degree", "URDF has radians"}));
 }
 
 TEST_F(UrdfTest, TakesAMujocoBlockForWhatItNamesAndIgnoresOneInAComment) {
@@ -275,8 +333,17 @@ TEST_F(UrdfTest, NamesAMeshThatMujocoCannotRead) {
   EXPECT_TRUE(isRefused(leg, {"arm.DAE, b.dae", "STL", "assimp export arm.DAE"}));
   leg.shape = "<mesh filename='lfs.stl'/>";
   EXPECT_TRUE(isRefused(leg, {"\"lfs.stl\"", "git lfs pull"}));
+  folder_.write("page.stl", "<!DOCTYPE html>");
+  leg.shape = "<mesh filename='page.stl'/>";
+  EXPECT_TRUE(isRefused(leg, {"\"page.stl\"", "web page"}));
+  folder_.write("short.stl", std::string(80, '\0') + "\x0c" + std::string(103, '\0'));
+  leg.shape = "<mesh filename='.'/>";
+  EXPECT_TRUE(isRefused(leg, {"names a folder"}));
   leg.shape = "<mesh filename='gone.stl'/>";
   EXPECT_TRUE(isRefused(leg, {"\"gone.stl\"", "not there"}));
+  leg.more.clear();
+  leg.shape = "<mesh filename='short.stl'/>";
+  EXPECT_TRUE(isRefused(leg, {"short.stl has 184 bytes", "684", "export it again"}));
 }
 
 TEST_F(UrdfTest, NamesTheParentOfALinkBehindAFixedJoint) {

@@ -94,6 +94,9 @@ TEST_F(VisibleTest, RefusesAModelWhoseMotionIsNotSeenWithTheCause) {
   away.camera = "<camera pos='0 -4 0' xyaxes='-1 0 0 0 0 1'/>";
   EXPECT_TRUE(isRefused(
       away, {"plant/camera", "model.xml", "equal in all poses", "camera is at (0, -4, 0)"}));
+  Rod far;
+  far.visual = "<map zfar='0.5'/>";
+  EXPECT_TRUE(isRefused(far, {"plant/camera", "nothing farther than", "<statistic extent>"}));
   Rod transparent;
   transparent.geom = "rgba='1 1 1 0'";
   EXPECT_TRUE(isRefused(transparent, {"plant/camera", "transparent"}));

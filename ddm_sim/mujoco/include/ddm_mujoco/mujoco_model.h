@@ -67,6 +67,9 @@ class MujocoModel {
   /// 0.
   std::optional<double> effortLimit(const std::string& joint) const;
 
+  /// The joint that a joint of a URDF mimics; empty if it moves by itself.
+  std::string leaderOf(const std::string& joint) const;
+
   /// Name of an object; "joint_2" if it has none.
   std::string name(mjtObj type, int id) const;
 
@@ -77,6 +80,7 @@ class MujocoModel {
   std::string uri_;
   std::string digest_;
   std::map<std::string, double> efforts_;
+  std::map<std::string, std::string> leaders_;  // of joints that mimic one
   std::map<std::string, std::string>
       fixed_;  // links behind fixed joints, and what they are fixed to
   std::shared_ptr<const mjModel> model_;
