@@ -93,6 +93,13 @@ class CoreIsRosFreeTest(unittest.TestCase):
             self.assertNotIn("not found", libraries)
             self.assertEqual(ROS_LIBRARY.findall(libraries), [], name)
 
+    def test_functions_of_eigen_are_not_exported_to_libraries_that_were_compiled_otherwise(self):
+        for name in CORES:
+            exported = subprocess.run(["nm", "--dynamic", "--defined-only", libraryPath(name)], check=True,
+                                      stdout=subprocess.PIPE, universal_newlines=True).stdout
+            self.assertIn("3ddm", exported, name)
+            self.assertEqual(re.findall(r" (_ZN?K?5Eigen\S+)", exported), [], name)
+
     def test_includes_of_a_node_are_seen_as_ros(self):
         node = os.path.join(rospkg.RosPack().get_path("ddm_mpc"), "nodes", "mpc_node.cpp")
         self.assertIn("ddm_msgs/Plan.h", rosIncludes(node))

@@ -21,9 +21,6 @@ set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 
 add_compile_options(-Wall -Wextra)
-# Libraries of others, such as Ceres, hold functions of Eigen by the same names, compiled for another instruction set. If ours
-# were exported, the linker would let them call ours, whose loads fault on their less aligned memory.
-add_compile_options(-fvisibility-inlines-hidden)
 # Results are to repeat digit by digit on other processors: so one instruction set instead of -march=native, and Eigen must not
 # split its sums by the sizes of this processor's caches.
 add_compile_definitions(EIGEN_NO_CPUID)
@@ -47,6 +44,11 @@ endif()
 if(DDM_WERROR)
   add_compile_options(-Werror)
 endif()
+# Libraries of others, such as Ceres, hold functions of Eigen by the same names, compiled for another instruction set. If ours
+# were exported, the loader would let them call ours, whose loads fault on their less aligned memory.
+set(DDM_VERSION_SCRIPT ${CMAKE_BINARY_DIR}/without_eigen.map)
+file(WRITE ${DDM_VERSION_SCRIPT} "{ local: _ZN5Eigen*; _ZNK5Eigen*; _ZZN5Eigen*; _ZZNK5Eigen*; _ZGVZN5Eigen*; _ZGVZNK5Eigen*; };\n")
+add_link_options(-Wl,--version-script=${DDM_VERSION_SCRIPT})
 
 # The runtimes of sanitizers are linked into programs only: a program without them cannot load a library of such a
 # build, so a build with sanitizers has folders of its own and is not for installation.
