@@ -416,28 +416,41 @@ void requireLimits(const XMLElement& joint) {
   }
 }
 
-/// MuJoCo would put the mean of the three into the place of inertias that no body has.
-void requirePossibleInertia(const XMLElement& link) {
-  const XMLElement* const inertial = link.FirstChildElement("inertial");
-  if (inertial == nullptr) return;
-  const auto at = [inertial](const char* name) {
-    return numberOr(*inertial, "inertia", name, 0.0);
-  };
+/// Many files of robots have inertias that no body has, but nearly: there the smallest principal
+/// inertia grows until it fits, and rotations about the other two axes keep theirs. MuJoCo would
+/// put the mean of the three into the place of each.
+void makePossible(XMLElement* link) {
+  XMLElement* const inertial = link->FirstChildElement("inertial");
+  XMLElement* const element =
+      inertial == nullptr ? nullptr : inertial->FirstChildElement("inertia");
+  if (element == nullptr) return;
+  constexpr const char* kNames[3][3] = {
+      {"ixx", "ixy", "ixz"}, {"ixy", "iyy", "iyz"}, {"ixz", "iyz", "izz"}};
   Eigen::Matrix3d inertia;
-  inertia << at("ixx"), at("ixy"), at("ixz"), at("ixy"), at("iyy"), at("iyz"), at("ixz"), at("iyz"),
-      at("izz");
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) inertia(i, j) = numberOr(*inertial, "inertia", kNames[i][j], 0.0);
+  }
   if (inertia.isZero(0.0)) return;
-  const Eigen::Vector3d principal =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
-  constexpr double kRounding = 1.01;
-  if (principal[0] > 0.0 && principal[2] <= kRounding * (principal[0] + principal[1])) return;
-  std::ostringstream got;
-  got << principal[0] << ", " << principal[1] << ", " << principal[2];
-  refuse(
-      link,
-      "must have an <inertia> that a body can have: principal inertias > 0, none larger than the "
-      "sum of the others, got " +
-          got.str() + "; correct ixx to izz, which are about the centre of mass");
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia);
+  Eigen::Vector3d principal = solver.eigenvalues();
+  constexpr double kNearly = 2.0;
+  constexpr double kSmallest = 1e-3;  // share of the largest
+  if (principal[0] < -kSmallest * principal[2] ||
+      principal[2] > kNearly * (principal[0] + principal[1])) {
+    std::ostringstream got;
+    got << principal[0] << ", " << principal[1] << ", " << principal[2];
+    refuse(*link,
+           "must have an <inertia> that a body can have: principal inertias > 0, none larger than "
+           "the sum of the others, got " +
+               got.str() + "; correct ixx to izz, which are about the centre of mass");
+  }
+  const double least = std::max(principal[2] - principal[1], kSmallest * principal[2]);
+  if (principal[0] >= least) return;
+  principal[0] = least + 1e-6 * principal[2];  // more than rounding takes away
+  inertia = solver.eigenvectors() * principal.asDiagonal() * solver.eigenvectors().transpose();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) element->SetAttribute(kNames[i][j], inertia(i, j));
+  }
 }
 
 }  // namespace
@@ -495,8 +508,10 @@ Urdf readUrdf(const std::string& text, const std::string& path, const FindPackag
     for (const XMLElement* joint : joints) {
       if (attribute(*joint, "type") == "fixed") continue;
       requireInertia(linkOf(*joint, "child"), by_name, urdf.fixed);
-      if (attribute(*compiler, "balanceinertia") != "true") {
-        requirePossibleInertia(*by_name[linkOf(*joint, "child")]);
+    }
+    if (attribute(*compiler, "balanceinertia") != "true") {
+      for (XMLElement* link : links) {
+        if (urdf.fixed.count(attribute(*link, "name")) == 0) makePossible(link);
       }
     }
   }
