@@ -1,4 +1,4 @@
-# What all figures for print share: their files, and means with standard errors.
+# Tests of figure_style and averages: how figures are saved, and means with standard errors.
 # SPDX-License-Identifier: BSD-3-Clause
 import errno
 import os

@@ -21,7 +21,7 @@ ALIVE = {"BOOT_FAIL", "COMPLETING", "CONFIGURING", "LAUNCH_FAILED", "NODE_FAIL",
          "RECONFIG_FAIL", "REQUEUED", "REQUEUE_FED", "REQUEUE_HOLD", "RESIZING", "RESV_DEL_HOLD", "RUNNING", "SIGNALING",
          "SPECIAL_EXIT", "STAGE_OUT", "STOPPED", "SUSPENDED", "UPDATE_DB"}
 
-# What sbatch says when it has sent the job array and not heard the answer.
+# Messages of sbatch after which the job array may be running: sbatch sent it, and heard no answer.
 LOST_ANSWERS = ("timed out", "zero bytes were transmitted", "unexpected message", "connection reset",
                 "message receive failure", "endpoint is not connected")
 

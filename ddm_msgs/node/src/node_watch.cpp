@@ -40,7 +40,7 @@ class Connection {
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  /// Whether nobody listens at the address, as after the end of a process.
+  /// Whether no process listened at the address, as after the end of the process that did.
   bool wasRefused() const { return refused_; }
 
   /// The other side has not ended it. Nobody sends anything here.
@@ -126,7 +126,8 @@ void NodeWatch::watch(const std::shared_ptr<State>& state) {
     connection.reset();
     if (const auto address = addressOf(node)) {
       connection = std::make_unique<Connection>(address->host, address->port);
-      is_gone = is_gone || connection->wasRefused();  // what was heard came from a process there
+      is_gone =
+          is_gone || connection->wasRefused();  // the message came from a process at this address
       if (!connection->isOpen()) connection.reset();
     }
     const std::lock_guard<std::mutex> lock(state->mutex);

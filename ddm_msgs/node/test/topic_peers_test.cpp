@@ -50,7 +50,7 @@ TEST_F(TopicPeersTest, ANodeThatDiedBeforeItsProcessCouldBeWatchedIsNoticed) {
   ghost[0] = "/dead";
   ghost[1] = "/last_words";
   ghost[2] = "std_msgs/Float64";
-  ghost[3] = "http://localhost:1/";  // where nobody is any more
+  ghost[3] = "http://localhost:1/";  // no process listens at port 1
   ASSERT_TRUE(askMaster("registerPublisher", ghost).has_value());
   NodeWatch watch;
   watch.hear("/dead");

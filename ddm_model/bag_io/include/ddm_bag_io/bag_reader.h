@@ -50,8 +50,8 @@ struct BagContent {
   DataSet data;                 ///< frames: images with their torques
   std::string camera;           ///< size and encoding of the images, "51x51 mono8"
   std::vector<double> times{};  ///< of each frame, since the first one [s]
-  /// The same number for frames with the same time, image and torque. Empty for bags of this
-  /// project: each run of a simulator may begin at the same time.
+  /// A number for each frame; frames with the same time, image and torque have the same number.
+  /// Bags that DDM recorded have none, because each run of a simulator may begin at the same time.
   std::vector<std::size_t> frame_ids{};
   double interval = 0.0;  ///< median of those between frames [s]; 0 if there is only one
   std::vector<double> images_without_torque{};  ///< their times, since the first frame [s]

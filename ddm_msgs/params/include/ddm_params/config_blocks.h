@@ -8,8 +8,9 @@
 
 namespace ddm {
 
-/// The blocks of a configuration file by name; an empty map if the file holds only comments. Relative paths of files that it names (model file, background
-/// and goal pictures, bags, plant file) start at its folder, and are returned as absolute ones.
+/// The blocks of a configuration file by name; an empty map if the file holds only comments.
+/// Relative paths of files that the configuration names (model file, background and goal pictures,
+/// bags, plant file) start at the folder of the configuration, and are returned as absolute ones.
 ///
 /// @throws std::runtime_error with the path if the file cannot be read
 /// @throws std::invalid_argument with path and line if it is not valid YAML, is not a map of
