@@ -21,6 +21,8 @@ namespace {
 
 namespace fs = boost::filesystem;
 
+using boost::algorithm::join;
+
 struct Layer {
   std::string file;
   YAML::Node blocks;
@@ -35,21 +37,33 @@ std::string packageFolder(const std::string& package) {
   return path;
 }
 
-/// ddm_launch/config/FOLDER/NAME.yaml
-/// @throws std::invalid_argument naming those that exist, if there is no such file
-std::string chooseFile(const std::string& folder, const std::string& name,
-                       const std::string& kind) {
-  const std::string path = packageFolder("ddm_launch") + "/config/" + folder;
+/// ddm_launch/config/presets/NAME.yaml
+/// @throws std::invalid_argument listing those that exist, if there is no such file
+std::string presetFile(const std::string& name) {
+  const std::string path = packageFolder("ddm_launch") + "/config/presets";
   std::set<std::string> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
     if (entry.path().extension() == ".yaml") names.insert(entry.path().stem().string());
   }
   if (names.count(name) > 0) return path + "/" + name + ".yaml";
-  throw std::invalid_argument("unknown " + kind + " '" + name + "': there are " +
-                              boost::algorithm::join(names, ", "));
+  throw std::invalid_argument("unknown preset '" + name + "': there are " + join(names, ", "));
 }
 
-std::vector<std::string> manuals() {
+/// config/named.yaml: configurations by name, by group.
+YAML::Node namedConfigurations() {
+  return readBlocks(packageFolder("ddm_launch") + "/config/named.yaml");
+}
+
+/// A configuration by its name, or the file of this path.
+Layer layerOf(const std::string& config) {
+  if (fs::path(config).extension() == ".yaml" || fs::exists(config)) {
+    return {config, readBlocks(config)};
+  }
+  return {config, namedConfiguration(config)};
+}
+
+/// Where each option has its default and its explanation.
+std::vector<std::string> parameterReferences() {
   const std::string launch = packageFolder("ddm_launch") + "/config";
   return {packageFolder("ddm_sim") + "/config/sim.yaml",
           packageFolder("ddm_model") + "/config/model.yaml",
@@ -83,32 +97,14 @@ std::string chosenPlant(const std::vector<Layer>& layers) {
   return namesPlantFile(name) ? fs::absolute(name).lexically_normal().string() : name;
 }
 
-/// A saved configuration holds every value of its plant: with another plant's name it would be a
-/// mixture of the two.
-void requirePlant(const std::string& plant, const Layer& config) {
-  const std::string theirs = chosenPlant({config});
-  if (theirs.empty() || theirs == plant || !config.blocks["plant"].IsDefined()) return;
-  throw std::invalid_argument(config.file + " describes the plant " + theirs + ", not " + plant +
-                              ": name that plant or none, or leave the file out and choose preset "
-                              "and values yourself");
-}
-
-/// A saved configuration also holds every value of plant and camera, so a nuisance below it would
-/// be lost without a word.
-void requireNuisance(const std::string& name, const Layer& config) {
-  if (!config.blocks["version"].IsDefined()) return;
-  const std::string file = nuisanceFile(name);
-  const YAML::Node nuisance = readBlocks(file);
-  for (const auto& block : nuisance) {
-    for (const auto& entry : block.second) {
-      const std::string block_name = block.first.Scalar(), key = entry.first.Scalar();
-      const auto there = valueAt<double>(config.blocks, block_name, key);
-      if (!there || there == valueAt<double>(nuisance, block_name, key)) continue;
-      throw std::invalid_argument(
-          config.file + " describes an experiment without the nuisance " + name +
-          ": leave the nuisance out, or give its file after that one, " + file);
-    }
-  }
+/// A saved configuration holds every value of its plant, its preset and its method: with another
+/// name it would be a mixture of the two.
+void requireSaved(const std::string& kind, const std::string& name, const std::string& saved,
+                  const std::string& file) {
+  if (name == saved) return;
+  throw std::invalid_argument(file + " describes an experiment with the " + kind + " " + saved +
+                              ", not " + name + ": leave the " + kind +
+                              " out, or leave this file out and choose preset and values yourself");
 }
 
 /// A file that is given instead of another one has another checksum.
@@ -121,7 +117,7 @@ void forgetChecksums(const YAML::Node& values, YAML::Node* blocks) {
   }
 }
 
-/// Whether the user, the preset, the plant or another layer above the manuals gives BLOCK/KEY.
+/// Whether the user, the preset, the plant or another layer above the defaults gives BLOCK/KEY.
 using Given = std::function<bool(const std::string& block, const std::string& key)>;
 
 /// Sets a value that follows from others. The reader refuses a block that is not a map.
@@ -196,31 +192,40 @@ void requireOneWayToTheMotors(const YAML::Node& blocks) {
 }  // namespace
 
 ResolvedConfiguration resolve(const Arguments& arguments) {
-  const auto layersOf = [](const std::vector<std::string>& files) {
-    std::vector<Layer> layers;
-    for (const std::string& file : files) layers.push_back({file, readBlocks(file)});
-    return layers;
-  };
-  std::vector<Layer> layers = layersOf(manuals());
-  const auto num_manuals = static_cast<std::ptrdiff_t>(layers.size());
-  const std::vector<Layer> configs = layersOf(arguments.configs);
+  std::vector<Layer> layers;
+  for (const std::string& file : parameterReferences()) layers.push_back(layerOf(file));
+  for (const std::string& config : arguments.defaults) layers.push_back(layerOf(config));
+  const auto num_defaults = static_cast<std::ptrdiff_t>(layers.size());
+  std::vector<Layer> configs;
+  for (const std::string& config : arguments.configs) configs.push_back(layerOf(config));
   const YAML::Node& values = arguments.values;
 
   std::vector<Layer> naming = layers;
   naming.insert(naming.end(), configs.begin(), configs.end());
   naming.push_back({"", values});
+  const std::string preset = chosen("preset", naming);
   const std::string plant = chosenPlant(naming);
-  std::vector<std::string> files = {chooseFile("presets", chosen("preset", naming), "preset"),
-                                    plantFile(plant)};
-  const std::string of_method = methodFile(chosen("method", naming));
-  if (!of_method.empty()) files.push_back(of_method);
-  for (const std::string& name : arguments.nuisances) files.push_back(nuisanceFile(name));
-  for (const Layer& config : configs) {
-    requirePlant(plant, config);
-    for (const std::string& name : arguments.nuisances) requireNuisance(name, config);
+  const std::string method = chosen("method", naming);
+  const auto saved = std::find_if(configs.begin(), configs.end(), [](const Layer& config) {
+    return config.blocks["version"].IsDefined();
+  });
+  if (saved != configs.end()) {
+    requireSaved("preset", preset, chosen("preset", {*saved}), saved->file);
+    requireSaved("plant", plant, chosenPlant({*saved}), saved->file);
+    requireSaved("method", method, chosen("method", {*saved}), saved->file);
+    layers.push_back(*saved);
+  } else {
+    for (const std::string& file : {presetFile(preset), plantFile(plant)}) {
+      layers.push_back(layerOf(file));
+    }
+    const std::vector<std::string> methods = namesInGroup("method");
+    if (std::count(methods.begin(), methods.end(), method) > 0) {
+      layers.push_back(layerOf("method/" + method));
+    }
   }
-  for (const Layer& layer : layersOf(files)) layers.push_back(layer);
-  layers.insert(layers.end(), configs.begin(), configs.end());
+  for (auto config = configs.begin(); config != configs.end(); ++config) {
+    if (config != saved) layers.push_back(*config);
+  }
 
   ResolvedConfiguration resolved;
   for (const Layer& layer : layers) {
@@ -233,7 +238,7 @@ ResolvedConfiguration resolve(const Arguments& arguments) {
   follow("experiment", "plant", YAML::Node(plant), &resolved.blocks);
   layers.push_back({"", values});
   const Given given = [&](const std::string& block, const std::string& key) {
-    return std::any_of(layers.begin() + num_manuals, layers.end(),
+    return std::any_of(layers.begin() + num_defaults, layers.end(),
                        [&](const Layer& layer) { return hasKey(layer.blocks, block, key); });
   };
   askPlantForMotors(&resolved.blocks);
@@ -243,13 +248,29 @@ ResolvedConfiguration resolve(const Arguments& arguments) {
   return resolved;
 }
 
-std::string nuisanceFile(const std::string& name) {
-  return chooseFile("nuisances", name, "nuisance");
+YAML::Node namedConfiguration(const std::string& name) {
+  const YAML::Node all = namedConfigurations();
+  const std::string::size_type slash = name.find('/');
+  const std::string group = name.substr(0, slash);
+  if (slash != std::string::npos && hasKey(all, group, name.substr(slash + 1))) {
+    return all[group][name.substr(slash + 1)];
+  }
+  std::vector<std::string> known;
+  for (const auto& entry : all) {
+    for (const std::string& one : namesInGroup(entry.first.Scalar())) {
+      if (!all[group].IsDefined() || group == entry.first.Scalar()) {
+        known.push_back(entry.first.Scalar() + "/" + one);
+      }
+    }
+  }
+  throw std::invalid_argument("unknown configuration '" + name +
+                              "': it is not a file, and there are " + join(known, ", "));
 }
 
-std::string methodFile(const std::string& method) {
-  const std::string file = packageFolder("ddm_launch") + "/config/methods/" + method + ".yaml";
-  return !method.empty() && fs::exists(file) ? file : "";
+std::vector<std::string> namesInGroup(const std::string& group) {
+  std::vector<std::string> names;
+  for (const auto& entry : namedConfigurations()[group]) names.push_back(entry.first.Scalar());
+  return names;
 }
 
 boost::program_options::options_description configurationOptions(const std::string& about,
@@ -261,12 +282,25 @@ boost::program_options::options_description configurationOptions(const std::stri
   add("plant", given<std::string>("experiment/plant", arguments),
       "name in ddm_sim/config; PACKAGE/NAME: in config of another package; otherwise that of the "
       "files, or pendulum");
-  add("nuisance", boost::program_options::value(&arguments->nuisances)->composing(),
-      "name in ddm_launch/config/nuisances, what is wrong with the camera's images: noise, "
-      "brightness, clutter, thin_rod, delay, drops, or with the scene of a model file: "
-      "scene_background, scene_camera, scene_colours, scene_light; repeatable");
   add("config", boost::program_options::value(&arguments->configs)->composing(),
-      "YAML file with overrides, or config.yaml of an experiment; repeatable, later files win");
+      "YAML file, or GROUP/NAME of ddm_launch/config/named.yaml; repeatable, later ones win");
+  const auto first = [arguments](const std::vector<std::string>& configs) {
+    arguments->configs.insert(arguments->configs.begin(), configs.begin(), configs.end());
+  };
+  const auto add_nuisances = [first](std::vector<std::string> names) {
+    for (std::string& name : names) name = "nuisance/" + name;
+    first(names);
+  };
+  add("nuisance",
+      boost::program_options::value<std::vector<std::string>>()->composing()->notifier(
+          add_nuisances),
+      ("a disturbance of camera or scene, the same as --config nuisance/NAME before others: " +
+       join(namesInGroup("nuisance"), ", ") + "; repeatable")
+          .c_str());
+  add("repeat",
+      boost::program_options::value<std::string>()->notifier(
+          [first](const std::string& run) { first({run + "/config.yaml"}); }),
+      "folder of an experiment whose configuration is repeated; later options win");
   const auto set_all = [arguments](const std::vector<std::string>& all) {
     for (const std::string& one : all) setValue(one, &arguments->values);
   };

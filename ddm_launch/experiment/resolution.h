@@ -14,8 +14,8 @@ namespace ddm {
 
 /// What the user gave, and nothing else.
 struct Arguments {
-  std::vector<std::string> nuisances;      ///< names in ddm_launch/config/nuisances
-  std::vector<std::string> configs;        ///< files; later ones win
+  std::vector<std::string> defaults;  ///< as configs, but of a launch file: preset and plant win
+  std::vector<std::string> configs;   ///< GROUP/NAME of config/named.yaml, or files; later ones win
   YAML::Node values{YAML::NodeType::Map};  ///< single values, blocks by name
 
   /// @param key  "block/key"
@@ -36,27 +36,29 @@ struct ResolvedConfiguration {
 
 /// The one place where a configuration is put together. Later layers win, key by key:
 ///
-///   defaults, preset, plant, method, nuisances, configs, values
+///   defaults, preset, plant, method, configs, values
+///
+/// The defaults are those of the parameter references, then those of a launch file.///
+/// A saved configuration among the configs (--repeat RUN) takes the place of preset, plant and
+/// method. Otherwise preset, plant and method are those that `experiment` names in values, else in
+/// the last of the configs that names them, else in the defaults.
 ///
 /// Where nothing above the defaults gives them, model/max_torque and mpc/max_torque are max_torque
-/// of the robot, without a robot of the plant, which a model file may hold; controller/torque_dim is the number of motors that
-/// it lists; and in real time mpc/time_budget is half a time step. Preset, plant and method are
-/// those that `experiment` names in values, else in the last of the configs that names them, else
-/// in the defaults. A file that names its plant and has a block `plant` describes that plant, so it
-/// is refused for another one; a saved configuration is refused with a nuisance that it does not
-/// have.
-/// @throws std::invalid_argument if there is no such preset, plant or nuisance (those that exist
-///         are named), if a config describes another plant or nuisance, or if controller/torque_dim
-///         is not the number of motors
+/// of the robot, without a robot of the plant, which a model file may hold; controller/torque_dim is
+/// the number of motors in that list; and in real time mpc/time_budget is half a time step.
+/// @throws std::invalid_argument if there is no such preset, plant or named configuration (the
+///         message lists those that exist), if a saved configuration has another preset, plant or
+///         method, or if controller/torque_dim is not the number of motors
 /// @throws std::runtime_error or std::invalid_argument as readBlocks(), for a file
 ResolvedConfiguration resolve(const Arguments& arguments);
 
-/// ddm_launch/config/nuisances/NAME.yaml: something that is wrong with the camera's images.
-/// @throws std::invalid_argument naming those that exist, if there is no such nuisance
-std::string nuisanceFile(const std::string& name);
+/// Blocks of a configuration in ddm_launch/config/named.yaml.
+/// @param name  GROUP/NAME
+/// @throws std::invalid_argument listing those that exist, if there is no such configuration
+YAML::Node namedConfiguration(const std::string& name);
 
-/// ddm_launch/config/methods/NAME.yaml: values that a method needs; empty if it has no file.
-std::string methodFile(const std::string& method);
+/// The names in a group of named configurations; empty if there is no such group.
+std::vector<std::string> namesInGroup(const std::string& group);
 
 /// A command line option whose value overrides `key` ("block/key"). It has no default: the
 /// configuration files hold the defaults.

@@ -133,6 +133,8 @@ bool configure(int argc, char** argv, Request* request) {
   };
   po::options_description options = configurationOptions(kAbout, arguments);
   auto add = options.add_options();
+  add("defaults", po::value(&arguments->defaults)->composing(),
+      "as --config, but preset and plant win over it; for launch files");
   add("runs", given<Text>("experiment/runs", arguments), "folder of an experiment");
   add("model", given<Text>("start/model", arguments), "saved model that trial 0 explores with");
   add("bags", po::value<Texts>()->multitoken()->notifier([arguments](const Texts& texts) {

@@ -21,7 +21,7 @@ constexpr char kAbout[] =
     "epsilon-greedy trial in turn. The same command on the same folder resumes.\n\n"
     "usage: rosrun ddm_launch run_experiment --preset paper --plant pendulum --seed 3\n"
     "                                        --trials 15 --out DIR [--model FILE] [--bags BAG...]\n"
-    "       rosrun ddm_launch run_experiment --config RUN/config.yaml --out DIR  (the same again)";
+    "       rosrun ddm_launch run_experiment --repeat RUN --out DIR  (the same again)";
 
 /// @return false where --help was asked for and has been printed
 bool configure(int argc, char** argv, ddm::Configuration* configuration) {

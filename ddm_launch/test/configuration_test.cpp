@@ -138,83 +138,49 @@ TEST(Configuration, APlantKnowsBetterThanAPresetWhatItNeeds) {
   EXPECT_EQ(pendulum.model.training.max_iterations, 500);
 }
 
-TEST(Configuration, AMethodIsGivenItsFileIfItHasOne) {
-  EXPECT_EQ(methodFile("ddm"), "");
-  const std::vector<std::string> names = namesIn(DDM_LAUNCH_SOURCE_DIR "/config/methods");
-  ASSERT_FALSE(names.empty());
-  for (const std::string& name : names) {
-    Arguments given = arguments("paper", "pendulum");
+TEST(Configuration, AMethodIsGivenItsNamedConfiguration) {
+  for (const std::string& name : namesInGroup("method")) {
+    Arguments given = arguments("efficient", "pendulum");
     given.set("experiment/method", name);
     const Configuration all = read(given);
-    if (name == "oracle") {
-      EXPECT_EQ(all.mpc.cost, "distance");
-      continue;
+    EXPECT_EQ(all.mpc.cost == "distance", name == "oracle") << name;
+    EXPECT_EQ(all.trial.num_steps, name == "oracle" ? 100 : 125) << name;
+  }
+}
+
+TEST(Configuration, EveryNamedConfigurationIsReadAndChangesSomething) {
+  const std::string plain = YAML::Dump(toYaml(read(arguments("efficient", "pendulum"))));
+  const YAML::Node all = YAML::LoadFile(DDM_LAUNCH_SOURCE_DIR "/config/named.yaml");
+  for (const auto& group : all) {
+    for (const auto& one : group.second) {
+      const std::string name = one.first.Scalar(), full = group.first.Scalar() + "/" + name;
+      const bool of_scene = name.rfind("scene_", 0) == 0;  // for plants of a model file alone
+      const bool of_others = group.first.Scalar() == "launch" || name == "sparse_gp";
+      if (group.first.Scalar() == "oracle") {
+        EXPECT_NO_THROW(plantFile(name)) << full;
+      }
+      if (of_scene) {
+        EXPECT_EQ(keysOf(one.second), std::set<std::string>{"plant"}) << full;
+      }
+      if (of_scene || of_others) continue;
+      EXPECT_NE(YAML::Dump(toYaml(read(arguments("efficient", "pendulum", {full})))), plain)
+          << full;
     }
-    EXPECT_EQ(all.trial.num_steps, 125) << name;
-    EXPECT_EQ(all.mpc.epsilon, 0.0) << name;
   }
-}
-
-TEST(Configuration, EveryScheduleButTheJointHasAFileOfItsName) {
-  const std::string folder = DDM_LAUNCH_SOURCE_DIR "/config/schedules";
-  const std::vector<std::string> names = namesIn(folder);
-  EXPECT_EQ(std::set<std::string>(names.begin(), names.end()),
-            (std::set<std::string>{"sequential", "v_p_only", "joint_random_init"}));
-  for (const std::string& name : names) {
-    const Configuration all = read(arguments("paper", "pendulum", {folder + "/" + name + ".yaml"}));
-    EXPECT_EQ(all.model.training.schedule, name);
-  }
-}
-
-TEST(Configuration, EveryNuisanceIsOneOfTheCameraOrTheLookOfTheRodOrTheScene) {
-  const std::vector<std::string> names = namesIn(DDM_LAUNCH_SOURCE_DIR "/config/nuisances");
-  EXPECT_EQ(
-      std::set<std::string>(names.begin(), names.end()),
-      (std::set<std::string>{"noise", "brightness", "clutter", "thin_rod", "delay", "drops",
-                             "scene_background", "scene_camera", "scene_colours", "scene_light"}));
-  const auto with = [](const std::string& name) {
-    const std::string block = name == "thin_rod" ? "plant" : "camera";
-    EXPECT_EQ(keysOf(YAML::LoadFile(nuisanceFile(name))), (std::set<std::string>{block})) << name;
-    Arguments given = arguments("paper", "pendulum");
-    given.nuisances = {name};
-    return read(given);
-  };
-  EXPECT_EQ(with("noise").camera.noise_std, 0.1);
-  EXPECT_EQ(with("brightness").camera.brightness_drift, 0.2);
-  EXPECT_GT(with("clutter").camera.clutter, 0.0);
-  EXPECT_EQ(with("thin_rod").plant->block()["rod_half_width"].as<double>(),
-            RodLook().rod_half_width / 2);
-  EXPECT_EQ(with("thin_rod").plant->block()["edge_softness"].as<double>(), 0.05);
-  EXPECT_EQ(with("delay").camera.delay, 1);
-  EXPECT_EQ(with("drops").camera.drop_rate, 0.05);
-}
-
-TEST(Configuration, ANuisanceOfASceneIsAnOptionOfPlantsOfAModelFile) {
-  const auto share = [](const std::string& name, const std::string& key) {
-    const YAML::Node file = YAML::LoadFile(nuisanceFile(name));
-    EXPECT_EQ(keysOf(file), (std::set<std::string>{"plant"})) << name;
-    EXPECT_EQ(keysOf(file["plant"]), (std::set<std::string>{key})) << name;
-    return file["plant"][key].as<double>();
-  };
-  EXPECT_EQ(share("scene_camera", "camera_shift"), 0.1);
-  EXPECT_EQ(share("scene_colours", "colour_shift"), 0.1);
-  EXPECT_EQ(share("scene_light", "light_shift"), 0.3);
-  EXPECT_EQ(share("scene_background", "background"), 0.5);
 }
 
 TEST(Configuration, ANuisanceOfASceneIsRefusedForAPlantWithoutOne) {
-  Arguments given = arguments("paper", "pendulum");
-  given.nuisances = {"scene_camera"};
-  EXPECT_TRUE(
-      throwsNaming<std::invalid_argument>([&given] { read(given); }, {"plant/camera_shift"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+      [] { read(arguments("paper", "pendulum", {"nuisance/scene_camera"})); },
+      {"plant/camera_shift"}));
 }
 
-TEST(Configuration, ANuisanceThatDoesNotExistIsRefusedWithThoseThatDo) {
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [] { nuisanceFile("fog"); }, {"unknown nuisance 'fog'",
-                                    "brightness, clutter, delay, drops, noise, "
-                                    "scene_background, scene_camera, scene_colours, scene_light, "
-                                    "thin_rod"}));
+TEST(Configuration, ANameThatDoesNotExistIsRefusedWithThoseThatDo) {
+  const auto refused = [](const std::string& name, const std::vector<std::string>& words) {
+    return throwsNaming<std::invalid_argument>([&] { namedConfiguration(name); }, words);
+  };
+  EXPECT_TRUE(refused("nuisance/fog", {"'nuisance/fog'", "nuisance/brightness, nuisance/clutter"}));
+  EXPECT_TRUE(refused("noise", {"'noise'", "nuisance/noise", "oracle/suite_reacher"}));
 }
 
 TEST(Configuration, AnUnknownMethodIsRefusedWithThoseThatThereAre) {
@@ -231,16 +197,6 @@ TEST(Configuration, WhatIsPredictedIsChecked) {
   options = PredictionOptions();
   options.max_steps = 0;
   EXPECT_EQ(options.problems().size(), 1u);
-}
-
-TEST(Configuration, LaterFilesWin) {
-  const TempFolder folder;
-  writeText(folder.file("a.yaml"), "mpc: {epsilon: 0.3, horizon: 9}\n");
-  writeText(folder.file("b.yaml"), "mpc: {epsilon: 0.4}\n");
-  const Configuration all =
-      read(arguments("paper", "pendulum", {folder.file("a.yaml"), folder.file("b.yaml")}));
-  EXPECT_EQ(all.mpc.epsilon, 0.4);
-  EXPECT_EQ(all.mpc.horizon, 9);
 }
 
 TEST(Configuration, ProblemsOfAllBlocksAreReportedAtOnce) {
@@ -339,24 +295,11 @@ TEST(Configuration, WhatIsSavedIsReadBackAsTheSameConfiguration) {
   EXPECT_EQ(YAML::Dump(toYaml(read({folder.file("config.yaml")}))), YAML::Dump(toYaml(all)));
 }
 
-TEST(Configuration, EveryFileForTheOracleIsThatOfAPlantAndSetsThePlannerAlone) {
-  const std::string folder = DDM_LAUNCH_SOURCE_DIR "/config/oracle/";
-  const std::vector<std::string> names = namesIn(folder);
-  EXPECT_GE(names.size(), 3U);
-  for (const std::string& name : names) {
-    EXPECT_NO_THROW(plantFile(name));
-    const std::string file = folder + name + ".yaml";
-    EXPECT_EQ(keysOf(YAML::LoadFile(file)), (std::set<std::string>{"mpc"})) << name;
-    ParamReader reader = ParamReader::fromFiles({file});
-    reader.read<MpcOptions>("mpc");
-    EXPECT_EQ(reader.problems(), std::vector<std::string>()) << name;
-  }
-}
-
 TEST(Manuals, AreRegisteredSoThatEveryProgramLeavesTheirBlocksAlone) {
   for (const char* package : {"ddm_launch", "ddm_model", "ddm_mpc", "ddm_sim"}) {
     const std::string folder = std::string(DDM_LAUNCH_SOURCE_DIR "/../") + package + "/config/";
     for (const std::string& name : namesIn(folder)) {
+      if (name == "named") continue;  // holds configurations, not blocks
       const ParamReader reader = ParamReader::fromFiles({folder + name + ".yaml"});
       EXPECT_EQ(reader.problems(), std::vector<std::string>()) << folder << name;
     }

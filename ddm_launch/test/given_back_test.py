@@ -35,7 +35,7 @@ class GivenBackTest(SharedScratchCase):
         self.assertEqual(read_yaml(self.out, "config.yaml")["experiment"]["runs"], self.out)
 
     def test_run_experiment_reproduces_it(self):
-        code, output = run_experiment("--config", self.config, "--out", self.out)
+        code, output = run_experiment("--repeat", self.original, "--out", self.out)
         self.assertEqual(code, 0, output)
         self.assertReproduced(output)
 

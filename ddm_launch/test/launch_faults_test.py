@@ -31,7 +31,7 @@ class LaunchFaultsTest(ScratchCase):
         self.assertRefusedBeforeAnyNode(["unknown plant 'windmill'", "pendulum_gravity"], "plant:=windmill")
 
     def test_a_nuisance_that_does_not_exist_is_named(self):
-        self.assertRefusedBeforeAnyNode(["unknown nuisance 'fog'", "clutter"], "nuisance:=fog")
+        self.assertRefusedBeforeAnyNode(["unknown configuration 'nuisance/fog'", "clutter"], "nuisance:=fog")
 
     def test_a_file_that_does_not_exist_is_named(self):
         self.assertRefusedBeforeAnyNode(["no/such.yaml"], "config:=no/such.yaml")

@@ -54,9 +54,10 @@ TEST_F(Resolution, LaterLayersWinKeyByKey) {
   given_.set("experiment/plant", std::string("pendulum_gravity"));
   EXPECT_EQ(read().trial.num_steps, 125);
   EXPECT_EQ(gravity(read()), 9.82);
-  given_.nuisances = {"noise"};
+  given_.configs = {"nuisance/noise"};
   EXPECT_EQ(read().camera.noise_std, 0.1);
-  given_.configs = {file("a.yaml", "camera: {noise_std: 0.2, delay: 2}\nexperiment: {seed: 3}\n"),
+  given_.configs = {"nuisance/noise",
+                    file("a.yaml", "camera: {noise_std: 0.2, delay: 2}\nexperiment: {seed: 3}\n"),
                     file("b.yaml", "camera: {noise_std: 0.3}\n")};
   EXPECT_EQ(read().camera.noise_std, 0.3);
   EXPECT_EQ(read().camera.delay, 2);
@@ -85,7 +86,7 @@ TEST_F(Resolution, ASavedConfigurationComesBackWhole) {
   given_.set("experiment/trials", 2);
   given_.set("start/model", std::string("/model.ddm"));
   given_.set("start/bags", std::vector<std::string>{"/a.bag", "/b c.bag"});
-  given_.nuisances = {"noise", "delay"};
+  given_.configs = {"nuisance/noise", "nuisance/delay"};
   const std::string before = YAML::Dump(toYaml(read()));
   const std::string config = saved();
   given_ = Arguments();
@@ -183,29 +184,22 @@ TEST_F(Resolution, ABlockThatIsNotAMapIsLeftToTheReader) {
       throwsNaming<std::invalid_argument>([this] { read(); }, {"model", "mpc", "experiment"}));
 }
 
-TEST_F(Resolution, ASavedPlantIsNotMixedWithAnother) {
+TEST_F(Resolution, ASavedConfigurationIsNotMixedWithAnotherPlantPresetOrMethod) {
   given_.set("experiment/plant", std::string("pendulum_gravity"));
   const std::string config = saved();
+  for (const auto& [kind, name] :
+       {std::make_pair("plant", "pendulum"), {"preset", "debug"}, {"method", "oracle"}}) {
+    given_ = Arguments();
+    given_.configs = {config};
+    given_.set(std::string("experiment/") + kind, std::string(name));
+    EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { read(); },
+                                                    {config, std::string("not ") + name, "leave"}));
+  }
   given_ = Arguments();
-  given_.configs = {config};
-  given_.set("experiment/plant", std::string("pendulum"));
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [this] { read(); }, {config, "pendulum_gravity", "not pendulum", "leave"}));
+  given_.configs = {"nuisance/noise", config};
   given_.set("experiment/plant", std::string("pendulum_gravity"));
   EXPECT_EQ(gravity(read()), 9.82);
-}
-
-TEST_F(Resolution, ASavedCameraDoesNotSwallowANuisance) {
-  given_.nuisances = {"delay"};
-  const std::string config = saved();
-  given_.configs = {config};
-  EXPECT_EQ(read().camera.delay, 1);
-  given_.nuisances = {"delay", "noise"};
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [this] { read(); }, {config, "nuisance noise", nuisanceFile("noise")}));
-  given_.configs = {config, nuisanceFile("noise")};
-  given_.nuisances.clear();
-  EXPECT_EQ(read().camera.noise_std, 0.1);
+  EXPECT_EQ(read().camera.noise_std, 0.1) << "a saved configuration is the base of all others";
 }
 
 TEST_F(Resolution, AnotherModelOrOtherBagsBringTheirOwnChecksums) {

@@ -36,6 +36,16 @@ class ResolveTest(ScratchCase):
         self.assertEqual(blocks["show"]["frame_rate"], 2.0)
         self.assertEqual(blocks["trial"]["num_steps"], 30)  # of the preset
 
+    def test_a_saved_configuration_wins_over_the_defaults_of_a_launch_file_and_options_win_over_both(self):
+        self.write("run/config.yaml", "version: 2\nexperiment: {preset: debug, plant: pendulum, method: ddm}\n"
+                   "evaluation: {goal_distance: 0.7}\n")
+        for words, distance in ((["--repeat", "run"], 0.7), (["--config", "run/config.yaml"], 0.7),
+                                (["--repeat", "run", "--set", "evaluation/goal_distance=0.9"], 0.9), ([], 0.3)):
+            blocks = self.resolve("--defaults", "launch/robot", *words)
+            self.assertEqual(float(blocks["evaluation"]["goal_distance"]), distance, words)
+            self.assertEqual(blocks["experiment"]["preset"], "debug" if words else "efficient")
+        self.assertRefused(["run/config.yaml", "preset debug, not paper"], "--repeat", "run", "--preset", "paper", code=1)
+
     def test_a_stand_in_robot_has_the_motors_of_its_plant(self):
         for plant, limits in (("pendulum", 6.0), ("moving_tile", [5.0, 5.0]), ("two_link", [4.0, 2.0])):
             blocks = self.resolve("--motors-of", plant)

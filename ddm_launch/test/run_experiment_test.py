@@ -149,8 +149,7 @@ class RunExperimentTest(SharedScratchCase):
         self.assertEqual(differences(self.reference, self.out, expected_files(TRIALS)), [])
 
     def test_a_saved_configuration_can_be_given_again(self):
-        self.assertRuns("--preset", "paper", "--config", os.path.join(self.reference, "config.yaml"), "--seed", 1,
-                        "--trials", 1, "--out", self.out)
+        self.assertRuns("--repeat", self.reference, "--seed", 1, "--trials", 1, "--out", self.out)
         names = ["trial_001/torques.csv", "evaluation_001/torques.csv"]
         self.assertEqual(differences(self.reference, self.out, names), [])
 

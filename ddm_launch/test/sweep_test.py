@@ -204,9 +204,9 @@ class SweepTest(SharedScratchCase):
         before = snapshot(self.out)
         config = self.write("more.yaml", "mpc: {epsilon: 0.4}\n")
         for words, arguments in (
-                (["plant: pendulum there, pendulum_gravity here"], self.debug() + ["--plant", "pendulum_gravity"]),
-                (["preset: debug there, paper here"], ["--seeds", "0:4", "--trials", 1, "--out", self.out]),
-                (["options: [] there", "more.yaml"], self.debug() + ["--", "--config", config])):
+                (["options: ['--preset', 'debug'] there", "pendulum_gravity"], self.debug() + ["--plant", "pendulum_gravity"]),
+                (["'debug'] there, [] here"], ["--seeds", "0:4", "--trials", 1, "--out", self.out]),
+                (["'debug'] there", "more.yaml"], self.debug() + ["--", "--config", config])):
             self.assertEnds(1, words + ["another sweep", self.out], *arguments)
         self.assertEqual(snapshot(self.out), before)
 
@@ -281,7 +281,7 @@ class SweepTest(SharedScratchCase):
         self.assertEqual(files_in(self.out), [])
 
     def test_of_a_seed_that_said_nothing_it_is_told_whether_the_disk_is_full(self):
-        with SweepFolder(self.out, SeedProgram("run_experiment", "debug", "pendulum", 1, [])) as folder:
+        with SweepFolder(self.out, SeedProgram("run_experiment", 1, ["--preset", "debug"])) as folder:
             self.write(folder.log(1), "")
             self.assertIn(folder.log(1), folder.last_words(1))
             self.assertNotIn("disk", folder.last_words(1))

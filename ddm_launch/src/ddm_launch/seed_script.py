@@ -39,12 +39,12 @@ class BadOptions(Failure):
 class SeedProgram:
     """A program of ddm_launch with all of its options but seed and folder."""
 
-    def __init__(self, name, preset, plant, trials, options):
-        """trials: None for a program that has none. options: more options, handed on as they are.
+    def __init__(self, name, trials, options):
+        """trials: None for a program that has none. options: all others, handed on as they are.
 
         Raises Failure if the program or the setup.bash of its workspace is not there.
         """
-        self.name, self.preset, self.plant, self.trials, self.options = name, preset, plant, trials, list(options)
+        self.name, self.trials, self.options = name, trials, list(options)
         self.path = find_program(name)
         self.setup = find_setup(self.path)
 
@@ -55,7 +55,7 @@ class SeedProgram:
     def command(self):
         """The words of the command line, without seed and folder."""
         trials = [] if self.trials is None else ["--trials", str(self.trials)]
-        return [self.path, "--preset", self.preset, "--plant", self.plant] + trials + self.options
+        return [self.path] + trials + self.options
 
     def script(self, folder):
         """Text of the bash script that runs one seed of the sweep in this (absolute) folder."""

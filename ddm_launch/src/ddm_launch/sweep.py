@@ -59,8 +59,8 @@ def make_parser():
     parser = program_parser(
         "sweep", ABOUT, EPILOG, allow_abbrev=False,
         usage="rosrun ddm_launch sweep --seeds A:B --out DIR [options] [-- options of the program]")
-    parser.add_argument("--preset", default="paper", help="name in ddm_launch/config/presets; default paper")
-    parser.add_argument("--plant", default="pendulum", help="name in ddm_sim/config; default pendulum")
+    parser.add_argument("--preset", help="name in ddm_launch/config/presets; otherwise that of the files, or paper")
+    parser.add_argument("--plant", help="name in ddm_sim/config; otherwise that of the files, or pendulum")
     parser.add_argument("--seeds", type=seed_range, required=True, metavar="A:B", help="seeds A ... B - 1")
     parser.add_argument("--trials", type=int, metavar="T", help="of run_experiment; default 15")
     parser.add_argument("--out", required=True, metavar="DIR", help="folder for the results")
@@ -80,11 +80,12 @@ def parse(arguments):
     parser = make_parser()
     split = arguments.index("--") if "--" in arguments else len(arguments)
     options, more = parser.parse_args(arguments[:split]), [expand_home(word) for word in arguments[split + 1:]]
-    for value in options.set:
-        more += ["--set", value]
     for word in more:
         if re.match(r"(-h|--(help|preset|plant|seed|trials|out)(=.*)?)$", word):
             parser.error("%s after '--': only options that sweep itself does not have may follow it" % word)
+    more = [word for name in ("preset", "plant") if getattr(options, name) for word in ("--" + name, getattr(options, name))] + more
+    for value in options.set:
+        more += ["--set", value]
     if options.program != "run_experiment" and options.trials is not None:
         parser.error("--trials is an option of run_experiment, %s has none: leave it out" % options.program)
     if options.program == "run_experiment" and options.trials is None:
@@ -143,8 +144,8 @@ def run(engine, folder, seeds, terminal):
         tell()
         under_way = indices(job.ranges)  # a seed that failed there is left to the next call, as without an interruption
     to_run = [seed for seed in pending if seed not in under_way]
-    print("%s, preset %s, plant %s: %d of %d seeds to run" % (
-        folder.program.name, folder.program.preset, folder.program.plant, len(to_run), len(seeds)), flush=True)
+    print("%s: %d of %d seeds to run" % (" ".join([folder.program.name] + folder.program.options), len(to_run), len(seeds)),
+          flush=True)
     if to_run:
         folder.prepare(to_run)
         engine.run(folder, to_run, tell)
@@ -156,7 +157,7 @@ def sweep(options, more):
     start, terminal = time.monotonic(), sys.stderr.isatty()
     engine = (SlurmArray(options.jobs, terminal) if options.slurm
               else GnuParallel(options.jobs, options.hosts, terminal))
-    program = SeedProgram(options.program, options.preset, options.plant, options.trials, more)
+    program = SeedProgram(options.program, options.trials, more)
     program.check(options.seeds[0])
     with SweepFolder(options.out, program) as folder:
         interruption = None

@@ -57,8 +57,7 @@ class SweepFolder:
 
     def _compare(self):
         path = os.path.join(self.path, "sweep.yaml")
-        here = {"program": self.program.name, "preset": self.program.preset, "plant": self.program.plant,
-                "options": self.program.options}
+        here = {"program": self.program.name, "options": self.program.options}
         if not os.path.exists(path):
             write_file(path, yaml.safe_dump(here, sort_keys=False))
             return
