@@ -96,6 +96,16 @@ std::string RunFolder::bagPath(int trial, int episode) const {
   return path() + "/" + runName({trial, /*evaluation=*/false, episode}) + "/trial.bag";
 }
 
+std::vector<std::string> RunFolder::bagsUpTo(int trial) const {
+  std::vector<std::string> bags = configuration_.start.bags;
+  for (int k = 0; k <= trial; ++k) {
+    for (int episode = 0; episode < configuration_.trial.episodes; ++episode) {
+      bags.push_back(bagPath(k, episode));
+    }
+  }
+  return bags;
+}
+
 bool RunFolder::isRecorded(const RunId& run) const {
   const std::string folder = path() + "/" + runName(run);
   if (!recordingsFit() || !fs::exists(folder + "/trial.bag")) return false;

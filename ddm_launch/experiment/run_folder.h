@@ -62,6 +62,8 @@ class RunFolder : public ResultsFolder {
   const std::vector<TrialRow>& rows() const { return rows_; }
 
   std::string bagPath(int trial, int episode = 0) const;
+  /// All bags to learn from after a trial: those of `start`, then those of each episode so far.
+  std::vector<std::string> bagsUpTo(int trial) const;
   /// Whether an earlier call recorded this run completely, so that it is not to be repeated.
   bool isRecorded(const RunId& run) const;
   /// Folder where a training leaves its files.

@@ -20,10 +20,10 @@
 #include <vector>
 
 #include "csv_text.h"
-#include "experiment.h"
 #include "in_process_driver.h"
 #include "method_kinds.h"
 #include "resolution.h"
+#include "resumption.h"
 #include "start.h"
 
 namespace po = boost::program_options;

@@ -8,8 +8,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "algorithm1.h"
 #include "configuration.h"
-#include "experiment.h"
 #include "ros_driver.h"
 #include "start.h"
 #include "trials_csv.h"

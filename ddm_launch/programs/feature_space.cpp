@@ -19,7 +19,7 @@
 #include "closed_loop.h"
 #include "configuration.h"
 #include "csv_text.h"
-#include "experiment.h"
+#include "resumption.h"
 #include "run_csv.h"
 #include "start.h"
 

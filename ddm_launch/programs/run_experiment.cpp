@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "experiment.h"
+#include "algorithm1.h"
 #include "in_process_driver.h"
 #include "method_kinds.h"
 #include "resolution.h"

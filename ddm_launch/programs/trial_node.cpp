@@ -9,8 +9,8 @@
 #include <memory>
 #include <optional>
 
-#include "experiment.h"
 #include "progress.h"
+#include "resumption.h"
 #include "ros_driver.h"
 
 namespace {

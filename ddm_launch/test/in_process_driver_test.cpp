@@ -13,8 +13,8 @@
 #include <limits>
 #include <set>
 
-#include "experiment.h"
 #include "method_kinds.h"
+#include "resumption.h"
 #include "toy_run.h"
 
 namespace ddm {

@@ -14,7 +14,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "experiment.h"
+#include "algorithm1.h"
 #include "in_process_driver.h"
 #include "method_kinds.h"
 #include "toy_run.h"

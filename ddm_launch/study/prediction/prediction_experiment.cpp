@@ -17,13 +17,13 @@
 
 #include "closed_loop.h"
 #include "csv_text.h"
-#include "experiment.h"
 #include "method_kinds.h"
 #include "prediction_options.h"
 #include "progress.h"
 #include "quadratic_fit.h"
 #include "resolution.h"
 #include "results_folder.h"
+#include "resumption.h"
 
 namespace ddm {
 namespace {

@@ -28,13 +28,4 @@ void runExperiment(
     const Configuration& configuration, Driver* driver, RunFolder* folder, Progress* progress,
     const std::function<void(const std::vector<TrialRow>&)>& show = [](const auto&) {});
 
-/// A run of a trial as the configuration has it, but greedy and not recorded.
-/// @param evaluation  the greedy run after the trial
-TrialRequest requestFor(const Configuration& configuration, int trial, bool evaluation);
-
-/// A row of trials.csv, as far as the greedy run decides it.
-/// @param plant  is given the goal of that run
-TrialRow rowOf(const TrialId& id, const TrialOutcome& greedy, const EvaluationOptions& options,
-               Plant* plant);
-
 }  // namespace ddm

@@ -1,6 +1,6 @@
 // Tests of Algorithm 1: the order of its phases, what it asks of a driver, and how it resumes.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiment.h"
+#include "algorithm1.h"
 
 #include <ddm_msgs/testing/expect_error.h>
 #include <ddm_msgs/testing/temp_folder.h>
