@@ -2,10 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from ddm_launch.averages import success_rates
 from ddm_launch.command import Failure
-from ddm_launch.figure_style import BLUE, GREY, VERMILLION, new_screen_figure, save
+from ddm_launch.figure_style import BLUE, GREY, VERMILLION, Figure, argument, new_screen_figure, save
 from ddm_launch.run_folder import read_goal, read_trials
-
-ABOUT = "One run folder: final error after each trial; several: success rate. The latter with its standard error."
 
 
 def draw_one(axes, trials, goal):
@@ -48,10 +46,6 @@ def draw_many(axes, runs):
     axes.set_ylabel("success rate [-]")
 
 
-def add_arguments(parser):
-    parser.add_argument("folders", metavar="DIR", nargs="+", help="run folder (it holds trials.csv)")
-
-
 def draw(options):
     runs = [read_trials(folder) for folder in options.folders]
     with new_screen_figure(7.0, 4.2) as figure:
@@ -67,3 +61,7 @@ def draw(options):
         axes.set_axisbelow(True)
         axes.legend(loc="best")
         save(figure, options.out)
+
+
+FIGURE = Figure("One run folder: final error after each trial; several: success rate. The latter with its standard error.",
+                [argument("folders", metavar="DIR", nargs="+", help="run folder (it holds trials.csv)")], draw)
