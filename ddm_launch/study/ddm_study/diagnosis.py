@@ -59,77 +59,61 @@ class Joints:
         return np.mean(np.all(self.distances(positions, self.goal) < limits, axis=1))
 
 
-def read_episode(folder, joints):
-    images = recorded_images(os.path.join(folder, "trial.bag"))
-    torques = os.path.join(folder, "torques.csv")
-    return Episode(images, read_columns(torques, motors_of(torques))[:len(images)],
-                   read_columns(os.path.join(folder, "trajectory.csv"), joints.columns)[:len(images)])
-
-
 def read_trial(run, trial, joints):
     """The Episodes of a trial."""
-    folder = os.path.join(run, "trial_%03d" % trial)
-    return [read_episode(each, joints) for each in [folder] + sorted(glob.glob(os.path.join(folder, "episode_*")))]
+    first, episodes = os.path.join(run, "trial_%03d" % trial), []
+    for folder in [first] + sorted(glob.glob(os.path.join(first, "episode_*"))):
+        images, torques = recorded_images(os.path.join(folder, "trial.bag")), os.path.join(folder, "torques.csv")
+        episodes.append(Episode(images, read_columns(torques, motors_of(torques))[:len(images)],
+                                read_columns(os.path.join(folder, "trajectory.csv"), joints.columns)[:len(images)]))
+    return episodes
 
 
-class ReadOut:
-    """Positions of features: those of the nearest image that was learned from."""
-
-    def __init__(self, features, positions):
-        self._features, self._positions = features.T, positions
-        self._half_squares = 0.5 * np.sum(features ** 2, axis=1)
-
-    def __call__(self, features):
-        """[N x joints]"""
-        nearest = [np.argmin(self._half_squares - some @ self._features, axis=1)  # |a - z|^2 / 2, but for |z|^2 / 2
-                   for some in np.array_split(features, 1 + len(features) // BATCH)]
-        return self._positions[np.concatenate(nearest)]
+def nearest_positions(learned, positions, features):
+    """Of each feature, the position of the nearest feature that was learned from  [N x joints]."""
+    half_squares = 0.5 * np.sum(learned ** 2, axis=1)
+    nearest = [np.argmin(half_squares - some @ learned.T, axis=1)  # |a - z|^2 / 2, but for |z|^2 / 2
+               for some in np.array_split(features, 1 + len(features) // BATCH)]
+    return positions[np.concatenate(nearest)]
 
 
-def prediction_errors(model, episodes, read_out, steps, joints):
-    """[predictions x joints]"""
-    n, memory, errors = model.options["order"], model.options["order"] + model.options["delay"], []
-    for episode in episodes:
-        starts = range(memory - 1, len(episode.images) - steps)
-        if len(starts) == 0:
-            continue
-        features = model.encode(episode.images)
-        ahead = model.roll_out([features[now - n + 1:now + 1] for now in starts],
-                               [episode.torques[now - memory + 1:now + steps] for now in starts])
-        errors.append(joints.distances(read_out(ahead[:, -1]), episode.positions[[now + steps for now in starts]]))
-    return np.concatenate(errors) if errors else []
+def predicted(model, episode, steps):
+    """(features predicted so many steps ahead, numbers of the images that show what happened) of an episode."""
+    n, memory = model.options["order"], model.options["order"] + model.options["delay"]
+    starts = range(memory - 1, len(episode.images) - steps)
+    features = model.encode(episode.images)
+    ahead = model.roll_out([features[now - n + 1:now + 1] for now in starts],
+                           [episode.torques[now - memory + 1:now + steps] for now in starts])
+    return ahead[:, -1], [now + steps for now in starts]
 
 
 def diagnose(run):
     """Rows of COLUMNS of a finished run folder."""
     plant, seed = (read_setting(run, "experiment", name, name) for name in ("plant", "seed"))
-    config = read_yaml(os.path.join(run, "config.yaml"))
     joints = Joints(plant)
     last = len(glob.glob(os.path.join(run, "trial_*", "model.ddm"))) - 1
     if last < 1:
         raise Failure("%s must have two trials at least, got %d: the second is what the first model has not learned from"
                       % (run, last + 1))
     model = load(os.path.join(run, "trial_%03d" % (last - 1), "model.ddm"))
-    learned = [episode for trial in range(last) for episode in read_trial(run, trial, joints)]
+    episodes = [episode for trial in range(last) for episode in read_trial(run, trial, joints)]
     held_out = read_trial(run, last, joints)
-    positions = np.concatenate([episode.positions for episode in learned])
-    read_out = ReadOut(np.concatenate([model.encode(episode.images) for episode in learned]), positions)
-    head = [plant, seed, len(positions)]
+    positions = np.concatenate([episode.positions for episode in episodes])
+    learned = np.concatenate([model.encode(episode.images) for episode in episodes])
     rows = []
-
-    def add(part, steps, errors):
-        for name, unit, column in zip(joints.names, joints.units, errors.T):
+    for steps in (0,) + STEPS:
+        errors = []
+        for episode in held_out:
+            if steps and len(episode.images) <= steps + model.options["order"] + model.options["delay"] - 1:
+                continue
+            features, numbers = predicted(model, episode, steps) if steps else (model.encode(episode.images), slice(None))
+            errors.append(joints.distances(nearest_positions(learned, positions, features), episode.positions[numbers]))
+        for name, unit, column in zip(joints.names, joints.units, np.concatenate(errors).T if errors else []):
             scale, shown = (180.0 / math.pi, "deg") if unit == "rad" else (1.0, unit)
-            rows.append(head + [part, steps, name, shown, scale * np.median(column), scale * np.quantile(column, 0.9), ""])
-
-    found = np.concatenate([read_out(model.encode(episode.images)) for episode in held_out])
-    add("features", 0, joints.distances(found, np.concatenate([episode.positions for episode in held_out])))
-    for steps in STEPS:
-        errors = prediction_errors(model, held_out, read_out, steps, joints)
-        if len(errors) > 0:
-            add("prediction", steps, errors)
-    if not config["plant"].get("goal_site"):  # a goal that is drawn in each trial
-        rows.append(head + ["goal", "", "all", "", "", "", joints.share_near_goal(positions)])
+            rows.append([plant, seed, len(positions), "prediction" if steps else "features", steps, name, shown,
+                         scale * np.median(column), scale * np.quantile(column, 0.9), ""])
+    if not read_yaml(os.path.join(run, "config.yaml"))["plant"].get("goal_site"):  # a goal that is drawn in each trial
+        rows.append([plant, seed, len(positions), "goal", "", "all", "", "", "", joints.share_near_goal(positions)])
     return rows
 
 
