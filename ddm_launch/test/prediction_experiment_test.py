@@ -27,8 +27,8 @@ def write_quick(tmp_path_factory):
 def make_predict(quick):
     def predict(*arguments, plant="moving_tile", seed=3):
         """(exit code, output)"""
-        return call([find_program("prediction_experiment"), "--preset", "debug", "--plant", plant, "--seed", seed, "--config",
-                     quick] + list(arguments))
+        return call([find_program("prediction_experiment"), "--preset", "debug", "--plant", plant, "--seed", seed,
+                     "--config", quick] + list(arguments))
     return predict
 
 
@@ -41,11 +41,13 @@ def make_reference(predict, tmp_path_factory):
 
 
 def test_the_files_have_a_row_for_each_number_of_steps_and_each_frame(reference):
-    assert files_in(reference) == ["config.yaml", "features.csv", "model.ddm", "predictions.csv", "strip.csv", "summary.yaml"]
+    assert files_in(reference) == ["config.yaml", "features.csv", "model.ddm", "predictions.csv", "strip.csv",
+                                   "summary.yaml"]
     summary = read_yaml(reference, "summary.yaml")
     assert [summary[key] for key in ("finished", "seed", "plant", "schedule")] == [True, 3, "moving_tile", "joint"]
     rows = read_dicts(reference, "predictions.csv")
-    assert list(rows[0]) == ["seed", "steps", "num_predictions", "rmse", "rmse_repeat", "position_r2", "v_r", "v_p", "train_s"]
+    assert list(rows[0]) == ["seed", "steps", "num_predictions", "rmse", "rmse_repeat", "position_r2", "v_r", "v_p",
+                             "train_s"]
     assert [row["steps"] for row in rows] == [str(k) for k in range(1, 9)]
     assert {row["num_predictions"] for row in rows} == {"21"}  # 30 frames, one before, eight after
     repeat = [float(row["rmse_repeat"]) for row in rows]
@@ -128,7 +130,8 @@ def test_feature_space_tells_experience_current_goal_and_plan_and_refuses_other_
     assert code == 0, output
     rows = read_rows(out)
     assert rows[0] == ["kind", "step", "z_1", "z_2"]
-    assert [row[0] for row in rows[1:]] == ["experience"] * 60 + ["current", "goal"] + ["plan"] * 5  # two trials of 30, K = 5
+    kinds = ["experience"] * 60 + ["current", "goal"] + ["plan"] * 5  # two trials of 30, K = 5
+    assert [row[0] for row in rows[1:]] == kinds
     assert [row[1] for row in rows[-5:]] == ["3", "4", "5", "6", "7"]
     for words, code, part in ((("--trial", 1, "--step", 30), 1, "30 steps"), (("--trial", 1), 2, "--step"),
                               (("--trial", 7, "--step", 2), 1, "trial_007/model.ddm")):

@@ -64,8 +64,9 @@ def test_schedules_are_compared_on_the_seeds_that_all_have(tmp_path):
     for k, name in enumerate(results.SCHEDULES):
         write_trials(tmp_path / ("" if name == "joint" else name) / "trials.csv", lambda seed, trial: trial == 8 + seed,
                      seeds=2 + k, trials=16)
-        write(tmp_path / "tile_predictions" / name / "predictions.csv", "seed,steps,rmse,rmse_repeat,position_r2\n" + "".join(
-            "%d,8,%g,0.1,0.9\n" % (seed, 0.02 * (k + 1)) for seed in range(3 - (k > 0))))
+        rows = ["%d,8,%g,0.1,0.9\n" % (seed, 0.02 * (k + 1)) for seed in range(3 - (k > 0))]
+        write(tmp_path / "tile_predictions" / name / "predictions.csv",
+              "seed,steps,rmse,rmse_repeat,position_r2\n" + "".join(rows))
     late = results.late_success(str(tmp_path))  # the means over 900 to 1500 frames
     assert list(late.index) == [0, 1] and late.joint[0] == pytest.approx(1 / 7)
     ratio = results.predictions(str(tmp_path), "tile")["ratio"].loc[8]

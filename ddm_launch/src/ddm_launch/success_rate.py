@@ -64,8 +64,8 @@ def styles(names):
         raise Failure("each curve must have a label of its own, got '%s' twice: give it another" % twice[0])
     others = [name for name in names if name not in of_name]
     if len(others) > len(OTHERS):
-        raise Failure("at most %d curves besides those of known methods (%s) can be distinguished, got %d: draw two figures" % (
-            len(OTHERS), "; ".join(of_name), len(others)))
+        raise Failure("at most %d curves besides those of known methods (%s) can be distinguished, got %d: draw two "
+                      "figures" % (len(OTHERS), "; ".join(of_name), len(others)))
     of_name.update(zip(others, OTHERS))
     return [of_name[name] for name in names]
 

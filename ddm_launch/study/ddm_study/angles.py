@@ -86,8 +86,8 @@ def draw_distributions(options):
             seed, frames = seeds[k // len(columns)], columns[k % len(columns)]
             policy = table[(table.seed == seed) & (table.frames == frames)]
             predicted = policy[policy.kind == "predicted"]
-            axes.fill_between(predicted.time_s, predicted.turns - predicted.half, predicted.turns + predicted.half, color=SKY,
-                              alpha=0.5, linewidth=0)
+            axes.fill_between(predicted.time_s, predicted.turns - predicted.half, predicted.turns + predicted.half,
+                              color=SKY, alpha=0.5, linewidth=0)
             axes.plot(predicted.time_s, predicted.turns, color=BLUE, linewidth=0.8)
             for kind, (colour, line, _) in ACTUAL.items():
                 run = policy[policy.kind == kind]
@@ -109,9 +109,9 @@ TRAJECTORIES = Figure(
     "succeed is written above each panel. Angles count full turns; what lies beyond the panels is cut off.",
     [argument("file", metavar="FILE.csv", help="columns seed,frames,success,step,time_s,angle_rad")], draw_trajectories)
 DISTRIBUTIONS = Figure(
-    "The angle that PILCO predicted for each policy, and what that policy did. The distribution when the policy was learned, "
-    "and two actual runs, the greedy evaluation and the next recorded trial; one row per seed, one column per number of "
-    "frames learned from.",
+    "The angle that PILCO predicted for each policy, and what that policy did. The distribution when the policy was "
+    "learned, and two actual runs, the greedy evaluation and the next recorded trial; one row per seed, one column per "
+    "number of frames learned from.",
     [argument("file", metavar="FILE.csv", help="columns seed,trial,frames,kind,step,time_s,angle_rad,angle_std_rad"),
      argument("--seconds", metavar="S", type=number(float, 0.1), help="draw only the first S; default all")],
     draw_distributions)

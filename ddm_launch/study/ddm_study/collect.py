@@ -46,7 +46,8 @@ def policies(runs):
             path = os.path.join(folder, "trial_%03d" % trial.trial, "pilco.yaml")
             search = read_yaml(path)
             if not set(SEARCH_KEYS) <= set(search):
-                raise Failure("%s must have the keys %s: collect policies of a sweep of PILCO" % (path, ", ".join(SEARCH_KEYS)))
+                raise Failure("%s must have the keys %s: collect policies of a sweep of PILCO" % (
+                    path, ", ".join(SEARCH_KEYS)))
             rows.append([seed, trial.trial, trial.frames] + [search[key] for key in SEARCH_KEYS])
     return pandas.DataFrame(rows, columns=["seed", "trial", "frames"] + SEARCH_KEYS)
 
@@ -65,7 +66,8 @@ def distributions(runs):
                 run = Trajectory(os.path.join(folder, "%s_%03d" % (kind, number)))
                 rows += [(seed, trial, frames[trial], kind, k, "%.3f" % time_s, "%.4f" % angle_rad, "")
                          for k, (time_s, angle_rad) in enumerate(zip(run.time_s, run.angle_rad))]
-    return pandas.DataFrame(rows, columns=["seed", "trial", "frames", "kind", "step", "time_s", "angle_rad", "angle_std_rad"])
+    return pandas.DataFrame(rows, columns=["seed", "trial", "frames", "kind", "step", "time_s", "angle_rad",
+                                           "angle_std_rad"])
 
 
 def last_models(runs):

@@ -19,8 +19,8 @@ Series = collections.namedtuple("Series", "label colour marker values lows highs
 STYLES = ((SHADES[0], "s"), (SHADES[2], "o"))  # of the first frames, of the mean over the later ones
 LABEL_LETTERS = 30  # in a line; longer labels would leave no room for the dots
 LABELS = {"auto_encoder_widths": "the paper's auto-encoder", "blur": "no blur", "cost": "the paper's cost and horizon",
-          "delay": "no choice of the delay", "epsilon": "the paper's share of random torques", "held_torques": "no held torques",
-          "increments": "no increments", "offset": "no offset correction", "predictor_widths": "the paper's width of f",
+          "delay": "no choice of the delay", "epsilon": "the paper's share of random torques",
+          "held_torques": "no held torques", "increments": "no increments", "offset": "no offset correction", "predictor_widths": "the paper's width of f",
           "residual": "no residual prediction", "selection": "starts chosen by what is minimised",
           "solver": "plain L-BFGS", "starts": "one start", "steps": "no multi-step loss", "warm_up": "no warm-up",
           "weight_decay": "no weight decay", "horizon": "plans of 8 steps", "iterations": "1000 iterations",
@@ -89,7 +89,8 @@ def nuisance_series(folder):
     """(names of the rows, Series) of FOLDER/nuisances/NAME/trials.csv. The first row has the same seeds without any."""
     paths = variants(os.path.join(folder, "nuisances"))
     seeds = {seed for path in paths.values() for seed in read_table(path).seed}
-    tables = {"none": rates(os.path.join(folder, "trials.csv"), seeds), **{name: rates(path) for name, path in paths.items()}}
+    tables = {"none": rates(os.path.join(folder, "trials.csv"), seeds)}
+    tables.update((name, rates(path)) for name, path in paths.items())
     return list(tables), [
         Series("%d images" % frames, *style, *(np.array([table[column][frames] for table in tables.values()])
                                                for column in ("rate", "low", "high")))

@@ -107,8 +107,8 @@ STRIP = Figure(
     "the model predicts; below it is its reconstruction.",
     [argument("folder", metavar="DIR", help="folder of prediction_experiment")], draw_strip)
 SPACE = Figure(
-    "The feature space of one moment, as feature_space wrote it. %d x %d decoded images over [-1, 1] x [-1, 1], the features "
-    "of all frames so far, the current one, the goal's, and the planned ones. The axes reach beyond the images where a "
-    "feature does." % (GRID, GRID),
+    "The feature space of one moment, as feature_space wrote it. %d x %d decoded images over [-1, 1] x [-1, 1], the "
+    "features of all frames so far, the current one, the goal's, and the planned ones. The axes reach beyond the images "
+    "where a feature does." % (GRID, GRID),
     [argument("file", metavar="FILE.csv", help="what feature_space has written"),
      argument("--model", metavar="MODEL.ddm", required=True, help="the model of that trial")], draw_space)

@@ -86,14 +86,19 @@ class Functions:
 
     def schedules(self):
         """Rows of each measure of the training schedules, with differences from joint training, paired by seed."""
-        folder, rows = self.path("paper"), [("pendulum: mean success, 900 to 1500 frames", results.late_success(self.path("paper")))]
-        for plant in ("pendulum", "tile"):
-            rows.append((plant + ": error 8 steps ahead over repeating the last frame",
-                         results.predictions(folder, plant)["ratio"].loc[8]))
-        rows.append(("tile: R² of the position", results.predictions(folder, "tile")["position_r2"].loc[1]))
-        return "\n".join("| %s | %d | %s | %s |" % (name, len(table), plus_minus(*mean_and_error(list(table.joint)), 3), " | ".join(
-            "%.3f (%s)" % (table[schedule].mean(), plus_minus(*mean_and_error(list(table[schedule] - table.joint)), 3, True))
-            for schedule in results.SCHEDULES[1:])) for name, table in rows)
+        folder = self.path("paper")
+        pendulum, tile = (results.predictions(folder, plant) for plant in ("pendulum", "tile"))
+        lines = []
+        for name, table in (("pendulum: mean success, 900 to 1500 frames", results.late_success(folder)),
+                            ("pendulum: error 8 steps ahead over repeating the last frame", pendulum["ratio"].loc[8]),
+                            ("tile: error 8 steps ahead over repeating the last frame", tile["ratio"].loc[8]),
+                            ("tile: R² of the position", tile["position_r2"].loc[1])):
+            cells = [name, "%d" % len(table), plus_minus(*mean_and_error(list(table.joint)), 3)]
+            for schedule in results.SCHEDULES[1:]:
+                difference = mean_and_error(list(table[schedule] - table.joint))
+                cells.append("%.3f (%s)" % (table[schedule].mean(), plus_minus(*difference, 3, True)))
+            lines.append("| %s |" % " | ".join(cells))
+        return "\n".join(lines)
 
     def solvers(self):
         """Rows of L-BFGS, which the preset has, and BFGS, which the paper names, on the models that both have."""
@@ -113,9 +118,10 @@ class Functions:
 
     def names(self):
         """{name: function} of all of them."""
-        names = ("table", "of", "value", "rows", "rates", "minutes", "paper_difference", "nuisances", "ablation", "schedules",
-                 "solvers")
-        return dict({name: getattr(self, name) for name in names}, mean_and_error=mean_and_error, plus_minus=plus_minus)
+        names = ("table", "of", "value", "rows", "rates", "minutes", "paper_difference", "nuisances", "ablation",
+                 "schedules", "solvers")
+        return dict({name: getattr(self, name) for name in names}, mean_and_error=mean_and_error,
+                    plus_minus=plus_minus)
 
 
 def filled(text, functions, is_partial=False):
@@ -161,5 +167,5 @@ def work(options):
 
 def add_arguments(parser):
     parser.add_argument("pages", nargs="*", metavar="PAGE.md", help="default: all pages with a marked block")
-    parser.add_argument("--results", metavar="DIR", help="print the pages with the numbers of these results, such as those of "
-                        "`study reproduce`, and leave them as they are")
+    parser.add_argument("--results", metavar="DIR", help="print the pages with the numbers of these results, such as "
+                        "those of `study reproduce`, and leave them as they are")

@@ -41,7 +41,7 @@ def draw(options):
 
 
 FIGURE = Figure(
-    "Mean return of a task of the DeepMind Control Suite over the physics frames learned from, with its standard error, next "
-    "to published methods. Those are given a reward, ours a picture of the goal and a planner at run time.",
+    "Mean return of a task of the DeepMind Control Suite over the physics frames learned from, with its standard error, "
+    "next to published methods. Those are given a reward, ours a picture of the goal and a planner at run time.",
     [argument("table", metavar="FILE.csv", help="trials.csv of the task"),
      argument("--task", required=True, choices=sorted(SUITE), help="plant of that table")], draw)
