@@ -1,6 +1,9 @@
 # Pages: links lead somewhere, tables have the numbers of the committed results, and the first commands run.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
+import re
+
+import roslib.packages
 
 import pages
 import rooms  # noqa: F401
@@ -25,6 +28,16 @@ def test_every_page_is_reached_from_the_first_one():
             reached.add(page)
             todo += [path for path, _ in pages.links(page) if path.endswith(".md")]
     assert set(pages.page_paths()) <= reached
+
+
+def test_programs_and_launch_files_that_pages_start_are_there():
+    missing = set()
+    for page in pages.page_paths():
+        for package, name in re.findall(r"\bros(?:run|launch) (?:--wait )?(ddm_\w+) (\w[\w.]*)", pages.read(page)):
+            find = roslib.packages.find_resource if name.endswith(".launch") else roslib.packages.find_node
+            if package != "ddm_cart" and not find(package, name):  # the example is no part of this workspace
+                missing.add((page, name))
+    assert not missing
 
 
 def test_marked_blocks_have_the_numbers_of_the_committed_tables():

@@ -36,7 +36,8 @@ def add_commands(parser):
     commands = parser.add_subparsers(dest="command", metavar="SUBCOMMAND", required=True)
 
     def add(name, work, about, epilog=None):
-        command = commands.add_parser(name, description=about, epilog=epilog, help=about.split(". ")[0].replace("\n", " "),
+        first_sentence = about.split(". ")[0].split(":\n")[0].replace("\n", " ")
+        command = commands.add_parser(name, description=about, epilog=epilog, help=first_sentence,
                                       formatter_class=parser.formatter_class)
         command.set_defaults(work=work)
         return command

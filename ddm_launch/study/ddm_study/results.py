@@ -24,7 +24,8 @@ def read_table(*names):
     try:
         return pandas.read_csv(path, float_precision="round_trip")
     except (OSError, ValueError) as error:  # ValueError: whatever pandas finds wrong with its contents
-        raise Failure("%s cannot be read (%s): make it by `study reproduce`" % (path, error)) from None
+        raise Failure("%s cannot be read (%s): make it by `study reproduce`" % (
+            path, getattr(error, "strerror", None) or error)) from None
 
 
 def rates(path, seeds=None):
