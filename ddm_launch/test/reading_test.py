@@ -80,7 +80,7 @@ def test_launches_that_read_a_run_leave_it_as_it_is(made, tmp_path):
                     "out:=%s/replay.csv" % tmp_path]):
         _, output = roslaunch(str(tmp_path), *launch, limit_s=LIMIT_S)
         made.assert_unchanged(output)
-        assert "exit code" not in output
+        assert "process has finished cleanly" in output and "exit code" not in output
 
 
 def test_a_finished_experiment_is_summed_up_and_stays_as_it_is(made, tmp_path):
