@@ -122,8 +122,8 @@ Pictures
 What to try next (in a new terminal, first: export PATH=/usr/bin:\$PATH; . $DDM_WS/devel/setup.bash)
   bash $checkout/ddm_launch/scripts/demo.sh --trials $((trials + 5))
       goes on with more trials
-  rosrun ddm_launch figure film_strip $runs --out /tmp/film_strip.png --gif /tmp/swing_up.gif
-      the same swing-up as an animation
+  rosrun ddm_launch figure film $runs/evaluation_000 --out /tmp/film.webp
+      the evaluation of the first model as an animation
   roslaunch ddm_launch experiment.launch preset:=efficient plant:=pendulum seed:=2 trials:=3 runs:=$DDM_WS/runs/seed_2 rviz:=true
       another seed, with the camera, the predictions and the feature space on the screen
   bash $checkout/ddm_launch/scripts/test.sh

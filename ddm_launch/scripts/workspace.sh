@@ -24,7 +24,7 @@ ros_setup() {
 
 # Names of Debian and Ubuntu for what builds and runs everything, tests included (both scripts share one build).
 packages_to_run=(
-  # compiler, build tool
+  # compiler, build tools; `study reproduce` runs make as well
   build-essential cmake python3-setuptools
   # libraries
   libopencv-imgproc-dev libopencv-imgcodecs-dev libeigen3-dev libceres-dev libyaml-cpp-dev libbz2-dev

@@ -5,71 +5,60 @@ import shutil
 
 import numpy as np
 from PIL import Image
+import pytest
 
-from ddm_launch import film
+from ddm_launch import figure, film
 from ddm_model.model import load
-from figure_case import call_figure
-from processes import run_experiment
-from scratch_case import SharedScratchCase
+from processes import call_main, run_experiment
 
-DT, STEPS = 0.2, 5  # the pendulum's, and a second of it
+STEPS = 5  # a second of the pendulum
 
 
-class FilmTest(SharedScratchCase):
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.run_folder = os.path.join(cls.class_scratch, "run")
-        code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 1, "--out", cls.run_folder)
-        assert code == 0, output
+@pytest.fixture(name="run", scope="module")
+def make_run(tmp_path_factory):
+    folder = str(tmp_path_factory.mktemp("film") / "run")
+    code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 1, "--out", folder)
+    assert code == 0, output
+    return folder
 
-    def evaluation(self, trial):
-        return os.path.join(self.run_folder, "evaluation_%03d" % trial)
 
-    def assertRefused(self, arguments, *words):
-        code, output = call_figure(film, *arguments, "--out", self.file("film.webp"))
-        self.assertEqual(code, 1, output)
-        for word in words:
-            self.assertIn(word, output)
-        self.assertFalse(os.path.exists(self.file("film.webp")))
+def test_evaluations_are_shown_one_after_the_other_in_real_time(run, tmp_path):
+    out = str(tmp_path / "film.webp")
+    evaluations = [os.path.join(run, "evaluation_%03d" % trial) for trial in (0, 1)]
+    code, output = call_main(figure.main, ["film", *evaluations, "--seconds", "2", "--out", out])
+    assert code == 0, output
+    durations = []
+    with Image.open(out) as picture:
+        for frame in range(picture.n_frames):
+            picture.seek(frame)
+            picture.load()
+            durations.append(picture.info["duration"])
+    assert durations == 2 * (10 * [200] + [film.LAST_MS])
 
-    def test_evaluations_are_shown_one_after_the_other_in_real_time(self):
-        out = self.file("film.webp")
-        code, output = call_figure(film, self.evaluation(0), self.evaluation(1), "--seconds", "2", "--out", out)
-        self.assertEqual(code, 0, output)
-        with Image.open(out) as picture:
-            self.assertEqual(picture.n_frames, 2 * 11)
-            durations = []
-            for frame in range(picture.n_frames):
-                picture.seek(frame)
-                picture.load()
-                durations.append(picture.info["duration"])
-        self.assertEqual(durations, 2 * (10 * [200] + [film.LAST_MS]))
 
-    def test_what_was_expected_is_what_the_model_says_a_second_before(self):
-        clip = film.read_clip(self.evaluation(1))
-        self.assertEqual(clip.title, "pendulum, after 60 images (12 s)")
-        model, now = load(os.path.join(self.run_folder, "trial_001", "model.ddm")), 20
-        images, torques = film.simulate(self.run_folder, self.evaluation(1))
-        self.assertEqual((len(images), torques.shape[1]), (len(clip.images), 1))
-        self.assertEqual(clip.expected[:1 + STEPS], (1 + STEPS) * [None])  # two images are needed, and a second
-        then = now - STEPS
-        ahead = model.roll_out(model.encode(images[then - 1:then + 1]), torques[then - 1:now])
-        np.testing.assert_allclose(clip.expected[now], np.clip(255.0 * model.decode(ahead[-1:])[0], 0, 255))
-        self.assertEqual(len(clip.paths[then]), 1 + STEPS)
-        self.assertEqual(clip.landmarks.shape, (len(model.landmarks), 2))
-        self.assertGreater(len(model.landmarks), 10)
+def test_what_was_expected_is_what_the_model_says_a_second_before(run):
+    evaluation, now = os.path.join(run, "evaluation_001"), 20
+    clip = film.read_clip(evaluation)
+    assert clip.title == "pendulum, after 60 images (12 s)"
+    model = load(os.path.join(run, "trial_001", "model.ddm"))
+    images, torques = film.simulate(run, evaluation)
+    assert clip.expected[:1 + STEPS] == (1 + STEPS) * [None]  # two images are needed, and a second
+    then = now - STEPS
+    ahead = model.roll_out(model.encode(images[then - 1:then + 1]), torques[then - 1:now])
+    np.testing.assert_allclose(clip.expected[now], np.clip(255.0 * model.decode(ahead[-1:])[0], 0, 255))
+    assert len(clip.paths[then]) == 1 + STEPS
+    assert clip.landmarks.shape == (len(model.landmarks), 2)
 
-    def test_other_folders_and_files_are_refused(self):
-        self.assertRefused([self.run_folder], "evaluation_NNN", self.run_folder)
-        broken = self.file("broken")
-        shutil.copytree(self.run_folder, broken)
-        os.remove(os.path.join(broken, "trial_001", "model.ddm"))
-        self.assertRefused([os.path.join(broken, "evaluation_001")], "trial_001/model.ddm")
-        lost = self.file("lost")
-        code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 0, "--nuisance", "drops", "--out", lost)
-        self.assertEqual(code, 0, output)
-        self.assertRefused([os.path.join(lost, "evaluation_000")], "lost frames", "camera/drop_rate")
-        code, output = call_figure(film, self.evaluation(0), "--out", self.file("film.png"))
-        self.assertEqual(code, 1)
-        self.assertIn(".webp", output)
+
+def test_other_folders_and_files_are_refused(run, tmp_path):
+    broken, lost = str(tmp_path / "broken"), str(tmp_path / "lost")
+    shutil.copytree(run, broken)
+    os.remove(os.path.join(broken, "trial_001", "model.ddm"))
+    code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 0, "--nuisance", "drops", "--out", lost)
+    assert code == 0, output
+    for words, part in (([run], "evaluation_NNN"), ([broken + "/evaluation_001"], "trial_001/model.ddm"),
+                        ([lost + "/evaluation_000"], "lost frames"),
+                        ([run + "/evaluation_000", "--out", str(tmp_path / "film.png")], ".webp")):
+        code, output = call_main(figure.main, ["film", "--out", str(tmp_path / "film.webp"), *words])
+        assert code == 1 and part in output, output
+    assert not os.path.exists(str(tmp_path / "film.webp"))

@@ -147,7 +147,7 @@ class InstallTest(SharedScratchCase):
     def test_figures_are_drawn(self):
         for name in ("learning_curve", "film_strip"):
             path = self.file(name + ".png")
-            self.assertRuns("rosrun", "ddm_launch", name, self.run_folder, "--out", path)
+            self.assertRuns("rosrun", "ddm_launch", "figure", name, self.run_folder, "--out", path)
             self.assertGreater(os.path.getsize(path), 1000)
 
     def test_a_sweep_runs(self):

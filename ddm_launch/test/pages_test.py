@@ -1,125 +1,72 @@
-# What the pages say is so: links lead somewhere, and quoted messages are those of the programs.
+# Pages: links lead somewhere, tables have the numbers of the committed results, and the first commands run.
 # SPDX-License-Identifier: BSD-3-Clause
-import glob
 import os
 import re
-import subprocess
-import unittest
+
+import roslib.packages
 
 import pages
+import rooms  # noqa: F401
+from ddm_study.pages import Functions, filled, marked_pages
+from processes import call, free_port, line_by_line
 
-TROUBLES = "doc/troubleshooting.md"
-DIST = "/usr/lib/python3/dist-packages"
-# Messages of others: where they stand.
-FOREIGN = {
-    "REQUIRED process […] has died!": DIST + "/roslaunch/pmon.py",
-    "process has finished cleanly": DIST + "/roslaunch/*.py",
-    "exit code …": DIST + "/roslaunch/*.py",
-    "Cannot load command parameter […]: command […] returned with code …": DIST + "/roslaunch/loader.py",
-    "Unable to contact my own server at […]": DIST + "/roslaunch/server.py",
-    "RLException: […] is neither a launch file in package […] nor is […] a launch file name":
-        DIST + "/roslaunch/rlutil.py",
-    "new node registered with same name": DIST + "/rosmaster/*.py",
-    "could not connect to display": "/usr/lib/*/libQt5XcbQpa.so.5"}
-NO_ROS = "ModuleNotFoundError: No module named 'rospkg'"
+LIMIT_S = 300.0  # for the commands of a page
 
 
-def program_files():
-    """Sources of our programs, without tests."""
-    for package in pages.PACKAGES:
-        for folder, _, names in os.walk(os.path.join(pages.CHECKOUT, package)):
-            if re.search(r"/(test|results|testing|__pycache__)(/|$)", folder):
-                continue
-            for name in names:
-                if name.endswith((".cpp", ".h", ".py", ".sh")) or "." not in name:
-                    yield os.path.join(folder, name)
+def test_links_lead_to_files_and_headings_that_are_there():
+    dead = [(page, path, anchor) for page in pages.page_paths() for path, anchor in pages.links(page)
+            if not os.path.exists(os.path.join(pages.CHECKOUT, path))
+            or (anchor and anchor not in pages.anchors(pages.read(path)))]
+    assert not dead
 
 
-def literals(path):
-    """A source in which adjacent string literals are joined, so that each message appears as it is printed."""
-    with open(path, errors="replace") as stream:
-        return re.sub(r'"\s*(?:<<|\+)?\s*"', "", stream.read()).replace("\\\"", "\"")
+def test_every_page_is_reached_from_the_first_one():
+    reached, todo = set(), ["README.md"]
+    while todo:
+        page = todo.pop()
+        if page not in reached:
+            reached.add(page)
+            todo += [path for path, _ in pages.links(page) if path.endswith(".md")]
+    assert set(pages.page_paths()) <= reached
 
 
-def stands_in(message, text):
-    """The parts of the message between its gaps, in their order."""
-    parts = [re.escape(part.strip()) for part in re.split("…", message) if len(part.strip()) >= 4]
-    return sum(map(len, parts)) >= 10 and re.search(".*?".join(parts), text, re.DOTALL) is not None
+def test_programs_and_launch_files_that_pages_start_are_there():
+    missing = set()
+    for page in pages.page_paths():
+        for package, name in re.findall(r"\bros(?:run|launch) (?:--wait )?(ddm_\w+) (\w[\w.]*)", pages.read(page)):
+            find = roslib.packages.find_resource if name.endswith(".launch") else roslib.packages.find_node
+            if package != "ddm_cart" and not find(package, name):  # the example is no part of this workspace
+                missing.add((page, name))
+    assert not missing
 
 
-def quoted_messages():
-    """First cells of the tables of trouble; what is no message is told without code."""
-    return [message for table in pages.tables(pages.read(TROUBLES)) for row in table[1:]
-            for message in pages.code_spans(row[0])]
+def test_marked_blocks_have_the_numbers_of_the_committed_tables():
+    marked = marked_pages()
+    assert len(marked) >= 5
+    for path in marked:
+        with open(path, encoding="utf-8") as stream:
+            text = stream.read()
+        assert filled(text, Functions(os.path.join(rooms.PACKAGE, "results"))) == text, (
+            "%s is out of date: rosrun ddm_launch study pages" % path)
 
 
-class PagesTest(unittest.TestCase):
-    maxDiff = None
+def test_a_block_is_filled_and_the_rest_of_the_page_stays(tmp_path):
+    (tmp_path / "trials.csv").write_text("seed,trial,frames,success,final_error\n0,0,100,1,1\n1,0,100,0,9\n2,0,200,1,1\n")
+    page = "Before\n\n<!-- fill\n| {of('trials.csv', 'frames == 100')} |\n-->\n\n| old |\n\n<!-- filled -->\nAfter\n"
+    assert filled(page, Functions(str(tmp_path))) == page.replace("| old |", "| 1 of 2 |")
 
-    def test_relative_links_lead_to_files_and_headings_that_are_there(self):
-        dead, seen = [], 0
-        for page in pages.page_paths():
-            for link in pages.links(pages.read(page)):
-                if re.match("https?://", link):
-                    continue
-                seen += 1
-                path, _, anchor = link.partition("#")
-                target = os.path.normpath(os.path.join(os.path.dirname(page), path)) if path else page
-                if not os.path.exists(os.path.join(pages.CHECKOUT, target)):
-                    dead.append((page, link, "no such file"))
-                elif anchor and anchor not in pages.anchors(pages.read(target)):
-                    dead.append((page, link, "no such heading"))
-        self.assertEqual(dead, [])
-        self.assertGreater(seen, 60)
 
-    def test_every_page_is_reached_from_the_first_one(self):
-        reached, todo = set(), ["README.md"]
-        while todo:
-            page = todo.pop()
-            if page not in reached:
-                reached.add(page)
-                targets = [os.path.normpath(os.path.join(os.path.dirname(page), link.partition("#")[0]))
-                           for link in pages.links(pages.read(page)) if not re.match("https?://|#", link)]
-                todo += [target for target in targets if target.endswith(".md")]
-        self.assertEqual(sorted(set(pages.page_paths()) - reached), [])
-
-    def test_pictures_are_files_that_are_committed_beside_their_commands(self):
-        for page in pages.page_paths():
-            for link in pages.links(pages.read(page)):
-                if link.endswith((".png", ".gif")):
-                    path = os.path.normpath(os.path.join(os.path.dirname(page), link))
-                    self.assertTrue(path.startswith("ddm_launch/results/"), (page, link))
-
-    def test_messages_of_our_programs_are_quoted_as_they_are_printed(self):
-        texts = {path: literals(path) for path in program_files()}
-        ours = [message for message in quoted_messages() if message not in FOREIGN and message != NO_ROS]
-        ours = [message for message in ours if message not in ("roslaunch", "yaml", "catkin_make run_tests")]
-        self.assertGreater(len(ours), 40)
-        self.assertEqual([message for message in ours
-                          if not any(stands_in(message, text) for text in texts.values())], [])
-
-    def test_messages_of_others_are_quoted_as_they_are_printed(self):
-        quoted = quoted_messages()
-        for message, pattern in FOREIGN.items():
-            self.assertIn(message, quoted)
-            words = message.replace("RLException: ", "").replace("…", "%s")
-            found = []
-            for path in glob.glob(pattern):
-                with open(path, "rb") as stream:
-                    found.append(words.replace("code %s", "code").encode() in stream.read())
-            self.assertIn(True, found, message)
-        self.assertIn(NO_ROS, quoted)
-        done = subprocess.run(["/usr/bin/python3", "-I", "-S", "-c", "import rospkg"], stderr=subprocess.PIPE,
-                              universal_newlines=True)
-        self.assertIn(NO_ROS, done.stderr)
-
-    def test_a_message_that_nobody_prints_is_noticed(self):
-        text = literals(os.path.join(pages.CHECKOUT, "ddm_launch/drivers/ros_driver.cpp"))
-        self.assertTrue(stands_in("service … is not offered", text))
-        self.assertFalse(stands_in("service … is not granted", text))
-        self.assertFalse(stands_in("is not offered … nodes do not find each other:… is not offered now", text))
-        self.assertFalse(stands_in("… to …", text))  # so short that it stands anywhere
-
-    def test_the_headings_of_a_page_are_what_links_call_them(self):
-        self.assertEqual(pages.anchors("# A b\n```\n# no\n```\n## `c_d`: E (f), [g](h)\n# A b\n"),
-                         ["a-b", "c_d-e-f-g", "a-b-1"])
+def test_the_commands_of_the_first_pages_run_as_they_are(tmp_path):
+    prefix = next(path for path in os.environ["CMAKE_PREFIX_PATH"].split(":")
+                  if os.path.isfile(os.path.join(path, "setup.bash")))
+    for space in ("devel", "install"):
+        (tmp_path / "ddm_ws" / space).mkdir(parents=True)
+        (tmp_path / "ddm_ws" / space / "setup.bash").write_text(". %s/setup.bash\n" % prefix)
+    for page in ("doc/install.md", "doc/first_run.md"):
+        commands = "\n".join(pages.blocks(pages.read(page), "bash"))
+        commands = commands.replace(" rviz:=true", "")  # as the page says for a machine without a screen
+        environment = dict(line_by_line(), HOME=str(tmp_path), ROS_HOME=str(tmp_path / "ros"),
+                           ROS_MASTER_URI="http://localhost:%d" % free_port())
+        code, output = call(["bash", "-c", "set -e\n" + commands], LIMIT_S, environment=environment, folder=str(tmp_path))
+        assert code == 0, "%s\n%s" % (page, output)
+    assert (tmp_path / "film.webp").exists()

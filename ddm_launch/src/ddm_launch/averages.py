@@ -5,17 +5,17 @@ import math
 import statistics
 
 
-def success_rates(runs, measure="success"):
+def success_rates(runs):
     """The rate of success over runs, for each number of frames that any run has.
 
-    runs: one list of Trial per run. measure: success or success_strict; trials where it is not known are left out.
+    runs: one list of Trial per run; trials whose success is not known are left out.
     Returns rows (frames, rate, standard error, number of runs), ascending. The standard error of a rate p over
     n runs is sqrt(p (1 - p) / (n - 1)), as in the paper's Fig. 8; 0 for a single run.
     """
     by_frames = {}
     for trial in itertools.chain(*runs):
-        if getattr(trial, measure) is not None:
-            by_frames.setdefault(trial.frames, []).append(getattr(trial, measure))
+        if trial.success is not None:
+            by_frames.setdefault(trial.frames, []).append(trial.success)
     rows = []
     for frames, successes in sorted(by_frames.items()):
         n, rate = len(successes), sum(successes) / len(successes)

@@ -1,5 +1,6 @@
 # How the figures of the paper's experiments look in print: sizes, letters, colours, and how they are saved.
 # SPDX-License-Identifier: BSD-3-Clause
+import collections
 import contextlib
 import io
 
@@ -31,6 +32,16 @@ SETTINGS = {"font.size": 8, "axes.titlesize": 8, "axes.labelsize": 8, "xtick.lab
             "figure.constrained_layout.w_pad": 0.03, "figure.constrained_layout.h_pad": 0.03,
             "figure.constrained_layout.wspace": 0.02, "figure.constrained_layout.hspace": 0.02,
             "grid.color": "#dddddd", "grid.linewidth": 0.5, "axes.axisbelow": True, "legend.framealpha": 0.9}
+
+
+# A kind of figure. about: what it draws; --help lists its first sentence. arguments: of argument(). draw(options): writes
+# options.out, a file with this suffix.
+Figure = collections.namedtuple("Figure", "about arguments draw suffix", defaults=(".png",))
+
+
+def argument(*words, **settings):
+    """An argument of a figure's program, as argparse.add_argument() takes it."""
+    return words, settings
 
 
 @contextlib.contextmanager

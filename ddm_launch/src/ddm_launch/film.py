@@ -9,7 +9,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from ddm_launch.command import Failure, number
-from ddm_launch.figure_style import BLUE, GREY, ORANGE, VERMILLION, save_picture
+from ddm_launch.figure_style import BLUE, GREY, ORANGE, VERMILLION, Figure, argument, save_picture
 from ddm_launch.images import draw_images, read_model
 from ddm_launch.plant import describe_plant, simulator
 from ddm_launch.run_folder import read_setting, read_trials
@@ -156,11 +156,6 @@ def as_panel(image):
     return Image.fromarray(np.asarray(image, dtype=np.uint8)).resize((PANEL, PANEL), Image.BICUBIC).convert("RGB")
 
 
-def add_arguments(parser):
-    parser.add_argument("evaluations", metavar="RUN/evaluation_NNN", nargs="+", help="shown one after the other")
-    parser.add_argument("--seconds", type=number(float, 0), default=10.0, help="of each, default %(default)g")
-
-
 def draw(options):
     if not options.out.lower().endswith(SUFFIX):
         raise Failure("a film must be a .webp, got '%s': give --out another name" % options.out)
@@ -172,3 +167,8 @@ def draw(options):
         durations += [round(1000 * clip.dt)] * (len(shown) - 1) + [LAST_MS]
     save_picture(pictures[0], options.out, "WEBP", save_all=True, append_images=pictures[1:], duration=durations, loop=0,
                  quality=60, method=4)
+
+
+FIGURE = Figure(ABOUT, [
+    argument("evaluations", metavar="RUN/evaluation_NNN", nargs="+", help="shown one after the other"),
+    argument("--seconds", type=number(float, 0), default=10.0, help="of each, default %(default)g")], draw, SUFFIX)

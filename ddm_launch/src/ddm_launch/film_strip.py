@@ -1,16 +1,11 @@
-# Draws a greedy evaluation as a film strip (PNG) and as an animation (GIF).
+# Draws a greedy evaluation of the pendulum as a film strip.
 # SPDX-License-Identifier: BSD-3-Clause
 import math
 
-from matplotlib import font_manager
-from PIL import Image, ImageDraw, ImageFont
-
-from ddm_launch.figure_style import BLUE, GREY, new_screen_figure, save, save_picture, show_image
+from ddm_launch.figure_style import BLUE, GREY, Figure, argument, new_screen_figure, save, show_image
 from ddm_launch.images import Camera
 from ddm_launch.run_folder import Evaluation, read_trials
 
-ABOUT = ("The greedy evaluation of a run folder. Images from the start until the rod is up, and the torque below; "
-         "--gif writes an animation of it.")
 NUM_IMAGES = 12
 
 
@@ -34,10 +29,6 @@ def default_trial(trials):
     return successes[-1] if successes else trials[-1].trial
 
 
-def shoot(camera, evaluation, step):
-    return camera.shoot(evaluation.angle_rad[step], evaluation.rate_rad_per_s[step])
-
-
 def draw_strip(evaluation, end, camera, out):
     """Images above, the torque over the same time below."""
     steps = steps_to_show(end, len(evaluation.time_s))
@@ -47,7 +38,7 @@ def draw_strip(evaluation, end, camera, out):
         grid = figure.add_gridspec(2, len(steps), height_ratios=[1.0, 1.1])
         for column, step in enumerate(steps):
             axes = figure.add_subplot(grid[0, column])
-            show_image(axes, shoot(camera, evaluation, step))
+            show_image(axes, camera.shoot(evaluation.angle_rad[step], evaluation.rate_rad_per_s[step]))
             axes.set_title("%.1f s" % evaluation.time_s[step], fontsize=10)
         axes = figure.add_subplot(grid[1, :])
         edges = evaluation.time_s[:last + 1] + [evaluation.time_s[last] + period]
@@ -62,35 +53,6 @@ def draw_strip(evaluation, end, camera, out):
         save(figure, out)
 
 
-def draw_animation(evaluation, end, camera, out):
-    """All images up to step `end` in real time, the time and the torque written and drawn below each."""
-    size, footer = 256, 44
-    largest = max(1e-9, max(abs(torque) for torque in evaluation.torque_nm))
-    font = ImageFont.truetype(font_manager.findfont("DejaVu Sans"), 15)
-    pictures = []
-    for step in range(end + 1):
-        torque = evaluation.torque_nm[step]
-        image = shoot(camera, evaluation, step)
-        picture = Image.new("RGB", (size, size + footer), "white")
-        picture.paste(image.resize((size, size), Image.NEAREST), (0, 0))
-        pen = ImageDraw.Draw(picture)
-        pen.text((8, size + 4), "%4.1f s" % evaluation.time_s[step], fill="black", font=font)
-        pen.text((130, size + 4), "%+5.1f N m" % torque, fill="black", font=font)
-        middle, tip = size // 2, size // 2 + round(torque / largest * (size // 2 - 8))
-        pen.rectangle([min(middle, tip), size + 28, max(middle, tip), size + 38], fill=BLUE)
-        pen.line([middle, size + 25, middle, size + 41], fill=GREY)
-        pictures.append(picture)
-    period = round(1000 * (evaluation.time_s[1] - evaluation.time_s[0]))  # [ms]
-    durations = [period] * end + [1500]  # the last image stays, then it starts over
-    save_picture(pictures[0], out, "GIF", save_all=True, append_images=pictures[1:], duration=durations, loop=0)
-
-
-def add_arguments(parser):
-    parser.add_argument("folder", metavar="DIR", help="run folder (it holds trials.csv and evaluation_NNN)")
-    parser.add_argument("--trial", type=int, metavar="N", help="default: the last that succeeded, else the last")
-    parser.add_argument("--gif", metavar="FILE.gif", help="also write an animation in real time")
-
-
 def draw(options):
     trial = options.trial if options.trial is not None else default_trial(read_trials(options.folder))
     evaluation = Evaluation(options.folder, trial)
@@ -98,6 +60,8 @@ def draw(options):
     end = swing_up_end(evaluation.angle_rad, camera.plant["goal"][0], math.radians(camera.plant["tolerance"]))
     draw_strip(evaluation, end, camera, options.out)
     print("evaluation after trial %d" % trial)
-    if options.gif:
-        draw_animation(evaluation, end, camera, options.gif)
-        print("wrote %s" % options.gif)
+
+
+FIGURE = Figure("The greedy evaluation of a run folder. Images from the start until the rod is up, and the torque below.", [
+    argument("folder", metavar="DIR", help="run folder (it holds trials.csv and evaluation_NNN)"),
+    argument("--trial", type=int, metavar="N", help="default: the last that succeeded, else the last")], draw)

@@ -1,11 +1,8 @@
-# Draws the learning curve of one run (final error) or of many (success rate with standard error).
+# Draws the learning curve of a run: the final error after each trial.
 # SPDX-License-Identifier: BSD-3-Clause
-from ddm_launch.averages import success_rates
 from ddm_launch.command import Failure
-from ddm_launch.figure_style import BLUE, GREY, VERMILLION, new_screen_figure, save
+from ddm_launch.figure_style import BLUE, GREY, VERMILLION, Figure, argument, new_screen_figure, save
 from ddm_launch.run_folder import read_goal, read_trials
-
-ABOUT = "One run folder: final error after each trial; several: success rate. The latter with its standard error."
 
 
 def draw_one(axes, trials, goal):
@@ -35,31 +32,10 @@ def draw_one(axes, trials, goal):
     axes.set_ylabel("distance from the goal at the end [%s]" % goal.unit.replace("deg", "°"))
 
 
-def draw_many(axes, runs):
-    """Success rate over the frames learned from, with its standard error."""
-    rows = success_rates(runs)
-    if not rows:
-        raise Failure("the success is not known in any row of these runs: there is nothing to draw")
-    fewest, most = min(row[3] for row in rows), max(row[3] for row in rows)
-    runs_text = "%d runs" % most if fewest == most else "%d to %d runs" % (fewest, most)
-    axes.errorbar([row[0] for row in rows], [row[1] for row in rows], yerr=[row[2] for row in rows], color=BLUE,
-                  marker="o", markersize=6, capsize=3, label="mean and standard error, " + runs_text)
-    axes.set_ylim(-0.05, 1.05)
-    axes.set_ylabel("success rate [-]")
-
-
-def add_arguments(parser):
-    parser.add_argument("folders", metavar="DIR", nargs="+", help="run folder (it holds trials.csv)")
-
-
 def draw(options):
-    runs = [read_trials(folder) for folder in options.folders]
     with new_screen_figure(7.0, 4.2) as figure:
         axes = figure.subplots()
-        if len(runs) == 1:
-            draw_one(axes, runs[0], read_goal(options.folders[0]))
-        else:
-            draw_many(axes, runs)
+        draw_one(axes, read_trials(options.folder), read_goal(options.folder))
         axes.set_xlabel("frames learned from [image-torque pairs]")
         axes.set_xlim(left=0)
         axes.set_title("Greedy policy after each trial")
@@ -67,3 +43,7 @@ def draw(options):
         axes.set_axisbelow(True)
         axes.legend(loc="best")
         save(figure, options.out)
+
+
+FIGURE = Figure("The final error after each trial of a run. Where none is known, as on a robot, the successes.",
+                [argument("folder", metavar="DIR", help="run folder (it holds trials.csv)")], draw)

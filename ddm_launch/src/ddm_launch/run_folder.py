@@ -11,19 +11,18 @@ from ddm_launch.settings import LOADER, read_yaml
 from ddm_launch.tables import convert, optional, read_csv, unreadable
 
 # One row of trials.csv: the model after a trial, and its greedy evaluation. frames: image-torque pairs learned from.
-# success, success_strict, final_error: None where not known.
-Trial = collections.namedtuple("Trial", "trial frames success success_strict final_error")
+# success, final_error: None where not known.
+Trial = collections.namedtuple("Trial", "trial frames success final_error")
 
 # Unit of the final errors of a run, and the largest one that counts as reached.
 Goal = collections.namedtuple("Goal", "unit tolerance")
 
-FLAG = optional(lambda text: convert(text, float) > 0.5)
-TRIAL_COLUMNS = {"trial": int, "frames": int, "success": FLAG,
+TRIAL_COLUMNS = {"trial": int, "frames": int, "success": optional(lambda text: convert(text, float) > 0.5),
                  "final_error": optional(lambda text: abs(convert(text, float)))}
 
+
 def trial_of(row):
-    """Older tables have no success_strict."""
-    return Trial(row["trial"], row["frames"], row["success"], FLAG(row.get("success_strict")), row["final_error"])
+    return Trial(*(row[column] for column in Trial._fields))
 
 
 def read_trials(folder):

@@ -76,16 +76,6 @@ def motors_of(path):
         return stream.readline().strip().split(",")[1:-1]
 
 
-def grouped(path, rows, column, names):
-    """{name: its rows} of the names that a column may hold."""
-    groups = {name: [] for name in names}
-    for row in rows:
-        if row[column] not in groups:
-            raise Failure("%s: column %s must hold one of %s, got '%s'" % (path, column, ", ".join(names), row[column]))
-        groups[row[column]].append(row)
-    return groups
-
-
 def write_csv(path, header, rows):
     """Floats get six digits. The file appears only when it is complete."""
     os.makedirs(os.path.dirname(path) or ".", exist_ok=True)

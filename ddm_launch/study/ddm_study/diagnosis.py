@@ -1,0 +1,133 @@
+# Why a task is not learned: errors of features and predictions on the trial after, and whether the goal was seen.
+# SPDX-License-Identifier: BSD-3-Clause
+import collections
+import glob
+import math
+import os
+
+import numpy as np
+import rosbag
+from tqdm import tqdm
+
+from ddm_launch.command import Failure
+from ddm_launch.images import recorded_images
+from ddm_launch.plant import describe_plant, simulator
+from ddm_launch.run_folder import read_setting
+from ddm_launch.settings import read_yaml
+from ddm_launch.tables import motors_of, read_columns, write_csv
+from ddm_model.model import ModelFileError, load
+
+ABOUT = """\
+Shows why a task is not learned. For each run folder it takes the last model but one and the images of the next trial,
+which that model was not trained on:
+  features    how far off is each joint, if it is read from the features: that of the nearest image learned from?
+  prediction  how far off is it, if it is read from features predicted 1, 5 and 15 steps ahead under the torques that acted?
+  goal        which share of the images learned from shows each joint within 20 degrees (or 0.1 m) of the goal? Not for
+              plants whose goal is drawn in each trial.
+Writes a row for each of these and each joint, with the median and the 90 % quantile."""
+
+STEPS = (1, 5, 15)
+BATCH = 1000  # features compared at a time
+NEAR = {"rad": math.radians(20.0), "m": 0.1}  # of the goal
+COLUMNS = ["task", "seed", "frames", "part", "steps", "joint", "unit", "median", "quantile_90", "share"]
+
+# One recorded run. images: grey values [N x D]. torques [N x torque_dim, N m]. positions [N x joints].
+Episode = collections.namedtuple("Episode", "images torques positions")
+
+
+class Joints:
+    """What a plant says of its positions. names, columns of a trajectory.csv, units; goal: their values there."""
+
+    def __init__(self, plant):
+        facts = describe_plant(simulator(plant))
+        self.columns = [name for name in facts["state"] if not name.endswith("_per_s")]
+        self.names, self.units = zip(*(name.rsplit("_", 1) for name in self.columns))
+        self.goal = np.array(facts["goal"][:len(self.columns)])
+        unknown = sorted(set(self.units) - set(NEAR))
+        if unknown:
+            raise Failure("plant %s: positions must be in %s, got %s: take a run of another plant" % (
+                plant, " or ".join(NEAR), ", ".join(unknown)))
+
+    def distances(self, a, b):
+        """Of positions a to positions b, angles around the circle  [.. x joints]."""
+        difference = np.abs(a - b)
+        circular = np.array([unit == "rad" for unit in self.units])
+        return np.where(circular, np.abs((difference + math.pi) % (2.0 * math.pi) - math.pi), difference)
+
+    def share_near_goal(self, positions):
+        limits = np.array([NEAR[unit] for unit in self.units])
+        return np.mean(np.all(self.distances(positions, self.goal) < limits, axis=1))
+
+
+def read_trial(run, trial, joints):
+    """The Episodes of a trial."""
+    first, episodes = os.path.join(run, "trial_%03d" % trial), []
+    for folder in [first] + sorted(glob.glob(os.path.join(first, "episode_*"))):
+        images, torques = recorded_images(os.path.join(folder, "trial.bag")), os.path.join(folder, "torques.csv")
+        episodes.append(Episode(images, read_columns(torques, motors_of(torques))[:len(images)],
+                                read_columns(os.path.join(folder, "trajectory.csv"), joints.columns)[:len(images)]))
+    return episodes
+
+
+def nearest_positions(learned, positions, features):
+    """Of each feature, the position of the nearest feature that was learned from  [N x joints]."""
+    half_squares = 0.5 * np.sum(learned ** 2, axis=1)
+    nearest = [np.argmin(half_squares - some @ learned.T, axis=1)  # |a - z|^2 / 2, but for |z|^2 / 2
+               for some in np.array_split(features, 1 + len(features) // BATCH)]
+    return positions[np.concatenate(nearest)]
+
+
+def predicted(model, episode, steps):
+    """(features predicted so many steps ahead, numbers of the images that show what happened) of an episode."""
+    n, memory = model.options["order"], model.options["order"] + model.options["delay"]
+    starts = range(memory - 1, len(episode.images) - steps)
+    features = model.encode(episode.images)
+    ahead = model.roll_out([features[now - n + 1:now + 1] for now in starts],
+                           [episode.torques[now - memory + 1:now + steps] for now in starts])
+    return ahead[:, -1], [now + steps for now in starts]
+
+
+def diagnose(run):
+    """Rows of COLUMNS of a finished run folder."""
+    plant, seed = (read_setting(run, "experiment", name, name) for name in ("plant", "seed"))
+    joints = Joints(plant)
+    last = len(glob.glob(os.path.join(run, "trial_*", "model.ddm"))) - 1
+    if last < 1:
+        raise Failure("%s must have two trials at least, got %d: the second is what the first model has not learned from"
+                      % (run, last + 1))
+    model = load(os.path.join(run, "trial_%03d" % (last - 1), "model.ddm"))
+    episodes = [episode for trial in range(last) for episode in read_trial(run, trial, joints)]
+    held_out = read_trial(run, last, joints)
+    positions = np.concatenate([episode.positions for episode in episodes])
+    learned = np.concatenate([model.encode(episode.images) for episode in episodes])
+    rows = []
+    for steps in (0,) + STEPS:
+        errors = []
+        for episode in held_out:
+            if steps and len(episode.images) <= steps + model.options["order"] + model.options["delay"] - 1:
+                continue
+            features, numbers = predicted(model, episode, steps) if steps else (model.encode(episode.images), slice(None))
+            errors.append(joints.distances(nearest_positions(learned, positions, features), episode.positions[numbers]))
+        for name, unit, column in zip(joints.names, joints.units, np.concatenate(errors).T if errors else []):
+            scale, shown = (180.0 / math.pi, "deg") if unit == "rad" else (1.0, unit)
+            rows.append([plant, seed, len(positions), "prediction" if steps else "features", steps, name, shown,
+                         scale * np.median(column), scale * np.quantile(column, 0.9), ""])
+    if not read_yaml(os.path.join(run, "config.yaml"))["plant"].get("goal_site"):  # a goal that is drawn in each trial
+        rows.append([plant, seed, len(positions), "goal", "", "all", "", "", "", joints.share_near_goal(positions)])
+    return rows
+
+
+def work(options):
+    rows = []
+    for run in tqdm(options.runs, unit="run", disable=None):
+        try:
+            rows += diagnose(run)
+        except (ModelFileError, OSError, rosbag.ROSBagException) as error:
+            raise Failure("%s: %s" % (run, error))
+    write_csv(options.out, COLUMNS, rows)
+    print("wrote %s" % options.out)
+
+
+def add_arguments(parser):
+    parser.add_argument("runs", nargs="+", metavar="RUN", help="run folders with their bags, one a seed")
+    parser.add_argument("--out", required=True, metavar="FILE.csv", help="table to write")

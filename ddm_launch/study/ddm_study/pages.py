@@ -1,0 +1,171 @@
+# Fills marked blocks of pages with numbers of the committed tables.
+# SPDX-License-Identifier: BSD-3-Clause
+import glob
+import os
+import re
+
+from ddm_launch.averages import mean_and_error
+from ddm_launch.command import Failure, package_path
+from ddm_study import dots, results
+
+ABOUT = """\
+Fills the marked blocks of pages with numbers of ddm_launch/results. A block is
+
+  <!-- fill
+  text with {expressions}
+  -->
+
+  text with the numbers
+
+  <!-- filled -->
+
+The text is an f-string of Python. Its expressions read tables below results by table(FILE), a data frame of pandas;
+ddm_launch/study/ddm_study/pages.py has the other functions, such as of(FILE, ROWS), which gives '48 of 50'."""
+BLOCK = re.compile(r"(<!-- fill\n(.*?)\n-->\n\n).*?(\n\n<!-- filled -->)", re.DOTALL)
+
+
+def signed(value, digits):
+    return ("%+.*f" % (digits, value)).replace("-", "−")
+
+
+def plus_minus(mean, error, digits=2, sign=False):
+    return "%s ± %.*f" % (signed(mean, digits) if sign else "%.*f" % (digits, mean), digits, error)
+
+
+class Functions:
+    """The functions of expressions; paths are relative to a folder of results."""
+
+    def __init__(self, folder):
+        self.folder = folder
+
+    def path(self, name):
+        """In that folder; the published results are committed only."""
+        return os.path.join(package_path("results") if name.startswith("published/") else self.folder, name)
+
+    def table(self, name):
+        return results.read_table(self.path(name))
+
+    def of(self, name, rows="", holds="success > 0"):
+        """Of how many rows something holds, as '48 of 50'."""
+        table = self.table(name)
+        table = table.query(rows) if rows else table
+        return "%d of %d" % (len(table.query(holds)), len(table))
+
+    def value(self, name, rows, column):
+        """The cell of the only row of which something holds."""
+        return self.table(name).query(rows)[column].item()
+
+    def rows(self, name, text):
+        """A line for each row, in which {COLUMN} is the row's value."""
+        return "\n".join(text.format(**row) for row in self.table(name).to_dict("records"))
+
+    def minutes(self, method):
+        """Of each seed, until the tenth policy of PILCO is learned."""
+        return self.table("paper/%s/trials.csv" % method).query("trial < 10").groupby("seed").train_s.sum() / 60.0
+
+    def paper_difference(self):
+        """Success of the preset `paper` less that of the paper, in standard errors of the paper."""
+        paper = self.table("published/success_rate.csv").set_index("frames")
+        rate = results.rates(self.path("paper/trials.csv")).rate
+        return ((rate - paper.ddm_mpc) / paper.ddm_mpc_se).loc[100:].dropna()
+
+    def nuisances(self, rows):
+        tables = [self.table(path).query(rows) for path in results.variants(self.path("efficient/nuisances")).values()]
+        return "%d of %d" % (sum(table.success.sum() for table in tables), sum(map(len, tables)))
+
+    def ablation(self):
+        """Rows of the variants that matter most at 100 images or later."""
+        table = results.differences(self.path("efficient/ablation"), self.path("efficient/ablation/preset/trials.csv"))
+        lines = []
+        for variant in dots.ablation_order(table):
+            rows = table[table.variant == variant].set_index("frames")
+            lines.append("| %s | %s |" % (dots.LABELS[variant], " | ".join(
+                "%s | %.3f" % (plus_minus(rows.difference[text], rows.se[text], 3, True), rows.p_holm[text])
+                for text in ("100", "200 to 400", "100 to 400"))))
+        return "\n".join(lines)
+
+    def schedules(self):
+        """Rows of each measure of the training schedules, with differences from joint training, paired by seed."""
+        folder = self.path("paper")
+        pendulum, tile = (results.predictions(folder, plant) for plant in ("pendulum", "tile"))
+        lines = []
+        for name, table in (("pendulum: mean success, 900 to 1500 frames", results.late_success(folder)),
+                            ("pendulum: error 8 steps ahead over repeating the last frame", pendulum["ratio"].loc[8]),
+                            ("tile: error 8 steps ahead over repeating the last frame", tile["ratio"].loc[8]),
+                            ("tile: R² of the position", tile["position_r2"].loc[1])):
+            cells = [name, "%d" % len(table), plus_minus(*mean_and_error(list(table.joint)), 3)]
+            for schedule in results.SCHEDULES[1:]:
+                difference = mean_and_error(list(table[schedule] - table.joint))
+                cells.append("%.3f (%s)" % (table[schedule].mean(), plus_minus(*difference, 3, True)))
+            lines.append("| %s |" % " | ".join(cells))
+        return "\n".join(lines)
+
+    def solvers(self):
+        """Rows of L-BFGS, which the preset has, and BFGS, which the paper names, on the models that both have."""
+        tables = {"L-BFGS": self.table("paper/trials.csv"), "BFGS": self.table("paper/bfgs/trials.csv")}
+        both = tables["BFGS"].set_index(["seed", "frames"]).index
+        lines = []
+        for frames in (100, 500):
+            for solver, table in tables.items():
+                models = table[table.set_index(["seed", "frames"]).index.isin(both) & (table.frames == frames)]
+                lines.append("| %d | %s | %d of %d | %.1f | %.1f | %.3g s |" % (
+                    frames, solver, models.success.sum(), len(models), (models.v_r / frames).median(),
+                    (models.v_p / frames).median(), models.train_s.median()))
+        return "\n".join(lines)
+
+    def rates(self, name):
+        return results.rates(self.path(name))
+
+    def names(self):
+        """{name: function} of all of them."""
+        names = ("table", "of", "value", "rows", "rates", "minutes", "paper_difference", "nuisances", "ablation",
+                 "schedules", "solvers")
+        return dict({name: getattr(self, name) for name in names}, mean_and_error=mean_and_error,
+                    plus_minus=plus_minus)
+
+
+def filled(text, functions, is_partial=False):
+    """A page with its blocks filled. is_partial: a block whose tables are missing says so."""
+    def fill(match):
+        try:
+            content = eval('f"""%s"""' % match.group(2), functions.names())
+        except Failure as error:
+            if not is_partial:
+                raise
+            content = "(%s)" % error
+        return match.group(1) + content + match.group(3)
+    return BLOCK.sub(fill, text)
+
+
+def marked_pages():
+    """Paths of all pages with a block."""
+    checkout = os.path.join(package_path(), "..")
+    found = []
+    for path in sorted(glob.glob(os.path.join(checkout, "**", "*.md"), recursive=True)):
+        with open(path, encoding="utf-8") as stream:
+            if BLOCK.search(stream.read()):
+                found.append(path)
+    return found
+
+
+def work(options):
+    for path in options.pages or marked_pages():
+        with open(path, encoding="utf-8") as stream:
+            text = stream.read()
+        try:
+            new = filled(text, Functions(options.results or package_path("results")), bool(options.results))
+        except Exception as error:  # whatever an expression raises
+            raise Failure("%s: a block cannot be filled (%s: %s): correct its expression" % (
+                path, type(error).__name__, error)) from error
+        if options.results:
+            print(new)
+        elif new != text:
+            with open(path, "w", encoding="utf-8") as stream:
+                stream.write(new)
+            print("wrote %s" % path)
+
+
+def add_arguments(parser):
+    parser.add_argument("pages", nargs="*", metavar="PAGE.md", help="default: all pages with a marked block")
+    parser.add_argument("--results", metavar="DIR", help="print the pages with the numbers of these results, such as "
+                        "those of `study reproduce`, and leave them as they are")
