@@ -13,9 +13,8 @@ RUN_HERE = {"run_experiment", "sweep", "feature_space", "study_figure pendulum_f
 
 # Those that another test runs, with all that takes long or needs more than one machine: the test must name it.
 ELSEWHERE = {"reproduce_paper": "reproduce_paper_test.py", "reproduce_efficient": "reproduce_efficient_test.py",
-             "benchmark": "benchmark_programs_test.py", "planning_budget": "benchmark_programs_test.py",
-             "growth": "benchmark_programs_test.py", "fault_table": "fault_table_test.py", "soak": "soak_test.py",
-             "rviz_screenshot": "rviz_test.py", "task_diagnosis": "task_diagnosis_test.py",
+             "qa benchmark": "benchmark_programs_test.py", "fault_table": "fault_table_test.py", "qa soak": "soak_test.py",
+             "qa rviz_screenshot": "rviz_test.py", "task_diagnosis": "task_diagnosis_test.py",
              "compare_results": "compare_results_test.py",
              "robot.launch": "robot_loop_test.py", "robot_check.launch": "robot_loop_test.py",
              "part.launch": "several_machines_test.py", "test.sh": "scripts_test.py",
@@ -37,7 +36,7 @@ COMMANDS_ELSEWHERE = [
 
 # Run by no test.
 NOT_RUN = {r"^perf (record|report)": "a profiler, which needs rights on the kernel",
-           r"qa/fuzz\.sh": "hours of random input; test.sh gives each target some seconds of it",
+           r"test\.sh --fuzz": "hours of random input; test.sh gives each target some seconds of it",
            r"image_transport republish": "a program of another package, which needs a camera that compresses"}
 
 # The same programs and options, less work. What is left out here has a test of its own: reproduce_paper_test, rviz_test.
@@ -93,7 +92,7 @@ def usage_commands(text):
 
 def program_of(command):
     """Name of the program or launch file that a command starts, or None for one of the shell."""
-    found = re.search(r"\b(?:rosrun|roslaunch(?: --wait)?|catkin_find --libexec) \w+ ((?:study_)?figure \w+|\w[\w.]*)|"
+    found = re.search(r"\b(?:rosrun|roslaunch(?: --wait)?|catkin_find --libexec) \w+ ((?:(?:study_)?figure|qa) \w+|\w[\w.]*)|"
                       r"(?:scripts|qa)/(\w+\.sh)", command)
     return found and (found.group(1) or found.group(2))
 

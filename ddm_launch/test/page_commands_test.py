@@ -141,11 +141,11 @@ class PageCommandsTest(SharedScratchCase):
         if program.endswith(".launch"):
             return arguments_of(program)
         package = re.search(r"(?:rosrun|--libexec) (\w+)", command)
-        if program in ("sim_node", "mpc_node", "dynparam", "speed_kernels"):
-            return {"--benchmark_filter"}
+        if program in ("sim_node", "mpc_node", "dynparam"):
+            return set()
         name, *words = program.split()
         path = (find_program(name, package.group(1)) if package
-                else os.path.join(pages.CHECKOUT, "ddm_launch", "qa" if name == "fuzz.sh" else "scripts", name))
+                else os.path.join(pages.CHECKOUT, "ddm_launch", "scripts", name))
         code, output = call((["bash"] if name.endswith(".sh") else []) + [path] + words + ["--help"])
         assert code == 0, output
         return set(re.findall(r"--\w[\w-]*", output))

@@ -23,7 +23,7 @@ READS_A_RUN = {
         "film_strip": ("config.yaml, trials.csv, an evaluation", "--out, --gif"),
         "learning_curve": ("trials.csv", "--out"),
         "pendulum_feature_space": ("a model, the table of feature_space", "--out"),
-        "speed_kernels": ("config.yaml, trials.csv, bags, the last model", "--benchmark_out")},
+        "benchmark_kernels": ("config.yaml, trials.csv, bags, the last model", "--benchmark_out")},
     "ddm_model": {
         "export": ("a model", "--out"),
         "inspect": ("a model, bags", "report.html, verdict.yaml and pictures in --out"),
@@ -41,8 +41,7 @@ WRITES_A_RUN = {
     "robot_check": "robot_check.yaml in the run that it checks",
     "sweep": "--out, with a run for each seed"}
 WRITES_ITS_OWN = {name: "--out, with runs of its own" for name in (
-    "benchmark", "fault_injector", "fault_table", "growth", "model_memory", "reproduce_efficient", "reproduce_paper",
-    "rviz_screenshot", "soak")}
+    "fault_table", "qa", "reproduce_efficient", "reproduce_paper")}
 
 
 class ReadingTest(SharedScratchCase):
@@ -113,7 +112,7 @@ class ReadingTest(SharedScratchCase):
             "film_strip": [self.run_folder],
             "learning_curve": [self.run_folder],
             "pendulum_feature_space": [self.file("space.csv"), "--model", self.model, "--out", self.file("space.png")],
-            "speed_kernels": [self.run_folder, "--benchmark_filter=encode"],
+            "benchmark_kernels": [self.run_folder, "--benchmark_filter=encode"],
             "export": ["--model", self.model, "--out", self.file("model.npz")],
             "inspect": ["--model", self.model, "--out", self.file("report")] + self.bags,
             "read_bags": ["--image-size", 51, "--out", self.file("frames")] + self.bags,
@@ -122,8 +121,8 @@ class ReadingTest(SharedScratchCase):
         self.assertEqual(set(calls), {name for names in READS_A_RUN.values() for name in names})
         for package, names in READS_A_RUN.items():
             for name in sorted(names):
-                if name == "speed_kernels" and not roslib.packages.find_node(package, name):
-                    print("NOT TESTED: speed_kernels, which is not built without Google Benchmark")
+                if name == "benchmark_kernels" and not roslib.packages.find_node(package, name):
+                    print("NOT TESTED: benchmark_kernels, which is not built without Google Benchmark")
                     continue
                 self.assertReads(package, name, *calls[name])
 
