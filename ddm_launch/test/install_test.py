@@ -137,7 +137,7 @@ class InstallTest(SharedScratchCase):
                  for name in programs_in(os.path.join(self.prefix, "lib", package)) if name not in nodes]
         self.assertGreater(len(tools), 12)
         with ThreadPoolExecutor(2) as pool:
-            done = list(pool.map(lambda tool: self.runInstalled("rosrun", *tool, "--help"), tools))
+            done = list(pool.map(lambda tool: self.runInstalled(os.path.join(self.prefix, "lib", *tool), "--help"), tools))
         usage = re.compile(r"^(usage: |benchmark \[)", re.MULTILINE)  # the latter: Google Benchmark's own
         self.assertEqual([(tool, output) for tool, (code, output) in zip(tools, done)
                           if code != 0 or not usage.search(output)], [])

@@ -89,13 +89,13 @@ class RecordedBagTest(ScratchCase):
         self.assertLearnedFurtherAndReplayed(model, bag, num_frames)
 
     def assertLearnedFurtherAndReplayed(self, model, bag, num_frames):
-        names = self.write("names.yaml", "data_set: {image_topic: %s, torque_topic: %s, dt: %s}\n" % (
-            IMAGE_TOPIC, TORQUE_TOPIC, DT))
-        code, output = run_experiment("--preset", "debug", "--plant", "pendulum", "--seed", 1, "--trials", 0, "--config", PRESET,
-                                      "--config", names, "--model", model, "--bags", bag, "--out", self.file("further"))
+        names = self.write("names.yaml", "data_set: {image_topic: %s, torque_topic: %s, dt: %s}\n"
+                           "training: {num_starts: 1, max_iterations: 20}\n" % (IMAGE_TOPIC, TORQUE_TOPIC, DT))
+        code, output = run_experiment("--preset", "efficient", "--plant", "pendulum", "--seed", 1, "--trials", 0, "--config", names,
+                                      "--model", model, "--bags", bag, "--out", self.file("further"))
         self.assertEqual(code, 0, output)
         rows = read_rows(self.file("further"), "trials.csv")
-        self.assertEqual(int(rows[1][rows[0].index("frames")]), 30 + num_frames)
+        self.assertEqual(int(rows[1][rows[0].index("frames")]), 100 + num_frames)
         table = self.file("replay.csv")
         code, output = roslaunch(self.file("ros"), "replay.launch", "bag:=" + bag, "model:=" + model, "config:=" + names,
                                  "preset:=efficient", "rate:=0", "out:=" + table)

@@ -1,4 +1,4 @@
-# What rviz shows of an experiment: pictures of the real one, on a screen in memory.
+# What rviz shows of an experiment: pictures of the real one by `qa rviz_screenshot`, on a screen in memory.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import tempfile

@@ -1,4 +1,4 @@
-# A short soak of both runs finds nothing, and a frame that is taken out of one of its bags is lost.
+# A short `qa soak` of both runs finds nothing, and a frame that is removed from one of its bags is lost.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 

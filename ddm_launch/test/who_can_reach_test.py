@@ -136,13 +136,6 @@ class WhoCanReachTest(ScratchCase):
         for name in LAUNCHERS + ["rosout"]:
             self.assertIn(ANY, [socket[1] for socket in found[name]], name)
 
-    def test_in_the_environment_of_our_programs_master_and_roslaunch_keep_to_this_machine_too(self):
-        found = self.socketsOfALaunch(**{name: value for name, value in on_this_machine(environment()).items()
-                                         if name.startswith("ROS_") and name != "ROS_HOME"})
-        self.assertOnlyXmlRpcIsOpen(found, NODES + ["rosout"])
-        for name in LAUNCHERS:
-            self.assertEqual({socket[1] for socket in found[name]}, {LOOPBACK}, name)
-
     def test_what_the_environment_says_is_left_alone(self):
         for told in ({"ROS_IP": "10.0.0.2"}, {"ROS_HOSTNAME": "robot"}, {"ROS_MASTER_URI": "http://robot:11311"}):
             self.assertEqual(on_this_machine(told), told)

@@ -205,29 +205,31 @@ class PlanSequence {
   int step_ = 0;
 };
 
-/// Decisions about images that come at a fixed rate.
+/// Decisions along greedy trials, one after the other; with a period, about images that come at this
+/// rate, where no search for a plan may end before its budget.
 void measurePlans(const std::string& name, const Experience& experience, const MpcOptions& mpc,
-                  std::chrono::steady_clock::duration period) {
+                  int num_plans, std::chrono::steady_clock::duration period) {
   using Clock = std::chrono::steady_clock;
   const auto sequence = std::make_shared<PlanSequence>(experience, mpc);
   const auto due = std::make_shared<Clock::time_point>(Clock::now());
   benchmark::RegisterBenchmark(
       name.c_str(),
-      [sequence, due, period, &mpc](benchmark::State& state) {
+      [sequence, due, period](benchmark::State& state) {
         for (auto _ : state) {
           *due = std::max(*due + period, Clock::now());
           std::this_thread::sleep_until(*due);
           const Plan plan = sequence->next();
           const std::chrono::duration<double> time = Clock::now() - *due;
-          state.SetIterationTime(period.count() > 0 ? time.count() : plan.solve_time);
+          const bool has_budget = period.count() > 0;
+          state.SetIterationTime(has_budget ? time.count() : plan.solve_time);
           state.counters["plan_iterations"] = plan.iterations;
-          if (mpc.time_budget > 0.0 && plan.status != PlanStatus::kTimeLimit) {
+          if (has_budget && plan.status != PlanStatus::kTimeLimit) {
             state.SkipWithError("a plan has ended before mpc/time_budget");
           }
         }
       })
       ->Iterations(1)
-      ->Repetitions(2000)
+      ->Repetitions(num_plans)
       ->UseManualTime()
       ->ReportAggregatesOnly(true)
       ->ComputeStatistics("p99", percentile99)
@@ -237,14 +239,14 @@ void measurePlans(const std::string& name, const Experience& experience, const M
 void measurePlanning(const Experience& experience) {
   const Ddm& model = *experience.model;
   const MpcOptions& mpc = experience.configuration.mpc;
-  measurePlans("plan", experience, mpc, std::chrono::seconds(0));
+  measurePlans("plan", experience, mpc, 2000, std::chrono::seconds(0));
 
-  static MpcOptions endless = mpc;  // as many starts as are allowed, and none of them converges
+  MpcOptions endless = mpc;  // as many starts as are allowed, and none of them converges
   endless.num_starts = 1000;
   endless.max_iterations = 1000000;
   endless.function_tolerance = 0.0;
   endless.time_budget = 0.005;
-  measurePlans("plan_5_ms", experience, endless, std::chrono::milliseconds(10));
+  measurePlans("plan_5_ms", experience, endless, 500, std::chrono::milliseconds(10));
 
   const auto cost = std::make_shared<DdmPlanCost>(model, mpc.horizon, mpc.control_weight);
   History x(model.options().memory(), model.featureDim(), model.torqueDim());
