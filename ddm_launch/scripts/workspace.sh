@@ -129,7 +129,7 @@ Remedy: have an administrator run, then call this script again:
   fi
 }
 
-around_apt=()  # a command that runs apt-get: qa/test.sh sets it
+around_apt=()  # a command that runs apt-get: test.sh sets it
 
 # Installs packages by apt-get. Arguments: what apt-get is to do before, or nothing; the packages.
 apt_install() {

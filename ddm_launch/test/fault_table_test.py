@@ -5,7 +5,7 @@ import os
 from std_msgs.msg import Float64
 
 from ddm_qa import fault_table as table
-from ddm_qa.faults.cases import RECOVERS, STAYS, Case
+from ddm_qa.faults.cases import RECOVERS, Case
 from ddm_qa.faults.finished import Finished
 from ddm_qa.faults.run import FaultBench
 from ddm_qa.faults.watches import Effort, MotorWatch
@@ -25,15 +25,11 @@ class FaultTableTest(ScratchCase):
         self.assertIn("%d passed, 0 failed" % (len(rows) - 1), output)
         self.assertEqual(code, 0, output)
 
-    def test_a_case_whose_phase_never_comes_or_whose_words_are_not_said_is_no_success(self):
+    def test_a_fault_whose_phase_never_comes_is_no_success(self):
         bench = FaultBench(self.scratch)
-        bench.make_reference()
         never = Case("never", "no such phase", "drop image", RECOVERS, (), False, False)
         self.assertEqual(bench.run(never), "not injected")
-        silent = Case("silent", "at rest", "remove trial.bag", STAYS, ("nobody says this",), False, False)
-        self.assertEqual(bench.run(silent), STAYS.replace("named", "not named: nobody says this"))
-        rows = table.table([never, silent], {"never": "not injected", "silent": "ended"})
-        self.assertEqual([row[-1] for row in rows], [0, 0])
+        self.assertEqual(table.table([never], {"never": "not injected"})[0][-1], 0)
 
     def test_files_of_finished_trials_that_change_or_vanish_are_named(self):
         code, output = run_experiment("--preset", "debug", "--trials", 0, "--out", self.out)

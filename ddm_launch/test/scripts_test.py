@@ -108,7 +108,7 @@ class ScriptsTest(ScratchCase):
 
     def test_the_guard_against_services_passes_on_the_verdict(self):
         policy = self.file("policy-rc.d")
-        packages = os.path.join("..", "qa", "test.sh")
+        packages = "test.sh"
         guarded = "export POLICY_RC_D=%s; \"${around_apt[@]}\" " % policy
         self.assertEqual(self.callFunction(guarded + 'sh -c "$POLICY_RC_D; exit 3"', packages)[0], 3)
         self.assertEqual(self.callFunction(guarded + 'sh -c "$POLICY_RC_D; echo policy says \\$?"', packages),

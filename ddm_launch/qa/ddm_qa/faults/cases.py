@@ -36,12 +36,9 @@ RUNS = (EXPLORING, EVALUATION)
 NO_TORQUES = "nan|inf|none|twice|1e300"
 QUICK = set("""
 kill mpc_node in evaluation|pause mpc_node in exploring trial|lose sim_node in exploring trial
-drop image in exploring trial|double torque in exploring trial
-publish torque in exploring trial|alter torque nan in exploring trial|alter image size in evaluation
-cut chunk of trial.bag at rest|flip model.ddm at rest|unfinished bag at rest|fill disk in random trial
-begin experiment in exploring trial
-hold mpc_node in evaluation in real time|mute image in exploring trial in real time
-future image in exploring trial on a robot
+drop image in exploring trial|publish torque in exploring trial|alter torque nan in exploring trial
+cut chunk of trial.bag at rest|flip model.ddm at rest|fill disk in random trial|begin experiment in exploring trial
+mute image in exploring trial in real time|future image in exploring trial on a robot
 """.replace("\n", "|").split("|")) - {""}
 
 
