@@ -6,9 +6,9 @@ from std_msgs.msg import Float64
 
 from ddm_qa import fault_table as table
 from ddm_qa.faults.cases import RECOVERS, Case
-from ddm_qa.faults.finished import Finished
 from ddm_qa.faults.run import FaultBench
 from ddm_qa.faults.watches import Effort, MotorWatch
+from ddm_qa.run_comparison import Finished
 from processes import call, find_program, run_experiment
 from run_files import read_rows
 from scratch_case import ScratchCase

@@ -5,8 +5,7 @@ import shutil
 import struct
 import subprocess
 
-from ddm_qa.faults.finished import Finished, digest, digests
-from ddm_qa.run_comparison import read_bytes
+from ddm_qa.run_comparison import Finished, digest, digests, read_bytes
 
 BAG, ACTIVE = "new.bag", "new.bag.active"
 # Kinds of records in a bag, by the field `op` of their headers.

@@ -15,10 +15,9 @@ from ddm_launch.run_folder import is_finished
 from ddm_model.plain_file import write_file
 from ddm_qa.faults import at_rest
 from ddm_qa.faults.cases import AT_REST, ON_A_ROBOT, REAL_TIME
-from ddm_qa.faults.finished import Finished
 from ddm_qa.faults.watches import learned
 from ddm_qa.processes import start_roslaunch
-from ddm_qa.run_comparison import differences, expected_files, read_bytes, read_rows
+from ddm_qa.run_comparison import Finished, differences, expected_files, read_bytes, read_rows
 
 SEED, TRIALS = 1, 1
 NO_FAULT = "none"
