@@ -1,5 +1,4 @@
-# A bag of a JPEG camera of 30 Hz and torques of 50 Hz, as rosbag record leaves it: 300 frames train a model that reaches
-# the goal.
+# A bag of a JPEG camera of 30 Hz and torques of 50 Hz: its 300 frames train a model that reaches the goal.
 # SPDX-License-Identifier: BSD-3-Clause
 import io
 import os
