@@ -1,23 +1,23 @@
 #!/usr/bin/env bash
-# Runs the README's commands in an empty Debian system, and builds and runs the Dockerfile on one, see --help.
+# Runs the README's commands in an empty Debian system, see --help.
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
+# shellcheck source=../scripts/workspace.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../scripts/workspace.sh"
 
 usage() {
   cat <<TEXT
-usage: bash fresh_root.sh bullseye|bookworm|trixie [demo|test|image]...
+usage: bash fresh_root.sh bullseye|bookworm|trixie [demo|test]...
 
 Makes an empty Debian 11 (bullseye), 12 (bookworm) or 13 (trixie) by debootstrap, puts the files of the commit HEAD into
 it, and runs there what a newcomer would run. Closes with a verdict and a time for each, and removes everything that it made.
-Needs root, debootstrap, and for image buildah.
+Needs root and debootstrap.
 
   demo     bash ddm_launch/scripts/demo.sh
   test     bash ddm_launch/scripts/test.sh
-  image    builds the Dockerfile on such a system, and runs the image twice: its demo, and a launch file
   --help   this text
 
-Without any of the three: demo and test, one after the other in the same system.
+Without any of the two: demo and test, one after the other in the same system.
 
   TMPDIR          folder for the system, default /tmp; takes 10 GB
   DEBIAN_MIRROR   address of a Debian mirror, default that of this machine's apt
@@ -40,14 +40,13 @@ parse_arguments() {
   parts=("$@")
   ((${#parts[@]})) || parts=(demo test)
   for word in "${parts[@]}"; do
-    [[ $word =~ ^(demo|test|image)$ ]] || refuse "unknown argument '$word'"
+    [[ $word =~ ^(demo|test)$ ]] || refuse "unknown argument '$word'"
   done
 }
 
 check_tools() {
-  local tool tools=(debootstrap unshare git)
-  [[ " ${parts[*]} " != *' image '* ]] || tools+=(buildah)
-  for tool in "${tools[@]}"; do
+  local tool
+  for tool in debootstrap unshare git; do
     command -v "$tool" >/dev/null || fail "$tool is not installed. Remedy: install it by your package manager."
   done
   [[ $(id -u) == 0 ]] || fail "only root can make a system. Remedy: call this script as root."
@@ -66,16 +65,12 @@ make_root() {  # FOLDER
   printf '127.0.0.1 localhost\n127.0.1.1 %s\n' "$(uname -n)" >"$1/etc/hosts"  # as Debian's installer does
 }
 
-copy_checkout() {  # FOLDER
-  mkdir "$1"
-  git -C "$checkout" archive HEAD | tar -x -C "$1"
-}
-
 run_script() {  # demo|test
   local root=$folder/root
   if [[ ! -d $root ]]; then
     make_root "$root"
-    copy_checkout "$root/root/ddm"
+    mkdir "$root/root/ddm"
+    git -C "$checkout" archive HEAD | tar -x -C "$root/root/ddm"
   fi
   mount -t proc proc "$root/proc"
   mount -t sysfs sysfs "$root/sys"
@@ -86,41 +81,10 @@ run_script() {  # demo|test
     sh -c "cd /root/ddm && bash ddm_launch/scripts/$1.sh" </dev/null
 }
 
-# Without cgroups, so that it also works inside of a container. Images of the caller's own stay out of sight.
-run_buildah() {  # COMMAND ARGUMENT...
-  TMPDIR=$folder BUILDAH_ISOLATION=chroot buildah --root "$folder/images" --runroot "$folder/containers" "$@"
-}
-
-run_container() {  # NAME COMMAND...
-  run_buildah run --volume "$folder/runs:/runs" "$1" -- "${@:2}" </dev/null
-}
-
-# The image of the Dockerfile, with the empty system instead of Debian's own image.
-run_image() {
-  local base container entry command
-  make_root "$folder/base"
-  copy_checkout "$folder/checkout"
-  base=$(run_buildah from scratch)
-  run_buildah add --quiet "$base" "$folder/base" /
-  run_buildah commit --quiet "$base" "ddm_base:$suite"
-  run_buildah build --build-arg "BASE=ddm_base:$suite" --tag ddm "$folder/checkout"
-  container=$(run_buildah from ddm)
-  # run knows neither of the two
-  mapfile -t entry < <(run_buildah inspect --format '{{range .OCIv1.Config.Entrypoint}}{{println .}}{{end}}' "$container")
-  mapfile -t command < <(run_buildah inspect --format '{{range .OCIv1.Config.Cmd}}{{println .}}{{end}}' "$container")
-  mkdir "$folder/runs"
-  run_container "$container" "${entry[@]}" "${command[@]}"
-  run_container "$container" "${entry[@]}" \
-    roslaunch ddm_launch experiment.launch preset:=debug trials:=1 runs:=/runs/one
-  grep -x 'finished: true' "$folder/runs/demo/summary.yaml" "$folder/runs/one/summary.yaml"
-}
-
 # Mounts and processes end with it.
-run_part() {  # demo|test|image
-  local function="run_script $1"
-  [[ $1 != image ]] || function=run_image
+run_part() {  # demo|test
   export folder suite mirror checkout
-  unshare --mount-proc --pid --fork --kill-child bash -euo pipefail -c "$(declare -f); $function"
+  unshare --mount-proc --pid --fork --kill-child bash -euo pipefail -c "$(declare -f); run_script $1"
 }
 
 main() {

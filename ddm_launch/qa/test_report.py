@@ -24,9 +24,7 @@ class Report:
     """Verdicts by case: a case is (package, result file, name)."""
 
     def __init__(self):
-        self.passed = set()
-        self.skipped = {}  # case -> reason
-        self.failures = {}  # case -> list of messages
+        self.passed, self.skipped, self.failures = set(), {}, {}  # skipped: case -> reason; failures: case -> messages
 
     def fail(self, case, message):
         self.failures.setdefault(case, []).append(message.strip())
@@ -69,23 +67,10 @@ def read_results(report, path, build):
             report.passed.add(case)
     # rosunit leaves a failed subTest out of the cases, but not out of the sum
     declared = sum(int(root.get(key) or 0) for key in ("failures", "errors"))
-    if declared > failed:
-        report.fail((package, name, "sub-tests"), "[%s] %d failed: see the log of this test" % (build, declared))
-    if not cases:
-        report.fail((package, name, "the result file"), "[%s] holds no test case" % build)
+    if declared > failed or not cases:
+        report.fail((package, name, "the result file"), "[%s] %d failed of %d cases: see the log of this test" % (
+            build, declared, len(cases)))
     return max(declared, failed, not cases), wrapped
-
-
-def declared_tests(build_folder):
-    """{name of the ctest test: its result file}."""
-    with open(os.path.join(build_folder, "tests_declared.json")) as stream:
-        tests = json.load(stream)["tests"]
-    results = {}
-    for test in tests:
-        for word in test.get("command", []):
-            if word.endswith(".xml") and "/test_results/" in word:
-                results.setdefault(test["name"], word)  # later words are commands, which also end with the file
-    return results
 
 
 def ctest_cases(build_folder):
@@ -101,51 +86,33 @@ def ctest_cases(build_folder):
     return cases
 
 
-def failed_tests(build_folder):
-    """{name of each ctest test that did not pass: how it ended}."""
-    return {name: end for name, end, _ in ctest_cases(build_folder) if end}
-
-
-def slowest_tests(build_folders, count=10):
-    """Lines with the wall time and the name of the slowest tests of all builds."""
-    times = [(seconds, name, build_name(folder)) for folder in build_folders for name, _, seconds in ctest_cases(folder)]
-    slowest = ["%6.0f s  %s [%s]" % test for test in sorted(times, reverse=True)[:count]]
-    return ["slowest tests:"] + slowest if slowest else []
-
-
 def build_name(build_folder):
-    """Its CMAKE_BUILD_TYPE, where CMake left a cache, else the folder."""
-    try:
-        with open(os.path.join(build_folder, "CMakeCache.txt")) as stream:
-            return re.search(r"^CMAKE_BUILD_TYPE:\w+=(\w+)$", stream.read(), re.MULTILINE).group(1)
-    except (OSError, AttributeError):
-        return build_folder
-
-
-def read_sanitizer_reports(report, build_folder, build):
-    """Adds one case, which fails where a sanitizer has left a file, of a build that has the folder for them."""
-    folder = os.path.join(build_folder, "sanitizer_reports")
-    case = (build, "sanitizer_reports", "no report")
-    if not os.path.isdir(folder):
-        return
-    report.passed.add(case)
-    for name in sorted(os.listdir(folder)):
-        with open(os.path.join(folder, name), errors="replace") as stream:
-            report.fail(case, "%s:\n%s" % (name, stream.read()))
+    """Its CMAKE_BUILD_TYPE."""
+    with open(os.path.join(build_folder, "CMakeCache.txt")) as stream:
+        return re.search(r"^CMAKE_BUILD_TYPE:\w+=(\w+)$", stream.read(), re.MULTILINE).group(1)
 
 
 def read_build(report, build_folder):
     """Adds all results of one build folder, and a failure for each test that says nothing or too little."""
-    build = build_name(build_folder)
-    found = {}  # result file -> (failures, programs wrapped)
-    for path in sorted(glob.glob(os.path.join(build_folder, "test_results", "*", "*.xml"))):
-        if not os.path.basename(path).startswith("MISSING-"):  # told below, with the reason
-            found[os.path.abspath(path)] = read_results(report, path, build)
-    read_sanitizer_reports(report, build_folder, build)
-    ended_badly, declared = failed_tests(build_folder), declared_tests(build_folder)
-    for test, path in sorted(declared.items()):
+    build, results = build_name(build_folder), os.path.join(build_folder, "test_results", "*", "*.xml")
+    found = {os.path.abspath(path): read_results(report, path, build) for path in sorted(glob.glob(results))
+             if not os.path.basename(path).startswith("MISSING-")}  # those are told below, with the reason
+    reports = os.path.join(build_folder, "sanitizer_reports")
+    if os.path.isdir(reports):  # a case, which fails where a sanitizer has left a file
+        report.passed.add((build, "sanitizer_reports", "no report"))
+        for name in sorted(os.listdir(reports)):
+            with open(os.path.join(reports, name), errors="replace") as stream:
+                report.fail((build, "sanitizer_reports", "no report"), "%s:\n%s" % (name, stream.read()))
+    with open(os.path.join(build_folder, "tests_declared.json")) as stream:
+        tests = json.load(stream)["tests"]
+    ended = {name: end for name, end, _ in ctest_cases(build_folder)}
+    for test in tests:
+        # later words are commands, which also end with the result file
+        path = next((word for word in test.get("command", []) if word.endswith(".xml") and "/test_results/" in word), None)
+        if path is None:
+            continue
         folder, name = os.path.split(os.path.abspath(path))
-        case, end = (os.path.basename(folder), name, "the program"), ended_badly.get(test)
+        case, end = (os.path.basename(folder), name, "the program"), ended.get(test["name"])
         if os.path.join(folder, name) not in found:
             report.fail(case, "[%s] left no results (%s): see its output above" % (build, end or "it ended well"))
             continue
@@ -153,18 +120,17 @@ def read_build(report, build_folder):
         failures += sum(found.get(os.path.join(folder, "rosunit-%s.xml" % program), (0, []))[0] for program in wrapped)
         if end and not failures:
             report.fail(case, "[%s] failed (%s) although no case did: see its output above" % (build, end))
-    if not declared:
+    if not tests:
         report.fail((build, "tests_declared.json", "the build"), "declares no test")
 
 
 def main(build_folders):
-    if not build_folders or any(folder.startswith("-") for folder in build_folders):
-        sys.stderr.write(__doc__)
-        return 2
     report = Report()
     for folder in build_folders:
         read_build(report, os.path.abspath(folder))
-    print("\n".join(slowest_tests(build_folders) + report.text()))
+    times = [(seconds, name, build_name(folder)) for folder in build_folders for name, _, seconds in ctest_cases(folder)]
+    print("\n".join(["slowest tests:"] + ["%6.0f s  %s [%s]" % test for test in sorted(times, reverse=True)[:10]]
+                    + report.text()))
     return 1 if report.failures else 0
 
 

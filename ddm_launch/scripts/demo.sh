@@ -2,6 +2,7 @@
 # From a clean system to a learned swing-up: installs, builds, runs an experiment, draws the result.
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
+# shellcheck source=workspace.sh
 . "$(dirname "${BASH_SOURCE[0]}")/workspace.sh"
 
 usage() {

@@ -1,4 +1,264 @@
 #!/usr/bin/env bash
-# Runs every test, see --help. All that it does is in qa/, where the tests of the whole are.
+# Installs, builds Release and Debug, runs every test, and closes with the line "N passed, N failed".
 # SPDX-License-Identifier: BSD-3-Clause
-exec bash "$(dirname "${BASH_SOURCE[0]}")/../qa/test.sh" "$@"
+set -euo pipefail
+# shellcheck source=workspace.sh
+. "$(dirname "${BASH_SOURCE[0]}")/workspace.sh"
+
+usage() {
+  cat <<TEXT
+usage: bash test.sh [-R PATTERN | --thread-sanitizer | --fuzz --out DIR [--runs N] [--only TARGET...] [--seed S]]
+
+Installs the packages that are missing (as root, or through sudo), builds the workspace \$DDM_WS, and
+runs every test: gtest, rosunit, rostest, roslaunch-check and the linters on the Release build; the gtests of the core
+once more, a short experiment and short fuzzing on a Debug build by clang, with Eigen's assertions, AddressSanitizer,
+UndefinedBehaviorSanitizer, and warnings as errors. A case that runs in several builds counts once; one that is
+skipped does not count and is named. Returns 1 if any case fails, if a test leaves no result, or if a sanitizer
+reports anything.
+
+  -R PATTERN          instead of all that: the Release build, and the tests whose names match this regular expression,
+                      for example -R 'python_film|ddm_mpc_test'
+  --thread-sanitizer  instead of all that: what has several threads, on a Debug build with ThreadSanitizer
+  --fuzz              instead of all that: feeds random bytes to what reads bytes from outside, for as long as --runs says,
+                      and writes what it found to DIR; 'rosrun ddm_launch qa fuzz --help' explains the options
+  --help              this text
+
+  DDM_WS              catkin workspace to make or use, default ~/ddm_ws (Release in devel/, Debug in debug/devel/,
+                      ThreadSanitizer in thread/devel/)
+  ROS_PARALLEL_JOBS   compiler jobs, for example -j1; default one per core, two gigabytes for each
+  DDM_AVX2            OFF: slower programs that need no AVX2; default ON
+  CI                  if set, warnings are errors in the Release build too
+  DDM_PILCO_VECTORS   file of reference values for PILCO, which pilco_check then must accept; if not set, that case
+                      is skipped
+TEXT
+}
+
+# What only the tests need: linters, the check of .rosinstall, sanitizers with symbols in their reports, a compiler for
+# arm64, a screen for rviz, and other machines, played by this one.
+packages_to_test=(
+  catkin-lint python3-wstool clang-format clang-tidy shellcheck flake8 git python3-pytest
+  clang libclang-rt-dev libomp-dev llvm
+  g++-aarch64-linux-gnu
+  xvfb imagemagick
+  openssh-client openssh-server iproute2 nftables
+  slurmctld slurmd slurm-client munge
+)
+optional_packages+=(
+  catkin-lint            # with Noetic it has another name
+  python3-wstool         # not in Debian 13
+  libclang-rt-dev        # a part of clang itself in Debian 11
+  g++-aarch64-linux-gnu  # not where it is the native compiler
+)
+
+# Runs a command as root while no package may start a service (Debian policy 9.11.1: policy-rc.d), and disables those
+# that came with it: the tests start daemons of their own, and nobody asked for an sshd.
+without_services='
+policy=${POLICY_RC_D:-/usr/sbin/policy-rc.d}
+if [ ! -e "$policy" ]; then
+  printf "#!/bin/sh\nexit 101\n" >"$policy" && chmod 755 "$policy"
+  trap "rm -f $policy" EXIT
+fi
+units=
+for unit in munge slurmctld slurmd ssh; do
+  [ -e /lib/systemd/system/$unit.service ] || units="$units $unit"
+done
+"$@" || exit
+for unit in $units; do
+  [ ! -e /lib/systemd/system/$unit.service ] || ! command -v systemctl >/dev/null || systemctl disable $unit
+done'
+around_apt=(sh -c "$without_services" sh)  # for apt_install of workspace.sh
+
+loop_programs=(resolve sim_node mpc_node view_node trial_recorder model_node experiment_node run_experiment evaluate)
+# What computes and what reads bytes from outside; the other gtests take long to compile.
+gtest_programs=(
+  ddm_bag_io_test ddm_files_test ddm_images_test ddm_model_config_test ddm_model_test ddm_mpc_test ddm_msgs_test
+  ddm_node_test ddm_params_test ddm_random_test ddm_robot_test
+)
+debug_targets=("${loop_programs[@]}" "${gtest_programs[@]}" fuzz_targets)
+debug_tests="_gtest_($(IFS='|' && echo "${gtest_programs[*]}"))\$"
+threaded_programs=(
+  model_node_test mpc_node_stop_test mpc_node_test refused_params_test replay_node robot_node train_from_bags trial_recorder_test
+)
+threaded_tests='^_ctest_ddm_[a-z]+_rostest_test_(model_node|mpc_node|replay|robot_node|trial_recorder)\.test$'
+
+parse_arguments() {
+  mode=all
+  (($# == 0)) && return
+  [[ " $* " == *" --help "* || " $* " == *" -h "* ]] && usage && exit 0
+  [[ $1 == -R && $# == 2 ]] && mode=part && pattern=$2 && return
+  [[ $1 == --thread-sanitizer && $# == 1 ]] && mode=thread && return
+  [[ $1 == --fuzz && $# -gt 1 ]] && mode=fuzz && return
+  printf 'test.sh: unknown argument %s\n\n' "'$1'" >&2
+  usage >&2
+  exit 2
+}
+
+# Runs the tests of a build folder whose names match, as many at a time as there are cores; CMake knows which must be
+# alone. What failed is told by the results.
+run_tests() {  # BUILD_FOLDER PATTERN
+  cd "$1" || return
+  rm -rf test_results/* tests_declared.json Testing/TAG  # results of an earlier call must not count
+  ctest -R "$2" --show-only=json-v1 >tests_declared.json
+  : >DartConfiguration.tcl  # -T asks for this file, whose settings are all optional
+  ctest -T Test -j "$(nproc)" -R "$2" --output-on-failure --timeout 600 </dev/null && return
+  # what failed, now and not only when the other builds are done
+  /usr/bin/python3 "$checkout/ddm_launch/qa/test_report.py" "$1" | grep -A 40 '^FAILED' || true
+}
+
+# Where the build with a sanitizer is. Argument: address or thread, as for DDM_SANITIZE.
+sanitized_folder() {
+  case $1 in
+    address) echo "$DDM_WS/debug" ;;
+    thread) echo "$DDM_WS/thread" ;;
+  esac
+}
+
+# Portable instruction set, because reports shall be the same on all machines; -O1, because Eigen without any
+# optimisation takes minutes for what Release does in seconds.
+build_sanitized() {  # address|thread TARGET...
+  local folder jobs
+  folder=$(sanitized_folder "$1")
+  read -ra jobs < <(job_flags)
+  make_devel_space "$folder/devel"
+  catkin_make -C "$DDM_WS" --build "$folder/build" "${jobs[@]}" \
+    -DCATKIN_DEVEL_PREFIX="$folder/devel" -DCMAKE_INSTALL_PREFIX="$folder/install" -DCMAKE_CXX_COMPILER=clang++ \
+    -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-O1 -gline-tables-only' -DDDM_AVX2=OFF -DDDM_WERROR=ON \
+    -DDDM_SANITIZE="$1" -DDDM_PILCO=OFF "${unity_flags[@]}" "${@:2}"
+}
+
+# A short experiment by each driver and evaluations side by side. What does not reach its end is a report, too.
+short_loop() {  # address|thread REPORTS
+  local folder out port programs
+  folder=$(sanitized_folder "$1") out=$(sanitized_folder "$1")/loop
+  rm -rf "$out"
+  mkdir -p "$out"
+  source_setup "$folder/devel/setup.bash"
+  programs=$folder/devel/lib/ddm_launch
+  port=$(PYTHONPATH=$PYTHONPATH:$checkout/ddm_launch/qa /usr/bin/python3 -c \
+    'from ddm_qa.processes import free_port; print(free_port())')
+  {
+    "$programs/run_experiment" --preset debug --trials 1 --out "$out/process" &&
+      "$programs/evaluate" --preset debug --model "$out/process/trial_001/model.ddm" --seeds 0:8 --jobs 4 --out "$out/evaluate"
+  } </dev/null >"$out/process.log" 2>&1 || cp "$out/process.log" "$2/one_process"
+  timeout -s INT -k 30 300 roslaunch -p "$port" ddm_launch experiment.launch preset:=debug trials:=1 view:=true \
+    runs:="$out/nodes" </dev/null >"$out/nodes.log" 2>&1 || true
+  [[ -f $out/nodes/summary.yaml ]] || cp "$out/nodes.log" "$2/nodes"
+}
+
+# Runs tests and the loop; each file in build/sanitizer_reports is a report, which test_report.py takes for a failure.
+run_sanitized() {  # address|thread PATTERN
+  local reports
+  reports=$(sanitized_folder "$1")/build/sanitizer_reports
+  rm -rf "$reports"
+  mkdir -p "$reports"
+  export ASAN_OPTIONS=log_path=$reports/report:detect_stack_use_after_return=1:strict_string_checks=1
+  export UBSAN_OPTIONS=log_path=$reports/report:print_stacktrace=1
+  # ROS's own libraries are not instrumented: without the last option their locks look like none
+  export TSAN_OPTIONS=log_path=$reports/report:suppressions=$checkout/ddm_launch/qa/thread_suppressions.txt:ignore_noninstrumented_modules=1
+  # tells ThreadSanitizer what OpenMP, which is not instrumented either, does with threads
+  OMP_TOOL_LIBRARIES=$(clang++ -print-resource-dir)/../../libarcher.so
+  [[ $1 != thread ]] || export OMP_TOOL_LIBRARIES
+  short_loop "$1" "$reports"
+  run_tests "$(sanitized_folder "$1")/build" "$2"
+  if compgen -G "$reports/*" >/dev/null; then tail -n +1 "$reports"/*; else echo "no report"; fi
+}
+
+run_fuzzing() {  # OPTION...
+  PYTHONPATH=$checkout/ddm_launch/src:$checkout/ddm_model/src /usr/bin/python3 "$checkout/ddm_launch/qa/scripts/qa" fuzz \
+    --programs "$(sanitized_folder address)/devel/lib" "$@"
+}
+
+# From the committed seeds on, always the same draws. A finding is told by the result file.
+fuzz_shortly() {
+  local out result
+  out=$(sanitized_folder address)/fuzzing
+  result=$(sanitized_folder address)/build/test_results/ddm_launch/fuzzing.xml
+  rm -rf "$out" "$result"
+  run_fuzzing --runs 1000 --seed 1 --out "$out" --junit "$result" || [[ -f $result ]]
+}
+
+# Builds in a session of its own, whose processes run only where all others leave a core idle.
+start_debug_build() {
+  mkdir -p "$DDM_WS/debug"
+  rm -f "$DDM_WS/debug/build.code"
+  : >"$DDM_WS/debug/build.log"  # there before anybody follows it
+  export checkout
+  setsid bash -c "$(declare -p unity_flags debug_targets && declare -f)"'
+    renice -n 19 "$$" >/dev/null || true
+    # Linux shares the cores between sessions first, by a niceness of their own
+    { echo 19 >"/proc/$$/autogroup"; } 2>/dev/null || true
+    code=0
+    build_sanitized address "${debug_targets[@]}" || code=$?
+    echo "$code" >"$DDM_WS/debug/build.code"' >"$DDM_WS/debug/build.log" 2>&1 </dev/null &
+  debug_build=$!
+}
+
+finish_debug_build() {
+  local code
+  tail --pid="$debug_build" -n 1 -f "$DDM_WS/debug/build.log"
+  code=$(cat "$DDM_WS/debug/build.code")
+  ((code == 0)) || cat "$DDM_WS/debug/build.log"
+  return "$code"
+}
+
+durations=()
+phase() {  # TITLE COMMAND...
+  local title=$1 start=$SECONDS code=0
+  shift
+  say "$title"
+  ("$@") || code=$?
+  durations+=("$(printf '%5d s  %s' $((SECONDS - start)) "$title")")
+  ((code == 0)) || fail "$title: failed with code $code. Remedy: see the first error above."
+}
+
+# Builds and runs what the mode says; leaves the build folders in `results`.
+run_mode() {
+  if [[ $mode == thread ]]; then
+    phase "Build with ThreadSanitizer into $DDM_WS/thread/devel" \
+      build_sanitized thread "${loop_programs[@]}" "${threaded_programs[@]}"
+    phase "Tests of threads and a short loop with ThreadSanitizer" run_sanitized thread "$threaded_tests"
+    results=("$DDM_WS/thread/build")
+    return
+  fi
+  phase "Release build into $DDM_WS/devel" build_release all tests
+  results=("$DDM_WS/build")
+  # most tests wait for something, so the Debug build takes the processor time that they leave
+  [[ $mode == part ]] || start_debug_build
+  phase "Tests on the Release build" run_tests "$DDM_WS/build" "$pattern"
+  [[ $mode == part ]] && return
+  phase "Debug build with AddressSanitizer into $DDM_WS/debug/devel" finish_debug_build
+  phase "gtests and a short loop on the Debug build" run_sanitized address "$debug_tests"
+  phase "Short fuzzing" fuzz_shortly
+  results+=("$DDM_WS/debug/build")
+}
+
+main() {
+  pattern=.
+  parse_arguments "$@"
+  # the verdict is the last line, also when no test could be run
+  trap '[[ $? == 0 || -n ${reported:-} ]] || echo "0 passed, 1 failed"
+    [[ -z ${debug_build:-} ]] || kill -- "-$debug_build" 2>/dev/null || true' EXIT
+  use_system_environment
+  # tests run in folders of their own
+  [[ -z ${DDM_PILCO_VECTORS:-} ]] || DDM_PILCO_VECTORS=$(realpath -m -- "$DDM_PILCO_VECTORS")
+  check_system
+  ensure_localhost_resolves
+  make_workspace
+  phase "Packages" install_packages "${packages_to_run[@]}" "${packages_to_test[@]}"
+  install_by_rosdep
+  if [[ $mode == fuzz ]]; then
+    phase "Debug build of the fuzz targets into $DDM_WS/debug/devel" build_sanitized address fuzz_targets
+    reported=yes
+    run_fuzzing "${@:2}"
+    return
+  fi
+  run_mode
+  say "Time"
+  printf '%s\n' "${durations[@]}"
+  reported=yes
+  say "Result"
+  /usr/bin/python3 "$checkout/ddm_launch/qa/test_report.py" "${results[@]}"
+}
+
+# Sourced (by its test) it only defines the functions.
+[[ ${BASH_SOURCE[0]} != "$0" ]] || main "$@"

@@ -1,5 +1,6 @@
 # Sourced by demo.sh and test.sh: from a bare system to a built catkin workspace that links this checkout.
 # SPDX-License-Identifier: BSD-3-Clause
+# shellcheck shell=bash disable=SC2034
 
 checkout=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd -P)
 
@@ -128,7 +129,7 @@ Remedy: have an administrator run, then call this script again:
   fi
 }
 
-around_apt=()  # a command that runs apt-get: qa/packages.sh sets it
+around_apt=()  # a command that runs apt-get: test.sh sets it
 
 # Installs packages by apt-get. Arguments: what apt-get is to do before, or nothing; the packages.
 apt_install() {

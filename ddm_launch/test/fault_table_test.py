@@ -5,11 +5,10 @@ import os
 from std_msgs.msg import Float64
 
 from ddm_qa import fault_table as table
-from ddm_qa.faults.cases import RECOVERS, STAYS, Case
-from ddm_qa.faults.damage import damage, find_record
-from ddm_qa.faults.finished import Finished
+from ddm_qa.faults.cases import RECOVERS, Case
 from ddm_qa.faults.run import FaultBench
-from ddm_qa.faults.watches import Effort, MotorWatch, OrderWatch
+from ddm_qa.faults.watches import Effort, MotorWatch
+from ddm_qa.run_comparison import Finished
 from processes import call, find_program, run_experiment
 from run_files import read_rows
 from scratch_case import ScratchCase
@@ -22,27 +21,15 @@ class FaultTableTest(ScratchCase):
         rows = read_rows(self.scratch, "faults.csv")
         self.assertEqual(rows[0], table.COLUMNS)
         self.assertEqual([row for row in rows[1:] if row[3] != row[4] or row[5] != "1"], [], output)
-        self.assertGreaterEqual(len(rows), 21)
+        self.assertGreaterEqual(len(rows), 12)
         self.assertIn("%d passed, 0 failed" % (len(rows) - 1), output)
         self.assertEqual(code, 0, output)
 
-    def test_a_case_whose_phase_never_comes_or_whose_words_are_not_said_is_no_success(self):
+    def test_a_fault_whose_phase_never_comes_is_no_success(self):
         bench = FaultBench(self.scratch)
-        bench.make_reference()
         never = Case("never", "no such phase", "drop image", RECOVERS, (), False, False)
         self.assertEqual(bench.run(never), "not injected")
-        silent = Case("silent", "at rest", "remove trial.bag", STAYS, ("nobody says this",), False, False)
-        self.assertEqual(bench.run(silent), STAYS.replace("named", "not named: nobody says this"))
-        rows = table.table([never, silent], {"never": "not injected", "silent": "ended"})
-        self.assertEqual([row[-1] for row in rows], [0, 0])
-
-    def test_where_nothing_was_finished_nothing_can_be_called_undamaged(self):
-        bench = FaultBench(self.scratch)
-        bench.make_reference()
-        first = Case("first", "random trial", "kill sim_node", "ended, undamaged, resumes, equal", (), False, False)
-        facts = bench.run(first).split(", ")
-        self.assertEqual(facts[:1] + facts[2:], ["ended", "resumes", "equal"])
-        self.assertIn("compare", facts[1])
+        self.assertEqual(table.table([never], {"never": "not injected"})[0][-1], 0)
 
     def test_files_of_finished_trials_that_change_or_vanish_are_named(self):
         code, output = run_experiment("--preset", "debug", "--trials", 0, "--out", self.out)
@@ -56,20 +43,6 @@ class FaultTableTest(ScratchCase):
         self.assertEqual(before.lost(self.out), ["evaluation_000/torques.csv", "trial_000/torques.csv"])
         os.remove(os.path.join(self.out, "trials.csv"))
         self.assertIn("trials.csv", before.lost(self.out))
-
-    def test_the_older_of_two_torques_may_not_act_and_the_older_of_two_images_may_not_be_answered_late(self):
-        for torque, acted, answers, verdict in (
-                (2.0, [3.0, 3.0, 4.0], [], "in order"), (2.0, [2.0, 3.0, 4.0], [], "older torque"),
-                (2.0, [3.0], [], "1 frames"), (None, [1.0] * 3, [7, 9], "in order"),
-                (None, [1.0] * 3, [8, 7, 9], "older image")):
-            watch = OrderWatch()
-            watch.torque_has_acted(6, 2.0)
-            watch.swap(7, torque)
-            for each in acted:
-                watch.torque_has_acted(8, each)
-            for each in answers:
-                watch.torque_passes(8, each)
-            self.assertIn(verdict, watch.verdict())
 
     def test_a_robot_must_have_zero_torque_from_the_limit_to_the_end_of_the_fault(self):
         for efforts, verdict in (([0.0] * 30, "zero"), ([0.0] * 29 + [1.5], "driven: 1.5"),
@@ -98,8 +71,7 @@ class FaultTableTest(ScratchCase):
         self.assertEqual(self.motor([1, 2, 3, 4, 4, 4, 0, 0]), "driven: 4 0 0")
         self.assertIn("2 frames", self.motor([1, 2, 3, 4, 4, 0, 0]))
         self.assertIn("no torque", self.motor([0, 0, 0, 0, 0, 0, 0, 0]))
-
-    def test_a_torque_that_answers_an_image_before_the_fault_may_still_act(self):
+        # one that answers an image before the fault may still act
         self.assertEqual(self.motor([1, 2, 3, 4, 5, 5, 0, 0, 0], [(4.2, 2)]), "zero")
 
     def test_a_motor_may_run_again_with_the_next_torque_unless_one_was_refused(self):
@@ -107,15 +79,3 @@ class FaultTableTest(ScratchCase):
         self.assertEqual(self.motor(again, [(8.1, 8)]), "zero")
         self.assertEqual(self.motor(again, [(8.1, 8)], stays_off=True), "driven: 0 0 0 9")
 
-    def test_each_kind_of_record_of_a_bag_is_cut_in_its_middle(self):
-        code, output = run_experiment("--preset", "debug", "--trials", 0, "--out", self.scratch)
-        self.assertEqual(code, 0, output)
-        sizes = set()
-        for record in ("version", "header", "chunk", "index", "connection", "chunk_info"):
-            path, content = damage("cut %s of trial.bag" % record, self.scratch)
-            begin, end = find_record(content, record)
-            self.assertTrue(begin < os.path.getsize(path) < end, record)
-            sizes.add(os.path.getsize(path))
-            with open(path, "wb") as stream:
-                stream.write(content)
-        self.assertEqual(len(sizes), 6)

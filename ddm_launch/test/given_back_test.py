@@ -44,16 +44,6 @@ class GivenBackTest(SharedScratchCase):
                               folder=self.class_scratch)
         self.assertReproduced(output)
 
-    def test_an_argument_wins_and_all_else_is_as_saved(self):
-        _, output = roslaunch(self.scratch, "experiment.launch", "config:=" + self.config, "runs:=" + self.out,
-                              "trials:=0", "seed:=6")
-        there, here = (read_yaml(folder, "config.yaml") for folder in (self.original, self.out))
-        self.assertEqual((here["experiment"]["trials"], here["experiment"]["seed"]), (0, 6), output)
-        for config in (there, here):
-            for key in ("trials", "seed", "runs"):
-                del config["experiment"][key]
-        self.assertEqual(here, there)
-
     def test_a_saved_plant_is_not_mixed_with_another(self):
         code, output = run_experiment("--config", self.config, "--plant", "pendulum", "--out", self.out)
         self.assertEqual(code, 2, output)

@@ -1,7 +1,6 @@
-# The whole loop with the real nodes: files, terminal, bags, how it resumes, ends and refuses.
+# The whole loop with the real nodes: files, terminal, bags, and how it resumes.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import re
 import shutil
 import signal
 
@@ -20,9 +19,8 @@ class LoopTest(SharedScratchCase):
         cls.code, cls.output = roslaunch(cls.class_scratch, *cls.experiment(cls.reference, TRIALS))
 
     @staticmethod
-    def experiment(out, trials, seed=1):
-        return ["experiment.launch", "preset:=debug", "plant:=pendulum", "seed:=%d" % seed, "trials:=%d" % trials,
-                "runs:=" + out, "rviz:=false"]
+    def experiment(out, trials):
+        return ["experiment.launch", "preset:=debug", "plant:=pendulum", "seed:=1", "trials:=%d" % trials, "runs:=" + out]
 
     def assertSameAsOneProcess(self, out, trials):
         """Everything but bags, whose stamps are another simulated time, and what tells wall times."""
@@ -32,39 +30,28 @@ class LoopTest(SharedScratchCase):
         names = [name for name in expected_files(trials) if not name.endswith((".bag", "config.yaml"))]
         self.assertEqual(differences(one_process, out, names), [])
 
-    def test_all_files_of_the_contract_are_written_and_no_other(self):
+    def test_all_files_of_the_contract_are_written_and_the_terminal_shows_each_trial(self):
         self.assertEqual(self.code, 0, self.output)
         self.assertEqual(files_in(self.reference), expected_files(TRIALS), self.output)
-
-    def test_the_summary_is_the_verdict(self):
         summary = read_yaml(self.reference, "summary.yaml")
         self.assertIs(summary["finished"], True)
         self.assertEqual((summary["preset"], summary["seed"], summary["trials"]), ("debug", 1, TRIALS))
-
-    def test_the_terminal_shows_each_trial_and_the_summary(self):
         for k in range(TRIALS + 1):
             self.assertRegex(self.output, r"trial +%d/%d +%d frames" % (k, TRIALS, 30 * (k + 1)))
-        self.assertIn("3 models trained", self.output)
         self.assertIn("results: %s/trials.csv" % self.reference, self.output)
         for word in ("WARN", "ERROR", "FATAL", "Traceback"):
             self.assertNotIn(word, self.output)
 
-    def test_each_bag_holds_a_torque_for_each_image_and_the_goal(self):
+    def test_each_bag_holds_a_torque_for_each_image_and_the_goal_and_time_never_runs_backwards(self):
+        images = []
         for k in range(TRIALS + 1):
             stamps = read_bag(os.path.join(self.reference, "trial_%03d" % k, "trial.bag"))
             self.assertEqual(sorted(stamps), ["camera/image_raw", "goal_image", "torque"])
             self.assertEqual(len(stamps["camera/image_raw"]), 30)
             self.assertEqual(stamps["camera/image_raw"], stamps["torque"])
             self.assertEqual(len(stamps["goal_image"]), 1)
-
-    def test_simulated_time_never_runs_backwards_between_trials(self):
-        stamps = []
-        for k in range(TRIALS + 1):
-            stamps += read_bag(os.path.join(self.reference, "trial_%03d" % k, "trial.bag"))["camera/image_raw"]
-        self.assertEqual(stamps, sorted(set(stamps)))
-
-    def test_the_nodes_write_what_one_process_writes(self):
-        self.assertSameAsOneProcess(self.reference, TRIALS)
+            images += stamps["camera/image_raw"]
+        self.assertEqual(images, sorted(set(images)))
 
     def test_the_same_command_with_more_trials_resumes_in_a_folder_that_may_be_relative(self):
         code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 0, "--out", self.out)
@@ -74,16 +61,6 @@ class LoopTest(SharedScratchCase):
         self.assertIn("after trial 0", output)
         self.assertEqual(files_in(self.out), expected_files(1), output)
         self.assertSameAsOneProcess(self.out, 1)
-
-    def test_the_folder_of_another_seed_is_refused_and_left_as_it_is(self):
-        shutil.copytree(self.reference, self.out)
-        before = {name: read_bytes(self.out, name) for name in files_in(self.out)}
-        code, output = roslaunch(self.scratch, *self.experiment(self.out, TRIALS, seed=2))
-        self.assertEqual(code, 0)  # roslaunch's way, see the head of experiment.launch
-        self.assertIn("experiment/seed: 1 there, 2 here", output)
-        self.assertIn(self.out, output)
-        self.assertIn("summary.yaml", before)
-        self.assertEqual({name: read_bytes(self.out, name) for name in files_in(self.out)}, before)
 
     def test_an_interrupted_experiment_ends_at_once_without_a_verdict_and_goes_on_later(self):
         launch = start_roslaunch(self.scratch, *self.experiment(self.out, 999))
@@ -112,13 +89,3 @@ class LoopTest(SharedScratchCase):
             bag = "trial_%03d/trial.bag" % TRIALS
             self.assertEqual(read_bytes(self.out, bag), read_bytes(self.reference, bag))
             self.assertSameAsOneProcess(self.out, TRIALS)
-
-    def test_a_node_that_dies_ends_the_experiment_without_a_verdict(self):
-        launch = start_roslaunch(self.scratch, *self.experiment(self.out, 999))
-        self.addCleanup(launch.stop)
-        launch.waitForText("trial  0/999", 30.0)
-        os.kill(int(re.search(r"process\[mpc_node-\d+\]: started with pid \[(\d+)\]", launch.output).group(1)),
-                signal.SIGKILL)
-        launch.waitForEnd(30.0)
-        self.assertIn("REQUIRED process [mpc_node", launch.output)
-        self.assertNotIn("summary.yaml", files_in(self.out))

@@ -115,14 +115,6 @@ class NewPlantTest(ScratchCase):
         self.assertEqual(plant["camera_position"][:2], plant["camera_look_at"][:2])
         self.assertEqual(self.simulate("first_nm,second_nm", "0.3,0")[0][2:4], ["first_rad", "second_rad"])
 
-    def test_a_model_below_the_plant_file_has_a_relative_path_and_any_other_an_absolute_one(self):
-        self.write("models/swing.urdf", swing())
-        for out, path in (("my_plant.yaml", "models/swing.urdf"),
-                          ("elsewhere/my_plant.yaml", self.file("models/swing.urdf"))):
-            code, output = self.newPlant("models/swing.urdf", "--out", out)
-            self.assertEqual(code, 0, output)
-            self.assertEqual(read_yaml(self.scratch, out)["plant"]["model"], path)
-
     def test_an_effort_limit_of_zero_is_estimated_and_asked_for(self):
         plant, output = self.make("swing.urdf", swing(0.0))
         self.assertGreater(plant["max_torque"][0], 0.5 * 9.81 * 0.2)  # lifts the rod
@@ -144,15 +136,6 @@ class NewPlantTest(ScratchCase):
         os.remove(self.file("my_plant.yaml"))
         self.assertRefused(2, ["my_plant.png", "--force"], "swing.urdf", "--out", "my_plant.yaml")
         self.make("swing.urdf", swing(), "--force")
-
-    def test_what_the_proposal_cannot_know_is_said(self):
-        _, output = self.make("narrow.xml", TABLE.replace('range="-120 120"', 'range="-2.1 2.1"'))
-        self.assertIn("second is only -0.03665 to 0.03665 rad", output)
-        self.assertNotIn("<connect>", output)
-        tie = '<equality><connect body1="tip" body2="world" anchor="0.2 0 0"/></equality></mujoco>'
-        _, output = self.make("tied.xml", TABLE.replace('<body pos', '<body name="tip" pos').replace("</mujoco>", tie),
-                              "--force")
-        self.assertIn("ties bodies by <connect> or <weld>", output)
 
     def test_bad_options_and_models_are_refused_by_name(self):
         self.write("swing.urdf", swing())

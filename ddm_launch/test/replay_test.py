@@ -89,10 +89,6 @@ class ReplayTest(SharedScratchCase):
         self.assertRegex(output, r"FATAL.*only one node may publish images")
         self.assertFalse(os.path.exists(out))
 
-    def test_a_bag_that_is_missing_is_named(self):
-        output, _ = self.replay("bag:=/nowhere/x.bag", "model:=" + self.model)
-        self.assertRegex(output, r"FATAL.*/nowhere/x.bag")
-
     def test_time_that_does_not_come_is_named(self):
         rospy.set_param("/use_sim_time", True)
         self.addCleanup(rospy.delete_param, "/use_sim_time")

@@ -211,8 +211,8 @@ class RunExperimentTest(SharedScratchCase):
         stamps = read_bag(os.path.join(self.out, "trial_000", "trial.bag"))["camera/image_raw"]
         self.assertEqual(len(times), 30)
         self.assertGreater(times[-1], 29 * 0.2 + 0.1)
-        for time, stamp in zip(times, stamps):
-            self.assertAlmostEqual(time, (stamp - stamps[0]) * 1e-9, places=6)
+        for seen, stamp in zip(times, stamps):
+            self.assertAlmostEqual(seen, (stamp - stamps[0]) * 1e-9, places=6)
 
     def test_a_configuration_file_that_cannot_be_read_is_named(self):
         missing = self.file("missing.yaml")

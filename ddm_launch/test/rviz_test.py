@@ -1,4 +1,4 @@
-# What rviz shows of an experiment: pictures of the real one, on a screen in memory.
+# What rviz shows of an experiment: pictures of the real one by `qa rviz_screenshot`, on a screen in memory.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import tempfile
@@ -18,7 +18,7 @@ class RvizTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as scratch:
             out = os.path.join(scratch, "rviz.png")
             cls.code, cls.output = call(
-                [find_program("rviz_screenshot"), "--out", out, "--after-trial", 2, "--seconds", 0, "--",
+                [find_program("qa"), "rviz_screenshot", "--out", out, "--after-trial", 1, "--seconds", 0, "--",
                  "preset:=debug", "trials:=999", "seed:=1"], limit_s=200.0)
             cls.pixels = np.array(Image.open(out).convert("RGB")) if cls.code == 0 else None
 
@@ -36,7 +36,7 @@ class RvizTest(unittest.TestCase):
                 self.assertEqual(blank_displays(pixels), [name])
 
     def test_what_the_launch_file_does_not_accept_is_told(self):
-        code, output = call([find_program("rviz_screenshot"), "--out", "/nowhere/rviz.png", "--",
+        code, output = call([find_program("qa"), "rviz_screenshot", "--out", "/nowhere/rviz.png", "--",
                              "preset:=no_such_preset"])
         self.assertEqual(code, 1)
         self.assertIn("no_such_preset", output)

@@ -3,6 +3,7 @@
 import os
 import re
 import shlex
+import shutil
 import socket
 import subprocess
 
@@ -10,7 +11,6 @@ from scratch_case import ScratchCase
 
 SCRIPTS = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "scripts"))
 CHECKOUT = os.path.dirname(os.path.dirname(SCRIPTS))
-FRESH_ROOT = os.path.join(CHECKOUT, "ddm_launch", "qa", "fresh_root.sh")
 
 
 class ScriptsTest(ScratchCase):
@@ -44,20 +44,13 @@ class ScriptsTest(ScratchCase):
             self.assertEqual(self.callFunction("check_system " + release), (0, "System: Debian %s\n" % version))
 
     def test_another_system_is_warned_and_goes_on(self):
-        for text in ('ID=debian\nVERSION_ID="10"\nPRETTY_NAME="It"\n', "ID=debian\nPRETTY_NAME=It\n",
-                     'ID=debian\nVERSION_ID="130"\nPRETTY_NAME="It"\n', 'ID=ubuntu\nVERSION_ID="12"\nPRETTY_NAME="It"\n',
-                     'ID=ubuntu\nVERSION_ID="20.04"\nPRETTY_NAME="It"\n'):
+        for text in ("ID=debian\nPRETTY_NAME=It\n", 'ID=debian\nVERSION_ID="130"\nPRETTY_NAME="It"\n',
+                     'ID=ubuntu\nVERSION_ID="12"\nPRETTY_NAME="It"\n'):
             code, output = self.callFunction("check_system " + self.release(text))
             self.assertEqual(code, 0)
             for words in ("WARNING: this is It", "not here", "Debian 11, 12 and 13", "doc/install.md", "docker run"):
                 self.assertIn(words, output)
         self.assertIn("an unknown system", self.callFunction("check_system /no/such/file")[1])
-
-    def test_debian_with_a_ros_of_opt_ros_is_warned_and_told_which(self):
-        release = self.release('ID=debian\nVERSION_ID="12"\nPRETTY_NAME="It"\n')
-        code, output = self.callFunction("%s; check_system %s" % (self.noetic(), release))
-        self.assertEqual(code, 0)
-        self.assertIn("this is It with %s/noetic/setup.bash" % self.file("opt"), output)
 
     def test_a_ros_of_opt_ros_is_sourced_instead_of_the_environment_of_the_caller(self):
         code, output = self.callFunction("export ROS_DISTRO=mine PYTHONPATH=/mine; %s; use_system_environment with words; "
@@ -67,14 +60,6 @@ class ScriptsTest(ScratchCase):
                                          "echo ${ROS_DISTRO-none}")
         self.assertEqual((code, output), (0, "none\n"))
 
-    def test_packages_of_ros_are_those_of_debian_only_where_ros_is(self):
-        listed = "%%s; . %s/workspace.sh; printf '%%%%s\\n' \"${packages_to_run[@]}\"" % shlex.quote(SCRIPTS)
-        self.assertIn("libroscpp-dev", self.callFunction(listed % "opt_ros=/nonexistent")[1].splitlines())
-        code, output = self.callFunction(listed % self.noetic())
-        self.assertEqual(code, 0, output)
-        self.assertIn("libceres-dev", output.splitlines())
-        self.assertEqual([name for name in output.splitlines() if "ros" in name or name == "catkin"], [])
-
     def test_rosdep_installs_what_package_xml_lists_where_ros_is_not_debians(self):
         rosdep = "rosdep() { echo rosdep \"$@\"; %s; }; %s; use_system_environment; install_by_rosdep"
         code, output = self.callFunction(rosdep % ("true", self.noetic()))
@@ -82,19 +67,6 @@ class ScriptsTest(ScratchCase):
         self.assertIn("rosdep install --from-paths %s --ignore-src --rosdistro noetic" % CHECKOUT, output)
         self.assertNotIn("WARNING", output)
         self.assertEqual(self.callFunction(rosdep % ("true", "opt_ros=/nonexistent")), (0, ""))
-
-    def test_the_scripts_go_on_without_rosdep_and_when_it_fails(self):
-        for rosdep in ("rosdep() { false; }", "command() { false; }"):
-            code, output = self.callFunction("%s; %s; use_system_environment; install_by_rosdep" % (rosdep, self.noetic()))
-            self.assertEqual(code, 0)
-            self.assertIn("WARNING: rosdep", output)
-
-    def test_a_system_without_apt_is_told_what_the_build_needs(self):
-        code, output = self.callFunction("missing_packages() { echo cmake; }; command() { [[ $2 != apt-get ]]; }; "
-                                         "install_packages cmake")
-        self.assertEqual(code, 0)
-        self.assertIn("WARNING", output)
-        self.assertIn("cmake", output)
 
     def test_optional_packages_that_the_system_does_not_have_are_named_and_left_out(self):
         stubs = ("missing_packages() { printf '%%s\\n' \"$@\"; }; as_root() { echo \"CALLED $*\"; }; "
@@ -120,13 +92,12 @@ class ScriptsTest(ScratchCase):
         for name, folder in (("PYTHONPATH", "lib/python3/dist-packages"), ("LD_LIBRARY_PATH", "lib")):
             self.assertRegex(environment, "export %s='[^']*%s" % (name, os.path.join(self.workspace, "devel", folder)))
 
-    def test_only_packages_that_are_not_installed_are_missing(self):
-        self.assertEqual(self.callFunction("missing_packages bash no-such-package coreutils"),
-                         (0, "no-such-package\n"))
-
-    def test_nothing_is_installed_when_nothing_is_missing(self):
-        code, output = self.callFunction("as_root() { echo CALLED; }; install_packages bash coreutils")
+    def test_only_packages_that_are_not_installed_are_installed(self):
+        stubs = "as_root() { echo CALLED \"$@\"; }; "
+        code, output = self.callFunction(stubs + "install_packages bash coreutils")
         self.assertEqual((code, output), (0, "Packages: all 2 installed\n"))
+        code, output = self.callFunction(stubs + "install_packages bash no-such-package coreutils")
+        self.assertIn("install -y --no-install-recommends no-such-package\n", output)
 
     def test_missing_packages_without_root_or_sudo_are_named(self):
         code, output = self.callFunction("id() { echo 1000; }; missing_packages() { echo cmake; }; command() { [[ $2 == apt-get ]]; }; "
@@ -135,19 +106,9 @@ class ScriptsTest(ScratchCase):
         self.assertIn("sudo", output)
         self.assertIn("install -y --no-install-recommends cmake", output)
 
-    def test_packages_with_services_are_installed_without_starting_or_enabling_them(self):
-        printed = 'missing_packages() { echo cmake munge; }; as_root() { printf "%s|" "$@"; }; install_packages cmake munge'
-        code, output = self.callFunction(". %s; %s" % (os.path.join(SCRIPTS, "..", "qa", "packages.sh"), printed))
-        self.assertEqual(code, 0)
-        self.assertIn("policy-rc.d", output)
-        self.assertIn("systemctl disable", output)
-        self.assertIn("install -y --no-install-recommends cmake munge", output)
-        code, output = self.callFunction(printed)
-        self.assertNotIn("policy-rc.d", output)  # demo.sh installs no services
-
     def test_the_guard_against_services_passes_on_the_verdict(self):
         policy = self.file("policy-rc.d")
-        packages = os.path.join("..", "qa", "packages.sh")
+        packages = "test.sh"
         guarded = "export POLICY_RC_D=%s; \"${around_apt[@]}\" " % policy
         self.assertEqual(self.callFunction(guarded + 'sh -c "$POLICY_RC_D; exit 3"', packages)[0], 3)
         self.assertEqual(self.callFunction(guarded + 'sh -c "$POLICY_RC_D; echo policy says \\$?"', packages),
@@ -174,75 +135,45 @@ class ScriptsTest(ScratchCase):
             command = clean + given + ["/bin/bash", os.path.join(CHECKOUT, entry), "a", "'b c'"]
             self.assertEqual(self.call(*command), (0, printed + "\n"))
 
-    def test_a_system_that_knows_localhost_is_left_alone(self):
-        self.assertEqual(self.callFunction("as_root() { echo CALLED; }; getent() { true; }; ensure_localhost_resolves"),
-                         (0, ""))
-
-    def test_a_system_that_does_not_know_localhost_is_taught(self):
-        code, output = self.callFunction("as_root() { echo CALLED \"$@\"; }; getent() { false; }; "
-                                         "ensure_localhost_resolves")
-        self.assertEqual(code, 0)
-        self.assertIn("/etc/hosts", output.split("CALLED")[1])
+    def test_a_name_for_localhost_is_added_only_where_there_is_none(self):
+        for known, added in (("true", False), ("false", True)):
+            code, output = self.callFunction("as_root() { echo CALLED \"$@\"; }; getent() { %s; }; ensure_localhost_resolves"
+                                             % known)
+            self.assertEqual((code, "/etc/hosts" in output), (0, added))
 
     def test_the_workspace_links_this_checkout_and_may_exist(self):
         for _ in range(2):
             self.assertEqual(self.callFunction("make_workspace"), (0, ""))
             self.assertEqual(os.path.realpath(os.path.join(self.workspace, "src", "ddm")), CHECKOUT)
 
-    def test_another_folder_in_the_place_of_the_link_is_refused(self):
-        os.makedirs(os.path.join(self.workspace, "src", "ddm"))
-        code, output = self.callFunction("make_workspace")
-        self.assertEqual(code, 1)
-        self.assertIn(os.path.join(self.workspace, "src", "ddm"), output)
-
-    def test_a_link_to_another_checkout_is_refused(self):
+    def test_another_checkout_or_folder_in_the_place_of_the_link_is_refused(self):
         os.makedirs(os.path.join(self.workspace, "src"))
-        os.symlink("/no/other/checkout", os.path.join(self.workspace, "src", "ddm"))
-        code, output = self.callFunction("make_workspace")
-        self.assertEqual(code, 1)
-        self.assertIn("/no/other/checkout", output)
+        link = os.path.join(self.workspace, "src", "ddm")
+        os.symlink("/no/other/checkout", link)
+        for code, words in (("make_workspace", "/no/other/checkout"), ("rm $DDM_WS/src/ddm; mkdir $DDM_WS/src/ddm; make_workspace", link)):
+            code, output = self.callFunction(code)
+            self.assertEqual(code, 1)
+            self.assertIn(words, output)
 
-    def test_a_checkout_inside_the_source_space_is_not_linked_again(self):
-        checkout = os.path.join(self.workspace, "src", "cloned_here")
-        os.makedirs(checkout)
-        self.assertEqual(self.callFunction("checkout=%s; make_workspace" % checkout), (0, ""))
-        self.assertEqual(os.listdir(os.path.join(self.workspace, "src")), ["cloned_here"])
+    def test_a_workspace_inside_the_checkout_or_with_a_space_in_its_path_is_refused(self):
+        for place, words in (("$checkout/ws", CHECKOUT), ("'/tmp/my ws'", "/tmp/my ws")):
+            code, output = self.callFunction("DDM_WS=%s; make_workspace" % place)
+            self.assertEqual(code, 1)
+            self.assertIn(words, output)
 
-    def test_a_workspace_inside_the_checkout_is_refused(self):
-        code, output = self.callFunction("DDM_WS=$checkout/ws; make_workspace")
-        self.assertEqual(code, 1)
-        self.assertIn(CHECKOUT, output)
-
-    def test_a_workspace_with_a_space_in_its_path_is_refused(self):
-        code, output = self.callFunction("DDM_WS='/tmp/my ws'; make_workspace")
-        self.assertEqual(code, 1)
-        self.assertIn("/tmp/my ws", output)
-
-    def test_unknown_arguments_are_refused_before_anything_is_done(self):
-        for script in ("demo.sh", "test.sh"):
-            code, output = self.call("/bin/bash", os.path.join(SCRIPTS, script), "--nonsense")
-            self.assertEqual(code, 2)
-            self.assertIn("--nonsense", output)
-            self.assertFalse(os.path.exists(self.workspace))
-
-    def test_help_is_printed_and_nothing_is_done(self):
-        for script in ("demo.sh", "test.sh"):
-            code, output = self.call("/bin/bash", os.path.join(SCRIPTS, script), "--help")
-            self.assertEqual(code, 0)
-            self.assertTrue(output.startswith("usage: bash " + script))
-            self.assertFalse(os.path.exists(self.workspace))
-
-    def test_a_number_of_trials_that_is_none_is_refused(self):
-        for value in ("0", "-3", "many", ""):
-            code, output = self.call("/bin/bash", os.path.join(SCRIPTS, "demo.sh"), "--trials", value)
-            self.assertEqual(code, 2)
-            self.assertIn("--trials", output)
-
-    def test_rviz_without_a_screen_is_refused_before_anything_is_done(self):
-        code, output = self.call("/usr/bin/env", "-u", "DISPLAY", "/bin/bash", os.path.join(SCRIPTS, "demo.sh"), "--rviz")
-        self.assertEqual(code, 2)
-        self.assertIn("DISPLAY", output)
-        self.assertFalse(os.path.exists(self.workspace))
+    def test_bad_arguments_are_refused_and_help_is_printed_before_anything_is_done(self):
+        demo, test = (os.path.join(SCRIPTS, name) for name in ("demo.sh", "test.sh"))
+        fresh_root = os.path.join(CHECKOUT, "ddm_launch", "qa", "fresh_root.sh")
+        for script, code, words, arguments in (
+                (demo, 2, "--nonsense", ["--nonsense"]), (test, 2, "--nonsense", ["--nonsense"]),
+                (demo, 2, "--trials", ["--trials", "0"]), (demo, 2, "DISPLAY", ["--rviz"]),
+                (fresh_root, 2, "'sid'", ["sid"]), (fresh_root, 2, "'--nonsense'", ["trixie", "demo", "--nonsense"]),
+                (demo, 0, "usage: bash demo.sh", ["--help"]), (test, 0, "usage: bash test.sh", ["--help"]),
+                (fresh_root, 0, "usage: bash fresh_root.sh", ["--help"])):
+            actual, output = self.call("/usr/bin/env", "-u", "DISPLAY", "TMPDIR=" + self.scratch, "/bin/bash", script, *arguments)
+            self.assertEqual(actual, code, output)
+            self.assertIn(words, output)
+            self.assertEqual(os.listdir(self.scratch), [])
 
     def test_another_port_is_taken_when_the_masters_port_is_in_use(self):
         with socket.socket() as holder:
@@ -265,34 +196,6 @@ class ScriptsTest(ScratchCase):
             self.assertEqual(code, 0)
             self.assertIn(flag, output.splitlines())
 
-    def callFreshRoot(self, *arguments, **environment):
-        folder = self.file("roots")
-        os.makedirs(folder, exist_ok=True)
-        set_variables = ["%s=%s" % variable for variable in dict(environment, TMPDIR=folder).items()]
-        done = self.call("/usr/bin/env", *set_variables, "/bin/bash", FRESH_ROOT, *arguments)
-        self.assertEqual(os.listdir(folder), [])  # nothing was made
-        return done
-
-    def test_an_empty_system_other_than_debian_11_12_or_13_is_refused(self):
-        for arguments in ((), ("sid",), ("demo",), ("bookworm", "trixie"), ("trixie", "demo", "--nonsense")):
-            code, output = self.callFreshRoot(*arguments)
-            self.assertEqual(code, 2)
-            self.assertIn("usage: bash fresh_root.sh bullseye|bookworm|trixie", output)
-            self.assertIn("'%s'" % (arguments or ("",))[-1], output)
-        self.assertEqual(self.callFreshRoot("trixie", "--help")[0], 0)
-
-    def test_an_empty_system_needs_a_tool_that_makes_it(self):
-        os.makedirs(self.file("tools"))
-        os.symlink("/usr/bin/dirname", self.file("tools", "dirname"))
-        code, output = self.callFreshRoot("trixie", PATH=self.file("tools"))
-        self.assertEqual(code, 1)
-        self.assertIn("debootstrap is not installed", output)
-
-    def checkSummary(self, text):
-        if text is not None:
-            self.write("summary.yaml", text)
-        return self.callFunction("check_summary %s 15 ''" % self.scratch, "demo.sh")
-
     def runExperiment(self, launch):
         """Runs the experiment of demo.sh with bash code instead of roslaunch."""
         return self.callFunction("roslaunch() { %s; }; runs=%s trials=15 rviz=false; run_experiment"
@@ -305,30 +208,19 @@ class ScriptsTest(ScratchCase):
             self.assertEqual(code, 1, output)
             self.assertIn("summary.yaml", output)
 
+    def test_the_summary_tells_whether_enough_trials_are_finished(self):
+        for text, code in (("finished: true\ntrials: 15\nsuccess: [0, 1]\n", 0), ("finished: true\ntrials: 20\n", 0),
+                           ("finished: true\ntrials: 14\n", 1), ("finished: true\n", 1), ("finished: false\ntrials: 15\n", 1),
+                           ("no map", 1), (None, 1)):
+            shutil.rmtree(self.file("run"), ignore_errors=True)
+            if text is not None:
+                self.write("run/summary.yaml", text)
+            actual, output = self.callFunction("check_summary %s 15 ''" % self.file("run"), "demo.sh")
+            self.assertEqual(actual, code, output)
+            self.assertEqual("summary.yaml" in output, code == 1)
+
     def test_a_call_that_finds_everything_finished_is_a_success(self):
         summary = self.write("summary.yaml", "finished: true\ntrials: 15\n")
         for launch in ("touch %s" % summary, "cp {0} {0}.new && mv {0}.new {0}".format(summary)):
             code, output = self.runExperiment(launch)
             self.assertEqual(code, 0, output)
-
-    def test_a_finished_experiment_is_a_success(self):
-        for trials in (15, 20):
-            self.assertEqual(self.checkSummary("finished: true\ntrials: %d\nsuccess: [0, 1]\n" % trials), (0, ""))
-
-    def test_an_experiment_that_did_not_finish_is_a_failure(self):
-        for text in ("finished: false\ntrials: 15\n", "trials: 15\n", "no map", ""):
-            code, output = self.checkSummary(text)
-            self.assertEqual(code, 1)
-            self.assertIn("summary.yaml", output)
-            self.assertIn("15 trials", output)
-
-    def test_an_experiment_without_summary_is_a_failure(self):
-        code, output = self.checkSummary(None)
-        self.assertEqual(code, 1)
-        self.assertIn("wrote no", output)
-
-    def test_the_summary_of_fewer_trials_is_no_success(self):
-        for text in ("finished: true\ntrials: 14\n", "finished: true\n"):
-            code, output = self.checkSummary(text)
-            self.assertEqual(code, 1)
-            self.assertIn("15 trials", output)

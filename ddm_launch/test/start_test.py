@@ -52,16 +52,6 @@ class StartTest(SharedScratchCase):
         start = read_yaml(self.out, "config.yaml")["start"]
         self.assertEqual((start["model"], start["bags"]), (self.model, self.bags))
 
-    def test_bags_alone_are_learned_from_before_trial_0(self):
-        self.assertRuns("--bags", *self.bags, trials=0)
-        self.assertEqual([row[2] for row in read_rows(self.out, "trials.csv")[1:]], [str(3 * STEPS)])
-        self.assertEqual(self.exploratory(0), {"0", "1"})
-
-    def test_a_model_alone_is_followed_by_models_of_the_own_trials(self):
-        self.assertRuns("--model", self.model, trials=0)
-        self.assertEqual([row[2] for row in read_rows(self.out, "trials.csv")[1:]], [str(STEPS)])
-        self.assertEqual(self.exploratory(0), {"0", "1"})
-
     def test_the_nodes_do_the_same(self):
         nodes = self.file("nodes")
         _, output = roslaunch(self.scratch, "experiment.launch", "preset:=debug", "seed:=2", "trials:=1",
@@ -92,12 +82,9 @@ class StartTest(SharedScratchCase):
         code, output = self.run_from("--model", model, trials=1)
         self.assertEqual(code, 1)
         self.assertIn("start/model_id", output)
-
-    def test_a_folder_that_began_with_a_start_is_not_resumed_without(self):
-        self.assertRuns("--model", self.model, trials=0)
         code, output = self.run_from(trials=1)
         self.assertEqual(code, 1, output)
-        self.assertIn("start/model: %s there, nothing here" % self.model, output)
+        self.assertIn("start/model: %s there, nothing here" % model, output)
 
     def test_bags_and_models_of_another_plant_are_refused(self):
         bag = self.bags[0]
@@ -128,12 +115,6 @@ class StartTest(SharedScratchCase):
         self.assertEqual(rows[0][:4], ["seed", "success", "success_strict", "final_error"])
         theirs = read_rows(self.before, "trials.csv")[2]
         self.assertEqual(rows[1][:4], [theirs[0]] + theirs[3:6])
-
-    def test_evaluate_writes_into_the_current_folder_unless_told_where(self):
-        code, output = call([find_program("evaluate"), "--preset", "debug", "--seeds", "1:2", "--model",
-                             self.model], folder=self.scratch)
-        self.assertEqual(code, 0, output)
-        self.assertEqual(len(read_rows(self.scratch, "evaluation.csv")), 2)
 
     def test_evaluate_gives_the_same_rows_however_many_run_at_a_time(self):
         self.assertEqual(self.evaluate("--seeds", "3:8", "--jobs", "1")[0], 0)

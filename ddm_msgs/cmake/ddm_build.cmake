@@ -69,20 +69,18 @@ endif()
 add_compile_options(${DDM_INSTRUMENTATION})
 link_libraries(${DDM_INSTRUMENTATION})
 
-# The fuzz target NAME: program fuzz_NAME from NAME.cpp, with the libraries that it needs. `make fuzz_targets` builds all.
-function(ddm_add_fuzzer name)
+# Program PACKAGE_fuzz from fuzz/fuzz.cpp: the fuzz targets of the package, with the libraries that they need. `make
+# fuzz_targets` builds those of all packages.
+function(ddm_add_fuzz_targets)
+  if(NOT DDM_FUZZ)
+    return()
+  endif()
   if(NOT TARGET fuzz_targets)
     add_custom_target(fuzz_targets)
   endif()
-  add_executable(fuzz_${name} ${name}.cpp)
-  add_dependencies(fuzz_targets fuzz_${name})
-  target_link_libraries(fuzz_${name} -fsanitize=fuzzer ${ARGN})
-endfunction()
-
-# Program PACKAGE_fuzz_seeds from seeds.cpp: writes those seeds of the package that are not text.
-function(ddm_add_fuzz_seeds)
-  add_executable(${PROJECT_NAME}_fuzz_seeds seeds.cpp)
-  target_link_libraries(${PROJECT_NAME}_fuzz_seeds ${ARGN})
+  add_executable(${PROJECT_NAME}_fuzz fuzz/fuzz.cpp)
+  add_dependencies(fuzz_targets ${PROJECT_NAME}_fuzz)
+  target_link_libraries(${PROJECT_NAME}_fuzz -fsanitize=fuzzer ${ARGN})
 endfunction()
 
 # Registers the blocks of this package, those of its manuals: all programs then know them, and leave them alone where they

@@ -4,12 +4,12 @@
 
 #include <ddm_msgs/Torque.h>
 #include <gtest/gtest.h>
+#include <ros/serialization.h>
 #include <sensor_msgs/Image.h>
 
 #include <cstring>
 
 #include "ddm_msgs/testing/expect_error.h"
-#include "ddm_msgs/testing/seed_files.h"
 
 namespace ddm {
 namespace {
@@ -24,6 +24,16 @@ ddm_msgs::Torque torque() {
   return message;
 }
 
+/// A message as it is on the wire.
+template <class Message>
+std::string bytesOf(const Message& message) {
+  std::string bytes(ros::serialization::serializationLength(message), '\0');
+  ros::serialization::OStream stream(reinterpret_cast<std::uint8_t*>(&bytes[0]),
+                                     static_cast<std::uint32_t>(bytes.size()));
+  ros::serialization::serialize(stream, message);
+  return bytes;
+}
+
 std::string messageOf(const std::string& bytes) {
   try {
     messageFromBytes<ddm_msgs::Torque>(bytes.data(), bytes.size());
@@ -34,18 +44,18 @@ std::string messageOf(const std::string& bytes) {
 }
 
 TEST(MessageBytes, AMessageComesBack) {
-  const std::string bytes = testing::bytesOf(torque());
+  const std::string bytes = bytesOf(torque());
   const auto back = messageFromBytes<ddm_msgs::Torque>(bytes.data(), bytes.size());
   EXPECT_EQ(back, torque());
   sensor_msgs::Image image;
   image.encoding = "mono8";
   image.data = {1, 2, 3};
-  const std::string image_bytes = testing::bytesOf(image);
+  const std::string image_bytes = bytesOf(image);
   EXPECT_EQ(messageFromBytes<sensor_msgs::Image>(image_bytes.data(), image_bytes.size()), image);
 }
 
 TEST(MessageBytes, AMessageCutShortAnywhereOrTooLongIsRefused) {
-  const std::string bytes = testing::bytesOf(torque());
+  const std::string bytes = bytesOf(torque());
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     EXPECT_NE(messageOf(bytes.substr(0, size)), "accepted") << size;
   }
@@ -54,7 +64,7 @@ TEST(MessageBytes, AMessageCutShortAnywhereOrTooLongIsRefused) {
 }
 
 TEST(MessageBytes, AnArrayThatIsAnnouncedButNotThereIsRefusedWithBothSizes) {
-  std::string bytes = testing::bytesOf(torque());
+  std::string bytes = bytesOf(torque());
   const std::size_t count_at = bytes.size() - 1 - 2 * sizeof(double) - 4;
   const std::uint32_t huge = 0xffffffffU;
   std::memcpy(&bytes[count_at], &huge, sizeof(huge));

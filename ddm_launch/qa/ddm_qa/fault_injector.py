@@ -22,7 +22,7 @@ from ddm_launch.command import find_program
 from ddm_qa.faults import intruder
 from ddm_qa.faults.injection import FRAME, Injection, configuration, lose
 from ddm_qa.faults.robot import ON_A_ROBOT, RobotInjection
-from ddm_qa.faults.watches import MotorWatch, OrderWatch
+from ddm_qa.faults.watches import MotorWatch
 from ddm_qa.processes import pid_of
 
 REAL_TIME = " in real time"  # end of a phase
@@ -75,9 +75,8 @@ class Injector(Injection):
         self.lock = threading.Lock()
         self.num_steps, self.stamp = 0, None
         self.last, self.muted = {}, None  # topic: the message before; topic that is no longer passed on
-        self.held = None                  # the first one of two messages that change places
         self.acted = []                   # (stamp of an image [ns], torque that acted before it)
-        self.motor = OrderWatch() if self.verb == "swap" else MotorWatch(stays_off=self.verb in ("alter", "publish"))
+        self.motor = MotorWatch(stays_off=self.verb in ("alter", "publish"))
         self.trained, self.pid, self.experiment_pid, self.killed = -1, None, None, False
         self.intruder = None
         if self.verb == "publish":
@@ -129,7 +128,7 @@ class Injector(Injection):
         with self.lock:
             self.frame, self.stamp = self.frame + 1, image.header.stamp
             due = self.is_due()
-        if due and self.phase != "recording" and self.verb not in MESSAGE_FAULTS and self.verb != "swap":
+        if due and self.phase != "recording" and self.verb not in MESSAGE_FAULTS:
             self.inject()
         self.relay("image", image, self.images, due)
 
@@ -149,9 +148,7 @@ class Injector(Injection):
         before, self.last[topic] = self.last.get(topic), message
         messages = [message]
         if self.what == topic and not self.done:
-            if self.verb == "swap" and (due or self.held):
-                messages = self.swapped(message)
-            elif due and self.verb in MESSAGE_FAULTS:
+            if due and self.verb in MESSAGE_FAULTS:
                 self.motor.fault_begins(time.time(), self.stamp.to_sec())
                 messages = MESSAGE_FAULTS[self.verb](message, before, self.how)
                 self.tell()
@@ -161,18 +158,6 @@ class Injector(Injection):
             if topic == "torque":
                 self.motor.torque_passes(time.time(), each.header.stamp.to_sec())
             self.publish(publisher, each)
-
-    def swapped(self, message):
-        """Holds a message; returns it behind the next one. Two equal torques would not show their order."""
-        if self.held is None:
-            self.held = message
-            return []
-        first, self.held = self.held, None
-        if self.what == "torque" and first.torque == message.torque:
-            return [first, message]
-        self.motor.swap(first.header.stamp.to_sec(), first.torque[0] if self.what == "torque" else None)
-        self.tell()
-        return [message, first]
 
     def on_training(self, goal):
         self.trained = goal.goal.trial

@@ -3,7 +3,6 @@
 import concurrent.futures
 import os
 import random
-import re
 import signal
 import socket
 import subprocess
@@ -15,7 +14,6 @@ from tqdm import tqdm
 
 from ddm_launch.command import Failure
 
-LIMIT_S = 900.0  # of what Programs calls
 PORTS = range(12000, 32768)  # Linux gives none of them to programs that take any port
 
 
@@ -60,18 +58,28 @@ def line_by_line():
     return dict(os.environ, PYTHONUNBUFFERED="1", ROSCONSOLE_STDOUT_LINE_BUFFERED="1")
 
 
-class Process:
-    """A program whose output, stdout and stderr together, is read while it runs."""
+def environment_of_programs(**variables):
+    """Of programs that only this machine can reach. variables: more of it, which win."""
+    return on_this_machine(dict(line_by_line(), **variables))
 
-    def __init__(self, command, environment=None, folder=None, output=subprocess.PIPE, terminal=subprocess.DEVNULL):
+
+class Process:
+    """A program whose output, stdout and stderr together, is read while it runs. As a context it ends the program."""
+
+    def __init__(self, command, environment=None, folder=None):
         self._changed = threading.Condition()
-        self._text, self._ended, self._reader = "", False, None
+        self._text, self._ended = "", False
         self._process = subprocess.Popen(
-            [str(word) for word in command], env=environment or line_by_line(), cwd=folder, stdin=terminal,
-            stdout=output, stderr=subprocess.STDOUT)
-        if output == subprocess.PIPE:
-            self._reader = threading.Thread(target=self._read, daemon=True)
-            self._reader.start()
+            [str(word) for word in command], env=environment or line_by_line(), cwd=folder, stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.stop()
 
     def _read(self):
         with self._process.stdout as stream:
@@ -106,8 +114,7 @@ class Process:
         except subprocess.TimeoutExpired:
             self.stop()
             raise TimeoutError("not at its end after %g s:\n%s" % (limit_s, self.output))
-        if self._reader:
-            self._reader.join(10.0)
+        self._reader.join(10.0)
         return code
 
     def isRunning(self):
@@ -137,41 +144,17 @@ def start_roslaunch(log_folder, *arguments, port=None, folder=None, options=(), 
                    on_this_machine(environment), folder)
 
 
-class Programs:
-    """What is timed: runs programs to their end, one at a time, on one core each and with masters of their own."""
-
-    def __init__(self, scratch):
-        """scratch: folder for the logs of nodes."""
-        self.scratch = scratch
-
-    @staticmethod
-    def _environment(**variables):
-        return on_this_machine({**line_by_line(), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", **variables})
-
-    def call(self, what, command, **variables):
-        """Returns what a program printed. variables: of its environment. Raises Failure with its last words."""
-        try:
-            done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                  universal_newlines=True, timeout=LIMIT_S, env=self._environment(**variables))
-        except subprocess.TimeoutExpired:
-            raise Failure("%s: '%s' has not ended within %g s" % (what, " ".join(command), LIMIT_S)) from None
-        if done.returncode != 0:
-            raise Failure("%s: '%s' failed with code %d:\n%s" % (
-                what, " ".join(command), done.returncode, (done.stderr or done.stdout)[-2000:].strip()))
-        return done.stdout
-
-    def roslaunch(self, what, *arguments):
-        """Returns what was printed. roslaunch returns 0 whatever happens: what its nodes leave behind is the verdict."""
-        port = free_port()
-        process = Process(["roslaunch", "-p", port, *arguments], self._environment(
-            ROS_HOME=os.path.join(self.scratch, "ros"), ROS_MASTER_URI="http://localhost:%d" % port))
-        try:
-            process.waitForEnd(LIMIT_S)
-        except TimeoutError as error:
-            raise Failure("%s: %s" % (what, error)) from None
-        finally:
-            process.stop()  # however this ends, its nodes must not live on
-        return process.output
+def call(what, command, limit_s, **variables):
+    """Returns what a program printed on stdout. variables: of its environment. Raises Failure with its last words."""
+    try:
+        done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              universal_newlines=True, timeout=limit_s, env=environment_of_programs(**variables))
+    except subprocess.TimeoutExpired:
+        raise Failure("%s: '%s' has not ended within %g s" % (what, " ".join(command), limit_s)) from None
+    if done.returncode != 0:
+        raise Failure("%s: '%s' failed with code %d:\n%s" % (
+            what, " ".join(command), done.returncode, (done.stderr or done.stdout)[-2000:].strip()))
+    return done.stdout
 
 
 def pid_of(master, node):
@@ -179,9 +162,3 @@ def pid_of(master, node):
     if node == "master":
         return master.getPid()
     return xmlrpc.client.ServerProxy(master.lookupNode("/" + node.lstrip("/"))).getPid(master.caller_id)[2]
-
-
-def memory_kb(pid, field):
-    """A field of /proc/PID/status, such as VmRSS, the resident memory, or VmHWM, its peak [kB]."""
-    with open("/proc/%d/status" % pid) as stream:
-        return int(re.search(field + r":\s+(\d+) kB", stream.read()).group(1))

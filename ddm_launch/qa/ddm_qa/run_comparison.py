@@ -1,9 +1,13 @@
-# What must be equal in two runs of one experiment.
+# What must be equal in two runs of one experiment, and what must not be lost of one.
 # SPDX-License-Identifier: BSD-3-Clause
+import collections
 import csv
+import hashlib
 import os
 
 import yaml
+
+from ddm_launch.run_folder import num_finished
 
 COLUMNS = ["seed", "trial", "frames", "success", "success_strict", "final_error", "v_r", "v_p", "train_s",
            "train_evaluations", "plan_ms_median", "plan_ms_p99", "version", "return"]
@@ -65,3 +69,35 @@ def comparable(folder, name):
 def differences(first, second, names):
     """Those of the files that are not equal in two runs."""
     return [name for name in names if comparable(first, name) != comparable(second, name)]
+
+
+def digest(content):
+    return hashlib.sha256(content).hexdigest()
+
+
+def digests(folder):
+    """{name: digest} of all files."""
+    return {name: digest(read_bytes(folder, name)) for name in files_in(folder)}
+
+
+def head_of_table(folder, num_rows):
+    """Digest of the header and the first rows of the table of trials; None if there is none."""
+    if not os.path.exists(os.path.join(folder, "trials.csv")):
+        return None
+    return digest(b"".join(read_bytes(folder, "trials.csv").splitlines(keepends=True)[:num_rows + 1]))
+
+
+class Finished(collections.namedtuple("Finished", "num_trials files")):
+    """All files of finished trials, and their rows in the table of trials."""
+
+    @classmethod
+    def of(cls, folder):
+        count = num_finished(folder)
+        folders = tuple("%s_%03d/" % (kind, k) for kind in ("trial", "evaluation") for k in range(count))
+        files = {name: value for name, value in digests(folder).items() if name.startswith(folders)}
+        return cls(count, dict(files, **{"trials.csv": head_of_table(folder, count)}) if count else {})
+
+    def lost(self, folder):
+        """Names of what is not there any more, or not as it was."""
+        now = dict(digests(folder), **{"trials.csv": head_of_table(folder, self.num_trials)})
+        return sorted(name for name, value in self.files.items() if now.get(name) != value)

@@ -1,24 +1,21 @@
-# soak: long experiments of the real nodes, what becomes of each process in them, and a figure of it.
+# soak: long experiments of the real nodes, and what becomes of each process and of each frame in them.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
 import os
+import re
 import shutil
 import socket
 import time
 
+import rosbag
 import rosgraph
 from tqdm import tqdm
 
 from ddm_launch.command import Failure, number, program_parser, run_program
-from ddm_launch.figure_style import (BLUE, GREEN, GREY, ORANGE, PAGE_WIDTH, PURPLE, VERMILLION, new_figure,
-                                     save)
-from ddm_launch.run_folder import is_finished, num_finished
+from ddm_launch.run_folder import Trajectory, is_finished, num_finished, read_setting
 from ddm_launch.tables import read_csv, write_csv
-from ddm_qa.processes import free_port, memory_kb, pid_of, start_roslaunch
-from ddm_qa.soak_targets import (FRAME_COLUMNS, GROWTH, Sample, Target, after, by_node, count_frames, judge,
-                              reference_trial)
+from ddm_qa.processes import free_port, pid_of, start_roslaunch
 
-RUNS = {"lockstep": "lock-step", "real_time": "real time"}  # name: title in the figure
 CALL_LIMIT_S = 30.0  # of a question to a master or node
 TRIAL_LIMIT_S = 300.0
 POLL_S = 0.02
@@ -33,12 +30,20 @@ trial: {num_steps: %d}
 """
 LOCKSTEP_SIZE, REAL_TIME_SIZE = 51, 5  # of an image [pixels]
 LONG_TRAINING = "training: {max_iterations: 1000, function_tolerance: 1.0e-12}\n"
-LINES = [(BLUE, "-"), (VERMILLION, "--"), (GREEN, "-."), (ORANGE, "-"), (PURPLE, "--")]
-NOT_DRAWN = ("master", "rosout")  # ROS's own, which targets.csv judges like all others
+GROWTH = 0.05  # of resident memory, since the first tenth of the trials: trial 30 of 300
+IMAGES = 2.0  # that model_node may keep of each frame of a trial: one, and what else it needs
 
 # last: the trial after which it is judged; one more follows, so that the nodes are still there. seconds: after which it is
-# ended, from its first trial on. One of both is None.
-Soak = collections.namedtuple("Soak", "name config arguments last seconds")
+# ended, from its first trial on. One of both is None. image_bytes: of an image, if those that model_node keeps may make it
+# grow.
+Soak = collections.namedtuple("Soak", "name config arguments last seconds image_bytes")
+# Of a node after a trial. time_s: since the first trial began.
+Sample = collections.namedtuple("Sample", "run node trial time_s rss_kb open_files")
+# Of a trial or of its evaluation. A frame is lost if the camera did not show it, if it did not arrive, or if no torque
+# answered it: all leave a gap between the times of those that were answered, which are dt apart.
+Frames = collections.namedtuple("Frames", "run trial part due answered lost")
+# One row of targets.csv; passed: 0 or 1.
+Target = collections.namedtuple("Target", "run target measured passed")
 
 ABOUT = """\
 Runs long experiments of the real nodes and looks at each process after each trial: lockstep, 300 trials in a few
@@ -46,11 +51,58 @@ minutes, and real_time, an hour at the paper's time step. Memory and open files 
 model_node keeps in lockstep, and no frame be lost."""
 
 EPILOG = """\
-DIR/soak.csv    run,node,trial,time_s,rss_kb,open_files: resident memory and open files of each node and of the master
-DIR/frames.csv  run,trial,part,due,published,recorded,answered,lost: a row a trial, and one for its evaluation
+DIR/soak.csv       run,node,trial,time_s,rss_kb,open_files: resident memory and open files of each node and of the master
+DIR/frames.csv     run,trial,part,due,answered,lost: a row a trial, and one for its evaluation
 DIR/targets.csv    run,target,measured,passed
-DIR/soak.png    memory and open files over the trials
 Results of a run that is not asked for stay. Exit code: 0 all passed, 1 not, 2 bad options."""
+
+
+def judge(run, last, samples, frames, image_bytes=None):
+    """All targets of a run. last: number of its last trial; samples, frames: of this run; image_bytes: as in Soak."""
+    targets, tenth, nodes = [], max(1, last // 10), {}
+    for sample in samples:
+        nodes.setdefault(sample.node, []).append(sample)
+    for node, of_node in sorted(nodes.items()):
+        first, end = next(sample for sample in of_node if sample.trial >= tenth), of_node[-1]
+        grown = end.rss_kb / first.rss_kb - 1.0
+        measured = "%.1f MB after trial %d, %.1f MB after trial %d: %+.1f %%" % (
+            first.rss_kb / 1024.0, first.trial, end.rss_kb / 1024.0, end.trial, 100.0 * grown)
+        passed = grown <= GROWTH
+        if image_bytes and node == "model_node":
+            num_kept = sum(row.answered for row in frames if row.part == "trial" and first.trial < row.trial <= end.trial)
+            images = 1024.0 * (end.rss_kb - first.rss_kb) / image_bytes / max(1, num_kept)
+            measured, passed = "%s, %.2f images a frame" % (measured, images), images <= IMAGES
+        targets.append(Target(run, "resident memory of %s" % node, measured, int(passed and end.trial == last)))
+        # The maximum depends on whether a bag happens to be open when a sample is taken. The minimum does not, and a leak
+        # raises it.
+        early = min(sample.open_files for sample in of_node if tenth <= sample.trial <= 2 * tenth)
+        late = min(sample.open_files for sample in of_node if sample.trial >= last - tenth)
+        targets.append(Target(run, "open files of %s" % node, "at least %d in trials %d to %d, %d in trials %d to %d" % (
+            early, tenth, 2 * tenth, late, last - tenth, last), int(late <= early)))
+    lost, due = sum(row.lost for row in frames), sum(row.due for row in frames)
+    return targets + [Target(run, "lost frames", "%d of %d" % (lost, due), int(bool(frames) and lost == 0))]
+
+
+def answered_times(bag_path):
+    """Times of the images in a bag that have a torque [s]."""
+    images, torques = set(), set()
+    with rosbag.Bag(bag_path) as bag:
+        for topic, message, _ in bag.read_messages(["camera/image_raw", "torque"]):
+            (torques if topic == "torque" else images).add(message.header.stamp.to_nsec())
+    return [1e-9 * stamp for stamp in sorted(images & torques)]
+
+
+def count_frames(run, folder, num_trials):
+    """Frames of the first trials of a run folder and of their evaluations, which are not recorded."""
+    dt = float(read_setting(folder, "plant", "dt", "time between two images"))
+    num_steps = int(read_setting(folder, "trial", "num_steps", "frames of a trial"))
+    rows = []
+    for trial in range(num_trials):
+        for part, times in (("trial", answered_times(os.path.join(folder, "trial_%03d" % trial, "trial.bag"))),
+                            ("evaluation", Trajectory(os.path.join(folder, "evaluation_%03d" % trial)).time_s)):
+            due = max(num_steps, int(round((times[-1] - times[0]) / dt)) + 1 if len(times) else 0)
+            rows.append(Frames(run, trial, part, due, len(times), due - len(times)))
+    return rows
 
 
 class SoakRun:
@@ -62,7 +114,7 @@ class SoakRun:
         self.samples, self.processes, self.begin = [], {}, None
 
     def make(self, on_progress):
-        """Returns (samples, rows of frames.csv). on_progress: called with how much is done, in trials or seconds.
+        """Returns (samples, frames). on_progress: called with how much is done, in trials or seconds.
         Raises Failure if the experiment ends too early or hangs."""
         shutil.rmtree(self.folder, ignore_errors=True)
         os.makedirs(self.folder)
@@ -115,73 +167,29 @@ class SoakRun:
             nodes = sorted({name for topics in master.getSystemState() for _, names in topics for name in names})
             self.processes = {name.lstrip("/"): pid_of(master, name) for name in nodes + ["master"]}
         for name, pid in self.processes.items():
-            self.samples.append(Sample(self.soak.name, name, trial, round(seconds, 2), memory_kb(pid, "VmRSS"),
+            with open("/proc/%d/status" % pid) as stream:
+                rss_kb = int(re.search(r"VmRSS:\s+(\d+) kB", stream.read()).group(1))
+            self.samples.append(Sample(self.soak.name, name, trial, round(seconds, 2), rss_kb,
                                        len(os.listdir("/proc/%d/fd" % pid))))
 
 
-def draw_run(samples, memory, files):
-    """Both panels of a run; samples: of this run."""
-    last = max(sample.trial for sample in samples)
-    reference = reference_trial(last)
-    drawn = sorted((node, of_node) for node, of_node in by_node(samples).items() if node not in NOT_DRAWN)
-    for (node, of_node), (color, dashes) in zip(drawn, LINES):
-        trials = [sample.trial for sample in of_node]
-        base = after(of_node, reference).rss_kb
-        memory.plot(trials, [100.0 * (sample.rss_kb / base - 1.0) for sample in of_node], dashes, color=color)
-        files.plot(trials, [sample.open_files for sample in of_node], dashes, color=color,
-                   label="%s, %.0f MB" % (node, base / 1024.0))
-    memory.axhline(100.0 * GROWTH, color=GREY, linewidth=0.8)
-    but_for = ", but for model_node" if samples[0].run == "lockstep" else ""
-    memory.text(0.01, 100.0 * GROWTH - 0.1, "at most after the last trial" + but_for, transform=memory.get_yaxis_transform(),
-                verticalalignment="top", color=GREY, fontsize=7)
-    memory.axvline(reference, color=GREY, linewidth=0.8, linestyle=":")
-    minutes = max(sample.time_s for sample in samples) / 60.0
-    memory.set_title("%s: %d trials in %.1f min" % (RUNS[samples[0].run], last, minutes))
-    memory.set_ylabel("resident memory,\nchange since trial %d [%%]" % reference)
-    files.set_ylabel("open files [-]")
-    files.set_ylim(0.0, None)
-    files.set_xlabel("trial [-]")
-    files.legend(loc="upper center", bbox_to_anchor=(0.5, -0.35), ncol=2, handlelength=2.4, frameon=False,
-                 title="node, memory after trial %d" % reference, title_fontsize=7)
-    for axes in (memory, files):
-        axes.grid(True)
-
-
-def draw(samples, out):
-    runs = sorted({sample.run for sample in samples})
-    with new_figure(PAGE_WIDTH, 4.4) as figure:
-        panels = figure.subplots(2, len(runs), sharex="col", squeeze=False,
-                                 gridspec_kw={"height_ratios": [2, 1]})
-        for run, memory, files in zip(runs, *panels):
-            draw_run([sample for sample in samples if sample.run == run], memory, files)
-        save(figure, out)
-
-
-def write_results(out, run, samples, frames, targets):
-    """Of a run; the rows of other runs stay."""
-    counts = [[row[column] for column in FRAME_COLUMNS] for row in frames]
-    for name, columns, rows in (("soak.csv", Sample._fields, samples), ("targets.csv", Target._fields, targets),
-                                ("frames.csv", FRAME_COLUMNS, counts)):
+def write_results(out, run, *tables):
+    """Of a run; the rows of other runs stay. tables: for each the kind of its rows and the rows."""
+    for name, kind, rows in zip(("soak.csv", "frames.csv", "targets.csv"), (Sample, Frames, Target), tables):
         path = os.path.join(out, name)
-        others = [[row[column] for column in columns] for row in read_csv(path, columns)
-                  if row["run"] != run] if os.path.exists(path) else []
-        write_csv(path, columns, sorted(others + [list(map(str, row)) for row in rows],
-                                        key=lambda row: list(RUNS).index(row[0])))
-    draw(read_samples(os.path.join(out, "soak.csv")), os.path.join(out, "soak.png"))
-
-
-def read_samples(path):
-    kinds = dict(zip(Sample._fields, (str, str, int, float, int, int)))
-    return [Sample(*(row[name] for name in Sample._fields)) for row in read_csv(path, kinds)]
+        others = read_csv(path, kind._fields) if os.path.exists(path) else []
+        write_csv(path, kind._fields, [[row[column] for column in kind._fields] for row in others if row["run"] != run]
+                  + [list(row) for row in rows])
 
 
 def make(soak, out):
-    """Runs one and writes what came of it. Returns its targets."""
-    with tqdm(total=soak.seconds or soak.last + 2, unit="s" if soak.seconds else "trial", desc=soak.name,
-              dynamic_ncols=True, disable=None, bar_format="{l_bar}{bar}| {n:.0f}/{total:.0f} {unit}") as progress:
-        samples, frames = SoakRun(soak, out).make(lambda done: progress.update(done - progress.n))
-    image_bytes = LOCKSTEP_SIZE ** 2 if soak.name == "lockstep" else None
-    targets = judge(soak.name, samples[-1].trial if soak.last is None else soak.last, samples, frames, image_bytes)
+    """Targets of a run, whose tables are written."""
+    total = soak.last + 2 if soak.seconds is None else round(soak.seconds)
+    with tqdm(total=total, desc=soak.name, unit="trial" if soak.seconds is None else "s", dynamic_ncols=True,
+              disable=None) as bar:
+        samples, frames = SoakRun(soak, out).make(lambda done: bar.update(min(total, int(done)) - bar.n))
+    last = soak.last if soak.seconds is None else samples[-1].trial
+    targets = judge(soak.name, last, samples, frames, soak.image_bytes)
     write_results(out, soak.name, samples, frames, targets)
     return targets
 
@@ -189,9 +197,10 @@ def make(soak, out):
 def run(options):
     out = os.path.abspath(options.out)
     os.makedirs(out, exist_ok=True)
-    soaks = {"lockstep": Soak("lockstep", CONFIG % (LOCKSTEP_SIZE, 20), ["trials:=%d" % (options.trials + 1)], options.trials, None),
+    soaks = {"lockstep": Soak("lockstep", CONFIG % (LOCKSTEP_SIZE, 20), ["trials:=%d" % (options.trials + 1)], options.trials,
+                              None, LOCKSTEP_SIZE ** 2),
              "real_time": Soak("real_time", CONFIG % (REAL_TIME_SIZE, options.steps) + LONG_TRAINING,
-                               ["trials:=999", "real_time:=true"], None, 60.0 * options.minutes)}
+                               ["trials:=999", "real_time:=true"], None, 60.0 * options.minutes, None)}
     targets = [target for name in options.runs for target in make(soaks[name], out)]
     for target in targets:
         print("%-6s  %s: %s: %s" % ("passed" if target.passed else "failed", target.run, target.target, target.measured))
@@ -203,8 +212,9 @@ def run(options):
 
 def main():
     parser = program_parser("soak", ABOUT, EPILOG)
-    parser.add_argument("--out", required=True, metavar="DIR", help="folder for tables, figure and the experiments")
-    parser.add_argument("--runs", nargs="+", choices=RUNS, default=list(RUNS), help="which (default: both, one by one)")
+    parser.add_argument("--out", required=True, metavar="DIR", help="folder for tables and the experiments")
+    parser.add_argument("--runs", nargs="+", choices=["lockstep", "real_time"], default=["lockstep", "real_time"],
+                        help="which (default: both, one by one)")
     parser.add_argument("--trials", type=number(int, 1, 998), default=300, metavar="N",
                         help="of lockstep (default: %(default)s)")
     parser.add_argument("--minutes", type=number(float, 0.01), default=60.0, metavar="M",

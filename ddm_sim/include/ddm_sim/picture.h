@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace ddm {
@@ -28,7 +29,7 @@ struct Picture {
 /// A square grey picture that is bright where the plant is and black elsewhere, so that it covers
 /// as much of a pixel as the pixel is bright.
 inline Picture brightOnBlack(int size, std::vector<std::uint8_t> bytes) {
-  return {size, size, 1, bytes, bytes};
+  return {size, size, 1, bytes, std::move(bytes)};
 }
 
 }  // namespace ddm

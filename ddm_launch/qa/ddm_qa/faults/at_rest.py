@@ -2,23 +2,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import shutil
+import struct
 import subprocess
-import sys
-import time
 
-from ddm_qa.faults.damage import damage
-from ddm_qa.faults.finished import Finished, digest, digests
-from ddm_qa.run_comparison import files_in, read_bytes
+from ddm_qa.run_comparison import Finished, digest, digests, read_bytes
 
 BAG, ACTIVE = "new.bag", "new.bag.active"
-WRITTEN_BYTES = 1 << 20
-WRITE_AGAIN_AND_AGAIN = """
-import sys
-from ddm_model.plain_file import write_file
-path, letter, size = sys.argv[1:]
-for _ in range(200):
-    write_file(path, letter * int(size))
-"""
+# Kinds of records in a bag, by the field `op` of their headers.
+RECORDS = {"header": 3, "index": 4, "chunk": 5, "chunk_info": 6, "connection": 7}
+VERSION_LINE = b"#ROSBAG V2.0\n"
 
 
 def facts(bench, case, folder, log):
@@ -26,8 +18,7 @@ def facts(bench, case, folder, log):
     shutil.copytree(bench.begun, folder, dirs_exist_ok=True)
     if case.fault.endswith("model.ddm"):
         return record(bench, case, folder, log)
-    return {"two writers": write_at_once, "unfinished bag": record, "unfinished trial": run_over}.get(
-        case.fault, run_experiment)(bench, case, folder, log)
+    return {"unfinished bag": record, "unfinished trial": run_over}.get(case.fault, run_experiment)(bench, case, folder, log)
 
 
 def run_experiment(bench, case, folder, log):
@@ -109,21 +100,39 @@ def run_over(bench, case, folder, log):
     return [bench.verdict(folder), "kept" if kept else "not kept", bench.compared(folder)]
 
 
-def write_at_once(_, __, folder, log):
-    """Two programs write one file again and again: at any time it must be that of the one or of the other."""
-    path = os.path.join(folder, "shared.txt")
-    wholes = [letter.encode() * WRITTEN_BYTES for letter in "ab"]
-    there = files_in(folder)
-    running = [subprocess.Popen([sys.executable, "-c", WRITE_AGAIN_AND_AGAIN, path, letter, str(WRITTEN_BYTES)],
-                                stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT) for letter in "ab"]
-    mixed = 0
-    while any(process.poll() is None for process in running):
-        if os.path.exists(path):
-            mixed += read_bytes(path) not in wholes
-        time.sleep(0.001)
-    left = sorted(set(files_in(folder)) - set(there) - {"shared.txt"})
-    if left:
-        return ["left: " + " ".join(left)]
-    if any(process.returncode != 0 for process in running):
-        return ["failed"]
-    return ["mixed" if mixed or read_bytes(path) not in wholes else "one is whole"]
+def find_record(data, name):
+    """(begin, end) of the first record of a kind in a bag."""
+    if name == "version":
+        return 0, len(VERSION_LINE)
+    begin = len(VERSION_LINE)
+    while begin < len(data):
+        header_size, = struct.unpack_from("<I", data, begin)
+        header = data[begin + 4:begin + 4 + header_size]
+        data_size, = struct.unpack_from("<I", data, begin + 4 + header_size)
+        end = begin + 8 + header_size + data_size
+        if b"op=" + bytes([RECORDS[name]]) in header:
+            return begin, end
+        begin = end
+    raise ValueError("the bag has no record " + name)
+
+
+def damage(fault, folder):
+    """Does what the fault says, `cut|flip|remove [PLACE of] FILE`. Returns the path of the file and what it held."""
+    verb, *place, name = fault.split()
+    path = os.path.join(folder, name if name in os.listdir(folder) else os.path.join("trial_000", name))
+    with open(path, "rb") as stream:
+        data = stream.read()
+    begin, end = 0, len(data)
+    if place:
+        digit = data.rfind(b",") - 1  # the last one of a table: its last column is text
+        places = {"head": (0, 8), "end": (end - 16, end), "digit": (digit, digit + 1)}
+        begin, end = places.get(place[0]) or find_record(data, place[0])
+    middle = (begin + end) // 2
+    if verb == "remove":
+        os.remove(path)
+        return path, data
+    bit = 0x01 if place == ["digit", "of"] else 0x80  # which makes another digit of one
+    after = data[:middle] if verb == "cut" else data[:middle] + bytes([data[middle] ^ bit]) + data[middle + 1:]
+    with open(path, "wb") as stream:
+        stream.write(after)
+    return path, data

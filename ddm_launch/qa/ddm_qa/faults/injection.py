@@ -10,7 +10,7 @@ import rospy
 import yaml
 
 from ddm_model.plain_file import write_file
-from ddm_qa.faults.finished import Finished
+from ddm_qa.run_comparison import Finished
 
 # (trial, whether it is the evaluation after it). `recording` is when the last torque has been sent: the bag is closed.
 RUN_OF_PHASE = {"random trial": (0, False), "exploring trial": (1, False), "recording": (1, False),

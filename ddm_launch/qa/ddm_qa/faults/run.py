@@ -13,14 +13,15 @@ import rosbag
 from ddm_launch.command import Failure
 from ddm_launch.run_folder import is_finished
 from ddm_model.plain_file import write_file
-from ddm_qa.faults import at_rest, pairs
+from ddm_qa.faults import at_rest
 from ddm_qa.faults.cases import AT_REST, ON_A_ROBOT, REAL_TIME
-from ddm_qa.faults.finished import Finished
+from ddm_qa.faults.watches import learned
 from ddm_qa.processes import start_roslaunch
-from ddm_qa.run_comparison import differences, expected_files, read_bytes, read_rows
+from ddm_qa.run_comparison import Finished, differences, expected_files, read_bytes, read_rows
 
 SEED, TRIALS = 1, 1
 NO_FAULT = "none"
+FAULT_LAUNCH = "fault.launch"
 LIMIT_S = 120.0  # of a launch
 # Long trainings, so that there is time for a fault; short limits, so that a silent node is named soon.
 # Trainings last half a second, so that faults reach them even on fast processors. The controller waits longer than the simulator,
@@ -37,7 +38,6 @@ REAL_TIME_CONFIG = "plant: {dt: %g}\n" % REAL_TIME_DT_S
 ROBOT_CONFIG = "robot: {position_limits: [[-1000.0, 1000.0]], speed_limit: [1000.0]}\n"
 LONG_PLANS = "mpc: {horizon: 200, num_starts: 1000, max_iterations: 1000000, function_tolerance: 0.0, time_budget: %g}\n"
 CONFIGS = {"long plans": LONG_PLANS % 0.0, "long plans with a budget": LONG_PLANS % 0.02}  # by fault
-SLACK_S = 0.05  # that a torque may take, apart from two dt, to its end
 NODE_S, CONTROLLER_S, EXPERIMENT_S = 5.0, 8.0, 11.0  # without a sign of life
 CRASH = re.compile(r"exit code -(?!2\b|9\b|15\b)\d+|Traceback|terminate called|Segmentation fault")
 DISK_BYTES = 2 * 1024 * 1024
@@ -102,13 +102,13 @@ class FaultBench:
         """Runs the experiment of a case, with a fault if there is one."""
         injection = {"phase": case.phase, "fault": fault, "report": self.report(folder)}
         if case.phase.endswith(ON_A_ROBOT):
-            return self.launch_experiment(folder, folder, launch_file="fault_robot.launch", config=ROBOT_CONFIG,
-                                          slack=SLACK_S, **injection)
+            return self.launch_experiment(folder, folder, launch_file=FAULT_LAUNCH, config=ROBOT_CONFIG, robot="true",
+                                          **injection)
         real_time = case.phase.endswith(REAL_TIME)
         config, mode = REAL_TIME_CONFIG if real_time else "", {"real_time": "true" if real_time else "false"}
         if fault in CONFIGS or fault == NO_FAULT:
             return self.launch_experiment(folder, folder, config=config + CONFIGS.get(fault, ""), **mode)
-        return self.launch_experiment(folder, folder, launch_file="fault.launch", config=config, **mode, **injection)
+        return self.launch_experiment(folder, folder, launch_file=FAULT_LAUNCH, config=config, **mode, **injection)
 
     @staticmethod
     def report(folder):
@@ -187,7 +187,7 @@ class FaultBench:
             facts.append(report.get("motor", "the motor was not watched"))
         if "learned" in case.expected:
             bag = os.path.join(folder, "trial_001", "trial.bag")
-            facts.append(pairs.verdict(bag, report["acted"]) if os.path.exists(bag) else "no bag")
+            facts.append(learned(bag, report["acted"]) if os.path.exists(bag) else "no bag")
         if "resumes" in case.expected:
             filler = os.path.join(folder, "filler")
             if os.path.exists(filler):

@@ -1,10 +1,13 @@
-# What motors do after a fault, judged by the torques that they were sent and those that acted. Times in seconds.
+# What motors do after a fault, and what is learned of it, judged by the torques that were sent and those that acted.
 # SPDX-License-Identifier: BSD-3-Clause
+import bisect
 import time
 
+import rosbag
+
 PERIODS_HELD = 2      # for which a plant holds a torque
-PERIODS_SWAPPED = 4   # after a swap, in which the older torque would act
 FEWEST_FRAMES = 3     # that tell anything
+FEWEST_PAIRS = 5      # of image and torque in a bag
 FEWEST_EFFORTS = 20   # of a robot, at 100 Hz
 
 
@@ -47,36 +50,6 @@ class MotorWatch:
         return since, min(later) if later and not self._stays_off else float("inf")
 
 
-class OrderWatch:
-    """Of two messages that arrive in the wrong order the older one must come to nothing."""
-
-    def __init__(self):
-        self._swapped, self._answers, self._acted = None, [], []
-
-    def swap(self, stamp, torque):
-        """stamp, torque: of the older message, whose torque is None if it is an image."""
-        self._swapped = stamp, torque
-
-    def torque_has_acted(self, _, torque):
-        if self._swapped:
-            self._acted.append(torque)
-
-    def torque_passes(self, _, stamp):
-        if self._swapped:
-            self._answers.append(stamp)
-
-    def verdict(self):
-        """`in order`, or what was seen instead."""
-        if self._swapped is None:
-            return "no fault"
-        _, torque = self._swapped
-        if len(self._acted) < FEWEST_FRAMES:
-            return "only %d frames seen" % len(self._acted)
-        if torque is None:  # the newer image may be lost: only the newest one in the queue is answered
-            return "in order" if self._answers == sorted(self._answers) else "the older image was answered late"
-        return "the older torque acted" if torque in self._acted[:PERIODS_SWAPPED] else "in order"
-
-
 class Effort:
     """What a robot's motor gets, and when."""
 
@@ -99,3 +72,27 @@ class Effort:
         if any(after):
             return "driven: " + " ".join("%g" % effort for effort in after if effort)[:60]
         return "zero" if len(after) >= FEWEST_EFFORTS else "only %d torques seen" % len(after)
+
+
+def learned(bag_path, acted):
+    """`learned what acted`, or what was seen instead. acted: (stamp of an image [ns], torque that acted before it) of all
+    frames, in order."""
+    stamps = [stamp for stamp, _ in acted]
+    images, torques = set(), {}
+    with rosbag.Bag(bag_path) as bag:
+        for topic, message, _ in bag.read_messages(["camera/image_raw", "torque"]):
+            if topic == "torque":
+                torques[message.header.stamp.to_nsec()] = message.torque[0]
+            else:
+                images.add(message.header.stamp.to_nsec())
+    pairs = images & set(torques)
+    wrong = []
+    for stamp in sorted(pairs):
+        after = bisect.bisect_right(stamps, stamp)
+        if after == len(stamps) or acted[after][1] != torques[stamp]:
+            wrong.append(stamp)
+    if wrong:
+        return "%d of %d pairs have a torque that did not act" % (len(wrong), len(pairs))
+    if len(pairs) < FEWEST_PAIRS:
+        return "only %d pairs" % len(pairs)
+    return "learned what acted" if pairs != images else "no image is without a torque"

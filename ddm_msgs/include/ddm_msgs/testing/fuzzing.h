@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <string>
 
 namespace ddm {
@@ -32,6 +33,20 @@ bool accepts(const Read& read) {
     require(e.what()[0] != '\0', "a refusal says why");
     return false;
   }
+}
+
+/// What reads one input. Targets have names, which are those of their folders of seeds in corpus/.
+using FuzzTarget = void (*)(const std::uint8_t* data, std::size_t size);
+
+/// The target that the environment variable FUZZ_TARGET names.
+inline FuzzTarget chosenTarget(const std::map<std::string, FuzzTarget>& targets) {
+  const char* name = std::getenv("FUZZ_TARGET");
+  const auto found = targets.find(name != nullptr ? name : "");
+  if (found != targets.end()) return found->second;
+  std::fprintf(stderr, "FUZZ_TARGET must be one of:");
+  for (const auto& target : targets) std::fprintf(stderr, " %s", target.first.c_str());
+  std::fprintf(stderr, "\n");
+  std::exit(2);
 }
 
 /// A file in memory, for what takes a path.

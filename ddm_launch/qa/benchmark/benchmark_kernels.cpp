@@ -1,4 +1,4 @@
-// speed_kernels: computing times, by Google Benchmark, on a finished experiment.
+// benchmark_kernels: computing times, by Google Benchmark, on a finished experiment, and round trips between nodes.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <benchmark/benchmark.h>
 #include <ddm_bag_io/bag_cache.h>
@@ -13,20 +13,24 @@
 #include <ddm_mpc/ddm_plan_cost.h>
 #include <ddm_mpc/mpc_policy.h>
 #include <ddm_params/tool.h>
+#include <ddm_plant_plugin/plant_config.h>
 #include <ddm_sim/plant_factory.h>
 #include <ros/time.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <functional>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "configuration.h"
 #include "evaluation.h"
+#include "round_trips.h"
 #include "run_folder.h"
 
 namespace ddm {
@@ -38,9 +42,11 @@ constexpr int kTrialSteps = 100;
 
 constexpr char kAbout[] =
     "Times objective, training, plans, renderer and bag reading on the bags and the last model of "
-    "a finished experiment.\n\n"
-    "usage: rosrun ddm_launch speed_kernels RUN_FOLDER [options of Google Benchmark]\n\n"
-    "`rosrun ddm_launch benchmark` runs it, with more beside it.";
+    "a finished experiment, and the images of further plants; or round trips of messages.\n\n"
+    "usage: rosrun ddm_launch benchmark_kernels RUN_FOLDER [PLANT...] [options of Google "
+    "Benchmark]\n"
+    "       rosrun ddm_launch benchmark_kernels lockstep|bare_camera|bare_controller NUM_FRAMES\n\n"
+    "`rosrun ddm_launch qa benchmark` runs both.";
 
 /// What a finished experiment has left behind.
 struct Experience {
@@ -173,9 +179,8 @@ void measureTraining(const Experience& experience) {
 /// Greedy trials on the true plant, one plan after the other.
 class PlanSequence {
  public:
-  explicit PlanSequence(const Experience& experience)
-      : plant_(makePlant(*experience.configuration.plant)),
-        policy_(experience.model, experience.configuration.mpc) {}
+  PlanSequence(const Experience& experience, const MpcOptions& mpc)
+      : plant_(makePlant(*experience.configuration.plant)), policy_(experience.model, mpc) {}
 
   Plan next() {
     if (step_++ % kTrialSteps == 0) {
@@ -200,25 +205,49 @@ class PlanSequence {
   int step_ = 0;
 };
 
-void measurePlans(const Experience& experience) {
-  const auto sequence = std::make_shared<PlanSequence>(experience);
-  benchmark::RegisterBenchmark("plan",
-                               [sequence](benchmark::State& state) {
-                                 for (auto _ : state) {
-                                   const Plan plan = sequence->next();
-                                   state.SetIterationTime(plan.solve_time);
-                                   state.counters["plan_iterations"] = plan.iterations;
-                                 }
-                               })
+/// Decisions along greedy trials, one after the other; with a period, about images that come at this
+/// rate, where no search for a plan may end before its budget.
+void measurePlans(const std::string& name, const Experience& experience, const MpcOptions& mpc,
+                  int num_plans, std::chrono::steady_clock::duration period) {
+  using Clock = std::chrono::steady_clock;
+  const auto sequence = std::make_shared<PlanSequence>(experience, mpc);
+  const auto due = std::make_shared<Clock::time_point>(Clock::now());
+  benchmark::RegisterBenchmark(
+      name.c_str(),
+      [sequence, due, period](benchmark::State& state) {
+        for (auto _ : state) {
+          *due = std::max(*due + period, Clock::now());
+          std::this_thread::sleep_until(*due);
+          const Plan plan = sequence->next();
+          const std::chrono::duration<double> time = Clock::now() - *due;
+          const bool has_budget = period.count() > 0;
+          state.SetIterationTime(has_budget ? time.count() : plan.solve_time);
+          state.counters["plan_iterations"] = plan.iterations;
+          if (has_budget && plan.status != PlanStatus::kTimeLimit) {
+            state.SkipWithError("a plan has ended before mpc/time_budget");
+          }
+        }
+      })
       ->Iterations(1)
-      ->Repetitions(2000)
+      ->Repetitions(num_plans)
       ->UseManualTime()
       ->ReportAggregatesOnly(true)
       ->ComputeStatistics("p99", percentile99)
       ->Unit(benchmark::kMicrosecond);
+}
 
+void measurePlanning(const Experience& experience) {
   const Ddm& model = *experience.model;
   const MpcOptions& mpc = experience.configuration.mpc;
+  measurePlans("plan", experience, mpc, 2000, std::chrono::seconds(0));
+
+  MpcOptions endless = mpc;  // as many starts as are allowed, and none of them converges
+  endless.num_starts = 1000;
+  endless.max_iterations = 1000000;
+  endless.function_tolerance = 0.0;
+  endless.time_budget = 0.005;
+  measurePlans("plan_5_ms", experience, endless, 500, std::chrono::milliseconds(10));
+
   const auto cost = std::make_shared<DdmPlanCost>(model, mpc.horizon, mpc.control_weight);
   History x(model.options().memory(), model.featureDim(), model.torqueDim());
   x.observe(model.encode(experience.data.image(0)));
@@ -229,7 +258,7 @@ void measurePlans(const Experience& experience) {
           [cost, U, d_U]() { benchmark::DoNotOptimize(cost->evaluate(U, d_U.get())); });
 }
 
-void measureImages(const Experience& experience) {
+void measureImages(const Experience& experience, const std::vector<std::string>& plants) {
   const Configuration& all = experience.configuration;
   measure("encode", 1000, [&experience]() {
     benchmark::DoNotOptimize(experience.model->encode(experience.data.image(0)));
@@ -241,6 +270,18 @@ void measureImages(const Experience& experience) {
         readBag(experience.bags.front(), all.model.image.size, all.model.data_set)
             .data.numFrames());
   });
+  for (const std::string& name : plants) {
+    ParamReader reader = ParamReader::fromFiles({plantFile(name)});
+    const auto maker = readPlant(&reader);
+    reader.requireValid();
+    const std::shared_ptr<Plant> other = makePlant(*maker);
+    const auto rng = std::make_shared<std::mt19937_64>(0);
+    measure("render/" + name, 200,
+            [other, rng]() { benchmark::DoNotOptimize(other->render(other->drawStart(*rng))); });
+    if (!other->viewModel()) continue;
+    measure("view/" + name, 200,
+            [other, rng]() { benchmark::DoNotOptimize(other->view(other->drawStart(*rng))); });
+  }
 }
 
 }  // namespace
@@ -254,18 +295,22 @@ int main(int argc, char** argv) {
     return argc < 2 ? ddm::kUsageError : EXIT_SUCCESS;
   }
   try {
+    if (ddm::timesRoundTrips(argc, argv)) return EXIT_SUCCESS;
     const ddm::Experience experience = ddm::readExperience(argv[1]);
+    int num_words = 2;
+    while (num_words < argc && argv[num_words][0] != '-') ++num_words;
     ddm::measureObjective(experience);
     ddm::measureTraining(experience);
-    ddm::measurePlans(experience);
-    ddm::measureImages(experience);
-    argv[1] = argv[0];
-    int num_options = argc - 1;
-    benchmark::Initialize(&num_options, argv + 1);
-    if (benchmark::ReportUnrecognizedArguments(num_options, argv + 1)) return ddm::kUsageError;
+    ddm::measurePlanning(experience);
+    ddm::measureImages(experience, {argv + 2, argv + num_words});
+    char** options = argv + num_words - 1;
+    options[0] = argv[0];
+    int num_options = argc - num_words + 1;
+    benchmark::Initialize(&num_options, options);
+    if (benchmark::ReportUnrecognizedArguments(num_options, options)) return ddm::kUsageError;
     benchmark::RunSpecifiedBenchmarks();
   } catch (const std::exception& error) {
-    std::cerr << "speed_kernels: " << error.what() << "\n";
+    std::cerr << "benchmark_kernels: " << error.what() << "\n";
     return EXIT_FAILURE;
   }
   return EXIT_SUCCESS;

@@ -1,5 +1,7 @@
-// Fuzz target: a configuration file, read into a block with each type of value.
+// Fuzz targets of ddm_msgs: configuration files and image messages.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_images/image_codec.h>
+#include <ddm_msgs/message_bytes.h>
 #include <ddm_msgs/testing/fuzzing.h>
 #include <ddm_params/param_reader.h>
 
@@ -11,6 +13,7 @@ using ddm::testing::require;
 
 namespace {
 
+/// A block with each type of value.
 struct Options {
   int steps = 15;
   double weight = 0.01;
@@ -42,9 +45,8 @@ struct Options {
   }
 };
 
-}  // namespace
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+/// A configuration file.
+void configFile(const std::uint8_t* data, std::size_t size) {
   static const ddm::testing::MemoryFile file;
   file.write(data, size);
   Options options;
@@ -58,7 +60,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     reader.requireValid();
   };
-  if (!accepts<std::invalid_argument>(read)) return 0;
+  if (!accepts<std::invalid_argument>(read)) return;
 
   YAML::Node root(YAML::NodeType::Map);
   root["sim"] = ddm::toYaml(options);
@@ -67,5 +69,41 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   ddm::ParamReader saved = ddm::ParamReader::fromFiles({file.path()});
   require(saved.read<Options>("sim") == options, "a saved configuration comes back");
   saved.requireValid();
+}
+
+/// Bytes to an image message, to grey values. Input: size (1 byte), then 1 and a crop (4 bytes) or 0
+/// for none, then the message.
+void imageMessage(const std::uint8_t* data, std::size_t size) {
+  ddm::testing::FuzzBytes bytes(data, size);
+  const int side = bytes.number<std::uint8_t>() % 64;  // 0 is refused
+  ddm::ImageCrop crop;
+  if (bytes.number<std::uint8_t>() % 2 != 0) {
+    crop.x = bytes.number<std::int8_t>();
+    crop.y = bytes.number<std::int8_t>();
+    crop.width = bytes.number<std::int8_t>();
+    crop.height = bytes.number<std::int8_t>();
+  }
+  const std::string wire = bytes.rest();
+  sensor_msgs::Image image;
+  const auto parse = [&] {
+    image = ddm::messageFromBytes<sensor_msgs::Image>(wire.data(), wire.size());
+  };
+  if (!accepts<std::runtime_error>(parse)) return;
+
+  std::vector<std::uint8_t> grey;
+  const auto decode = [&] { grey = ddm::decodeImage(image, side, crop); };
+  if (!accepts<std::invalid_argument>(decode)) return;
+  require(grey.size() == static_cast<std::size_t>(side) * side, "an image has size x size pixels");
+  require(grey == ddm::decodeImage(image, side, crop), "equal images give equal pixels");
+  const sensor_msgs::Image again = ddm::encodeImage(grey, side, image.header.stamp, "camera");
+  require(ddm::decodeImage(again, side) == grey, "a mono8 image of this size comes back");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const ddm::testing::FuzzTarget target =
+      ddm::testing::chosenTarget({{"config_file", configFile}, {"image_message", imageMessage}});
+  target(data, size);
   return 0;
 }

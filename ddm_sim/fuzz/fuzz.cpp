@@ -1,8 +1,5 @@
-// Fuzz target: what reaches robot_node, in any order and at any time: frames, torques, orders.
+// Fuzz targets of ddm_sim: what reaches robot_node, and the standard input of simulate.
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// Input: for each event its kind (1 byte), the time since the last one (4 bytes), the stamp of an
-// image (8 bytes), what the kind needs, then what the clock of this machine says (8 bytes).
 #include <ddm_msgs/testing/fuzzing.h>
 #include <ddm_robot/frame_picker.h>
 #include <ddm_robot/stamp_check.h>
@@ -10,6 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
+
+#include "../tools/number_csv.h"
 
 using ddm::TorqueGate;
 using ddm::testing::FuzzBytes;
@@ -73,9 +73,10 @@ void act(std::uint8_t kind, ddm::SteadyTime time, ddm::Stamp stamp, FuzzBytes* b
   }
 }
 
-}  // namespace
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+/// What reaches robot_node, in any order and at any time: frames, torques, orders. Input: for each
+/// event its kind (1 byte), the time since the last one (4 bytes), the stamp of an image (8 bytes),
+/// what the kind needs, then what the clock of this machine says (8 bytes).
+void robotInput(const std::uint8_t* data, std::size_t size) {
   FuzzBytes bytes(data, size);
   ddm::RobotOptions options;
   options.slew_rate = {static_cast<double>(bytes.number<std::uint8_t>())};
@@ -105,5 +106,24 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(std::isfinite(picker.step()) && picker.step() >= 0.0, "a step is a time");
   }
   require(!gate.describe().empty(), "a state has words");
+}
+
+/// Numbers on the standard input of simulate.
+void simulateTorques(const std::uint8_t* data, std::size_t size) {
+  std::istringstream text(std::string(reinterpret_cast<const char*>(data), size));
+  std::vector<Eigen::VectorXd> torques;
+  const auto read = [&] { torques = ddm::readNumbers(text, {"dx_px", "dy_px"}, "a torque"); };
+  if (!ddm::testing::accepts<std::runtime_error>(read)) return;
+  for (const Eigen::VectorXd& torque : torques) {
+    ddm::testing::require(torque.size() == 2 && torque.allFinite(), "torques are finite");
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const ddm::testing::FuzzTarget target = ddm::testing::chosenTarget(
+      {{"robot_input", robotInput}, {"simulate_torques", simulateTorques}});
+  target(data, size);
   return 0;
 }
