@@ -50,13 +50,11 @@ std::string chooseFile(const std::string& folder, const std::string& name,
 }
 
 std::vector<std::string> manuals() {
-  const std::string launch = packageFolder("ddm_launch") + "/config";
   return {packageFolder("ddm_sim") + "/config/sim.yaml",
           packageFolder("ddm_model") + "/config/model.yaml",
           packageFolder("ddm_mpc") + "/config/mpc.yaml",
           packageFolder("ddm_mpc") + "/config/pilco.yaml",
-          launch + "/experiment.yaml",
-          launch + "/pilco.yaml"};
+          packageFolder("ddm_launch") + "/config/experiment.yaml"};
 }
 
 /// BLOCK/KEY, if it is there and has this type.

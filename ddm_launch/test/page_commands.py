@@ -8,7 +8,7 @@ import pages
 # Programs and launch files that page_commands_test runs as the page says, but for CHEAPER.
 RUN_HERE = {"run_experiment", "sweep", "feature_space", "study_figure pendulum_feature_space", "figure film",
             "figure film_strip", "figure learning_curve", "figure success_rate", "evaluate", "train_from_bags", "inspect",
-            "export", "new_plant", "simulate", "sim_node", "mpc_node", "dynparam", "experiment.launch", "record.launch",
+            "export", "new_plant", "simulate", "sim_node", "mpc_node", "experiment.launch", "record.launch",
             "control.launch", "replay.launch", "demo.sh"}
 
 # Those that another test runs, with all that takes long or needs more than one machine: the test must name it.
@@ -19,7 +19,7 @@ ELSEWHERE = {"reproduce_paper": "reproduce_paper_test.py", "reproduce_efficient"
              "compare_results": "compare_results_test.py",
              "robot.launch": "robot_loop_test.py", "robot_check.launch": "robot_loop_test.py",
              "part.launch": "several_machines_test.py", "test.sh": "scripts_test.py",
-             "read_bags": "reading_test.py", "pilco_check": "../../ddm_mpc/pilco/test/pilco_check_test.cpp"}
+             "read_bags": "reading_test.py"}
 
 # Whole commands that another test runs: its words for them.
 COMMANDS_ELSEWHERE = [
