@@ -64,13 +64,11 @@ Layer layerOf(const std::string& config) {
 
 /// Where each option has its default and its explanation.
 std::vector<std::string> parameterReferences() {
-  const std::string launch = packageFolder("ddm_launch") + "/config";
   return {packageFolder("ddm_sim") + "/config/sim.yaml",
           packageFolder("ddm_model") + "/config/model.yaml",
           packageFolder("ddm_mpc") + "/config/mpc.yaml",
           packageFolder("ddm_mpc") + "/config/pilco.yaml",
-          launch + "/experiment.yaml",
-          launch + "/pilco.yaml"};
+          packageFolder("ddm_launch") + "/config/experiment.yaml"};
 }
 
 /// BLOCK/KEY, if it is there and has this type.

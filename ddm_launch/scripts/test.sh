@@ -28,7 +28,7 @@ reports anything.
   ROS_PARALLEL_JOBS   compiler jobs, for example -j1; default one per core, two gigabytes for each
   DDM_AVX2            OFF: slower programs that need no AVX2; default ON
   CI                  if set, warnings are errors in the Release build too
-  DDM_PILCO_VECTORS   file of reference values for PILCO, which pilco_check then must accept; if not set, that case
+  DDM_PILCO_VECTORS   file of reference values for PILCO, with which ddm_pilco_vectors_test must agree; if not set, that test
                       is skipped
 TEXT
 }

@@ -105,14 +105,6 @@ TEST_F(PilcoMethodTest, EveryBaselineRunsAndLeavesItsFiles) {
   }
 }
 
-TEST_F(PilcoMethodTest, TheTrainingBeforeIsFoundWhereTrialsHaveSeveralEpisodes) {
-  Configuration all = smallConfiguration("pilco_state", folder("episodes"));
-  all.trial.episodes = 2;
-  runSmall(all);
-  const YAML::Node report = YAML::LoadFile(folder("episodes") + "/trial_002/pilco.yaml");
-  EXPECT_EQ(report["points"].as<int>(), 6 * (testing::kToySteps - 1));
-}
-
 TEST_F(PilcoMethodTest, ARunThatIsResumedGoesOnWithItsPolicyAndEndsLikeOneThatIsNot) {
   for (const std::string method : {"pilco_state", "pilco_features", "pilco_pca"}) {
     const std::string whole = folder("whole_" + method), parts = folder("parts_" + method);
@@ -240,20 +232,6 @@ TEST_F(PilcoMethodTest, WhatIsPredictedIsWhatHappensAndItIsBetterThanTheFirstPol
   EXPECT_GT(std::abs(numberAt(predicted.back(), 4)), 1.5);  // it has moved towards the goal
 }
 
-TEST_F(PilcoMethodTest, PredictionsCountWithMeasurementNoiseWhereAsked) {
-  std::vector<std::string> predictions;
-  for (const std::string noisy : {"true", "false"}) {
-    Configuration all = smallConfiguration("pilco_state", folder(noisy));
-    all.experiment.trials = 0;
-    ParamReader reader(YAML::Load("pilco: {horizon: 8, num_centres: 4, noisy_policy_input: " +
-                                  noisy + "}\npolicy_search: {max_iterations: 0}\n"));
-    all.method_blocks = methodKind("pilco_state").readBlocks(&reader);
-    runSmall(all);
-    predictions.push_back(textOf(folder(noisy) + "/trial_000/prediction.csv"));
-  }
-  EXPECT_NE(predictions[0], predictions[1]);
-}
-
 /// Sees noise, and wants length-scales whose inverse squares are no numbers: no cost is finite.
 class PointlessObservation : public Observation {
  public:
@@ -267,6 +245,7 @@ class PointlessObservation : public Observation {
     const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
     const pilco::SaturatingCost cost(Eigen::VectorXd::Zero(1), one);
     return {{},
+            false,
             {Eigen::VectorXd::Zero(1), one},
             pilco::StateCost(pilco::replaceAngles(1, {}), cost),
             Eigen::VectorXd::Constant(1, 1e-200)};
@@ -278,7 +257,7 @@ class PointlessObservation : public Observation {
 TEST_F(PilcoMethodTest, GoesOnWithAFirstPolicyWhereNoCostIsFinite) {
   const Configuration all = smallConfiguration("pilco_state", folder("run"));
   runSmall(all);
-  PilcoConfig config;
+  pilco::PilcoConfig config;
   config.pilco.horizon = 8;
   config.pilco.num_centres = 4;
   PilcoMethod method(all, config, std::make_unique<PointlessObservation>());
@@ -294,41 +273,6 @@ TEST_F(PilcoMethodTest, GoesOnWithAFirstPolicyWhereNoCostIsFinite) {
   const Answer answer = policy->answer();  // none of its torques is finite
   EXPECT_EQ(answer.torque[0], 0.0);
   EXPECT_FALSE(answer.plan);
-}
-
-TEST(PilcoMemory, IsReadBackDigitByDigit) {
-  PilcoMemory memory;
-  memory.policy = randomMatrix(7, 1, 1);
-  memory.gps.hyperparameters = {randomMatrix(3, 2, 2), randomMatrix(2, 1, 3),
-                                randomMatrix(2, 1, 4)};
-  YAML::Node node(YAML::NodeType::Map);
-  writeMemory(memory, &node);
-  const PilcoMemory read = readMemory(YAML::Dump(node), "pilco.yaml");
-  EXPECT_EQ(read.policy, memory.policy);
-  EXPECT_EQ(read.gps.hyperparameters.log_length_scales,
-            memory.gps.hyperparameters.log_length_scales);
-  EXPECT_EQ(read.gps.hyperparameters.log_signal_std, memory.gps.hyperparameters.log_signal_std);
-  EXPECT_EQ(read.gps.hyperparameters.log_noise_std, memory.gps.hyperparameters.log_noise_std);
-  EXPECT_EQ(read.gps.inducing.size(), 0);
-}
-
-TEST(PilcoOptions, TheManualHoldsTheDefaultsAndRulesAreChecked) {
-  const std::string manual = DDM_LAUNCH_SOURCE_DIR "/config/pilco.yaml";
-  EXPECT_EQ(YAML::Dump(YAML::LoadFile(manual)["pilco"]).empty(), false);
-  ParamReader reader = ParamReader::fromFiles({manual});
-  const auto options = reader.read<PilcoOptions>("pilco");
-  EXPECT_NO_THROW(reader.requireValid());
-  EXPECT_EQ(YAML::Dump(toYaml(options)), YAML::Dump(toYaml(PilcoOptions())));
-  const YAML::Node keys = YAML::LoadFile(manual)["pilco"];
-  EXPECT_EQ(keys.size(), toYaml(PilcoOptions()).size());
-  PilcoOptions wrong;
-  wrong.horizon = 0;
-  wrong.num_centres = 0;
-  wrong.cost_width = std::nan("");
-  wrong.start_std = -1.0;
-  wrong.rate_noise = -1.0;
-  wrong.angle_noise = -1.0;
-  EXPECT_EQ(wrong.problems().size(), 6u);
 }
 
 TEST(Schedules, OneThatLeavesTheMotionToChanceIsRefusedWherePlansFollowIt) {

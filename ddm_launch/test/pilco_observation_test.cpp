@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "pilco/observations.h"
-#include "pilco/pilco_policy.h"
 #include "run_csv.h"
 #include "toy_run.h"
 
@@ -44,7 +43,7 @@ class TrueStateTest : public ::testing::Test {
 };
 
 TEST_F(TrueStateTest, LearningMeetsTheMeasurementsThatThePolicyActedOn) {
-  TrueStateObservation acting(*plant_, PilcoOptions());
+  TrueStateObservation acting(*plant_);
   const TrialId id{5, 0, false};
   std::vector<Eigen::VectorXd> states, measured;
   std::vector<double> times;
@@ -59,7 +58,7 @@ TEST_F(TrueStateTest, LearningMeetsTheMeasurementsThatThePolicyActedOn) {
   }
   writeText(scratch_.file("trajectory.csv"),
             formatTrajectoryCsv(times, states, plant_->info().state_names));
-  TrueStateObservation learning(*plant_, PilcoOptions());
+  TrueStateObservation learning(*plant_);
   const Eigen::MatrixXd X = learning.learn({scratch_.file("trial.bag")}, data, id);
   ASSERT_EQ(X.cols(), 20);
   for (int t = 0; t < 20; ++t) EXPECT_EQ(X.col(t), measured[static_cast<size_t>(t)]) << t;
@@ -70,7 +69,7 @@ TEST_F(TrueStateTest, LearningMeetsTheMeasurementsThatThePolicyActedOn) {
 TEST_F(TrueStateTest, FramesThatDoNotFitTheBagBesideThemAreRefusedWithTheFile) {
   DataSet data(2, 1);  // two trials of 3 frames
   for (int t = 0; t < 6; ++t) data.append(Grey(4, 0), Eigen::VectorXd::Zero(1), t % 3 == 0);
-  TrueStateObservation observation(*plant_, PilcoOptions());
+  TrueStateObservation observation(*plant_);
   std::vector<std::string> bags;
   const auto write = [&](const std::string& trial, size_t frames) {
     fs::create_directories(scratch_.file(trial));
@@ -96,7 +95,7 @@ TEST_F(TrueStateTest, FramesThatDoNotFitTheBagBesideThemAreRefusedWithTheFile) {
 }
 
 TEST_F(TrueStateTest, NoiseHasTheSpreadThatIsAskedFor) {
-  TrueStateObservation observation(*plant_, PilcoOptions());
+  TrueStateObservation observation(*plant_);
   observation.startTrial(TrialId());
   Eigen::MatrixXd noise(2, 4000);
   for (Eigen::Index t = 0; t < noise.cols(); ++t) noise.col(t) = observation.observe({});
@@ -107,7 +106,7 @@ TEST_F(TrueStateTest, NoiseHasTheSpreadThatIsAskedFor) {
 
 TEST_F(TrueStateTest, TheTaskIsUprightWithinTheLengthOfTheRod) {
   plant_ = makePlant(*testing::plantOf("{type: pendulum, length: 2.0, start_std: [0.3, 0.5]}"));
-  const TrueStateObservation observation(*plant_, PilcoOptions());
+  const TrueStateObservation observation(*plant_);
   const PilcoTask task = observation.task();
   EXPECT_EQ(task.angles, std::vector<int>{1});
   EXPECT_NEAR(task.cost.expected(pilco::known(pair(3.0, M_PI))), 0.0, 1e-12);
@@ -121,34 +120,23 @@ TEST_F(TrueStateTest, TheTaskIsUprightWithinTheLengthOfTheRod) {
 
 TEST_F(TrueStateTest, APluginIsLearnedInLengthsOfItsRodIfItsGoalIsUpright) {
   const std::unique_ptr<Plant> plant = makePlant(testing::ToyMaker(armTo(-M_PI)));
-  const PilcoTask task = TrueStateObservation(*plant, PilcoOptions()).task();
+  const PilcoTask task = TrueStateObservation(*plant).task();
   for (const double angle : {0.0, 1.0, 3.0}) {
     const double lengths = 2.0 * std::cos(angle / 2.0);  // of the tip from its goal
     EXPECT_NEAR(task.cost.expected(pilco::known(pair(0.0, angle))),
                 1.0 - std::exp(-2.0 * lengths * lengths), 1e-12);
   }
-  const std::unique_ptr<Plant> hanging = makePlant(testing::ToyMaker(armTo(0.0)));
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { TrueStateObservation(*hanging, PilcoOptions()); }, {"[0 0]", "pilco_features"}));
 }
 
-TEST_F(TrueStateTest, TwoJointsWithoutRatesAreRefused) {
-  testing::ToyPlant::Traits traits = armTo(M_PI);
-  traits.info.joints = {{"shoulder", JointKind::kAngle}, {"elbow", JointKind::kAngle}};
-  traits.info.state_names = {"shoulder_rad", "elbow_rad"};
-  const std::unique_ptr<Plant> plant = makePlant(testing::ToyMaker(traits));
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { TrueStateObservation(*plant, PilcoOptions()); }, {"2 joint(s)"}));
-}
-
-TEST_F(TrueStateTest, APlantThatDoesNotTurnIsRefused) {
-  testing::ToyPlant::Traits traits = armTo(M_PI);
-  traits.info.joints[0].kind = JointKind::kLength;
-  const std::unique_ptr<Plant> lift = makePlant(testing::ToyMaker(traits));
-  const std::unique_ptr<Plant> tile = makePlant(*testing::plantOf("{type: moving_tile}"));
-  for (const Plant* plant : {lift.get(), tile.get()}) {
-    EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-        [&] { TrueStateObservation(*plant, PilcoOptions()); }, {"pilco_features"}));
+TEST_F(TrueStateTest, APlantThatIsNoPendulumIsRefused) {
+  testing::ToyPlant::Traits length = armTo(M_PI), two_joints = armTo(M_PI);
+  length.info.joints[0].kind = JointKind::kLength;
+  two_joints.info.joints = {{"shoulder", JointKind::kAngle}, {"elbow", JointKind::kAngle}};
+  two_joints.info.state_names = {"shoulder_rad", "elbow_rad"};
+  for (const testing::ToyPlant::Traits& traits : {length, two_joints, armTo(0.0)}) {
+    const std::unique_ptr<Plant> plant = makePlant(testing::ToyMaker(traits));
+    EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { TrueStateObservation{*plant}; },
+                                                    {"joint(s)", "pilco_features"}));
   }
 }
 
@@ -181,9 +169,9 @@ TEST(ImageObservations, LearnFromWhatTheyObserveAndTakeTheGoalFromItsImage) {
   config.model.pca_dim = 5;
   config.training.max_iterations = 30;
   config.training.schedule = "v_r_only";
-  FeatureObservation features(config, PilcoOptions());
+  FeatureObservation features(config);
   expectConsistent(&features, data);
-  PcaObservation pca(config, PilcoOptions());
+  PcaObservation pca(config);
   expectConsistent(&pca, data);
 }
 
@@ -192,9 +180,8 @@ TEST(ImageTask, TakesGoalStartAndScaleFromTheData) {
   X << 1, 0, 3, 0,  //
       0, 1, 2, -1;
   const std::vector<Segment> segments = {{0, 2}, {2, 2}};
-  PilcoOptions options;
   const Eigen::VectorXd goal = pair(-1.0, 0.0);
-  const PilcoTask task = imageTask(X, segments, goal, options);
+  const PilcoTask task = imageTask(X, segments, goal);
   const double spread = std::sqrt(2.0 + 5.0 / 3.0);  // sample variances of the two rows
   EXPECT_TRUE(task.angles.empty());
   EXPECT_NEAR(task.cost.expected(pilco::known(goal)), 0.0, 1e-15);
@@ -210,14 +197,14 @@ TEST(ImageTask, TakesGoalStartAndScaleFromTheData) {
 TEST(ImageTask, FramesThatAreAllTheSameAreRefused) {
   EXPECT_TRUE(throwsNaming<std::runtime_error>(
       [] {
-        imageTask(Eigen::MatrixXd::Ones(2, 5), {{0, 5}}, Eigen::VectorXd::Ones(2), PilcoOptions());
+        imageTask(Eigen::MatrixXd::Ones(2, 5), {{0, 5}}, Eigen::VectorXd::Ones(2));
       },
       {"same state"}));
 }
 
 TEST(PolicyStart, CentresFollowTheFeaturesOfTheStart) {
   const std::unique_ptr<Plant> plant = pendulum();
-  const PilcoTask task = TrueStateObservation(*plant, PilcoOptions()).task();
+  const PilcoTask task = TrueStateObservation(*plant).task();
   const pilco::Augmentation features = pilco::replaceAngles(2, {1});
   std::mt19937_64 rng(1);
   const int count = 4000;

@@ -6,12 +6,13 @@
 #include <ddm_model/long_term_prediction.h>
 #include <ddm_model/model_file.h>
 #include <ddm_model/trainer.h>
-#include <ddm_pilco/gp_training.h>
-#include <ddm_pilco/messages.h>
+#include <ddm_pilco/gp.h>
 #include <ddm_random/random_stream.h>
 #include <ddm_sim/angles.h>
 
+#include <Eigen/Eigenvalues>
 #include <boost/filesystem.hpp>
+#include <chrono>
 #include <cmath>
 #include <stdexcept>
 
@@ -25,6 +26,11 @@ constexpr char kModelFile[] = "model.ddm";
 constexpr int kRate = 0;  // places in x
 constexpr int kAngle = 1;
 constexpr double kUprightWithin = 1e-9;  // [rad]
+// As in the published runs.
+constexpr double kCostWidth = 0.5;    // of the saturating cost around the goal [spread]
+constexpr double kRateNoise = 0.1;    // true state: standard deviation of its measurement [rad/s]
+constexpr double kAngleNoise = 0.01;  // the same [rad]
+constexpr double kStartStd = 0.1;     // images: standard deviation of the initial state [spread]
 
 /// (angle, rate) of the plant to x.
 Eigen::VectorXd reorder(const Eigen::VectorXd& state) { return state.reverse(); }
@@ -54,8 +60,7 @@ pilco::Gaussian startDistribution(const Eigen::MatrixXd& X, const std::vector<Se
 
 }  // namespace
 
-TrueStateObservation::TrueStateObservation(const Plant& plant, const PilcoOptions& options)
-    : plant_(plant), options_(options) {
+TrueStateObservation::TrueStateObservation(const Plant& plant) : plant_(plant) {
   pilco::require(
       isPendulum(plant),
       "PILCO on the true state is for one joint with angle and rate whose goal is the angle pi; "
@@ -97,7 +102,7 @@ PilcoTask TrueStateObservation::task() const {
   Eigen::VectorXd length_scales(3);  // of rate, sine, cosine, as in the published runs
   length_scales << 1.0, 0.7, 0.7;
   // Distance and width are in lengths of the rod, so no rod needs to be known.
-  return {{kAngle}, start, pilco::pendulumCost(/*length=*/1.0, options_.cost_width), length_scales};
+  return {{kAngle}, true, start, pilco::pendulumCost(/*length=*/1.0, kCostWidth), length_scales};
 }
 
 void TrueStateObservation::startTrial(const TrialId& id) {
@@ -111,27 +116,27 @@ Eigen::VectorXd TrueStateObservation::observe(const Grey& /*grey*/) {
 Eigen::VectorXd TrueStateObservation::measure(const Eigen::VectorXd& state) {
   std::normal_distribution<double> normal;
   Eigen::VectorXd x = reorder(state);
-  x[kRate] += options_.rate_noise * normal(noise_);
-  x[kAngle] += options_.angle_noise * normal(noise_);
+  x[kRate] += kRateNoise * normal(noise_);
+  x[kAngle] += kAngleNoise * normal(noise_);
   return x;
 }
 
 PilcoTask imageTask(const Eigen::MatrixXd& X, const std::vector<Segment>& segments,
-                    const Eigen::VectorXd& goal, const PilcoOptions& options) {
+                    const Eigen::VectorXd& goal) {
   const Eigen::VectorXd std = pilco::sampleStd(X);
   const double spread = std.norm();
   if (!(spread > 0.0)) throw std::runtime_error("all images are observed as the same state");
   const int dim = static_cast<int>(X.rows());
-  const double width = options.cost_width * spread;
+  const double width = kCostWidth * spread;
   const Eigen::MatrixXd weight = Eigen::MatrixXd::Identity(dim, dim) / (width * width);
   return {{},
-          startDistribution(X, segments, options.start_std * spread),
+          false,
+          startDistribution(X, segments, kStartStd * spread),
           pilco::StateCost(pilco::replaceAngles(dim, {}), pilco::SaturatingCost(goal, weight)),
           std};
 }
 
-FeatureObservation::FeatureObservation(const ModelConfig& model, const PilcoOptions& options)
-    : ImageObservation(model, options) {
+FeatureObservation::FeatureObservation(const ModelConfig& model) : ImageObservation(model) {
   pilco::require(config_.training.schedule == "v_r_only",
                  "training/schedule must be v_r_only where PILCO learns the dynamics, got ",
                  config_.training.schedule);
@@ -163,7 +168,7 @@ void FeatureObservation::resume(const std::string& folder, const std::vector<std
 /// Sets task_. @return features of all frames  [feature_dim x N]
 Eigen::MatrixXd FeatureObservation::observeAll(const DataSet& data) {
   const Eigen::MatrixXd Z = encodeAll(*model_, data);
-  task_ = imageTask(Z, data.segments(), model_->goalFeature(), options_);
+  task_ = imageTask(Z, data.segments(), model_->goalFeature());
   return Z;
 }
 
@@ -184,8 +189,40 @@ Eigen::MatrixXd PcaObservation::learn(const std::vector<std::string>& /*bags*/, 
   if (!data.hasGoal())
     throw std::runtime_error(
         "the bags hold no goal image, which tells the goal: record one on goal_image");
-  task_ = imageTask(Z, data.segments(), observe(data.goal()), options_);
+  task_ = imageTask(Z, data.segments(), observe(data.goal()));
   return Z;
+}
+
+Answer PilcoPolicy::answer() {
+  const auto start = std::chrono::steady_clock::now();
+  Answer answer;
+  answer.torque = policy_->control(features_.value(x_));
+  if (!answer.torque.allFinite()) answer.torque.setZero();
+  answer.solve_time =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return answer;
+}
+
+Eigen::VectorXd drawPolicyStart(const PilcoTask& task, const pilco::Augmentation& features,
+                                int num_centres, int torque_dim, std::mt19937_64* rng) {
+  constexpr double kTargetStd = 0.1;  // of the published runs
+  const auto drawNormal = [rng](Eigen::Index rows, Eigen::Index cols) {
+    std::normal_distribution<double> normal;
+    Eigen::MatrixXd out(rows, cols);
+    for (Eigen::Index i = 0; i < out.size(); ++i) out.data()[i] = normal(*rng);
+    return out;
+  };
+  const pilco::Moments start = features.predict(task.start);
+  // A root of the covariance, which may be singular.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(start.covariance);
+  const Eigen::MatrixXd root =
+      solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const Eigen::MatrixXd centres =
+      (root * drawNormal(start.mean.size(), num_centres)).colwise() + start.mean;
+  const Eigen::MatrixXd targets = kTargetStd * drawNormal(num_centres, torque_dim);
+  const Eigen::MatrixXd log_length_scales =
+      task.policy_length_scales.array().log().matrix().replicate(1, torque_dim);
+  return pilco::RbfPolicy::packParameters(log_length_scales, centres, targets);
 }
 
 }  // namespace ddm

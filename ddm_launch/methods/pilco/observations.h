@@ -1,4 +1,4 @@
-// What PILCO takes for the state: the seam between its mathematics and true state or images.
+// What PILCO takes for the state, and its policy: the seam between its mathematics and true state or images.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,26 +6,28 @@
 #include <ddm_model/ddm.h>
 #include <ddm_model/pca.h>
 #include <ddm_mpc/policy.h>
-#include <ddm_pilco/moments.h>
-#include <ddm_pilco/state_cost.h>
+#include <ddm_pilco/features.h>
+#include <ddm_pilco/policy.h>
 #include <ddm_sim/plant.h>
 
 #include <Eigen/Core>
 #include <map>
+#include <memory>
 #include <optional>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "configuration.h"
 #include "driver.h"
-#include "pilco_options.h"
 
 namespace ddm {
 
 /// What is to be learned, in the coordinates of an observation.
 struct PilcoTask {
   std::vector<int> angles;               ///< entries that are angles [rad]
+  bool noisy;                            ///< x is measured with noise, and the policy sees it so
   pilco::Gaussian start;                 ///< p(x_0)
   pilco::StateCost cost;                 ///< c
   Eigen::VectorXd policy_length_scales;  ///< of the first policy, one for each of its inputs
@@ -81,7 +83,7 @@ class TrueStateObservation : public Observation {
   /// @param plant  the one that is controlled, outlives the observation
   /// @throws std::invalid_argument if the plant is not one joint with angle and rate, or if its
   ///         goal is not upright, at pi
-  TrueStateObservation(const Plant& plant, const PilcoOptions& options);
+  explicit TrueStateObservation(const Plant& plant);
 
   std::vector<std::string> names() const override;
   /// Reads the true state from trajectory.csv next to each bag. Bags do not contain it.
@@ -96,28 +98,26 @@ class TrueStateObservation : public Observation {
   Eigen::VectorXd measure(const Eigen::VectorXd& state);
 
   const Plant& plant_;
-  PilcoOptions options_;
   std::mt19937_64 noise_;
 };
 
 /// Goal: that of the goal image. Spread: root of the mean squared distance to the mean of all
 /// frames (the length of a pendulum, if x were the tip of one that turns all the way round).
 ///
-///   c(x) = 1 - exp(-|x - goal|^2 / (2 (cost_width spread)^2))
+///   c(x) = 1 - exp(-|x - goal|^2 / (2 (0.5 spread)^2))
 ///   p(x_0): mean and scatter of the first frames of all trials, counted together with one more
-///           frame at the distance start_std * spread
+///           frame at the distance 0.1 spread
 ///
 /// @param X     x of all frames                                                         [D x N]
 /// @param goal  x of the goal image                                                         [D]
 /// @throws std::runtime_error if all frames are the same
 PilcoTask imageTask(const Eigen::MatrixXd& X, const std::vector<Segment>& segments,
-                    const Eigen::VectorXd& goal, const PilcoOptions& options);
+                    const Eigen::VectorXd& goal);
 
 /// Learned anew from all data after each trial, so its coordinates change.
 class ImageObservation : public Observation {
  public:
-  ImageObservation(const ModelConfig& model, const PilcoOptions& options)
-      : config_(model), options_(options) {}
+  explicit ImageObservation(const ModelConfig& model) : config_(model) {}
 
   bool keepsCoordinates() const override { return false; }
   PilcoTask task() const override { return *task_; }
@@ -125,7 +125,6 @@ class ImageObservation : public Observation {
 
  protected:
   ModelConfig config_;
-  PilcoOptions options_;
   std::optional<PilcoTask> task_;  ///< learn() sets it
 };
 
@@ -134,7 +133,7 @@ class ImageObservation : public Observation {
 class FeatureObservation : public ImageObservation {
  public:
   /// @throws std::invalid_argument if training/schedule trains more than the auto-encoder
-  FeatureObservation(const ModelConfig& model, const PilcoOptions& options);
+  explicit FeatureObservation(const ModelConfig& model);
 
   std::vector<std::string> names() const override;
   Eigen::MatrixXd learn(const std::vector<std::string>& bags, const DataSet& data,
@@ -163,5 +162,34 @@ class PcaObservation : public ImageObservation {
  private:
   Projection projection_;
 };
+
+/// The policy that PILCO searches, on an observation: u = policy(features of x).
+class PilcoPolicy : public Policy {
+ public:
+  /// @param angles  entries of x that are angles
+  PilcoPolicy(std::shared_ptr<Observation> observation,
+              std::shared_ptr<pilco::SquashedPolicy> policy, const std::vector<int>& angles)
+      : observation_(std::move(observation)),
+        policy_(std::move(policy)),
+        features_(pilco::replaceAngles(static_cast<int>(observation_->names().size()), angles)) {}
+
+  void startTrial(const TrialId& id) override { observation_->startTrial(id); }
+  void observe(const Grey& grey) override { x_ = observation_->observe(grey); }
+  /// 0 where the policy's torque is not finite.
+  Answer answer() override;
+  void apply(const Eigen::VectorXd& /*u*/) override {}
+
+ private:
+  std::shared_ptr<Observation> observation_;
+  std::shared_ptr<pilco::SquashedPolicy> policy_;
+  pilco::Augmentation features_;
+  Eigen::VectorXd x_;
+};
+
+/// Parameters of the RBF policy of PILCO's first trial: centres drawn from the features of the
+/// start distribution, which is taken as Gaussian, small random targets, length-scales of the task.
+/// @param features  of the task's state
+Eigen::VectorXd drawPolicyStart(const PilcoTask& task, const pilco::Augmentation& features,
+                                int num_centres, int torque_dim, std::mt19937_64* rng);
 
 }  // namespace ddm

@@ -5,9 +5,6 @@
 #include <ddm_files/plain_file.h>
 #include <ddm_model/per_motor.h>
 #include <ddm_params/param_value.h>
-#include <ddm_params/yaml_text.h>
-#include <ddm_pilco/messages.h>
-#include <ddm_pilco/rbf_policy.h>
 #include <ddm_random/random_stream.h>
 #include <ddm_sim/plant.h>
 
@@ -19,7 +16,7 @@
 #include <utility>
 
 #include "csv_text.h"
-#include "pilco_policy.h"
+#include "method_kinds.h"
 
 namespace ddm {
 namespace {
@@ -40,83 +37,66 @@ std::string memoryFile(const std::vector<std::string>& bags, int episodes) {
   return (bag.parent_path() / kMemoryFile).string();
 }
 
-/// What the GPs learn from.
-struct Transitions {
-  Eigen::MatrixXd inputs;   ///< [features of x_t, u_t], one per column
-  Eigen::MatrixXd targets;  ///< x_{t+1} - x_t, one per row
-};
-
+/// What the GPs learn from: inputs [features of x_t, u_t] in columns, targets x_{t+1} - x_t in rows.
 /// No transition straddles two segments.
-Transitions transitions(const DataSet& data, const Eigen::MatrixXd& X,
-                        const pilco::Augmentation& features) {
-  Eigen::Index count = 0;
+std::pair<Eigen::MatrixXd, Eigen::MatrixXd> transitions(const DataSet& data,
+                                                        const Eigen::MatrixXd& X,
+                                                        const pilco::Augmentation& features) {
+  Eigen::Index i = 0, count = 0;
   for (const Segment& segment : data.segments()) count += segment.size - 1;
-  Transitions out;
-  out.inputs.resize(features.outputDim() + data.torqueDim(), count);
-  out.targets.resize(count, X.rows());
-  Eigen::Index i = 0;
+  Eigen::MatrixXd inputs(features.outputDim() + data.torqueDim(), count), targets(count, X.rows());
   for (const Segment& segment : data.segments()) {
     for (Eigen::Index t = segment.begin; t + 1 < segment.begin + segment.size; ++t, ++i) {
-      out.inputs.col(i) << features.value(X.col(t)), data.torques().col(t);
-      out.targets.row(i) = (X.col(t + 1) - X.col(t)).transpose();
+      inputs.col(i) << features.value(X.col(t)), data.torques().col(t);
+      targets.row(i) = (X.col(t + 1) - X.col(t)).transpose();
     }
   }
-  return out;
-}
-
-/// A matrix as a list of its columns.
-/// @throws std::runtime_error if it is not finite, since matrixOf() would refuse it
-YAML::Node matrixToYaml(const Eigen::MatrixXd& matrix) {
-  if (!matrix.allFinite()) {
-    throw std::runtime_error(
-        "PILCO: the policy or the GPs that were found are not finite: check the bags, or lower "
-        "policy_search/max_iterations or gp/max_iterations");
-  }
-  YAML::Node out(YAML::NodeType::Sequence);
-  for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
-    YAML::Node column(YAML::NodeType::Sequence);
-    column.SetStyle(YAML::EmitterStyle::Flow);
-    for (Eigen::Index i = 0; i < matrix.rows(); ++i) column.push_back(valueToYaml(matrix(i, j)));
-    out.push_back(column);
-  }
-  return out;
-}
-
-/// @param max_numbers  that can be there at all: aliases would make much of little
-Eigen::MatrixXd matrixOf(const YAML::Node& memory, const std::string& key, size_t max_numbers) {
-  const YAML::Node columns = memory[key];
-  if (!columns.IsDefined() || !columns.IsSequence()) {
-    throw std::runtime_error(key + " must be a list of columns");
-  }
-  const auto rows = columns.size() == 0 ? 0 : columns[0].size();
-  if (columns.size() > 0 && rows > max_numbers / columns.size()) {
-    throw std::runtime_error(key + " is longer than the file");
-  }
-  Eigen::MatrixXd out(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns.size()));
-  for (size_t j = 0; j < columns.size(); ++j) {
-    if (!columns[j].IsSequence() || columns[j].size() != rows)
-      throw std::runtime_error(key + " must have columns of one size");
-    for (size_t i = 0; i < rows; ++i) {
-      out(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = columns[j][i].as<double>();
-    }
-  }
-  if (!out.allFinite()) throw std::runtime_error(key + " must be finite");
-  return out;
-}
-
-/// The single column that a vector is kept as.
-Eigen::VectorXd vectorOf(const YAML::Node& memory, const std::string& key, size_t max_numbers) {
-  const Eigen::MatrixXd matrix = matrixOf(memory, key, max_numbers);
-  if (matrix.cols() != 1) throw std::runtime_error(key + " must be one column");
-  return matrix.col(0);
+  return {inputs, targets};
 }
 
 void requireParameters(const Eigen::VectorXd& parameters, const pilco::SquashedPolicy& policy,
                        const std::string& file) {
-  if (parameters.size() == policy.numParameters()) return;
-  throw std::runtime_error(pilco::message(file, ": policy must have ", policy.numParameters(),
-                                          " parameters, got ", parameters.size(),
-                                          ": use another run folder"));
+  const Eigen::Index count = policy.parameters().size();
+  if (parameters.size() == count) return;
+  throw std::runtime_error(pilco::message(file, ": policy must have ", count, " parameters, got ",
+                                          parameters.size(), ": use another run folder"));
+}
+
+using MakeObservation =
+    std::function<std::unique_ptr<Observation>(const Configuration&, const Plant&)>;
+
+pilco::PilcoConfig readConfig(ParamReader* reader) {
+  pilco::PilcoConfig config;
+  config.pilco = reader->read<pilco::PilcoOptions>("pilco");
+  config.gp = reader->read<pilco::GpTrainingOptions>("gp");
+  config.sparse_gp = reader->read<pilco::SparseGpOptions>("sparse_gp");
+  config.policy_search = reader->read<pilco::PolicySearchOptions>("policy_search");
+  return config;
+}
+
+YAML::Node readBlocks(ParamReader* reader) {
+  const pilco::PilcoConfig config = readConfig(reader);
+  YAML::Node out;
+  out["pilco"] = toYaml(config.pilco);
+  out["gp"] = toYaml(config.gp);
+  out["sparse_gp"] = toYaml(config.sparse_gp);
+  out["policy_search"] = toYaml(config.policy_search);
+  return out;
+}
+
+MethodKind pilcoKind(const std::string& name, const std::string& about,
+                     const MakeObservation& make_observation) {
+  const auto make = [make_observation](const Configuration& all, const Plant& plant) {
+    pilco::require(
+        !(all.camera.drop_rate > 0.0),
+        "camera/drop_rate must be 0 with PILCO, which takes a segment of its data without "
+        "a gap for a trial, got ",
+        all.camera.drop_rate);
+    ParamReader reader(all.method_blocks);
+    const pilco::PilcoConfig config = readConfig(&reader);
+    return std::make_unique<PilcoMethod>(all, config, make_observation(all, plant));
+  };
+  return {name, "PILCO on " + about, readBlocks, make};
 }
 
 }  // namespace
@@ -129,7 +109,7 @@ struct PilcoMethod::Training {
   YAML::Node report{YAML::NodeType::Map};
 };
 
-PilcoMethod::PilcoMethod(const Configuration& configuration, const PilcoConfig& pilco,
+PilcoMethod::PilcoMethod(const Configuration& configuration, const pilco::PilcoConfig& pilco,
                          std::unique_ptr<Observation> observation)
     : configuration_(configuration),
       pilco_(pilco),
@@ -184,7 +164,7 @@ bool PilcoMethod::resume(const std::string& folder, const std::vector<std::strin
 
 void PilcoMethod::makePolicy(int num_features, int torque_dim) {
   policy_ = std::make_shared<pilco::SquashedPolicy>(
-      std::make_unique<pilco::RbfPolicy>(num_features, torque_dim, pilco_.pilco.num_centres),
+      pilco::RbfPolicy(num_features, torque_dim, pilco_.pilco.num_centres),
       perMotor(configuration_.mpc.max_torque, torque_dim, "mpc/max_torque"));
 }
 
@@ -193,23 +173,20 @@ pilco::Propagation PilcoMethod::learnDynamics(const DataSet& data, const Eigen::
   const Clock::time_point start = Clock::now();
   const pilco::Augmentation features =
       pilco::replaceAngles(static_cast<int>(X.rows()), task.angles);
-  const Transitions seen = transitions(data, X, features);
-  pilco::GpLearner learner(pilco_.gp, pilco_.sparse_gp, training->memory.gps);
+  const auto [inputs, targets] = transitions(data, X, features);
   int evaluations = 0;
-  const pilco::GpFit fit = learner.learn(seen.inputs, seen.targets, &training->rng, [&] {
+  const auto count = [&] {
     const double most = static_cast<double>(X.rows()) * pilco_.gp.max_iterations;
     training->progress(kDynamicsShare * std::min(1.0, ++evaluations / most));
-  });
+  };
+  const pilco::GpFit fit = pilco::learnGp(pilco_.gp, pilco_.sparse_gp, inputs, targets,
+                                          &training->rng, &training->memory.gps, count);
   if (!fit.ok) throw std::runtime_error("PILCO: the GPs could not be trained: " + fit.message);
-  training->memory.gps = learner.state();
-  training->report["points"] = static_cast<int>(seen.inputs.cols());
-  training->report["sparse"] = seen.inputs.cols() > pilco_.sparse_gp.max_points;
+  training->report["points"] = static_cast<int>(inputs.cols());
+  training->report["sparse"] = inputs.cols() > pilco_.sparse_gp.max_points;
   training->report["gp_s"] = valueToYaml(secondsSince(start));
   training->report["gp_message"] = fit.message;
-  pilco::PropagationOptions options;
-  options.angles = task.angles;
-  options.noisy_policy_input = pilco_.pilco.noisy_policy_input;
-  return pilco::Propagation(fit.model, options);
+  return pilco::Propagation(fit.model, {task.angles, /*noisy_policy_input=*/task.noisy});
 }
 
 /// Sets policy_. Where the last policy's prediction leaves the finite numbers under the new GPs,
@@ -298,29 +275,19 @@ std::shared_ptr<Policy> PilcoMethod::policy() const {
   return std::make_shared<PilcoPolicy>(observation_, policy_, observation_->task().angles);
 }
 
-void writeMemory(const PilcoMemory& memory, YAML::Node* out) {
-  (*out)["policy"] = matrixToYaml(memory.policy);
-  (*out)["log_length_scales"] = matrixToYaml(memory.gps.hyperparameters.log_length_scales);
-  (*out)["log_signal_std"] = matrixToYaml(memory.gps.hyperparameters.log_signal_std);
-  (*out)["log_noise_std"] = matrixToYaml(memory.gps.hyperparameters.log_noise_std);
-  (*out)["inducing"] = matrixToYaml(memory.gps.inducing);
-}
-
-PilcoMemory readMemory(const std::string& text, const std::string& source) {
-  try {
-    const YAML::Node root = parseYaml(text, source);
-    if (!root.IsMap()) throw std::runtime_error("must be a map");
-    PilcoMemory memory;
-    memory.policy = vectorOf(root, "policy", text.size());
-    memory.gps.hyperparameters = {matrixOf(root, "log_length_scales", text.size()),
-                                  vectorOf(root, "log_signal_std", text.size()),
-                                  vectorOf(root, "log_noise_std", text.size())};
-    memory.gps.inducing = matrixOf(root, "inducing", text.size());
-    return memory;
-  } catch (const std::exception& e) {
-    throw std::runtime_error(source + ": " + e.what() +
-                             ": PILCO goes on from this file, so use another run folder");
-  }
+std::vector<MethodKind> pilcoMethods() {
+  return {pilcoKind("pilco_state", "the true state",
+                    [](const Configuration&, const Plant& plant) {
+                      return std::make_unique<TrueStateObservation>(plant);
+                    }),
+          pilcoKind("pilco_features", "features of an auto-encoder that is trained alone",
+                    [](const Configuration& all, const Plant&) {
+                      return std::make_unique<FeatureObservation>(all.model);
+                    }),
+          pilcoKind("pilco_pca", "principal components of the image",
+                    [](const Configuration& all, const Plant&) {
+                      return std::make_unique<PcaObservation>(all.model);
+                    })};
 }
 
 }  // namespace ddm

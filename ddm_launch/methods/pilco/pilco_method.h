@@ -4,8 +4,6 @@
 
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_pilco/long_term_cost.h>
-#include <ddm_pilco/sparse_gp.h>
-#include <ddm_pilco/squashed_policy.h>
 #include <yaml-cpp/yaml.h>
 
 #include <Eigen/Core>
@@ -16,7 +14,6 @@
 #include "configuration.h"
 #include "method.h"
 #include "observations.h"
-#include "pilco_options.h"
 
 namespace ddm {
 
@@ -44,7 +41,7 @@ PilcoMemory readMemory(const std::string& text, const std::string& source);
 class PilcoMethod : public Method {
  public:
   /// @param configuration  outlives the method
-  PilcoMethod(const Configuration& configuration, const PilcoConfig& pilco,
+  PilcoMethod(const Configuration& configuration, const pilco::PilcoConfig& pilco,
               std::unique_ptr<Observation> observation);
 
   /// @throws std::runtime_error if a file cannot be read or the GPs cannot be trained
@@ -68,7 +65,7 @@ class PilcoMethod : public Method {
   std::string predictionCsv(const pilco::LongTermCost& cost) const;
 
   const Configuration& configuration_;
-  PilcoConfig pilco_;
+  pilco::PilcoConfig pilco_;
   std::shared_ptr<Observation> observation_;
   BagCache bags_;
   std::shared_ptr<pilco::SquashedPolicy> policy_;  // null before the first training

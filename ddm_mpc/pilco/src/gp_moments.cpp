@@ -7,8 +7,6 @@
 #include <limits>
 #include <utility>
 
-#include "ddm_pilco/messages.h"
-
 namespace ddm::pilco {
 namespace {
 
@@ -20,6 +18,51 @@ std::size_t pairIndex(int a, int b) { return static_cast<std::size_t>(b * (b + 1
 /// dJ/dS_ab and dJ/dS_ba together, for a <= b.
 double pairAdjoint(int a, int b, const Moments& d_output) {
   return a == b ? d_output.covariance(a, a) : d_output.covariance(a, b) + d_output.covariance(b, a);
+}
+
+/// The matrix P_ij = w_ij c_j exp(f_i + g_j + u_i^T v_j) of n x n numbers, which is never stored.
+struct ExponentialMatrix {
+  Eigen::VectorXd f;               ///<                                      [n]
+  Eigen::VectorXd g;               ///<                                      [n]
+  Eigen::MatrixXd u;               ///< u_i in rows                      [n x D]
+  Eigen::MatrixXd v;               ///< v_j in columns                   [D x n]
+  Eigen::VectorXd column_weights;  ///< c                                    [n]
+};
+
+struct ExponentialSums {
+  Eigen::VectorXd rows;     ///< sum_j P_ij                                  [n]
+  Eigen::VectorXd columns;  ///< sum_i P_ij                                  [n]
+  Eigen::MatrixXd moments;  ///< sum_i P_ij u_i in columns               [D x n]
+};
+
+/// Nearly all the time of PILCO is spent here. The exponent is clamped to [-500, 709]: e^-500 is
+/// nothing, and less could make products denormal, for which a processor takes a hundred times as
+/// long.
+/// @param w  one column: it is the same for all. n columns: above the diagonal it is taken for 0
+///                                                                 [n x 1 or n x n]
+ExponentialSums exponentialSums(const ExponentialMatrix& matrix,
+                                const Eigen::Ref<const Eigen::MatrixXd>& w) {
+  const Eigen::Index rows = matrix.u.rows();
+  const Eigen::Index cols = matrix.g.size();
+  const bool same_columns = w.cols() == 1;
+  ExponentialSums sums;
+  sums.rows.setZero(rows);
+  sums.columns.resize(cols);
+  sums.moments.resize(matrix.u.cols(), cols);
+  Eigen::VectorXd column(rows);  // a column at a time stays in the fastest cache
+  for (Eigen::Index j = 0; j < cols; ++j) {
+    const Eigen::Index n = same_columns ? rows : rows - j;
+    const auto u = matrix.u.bottomRows(n);
+    auto p = column.tail(n);
+    p = matrix.f.tail(n);
+    p.noalias() += u * matrix.v.col(j);
+    p = (p.array() + matrix.g[j]).max(-500.0).min(709.0).exp() *
+        w.col(same_columns ? 0 : j).tail(n).array() * matrix.column_weights[j];
+    sums.rows.tail(n) += p;
+    sums.columns[j] = p.sum();
+    sums.moments.col(j).noalias() = u.transpose() * p;
+  }
+  return sums;
 }
 
 }  // namespace
@@ -49,10 +92,10 @@ GpMoments::GpMoments(GpModel model) : model_(std::move(model)) {
   }
 }
 
-Moments GpMoments::predict(const Gaussian& input, Tape* tape) {
+Moments GpMoments::predict(const Gaussian& input, Tape* tape) const {
   const int dim = model_.inputDim();
   const int outputs = model_.outputDim();
-  requireSize(input, dim, "gp moments");
+  eigen_assert(input.mean.size() == dim && input.covariance.rows() == dim);
   Moments output = constantMoments(dim, outputs, kNaN);
   if (tape != nullptr) {
     tape->input = input;
@@ -65,34 +108,37 @@ Moments GpMoments::predict(const Gaussian& input, Tape* tape) {
   // The exponential of NaN is not NaN in every instruction set: so it must not get that far.
   if (!finite_ || !input.mean.allFinite() || !input.covariance.allFinite()) return output;
 
-  z_ = (model_.inputs.colwise() - input.mean).transpose();
-  bool valid = predictMeans(input, &output, tape);
+  const Eigen::MatrixXd z = (model_.inputs.colwise() - input.mean).transpose();
+  bool valid = predictMeans(z, input.covariance, &output, tape);
   for (int b = 0; valid && b < outputs; ++b) {
-    for (int a = 0; valid && a <= b; ++a) valid = predictPair(a, b, input, &output, tape);
+    for (int a = 0; valid && a <= b; ++a) {
+      valid = predictPair(a, b, z, input.covariance, &output, tape);
+    }
   }
   if (!valid) output = constantMoments(dim, outputs, kNaN);
   return output;
 }
 
 /// M and V. False if s + Lambda is not positive definite.
-bool GpMoments::predictMeans(const Gaussian& input, Moments* output, Tape* tape) {
+bool GpMoments::predictMeans(const Eigen::MatrixXd& z, const Eigen::MatrixXd& s, Moments* output,
+                             Tape* tape) const {
   const int dim = model_.inputDim();
   for (int a = 0; a < model_.outputDim(); ++a) {
     // (s + Lambda)^-1 = L (I + L s L)^-1 L with L = Lambda^-1/2: no eigenvalue below 1.
     const Eigen::VectorXd root = precisions_.col(a).cwiseSqrt();
     const Eigen::LLT<Eigen::MatrixXd> scaled(Eigen::MatrixXd::Identity(dim, dim) +
-                                             root.asDiagonal() * symmetricPart(input.covariance) *
+                                             root.asDiagonal() * symmetricPart(s) *
                                                  root.asDiagonal());
     if (scaled.info() != Eigen::Success) return false;
     const double half_log_det = scaled.matrixLLT().diagonal().array().log().sum();
     const Eigen::MatrixXd inverse_width =
         root.asDiagonal() * scaled.solve(Eigen::MatrixXd(root.asDiagonal()));
-    const Eigen::VectorXd distance = (z_ * inverse_width).cwiseProduct(z_).rowwise().sum();
+    const Eigen::VectorXd distance = (z * inverse_width).cwiseProduct(z).rowwise().sum();
     const Eigen::VectorXd q =
         (log_signal_variance_[a] - half_log_det - 0.5 * distance.array()).exp();
     const Eigen::VectorXd terms = q.cwiseProduct(model_.beta.col(a));
     output->mean[a] = terms.sum();
-    output->gain.col(a).noalias() = inverse_width * (z_.transpose() * terms);
+    output->gain.col(a).noalias() = inverse_width * (z.transpose() * terms);
     if (tape != nullptr) {
       tape->inverse_widths[a] = inverse_width;
       tape->kernel_means.col(a) = q;
@@ -130,28 +176,27 @@ GpMoments::Pair GpMoments::pairTerms(int a, int b, const Eigen::MatrixXd& s) con
 ///   d/dm = R^-T sum P_ij w_ij,  d/ds = (R^-T (sum P_ij w_ij w_ij^T) R^-1 - P R^-1 sum P_ij) / 2
 ///
 /// False if R has no positive eigenvalues.
-bool GpMoments::predictPair(int a, int b, const Gaussian& input, Moments* output, Tape* tape) {
-  const Pair pair = pairTerms(a, b, input.covariance);
+bool GpMoments::predictPair(int a, int b, const Eigen::MatrixXd& z, const Eigen::MatrixXd& s,
+                            Moments* output, Tape* tape) const {
+  const Pair pair = pairTerms(a, b, s);
   if (!pair.valid) return false;
 
   const auto quadratic = [&](const Eigen::Ref<const Eigen::MatrixXd>& scaled) -> Eigen::VectorXd {
-    return (scaled * pair.inner - z_).cwiseProduct(scaled).rowwise().sum();
+    return (scaled * pair.inner - z).cwiseProduct(scaled).rowwise().sum();
   };
-  matrix_.u = z_ * precisions_.col(a).asDiagonal();
-  scaled_b_ = z_ * precisions_.col(b).asDiagonal();
-  matrix_.v.noalias() = pair.inner * scaled_b_.transpose();
-  matrix_.f = (log_signal_variance_[a] - 0.5 * pair.log_det_R) + 0.5 * quadratic(matrix_.u).array();
-  matrix_.g = log_signal_variance_[b] + 0.5 * quadratic(scaled_b_).array();
-  if (a == b) {
-    matrix_.column_weights = Eigen::VectorXd::Ones(model_.numPoints());
-    exponentialSums(matrix_, weights_[a], &sums_);
-  } else {
-    matrix_.column_weights = model_.beta.col(b);
-    exponentialSums(matrix_, model_.beta.col(a), &sums_);
-  }
+  ExponentialMatrix matrix;
+  matrix.u = z * precisions_.col(a).asDiagonal();
+  const Eigen::MatrixXd scaled_b = z * precisions_.col(b).asDiagonal();
+  matrix.v.noalias() = pair.inner * scaled_b.transpose();
+  matrix.f = (log_signal_variance_[a] - 0.5 * pair.log_det_R) + 0.5 * quadratic(matrix.u).array();
+  matrix.g = log_signal_variance_[b] + 0.5 * quadratic(scaled_b).array();
+  matrix.column_weights =
+      a == b ? Eigen::VectorXd::Ones(model_.numPoints()) : Eigen::VectorXd(model_.beta.col(b));
+  const ExponentialSums sums =
+      a == b ? exponentialSums(matrix, weights_[a]) : exponentialSums(matrix, model_.beta.col(a));
 
   const double factor = a == b ? 2.0 : 1.0;
-  const double total = factor * sums_.columns.sum();
+  const double total = factor * sums.columns.sum();
   double covariance = total;
   if (a == b && !model_.inverse.empty()) covariance += std::exp(log_signal_variance_[a]);
   covariance -= output->mean[a] * output->mean[b];
@@ -159,12 +204,12 @@ bool GpMoments::predictPair(int a, int b, const Gaussian& input, Moments* output
   output->covariance(b, a) = covariance;
   if (tape == nullptr) return true;
 
-  const Eigen::MatrixXd& u = matrix_.u;
-  const Eigen::VectorXd& rows = sums_.rows;
-  const Eigen::VectorXd first = u.transpose() * rows + scaled_b_.transpose() * sums_.columns;
-  const Eigen::MatrixXd cross = sums_.moments * scaled_b_;
+  const Eigen::MatrixXd& u = matrix.u;
+  const Eigen::VectorXd& rows = sums.rows;
+  const Eigen::VectorXd first = u.transpose() * rows + scaled_b.transpose() * sums.columns;
+  const Eigen::MatrixXd cross = sums.moments * scaled_b;
   const Eigen::MatrixXd second = u.transpose() * rows.asDiagonal() * u +
-                                 scaled_b_.transpose() * sums_.columns.asDiagonal() * scaled_b_ +
+                                 scaled_b.transpose() * sums.columns.asDiagonal() * scaled_b +
                                  cross + cross.transpose();
   const Eigen::MatrixXd& K = pair.inverse_R;
   tape->d_sum_mean[pairIndex(a, b)] = factor * (K.transpose() * first);
@@ -187,7 +232,7 @@ Eigen::VectorXd GpMoments::meanAdjoint(const Tape& tape, const Moments& d_output
 Gaussian GpMoments::backward(const Tape& tape, const Moments& d_output) const {
   const int dim = model_.inputDim();
   const int outputs = model_.outputDim();
-  requireSize(d_output, dim, outputs, "gp moments");
+  eigen_assert(d_output.mean.size() == outputs && d_output.gain.rows() == dim);
   Gaussian d_input = constantGaussian(dim);
   const Eigen::VectorXd d_mean = meanAdjoint(tape, d_output);
   const Eigen::MatrixXd z = (model_.inputs.colwise() - tape.input.mean).transpose();
@@ -216,13 +261,8 @@ Gaussian GpMoments::backward(const Tape& tape, const Moments& d_output) const {
 
 void GpMoments::backwardToModel(const Tape& tape, const Moments& d_output,
                                 GpGradient* d_model) const {
-  const int dim = model_.inputDim();
   const int outputs = model_.outputDim();
-  requireSize(d_output, dim, outputs, "gp moments");
-  require(model_.inverse.empty(), "gp moments: no derivatives in a model with model uncertainty");
-  eigen_assert(d_model->inputs.rows() == dim && d_model->inputs.cols() == model_.numPoints() &&
-               d_model->beta.rows() == model_.numPoints() &&
-               d_model->log_length_scales.cols() == outputs);
+  eigen_assert(model_.inverse.empty());  // no derivatives in a model with model uncertainty
   meanToModel(tape, d_output, d_model);
   for (int b = 0; b < outputs; ++b) {
     for (int a = 0; a <= b; ++a) {

@@ -1,4 +1,4 @@
-// Long-term cost J of a policy under the learned dynamics, with its exact gradient.
+// Long-term cost of a policy under the learned dynamics, and the search for the best policy.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_pilco/long_term_cost.h"
 
@@ -7,28 +7,122 @@
 #include <limits>
 #include <utility>
 
-#include "ddm_pilco/messages.h"
-
 namespace ddm::pilco {
+namespace {
 
-LongTermCost::LongTermCost(Propagation dynamics, StateCost cost, Policy* policy,
+/// N([f, u]) from the moments of f and those of u given f.
+Gaussian joint(const Moments& features, const Moments& control) {
+  const Eigen::Index num_features = features.mean.size();
+  const Eigen::Index num_controls = control.mean.size();
+  Gaussian both = constantGaussian(static_cast<int>(num_features + num_controls));
+  both.mean << features.mean, control.mean;
+  both.covariance.topLeftCorner(num_features, num_features) = features.covariance;
+  both.covariance.bottomRightCorner(num_controls, num_controls) = control.covariance;
+  const Eigen::MatrixXd cross = features.covariance * control.gain;
+  both.covariance.topRightCorner(num_features, num_controls) = cross;
+  both.covariance.bottomLeftCorner(num_controls, num_features) = cross.transpose();
+  return both;
+}
+
+}  // namespace
+
+Propagation::Propagation(GpModel dynamics, const PropagationOptions& options)
+    : state_dim_(dynamics.outputDim()),
+      features_(replaceAngles(state_dim_, options.angles)),
+      dynamics_(std::move(dynamics)),
+      options_(options) {
+  eigen_assert(controlDim() >= 1);
+  if (!options.noisy_policy_input) return;
+  const Eigen::VectorXd& log_noise_std = dynamics_.model().hyperparameters.log_noise_std;
+  measurement_variance_ = 0.5 * (2.0 * log_noise_std.array()).exp();
+}
+
+/// The state as the policy sees it.
+Gaussian Propagation::policyState(const Gaussian& state) const {
+  Gaussian measured = state;
+  measured.covariance.diagonal() += measurement_variance_;
+  return measured;
+}
+
+Gaussian Propagation::step(const SquashedPolicy& policy, const Gaussian& state, Tape* tape) const {
+  eigen_assert(policy.inputDim() == featureDim() && policy.outputDim() == controlDim());
+  const Moments features = features_.predict(state);
+  const Gaussian policy_input =
+      marginal(options_.noisy_policy_input ? features_.predict(policyState(state)) : features);
+  const Moments control = policy.predict(policy_input);
+  const Moments delta =
+      dynamics_.predict(joint(features, control), tape != nullptr ? &tape->dynamics : nullptr);
+
+  const Eigen::MatrixXd gain =
+      delta.gain.topRows(featureDim()) + control.gain * delta.gain.bottomRows(controlDim());
+  const Eigen::MatrixXd cross = state.covariance * (features.gain * gain);
+  if (tape != nullptr) {
+    tape->state = state;
+    tape->features = features;
+    tape->policy_input = policy_input;
+    tape->control = control;
+    tape->delta = delta;
+  }
+  return Gaussian{state.mean + delta.mean,
+                  symmetricPart(state.covariance + cross + cross.transpose() + delta.covariance)};
+}
+
+Gaussian Propagation::backward(const SquashedPolicy& policy, const Tape& tape,
+                               const Gaussian& d_next, Eigen::VectorXd* d_parameters) const {
+  const int num_features = featureDim();
+  const int num_controls = controlDim();
+  const Eigen::MatrixXd& s = tape.state.covariance;
+  const Eigen::MatrixXd& feature_gain = tape.features.gain;
+  const auto gain_u = tape.delta.gain.bottomRows(num_controls);
+  const Eigen::MatrixXd gain = tape.delta.gain.topRows(num_features) + tape.control.gain * gain_u;
+  const Eigen::MatrixXd d_covariance = symmetricPart(d_next.covariance);
+
+  // s' = s + X + X^T + S with X = s G_f (V_f + G_u V_u)
+  const Eigen::MatrixXd d_cross = 2.0 * d_covariance;
+  Gaussian d_state{d_next.mean, d_covariance + d_cross * (feature_gain * gain).transpose()};
+  Moments d_features = constantMoments(state_dim_, num_features);
+  d_features.gain = s * d_cross * gain.transpose();
+  const Eigen::MatrixXd d_gain = feature_gain.transpose() * s * d_cross;
+
+  Moments d_delta{d_next.mean, d_covariance, Eigen::MatrixXd(tape.delta.gain.rows(), state_dim_)};
+  d_delta.gain << d_gain, tape.control.gain.transpose() * d_gain;
+  const Gaussian d_joint = dynamics_.backward(tape.dynamics, d_delta);
+
+  // joint covariance: [F, F G_u; (F G_u)^T, S_u]
+  const Eigen::MatrixXd d_fu = 2.0 * d_joint.covariance.topRightCorner(num_features, num_controls);
+  const Moments d_control{d_joint.mean.tail(num_controls),
+                          d_joint.covariance.bottomRightCorner(num_controls, num_controls),
+                          d_gain * gain_u.transpose() + tape.features.covariance * d_fu};
+  d_features.mean = d_joint.mean.head(num_features);
+  d_features.covariance = d_joint.covariance.topLeftCorner(num_features, num_features) +
+                          d_fu * tape.control.gain.transpose();
+
+  const Gaussian d_policy_input = policy.backward(tape.policy_input, d_control, d_parameters);
+  const auto add = [&d_state](const Gaussian& part) {
+    d_state.mean += part.mean;
+    d_state.covariance += part.covariance;
+  };
+  if (options_.noisy_policy_input) {
+    add(features_.backward(policyState(tape.state),
+                           Moments{d_policy_input.mean, d_policy_input.covariance,
+                                   Eigen::MatrixXd::Zero(state_dim_, num_features)}));
+  } else {
+    d_features.mean += d_policy_input.mean;
+    d_features.covariance += d_policy_input.covariance;
+  }
+  add(features_.backward(tape.state, d_features));
+  d_state.covariance = symmetricPart(d_state.covariance);
+  return d_state;
+}
+
+LongTermCost::LongTermCost(Propagation dynamics, StateCost cost, SquashedPolicy* policy,
                            Gaussian initial_state, int horizon)
     : dynamics_(std::move(dynamics)),
       cost_(std::move(cost)),
       policy_(policy),
       horizon_(horizon),
       states_{std::move(initial_state)} {
-  require(horizon >= 1, "long-term cost: the horizon must be >= 1, got ", horizon);
-  require(policy != nullptr, "long-term cost: a policy is missing");
-  dynamics_.requireFit(*policy);
-  require(cost_.inputDim() == dynamics_.stateDim(),
-          "long-term cost: the cost must be for a state of ", dynamics_.stateDim(),
-          " entries, got one for ", cost_.inputDim());
-  const Gaussian& start = states_.front();
-  requireSize(start, dynamics_.stateDim(), "long-term cost");
-  require(start.mean.allFinite() && start.covariance.allFinite(),
-          "long-term cost: the initial state must be finite, got mean [", start.mean.transpose(),
-          "] and variances [", start.covariance.diagonal().transpose(), "]");
+  eigen_assert(horizon >= 1 && cost_.inputDim() == dynamics_.stateDim());
 }
 
 /// False where the prediction leaves the finite numbers.
@@ -37,7 +131,7 @@ bool LongTermCost::predict(bool record) {
   costs_.clear();
   if (record) tapes_.resize(horizon_);
   for (int t = 0; t < horizon_; ++t) {
-    states_.push_back(dynamics_.step(policy_, states_[t], record ? &tapes_[t] : nullptr));
+    states_.push_back(dynamics_.step(*policy_, states_[t], record ? &tapes_[t] : nullptr));
     costs_.push_back(cost_.expected(states_.back()));
     if (!states_.back().mean.allFinite() || !states_.back().covariance.allFinite() ||
         !std::isfinite(costs_.back())) {
@@ -67,7 +161,7 @@ double LongTermCost::evaluate(const Eigen::VectorXd& parameters, Eigen::VectorXd
     cost_.expected(states_[t], &d_cost);
     d_state.mean += d_cost.mean;
     d_state.covariance += d_cost.covariance;
-    d_state = dynamics_.backward(policy_, tapes_[t - 1], d_state, gradient);
+    d_state = dynamics_.backward(*policy_, tapes_[t - 1], d_state, gradient);
   }
   return total;
 }
@@ -78,6 +172,15 @@ std::vector<double> LongTermCost::costStandardDeviations() const {
     out.push_back(std::sqrt(std::max(0.0, cost_.variance(states_[t]))));  // rounded below 0
   }
   return out;
+}
+
+Minimum searchPolicy(const DifferentiableFunction& cost, const Eigen::VectorXd& start,
+                     const PolicySearchOptions& options) {
+  MinimiseOptions solver;
+  solver.max_iterations = options.max_iterations;
+  solver.max_evaluations = options.max_evaluations;
+  solver.function_tolerance = 1e-8;
+  return minimise(cost, start, solver);
 }
 
 }  // namespace ddm::pilco

@@ -1,9 +1,5 @@
 // Sparse GP (FITC): a few inducing inputs instead of all training inputs.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_pilco/sparse_gp.h"
-
-#include <ddm_params/option_checks.h>
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -11,7 +7,8 @@
 #include <numeric>
 #include <utility>
 
-#include "ddm_pilco/messages.h"
+#include "ddm_pilco/gp.h"
+#include "ddm_pilco/moments.h"
 
 namespace ddm::pilco {
 namespace {
@@ -23,15 +20,15 @@ constexpr double kLogTwoPi = 1.8378770664093453;
 /// The matrices of one output. B = L M L^T with Kmm = L L^T, M = I + V diag(lambda)^-1 V^T and
 /// V = L^-1 Kmn: M is much better conditioned than B.
 struct Fitc {
-  Fitc(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& inputs, const Eigen::VectorXd& theta,
-       double ridge) {
+  Fitc(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& inputs,
+       const Eigen::VectorXd& theta) {
     const Eigen::Index dim = inputs.rows();
     const Eigen::VectorXd length_scales = theta.head(dim).array().exp();
     const double sf = std::exp(theta[dim]);
     k_mm = squaredExponential(inducing, inducing, length_scales, sf);
     k_mn = squaredExponential(inducing, inputs, length_scales, sf);
     Eigen::MatrixXd ridged = k_mm;
-    ridged.diagonal().array() += ridge;
+    ridged.diagonal().array() += kRidge;
     l.compute(ridged);
     if (l.info() != Eigen::Success) return;
     v = l.matrixL().solve(k_mn);
@@ -86,9 +83,9 @@ void addGradient(const Fitc& fitc, const Eigen::MatrixXd& inducing, const Eigen:
 }
 
 double outputLikelihood(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& inputs,
-                        const Eigen::VectorXd& y, const Eigen::VectorXd& theta, double ridge,
+                        const Eigen::VectorXd& y, const Eigen::VectorXd& theta,
                         Eigen::MatrixXd* d_inducing) {
-  const Fitc fitc(inducing, inputs, theta, ridge);
+  const Fitc fitc(inducing, inputs, theta);
   if (!fitc.positive_definite) return kInfinity;
   const Eigen::VectorXd beta = fitc.beta(y);
   const Eigen::VectorXd alpha = ((y - fitc.k_mn.transpose() * beta).array() / fitc.lambda).matrix();
@@ -97,20 +94,9 @@ double outputLikelihood(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& 
          0.5 * fitc.lambda.log().sum() + 0.5 * static_cast<double>(y.size()) * kLogTwoPi;
 }
 
-void requireInducing(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& inputs,
-                     const Eigen::MatrixXd& targets, const Hyperparameters& hyperparameters) {
-  requireFiniteData(inputs, targets);
-  requireHyperparameters(hyperparameters, inputs.rows(), targets.cols());
-  require(inducing.rows() == inputs.rows() && inducing.cols() >= 1,
-          "inducing inputs must be points of ", inputs.rows(), " entries, got ", inducing.cols(),
-          " of ", inducing.rows());
-  require(inducing.allFinite(), "inducing inputs must be finite numbers");
-}
-
 /// `count` different numbers of 0 ... n - 1 in random order.
-/// @throws std::invalid_argument if there are fewer
 std::vector<Eigen::Index> randomIndices(Eigen::Index n, int count, std::mt19937_64* rng) {
-  require(count >= 1 && count <= n, "cannot draw ", count, " of ", n, " points");
+  eigen_assert(count >= 1 && count <= n);
   std::vector<Eigen::Index> order(static_cast<std::size_t>(n));
   std::iota(order.begin(), order.end(), 0);
   std::shuffle(order.begin(), order.end(), *rng);  // results are fixed for libstdc++
@@ -125,27 +111,50 @@ Eigen::MatrixXd columnsOf(const Eigen::MatrixXd& matrix, const std::vector<Eigen
   return out;
 }
 
-}  // namespace
-
-std::vector<std::string> SparseGpOptions::problems() const {
-  OptionChecks sparse_gp("sparse_gp");
-  sparse_gp.requireAtLeast("max_points", max_points, 1);
-  sparse_gp.requireWithin("first_iterations", first_iterations, 0, 1000000);
-  sparse_gp.requireWithin("max_iterations", max_iterations, 0, 1000000);
-  sparse_gp.requirePositive("ridge", ridge);
-  return sparse_gp.problems();
+/// The full GP. Where it will be replaced by a sparse one, its hyper-parameters are all that
+/// counts.
+GpFit trainFull(const GpTrainingOptions& training, bool sparse, const Hyperparameters* start,
+                const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets, std::mt19937_64* rng,
+                const std::function<void()>& on_evaluation) {
+  const int count = training.training_points;
+  if (count == 0 || inputs.cols() <= count) {
+    return trainGp(inputs, targets, training.max_iterations, start, on_evaluation);
+  }
+  const std::vector<Eigen::Index> drawn = randomIndices(inputs.cols(), count, rng);
+  GpFit few = trainGp(columnsOf(inputs, drawn), columnsOf(targets.transpose(), drawn).transpose(),
+                      training.max_iterations, start, on_evaluation);
+  if (!few.ok || sparse) return few;
+  GpFit full = makeGpModel(inputs, targets, few.model.hyperparameters);
+  full.outputs = few.outputs;
+  if (full.ok) full.message = few.message;
+  return full;
 }
+
+/// A state may come from a file.
+void requireFit(const GpLearnerState& state, Eigen::Index input_dim, Eigen::Index output_dim) {
+  const Eigen::MatrixXd& scales = state.hyperparameters.log_length_scales;
+  require(scales.rows() == input_dim && scales.cols() == output_dim &&
+              state.hyperparameters.log_signal_std.size() == output_dim &&
+              state.hyperparameters.log_noise_std.size() == output_dim,
+          "the hyper-parameters must be for ", input_dim, " inputs and ", output_dim,
+          " outputs, got length-scales for ", scales.rows(), " and ", scales.cols());
+  require(state.inducing.size() == 0 || state.inducing.rows() == input_dim,
+          "inducing inputs must be points of ", input_dim, " entries, got ", state.inducing.cols(),
+          " of ", state.inducing.rows());
+}
+
+}  // namespace
 
 double sparseNegativeLogLikelihood(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& inputs,
                                    const Eigen::MatrixXd& targets,
-                                   const Hyperparameters& hyperparameters, double ridge,
+                                   const Hyperparameters& hyperparameters,
                                    Eigen::MatrixXd* d_inducing) {
   eigen_assert(inducing.rows() == inputs.rows() && inputs.cols() == targets.rows());
   if (d_inducing != nullptr) d_inducing->setZero(inducing.rows(), inducing.cols());
   double sum = 0.0;
   for (int a = 0; a < targets.cols(); ++a) {
-    sum += outputLikelihood(inducing, inputs, targets.col(a), thetaOf(hyperparameters, a), ridge,
-                            d_inducing);
+    sum +=
+        outputLikelihood(inducing, inputs, targets.col(a), thetaOf(hyperparameters, a), d_inducing);
   }
   if (std::isfinite(sum)) return sum;
   if (d_inducing != nullptr) d_inducing->setConstant(kNaN);
@@ -153,9 +162,8 @@ double sparseNegativeLogLikelihood(const Eigen::MatrixXd& inducing, const Eigen:
 }
 
 GpFit makeSparseGpModel(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& inputs,
-                        const Eigen::MatrixXd& targets, const Hyperparameters& hyperparameters,
-                        double ridge) {
-  requireInducing(inducing, inputs, targets, hyperparameters);
+                        const Eigen::MatrixXd& targets, const Hyperparameters& hyperparameters) {
+  eigen_assert(inducing.rows() == inputs.rows() && inputs.cols() == targets.rows());
   const Eigen::Index m = inducing.cols();
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(m, m);
   GpFit fit;
@@ -163,12 +171,11 @@ GpFit makeSparseGpModel(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& 
   fit.model.hyperparameters = hyperparameters;
   fit.model.beta.resize(m, targets.cols());
   for (int a = 0; a < targets.cols(); ++a) {
-    const Fitc fitc(inducing, inputs, thetaOf(hyperparameters, a), ridge);
+    const Fitc fitc(inducing, inputs, thetaOf(hyperparameters, a));
     if (!fitc.positive_definite) {
       fit.model = GpModel();
-      fit.message =
-          message("the sparse covariance of output ", a + 1,
-                  " is not positive definite: its noise std or sparse_gp/ridge must be larger");
+      fit.message = message("the sparse covariance of output ", a + 1,
+                            " is not positive definite: its noise std must be larger");
       return fit;
     }
     fit.model.beta.col(a) = fitc.beta(targets.col(a));
@@ -181,21 +188,15 @@ GpFit makeSparseGpModel(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& 
   return fit;
 }
 
-Eigen::MatrixXd randomSubset(const Eigen::MatrixXd& inputs, int count, std::mt19937_64* rng) {
-  return columnsOf(inputs, randomIndices(inputs.cols(), count, rng));
-}
-
 GpFit trainSparseGp(const Eigen::MatrixXd& start, const Eigen::MatrixXd& inputs,
                     const Eigen::MatrixXd& targets, const Hyperparameters& hyperparameters,
-                    int max_iterations, double ridge, const std::function<void()>& on_evaluation) {
-  requireInducing(start, inputs, targets, hyperparameters);
+                    int max_iterations, const std::function<void()>& on_evaluation) {
   const auto cost = [&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
     const Eigen::MatrixXd inducing =
         Eigen::Map<const Eigen::MatrixXd>(x.data(), start.rows(), start.cols());
     Eigen::MatrixXd d_inducing;
-    const double value =
-        sparseNegativeLogLikelihood(inducing, inputs, targets, hyperparameters, ridge,
-                                    gradient != nullptr ? &d_inducing : nullptr);
+    const double value = sparseNegativeLogLikelihood(inducing, inputs, targets, hyperparameters,
+                                                     gradient != nullptr ? &d_inducing : nullptr);
     if (gradient != nullptr) {
       *gradient = Eigen::Map<const Eigen::VectorXd>(d_inducing.data(), d_inducing.size());
     }
@@ -212,7 +213,7 @@ GpFit trainSparseGp(const Eigen::MatrixXd& start, const Eigen::MatrixXd& inputs,
       minimise(cost, Eigen::Map<const Eigen::VectorXd>(start.data(), start.size()), solver);
   const Eigen::MatrixXd inducing =
       Eigen::Map<const Eigen::MatrixXd>(minimum.x.data(), start.rows(), start.cols());
-  GpFit fit = makeSparseGpModel(inducing, inputs, targets, hyperparameters, ridge);
+  GpFit fit = makeSparseGpModel(inducing, inputs, targets, hyperparameters);
   fit.outputs.push_back(minimum);
   if (fit.ok && !minimum.improved() && !minimum.converged()) {
     fit.message = "inducing inputs kept at the start, " + minimum.message;
@@ -220,47 +221,26 @@ GpFit trainSparseGp(const Eigen::MatrixXd& start, const Eigen::MatrixXd& inputs,
   return fit;
 }
 
-GpLearner::GpLearner(const GpTrainingOptions& training, const SparseGpOptions& sparse,
-                     GpLearnerState state)
-    : training_(checked(training)), sparse_(checked(sparse)), state_(std::move(state)) {}
-
-/// The full GP. Where it will be replaced by a sparse one, its hyper-parameters are all that
-/// counts.
-GpFit GpLearner::trainFull(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
-                           std::mt19937_64* rng, const std::function<void()>& on_evaluation) const {
-  const bool first = state_.hyperparameters.log_signal_std.size() == 0;
-  const Hyperparameters* const start = first ? nullptr : &state_.hyperparameters;
-  const int count = training_.training_points;
-  if (count == 0 || inputs.cols() <= count) {
-    return trainGp(inputs, targets, training_, start, on_evaluation);
-  }
-  const std::vector<Eigen::Index> drawn = randomIndices(inputs.cols(), count, rng);
-  GpFit few = trainGp(columnsOf(inputs, drawn), columnsOf(targets.transpose(), drawn).transpose(),
-                      training_, start, on_evaluation);
-  if (!few.ok || inputs.cols() > sparse_.max_points) return few;
-  GpFit full = makeGpModel(inputs, targets, few.model.hyperparameters);
-  full.outputs = few.outputs;
-  if (full.ok) full.message = few.message;
-  return full;
-}
-
-GpFit GpLearner::learn(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
-                       std::mt19937_64* rng, const std::function<void()>& on_evaluation) {
-  GpFit full = trainFull(inputs, targets, rng, on_evaluation);
+GpFit learnGp(const GpTrainingOptions& training, const SparseGpOptions& sparse,
+              const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets, std::mt19937_64* rng,
+              GpLearnerState* state, const std::function<void()>& on_evaluation) {
+  const bool first = state->hyperparameters.log_signal_std.size() == 0;
+  if (!first) requireFit(*state, inputs.rows(), targets.cols());
+  const bool use_sparse = inputs.cols() > sparse.max_points;
+  GpFit full = trainFull(training, use_sparse, first ? nullptr : &state->hyperparameters, inputs,
+                         targets, rng, on_evaluation);
   if (!full.ok) return full;
-  if (inputs.cols() <= sparse_.max_points) {
-    state_.hyperparameters = full.model.hyperparameters;
-    return full;
-  }
+  state->hyperparameters = full.model.hyperparameters;
+  if (!use_sparse) return full;
 
-  const bool from_subset = state_.inducing.size() == 0;
+  const bool from_subset = state->inducing.size() == 0;
   const Eigen::MatrixXd start =
-      from_subset ? randomSubset(inputs, sparse_.max_points, rng) : state_.inducing;
-  GpFit fit = trainSparseGp(start, inputs, targets, full.model.hyperparameters,
-                            from_subset ? sparse_.first_iterations : sparse_.max_iterations,
-                            sparse_.ridge, on_evaluation);
-  state_.hyperparameters = full.model.hyperparameters;
-  if (fit.ok) state_.inducing = fit.model.inputs;
+      from_subset ? columnsOf(inputs, randomIndices(inputs.cols(), sparse.max_points, rng))
+                  : state->inducing;
+  GpFit fit =
+      trainSparseGp(start, inputs, targets, full.model.hyperparameters,
+                    from_subset ? sparse.first_iterations : sparse.max_iterations, on_evaluation);
+  if (fit.ok) state->inducing = fit.model.inputs;
   full.ok = fit.ok;
   full.model = std::move(fit.model);
   full.outputs.insert(full.outputs.end(), fit.outputs.begin(), fit.outputs.end());

@@ -5,8 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "ddm_pilco/exponential_sums.h"
-#include "ddm_pilco/gp_model.h"
+#include "ddm_pilco/gp.h"
 #include "ddm_pilco/moments.h"
 
 namespace ddm::pilco {
@@ -32,8 +31,7 @@ struct GpGradient {
 /// S does not contain the observation noise. s may be singular or zero.
 ///
 /// Numbers that are not finite, in the model or in the input, and an s that is far from positive
-/// semi-definite make all results NaN. Not for use from two threads at once: the memory for the
-/// n x n terms is allocated once and belongs to the object.
+/// semi-definite make all results NaN.
 class GpMoments {
  public:
   /// What backward() needs from predict(). Its size does not depend on n^2: the derivatives of the
@@ -54,19 +52,17 @@ class GpMoments {
 
   /// @param input  distribution of x                                  D entries
   /// @param tape   (optional) out: record for backward()
-  /// @throws std::invalid_argument if the input has another dimension than the GP
-  Moments predict(const Gaussian& input, Tape* tape = nullptr);
+  Moments predict(const Gaussian& input, Tape* tape = nullptr) const;
 
   /// Vector-Jacobian product of predict().
   /// @param d_output  dJ/dM, dJ/dS, dJ/dV
   /// @return          dJ/dm, dJ/ds. The latter is symmetric: a change of s(p,q) and s(q,p) by h
   ///                  changes J by h (entry pq + entry qp)
-  /// @throws std::invalid_argument if d_output has other sizes than the output
   Gaussian backward(const Tape& tape, const Moments& d_output) const;
 
   /// Vector-Jacobian product in the model itself. Meant for policies: the matrix Q is formed.
   /// @param d_model  dJ/d inputs, beta, log length-scales are ADDED to it
-  /// @throws std::invalid_argument if the model has model uncertainty
+  /// @pre the model has no model uncertainty
   void backwardToModel(const Tape& tape, const Moments& d_output, GpGradient* d_model) const;
 
  private:
@@ -80,8 +76,10 @@ class GpMoments {
   };
 
   Pair pairTerms(int a, int b, const Eigen::MatrixXd& s) const;
-  bool predictMeans(const Gaussian& input, Moments* output, Tape* tape);
-  bool predictPair(int a, int b, const Gaussian& input, Moments* output, Tape* tape);
+  bool predictMeans(const Eigen::MatrixXd& z, const Eigen::MatrixXd& s, Moments* output,
+                    Tape* tape) const;
+  bool predictPair(int a, int b, const Eigen::MatrixXd& z, const Eigen::MatrixXd& s,
+                   Moments* output, Tape* tape) const;
   Eigen::VectorXd meanAdjoint(const Tape& tape, const Moments& d_output) const;
   void meanToModel(const Tape& tape, const Moments& d_output, GpGradient* d_model) const;
   void pairToModel(int a, int b, double d_sum, const Tape& tape, GpGradient* d_model) const;
@@ -91,11 +89,6 @@ class GpMoments {
   Eigen::VectorXd log_signal_variance_;   // log sf^2                                [E]
   std::vector<Eigen::MatrixXd> weights_;  // half of beta beta^T - A^-1    E times [n x n]
   bool finite_ = false;
-
-  Eigen::MatrixXd z_;  // X_i - m in rows                                        [n x D]
-  Eigen::MatrixXd scaled_b_;
-  ExponentialMatrix matrix_;
-  ExponentialSums sums_;
 };
 
 }  // namespace ddm::pilco

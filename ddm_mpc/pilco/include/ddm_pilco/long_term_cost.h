@@ -1,16 +1,76 @@
-// Long-term cost J of a policy under the learned dynamics, with its exact gradient.
+// Long-term cost of a policy under the learned dynamics, and the search for the best policy.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_model/minimise.h>
+
 #include <Eigen/Core>
-#include <memory>
 #include <vector>
 
+#include "ddm_pilco/features.h"
+#include "ddm_pilco/gp_moments.h"
+#include "ddm_pilco/options.h"
 #include "ddm_pilco/policy.h"
-#include "ddm_pilco/propagation.h"
-#include "ddm_pilco/state_cost.h"
 
 namespace ddm::pilco {
+
+/// What the state means to the dynamics GP and the policy.
+struct PropagationOptions {
+  std::vector<int> angles;  ///< entries of the state that are angles [rad]
+  /// The policy sees a measurement of the state: half the noise variance of each output of the GP
+  /// is added to the state's variance at the input of the policy. Half, because the GP learned it
+  /// from differences of two measurements.
+  bool noisy_policy_input = false;
+};
+
+/// p(x_t) = N(m, s)  ->  p(x_{t+1}) (Deisenroth, Fox and Rasmussen, 2015, Sec. 3.2):
+///
+///   f = features of x (entries that are no angles, then sine and cosine of each angle)
+///   u = policy(f), or policy(features of x + measurement noise)
+///   delta = GP([f, u]);   m' = m + M,   s' = s + cov(x, delta) + cov(delta, x) + S
+///
+/// with cov(x, delta) = s G_f (V_f + G_u V_u): G are gains, V_f and V_u the rows of the GP's gain.
+/// No process noise is added.
+class Propagation {
+ public:
+  /// What backward() needs from step().
+  struct Tape {
+    Gaussian state;
+    Moments features;
+    Gaussian policy_input;
+    Moments control;
+    Moments delta;
+    GpMoments::Tape dynamics;
+  };
+
+  /// @param dynamics  GP with inputs [f, u]; output a is the difference of state entry a
+  Propagation(GpModel dynamics, const PropagationOptions& options);
+
+  int stateDim() const { return state_dim_; }
+  int featureDim() const { return features_.outputDim(); }
+  int controlDim() const { return dynamics_.model().inputDim() - featureDim(); }
+  const Augmentation& features() const { return features_; }
+
+  /// @param state  p(x_t)
+  /// @param tape   (optional) out: record for backward()
+  Gaussian step(const SquashedPolicy& policy, const Gaussian& state, Tape* tape = nullptr) const;
+
+  /// Vector-Jacobian product of step(), exact.
+  /// @param d_next        dJ/dm', dJ/ds'
+  /// @param d_parameters  (optional) dJ/d parameters of the policy is ADDED to it
+  /// @return              dJ/dm, dJ/ds (symmetric)
+  Gaussian backward(const SquashedPolicy& policy, const Tape& tape, const Gaussian& d_next,
+                    Eigen::VectorXd* d_parameters) const;
+
+ private:
+  Gaussian policyState(const Gaussian& state) const;
+
+  int state_dim_;
+  Augmentation features_;
+  GpMoments dynamics_;
+  PropagationOptions options_;
+  Eigen::VectorXd measurement_variance_;  // of what the policy sees, where it is noisy [D]
+};
 
 /// J(theta) = sum_{t=1..H} E[c(x_t)] (Deisenroth and Rasmussen, 2011). x_0 is given and not
 /// counted. The gradient goes backwards through the steps.
@@ -18,18 +78,15 @@ class LongTermCost {
  public:
   /// @param dynamics       one step
   /// @param cost           c
-  /// @param policy         with bounded controls; evaluate() sets its parameters; outlives this
-  /// @param initial_state  p(x_0)
-  /// @param horizon        H, steps
-  /// @throws std::invalid_argument if sizes do not fit, horizon < 1, or the initial state is not
-  ///         finite
-  LongTermCost(Propagation dynamics, StateCost cost, Policy* policy, Gaussian initial_state,
+  /// @param policy         evaluate() sets its parameters; outlives this
+  /// @param initial_state  p(x_0), finite
+  /// @param horizon        H >= 1, steps
+  LongTermCost(Propagation dynamics, StateCost cost, SquashedPolicy* policy, Gaussian initial_state,
                int horizon);
 
   /// @param parameters  theta, of the policy
   /// @param gradient    (optional) out: dJ/d theta
   /// @return J. NaN, with a gradient of NaN, where the prediction leaves the finite numbers
-  /// @throws std::invalid_argument for a wrong number of parameters
   double evaluate(const Eigen::VectorXd& parameters, Eigen::VectorXd* gradient = nullptr);
 
   /// p(x_0) ... p(x_H) of the last evaluate(): H + 1 of them, or fewer where it ended in NaN.
@@ -46,11 +103,18 @@ class LongTermCost {
 
   Propagation dynamics_;
   StateCost cost_;
-  Policy* policy_;
+  SquashedPolicy* policy_;
   int horizon_;
   std::vector<Gaussian> states_;
   std::vector<double> costs_;
   std::vector<Propagation::Tape> tapes_;
 };
+
+/// Minimises J(parameters) by BFGS from `start`. A policy for which J is not finite (a predicted
+/// distribution that grows without bound) makes the line search take a shorter step.
+/// @param cost   J, with its gradient
+/// @param start  parameters of the last trial's policy                                     [P]
+Minimum searchPolicy(const DifferentiableFunction& cost, const Eigen::VectorXd& start,
+                     const PolicySearchOptions& options);
 
 }  // namespace ddm::pilco

@@ -1,19 +1,26 @@
-// What every block of PILCO returns for a Gaussian input: mean, covariance and gain of its output.
+// What every block of PILCO takes and returns: a Gaussian, and mean, covariance and gain of an output.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <Eigen/Core>
+#include <sstream>
+#include <stdexcept>
 #include <string>
 
-#include "ddm_pilco/gp_model.h"
-#include "ddm_pilco/messages.h"
-
 namespace ddm::pilco {
+
+/// A Gaussian N(mean, covariance).
+struct Gaussian {
+  Eigen::VectorXd mean;        ///< [D]
+  Eigen::MatrixXd covariance;  ///< [D x D]
+};
 
 /// Moments of y = f(x) for x ~ N(m, s). The same struct holds derivatives of a scalar J in them.
 ///
 /// The gain is s^-1 cov(x, y), that is E[df/dx]^T (Stein's lemma): cov(x, y) = s gain. It stays
 /// finite where s is singular or zero, and nothing here ever inverts s.
+///
+/// Sizes of arguments are checked by eigen_assert, i.e. in debug builds only.
 struct Moments {
   Eigen::VectorXd mean;        ///< M                          [E]
   Eigen::MatrixXd covariance;  ///< S                      [E x E]
@@ -41,25 +48,19 @@ inline Gaussian known(const Eigen::VectorXd& x) {
 /// (A + A^T) / 2
 inline Eigen::MatrixXd symmetricPart(const Eigen::MatrixXd& A) { return 0.5 * (A + A.transpose()); }
 
-/// @throws std::invalid_argument that starts with `what` unless the matrix has this shape
-inline void requireShape(const Eigen::Ref<const Eigen::MatrixXd>& matrix, Eigen::Index rows,
-                         Eigen::Index cols, const std::string& what) {
-  require(matrix.rows() == rows && matrix.cols() == cols, what, " must be [", rows, " x ", cols,
-          "], got [", matrix.rows(), " x ", matrix.cols(), "]");
+/// All parts one after the other, as a stream prints them.
+template <class... Parts>
+std::string message(const Parts&... parts) {
+  std::ostringstream text;
+  (text << ... << parts);
+  return text.str();
 }
 
-/// @throws std::invalid_argument if the mean is not [dim] or the covariance not [dim x dim]; the
-///         message starts with `who`
-inline void requireSize(const Gaussian& input, int dim, const std::string& who) {
-  requireShape(input.mean, dim, 1, who + ": the mean of the input");
-  requireShape(input.covariance, dim, dim, who + ": the covariance of the input");
-}
-
-/// The same for derivatives that are handed back to a block.
-inline void requireSize(const Moments& d_output, int input_dim, int output_dim,
-                        const std::string& who) {
-  requireSize(Gaussian{d_output.mean, d_output.covariance}, output_dim, who);
-  requireShape(d_output.gain, input_dim, output_dim, who + ": the derivative in the gain");
+/// @param ok  to be written so that NaN makes it false
+/// @throws std::invalid_argument that says all parts, unless `ok`
+template <class... Parts>
+void require(bool ok, const Parts&... parts) {
+  if (!ok) throw std::invalid_argument(message(parts...));
 }
 
 }  // namespace ddm::pilco

@@ -1,37 +1,120 @@
-// Interface of a policy before squashing: moments of its control and their derivatives.
+// PILCO's policy: an RBF network with free pseudo-data, its output squashed by two sines.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <memory>
+#include <vector>
 
-#include "ddm_pilco/moments.h"
+#include "ddm_pilco/gp_moments.h"
 
 namespace ddm::pilco {
 
-/// A map from features of the state to controls of any size, with parameters in one flat vector.
-class Policy {
+/// pi(x) = sum_i beta_i k(c_i, x),  beta = (K + 0.01^2 I)^-1 targets, with the squared-exponential
+/// k of signal standard deviation 1 (Deisenroth, 2010: an RBF network as the mean of a GP).
+///
+/// The moments are those of a GP without model uncertainty; 1e-6 is added to the diagonal of S.
+/// Parameters: log length-scales [D x U], centres [nc x D], targets [nc x U], each by columns. The
+/// signal and noise standard deviations are fixed and not among them.
+class RbfPolicy {
  public:
-  virtual ~Policy() = default;
+  static constexpr double kNoiseVariance = 1e-4;
+  static constexpr double kJitter = 1e-6;
 
-  virtual int inputDim() const = 0;
-  virtual int outputDim() const = 0;
+  /// All parameters are 0 until setParameters().
+  RbfPolicy(int input_dim, int output_dim, int num_centres);
+
+  int inputDim() const { return input_dim_; }
+  int outputDim() const { return output_dim_; }
 
   /// A copy: a search that starts from them must not see its start change.
-  virtual Eigen::VectorXd parameters() const = 0;
-  int numParameters() const { return static_cast<int>(parameters().size()); }
+  Eigen::VectorXd parameters() const { return parameters_; }
 
-  /// @throws std::invalid_argument for a wrong number of parameters
-  virtual void setParameters(const Eigen::VectorXd& parameters) = 0;
+  /// Parameters that are not finite, or with which K loses positive definiteness, are accepted; all
+  /// predictions are NaN then.
+  void setParameters(const Eigen::VectorXd& parameters);
 
-  /// @throws std::invalid_argument for a wrong input dimension
-  virtual Moments predict(const Gaussian& input) = 0;
+  Moments predict(const Gaussian& input) const;
 
   /// Vector-Jacobian product of predict() at the same input.
   /// @param d_output      dJ/dM, dJ/dS, dJ/dV
   /// @param d_parameters  (optional) dJ/d parameters is ADDED to it
   /// @return              dJ/dm, dJ/ds (symmetric)
-  virtual Gaussian backward(const Gaussian& input, const Moments& d_output,
-                            Eigen::VectorXd* d_parameters) = 0;
+  Gaussian backward(const Gaussian& input, const Moments& d_output,
+                    Eigen::VectorXd* d_parameters) const;
+
+  /// The flat vector from its parts.
+  /// @param log_length_scales                                         [D x U]
+  /// @param centres            one per column                         [D x nc]
+  /// @param targets                                                   [nc x U]
+  static Eigen::VectorXd packParameters(const Eigen::MatrixXd& log_length_scales,
+                                        const Eigen::MatrixXd& centres,
+                                        const Eigen::MatrixXd& targets);
+
+ private:
+  void addThroughBeta(GpGradient* d_network, Eigen::MatrixXd* d_targets) const;
+
+  int input_dim_;
+  int output_dim_;
+  int num_centres_;
+  Eigen::VectorXd parameters_;
+  std::vector<Eigen::MatrixXd> kernels_;                     // K_u            U times [nc x nc]
+  std::vector<Eigen::LLT<Eigen::MatrixXd>> factorisations_;  // of K_u + 1e-4 I
+  std::unique_ptr<GpMoments> network_;
+};
+
+/// u = u_max (9 sin x + sin 3x) / 8 entry by entry: a wave with flat tops in [-u_max, u_max] and
+/// slope 3/2 u_max at 0 (Deisenroth, Fox and Rasmussen, 2015, Sec. 5; the squashing of Deisenroth,
+/// 2010, is a single sine). For x ~ N(m, s), w_1 = 9/8, w_3 = 1/8:
+///
+///   M_i  = u_max_i sum_k w_k exp(-k^2 s_ii / 2) sin(k m_i)
+///   S_ij = u_max_i u_max_j sum_kl w_k w_l cov(sin k x_i, sin l x_j)
+///   gain: diagonal, u_max_i sum_k w_k k exp(-k^2 s_ii / 2) cos(k m_i)
+class Squashing {
+ public:
+  /// @param max_control  u_max > 0, one for each control
+  explicit Squashing(Eigen::VectorXd max_control);
+
+  int dim() const { return static_cast<int>(max_control_.size()); }
+  const Eigen::VectorXd& maxControl() const { return max_control_; }
+
+  Moments predict(const Gaussian& input) const;
+
+  /// Moments of squash(y) from those of y, which is taken as Gaussian.
+  Moments applyTo(const Moments& y) const;
+
+  /// Vector-Jacobian product of predict() at the same input. Only the diagonal of dJ/dV counts.
+  Gaussian backward(const Gaussian& input, const Moments& d_output) const;
+
+ private:
+  Eigen::VectorXd max_control_;
+};
+
+/// Moments of u = squash(pi(x)). pi(x) is taken as Gaussian in between; the gain is that of pi
+/// times the (diagonal) gain of the squashing.
+class SquashedPolicy {
+ public:
+  /// @param policy       pi, before squashing
+  /// @param max_control  u_max, one for each control
+  SquashedPolicy(RbfPolicy policy, const Eigen::VectorXd& max_control);
+
+  int inputDim() const { return policy_.inputDim(); }
+  int outputDim() const { return policy_.outputDim(); }
+  Eigen::VectorXd parameters() const { return policy_.parameters(); }
+  void setParameters(const Eigen::VectorXd& p) { policy_.setParameters(p); }
+
+  /// As in RbfPolicy.
+  Moments predict(const Gaussian& input) const;
+  Gaussian backward(const Gaussian& input, const Moments& d_output,
+                    Eigen::VectorXd* d_parameters) const;
+
+  /// Control for known features: the mean of predict() with zero covariance.
+  Eigen::VectorXd control(const Eigen::VectorXd& features) const;
+
+ private:
+  RbfPolicy policy_;
+  Squashing squashing_;
 };
 
 }  // namespace ddm::pilco

@@ -1,12 +1,11 @@
 // Tests of the marginal likelihood and of training on it.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_pilco/gp_training.h"
+#include "ddm_pilco/gp.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include "ddm_model/testing/gradient_check.h"
@@ -14,10 +13,8 @@
 #include "ddm_model/testing/vector_of.h"
 #include "ddm_msgs/testing/expect_error.h"
 #include "ddm_msgs/testing/not_finite.h"
-#include "ddm_pilco/gp_model.h"
 
-namespace ddm {
-namespace pilco {
+namespace ddm::pilco {
 namespace {
 
 using ::ddm::testing::gradientMatches;
@@ -25,6 +22,8 @@ using ::ddm::testing::names;
 using ::ddm::testing::randomMatrix;
 using ::ddm::testing::throwsNaming;
 using ::ddm::testing::vectorOf;
+
+constexpr int kIterations = 300;
 
 /// A smooth function of three inputs, the last of which does not matter, with noise of std 0.05.
 struct Toy {
@@ -42,16 +41,6 @@ Eigen::VectorXd someTheta() {
   Eigen::VectorXd theta(5);
   theta << 0.3, -0.2, 0.6, 0.4, -1.7;
   return theta;
-}
-
-TEST(SquaredExponential, IsTheFormulaForEachPair) {
-  const Eigen::MatrixXd a = randomMatrix(2, 3, 1), b = randomMatrix(2, 4, 2);
-  const Eigen::VectorXd l = vectorOf({0.5, 2.0});
-  const Eigen::MatrixXd k = squaredExponential(a, b, l, 1.5);
-  ASSERT_EQ(3, k.rows());
-  ASSERT_EQ(4, k.cols());
-  const double u = (a(0, 2) - b(0, 1)) / 0.5, v = (a(1, 2) - b(1, 1)) / 2.0;
-  EXPECT_NEAR(2.25 * std::exp(-0.5 * (u * u + v * v)), k(2, 1), 1e-14);
 }
 
 TEST(NegativeLogLikelihood, IsThatOfAMultivariateNormal) {
@@ -96,46 +85,23 @@ TEST(NegativeLogLikelihood, IsInfiniteWherePositiveDefinitenessIsLost) {
             negativeLogLikelihood(inputs, vectorOf({1, 2, 3, 4}), theta));
 }
 
-TEST(Curb, IsOneWhereALimitIsReachedAndNothingFarInside) {
-  const GpTrainingOptions options;
+TEST(Penalty, IsOneWhereALimitIsReachedAndNothingFarInsideAndItsGradientMatchesDifferences) {
   const Eigen::VectorXd input_std = vectorOf({2.0, 0.1});
   Eigen::VectorXd theta(4);
   theta << std::log(2.0), std::log(0.1), 0.0, -1.0;
-  EXPECT_LT(curb(theta, input_std, options), 1e-20);
+  EXPECT_LT(penalty(theta, input_std), 1e-20);
   theta[0] = std::log(200.0);
-  EXPECT_NEAR(1.0, curb(theta, input_std, options), 1e-12);
+  EXPECT_NEAR(1.0, penalty(theta, input_std), 1e-12);
   theta[1] = std::log(0.001);
-  EXPECT_NEAR(2.0, curb(theta, input_std, options), 1e-12);
+  EXPECT_NEAR(2.0, penalty(theta, input_std), 1e-12);
   theta[2] = std::log(1000.0) - 1.0;
-  EXPECT_NEAR(3.0, curb(theta, input_std, options), 1e-12);
-}
-
-TEST(Curb, GradientIsAddedAndMatchesDifferences) {
-  GpTrainingOptions options;
-  options.curb_power = 4;  // the thirtieth power varies too fast for differences
-  const Eigen::VectorXd input_std = vectorOf({1.5, 0.2, 0.7});
-  const auto f = [&](const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
-    if (gradient != nullptr) *gradient = theta;  // that of the first term
-    return 0.5 * theta.squaredNorm() + curb(theta, input_std, options, gradient);
+  EXPECT_NEAR(3.0, penalty(theta, input_std), 1e-12);
+  const auto f = [&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+    if (gradient != nullptr) *gradient = x;  // that of the first term
+    // the thirtieth power varies too fast for differences
+    return 0.5 * x.squaredNorm() + penalty(x, input_std, gradient, /*power=*/4);
   };
-  EXPECT_TRUE(
-      gradientMatches(f, (Eigen::VectorXd(5) << 3.0, -4.0, 2.0, 2.5, -3.0).finished(), 1e-8));
-}
-
-TEST(SampleStd, HasDivisorOneLessThanTheCount) {
-  Eigen::MatrixXd samples(2, 3);
-  samples << 1, 2, 6, 5, 5, 5;
-  EXPECT_NEAR(std::sqrt(7.0), sampleStd(samples)[0], 1e-15);
-  EXPECT_EQ(0.0, sampleStd(samples)[1]);
-}
-
-TEST(InitialHyperparameters, AreTheSpreadOfTheData) {
-  const Toy toy(30);
-  const Hyperparameters initial = initialHyperparameters(toy.inputs, toy.targets);
-  const Eigen::VectorXd target_std = sampleStd(toy.targets.transpose());
-  EXPECT_NEAR(sampleStd(toy.inputs)[2], std::exp(initial.log_length_scales(2, 1)), 1e-14);
-  EXPECT_NEAR(target_std[1], std::exp(initial.log_signal_std[1]), 1e-14);
-  EXPECT_NEAR(target_std[1] / 10.0, std::exp(initial.log_noise_std[1]), 1e-14);
+  EXPECT_TRUE(gradientMatches(f, vectorOf({3.0, -4.0, 2.5, -3.0}), 1e-8));
 }
 
 TEST(MakeGpModel, InvertsTheCovariance) {
@@ -170,7 +136,7 @@ TEST(MakeGpModel, NamesTheOutputThatIsNotPositiveDefinite) {
 
 TEST(TrainGp, EndsAtAnOptimumThatKnowsNoiseAndRelevance) {
   const Toy toy(80);
-  const GpFit fit = trainGp(toy.inputs, toy.targets, GpTrainingOptions());
+  const GpFit fit = trainGp(toy.inputs, toy.targets, kIterations);
   ASSERT_TRUE(fit.ok) << fit.message;
   EXPECT_EQ("", fit.message);
   ASSERT_EQ(2u, fit.outputs.size());
@@ -184,15 +150,15 @@ TEST(TrainGp, EndsAtAnOptimumThatKnowsNoiseAndRelevance) {
   }
   const Eigen::VectorXd theta = thetaOf(fit.model.hyperparameters, 1);
   const double expected = negativeLogLikelihood(toy.inputs, toy.targets.col(1), theta) +
-                          curb(theta, sampleStd(toy.inputs), GpTrainingOptions());
+                          penalty(theta, sampleStd(toy.inputs));
   EXPECT_NEAR(expected, fit.outputs[1].cost, 1e-9 * std::abs(expected));
 }
 
 TEST(TrainGp, GoesOnFromThePreviousOptimum) {
   const Toy toy(60);
-  const GpFit first = trainGp(toy.inputs, toy.targets, GpTrainingOptions());
+  const GpFit first = trainGp(toy.inputs, toy.targets, kIterations);
   const Hyperparameters optimum = first.model.hyperparameters;
-  const GpFit again = trainGp(toy.inputs, toy.targets, GpTrainingOptions(), &optimum);
+  const GpFit again = trainGp(toy.inputs, toy.targets, kIterations, &optimum);
   ASSERT_TRUE(again.ok) << again.message;
   for (int output = 0; output < 2; ++output) {
     EXPECT_EQ(first.outputs[output].cost, again.outputs[output].initial_cost);
@@ -201,31 +167,12 @@ TEST(TrainGp, GoesOnFromThePreviousOptimum) {
   }
 }
 
-TEST(TrainGp, KeepsTheLimitOfIterations) {
-  const Toy toy(40);
-  GpTrainingOptions options;
-  options.max_iterations = 3;
-  const GpFit fit = trainGp(toy.inputs, toy.targets, options);
-  ASSERT_TRUE(fit.ok);
-  EXPECT_EQ(3, fit.outputs[0].iterations);
-  EXPECT_LT(fit.outputs[0].cost, fit.outputs[0].initial_cost);
-}
-
-TEST(TrainGp, KeepsTheNoiseOfNoiselessDataAtTheCurb) {
-  Toy toy(40);
-  toy.targets.col(0) = toy.inputs.row(0).transpose();
-  const GpFit fit = trainGp(toy.inputs, toy.targets, GpTrainingOptions());
-  ASSERT_TRUE(fit.ok) << fit.message;
-  const Hyperparameters& trained = fit.model.hyperparameters;
-  EXPECT_LT(trained.log_signal_std[0] - trained.log_noise_std[0], std::log(2000.0));
-}
-
 TEST(TrainGp, CopesWithRepeatedPoints) {
   const Toy toy(30);
   Eigen::MatrixXd inputs(3, 60), targets(60, 2);
   inputs << toy.inputs, toy.inputs;
   targets << toy.targets, toy.targets;
-  const GpFit fit = trainGp(inputs, targets, GpTrainingOptions());
+  const GpFit fit = trainGp(inputs, targets, kIterations);
   ASSERT_TRUE(fit.ok) << fit.message;
   EXPECT_TRUE(fit.model.beta.allFinite());
   EXPECT_LT(fit.outputs[0].cost, fit.outputs[0].initial_cost);
@@ -236,7 +183,7 @@ TEST(TrainGp, TrainsAnewAndSaysSoWhereThePreviousOptimumCannotBeEvaluated) {
   toy.inputs.col(3) = toy.inputs.col(5);
   Hyperparameters bad = initialHyperparameters(toy.inputs, toy.targets);
   bad.log_noise_std[1] = -40.0;
-  const GpFit fit = trainGp(toy.inputs, toy.targets, GpTrainingOptions(), &bad);
+  const GpFit fit = trainGp(toy.inputs, toy.targets, kIterations, &bad);
   ASSERT_TRUE(fit.ok) << fit.message;
   EXPECT_TRUE(names(fit.message, {"output 2: ", "previous hyper-parameters"}));
 }
@@ -244,78 +191,31 @@ TEST(TrainGp, TrainsAnewAndSaysSoWhereThePreviousOptimumCannotBeEvaluated) {
 TEST(TrainGp, TellsThatTheLikelihoodCannotBeEvaluatedAtAll) {
   Toy toy(20);
   toy.targets.col(1) *= 1e-161;  // its noise variance is below what double can tell from 0
-  const GpFit fit = trainGp(toy.inputs, toy.targets, GpTrainingOptions());
+  const GpFit fit = trainGp(toy.inputs, toy.targets, kIterations);
   EXPECT_FALSE(fit.ok);
   EXPECT_TRUE(names(fit.message, {"output 2: ", "likelihood"}));
   EXPECT_EQ(0, fit.model.numPoints());
 }
 
-std::function<void()> training(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets) {
-  return [inputs, targets] { trainGp(inputs, targets, GpTrainingOptions()); };
-}
-
-TEST(TrainGp, RefusesNaNAndInfinityInTheDataAndNamesTheirPlace) {
-  const Toy toy(10);
-  Eigen::MatrixXd changed = toy.inputs;
-  changed(1, 6) = kNaN;
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training(changed, toy.targets),
-                                                  {"input 2 of point 7", "finite", "nan"}));
-  changed = toy.targets;
-  changed(3, 1) = std::numeric_limits<double>::infinity();
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training(toy.inputs, changed),
-                                                  {"target 2 of point 4", "finite", "inf"}));
-}
-
 TEST(TrainGp, RefusesDataItCannotLearnFromAndNamesThem) {
   const Toy toy(10);
+  const auto refused = [](const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
+                          const std::vector<std::string>& parts) {
+    return throwsNaming<std::invalid_argument>([&] { trainGp(inputs, targets, kIterations); },
+                                               parts);
+  };
   Eigen::MatrixXd changed = toy.inputs;
+  changed(1, 6) = kNaN;
+  EXPECT_TRUE(refused(changed, toy.targets, {"input 2 of point 7", "finite", "nan"}));
+  changed = toy.inputs;
   changed.row(2).setConstant(0.1);
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training(changed, toy.targets),
-                                                  {"input 3 is 0.1", "all 10 points", "images"}));
+  EXPECT_TRUE(refused(changed, toy.targets, {"input 3 is 0.1", "all 10 points", "images"}));
   changed = toy.targets;
-  changed.col(0).setZero();
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training(toy.inputs, changed),
-                                                  {"target 1 is 0", "all 10 points"}));
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training(toy.inputs, 1e200 * toy.targets),
-                                                  {"target 1", "too large"}));
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      training(toy.inputs.leftCols(1), toy.targets.topRows(1)), {" 2 points", "got 1"}));
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      training(toy.inputs.leftCols(0), toy.targets.topRows(0)), {"needs data, got 0 points"}));
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training(toy.inputs, toy.targets.topRows(9)),
-                                                  {"got 10 and 9"}));
-}
-
-TEST(TrainGp, RefusesHyperparametersOfAnotherSizeOrNotFinite) {
-  const Toy toy(10);
-  Hyperparameters start = initialHyperparameters(toy.inputs, toy.targets);
-  start.log_signal_std[1] = kNaN;
-  const auto training = [&] { trainGp(toy.inputs, toy.targets, GpTrainingOptions(), &start); };
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training, {"hyper-parameters", "finite"}));
-  start = initialHyperparameters(toy.inputs, toy.targets);
-  start.log_noise_std[0] = kNaN;
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training, {"hyper-parameters", "finite"}));
-  start = initialHyperparameters(toy.inputs, toy.targets);
-  start.log_length_scales(2, 1) = kNaN;
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(training, {"hyper-parameters", "finite"}));
-  start.log_signal_std.setZero(3);
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      training, {"3 inputs", "2 outputs", "3 signal", "2 noise"}));
-}
-
-TEST(GpTrainingOptions, AllProblemsAreReportedAndNaNIsOne) {
-  EXPECT_TRUE(GpTrainingOptions().problems().empty());
-  GpTrainingOptions options;
-  options.max_iterations = -1;
-  options.length_scale_limit = kNaN;
-  options.signal_to_noise_limit = 1.0;
-  options.curb_power = 3;
-  ASSERT_EQ(4u, options.problems().size());
-  EXPECT_TRUE(names(options.problems()[0], {"gp/max_iterations", "[0, 1000000]", "got -1"}));
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { trainGp(Toy(9).inputs, Toy(9).targets, options); }, {"gp/max_iterations"}));
+  changed(3, 1) = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(refused(toy.inputs, changed, {"target 2 of point 4", "finite", "inf"}));
+  EXPECT_TRUE(refused(toy.inputs, 1e200 * toy.targets, {"target 1", "too large"}));
+  EXPECT_TRUE(refused(toy.inputs.leftCols(1), toy.targets.topRows(1), {" 2 points", "got 1"}));
 }
 
 }  // namespace
-}  // namespace pilco
-}  // namespace ddm
+}  // namespace ddm::pilco

@@ -1,12 +1,11 @@
-// Moments of sines and cosines of Gaussian angles, and features of a state with angles.
+// Features of a state with angles, and the saturating cost of a state.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_pilco/trigonometric.h"
+#include "ddm_pilco/features.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
-
-#include "ddm_pilco/messages.h"
 
 namespace ddm::pilco {
 namespace {
@@ -18,11 +17,18 @@ double scaledGrowth(double v, double c) {
 
 constexpr double kHalfPi = 1.57079632679489661923;
 
-void requireIndices(const std::vector<int>& indices, int dim) {
-  for (const int index : indices) {
-    require(index >= 0 && index < dim, "augmentation: an index must lie in 0 ... ", dim - 1,
-            ", got ", index);
-  }
+constexpr double kRounding = 1e-12;
+
+/// E[exp(-k/2 (x - z)^T W (x - z))], and P_k = W (I + k s W)^-1.
+double expectedReward(const Gaussian& input, const Eigen::VectorXd& target,
+                      const Eigen::MatrixXd& weight, double k, Eigen::MatrixXd* precision) {
+  const Eigen::Index dim = target.size();
+  const Eigen::MatrixXd s = symmetricPart(input.covariance);
+  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(Eigen::MatrixXd::Identity(dim, dim) +
+                                                k * weight * s);
+  *precision = symmetricPart(lu.solve(weight));
+  const Eigen::VectorXd d = input.mean - target;
+  return std::exp(-0.5 * k * d.dot(*precision * d)) / std::sqrt(lu.determinant());
 }
 
 }  // namespace
@@ -45,20 +51,8 @@ double sineCovariance(double mean_a, double mean_b, double variance_a, double va
   return value;
 }
 
-Augmentation::Augmentation(int input_dim, std::vector<int> kept, std::vector<int> angles,
-                           std::vector<double> scales)
-    : input_dim_(input_dim),
-      kept_(std::move(kept)),
-      angles_(std::move(angles)),
-      scales_(std::move(scales)) {
-  requireIndices(kept_, input_dim);
-  requireIndices(angles_, input_dim);
-  if (scales_.empty()) scales_.assign(angles_.size(), 1.0);
-  require(scales_.size() == angles_.size(),
-          "augmentation: there must be as many scales as angles, got ", scales_.size(), " and ",
-          angles_.size());
-  require(outputDim() >= 1, "augmentation: there must be an output");
-}
+Augmentation::Augmentation(int input_dim, std::vector<int> kept, std::vector<int> angles)
+    : input_dim_(input_dim), kept_(std::move(kept)), angles_(std::move(angles)) {}
 
 int Augmentation::outputDim() const { return static_cast<int>(kept_.size() + 2 * angles_.size()); }
 
@@ -67,7 +61,6 @@ Eigen::VectorXd Augmentation::value(const Eigen::VectorXd& x) const {
 }
 
 Moments Augmentation::predict(const Gaussian& input) const {
-  requireSize(input, input_dim_, "augmentation");
   const Eigen::VectorXd& m = input.mean;
   const Eigen::MatrixXd s = symmetricPart(input.covariance);
   Moments output = constantMoments(input_dim_, outputDim());
@@ -79,7 +72,7 @@ Moments Augmentation::predict(const Gaussian& input) const {
   for (std::size_t k = 0; k < angles_.size(); ++k) {
     const int i = angles_[k];
     const int sine = num_kept + 2 * static_cast<int>(k);
-    const double scale = scales_[k] * std::exp(-0.5 * s(i, i));
+    const double scale = std::exp(-0.5 * s(i, i));
     output.mean[sine] = scale * std::sin(m[i]);
     output.mean[sine + 1] = scale * std::cos(m[i]);
     output.gain(i, sine) = output.mean[sine + 1];
@@ -93,14 +86,11 @@ Moments Augmentation::predict(const Gaussian& input) const {
   }
   for (int p = num_kept; p < outputDim(); ++p) {
     for (int q = num_kept; q <= p; ++q) {
-      const int a = (p - num_kept) / 2;
-      const int b = (q - num_kept) / 2;
-      const int i = angles_[a];
-      const int j = angles_[b];
+      const int i = angles_[(p - num_kept) / 2];
+      const int j = angles_[(q - num_kept) / 2];
       const double mean_p = m[i] + ((p - num_kept) % 2) * kHalfPi;
       const double mean_q = m[j] + ((q - num_kept) % 2) * kHalfPi;
-      output.covariance(p, q) =
-          scales_[a] * scales_[b] * sineCovariance(mean_p, mean_q, s(i, i), s(j, j), s(i, j));
+      output.covariance(p, q) = sineCovariance(mean_p, mean_q, s(i, i), s(j, j), s(i, j));
       output.covariance(q, p) = output.covariance(p, q);
     }
   }
@@ -108,8 +98,6 @@ Moments Augmentation::predict(const Gaussian& input) const {
 }
 
 Gaussian Augmentation::backward(const Gaussian& input, const Moments& d_output) const {
-  requireSize(input, input_dim_, "augmentation");
-  requireSize(d_output, input_dim_, outputDim(), "augmentation");
   const Eigen::VectorXd& m = input.mean;
   const Eigen::MatrixXd s = symmetricPart(input.covariance);
   const Moments output = predict(input);
@@ -140,15 +128,13 @@ Gaussian Augmentation::backward(const Gaussian& input, const Moments& d_output) 
   }
   for (int p = num_kept; p < outputDim(); ++p) {
     for (int q = num_kept; q <= p; ++q) {
-      const int a = (p - num_kept) / 2;
-      const int b = (q - num_kept) / 2;
-      const int i = angles_[a];
-      const int j = angles_[b];
+      const int i = angles_[(p - num_kept) / 2];
+      const int j = angles_[(q - num_kept) / 2];
       const double mean_p = m[i] + ((p - num_kept) % 2) * kHalfPi;
       const double mean_q = m[j] + ((q - num_kept) % 2) * kHalfPi;
       SineCovarianceGradient gradient;
       sineCovariance(mean_p, mean_q, s(i, i), s(j, j), s(i, j), &gradient);
-      const double weight = (p == q ? 1.0 : 2.0) * d_covariance(p, q) * scales_[a] * scales_[b];
+      const double weight = (p == q ? 1.0 : 2.0) * d_covariance(p, q);
       d_input.mean[i] += weight * gradient.mean_a;
       d_input.mean[j] += weight * gradient.mean_b;
       d_input.covariance(i, i) += weight * gradient.variance;
@@ -166,6 +152,58 @@ Augmentation replaceAngles(int input_dim, const std::vector<int>& angles) {
     if (std::find(angles.begin(), angles.end(), i) == angles.end()) kept.push_back(i);
   }
   return Augmentation(input_dim, kept, angles);
+}
+
+SaturatingCost::SaturatingCost(Eigen::VectorXd target, const Eigen::MatrixXd& weight)
+    : target_(std::move(target)), weight_(weight) {
+  eigen_assert(weight_.isApprox(weight_.transpose(), kRounding));
+}
+
+/// dE[c]/dm = r P d,  dE[c]/ds = r (P - P d d^T P) / 2,  with r = 1 - E[c], d = m - z.
+double SaturatingCost::expected(const Gaussian& input, Gaussian* d_input) const {
+  Eigen::MatrixXd P;
+  const double reward = expectedReward(input, target_, weight_, 1.0, &P);
+  if (d_input != nullptr) {
+    const Eigen::VectorXd P_d = P * (input.mean - target_);
+    d_input->mean = reward * P_d;
+    d_input->covariance = 0.5 * reward * (P - P_d * P_d.transpose());
+  }
+  return 1.0 - reward;
+}
+
+double SaturatingCost::variance(const Gaussian& input) const {
+  Eigen::MatrixXd P;
+  const double reward = expectedReward(input, target_, weight_, 1.0, &P);
+  const double squared = expectedReward(input, target_, weight_, 2.0, &P);
+  const double variance = squared - reward * reward;
+  return variance < kRounding ? 0.0 : variance;
+}
+
+StateCost::StateCost(Augmentation features, SaturatingCost cost)
+    : features_(std::move(features)), cost_(std::move(cost)) {
+  eigen_assert(features_.outputDim() == cost_.inputDim());
+}
+
+double StateCost::expected(const Gaussian& state, Gaussian* d_state) const {
+  const Gaussian features = marginal(features_.predict(state));
+  if (d_state == nullptr) return cost_.expected(features);
+  Gaussian d_features;
+  const double expected = cost_.expected(features, &d_features);
+  *d_state = features_.backward(
+      state, Moments{d_features.mean, d_features.covariance,
+                     Eigen::MatrixXd::Zero(features_.inputDim(), features_.outputDim())});
+  return expected;
+}
+
+double StateCost::variance(const Gaussian& state) const {
+  return cost_.variance(marginal(features_.predict(state)));
+}
+
+StateCost pendulumCost(double length, double width) {
+  const double weight = length * length / (width * width);
+  return StateCost(
+      Augmentation(2, {}, {1}),
+      SaturatingCost(Eigen::Vector2d(0.0, -1.0), weight * Eigen::MatrixXd::Identity(2, 2)));
 }
 
 }  // namespace ddm::pilco

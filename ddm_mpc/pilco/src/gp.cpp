@@ -1,15 +1,13 @@
-// Training of Gaussian processes: hyper-parameters that maximise the marginal likelihood.
+// Full Gaussian processes: hyper-parameters that maximise the marginal likelihood.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_pilco/gp_training.h"
-
-#include <ddm_params/option_checks.h>
+#include "ddm_pilco/gp.h"
 
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "ddm_pilco/messages.h"
+#include "ddm_pilco/moments.h"
 
 namespace ddm::pilco {
 namespace {
@@ -17,18 +15,19 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLogTwoPi = 1.8378770664093453;
+/// Beyond this distance the covariance, 1e-100 of the signal's variance, is zero: products of such
+/// numbers would be denormal, and a processor takes a hundred times as long for those.
+constexpr double kFarthest = 460.0;
 
-/// @param samples  one per column
-void requireFinite(const Eigen::MatrixXd& samples, const char* name) {
+/// @param samples  one per column, at least two
+/// @throws std::invalid_argument that names the first row that nothing can be learnt from
+void requireVaried(const Eigen::MatrixXd& samples, const char* name) {
   for (Eigen::Index i = 0; i < samples.cols(); ++i) {
     for (Eigen::Index d = 0; d < samples.rows(); ++d) {
       require(std::isfinite(samples(d, i)), name, " ", d + 1, " of point ", i + 1, " of ",
               samples.cols(), " must be a finite number, got ", samples(d, i));
     }
   }
-}
-
-void requireVaried(const Eigen::MatrixXd& samples, const char* name) {
   const Eigen::VectorXd spread = sampleStd(samples);
   for (Eigen::Index d = 0; d < samples.rows(); ++d) {
     require(std::isfinite(spread[d]), name, " ", d + 1,
@@ -39,14 +38,6 @@ void requireVaried(const Eigen::MatrixXd& samples, const char* name) {
             " points: nothing can be learnt from it. Leave it out, or record data in which it "
             "changes; a feature of images: learn fewer of them");
   }
-}
-
-/// Finite data of at least two points, and no input or target that is the same in all of them.
-void requireVariedData(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets) {
-  requireFiniteData(inputs, targets);
-  require(inputs.cols() >= 2, "training a GP needs at least 2 points, got 1");
-  requireVaried(inputs, "input");
-  requireVaried(targets.transpose(), "target");
 }
 
 /// A = K + sn^2 I and its factor, for one output.
@@ -106,20 +97,20 @@ struct OutputProblem {
   const Eigen::MatrixXd& inputs;
   Eigen::VectorXd targets;
   const Eigen::VectorXd& input_std;
-  const GpTrainingOptions& options;
   const std::function<void()>& on_evaluation;
 
   double operator()(const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) const {
     const double plain = negativeLogLikelihood(inputs, targets, theta, gradient);
     if (on_evaluation) on_evaluation();
-    return plain + curb(theta, input_std, options, gradient);
+    return plain + penalty(theta, input_std, gradient);
   }
 };
 
-Minimum trainOutput(const OutputProblem& problem, const Eigen::VectorXd& start) {
+Minimum trainOutput(const OutputProblem& problem, const Eigen::VectorXd& start,
+                    int max_iterations) {
   MinimiseOptions solver;
-  solver.max_iterations = problem.options.max_iterations;
-  solver.max_evaluations = kEvaluationsPerIteration * solver.max_iterations;
+  solver.max_iterations = max_iterations;
+  solver.max_evaluations = kEvaluationsPerIteration * max_iterations;
   solver.function_tolerance = 1e-13;
   solver.gradient_tolerance = 1e-6;
   return minimise(problem, start, solver);
@@ -134,40 +125,24 @@ void setTheta(const Eigen::VectorXd& theta, Eigen::Index output, Hyperparameters
 
 }  // namespace
 
-std::vector<std::string> GpTrainingOptions::problems() const {
-  OptionChecks gp("gp");
-  gp.requireWithin("max_iterations", max_iterations, 0, 1000000);
-  gp.require(training_points == 0 || training_points >= 2, "training_points", "be 0 or >= 2",
-             training_points);
-  gp.require(length_scale_limit > 1.0 && std::isfinite(length_scale_limit), "length_scale_limit",
-             "be > 1 and finite", length_scale_limit);
-  gp.require(signal_to_noise_limit > 1.0 && std::isfinite(signal_to_noise_limit),
-             "signal_to_noise_limit", "be > 1 and finite", signal_to_noise_limit);
-  gp.require(curb_power >= 2 && curb_power % 2 == 0, "curb_power", "be even and >= 2", curb_power);
-  return gp.problems();
-}
-
-void requireFiniteData(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets) {
-  require(inputs.size() > 0 && targets.size() > 0, "a GP needs data, got ", inputs.cols(),
-          " points with ", inputs.rows(), " inputs and ", targets.cols(), " targets");
-  require(inputs.cols() == targets.rows(), "inputs and targets must be of the same points, got ",
-          inputs.cols(), " and ", targets.rows());
-  requireFinite(inputs, "input");
-  requireFinite(targets.transpose(), "target");
-}
-
-void requireHyperparameters(const Hyperparameters& hyperparameters, Eigen::Index input_dim,
-                            Eigen::Index output_dim) {
-  const Eigen::MatrixXd& scales = hyperparameters.log_length_scales;
-  const Eigen::VectorXd& signal = hyperparameters.log_signal_std;
-  const Eigen::VectorXd& noise = hyperparameters.log_noise_std;
-  require(scales.rows() == input_dim && scales.cols() == output_dim &&
-              signal.size() == output_dim && noise.size() == output_dim,
-          "the hyper-parameters must be for ", input_dim, " inputs and ", output_dim,
-          " outputs, got length-scales for ", scales.rows(), " and ", scales.cols(), ", ",
-          signal.size(), " signal stds and ", noise.size(), " noise stds");
-  require(scales.allFinite() && signal.allFinite() && noise.allFinite(),
-          "the hyper-parameters must be finite numbers");
+Eigen::MatrixXd squaredExponential(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
+                                   const Eigen::VectorXd& length_scales, double signal_std) {
+  eigen_assert(a.rows() == length_scales.size() && b.rows() == length_scales.size());
+  // One contiguous column for each coordinate, so that a column of k is one vectorised loop.
+  const Eigen::MatrixXd scaled_a = (length_scales.cwiseInverse().asDiagonal() * a).transpose();
+  const Eigen::MatrixXd scaled_b = length_scales.cwiseInverse().asDiagonal() * b;
+  const double log_signal_variance = 2.0 * std::log(signal_std);
+  Eigen::MatrixXd k(a.cols(), b.cols());
+  Eigen::ArrayXd squared_distance(a.cols());
+  for (Eigen::Index j = 0; j < b.cols(); ++j) {
+    squared_distance.setZero();
+    for (Eigen::Index d = 0; d < a.rows(); ++d) {
+      squared_distance += (scaled_a.col(d).array() - scaled_b(d, j)).square();
+    }
+    k.col(j) = (squared_distance < kFarthest)
+                   .select((log_signal_variance - 0.5 * squared_distance).exp(), 0.0);
+  }
+  return k;
 }
 
 double negativeLogLikelihood(const Eigen::MatrixXd& inputs, const Eigen::VectorXd& targets,
@@ -185,28 +160,27 @@ double negativeLogLikelihood(const Eigen::MatrixXd& inputs, const Eigen::VectorX
   return std::isfinite(value) ? value : kInfinity;
 }
 
-double curb(const Eigen::VectorXd& theta, const Eigen::VectorXd& input_std,
-            const GpTrainingOptions& options, Eigen::VectorXd* gradient) {
+double penalty(const Eigen::VectorXd& theta, const Eigen::VectorXd& input_std,
+               Eigen::VectorXd* gradient, int power) {
   const Eigen::Index dim = input_std.size();
   eigen_assert(theta.size() == dim + 2);
-  const double p = options.curb_power;
-  const double log_length_limit = std::log(options.length_scale_limit);
-  const double log_snr_limit = std::log(options.signal_to_noise_limit);
+  const double p = power;
+  const double log_length_limit = std::log(kLengthScaleLimit);
+  const double log_snr_limit = std::log(kSignalToNoiseLimit);
   const Eigen::ArrayXd length =
       (theta.head(dim).array() - input_std.array().log()) / log_length_limit;
   const double snr = (theta[dim] - theta[dim + 1]) / log_snr_limit;
   if (gradient != nullptr) {
-    gradient->head(dim).array() += p / log_length_limit * length.pow(options.curb_power - 1);
-    const double slope = p / log_snr_limit * std::pow(snr, options.curb_power - 1);
+    gradient->head(dim).array() += p / log_length_limit * length.pow(power - 1);
+    const double slope = p / log_snr_limit * std::pow(snr, power - 1);
     (*gradient)[dim] += slope;
     (*gradient)[dim + 1] -= slope;
   }
-  return length.pow(options.curb_power).sum() + std::pow(snr, options.curb_power);
+  return length.pow(power).sum() + std::pow(snr, power);
 }
 
 Eigen::VectorXd sampleStd(const Eigen::MatrixXd& samples) {
-  require(samples.cols() >= 2, "a standard deviation needs at least 2 samples, got ",
-          samples.cols());
+  eigen_assert(samples.cols() >= 2);
   const Eigen::MatrixXd centred = samples.colwise() - samples.rowwise().mean();
   return (centred.rowwise().squaredNorm() / static_cast<double>(samples.cols() - 1)).cwiseSqrt();
 }
@@ -221,7 +195,10 @@ Eigen::VectorXd thetaOf(const Hyperparameters& hyperparameters, int output) {
 
 Hyperparameters initialHyperparameters(const Eigen::MatrixXd& inputs,
                                        const Eigen::MatrixXd& targets) {
-  requireVariedData(inputs, targets);
+  eigen_assert(inputs.cols() == targets.rows());
+  require(inputs.cols() >= 2, "training a GP needs at least 2 points, got ", inputs.cols());
+  requireVaried(inputs, "input");
+  requireVaried(targets.transpose(), "target");
   Hyperparameters out;
   out.log_length_scales = sampleStd(inputs).array().log().matrix().replicate(1, targets.cols());
   out.log_signal_std = sampleStd(targets.transpose()).array().log();
@@ -231,8 +208,7 @@ Hyperparameters initialHyperparameters(const Eigen::MatrixXd& inputs,
 
 GpFit makeGpModel(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
                   const Hyperparameters& hyperparameters) {
-  requireFiniteData(inputs, targets);
-  requireHyperparameters(hyperparameters, inputs.rows(), targets.cols());
+  eigen_assert(inputs.cols() == targets.rows());
   GpFit fit;
   fit.model.inputs = inputs;
   fit.model.hyperparameters = hyperparameters;
@@ -256,12 +232,9 @@ void GpFit::addMessage(const std::string& text) {
   if (!text.empty()) message += (message.empty() ? "" : "; ") + text;
 }
 
-GpFit trainGp(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
-              const GpTrainingOptions& options, const Hyperparameters* start,
-              const std::function<void()>& on_evaluation) {
-  requireNone(options.problems());
+GpFit trainGp(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets, int max_iterations,
+              const Hyperparameters* start, const std::function<void()>& on_evaluation) {
   const Hyperparameters initial = initialHyperparameters(inputs, targets);
-  if (start != nullptr) requireHyperparameters(*start, inputs.rows(), targets.cols());
   const Eigen::VectorXd input_std = sampleStd(inputs);
 
   Hyperparameters trained = initial;
@@ -270,11 +243,12 @@ GpFit trainGp(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
     const auto say = [&training, a](const std::string& text) {
       training.addMessage(message("output ", a + 1, ": ", text));
     };
-    const OutputProblem problem{inputs, targets.col(a), input_std, options, on_evaluation};
-    Minimum minimum = trainOutput(problem, thetaOf(start != nullptr ? *start : initial, a));
+    const OutputProblem problem{inputs, targets.col(a), input_std, on_evaluation};
+    Minimum minimum =
+        trainOutput(problem, thetaOf(start != nullptr ? *start : initial, a), max_iterations);
     if (minimum.reason == MinimumReason::kStartFailed && start != nullptr) {
       say("the previous hyper-parameters cannot be evaluated, trained anew");
-      minimum = trainOutput(problem, thetaOf(initial, a));
+      minimum = trainOutput(problem, thetaOf(initial, a), max_iterations);
     }
     if (minimum.reason == MinimumReason::kStartFailed) {
       say("the likelihood cannot be evaluated at the start of the training");

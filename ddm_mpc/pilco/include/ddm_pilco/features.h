@@ -1,0 +1,113 @@
+// Features of a state with angles, and the saturating cost of a state.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "ddm_pilco/moments.h"
+
+namespace ddm::pilco {
+
+struct SineCovarianceGradient {
+  double mean_a = 0.0;
+  double mean_b = 0.0;
+  double variance = 0.0;  ///< in either variance
+  double covariance = 0.0;
+};
+
+/// cov(sin a, sin b) for a ~ N(m_a, v_a), b ~ N(m_b, v_b), cov(a, b) = c:
+///
+///   (p cos(m_a - m_b) - r cos(m_a + m_b)) / 2,   p = q (e^c - 1),  r = q (e^-c - 1),
+///   q = exp(-(v_a + v_b) / 2)
+///
+/// A cosine is a sine whose mean is pi/2 greater. For a = b, c is the variance.
+/// @param gradient  (optional) out; the five arguments count as independent
+double sineCovariance(double mean_a, double mean_b, double variance_a, double variance_b,
+                      double covariance, SineCovarianceGradient* gradient = nullptr);
+
+/// y = [x_kept, sin x_i1, cos x_i1, sin x_i2, cos x_i2, ...] for x ~ N(m, s) (Deisenroth, 2010,
+/// Appendix A.1). With v the variance of an angle:
+///
+///   E[sin x] = exp(-v/2) sin m,                      E[cos x] = exp(-v/2) cos m
+///   gain: row i, sine column exp(-v/2) cos m,  cosine column -exp(-v/2) sin m, otherwise 0
+///
+/// and covariances by sineCovariance(). Without angles it picks the kept entries.
+class Augmentation {
+ public:
+  /// @param input_dim  D
+  /// @param kept       indices of entries that are passed on as they are, may be empty
+  /// @param angles     indices i_1, i_2, ... [rad], may be empty
+  Augmentation(int input_dim, std::vector<int> kept, std::vector<int> angles);
+
+  int inputDim() const { return input_dim_; }
+  int outputDim() const;
+
+  /// Value for a known x, e.g. a measurement.
+  Eigen::VectorXd value(const Eigen::VectorXd& x) const;
+
+  Moments predict(const Gaussian& input) const;
+
+  /// Vector-Jacobian product of predict() at the same input.
+  /// @return dJ/dm, dJ/ds (symmetric)
+  Gaussian backward(const Gaussian& input, const Moments& d_output) const;
+
+ private:
+  int input_dim_;
+  std::vector<int> kept_;
+  std::vector<int> angles_;
+};
+
+/// All entries that are no angles, in their order, then sine and cosine of the angles: what the GP
+/// and the policy see of a state.
+Augmentation replaceAngles(int input_dim, const std::vector<int>& angles);
+
+/// c(x) = 1 - exp(-1/2 (x - z)^T W (x - z)) (Deisenroth and Rasmussen, 2011). For x ~ N(m, s),
+/// with P_k = W (I + k s W)^-1:
+///
+///   E[c]         = 1 - |I + s W|^-1/2 exp(-1/2 (m - z)^T P_1 (m - z))
+///   E[(1 - c)^2] = |I + 2 s W|^-1/2 exp(-(m - z)^T P_2 (m - z))
+class SaturatingCost {
+ public:
+  /// @param target  z                                                  [D]
+  /// @param weight  W, symmetric and positive semi-definite        [D x D]
+  SaturatingCost(Eigen::VectorXd target, const Eigen::MatrixXd& weight);
+
+  int inputDim() const { return static_cast<int>(target_.size()); }
+
+  /// E[c].
+  /// @param d_input  (optional) out: dE[c]/dm, dE[c]/ds (symmetric)
+  double expected(const Gaussian& input, Gaussian* d_input = nullptr) const;
+
+  /// var[c]. What is below 1e-12 is rounding and becomes 0.
+  double variance(const Gaussian& input) const;
+
+ private:
+  Eigen::VectorXd target_;
+  Eigen::MatrixXd weight_;
+};
+
+/// c(y(x)) with the features y of an Augmentation, which are taken as Gaussian.
+class StateCost {
+ public:
+  StateCost(Augmentation features, SaturatingCost cost);
+
+  int inputDim() const { return features_.inputDim(); }
+
+  /// Expected cost. Parameters as in SaturatingCost.
+  double expected(const Gaussian& state, Gaussian* d_state = nullptr) const;
+
+  double variance(const Gaussian& state) const;
+
+ private:
+  Augmentation features_;
+  SaturatingCost cost_;
+};
+
+/// 1 - exp(-d^2 / (2 width^2)), d the distance of the tip of a pendulum from its upright position.
+/// State [dphi, phi], phi = pi upright.
+/// @param length  of the pendulum [m]
+/// @param width   [m]
+StateCost pendulumCost(double length = 1.0, double width = 0.5);
+
+}  // namespace ddm::pilco

@@ -1,0 +1,97 @@
+// Parameters of PILCO. One struct = one YAML block; config/pilco.yaml explains them.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ddm_params/option_checks.h>
+
+#include <string>
+#include <vector>
+
+namespace ddm::pilco {
+
+/// Block `pilco`: how far predictions go, and how large the policy is.
+struct PilcoOptions {
+  int horizon = 125;     ///< H, predicted steps [-]
+  int num_centres = 30;  ///< of the RBF policy [-]
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("horizon", horizon);
+    visitor("num_centres", num_centres);
+  }
+  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  std::vector<std::string> problems() const {
+    OptionChecks pilco("pilco");
+    pilco.requireWithin("horizon", horizon, 1, 100000);
+    pilco.requireWithin("num_centres", num_centres, 1, 1000);
+    return pilco.problems();
+  }
+};
+
+/// Block `gp`: training of one GP for each output.
+struct GpTrainingOptions {
+  int max_iterations = 300;  ///< of BFGS, for each output [-]
+  int training_points = 0;   ///< drawn at random to learn from; 0: all [-]
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("max_iterations", max_iterations);
+    visitor("training_points", training_points);
+  }
+  std::vector<std::string> problems() const {
+    OptionChecks gp("gp");
+    gp.requireWithin("max_iterations", max_iterations, 0, 1000000);
+    gp.require(training_points == 0 || training_points >= 2, "training_points", "be 0 or >= 2",
+               training_points);
+    return gp.problems();
+  }
+};
+
+/// Block `sparse_gp`.
+struct SparseGpOptions {
+  int max_points = 300;         ///< more data than this: as many inducing inputs [-]
+  int first_iterations = 1500;  ///< of L-BFGS on the inducing inputs, from a random subset [-]
+  int max_iterations = 500;     ///< the same, from the inducing inputs of the trial before [-]
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("max_points", max_points);
+    visitor("first_iterations", first_iterations);
+    visitor("max_iterations", max_iterations);
+  }
+  std::vector<std::string> problems() const {
+    OptionChecks sparse_gp("sparse_gp");
+    sparse_gp.requireAtLeast("max_points", max_points, 1);
+    sparse_gp.requireWithin("first_iterations", first_iterations, 0, 1000000);
+    sparse_gp.requireWithin("max_iterations", max_iterations, 0, 1000000);
+    return sparse_gp.problems();
+  }
+};
+
+/// Block `policy_search`.
+struct PolicySearchOptions {
+  int max_iterations = 75;     ///< line searches of BFGS for each trial [-]
+  int max_evaluations = 1500;  ///< of the cost with its gradient, for each trial [-]
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("max_iterations", max_iterations);
+    visitor("max_evaluations", max_evaluations);
+  }
+  std::vector<std::string> problems() const {
+    OptionChecks search("policy_search");
+    search.requireAtLeast("max_iterations", max_iterations, 0);
+    search.requireAtLeast("max_evaluations", max_evaluations, 1);
+    return search.problems();
+  }
+};
+
+/// All blocks that PILCO alone reads.
+struct PilcoConfig {
+  PilcoOptions pilco;
+  GpTrainingOptions gp;
+  SparseGpOptions sparse_gp;
+  PolicySearchOptions policy_search;
+};
+
+}  // namespace ddm::pilco

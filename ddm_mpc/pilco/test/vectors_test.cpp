@@ -1,0 +1,573 @@
+// Compares all that PILCO computes with reference values: the JSON file that the environment variable DDM_PILCO_VECTORS
+// names. Each kind of cases in the file is a test; a case fails where a field is missing or disagrees.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_model/solver_log.h>
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <boost/numeric/odeint.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "ddm_pilco/long_term_cost.h"
+
+namespace ddm::pilco {
+namespace {
+
+/// How far a computed quantity may be from that of the file: absolute, or in units of the field's largest entry.
+struct Tolerance {
+  double limit;
+  bool relative;
+};
+constexpr Tolerance absolute(double limit) { return {limit, false}; }
+constexpr Tolerance relative(double limit) { return {limit, true}; }
+constexpr Tolerance kClosedForm = absolute(1e-12);
+constexpr Tolerance kState = absolute(1e-9);
+
+void expectNear(const std::string& field, const Eigen::MatrixXd& expected,
+                const Eigen::MatrixXd& computed, Tolerance tolerance) {
+  ASSERT_EQ(expected.rows(), computed.rows()) << field;
+  ASSERT_EQ(expected.cols(), computed.cols()) << field;
+  const double largest = expected.cwiseAbs().maxCoeff();
+  const double scale = tolerance.relative && largest > 0.0 ? largest : 1.0;
+  for (Eigen::Index i = 0; i < computed.size(); ++i) {
+    // Written so that NaN fails.
+    EXPECT_TRUE(std::abs(computed(i) - expected(i)) <= tolerance.limit * scale)
+        << field << ", entry " << i << " by columns: the file has " << expected(i) << ", computed "
+        << computed(i) << ", tolerance " << tolerance.limit * scale;
+  }
+}
+
+/// One case of the file. Its functions throw where a field is missing or is no number.
+class Case {
+ public:
+  explicit Case(const YAML::Node& node) : node_(node) {}
+
+  bool has(const std::string& field) const { return node_[field].IsDefined(); }
+  std::string text(const std::string& field) const { return at(field).as<std::string>(); }
+  double number(const std::string& field) const { return at(field).as<double>(); }
+  Case group(const std::string& field) const { return Case(at(field)); }
+
+  /// A number, a column as a list of numbers, or a list of rows.
+  Eigen::MatrixXd matrix(const std::string& field) const {
+    const YAML::Node node = at(field);
+    if (node.IsScalar()) return Eigen::MatrixXd::Constant(1, 1, node.as<double>());
+    const bool column = node[0].IsScalar();
+    Eigen::MatrixXd out(node.size(), column ? 1 : node[0].size());
+    for (Eigen::Index i = 0; i < out.rows(); ++i) {
+      const YAML::Node row = node[i];
+      if (!column && row.size() != node[0].size())
+        throw std::runtime_error(field + ": rows differ");
+      for (Eigen::Index j = 0; j < out.cols(); ++j) {
+        out(i, j) = (column ? row : row[j]).as<double>();
+      }
+    }
+    return out;
+  }
+  Eigen::VectorXd vector(const std::string& field) const {
+    const Eigen::MatrixXd column = matrix(field);
+    if (column.cols() != 1) throw std::runtime_error(field + ": must be a list of numbers");
+    return column;
+  }
+  Gaussian gaussian(const std::string& mean, const std::string& covariance) const {
+    return {vector(mean), matrix(covariance)};
+  }
+
+  void compare(const std::string& field, const Eigen::MatrixXd& computed,
+               Tolerance tolerance) const {
+    expectNear(field, matrix(field), computed, tolerance);
+  }
+  void compare(const std::string& field, double computed, Tolerance tolerance) const {
+    compare(field, Eigen::MatrixXd::Constant(1, 1, computed), tolerance);
+  }
+
+ private:
+  YAML::Node at(const std::string& field) const {
+    if (!has(field)) throw std::runtime_error("field " + field + " is missing");
+    return node_[field];
+  }
+
+  YAML::Node node_;
+};
+
+/// What a file calls mean, covariance and gain of an output, in this order.
+using MomentFields = std::vector<std::pair<std::string, Tolerance>>;
+const MomentFields kTrigonometric = {{"M", kClosedForm}, {"V", kClosedForm}, {"C", kClosedForm}};
+const MomentFields kPolicy = {{"M", kState}, {"S", kState}, {"C", kState}};
+const MomentFields kSquashed = {{"M_sq", kState}, {"S_sq", kState}, {"C_sq", kState}};
+
+void compareMoments(const Case& reference, const MomentFields& fields, const Moments& computed) {
+  reference.compare(fields[0].first, computed.mean, fields[0].second);
+  reference.compare(fields[1].first, computed.covariance, fields[1].second);
+  reference.compare(fields[2].first, computed.gain, fields[2].second);
+}
+
+/// Compares derivatives by mean m and covariance of the input, where the file has them. They are vectorised by columns. Of
+/// columns (p, q) and (q, p) only the sum has a meaning, because a covariance is symmetric.
+/// @param covariance  what the file calls the covariance of the input
+/// @param backward    dJ/d outputs -> dJ/d input
+void compareJacobians(const Case& reference, const MomentFields& fields,
+                      const std::string& covariance, int dim, int output_dim,
+                      const std::function<Gaussian(const Moments&)>& backward) {
+  if (!reference.has("d" + fields.front().first + "dm")) return;
+  Moments seed = constantMoments(dim, output_dim);
+  const std::vector<Eigen::Map<Eigen::VectorXd>> arrays = {
+      {seed.mean.data(), seed.mean.size()},
+      {seed.covariance.data(), seed.covariance.size()},
+      {seed.gain.data(), seed.gain.size()}};
+  for (std::size_t k = 0; k < fields.size(); ++k) {
+    Eigen::Map<Eigen::VectorXd> array = arrays[k];
+    Eigen::MatrixXd in_mean(array.size(), dim), in_covariance(array.size(), dim * dim);
+    for (Eigen::Index i = 0; i < array.size(); ++i) {
+      array[i] = 1.0;
+      const Gaussian d_input = backward(seed);
+      array[i] = 0.0;
+      in_mean.row(i) = d_input.mean.transpose();
+      in_covariance.row(i) =
+          Eigen::Map<const Eigen::RowVectorXd>(d_input.covariance.data(), dim * dim);
+    }
+    const std::string derivative = "d" + fields[k].first + "d";
+    reference.compare(derivative + "m", in_mean, fields[k].second);
+    Eigen::MatrixXd symmetric = reference.matrix(derivative + covariance);
+    ASSERT_EQ(symmetric.cols(), dim * dim) << derivative + covariance;
+    for (int p = 0; p < dim; ++p) {
+      for (int q = 0; q < p; ++q) {
+        const Eigen::VectorXd mean =
+            0.5 * (symmetric.col(q * dim + p) + symmetric.col(p * dim + q));
+        symmetric.col(q * dim + p) = symmetric.col(p * dim + q) = mean;
+      }
+    }
+    expectNear(derivative + covariance, symmetric, in_covariance, fields[k].second);
+  }
+}
+
+/// Rows: log length-scales, log signal std, log noise std. One column for each output.
+Hyperparameters hyperparameters(const Case& reference, const std::string& field) {
+  const Eigen::MatrixXd values = reference.matrix(field);
+  const Eigen::Index dim = values.rows() - 2;
+  return {values.topRows(dim), values.row(dim).transpose(), values.row(dim + 1).transpose()};
+}
+
+Eigen::MatrixXd toMatrix(const Hyperparameters& values) {
+  const Eigen::Index dim = values.log_length_scales.rows();
+  Eigen::MatrixXd out(dim + 2, values.log_signal_std.size());
+  out << values.log_length_scales, values.log_signal_std.transpose(),
+      values.log_noise_std.transpose();
+  return out;
+}
+
+GpModel usable(const GpFit& fit) {
+  if (!fit.ok) throw std::runtime_error("the GP cannot be used: " + fit.message);
+  return fit.model;
+}
+
+GpModel readModel(const Case& reference) {
+  return usable(makeGpModel(reference.matrix("X").transpose(), reference.matrix("Y"),
+                            hyperparameters(reference, "loghyp")));
+}
+
+void comparePrediction(const Case& reference, const GpModel& model) {
+  const MomentFields fields = {
+      {"M", relative(1e-10)}, {"S", relative(1e-9)}, {"V", relative(1e-10)}};
+  const GpMoments moments(model);
+  GpMoments::Tape tape;
+  compareMoments(reference, fields, moments.predict(reference.gaussian("m", "s"), &tape));
+  compareJacobians(reference, fields, "s", model.inputDim(), model.outputDim(),
+                   [&](const Moments& seed) { return moments.backward(tape, seed); });
+}
+
+void checkGpPredict(const Case& reference) { comparePrediction(reference, readModel(reference)); }
+
+void checkSparseGpPredict(const Case& reference) {
+  reference.compare("ridge", kRidge, kClosedForm);
+  comparePrediction(
+      reference,
+      usable(makeSparseGpModel(reference.matrix("Z").transpose(), reference.matrix("X").transpose(),
+                               reference.matrix("Y"), hyperparameters(reference, "loghyp"))));
+}
+
+/// What training minimises for one output.
+double objective(const Eigen::MatrixXd& inputs, const Eigen::VectorXd& targets,
+                 const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
+  const double plain = negativeLogLikelihood(inputs, targets, theta, gradient);
+  return plain + penalty(theta, sampleStd(inputs), gradient);
+}
+
+void checkLikelihood(const Case& reference) {
+  const Eigen::MatrixXd inputs = reference.matrix("X").transpose();
+  reference.compare("curb_ls", kLengthScaleLimit, kClosedForm);
+  reference.compare("curb_snr", kSignalToNoiseLimit, kClosedForm);
+  reference.compare("curb_power", kPenaltyPower, kClosedForm);
+  reference.compare("curb_std", sampleStd(inputs), relative(1e-12));
+  const Eigen::VectorXd targets = reference.vector("y");
+  const Eigen::VectorXd theta = reference.vector("loghyp");
+  Eigen::VectorXd gradient;
+  reference.compare("nlml", negativeLogLikelihood(inputs, targets, theta, &gradient),
+                    relative(1e-9));
+  reference.compare("dnlml", gradient, relative(1e-7));
+  reference.compare("nlml_curb", objective(inputs, targets, theta, &gradient), relative(1e-9));
+  reference.compare("dnlml_curb", gradient, relative(1e-7));
+}
+
+/// Compares the field loghyp_init, and trains from there.
+GpFit trainFromStart(const Case& reference) {
+  const Eigen::MatrixXd inputs = reference.matrix("X").transpose(), targets = reference.matrix("Y");
+  const Hyperparameters start = hyperparameters(reference, "loghyp_init");
+  reference.compare("loghyp_init", toMatrix(initialHyperparameters(inputs, targets)),
+                    absolute(1e-9));
+  GpFit fit = trainGp(inputs, targets, GpTrainingOptions().max_iterations, &start);
+  usable(fit);
+  return fit;
+}
+
+void checkTraining(const Case& reference) {
+  const Eigen::MatrixXd inputs = reference.matrix("X").transpose(), targets = reference.matrix("Y");
+  const Hyperparameters optimum = hyperparameters(reference, "loghyp");
+  const GpFit fit = trainFromStart(reference);
+  const int outputs = static_cast<int>(targets.cols());
+  Eigen::VectorXd plain(outputs), penalised(outputs), norm(outputs), trained(outputs);
+  for (int a = 0; a < outputs; ++a) {
+    const Eigen::VectorXd theta = thetaOf(optimum, a);
+    Eigen::VectorXd gradient;
+    plain[a] = negativeLogLikelihood(inputs, targets.col(a), theta);
+    penalised[a] = objective(inputs, targets.col(a), theta, &gradient);
+    norm[a] = gradient.norm();
+    trained[a] = fit.outputs[a].cost;
+  }
+  reference.compare("nlml_curb", penalised, relative(1e-9));
+  reference.compare("nlml_plain", plain, relative(1e-9));
+  reference.compare("final_gradient_norm_curb", norm, absolute(1e-7));
+  reference.compare("nlml_curb", trained, absolute(1e-4));
+}
+
+/// Picks entries of a vector.  [picked.size() x size]
+Eigen::MatrixXd picking(const std::vector<int>& picked, Eigen::Index size) {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(picked.size(), size);
+  for (std::size_t i = 0; i < picked.size(); ++i) out(i, picked[i]) = 1.0;
+  return out;
+}
+
+/// The field index1, from 0.
+std::vector<int> readIndices(const Case& reference, Eigen::Index dim) {
+  std::vector<int> out;
+  const Eigen::VectorXd entries = reference.vector("index1");
+  for (Eigen::Index i = 0; i < entries.size(); ++i) {
+    out.push_back(static_cast<int>(entries[i]) - 1);
+    if (out.back() < 0 || out.back() >= dim) throw std::runtime_error("index1: no such entry");
+  }
+  return out;
+}
+
+/// y = A x for the linear map A.
+Moments mapped(const Moments& x, const Eigen::MatrixXd& A) {
+  return {A * x.mean, A * x.covariance * A.transpose(), x.gain * A.transpose()};
+}
+
+/// Sines and cosines of the entries index1, times the scales e; only the sines for the kind gsin.
+void checkTrigonometric(const Case& reference, bool only_sines) {
+  const Gaussian input = reference.gaussian("m", "v");
+  const int dim = static_cast<int>(input.mean.size());
+  const std::vector<int> angles = readIndices(reference, dim);
+  const Augmentation augmentation(dim, {}, angles);
+  const Eigen::VectorXd e = reference.vector("e");
+  std::vector<int> picked;
+  for (int i = 0; i < augmentation.outputDim(); i += only_sines ? 2 : 1) picked.push_back(i);
+  Eigen::MatrixXd A = picking(picked, augmentation.outputDim());
+  for (Eigen::Index i = 0; i < A.rows(); ++i) A.row(i) *= e[only_sines ? i : i / 2];
+  const Moments computed = mapped(augmentation.predict(input), A);
+  compareMoments(reference, kTrigonometric, computed);
+  if (reference.has("cov_in_out")) {
+    reference.compare("cov_in_out", input.covariance * computed.gain, kClosedForm);
+  }
+  compareJacobians(reference, kTrigonometric, "v", dim, static_cast<int>(A.rows()),
+                   [&](const Moments& seed) {
+                     return augmentation.backward(input, mapped(seed, A.transpose()));
+                   });
+}
+
+void checkSquashing(const Case& reference) {
+  const Gaussian input = reference.gaussian("m", "v");
+  const int dim = static_cast<int>(input.mean.size());
+  const Eigen::MatrixXd pick = picking(readIndices(reference, dim), dim);  // what is squashed
+  const Squashing squashing(reference.vector("maxU"));
+  const Gaussian chosen = {pick * input.mean, pick * input.covariance * pick.transpose()};
+  Moments computed = squashing.predict(chosen);
+  computed.gain = pick.transpose() * computed.gain;
+  compareMoments(reference, kTrigonometric, computed);
+  compareJacobians(reference, kTrigonometric, "v", dim, squashing.dim(), [&](const Moments& seed) {
+    const Gaussian d_chosen =
+        squashing.backward(chosen, Moments{seed.mean, seed.covariance, pick * seed.gain});
+    return Gaussian{pick.transpose() * d_chosen.mean,
+                    pick.transpose() * d_chosen.covariance * pick};
+  });
+}
+
+/// Parameters of an RBF policy from their parts.
+Eigen::VectorXd readParameters(const Case& reference) {
+  return RbfPolicy::packParameters(reference.matrix("log_ls"),
+                                   reference.matrix("centres").transpose(),
+                                   reference.matrix("targets"));
+}
+
+RbfPolicy readRbfPolicy(const Case& reference) {
+  const Eigen::MatrixXd centres = reference.matrix("centres"),
+                        targets = reference.matrix("targets");
+  RbfPolicy rbf(static_cast<int>(centres.cols()), static_cast<int>(targets.cols()),
+                static_cast<int>(centres.rows()));
+  rbf.setParameters(readParameters(reference));
+  return rbf;
+}
+
+void checkPolicy(const Case& reference) {
+  const Gaussian input = reference.gaussian("m", "s");
+  const Eigen::VectorXd max_control = reference.vector("maxU");
+  if (reference.text("kind") == "conlin") {  // no policy of the library, but easily squashed
+    const Eigen::MatrixXd w = reference.matrix("w");
+    const Moments plain = {w * input.mean + reference.vector("b"),
+                           w * input.covariance * w.transpose(), w.transpose()};
+    compareMoments(reference, kPolicy, plain);
+    compareMoments(reference, kSquashed, Squashing(max_control).applyTo(plain));
+    return;
+  }
+  ASSERT_EQ(reference.text("kind"), "congp");
+  compareMoments(reference, kPolicy, readRbfPolicy(reference).predict(input));
+  const SquashedPolicy policy(readRbfPolicy(reference), max_control);
+  compareMoments(reference, kSquashed, policy.predict(input));
+  if (!reference.has("dM_sq_dlog_ls")) return;
+  const Eigen::Index dim = policy.inputDim(), count = reference.matrix("centres").rows();
+  for (const std::string name : {"dM_sq", "dS_sq"}) {  // of one control
+    Moments seed = constantMoments(policy.inputDim(), 1);
+    (name == "dM_sq" ? seed.mean[0] : seed.covariance(0, 0)) = 1.0;
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(policy.parameters().size());
+    policy.backward(input, seed, &gradient);
+    const Eigen::Map<const Eigen::MatrixXd> centres(gradient.data() + dim, count, dim);
+    reference.compare(name + "_dlog_ls", gradient.head(dim), kState);
+    reference.compare(name + "_dcentres", centres, kState);
+    reference.compare(name + "_dtargets", gradient.tail(count), kState);
+  }
+}
+
+template <class Cost>
+void compareCost(const Case& reference, const Cost& cost) {
+  const Gaussian input = reference.gaussian("m", "s");
+  Gaussian d_input;
+  reference.compare("L", cost.expected(input, &d_input), kClosedForm);
+  reference.compare("var", cost.variance(input), kClosedForm);
+  reference.compare("dLdm", d_input.mean, kClosedForm);
+  expectNear("dLds", symmetricPart(reference.matrix("dLds")), d_input.covariance, kClosedForm);
+}
+
+void checkSaturatingCost(const Case& reference) {
+  compareCost(reference, SaturatingCost(reference.vector("z"), reference.matrix("W")));
+}
+
+void checkPendulumCost(const Case& reference) {
+  reference.compare("target", Eigen::Vector2d(0.0, M_PI), kClosedForm);
+  compareCost(reference, pendulumCost(reference.number("length"), reference.number("width")));
+}
+
+/// What the two published versions of the pendulum scenario have fixed.
+struct Scenario {
+  double gravity;           ///< [m / s^2]
+  double friction;          ///< [N m s / rad]
+  double time_step;         ///< [s]
+  bool noisy_policy_input;  ///< see PropagationOptions
+};
+
+Scenario readScenario(const Case& reference) {
+  const std::string name = reference.text("scenario");
+  if (name == "a0b48b7") return {9.82, 0.01, 0.1, false};
+  if (name == "f9707a9") return {0.0, 1.0, 0.2, true};
+  throw std::runtime_error("unknown scenario " + name);
+}
+
+void checkSimulation(const Case& reference) {
+  const Scenario scenario = readScenario(reference);
+  reference.compare("dt", scenario.time_step, kClosedForm);
+  const Eigen::VectorXd start = reference.vector("x0");
+  const double torque = reference.number("u");
+  // State [rate, angle]; mass and length are 1, and so the moment of inertia is 1/3.
+  using State = std::vector<double>;
+  const auto ode = [&scenario, torque](const State& x, State& dx, double) {
+    dx[0] = 3.0 * (torque - scenario.friction * x[0] - 0.5 * scenario.gravity * std::sin(x[1]));
+    dx[1] = x[0];
+  };
+  namespace odeint = boost::numeric::odeint;
+  State x = {start[0], start[1]};
+  odeint::integrate_adaptive(
+      odeint::make_controlled(1e-13, 1e-13, odeint::runge_kutta_dopri5<State>()), ode, x, 0.0,
+      scenario.time_step, 0.01 * scenario.time_step);
+  reference.compare("x1", Eigen::Vector2d(x[0], x[1]), kState);
+}
+
+SquashedPolicy readSquashedPolicy(const Case& reference) {
+  return SquashedPolicy(readRbfPolicy(reference), reference.vector("maxU"));
+}
+
+Propagation readPropagation(const Case& reference) {
+  PropagationOptions options;
+  options.angles = {1};
+  options.noisy_policy_input = readScenario(reference).noisy_policy_input;
+  return Propagation(readModel(reference), options);
+}
+
+void checkPropagation(const Case& reference) {
+  const SquashedPolicy policy = readSquashedPolicy(reference);
+  const Propagation propagation = readPropagation(reference);
+  Propagation::Tape tape;
+  const Gaussian next = propagation.step(policy, reference.gaussian("m", "s"), &tape);
+  reference.compare("m_next", next.mean, kState);
+  reference.compare("s_next", next.covariance, kState);
+  compareJacobians(
+      reference, {{"M", relative(1e-9)}, {"S", relative(1e-9)}}, "s", 2, 2,
+      [&](const Moments& seed) {
+        return propagation.backward(policy, tape, {seed.mean, seed.covariance}, nullptr);
+      });
+}
+
+LongTermCost readLongTermCost(const Case& reference, SquashedPolicy* policy) {
+  reference.compare("target", Eigen::Vector2d(0.0, M_PI), kClosedForm);
+  return LongTermCost(readPropagation(reference), pendulumCost(1.0, reference.number("width")),
+                      policy, reference.gaussian("m0", "s0"),
+                      static_cast<int>(reference.number("H")));
+}
+
+/// Means and covariances for t = 0 ... H.
+void compareStates(const Case& reference, const std::vector<Gaussian>& states,
+                   Tolerance tolerance) {
+  Eigen::MatrixXd means(states.size(), 2), covariances(states.size(), 3);
+  for (std::size_t t = 0; t < states.size(); ++t) {
+    const Eigen::MatrixXd& s = states[t].covariance;
+    means.row(t) = states[t].mean.transpose();
+    covariances.row(t) << s(0, 0), s(1, 1), s(0, 1);
+  }
+  reference.compare("means_0_to_H", means, tolerance);
+  reference.compare("var_dphi_0_to_H", covariances.col(0), tolerance);
+  reference.compare("var_phi_0_to_H", covariances.col(1), tolerance);
+  reference.compare("cov_dphi_phi_0_to_H", covariances.col(2), tolerance);
+}
+
+/// dJ/d parameters by central differences of fourth order with this step.
+Eigen::VectorXd differences(LongTermCost* cost, const Eigen::VectorXd& parameters, double step) {
+  Eigen::VectorXd gradient(parameters.size());
+  for (Eigen::Index i = 0; i < parameters.size(); ++i) {
+    const auto at = [&](double change) {
+      Eigen::VectorXd changed = parameters;
+      changed[i] += change;
+      return cost->evaluate(changed);
+    };
+    gradient[i] =
+        (8.0 * (at(step) - at(-step)) - (at(2.0 * step) - at(-2.0 * step))) / (12.0 * step);
+  }
+  return gradient;
+}
+
+void checkValue(const Case& reference) {
+  constexpr Tolerance kGradient = relative(1e-6);
+  SquashedPolicy policy = readSquashedPolicy(reference);
+  const Eigen::VectorXd parameters = policy.parameters();
+  LongTermCost cost = readLongTermCost(reference, &policy);
+  Eigen::VectorXd exact;
+  reference.compare("J", cost.evaluate(parameters, &exact), kState);
+  reference.compare("cost_per_step_1_to_H",
+                    Eigen::Map<const Eigen::VectorXd>(cost.costs().data(), cost.costs().size()),
+                    kState);
+  compareStates(reference, cost.states(), kState);
+  // The differences of the file have truncation errors of their own, beyond the tolerance where J bends much. So like is
+  // compared with like, and the exact gradient with finer differences.
+  expectNear("grad_finite_difference", readParameters(reference.group("grad_finite_difference")),
+             differences(&cost, parameters, 1e-3), kGradient);
+  expectNear("finer differences", differences(&cost, parameters, 1e-4), exact, kGradient);
+  // The published program ignores the noise in its chain rule, which makes its gradient wrong by up to 3e-4.
+  const bool published_is_exact = !readScenario(reference).noisy_policy_input;
+  expectNear("grad_as_implemented", readParameters(reference.group("grad_as_implemented")), exact,
+             published_is_exact ? kGradient : relative(1e-3));
+}
+
+/// A model and a policy of the authors' own run.
+void checkAuthors(const Case& reference) {
+  constexpr Tolerance kTolerance = relative(1e-5);
+  const GpFit fit = trainFromStart(reference);
+  reference.compare("loghyp", toMatrix(fit.model.hyperparameters), kTolerance);
+  reference.compare("nlml_curb", Eigen::Vector2d(fit.outputs[0].cost, fit.outputs[1].cost),
+                    kTolerance);
+  SquashedPolicy policy = readSquashedPolicy(reference);
+  LongTermCost cost = readLongTermCost(reference, &policy);
+  reference.compare("J", cost.evaluate(policy.parameters()), kTolerance);
+  compareStates(reference, cost.states(), kTolerance);
+  const StateCost per_step = pendulumCost(1.0, reference.number("width"));
+  Eigen::MatrixXd costs(cost.states().size(), 2);
+  for (std::size_t t = 0; t < cost.states().size(); ++t) {
+    costs.row(t) << per_step.expected(cost.states()[t]),
+        std::sqrt(per_step.variance(cost.states()[t]));
+  }
+  reference.compare("cost_per_step_0_to_H", costs.col(0), kTolerance);
+  reference.compare("cost_std_per_step_0_to_H", costs.col(1), kTolerance);
+}
+
+/// By the names that the kinds have in a file.
+const std::map<std::string, std::function<void(const Case&)>> kKinds = {
+    {"gp_predict", checkGpPredict},
+    {"gp_predict_fitc", checkSparseGpPredict},
+    {"gp_nlml", checkLikelihood},
+    {"train", checkTraining},
+    {"gtrig", [](const Case& reference) { checkTrigonometric(reference, false); }},
+    {"gsin", [](const Case& reference) { checkTrigonometric(reference, true); }},
+    {"gsat", checkSquashing},
+    {"policy", checkPolicy},
+    {"loss_sat", checkSaturatingCost},
+    {"loss_pendulum", checkPendulumCost},
+    {"simulate", checkSimulation},
+    {"propagate", checkPropagation},
+    {"value", checkValue},
+    {"authors", checkAuthors}};
+
+/// Skipped where the environment names no file. A file that is missing or damaged is a failure.
+class PilcoVectors : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    silenceSolverLog();
+    const char* const path = std::getenv("DDM_PILCO_VECTORS");
+    if (path == nullptr || *path == '\0') {
+      GTEST_SKIP() << "DDM_PILCO_VECTORS names no file: nothing was compared";
+    }
+    std::ifstream file(path);
+    std::stringstream text;
+    text << file.rdbuf();
+    std::string json = text.str();
+    std::replace(json.begin(), json.end(), '\t', ' ');  // JSON is YAML, but for tabs
+    ASSERT_NO_THROW(root_ = YAML::Load(json)) << path;
+    ASSERT_TRUE(root_.IsMap()) << path << " must hold a JSON object with kinds of cases";
+  }
+
+  YAML::Node root_;
+};
+
+TEST_F(PilcoVectors, AgreeInEveryCaseOfEachKind) {
+  int compared = 0;
+  for (const auto& item : root_) {
+    const std::string kind = item.first.as<std::string>();
+    if (kind == "meta") continue;
+    ASSERT_EQ(kKinds.count(kind), 1U) << "unknown kind " << kind;
+    ASSERT_TRUE(item.second.IsSequence() && item.second.size() > 0) << kind << " has no cases";
+    for (const YAML::Node& node : item.second) {
+      const Case reference(node);
+      SCOPED_TRACE(kind + ", case " + (reference.has("id") ? reference.text("id") : "without id"));
+      EXPECT_NO_THROW(kKinds.at(kind)(reference));
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 0);
+}
+
+}  // namespace
+}  // namespace ddm::pilco
