@@ -264,7 +264,7 @@ boost::program_options::options_description configurationOptions(const std::stri
   add("nuisance", boost::program_options::value(&arguments->nuisances)->composing(),
       "name in ddm_launch/config/nuisances, what is wrong with the camera's images: noise, "
       "brightness, clutter, thin_rod, delay, drops, or with the scene of a model file: "
-      "scene_background, scene_camera, scene_colours, scene_light; repeatable");
+      "scene_camera, scene_colours; repeatable");
   add("config", boost::program_options::value(&arguments->configs)->composing(),
       "YAML file with overrides, or config.yaml of an experiment; repeatable, later files win");
   const auto set_all = [arguments](const std::vector<std::string>& all) {

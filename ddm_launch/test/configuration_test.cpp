@@ -168,10 +168,9 @@ TEST(Configuration, EveryScheduleButTheJointHasAFileOfItsName) {
 
 TEST(Configuration, EveryNuisanceIsOneOfTheCameraOrTheLookOfTheRodOrTheScene) {
   const std::vector<std::string> names = namesIn(DDM_LAUNCH_SOURCE_DIR "/config/nuisances");
-  EXPECT_EQ(
-      std::set<std::string>(names.begin(), names.end()),
-      (std::set<std::string>{"noise", "brightness", "clutter", "thin_rod", "delay", "drops",
-                             "scene_background", "scene_camera", "scene_colours", "scene_light"}));
+  EXPECT_EQ(std::set<std::string>(names.begin(), names.end()),
+            (std::set<std::string>{"noise", "brightness", "clutter", "thin_rod", "delay", "drops",
+                                   "scene_camera", "scene_colours"}));
   const auto with = [](const std::string& name) {
     const std::string block = name == "thin_rod" ? "plant" : "camera";
     EXPECT_EQ(keysOf(YAML::LoadFile(nuisanceFile(name))), (std::set<std::string>{block})) << name;
@@ -198,8 +197,6 @@ TEST(Configuration, ANuisanceOfASceneIsAnOptionOfPlantsOfAModelFile) {
   };
   EXPECT_EQ(share("scene_camera", "camera_shift"), 0.1);
   EXPECT_EQ(share("scene_colours", "colour_shift"), 0.1);
-  EXPECT_EQ(share("scene_light", "light_shift"), 0.3);
-  EXPECT_EQ(share("scene_background", "background"), 0.5);
 }
 
 TEST(Configuration, ANuisanceOfASceneIsRefusedForAPlantWithoutOne) {
@@ -210,11 +207,10 @@ TEST(Configuration, ANuisanceOfASceneIsRefusedForAPlantWithoutOne) {
 }
 
 TEST(Configuration, ANuisanceThatDoesNotExistIsRefusedWithThoseThatDo) {
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [] { nuisanceFile("fog"); }, {"unknown nuisance 'fog'",
-                                    "brightness, clutter, delay, drops, noise, "
-                                    "scene_background, scene_camera, scene_colours, scene_light, "
-                                    "thin_rod"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([] { nuisanceFile("fog"); },
+                                                  {"unknown nuisance 'fog'",
+                                                   "brightness, clutter, delay, drops, noise, "
+                                                   "scene_camera, scene_colours, thin_rod"}));
 }
 
 TEST(Configuration, AnUnknownMethodIsRefusedWithThoseThatThereAre) {

@@ -13,7 +13,6 @@
 #include "ddm_sim/angles.h"
 #include "ddm_sim/few_numbers.h"
 #include "ddm_sim/plant_factory.h"
-#include "model_files.h"
 #include "motors.h"
 #include "mujoco_physics.h"
 
@@ -387,16 +386,11 @@ void requireVisible(const std::shared_ptr<const MujocoModel>& model, const Mujoc
 
 MujocoOptions completed(MujocoOptions options, const MujocoModel& model) {
   requirePositionsAndRates(model);
-  std::string digest;
-  try {
-    digest = digestWith(model.digest(), options.scene.background_pictures);
-  } catch (const std::invalid_argument& e) {
-    refuse("background_pictures", "be files that can be read", e.what());
-  }
+  const std::string& digest = model.digest();
   if (!options.model_digest.empty() && options.model_digest != digest) {
     refuse("model_digest", "be that of " + model.uri() + " and the files that it names, " + digest,
            options.model_digest +
-               ": one of them, or of plant/background_pictures, has changed since this "
+               ": one of them has changed since this "
                "configuration was saved; put it back, or begin anew without this key");
   }
   options.model_digest = digest;

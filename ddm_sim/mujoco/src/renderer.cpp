@@ -234,7 +234,6 @@ class Renderer::Implementation {
                     mjCAT_ALL, &drawn_);
     scene_.moveCamera(&drawn_.camera[0]);
     scene_.moveCamera(&drawn_.camera[1]);
-    scene_.changeLights(&drawn_);
   }
 
   void openContext() {

@@ -209,22 +209,5 @@ TEST(MujocoOptions, AreRefusedForAFreeJointBeforeAnythingElseOfTheModel) {
                              {"plant/model", "free joint", "loose"}));
 }
 
-TEST(MujocoOptions, HaveADigestOfTheBackgroundsPicturesToo) {
-  const ModelFolder folder;
-  const auto model = folder.loadText(armText());
-  MujocoOptions options = armOptions();
-  options.scene.background = 1.0;
-  options.scene.background_pictures = {folder.write("office.png", "a picture")};
-  const MujocoOptions saved = completed(options, *model);
-  EXPECT_NE(saved.model_digest, model->digest());
-  EXPECT_EQ(completed(saved, *model).model_digest, saved.model_digest);
-  folder.write("office.png", "another picture");
-  EXPECT_TRUE(testing::names(refusalOf([&] { completed(saved, *model); }),
-                             {"plant/model_digest", saved.model_digest}));
-  options.scene.background_pictures = {"none.png"};
-  EXPECT_TRUE(testing::names(refusalOf([&] { completed(options, *model); }),
-                             {"plant/background_pictures", "none.png"}));
-}
-
 }  // namespace
 }  // namespace ddm

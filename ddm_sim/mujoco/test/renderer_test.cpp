@@ -312,13 +312,12 @@ TEST(Renderer, ReportsAllProblemsOfItsOptions) {
   SceneOptions nuisances;
   nuisances.camera_shift = -0.1;
   nuisances.colour_shift = 2.0;
-  nuisances.light_shift = std::numeric_limits<double>::infinity();
   nuisances.seed = -1;
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
       [&] { Renderer(scene.model, options, nuisances); },
       {"plant/camera_position", "plant/camera_look_at", "plant/camera_field_of_view",
        "plant/samples", "plant/supersampling", "plant/camera_shift", "plant/colour_shift",
-       "plant/light_shift", "plant/scene_seed"}));
+       "plant/scene_seed"}));
   EXPECT_TRUE(RenderOptions().problems("plant").empty());
   EXPECT_TRUE(SceneOptions().problems("plant").empty());
   options = RenderOptions();

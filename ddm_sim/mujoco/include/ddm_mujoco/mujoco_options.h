@@ -76,9 +76,6 @@ struct MujocoOptions : PlantOptions {
     visitor("supersampling", look.supersampling);
     visitor("camera_shift", scene.camera_shift);
     visitor("colour_shift", scene.colour_shift);
-    visitor("light_shift", scene.light_shift);
-    visitor("background", scene.background);
-    visitor("background_pictures", scene.background_pictures);
     visitor("scene_seed", scene.seed);
   }
 

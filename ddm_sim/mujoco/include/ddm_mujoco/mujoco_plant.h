@@ -76,10 +76,8 @@ class MujocoPlant : public Plant {
 ///         Nothing is checked, and nothing thrown, where OpenGL cannot draw.
 void requireVisible(const std::shared_ptr<const MujocoModel>& model, const MujocoOptions& options);
 
-/// The options with what the files say where they are silent: limits of motors, and the digest of
-/// model and pictures.
-/// @throws std::invalid_argument if the digest is that of other files, a picture cannot be read, or
-///         as MujocoPlant
+/// The options with what the files say where they are silent: limits of motors, and the digest.
+/// @throws std::invalid_argument if the digest is that of other files, or as MujocoPlant
 MujocoOptions completed(MujocoOptions options, const MujocoModel& model);
 
 }  // namespace ddm
