@@ -85,7 +85,7 @@ class RecordedBagTest(ScratchCase):
         bag = self.record(self.simulate(torques, "frames"), torques)
         goal = self.write("goal.jpg", "")
         with open(goal, "wb") as stream:
-            stream.write(self.simulate([0.0], "goal", "--angle", "3.141592653589793")[0])
+            stream.write(self.simulate([0.0], "goal", "--start", "3.141592653589793,0")[0])
         model = self.file("model.ddm")
         names = ["--image-topic", IMAGE_TOPIC, "--torque-topic", TORQUE_TOPIC, "--dt", str(DT)]
         code, output = call([find_program("train_from_bags", "ddm_model"), "--config", PRESET, *names, "--goal", goal,

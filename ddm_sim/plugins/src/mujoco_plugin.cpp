@@ -40,8 +40,6 @@ class MujocoPlugin : public PlantPlugin {
     return std::make_unique<MujocoPlant>(model_, options_);
   }
 
-  bool drawsCheaply() const override { return false; }
-
   std::string renderer() const override {
     try {
       return openGlRenderer();

@@ -20,11 +20,8 @@ class MujocoPhysics;
 
 /// The state is all positions, then all rates, in the order of the joints in the file; hinges [rad]
 /// and slides [m] alone, an angle is never wrapped. A step is dt / h physics frames, h the time
-/// step of the file, under
-///
-///   torque at joint i = gear_i u_i
-///
-/// and depends on state and torque alone: nothing is carried over from the frames before.
+/// step of the file, under the torques u at the joints of the motors, and depends on state and torque
+/// alone: nothing is carried over from the frames before.
 ///
 /// Goal: `goal`, or with `goal_site` for each run a pose that brings this site to a point of its
 /// x-y plane. Error: the largest distance of a joint (angles the short way round [deg], slides [m])

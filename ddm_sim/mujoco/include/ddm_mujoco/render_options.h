@@ -20,8 +20,6 @@ struct RenderOptions {
   int width = 51;                ///< [pixels]
   int height = 51;               ///< [pixels]
   bool colour = false;           ///< else grey
-  bool shadows = true;           ///< of lights that cast them
-  bool reflections = true;       ///< on materials that have them
   int samples = 0;               ///< 0, or 4: edges are averaged over four points of a pixel
   int supersampling = 1;         ///< drawn so many times larger and averaged, which is softer
   bool for_people = false;       ///< also show the geoms and sites of group kPeopleGroup
