@@ -207,8 +207,8 @@ void run(const Request& request) {
   makeAbsolute(blocks["start"]["model"]);
   for (YAML::Node bag : blocks["start"]["bags"]) makeAbsolute(bag);
   const YAML::Node plant = all.plant->block();  // has absolute paths
-  for (const std::string key : {"model", "background_pictures"}) {
-    if (hasKey(blocks, "plant", key) && plant[key].IsDefined()) blocks["plant"][key] = plant[key];
+  if (hasKey(blocks, "plant", "model") && plant["model"].IsDefined()) {
+    blocks["plant"]["model"] = plant["model"];
   }
   if (all.robot) makeAbsolute(blocks["robot"]["goal_file"]);
   std::vector<std::string> access = request.access;

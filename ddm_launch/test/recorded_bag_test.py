@@ -70,7 +70,7 @@ class RecordedBagTest(ScratchCase):
     def test_it_trains_a_model_that_passes_all_checks_and_reaches_the_goal(self):
         bag, goal, model = self.record(), self.file("goal.jpg"), self.file("model.ddm")
         with open(goal, "wb") as stream:
-            stream.write(self.simulate([0.0], "goal", "--angle", "3.141592653589793")[0])
+            stream.write(self.simulate([0.0], "goal", "--start", "3.141592653589793,0")[0])
         output = self.assertRuns(find_program("train_from_bags", "ddm_model"), "--config", PRESET, *NAMES, "--goal", goal,
                                  "--seed", "1", "--out", model, bag)
         num_frames = int(re.search(r"(?m)^frames: (\d+)$", output).group(1))

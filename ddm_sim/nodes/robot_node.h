@@ -26,6 +26,16 @@
 
 namespace ddm {
 
+inline Stamp toStamp(const ros::Time& time) {
+  return Stamp(static_cast<std::int64_t>(time.toNSec()));
+}
+
+inline SteadyTime steadyNow() { return std::chrono::steady_clock::now(); }
+
+inline std::string formatOf(const sensor_msgs::Image& image) {
+  return std::to_string(image.width) + "x" + std::to_string(image.height) + " " + image.encoding;
+}
+
 /// Shows the controller an image every dt and hands its torques to the motors through a TorqueGate.
 /// A trial in which the motors are stopped, or that begins while they are, is cancelled: its
 /// torques do not act, so nothing is to be learned from it.

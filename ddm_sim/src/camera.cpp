@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kTwoPi = 2 * kPi;
 constexpr int kNumShapes = 30;
+constexpr double kBrightnessPeriod = 20.0;  // as long as a trial of the pendulum [s]
 
 /// A disc or a turned rectangle; lengths in pixels.
 struct Shape {
@@ -58,12 +59,10 @@ Shape drawShape(int width, int height, std::mt19937_64* rng) {
   return shape;
 }
 
-/// Shapes on black, each in front of the last, the brightest pixel `clutter`.   [width * height]
-std::vector<double> drawClutter(int width, int height, const CameraOptions& options) {
+/// Shapes on black, each in front of the last, the brightest pixel `highest`.   [width * height]
+std::vector<double> drawClutter(int width, int height, double highest) {
   std::vector<double> grey(static_cast<std::size_t>(width) * height, 0.0);
-  TrialId id;
-  id.seed = static_cast<std::uint64_t>(options.clutter_seed);
-  std::mt19937_64 rng = randomStream(id, StreamRole::kClutter);
+  std::mt19937_64 rng = randomStream(TrialId(), StreamRole::kClutter);
   for (int k = 0; k < kNumShapes; ++k) {
     const Shape shape = drawShape(width, height, &rng);
     auto pixel = grey.begin();
@@ -74,7 +73,7 @@ std::vector<double> drawClutter(int width, int height, const CameraOptions& opti
     }
   }
   const double brightest = *std::max_element(grey.begin(), grey.end());
-  for (double& pixel : grey) pixel *= options.clutter / brightest;
+  for (double& pixel : grey) pixel *= highest / brightest;
   return grey;
 }
 
@@ -84,9 +83,7 @@ std::vector<std::string> CameraOptions::problems() const {
   OptionChecks camera("camera");
   camera.requireWithin("noise_std", noise_std, 0.0, 1.0);
   camera.requireFraction("brightness_drift", brightness_drift);
-  camera.requirePositive("brightness_period", brightness_period);
   camera.requireWithin("clutter", clutter, 0.0, 1.0);
-  camera.requireAtLeast("clutter_seed", clutter_seed, 0);
   camera.requireWithin("delay", delay, 0, 1000);
   // A reader of bags takes the median interval for the time step: most frames must follow directly.
   camera.requireWithin("drop_rate", drop_rate, 0.0, 0.3);
@@ -111,7 +108,7 @@ std::optional<Picture> Camera::photograph(const Picture& picture) {
   if (frame > 0 && draw < options_.drop_rate) {
     taken_.push_back(std::nullopt);
   } else {
-    const double turns = frame * dt_ / options_.brightness_period;
+    const double turns = frame * dt_ / kBrightnessPeriod;
     const double brightness = 1.0 + options_.brightness_drift * std::sin(kTwoPi * turns + phase_);
     taken_.push_back(expose(picture, brightness, &noise_));
   }
@@ -135,7 +132,7 @@ Picture Camera::expose(const Picture& picture, double brightness, std::mt19937_6
         "that a model file describes has nuisances of its own, such as plant/colour_shift");
   }
   if (cluttered && clutter_.size() != picture.numPixels()) {
-    clutter_ = drawClutter(picture.width, picture.height, options_);
+    clutter_ = drawClutter(picture.width, picture.height, options_.clutter);
   }
   std::normal_distribution<double> standard_normal;
   for (std::size_t i = 0; i < out.bytes.size(); ++i) {

@@ -13,7 +13,7 @@ namespace {
 
 PlantInfo infoOf(const MovingTileOptions& options) {
   const double size = options.picture_size;
-  const double margin = options.tile_width / 2;
+  const double margin = kTileWidth / 2;
   const Eigen::VectorXd goal = (Eigen::VectorXd(2) << 0.75 * size, 0.25 * size).finished();
   PlantInfo info;
   info.joints = {{"x", JointKind::kLength}, {"y", JointKind::kLength}};
@@ -29,16 +29,16 @@ PlantInfo infoOf(const MovingTileOptions& options) {
   return info;
 }
 
-/// Fraction of the window of each pixel of a line, [j + 1/2 - softness / 2, j + 1/2 + softness /
-/// 2], that [middle - width / 2, middle + width / 2] covers.
-std::vector<double> coverage(int size, double middle, double width, double softness) {
-  const double first = middle - width / 2;
-  const double last = middle + width / 2;
-  const double margin = (softness - 1.0) / 2;  // of the window around the pixel
+/// Fraction of the window of each pixel of a line, [j + 1/2 - s / 2, j + 1/2 + s / 2], that
+/// [middle - w / 2, middle + w / 2] covers.
+std::vector<double> coverage(int size, double middle) {
+  const double first = middle - kTileWidth / 2;
+  const double last = middle + kTileWidth / 2;
+  const double margin = (kTileSoftness - 1.0) / 2;  // of the window around the pixel
   std::vector<double> out(size);
   for (int j = 0; j < size; ++j) {
     const double overlap = std::min(last, j + 1.0 + margin) - std::max(first, j - margin);
-    out[j] = std::max(0.0, overlap) / softness;
+    out[j] = std::max(0.0, overlap) / kTileSoftness;
   }
   return out;
 }
@@ -50,9 +50,9 @@ double reflected(double position, double lowest, double highest) {
 
 }  // namespace
 
-Picture drawTile(int size, double width, double softness, const Eigen::Vector2d& centre) {
-  const std::vector<double> columns = coverage(size, centre.x(), width, softness);
-  const std::vector<double> rows = coverage(size, centre.y(), width, softness);
+Picture drawTile(int size, const Eigen::Vector2d& centre) {
+  const std::vector<double> columns = coverage(size, centre.x());
+  const std::vector<double> rows = coverage(size, centre.y());
   std::vector<std::uint8_t> bytes;
   bytes.reserve(static_cast<std::size_t>(size) * size);
   for (const double row : rows) {
@@ -65,26 +65,21 @@ Picture drawTile(int size, double width, double softness, const Eigen::Vector2d&
 
 std::vector<std::string> MovingTileOptions::problems() const {
   OptionChecks plant("plant");
-  plant.requirePositive("tile_width", tile_width);
-  plant.require(tile_width < picture_size, "tile_width",
-                "be smaller than plant/picture_size (" + std::to_string(picture_size) + ")",
-                tile_width);
-  plant.require(tile_softness >= 1.0 && isPositive(tile_softness), "tile_softness",
-                "be >= 1 and finite", tile_softness);
+  plant.require(picture_size > kTileWidth, "picture_size", "be more than the tile's 9 pixels",
+                picture_size);
   plant.add(PlantOptions::problems());
   return plant.problems();
 }
 
 MovingTile::MovingTile(const MovingTileOptions& options)
     : Plant(infoOf(checked(options))),
-      options_(options),
-      lowest_(options.tile_width / 2),
-      highest_(options.picture_size - options.tile_width / 2) {}
+      size_(options.picture_size),
+      highest_(options.picture_size - kTileWidth / 2) {}
 
 Eigen::VectorXd MovingTile::advance(const Eigen::VectorXd& state,
                                     const Eigen::VectorXd& torque) const {
   return (state + torque).unaryExpr([this](double position) {
-    return reflected(position, lowest_, highest_);
+    return reflected(position, kTileWidth / 2, highest_);
   });
 }
 
@@ -92,8 +87,6 @@ double MovingTile::distance(const Eigen::VectorXd& state, const Eigen::VectorXd&
   return (state - goal).stableNorm();
 }
 
-Picture MovingTile::draw(const Eigen::VectorXd& state) const {
-  return drawTile(options_.picture_size, options_.tile_width, options_.tile_softness, state);
-}
+Picture MovingTile::draw(const Eigen::VectorXd& state) const { return drawTile(size_, state); }
 
 }  // namespace ddm

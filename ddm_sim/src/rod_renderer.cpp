@@ -13,7 +13,6 @@ namespace ddm {
 
 std::vector<std::string> RodLook::problems() const {
   OptionChecks plant("plant");
-  plant.requirePositive("half_extent", half_extent);
   plant.requirePositive("rod_half_width", rod_half_width);
   plant.requirePositive("edge_softness", edge_softness);
   return plant.problems();
@@ -29,7 +28,7 @@ RodRenderer::RodRenderer(int size, const RodLook& look)
       edge_softness_(look.edge_softness),
       offsets_(size) {
   for (int j = 0; j < size_; ++j) {
-    offsets_[j] = (2 * j + 1 - size_) * look.half_extent / size_;  // exactly antisymmetric
+    offsets_[j] = (2 * j + 1 - size_) * kHalfExtent / size_;  // exactly antisymmetric
   }
 }
 

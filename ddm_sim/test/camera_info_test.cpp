@@ -1,11 +1,11 @@
 // Tests of what ROS tells of a camera.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "camera_info.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
+
+#include "view_publisher.h"
 
 namespace ddm {
 namespace {

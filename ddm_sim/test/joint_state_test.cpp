@@ -52,16 +52,6 @@ TEST(JointState, OfATileHasTwoPositionsTwoEffortsAndNoVelocity) {
   EXPECT_EQ(out.effort, (Numbers{1.0, -1.0}));
 }
 
-TEST(JointState, OfAnArmHasTwoOfEachInTheOrderOfItsJoints) {
-  const auto out = toyState({"shoulder", "elbow"},
-                            {"shoulder_rad", "elbow_rad", "shoulder_rad_per_s", "elbow_rad_per_s"},
-                            {"shoulder_nm", "elbow_nm"});
-  EXPECT_EQ(out.name, (Names{"shoulder", "elbow"}));
-  EXPECT_EQ(out.position, (Numbers{1.0, 2.0}));
-  EXPECT_EQ(out.velocity, (Numbers{3.0, 4.0}));
-  EXPECT_EQ(out.effort, (Numbers{0.5, 0.5}));
-}
-
 TEST(JointState, HasNoEffortWhereMotorsAreNotAsManyAsJoints) {
   const auto out = toyState({"shoulder", "elbow"},
                             {"shoulder_rad", "elbow_rad", "shoulder_rad_per_s", "elbow_rad_per_s"},
@@ -70,14 +60,6 @@ TEST(JointState, HasNoEffortWhereMotorsAreNotAsManyAsJoints) {
   EXPECT_EQ(out.position, (Numbers{1.0, 2.0}));
   EXPECT_EQ(out.velocity, (Numbers{3.0, 4.0}));
   EXPECT_TRUE(out.effort.empty());
-}
-
-TEST(JointState, TakesNoFurtherComponentForARateThatIsNone) {
-  const auto out = toyState({"drum"}, {"angle_rad", "temperature_k"}, {"torque_nm"});
-  EXPECT_EQ(out.name, (Names{"drum", "temperature_k"}));
-  EXPECT_EQ(out.position, (Numbers{1.0, 2.0}));
-  EXPECT_TRUE(out.velocity.empty());
-  EXPECT_TRUE(out.effort.empty());  // one motor, two names
 }
 
 TEST(JointState, KeepsTheWholeStateWhereThereIsMoreThanPositionsAndRates) {

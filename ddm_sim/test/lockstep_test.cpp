@@ -46,19 +46,13 @@ TEST_F(Lockstep, ShowsClockAndGoalButNoImageBeforeTheFirstReset) {
   EXPECT_EQ(client_->images[0].header.stamp, start);
 }
 
-TEST_F(Lockstep, ResetTellsTheStampOfTheGoalImage) {
-  ASSERT_FALSE(client_->goals.empty());
-  EXPECT_EQ(client_->reset(0).goal, client_->goals.back().header.stamp);
-  EXPECT_TRUE(client_->waitForImages(1));  // or it would be the next test's
-}
-
-TEST_F(Lockstep, ShowsTheGoalStateOnTheGoalImage) {
+TEST_F(Lockstep, ShowsTheGoalStateOnTheGoalImageWhoseStampAResetTells) {
   const Pendulum plant{PendulumOptions()};
   ASSERT_FALSE(client_->goals.empty());
   EXPECT_EQ(client_->goals[0].data, plant.render(plant.goal()).bytes);
   EXPECT_EQ(client_->goals[0].encoding, "mono8");
-  EXPECT_EQ(client_->goals[0].width, 51U);
-  EXPECT_EQ(client_->goals[0].height, 51U);
+  EXPECT_EQ(client_->reset(0).goal, client_->goals.back().header.stamp);
+  EXPECT_TRUE(client_->waitForImages(1));  // or it would be the next test's
 }
 
 TEST_F(Lockstep, ShowsExactlyTheImagesAskedForEachDtAfterTheLast) {
@@ -74,7 +68,7 @@ TEST_F(Lockstep, ShowsExactlyTheImagesAskedForEachDtAfterTheLast) {
   expectIdle(client_->images[4].header.stamp);
 }
 
-TEST_F(Lockstep, MovesThePlantAsTheLibraryDoesAndTellsTheTruthOfEachImage) {
+TEST_F(Lockstep, MovesThePlantAsTheLibraryDoesAndPublishesWhatActedAndTheTruthOfEachImage) {
   Pendulum plant{PendulumOptions()};
   plant.setState(Eigen::Vector2d(0.3, -1.7));
   begin(4, {0.3, -1.7});
@@ -93,20 +87,9 @@ TEST_F(Lockstep, MovesThePlantAsTheLibraryDoesAndTellsTheTruthOfEachImage) {
     if (t == 3) break;
     client_->publish(image.header.stamp, {torques[t]});
     applied = plant.step(Eigen::VectorXd::Constant(1, torques[t]))[0];
-  }
-}
-
-TEST_F(Lockstep, PublishesWhatActedAsTheAnswerToEachImage) {
-  begin(3);
-  const std::vector<double> torques{2.0, -9.0, 0.5};  // the second one saturates
-  for (std::size_t t = 0; t < 3; ++t) {
-    ASSERT_TRUE(client_->waitForImages(t + 1));
-    client_->publish(client_->images[t].header.stamp, {torques[t]});
-  }
-  ASSERT_TRUE(client_->waitUntil([] { return client_->applied.size() == 3; }));
-  for (std::size_t t = 0; t < 3; ++t) {
-    EXPECT_EQ(client_->applied[t].header.stamp, client_->images[t].header.stamp);
-    EXPECT_EQ(client_->applied[t].torque, std::vector<double>{std::max(torques[t], -6.0)});
+    ASSERT_TRUE(client_->waitUntil([t] { return client_->applied.size() == t + 1; }));
+    EXPECT_EQ(client_->applied[t].header.stamp, image.header.stamp);
+    EXPECT_EQ(client_->applied[t].torque, std::vector<double>{applied});
   }
 }
 
@@ -124,23 +107,15 @@ TEST_F(Lockstep, CountsAndIgnoresATorqueWithAnotherStamp) {
   EXPECT_EQ(client_->truths[2].effort, std::vector<double>{2.0});
 }
 
-TEST_F(Lockstep, RefusesATorqueThatIsNotFiniteNamesItsPublisherAndEndsTheTrial) {
-  const std::vector<std::pair<double, std::string>> cases{{kNaN, "nan]"}, {-kInfinity, "[-inf]"}};
-  for (const auto& [value, text] : cases) {
+TEST_F(Lockstep, RefusesATorqueThatIsNotOneFiniteNumberNamesItsPublisherAndEndsTheTrial) {
+  const std::vector<std::pair<std::vector<double>, std::string>> cases{
+      {{kNaN}, "nan]"}, {{-kInfinity}, "[-inf]"}, {{}, "1 finite"}, {{1.0, 2.0}, "[1 2]"}};
+  for (const auto& [torque, text] : cases) {
     const ros::Time start = begin(0);
-    client_->publish(start, {value});
+    client_->publish(start, torque);
     ASSERT_TRUE(client_->waitForLog("torque refused: " + ros::this_node::getName()));
     EXPECT_TRUE(client_->logged(text)) << text;
     ASSERT_TRUE(client_->waitForLog("trial 0 ends"));
-    expectIdle(start);
-  }
-}
-
-TEST_F(Lockstep, RefusesATorqueOfAnotherSizeAndEndsTheTrial) {
-  for (const std::vector<double>& torque : {std::vector<double>{}, std::vector<double>{1.0, 2.0}}) {
-    const ros::Time start = begin(0);
-    client_->publish(start, torque);
-    ASSERT_TRUE(client_->waitForLog("1 finite"));
     expectIdle(start);
   }
 }
@@ -168,19 +143,10 @@ TEST_F(Lockstep, NamesThePublisherThatKeepsSilentAndGoesIdle) {
   const ros::Time start = begin(0);
   client_->publish(start, {1.0});
   ASSERT_TRUE(client_->waitForImages(2));
-  ASSERT_TRUE(client_->waitForLog("2.5 s"));
+  ASSERT_TRUE(client_->waitForLog("1.5 s"));
   EXPECT_TRUE(client_->logged("frame 1"));
   EXPECT_TRUE(client_->logged("/torque: " + ros::this_node::getName()));
   expectIdle(client_->images[1].header.stamp);
-}
-
-TEST_F(Lockstep, SaysWhenNobodyPublishesTorques) {
-  client_->stopPublishing();
-  begin(0);
-  const bool said = client_->waitForLog("nobody publishes /torque");
-  client_->advertise();
-  ASSERT_TRUE(client_->waitForTorqueSubscriber());
-  EXPECT_TRUE(said);
 }
 
 TEST_F(Lockstep, StartsEachTrialAtLeastASecondLaterAndNeverTurnsTheClockBack) {

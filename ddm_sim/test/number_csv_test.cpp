@@ -44,17 +44,8 @@ TEST(NumberCsv, ReadsOneValueALine) {
   EXPECT_EQ(read("torque_nm\n1\n-2.5e-1\n+.5\n"), (std::vector<double>{1.0, -0.25, 0.5}));
 }
 
-TEST(NumberCsv, ReadsALastLineWithoutItsEnd) {
-  EXPECT_EQ(read("torque_nm\n1\n2"), (std::vector<double>{1.0, 2.0}));
-}
-
 TEST(NumberCsv, ReadsWindowsLineEndsAndEmptyLinesAtTheEnd) {
   EXPECT_EQ(read("torque_nm\r\n1\r\n 2\t\r\n\r\n\n"), (std::vector<double>{1.0, 2.0}));
-}
-
-TEST(NumberCsv, TakesTheHeaderAloneForNoTorques) {
-  EXPECT_TRUE(read("torque_nm\n").empty());
-  EXPECT_TRUE(read("torque_nm").empty());
 }
 
 TEST(NumberCsv, RefusesInputWithoutItsHeader) {
@@ -85,25 +76,6 @@ TEST(NumberCsv, RefusesARowWithMoreOrFewerNumbersAndSaysHowMany) {
     EXPECT_TRUE(testing::names(
         message, {"line 3: ", " 2 ", "dx_px,dy_px", "got \"" + std::string(bad) + "\""}));
   }
-}
-
-TEST(NumberCsv, RefusesTheHeaderOfAnotherPlant) {
-  for (const char* text : {"torque_nm\n1\n", "dy_px,dx_px\n1,2\n", "dx_px\n1\n"}) {
-    EXPECT_TRUE(testing::names(refusal(text, readPairs), {"line 1: ", " dx_px,dy_px", "got \""}))
-        << text;
-  }
-}
-
-TEST(NumberCsv, LeavesTheValuesAloneIfOneIsBad) {
-  Eigen::VectorXd values = Eigen::Vector2d(7.0, 8.0);
-  EXPECT_FALSE(parseNumbers("1,x", 2, &values));
-  EXPECT_EQ(values, Eigen::Vector2d(7.0, 8.0));
-  EXPECT_TRUE(parseNumbers("1,-2", 2, &values));
-  EXPECT_EQ(values, Eigen::Vector2d(1.0, -2.0));
-}
-
-TEST(NumberCsv, RefusesAnEmptyLineBetweenValues) {
-  EXPECT_NE(refusal("torque_nm\n1\n\n2\n").find("line 3"), std::string::npos);
 }
 
 TEST(NumberCsv, ShowsNoControlCharactersOfABinaryFile) {

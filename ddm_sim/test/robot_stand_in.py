@@ -11,7 +11,7 @@ from ddm_msgs.msg import RunTrialActionResult, Torque
 from ddm_msgs.srv import Reset
 import rospy
 from sensor_msgs.msg import Image
-from std_msgs.msg import Float64, Float64MultiArray, UInt32
+from std_msgs.msg import Bool, Float64, Float64MultiArray, UInt32
 from std_srvs.srv import SetBool, Trigger
 
 from process import Process, find_program
@@ -52,16 +52,16 @@ class Camera:
     """30 images a second; left half `left`, right half black."""
 
     def __init__(self, topic):
-        self.left = 255
-        self.width = WIDTH
-        self.showing = True
-        self.age_s = 0.0
+        self.restore()
         self.shown_at = 0.0  # monotonic time of the last image
         self._ended = False
         self._lock = threading.Lock()
         self._publisher = rospy.Publisher(topic, Image, queue_size=2)
         self._thread = threading.Thread(target=self._show, daemon=True)
         self._thread.start()
+
+    def restore(self):
+        self.left, self.width, self.showing, self.age_s = 255, WIDTH, True, 0.0
 
     def end(self):
         self._ended = True
@@ -128,6 +128,7 @@ class Robot:
         self.applied = Listener("applied_torque", Torque)
         self.misses = Listener("deadline_misses", UInt32)
         self.cancels = Listener("run_trial/cancel", GoalID)
+        self.enabled = Listener("motors_enabled", Bool)
         self.torques = rospy.Publisher("torque", Torque, queue_size=10, tcp_nodelay=True)
         self.trial_ends = rospy.Publisher("run_trial/result", RunTrialActionResult, queue_size=1)
         self.controller = None
@@ -141,15 +142,26 @@ class Robot:
         """Leaves the topics to the next one."""
         self.process.stop()
         self.camera.end()
-        if self.controller is not None:
-            self.controller.unregister()
+        self.stopAnswering()
         self.torques.unregister()
         self.trial_ends.unregister()
         for listener in self.listeners():
             listener.end()
 
     def listeners(self):
-        return self.images, self.goals, self.efforts, self.applied, self.latencies, self.misses, self.cancels
+        return (self.images, self.goals, self.efforts, self.applied, self.latencies, self.misses, self.cancels,
+                self.enabled)
+
+    def settle(self):
+        """Ends the trial and whatever a test has changed."""
+        self.stopAnswering()
+        self.camera.restore()
+        num_cancels = len(self.cancels.messages)
+        if self.enabled.messages[-1].data:
+            self.enable(False)
+            wait_until(lambda: len(self.cancels.messages) > num_cancels, "the cancelled trial")
+        del self.cancels.messages[:]
+        self.images.next()
 
     def enable(self, on):
         return rospy.ServiceProxy("enable", SetBool)(on)
@@ -185,6 +197,11 @@ class Robot:
         """Answers each image from now on."""
         self.controller = rospy.Subscriber("camera/image_raw", Image, lambda image: self.publishTorque(image, torque), tcp_nodelay=True)
 
+    def stopAnswering(self):
+        if self.controller is not None:
+            self.controller.unregister()
+        self.controller = None
+
     def publishTorque(self, image, *torque):
         message = Torque(torque=list(torque))
         message.header.stamp = image.header.stamp
@@ -207,19 +224,48 @@ class Robot:
         return self.misses.messages[-1].data
 
 
+def start_robot(*arguments, dt=DT, max_torque=4.0, robot=None, **kwargs):
+    """A robot_node with its surroundings; `robot` has the parameters that are lists."""
+    if rospy.has_param("/robot_node"):
+        rospy.delete_param("/robot_node")
+    rospy.set_param("/robot_node/robot", dict(robot or {}, dt=dt, max_torque=max_torque))
+    num_motors = len(max_torque) if isinstance(max_torque, list) else 1
+    return Robot(num_motors, *(OPTIONS + list(arguments)), **kwargs)
+
+
 class RobotCase(unittest.TestCase):
+    """Tests that start a robot_node each."""
+
     def file(self, name):
         """A path in a folder of this test."""
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         return os.path.join(folder.name, name)
 
-    def start(self, *arguments, dt=DT, max_torque=4.0, robot=None, **kwargs):
-        """A robot_node that leaves nothing behind after the test; `robot` has the parameters that are lists."""
-        if rospy.has_param("/robot_node"):
-            rospy.delete_param("/robot_node")
-        rospy.set_param("/robot_node/robot", dict(robot or {}, dt=dt, max_torque=max_torque))
-        num_motors = len(max_torque) if isinstance(max_torque, list) else 1
-        robot = Robot(num_motors, *(OPTIONS + list(arguments)), **kwargs)
+    def start(self, *arguments, **kwargs):
+        """A robot_node that leaves nothing behind after the test."""
+        robot = start_robot(*arguments, **kwargs)
         self.addCleanup(robot.end)
         return robot
+
+
+class SharedRobotCase(unittest.TestCase):
+    """Tests of one robot_node. Each begins with a working camera and with the motors off."""
+    ROBOT = {}  # parameters
+
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = start_robot(robot=cls.ROBOT)
+        cls.addClassCleanup(cls.robot.end)
+
+    def setUp(self):
+        self.robot.settle()
+
+    def enterTrial(self, torque=2.0):
+        wait_until(lambda: self.robot.enable(True).success, "permission")
+        self.robot.answerAll(torque)  # on a busy machine the first answer may be late
+        self.robot.waitForEffort(torque)
+        self.robot.stopAnswering()
+
+    def assertCancelled(self):
+        wait_until(lambda: self.robot.cancels.messages, "the trial is cancelled")

@@ -59,12 +59,6 @@ class RobotTerminalTest(RobotCase):
         self.robot.camera.showing = False
         self.robot.waitForEffort(0.0)
 
-    def test_the_motor_stops_when_somebody_says_so(self):
-        self.robot.answerAll(2.0)
-        self.robot.waitForEffort(2.0)
-        self.assertTrue(self.robot.enable(False).success)
-        self.robot.waitForEffort(0.0)
-
     def test_the_motor_stops_after_somebody_asked_for_a_topic_in_a_wrong_way(self):
         uri = rosgraph.Master("/robot_terminal_test").lookupNode("/robot_node")
         _, _, (_, host, port) = xmlrpc.client.ServerProxy(uri).requestTopic("/somebody", "/applied_torque", [["TCPROS"]])

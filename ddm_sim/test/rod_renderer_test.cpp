@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 
 #include "ddm_sim/angles.h"
@@ -24,29 +23,6 @@ Rod rodAt(double angle) { return {Eigen::Vector2d::Zero(), angle, 1.0}; }
 
 Bytes render(double angle) { return RodRenderer(kSize, RodLook()).render({rodAt(angle)}).bytes; }
 
-int brightness(const Bytes& image, int row_begin, int row_end, int column_begin, int column_end) {
-  int sum = 0;
-  for (int i = row_begin; i < row_end; ++i) {
-    for (int j = column_begin; j < column_end; ++j) sum += image[i * kSize + j];
-  }
-  return sum;
-}
-
-TEST(RodRenderer, ShowsTheHangingRodInTheLowerHalf) {
-  const Bytes image = render(0.0);
-  EXPECT_GT(brightness(image, 26, 51, 0, 51), 5 * brightness(image, 0, 25, 0, 51));
-}
-
-TEST(RodRenderer, ShowsTheGoalInTheUpperHalf) {
-  const Bytes image = render(kPi);
-  EXPECT_GT(brightness(image, 0, 25, 0, 51), 5 * brightness(image, 26, 51, 0, 51));
-}
-
-TEST(RodRenderer, TurnsCounterClockwiseForAPositiveAngle) {
-  const Bytes image = render(kPi / 2);  // from hanging by a quarter turn: points right
-  EXPECT_GT(brightness(image, 0, 51, 26, 51), 5 * brightness(image, 0, 51, 0, 25));
-}
-
 TEST(RodRenderer, ChangesTheImageWithinOneDegree) {
   for (int degree = 0; degree < 360; ++degree) {
     ASSERT_NE(render(degree * kPi / 180), render((degree + 1) * kPi / 180)) << degree;
@@ -61,26 +37,6 @@ TEST(RodRenderer, MirrorsTheImageForTheOppositeAngle) {
     }
     EXPECT_EQ(render(angle), mirrored) << angle;
   }
-}
-
-TEST(RodRenderer, KeepsItsBrightnessWhileItTurns) {
-  // The area of the rod in pixels times 255: a stadium of length 1 and half-width 0.1 whose edge
-  // blurs over +-0.1, so area = 2 * 0.1 * 1 + integral of 2 pi r grey(r) / 2 at each of the two
-  // ends.
-  const double ends = 2 * kPi * (0.2 * 0.2 / 2 - 0.2 * 0.2 / 3);  // grey(r) = 1 - r / 0.2
-  const double pixel = 2.4 / kSize;
-  const double expected = 255 * (0.2 + ends) / (pixel * pixel);
-  for (int degree = 0; degree < 360; degree += 7) {
-    const double sum = brightness(render(degree * kPi / 180), 0, kSize, 0, kSize);
-    EXPECT_NEAR(sum / expected, 1.0, 0.02) << degree;
-  }
-}
-
-TEST(RodRenderer, IsWhiteOnTheRodAndBlackFarFromIt) {
-  const Bytes image = render(0.0);
-  EXPECT_EQ(image[25 * kSize + 25], 255);  // the pivot, at distance 0
-  EXPECT_EQ(image[0], 0);
-  EXPECT_EQ(image[50 * kSize + 50], 0);
 }
 
 TEST(RodRenderer, RoundsTheGreyValueOfThePublishedFormula) {
@@ -127,25 +83,7 @@ TEST(RodRenderer, StartsARodWhereItSays) {
   }
 }
 
-TEST(RodRenderer, KnowsWhereARodEnds) {
-  EXPECT_LT((Rod{{1.0, 2.0}, 0.0, 0.5}.end() - Eigen::Vector2d(1.0, 1.5)).norm(), 1e-15);
-  EXPECT_LT((Rod{{1.0, 2.0}, kPi / 2, 0.5}.end() - Eigen::Vector2d(1.5, 2.0)).norm(), 1e-15);
-}
-
-TEST(RodRenderer, HasTheSizeAndExtentOfItsOptions) {
-  RodLook look;
-  look.half_extent = 4.0;
-  const Picture small = RodRenderer(20, look).render({rodAt(0.0)});
-  EXPECT_EQ(small.width, 20);
-  EXPECT_EQ(small.height, 20);
-  EXPECT_EQ(small.channels, 1);
-  EXPECT_EQ(small.bytes.size(), 400U);
-  EXPECT_EQ(small.cover, small.bytes);
-  // The tip stands at a quarter of the half height: rows below 10 + 2.5 + softness are black.
-  EXPECT_EQ(std::accumulate(small.bytes.begin() + 14 * 20, small.bytes.end(), 0), 0);
-}
-
-TEST(RodRenderer, RefusesALookWithoutAnExtentAWidthOrAnEdge) {
+TEST(RodRenderer, RefusesALookWithoutAWidthOrAnEdge) {
   const auto accepts = [](double RodLook::*value, double number) {
     RodLook look;
     look.*value = number;
@@ -156,8 +94,7 @@ TEST(RodRenderer, RefusesALookWithoutAnExtentAWidthOrAnEdge) {
     }
     return true;
   };
-  for (const auto value :
-       {&RodLook::half_extent, &RodLook::rod_half_width, &RodLook::edge_softness}) {
+  for (const auto value : {&RodLook::rod_half_width, &RodLook::edge_softness}) {
     EXPECT_TRUE(accepts(value, 0.5));
     for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
                              std::numeric_limits<double>::infinity()}) {

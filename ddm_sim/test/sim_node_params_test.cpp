@@ -27,28 +27,6 @@ TEST_F(SimNodeParams, ReportsTheProblemsOfAllBlocksAtOnce) {
   expectRefused(DDM_SIM_NODE, {"plant/mass", "camera/noise_std", "sim/watchdog"});
 }
 
-TEST_F(SimNodeParams, RefusesAnUnknownPlantAndListsTheKnownOnes) {
-  ros::param::set("/bad_node/plant/type", "cart");
-  expectRefused(DDM_SIM_NODE, {"plant/type", "cart", "moving_tile", "pendulum", "two_link"});
-}
-
-TEST_F(SimNodeParams, RefusesATileThatFillsThePicture) {
-  ros::param::set("/bad_node/plant/type", "moving_tile");
-  ros::param::set("/bad_node/plant/tile_width", 51.0);
-  expectRefused(DDM_SIM_NODE, {"plant/tile_width", "plant/picture_size (51)", "got 51"});
-}
-
-TEST_F(SimNodeParams, RefusesTheKeysOfAnotherPlant) {
-  ros::param::set("/bad_node/plant/type", "moving_tile");
-  ros::param::set("/bad_node/plant/mass", 1.0);
-  expectRefused(DDM_SIM_NODE, {"plant/mass"});
-}
-
-TEST_F(SimNodeParams, RefusesAListThatIsTooLongForThePlant) {
-  ros::param::set("/bad_node/plant/max_torque", std::vector<double>{1.0, 2.0});
-  expectRefused(DDM_SIM_NODE, {"plant/max_torque"});
-}
-
 TEST_F(SimNodeParams, RefusesAValueOfAnotherType) {
   ros::param::set("/bad_node/plant/dt", "fast");
   expectRefused(DDM_SIM_NODE, {"plant/dt", "fast"});

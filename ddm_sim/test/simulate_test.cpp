@@ -17,7 +17,6 @@
 #include "ddm_msgs/testing/temp_folder.h"
 #include "ddm_sim/moving_tile.h"
 #include "ddm_sim/pendulum.h"
-#include "ddm_sim/two_link.h"
 
 namespace ddm {
 namespace {
@@ -69,8 +68,7 @@ class Simulate : public ::testing::Test {
 };
 
 TEST_F(Simulate, WritesTheTrajectoryOfThePlant) {
-  const Outcome result =
-      run("--plant pendulum --angle 0.25 --rate -3", "torque_nm\n1\n-2.5\n6\n0\n");
+  const Outcome result = run("--plant pendulum --start 0.25,-3", "torque_nm\n1\n-2.5\n6\n0\n");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const auto table = rows(result.out);
   ASSERT_EQ(table.size(), 5U);
@@ -86,37 +84,8 @@ TEST_F(Simulate, WritesTheTrajectoryOfThePlant) {
   }
 }
 
-TEST_F(Simulate, WritesTheStartAloneForNoTorques) {
-  const Outcome result = run("--plant pendulum --angle 1", "torque_nm\n");
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(result.out, "step,time_s,angle_rad,rate_rad_per_s\n0,0,1,0\n");
-}
-
-TEST_F(Simulate, TakesAStartExactlyInEverySpellingOfANegativeNumber) {
-  for (const char* options :
-       {"--angle -0.001 --rate -.5", "--angle=-0.001 --rate=-5e-1", "--angle -1e-3 --rate -0.5"}) {
-    const Outcome result = run(std::string("--plant pendulum ") + options, "torque_nm\n");
-    ASSERT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_EQ(rows(result.out).at(0), (std::vector<double>{0, 0, -0.001, -0.5})) << options;
-  }
-}
-
-TEST_F(Simulate, SaturatesTorquesAsTheMotorDoes) {
-  EXPECT_EQ(run("--plant pendulum", "torque_nm\n100\n").out,
-            run("--plant pendulum", "torque_nm\n6\n").out);
-  EXPECT_EQ(run("--plant pendulum_gravity", "torque_nm\n-6\n").out,
-            run("--plant pendulum_gravity", "torque_nm\n-2.5\n").out);
-}
-
-TEST_F(Simulate, KnowsThePlantWithGravity) {
-  const Outcome result = run("--plant pendulum_gravity --angle 1", "torque_nm\n0\n");
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(rows(result.out).at(1)[1], 0.1);
-  EXPECT_LT(rows(result.out).at(1)[2], 0.95);  // it falls
-}
-
 TEST_F(Simulate, TakesAWholeStartStateInOneOption) {
-  for (const char* options : {"--start -0.5,2", "--start=-5e-1,2", "--angle -0.5 --rate 2"}) {
+  for (const char* options : {"--start -0.5,2", "--start=-5e-1,2"}) {
     const Outcome result = run(std::string("--plant pendulum ") + options, "torque_nm\n");
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(result.out, "step,time_s,angle_rad,rate_rad_per_s\n0,0,-0.5,2\n") << options;
@@ -139,33 +108,6 @@ TEST_F(Simulate, WritesTheTrajectoryAndThePicturesOfTheMovingTile) {
     ASSERT_EQ(image.type(), CV_8UC1) << path;
     const std::vector<std::uint8_t> grey(image.begin<std::uint8_t>(), image.end<std::uint8_t>());
     EXPECT_EQ(grey, plant.render(Eigen::Vector2d(table.at(t)[2], table.at(t)[3])).bytes) << path;
-  }
-}
-
-TEST_F(Simulate, StartsTheMovingTileInTheMiddle) {
-  const Outcome result = run("--plant moving_tile", "dx_px,dy_px\n");
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(result.out, "step,time_s,x_px,y_px\n0,0,25.5,25.5\n");
-}
-
-TEST_F(Simulate, WritesTheTrajectoryAndThePicturesOfTheArm) {
-  const fs::path frames = folder_ / "frames";
-  const Outcome result = run("--plant two_link --start 0.1,-0.2,0,0.5 --frames " + frames.string(),
-                             "shoulder_nm,elbow_nm\n4,-2\n-100,1\n");
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  TwoLink plant{TwoLinkOptions()};
-  plant.setState(Eigen::Vector4d(0.1, -0.2, 0.0, 0.5));
-  const auto table =
-      rows(result.out, "step,time_s,shoulder_rad,elbow_rad,shoulder_rad_per_s,elbow_rad_per_s", 6U);
-  ASSERT_EQ(table.size(), 3U);
-  for (std::size_t t = 0; t < 3; ++t) {
-    if (t > 0) plant.step(t == 1 ? Eigen::Vector2d(4.0, -2.0) : Eigen::Vector2d(-4.0, 1.0));
-    for (Eigen::Index i = 0; i < 4; ++i) EXPECT_EQ(table[t][2 + i], plant.state()[i]) << t;
-    const fs::path path = frames / ("frame_000" + std::to_string(t) + ".png");
-    const cv::Mat image = cv::imread(path.string(), cv::IMREAD_UNCHANGED);
-    ASSERT_EQ(image.type(), CV_8UC1) << path;
-    const std::vector<std::uint8_t> grey(image.begin<std::uint8_t>(), image.end<std::uint8_t>());
-    EXPECT_EQ(grey, plant.render(plant.state()).bytes) << path;
   }
 }
 
@@ -244,24 +186,6 @@ TEST_F(SimulateModelFile, DescribesAModelFile) {
   EXPECT_TRUE(contains(about["renderer"].as<std::string>(), "llvmpipe"));  // software
 }
 
-TEST_F(SimulateModelFile, TakesThePlantOfAFile) {
-  std::ofstream(folder_ / "robot.yaml") << "plant: {type: mujoco, model: " DDM_SIM_SOURCE_DIR
-                                           "/models/suite_pendulum.xml, tolerance: 5}";
-  const Outcome result = run("--plant " + folder_.string() + "/robot.yaml", "pendulum_nm\n0\n");
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(rows(result.out, "step,time_s,pendulum_rad,pendulum_rad_per_s").size(), 2U);
-}
-
-TEST_F(SimulateModelFile, FindsTheModelBesideThePlantFileFromAnyFolder) {
-  fs::copy(DDM_SIM_SOURCE_DIR "/models/arm.urdf", folder_ / "arm.urdf");
-  std::ofstream(folder_ / "arm.yaml")
-      << "plant: {type: mujoco, model: arm.urdf, motors: [elbow], tolerance: 5, "
-         "camera_position: [0, 0, 2], camera_look_at: [0, 0, 0]}";
-  const Outcome result = run("--plant " + folder_.string() + "/arm.yaml --describe", "");
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(YAML::Load(result.out)["max_torque"].as<double>(), 0.4);  // of the model file
-}
-
 #if !DDM_HAS_MUJOCO
 TEST_F(Simulate, SaysWhatIsMissingForAModelFile) {
   const Outcome result = run("--plant suite_pendulum", "torque_nm\n");
@@ -270,64 +194,6 @@ TEST_F(Simulate, SaysWhatIsMissingForAModelFile) {
   EXPECT_TRUE(contains(result.err, "suite_pendulum")) << result.err;
 }
 #endif
-
-TEST_F(Simulate, TakesALimitForEachMotor) {
-  const std::string path = (folder_ / "limits.yaml").string();
-  std::ofstream(path) << "plant: {max_torque: [1.5, 2.5]}\n";
-  const Outcome result =
-      run("--plant moving_tile --start 20,20 --config " + path, "dx_px,dy_px\n9,-9\n");
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(rows(result.out, kTileHeader).at(1), (std::vector<double>{1, 0.2, 21.5, 17.5}));
-}
-
-TEST_F(Simulate, RefusesAnAngleOfAPlantThatHasNone) {
-  for (const char* option : {"--angle", "--rate"}) {
-    for (const char* value : {" 0", " 1"}) {  // 0 too: it would mean the upper left corner
-      const Outcome result =
-          run(std::string("--plant moving_tile ") + option + value, "dx_px,dy_px\n");
-      EXPECT_EQ(result.exit_code, 2) << option << value;
-      for (const char* part : {option, "x_px,y_px", "--start"}) {
-        EXPECT_TRUE(contains(result.err, part)) << result.err;
-      }
-      EXPECT_EQ(result.out, "");
-    }
-  }
-}
-
-TEST_F(Simulate, RefusesTheTorquesOfAnotherPlant) {
-  const Outcome result = run("--plant moving_tile", "torque_nm\n1\n");
-  EXPECT_EQ(result.exit_code, 1);
-  for (const char* part : {"line 1: ", "dx_px,dy_px"}) {
-    EXPECT_TRUE(contains(result.err, part)) << result.err;
-  }
-  EXPECT_EQ(result.out, "");
-}
-
-TEST_F(Simulate, RefusesATileThatFillsThePicture) {
-  const std::string path = (folder_ / "large.yaml").string();
-  std::ofstream(path) << "plant: {tile_width: 51}\n";
-  const Outcome result = run("--plant moving_tile --config " + path, "dx_px,dy_px\n");
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(contains(result.err, "plant/tile_width")) << result.err;
-  EXPECT_TRUE(contains(result.err, "plant/picture_size")) << result.err;
-}
-
-TEST_F(Simulate, WritesOnePictureARow) {
-  const fs::path frames = folder_ / "new" / "frames";
-  const Outcome result =
-      run("--plant pendulum --angle 0.5 --frames " + frames.string(), "torque_nm\n1\n1\n");
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(std::distance(fs::directory_iterator(frames), fs::directory_iterator()), 3);
-  const Pendulum plant{PendulumOptions()};
-  const auto table = rows(result.out);
-  for (int t = 0; t < 3; ++t) {
-    const fs::path path = frames / ("frame_000" + std::to_string(t) + ".png");
-    const cv::Mat image = cv::imread(path.string(), cv::IMREAD_UNCHANGED);
-    ASSERT_EQ(image.type(), CV_8UC1) << path;
-    const std::vector<std::uint8_t> grey(image.begin<std::uint8_t>(), image.end<std::uint8_t>());
-    EXPECT_EQ(grey, plant.render(Eigen::Vector2d(table[t][2], table[t][3])).bytes) << path;
-  }
-}
 
 TEST_F(Simulate, LetsALaterConfigurationFileWin) {
   const std::string first = (folder_ / "first.yaml").string();
@@ -339,15 +205,6 @@ TEST_F(Simulate, LetsALaterConfigurationFileWin) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(rows(result.out).at(1)[1], 0.25);
   EXPECT_EQ(rows(result.out).at(1)[3], 1.0 - std::exp(-0.75));  // u = 1, not 6
-}
-
-TEST_F(Simulate, PrintsItsOptionsOnRequest) {
-  const Outcome result = run("--help", "");
-  EXPECT_EQ(result.exit_code, 0);
-  for (const char* option :
-       {"--plant", "--start", "--angle", "--rate", "--frames", "--config", "saturates"}) {
-    EXPECT_TRUE(contains(result.out, option)) << option;
-  }
 }
 
 TEST_F(Simulate, ListsTheKnownPlantsWhenThePlantIsUnknown) {
@@ -364,22 +221,14 @@ TEST_F(Simulate, ListsTheKnownPlantsWhenThePlantIsUnknown) {
 TEST_F(Simulate, RefusesAWrongCommandLineAndNamesTheWord) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {"", "--plant"},
-      {"--plant pendulum --angel 3", "--angel"},
-      {"--plant pendulum --ang 3", "--ang"},
+      {"--plant pendulum --strat 3", "--strat"},
+      {"--plant pendulum --star 3", "--star"},
       {"--plant pendulum -0.5", "-0.5"},
-      {"--plant pendulum --angle", "--angle"},
-      {"--plant pendulum --angle nan", "nan"},
-      {"--plant pendulum --rate inf", "inf"},
-      {"--plant pendulum --rate 1m", "1m"},
-      {"--plant pendulum --angle ''", "--angle"},
-      {"--plant pendulum --angle 1 --angle 2", "--angle"},
       {"--plant pendulum --start", "--start"},
       {"--plant pendulum --start ''", "--start"},
       {"--plant pendulum --start 1", "2 finite number(s) (angle_rad,rate_rad_per_s), got \"1\""},
       {"--plant pendulum --start 1,2,3", "got \"1,2,3\""},
       {"--plant pendulum --start 1,nan", "got \"1,nan\""},
-      {"--plant pendulum --start 1,2 --angle 1", "leave --angle and --rate out"},
-      {"--plant pendulum --rate 0 --start 1,2", "leave --angle and --rate out"},
       {"--plant pendulum trajectory.csv", "trajectory.csv"}};
   for (const auto& [options, word] : cases) {
     const Outcome result = run(options, "torque_nm\n1\n");
@@ -422,15 +271,6 @@ TEST_F(Simulate, RefusesABadConfigurationFile) {
   const Outcome missing = run("--plant pendulum --config /no/such.yaml", "torque_nm\n1\n");
   EXPECT_EQ(missing.exit_code, 1);
   EXPECT_TRUE(contains(missing.err, "/no/such.yaml")) << missing.err;
-}
-
-TEST_F(Simulate, SaysWhichPictureCannotBeWritten) {
-  std::ofstream(folder_ / "file") << "not a folder";
-  const Outcome result =
-      run("--plant pendulum --frames " + (folder_ / "file").string(), "torque_nm\n1\n");
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(contains(result.err, (folder_ / "file").string())) << result.err;
-  EXPECT_EQ(result.out, "");
 }
 
 TEST_F(Simulate, NoticesWhenItsOutputCannotBeWritten) {

@@ -119,19 +119,6 @@ TEST(TwoLink, AgreesWithAReferenceIntegratorInOtherCoordinates) {
   }
 }
 
-TEST(TwoLink, AgreesWithItselfInStepsAHundredTimesFiner) {
-  TwoLink arm(lopsided());
-  arm.setState(Eigen::Vector4d(3.0, -1.0, 2.0, -4.0));
-  const Eigen::Vector2d torque(1.0, -0.5);
-  TwoLinkOptions fine = lopsided();
-  fine.dt /= 100;
-  TwoLink finer(fine);
-  finer.setState(arm.state());
-  arm.step(torque);
-  for (int i = 0; i < 100; ++i) finer.step(torque);
-  EXPECT_LT((arm.state() - finer.state()).cwiseAbs().maxCoeff(), 1e-9);
-}
-
 TEST(TwoLink, KeepsItsEnergyWithoutFrictionAndTorque) {
   for (const double gravity : {0.0, 9.82}) {
     TwoLinkOptions options = lopsided();
@@ -151,96 +138,6 @@ TEST(TwoLink, KeepsItsEnergyWithoutFrictionAndTorque) {
   }
 }
 
-TEST(TwoLink, GainsTheWorkOfItsMotorsAndLosesThatOfFrictionInEachJoint) {
-  // Of a short step from rates alone: dE = (u_1 - b_1 q_1') q_1' dt + (u_2 - b_2 q_2') q_2' dt.
-  TwoLinkOptions options = lopsided();
-  options.dt = 1e-3;
-  const Reference reference(options);
-  for (const Eigen::Vector2d& torque :
-       {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(3.0, 0.0), Eigen::Vector2d(0.0, -1.5)}) {
-    const Eigen::Vector4d state(0.4, 1.1, 1.5, -2.0);
-    const Eigen::Vector4d next = stepOf(options, state, torque);
-    const Eigen::Vector4d middle = (state + next) / 2;
-    const double work = (torque[0] - 0.4 * middle[2]) * middle[2] * options.dt +
-                        (torque[1] - 0.07 * middle[3]) * middle[3] * options.dt;
-    EXPECT_NEAR(reference.energy(next) - reference.energy(state), work, 1e-3 * std::abs(work));
-  }
-}
-
-TEST(TwoLink, ComesToRestHangingUnderGravityAndFriction) {
-  TwoLinkOptions options = lopsided();
-  options.friction = {2.0, 0.5};
-  const Reference reference(options);
-  TwoLink arm(options);
-  arm.setState(Eigen::Vector4d(2.0, -1.0, 0.0, 0.0));
-  double energy = reference.energy(arm.state());
-  for (int t = 0; t < 400; ++t) {
-    arm.step(Eigen::Vector2d::Zero());
-    ASSERT_LE(reference.energy(arm.state()), energy + 1e-10) << "step " << t;
-    energy = reference.energy(arm.state());
-  }
-  EXPECT_LT(arm.state().cwiseAbs().maxCoeff(), 1e-6);
-}
-
-TEST(TwoLink, IsAPendulumWhereTheLowerLinkWeighsNothing) {
-  TwoLinkOptions options = lopsided();
-  options.mass[1] = 1e-10;
-  options.friction[1] = 0.0;
-  PendulumOptions rod;
-  rod.gravity = options.gravity;
-  rod.length = options.length[0];
-  rod.mass = options.mass[0];
-  rod.friction = options.friction[0];
-  rod.dt = options.dt;
-  Pendulum pendulum(rod);
-  pendulum.setState(Eigen::Vector2d(1.0, -2.0));
-  pendulum.step(Eigen::VectorXd::Constant(1, 1.5));
-  const Eigen::Vector4d next = stepOf(options, {1.0, 0.3, -2.0, 0.0}, {1.5, 0.0});
-  EXPECT_NEAR(next[0], pendulum.state()[0], 1e-7);
-  EXPECT_NEAR(next[2], pendulum.state()[1], 1e-7);
-}
-
-TEST(TwoLink, IsOnePendulumOfBothLengthsWhereTheElbowIsStiff) {
-  TwoLinkOptions options;  // two equal rods in a line are one uniform rod
-  options.gravity = 9.82;
-  options.friction = {0.5, 1e5};
-  PendulumOptions rod;
-  rod.gravity = 9.82;
-  rod.length = 1.0;
-  rod.mass = 2.0;
-  rod.friction = 0.5;
-  Pendulum pendulum(rod);
-  pendulum.setState(Eigen::Vector2d(1.0, -2.0));
-  pendulum.step(Eigen::VectorXd::Constant(1, 3.0));
-  const Eigen::Vector4d next = stepOf(options, {1.0, 0.0, -2.0, 0.0}, {3.0, 0.0});
-  EXPECT_NEAR(next[0], pendulum.state()[0], 1e-4);
-  EXPECT_NEAR(next[2], pendulum.state()[1], 1e-4);
-  EXPECT_NEAR(next[1], 0.0, 1e-4);
-}
-
-TEST(TwoLink, PushesTheUpperLinkBackWithTheMotorOfTheElbow) {
-  // At rest without gravity and friction, the angular momentum about the shoulder stays zero where
-  // the elbow alone pulls. In a straight arm it is upper a' + lower b' + coupling (a' + b').
-  TwoLinkOptions options = lopsided();
-  options.gravity = 0.0;
-  options.friction = {0.0, 0.0};
-  options.dt = 1e-3;
-  const Eigen::Vector4d next = stepOf(options, Eigen::Vector4d::Zero(), {0.0, 2.0});
-  EXPECT_GT(next[3], 0.0);
-  EXPECT_LT(next[2], 0.0);
-  const double a_rate = next[2], b_rate = next[2] + next[3];
-  const double upper = (1.3 / 3 + 0.8) * 0.36, lower = 0.8 * 0.35 * 0.35 / 3;
-  const double coupling = 0.8 * 0.6 * 0.35 / 2;
-  EXPECT_NEAR(upper * a_rate + lower * b_rate + coupling * (a_rate + b_rate), 0.0,
-              1e-4 * lower * b_rate);
-}
-
-TEST(TwoLink, NeverWrapsAnAngle) {
-  TwoLink arm{TwoLinkOptions()};
-  for (int t = 0; t < 100; ++t) arm.step(Eigen::Vector2d(4.0, 0.0));
-  EXPECT_GT(arm.state()[0], 6 * kPi);
-}
-
 TEST(TwoLink, HasItsGoalStraightUpAndTheLargerAngleForItsError) {
   const TwoLink arm{TwoLinkOptions()};
   const auto error = [&](double shoulder, double elbow) {
@@ -248,40 +145,11 @@ TEST(TwoLink, HasItsGoalStraightUpAndTheLargerAngleForItsError) {
   };
   constexpr double kDegree = kPi / 180;
   EXPECT_EQ(arm.goal(), Eigen::Vector4d(kPi, 0.0, 0.0, 0.0));
-  EXPECT_EQ(arm.goalError(arm.goal()), 0.0);
   EXPECT_NEAR(error(kPi + 3 * kDegree, -7 * kDegree), 7.0, 1e-12);
   EXPECT_NEAR(error(kPi - 8 * kDegree, 7 * kDegree), 8.0, 1e-12);
   EXPECT_NEAR(error(0.0, 0.0), 180.0, 1e-12);
   EXPECT_NEAR(error(-kPi, 4 * kPi + 2 * kDegree), 2.0, 1e-12);  // the short way round, both
   EXPECT_NEAR(error(kPi, kPi), 180.0, 1e-12);
-  EXPECT_EQ(arm.info().error_unit, "deg");
-  EXPECT_EQ(arm.info().tolerance, 10.0);
-}
-
-TEST(TwoLink, NamesItsJointsStatesAndTorquesWithTheirUnits) {
-  const PlantInfo info = TwoLink{TwoLinkOptions()}.info();
-  ASSERT_EQ(info.joints.size(), 2U);
-  EXPECT_EQ(info.joints[0].name, "shoulder");
-  EXPECT_EQ(info.joints[1].name, "elbow");
-  EXPECT_EQ(info.joints[0].kind, JointKind::kAngle);
-  EXPECT_EQ(info.joints[1].kind, JointKind::kAngle);
-  EXPECT_EQ(info.state_names, (std::vector<std::string>{"shoulder_rad", "elbow_rad",
-                                                        "shoulder_rad_per_s", "elbow_rad_per_s"}));
-  EXPECT_EQ(info.torque_names, (std::vector<std::string>{"shoulder_nm", "elbow_nm"}));
-}
-
-TEST(TwoLink, TakesALimitForEachMotorAndASpreadForEachComponent) {
-  TwoLinkOptions options;
-  options.max_torque = {3.0, 0.5};
-  options.start_std = {0.1, 0.2, 0.0, 0.4};
-  const TwoLink arm(options);
-  EXPECT_EQ(arm.info().max_torque, Eigen::Vector2d(3.0, 0.5));
-  EXPECT_EQ(arm.info().start_std, Eigen::Vector4d(0.1, 0.2, 0.0, 0.4));
-  options.max_torque = {3.0};
-  options.start_std = {0.2};
-  const TwoLink even(options);
-  EXPECT_EQ(even.info().max_torque, Eigen::Vector2d(3.0, 3.0));
-  EXPECT_EQ(even.info().start_std, Eigen::Vector4d::Constant(0.2));
 }
 
 TEST(TwoLink, LocatesElbowAndTip) {
@@ -297,13 +165,6 @@ TEST(TwoLink, LocatesElbowAndTip) {
   EXPECT_LT((places(kPi / 2, kPi / 2) - Eigen::Vector4d(0.5, 0.0, 0.5, 0.25)).norm(), 1e-15);
 }
 
-int greyAt(const Picture& picture, double x, double y) {  // [m] from the middle
-  const double pixel = 2.4 / picture.width;
-  const auto column = static_cast<int>(std::floor(picture.width / 2.0 + x / pixel));
-  const auto row = static_cast<int>(std::floor(picture.height / 2.0 - y / pixel));
-  return picture.bytes[static_cast<std::size_t>(row * picture.width + column)];
-}
-
 TEST(TwoLink, LooksLikeOneRodWhereItIsStraight) {
   const TwoLink arm{TwoLinkOptions()};
   const Pendulum rod{PendulumOptions()};  // as long as both links
@@ -317,26 +178,13 @@ TEST(TwoLink, LooksLikeOneRodWhereItIsStraight) {
   }
 }
 
-TEST(TwoLink, ShowsBothLinksWhereItIsBent) {
-  const TwoLink arm{TwoLinkOptions()};
-  const Picture picture = arm.render(Eigen::Vector4d(kPi / 2, kPi / 2, 0.0, 0.0));
-  EXPECT_GT(greyAt(picture, 0.25, 0.0), 180);
-  EXPECT_GT(greyAt(picture, 0.5, 0.25), 180);
-  EXPECT_GT(greyAt(picture, 0.5, 0.48), 180);
-  EXPECT_EQ(greyAt(picture, 0.25, 0.25), 0);  // between them
-  EXPECT_EQ(greyAt(picture, 0.5, 0.75), 0);   // beyond the tip
-  EXPECT_EQ(greyAt(picture, 0.75, 0.0), 0);   // beyond the elbow
-  EXPECT_EQ(greyAt(picture, -0.25, 0.0), 0);  // behind the shoulder
-  EXPECT_EQ(greyAt(picture, 0.5, -0.25), 0);  // bent the other way
-}
-
 TEST(TwoLink, RefusesOptionsWithAllTheirProblemsAtOnce) {
   TwoLinkOptions options;
   options.length = {0.5};
   options.mass = {1.0, 0.0};
   options.friction = {0.1, -0.1};
   options.gravity = -1.0;
-  options.look.half_extent = 0.0;
+  options.look.edge_softness = 0.0;
   options.dt = 0.0;
   try {
     TwoLink arm(options);
@@ -344,23 +192,9 @@ TEST(TwoLink, RefusesOptionsWithAllTheirProblemsAtOnce) {
   } catch (const std::invalid_argument& e) {
     const std::string message = e.what();
     for (const char* key : {"plant/length", "plant/mass", "plant/friction", "plant/gravity",
-                            "plant/half_extent", "plant/dt"}) {
+                            "plant/edge_softness", "plant/dt"}) {
       EXPECT_NE(message.find(key), std::string::npos) << key << " is not in: " << message;
     }
-  }
-}
-
-TEST(TwoLink, RefusesListsOfAnotherLengthByName) {
-  TwoLinkOptions options;
-  options.max_torque = {1.0, 2.0, 3.0};
-  EXPECT_THROW(TwoLink{options}, std::invalid_argument);
-  options = TwoLinkOptions();
-  options.start_std = {0.1, 0.1};
-  try {
-    TwoLink arm(options);
-    FAIL() << "two spreads were taken for four";
-  } catch (const std::invalid_argument& e) {
-    EXPECT_NE(std::string(e.what()).find("plant/start_std"), std::string::npos) << e.what();
   }
 }
 

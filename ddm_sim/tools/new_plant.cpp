@@ -10,13 +10,10 @@
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
 #include <boost/algorithm/string/split.hpp>
-#include <boost/optional.hpp>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <opencv2/imgproc.hpp>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -24,6 +21,7 @@
 #include "ddm_params/param_reader.h"
 #include "ddm_params/parse_number.h"
 #include "ddm_params/tool.h"
+#include "plant_text.h"
 
 namespace ddm {
 namespace {
@@ -95,10 +93,6 @@ bool parse(int argc, char** argv, Arguments* arguments) {
   return true;
 }
 
-std::string pictureFile(const Arguments& arguments) {
-  return fs::path(arguments.out).replace_extension(".png").string();
-}
-
 /// @throws po::error naming what is there and must not be replaced
 void requireRoom(const Arguments& arguments) {
   const fs::path folder = fs::absolute(arguments.out).parent_path();
@@ -106,155 +100,10 @@ void requireRoom(const Arguments& arguments) {
     throw po::error("option --out must be in a folder that exists, got " + folder.string() +
                     ": make it first");
   }
-  for (const std::string& file : {arguments.out, pictureFile(arguments)}) {
+  for (const std::string& file : {arguments.out, pictureFile(arguments.out)}) {
     if (arguments.force || !fs::exists(file)) continue;
     throw po::error(file + " is there already: choose another name, or replace it by --force");
   }
-}
-
-std::string number(double value, const char* format = "%.7g") {
-  char text[32];
-  std::snprintf(text, sizeof(text), format, value);
-  return text;
-}
-
-std::string list(const std::vector<double>& values) {
-  Texts texts;
-  for (const double value : values) texts.push_back(number(value));
-  return "[" + join(texts, ", ") + "]";
-}
-
-std::string unitOf(const ModelJoint& joint) {
-  return joint.kind == JointKind::kAngle ? "rad" : "m";
-}
-
-std::string rangeOf(const ModelJoint& joint) {
-  if (!joint.limited) return "no limits";
-  return number(joint.lower, "%.4g") + " to " + number(joint.upper, "%.4g") + " " + unitOf(joint);
-}
-
-/// Motors as the joints that they move, with units of their torques.
-Texts motorNames(const PlantProposal& proposal, const MotorChoice& choice) {
-  Texts out;
-  for (const std::string& name : choice.joints) {
-    for (const ModelJoint& joint : proposal.joints) {
-      if (joint.name != name) continue;
-      out.push_back(name + (joint.kind == JointKind::kAngle ? " [N m]" : " [N]"));
-    }
-  }
-  return out;
-}
-
-/// Relative where the model lies with the plant file or below, so that their folder can be moved.
-std::string modelPath(const Arguments& arguments) {
-  if (arguments.model.rfind("package://", 0) == 0) return arguments.model;
-  const fs::path model = fs::absolute(arguments.model).lexically_normal();
-  const fs::path folder = fs::absolute(arguments.out).lexically_normal().parent_path();
-  const std::string near = model.lexically_relative(folder).string();
-  return near.empty() || near.rfind("..", 0) == 0 ? model.string() : near;
-}
-
-std::string quoted(const std::string& text) {
-  YAML::Emitter out;
-  out << YAML::DoubleQuoted << text;
-  return out.c_str();
-}
-
-std::string quoted(const Texts& texts) {
-  Texts all;
-  for (const std::string& one : texts) all.push_back(quoted(one));
-  return "[" + join(all, ", ") + "]";
-}
-
-/// A comment, broken into lines.
-std::string comment(const std::string& text, const std::string& indent = "  ") {
-  constexpr std::size_t kColumns = 100;
-  std::istringstream words(text);
-  std::string out, line = indent + "#";
-  for (std::string word; words >> word;) {
-    if (line.size() + 1 + word.size() > kColumns) {
-      out += line + "\n";
-      line = indent + "#";
-    }
-    line += " " + word;
-  }
-  return out + line + "\n";
-}
-
-std::string plantText(const Arguments& arguments, const PlantProposal& proposal,
-                      const MotorChoice& choice) {
-  const MujocoOptions& options = proposal.options;
-  const auto why = [&proposal](const char* key) {
-    const auto found = proposal.reasons.find(key);
-    return found == proposal.reasons.end() ? std::string() : found->second;
-  };
-  const auto set = [&proposal](const char* key) {
-    const Texts& keys = proposal.to_set;
-    return std::string(std::count(keys.begin(), keys.end(), key) > 0 ? "SET: " : "");
-  };
-  Texts joints, wide;
-  for (const ModelJoint& joint : proposal.joints) {
-    joints.push_back(joint.name + " [" + unitOf(joint) + "], " + rangeOf(joint));
-    if (joint.shownInPart() || (!joint.limited && joint.kind == JointKind::kLength)) {
-      wide.push_back(joint.name + " from " + number(joint.shown_lower, "%.3g") + " to " +
-                     number(joint.shown_upper, "%.3g") + " m");
-    }
-  }
-  std::ostringstream out;
-  out << comment("A plant of " + fs::path(arguments.model).filename().string() +
-                     ", proposed by new_plant. It works as it is; lines with SET are values that "
-                     "the model file does not say. Pictures: " +
-                     fs::path(pictureFile(arguments)).filename().string() +
-                     ". All keys: config/mujoco_pendulum.yaml of ddm_sim.",
-                 "")
-      << "#\n"
-      << comment("Joints, in the order of start and goal: " + join(joints, "; ") + ".", "")
-      << "\nplant:\n  type: mujoco\n"
-      << comment("A relative path starts at the folder of this file.")
-      << "  model: " << quoted(modelPath(arguments)) << "\n\n"
-      << comment("Motors: " + join(motorNames(proposal, choice), ", ") + "; " + why("motors") + ".")
-      << "  motors: " << quoted(options.motors) << "\n"
-      << comment(set("max_torque") + "The largest torque of each motor. " + why("max_torque") + ".")
-      << "  max_torque: " << list(options.max_torque) << "\n\n"
-      << comment("Seconds between two images; " + why("dt") + ".")
-      << "  dt: " << number(options.dt, "%.12g") << "\n"
-      << (options.timestep > 0.0 ? comment("Time step of the physics; " + why("timestep") + ".") +
-                                       "  timestep: " + number(options.timestep, "%.12g") + "\n"
-                                 : "")
-      << "\n"
-      << comment("Each episode starts near this pose: " + why("start") +
-                 ". start_std: standard deviation of each position and rate.")
-      << "  start: " << list(options.start) << "\n  start_std: " << list(options.start_std)
-      << "\n\n"
-      << comment("SET: The pose to reach, which the learner is shown as an image. " + why("goal") +
-                 ".")
-      << "  goal: " << list(options.goal) << "\n"
-      << comment(std::string("SET: The goal is reached within this error of each joint ") +
-                 (proposal.joints.front().kind == JointKind::kLength && options.error_joints.empty()
-                      ? "[m]"
-                      : "[deg]") +
-                 ".")
-      << "  tolerance: " << number(options.tolerance) << "\n";
-  if (!options.error_joints.empty()) {
-    out << comment("Joints whose error counts; " + why("error_joints") + ".")
-        << "  error_joints: " << quoted(options.error_joints) << "\n";
-  }
-  out << "\n"
-      << comment("The camera sees all poses" +
-                 (wide.empty()
-                      ? std::string(".")
-                      : " of " + join(wide, ", ") + "; farther away the robot leaves the image.") +
-                 " An MJCF file's own camera: `camera: NAME` instead of these three lines.")
-      << "  camera_position: " << list(options.look.position)
-      << "\n  camera_look_at: " << list(options.look.look_at)
-      << "\n  camera_field_of_view: " << number(options.look.field_of_view)
-      << "\n  supersampling: " << options.look.supersampling << "\n";
-  if (proposal.feature_dim > 2) {
-    out << "\n"
-        << comment("Two features for a joint that turns far, one for another one.", "")
-        << "model:\n  feature_dim: " << proposal.feature_dim << "\n";
-  }
-  return out.str();
 }
 
 /// As configured by a file.
@@ -442,14 +291,14 @@ void newPlant(const Arguments& arguments) {
             << proposal.reasons.at("max_torque") << ")\ndt: " << number(proposal.options.dt)
             << " s\n";
 
-  Draft draft(arguments.out, plantText(arguments, proposal, choice));
+  Draft draft(arguments.out, plantText(arguments.model, arguments.out, proposal, choice));
   const std::unique_ptr<Plant> plant = plantOf(draft.path());
   const PlantCheck check = checkPlant(proposal, plant.get());
   printCheck(model->get(), proposal, check);
-  writeContactSheet(proposal, *plant, pictureFile(arguments));
+  writeContactSheet(proposal, *plant, pictureFile(arguments.out));
   draft.keep();
 
-  std::cout << "\nwrote " << arguments.out << " and " << pictureFile(arguments) << "\nset in "
+  std::cout << "\nwrote " << arguments.out << " and " << pictureFile(arguments.out) << "\nset in "
             << arguments.out << ":";
   for (const std::string& key : proposal.to_set) std::cout << " plant/" << key;
   const std::string name =

@@ -51,8 +51,6 @@ constexpr char kAbout[] =
 struct Arguments {
   std::string plant;
   boost::optional<std::string> start;   ///< whole start state
-  boost::optional<std::string> angle;   ///< [rad]
-  boost::optional<std::string> rate;    ///< [rad/s]
   boost::optional<std::string> target;  ///< place to reach
   std::string frames;                   ///< folder, empty = none
   bool describe = false;                ///< say what the plant is instead
@@ -69,11 +67,6 @@ bool parse(int argc, char** argv, Arguments* arguments) {
   add("start", po::value(&arguments->start)->value_name("V1,V2,..."),
       "start state, taken exactly: the columns of the output after time_s; without it a pendulum "
       "hangs at rest and a tile is in the middle");
-  add("angle", po::value(&arguments->angle)->value_name("RAD"),
-      "pendulum: start angle [rad], taken exactly; as the plant's file counts it, in `pendulum` 0 "
-      "hangs and counter-clockwise is positive");
-  add("rate", po::value(&arguments->rate)->value_name("RAD_PER_S"),
-      "pendulum: start rate [rad/s], taken exactly");
   add("target", po::value(&arguments->target)->value_name("X,Y"),
       "place to reach, on which the reward depends, for plants that draw one in each trial [m]; "
       "without it the goal is the one of the plant's file");
@@ -140,32 +133,8 @@ std::string csvRow(const Plant& plant, std::size_t row, const std::optional<doub
   return text + "\n";
 }
 
-/// Sets the component `name` of the state, if a value was given for it by `option`.
-void setComponent(const std::string& option, const boost::optional<std::string>& text,
-                  const std::string& name, Plant* plant) {
-  if (!text) return;
-  double value = 0.0;
-  if (!parseNumber(*text, &value)) {
-    throw po::error("option " + option + " must be a finite number, got \"" + *text + "\"");
-  }
-  const std::vector<std::string> names = plant->info().state_names;
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
-    throw po::error("option " + option + " is for a pendulum; the state of this plant is " +
-                    boost::join(names, ",") + ", use --start");
-  }
-  Eigen::VectorXd state = plant->state();
-  state[found - names.begin()] = value;
-  plant->setState(state);
-}
-
 void setStart(const Arguments& arguments, Plant* plant) {
-  setComponent("--angle", arguments.angle, "angle_rad", plant);
-  setComponent("--rate", arguments.rate, "rate_rad_per_s", plant);
   if (!arguments.start) return;
-  if (arguments.angle || arguments.rate) {
-    throw po::error("option --start gives the whole state; leave --angle and --rate out");
-  }
   Eigen::VectorXd state;
   if (!parseNumbers(*arguments.start, plant->stateDim(), &state)) {
     throw po::error("option --start must be " + std::to_string(plant->stateDim()) +

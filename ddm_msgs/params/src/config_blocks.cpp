@@ -49,11 +49,8 @@ std::string readText(const std::string& path) {
 }
 
 /// Keys whose values name files.
-constexpr std::pair<const char*, const char*> kFileKeys[] = {{"plant", "model"},
-                                                             {"plant", "background_pictures"},
-                                                             {"robot", "goal_file"},
-                                                             {"start", "model"},
-                                                             {"start", "bags"}};
+constexpr std::pair<const char*, const char*> kFileKeys[] = {
+    {"plant", "model"}, {"robot", "goal_file"}, {"start", "model"}, {"start", "bags"}};
 
 /// A plant is named by its file if the name ends in .yaml.
 bool isPlantFile(const YAML::Node& name) {

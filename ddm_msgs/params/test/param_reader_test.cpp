@@ -326,20 +326,18 @@ TEST(ParamReaderFiles, StartsRelativePathsAtTheFolderOfTheFileThatGivesThem) {
   const testing::TempFolder folder;
   std::filesystem::create_directories(folder.file("plants"));
   const std::string file = folder.file("plants/robot.yaml");
-  std::ofstream(file) << "plant: {model: ../arm.urdf, background_pictures: [office.jpg, /b.png]}\n"
+  std::ofstream(file) << "plant: {model: ../arm.urdf}\n"
                          "robot: {goal_file: goal.png}\n"
-                         "start: {model: package://robots/m.ddm, bags: a.bag}\n"
+                         "start: {model: package://robots/m.ddm, bags: [a.bag, /b.bag]}\n"
                          "experiment: {plant: ./arm.yaml}";
   const YAML::Node blocks = readBlocks(file);
   const auto text = [&blocks](const char* block, const char* key) {
     return YAML::Dump(blocks[block][key]);
   };
   EXPECT_EQ(text("plant", "model"), folder.file("arm.urdf"));
-  EXPECT_EQ(text("plant", "background_pictures"),
-            "[" + folder.file("plants/office.jpg") + ", /b.png]");
   EXPECT_EQ(text("robot", "goal_file"), folder.file("plants/goal.png"));
   EXPECT_EQ(text("start", "model"), "package://robots/m.ddm");
-  EXPECT_EQ(text("start", "bags"), folder.file("plants/a.bag"));
+  EXPECT_EQ(text("start", "bags"), "[" + folder.file("plants/a.bag") + ", /b.bag]");
   EXPECT_EQ(text("experiment", "plant"), folder.file("plants/arm.yaml"));
 }
 

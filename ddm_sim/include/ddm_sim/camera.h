@@ -16,7 +16,7 @@ namespace ddm {
 /// Turns what there is to see into photographs. That of the picture p at frame t is
 ///
 ///   y = clamp(b_t (p + (1 - a) c) + noise_std n, 0, 1),
-///   b_t = 1 + brightness_drift sin(2 pi t dt / brightness_period + phase),   n ~ N(0, 1)
+///   b_t = 1 + brightness_drift sin(2 pi t dt / 20 s + phase),   n ~ N(0, 1)
 ///
 /// value by value, with p in front of the grey clutter c, which p's cover a hides and which is the
 /// same in all runs; the phase is uniform, another one in each run. With the probability drop_rate

@@ -9,21 +9,17 @@ namespace ddm {
 
 /// Sensor faults, see Camera. All 0: a perfect camera.
 struct CameraOptions {
-  double noise_std = 0.0;           ///< standard deviation of each pixel in each frame [grey]
-  double brightness_drift = 0.0;    ///< amplitude of a slow change of brightness [-]
-  double brightness_period = 20.0;  ///< period of that change [s]
-  double clutter = 0.0;             ///< largest grey value of a static background [grey]
-  int clutter_seed = 0;             ///< which background
-  int delay = 0;                    ///< so many frames late [-]
-  double drop_rate = 0.0;           ///< probability that a frame is lost [-]
+  double noise_std = 0.0;         ///< standard deviation of each pixel in each frame [grey]
+  double brightness_drift = 0.0;  ///< amplitude of a slow change of brightness [-]
+  double clutter = 0.0;           ///< largest grey value of a static background [grey]
+  int delay = 0;                  ///< so many frames late [-]
+  double drop_rate = 0.0;         ///< probability that a frame is lost [-]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
     visitor("noise_std", noise_std);
     visitor("brightness_drift", brightness_drift);
-    visitor("brightness_period", brightness_period);
     visitor("clutter", clutter);
-    visitor("clutter_seed", clutter_seed);
     visitor("delay", delay);
     visitor("drop_rate", drop_rate);
   }

@@ -7,19 +7,12 @@
 
 namespace ddm {
 
+constexpr double kTileWidth = 9.0;     ///< w, width and height of the tile [pixels]
+constexpr double kTileSoftness = 9.0;  ///< s, grey falls from 1 to 0 over so much [pixels]
+
 /// YAML block `plant:` of the type `moving_tile`.
 struct MovingTileOptions : PlantOptions {
-  double tile_width = 9.0;     ///< width and height of the tile [pixels]
-  double tile_softness = 9.0;  ///< grey falls from 1 to 0 over so much [pixels]
-
   MovingTileOptions() { type = "moving_tile"; }
-
-  template <class Visitor>
-  void visit(Visitor& visitor) {
-    PlantOptions::visit(visitor);
-    visitor("tile_width", tile_width);
-    visitor("tile_softness", tile_softness);
-  }
 
   /// Everything wrong with these values, in words a user can act on. Empty means valid.
   std::vector<std::string> problems() const;
@@ -31,22 +24,21 @@ struct MovingTileOptions : PlantOptions {
 ///
 /// with row i and column j counted from 0 at the upper left, so that the picture spans [0, size] in
 /// both directions: each pixel shows the mean over a window of s x s pixels around its centre. Grey
-/// falls from 1 to 0 over s pixels at the edges; s = 1 is the exact area of the pixel under the
-/// tile. Nothing is sampled, and the image is a continuous function of the position. What lies
-/// outside the picture is cut off.
+/// falls from 1 to 0 over s pixels at the edges: the tile is as blurred as the rod of the pendulum,
+/// whose edges are as soft as it is wide. Sharper edges are too sharp for 50 principal components.
+/// Nothing is sampled, and the image is a continuous function of the position. What lies outside the
+/// picture is cut off.
 /// Deviation: the paper does not describe its renderer; this one is ours.
-/// @param size      width and height of the image, >= 1 [pixels]
-/// @param width     w, width and height of the tile, > 0 [pixels]
-/// @param softness  s, width of its edges, >= 1 [pixels]
-/// @param centre    (x, y), x to the right and y downwards [pixels], finite       [2 x 1]
-Picture drawTile(int size, double width, double softness, const Eigen::Vector2d& centre);
+/// @param size    width and height of the image, >= 1 [pixels]
+/// @param centre  (x, y), x to the right and y downwards [pixels], finite       [2 x 1]
+Picture drawTile(int size, const Eigen::Vector2d& centre);
 
 /// Tile with the state (x, y), its centre in the picture [pixels], and two inputs.
 ///
 ///   (x, y)+ = reflect((x, y) + u),   reflect into [w/2, size - w/2] in each direction
 ///
 /// x runs to the right and y downwards from the upper left corner of the picture, which spans
-/// [0, size]; w is the width of the tile. The "torques" u are increments of position [pixels], one
+/// [0, size]. The "torques" u are increments of position [pixels], one
 /// to the right and one downwards; there are no rates. A tile that would leave the picture bounces
 /// off the border with all of its way, as often as it takes, and so stays wholly inside. step()
 /// reports the increment before the reflection.
@@ -68,9 +60,9 @@ class MovingTile : public Plant {
   Picture draw(const Eigen::VectorXd& state) const override;
   Eigen::VectorXd locate(const Eigen::VectorXd& state) const override { return state; }
 
-  MovingTileOptions options_;
-  double lowest_;   ///< w / 2, least coordinate of the centre [pixels]
-  double highest_;  ///< size - w / 2, its greatest [pixels]
+  int size_;  ///< of the picture [pixels]
+  double
+      highest_;  ///< size - w / 2, greatest coordinate of the centre; the least is w / 2 [pixels]
 };
 
 }  // namespace ddm

@@ -10,15 +10,16 @@
 
 namespace ddm {
 
+/// From the centre of the image, where the first rod begins, to its edge [m].
+constexpr double kHalfExtent = 1.2;
+
 /// How rods look. Keys of the block `plant` of each plant that is made of rods.
 struct RodLook {
-  double half_extent = 1.2;     ///< from the image centre to its edge [m]
   double rod_half_width = 0.1;  ///< half the width of a rod [m]
   double edge_softness = 0.2;   ///< width over which grey falls from 1 to 0 [m]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
-    visitor("half_extent", half_extent);
     visitor("rod_half_width", rod_half_width);
     visitor("edge_softness", edge_softness);
   }

@@ -20,6 +20,11 @@ constexpr double kMargin = 0.06;      // of half the picture, on each side
 constexpr double kAlmostBest = 0.05;  // of the motion that a direction shows
 constexpr std::size_t kMaxPlaces = 6;
 
+struct CameraPlace {
+  Vector3d position;  // [m]
+  Vector3d look_at;   // [m]
+};
+
 /// Half the sides of the box around a geom, in its own frame.
 Vector3d halfSides(const mjModel& m, int geom) {
   const mjtNum* const size = m.geom_size + 3 * geom;
@@ -142,27 +147,8 @@ CameraPlace placeFor(const Vector3d& direction, const Matrix3Xd& corners, double
   return {look_at + rounded(distance * direction, distance), look_at};
 }
 
-}  // namespace
-
-Matrix3Xd movingCorners(const MujocoModel& model, const mjData& placed) {
-  const mjModel& m = model.get();
-  const std::vector<int> geoms = movingGeoms(m);
-  Matrix3Xd corners(3, 8 * static_cast<Eigen::Index>(geoms.size()));
-  Eigen::Index column = 0;
-  for (const int geom : geoms) {
-    const Vector3d half = halfSides(m, geom);
-    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> axes(placed.geom_xmat +
-                                                                              9 * geom);
-    const Vector3d middle = Eigen::Map<const Vector3d>(placed.geom_xpos + 3 * geom);
-    for (int corner = 0; corner < 8; ++corner) {
-      const Vector3d signs((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
-                           (corner & 4) != 0 ? 1 : -1);
-      corners.col(column++) = middle + axes * half.cwiseProduct(signs);
-    }
-  }
-  return corners;
-}
-
+/// Places that see all poses, in the directions that show the motion of each joint best; not empty,
+/// the most usual direction first.
 std::vector<CameraPlace> cameraPlaces(const MujocoModel& model, const PlaceModel& place,
                                       const std::vector<Eigen::VectorXd>& poses,
                                       double field_of_view) {
@@ -186,6 +172,64 @@ std::vector<CameraPlace> cameraPlaces(const MujocoModel& model, const PlaceModel
     places.push_back(placeFor(directions[i], corners, field_of_view));
   }
   return places;
+}
+
+/// Mean over the pixels of how much each differs between poses.
+double changeOfImages(const MujocoModel& model, const PlaceModel& place,
+                      const std::vector<Eigen::VectorXd>& poses, const RenderOptions& look) {
+  constexpr int kPoses = 8;
+  Renderer renderer(model.share(), look, SceneOptions());
+  Eigen::ArrayXd sum, squares;
+  for (int i = 0; i < kPoses; ++i) {
+    const Picture picture = renderer.draw(place(poses[static_cast<std::size_t>(i)]));
+    const Eigen::ArrayXd pixels =
+        Eigen::Map<const Eigen::Array<std::uint8_t, Eigen::Dynamic, 1>>(
+            picture.bytes.data(), static_cast<Eigen::Index>(picture.bytes.size()))
+            .cast<double>();
+    sum = i == 0 ? pixels : (sum + pixels).eval();
+    squares = i == 0 ? pixels.square().eval() : (squares + pixels.square()).eval();
+  }
+  return (squares / kPoses - (sum / kPoses).square()).max(0.0).sqrt().mean();
+}
+
+}  // namespace
+
+Matrix3Xd movingCorners(const MujocoModel& model, const mjData& placed) {
+  const mjModel& m = model.get();
+  const std::vector<int> geoms = movingGeoms(m);
+  Matrix3Xd corners(3, 8 * static_cast<Eigen::Index>(geoms.size()));
+  Eigen::Index column = 0;
+  for (const int geom : geoms) {
+    const Vector3d half = halfSides(m, geom);
+    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> axes(placed.geom_xmat +
+                                                                              9 * geom);
+    const Vector3d middle = Eigen::Map<const Vector3d>(placed.geom_xpos + 3 * geom);
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vector3d signs((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
+                           (corner & 4) != 0 ? 1 : -1);
+      corners.col(column++) = middle + axes * half.cwiseProduct(signs);
+    }
+  }
+  return corners;
+}
+
+RenderOptions placedCamera(const MujocoModel& model, const PlaceModel& place,
+                           const std::vector<Eigen::VectorXd>& poses, const RenderOptions& look) {
+  const auto list = [](const Vector3d& point) {
+    return std::vector<double>(point.data(), point.data() + 3);
+  };
+  RenderOptions best;
+  double most = -1.0;
+  for (const CameraPlace& at : cameraPlaces(model, place, poses, look.field_of_view)) {
+    RenderOptions placed = look;
+    placed.position = list(at.position);
+    placed.look_at = list(at.look_at);
+    const double shown = changeOfImages(model, place, poses, placed);
+    if (shown <= 1.1 * most) continue;  // the more usual direction comes first
+    most = shown;
+    best = placed;
+  }
+  return best;
 }
 
 }  // namespace ddm

@@ -7,13 +7,9 @@
 #include <vector>
 
 #include "ddm_mujoco/mujoco_model.h"
+#include "ddm_mujoco/render_options.h"
 
 namespace ddm {
-
-struct CameraPlace {
-  Eigen::Vector3d position;  ///< [m]
-  Eigen::Vector3d look_at;   ///< [m]
-};
 
 /// The model in this pose, as far as positions go.
 using PlaceModel = std::function<const mjData&(const Eigen::VectorXd& positions)>;
@@ -21,13 +17,11 @@ using PlaceModel = std::function<const mjData&(const Eigen::VectorXd& positions)
 /// Corners of the boxes around all drawn shapes that a joint can move, in the world [m]  [3 x n]
 Eigen::Matrix3Xd movingCorners(const MujocoModel& model, const mjData& placed);
 
-/// Places that see all of these poses, in the directions that show the motion of each joint best. Of
-/// a mechanism whose joints move it in one plane, this is the perpendicular of that plane.
-/// @param poses          positions of all joints                                      [not empty]
-/// @param field_of_view  vertical and horizontal [deg]
-/// @return               not empty, the most usual direction first
-std::vector<CameraPlace> cameraPlaces(const MujocoModel& model, const PlaceModel& place,
-                                      const std::vector<Eigen::VectorXd>& poses,
-                                      double field_of_view);
+/// The camera that sees all of these poses from the direction that shows the motion of each joint
+/// best. Of a mechanism whose joints move it in one plane, this is the perpendicular of that plane.
+/// @param poses  positions of all joints, at least eight
+/// @param look   size and field of view, in both directions; `position` and `look_at` are filled in
+RenderOptions placedCamera(const MujocoModel& model, const PlaceModel& place,
+                           const std::vector<Eigen::VectorXd>& poses, const RenderOptions& look);
 
 }  // namespace ddm

@@ -33,7 +33,7 @@ void tryHere(const ModelText& model);
 
 /// As tryHere(), in a process of its own. MuJoCo may crash, hang or fill the memory there.
 /// @throws std::invalid_argument with the reason, or with what became of that process
-/// @throws std::runtime_error if the program that does it cannot be started
+/// @throws std::runtime_error if there can be no other process
 void tryInOwnProcess(const ModelText& model);
 
 }  // namespace ddm

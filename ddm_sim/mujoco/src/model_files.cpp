@@ -18,12 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 using tinyxml2::XMLElement;
 
-std::string digestOf(const boost::crc_32_type& crc) {
-  char digest[32];
-  std::snprintf(digest, sizeof(digest), "crc32-%08x", crc.checksum());  // no reader's number
-  return digest;
-}
-
 /// Finds files as MuJoCo does: beside the model, or in its folders of meshes and textures.
 class Collector {
  public:
@@ -51,7 +45,9 @@ class Collector {
     for (const std::string& name : names_) {
       if (pathsOf(name).empty()) missing += (missing.empty() ? "" : ", ") + name;
     }
-    return {digestOf(crc_), missing};
+    char digest[32];
+    std::snprintf(digest, sizeof(digest), "crc32-%08x", crc_.checksum());  // no reader's number
+    return {digest, missing};
   }
 
  private:
@@ -117,17 +113,6 @@ ModelFiles filesOf(const ModelText& model, const FindPackage& find_package) {
   files.add(fs::absolute(model.path));
   for (const auto& mesh : model.meshes) files.add(mesh.second);
   return files.files();
-}
-
-std::string digestWith(const std::string& digest, const std::vector<std::string>& paths) {
-  if (paths.empty()) return digest;
-  boost::crc_32_type crc;
-  crc.process_bytes(digest.data(), digest.size());
-  for (const std::string& path : paths) {
-    const std::string bytes = readModelFile(path);
-    crc.process_bytes(bytes.data(), bytes.size());
-  }
-  return digestOf(crc);
 }
 
 std::string rootOf(const std::string& text) {

@@ -23,11 +23,6 @@ struct ModelFiles {
 /// @throws std::invalid_argument as readModelFile(), for one of them
 ModelFiles filesOf(const ModelText& model, const FindPackage& find_package);
 
-/// A digest that covers more files, such as pictures that a configuration names.
-/// @return the digest itself where there are none
-/// @throws std::invalid_argument as readModelFile(), for one of them
-std::string digestWith(const std::string& digest, const std::vector<std::string>& paths);
-
 /// The name of the outermost element, in lower case: "mujoco" (MJCF), "robot" (URDF).
 /// @throws std::invalid_argument with the line if the text is not XML
 std::string rootOf(const std::string& text);

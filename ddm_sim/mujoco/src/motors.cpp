@@ -10,8 +10,13 @@
 #include <stdexcept>
 #include <string>
 
+#include "ddm_mujoco/plant_proposal.h"
+#include "xml_text.h"
+
 namespace ddm {
 namespace {
+
+constexpr std::size_t kMaxMotors = 2;  // without being asked for more
 
 std::string text(double number) {
   std::ostringstream out;
@@ -106,19 +111,17 @@ std::vector<Motor> motorsOf(const MujocoModel& model, const MujocoOptions& optio
   if (options.motors.empty()) {
     for (int i = 0; i < model.get().nu; ++i) motors.push_back(actuator(model, i));
   }
-  for (std::size_t i = 0; i < options.motors.size(); ++i) {
+  for (const std::string& name : options.motors) {
     Motor motor;
-    motor.joint = model.id(mjOBJ_JOINT, options.motors[i], "plant/motors");
-    if (!options.gear.empty()) motor.gear = options.gear.at(i);
-    const std::string leader = model.leaderOf(options.motors[i]);
+    motor.joint = model.id(mjOBJ_JOINT, name, "plant/motors");
+    const std::string leader = model.leaderOf(name);
     if (!leader.empty()) {
       throw std::invalid_argument("plant/motors must list joints that move by themselves, got " +
-                                  options.motors[i] + " of " + model.uri() +
-                                  ", which mimics the joint " + leader + ": list that one");
+                                  name + " of " + model.uri() + ", which mimics the joint " +
+                                  leader + ": list that one");
     }
-    motor.limit = model.effortLimit(options.motors[i]);
+    motor.limit = model.effortLimit(name);
     if (!motor.limit) motor.limit = limitOfActuators(model.get(), motor.joint);
-    if (motor.limit) *motor.limit /= std::abs(motor.gear);
     motors.push_back(motor);
   }
   if (model.get().njnt == 0) {
@@ -166,6 +169,65 @@ std::vector<double> limitsOf(const MujocoModel& model, const MujocoOptions& opti
     limits.push_back(limit);
   }
   return limits;
+}
+
+std::vector<std::string> transmissionJoints(const std::string& text) {
+  const XmlDocument document = parseXml(text);
+  const tinyxml2::XMLElement* const root = document->RootElement();
+  std::vector<std::string> names;
+  for (const auto* one = root->FirstChildElement("transmission"); one != nullptr;
+       one = one->NextSiblingElement("transmission")) {
+    const tinyxml2::XMLElement* const joint = one->FirstChildElement("joint");
+    if (joint != nullptr) names.push_back(attribute(*joint, "name"));
+  }
+  return names;
+}
+
+MotorChoice chooseMotors(const MujocoModel& model, const std::vector<ModelJoint>& joints,
+                         const std::vector<std::string>& transmissions) {
+  const mjModel& m = model.get();
+  MotorChoice choice;
+  std::vector<std::string> with_effort;
+  for (const ModelJoint& joint : joints) {
+    if (!model.leaderOf(joint.name).empty()) continue;  // has no motor of its own
+    choice.candidates.push_back(joint.name);
+    if (joint.effort > 0.0) with_effort.push_back(joint.name);
+  }
+  /// @return whether these decide it: one or two different joints of the model
+  const auto decide = [&choice](const std::vector<std::string>& names, const std::string& why) {
+    std::vector<std::string> chosen;
+    for (const std::string& name : names) {
+      const auto in = [&name](const std::vector<std::string>& all) {
+        return std::count(all.begin(), all.end(), name) > 0;
+      };
+      if (in(choice.candidates) && !in(chosen)) chosen.push_back(name);
+    }
+    if (chosen.empty() || chosen.size() > kMaxMotors) return false;
+    choice.joints = chosen;
+    choice.why = why;
+    return true;
+  };
+  if (m.nu > 0) {
+    std::vector<std::string> names;
+    for (int i = 0; i < m.nu; ++i) {
+      if (m.actuator_trntype[i] != mjTRN_JOINT) continue;
+      names.push_back(model.name(mjOBJ_JOINT, m.actuator_trnid[2 * i]));
+    }
+    try {
+      const bool plain = !motorsOf(model, MujocoOptions()).empty();
+      choice.by_actuators = decide(names, "the motors of the file") && plain;
+    } catch (const std::invalid_argument& e) {
+      decide(names, std::string("joints of the file's actuators, which are off: ") + e.what());
+    }
+    return choice;
+  }
+  if (decide(transmissions, "joints of the transmissions in the file") ||
+      decide(with_effort, "joints with an effort limit in the file") ||
+      choice.candidates.size() != 1) {
+    return choice;
+  }
+  decide(choice.candidates, "the only joint");
+  return choice;
 }
 
 }  // namespace ddm

@@ -11,8 +11,7 @@
 namespace ddm {
 
 struct Motor {
-  int joint = 0;      ///< that it turns or shifts
-  double gear = 1.0;  ///< torque at the joint for one of the motor
+  int joint = 0;  ///< that it turns or shifts
   std::optional<double>
       limit;  ///< of its torque by the file [N m or N]; none: the file does not say
 };

@@ -20,13 +20,10 @@ std::vector<std::string> MujocoOptions::problems() const {
     for (const double number : numbers) plant.require(ok(number), key, rule, number);
   };
   const auto finite = [](double x) { return std::isfinite(x); };
-  each(gear, "gear", "be finite and not 0", [](double x) { return std::isfinite(x) && x != 0.0; });
   each(start, "start", "be finite", finite);
   each(start_uniform, "start_uniform", "be >= 0 and finite", isNotNegative);
   each(goal, "goal", "be finite", finite);
   each(goal_distance, "goal_distance", "be >= 0 and finite", isNotNegative);
-  plant.require(gear.empty() || gear.size() == motors.size(), "gear",
-                "have a number for each of plant/motors", gear.size());
   plant.require(goal_site.empty() == goal_distance.empty(), "goal_distance",
                 "be given where plant/goal_site is", goal_distance.size());
   plant.require(

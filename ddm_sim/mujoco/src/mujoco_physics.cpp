@@ -123,7 +123,7 @@ Eigen::MatrixXd MujocoPhysics::frames(const Eigen::VectorXd& state, const Eigen:
   Eigen::MatrixXd states(2 * n, num_frames);
   set(state);
   for (std::size_t i = 0; i < motors_.size(); ++i) {
-    data_->qfrc_applied[motors_[i].joint] = motors_[i].gear * torque[static_cast<Eigen::Index>(i)];
+    data_->qfrc_applied[motors_[i].joint] = torque[static_cast<Eigen::Index>(i)];
   }
   for (int frame = 0; frame < num_frames; ++frame) {
     mj_step(&physics_, data_.get());

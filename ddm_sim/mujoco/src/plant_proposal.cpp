@@ -10,11 +10,10 @@
 #include <stdexcept>
 
 #include "camera_placement.h"
-#include "ddm_mujoco/mujoco_plant.h"
 #include "ddm_sim/angles.h"
+#include "mechanism.h"
 #include "motors.h"
 #include "mujoco_physics.h"
-#include "xml_text.h"
 
 namespace ddm {
 namespace {
@@ -22,9 +21,7 @@ namespace {
 using boost::algorithm::join;
 using Eigen::VectorXd;
 
-constexpr int kMaxMotors = 2;       // without being asked for more
-constexpr int kNumPoses = 200;      // that the camera has to see
-constexpr double kWideSlide = 4.0;  // a longer slide is shown in part [sizes of the robot]
+constexpr int kNumPoses = 200;  // that the camera has to see
 constexpr double kAcceleration =
     10;  // that a proposed torque gives [rad/s^2], slides [sizes/s^2 / 2]
 constexpr double kTooStrong = 4.0;  // a file's limit beyond so many proposed torques is not used
@@ -33,8 +30,6 @@ constexpr double kFastest = 40.0;   // so that dt is not below the 0.02 s of a u
 constexpr double kSeconds = 2.0;    // of a simulation
 constexpr double kHold = 0.3;       // a random torque is held [s]
 constexpr double kStartStd = 0.1;   // [rad]
-
-bool isHinge(const ModelJoint& joint) { return joint.kind == JointKind::kAngle; }
 
 std::string shortText(double number, const char* format = "%.3g") {
   char out[32];
@@ -51,183 +46,6 @@ double roundedPosition(double position, bool angle) {
   if (angle && std::abs(position - 0.5 * kPi * quarters) < 3e-3) return 0.5 * kPi * quarters;
   return std::round(position * 1e3) / 1e3 + 0.0;  // + 0.0: never -0
 }
-
-/// A model at rest: where its joints may be, and what pulls at them.
-class Mechanism {
- public:
-  Mechanism(const std::shared_ptr<const MujocoModel>& model)
-      : model_(model), data_(nullptr, mj_deleteData) {
-    requirePositionsAndRates(*model);
-    data_.reset(mj_makeData(&model->get()));
-    if (!data_) throw std::runtime_error("not enough memory for " + model->uri());
-    const mjModel& m = model->get();
-    for (int i = 0; i < m.njnt; ++i) {
-      ModelJoint joint;
-      joint.name = model->name(mjOBJ_JOINT, i);
-      joint.kind = m.jnt_type[i] == mjJNT_HINGE ? JointKind::kAngle : JointKind::kLength;
-      joint.limited = m.jnt_limited[i] != 0;
-      joint.lower = joint.limited ? m.jnt_range[2 * i] : m.qpos0[i] - (isHinge(joint) ? kPi : 0.0);
-      joint.upper =
-          joint.limited ? m.jnt_range[2 * i + 1] : m.qpos0[i] + (isHinge(joint) ? kPi : 0.0);
-      joint.shown_lower = joint.lower;
-      joint.shown_upper = joint.upper;
-      joints_.push_back(joint);
-    }
-    showSlidesInPart();
-  }
-
-  const std::vector<ModelJoint>& joints() const { return joints_; }
-  double size() const { return size_; }
-
-  /// The length that motions of a joint compare with: 1 rad, or half the size of the robot.
-  double unit(int joint) const { return isHinge(joints_[joint]) ? 1.0 : 0.5 * size_; }
-
-  /// Pose 0 of the file, within the limits.
-  VectorXd zero() const {
-    return coupled(Eigen::Map<const VectorXd>(model_->get().qpos0, model_->get().njnt));
-  }
-
-  VectorXd draw(std::mt19937_64* engine) const {
-    VectorXd position(static_cast<Eigen::Index>(joints_.size()));
-    for (Eigen::Index i = 0; i < position.size(); ++i) {
-      const ModelJoint& joint = joints_[static_cast<std::size_t>(i)];
-      position[i] =
-          std::uniform_real_distribution<double>(joint.shown_lower, joint.shown_upper)(*engine);
-    }
-    return coupled(position);
-  }
-
-  /// Within the limits, and with the positions of joints that follow others.
-  VectorXd coupled(VectorXd position) const {
-    const mjModel& m = model_->get();
-    for (int i = 0; i < m.neq; ++i) {
-      if (m.eq_type[i] != mjEQ_JOINT || !m.eq_active[i]) continue;
-      const int follower = m.eq_obj1id[i], leader = m.eq_obj2id[i];
-      const mjtNum* const c = m.eq_data + mjNEQDATA * i;
-      const double x = leader < 0 ? 0.0 : position[leader] - m.qpos0[leader];
-      position[follower] =
-          m.qpos0[follower] + c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * c[4])));
-    }
-    for (Eigen::Index i = 0; i < position.size(); ++i) {
-      const ModelJoint& joint = joints_[static_cast<std::size_t>(i)];
-      if (joint.limited) position[i] = std::clamp(position[i], joint.lower, joint.upper);
-    }
-    return position;
-  }
-
-  /// The model at rest in this pose.
-  const mjData& place(const VectorXd& position) const {
-    std::copy_n(position.data(), position.size(), data_->qpos);
-    std::fill_n(data_->qvel, position.size(), 0.0);
-    mj_fwdPosition(&model_->get(), data_.get());
-    return *data_;
-  }
-
-  /// Torque that weight and springs ask for at rest: the gradient of energy().           [n x 1]
-  VectorXd load(const VectorXd& position, bool springs = true) const {
-    place(position);
-    mj_fwdVelocity(&model_->get(), data_.get());
-    VectorXd load = Eigen::Map<const VectorXd>(data_->qfrc_bias, position.size());
-    if (springs) load -= Eigen::Map<const VectorXd>(data_->qfrc_passive, position.size());
-    return load;
-  }
-
-  bool hasSprings() const {
-    const mjModel& m = model_->get();
-    const auto pulls = [](mjtNum stiffness) { return stiffness != 0.0; };
-    return std::any_of(m.jnt_stiffness, m.jnt_stiffness + m.njnt, pulls) ||
-           std::any_of(m.tendon_stiffness, m.tendon_stiffness + m.ntendon, pulls);
-  }
-
-  /// Of weight and springs [J].
-  double energy(const VectorXd& position, bool springs = true) const {
-    mjModel m = model_->get();
-    m.opt.enableflags |= mjENBL_ENERGY;
-    place(position);
-    mj_energyPos(&m, data_.get());
-    double energy = springs ? data_->energy[0] : 0.0;
-    for (int i = 1; i < m.nbody && !springs; ++i) {
-      energy -= m.body_mass[i] * mju_dot3(m.opt.gravity, data_->xipos + 3 * i);
-    }
-    return energy;
-  }
-
-  /// Inertia that a motor of this joint feels [kg m^2, kg].
-  double inertia(int joint, const VectorXd& position) const {
-    place(position);
-    return data_->qM[model_->get().dof_Madr[joint]];
-  }
-
-  /// Where the mechanism goes by its weight and springs if it is slow.
-  VectorXd settled(VectorXd position) const { return followed(std::move(position), -1.0); }
-
-  /// The pose of the most energy that weight gives.
-  VectorXd highest(const std::vector<VectorXd>& poses) const {
-    const auto less = [this](const VectorXd& a, const VectorXd& b) {
-      return energy(a, false) < energy(b, false);
-    };
-    return followed(*std::max_element(poses.begin(), poses.end(), less), 1.0);
-  }
-
- private:
-  /// Follows the energy down (sign -1) or up (1). Up, that of springs would have no end.
-  VectorXd followed(VectorXd position, double sign) const {
-    const bool springs = sign < 0.0;
-    double step = 0.1, best = sign * energy(position, springs);
-    for (int i = 0; i < 1000 && step > 1e-6; ++i) {
-      VectorXd change = sign * load(position, springs);
-      for (Eigen::Index k = 0; k < change.size(); ++k) {
-        change[k] /= std::max(1e-12, inertia(static_cast<int>(k), position));
-      }
-      const double largest = change.lpNorm<Eigen::Infinity>();
-      if (largest < 1e-9) break;
-      const VectorXd next = coupled(position + std::min(1.0, step / largest) * change);
-      const double energy_there = sign * energy(next, springs);
-      if (energy_there > best) {
-        best = energy_there;
-        position = next;
-      } else {
-        step *= 0.5;
-      }
-    }
-    return position;
-  }
-
-  /// The side of the space that the robot needs without its slides is its size. Slides that are much
-  /// longer, or endless, would make the robot tiny in the image.
-  void showSlidesInPart() {
-    std::mt19937_64 engine(0);
-    Eigen::Vector3d low = Eigen::Vector3d::Constant(1e9), high = -low;
-    for (int i = 0; i < kNumPoses; ++i) {
-      VectorXd position = draw(&engine);
-      for (std::size_t k = 0; k < joints_.size(); ++k) {
-        if (!isHinge(joints_[k])) position[static_cast<Eigen::Index>(k)] = model_->get().qpos0[k];
-      }
-      const Eigen::Matrix3Xd corners = movingCorners(*model_, place(position));
-      if (corners.cols() == 0) continue;
-      low = low.cwiseMin(corners.rowwise().minCoeff());
-      high = high.cwiseMax(corners.rowwise().maxCoeff());
-    }
-    size_ = std::max(1e-3, (high - low).maxCoeff());
-    for (std::size_t k = 0; k < joints_.size(); ++k) {
-      ModelJoint& joint = joints_[k];
-      const double wide = joint.upper - joint.lower;
-      if (isHinge(joint) || (joint.limited && wide <= kWideSlide * size_)) continue;
-      const double zero = std::clamp<double>(model_->get().qpos0[k], joint.lower, joint.upper);
-      joint.shown_lower = joint.limited ? std::max(joint.lower, zero - size_) : zero - size_;
-      joint.shown_upper = joint.limited ? std::min(joint.upper, zero + size_) : zero + size_;
-      if (!joint.limited) {
-        joint.lower = joint.shown_lower;
-        joint.upper = joint.shown_upper;
-      }
-    }
-  }
-
-  std::shared_ptr<const MujocoModel> model_;
-  std::unique_ptr<mjData, void (*)(mjData*)> data_;
-  std::vector<ModelJoint> joints_;
-  double size_ = 1.0;  // [m]
-};
 
 VectorXd atRest(const VectorXd& position) {
   VectorXd state = VectorXd::Zero(2 * position.size());
@@ -250,8 +68,7 @@ class Proposer {
     out_.options.max_torque = {1.0};  // until it is known
     motors_ = motorsOf(*model, out_.options);
     for (const Motor& motor : motors_) {
-      out_.joints[static_cast<std::size_t>(motor.joint)].effort =
-          motor.limit.value_or(0.0) * std::abs(motor.gear);
+      out_.joints[static_cast<std::size_t>(motor.joint)].effort = motor.limit.value_or(0.0);
     }
     out_.reasons["motors"] = choice.why;
     std::mt19937_64 engine(1);
@@ -354,9 +171,8 @@ class Proposer {
       inertia = std::max(inertia, mechanism_.inertia(motor.joint, position));
     }
     const double unit = mechanism_.unit(motor.joint);
-    return (1.5 * load + kAcceleration * unit * inertia + m.dof_frictionloss[motor.joint] +
-            2.0 * unit * m.dof_damping[motor.joint]) /
-           std::abs(motor.gear);
+    return 1.5 * load + kAcceleration * unit * inertia + m.dof_frictionloss[motor.joint] +
+           2.0 * unit * m.dof_damping[motor.joint];
   }
 
   void proposeTorque(const std::vector<double>& given) {
@@ -496,40 +312,11 @@ class Proposer {
   }
 
   void proposeCamera() {
-    MujocoOptions& options = out_.options;
-    options.look.supersampling = 4;
-    const std::vector<CameraPlace> places = cameraPlaces(
+    out_.options.look.supersampling = 4;
+    out_.options.look = placedCamera(
         *model_,
         [this](const VectorXd& position) -> const mjData& { return mechanism_.place(position); },
-        withLimits(), options.look.field_of_view);
-    double best = -1.0;
-    for (const CameraPlace& place : places) {
-      RenderOptions look = options.look;
-      look.position = listOf(place.position);
-      look.look_at = listOf(place.look_at);
-      const double shown = changeOfImages(look);
-      if (shown <= 1.1 * best) continue;  // the more usual direction comes first
-      best = shown;
-      options.look = look;
-    }
-  }
-
-  /// Mean over the pixels of how much each differs between poses.
-  double changeOfImages(RenderOptions look) const {
-    constexpr int kPoses = 8;
-    Renderer renderer(model_->share(), look, out_.options.scene);
-    Eigen::ArrayXd sum, squares;
-    for (int i = 0; i < kPoses; ++i) {
-      const Picture picture =
-          renderer.draw(mechanism_.place(positions_[static_cast<std::size_t>(i)]));
-      const Eigen::ArrayXd pixels =
-          Eigen::Map<const Eigen::Array<std::uint8_t, Eigen::Dynamic, 1>>(
-              picture.bytes.data(), static_cast<Eigen::Index>(picture.bytes.size()))
-              .cast<double>();
-      sum = i == 0 ? pixels : (sum + pixels).eval();
-      squares = i == 0 ? pixels.square().eval() : (squares + pixels.square()).eval();
-    }
-    return (squares / kPoses - (sum / kPoses).square()).max(0.0).sqrt().mean();
+        withLimits(), out_.options.look);
   }
 
   std::shared_ptr<const MujocoModel> model_;
@@ -547,138 +334,9 @@ std::vector<ModelJoint> jointsOf(const std::shared_ptr<const MujocoModel>& model
   return joints;
 }
 
-std::vector<std::string> transmissionJoints(const std::string& text) {
-  const XmlDocument document = parseXml(text);
-  const tinyxml2::XMLElement* const root = document->RootElement();
-  std::vector<std::string> names;
-  for (const auto* one = root->FirstChildElement("transmission"); one != nullptr;
-       one = one->NextSiblingElement("transmission")) {
-    const tinyxml2::XMLElement* const joint = one->FirstChildElement("joint");
-    if (joint != nullptr) names.push_back(attribute(*joint, "name"));
-  }
-  return names;
-}
-
-MotorChoice chooseMotors(const MujocoModel& model, const std::vector<ModelJoint>& joints,
-                         const std::vector<std::string>& transmissions) {
-  const mjModel& m = model.get();
-  MotorChoice choice;
-  std::vector<std::string> with_effort;
-  for (const ModelJoint& joint : joints) {
-    if (!model.leaderOf(joint.name).empty()) continue;  // has no motor of its own
-    choice.candidates.push_back(joint.name);
-    if (joint.effort > 0.0) with_effort.push_back(joint.name);
-  }
-  /// @return whether these decide it: one or two different joints of the model
-  const auto decide = [&choice](const std::vector<std::string>& names, const std::string& why) {
-    std::vector<std::string> chosen;
-    for (const std::string& name : names) {
-      const auto in = [&name](const std::vector<std::string>& all) {
-        return std::count(all.begin(), all.end(), name) > 0;
-      };
-      if (in(choice.candidates) && !in(chosen)) chosen.push_back(name);
-    }
-    if (chosen.empty() || chosen.size() > kMaxMotors) return false;
-    choice.joints = chosen;
-    choice.why = why;
-    return true;
-  };
-  if (m.nu > 0) {
-    std::vector<std::string> names;
-    for (int i = 0; i < m.nu; ++i) {
-      if (m.actuator_trntype[i] != mjTRN_JOINT) continue;
-      names.push_back(model.name(mjOBJ_JOINT, m.actuator_trnid[2 * i]));
-    }
-    try {
-      const bool plain = !motorsOf(model, MujocoOptions()).empty();
-      choice.by_actuators = decide(names, "the motors of the file") && plain;
-    } catch (const std::invalid_argument& e) {
-      decide(names, std::string("joints of the file's actuators, which are off: ") + e.what());
-    }
-    return choice;
-  }
-  if (decide(transmissions, "joints of the transmissions in the file") ||
-      decide(with_effort, "joints with an effort limit in the file") ||
-      choice.candidates.size() != 1) {
-    return choice;
-  }
-  decide(choice.candidates, "the only joint");
-  return choice;
-}
-
 PlantProposal proposePlant(const std::shared_ptr<const MujocoModel>& model,
                            const MotorChoice& choice, const std::vector<double>& max_torque) {
   return Proposer(model, choice).propose(max_torque);
-}
-
-PlantCheck checkPlant(const PlantProposal& proposal, Plant* plant) {
-  constexpr int kPoses = 12, kTrials = 5, kTrialSteps = 100, kHoldSteps = 3, kVisible = 8;
-  PlantCheck check;
-  const auto n = static_cast<Eigen::Index>(proposal.joints.size());
-  const VectorXd start = plant->info().start;
-  const int steps = std::max(1, static_cast<int>(std::round(kSeconds / plant->info().dt)));
-  plant->setState(start);
-  for (int i = 0; i < steps; ++i) {
-    plant->step(VectorXd::Zero(plant->torqueDim()));
-    check.still_speed =
-        std::max(check.still_speed, plant->state().tail(n).lpNorm<Eigen::Infinity>());
-  }
-  std::mt19937_64 engine(3);
-  int outside = 0;
-  for (int trial = 0; trial < kTrials; ++trial) {
-    plant->setState(plant->drawStart(engine));
-    VectorXd torque(plant->torqueDim());
-    for (int i = 0; i < std::max(kTrialSteps, steps); ++i) {
-      for (Eigen::Index k = 0; i % kHoldSteps == 0 && k < torque.size(); ++k) {
-        const double limit = plant->info().max_torque[k];
-        torque[k] = std::uniform_real_distribution<double>(-limit, limit)(engine);
-      }
-      plant->step(torque);
-      check.random_speed =
-          std::max(check.random_speed, plant->state().tail(n).lpNorm<Eigen::Infinity>());
-      bool beyond = false;
-      for (Eigen::Index k = 0; k < n; ++k) {
-        const ModelJoint& joint = proposal.joints[static_cast<std::size_t>(k)];
-        if (isHinge(joint)) continue;
-        const double margin = 0.05 * (joint.shown_upper - joint.shown_lower);
-        beyond = beyond || plant->state()[k] < joint.shown_lower - margin ||
-                 plant->state()[k] > joint.shown_upper + margin;
-      }
-      outside += beyond ? 1 : 0;
-    }
-  }
-  check.share_outside = static_cast<double>(outside) / (kTrials * std::max(kTrialSteps, steps));
-
-  const auto change = [&](const VectorXd& a, const VectorXd& b) {  // pixels, largest
-    const Picture first = plant->render(a), second = plant->render(b);
-    std::pair<int, int> out = {0, 0};
-    for (std::size_t i = 0; i < first.bytes.size(); ++i) {
-      const int difference = std::abs(first.bytes[i] - second.bytes[i]);
-      out.first += difference >= kVisible ? 1 : 0;
-      out.second = std::max(out.second, difference);
-    }
-    return out;
-  };
-  std::vector<int> pixels;
-  for (std::size_t i = 0; i + 1 < kPoses; ++i) {
-    const std::pair<int, int> here = change(proposal.poses[i], proposal.poses[i + 1]);
-    pixels.push_back(here.first);
-    check.contrast = std::max(check.contrast, here.second);
-  }
-  std::nth_element(pixels.begin(), pixels.begin() + kPoses / 2, pixels.end());
-  check.changed_pixels = pixels[kPoses / 2];
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const ModelJoint& joint = proposal.joints[static_cast<std::size_t>(k)];
-    int seen = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      VectorXd moved = proposal.poses[i];
-      const double quarter = 0.25 * (joint.shown_upper - joint.shown_lower);
-      moved[k] += moved[k] + quarter > joint.shown_upper ? -quarter : quarter;
-      seen = std::max(seen, change(proposal.poses[i], moved).first);
-    }
-    if (seen == 0) check.unseen.push_back(joint.name);
-  }
-  return check;
 }
 
 }  // namespace ddm

@@ -164,8 +164,7 @@ class Renderer::Implementation {
     if (group >= 0) shown_.geomgroup[group] = 1;
     mjv_defaultScene(&drawn_);
     mjv_makeScene(&look, &drawn_, look.ngeom + kMaxDecor);
-    drawn_.flags[mjRND_SHADOW] = options_.shadows ? 1 : 0;
-    drawn_.flags[mjRND_REFLECTION] = options_.reflections ? 1 : 0;
+    drawn_.flags[mjRND_SHADOW] = drawn_.flags[mjRND_REFLECTION] = 1;
     mjr_defaultContext(&gpu_);
   }
 
@@ -234,7 +233,6 @@ class Renderer::Implementation {
                     mjCAT_ALL, &drawn_);
     scene_.moveCamera(&drawn_.camera[0]);
     scene_.moveCamera(&drawn_.camera[1]);
-    scene_.changeLights(&drawn_);
   }
 
   void openContext() {

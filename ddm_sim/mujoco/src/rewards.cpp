@@ -29,10 +29,6 @@ double cartpoleSmooth(const RewardInputs& in) {
   return upright * small_control * slow * centred;
 }
 
-double cartpoleSparse(const RewardInputs& in) {
-  return std::abs(in.state[0]) <= 0.25 && std::cos(in.state[1]) >= 0.995 ? 1.0 : 0.0;
-}
-
 /// Of the reacher, whose links are 0.12 m long [m].
 Eigen::Vector2d finger(const Eigen::VectorXd& state) {
   const double first = state[0], second = state[0] + state[1];
@@ -47,28 +43,22 @@ double reacher(const RewardInputs& in) {
   return (finger(in.state) - finger(in.goal)).norm() <= reached ? 1.0 : 0.0;
 }
 
-/// Of the tip of the acrobot to 2 m above its shoulder, links of 1 m [m].
-double acrobotDistance(const Eigen::VectorXd& state) {
-  const double first = state[0], second = state[0] + state[1];
-  return std::hypot(std::sin(first) + std::sin(second), 2.0 - std::cos(first) - std::cos(second));
-}
-
+/// The tip of the acrobot reaches 2 m above its shoulder; its links have 1 m.
 double acrobotSmooth(const RewardInputs& in) {
-  return tolerance(acrobotDistance(in.state), 0.2, 1.0);
-}
-
-double acrobotSparse(const RewardInputs& in) {
-  return acrobotDistance(in.state) <= 0.2 ? 1.0 : 0.0;
+  const double first = in.state[0], second = in.state[0] + in.state[1];
+  const double distance =
+      std::hypot(std::sin(first) + std::sin(second), 2.0 - std::cos(first) - std::cos(second));
+  return tolerance(distance, 0.2, 1.0);
 }
 
 }  // namespace
 
 const std::vector<Reward>& rewards() {
-  static const std::vector<Reward> all = {
-      {"acrobot_smooth", 2, 1, acrobotSmooth},     {"acrobot_sparse", 2, 1, acrobotSparse},
-      {"cartpole_smooth", 2, 1, cartpoleSmooth},   {"cartpole_sparse", 2, 1, cartpoleSparse},
-      {"pendulum_swingup", 1, 1, pendulumSwingup}, {"reacher_easy", 2, 2, reacher<50>},
-      {"reacher_hard", 2, 2, reacher<15>}};
+  static const std::vector<Reward> all = {{"acrobot_smooth", 2, 1, acrobotSmooth},
+                                          {"cartpole_smooth", 2, 1, cartpoleSmooth},
+                                          {"pendulum_swingup", 1, 1, pendulumSwingup},
+                                          {"reacher_easy", 2, 2, reacher<50>},
+                                          {"reacher_hard", 2, 2, reacher<15>}};
   return all;
 }
 

@@ -19,17 +19,15 @@ constexpr double kQuarterTurn = 0.5 * kPi;
 constexpr double kNearest = 0.5;  // change of distance at a share of 1
 
 /// What is drawn apart, so that switching one nuisance on does not change another.
-enum Part : std::uint32_t { kCameraPart, kColourPart, kLightPart, kBackgroundPart };
-
-std::mt19937_64 streamOf(const SceneOptions& options, Part part) {
-  return randomStream({static_cast<std::uint64_t>(options.seed), part, false}, StreamRole::kScene);
-}
+enum Part : std::uint32_t { kCameraPart, kColourPart };
 
 /// Uniform in [-share, share].
 class Shift {
  public:
   Shift(const SceneOptions& options, Part part, double share)
-      : rng_(streamOf(options, part)), uniform_(-share, share) {}
+      : rng_(randomStream({static_cast<std::uint64_t>(options.seed), part, false},
+                          StreamRole::kScene)),
+        uniform_(-share, share) {}
 
   double operator()() { return uniform_(rng_); }
   float asFloat() { return static_cast<float>(uniform_(rng_)); }
@@ -62,10 +60,6 @@ Scene::Scene(std::shared_ptr<const mjModel> model, const SceneOptions& options)
     : model_(std::move(model)), appearance_(*model_), turn_(Eigen::Matrix3f::Identity()) {
   if (options.camera_shift > 0.0) drawCamera(options);
   if (options.colour_shift > 0.0) drawColours(options);
-  if (options.light_shift > 0.0) drawLights(options);
-  if (options.background > 0.0) {  // after the colours: it goes over them
-    background_.emplace(options, streamOf(options, kBackgroundPart), &appearance_);
-  }
 }
 
 void Scene::drawCamera(const SceneOptions& options) {
@@ -110,47 +104,20 @@ void Scene::drawColours(const SceneOptions& options) {
   appearance_.tex_rgb = tex_rgb_.data();
 }
 
-void Scene::drawLights(const SceneOptions& options) {
-  Shift shift(options, kLightPart, options.light_shift);
-  for (int i = 0; i < mjMAXLIGHT; ++i) {
-    LightChange change;
-    for (int k = 0; k < 3; ++k) change.shift[k] = shift.asFloat();
-    change.strength = 1.0F + shift.asFloat();
-    lights_.push_back(change);
-  }
-}
-
 void Scene::moveCamera(mjvGLCamera* camera) const {
   Vector position(camera->pos);
   Vector forward(camera->forward);
   Vector up(camera->up);
   Eigen::Matrix3f axes;  // of the camera in the world: right, up, backwards
   axes << forward.cross(up), up, -forward;
-  const Eigen::Vector3f middle = this->middle();
+  const Eigen::Vector3f middle =
+      Eigen::Map<const Eigen::Vector3d>(model_->stat.center).cast<float>();
   const float distance = std::max((middle - position).dot(forward), camera->frustum_near);
   const Eigen::Vector3f target = position + distance * forward;
   const Eigen::Matrix3f turned = axes * turn_;
   up = turned.col(1);
   forward = -turned.col(2);
   position = target - nearer_ * distance * forward;
-}
-
-Eigen::Vector3f Scene::middle() const {
-  return Eigen::Map<const Eigen::Vector3d>(model_->stat.center).cast<float>();
-}
-
-void Scene::changeLights(mjvScene* drawn) const {
-  if (lights_.empty()) return;
-  const Eigen::Vector3f middle = this->middle();
-  for (int i = 0; i < drawn->nlight; ++i) {
-    mjvLight& light = drawn->lights[i];
-    const LightChange& change = lights_[static_cast<std::size_t>(i)];
-    if (!light.headlight) {
-      Vector position(light.pos);
-      position += (position - middle).norm() * change.shift;
-    }
-    for (float& value : light.diffuse) value *= change.strength;
-  }
 }
 
 }  // namespace ddm

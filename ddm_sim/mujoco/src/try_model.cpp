@@ -1,100 +1,90 @@
 // Tries a model in a process of its own.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <dlfcn.h>
 #include <fcntl.h>
-#include <spawn.h>
-#include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <filesystem>
+#include <exception>
+#include <fstream>
+#include <new>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "load_model.h"
 
 namespace ddm {
 namespace {
 
-/// A file in memory without a name.
-class Scratch {
- public:
-  explicit Scratch(const std::string& bytes) : file_(memfd_create("model", MFD_CLOEXEC)) {
-    if (file_ < 0) throw std::runtime_error(std::string("memfd_create: ") + std::strerror(errno));
-    for (std::size_t done = 0; done < bytes.size();) {
-      const ssize_t written = write(file_, bytes.data() + done, bytes.size() - done);
-      if (written <= 0) throw std::runtime_error(std::string("write: ") + std::strerror(errno));
-      done += static_cast<std::size_t>(written);
-    }
-    lseek(file_, 0, SEEK_SET);
-  }
-  ~Scratch() { close(file_); }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-
-  int descriptor() const { return file_; }
-
-  std::string bytes() const {
-    std::string text(static_cast<std::size_t>(lseek(file_, 0, SEEK_END)), '\0');
-    const ssize_t got = pread(file_, text.data(), text.size(), 0);
-    text.resize(got < 0 ? 0 : static_cast<std::size_t>(got));
-    return text;
-  }
-
- private:
-  int file_;
-};
-
-/// The program try_model, which is installed in the folder ddm_sim beside this library.
-std::string program() {
-  Dl_info library;
-  if (dladdr(reinterpret_cast<void*>(&tryInOwnProcess), &library) == 0) {
-    throw std::runtime_error("the folder of libddm_mujoco.so is unknown");
-  }
-  return (std::filesystem::absolute(library.dli_fname).parent_path() / "ddm_sim" / "try_model")
-      .string();
+void limit(int resource, rlim_t value) {
+  const rlimit both = {value, value};
+  setrlimit(static_cast<__rlimit_resource_t>(resource), &both);
 }
 
-/// @return what waitpid() says of the process when it has ended
-int run(std::vector<std::string> words, const Scratch& in, const Scratch& out) {
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_adddup2(&files, in.descriptor(), STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&files, out.descriptor(), STDOUT_FILENO);
-  posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  pid_t process = 0;
-  const int error = posix_spawn(&process, arguments[0], &files, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&files);
-  if (error != 0) {
-    throw std::runtime_error("the program " + words[0] +
-                             ", which tries models, cannot be started (" + std::strerror(error) +
-                             "): build or install the package ddm_sim");
+/// Of this process now [bytes].
+rlim_t addressSpace() {
+  rlim_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
+}
+
+/// What the child process does: writes `ok` or a reason, and ends without cleaning up.
+[[noreturn]] void tryAndTell(const ModelText& model, int told) {
+  constexpr rlim_t kMemory = rlim_t{4} << 30;  // more than this process has already [bytes]
+  constexpr rlim_t kComputing = 60;            // [s]
+  constexpr unsigned int kWaiting = 300;       // for a loaded machine or a file that never ends [s]
+  std::signal(SIGINT, SIG_DFL);
+  limit(RLIMIT_AS, addressSpace() + kMemory);
+  limit(RLIMIT_CPU, kComputing);
+  limit(RLIMIT_CORE, 0);
+  alarm(kWaiting);
+  const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  dup2(nowhere, STDOUT_FILENO);
+  dup2(nowhere, STDERR_FILENO);
+  std::string said = "ok";
+  try {
+    tryHere(model);
+  } catch (const std::bad_alloc&) {
+    said = "it needs more than 4 GB of memory: make its meshes, textures and sizes smaller";
+  } catch (const std::exception& e) {
+    said = e.what();
+    if (said.empty()) said = "MuJoCo refuses it without a reason";
   }
-  int status = 0;
-  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  for (std::size_t done = 0; done < said.size();) {
+    const ssize_t written = write(told, said.data() + done, said.size() - done);
+    if (written <= 0) break;
+    done += static_cast<std::size_t>(written);
   }
-  return status;
+  _exit(0);
 }
 
 }  // namespace
 
 void tryInOwnProcess(const ModelText& model) {
-  std::vector<std::string> words = {program(), model.path};
-  for (const auto& mesh : model.meshes) {
-    words.push_back(mesh.first);
-    words.push_back(mesh.second);
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) {
+    throw std::runtime_error(std::string("a model cannot be tried, pipe: ") + std::strerror(errno));
   }
-  const Scratch in(model.text);
-  const Scratch out("");
-  const int status = run(words, in, out);
-  const std::string said = out.bytes();
+  const pid_t process = fork();
+  if (process == 0) tryAndTell(model, ends[1]);
+  close(ends[1]);
+  std::string said;
+  char part[4096];
+  for (ssize_t size = 1; process > 0 && size != 0;) {
+    size = read(ends[0], part, sizeof(part));
+    if (size > 0) said.append(part, static_cast<std::size_t>(size));
+    if (size < 0 && errno != EINTR) break;
+  }
+  close(ends[0]);
+  if (process < 0) {
+    throw std::runtime_error(std::string("a model cannot be tried, fork: ") + std::strerror(errno));
+  }
+  int status = 0;
+  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
   if (said == "ok") return;
   if (!said.empty()) throw std::invalid_argument(said);
   const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;

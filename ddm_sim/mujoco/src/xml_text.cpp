@@ -92,16 +92,24 @@ std::string whyBroken(const std::string& text) {
 }  // namespace
 
 std::string mistakenFor(const std::string& bytes) {
+  const std::pair<std::string, const char*> kinds[] = {
+      {"version https://git-lfs",
+       "is a pointer of Git LFS in the place of the file: run `git lfs pull` in its repository"},
+      {"<!doctype html", "is a web page: download the raw file"},
+      {"<html", "is a web page: download the raw file"},
+      {"404", "is a web page: download the raw file"},
+      {"pk\x03\x04", "is an archive: unpack it by `unzip`"},
+      {"\x1f\x8b\x08", "is an archive: unpack it by `gunzip`"},
+      {"\xff\xfe", "is in UTF-16: convert it by `iconv -f UTF-16 -t UTF-8 FILE > NEW_FILE`"},
+      {"\xfe\xff", "is in UTF-16: convert it by `iconv -f UTF-16 -t UTF-8 FILE > NEW_FILE`"},
+      {std::string("<\0", 2),
+       "is in UTF-16: convert it by `iconv -f UTF-16 -t UTF-8 FILE > NEW_FILE`"},
+      {"#usda", "is USD: export it as URDF or MJCF"},
+      {"pxr-usdc", "is USD: export it as URDF or MJCF"}};
   const std::string first = boost::to_lower_copy(boost::trim_left_copy(bytes.substr(0, 1000)));
   if (first.empty()) return "is empty: fetch or write it again";
-  if (begins(first, "version https://git-lfs")) {
-    return "is a pointer of Git LFS in the place of the file: run `git lfs pull` in its repository";
-  }
-  if (begins(first, "<!doctype html") || begins(first, "<html") || begins(first, "404")) {
-    return "is a web page: download the raw file";
-  }
-  if (begins(bytes, "PK\x03\x04") || begins(bytes, "\x1f\x8b\x08")) {
-    return "is an archive: unpack it by `unzip` or `gunzip`";
+  for (const auto& kind : kinds) {
+    if (begins(first, kind.first)) return kind.second;
   }
   return "";
 }
@@ -109,15 +117,6 @@ std::string mistakenFor(const std::string& bytes) {
 XmlDocument parseXml(const std::string& text) {
   const std::string mistaken = mistakenFor(text);
   if (!mistaken.empty()) throw std::invalid_argument("it " + mistaken);
-  const std::string zero(1, '\0');
-  for (const std::string& start : {std::string("\xff\xfe"), std::string("\xfe\xff"), "<" + zero}) {
-    if (!begins(text, start)) continue;
-    throw std::invalid_argument(
-        "it is in UTF-16: convert it by `iconv -f UTF-16 -t UTF-8 FILE > NEW_FILE`");
-  }
-  if (begins(text, "#usda") || begins(text, "PXR-USDC")) {
-    throw std::invalid_argument("it is USD: export it as URDF or MJCF");
-  }
   if (begins(text, "solid") || text.find('\0') != std::string::npos) {
     throw std::invalid_argument(
         "it is no XML: if it is a mesh, name the URDF or MJCF file that uses it");

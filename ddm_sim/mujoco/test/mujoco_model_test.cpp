@@ -32,12 +32,6 @@ class MujocoModelTest : public ::testing::Test {
   ModelFolder folder_;
 };
 
-TEST_F(MujocoModelTest, ReadsJointsAndSitesOfAnMjcf) {
-  const auto model = folder_.loadText(armText());
-  EXPECT_EQ(model->names(mjOBJ_JOINT), (std::vector<std::string>{"shoulder", "elbow"}));
-  EXPECT_EQ(model->id(mjOBJ_SITE, "tip", "plant/error_sites"), 0);
-}
-
 TEST_F(MujocoModelTest, FindsPackages) {
   folder_.write("models/arm.xml", armText());
   EXPECT_EQ(folder_.load("package://robots/models/arm.xml")->get().njnt, 2);
@@ -118,13 +112,6 @@ TEST_F(MujocoModelTest, FindsPackagesInIncludesAndSaysFromWherePathsCount) {
   EXPECT_EQ(folder_.loadText(armText(include), "robot/a.xml")->get().opt.timestep, 0.001);
 }
 
-TEST_F(MujocoModelTest, FindsAJointByTheNameThatItIsGiven) {
-  std::string text = armText();
-  text.replace(text.find("name=\"shoulder\""), 15, "");
-  text.replace(text.find("joint=\"shoulder\""), 16, "joint=\"elbow\"");
-  EXPECT_EQ(folder_.loadText(text)->id(mjOBJ_JOINT, "joint_0", "plant/motors"), 0);
-}
-
 TEST_F(MujocoModelTest, NamesAMissingIncludeMeshOrTexture) {
   EXPECT_TRUE(isRefused(folder_.write("a.xml", armText("<include file='look.xml'/>")),
                         {"plant/model", "look.xml"}));
@@ -156,18 +143,6 @@ TEST_F(MujocoModelTest, FindsTheMeshesOfAUrdfInPackagesAndBesideIt) {
                         {"plant/model", "meshes/b.obj"}));
   EXPECT_TRUE(isRefused(folder_.write("urdf/c.urdf", armUrdf("package://hands/meshes/b.obj")),
                         {"plant/model", "package hands"}));
-}
-
-TEST_F(MujocoModelTest, SaysWhatHelpsWithXacroWithOtherMeshesAndWithoutInertia) {
-  std::string xacro = armUrdf();
-  xacro.replace(xacro.find("value='1'"), 9, "value='${mass}'");
-  EXPECT_TRUE(isRefused(folder_.write("a.urdf", xacro), {"plant/model", "xacro FILE"}));
-  folder_.write("base.dae", "<COLLADA/>");
-  EXPECT_TRUE(isRefused(folder_.write("b.urdf", armUrdf("base.dae")), {"base.dae", "STL"}));
-  std::string text = armUrdf();
-  const auto begin = text.find("<inertial>");
-  text.erase(begin, text.find("</inertial>") + 11 - begin);
-  EXPECT_TRUE(isRefused(folder_.write("c.urdf", text), {"plant/model", "<inertial>"}));
 }
 
 TEST_F(MujocoModelTest, HasLightAndNoContactsForAUrdf) {
@@ -208,15 +183,6 @@ TEST_F(MujocoModelTest, FindsPlacesAmongSitesAndBodies) {
   EXPECT_NE(text.find("tip?"), std::string::npos) << text;
 }
 
-TEST_F(MujocoModelTest, LeavesAMujocoBlockOfAUrdfAsItIs) {
-  std::string text = armUrdf();
-  text.insert(text.rfind("</robot>"),
-              "<mujoco><compiler discardvisual='true'/><option timestep='0.004'/></mujoco>");
-  const auto model = folder_.loadText(text, "arm.urdf");
-  EXPECT_EQ(model->get().ngeom, 0);
-  EXPECT_EQ(model->get().opt.timestep, 0.004);
-}
-
 TEST_F(MujocoModelTest, SaysThatAWordMayBeOfANewerMujoco) {
   const std::string version = mj_versionString();
   EXPECT_TRUE(
@@ -239,11 +205,6 @@ TEST_F(MujocoModelTest, FindsPackagesInMeshesOfAnMjcfButNotInItsComments) {
       folder_.loadText(armText("<!-- package://gone/a.obj --><asset><mesh name='m' "
                                "file='package://robots/meshes/base.obj'/></asset>"));
   EXPECT_EQ(model->get().nmesh, 1);
-}
-
-TEST_F(MujocoModelTest, NamesWhatIsNoModel) {
-  EXPECT_TRUE(isRefused(folder_.write("a.sdf", "<sdf version='1.6'><model/></sdf>"),
-                        {"plant/model", "<sdf>", "<robot>"}));
 }
 
 TEST_F(MujocoModelTest, RefusesNumbersThatAreNotFinite) {
@@ -287,17 +248,6 @@ TEST_F(MujocoModelTest, HasADigestOfAllFilesThatItNames) {
   const std::string with_paint = folder_.loadText(text, "arm.mjcf")->digest();
   folder_.write("assets/base.obj", kTetrahedron);
   EXPECT_NE(folder_.loadText(text, "arm.mjcf")->digest(), with_paint);
-}
-
-TEST_F(MujocoModelTest, SuggestsTheNearestNameAndAllOthers) {
-  const auto model = folder_.loadText(armText());
-  const std::string near = refusalOf([&] { model->id(mjOBJ_JOINT, "sholder", "plant/motors"); });
-  for (const char* word : {"plant/motors", "sholder", "shoulder?", "elbow"}) {
-    EXPECT_NE(near.find(word), std::string::npos) << word << " is not in: " << near;
-  }
-  const std::string far = refusalOf([&] { model->id(mjOBJ_JOINT, "knee", "plant/motors"); });
-  EXPECT_EQ(far.find('?'), std::string::npos) << far;
-  EXPECT_NE(far.find("shoulder, elbow"), std::string::npos) << far;
 }
 
 TEST_F(MujocoModelTest, ThrowsWhatMujocoCallsAnErrorAndLeavesNoLogBehind) {

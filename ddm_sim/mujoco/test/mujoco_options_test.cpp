@@ -71,12 +71,6 @@ std::vector<Flaw> options() {
       {"UnknownErrorJoint",
        armWith([](O* o) { o->error_joints = {"knee"}; }),
        {"plant/error_joints", "knee", "shoulder, elbow"}},
-      {"UnknownErrorSite",
-       armWith([](O* o) { o->error_sites = {"top"}; }),
-       {"plant/error_sites", "top", "tip?"}},
-      {"UnknownVisibleSite",
-       armWith([](O* o) { o->visible_sites = {"top"}; }),
-       {"plant/visible_sites", "top", "tip"}},
       {"UnknownGoalSite",
        armWith([](O* o) {
          o->goal_site = "top";
@@ -93,9 +87,6 @@ std::vector<Flaw> options() {
       {"TimeStepIsNoMultiple",
        armWith([](O* o) { o->dt = 0.125; }),
        {"plant/dt", "0.01", "0.125", "nearest"}},
-      {"TimeStepIsShorterThanAFrame",
-       armWith([](O* o) { o->dt = 0.004; }),
-       {"plant/dt", "0.01", "0.004"}},
       {"EpisodeIsNoMultiple",
        armWith([](O* o) { o->episode_frames = 1001; }),
        {"plant/episode_frames", "1001"}},
@@ -114,10 +105,6 @@ std::vector<Flaw> options() {
          o->start = {0, 0, 0};
        }),
        {"plant/start", "3"}},
-      {"AnotherNumberOfGoals", armWith([](O* o) { o->goal = {0}; }), {"plant/goal", "1"}},
-      {"AnotherNumberOfSpreads",
-       armWith([](O* o) { o->start_uniform = {1}; }),
-       {"plant/start_uniform", "1"}},
       {"AnotherNumberOfColumns",
        armWith([](O* o) {
          o->state_names = {"a", "b"};
@@ -128,7 +115,6 @@ std::vector<Flaw> options() {
       {"TinyTimestep",
        armWith([](O* o) { o->timestep = 1e-300; }),
        {"plant/timestep", "1000000", "1e-300"}},
-      {"GearWithoutMotors", armWith([](O* o) { o->gear = {2.0}; }), {"plant/gear"}},
   };
 }
 
@@ -150,12 +136,6 @@ std::vector<Flaw> files() {
       {"JointWithoutALimit",
        urdfWith([](MujocoOptions* o) { o->max_torque.clear(); }),
        {"plant/max_torque", "shoulder", "effort"}},
-      {"UrdfWithoutACamera",
-       urdfWith([](MujocoOptions* o) {
-         o->look.position.clear();
-         o->look.look_at.clear();
-       }),
-       {"camera"}},
       {"MotorWithoutALimit",
        fileWith("gear=\"2\" ctrllimited=\"true\" ctrlrange=\"-0.5 0.5\"", "gear=\"2\""),
        {"plant/max_torque", "shoulder", "ctrlrange"}},
@@ -207,23 +187,6 @@ TEST(MujocoOptions, AreRefusedForAFreeJointBeforeAnythingElseOfTheModel) {
       armText("<worldbody><body><freejoint name='loose'/><geom size='0.1'/></body></worldbody>"));
   EXPECT_TRUE(testing::names(refusalOf([&] { completed(armOptions(), *model); }),
                              {"plant/model", "free joint", "loose"}));
-}
-
-TEST(MujocoOptions, HaveADigestOfTheBackgroundsPicturesToo) {
-  const ModelFolder folder;
-  const auto model = folder.loadText(armText());
-  MujocoOptions options = armOptions();
-  options.scene.background = 1.0;
-  options.scene.background_pictures = {folder.write("office.png", "a picture")};
-  const MujocoOptions saved = completed(options, *model);
-  EXPECT_NE(saved.model_digest, model->digest());
-  EXPECT_EQ(completed(saved, *model).model_digest, saved.model_digest);
-  folder.write("office.png", "another picture");
-  EXPECT_TRUE(testing::names(refusalOf([&] { completed(saved, *model); }),
-                             {"plant/model_digest", saved.model_digest}));
-  options.scene.background_pictures = {"none.png"};
-  EXPECT_TRUE(testing::names(refusalOf([&] { completed(options, *model); }),
-                             {"plant/background_pictures", "none.png"}));
 }
 
 }  // namespace

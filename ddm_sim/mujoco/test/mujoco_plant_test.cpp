@@ -6,16 +6,13 @@
 
 #include <cmath>
 #include <filesystem>
-#include <future>
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "ddm_msgs/testing/expect_error.h"
 #include "ddm_sim/angles.h"
-#include "ddm_sim/pendulum.h"
 #include "model_folder.h"
 
 namespace ddm {
@@ -43,49 +40,11 @@ TEST(MujocoPlant, HasTheColumnsLimitsAndJointsOfItsFile) {
   EXPECT_EQ(info.goal, Eigen::Vector4d(1.0, 0.5, 0.0, 0.0));
 }
 
-TEST(MujocoPlant, HasTheColumnsAndUnitsOfItsOptions) {
-  MujocoOptions options = armOptions();
-  options.state_names = {"a_rad", "b_rad", "a_rate", "b_rate"};
-  options.torque_names = {"a_nm", "b_nm"};
-  options.error_sites = {"tip"};
-  EXPECT_EQ(arm(options)->info().state_names, options.state_names);
-  EXPECT_EQ(arm(options)->info().torque_names, options.torque_names);
-  EXPECT_EQ(arm(options)->info().error_unit, "m");
-}
-
-TEST(MujocoPlant, MovesThePapersPendulumAsTheClosedFormDoes) {
-  MujocoOptions options;
-  options.model = "pendulum";
-  options.tolerance = 10.0;
-  const ModelFolder none;
-  const auto model = none.load(DDM_SIM_SOURCE_DIR "/models/mujoco_pendulum.xml");
-  MujocoPlant plant(model, options);
-  Pendulum closed_form{PendulumOptions()};
-  const Eigen::Vector2d start(0.1, -0.05);
-  plant.setState(start);
-  closed_form.setState(start);
-  std::mt19937_64 engine(3);
-  std::uniform_real_distribution<double> torque(-6.0, 6.0);
-  for (int t = 0; t < 100; ++t) {
-    const Eigen::VectorXd u = Eigen::VectorXd::Constant(1, torque(engine));
-    plant.step(u);
-    closed_form.step(u);
-    const double apart = (plant.state() - closed_form.state()).lpNorm<Eigen::Infinity>();
-    ASSERT_LE(apart, 1e-7) << t;
-  }
-}
-
-TEST(MujocoPlant, TurnsTheJointsOfAUrdfInTheOrderOfItsMotorsByTheirGears) {
-  MujocoOptions options = urdfOptions();
-  const auto plain = plantOf(armUrdf(), options, "arm.urdf");
+TEST(MujocoPlant, TurnsTheJointsOfAUrdfInTheOrderOfItsMotors) {
+  const auto plain = plantOf(armUrdf(), urdfOptions(), "arm.urdf");
   EXPECT_EQ(plain->info().torque_names, (Names{"elbow_nm", "shoulder_nm"}));
   plain->step(Eigen::Vector2d(0.5, 0.0));
   EXPECT_GT(plain->state()[1], 0.0);  // the elbow is the second joint
-  options.gear = {-2.0, 1.0};
-  options.max_torque = {1.0, 1.0};
-  const auto geared = plantOf(armUrdf(), options, "arm.urdf");
-  geared->step(Eigen::Vector2d(-0.25, 0.0));
-  EXPECT_EQ(geared->state(), plain->state());
 }
 
 TEST(MujocoPlant, TakesTheEffortOfAUrdfForTheLimitOfTheMotor) {
@@ -96,8 +55,6 @@ TEST(MujocoPlant, TakesTheEffortOfAUrdfForTheLimitOfTheMotor) {
   const auto model = folder.loadText(armUrdf(), "arm.urdf");
   EXPECT_EQ(MujocoPlant(model, options).info().max_torque[0], 3.0);
   EXPECT_EQ(completed(options, *model).max_torque, std::vector<double>{3.0});
-  options.gear = {-2.0};
-  EXPECT_EQ(MujocoPlant(model, options).info().max_torque[0], 1.5);
 }
 
 TEST(MujocoPlant, EndsAnUnstableTrialAndIsAsGoodAsNewAfterwards) {
@@ -148,27 +105,6 @@ TEST(MujocoPlant, DrawsStartsFromNormalAndUniformParts) {
     widest = std::max(widest, std::abs(start[0] - 0.5));
   }
   EXPECT_GT(widest, 0.98 * kPi);
-}
-
-TEST(MujocoPlant, DrawsGoalsThatBringTheSiteToARingWithinTheRangesOfTheJoints) {
-  MujocoOptions options = armOptions();
-  options.goal_site = "tip";
-  options.goal_distance = {0.15, 0.25};
-  options.error_sites = options.visible_sites = {"tip"};
-  options.tolerance = 0.01;
-  const auto plant = arm(options);
-  std::mt19937_64 engine(2);
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (int i = 0; i < 300; ++i) {
-    const Eigen::VectorXd goal = plant->drawGoal(engine);
-    const Eigen::Vector2d tip = plant->visiblePosition(goal).head(2);
-    ASSERT_GE(tip.norm(), 0.15 - 1e-12);
-    ASSERT_LE(tip.norm(), 0.25 + 1e-12);
-    ASSERT_LE(std::abs(goal[1]), 150.0 * kPi / 180.0);
-    ASSERT_EQ(goal.tail(2), Eigen::Vector2d(0.0, 0.0));
-    mean += tip / 300;
-  }
-  EXPECT_LT(mean.norm(), 0.05);  // on all sides
 }
 
 TEST(MujocoPlant, ReachesATargetExactlyOrRefusesIt) {
@@ -299,56 +235,6 @@ TEST(MujocoPlant, MeasuresTheErrorOfTheJointsOrSitesThatCount) {
   options.error_joints.clear();
   options.error_sites = {"tip"};
   EXPECT_NEAR(arm(options)->goalError(state), 2.0 * 0.1 * std::sin(0.1), 1e-12);
-}
-
-TEST(MujocoPlant, TakesTheCentreOfMassOfALinkForItsPlace) {
-  std::string urdf = armUrdf();
-  urdf.insert(urdf.rfind("<mass"), "<origin xyz='0.1 0 0'/>");  // 0.1 m from both joints
-  MujocoOptions options = urdfOptions();
-  options.error_sites = options.visible_sites = {"lower"};
-  options.goal_site = "lower";
-  options.goal_distance = {0.1, 0.1};
-  const auto plant = plantOf(urdf, options, "arm.urdf");
-  EXPECT_NEAR(plant->goalError(Eigen::Vector4d(1.0, 0.5 + 0.2, 0.0, 0.0)),
-              2.0 * 0.1 * std::sin(0.1), 1e-12);
-  const Eigen::Vector2d target(0.06, -0.08);
-  EXPECT_LE((plant->visiblePosition(plant->goalAt(target)).head(2) - target).norm(), 1e-13);
-}
-
-TEST(MujocoPlant, IsRewardedForEachFrameOfAStep) {
-  MujocoOptions options = armOptions();
-  EXPECT_FALSE(arm(options)->reward(Eigen::Vector4d::Zero(), Eigen::Vector2d::Zero()));
-  options.reward = "reacher_easy";
-  options.episode_frames = 1000;
-  options.dt = 0.2;  // 20 frames
-  const auto plant = arm(options);
-  EXPECT_EQ(plant->info().evaluation_steps, 50);
-  const Eigen::Vector2d none(0.0, 0.0);
-  EXPECT_EQ(plant->reward(plant->info().goal, none), 1.0);
-  EXPECT_EQ(plant->reward(Eigen::Vector4d(-2.0, 0.0, 0.0, 0.0), none), 0.0);
-  EXPECT_EQ(plant->stepReward(plant->info().goal, none), 20.0);
-  const double part = plant->stepReward(plant->info().goal, Eigen::Vector2d(1.0, 0.0)).value();
-  EXPECT_GT(part, 0.0);
-  EXPECT_LT(part, 20.0);
-}
-
-TEST(MujocoPlant, MovesAndLooksTheSameInEachOfSeveralThreads) {
-  const ModelFolder folder;
-  const auto model = folder.loadText(armText());
-  const auto run = [&model] {
-    MujocoPlant plant(model, armOptions());
-    std::vector<std::uint8_t> bytes;
-    for (int t = 0; t < 40; ++t) {
-      plant.step(Eigen::Vector2d(std::sin(t), std::cos(t)));
-      const Picture picture = plant.render(plant.state());
-      bytes.insert(bytes.end(), picture.bytes.begin(), picture.bytes.end());
-    }
-    return std::make_pair(plant.state(), bytes);
-  };
-  const auto alone = run();
-  std::vector<std::future<std::pair<Eigen::VectorXd, std::vector<std::uint8_t>>>> others;
-  for (int i = 0; i < 4; ++i) others.push_back(std::async(std::launch::async, run));
-  for (auto& other : others) EXPECT_TRUE(other.get() == alone);
 }
 
 }  // namespace

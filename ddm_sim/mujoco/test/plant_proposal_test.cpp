@@ -169,22 +169,6 @@ TEST_F(Proposal, AllPosesAreInTheImage) {
   for (const Eigen::VectorXd& pose : poses) EXPECT_TRUE(showsAll(plant, pose)) << pose.transpose();
 }
 
-TEST_F(Proposal, TheCameraSeesStartAndGoalOfAChain) {
-  const std::string limit = "<limit effort='5' velocity='1'/>";
-  std::string parts, parent = "base";
-  for (const char* name : {"a", "b", "c", "d", "e", "f"}) {
-    parts += rodLink(name) + jointOf(std::string("j") + name, "continuous", parent, name, "0 1 0",
-                                     parent == "base" ? limit : "");
-    const std::size_t origin = parts.rfind("<axis");
-    if (parent != "base") parts.insert(origin, "<origin xyz='0 0 -1'/>");
-    parent = name;
-  }
-  const PlantProposal proposal = propose(robot(parts));
-  MujocoPlant plant(model_, proposal.options);
-  EXPECT_TRUE(showsAll(plant, plant.info().start));
-  EXPECT_TRUE(showsAll(plant, plant.info().goal));
-}
-
 TEST_F(Proposal, SpringsPullTheStartWhereTheyAreAtRest) {
   const PlantProposal proposal = propose(
       "<mujoco><option gravity='0 0 0'/><worldbody><body><joint name='swing' axis='0 1 0' "
@@ -203,20 +187,6 @@ TEST_F(Proposal, ALongRailIsShownInPartSoThatTheRobotIsNotTiny) {
   EXPECT_EQ(proposal.options.error_joints, Texts({"pivot"}));  // degrees and metres do not mix
   MujocoPlant plant(model_, proposal.options);
   EXPECT_GT(checkPlant(proposal, &plant).changed_pixels, 25);  // of 2601
-}
-
-TEST_F(Proposal, TheTimeStepIsShortWhereTheRobotIsFast) {
-  const auto scaled = [](double scale) {
-    std::ostringstream text;
-    text << "<mujoco><worldbody><body><joint name='swing' axis='0 1 0'/><geom type='capsule' size='"
-         << 0.1 * scale << "' fromto='0 0 0 0 0 " << -scale
-         << "'/></body></worldbody><actuator><motor joint='swing'/></actuator></mujoco>";
-    return text.str();
-  };
-  const PlantProposal large = propose(scaled(2.0), "large.xml");
-  const PlantProposal small = propose(scaled(0.05), "small.xml");
-  EXPECT_LT(small.options.dt, large.options.dt);
-  EXPECT_GE(small.options.dt, 0.02);
 }
 
 TEST_F(Proposal, TheCheckNamesAJointThatTheImageDoesNotShow) {

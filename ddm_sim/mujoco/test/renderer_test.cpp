@@ -75,7 +75,6 @@ TEST(Renderer, ShowsThingsWhereACameraWithItsModelSeesThem) {
       RenderOptions options = colourful(name);
       options.width = 160;
       options.height = 120;
-      options.reflections = false;
       Renderer renderer(scene.model, options, SceneOptions());
       const Spot ball = spotOf(renderer.draw(*scene.data), isRed);
       ASSERT_GT(ball.count, 50) << name;
@@ -92,21 +91,6 @@ TEST(Renderer, ShowsThingsWhereACameraWithItsModelSeesThem) {
       EXPECT_NEAR(ball.row, 60.0 + f * seen.y() / seen.z(), 1.5) << name << " " << angle;
     }
   }
-}
-
-TEST(Renderer, KnowsTheModelOfItsCameraWithoutDrawing) {
-  const SceneModel scene;
-  RenderOptions options = colourful("front");
-  options.width = 640;
-  options.height = 480;
-  const CameraModel camera = Renderer(scene.model, options, SceneOptions()).camera(*scene.data);
-  EXPECT_NEAR(camera.focalLength(), 240.0 / std::tan(0.5 * 40.0 * M_PI / 180.0), 1e-9);
-  EXPECT_TRUE(camera.position.isApprox(Eigen::Vector3d(0.0, -4.0, 1.0), 1e-6));
-  Eigen::Matrix3d ahead_is_y;
-  ahead_is_y << 1, 0, 0, 0, 0, 1, 0, -1, 0;
-  EXPECT_TRUE(camera.rotation.isApprox(ahead_is_y, 1e-6)) << camera.rotation;
-  EXPECT_FALSE(
-      Renderer(scene.model, colourful("riding"), SceneOptions()).camera(*scene.data).fixed);
 }
 
 TEST(Renderer, PlacesACameraThatTheModelDoesNotHave) {
@@ -182,31 +166,6 @@ TEST(Renderer, DrawsOnTheCallersThread) {
   EXPECT_EQ(drawing, std::vector<std::string>());
 }
 
-TEST(Renderer, OutlivesItsThreadAndTheModelsOwner) {
-  std::unique_ptr<Renderer> renderer;
-  Bytes first;
-  auto scene = std::make_unique<SceneModel>(0.4);
-  const std::shared_ptr<mjData> data = scene->data;
-  std::thread([&] {
-    renderer = std::make_unique<Renderer>(scene->model, colourful(), SceneOptions());
-    first = renderer->draw(*data).bytes;
-  }).join();
-  scene.reset();
-  EXPECT_EQ(renderer->draw(*data).bytes, first);
-}
-
-TEST(Renderer, DrawsGreyAsAReaderMakesItOfColour) {
-  const SceneModel scene(0.4);
-  for (const char* camera : {"front", "oblique"}) {
-    const Picture colour = drawn(scene, colourful(camera));
-    RenderOptions options = colourful(camera);
-    options.colour = false;
-    const Picture grey = drawn(scene, options);
-    EXPECT_EQ(grey.channels, 1);
-    EXPECT_EQ(grey.bytes, decodeImage(imageMessage(colour, ros::Time(1.0)), 51));
-  }
-}
-
 TEST(Renderer, TurnsEveryColourIntoTheGreyOfAReader) {
   Picture colours;
   colours.width = colours.height = 256;
@@ -217,22 +176,6 @@ TEST(Renderer, TurnsEveryColourIntoTheGreyOfAReader) {
     }
   }
   EXPECT_EQ(greyOf(colours).bytes, decodeImage(imageMessage(colours, ros::Time(1.0)), 256));
-}
-
-TEST(Renderer, SmoothsEdgesWithSamplesAndWithSupersampling) {
-  const SceneModel scene(0.4);
-  const auto greys = [&scene](int samples, int supersampling) {
-    RenderOptions options;
-    options.samples = samples;
-    options.supersampling = supersampling;
-    const Bytes bytes = drawn(scene, options).bytes;
-    return bytes;
-  };
-  const Bytes hard = greys(0, 1);
-  EXPECT_EQ(greys(0, 4).size(), hard.size());
-  EXPECT_NE(greys(4, 1), hard);
-  EXPECT_NE(greys(0, 4), hard);
-  EXPECT_NE(greys(0, 4), greys(4, 1));
 }
 
 TEST(Renderer, AveragesWhatItDrawsLarger) {
@@ -259,28 +202,12 @@ TEST(Renderer, AveragesWhatItDrawsLarger) {
   }
 }
 
-TEST(Renderer, DrawsShadowsAndReflectionsUnlessToldNot) {
-  const SceneModel scene(0.4);
-  const Picture all = drawn(scene, colourful("oblique"));
-  RenderOptions options = colourful("oblique");
-  options.shadows = false;
-  EXPECT_GT(meanDifference(drawn(scene, options), all), 0.05);
-  options = colourful("oblique");
-  options.reflections = false;
-  EXPECT_GT(meanDifference(drawn(scene, options), all), 0.05);
-}
-
 TEST(Renderer, ShowsPeopleWhatALearnerDoesNotSee) {
   const SceneModel scene;
   RenderOptions options = colourful();
   EXPECT_EQ(spotOf(drawn(scene, options), isGreen).count, 0);
   options.for_people = true;
   EXPECT_GT(spotOf(drawn(scene, options), isGreen).count, 5);
-}
-
-TEST(Renderer, DoesNotClaimToKnowWhatAScenesPlantCovers) {
-  const SceneModel scene;
-  EXPECT_TRUE(drawn(scene, colourful()).cover.empty());
 }
 
 TEST(Renderer, RefusesACameraThatIsNotThereNamingThoseThatAre) {
@@ -312,22 +239,14 @@ TEST(Renderer, ReportsAllProblemsOfItsOptions) {
   SceneOptions nuisances;
   nuisances.camera_shift = -0.1;
   nuisances.colour_shift = 2.0;
-  nuisances.light_shift = std::numeric_limits<double>::infinity();
   nuisances.seed = -1;
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
       [&] { Renderer(scene.model, options, nuisances); },
       {"plant/camera_position", "plant/camera_look_at", "plant/camera_field_of_view",
        "plant/samples", "plant/supersampling", "plant/camera_shift", "plant/colour_shift",
-       "plant/light_shift", "plant/scene_seed"}));
+       "plant/scene_seed"}));
   EXPECT_TRUE(RenderOptions().problems("plant").empty());
   EXPECT_TRUE(SceneOptions().problems("plant").empty());
-  options = RenderOptions();
-  options.width = 1024;
-  options.supersampling = 5;
-  EXPECT_EQ(options.problems("plant").size(), 1U);
-  options = colourful("front");
-  options.position = options.look_at = {1.0, 2.0, 3.0};
-  EXPECT_EQ(options.problems("plant").size(), 2U);
 }
 
 }  // namespace

@@ -19,8 +19,7 @@ using testing::SceneModel;
 using Bytes = std::vector<std::uint8_t>;
 using Key = double SceneOptions::*;
 
-const std::vector<Key> kKeys = {&SceneOptions::camera_shift, &SceneOptions::colour_shift,
-                                &SceneOptions::light_shift, &SceneOptions::background};
+const std::vector<Key> kKeys = {&SceneOptions::camera_shift, &SceneOptions::colour_shift};
 
 SceneOptions shifted(Key key, double share, int seed = 0) {
   SceneOptions scene;
@@ -55,7 +54,7 @@ TEST(SceneNuisances, LeaveTheModelThatMovesAsItIs) {
   const int colours = 4 * model.model->ngeom;
   const std::vector<float> before(model.model->geom_rgba, model.model->geom_rgba + colours);
   SceneOptions all = shifted(&SceneOptions::camera_shift, 0.3);
-  all.colour_shift = all.light_shift = 0.3;
+  all.colour_shift = 0.3;
   drawnWith(model, all);
   EXPECT_EQ(std::vector<float>(model.model->geom_rgba, model.model->geom_rgba + colours), before);
   EXPECT_EQ(model.model->cam_pos[1], -4.0);
@@ -88,10 +87,9 @@ TEST(SceneNuisances, OfOneKindLeaveTheOthersAlone) {
   const CameraModel plain = cameraOf(model, SceneOptions());
   const CameraModel moved = cameraOf(model, shifted(&SceneOptions::camera_shift, 0.1));
   SceneOptions all = shifted(&SceneOptions::camera_shift, 0.1);
-  all.colour_shift = all.light_shift = all.background = 0.1;
+  all.colour_shift = 0.1;
   EXPECT_EQ(cameraOf(model, all).position, moved.position);
   EXPECT_EQ(cameraOf(model, shifted(&SceneOptions::colour_shift, 0.1)).position, plain.position);
-  EXPECT_EQ(cameraOf(model, shifted(&SceneOptions::light_shift, 0.1)).position, plain.position);
 }
 
 }  // namespace

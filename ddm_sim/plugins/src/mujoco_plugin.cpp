@@ -28,7 +28,6 @@ class MujocoPlugin : public PlantPlugin {
     options_ = reader->read<MujocoOptions>("plant");
     if (!options_.problems().empty()) return;  // the reader has them
     options_.model = absolute(options_.model);
-    for (std::string& picture : options_.scene.background_pictures) picture = absolute(picture);
     model_ = std::make_shared<MujocoModel>(
         options_.model, [](const std::string& package) { return ros::package::getPath(package); });
     options_ = completed(options_, *model_);
@@ -40,8 +39,6 @@ class MujocoPlugin : public PlantPlugin {
   std::unique_ptr<Plant> make() const override {
     return std::make_unique<MujocoPlant>(model_, options_);
   }
-
-  bool drawsCheaply() const override { return false; }
 
   std::string renderer() const override {
     try {

@@ -9,7 +9,7 @@
 namespace ddm {
 
 /// The blocks of a configuration file by name; an empty map if the file holds only comments.
-/// Relative paths of files that the configuration names (model file, background and goal pictures,
+/// Relative paths of files that the configuration names (model file, goal picture,
 /// bags, plant file) start at the folder of the configuration, and are returned as absolute ones.
 ///
 /// @throws std::runtime_error with the path if the file cannot be read

@@ -1,4 +1,4 @@
-// A plant whose every answer a test may change.
+// A plant whose every answer a test may change, and a camera with all nuisances at once.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "ddm_sim/camera_options.h"
 #include "ddm_sim/picture.h"
 #include "ddm_sim/plant.h"
 #include "ddm_sim/plant_factory.h"
@@ -137,6 +138,16 @@ inline ToyPlant::Traits colourfulToy() {
     return Eigen::VectorXd(position * Eigen::VectorXd::Unit(2, 0));
   };
   return traits;
+}
+
+inline CameraOptions allNuisances() {
+  CameraOptions options;
+  options.noise_std = 0.05;
+  options.brightness_drift = 0.2;
+  options.clutter = 0.6;
+  options.delay = 1;
+  options.drop_rate = 0.3;
+  return options;
 }
 
 }  // namespace testing

@@ -19,7 +19,6 @@ struct MujocoOptions : PlantOptions {
   double timestep = 0.0;  ///< of MuJoCo [s]; 0: that of the file
 
   std::vector<std::string> motors;  ///< joints that have one; empty: the actuators of the file
-  std::vector<double> gear;         ///< torque at the joint for one of the motor; empty: 1 for all
 
   std::vector<double> start;          ///< middle of the starts [rad, m]; empty: pose 0 of the file
   std::vector<double> start_uniform;  ///< half-width of a uniform part of the start; empty: none
@@ -51,7 +50,6 @@ struct MujocoOptions : PlantOptions {
     visitor("model_digest", model_digest);
     visitor("timestep", timestep);
     visitor("motors", motors);
-    visitor("gear", gear);
     visitor("start", start);
     visitor("start_uniform", start_uniform);
     visitor("goal", goal);
@@ -70,15 +68,10 @@ struct MujocoOptions : PlantOptions {
     visitor("camera_look_at", look.look_at);
     visitor("camera_field_of_view", look.field_of_view);
     visitor("colour", look.colour);
-    visitor("shadows", look.shadows);
-    visitor("reflections", look.reflections);
     visitor("samples", look.samples);
     visitor("supersampling", look.supersampling);
     visitor("camera_shift", scene.camera_shift);
     visitor("colour_shift", scene.colour_shift);
-    visitor("light_shift", scene.light_shift);
-    visitor("background", scene.background);
-    visitor("background_pictures", scene.background_pictures);
     visitor("scene_seed", scene.seed);
   }
 

@@ -20,11 +20,8 @@ class MujocoPhysics;
 
 /// The state is all positions, then all rates, in the order of the joints in the file; hinges [rad]
 /// and slides [m] alone, an angle is never wrapped. A step is dt / h physics frames, h the time
-/// step of the file, under
-///
-///   torque at joint i = gear_i u_i
-///
-/// and depends on state and torque alone: nothing is carried over from the frames before.
+/// step of the file, under the torques u at the joints of the motors, and depends on state and torque
+/// alone: nothing is carried over from the frames before.
 ///
 /// Goal: `goal`, or with `goal_site` for each run a pose that brings this site to a point of its
 /// x-y plane. Error: the largest distance of a joint (angles the short way round [deg], slides [m])
@@ -76,10 +73,8 @@ class MujocoPlant : public Plant {
 ///         Nothing is checked, and nothing thrown, where OpenGL cannot draw.
 void requireVisible(const std::shared_ptr<const MujocoModel>& model, const MujocoOptions& options);
 
-/// The options with what the files say where they are silent: limits of motors, and the digest of
-/// model and pictures.
-/// @throws std::invalid_argument if the digest is that of other files, a picture cannot be read, or
-///         as MujocoPlant
+/// The options with what the files say where they are silent: limits of motors, and the digest.
+/// @throws std::invalid_argument if the digest is that of other files, or as MujocoPlant
 MujocoOptions completed(MujocoOptions options, const MujocoModel& model);
 
 }  // namespace ddm

@@ -20,8 +20,6 @@ struct RenderOptions {
   int width = 51;                ///< [pixels]
   int height = 51;               ///< [pixels]
   bool colour = false;           ///< else grey
-  bool shadows = true;           ///< of lights that cast them
-  bool reflections = true;       ///< on materials that have them
   int samples = 0;               ///< 0, or 4: edges are averaged over four points of a pixel
   int supersampling = 1;         ///< drawn so many times larger and averaged, which is softer
   bool for_people = false;       ///< also show the geoms and sites of group kPeopleGroup
@@ -67,10 +65,7 @@ struct RenderOptions {
 struct SceneOptions {
   double camera_shift = 0.0;  ///< the camera goes around the point it looks at, and turns
   double colour_shift = 0.0;  ///< of each thing, texture and sky
-  double light_shift = 0.0;   ///< place and strength of each light
-  double background = 0.0;    ///< of what sky, floor and walls show: a pattern, or a picture
-  std::vector<std::string> background_pictures;  ///< files, one of which it is; none: a pattern
-  int seed = 0;                                  ///< which changes
+  int seed = 0;               ///< which changes
 
   /// As above.
   std::vector<std::string> problems(const std::string& block) const {
@@ -80,10 +75,6 @@ struct SceneOptions {
     };
     requireShare("camera_shift", camera_shift);
     requireShare("colour_shift", colour_shift);
-    requireShare("light_shift", light_shift);
-    requireShare("background", background);
-    checks.require(background_pictures.empty() || background != 0.0, "background",
-                   "be more than 0 where background_pictures is given", background);
     checks.require(seed >= 0, "scene_seed", "be >= 0", seed);
     return checks.problems();
   }

@@ -23,8 +23,8 @@ struct Reward {
   double (*value)(const RewardInputs&);  ///< in [0, 1]
 };
 
-/// The tasks of the DeepMind Control Suite: pendulum_swingup, cartpole_smooth, cartpole_sparse,
-/// reacher_easy, reacher_hard, acrobot_smooth, acrobot_sparse. The state is that of the suite's
+/// The tasks of the DeepMind Control Suite: pendulum_swingup, cartpole_smooth,
+/// reacher_easy, reacher_hard, acrobot_smooth. The state is that of the suite's
 /// models; the target of the reacher is where the finger is at the goal.
 const std::vector<Reward>& rewards();
 

@@ -1,0 +1,169 @@
+// A model at rest: where its joints may be, and the loads on them.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mechanism.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "camera_placement.h"
+#include "ddm_sim/angles.h"
+#include "mujoco_physics.h"
+
+namespace ddm {
+
+using Eigen::VectorXd;
+
+Mechanism::Mechanism(const std::shared_ptr<const MujocoModel>& model)
+    : model_(model), data_(nullptr, mj_deleteData) {
+  requirePositionsAndRates(*model);
+  data_.reset(mj_makeData(&model->get()));
+  if (!data_) throw std::runtime_error("not enough memory for " + model->uri());
+  const mjModel& m = model->get();
+  for (int i = 0; i < m.njnt; ++i) {
+    ModelJoint joint;
+    joint.name = model->name(mjOBJ_JOINT, i);
+    joint.kind = m.jnt_type[i] == mjJNT_HINGE ? JointKind::kAngle : JointKind::kLength;
+    joint.limited = m.jnt_limited[i] != 0;
+    joint.lower = joint.limited ? m.jnt_range[2 * i] : m.qpos0[i] - (isHinge(joint) ? kPi : 0.0);
+    joint.upper =
+        joint.limited ? m.jnt_range[2 * i + 1] : m.qpos0[i] + (isHinge(joint) ? kPi : 0.0);
+    joint.shown_lower = joint.lower;
+    joint.shown_upper = joint.upper;
+    joints_.push_back(joint);
+  }
+  showSlidesInPart();
+}
+
+VectorXd Mechanism::zero() const {
+  return coupled(Eigen::Map<const VectorXd>(model_->get().qpos0, model_->get().njnt));
+}
+
+VectorXd Mechanism::draw(std::mt19937_64* engine) const {
+  VectorXd position(static_cast<Eigen::Index>(joints_.size()));
+  for (Eigen::Index i = 0; i < position.size(); ++i) {
+    const ModelJoint& joint = joints_[static_cast<std::size_t>(i)];
+    position[i] =
+        std::uniform_real_distribution<double>(joint.shown_lower, joint.shown_upper)(*engine);
+  }
+  return coupled(position);
+}
+
+VectorXd Mechanism::coupled(VectorXd position) const {
+  const mjModel& m = model_->get();
+  for (int i = 0; i < m.neq; ++i) {
+    if (m.eq_type[i] != mjEQ_JOINT || !m.eq_active[i]) continue;
+    const int follower = m.eq_obj1id[i], leader = m.eq_obj2id[i];
+    const mjtNum* const c = m.eq_data + mjNEQDATA * i;
+    const double x = leader < 0 ? 0.0 : position[leader] - m.qpos0[leader];
+    position[follower] = m.qpos0[follower] + c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * c[4])));
+  }
+  for (Eigen::Index i = 0; i < position.size(); ++i) {
+    const ModelJoint& joint = joints_[static_cast<std::size_t>(i)];
+    if (joint.limited) position[i] = std::clamp(position[i], joint.lower, joint.upper);
+  }
+  return position;
+}
+
+const mjData& Mechanism::place(const VectorXd& position) const {
+  std::copy_n(position.data(), position.size(), data_->qpos);
+  std::fill_n(data_->qvel, position.size(), 0.0);
+  mj_fwdPosition(&model_->get(), data_.get());
+  return *data_;
+}
+
+VectorXd Mechanism::load(const VectorXd& position, bool springs) const {
+  place(position);
+  mj_fwdVelocity(&model_->get(), data_.get());
+  VectorXd load = Eigen::Map<const VectorXd>(data_->qfrc_bias, position.size());
+  if (springs) load -= Eigen::Map<const VectorXd>(data_->qfrc_passive, position.size());
+  return load;
+}
+
+bool Mechanism::hasSprings() const {
+  const mjModel& m = model_->get();
+  const auto pulls = [](mjtNum stiffness) { return stiffness != 0.0; };
+  return std::any_of(m.jnt_stiffness, m.jnt_stiffness + m.njnt, pulls) ||
+         std::any_of(m.tendon_stiffness, m.tendon_stiffness + m.ntendon, pulls);
+}
+
+double Mechanism::energy(const VectorXd& position, bool springs) const {
+  mjModel m = model_->get();
+  m.opt.enableflags |= mjENBL_ENERGY;
+  place(position);
+  mj_energyPos(&m, data_.get());
+  double energy = springs ? data_->energy[0] : 0.0;
+  for (int i = 1; i < m.nbody && !springs; ++i) {
+    energy -= m.body_mass[i] * mju_dot3(m.opt.gravity, data_->xipos + 3 * i);
+  }
+  return energy;
+}
+
+double Mechanism::inertia(int joint, const VectorXd& position) const {
+  place(position);
+  return data_->qM[model_->get().dof_Madr[joint]];
+}
+
+VectorXd Mechanism::highest(const std::vector<VectorXd>& poses) const {
+  const auto less = [this](const VectorXd& a, const VectorXd& b) {
+    return energy(a, false) < energy(b, false);
+  };
+  return followed(*std::max_element(poses.begin(), poses.end(), less), 1.0);
+}
+
+/// Follows the energy down (sign -1) or up (1). Up, that of springs would have no end.
+VectorXd Mechanism::followed(VectorXd position, double sign) const {
+  const bool springs = sign < 0.0;
+  double step = 0.1, best = sign * energy(position, springs);
+  for (int i = 0; i < 1000 && step > 1e-6; ++i) {
+    VectorXd change = sign * load(position, springs);
+    for (Eigen::Index k = 0; k < change.size(); ++k) {
+      change[k] /= std::max(1e-12, inertia(static_cast<int>(k), position));
+    }
+    const double largest = change.lpNorm<Eigen::Infinity>();
+    if (largest < 1e-9) break;
+    const VectorXd next = coupled(position + std::min(1.0, step / largest) * change);
+    const double energy_there = sign * energy(next, springs);
+    if (energy_there > best) {
+      best = energy_there;
+      position = next;
+    } else {
+      step *= 0.5;
+    }
+  }
+  return position;
+}
+
+/// The side of the space that the robot needs without its slides is its size. Slides that are much
+/// longer, or endless, would make the robot tiny in the image.
+void Mechanism::showSlidesInPart() {
+  constexpr int kPoses = 200;         // from which the size of the robot follows
+  constexpr double kWideSlide = 4.0;  // a longer slide is shown in part [sizes of the robot]
+  std::mt19937_64 engine(0);
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(1e9), high = -low;
+  for (int i = 0; i < kPoses; ++i) {
+    VectorXd position = draw(&engine);
+    for (std::size_t k = 0; k < joints_.size(); ++k) {
+      if (!isHinge(joints_[k])) position[static_cast<Eigen::Index>(k)] = model_->get().qpos0[k];
+    }
+    const Eigen::Matrix3Xd corners = movingCorners(*model_, place(position));
+    if (corners.cols() == 0) continue;
+    low = low.cwiseMin(corners.rowwise().minCoeff());
+    high = high.cwiseMax(corners.rowwise().maxCoeff());
+  }
+  size_ = std::max(1e-3, (high - low).maxCoeff());
+  for (std::size_t k = 0; k < joints_.size(); ++k) {
+    ModelJoint& joint = joints_[k];
+    const double wide = joint.upper - joint.lower;
+    if (isHinge(joint) || (joint.limited && wide <= kWideSlide * size_)) continue;
+    const double zero = std::clamp<double>(model_->get().qpos0[k], joint.lower, joint.upper);
+    joint.shown_lower = joint.limited ? std::max(joint.lower, zero - size_) : zero - size_;
+    joint.shown_upper = joint.limited ? std::min(joint.upper, zero + size_) : zero + size_;
+    if (!joint.limited) {
+      joint.lower = joint.shown_lower;
+      joint.upper = joint.shown_upper;
+    }
+  }
+}
+
+}  // namespace ddm
