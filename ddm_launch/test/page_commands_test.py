@@ -141,7 +141,7 @@ class PageCommandsTest(SharedScratchCase):
         if program.endswith(".launch"):
             return arguments_of(program)
         package = re.search(r"(?:rosrun|--libexec) (\w+)", command)
-        if program in ("sim_node", "mpc_node", "dynparam", "speed_kernels"):
+        if program in ("sim_node", "mpc_node", "speed_kernels"):
             return {"--benchmark_filter"}
         name, *words = program.split()
         path = (find_program(name, package.group(1)) if package
@@ -157,8 +157,7 @@ class PageCommandsTest(SharedScratchCase):
             programs = [page_commands.program_of(command) for command in pages.code_spans(row[1])]
             text = "".join(self.sourcesOf(test) for test in re.findall(r"\w+(?:\.test|_test\.py)", row[2]))
             for program in filter(None, programs):
-                if program != "dynparam":  # the test turns by the library behind it
-                    self.assertRegex(text, r"\b%s\b" % re.escape(program.replace(".launch", "")), row)
+                self.assertRegex(text, r"\b%s\b" % re.escape(program.replace(".launch", "")), row)
 
     @staticmethod
     def sourcesOf(test):

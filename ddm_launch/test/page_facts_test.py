@@ -61,7 +61,6 @@ def offered(node, namespace):
     for action in {name[:-len("/goal")] for name in names if name.endswith("/goal")}:
         names -= {"%s/%s" % (action, topic) for topic in ACTION_TOPICS}
         names.add(action)
-    names = {name for name in names if not name.endswith("/set_parameters")}  # of dynamic_reconfigure
     return {name for name in names if not re.match("(camera/image_raw|camera_view/image_raw|goal_image)/", name)}
 
 

@@ -5,7 +5,7 @@
 #include <ddm_model/objective.h>
 #include <ddm_model/pca.h>
 #include <ddm_model/training_data.h>
-#include <ddm_mpc/epsilon_greedy.h>
+#include <ddm_mpc/controller.h>
 #include <ddm_params/param_value.h>
 #include <ddm_params/tool.h>
 #include <ddm_sim/pendulum.h>

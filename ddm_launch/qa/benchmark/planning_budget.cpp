@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_model/networks.h>
 #include <ddm_model/solver_log.h>
-#include <ddm_mpc/mpc_policy.h>
+#include <ddm_mpc/controller.h>
 #include <ddm_params/param_value.h>
 #include <ddm_params/tool.h>
 #include <sched.h>
