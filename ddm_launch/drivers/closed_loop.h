@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_mpc/epsilon_greedy.h>
+#include <ddm_mpc/controller.h>
 #include <ddm_plant_plugin/picture_message.h>
 #include <ddm_sim/rig.h>
 #include <sensor_msgs/Image.h>

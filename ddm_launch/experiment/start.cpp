@@ -5,7 +5,7 @@
 #include <ddm_bag_io/bag_reader.h>
 #include <ddm_files/plain_file.h>
 #include <ddm_model/model_file.h>
-#include <ddm_mpc/mpc_policy.h>
+#include <ddm_mpc/controller.h>
 #include <ddm_sim/plant_factory.h>
 
 #include <boost/filesystem.hpp>

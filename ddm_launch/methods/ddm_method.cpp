@@ -3,7 +3,7 @@
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_model/model_file.h>
 #include <ddm_model/trainer.h>
-#include <ddm_mpc/mpc_policy.h>
+#include <ddm_mpc/controller.h>
 
 #include <stdexcept>
 

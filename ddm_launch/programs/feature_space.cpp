@@ -4,7 +4,7 @@
 #include <ddm_files/plain_file.h>
 #include <ddm_model/long_term_prediction.h>
 #include <ddm_model/solver_log.h>
-#include <ddm_mpc/mpc_policy.h>
+#include <ddm_mpc/controller.h>
 #include <ddm_params/tool.h>
 #include <ddm_sim/plant_factory.h>
 #include <ddm_sim/rig.h>

@@ -45,19 +45,18 @@ packages_to_run=(
   # messages: the .msg files, then their C++ headers
   ros-message-generation ros-message-runtime
   ros-std-msgs ros-sensor-msgs ros-geometry-msgs ros-actionlib-msgs ros-rosgraph-msgs ros-diagnostic-msgs
-  ros-visualization-msgs
   libstd-msgs-dev libsensor-msgs-dev libgeometry-msgs-dev libactionlib-msgs-dev libros-rosgraph-msgs-dev
-  libdiagnostic-msgs-dev libvisualization-msgs-dev
+  libdiagnostic-msgs-dev
   # ROS in C++
   ros-std-srvs libstd-srvs-dev python3-std-srvs
   libroscpp-dev libactionlib-dev librosbag-dev libroslz4-dev libcv-bridge-dev libimage-transport-dev libroslib-dev
-  libdiagnostic-updater-dev libdynamic-reconfigure-config-init-mutex-dev pluginlib-dev libtf2-ros-dev
+  libdiagnostic-updater-dev pluginlib-dev libtf2-ros-dev
   # tests
   librostest-dev python3-rostest python3-rosunit
   # ROS in Python and its command line tools
   python3-rospy python3-std-msgs python3-sensor-msgs python3-actionlib python3-cv-bridge
   python3-roslaunch python3-rosbag python3-rostopic python3-rosnode python3-rosservice
-  python3-rosparam python3-rosmsg python3-dynamic-reconfigure python3-diagnostic-msgs python3-visualization-msgs
+  python3-rosparam python3-rosmsg python3-diagnostic-msgs
   rosbash rospack-tools rviz
 )
 # Packages that some systems do not have. The comment behind a package says what is left out without it.

@@ -16,7 +16,7 @@ CORES = {"ddm_files": ("ddm_msgs", "files/include", "files/src"),
 OPTIONAL = {"ddm_pilco": ("ddm_mpc", "pilco/include", "pilco/src"),
             "ddm_mujoco": ("ddm_sim", "mujoco/include", "mujoco/src")}
 ROS_INCLUDE = re.compile(
-    r'^\s*#\s*include\s*[<"]((?:ros|xmlrpcpp|\w+_msgs|actionlib|cv_bridge|image_transport|dynamic_reconfigure'
+    r'^\s*#\s*include\s*[<"]((?:ros|xmlrpcpp|\w+_msgs|actionlib|cv_bridge|image_transport'
     r'|diagnostic_updater|nodelet|pluginlib|class_loader|tf2?(?:_ros)?|ros\w+|ddm_bag_io'
     r'|ddm_images|ddm_node|ddm_plant_plugin)/[^>"]+)', re.MULTILINE)
 ROS_LIBRARY = re.compile(

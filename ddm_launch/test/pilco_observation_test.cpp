@@ -94,16 +94,6 @@ TEST_F(TrueStateTest, FramesThatDoNotFitTheBagBesideThemAreRefusedWithTheFile) {
   EXPECT_NO_THROW(learn());
 }
 
-TEST_F(TrueStateTest, NoiseHasTheSpreadThatIsAskedFor) {
-  TrueStateObservation observation(*plant_);
-  observation.startTrial(TrialId());
-  Eigen::MatrixXd noise(2, 4000);
-  for (Eigen::Index t = 0; t < noise.cols(); ++t) noise.col(t) = observation.observe({});
-  const Eigen::VectorXd spread = noise.rowwise().norm() / std::sqrt(4000.0);
-  EXPECT_NEAR(spread[0], 0.1, 0.005);
-  EXPECT_NEAR(spread[1], 0.01, 0.0005);
-}
-
 TEST_F(TrueStateTest, TheTaskIsUprightWithinTheLengthOfTheRod) {
   plant_ = makePlant(*testing::plantOf("{type: pendulum, length: 2.0, start_std: [0.3, 0.5]}"));
   const TrueStateObservation observation(*plant_);
@@ -192,14 +182,6 @@ TEST(ImageTask, TakesGoalStartAndScaleFromTheData) {
   const double prior = 0.01 * spread * spread / 2.0;
   EXPECT_NEAR(task.start.covariance(0, 0), (2.0 + prior) / 2.0, 1e-12);
   EXPECT_NEAR(task.start.covariance(0, 1), 1.0, 1e-12);
-}
-
-TEST(ImageTask, FramesThatAreAllTheSameAreRefused) {
-  EXPECT_TRUE(throwsNaming<std::runtime_error>(
-      [] {
-        imageTask(Eigen::MatrixXd::Ones(2, 5), {{0, 5}}, Eigen::VectorXd::Ones(2));
-      },
-      {"same state"}));
 }
 
 TEST(PolicyStart, CentresFollowTheFeaturesOfTheStart) {

@@ -4,26 +4,16 @@
 
 #include <ddm_images/image_codec.h>
 #include <ddm_model/model_file.h>
-#include <ddm_model/solver_log.h>
-#include <ddm_msgs/Plan.h>
-#include <ddm_msgs/Torque.h>
 #include <ddm_msgs/topics.h>
-#include <ddm_node/run_node.h>
 #include <ddm_node/topic_peers.h>
-#include <ddm_params/image_options.h>
-#include <ros/callback_queue.h>
 
 #include <algorithm>
-#include <chrono>
 #include <sstream>
-#include <stdexcept>
 
 namespace ddm {
 namespace {
 
 constexpr int kQueue = 10;
-constexpr std::chrono::milliseconds kAppliedLimit(20);
-constexpr std::size_t kMaxApplied = 100;
 const ros::WallDuration kPlanLogPeriod(5.0);
 const ros::WallDuration kTick(0.1);  // of feedback too: for each frame it would be a load
 
@@ -32,69 +22,39 @@ ros::NodeHandle withQueue(ros::NodeHandle nh, ros::CallbackQueue* queue) {
   return nh;
 }
 
-std::vector<double> flat(const Eigen::MatrixXd& values) {
-  return std::vector<double>(values.data(), values.data() + values.size());
-}
-
-std::uint8_t statusOf(const Plan& plan) {
-  switch (plan.status) {
-    case PlanStatus::kConverged:
-      return ddm_msgs::Plan::CONVERGED;
-    case PlanStatus::kIterationLimit:
-      return ddm_msgs::Plan::ITERATION_LIMIT;
-    case PlanStatus::kTimeLimit:
-      return ddm_msgs::Plan::TIME_LIMIT;
-    case PlanStatus::kFailed:
-      break;
-  }
-  return ddm_msgs::Plan::FAILED;
-}
-
 }  // namespace
 
 MpcNode::MpcNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size, const MpcOptions& mpc,
                  const ControllerOptions& controller)
     : image_size_(image_size),
-      controller_(controller),
       mpc_(mpc),
+      controller_(controller),
+      applied_(nh),
       transport_(withQueue(nh, &image_queue_)),
       torque_pub_(nh.advertise<ddm_msgs::Torque>(topics::kTorque, kQueue)),
       plan_pub_(nh.advertise<ddm_msgs::Plan>(topics::kPlan, kQueue)),
       scalars_pub_(nh.advertise<ddm_msgs::PlanScalars>(topics::kPlanScalars, kQueue)),
-      live_(withQueue(ros::NodeHandle(pnh, "mpc"), &options_queue_), mpc,
-            [this](const MpcOptions& turned) { onTurn(turned); }),
       health_(nh, pnh),
       server_(nh, topics::kRunTrial, /*auto_start=*/false),
-      answer_last_image_(boost::make_shared<Callback>([this] {
-        if (last_image_ != nullptr) answer(*last_image_);
-      })),
+      prepare_(boost::make_shared<Callback>([this] { prepare(); })),
       finish_(boost::make_shared<Callback>([this] { onFinish(); })),
-      image_spinner_(/*thread_count=*/1, &image_queue_),
-      applied_spinner_(/*thread_count=*/1, &applied_queue_),
-      options_spinner_(/*thread_count=*/1, &options_queue_) {
+      image_spinner_(/*thread_count=*/1, &image_queue_) {
   if (controller.publish_effort) effort_.emplace(nh, controller.torque_dim);
   server_.registerGoalCallback([this] { onGoal(); });
   server_.registerPreemptCallback([this] { onPreempt(); });
   model_sub_ = nh.subscribe(topics::kModel, 1, &MpcNode::onModel, this);
   goal_image_sub_ = nh.subscribe(topics::kGoalImage, 1, &MpcNode::onGoalImage, this);
   timer_ = nh.createSteadyTimer(kTick, [this](const ros::SteadyTimerEvent&) { onTick(); });
-  applied_sub_ = withQueue(nh, &applied_queue_)
-                     .subscribe(topics::kAppliedTorque, kQueue, &MpcNode::onApplied, this,
-                                ros::TransportHints().tcpNoDelay());
   image_sub_ = transport_.subscribe(
       topics::kImage, 1, &MpcNode::onImage, this,
       image_transport::TransportHints("raw", ros::TransportHints().tcpNoDelay()));
-  applied_spinner_.start();
   image_spinner_.start();
-  options_spinner_.start();
   server_.start();  // last: whoever sees the action finds everything else in place
 }
 
 MpcNode::~MpcNode() {
   stop();                 // else the spinner would wait for a plan
   image_spinner_.stop();  // no callback is running from here on
-  applied_spinner_.stop();
-  options_spinner_.stop();
 }
 
 bool MpcNode::stop() {
@@ -109,16 +69,14 @@ void MpcNode::onGoal() {
   goal_ = server_.acceptNewGoal();
   health_.expect(ControlHealth::Expected::kModel);
   last_progress_ = ros::SteadyTime::now();
-  if (effort_) {
-    const std::string others = otherPublishers(effort_->topic());
-    if (!others.empty()) {
-      lock.unlock();
-      abort({"trial refused: " + others + " also publish(es) " + effort_->topic() +
-                 ", and a motor must have one master: set controller/publish_effort to false, as "
-                 "next to robot_node",
-             ""});
-      return;
-    }
+  const std::string others = effort_ ? otherPublishers(effort_->topic()) : "";
+  if (!others.empty()) {
+    lock.unlock();
+    abort({"trial refused: " + others + " also publish(es) " + effort_->topic() +
+               ", and a motor must have one master: set controller/publish_effort to false, as "
+               "next to robot_node",
+           ""});
+    return;
   }
   beginIfReady(std::move(lock));
 }
@@ -135,13 +93,13 @@ void MpcNode::onModel(const ddm_msgs::ModelConstPtr& message) {
   try {
     model_ =
         std::make_shared<const Ddm>(deserialiseModel(bytes, "on topic " + model_sub_.getTopic()));
-    model_id_ = modelId(bytes);
-    health_.takeModel(*message);
-    log_.info("model " + model_id_ + " of trial " + std::to_string(message->trial) + " received");
   } catch (const std::exception& e) {
     log_.error(std::string("model refused: ") + e.what());
     return;
   }
+  model_id_ = modelId(bytes);
+  health_.takeModel(*message);
+  log_.info("model " + model_id_ + " of trial " + std::to_string(message->trial) + " received");
   beginIfReady(std::unique_lock<std::mutex>(mutex_));
 }
 
@@ -158,44 +116,50 @@ void MpcNode::onGoalImage(const sensor_msgs::ImageConstPtr& image) {
   beginIfReady(std::move(lock));
 }
 
-/// Starts the trial once its model and its goal image are there.
-/// @param lock  of mutex_
-void MpcNode::beginIfReady(std::unique_lock<std::mutex> lock) {
-  if (goal_ == nullptr || trial_ != nullptr) return;
+/// Lets the thread of the images prepare the trial once its model and its goal image are there.
+/// @param lock  of mutex_, held until the end
+void MpcNode::beginIfReady(std::unique_lock<std::mutex> /*lock*/) {
+  if (goal_ == nullptr || trial_ != nullptr || preparing_ != nullptr || finished_) return;
   if (!goal_->model_id.empty() && goal_->model_id != model_id_) return;
-  if (!goalImageIsThere()) return;
+  const bool goal_image_is_there =
+      goal_->goal.isZero() || (goal_image_ != nullptr && goal_image_->header.stamp == goal_->goal);
+  if (!goal_image_is_there) return;
+  preparing_ = std::make_shared<const Preparation>(
+      Preparation{*goal_, goal_->model_id.empty() ? nullptr : model_, goal_image_});
+  goal_changed_ = false;
+  fed_back_ = 0;
+  health_.expect(ControlHealth::Expected::kNothing);
+  image_queue_.addCallback(prepare_);
+}
+
+/// Makes the trial without the lock, because the cost-to-go takes up to two seconds.
+void MpcNode::prepare() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  const std::shared_ptr<const Preparation> wanted = preparing_;
+  if (wanted == nullptr) return;  // cancelled
+  lock.unlock();
+  std::shared_ptr<TrialRun> trial;
+  Trouble trouble;
   try {
-    trial_ =
-        std::make_shared<TrialRun>(*goal_, goal_->model_id.empty() ? nullptr : model_, goal_image_,
-                                   image_size_, mpc_, controller_, turned_epsilon_);
-    const std::lock_guard<std::mutex> applied_lock(applied_mutex_);
-    applied_.clear();  // a simulator that was started again uses its stamps again
-    turned_ = false;
-    goal_changed_ = false;
-    last_progress_ = ros::SteadyTime::now();
+    trial = std::make_shared<TrialRun>(wanted->goal, wanted->model, wanted->goal_image, image_size_,
+                                       mpc_, controller_);
   } catch (const std::exception& e) {
-    lock.unlock();
-    abort({std::string("trial refused: ") + e.what(), ""});
+    trouble.text = std::string("trial refused: ") + e.what();
+  }
+  lock.lock();
+  if (preparing_ != wanted) return;  // cancelled meanwhile
+  preparing_.reset();
+  if (trial == nullptr) {
+    finish(trouble);
     return;
   }
-  lock.unlock();
-  fed_back_ = 0;
+  trial_ = trial;
+  applied_.clear();
+  last_progress_ = ros::SteadyTime::now();
   health_.expect(ControlHealth::Expected::kImage);
+  lock.unlock();
   // In lock-step the first image may have come before the goal; there will be no second one.
-  if (!goal_->start.isZero()) image_queue_.addCallback(answer_last_image_);
-}
-
-/// Locked by the caller.
-bool MpcNode::goalImageIsThere() const {
-  if (goal_->goal.isZero()) return true;
-  return goal_image_ != nullptr && goal_image_->header.stamp == goal_->goal;
-}
-
-void MpcNode::onTurn(const MpcOptions& mpc) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (mpc.epsilon != mpc_.epsilon) turned_epsilon_ = mpc.epsilon;
-  mpc_ = mpc;
-  turned_ = true;
+  if (!wanted->goal.start.isZero() && last_image_ != nullptr) answer(*last_image_);
 }
 
 void MpcNode::onImage(const sensor_msgs::ImageConstPtr& image) {
@@ -206,13 +170,17 @@ void MpcNode::onImage(const sensor_msgs::ImageConstPtr& image) {
 
 void MpcNode::answer(const sensor_msgs::Image& image) {
   const auto arrival = std::chrono::steady_clock::now();
-  Changes changes;
-  const std::shared_ptr<TrialRun> trial = trialToAnswer(&changes);
-  if (trial == nullptr) return;
+  std::unique_lock<std::mutex> lock(mutex_);
+  if (trial_ == nullptr || trial_->ended()) return;
+  const std::shared_ptr<TrialRun> trial = trial_;
+  const sensor_msgs::ImageConstPtr new_goal = goal_changed_ ? goal_image_ : nullptr;
+  goal_changed_ = false;
+  deciding_since_ = ros::SteadyTime::now();
+  lock.unlock();
   Trouble trouble;
-  const std::optional<Decision> decision = decide(trial.get(), changes, image, arrival, &trouble);
+  const std::optional<Decision> decision = decide(trial.get(), new_goal, image, arrival, &trouble);
 
-  const std::lock_guard<std::mutex> lock(mutex_);
+  lock.lock();
   deciding_since_.reset();
   if (trial->ended()) return;  // meanwhile: its motors have their zero
   if (!trouble.text.empty()) {
@@ -227,27 +195,19 @@ void MpcNode::answer(const sensor_msgs::Image& image) {
     return;
   }
   trial->end();
+  finish(trouble);
+}
+
+/// Lets the thread of the global queue end the trial. Locked by the caller.
+void MpcNode::finish(const Trouble& trouble) {
   finished_ = trouble;
   ros::getGlobalCallbackQueue()->addCallback(finish_);
 }
 
-/// The trial under way; null if there is none.
-/// @param changes  out: what the trial does not know yet
-std::shared_ptr<TrialRun> MpcNode::trialToAnswer(Changes* changes) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (trial_ == nullptr || trial_->ended()) return nullptr;
-  if (turned_) changes->mpc = mpc_;
-  turned_ = false;
-  changes->epsilon = turned_epsilon_;
-  if (goal_changed_) changes->goal_image = goal_image_;
-  goal_changed_ = false;
-  deciding_since_ = ros::SteadyTime::now();
-  return trial_;
-}
-
-/// Without the lock: another goal or epsilon may take as long as a plan.
-/// @param trouble  out: why the image cannot be answered
-std::optional<Decision> MpcNode::decide(TrialRun* trial, const Changes& changes,
+/// Without the lock: another goal may take as long as a plan.
+/// @param new_goal  the goal image that came since the last image; null: none came
+/// @param trouble   out: why the image cannot be answered
+std::optional<Decision> MpcNode::decide(TrialRun* trial, const sensor_msgs::ImageConstPtr& new_goal,
                                         const sensor_msgs::Image& image,
                                         std::chrono::steady_clock::time_point arrival,
                                         Trouble* trouble) {
@@ -257,10 +217,9 @@ std::optional<Decision> MpcNode::decide(TrialRun* trial, const Changes& changes,
     return std::nullopt;
   }
   try {
-    if (changes.mpc) trial->turn(*changes.mpc, changes.epsilon);
-    if (changes.goal_image != nullptr) trial->setGoal(*changes.goal_image);
+    if (new_goal != nullptr) trial->setGoal(*new_goal);
     if (const std::optional<ros::Time> last = trial->lastAnswered()) {
-      const ddm_msgs::TorqueConstPtr applied = waitForApplied(*last);
+      const ddm_msgs::TorqueConstPtr applied = applied_.after(*last);
       if (applied != nullptr) trial->takeApplied(*applied);
     }
     return trial->decide(image, arrival);
@@ -270,34 +229,21 @@ std::optional<Decision> MpcNode::decide(TrialRun* trial, const Changes& changes,
   }
 }
 
-void MpcNode::onApplied(const ddm_msgs::TorqueConstPtr& applied) {
-  {
-    const std::lock_guard<std::mutex> lock(applied_mutex_);
-    applied_[applied->header.stamp] = applied;
-    if (applied_.size() > kMaxApplied) applied_.erase(applied_.begin());
-  }
-  applied_came_.notify_one();
-}
-
-/// What acted after an image. It is sent at about the time of the next image, and may come later.
-/// @return null if nobody says so: then what was decided is taken to have acted
-ddm_msgs::TorqueConstPtr MpcNode::waitForApplied(const ros::Time& stamp) {
-  if (applied_sub_.getNumPublishers() == 0) return nullptr;
-  std::unique_lock<std::mutex> lock(applied_mutex_);
-  applied_came_.wait_for(lock, kAppliedLimit,
-                         [&] { return applied_.lower_bound(stamp) != applied_.end(); });
-  const auto found = applied_.find(stamp);
-  return found == applied_.end() ? nullptr : found->second;
-}
-
 void MpcNode::publish(const std_msgs::Header& header, const Decision& decision) {
   publishTorque(header.stamp, decision.torque, decision.exploratory);
-  if (decision.plan) publishPlan(header.stamp, *decision.plan);
-  if (decision.plan && scalars_pub_.getNumSubscribers() > 0) {
-    scalars_pub_.publish(scalars_.of(header.stamp, *decision.plan, decision.goal_distance));
-  } else {
+  if (!decision.plan) {
     scalars_.forget();
+    return;
   }
+  const Plan& plan = *decision.plan;
+  health_.countPlan(plan);
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  if (plan.status == PlanStatus::kFailed && now - last_plan_log_ >= kPlanLogPeriod) {
+    last_plan_log_ = now;
+    log_.warn("plan failed, the torque is 0: " + plan.message);
+  }
+  plan_pub_.publish(planMessage(header.stamp, plan));
+  scalars_pub_.publish(scalars_.of(header.stamp, plan, decision.goal_distance));
 }
 
 void MpcNode::publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torque,
@@ -309,28 +255,6 @@ void MpcNode::publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torqu
   torque_pub_.publish(message);
   health_.countTorque();
   if (effort_) effort_->publish(message.torque);
-}
-
-void MpcNode::publishPlan(const ros::Time& stamp, const Plan& plan) {
-  health_.countPlan(plan);
-  const ros::SteadyTime now = ros::SteadyTime::now();
-  if (plan.status == PlanStatus::kFailed && now - last_plan_log_ >= kPlanLogPeriod) {
-    last_plan_log_ = now;
-    log_.warn("plan failed, the torque is 0: " + plan.message);
-  }
-  ddm_msgs::Plan message;
-  message.header.stamp = stamp;
-  message.horizon = static_cast<std::uint32_t>(plan.torques.cols());
-  message.torque = flat(plan.torques);
-  message.feature = flat(plan.features);
-  message.goal_feature = flat(plan.goal_feature);
-  message.cost = plan.cost;
-  message.iterations = plan.iterations;
-  message.evaluations = plan.evaluations;
-  message.status = statusOf(plan);
-  message.message = plan.message;
-  message.solve_time = plan.solve_time;
-  plan_pub_.publish(message);
 }
 
 /// The thread of the images has ended the trial.
@@ -357,20 +281,15 @@ void MpcNode::onFinish() {
 
 void MpcNode::onTick() {
   if (goal_ == nullptr) return;
-  publishFeedback();
-  const std::optional<Trouble> silence = describeSilence();
-  if (silence) abort(*silence);
-}
-
-void MpcNode::publishFeedback() {
   ddm_msgs::RunTrialFeedback feedback;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (trial_ != nullptr) feedback.step = trial_->result().num_steps;
   }
-  if (feedback.step == fed_back_) return;
+  if (feedback.step != fed_back_) server_.publishFeedback(feedback);
   fed_back_ = feedback.step;
-  server_.publishFeedback(feedback);
+  const std::optional<Trouble> silence = describeSilence();
+  if (silence) abort(*silence);
 }
 
 /// What keeps the trial waiting for longer than its timeout; empty: nothing.
@@ -378,7 +297,7 @@ std::optional<MpcNode::Trouble> MpcNode::describeSilence() {
   std::ostringstream reason;
   std::string topic = model_sub_.getTopic();
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (finished_) return std::nullopt;
+  if (finished_ || preparing_ != nullptr) return std::nullopt;
   const ros::SteadyTime since = std::max(last_progress_, deciding_since_.value_or(last_progress_));
   if ((ros::SteadyTime::now() - since).toSec() <= controller_.timeout) return std::nullopt;
   if (trial_ == nullptr) {
@@ -401,14 +320,15 @@ std::optional<MpcNode::Trouble> MpcNode::describeSilence() {
 /// However a trial ends, an effort controller must not go on with its last torque.
 ddm_msgs::RunTrialResult MpcNode::endTrial() {
   goal_.reset();
-  health_.expect(ControlHealth::Expected::kNothing);
   const std::lock_guard<std::mutex> lock(mutex_);
+  health_.expect(ControlHealth::Expected::kNothing);
   ddm_msgs::RunTrialResult result;
   if (trial_ != nullptr) {
     result = trial_->result();
     trial_->end();
   }
   trial_.reset();
+  preparing_.reset();
   finished_.reset();
   if (effort_) effort_->publishZero();
   return result;
@@ -428,27 +348,3 @@ void MpcNode::abort(const Trouble& trouble) {
 }
 
 }  // namespace ddm
-
-namespace {
-
-const ros::WallDuration kLook(0.05);
-
-void run(const ros::NodeHandle& nh, const ros::NodeHandle& pnh, ddm::ParamReader* params) {
-  params->ignore("image_transport");    // read by image_transport itself
-  params->ignore("diagnostic_period");  // and by diagnostic_updater
-  const auto image = params->read<ddm::ImageOptions>("image");
-  const auto mpc = params->read<ddm::MpcOptions>("mpc");
-  const auto controller = params->read<ddm::ControllerOptions>("controller");
-  params->requireValid();
-  ROS_INFO_STREAM("mpc_node runs with\n" << ddm::toYaml(mpc) << "\n" << ddm::toYaml(controller));
-  ddm::MpcNode node(nh, pnh, image.size, mpc, controller);
-  ddm::runUntilEnd([] { ros::getGlobalCallbackQueue()->callAvailable(kLook); },
-                   [&node] { return node.stop(); });
-}
-
-}  // namespace
-
-int main(int argc, char** argv) {
-  ddm::silenceSolverLog();
-  return ddm::runNode("mpc_node", argc, argv, run, ddm::Ending::kByLastMessage);
-}

@@ -14,28 +14,25 @@
 #include <ros/ros.h>
 
 #include <chrono>
-#include <condition_variable>
 #include <functional>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "applied_torques.h"
 #include "control_health.h"
-#include "controller_options.h"
 #include "ddm_mpc/mpc_options.h"
-#include "live_options.h"
-#include "plan_scalars.h"
+#include "plan_messages.h"
 #include "trial_run.h"
 
 namespace ddm {
 
 /// Action `run_trial`: each image of the trial is answered on `torque` with the image's stamp.
-/// Images have a thread of their own, which plans, and so have applied torques, which that thread
-/// needs, and options that are turned, which wait for the master and a terminal. Everything else, such as a goal that is cancelled or a trial that
-/// times out, is for the thread that spins the global queue, and waits for none of these.
+/// Images have a thread of their own, which prepares trials and plans, and so have applied torques, which that thread needs.
+/// Everything else, such as a goal that is cancelled, a trial that times out or Ctrl-C, is for the thread that spins the
+/// global queue, which waits for neither.
 class MpcNode {
  public:
   /// @param nh   topics and action
@@ -68,11 +65,11 @@ class MpcNode {
     std::string topic;  ///< whose publishers are to be named; may be empty
   };
 
-  /// What somebody has changed for the trial under way.
-  struct Changes {
-    std::optional<MpcOptions> mpc;
-    std::optional<double> epsilon;          // empty: that of the goal counts
-    sensor_msgs::ImageConstPtr goal_image;  // null: as before
+  /// A trial that has all it needs.
+  struct Preparation {
+    ddm_msgs::RunTrialGoal goal;
+    std::shared_ptr<const Ddm> model;       // null: a random trial
+    sensor_msgs::ImageConstPtr goal_image;  // null: the model's
   };
 
   // In the thread of the global queue.
@@ -83,32 +80,24 @@ class MpcNode {
   void onTick();
   void onFinish();
   void beginIfReady(std::unique_lock<std::mutex> lock);
-  bool goalImageIsThere() const;
-  void publishFeedback();
   std::optional<Trouble> describeSilence();
   ddm_msgs::RunTrialResult endTrial();
   void abort(const Trouble& trouble);
 
-  // In the thread of the options.
-  void onTurn(const MpcOptions& mpc);
-
   // In the thread of the images.
+  void prepare();
   void onImage(const sensor_msgs::ImageConstPtr& image);
   void answer(const sensor_msgs::Image& image);
-  std::shared_ptr<TrialRun> trialToAnswer(Changes* changes);
-  std::optional<Decision> decide(TrialRun* trial, const Changes& changes,
+  std::optional<Decision> decide(TrialRun* trial, const sensor_msgs::ImageConstPtr& new_goal,
                                  const sensor_msgs::Image& image,
                                  std::chrono::steady_clock::time_point arrival, Trouble* trouble);
   void publish(const std_msgs::Header& header, const Decision& decision);
   void publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torque, bool exploratory);
-  void publishPlan(const ros::Time& stamp, const Plan& plan);
-  ddm_msgs::TorqueConstPtr waitForApplied(const ros::Time& stamp);
-
-  // In the thread of applied torques.
-  void onApplied(const ddm_msgs::TorqueConstPtr& applied);
+  void finish(const Trouble& trouble);
 
   LogThread log_;  // a terminal that is stopped must not be in the way of a stop
   const int image_size_;
+  const MpcOptions mpc_;
   const ControllerOptions controller_;
 
   // Of the thread of the global queue.
@@ -123,42 +112,31 @@ class MpcNode {
   ros::SteadyTime last_plan_log_;
 
   std::mutex mutex_;  // not held while a plan is computed; guards these and effort_
-  MpcOptions mpc_;
-  std::optional<double> turned_epsilon_;   // empty: nobody has turned it, that of the goal counts
-  bool turned_ = false;                    // the trial does not know yet
-  sensor_msgs::ImageConstPtr goal_image_;  // the newest; null: none came
-  bool goal_changed_ = false;              // the trial does not know yet
-  std::shared_ptr<TrialRun> trial_;  // null: no trial, or it waits for its model or goal image
+  std::shared_ptr<const Preparation> preparing_;  // null: no trial is being prepared
+  sensor_msgs::ImageConstPtr goal_image_;         // the newest; null: none came
+  bool goal_changed_ = false;                     // the trial does not know yet
+  std::shared_ptr<TrialRun> trial_;               // null: no trial, or it is not ready yet
   std::optional<Trouble> finished_;  // why the image thread ended the trial, if all is not done
   ros::SteadyTime last_progress_;
   std::optional<ros::SteadyTime> deciding_since_;
 
-  std::mutex applied_mutex_;
-  std::condition_variable applied_came_;
-  std::map<ros::Time, ddm_msgs::TorqueConstPtr> applied_;  // by stamp, the newest kMaxApplied
-
+  AppliedTorques applied_;
   ros::CallbackQueue image_queue_;
-  ros::CallbackQueue applied_queue_;
-  ros::CallbackQueue options_queue_;
   image_transport::ImageTransport transport_;
   ros::Publisher torque_pub_;
   std::optional<EffortPublisher> effort_;  // empty: robot_node or a simulator has the motors
   ros::Publisher plan_pub_;
   ros::Publisher scalars_pub_;
   image_transport::Subscriber image_sub_;
-  ros::Subscriber applied_sub_;
   ros::Subscriber model_sub_;
   ros::Subscriber goal_image_sub_;
   ros::SteadyTimer timer_;
-  LiveOptions live_;
   ControlHealth health_;
   actionlib::SimpleActionServer<ddm_msgs::RunTrialAction> server_;
-  const ros::CallbackInterfacePtr answer_last_image_;  // for image_queue_
-  const ros::CallbackInterfacePtr finish_;             // for the global queue
-  // Last: they end before anything that they use.
+  const ros::CallbackInterfacePtr prepare_;  // for image_queue_
+  const ros::CallbackInterfacePtr finish_;   // for the global queue
+  // Last: it ends before anything that it uses.
   ros::AsyncSpinner image_spinner_;
-  ros::AsyncSpinner applied_spinner_;
-  ros::AsyncSpinner options_spinner_;
 };
 
 }  // namespace ddm

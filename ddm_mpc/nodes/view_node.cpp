@@ -12,7 +12,6 @@
 #include <image_transport/image_transport.h>
 #include <ros/ros.h>
 #include <sensor_msgs/image_encodings.h>
-#include <visualization_msgs/MarkerArray.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,9 +21,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "feature_markers.h"
-#include "feature_plane.h"
-#include "panels.h"
+#include "pictures.h"
 
 namespace ddm {
 namespace {
@@ -47,8 +44,8 @@ void requireDrawable(const ddm_msgs::Plan& plan) {
   }
 }
 
-/// Publishes `prediction_image`, `feature_space_image` and `feature_space_markers`, each at most ten
-/// times a second and only while it has a subscriber. If something cannot be shown, the node warns,
+/// Publishes `prediction_image` and `feature_space_image`, each at most ten times a second and only
+/// while it has a subscriber. If something cannot be shown, the node warns,
 /// leaves it out and goes on.
 class ViewNode {
  public:
@@ -56,10 +53,6 @@ class ViewNode {
   ViewNode(ros::NodeHandle nh, int image_size) : image_size_(image_size), transport_(nh) {
     advertise(topics::kPredictionImage, &prediction_);
     advertise(topics::kFeatureSpaceImage, &feature_space_);
-    markers_.publisher = nh.advertise<visualization_msgs::MarkerArray>(
-        topics::kFeatureSpaceMarkers, 1, [this](const ros::SingleSubscriberPublisher&) {
-          markers_.outdated = grid_outdated_ = true;
-        });
     model_sub_ = nh.subscribe(topics::kModel, 1, &ViewNode::onModel, this);
     plan_sub_ = nh.subscribe(topics::kPlan, kQueue, &ViewNode::onPlan, this);
     image_sub_ = transport_.subscribe(topics::kImage, kQueue, &ViewNode::onImage, this);
@@ -73,12 +66,10 @@ class ViewNode {
     Grey grey;
     Eigen::VectorXd feature;  // empty: not yet encoded by the current model
   };
-  template <class Publisher>
   struct Output {
-    Publisher publisher;
+    image_transport::Publisher publisher;
     bool outdated = false;
   };
-  using ImageOutput = Output<image_transport::Publisher>;
 
   void onImage(const sensor_msgs::ImageConstPtr& message) {
     try {
@@ -112,7 +103,6 @@ class ViewNode {
     }
     model_id_ = id;
     plane_.reset();
-    grid_outdated_ = true;
     for (SeenImage& seen : seen_) seen.feature.resize(0);
     markOutdated();
   }
@@ -138,10 +128,9 @@ class ViewNode {
     };
     show(&prediction_, [this] { return drawPrediction(); });
     show(&feature_space_, [this] { return drawFeatureSpace(); });
-    show(&markers_, [this] { return drawMarkers(); });
   }
 
-  void advertise(const char* topic, ImageOutput* output) {
+  void advertise(const char* topic, Output* output) {
     // Somebody who comes when nothing changes any more wants to see the last state too.
     output->publisher = transport_.advertise(
         topic, 1,
@@ -151,7 +140,6 @@ class ViewNode {
   void markOutdated() {
     prediction_.outdated = true;
     feature_space_.outdated = true;
-    markers_.outdated = true;
   }
 
   /// Predicted features of the latest plan, empty if there is none that the model can show.
@@ -216,18 +204,6 @@ class ViewNode {
         .toImageMsg();
   }
 
-  visualization_msgs::MarkerArrayPtr drawMarkers() {
-    if (!model_) return nullptr;
-    auto out = boost::make_shared<visualization_msgs::MarkerArray>(
-        overlayMarkers(overlay(), header_.stamp));
-    if (grid_outdated_) {
-      grid_outdated_ = false;
-      const visualization_msgs::MarkerArray grid = gridMarkers(plane(), header_.stamp);
-      out->markers.insert(out->markers.end(), grid.markers.begin(), grid.markers.end());
-    }
-    return out;
-  }
-
   int image_size_;
   std::optional<Ddm> model_;
   std::optional<FeaturePlane> plane_;  // empty: not yet drawn for this model
@@ -237,10 +213,8 @@ class ViewNode {
   std_msgs::Header header_;     // of the newest image
 
   image_transport::ImageTransport transport_;
-  ImageOutput prediction_;
-  ImageOutput feature_space_;
-  Output<ros::Publisher> markers_;
-  bool grid_outdated_ = false;  // markers that change with the model alone; they are large
+  Output prediction_;
+  Output feature_space_;
   ros::Subscriber model_sub_;
   ros::Subscriber plan_sub_;
   image_transport::Subscriber image_sub_;

@@ -2,69 +2,52 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/ddm_plan_cost.h"
 
+#include <ddm_model/per_motor.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace ddm {
 
 DdmPlanCost::DdmPlanCost(const Ddm& model, int horizon, double control_weight,
-                         std::optional<TimeToGoal> time_to_goal)
+                         std::optional<CostToGo> cost_to_go)
     : f_(model.predictionModel()),
       theta_p_(model.thetaP()),
-      time_to_goal_(std::move(time_to_goal)),
+      horizon_(horizon),
+      control_weight_(Eigen::ArrayXd::Constant(f_.torqueDim(), control_weight)),
+      cost_to_go_(std::move(cost_to_go)),
       roll_out_(f_) {
-  setHorizon(horizon);
-  setControlWeight(control_weight);
-}
-
-void DdmPlanCost::setHorizon(int horizon) {
   if (horizon < 1) throw std::invalid_argument("plan cost: horizon must be >= 1");
-  horizon_ = horizon;
   roll_out_.reserve(/*num_targets=*/1, horizon);
   torques_.setZero(f_.torqueDim(), f_.memory() - 1 + horizon);
+  if (!cost_to_go_) return;
+  control_weight_ /= 2.0 * CostToGo::kWidth * CostToGo::kWidth * f_.maxTorque().array().square();
 }
 
-void DdmPlanCost::setControlWeight(double control_weight) {
-  control_weight_.setConstant(f_.torqueDim(), control_weight);
-  if (!time_to_goal_) return;
-  control_weight_ /=
-      2.0 * TimeToGoal::kWidth * TimeToGoal::kWidth * f_.maxTorque().array().square();
-}
-
-void DdmPlanCost::setGoal(const Eigen::VectorXd& goal_feature) {
+void DdmPlanCost::setGoal(const Eigen::VectorXd& goal_feature, bool exploring) {
   if (goal_feature.size() != f_.featureDim()) {
     throw std::invalid_argument("plan cost: the goal feature does not fit the model");
   }
-  if (goal_feature_.size() > 0 && goal_feature_ == goal_feature) return;
+  const bool same_goal = goal_feature_.size() > 0 && goal_feature_ == goal_feature;
+  if (same_goal && exploring_ == exploring) return;
   goal_feature_ = goal_feature;
-  prepared_ = false;
-}
-
-void DdmPlanCost::setExploring(bool exploring) {
-  if (exploring == exploring_) return;
   exploring_ = exploring;
-  prepared_ = false;
-}
-
-void DdmPlanCost::prepare() {
-  if (time_to_goal_ && !prepared_) time_to_goal_->setGoal(goal_feature_, exploring_);
-  prepared_ = true;
+  if (cost_to_go_) cost_to_go_->setGoal(goal_feature, exploring);
 }
 
 void DdmPlanCost::setProblem(const History& x, const Eigen::VectorXd& goal_feature,
                              const Eigen::VectorXd& offset) {
   if (x.empty() || x.features().rows() != f_.featureDim() || x.features().cols() != f_.memory() ||
-      x.torques().rows() != f_.torqueDim() || goal_feature.size() != f_.featureDim() ||
-      offset.size() != f_.featureDim()) {
-    throw std::invalid_argument("plan cost: history, goal feature or offset do not fit the model");
+      x.torques().rows() != f_.torqueDim() || offset.size() != f_.featureDim()) {
+    throw std::invalid_argument("plan cost: history or offset do not fit the model");
   }
   features_ = x.features().rowwise().reverse();
   torques_.leftCols(f_.memory() - 1) = x.torques().rowwise().reverse();
-  setGoal(goal_feature);
-  prepare();
+  setGoal(goal_feature, exploring_);
   offset_ = offset;
 }
 
@@ -89,11 +72,11 @@ double DdmPlanCost::stepCost(int step, const Eigen::Ref<const Eigen::VectorXd>& 
   const auto z = roll_out_.predicted(step);
   const double effort = (control_weight_ * u.array().square()).sum();
   if (d_u != nullptr) *d_u = 2.0 * control_weight_ * u.array();
-  if (!time_to_goal_) {  // eq. (9)
+  if (!cost_to_go_) {  // eq. (9)
     if (d_z != nullptr) *d_z = 2.0 * (z - goal_feature_);
     return (z - goal_feature_).squaredNorm() + effort;
   }
-  const double near = 1.0 - time_to_goal_->away(z, d_z);
+  const double near = 1.0 - cost_to_go_->stepCost(z, d_z);
   const double gentle = std::exp(-effort);
   if (d_z != nullptr) *d_z *= gentle;
   if (d_u != nullptr) *d_u *= near * gentle;
@@ -108,15 +91,15 @@ double DdmPlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::
     cost += stepCost(step, U.col(step), nullptr, nullptr);
   }
   Eigen::VectorXd d_last, d_before;
-  if (time_to_goal_) {
-    cost += time_to_goal_->value(featureAfter(horizon_), featureAfter(horizon_ - 1),
-                                 d_U == nullptr ? nullptr : &d_last, &d_before);
+  if (cost_to_go_) {
+    cost += cost_to_go_->value(featureAfter(horizon_), featureAfter(horizon_ - 1),
+                               d_U == nullptr ? nullptr : &d_last, &d_before);
   }
   if (d_U == nullptr) return cost;
 
   d_torques_.setZero(torques_.rows(), torques_.cols());
   for (int step = 0; step < horizon_; ++step) roll_out_.dPredicted(step).setZero();
-  if (time_to_goal_) {
+  if (cost_to_go_) {
     roll_out_.dPredicted(horizon_ - 1) += d_last;
     if (horizon_ > 1) roll_out_.dPredicted(horizon_ - 2) += d_before;
   }
@@ -133,17 +116,16 @@ double DdmPlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::
 }
 
 std::optional<Eigen::MatrixXd> DdmPlanCost::proposal() {
-  if (!time_to_goal_) return std::nullopt;
+  if (!cost_to_go_) return std::nullopt;
   Eigen::MatrixXd U = Eigen::MatrixXd::Zero(f_.torqueDim(), horizon_);
-  for (int begin = 0; begin < horizon_; begin += TimeToGoal::kHoldSteps) {
-    const int end = std::min(begin + TimeToGoal::kHoldSteps, horizon_);
+  for (int begin = 0; begin < horizon_; begin += CostToGo::kHoldSteps) {
+    const int end = std::min(begin + CostToGo::kHoldSteps, horizon_);
     double least = std::numeric_limits<double>::infinity();
     Eigen::MatrixXd best = U;
-    for (Eigen::Index i = 0; i < time_to_goal_->torques().cols(); ++i) {
-      U.middleCols(begin, end - begin).colwise() = time_to_goal_->torques().col(i);
+    for (Eigen::Index i = 0; i < cost_to_go_->torques().cols(); ++i) {
+      U.middleCols(begin, end - begin).colwise() = cost_to_go_->torques().col(i);
       rollOut(U, end);
-      double cost =
-          time_to_goal_->value(featureAfter(end), featureAfter(end - 1), nullptr, nullptr);
+      double cost = cost_to_go_->value(featureAfter(end), featureAfter(end - 1), nullptr, nullptr);
       for (int step = begin; step < end; ++step) {
         cost += stepCost(step, U.col(step), nullptr, nullptr);
       }
@@ -162,6 +144,32 @@ Eigen::MatrixXd DdmPlanCost::predictedFeatures() const {
   out.col(0) = features_.rightCols(1);
   for (int step = 0; step < horizon_; ++step) out.col(step + 1) = roll_out_.predicted(step);
   return out;
+}
+
+DdmPlanCost makePlanCost(const Ddm& model, const MpcOptions& options) {
+  if (!within(options.max_torque, model.options().max_torque)) {
+    throw std::invalid_argument("mpc/max_torque must be at most the model's model/max_torque " +
+                                limitsText(model.options().max_torque) + " N m, got " +
+                                limitsText(options.max_torque) +
+                                ": lower it, or train a model for larger torques from the bags");
+  }
+  if (options.cost == "distance") {
+    return DdmPlanCost(model, options.horizon, options.control_weight);
+  }
+  if (model.torqueDim() > CostToGo::kMaxMotors) {
+    throw std::invalid_argument("mpc/cost time needs a model with at most " +
+                                std::to_string(CostToGo::kMaxMotors) +
+                                " motors, as it compares 3^motors sets of torques, got " +
+                                std::to_string(model.torqueDim()) + ": set mpc/cost to distance");
+  }
+  if (model.info().landmarks.cols() < 2) {
+    throw std::invalid_argument(
+        "mpc/cost time needs a model with support states, and this one has none: train it again "
+        "from its bags, or set mpc/cost to distance");
+  }
+  return DdmPlanCost(
+      model, options.horizon, options.control_weight,
+      CostToGo(model, perMotor(options.max_torque, model.torqueDim(), "mpc/max_torque")));
 }
 
 }  // namespace ddm

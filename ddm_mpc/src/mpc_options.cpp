@@ -1,4 +1,4 @@
-// Parameters of the receding-horizon controller: what makes them valid.
+// Parameters of the controller and of mpc_node: what makes them valid.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/mpc_options.h"
 
@@ -21,6 +21,14 @@ std::vector<std::string> MpcOptions::problems() const {
   mpc.requireFraction("function_tolerance", function_tolerance);
   mpc.requireNotNegative("time_budget", time_budget);
   return mpc.problems();
+}
+
+std::vector<std::string> ControllerOptions::problems() const {
+  OptionChecks controller("controller");
+  controller.requireWithin("torque_dim", torque_dim, 1, 1000);
+  controller.requireTimeLimit("timeout", timeout);
+  controller.requireWithin("dt", dt, 0.0, 1000.0);
+  return controller.problems();
 }
 
 }  // namespace ddm

@@ -67,8 +67,7 @@ Eigen::MatrixXd Planner::startOf(int start, std::mt19937_64* rng) const {
   const int K = cost_.horizon();
   if (start == 0 && last_v_.size() > 0) {
     Eigen::MatrixXd v(dim, K);
-    const int last = static_cast<int>(last_v_.cols()) - 1;  // not K - 1 after a change of horizon
-    for (int k = 0; k < K; ++k) v.col(k) = last_v_.col(std::min(k + 1, last));
+    for (int k = 0; k < K; ++k) v.col(k) = last_v_.col(std::min(k + 1, K - 1));
     return v.cwiseMax(-kMaxV).cwiseMin(kMaxV);
   }
   if (start <= 1 && (start == 0 || last_v_.size() > 0)) return Eigen::MatrixXd::Zero(dim, K);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <deque>
+#include <stdexcept>
 #include <tuple>
 
 #include "random_model.h"
@@ -119,9 +120,8 @@ TEST(DdmPlanCost, GradientMatchesDifferencesForEveryFormOfFAndWithAnOffset) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OrdersTorquesHorizonsDelays, DdmPlanCostShapes,
-                         ::testing::Combine(::testing::Values(1, 2, 3), ::testing::Values(1, 2),
-                                            ::testing::Values(1, 2, 3, 7, 15),
-                                            ::testing::Values(0, 2)));
+                         ::testing::Combine(::testing::Values(1, 3), ::testing::Values(1, 2),
+                                            ::testing::Values(1, 7), ::testing::Values(0, 2)));
 
 TEST(DdmPlanCost, ForgetsTheLastProblem) {
   const Ddm model = randomModel({});
@@ -140,54 +140,15 @@ TEST(DdmPlanCost, ForgetsTheLastProblem) {
   EXPECT_EQ(d_used, d_fresh);
 }
 
-TEST(DdmPlanCost, IsThatOfANewOneAfterAnotherHorizonAndPriceOfTorque) {
-  const Ddm model = randomModel({});
-  const History x = randomHistory(model, 5);
-  const Eigen::VectorXd goal = testing::randomMatrix(2, 1, 6);
-  DdmPlanCost used(model, 4, kControlWeight);
-  Eigen::MatrixXd d_used;
-  for (const int horizon : {7, 2, 4}) {
-    const Eigen::MatrixXd U = testing::randomMatrix(1, horizon, 1);
-    used.setHorizon(horizon);
-    used.setControlWeight(0.1 * horizon);
-    used.setProblem(x, goal);
-    DdmPlanCost fresh(model, horizon, 0.1 * horizon);
-    fresh.setProblem(x, goal);
-    Eigen::MatrixXd d_fresh;
-    EXPECT_EQ(used.evaluate(U, &d_used), fresh.evaluate(U, &d_fresh));
-    EXPECT_EQ(d_used, d_fresh);
-    EXPECT_EQ(used.predictedFeatures(), fresh.predictedFeatures());
-    EXPECT_EQ(used.horizon(), horizon);
-  }
-}
-
-TEST(DdmPlanCost, RefusesAHorizonOfZero) {
+TEST(DdmPlanCost, RefusesWhatDoesNotFitTheModel) {
   const Ddm model = randomModel({});
   EXPECT_THROW(DdmPlanCost(model, 0, kControlWeight), std::invalid_argument);
-  EXPECT_THROW(DdmPlanCost(model, 1, kControlWeight).setHorizon(0), std::invalid_argument);
-}
-
-TEST(DdmPlanCost, RefusesAHistoryWithoutAnImage) {
-  const Ddm model = randomModel({});
   DdmPlanCost cost(model, 3, kControlWeight);
-  EXPECT_THROW(cost.setProblem(History(2, 2, 1), Eigen::Vector2d::Zero()), std::invalid_argument);
-}
-
-TEST(DdmPlanCost, RefusesAHistoryOfAnotherModel) {
-  const Ddm model = randomModel({});
-  DdmPlanCost cost(model, 3, kControlWeight);
-  for (const auto& [order, feature_dim, torque_dim] :
-       {std::make_tuple(3, 2, 1), std::make_tuple(2, 3, 1), std::make_tuple(2, 2, 2)}) {
-    History x(order, feature_dim, torque_dim);
-    x.observe(Eigen::VectorXd::Zero(feature_dim));
-    EXPECT_THROW(cost.setProblem(x, Eigen::Vector2d::Zero()), std::invalid_argument)
-        << order << feature_dim << torque_dim;
-  }
-}
-
-TEST(DdmPlanCost, RefusesAGoalOfAnotherSize) {
-  const Ddm model = randomModel({});
-  DdmPlanCost cost(model, 3, kControlWeight);
+  const Eigen::Vector2d goal(0.0, 0.0);
+  EXPECT_THROW(cost.setProblem(History(2, 2, 1), goal), std::invalid_argument) << "no image";
+  History of_another(3, 2, 1);
+  of_another.observe(goal);
+  EXPECT_THROW(cost.setProblem(of_another, goal), std::invalid_argument);
   EXPECT_THROW(cost.setProblem(randomHistory(model, 1), Eigen::Vector3d::Zero()),
                std::invalid_argument);
 }

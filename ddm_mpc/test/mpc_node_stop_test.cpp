@@ -1,9 +1,6 @@
 // Tests of how mpc_node stops two motors, and that it does so while a plan is computed.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/testing/node_main.h>
-#include <ddm_node/topic_peers.h>
-#include <ddm_node/waiting.h>
-#include <dynamic_reconfigure/Reconfigure.h>
 #include <gtest/gtest.h>
 #include <std_msgs/Float64MultiArray.h>
 #include <sys/wait.h>
@@ -12,11 +9,11 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <future>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "ddm_mpc/cost_to_go.h"
 #include "trial_client.h"
 
 namespace ddm {
@@ -80,39 +77,6 @@ TEST_F(TwoMotors, GetZeroWhenAnImageIsRefused) {
   EXPECT_EQ(effort_.messages[3].data, kZeros);
 }
 
-/// Goes on when this goes.
-struct StoppedMaster {
-  explicit StoppedMaster(pid_t master) : pid(master) { kill(pid, SIGSTOP); }
-  ~StoppedMaster() { kill(pid, SIGCONT); }
-  pid_t pid;
-};
-
-TEST_F(TwoMotors, GetZeroWhileAnOptionThatIsTurnedWaitsForTheMaster) {
-  ros::ServiceClient turn = client_.nh.serviceClient<dynamic_reconfigure::Reconfigure>(
-      "mpc_node/mpc/set_parameters", /*persistent=*/true);
-  std::optional<XmlRpc::XmlRpcValue> master = askMaster("getPid", ros::this_node::getName());
-  ASSERT_TRUE(master.has_value());
-  begin(trialGoal(10, 1.0));
-  show(2);
-  std::future<bool> turned;
-  {
-    const StoppedMaster stopped(static_cast<int>(*master));
-    turned = std::async(std::launch::async, [&turn] {
-      dynamic_reconfigure::Reconfigure service;
-      service.request.config.doubles.resize(1);
-      service.request.config.doubles[0].name = "control_weight";
-      service.request.config.doubles[0].value = 0.02;
-      return turn.call(service);
-    });
-    EXPECT_TRUE(waitUntil([this] { return client_.logged("mpc/control_weight is 0.02"); }));
-    action_.cancelGoal();
-    expectEnd(State::PREEMPTED);
-    expectEffortsOfTorquesAndThenZeros();
-    EXPECT_NE(turned.wait_for(std::chrono::seconds(0)), std::future_status::ready);
-  }
-  EXPECT_TRUE(turned.get());
-}
-
 class LongPlan : public TwoMotors {
  protected:
   using TwoMotors::TwoMotors;
@@ -161,17 +125,6 @@ TEST_F(LongPlan, EndsWithTheTimeoutOfItsTrial) {
   expectZerosAndNothingElse();
 }
 
-TEST_F(LongPlan, DoesNotDelayAChangeOfParameters) {
-  beginPlan(23);
-  const auto answered = callWithin(std::chrono::seconds(10), [] {
-    dynamic_reconfigure::Reconfigure service;
-    return ros::service::call("mpc_node/mpc/set_parameters", service);
-  });
-  EXPECT_TRUE(answered.value_or(false));
-  action_.cancelGoal();
-  expectEnd(State::PREEMPTED);  // the answer did not wait for the end of the trial
-}
-
 TEST_F(InTime, GivesTheBestSoFarWithinItsBudgetAndIsCounted) {
   beginPlan(24);
   show(2);
@@ -185,6 +138,39 @@ TEST_F(InTime, GivesTheBestSoFarWithinItsBudgetAndIsCounted) {
   EXPECT_EQ(action_.getResult()->num_cut_plans, 2U);
   EXPECT_EQ(action_.getResult()->num_failed_plans, 0U);
   expectEffortsOfTorquesAndThenZeros();
+}
+
+/// A node for three motors, whose cost-to-go takes seconds where a model has the most support states.
+class LongPreparation : public MpcNodeTest {
+ protected:
+  LongPreparation() : MpcNodeTest("/three_motors") {}
+};
+
+TEST_F(LongPreparation, DoesNotDelayTheAnswerToACancelledGoal) {
+  RandomModelOptions options;
+  options.torque_dim = 3;
+  options.gain = 0.1;
+  const Ddm random = randomModel(options);
+  ModelInfo info;
+  info.landmarks = testing::randomMatrix(2 + 2 + 3, 1000, 7).cast<float>();
+  const Ddm model(random.options(), random.imageSize(), 3, random.pca(), random.theta(),
+                  random.goal(), info);
+  const auto now = [] { return std::chrono::steady_clock::now(); };
+  const auto begin_of_preparation = now();
+  CostToGo(model, Eigen::VectorXd::Constant(3, 6.0)).setGoal(model.goalFeature(), false);
+  const auto preparation = now() - begin_of_preparation;
+
+  const ddm_msgs::Model message = modelMessage(model);
+  client_.publish(message);
+  begin(trialGoal(2, 0.0, message.id));
+  ASSERT_TRUE(waitUntil([&] { return client_.logged("model " + message.id); }));
+  const auto begin_of_cancelling = now();
+  action_.cancelGoal();
+  expectEnd(State::PREEMPTED);
+  EXPECT_LT(now() - begin_of_cancelling, preparation / 2);
+  begin(trialGoal(2, 1.0));
+  show(2);  // the preparation that nobody needs has ended
+  expectEnd(State::SUCCEEDED);
 }
 
 /// Starts a node of its own.

@@ -11,7 +11,6 @@
 #include <limits>
 
 #include "ddm_msgs/testing/not_finite.h"
-#include "model_planner.h"
 #include "random_model.h"
 
 namespace ddm {
@@ -81,18 +80,6 @@ TEST(Planner, RefusesLimitsForAnotherNumberOfMotors) {
   EXPECT_THROW(ModelPlanner(model, options), std::invalid_argument);
 }
 
-TEST(Planner, PushesAgainstTheBoundWhenTheGoalIsOutOfReach) {
-  const Ddm model = driftingIntegrator(0.0);
-  MpcOptions options = exactOptions();
-  options.control_weight = 0.0;
-  ModelPlanner planner(model, options);
-  std::mt19937_64 rng(1);
-  const Plan plan = planner.solve(stateAt(model, Eigen::VectorXd::Zero(1)),
-                                  Eigen::VectorXd::Constant(1, 1000.0), &rng);
-  EXPECT_LE(plan.torques.maxCoeff(), 6.0);
-  EXPECT_GE(plan.torques.minCoeff(), 5.9);
-}
-
 TEST(Planner, FindsTheClosedFormOptimumOfALinearModel) {
   Eigen::MatrixXd A(2, 3);
   A << 0.9, 0.2, 0.1, -0.2, 0.95, 0.5;  // [z, u / max_torque]
@@ -126,28 +113,6 @@ TEST(Planner, FindsTheClosedFormOptimumOfALinearModel) {
   const Plan plan = planner.solve(stateAt(model, z_0), goal, &rng);
   EXPECT_EQ(plan.status, PlanStatus::kConverged);
   EXPECT_LT((plan.torques.transpose() - expected).cwiseAbs().maxCoeff(), 1e-5);
-}
-
-TEST(Planner, FindsTheBestOfAGridForOneNonlinearStep) {
-  MpcOptions options = exactOptions();
-  options.horizon = 1;
-  options.num_starts = 10;
-  for (unsigned seed = 1; seed <= 5; ++seed) {
-    RandomModelOptions model_options;
-    model_options.seed = seed;
-    model_options.gain = 2.0;
-    const Ddm model = randomModel(model_options);
-    const History x = randomHistory(model, seed);
-    double best = kInfinity;
-    for (int i = 0; i <= 2000; ++i) {
-      const Eigen::MatrixXd U = Eigen::MatrixXd::Constant(1, 1, -6.0 + 12.0 * i / 2000);
-      best = std::min(best, costOf(model, options, x, model.goalFeature(), U));
-    }
-    ModelPlanner planner(model, options);
-    std::mt19937_64 rng(seed);
-    EXPECT_LE(planner.solve(x, model.goalFeature(), &rng).cost, best + 1e-4 * (1.0 + best))
-        << "seed " << seed;
-  }
 }
 
 TEST(Planner, IsNeverWorseThanAnyOfItsStarts) {
@@ -196,18 +161,6 @@ TEST(Planner, ReportsTheCostAndTheFeaturesOfThePlanItReturns) {
   }
 }
 
-TEST(Planner, SaysThatTheIterationCapEndedTheSearch) {
-  const Ddm model = randomModel({});
-  MpcOptions options;
-  options.max_iterations = 1;
-  options.function_tolerance = 0.0;
-  ModelPlanner planner(model, options);
-  std::mt19937_64 rng(1);
-  const Plan plan = planner.solve(randomHistory(model, 3), model.goalFeature(), &rng);
-  EXPECT_EQ(plan.status, PlanStatus::kIterationLimit);
-  EXPECT_LE(plan.iterations, options.num_starts);
-}
-
 TEST(Planner, StartsFromTheLastPlanMovedOnByOneStep) {
   // With u_0 the goal is reached, with -drift from then on it is kept: moved on by one step, this
   // plan is the optimum of the next problem, and as it stands it is not.
@@ -232,92 +185,6 @@ TEST(Planner, StartsFromTheLastPlanMovedOnByOneStep) {
   EXPECT_GT(cold.iterations, second.iterations + 3) << "after clear() it starts from no torque";
 }
 
-TEST(Planner, StartsFromTheLastPlanAfterAChangeOfHorizonToo) {
-  // The goal is reached with the first torque, and kept with -drift from then on, for any horizon.
-  const double drift = -0.2;
-  const Ddm model = driftingIntegrator(drift);
-  MpcOptions options = exactOptions();
-  options.control_weight = 0.0;
-  options.num_starts = 1;
-  const Eigen::VectorXd goal = Eigen::VectorXd::Constant(1, 0.5);
-  ModelPlanner planner(model, options);
-  std::mt19937_64 rng(1);
-  Plan plan = planner.solve(stateAt(model, Eigen::VectorXd::Zero(1)), goal, &rng);
-  for (const int horizon : {20, 3, 5}) {
-    planner.setHorizon(horizon);
-    plan = planner.solve(stateAt(model, plan.features.col(1)), goal, &rng);
-    ASSERT_EQ(plan.torques.cols(), horizon);
-    EXPECT_NEAR(plan.torques(0, horizon - 1), -6.0 * drift, 1e-3);
-    EXPECT_LE(plan.iterations, 3);
-  }
-}
-
-TEST(Planner, FindsABetterPlanFromAWarmStartOnTheSameBudget) {
-  MpcOptions options;
-  options.num_starts = 1;
-  options.max_iterations = 3;
-  options.function_tolerance = 0.0;
-  double warm_cost = 0.0, cold_cost = 0.0;
-  for (unsigned seed = 0; seed < 10; ++seed) {
-    RandomModelOptions model_options;
-    model_options.seed = seed;
-    model_options.gain = 0.7;
-    const Ddm model = randomModel(model_options);
-    std::mt19937_64 rng(seed);
-    ModelPlanner planner(model, options);
-    History x = randomHistory(model, seed);
-    for (int step = 0; step < 5; ++step) {
-      const Plan plan = planner.solve(x, model.goalFeature(), &rng);
-      x.apply(plan.torques.col(0));
-      x.observe(plan.features.col(1));
-    }
-    warm_cost += planner.solve(x, model.goalFeature(), &rng).cost;
-    cold_cost += ModelPlanner(model, options).solve(x, model.goalFeature(), &rng).cost;
-  }
-  EXPECT_LT(warm_cost, cold_cost);
-}
-
-TEST(Planner, GivesTheSamePlanForTheSameRandomStream) {
-  const Ddm model = randomModel({});
-  ModelPlanner planner(model, MpcOptions());
-  const History x = randomHistory(model, 3);
-  std::mt19937_64 rng(1);
-  const Plan first = planner.solve(x, model.goalFeature(), &rng);
-  planner.clear();
-  rng.seed(1);
-  const Plan second = planner.solve(x, model.goalFeature(), &rng);
-  EXPECT_EQ(first.torques, second.torques);
-  EXPECT_EQ(first.cost, second.cost);
-  EXPECT_EQ(first.evaluations, second.evaluations);
-}
-
-TEST(Planner, StaysAtTheGoalWhereAStartIsTheOptimumAlready) {
-  const Ddm model = driftingIntegrator(0.0);
-  ModelPlanner planner(model, MpcOptions());
-  std::mt19937_64 rng(1);
-  const Eigen::VectorXd goal = Eigen::VectorXd::Constant(1, 0.4);
-  for (int step = 0; step < 3; ++step) {
-    const Plan plan = planner.solve(stateAt(model, goal), goal, &rng);
-    EXPECT_EQ(plan.torques, Eigen::MatrixXd::Zero(1, 15)) << "step " << step;
-    EXPECT_EQ(plan.cost, 0.0) << "step " << step;
-    EXPECT_EQ(plan.status, PlanStatus::kConverged) << "step " << step;
-  }
-}
-
-TEST(Planner, PlansASingleStep) {
-  const Ddm model = randomModel({});
-  MpcOptions options;
-  options.horizon = 1;
-  ModelPlanner planner(model, options);
-  std::mt19937_64 rng(1);
-  for (int step = 0; step < 2; ++step) {
-    const Plan plan = planner.solve(randomHistory(model, 3), model.goalFeature(), &rng);
-    EXPECT_EQ(plan.torques.cols(), 1);
-    EXPECT_EQ(plan.features.cols(), 2);
-    EXPECT_NE(plan.status, PlanStatus::kFailed);
-  }
-}
-
 /// True from the question number `count` on.
 std::function<bool()> stopAfter(int count) {
   return [count, asked = 0]() mutable { return ++asked >= count; };
@@ -340,33 +207,6 @@ TEST(Planner, ReturnsTheBestPlanSoFarWhenItIsStoppedAfterAnyNumberOfEvaluations)
   }
   EXPECT_LT(last_cost, costOf(model, options, x, model.goalFeature(),
                               Eigen::MatrixXd::Zero(1, options.horizon)));
-}
-
-TEST(Planner, KeepsTheBestOfTheStartsBeforeTheOneThatIsStopped) {
-  const Ddm model = randomModel({});
-  const History x = randomHistory(model, 3);
-  MpcOptions options;
-  options.num_starts = 1;
-  std::mt19937_64 rng(1);
-  const Plan first = ModelPlanner(model, options).solve(x, model.goalFeature(), &rng);
-  options.num_starts = 5;
-  rng.seed(1);
-  const Plan plan = ModelPlanner(model, options)
-                        .solve(x, model.goalFeature(), &rng, stopAfter(first.evaluations + 1));
-  EXPECT_EQ(plan.status, PlanStatus::kTimeLimit);
-  EXPECT_LE(plan.cost, first.cost);
-  EXPECT_LE(plan.evaluations, first.evaluations + 1);
-}
-
-TEST(Planner, IsNotCutShortByAStopThatNeverCame) {
-  const Ddm model = randomModel({});
-  const History x = randomHistory(model, 3);
-  std::mt19937_64 rng(1), same(1);
-  const Plan free = ModelPlanner(model, MpcOptions()).solve(x, model.goalFeature(), &rng);
-  const Plan asked =
-      ModelPlanner(model, MpcOptions()).solve(x, model.goalFeature(), &same, [] { return false; });
-  EXPECT_EQ(asked.status, free.status);
-  EXPECT_EQ(asked.torques, free.torques);
 }
 
 void expectFailure(const Plan& plan) {

@@ -1,4 +1,4 @@
-// Small models with random parameters, and images and states to go with them, for tests.
+// Small models with random parameters, images and states to go with them, and plans with them, for tests.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -7,7 +7,11 @@
 #include <ddm_model/testing/random_matrix.h>
 
 #include <Eigen/QR>
+#include <functional>
 #include <random>
+
+#include "ddm_mpc/ddm_plan_cost.h"
+#include "ddm_mpc/planner.h"
 
 namespace ddm {
 /// Random grey values.
@@ -76,5 +80,23 @@ inline History randomHistory(const Ddm& model, unsigned seed) {
   }
   return x;
 }
+
+/// Plans with a deep dynamical model from any state to any goal, as MpcPolicy does.
+class ModelPlanner {
+ public:
+  ModelPlanner(const Ddm& model, const MpcOptions& options)
+      : cost_(model, options.horizon, options.control_weight), planner_(&cost_, options) {}
+
+  Plan solve(const History& x, const Eigen::VectorXd& goal_feature, std::mt19937_64* rng,
+             const std::function<bool()>& stop = {}) {
+    cost_.setProblem(x, goal_feature);
+    return planner_.solve(rng, stop);
+  }
+  void clear() { planner_.clear(); }
+
+ private:
+  DdmPlanCost cost_;
+  Planner planner_;
+};
 
 }  // namespace ddm

@@ -4,14 +4,12 @@
 #include <ddm_msgs/testing/node_main.h>
 #include <gtest/gtest.h>
 #include <sensor_msgs/image_encodings.h>
-#include <visualization_msgs/MarkerArray.h>
 
 #include <limits>
 #include <optional>
 
-#include "feature_plane.h"
 #include "node_client.h"
-#include "panels.h"
+#include "pictures.h"
 
 namespace ddm {
 namespace {
@@ -138,47 +136,7 @@ TEST_F(ViewNodeTest, ShowsTheFeatureSpaceWithExperienceCurrentGoalAndPlan) {
   EXPECT_EQ(picture.height, picture.width);
 }
 
-TEST_F(ViewNodeTest, ShowsTheSameAsMarkersWithTheImagesOnceForEachModelAndNewcomer) {
-  using visualization_msgs::MarkerArray;
-  const auto numberOf = [](const Listener<MarkerArray>& listener, const std::string& name_space,
-                           bool newest) {
-    std::size_t count = 0;
-    for (const MarkerArray& array : listener.messages) {
-      if (newest && &array != &listener.messages.back()) continue;
-      for (const auto& marker : array.markers) count += marker.ns == name_space ? 1 : 0;
-    }
-    return count;
-  };
-  std::optional<Listener<MarkerArray>> first(std::in_place, client_.nh,
-                                             topics::kFeatureSpaceMarkers);
-  const Listener<MarkerArray>& markers = *first;
-  client_.publish(modelMessage(modelOfSeed(29)));
-  for (unsigned seed = 30; seed < 33; ++seed) {
-    const ros::Time stamp = showImage(seed);
-    ASSERT_TRUE(waitUntil([&] {
-      return !markers.messages.empty() && markers.messages.back().markers[0].header.stamp == stamp;
-    }));
-    const visualization_msgs::Marker& experience = markers.messages.back().markers[0];
-    EXPECT_EQ(experience.ns, "experience");
-    EXPECT_EQ(experience.points.size(), shownImages().size());
-  }
-  // That of the test before may have been shown first.
-  const std::size_t shown = numberOf(markers, "images", false);
-  EXPECT_GE(shown, 1U);
-  EXPECT_LE(shown, 2U);
-  EXPECT_EQ(numberOf(markers, "images", true), 0U);
-  first.reset();  // or both would share a connection
-  const Listener<MarkerArray> late(client_.nh, topics::kFeatureSpaceMarkers);
-  EXPECT_TRUE(waitUntil([&] { return numberOf(late, "images", false) == 1; }));
-}
-
-TEST_F(ViewNodeTest, MovesTheExperienceAndForgetsThePlanWhenANewModelComes) {
-  const Ddm model = modelOfSeed(23);
-  client_.publish(modelMessage(model));
-  EXPECT_TRUE(waitUntil([&] { return planeIs(model, ddm_msgs::Plan()); }));
-}
-
-TEST_F(ViewNodeTest, ShowsTheLastStateToSomebodyWhoComesLate) {
+TEST_F(ViewNodeTest, ForgetsThePlanWithTheModelAndShowsTheLastStateToSomebodyWhoComesLate) {
   const Ddm model = modelOfSeed(24);
   client_.publish(modelMessage(model));
   ASSERT_TRUE(waitUntil([&] { return planeIs(model, ddm_msgs::Plan()); }));

@@ -10,8 +10,8 @@
 #include <ddm_model/schedule.h>
 #include <ddm_model/solver_log.h>
 #include <ddm_model/trainer.h>
+#include <ddm_mpc/controller.h>
 #include <ddm_mpc/ddm_plan_cost.h>
-#include <ddm_mpc/mpc_policy.h>
 #include <ddm_params/tool.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ddm_sim/plant_factory.h>

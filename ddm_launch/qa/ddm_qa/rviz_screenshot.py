@@ -22,8 +22,7 @@ TOOLS = {"Xvfb": "xvfb", "import": "imagemagick", "rviz": "rviz"}  # program: De
 
 # Display: the middle of its place in the window (left, top, right, bottom).
 DISPLAYS = {"Camera": (60, 110, 410, 440), "Learning curve": (20, 530, 450, 870),
-            "Feature space": (1040, 90, 1580, 630), "Prediction": (1040, 690, 1580, 870),
-            "Feature space in 3-D": (500, 90, 1000, 860)}
+            "Feature space": (1040, 90, 1580, 630), "Prediction": (1040, 690, 1580, 870)}
 
 
 def blank_displays(pixels):

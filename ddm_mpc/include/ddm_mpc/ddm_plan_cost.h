@@ -9,8 +9,9 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "ddm_mpc/cost_to_go.h"
+#include "ddm_mpc/mpc_options.h"
 #include "ddm_mpc/plan_cost.h"
-#include "ddm_mpc/time_to_goal.h"
 
 namespace ddm {
 
@@ -18,41 +19,28 @@ namespace ddm {
 ///
 ///   z_{k+1} = f(z_k, u_k, z_{k-1}, u_{k-1}) + offset
 ///
-/// or, with a TimeToGoal, with a cost of a step that saturates, and what is left to go after the last one:
+/// or, with a CostToGo, by costs of a step that saturate, and the cost-to-go of the last state:
 ///
 ///   J(U) = sum_{k=1}^{K} [1 - exp(-(|z_k - z_ref|^2 / s^2 + lambda |u_{k-1} / max_torque|^2) / (2 w^2))] + V(x_K)
 ///
-/// with the s and w of TimeToGoal. A step far from the goal costs 1 whatever its
-/// torque; at the goal, torque makes it cost up to 1.
+/// with the s and w of CostToGo. A step far from the goal costs 1 whatever its torque; at the goal, torque makes it cost up
+/// to 1.
 ///
-/// The offset is what recent predictions were wrong by (0 in the paper): the same error in every
-/// step, as offset-free model predictive control assumes it (Pannocchia and Rawlings, AIChE J.
-/// 2003).
+/// The offset is the error of recent predictions (0 in the paper): the same error in every step, as offset-free model
+/// predictive control assumes it (Pannocchia and Rawlings, AIChE J. 2003).
 class DdmPlanCost : public PlanCost {
  public:
   /// @param model           outlives the cost
   /// @param horizon         K, steps
-  /// @param control_weight  lambda [(N m)^-2], with a TimeToGoal [-]: of a torque of max_torque
+  /// @param control_weight  lambda [(N m)^-2], with a CostToGo [-]: of a torque of max_torque
   /// @throws std::invalid_argument if the horizon is < 1
   DdmPlanCost(const Ddm& model, int horizon, double control_weight,
-              std::optional<TimeToGoal> time_to_goal = std::nullopt);
+              std::optional<CostToGo> cost_to_go = std::nullopt);
 
-  /// Other values for the plans to come; setProblem comes first.
-  /// @throws std::invalid_argument if the horizon is < 1
-  void setHorizon(int horizon);
-  void setControlWeight(double control_weight);
-
-  /// With a TimeToGoal: see there.
-  void setExploring(bool exploring);
-
-  /// The feature to plan to.
+  /// The feature to plan to, and whether epsilon > 0, which is for the CostToGo. If one has changed, computes the
+  /// cost-to-go, which takes up to two seconds. setProblem() does so too.
   /// @throws std::invalid_argument for a wrong size
-  void setGoal(const Eigen::VectorXd& goal_feature);
-
-  /// Gives goal and exploring to the TimeToGoal if they are not those that it has, which takes a while. setProblem() does so
-  /// too; who has time before the first plan calls this.
-  /// @pre there is a goal
-  void prepare();
+  void setGoal(const Eigen::VectorXd& goal_feature, bool exploring);
 
   /// The state to plan from, the feature to plan to, and the offset.
   /// @throws std::invalid_argument for a wrong size or an empty history
@@ -64,8 +52,8 @@ class DdmPlanCost : public PlanCost {
   }
 
   double evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) override;
-  /// Of the torques that TimeToGoal compares, those that are best for its next steps, then for those
-  /// after them, and so on.
+  /// Of the torques that CostToGo compares, those that are best for its next steps, then for those
+  /// after them, and so on. Empty without a CostToGo.
   std::optional<Eigen::MatrixXd> proposal() override;
   Eigen::MatrixXd predictedFeatures() const override;
   Eigen::VectorXd goalFeature() const override { return goal_feature_; }
@@ -82,8 +70,7 @@ class DdmPlanCost : public PlanCost {
   const double* theta_p_;
   int horizon_ = 0;
   Eigen::ArrayXd control_weight_;  // of a squared torque, by motor [(N m)^-2]
-  std::optional<TimeToGoal> time_to_goal_;
-  bool prepared_ = false;  // the TimeToGoal has these
+  std::optional<CostToGo> cost_to_go_;
   bool exploring_ = false;
   Eigen::VectorXd goal_feature_;
   Eigen::VectorXd offset_;
@@ -94,5 +81,11 @@ class DdmPlanCost : public PlanCost {
   Eigen::VectorXd d_step_;     // d stepCost / dz                           [feature_dim]
   Eigen::VectorXd d_torque_;   // d stepCost / du                           [torque_dim]
 };
+
+/// The cost that the options ask for.
+/// @param model  outlives the cost
+/// @throws std::invalid_argument if max_torque exceeds the model's or is for another number of motors; with mpc/cost time
+///         also if the model has fewer than two support states, or more motors than CostToGo takes
+DdmPlanCost makePlanCost(const Ddm& model, const MpcOptions& options);
 
 }  // namespace ddm

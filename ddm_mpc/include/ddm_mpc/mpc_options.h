@@ -1,4 +1,4 @@
-// Parameters of the receding-horizon controller. One struct = one YAML block.
+// Parameters of the controller and of mpc_node. One struct = one YAML block.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -36,6 +36,23 @@ struct MpcOptions {
     visitor("time_budget", time_budget);
   }
   /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  std::vector<std::string> problems() const;
+};
+
+/// Block `controller`: parameters of mpc_node beyond the planner's.
+struct ControllerOptions {
+  int torque_dim = 1;    ///< number of motors; a random trial has no model to take it from [-]
+  double timeout = 5.0;  ///< wall time that an image or the model may take to arrive [s]
+  double dt = 0.0;       ///< time step; 0: the shortest time between two images of the trial [s]
+  bool publish_effort = false;  ///< also send each torque to the motors themselves
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("torque_dim", torque_dim);
+    visitor("timeout", timeout);
+    visitor("dt", dt);
+    visitor("publish_effort", publish_effort);
+  }
   std::vector<std::string> problems() const;
 };
 

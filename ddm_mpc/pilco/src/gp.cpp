@@ -161,22 +161,22 @@ double negativeLogLikelihood(const Eigen::MatrixXd& inputs, const Eigen::VectorX
 }
 
 double penalty(const Eigen::VectorXd& theta, const Eigen::VectorXd& input_std,
-               Eigen::VectorXd* gradient, int power) {
+               Eigen::VectorXd* gradient) {
   const Eigen::Index dim = input_std.size();
   eigen_assert(theta.size() == dim + 2);
-  const double p = power;
+  const double p = kPenaltyPower;
   const double log_length_limit = std::log(kLengthScaleLimit);
   const double log_snr_limit = std::log(kSignalToNoiseLimit);
   const Eigen::ArrayXd length =
       (theta.head(dim).array() - input_std.array().log()) / log_length_limit;
   const double snr = (theta[dim] - theta[dim + 1]) / log_snr_limit;
   if (gradient != nullptr) {
-    gradient->head(dim).array() += p / log_length_limit * length.pow(power - 1);
-    const double slope = p / log_snr_limit * std::pow(snr, power - 1);
+    gradient->head(dim).array() += p / log_length_limit * length.pow(kPenaltyPower - 1);
+    const double slope = p / log_snr_limit * std::pow(snr, kPenaltyPower - 1);
     (*gradient)[dim] += slope;
     (*gradient)[dim + 1] -= slope;
   }
-  return length.pow(power).sum() + std::pow(snr, power);
+  return length.pow(kPenaltyPower).sum() + std::pow(snr, kPenaltyPower);
 }
 
 Eigen::VectorXd sampleStd(const Eigen::MatrixXd& samples) {

@@ -98,10 +98,10 @@ TEST(Penalty, IsOneWhereALimitIsReachedAndNothingFarInsideAndItsGradientMatchesD
   EXPECT_NEAR(3.0, penalty(theta, input_std), 1e-12);
   const auto f = [&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
     if (gradient != nullptr) *gradient = x;  // that of the first term
-    // the thirtieth power varies too fast for differences
-    return 0.5 * x.squaredNorm() + penalty(x, input_std, gradient, /*power=*/4);
+    return 0.5 * x.squaredNorm() + penalty(x, input_std, gradient);
   };
-  EXPECT_TRUE(gradientMatches(f, vectorOf({3.0, -4.0, 2.5, -3.0}), 1e-8));
+  theta << std::log(190.0), std::log(9.0), 3.0, -3.8;  // near the limits
+  EXPECT_TRUE(gradientMatches(f, theta, 1e-6));
 }
 
 TEST(MakeGpModel, InvertsTheCovariance) {
@@ -120,18 +120,6 @@ TEST(MakeGpModel, InvertsTheCovariance) {
     EXPECT_LT((a * fit.model.beta.col(output) - toy.targets.col(output)).cwiseAbs().maxCoeff(),
               1e-10);
   }
-}
-
-TEST(MakeGpModel, NamesTheOutputThatIsNotPositiveDefinite) {
-  Toy toy(8);
-  toy.inputs.col(3) = toy.inputs.col(5);
-  Hyperparameters hyperparameters = initialHyperparameters(toy.inputs, toy.targets);
-  hyperparameters.log_length_scales.col(1).array() += 5.0;
-  hyperparameters.log_noise_std[1] = -40.0;
-  const GpFit fit = makeGpModel(toy.inputs, toy.targets, hyperparameters);
-  EXPECT_FALSE(fit.ok);
-  EXPECT_TRUE(names(fit.message, {"output 2", "positive definite"}));
-  EXPECT_EQ(0, fit.model.numPoints());
 }
 
 TEST(TrainGp, EndsAtAnOptimumThatKnowsNoiseAndRelevance) {
@@ -165,17 +153,6 @@ TEST(TrainGp, GoesOnFromThePreviousOptimum) {
     EXPECT_LE(again.outputs[output].cost, again.outputs[output].initial_cost);
     EXPECT_LT(again.outputs[output].iterations, first.outputs[output].iterations);
   }
-}
-
-TEST(TrainGp, CopesWithRepeatedPoints) {
-  const Toy toy(30);
-  Eigen::MatrixXd inputs(3, 60), targets(60, 2);
-  inputs << toy.inputs, toy.inputs;
-  targets << toy.targets, toy.targets;
-  const GpFit fit = trainGp(inputs, targets, kIterations);
-  ASSERT_TRUE(fit.ok) << fit.message;
-  EXPECT_TRUE(fit.model.beta.allFinite());
-  EXPECT_LT(fit.outputs[0].cost, fit.outputs[0].initial_cost);
 }
 
 TEST(TrainGp, TrainsAnewAndSaysSoWhereThePreviousOptimumCannotBeEvaluated) {

@@ -75,7 +75,11 @@ TEST(Propagation, HasTheMomentsOfSamplesWhereAllIsGaussianAlsoIfThePolicySeesNoi
         RbfPolicy::packParameters(vectorOf({kScale, kScale}), centres, vectorOf({0.2, -0.2})));
     const SquashedPolicy policy(std::move(rbf), vectorOf({kBound}));
     const Gaussian state = randomGaussian(2, 2, 0.6, random);
-    const Gaussian next = Propagation(model, options).step(policy, state);
+    Propagation::Tape tape;
+    const Gaussian next = Propagation(model, options).step(policy, state, &tape);
+    // cov(x, x') = s + s (gain of delta by x, directly and through the control)
+    const Eigen::MatrixXd gain = Eigen::MatrixXd::Identity(2, 2) + tape.delta.gain.topRows(2) +
+                                 tape.control.gain * tape.delta.gain.bottomRows(1);
 
     GpSampler delta(model, &random);
     std::normal_distribution<double> normal;
@@ -87,8 +91,8 @@ TEST(Propagation, HasTheMomentsOfSamplesWhereAllIsGaussianAlsoIfThePolicySeesNoi
       const double u = policy.control(seen)[0] + jitter * normal(random);
       return Eigen::VectorXd(x + delta(vectorOf({x[0], x[1], u})));
     };
-    EXPECT_TRUE(momentsMatchSamples(Moments{next.mean, next.covariance, Eigen::MatrixXd()}, state,
-                                    sample, random))
+    EXPECT_TRUE(
+        momentsMatchSamples(Moments{next.mean, next.covariance, gain}, state, sample, random))
         << (noisy ? "noisy" : "");
   }
 }

@@ -71,16 +71,6 @@ TEST(RbfPolicy, IsTheSumOfItsBasisFunctions) {
   EXPECT_NEAR(output.covariance(0, 0), 1e-6, 1e-9);
 }
 
-TEST(RbfPolicy, HoldsItsParametersAsLengthScalesCentresByCoordinateAndTargets) {
-  Eigen::MatrixXd centres(2, 3);
-  centres << 1, 2, 3,  //
-      4, 5, 6;
-  Eigen::VectorXd expected(11);
-  expected << 0.1, 0.2, 1, 2, 3, 4, 5, 6, 7, 8, 9;
-  EXPECT_EQ(RbfPolicy::packParameters(vectorOf({0.1, 0.2}), centres, vectorOf({7, 8, 9})),
-            expected);
-}
-
 TEST(RbfPolicy, AdjointMatchesDifferencesForOneAndTwoControls) {
   std::mt19937_64 random(2);
   for (const int controls : {1, 2}) {

@@ -26,9 +26,7 @@ constexpr char kPlanScalars[] = "plan_scalars";  ///< ddm_msgs/PlanScalars
 constexpr char kPredictionImage[] =
     "prediction_image";  ///< sensor_msgs/Image: camera, reconstruction, prediction
 constexpr char kFeatureSpaceImage[] =
-    "feature_space_image";  ///< sensor_msgs/Image: what the model thinks
-constexpr char kFeatureSpaceMarkers[] =
-    "feature_space_markers";          ///< visualization_msgs/MarkerArray: the same
+    "feature_space_image";            ///< sensor_msgs/Image: what the model thinks
 constexpr char kTrials[] = "trials";  ///< std_msgs/String, latched: trials.csv and its goal
 
 constexpr char kCamera[] = "camera/source";  ///< sensor_msgs/Image: a robot's camera, as it comes

@@ -92,12 +92,12 @@ double negativeLogLikelihood(const Eigen::MatrixXd& inputs, const Eigen::VectorX
 ///
 ///   sum_d (log(l_d / std_d) / log kLengthScaleLimit)^p + (log(sf / sn) / log kSignalToNoiseLimit)^p
 ///
+/// with p = kPenaltyPower.
 /// @param theta      see thetaOf()                                                     [D + 2]
 /// @param input_std  spread of each input                                                  [D]
 /// @param gradient   (optional) the gradient is ADDED to it                            [D + 2]
-/// @param power      p, even; another one in tests
 double penalty(const Eigen::VectorXd& theta, const Eigen::VectorXd& input_std,
-               Eigen::VectorXd* gradient = nullptr, int power = kPenaltyPower);
+               Eigen::VectorXd* gradient = nullptr);
 
 /// Where the first training starts: length-scales = spread of the inputs, signal = spread of the
 /// target, noise = a tenth of it.

@@ -1,6 +1,6 @@
-// Time to the goal: value iteration of the learned model over landmarks of its experience.
+// Cost-to-go: value iteration of the learned model over support states of its experience.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_mpc/time_to_goal.h"
+#include "ddm_mpc/cost_to_go.h"
 
 #include <ddm_model/roll_out.h>
 
@@ -14,12 +14,12 @@ namespace {
 constexpr double kGamma = 0.99;                  // 100 steps ahead still count a third
 constexpr double kWorst = 1.0 / (1.0 - kGamma);  // V_max: never at the goal
 constexpr double kOptimism = 0.8;         // V_0 in units of V_max while the plant is explored
-constexpr double kSmoothness = 1.4;       // h in units of how far landmarks are apart
-constexpr double kSmallestWeight = 1e-4;  // of a landmark that still counts
+constexpr double kSmoothness = 1.4;       // h in units of the mean distance between neighbours
+constexpr double kSmallestWeight = 1e-4;  // of a support state that still counts
 constexpr int kMaxSweeps = 1000;          // that compare all torques
 constexpr int kPolicySweeps = 20;         // that follow the best ones, after each of those
 constexpr double kTolerance = 1e-3;       // largest change of a V_i in the last sweep
-const double kUnknown = std::exp(-0.5 * 3.0 * 3.0);  // w_0: a landmark 3 h away weighs as much
+const double kUnknown = std::exp(-0.5 * 3.0 * 3.0);  // w_0: a support state 3 h away weighs as much
 
 /// All combinations of -max, 0 and max.
 Eigen::MatrixXd combinations(const Eigen::VectorXd& max_torque) {
@@ -46,15 +46,15 @@ double spacing(const Eigen::MatrixXd& points) {
   return sum / static_cast<double>(points.cols());
 }
 
-/// What all landmarks come to under the same torques.
-/// @param X  landmarks, see ModelInfo  [state_dim x M]
+/// Where all support states lead to under the same torques.
+/// @param X  support states, see ModelInfo  [state_dim x M]
 /// @param u  [N m]                     [torque_dim]
 /// @return   features of each step     [feature_dim x M] each
 std::vector<Eigen::MatrixXd> predictions(const Ddm& model, const Eigen::MatrixXd& X,
                                          const Eigen::VectorXd& u, int num_steps) {
   const Eigen::Index dim = model.featureDim(), motors = model.torqueDim(), M = X.cols();
   const Eigen::Index n = model.options().memory();
-  const Eigen::Index length = n + num_steps;  // frames of a landmark in Z and U, oldest first
+  const Eigen::Index length = n + num_steps;  // samples of a support state in Z and U, oldest first
   Eigen::MatrixXd Z = Eigen::MatrixXd::Zero(dim, M * length);
   Eigen::MatrixXd U = u.replicate(1, M * length);
   Eigen::Matrix<Eigen::Index, Eigen::Dynamic, 1> targets(M);
@@ -75,7 +75,7 @@ std::vector<Eigen::MatrixXd> predictions(const Ddm& model, const Eigen::MatrixXd
 
 }  // namespace
 
-TimeToGoal::TimeToGoal(const Ddm& model, const Eigen::VectorXd& max_torque) {
+CostToGo::CostToGo(const Ddm& model, const Eigen::VectorXd& max_torque) {
   eigen_assert(model.info().landmarks.cols() >= 2 && max_torque.size() == model.torqueDim() &&
                max_torque.size() <= kMaxMotors);
   torques_ = combinations(max_torque);
@@ -85,7 +85,7 @@ TimeToGoal::TimeToGoal(const Ddm& model, const Eigen::VectorXd& max_torque) {
   const Eigen::MatrixXd changes = model.options().memory() > 1
                                       ? Eigen::MatrixXd(Z - X.middleRows(dim, dim))
                                       : Eigen::MatrixXd::Zero(dim, M);
-  // Where nothing moved, or a state is one frame, states differ by their features alone.
+  // Where nothing moved, or a state is one sample, states differ by their features alone.
   constexpr double kNoChange = std::numeric_limits<double>::infinity();
   spread_ = std::max((Z.colwise() - Z.rowwise().mean()).norm() / std::sqrt(M),
                      std::numeric_limits<double>::min());
@@ -97,34 +97,34 @@ TimeToGoal::TimeToGoal(const Ddm& model, const Eigen::VectorXd& max_torque) {
   for (Eigen::Index i = 0; i < torques_.cols(); ++i) {
     const auto steps = predictions(model, X, torques_.col(i), kHoldSteps);
     Eigen::MatrixXd path(dim, kHoldSteps);
-    for (Eigen::Index landmark = 0; landmark < M; ++landmark) {
-      for (int step = 0; step < kHoldSteps; ++step) path.col(step) = steps[step].col(landmark);
-      outcomes_[static_cast<size_t>(landmark)].push_back(outcomeOf(path));
+    for (Eigen::Index state = 0; state < M; ++state) {
+      for (int step = 0; step < kHoldSteps; ++step) path.col(step) = steps[step].col(state);
+      outcomes_[static_cast<size_t>(state)].push_back(outcomeOf(path));
     }
   }
 }
 
-Eigen::VectorXd TimeToGoal::pointOf(const Eigen::Ref<const Eigen::VectorXd>& z,
-                                    const Eigen::Ref<const Eigen::VectorXd>& before) const {
+Eigen::VectorXd CostToGo::pointOf(const Eigen::Ref<const Eigen::VectorXd>& z,
+                                  const Eigen::Ref<const Eigen::VectorXd>& before) const {
   Eigen::VectorXd point(2 * z.size());
   point << z / spread_, (z - before) / change_spread_;
   return point;
 }
 
-Eigen::ArrayXd TimeToGoal::kernel(const Eigen::VectorXd& point) const {
+Eigen::ArrayXd CostToGo::kernel(const Eigen::VectorXd& point) const {
   const Eigen::ArrayXd squared =
       (points_.colwise() - point).colwise().squaredNorm().transpose().array();
   return (squared * (-0.5 / (h_ * h_))).exp();
 }
 
-TimeToGoal::Outcome TimeToGoal::outcomeOf(const Eigen::MatrixXd& path) const {
+CostToGo::Outcome CostToGo::outcomeOf(const Eigen::MatrixXd& path) const {
   Outcome outcome{path, {}, {}};
   const Eigen::ArrayXd weights =
       kernel(pointOf(path.col(kHoldSteps - 1), path.col(kHoldSteps - 2)));
   double sum = kUnknown;
   for (Eigen::Index j = 0; j < weights.size(); ++j) {
     if (!(weights[j] > kSmallestWeight)) continue;
-    outcome.landmarks.push_back(static_cast<int>(j));
+    outcome.neighbours.push_back(static_cast<int>(j));
     outcome.weights.push_back(weights[j]);
     sum += weights[j];
   }
@@ -133,15 +133,15 @@ TimeToGoal::Outcome TimeToGoal::outcomeOf(const Eigen::MatrixXd& path) const {
 }
 
 /// V_0
-double TimeToGoal::unknownValue() const { return exploring_ ? kOptimism * kWorst : kWorst; }
+double CostToGo::unknownValue() const { return exploring_ ? kOptimism * kWorst : kWorst; }
 
-void TimeToGoal::setGoal(const Eigen::VectorXd& z_ref, bool exploring) {
+void CostToGo::setGoal(const Eigen::VectorXd& z_ref, bool exploring) {
   z_ref_ = z_ref;
   exploring_ = exploring;
   const auto costOf = [this](const Outcome& outcome) {
     double cost = 0.0, discount = 1.0;
     for (int step = 0; step < kHoldSteps; ++step, discount *= kGamma) {
-      cost += discount * away(outcome.path.col(step), nullptr);
+      cost += discount * stepCost(outcome.path.col(step), nullptr);
     }
     return cost;
   };
@@ -153,17 +153,17 @@ void TimeToGoal::setGoal(const Eigen::VectorXd& z_ref, bool exploring) {
   iterate(costs);
 }
 
-/// Modified policy iteration: to compare all torques takes 3^torque_dim times as long as to follow the best ones, and what is
-/// best soon stays so.
-/// @param costs  of each outcome on its way
-void TimeToGoal::iterate(const std::vector<std::vector<double>>& costs) {
+/// Modified policy iteration: comparing all torques takes 3^torque_dim times as long as following the best ones, which soon
+/// stay the same.
+/// @param costs  of the steps of each outcome
+void CostToGo::iterate(const std::vector<std::vector<double>>& costs) {
   const double discount = std::pow(kGamma, kHoldSteps), unknown = unknownValue();
   values_.setConstant(points_.cols(), kWorst);
   const auto valueOf = [&](size_t i, size_t k) {
     const Outcome& outcome = outcomes_[i][k];
     double gain = 0.0;  // on V_0
-    for (size_t j = 0; j < outcome.landmarks.size(); ++j) {
-      gain += outcome.weights[j] * (unknown - values_[outcome.landmarks[j]]);
+    for (size_t j = 0; j < outcome.neighbours.size(); ++j) {
+      gain += outcome.weights[j] * (unknown - values_[outcome.neighbours[j]]);
     }
     return costs[i][k] + discount * (unknown - gain);
   };
@@ -197,17 +197,17 @@ void TimeToGoal::iterate(const std::vector<std::vector<double>>& costs) {
   }
 }
 
-double TimeToGoal::away(const Eigen::Ref<const Eigen::VectorXd>& z,
-                        Eigen::VectorXd* gradient) const {
+double CostToGo::stepCost(const Eigen::Ref<const Eigen::VectorXd>& z,
+                          Eigen::VectorXd* gradient) const {
   const double sigma = kWidth * spread_;
   const double near = std::exp(-0.5 * (z - z_ref_).squaredNorm() / (sigma * sigma));
   if (gradient != nullptr) *gradient = (near / (sigma * sigma)) * (z - z_ref_);
   return 1.0 - near;
 }
 
-double TimeToGoal::value(const Eigen::Ref<const Eigen::VectorXd>& z,
-                         const Eigen::Ref<const Eigen::VectorXd>& before, Eigen::VectorXd* d_z,
-                         Eigen::VectorXd* d_before) const {
+double CostToGo::value(const Eigen::Ref<const Eigen::VectorXd>& z,
+                       const Eigen::Ref<const Eigen::VectorXd>& before, Eigen::VectorXd* d_z,
+                       Eigen::VectorXd* d_before) const {
   const Eigen::VectorXd point = pointOf(z, before);
   const Eigen::ArrayXd weights = kernel(point);
   const double sum = kUnknown + weights.sum();

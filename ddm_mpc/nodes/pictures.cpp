@@ -1,6 +1,6 @@
-// Picture of the feature space: a grid of decoded images and what has been, is and shall be in it.
+// Pictures that view_node draws: the feature space, and images of the model side by side.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "feature_plane.h"
+#include "pictures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,10 +13,10 @@ namespace {
 const cv::Scalar kMargin(64, 64, 64);
 const cv::Scalar kText(220, 220, 220);
 const cv::Scalar kOutline(0, 0, 0);
-using feature_colours::kCurrent;
-using feature_colours::kExperience;
-using feature_colours::kGoal;
-using feature_colours::kPlan;
+const cv::Scalar kExperience(0, 200, 0);  // red, green, blue
+const cv::Scalar kPlan(255, 255, 0);
+const cv::Scalar kGoal(255, 0, 0);
+const cv::Scalar kCurrent(0, 255, 255);
 
 constexpr int kSmallRadius = 2;
 constexpr int kPlanRadius = 3;
@@ -47,10 +47,9 @@ void drawLegend(cv::Mat* picture) {
 
 }  // namespace
 
-FeaturePlane::FeaturePlane(const Ddm& model)
-    : slice_(model.hasGoal() ? model.goalFeature() : Eigen::VectorXd::Zero(model.featureDim())),
-      grid_(kWidth, kWidth, CV_8UC3, kMargin) {
-  Eigen::VectorXd z = slice_;
+FeaturePlane::FeaturePlane(const Ddm& model) : grid_(kWidth, kWidth, CV_8UC3, kMargin) {
+  Eigen::VectorXd z =
+      model.hasGoal() ? model.goalFeature() : Eigen::VectorXd::Zero(model.featureDim());
   const int rows = z.size() == 1 ? 1 : kGrid;
   const double step = 2.0 / (kGrid - 1);
   for (int row = 0; row < rows; ++row) {
@@ -62,9 +61,7 @@ FeaturePlane::FeaturePlane(const Ddm& model)
       cv::Mat resized;
       cv::resize(image, resized, cv::Size(kPitch, kPitch), 0.0, 0.0, cv::INTER_AREA);
       const cv::Point corner = pixelOf(z) - cv::Point(kPitch / 2, kPitch / 2);
-      const cv::Rect place(corner, resized.size());
-      cv::cvtColor(resized, grid_(place), cv::COLOR_GRAY2RGB);
-      images_ |= place;
+      cv::cvtColor(resized, grid_(cv::Rect(corner, resized.size())), cv::COLOR_GRAY2RGB);
     }
   }
   drawLegend(&grid_);
@@ -94,6 +91,26 @@ cv::Mat FeaturePlane::draw(const FeatureOverlay& overlay) const {
   drawDots(overlay.plan, kPlanRadius, kPlan);
   drawDots(overlay.goal, kLargeRadius, kGoal);
   drawDots(overlay.current, kLargeRadius, kCurrent);
+  return picture;
+}
+
+cv::Mat drawPanels(const std::vector<Panel>& panels, int image_size) {
+  const cv::Scalar separator_grey(128), caption_grey(220);
+  const int size = panelSize(image_size);
+  const int count = static_cast<int>(panels.size());
+  cv::Mat picture(size + kPanelCaption, count * size + (count - 1) * kPanelSeparator, CV_8UC1,
+                  cv::Scalar(0));
+  for (int i = 0; i < count; ++i) {
+    const int left = i * (size + kPanelSeparator);
+    if (i > 0) picture.colRange(left - kPanelSeparator, left).setTo(separator_grey);
+    cv::putText(picture, panels[i].caption, {left + 6, size + kPanelCaption - 7},
+                cv::FONT_HERSHEY_SIMPLEX, 0.5, caption_grey, 1, cv::LINE_AA);
+    if (panels[i].grey.empty()) continue;
+    Grey grey = panels[i].grey;  // cv::Mat takes no const pixels
+    const cv::Mat image(image_size, image_size, CV_8UC1, grey.data());
+    cv::resize(image, picture(cv::Rect(left, 0, size, size)), cv::Size(size, size), 0.0, 0.0,
+               cv::INTER_NEAREST);
+  }
   return picture;
 }
 

@@ -1,4 +1,4 @@
-// Picture of the feature space: a grid of decoded images and what has been, is and shall be in it.
+// Pictures that view_node draws: the feature space, and images of the model side by side.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,16 +6,10 @@
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
+#include <string>
+#include <vector>
 
 namespace ddm {
-
-/// Colours of what is drawn over the grid: red, green, blue.
-namespace feature_colours {
-inline const cv::Scalar kExperience(0, 200, 0);
-inline const cv::Scalar kPlan(255, 255, 0);
-inline const cv::Scalar kGoal(255, 0, 0);
-inline const cv::Scalar kCurrent(0, 255, 255);
-}  // namespace feature_colours
 
 /// What is drawn over the decoded grid; features are columns, and an empty matrix draws nothing.
 struct FeatureOverlay {
@@ -46,21 +40,29 @@ class FeaturePlane {
   /// @return picture, 8 bit red, green, blue  [kWidth x kWidth]
   cv::Mat draw(const FeatureOverlay& overlay) const;
 
-  /// The decoded images alone, one to each kPitch pixels.
-  cv::Mat images() const { return grid_(images_); }
-
-  /// What all images have in common from the third feature on.  [feature_dim]
-  const Eigen::VectorXd& slice() const { return slice_; }
-
   /// Where a feature is drawn. Beyond the picture it is brought near, so that any finite feature
   /// will do.
   /// @param z  [feature_dim]
   static cv::Point pixelOf(const Eigen::Ref<const Eigen::VectorXd>& z);
 
  private:
-  Eigen::VectorXd slice_;
   cv::Mat grid_;
-  cv::Rect images_;  // where they are in the grid's picture
 };
+
+/// One of several images side by side, with a caption.
+struct Panel {
+  Grey grey;  ///< empty: the panel stays black
+  std::string caption;
+};
+
+constexpr int kPanelSeparator = 3;  ///< between two panels [pixels]
+constexpr int kPanelCaption = 24;   ///< height of the captions, below the panels [pixels]
+
+/// Width and height of a panel: as many whole times the image as make it 255 pixels or more.
+inline int panelSize(int image_size) { return (255 + image_size - 1) / image_size * image_size; }
+
+/// @param panels  at least one, with images of image_size x image_size
+/// @return        8 bit grey
+cv::Mat drawPanels(const std::vector<Panel>& panels, int image_size);
 
 }  // namespace ddm

@@ -1,6 +1,6 @@
-// Tests of the picture of the feature space: where things are drawn, and in which colour.
+// Tests of the pictures of view_node: where things are drawn, and in which colour.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "feature_plane.h"
+#include "pictures.h"
 
 #include <gtest/gtest.h>
 
@@ -50,20 +50,10 @@ double meanAt(const cv::Mat& picture, const Eigen::VectorXd& z) {
       picture(cv::Rect(corner, cv::Size(FeaturePlane::kPitch, FeaturePlane::kPitch))))[0];
 }
 
-TEST(FeaturePlane, ShowsTheFirstFeatureToTheRightAndTheSecondUpwards) {
+TEST(FeaturePlane, DecodesEachPointOfTheGridWithTheFirstFeatureToTheRightAndTheSecondUpwards) {
   const cv::Point origin = FeaturePlane::pixelOf(feature({0.0, 0.0}));
   EXPECT_EQ(FeaturePlane::pixelOf(feature({1.0, 0.0})), origin + cv::Point(192, 0));
   EXPECT_EQ(FeaturePlane::pixelOf(feature({0.0, 1.0})), origin - cv::Point(0, 192));
-}
-
-TEST(FeaturePlane, HasRoomForAllThatAnArctanFeatureCanBe) {
-  const cv::Rect picture(0, 0, FeaturePlane::kWidth, FeaturePlane::kWidth);
-  for (const double z : {-1.5707, 1.5707}) {
-    EXPECT_TRUE(picture.contains(FeaturePlane::pixelOf(feature({z, z}))));
-  }
-}
-
-TEST(FeaturePlane, DecodesEachPointOfTheGrid) {
   const Ddm model = randomModel({});
   const cv::Mat picture = FeaturePlane(model).draw({});
   ASSERT_EQ(picture.size(), cv::Size(FeaturePlane::kWidth, FeaturePlane::kWidth));
@@ -93,15 +83,6 @@ TEST(FeaturePlane, DrawsEachPartInItsColour) {
   EXPECT_TRUE(isGrey(colourAt(picture, feature({0.0, 0.8}))));
 }
 
-TEST(FeaturePlane, LeavesNoTraceOfTheLastOverlay) {
-  const FeaturePlane plane(randomModel({}));
-  FeatureOverlay overlay;
-  overlay.current = feature({0.5, 0.5});
-  const cv::Mat before = plane.draw({});
-  plane.draw(overlay);
-  EXPECT_EQ(cv::norm(before, plane.draw({}), cv::NORM_INF), 0.0);
-}
-
 TEST(FeaturePlane, ShowsOneFeatureAsARowOfImages) {
   const Ddm model = randomModel(featureDim(1));
   const FeaturePlane plane(model);
@@ -118,14 +99,6 @@ TEST(FeaturePlane, GivesFurtherFeaturesTheValueOfTheGoal) {
   Eigen::VectorXd z = model.goalFeature();
   z[0] = 0.75;
   z[1] = -0.25;
-  EXPECT_NEAR(meanAt(FeaturePlane(model).draw({}), z), meanGrey(model.decode(z)), 0.51);
-}
-
-TEST(FeaturePlane, GivesFurtherFeaturesZeroWithoutAGoal) {
-  RandomModelOptions options = featureDim(3);
-  options.goal = false;
-  const Ddm model = randomModel(options);
-  const Eigen::VectorXd z = feature({0.75, -0.25, 0.0});
   EXPECT_NEAR(meanAt(FeaturePlane(model).draw({}), z), meanGrey(model.decode(z)), 0.51);
 }
 

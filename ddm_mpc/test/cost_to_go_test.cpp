@@ -1,6 +1,6 @@
-// Tests of the time to the goal: that it grows with the way there, along what was seen.
+// Tests of the cost-to-go: it grows with the steps to the goal, along states that were seen.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_mpc/time_to_goal.h"
+#include "ddm_mpc/cost_to_go.h"
 
 #include <ddm_model/testing/gradient_check.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kStep = 0.1;  // what a torque of 1 N m moves a feature by
 
-/// Two features, each pushed by a motor of its own: z_{t+1} = z_t + kStep u_t. Its landmarks are at
+/// Two features, each pushed by a motor of its own: z_{t+1} = z_t + kStep u_t. Its support states are at
 /// these features, at rest and moving by a step in each direction.
 /// @param places  [2 x N]
 Ddm pushedModel(const Eigen::MatrixXd& places, const std::vector<double>& max_torque = {1.0}) {
@@ -62,77 +62,38 @@ Eigen::MatrixXd horseshoe() {
   return places;
 }
 
-TimeToGoal timeTo(const Eigen::Vector2d& goal, const Ddm& model) {
-  TimeToGoal time(model, Eigen::Vector2d::Ones());
-  time.setGoal(goal, false);
-  return time;
+CostToGo costTo(const Eigen::Vector2d& goal, const Ddm& model) {
+  CostToGo cost(model, Eigen::Vector2d::Ones());
+  cost.setGoal(goal, false);
+  return cost;
 }
 
-double valueAtRest(const TimeToGoal& time, const Eigen::Vector2d& z) {
-  return time.value(z, z, nullptr, nullptr);
+double valueAtRest(const CostToGo& cost, const Eigen::Vector2d& z) {
+  return cost.value(z, z, nullptr, nullptr);
 }
 
-TEST(TimeToGoal, ComparesEveryCombinationOfTorques) {
-  const TimeToGoal time(pushedModel(line()), Eigen::Vector2d(2.0, 0.5));
-  ASSERT_EQ(time.torques().cols(), 9);
-  for (Eigen::Index i = 0; i < 9; ++i) {
-    EXPECT_TRUE(std::abs(time.torques()(0, i)) == 2.0 || time.torques()(0, i) == 0.0);
-    EXPECT_TRUE(std::abs(time.torques()(1, i)) == 0.5 || time.torques()(1, i) == 0.0);
-    for (Eigen::Index j = 0; j < i; ++j) EXPECT_NE(time.torques().col(i), time.torques().col(j));
-  }
-}
-
-TEST(TimeToGoal, AStepCostsNothingAtTheGoalAndOneFarAway) {
-  const TimeToGoal time = timeTo({0.5, 0.0}, pushedModel(line()));
-  EXPECT_EQ(time.away(Eigen::Vector2d(0.5, 0.0), nullptr), 0.0);
-  EXPECT_NEAR(time.away(Eigen::Vector2d(-1.0, 0.0), nullptr), 1.0, 0.01);
-}
-
-TEST(TimeToGoal, HalfASpreadOfTheFeaturesIsAway) {
-  const TimeToGoal time = timeTo({0.5, 0.0}, pushedModel(line()));  // their spread is 0.6
-  EXPECT_GT(time.away(Eigen::Vector2d(0.2, 0.0), nullptr), 0.8);
-  EXPECT_LT(time.away(Eigen::Vector2d(0.45, 0.0), nullptr), 0.2);
-}
-
-TEST(TimeToGoal, GrowsWithTheStepsThatTheModelNeeds) {
-  const TimeToGoal time = timeTo({1.0, 0.0}, pushedModel(line()));
+TEST(CostToGo, GrowsWithTheStepsThatTheModelNeeds) {
+  const CostToGo time = costTo({1.0, 0.0}, pushedModel(line()));
   for (double x = -0.9; x < 0.55; x += 0.1) {
     EXPECT_GT(valueAtRest(time, {x - 0.1, 0.0}), valueAtRest(time, {x, 0.0}) + 0.3) << x;
   }
 }
 
-TEST(TimeToGoal, GrowsWithTheStepsAlsoWhereAStateIsOneFrame) {
-  RandomModelOptions options;
-  options.torque_dim = 2;
-  options.model.order = 1;
-  options.model.max_torque = {1.0};
-  Eigen::MatrixXd A(2, 4);  // h = z_t, u_t
-  A << Eigen::Matrix2d::Identity(), kStep * Eigen::Matrix2d::Identity();
-  const Ddm model = linearModel(options, A, Eigen::VectorXd::Zero(2));
-  ModelInfo info;
-  info.landmarks = line().cast<float>();
-  const TimeToGoal time = timeTo({1.0, 0.0}, Ddm(model.options(), model.imageSize(), 2, model.pca(),
-                                                 model.theta(), model.goal(), info));
-  for (double x = -0.9; x < 0.55; x += 0.1) {
-    EXPECT_GT(valueAtRest(time, {x - 0.1, 0.0}), valueAtRest(time, {x, 0.0}) + 0.3) << x;
-  }
-}
-
-TEST(TimeToGoal, GoesAroundAGapWhereNothingWasSeen) {
-  const TimeToGoal time = timeTo({0.0, 0.0}, pushedModel(horseshoe()));
+TEST(CostToGo, GoesAroundAGapWhereNothingWasSeen) {
+  const CostToGo time = costTo({0.0, 0.0}, pushedModel(horseshoe()));
   // the other end is nearer to the goal than the corner is, but the way leads through the corner
   EXPECT_GT(valueAtRest(time, {0.0, 1.0}), valueAtRest(time, {1.0, 1.0}) + 3.0);
   EXPECT_GT(valueAtRest(time, {1.0, 1.0}), valueAtRest(time, {1.0, 0.0}) + 3.0);
 }
 
-TEST(TimeToGoal, ExpectsTheWorstWhereNothingWasSeen) {
-  const TimeToGoal time = timeTo({0.0, 0.0}, pushedModel(line()));
+TEST(CostToGo, ExpectsTheWorstWhereNothingWasSeen) {
+  const CostToGo time = costTo({0.0, 0.0}, pushedModel(line()));
   EXPECT_GT(valueAtRest(time, {0.0, 3.0}), 99.0);
   EXPECT_LT(valueAtRest(time, {1.0, 0.0}), 60.0);
 }
 
-TEST(TimeToGoal, HopesForMoreWhileThePlantIsExplored) {
-  TimeToGoal time = timeTo({0.0, 0.0}, pushedModel(line()));
+TEST(CostToGo, HopesForMoreWhileThePlantIsExplored) {
+  CostToGo time = costTo({0.0, 0.0}, pushedModel(line()));
   const double known = valueAtRest(time, {1.0, 0.0});
   time.setGoal(Eigen::Vector2d::Zero(), true);
   EXPECT_NEAR(valueAtRest(time, {0.0, 3.0}), 80.0, 0.8);
@@ -141,17 +102,8 @@ TEST(TimeToGoal, HopesForMoreWhileThePlantIsExplored) {
   EXPECT_EQ(valueAtRest(time, {1.0, 0.0}), known);
 }
 
-TEST(TimeToGoal, TakesAnotherGoal) {
-  TimeToGoal turned = timeTo({1.0, 0.0}, pushedModel(line()));
-  turned.setGoal(Eigen::Vector2d(-1.0, 0.0), false);
-  const TimeToGoal fresh = timeTo({-1.0, 0.0}, pushedModel(line()));
-  for (const double x : {-1.0, -0.3, 0.8}) {
-    EXPECT_EQ(valueAtRest(turned, {x, 0.0}), valueAtRest(fresh, {x, 0.0}));
-  }
-}
-
-TEST(TimeToGoal, GradientsMatchFiniteDifferences) {
-  const TimeToGoal time = timeTo({0.2, 0.1}, pushedModel(horseshoe()));
+TEST(CostToGo, GradientsMatchFiniteDifferences) {
+  const CostToGo time = costTo({0.2, 0.1}, pushedModel(horseshoe()));
   const auto value = [&time](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
     Eigen::VectorXd d_z, d_before;
     const double v =
@@ -160,13 +112,13 @@ TEST(TimeToGoal, GradientsMatchFiniteDifferences) {
     return v;
   };
   EXPECT_TRUE(testing::gradientMatches(value, Eigen::Vector4d(0.93, 0.41, 0.96, 0.33), 1e-5));
-  const auto away = [&time](const Eigen::VectorXd& z, Eigen::VectorXd* gradient) {
-    return time.away(z, gradient);
+  const auto step_cost = [&time](const Eigen::VectorXd& z, Eigen::VectorXd* gradient) {
+    return time.stepCost(z, gradient);
   };
-  EXPECT_TRUE(testing::gradientMatches(away, Eigen::Vector2d(0.4, 0.3), 1e-6));
+  EXPECT_TRUE(testing::gradientMatches(step_cost, Eigen::Vector2d(0.4, 0.3), 1e-6));
 }
 
-class PlansWithTimeToGoal : public ::testing::Test {
+class PlansWithCostToGo : public ::testing::Test {
  protected:
   static constexpr int kHorizon = 7;
 
@@ -178,10 +130,10 @@ class PlansWithTimeToGoal : public ::testing::Test {
   }
 
   const Ddm model_ = pushedModel(horseshoe());
-  DdmPlanCost cost_{model_, kHorizon, 0.1, TimeToGoal(model_, Eigen::Vector2d::Ones())};
+  DdmPlanCost cost_{model_, kHorizon, 0.1, CostToGo(model_, Eigen::Vector2d::Ones())};
 };
 
-TEST_F(PlansWithTimeToGoal, TheGradientMatchesFiniteDifferencesFarFromTheGoalAndNearIt) {
+TEST_F(PlansWithCostToGo, TheGradientMatchesFiniteDifferencesFarFromTheGoalAndNearIt) {
   const auto f = [&](const Eigen::VectorXd& u, Eigen::VectorXd* gradient) {
     const Eigen::Map<const Eigen::MatrixXd> U(u.data(), 2, kHorizon);
     Eigen::MatrixXd d_U;
@@ -196,12 +148,12 @@ TEST_F(PlansWithTimeToGoal, TheGradientMatchesFiniteDifferencesFarFromTheGoalAnd
   EXPECT_TRUE(testing::gradientMatches(f, u, 1e-5));
 }
 
-TEST(PlanWithTimeToGoal, WeighsEachTorqueAtTheGoalByItsShareOfTheLargest) {
+TEST(PlanWithCostToGo, WeighsEachTorqueAtTheGoalByItsShareOfTheLargest) {
   const Eigen::Vector2d max_torque(2.0, 0.5);
   const Ddm model = pushedModel(horseshoe(), {2.0, 0.5});
   Eigen::MatrixXd U(2, 1);
   U << 1.0, 0.5;  // half of what there is, and all
-  TimeToGoal time(model, max_torque);
+  CostToGo time(model, max_torque);
   const auto costOfStep = [&](double control_weight, double x) {
     const Eigen::Vector2d z(x, 0.0), goal(0.1, 0.0);
     History history(2, 2, 2);
@@ -219,7 +171,7 @@ TEST(PlanWithTimeToGoal, WeighsEachTorqueAtTheGoalByItsShareOfTheLargest) {
   EXPECT_NEAR(costOfStep(0.3, 1.0), costOfStep(0.0, 1.0), 1e-3) << "far from it";
 }
 
-TEST_F(PlansWithTimeToGoal, GoalAndExploringCountFromTheNextProblemOnHoweverOftenTheyChange) {
+TEST_F(PlansWithCostToGo, GoalAndExploringCountFromTheNextProblemOnHoweverOftenTheyChange) {
   const Eigen::MatrixXd U = Eigen::MatrixXd::Zero(2, kHorizon);
   const Eigen::Vector2d start(0.9, 0.95), goal(0.1, 0.0);
   const auto costOf = [&](DdmPlanCost* cost) {
@@ -227,19 +179,17 @@ TEST_F(PlansWithTimeToGoal, GoalAndExploringCountFromTheNextProblemOnHoweverOfte
     return cost->evaluate(U, nullptr);
   };
   const double greedy = costOf(&cost_);
-  cost_.setExploring(true);
-  cost_.setGoal(Eigen::Vector2d(0.5, 1.0));
-  cost_.prepare();
+  cost_.setGoal(Eigen::Vector2d(0.5, 1.0), true);
   const double exploring = costOf(&cost_);
   EXPECT_LT(exploring, greedy);
-  DdmPlanCost fresh(model_, kHorizon, 0.1, TimeToGoal(model_, Eigen::Vector2d::Ones()));
-  fresh.setExploring(true);
+  DdmPlanCost fresh(model_, kHorizon, 0.1, CostToGo(model_, Eigen::Vector2d::Ones()));
+  fresh.setGoal(goal, true);
   EXPECT_EQ(costOf(&fresh), exploring);
-  cost_.setExploring(false);
+  cost_.setGoal(goal, false);
   EXPECT_EQ(costOf(&cost_), greedy);
 }
 
-TEST_F(PlansWithTimeToGoal, TheProposalLeadsOnAndIsHeldForFourSteps) {
+TEST_F(PlansWithCostToGo, TheProposalLeadsOnAndIsHeldForFourSteps) {
   cost_.setProblem(restingAt({0.5, 1.0}), Eigen::Vector2d(0.5, 0.0));
   const Eigen::MatrixXd U = cost_.proposal().value();
   ASSERT_EQ(U.cols(), kHorizon);
@@ -249,29 +199,11 @@ TEST_F(PlansWithTimeToGoal, TheProposalLeadsOnAndIsHeldForFourSteps) {
             cost_.evaluate(Eigen::MatrixXd::Zero(2, kHorizon), nullptr));
 }
 
-TEST_F(PlansWithTimeToGoal, ThePlannerIsNoWorseThanTheProposal) {
-  cost_.setProblem(restingAt({0.5, 1.0}), Eigen::Vector2d(0.5, 0.0));
-  MpcOptions options;
-  options.max_torque = {1.0};
-  options.horizon = kHorizon;
-  std::mt19937_64 rng(1);
-  Planner planner(&cost_, options);
-  const Plan plan = planner.solve(&rng);
-  EXPECT_LE(plan.cost, cost_.evaluate(0.95 * cost_.proposal().value(), nullptr));
-  EXPECT_GT(plan.torques(0, 0), 0.0);
-}
-
-TEST(PlansWithDistance, HaveNoProposal) {
-  const Ddm model = pushedModel(line());
-  DdmPlanCost cost(model, 3, 0.01);
-  EXPECT_FALSE(cost.proposal().has_value());
-}
-
 #ifdef NDEBUG  // sanitizers take memory of their own
-/// Features that hardly move, so that all landmarks have a weight in each of the others.
-TEST(TimeToGoal, TakesAtMostHalfAGigabyteForTheMostMotorsAndLandmarks) {
+/// Features that hardly move, so that all support states have a weight in each of the others.
+TEST(CostToGo, TakesAtMostHalfAGigabyteForTheMostMotorsAndSupportStates) {
   RandomModelOptions options;
-  options.torque_dim = TimeToGoal::kMaxMotors;
+  options.torque_dim = CostToGo::kMaxMotors;
   options.gain = 0.1;
   const Ddm random = randomModel(options);
   ModelInfo info;
@@ -284,7 +216,7 @@ TEST(TimeToGoal, TakesAtMostHalfAGigabyteForTheMostMotorsAndLandmarks) {
     return usage.ru_maxrss;
   };
   const auto before = peakKiB();
-  TimeToGoal time(model, Eigen::VectorXd::Ones(options.torque_dim));
+  CostToGo time(model, Eigen::VectorXd::Ones(options.torque_dim));
   time.setGoal(Eigen::VectorXd::Zero(2), /*exploring=*/false);
   EXPECT_LT(peakKiB() - before, 500 * 1024);
 }

@@ -1,0 +1,146 @@
+// The controller: the paper's MPC on images, and epsilon-greedy exploration around it. Its three steps come first.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_mpc/controller.h"
+
+#include <ddm_model/per_motor.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace ddm {
+
+using Clock = std::chrono::steady_clock;
+
+/// One step of Algorithm 1: the image y_t is answered by the torque u_t.
+Decision EpsilonGreedy::decide(const Grey& grey) {
+  Decision decision;
+  if (policy_ != nullptr) {
+    if (acted_) policy_->apply(*acted_);
+    policy_->observe(grey);
+    decision.goal_distance = policy_->goalDistance();
+  }
+  if (held_steps_left_ == 0) drawTorque();
+  decision.exploratory = held_steps_left_ > 0;
+  if (decision.exploratory) {
+    --held_steps_left_;
+    decision.torque = held_torque_;
+  } else {
+    Answer answer = policy_->answer();
+    decision.torque = std::move(answer.torque);
+    decision.solve_time = answer.solve_time;
+    decision.plan = std::move(answer.plan);
+  }
+  acted_ = decision.torque;
+  return decision;
+}
+
+/// With probability epsilon, a random torque to be held (Sec. 3.2).
+void EpsilonGreedy::drawTorque() {
+  if (std::uniform_real_distribution<double>(0.0, 1.0)(rng_) >= options_.epsilon) return;
+  held_torque_.resize(options_.max_torque.size());
+  for (Eigen::Index i = 0; i < held_torque_.size(); ++i) {
+    const double limit = options_.max_torque[i];
+    held_torque_[i] = std::uniform_real_distribution<double>(-limit, limit)(rng_);
+  }
+  held_steps_left_ = options_.hold_steps;
+}
+
+/// Encode: z_t = g^-1(y_t), eq. (3a), the newest feature of the state x_t, eq. (8).
+void MpcPolicy::observe(const Grey& grey) {
+  began_ = arrival_.value_or(Clock::now());
+  arrival_.reset();
+  const Eigen::VectorXd z = model_->encode(grey);
+  if (predicted_.size() > 0) offset_ += offset_gain_ * (z - predicted_ - offset_);
+  x_.observe(z);
+}
+
+/// Plan: the torques U that minimise J(U), eq. (9), from x_t on. The first of them is u_t, see answerWith().
+Plan MpcPolicy::plan() {
+  if (!hasGoal()) throw std::logic_error("there is no goal image to plan to");
+  const auto begin = Clock::now();
+  prepare();
+  cost_.setProblem(x_, z_ref_, offset_);
+  std::function<bool()> stop = stop_;
+  if (time_budget_.count() > 0.0) {
+    stop = [this] { return Clock::now() - began_ >= time_budget_ || (stop_ && stop_()); };
+  }
+  Plan plan = planner_.solve(&rng_, stop);
+  plan.solve_time = std::chrono::duration<double>(Clock::now() - begin).count();
+  return plan;
+}
+
+/// The torque that acted becomes a part of the state, eq. (8). z_{t+1|t} = f(x_t, u_t), eq. (3b).
+void MpcPolicy::apply(const Eigen::VectorXd& u) {
+  if (offset_gain_ > 0.0) predicted_ = model_->predict(x_, u);
+  x_.apply(u);
+}
+
+std::optional<double> MpcPolicy::goalDistance() const {
+  const double spread = model_->info().feature_spread;
+  if (!hasGoal() || !(spread > 0.0) || !std::isfinite(spread)) return std::nullopt;
+  return (x_.features().col(0) - z_ref_).norm() / spread;
+}
+
+void MpcPolicy::startTrial(const TrialId& id) {
+  startSegment();
+  offset_.setZero();
+  planner_.clear();
+  rng_ = randomStream(id, StreamRole::kPlannerStarts);
+}
+
+void MpcPolicy::startSegment() {
+  x_.clear();
+  predicted_.resize(0);
+}
+
+MpcPolicy::MpcPolicy(std::shared_ptr<const Ddm> model, const MpcOptions& options)
+    : model_(std::move(model)),
+      offset_gain_(options.offset_gain),
+      time_budget_(options.time_budget),
+      z_ref_(model_->hasGoal() ? model_->goalFeature() : Eigen::VectorXd()),
+      x_(model_->options().memory(), model_->featureDim(), model_->torqueDim()),
+      offset_(Eigen::VectorXd::Zero(model_->featureDim())),
+      cost_(makePlanCost(*model_, options)),
+      planner_(&cost_, options) {}
+
+EpsilonGreedy::EpsilonGreedy(std::shared_ptr<Policy> policy, const Options& options,
+                             const TrialId& id)
+    : policy_(std::move(policy)),
+      options_(options),
+      rng_(randomStream(id, StreamRole::kExploration)) {
+  const auto require = [](bool ok, const std::string& problem) {
+    if (!ok) throw std::invalid_argument(problem);
+  };
+  require(options.epsilon >= 0.0 && options.epsilon <= 1.0,
+          "epsilon must lie in [0, 1], got " + std::to_string(options.epsilon));
+  require(policy_ != nullptr || options.epsilon == 1.0, "a trial with epsilon < 1 needs a model");
+  require(options.hold_steps >= 1,
+          "hold_steps must be >= 1, got " + std::to_string(options.hold_steps));
+  require(options.max_torque.size() >= 1 && (options.max_torque.array() > 0.0).all(),
+          "max_torque must be > 0 for each of at least one motor");
+  if (policy_ == nullptr) return;
+  policy_->setExploring(options.epsilon > 0.0);
+  policy_->startTrial(id);
+}
+
+void EpsilonGreedy::setGoal(const Grey& goal) {
+  if (policy_ != nullptr) policy_->setGoal(goal);
+}
+
+void EpsilonGreedy::correctTorque(const Eigen::VectorXd& torque) {
+  if (torque.size() != options_.max_torque.size() || !torque.allFinite()) {
+    throw std::invalid_argument(
+        "an applied torque must be " + std::to_string(options_.max_torque.size()) +
+        " finite number(s), one for each motor, got " + std::to_string(torque.size()));
+  }
+  if (acted_) acted_ = torque;
+}
+
+void EpsilonGreedy::startSegment() {
+  acted_.reset();
+  if (policy_ != nullptr) policy_->startSegment();
+}
+
+}  // namespace ddm

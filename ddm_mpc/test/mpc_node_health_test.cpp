@@ -1,0 +1,170 @@
+// Tests of what mpc_node reports while it runs: plan_scalars and /diagnostics.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_msgs/testing/node_main.h>
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "trial_client.h"
+
+namespace ddm {
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+
+class MpcNodeHealthTest : public MpcNodeTest {
+ protected:
+  MpcNodeHealthTest() : MpcNodeTest("/health") {}
+
+  void SetUp() override {
+    MpcNodeTest::SetUp();
+    ASSERT_TRUE(waitUntil([this] { return diagnostics_.connected(); }));  // each count is told once
+  }
+
+  /// Starts a trial that plans; returns when the node has its model.
+  void beginPlanning(std::uint32_t num_steps, double epsilon) {
+    const ddm_msgs::Model model = modelOfSeed(31);
+    ddm_msgs::RunTrialGoal goal = trialGoal(num_steps, epsilon, model.id);
+    goal.start = stamps_.emplace_back(client_.publishImage(kSize, 0));
+    client_.publish(model);
+    begin(goal);
+    ASSERT_TRUE(waitUntil([this] { return torque_.messages.size() == 1; }));
+  }
+
+  /// The newest status of this name, empty if there is none yet.
+  DiagnosticStatus status(const std::string& name) const {
+    for (auto array = diagnostics_.messages.rbegin(); array != diagnostics_.messages.rend();
+         ++array) {
+      for (const DiagnosticStatus& status : array->status) {
+        if (status.name == "health/mpc_node: " + name) return status;
+      }
+    }
+    return DiagnosticStatus();
+  }
+  static std::string valueOf(const DiagnosticStatus& status, const std::string& key) {
+    for (const diagnostic_msgs::KeyValue& pair : status.values) {
+      if (pair.key == key) return pair.value;
+    }
+    return "";
+  }
+  ::testing::AssertionResult reports(const std::string& name, std::uint8_t level,
+                                     const std::string& part) {
+    if (waitUntil([&] {
+          const DiagnosticStatus now = status(name);
+          return now.level == level && now.message.find(part) != std::string::npos;
+        })) {
+      return ::testing::AssertionSuccess();
+    }
+    return ::testing::AssertionFailure() << "it is: " << status(name);
+  }
+
+  Listener<diagnostic_msgs::DiagnosticArray> diagnostics_{client_.nh, "/diagnostics"};
+};
+
+TEST_F(MpcNodeHealthTest, TellsHowFarTheGoalIsAndHowWrongTheLastPredictionWas) {
+  Listener<ddm_msgs::PlanScalars> scalars(client_.nh, topics::kPlanScalars);
+  ASSERT_TRUE(waitUntil([&] { return scalars.connected(); }));
+  beginPlanning(12, 0.3);
+  show(12);
+  expectEnd(State::SUCCEEDED);
+  const std::size_t num_plans = 12 - action_.getResult()->num_exploratory;
+  ASSERT_TRUE(num_plans > 2 && num_plans < 12) << num_plans;
+  ASSERT_TRUE(waitUntil(
+      [&] { return scalars.messages.size() == num_plans && plan_.messages.size() == num_plans; }));
+  const auto feature = [this](std::size_t plan, Eigen::Index step) {
+    return Eigen::VectorXd(
+        Eigen::Map<const Eigen::VectorXd>(&plan_.messages[plan].feature[2 * step], 2));
+  };
+  std::size_t i = 0;
+  for (std::size_t step = 0; step < 12; ++step) {
+    if (torque_.messages[step].exploratory != 0) continue;
+    const ddm_msgs::Plan& plan = plan_.messages[i];
+    const ddm_msgs::PlanScalars& numbers = scalars.messages[i];
+    const Eigen::Map<const Eigen::VectorXd> goal(plan.goal_feature.data(), 2);
+    EXPECT_EQ(numbers.header.stamp, plan.header.stamp);
+    EXPECT_EQ(numbers.cost, plan.cost);
+    EXPECT_EQ(numbers.solve_time, plan.solve_time);
+    EXPECT_DOUBLE_EQ(numbers.goal_distance, (feature(i, 0) - goal).norm() / kSpread);
+    if (step == 0 || torque_.messages[step - 1].exploratory != 0) {
+      EXPECT_TRUE(std::isnan(numbers.prediction_error)) << "nothing was predicted";
+    } else {
+      EXPECT_DOUBLE_EQ(numbers.prediction_error, (feature(i, 0) - feature(i - 1, 1)).norm());
+      EXPECT_GT(numbers.prediction_error, 0.0);
+    }
+    ++i;
+  }
+}
+
+TEST_F(MpcNodeHealthTest, ReportsCameraTorqueAndPlansOfATrial) {
+  ASSERT_TRUE(waitUntil([&] { return !diagnostics_.messages.empty(); }));
+  beginPlanning(20, 0.0);
+  while (torque_.messages.size() < 20U) show(torque_.messages.size() + 1);
+  expectEnd(State::SUCCEEDED);
+  const std::string model_id = modelOfSeed(31).id;
+  EXPECT_TRUE(waitUntil([&] {
+    return std::stoi("0" + valueOf(status("plan"), "plans in all")) >= 20 &&
+           std::stoi("0" + valueOf(status("camera"), "total")) >= 20 &&
+           std::stoi("0" + valueOf(status("torque"), "total")) >= 20 &&
+           valueOf(status("model"), "id") == model_id;
+  })) << status("camera")
+      << status("torque") << status("plan") << status("model");
+  for (const char* name : {"camera", "torque", "plan", "model"}) {
+    EXPECT_EQ(status(name).level, DiagnosticStatus::OK) << status(name);
+  }
+  EXPECT_NE(valueOf(status("torque"), "age of the newest [s]"), "");
+  // A report with plans in it tells how long they took, one without does not.
+  EXPECT_TRUE(waitUntil([&] {
+    return std::any_of(diagnostics_.messages.begin(), diagnostics_.messages.end(),
+                       [](const diagnostic_msgs::DiagnosticArray& array) {
+                         for (const DiagnosticStatus& status : array.status) {
+                           const std::string time = valueOf(status, "longest solve time [ms]");
+                           if (!time.empty() && std::stod(time) > 0.0) return true;
+                         }
+                         return false;
+                       });
+  }));
+}
+
+TEST_F(MpcNodeHealthTest, WarnsWhileATrialWaitsForAnImageOrItsModel) {
+  begin(trialGoal(2, 1.0));
+  EXPECT_TRUE(reports("camera", DiagnosticStatus::WARN, "no image for "));
+  EXPECT_TRUE(reports("torque", DiagnosticStatus::WARN, "no torque for "));
+  show(2);
+  expectEnd(State::SUCCEEDED);
+  EXPECT_TRUE(reports("camera", DiagnosticStatus::OK, "images/s"));
+
+  begin(trialGoal(2, 0.0, "0badc0de"));
+  EXPECT_TRUE(reports("model", DiagnosticStatus::WARN, "waiting"));
+  action_.cancelGoal();
+  expectEnd(State::PREEMPTED);
+  EXPECT_TRUE(reports("model", DiagnosticStatus::OK, "of trial "));
+}
+
+TEST_F(MpcNodeHealthTest, ReportsPlansThatFailAsAnError) {
+  RandomModelOptions options;
+  options.gain = 1e200;
+  const ddm_msgs::Model model = modelMessage(randomModel(options));
+  ddm_msgs::RunTrialGoal goal = trialGoal(1, 0.0, model.id);
+  goal.start = client_.publishImage(kSize, 0);
+  client_.publish(model);
+  begin(goal);
+  expectEnd(State::SUCCEEDED);
+  EXPECT_TRUE(waitUntil([this] {
+    return std::any_of(diagnostics_.messages.begin(), diagnostics_.messages.end(),
+                       [](const diagnostic_msgs::DiagnosticArray& array) {
+                         for (const DiagnosticStatus& status : array.status) {
+                           if (status.level == DiagnosticStatus::ERROR &&
+                               status.message.find("1 of 1 plans") == 0) {
+                             return true;
+                           }
+                         }
+                         return false;
+                       });
+  }));
+}
+
+}  // namespace
+}  // namespace ddm
