@@ -1,2 +1,7 @@
-# Python side of the experiments: reading run folders and drawing figures from them.
+# Programs and figures of ddm_launch.
 # SPDX-License-Identifier: BSD-3-Clause
+import threading
+
+# rospy of Debian 11 ends its threads by Thread.isAlive, which Python 3.9 no longer has: each node would end with a traceback.
+if not hasattr(threading.Thread, "isAlive"):
+    threading.Thread.isAlive = threading.Thread.is_alive
