@@ -93,7 +93,7 @@ class InstallTest(SharedScratchCase):
             built = programs_in(os.path.join(self.devel, "lib", package))
             self.assertEqual(programs_in(os.path.join(self.prefix, "lib", package)),
                              [name for name in built if name not in left_out], package)
-        for name in ("reproduce_paper", "benchmark"):
+        for name in ("study", "benchmark"):
             self.assertNotEqual(self.runInstalled("rosrun", "ddm_launch", name, "--help")[0], 0)
         self.assertIn("sweep", programs_in(os.path.join(self.prefix, "lib", "ddm_launch")))
 
