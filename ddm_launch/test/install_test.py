@@ -95,7 +95,7 @@ class InstallTest(SharedScratchCase):
                              [name for name in built if name not in left_out], package)
         installed = programs_in(os.path.join(self.prefix, "lib", "ddm_launch"))
         self.assertLessEqual({"sweep", "robot_check"}, set(installed))
-        self.assertEqual({"qa", "fault_table", "reproduce_paper"} & set(installed), set())
+        self.assertEqual({"qa", "fault_table", "study"} & set(installed), set())
 
     def test_all_configurations_launch_files_and_headers_are_installed(self):
         for package in PACKAGES:
