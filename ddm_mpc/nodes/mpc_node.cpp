@@ -64,8 +64,7 @@ bool MpcNode::stop() {
 }
 
 void MpcNode::onGoal() {
-  // Whoever sees the goal accepted may send an image at once: it waits here until there is a trial to answer it.
-  std::unique_lock<std::mutex> lock(mutex_);
+  std::unique_lock<std::mutex> lock(mutex_);  // an image that is sent now waits for its trial
   goal_ = server_.acceptNewGoal();
   health_.expect(ControlHealth::Expected::kModel);
   last_progress_ = ros::SteadyTime::now();
@@ -132,11 +131,18 @@ void MpcNode::beginIfReady(std::unique_lock<std::mutex> /*lock*/) {
   image_queue_.addCallback(prepare_);
 }
 
-/// Makes the trial without the lock, because the cost-to-go takes up to two seconds.
+/// In lock-step the first image may have come before the goal; there will be no second one.
 void MpcNode::prepare() {
+  const std::shared_ptr<const Preparation> made = makeTrial();
+  if (made != nullptr && !made->goal.start.isZero() && last_image_ != nullptr) answer(*last_image_);
+}
+
+/// Without the lock, because the cost-to-go takes up to two seconds.
+/// @return what a trial was made from; null: no trial is wanted any more, or it was refused
+std::shared_ptr<const MpcNode::Preparation> MpcNode::makeTrial() {
   std::unique_lock<std::mutex> lock(mutex_);
   const std::shared_ptr<const Preparation> wanted = preparing_;
-  if (wanted == nullptr) return;  // cancelled
+  if (wanted == nullptr) return nullptr;
   lock.unlock();
   std::shared_ptr<TrialRun> trial;
   Trouble trouble;
@@ -147,19 +153,17 @@ void MpcNode::prepare() {
     trouble.text = std::string("trial refused: ") + e.what();
   }
   lock.lock();
-  if (preparing_ != wanted) return;  // cancelled meanwhile
+  if (preparing_ != wanted) return nullptr;  // cancelled meanwhile
   preparing_.reset();
   if (trial == nullptr) {
     finish(trouble);
-    return;
+    return nullptr;
   }
   trial_ = trial;
   applied_.clear();
   last_progress_ = ros::SteadyTime::now();
   health_.expect(ControlHealth::Expected::kImage);
-  lock.unlock();
-  // In lock-step the first image may have come before the goal; there will be no second one.
-  if (!wanted->goal.start.isZero() && last_image_ != nullptr) answer(*last_image_);
+  return wanted;
 }
 
 void MpcNode::onImage(const sensor_msgs::ImageConstPtr& image) {
@@ -170,6 +174,7 @@ void MpcNode::onImage(const sensor_msgs::ImageConstPtr& image) {
 
 void MpcNode::answer(const sensor_msgs::Image& image) {
   const auto arrival = std::chrono::steady_clock::now();
+  makeTrial();  // whoever sees the goal accepted may send an image at once
   std::unique_lock<std::mutex> lock(mutex_);
   if (trial_ == nullptr || trial_->ended()) return;
   const std::shared_ptr<TrialRun> trial = trial_;
@@ -259,16 +264,11 @@ void MpcNode::publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torqu
 
 /// The thread of the images has ended the trial.
 void MpcNode::onFinish() {
-  Trouble trouble;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (!finished_) return;  // it was cancelled before this was called
-    trouble = *finished_;
-  }
-  if (!trouble.text.empty()) {
-    abort(trouble);
-    return;
-  }
+  std::unique_lock<std::mutex> lock(mutex_);
+  if (!finished_) return;  // it was cancelled before this was called
+  const Trouble trouble = *finished_;
+  lock.unlock();
+  if (!trouble.text.empty()) return abort(trouble);
   const ddm_msgs::RunTrialGoalConstPtr goal = goal_;
   const ddm_msgs::RunTrialResult result = endTrial();
   std::ostringstream text;

@@ -86,6 +86,7 @@ class MpcNode {
 
   // In the thread of the images.
   void prepare();
+  std::shared_ptr<const Preparation> makeTrial();
   void onImage(const sensor_msgs::ImageConstPtr& image);
   void answer(const sensor_msgs::Image& image);
   std::optional<Decision> decide(TrialRun* trial, const sensor_msgs::ImageConstPtr& new_goal,
