@@ -4,7 +4,6 @@
 #include <ddm_images/image_codec.h>
 #include <ddm_model/objective.h>
 #include <ddm_model/pca.h>
-#include <ddm_model/training_data.h>
 #include <ddm_mpc/epsilon_greedy.h>
 #include <ddm_params/param_value.h>
 #include <ddm_params/tool.h>
@@ -98,8 +97,7 @@ void run(const GrowthArguments& arguments) {
   }
   const ModelOptions model;
   Pca pca;
-  const double pca_us =
-      microseconds([&] { pca = fitPca(data, model.pca_dim, TrainingOptions().score_std); });
+  const double pca_us = microseconds([&] { pca = fitPca(data, model.pca_dim); });
   const Networks<float> networks(model, data.torqueDim());
   JointObjective<float> objective(networks, makeTrainingData(data, pca));
   const Eigen::VectorXf theta = Eigen::VectorXf::Constant(networks.numParams(), 0.05F);
