@@ -91,7 +91,7 @@ Configuration readConfiguration(ParamReader* reader) {
 }
 
 void requireLearnedPrediction(const TrainingOptions& training) {
-  if (makeSchedule(training.schedule).terms().v_p) return;
+  if (makeSchedule(training).terms().v_p) return;
   throw std::invalid_argument(
       "training/schedule must be one with V_P where a plan follows f, got " + training.schedule +
       ": it is for run_experiment --method pilco_features");

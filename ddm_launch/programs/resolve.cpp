@@ -34,7 +34,6 @@ constexpr char kAbout[] =
 
 struct Request {
   Arguments arguments;
-  std::vector<std::string> access;
   std::string print;
   std::string path;
 };
@@ -144,12 +143,6 @@ bool configure(int argc, char** argv, Request* request) {
   add("crop", call(setCrop), "X,Y,WIDTH,HEIGHT: the part of a robot's camera image that counts");
   add("motors-of", call(setMotors),
       "plant whose motors the robot has: robot/max_torque is that of its file");
-  add("access", po::value(&request->access)->multitoken(),
-      "folders and bags that requests to the nodes may name, with those of the experiment");
-  add("record", po::value<Text>()->notifier([request](const Text& bag) {
-    request->access.push_back(fs::absolute(bag).lexically_normal().parent_path().string());
-  }),
-      "bag that is to be recorded: requests may name bags in its folder");
   add("print", po::value(&request->print),
       "BLOCK/KEY: print this value alone; status_frequency: of the action run_trial [Hz]");
   add("path", po::value(&request->path), "print this path alone, absolute and without ~");
@@ -161,16 +154,6 @@ bool configure(int argc, char** argv, Request* request) {
 void makeAbsolute(YAML::Node path) {
   if (!path.IsDefined() || !path.IsScalar() || path.Scalar().empty()) return;
   path = fs::absolute(path.Scalar()).lexically_normal().string();
-}
-
-/// Adds to what requests to the nodes may name; the default, the folder in which a node runs, goes.
-void allowAccess(const std::vector<std::string>& paths, YAML::Node* blocks) {
-  YAML::Node bags(YAML::NodeType::Sequence);
-  for (const std::string& path : paths) bags.push_back(path);
-  for (const YAML::Node& bag : (*blocks)["access"]["bags"]) {
-    if (bag.Scalar() != ".") bags.push_back(bag.Scalar());
-  }
-  (*blocks)["access"]["bags"] = bags;
 }
 
 /// mpc_node ends a trial in which no image comes for controller/timeout, and a robot's images are robot/dt apart. Only
@@ -211,10 +194,6 @@ void run(const Request& request) {
     blocks["plant"]["model"] = plant["model"];
   }
   if (all.robot) makeAbsolute(blocks["robot"]["goal_file"]);
-  std::vector<std::string> access = request.access;
-  if (experiment) access.push_back(blocks["experiment"]["runs"].Scalar());
-  for (const YAML::Node& bag : blocks["start"]["bags"]) access.push_back(bag.Scalar());
-  if (!access.empty()) allowAccess(access, &blocks);
   if (request.print.empty()) {
     std::cout << YAML::Dump(blocks) << "\n";
     return;

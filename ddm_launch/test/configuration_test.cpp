@@ -95,7 +95,6 @@ TEST(Configuration, ThePaperPresetHoldsTheNumbersOfThePaper) {
   EXPECT_EQ(all.model.model.feature_dim, 2);
   EXPECT_EQ(all.model.model.order, 2);
   EXPECT_EQ(all.model.model.encoder_widths, (std::vector<int>{25, 12, 6}));
-  EXPECT_EQ(all.model.model.decoder_widths, (std::vector<int>{6, 12, 25}));
   EXPECT_EQ(all.model.model.predictor_widths, (std::vector<int>{4}));
   EXPECT_FALSE(all.model.model.residual || all.model.model.increments);
   EXPECT_EQ(all.model.training.prediction_steps, 1);

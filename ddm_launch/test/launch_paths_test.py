@@ -42,7 +42,6 @@ class LaunchPathsTest(ScratchCase):
         values, blocks = self.parameters("record.launch", "bag:=" + there + "a.bag", "model:=true")
         self.assertEqual((values["/trial_node/run/bag"], values["/trial_node/run/model"]),
                          (self.odd + "/a.bag", self.file("true")))
-        self.assertEqual(blocks["access"]["bags"], [self.odd])
         values, _ = self.parameters("control.launch", "model:=" + there + "m.ddm")
         self.assertEqual(values["/trial_node/run/model"], self.odd + "/m.ddm")
         self.assertNotIn("/trial_node/run/bag", values)

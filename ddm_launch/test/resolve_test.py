@@ -1,7 +1,6 @@
 # resolve: what the launch files take their configuration from.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import subprocess
 
 import roslib.packages
 import yaml
@@ -26,7 +25,7 @@ class ResolveTest(ScratchCase):
 
     def test_an_option_with_an_empty_value_counts_as_not_given(self):
         self.assertEqual(self.resolve("--preset", "", "--plant", "", "--set", "experiment/seed=", "--crop", "",
-                                      "--model", "", "--bags", "--config", "", "--access"), self.resolve())
+                                      "--model", "", "--bags", "--config", ""), self.resolve())
 
     def test_values_win_over_files(self):
         self.write("more.yaml", "experiment: {seed: 3, trials: 4}\nshow: {frame_rate: 2.0}\n")
@@ -59,7 +58,6 @@ class ResolveTest(ScratchCase):
         self.assertEqual(blocks["experiment"]["runs"], self.file("runs/one"))
         self.assertEqual((blocks["start"]["model"], blocks["start"]["bags"]), (self.file("m.ddm"), bags))
         self.assertEqual(blocks["robot"]["goal_file"], self.file("goal.png"))
-        self.assertEqual(blocks["access"]["bags"], [self.file("runs/one")] + bags)
 
     @needs_mujoco
     def test_a_model_file_is_found_from_any_folder_and_brings_its_motors(self):
@@ -92,21 +90,6 @@ class ResolveTest(ScratchCase):
         blocks = self.resolve("--plant", "plants/robot.yaml", "--set", "robot/goal_file=goal.png", "--bags", "a.bag")
         self.assertEqual(blocks["robot"]["goal_file"], self.file("goal.png"))
         self.assertEqual(blocks["start"]["bags"], [self.file("a.bag")])
-
-    def test_a_trial_without_a_bag_gives_the_nodes_access_to_no_other_folder(self):
-        for launch, folders in (("control.launch model:=/here/model.ddm", ["."]), ("record.launch bag:=/there/a.bag", ["/there"]),
-                                ("record.launch bag:=/a.bag", ["/"])):
-            output = subprocess.check_output(["roslaunch", "--dump-params", "ddm_launch"] + launch.split(), stderr=subprocess.DEVNULL)
-            blocks = yaml.safe_load(yaml.safe_load(output)["/configuration"])
-            self.assertEqual(blocks["access"]["bags"], folders, launch)
-
-    def test_bags_that_a_file_starts_from_may_be_read_by_the_nodes(self):
-        self.write("start.yaml", "start: {bags: [/a.bag]}\n")
-        self.assertEqual(self.resolve("--runs", "/runs", "--config", "start.yaml")["access"]["bags"],
-                         ["/runs", "/a.bag"])
-        self.write("access.yaml", "access: {bags: [/elsewhere]}\n")
-        self.assertEqual(self.resolve("--runs", "/runs", "--config", "access.yaml")["access"]["bags"],
-                         ["/runs", "/elsewhere"])
 
     def test_a_controller_waits_at_least_two_time_steps_of_its_robot(self):
         slow = ["--set", "robot/dt=3"]

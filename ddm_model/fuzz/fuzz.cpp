@@ -60,14 +60,10 @@ std::string repaired(std::string bytes) {
   return bytes;
 }
 
-/// Whether what was read and written again is bit for bit as it was. Not looked at where it was of
-/// another version of the format; of an ensemble, which older programs wrote, only the first model
-/// is kept, and the last number written is how many others there are.
+/// Whether a model that was read and written again has the same content, bit for bit.
 bool comesBack(const std::string& read, const std::string& written) {
-  constexpr std::size_t kVersionAt = 8, kContentAt = 24, kNumOthers = 4;
-  if (read[kVersionAt] != written[kVersionAt]) return true;
-  const std::size_t size = written.size() - kContentAt - kNumOthers;
-  return read.compare(kContentAt, size, written, kContentAt, size) == 0;
+  constexpr std::size_t kContentAt = 24;
+  return read.compare(kContentAt, std::string::npos, written, kContentAt, std::string::npos) == 0;
 }
 
 void checkModel(const Ddm& model) {

@@ -1,7 +1,6 @@
 // model_node: trains a model from the recorded bags and publishes it.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <actionlib/server/simple_action_server.h>
-#include <ddm_bag_io/bag_access.h>
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_bag_io/model_config.h>
 #include <ddm_bag_io/model_message.h>
@@ -10,24 +9,74 @@
 #include <ddm_msgs/TrainAction.h>
 #include <ddm_msgs/topics.h>
 #include <ddm_node/run_node.h>
+#include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/ros.h>
 
-#include "training_health.h"
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <mutex>
+#include <string>
 
 namespace ddm {
 namespace {
 
 const ros::WallDuration kFeedbackPeriod(0.05);
 
+using Status = diagnostic_updater::DiagnosticStatusWrapper;
+
+std::string textOf(const char* format, double value) {
+  char text[80];
+  std::snprintf(text, sizeof(text), format, value);
+  return text;
+}
+
+/// How this node is doing, on /diagnostics: the training that runs, or how the last one ended. Published once in
+/// `~diagnostic_period` (1 s) of wall time.
+class TrainingHealth {
+ public:
+  TrainingHealth(const ros::NodeHandle& nh, const ros::NodeHandle& pnh) : updater_(nh, pnh) {
+    status_.summary(Status::OK, "no model yet");
+    updater_.setHardwareID("none");
+    updater_.add("training", [this](Status& status) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      status.summary(status_);
+      status.values = status_.values;
+      if (!since_.isZero())
+        status.addf("for [s]", "%.1f", (ros::SteadyTime::now() - since_).toSec());
+    });
+    // Not Updater::update(), which goes by simulated time: that stands still while a model is trained.
+    timer_ =
+        nh.createSteadyTimer(ros::WallDuration(updater_.getPeriod()),
+                             [this](const ros::SteadyTimerEvent&) { updater_.force_update(); });
+  }
+
+  /// May be called by another thread than the one that publishes.
+  /// @param is_new  whether this state begins now; false: it only has other numbers
+  void set(std::uint8_t level, std::uint32_t trial, const std::string& text,
+           const std::map<std::string, double>& values = {}, bool is_new = true) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    status_.clear();
+    status_.summary(level, "trial " + std::to_string(trial) + ": " + text);
+    for (const auto& value : values) status_.addf(value.first, "%.4g", value.second);
+    if (is_new) since_ = ros::SteadyTime::now();
+  }
+
+ private:
+  std::mutex mutex_;  // guards the next two
+  Status status_;
+  ros::SteadyTime since_;  // when the training began or ended; zero: there was none
+  diagnostic_updater::Updater updater_;
+  ros::SteadyTimer timer_;
+};
+
 /// Action `train` -> topic `model`, latched.
 class ModelNode {
  public:
   /// @param nh   topics and action
   /// @param pnh  parameters
-  ModelNode(ros::NodeHandle nh, const ros::NodeHandle& pnh, const ModelConfig& config,
-            const BagAccess& access)
+  ModelNode(ros::NodeHandle nh, const ros::NodeHandle& pnh, const ModelConfig& config)
       : config_(config),
-        access_(access),
         bags_(config.image.size, config.data_set,
               [](const std::string& note) { ROS_WARN_STREAM(note); }),
         health_(nh, pnh),
@@ -41,9 +90,9 @@ class ModelNode {
  private:
   void train(const ddm_msgs::TrainGoalConstPtr& goal) {
     ddm_msgs::TrainResult result;
-    health_.begin(goal->trial);
+    trial_ = goal->trial;
+    health_.set(Status::OK, trial_, "reads bags");
     try {
-      for (const std::string& bag : goal->bags) access_.require(bag);
       ROS_INFO("trial %u: reads %zu bags, then trains", goal->trial, goal->bags.size());
       const DataSet data = bags_.read(goal->bags, [this] { return isWanted(); });
       if (!data.hasGoal()) {
@@ -56,26 +105,29 @@ class ModelNode {
         cancel(result, training.message);
       } else if (!training.model) {
         ROS_ERROR_STREAM("trial " << goal->trial << ": " << training.message);
-        health_.fail(training.message);
+        health_.set(Status::ERROR, trial_, training.message);
         server_.setAborted(result, training.message);
       } else {
         publish(*training.model, &result);
         ROS_INFO("trial %u: learned from %u frames in %.2f s, V_R %.4g, V_P %.4g", goal->trial,
                  result.frames, result.train_time, result.v_r, result.v_p);
-        health_.succeed(result);
+        health_.set(Status::OK, trial_, textOf("trained in %.2f s", result.train_time),
+                    {{"frames learned from", result.frames},
+                     {"V_R [grey^2]", result.v_r},
+                     {"V_P [grey^2]", result.v_p}});
         server_.setSucceeded(result);
       }
     } catch (const ReadingCancelled& e) {
       cancel(result, e.what());
     } catch (const std::exception& e) {
       ROS_ERROR_STREAM("trial " << goal->trial << ": cannot train: " << e.what());
-      health_.fail(e.what());
+      health_.set(Status::ERROR, trial_, e.what());
       server_.setAborted(result, e.what());
     }
   }
 
   void cancel(const ddm_msgs::TrainResult& result, const std::string& message) {
-    health_.cancel();
+    health_.set(Status::WARN, trial_, "training cancelled");
     server_.setPreempted(result, message);
   }
 
@@ -90,7 +142,12 @@ class ModelNode {
   }
 
   bool reportProgress(const TrainingProgress& progress) {
-    health_.progress(progress);
+    const double percent = 100.0 * progress.fraction_done;
+    health_.set(Status::OK, trial_, textOf("training, %.0f %% of the iterations allowed", percent),
+                {{"iteration", progress.iteration},
+                 {"V_R [grey^2]", progress.v_r},
+                 {"V_P [grey^2]", progress.v_p}},
+                /*is_new=*/false);
     const ros::SteadyTime now = ros::SteadyTime::now();
     if (now - last_feedback_ >= kFeedbackPeriod) {
       last_feedback_ = now;
@@ -118,9 +175,9 @@ class ModelNode {
   }
 
   ModelConfig config_;
-  BagAccess access_;
   BagCache bags_;
   TrainingHealth health_;
+  std::uint32_t trial_ = 0;
   ros::Publisher model_pub_;
   ros::SteadyTime last_feedback_;
   actionlib::SimpleActionServer<ddm_msgs::TrainAction> server_;
@@ -134,10 +191,9 @@ int main(int argc, char** argv) {
   return ddm::runNode("model_node", argc, argv, [](auto nh, auto pnh, ddm::ParamReader* params) {
     params->ignore("diagnostic_period");  // read by diagnostic_updater itself
     const ddm::ModelConfig config = ddm::readModelConfig(params);
-    const auto access = params->read<ddm::BagAccess>("access");
     params->requireValid();
     ROS_INFO_STREAM("model_node runs with\n" << ddm::toText(config));
-    ddm::ModelNode node(nh, pnh, config, access);
+    ddm::ModelNode node(nh, pnh, config);
     ros::spin();
   });
 }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <iterator>
 #include <sstream>
 
@@ -18,11 +19,22 @@ using Seconds = std::chrono::duration<double>;
 constexpr int kQueue = 1000;  // a slow disk must not cost a frame
 constexpr Seconds kSlice(0.1);
 
+/// A request to record may replace no file.
+void requireNew(const std::string& path) {
+  if (std::filesystem::path(path).extension() != ".bag") {
+    throw std::runtime_error("bag '" + path + "': the path of a recording must end in .bag");
+  }
+  if (std::filesystem::exists(path)) {
+    throw std::runtime_error("bag " + path +
+                             " exists already: remove it, or record under another name");
+  }
+}
+
 }  // namespace
 
-TrialRecorder::TrialRecorder(ros::NodeHandle nh, const BagOptions& bag, const BagAccess& access,
+TrialRecorder::TrialRecorder(ros::NodeHandle nh, const BagOptions& bag,
                              const RecorderOptions& options)
-    : bag_options_(bag), access_(access), options_(options), transport_(nh) {
+    : bag_options_(bag), options_(options), transport_(nh) {
   // Otherwise TCP holds an image back until the one before is acknowledged, while the trial goes on.
   const auto no_delay = ros::TransportHints().tcpNoDelay();
   goal_sub_ = nh.subscribe<sensor_msgs::Image>(topics::kGoalImage, 1,
@@ -82,7 +94,7 @@ bool TrialRecorder::start(ddm_msgs::StartRecording::Request& request,
   }
   std::unique_ptr<BagWriter> bag;
   try {
-    access_.requireNew(request.path);
+    requireNew(request.path);
     bag = std::make_unique<BagWriter>(request.path, bag_options_);
   } catch (const std::exception& e) {
     response.message = e.what() + std::string(bag_ == nullptr ? "" : "; the recording goes on");
@@ -194,10 +206,9 @@ int main(int argc, char** argv) {
   return ddm::runNode("trial_recorder", argc, argv, [](auto nh, auto, ddm::ParamReader* params) {
     params->ignore("image_transport");  // read by image_transport itself
     const auto bag = params->read<ddm::BagOptions>("data_set");
-    const auto access = params->read<ddm::BagAccess>("access");
     const auto options = params->read<ddm::RecorderOptions>("recorder");
     params->requireValid();
-    ddm::TrialRecorder recorder(nh, bag, access, options);
+    ddm::TrialRecorder recorder(nh, bag, options);
     ros::MultiThreadedSpinner(2).spin();
   });
 }

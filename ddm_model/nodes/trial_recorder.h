@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_bag_io/bag_access.h>
 #include <ddm_bag_io/bag_writer.h>
 #include <ddm_msgs/StartRecording.h>
 #include <ddm_msgs/StopRecording.h>
@@ -40,8 +39,7 @@ struct RecorderOptions {
 /// Needs a spinner with two threads or more: stopping waits for messages on their way.
 class TrialRecorder {
  public:
-  TrialRecorder(ros::NodeHandle nh, const BagOptions& bag, const BagAccess& access,
-                const RecorderOptions& options);
+  TrialRecorder(ros::NodeHandle nh, const BagOptions& bag, const RecorderOptions& options);
 
  private:
   bool start(ddm_msgs::StartRecording::Request& request,
@@ -56,7 +54,6 @@ class TrialRecorder {
   std::string shortcoming(const ddm_msgs::StopRecording::Request& request) const;
 
   BagOptions bag_options_;
-  BagAccess access_;
   RecorderOptions options_;
   std::mutex mutex_;
   std::condition_variable changed_;

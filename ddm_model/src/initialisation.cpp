@@ -9,10 +9,12 @@
 namespace ddm {
 namespace {
 
+/// Standard deviation of a layer's leading unit before its arctan. Above 1 the arctan would saturate at once.
+constexpr double kLayerStd = 0.3;
+
 /// PCA of the layer's inputs as the start of an encoder layer and its mirror image in the decoder.
 /// @return the encoder layer's output for the inputs  [width_out x M]
-Eigen::MatrixXd initialisePair(const Eigen::MatrixXd& inputs, double layer_std,
-                               Eigen::Map<Eigen::MatrixXd> encoder_w,
+Eigen::MatrixXd initialisePair(const Eigen::MatrixXd& inputs, Eigen::Map<Eigen::MatrixXd> encoder_w,
                                Eigen::Map<Eigen::VectorXd> encoder_b,
                                Eigen::Map<Eigen::MatrixXd> decoder_w,
                                Eigen::Map<Eigen::VectorXd> decoder_b) {
@@ -28,7 +30,7 @@ Eigen::MatrixXd initialisePair(const Eigen::MatrixXd& inputs, double layer_std,
     if (basis(largest, k) < 0.0) basis.col(k) *= -1.0;  // an arbitrary sign, made definite
   }
   const double spread = std::sqrt(std::max(eigen.eigenvalues().tail<1>()[0], 1e-12));
-  const double c = layer_std / spread;
+  const double c = kLayerStd / spread;
   encoder_w.topRows(rank) = c * basis.transpose();
   encoder_b.head(rank) = -c * basis.transpose() * mean;
   decoder_w.leftCols(rank) = basis / c;
@@ -39,24 +41,22 @@ Eigen::MatrixXd initialisePair(const Eigen::MatrixXd& inputs, double layer_std,
 }  // namespace
 
 Eigen::VectorXd initialTheta(const Networks<double>& networks, const Eigen::MatrixXd& scores,
-                             const TrainingOptions& options, bool pca_start, std::mt19937_64* rng) {
+                             bool pca_start, std::mt19937_64* rng) {
   const Mlp<double>& encoder = networks.encoder();
   const Mlp<double>& decoder = networks.decoder();
   Eigen::VectorXd theta(networks.numParams());
   double* const theta_e = networks.encoderOf(theta.data());
   double* const theta_d = networks.decoderOf(theta.data());
-  randomise(networks.f(), options.predictor_gain, rng, networks.predictorOf(theta.data()));
-  randomise(encoder, 1.0, rng, theta_e);
-  randomise(decoder, 1.0, rng, theta_d);
+  randomise(networks.f(), rng, networks.predictorOf(theta.data()));
+  randomise(encoder, rng, theta_e);
+  randomise(decoder, rng, theta_d);
 
-  const std::vector<int> mirrored(decoder.widths().rbegin(), decoder.widths().rend());
-  if (encoder.widths() != mirrored || !pca_start) return theta;
+  if (!pca_start) return theta;
   Eigen::MatrixXd inputs = scores;
   for (int layer = 0; layer < encoder.numLayers(); ++layer) {
     const int mirror = decoder.numLayers() - 1 - layer;
-    inputs = initialisePair(inputs, options.layer_std, encoder.weights(theta_e, layer),
-                            encoder.biases(theta_e, layer), decoder.weights(theta_d, mirror),
-                            decoder.biases(theta_d, mirror));
+    inputs = initialisePair(inputs, encoder.weights(theta_e, layer), encoder.biases(theta_e, layer),
+                            decoder.weights(theta_d, mirror), decoder.biases(theta_d, mirror));
   }
   return theta;
 }

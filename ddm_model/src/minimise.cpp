@@ -16,7 +16,7 @@ namespace ddm {
 namespace {
 
 /// One search: passes points to the function until a limit is reached, and keeps the best.
-class Search {
+class Search : public ceres::IterationCallback {
  public:
   Search(const DifferentiableFunction& f, const Eigen::VectorXd& start,
          const MinimiseOptions& options)
@@ -45,7 +45,7 @@ class Search {
 
   /// Ends a search whose iterations hardly change the cost. The solver's own test compares the
   /// change with the cost and not with its magnitude: it never ends a search with negative costs.
-  ceres::CallbackReturnType afterIteration(const ceres::IterationSummary& summary) {
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     const double last = accepted_cost_;
     accepted_cost_ = summary.cost;
     best_.iterations = summary.iteration;
@@ -60,7 +60,7 @@ class Search {
 
   /// @param summary  of the solver, which has ended
   Minimum result(const ceres::GradientProblemSolver::Summary& summary) && {
-    // Of the solver's verdicts only that of afterIteration() counts. It calls a line search that
+    // Of the solver's verdicts only that of operator() counts. It calls a line search that
     // returns to where it began convergence, too.
     best_.reason = reason(summary.termination_type == ceres::USER_SUCCESS,
                           summary.termination_type == ceres::NO_CONVERGENCE);
@@ -137,24 +137,13 @@ class CeresFunction : public ceres::FirstOrderFunction {
   Search& search_;
 };
 
-class CeresCallback : public ceres::IterationCallback {
- public:
-  explicit CeresCallback(Search* search) : search_(*search) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    return search_.afterIteration(summary);
-  }
-
- private:
-  Search& search_;
-};
-
 ceres::GradientProblemSolver::Options solverOptions(const MinimiseOptions& options,
-                                                    CeresCallback* callback) {
+                                                    ceres::IterationCallback* callback) {
   ceres::GradientProblemSolver::Options out;
   out.line_search_direction_type = options.lbfgs_rank > 0 ? ceres::LBFGS : ceres::BFGS;
   if (options.lbfgs_rank > 0) out.max_lbfgs_rank = options.lbfgs_rank;
   out.max_num_iterations = options.max_iterations;
-  out.function_tolerance = 0.0;  // see Search::afterIteration()
+  out.function_tolerance = 0.0;  // see Search::operator()
   out.gradient_tolerance = options.gradient_tolerance;
   out.parameter_tolerance = 0.0;  // a short step alone is not convergence
   out.callbacks.push_back(callback);
@@ -174,11 +163,10 @@ Minimum minimise(const DifferentiableFunction& f, const Eigen::VectorXd& start,
     throw std::invalid_argument("the limits of a minimisation must be >= 0");
   }
   Search search(f, start, options);
-  CeresCallback callback(&search);
   const ceres::GradientProblem problem(new CeresFunction(&search));  // owns the function
   ceres::GradientProblemSolver::Summary summary;
   Eigen::VectorXd x = start;
-  ceres::Solve(solverOptions(options, &callback), problem, x.data(), &summary);
+  ceres::Solve(solverOptions(options, &search), problem, x.data(), &summary);
   return std::move(search).result(summary);
 }
 

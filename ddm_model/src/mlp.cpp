@@ -41,30 +41,6 @@ LayerFactors<Scalar> Mlp<Scalar>::zeroFactors() const {
 }
 
 template <class Scalar>
-Eigen::Map<typename Mlp<Scalar>::Matrix> Mlp<Scalar>::weights(Scalar* theta, int layer) const {
-  return {theta + offsets_[layer], widths_[layer + 1], widths_[layer]};
-}
-
-template <class Scalar>
-Eigen::Map<typename Mlp<Scalar>::Vector> Mlp<Scalar>::biases(Scalar* theta, int layer) const {
-  const Eigen::Index num_weights = static_cast<Eigen::Index>(widths_[layer + 1]) * widths_[layer];
-  return {theta + offsets_[layer] + num_weights, widths_[layer + 1]};
-}
-
-template <class Scalar>
-Eigen::Map<const typename Mlp<Scalar>::Matrix> Mlp<Scalar>::weights(const Scalar* theta,
-                                                                    int layer) const {
-  return {theta + offsets_[layer], widths_[layer + 1], widths_[layer]};
-}
-
-template <class Scalar>
-Eigen::Map<const typename Mlp<Scalar>::Vector> Mlp<Scalar>::biases(const Scalar* theta,
-                                                                   int layer) const {
-  const Eigen::Index num_weights = static_cast<Eigen::Index>(widths_[layer + 1]) * widths_[layer];
-  return {theta + offsets_[layer] + num_weights, widths_[layer + 1]};
-}
-
-template <class Scalar>
 typename Mlp<Scalar>::Matrix::ColsBlockXpr Mlp<Scalar>::inputs(Eigen::Index num_samples,
                                                                Tape* tape) const {
   tape->num_samples = num_samples;

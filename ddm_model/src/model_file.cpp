@@ -97,7 +97,7 @@ void writeOptions(const ModelOptions& options, Writer* out) {
   out->number<std::int32_t>(options.feature_dim);
   out->number<std::int32_t>(options.order);
   widths(options.encoder_widths);
-  widths(options.decoder_widths);
+  widths(options.decoderWidths());
   widths(options.predictor_widths);
   out->number<std::uint8_t>(options.residual ? 1 : 0);
   out->number<std::uint8_t>(options.increments ? 1 : 0);
@@ -106,7 +106,7 @@ void writeOptions(const ModelOptions& options, Writer* out) {
   out->number<std::int32_t>(options.delay);
 }
 
-ModelOptions readOptions(std::uint32_t version, Reader* in) {
+ModelOptions readOptions(Reader* in) {
   const auto widths = [in] {
     const std::vector<std::int32_t> fixed = in->array<std::int32_t>();
     return std::vector<int>(fixed.begin(), fixed.end());
@@ -116,34 +116,33 @@ ModelOptions readOptions(std::uint32_t version, Reader* in) {
   options.feature_dim = in->number<std::int32_t>();
   options.order = in->number<std::int32_t>();
   options.encoder_widths = widths();
-  options.decoder_widths = widths();
+  if (widths() != options.decoderWidths()) {
+    throw std::runtime_error("its decoder does not mirror its encoder");
+  }
   options.predictor_widths = widths();
-  options.residual = version > 1 && in->flag();
-  options.increments = version > 1 && in->flag();
-  options.max_torque =
-      version > 2 ? in->array<double>() : std::vector<double>{in->number<double>()};
-  if (version > 3) options.blur = in->number<double>();
-  if (version > 4) options.delay = in->number<std::int32_t>();
+  options.residual = in->flag();
+  options.increments = in->flag();
+  options.max_torque = in->array<double>();
+  options.blur = in->number<double>();
+  options.delay = in->number<std::int32_t>();
   for (const std::string& problem : options.problems()) throw std::runtime_error(problem);
   return options;
 }
 
 /// @param state_dim  rows of landmarks
-ModelInfo readInfo(std::uint32_t version, size_t state_dim, Reader* in) {
+ModelInfo readInfo(size_t state_dim, Reader* in) {
   ModelInfo info;
   info.seed = in->number<std::uint64_t>();
   info.trial = in->number<std::uint32_t>();
   info.frames = in->number<std::uint32_t>();
   info.v_r = in->number<double>();
   info.v_p = in->number<double>();
-  if (version > 1) info.feature_spread = in->number<double>();
-  if (version > 3) {
-    const std::vector<float> landmarks = in->array<float>();
-    if (landmarks.size() % state_dim != 0) throw std::runtime_error("its landmarks are no states");
-    info.landmarks =
-        Eigen::Map<const Eigen::MatrixXf>(landmarks.data(), static_cast<Eigen::Index>(state_dim),
-                                          static_cast<Eigen::Index>(landmarks.size() / state_dim));
-  }
+  info.feature_spread = in->number<double>();
+  const std::vector<float> landmarks = in->array<float>();
+  if (landmarks.size() % state_dim != 0) throw std::runtime_error("its landmarks are no states");
+  info.landmarks =
+      Eigen::Map<const Eigen::MatrixXf>(landmarks.data(), static_cast<Eigen::Index>(state_dim),
+                                        static_cast<Eigen::Index>(landmarks.size() / state_dim));
   info.config = in->text();
   if (!std::isfinite(info.v_r) || !std::isfinite(info.v_p) || !std::isfinite(info.feature_spread) ||
       !info.landmarks.allFinite()) {
@@ -152,8 +151,8 @@ ModelInfo readInfo(std::uint32_t version, size_t state_dim, Reader* in) {
   return info;
 }
 
-Ddm readContent(std::uint32_t version, Reader* in) {
-  const ModelOptions options = readOptions(version, in);
+Ddm readContent(Reader* in) {
+  const ModelOptions options = readOptions(in);
   const int image_size = in->number<std::int32_t>();
   const int torque_dim = in->number<std::int32_t>();
   const auto requireWithin = [](const std::string& name, int value, int largest) {
@@ -165,7 +164,7 @@ Ddm readContent(std::uint32_t version, Reader* in) {
   requireWithin("number of motors", torque_dim, 1000);
   const auto state_dim = static_cast<size_t>(options.memory()) * options.feature_dim +
                          static_cast<size_t>(options.memory() - 1) * torque_dim;
-  ModelInfo info = readInfo(version, state_dim, in);
+  ModelInfo info = readInfo(state_dim, in);
   Pca pca;
   pca.scale = in->number<float>();
   const std::vector<float> mean = in->array<float>();
@@ -186,15 +185,6 @@ Ddm readContent(std::uint32_t version, Reader* in) {
   return Ddm(options, image_size, torque_dim, std::move(pca),
              Eigen::Map<const Eigen::VectorXd>(theta.data(), theta.size()), std::move(goal),
              std::move(info));
-}
-
-/// The model, in versions 2 and 3 the first of what may once have been an ensemble.
-Ddm readFirst(std::uint32_t version, Reader* in) {
-  Ddm model = readContent(version, in);
-  const auto others = version == 2 || version == 3 ? in->number<std::uint32_t>() : 0U;
-  for (std::uint32_t i = 0; i < others; ++i) readContent(version, in);
-  if (in->left() > 0) throw std::runtime_error("there are bytes after its content");
-  return model;
 }
 
 void writeContent(const Ddm& model, Writer* out) {
@@ -240,10 +230,9 @@ Ddm deserialiseModel(const std::string& bytes, const std::string& source) {
   if (bytes.size() < kHeaderSize) throw fail("is cut short: copy or train it again");
   Reader header(bytes.data() + kMagicSize, kHeaderSize - kMagicSize);
   const auto version = header.number<std::uint32_t>();
-  if (version < 1 || version > kVersion) {
-    throw fail("has format version " + std::to_string(version) +
-               ", this program reads versions 1 to " + std::to_string(kVersion) +
-               ": train it again from its bags");
+  if (version != kVersion) {
+    throw fail("has format version " + std::to_string(version) + ", this program reads version " +
+               std::to_string(kVersion) + ": train it again from its bags");
   }
   const auto size = header.number<std::uint64_t>();
   if (size != bytes.size() - kHeaderSize) {
@@ -256,7 +245,9 @@ Ddm deserialiseModel(const std::string& bytes, const std::string& source) {
   }
   Reader content(bytes.data() + kHeaderSize, size);
   try {
-    return readFirst(version, &content);
+    Ddm model = readContent(&content);
+    if (content.left() > 0) throw std::runtime_error("there are bytes after its content");
+    return model;
   } catch (const std::exception& e) {
     throw fail(std::string("makes no sense: ") + e.what());
   }

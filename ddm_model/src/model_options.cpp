@@ -23,7 +23,6 @@ std::vector<std::string> ModelOptions::problems() const {
   model.requireWithin("order", order, 1, 50);
   model.requireWithin("delay", delay, 0, 50);
   requireWidths("encoder_widths", encoder_widths);
-  requireWidths("decoder_widths", decoder_widths);
   requireWidths("predictor_widths", predictor_widths);
   model.require(areLimits(max_torque), "max_torque", "be > 0 and finite", limitsText(max_torque));
   return model.problems();
@@ -59,9 +58,6 @@ std::vector<std::string> TrainingOptions::problems() const {
   training.requireWithin("max_iterations", max_iterations, 1, 1000000);
   training.requireFraction("function_tolerance", function_tolerance);
   training.requireWithin("lbfgs_rank", lbfgs_rank, 1, 1000);
-  training.requirePositive("score_std", score_std);
-  training.requirePositive("layer_std", layer_std);
-  training.requireNotNegative("predictor_gain", predictor_gain);
   return training.problems();
 }
 

@@ -73,6 +73,19 @@ class CentredImages {
 
 }  // namespace
 
+Blur::Blur(int image_size, double std) {
+  if (!(std > 0.0)) return;
+  Eigen::MatrixXd G(image_size, image_size);
+  for (Eigen::Index i = 0; i < image_size; ++i) {
+    for (Eigen::Index j = 0; j < image_size; ++j) {
+      const double distance = static_cast<double>(i - j) / std;
+      G(i, j) = std::exp(-0.5 * distance * distance);
+    }
+    G.row(i) /= G.row(i).sum();
+  }
+  G_ = G.cast<float>();  // last: NumPy then has the same weights
+}
+
 Eigen::MatrixXf Pca::project(const Eigen::Ref<const GreyMatrix>& pixels) const {
   Eigen::MatrixXf images = pixels.cast<float>() / kWhite;
   blur.apply(&images);
@@ -105,8 +118,7 @@ Eigen::VectorXd Projection::operator()(const Grey& grey) const {
   return filters_ * pixels.cast<double>() - offset_;
 }
 
-Pca fitPca(const DataSet& data, int dim, double score_std, const Blur& blur,
-           const std::function<void()>& check) {
+Pca fitPca(const DataSet& data, int dim, const Blur& blur, const std::function<void()>& check) {
   const Eigen::Index num_images = data.numImages();
   if (data.numPixels() < dim) {
     throw std::invalid_argument("PCA to model/pca_dim = " + std::to_string(dim) + " of images of " +
@@ -155,7 +167,7 @@ Pca fitPca(const DataSet& data, int dim, double score_std, const Blur& blur,
     pca.basis.col(k).cwiseAbs().maxCoeff(&largest);
     if (pca.basis(largest, k) < 0.0F) pca.basis.col(k) *= -1.0F;
   }
-  pca.scale = static_cast<float>(score_std / std::sqrt(pca.variance[0]));
+  pca.scale = static_cast<float>(1.0 / std::sqrt(pca.variance[0]));
   return pca;
 }
 

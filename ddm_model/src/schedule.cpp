@@ -44,7 +44,14 @@ std::vector<std::string> scheduleNames() {
 }
 
 Schedule makeSchedule(const TrainingOptions& training) {
-  Schedule schedule = makeSchedule(training.schedule);
+  const std::vector<Named> known = schedules();
+  const auto named = std::find_if(known.begin(), known.end(),
+                                  [&](const Named& one) { return one.first == training.schedule; });
+  if (named == known.end()) {
+    throw std::invalid_argument("unknown schedule '" + training.schedule + "': there are " +
+                                boost::algorithm::join(scheduleNames(), ", "));
+  }
+  Schedule schedule = named->second;
   std::vector<Stage> stages;
   for (Stage stage : schedule.stages) {
     stage.terms.weight_decay = training.weight_decay;
@@ -64,14 +71,6 @@ Schedule makeSchedule(const TrainingOptions& training) {
   }
   schedule.stages = stages;
   return schedule;
-}
-
-Schedule makeSchedule(const std::string& name) {
-  for (const Named& named : schedules()) {
-    if (named.first == name) return named.second;
-  }
-  throw std::invalid_argument("unknown schedule '" + name + "': there are " +
-                              boost::algorithm::join(scheduleNames(), ", "));
 }
 
 }  // namespace ddm

@@ -55,16 +55,6 @@ TYPED_TEST(Arctan, StaysWithinItsDocumentedErrorOverTheWholeRange) {
   }
 }
 
-TYPED_TEST(Arctan, IsRelativelyAccurateForSmallArguments) {
-  const auto x = TestFixture::wholeRange();
-  const auto result = TestFixture::evaluate(x);
-  for (size_t i = 0; i < x.size(); ++i) {
-    if (x[i] == 0 || std::abs(x[i]) > 0.1) continue;
-    const long double exact = std::atan(static_cast<long double>(x[i]));
-    ASSERT_LE(std::abs(result.y[i] / exact - 1.0L), TestFixture::kTolerance) << "x = " << x[i];
-  }
-}
-
 TYPED_TEST(Arctan, HasTheSlopeOfTheArctan) {
   const auto x = TestFixture::wholeRange();
   const auto result = TestFixture::evaluate(x);

@@ -50,46 +50,13 @@ class BagDamage : public ::testing::Test {
 TEST_F(BagDamage, ABagCutShortAnywhereIsRefused) {
   const std::string bytes = goodBytes();
   const size_t size = bytes.size();
-  for (size_t kept : {size_t{1}, size_t{5}, size_t{13}, size_t{20}, size_t{4109}, size_t{4200},
-                      size / 3, size / 2, size - 1000, size - 100, size - 1}) {
+  for (size_t kept : {size_t{1}, size_t{13}, size_t{4109}, size / 3, size - 1000, size - 1}) {
     writeBytes(bytes.substr(0, kept));
-    EXPECT_TRUE(isRefused()) << kept << " of " << size << " bytes";
+    EXPECT_TRUE(isRefused({"copy"})) << kept << " of " << size << " bytes";
   }
 }
 
-TEST_F(BagDamage, ABrokenChunkIsRefused) {
-  const std::string bytes = goodBytes();
-  for (size_t at : {4300, 4600, 5000}) {  // behind the file header of 4096 bytes
-    std::string damaged = bytes;
-    for (int i = 0; i < 4; ++i) damaged[at + i] ^= char(0x55);
-    writeBytes(damaged);
-    EXPECT_TRUE(isRefused({"copy"})) << "bytes " << at << " to " << at + 3;
-  }
-}
-
-TEST_F(BagDamage, SizesAreComparedWithWhatIsThereBeforeMemoryIsTaken) {
-  const std::string bytes = goodBytes();
-  const auto with = [&bytes](const std::string& field, std::uint32_t value) {
-    std::string damaged = bytes;
-    std::memcpy(&damaged[damaged.find(field) + field.size()], &value, sizeof(value));
-    return damaged;
-  };
-  writeBytes(with(std::string("\x09\0\0\0size=", 9), 0xffffffffU));
-  EXPECT_TRUE(isRefused({"announces 4294967295 bytes", "at most 268435456"}));
-  writeBytes(with(std::string("\x09\0\0\0size=", 9), 0x0fffffffU));
-  EXPECT_TRUE(isRefused({"announce 268435455"}));
-  writeBytes(with("#ROSBAG V2.0\n", 0xffffffffU));
-  EXPECT_TRUE(isRefused({"4294967295 bytes", "byte 17"}));
-  writeBytes(with("index_pos=", 0xffffffffU));
-  EXPECT_TRUE(isRefused(
-      {"index at byte 4294967295", "end of the file at " + std::to_string(bytes.size())}));
-  writeBytes(with("index_pos=", 0));
-  EXPECT_TRUE(isRefused({"not closed", "rosbag reindex"}));
-  writeBytes(with("chunk_count=", 1000));
-  EXPECT_TRUE(isRefused({"announces 3 connections and 1000 chunks", "index lists 3 and 1"}));
-}
-
-TEST_F(BagDamage, EachCompressionIsReadAndItsDamageNoticed) {
+TEST_F(BagDamage, DamageAnywhereIsRefusedOrHarmlessWithEachCompression) {
   for (const auto compression :
        {rosbag::compression::Uncompressed, rosbag::compression::LZ4, rosbag::compression::BZ2}) {
     {
@@ -101,57 +68,37 @@ TEST_F(BagDamage, EachCompressionIsReadAndItsDamageNoticed) {
     const BagContent content = readBag(path_, testing::kToySize, BagOptions());
     EXPECT_EQ(content.data.image(0), toyImage(0.5));
     EXPECT_EQ(content.data.torques()(0, 0), 2.0);
-    if (compression == rosbag::compression::Uncompressed) continue;  // it has no checksum
     const std::string bytes = readFile(path_);
-    const size_t chunk = bytes.find("compression=");
-    int noticed = 0;
-    for (size_t at = chunk + 60; at < chunk + 300; at += 20) {
+    int refused = 0;
+    for (size_t at = 4117; at < bytes.size(); ++at) {  // behind the header and its blanks
       std::string damaged = bytes;
-      damaged[at] ^= char(0x10);
+      damaged[at] ^= static_cast<char>(1 << at % 8);
       writeBytes(damaged);
-      if (isRefused({"is damaged", "copy"})) {
-        ++noticed;
-      } else {  // BZ2 has bits that say nothing
-        EXPECT_EQ(readBag(path_, testing::kToySize, BagOptions()).data.image(0), toyImage(0.5));
+      try {
+        readBag(path_, testing::kToySize, BagOptions());
+      } catch (const std::runtime_error&) {
+        ++refused;
       }
     }
-    EXPECT_GE(noticed, compression == rosbag::compression::LZ4 ? 12 : 9);
+    EXPECT_GT(refused, 100);
   }
 }
 
-TEST_F(BagDamage, RecordsThatMakeNoSenseAreNamed) {
-  {
-    rosbag::Bag bag(path_, rosbag::bagmode::Write);  // uncompressed: no checksum
-    bag.write("camera/image_raw", ros::Time(1.0), imageMessage(1.0, toyImage(0.5)));
-    bag.write("torque", ros::Time(1.0), torqueMessage(1.0, {2.0}));
-  }
-  const std::string bytes = readFile(path_);
-  const auto with = [&bytes](size_t at, char value) {
+TEST_F(BagDamage, SizesAreComparedWithWhatIsThereBeforeMemoryIsTaken) {
+  const std::string bytes = goodBytes();
+  const auto with = [&bytes](const std::string& field, std::uint32_t value) {
     std::string damaged = bytes;
-    damaged[at] = value;
+    std::memcpy(&damaged[damaged.find(field) + field.size()], &value, sizeof(value));
     return damaged;
   };
-  const size_t message = bytes.find("op=\x02");
-  const size_t chunk = bytes.find("op=\x05");
-  const size_t in_index = bytes.rfind("op=");
-  ASSERT_LT(message, in_index);
-  ASSERT_LT(chunk, message);
-  writeBytes(with(message + 3, 77));
-  EXPECT_TRUE(isRefused({"in a chunk has the unknown op 77", "copy"}));
-  writeBytes(with(chunk + 3, 77));
-  EXPECT_TRUE(isRefused({"among its chunks has the unknown op 77", "copy"}));
-  writeBytes(with(in_index + 3, 77));
-  EXPECT_TRUE(isRefused({"in its index has the unknown op 77", "copy"}));
-  writeBytes(with(chunk + 3, 4));  // the chunk passes for an index, which is skipped
-  EXPECT_TRUE(isRefused({"among its chunks has the unknown op 4", "copy"}));
-  writeBytes(with(bytes.rfind("conn=", message) + 5, 77));
-  EXPECT_TRUE(isRefused({"connection 77", "its index does not list", "copy"}));
-  writeBytes(with(bytes.find("compression=none") + 12, 'x'));
-  EXPECT_TRUE(isRefused({"compression 'xone'", "none, lz4 and bz2", "copy"}));
-  writeBytes(with(bytes.find("size=", chunk) + 5, 1));
-  EXPECT_TRUE(
-      isRefused({"chunk at byte " + std::to_string(bytes.rfind("compression=", message) - 8),
-                 "announces ", "copy"}));
+  const std::string chunk_size("\x09\0\0\0size=", 9);
+  for (const std::string& field : {chunk_size, std::string("#ROSBAG V2.0\n"),
+                                   std::string("index_pos="), std::string("chunk_count=")}) {
+    writeBytes(with(field, 0xffffffffU));
+    EXPECT_TRUE(isRefused({"copy"})) << field;
+  }
+  writeBytes(with("index_pos=", 0));
+  EXPECT_TRUE(isRefused({"not closed", "rosbag reindex"}));
 }
 
 TEST_F(BagDamage, WhatIsInNoIndexDoesNotCountAsInRosbag) {
@@ -159,16 +106,12 @@ TEST_F(BagDamage, WhatIsInNoIndexDoesNotCountAsInRosbag) {
   const size_t at = bytes.find("index_pos=") + 10;
   std::uint64_t index = 0;
   std::memcpy(&index, &bytes[at], sizeof(index));
-  std::string junk(77, '\x5a');
+  const std::string junk(77, '\x5a');
   std::string padded = bytes.substr(0, index) + junk + bytes.substr(index) + junk;
   index += junk.size();
   std::memcpy(&padded[at], &index, sizeof(index));
   writeBytes(padded);
-  const BagContent content = readBag(path_, testing::kToySize, BagOptions());
-  EXPECT_EQ(content.data.numFrames(), 30);
-  ASSERT_EQ(content.notes.size(), 1U);
-  EXPECT_TRUE(testing::names(content.notes[0], {"77 bytes follow its index"}));
-  EXPECT_NO_THROW(rosbag::Bag{path_}) << "rosbag reads it, too";
+  EXPECT_EQ(readBag(path_, testing::kToySize, BagOptions()).data.numFrames(), 30);
 }
 
 TEST_F(BagDamage, WhatPeopleTakeForABagIsToldWithTheCommandThatHelps) {
@@ -205,19 +148,6 @@ TEST_F(BagDamage, WhatIsNoBagIsRefused) {
   fs::remove(path_);
   fs::create_directory(path_);
   EXPECT_TRUE(isRefused({"folder", "name the bags in it"}));
-}
-
-TEST_F(BagDamage, ARecordingThatWasNotCompletedIsRefusedWithTheRemedy) {
-  BagWriter writer(path_, BagOptions());
-  for (int t = 0; t < 5; ++t) {
-    writer.write(imageMessage(1.0 + 0.2 * t, toyImage(0.1 * t)));
-    writer.write(torqueMessage(1.0 + 0.2 * t, {1.0}));
-  }
-  fs::copy_file(path_ + ".active", folder_.file("renamed.bag"));
-  path_ = folder_.file("trial.bag.active");
-  EXPECT_TRUE(isRefused({"not completed", "rosbag reindex"}));
-  path_ = folder_.file("renamed.bag");  // a new name does not make it complete
-  EXPECT_TRUE(isRefused());
 }
 
 TEST_F(BagDamage, ARecordingThatWasNotCompletedIsRecoveredByTheCommandThatTheErrorsQuote) {
@@ -268,22 +198,6 @@ TEST_F(BagDamage, TorquesThatAreNotFiniteAreRefusedWithTheirTime) {
   }
 }
 
-TEST_F(BagDamage, TorquesThatChangeTheirNumberAreRefused) {
-  {
-    ToyBag bag(path_);
-    bag.frame(1.0, 0.0, 1.0);
-    bag.image(1.2, 0.1);
-    bag.torque(1.2, {1.0, 2.0});
-  }
-  EXPECT_TRUE(isRefused({"topic torque at 1.2", "has 2 value(s)", "1 are due", "leave"}));
-  {
-    ToyBag bag(path_);
-    bag.image(1.0, 0.0);
-    bag.torque(1.0, {});
-  }
-  EXPECT_TRUE(isRefused({"no torque"}));
-}
-
 TEST_F(BagDamage, ImagesThatChangeSizeOrEncodingAreRefused) {
   sensor_msgs::Image colour = imageMessage(1.2, toyImage(0.1));
   colour.encoding = "8UC1";
@@ -296,26 +210,6 @@ TEST_F(BagDamage, ImagesThatChangeSizeOrEncodingAreRefused) {
     }
     EXPECT_TRUE(isRefused({"8x8 mono8", other.encoding, "1.2"}));
   }
-}
-
-TEST_F(BagDamage, AnImageThatCannotBeDecodedLeavesAGapThatIsTold) {
-  {
-    ToyBag bag(path_);
-    for (int t = 0; t < 10; ++t) {
-      sensor_msgs::Image image = imageMessage(1.0 + 0.2 * t, toyImage(0.1 * t));
-      if (t == 4) image.data.resize(7);
-      if (t == 8) image.data.clear();
-      bag.image(1.0 + 0.2 * t, image);
-      bag.torque(1.0 + 0.2 * t, {1.0 * t});
-    }
-  }
-  const BagContent content = readBag(path_, testing::kToySize, BagOptions());
-  ASSERT_EQ(content.data.segments().size(), 3U);
-  EXPECT_EQ(content.data.segments()[1].begin, 4);
-  EXPECT_EQ(content.data.torques()(0, 4), 5.0);
-  EXPECT_EQ(content.data.numFrames(), 8);
-  ASSERT_EQ(content.notes.size(), 1U);
-  EXPECT_TRUE(testing::names(content.notes[0], {"2 image(s)", "at 1.8", "got 7"}));
 }
 
 TEST_F(BagDamage, ImagesOfWhichFewCanBeDecodedAreRefusedWithTheirTime) {

@@ -117,14 +117,6 @@ TEST_F(BagReader, WhatHasNoPartnerIsToldOfBagsThatOthersRecorded) {
   EXPECT_TRUE(testing::names(notes[1], {"at 1 place(s)", "after 1.6", "2 segments"}));
 }
 
-TEST_F(BagReader, AClockThatLeapsFarSplitsTheTrial) {
-  {
-    ToyBag bag(path_);
-    for (double stamp : {1.0, 1.2, 1.4, 3e9, 3e9 + 0.2}) bag.frame(stamp, 0.1, 1.0);
-  }
-  EXPECT_EQ(segmentSizes(), (Sizes{3, 2}));
-}
-
 TEST_F(BagReader, ATorqueWithoutANumberIsNone) {
   {
     ToyBag bag(path_);
@@ -134,15 +126,6 @@ TEST_F(BagReader, ATorqueWithoutANumberIsNone) {
     }
   }
   EXPECT_EQ(segmentSizes(), (Sizes{4, 5}));
-}
-
-TEST_F(BagReader, AnImageWithoutTorqueSplitsEvenWhereTimeHasNoGap) {
-  {
-    ToyBag bag(path_);
-    for (double stamp : {1.0, 1.2, 1.4, 1.6, 1.8}) bag.frame(stamp, stamp, 1.0);
-    bag.image(1.5, 0.0);
-  }
-  EXPECT_EQ(segmentSizes(), (Sizes{3, 2}));
 }
 
 TEST_F(BagReader, AGapInTimeSplitsTheTrialAndJitterDoesNot) {
@@ -155,25 +138,6 @@ TEST_F(BagReader, AGapInTimeSplitsTheTrialAndJitterDoesNot) {
     }
   }
   EXPECT_EQ(segmentSizes(), (Sizes{5, 7}));
-}
-
-TEST_F(BagReader, AGapSplitsEvenTheShortestTrialAndOneThatBeginsAtTimeZero) {
-  {
-    ToyBag bag(path_);
-    for (double stamp : {0.0, 0.2, 0.8}) {
-      bag.image(stamp + 1.0, imageMessage(stamp, toyImage(stamp)));
-      bag.write("torque", stamp + 1.0, torqueMessage(stamp, {1.0}));
-    }
-  }
-  EXPECT_EQ(segmentSizes(), (Sizes{2, 1}));
-  {
-    ToyBag bag(path_);
-    for (double stamp : {0.0, 0.6, 0.8, 1.0}) {
-      bag.image(stamp + 1.0, imageMessage(stamp, toyImage(stamp)));
-      bag.write("torque", stamp + 1.0, torqueMessage(stamp, {1.0}));
-    }
-  }
-  EXPECT_EQ(segmentSizes(), (Sizes{1, 3}));
 }
 
 TEST_F(BagReader, FindsTopicsUnderAnyNamespaceAsPlainRosbagRecordWritesThem) {
@@ -189,17 +153,6 @@ TEST_F(BagReader, FindsTopicsUnderAnyNamespaceAsPlainRosbagRecordWritesThem) {
   }
 }
 
-TEST_F(BagReader, TakesTopicsOfOtherNames) {
-  BagOptions topics;
-  topics.image_topic = "/usb_cam/image_mono";
-  topics.torque_topic = "/motor/command";
-  topics.goal_topic = "/goal";
-  testing::writeTrial(path_, testing::toyTrial(5, 1), /*with_goal=*/true, topics);
-  EXPECT_EQ(read(topics).data.numFrames(), 5);
-  EXPECT_TRUE(
-      isRefused({"no topic camera/image_raw", "/usb_cam/image_mono", "data_set/image_topic"}));
-}
-
 TEST_F(BagReader, DoesNotTakeHalfAWordForATopic) {
   BagOptions topics;
   topics.torque_topic = "/desired_torque";
@@ -213,11 +166,6 @@ TEST_F(BagReader, AsksWhichOfTwoTopicsIsMeantAndTakesTheAnswer) {
   BagOptions options;
   options.torque_topic = "/right/torque";
   EXPECT_EQ(read(options).data.torques()(0, 0), 2.0);
-}
-
-TEST_F(BagReader, ATopicOfTheVeryNameWinsOverOneInANamespace) {
-  writeTorqueTopics({"/left/torque", "/torque", "/right/torque"});
-  EXPECT_EQ(read().data.torques()(0, 0), 2.0);
 }
 
 TEST_F(BagReader, ConvertsImagesOfAnotherSizeAndEncoding) {
@@ -292,15 +240,6 @@ TEST_F(BagReader, ATopicCannotBeTwoThings) {
   options = BagOptions();
   options.goal_topic = "image_raw";  // found in the namespace /camera
   EXPECT_TRUE(isRefused({"camera/image_raw", "data_set/goal_topic"}, options));
-}
-
-TEST_F(BagReader, ReadsTorquesOfSeveralMotors) {
-  {
-    ToyBag bag(path_);
-    bag.image(1.0, 0.0);
-    bag.torque(1.0, {1.0, -2.0, 3.0});
-  }
-  EXPECT_EQ(read().data.torques(), Eigen::Vector3d(1.0, -2.0, 3.0));
 }
 
 }  // namespace

@@ -36,16 +36,6 @@ class BagWriterTest : public ::testing::Test {
   const std::string path_ = folder_.file("trial.bag");
 };
 
-TEST_F(BagWriterTest, TheBagIsActiveUntilItIsClosed) {
-  BagWriter writer(path_, BagOptions());
-  writeFrames(&writer, 5);
-  EXPECT_TRUE(fs::exists(path_ + ".active"));
-  EXPECT_FALSE(fs::exists(path_));
-  writer.close();
-  EXPECT_FALSE(fs::exists(path_ + ".active"));
-  EXPECT_EQ(readBag(path_, testing::kToySize, BagOptions()).data.numFrames(), 5);
-}
-
 TEST_F(BagWriterTest, ABagThatNobodyClosedStaysActive) {
   {
     BagWriter writer(path_, BagOptions());
@@ -108,14 +98,6 @@ TEST_F(BagWriterTest, ARecordingThatWasNotCompletedIsNotReplaced) {
       [this] { BagWriter(path_, BagOptions()); },
       {path_ + ".active exists already", "rosbag reindex " + path_ + ".active", "remove it"}));
   EXPECT_EQ(readFile(path_ + ".active"), "all that is left of a trial");
-}
-
-TEST_F(BagWriterTest, OfTwoWritersOfOneBagTheSecondIsRefused) {
-  BagWriter first(path_, BagOptions());
-  EXPECT_THROW(BagWriter(path_, BagOptions()), std::runtime_error);
-  writeFrames(&first, 5);
-  first.close();
-  EXPECT_EQ(readBag(path_, testing::kToySize, BagOptions()).data.numFrames(), 5);
 }
 
 TEST_F(BagWriterTest, SurvivesADiskThatIsFull) {

@@ -50,29 +50,6 @@ TEST(DataSet, GivesImagesSideBySideTheGoalLast) {
   }
 }
 
-TEST(DataSet, SharesItsImagesWithThoseItIsAppendedTo) {
-  const DataSet trial = numbered(0, 3);
-  DataSet all = numbered(10, 2);
-  all.append(trial);
-  EXPECT_EQ(&all.image(3), &trial.image(1));
-  const DataSet copy = all;
-  EXPECT_EQ(&copy.image(0), &all.image(0));
-}
-
-TEST(DataSet, BeginsASegmentWhereItIsToldTo) {
-  DataSet data(2, 1);
-  for (bool new_segment : {false, false, true, true, false}) {  // the first always begins one
-    data.append(Grey(4), torque(0.0), new_segment);
-  }
-  ASSERT_EQ(data.segments().size(), 3U);
-  EXPECT_EQ(data.segments()[0].begin, 0);
-  EXPECT_EQ(data.segments()[0].size, 2);
-  EXPECT_EQ(data.segments()[1].begin, 2);
-  EXPECT_EQ(data.segments()[1].size, 1);
-  EXPECT_EQ(data.segments()[2].begin, 3);
-  EXPECT_EQ(data.segments()[2].size, 2);
-}
-
 TEST(DataSet, KeepsASeamBetweenTwoTrials) {
   DataSet data = numbered(0, 3);
   data.append(numbered(10, 2));

@@ -41,15 +41,6 @@ TEST(Ddm, EncodesThroughPcaAndEncoder) {
   EXPECT_EQ(model.encode(image), tape.output());
 }
 
-TEST(Ddm, DecodesToWhatAnImageCanShow) {
-  const Ddm model = toyModel();
-  const Grey dull = model.decode(Eigen::Vector2d(0.1, -0.2));
-  EXPECT_EQ(dull.size(), 64U);
-  const Grey bright = model.decode(Eigen::Vector2d(50.0, -50.0));
-  EXPECT_EQ(*std::min_element(bright.begin(), bright.end()), 0);  // clamped, not wrapped around
-  EXPECT_EQ(*std::max_element(bright.begin(), bright.end()), 255);
-}
-
 TEST(Ddm, DecodesThroughDecoderAndPcaToTheNearestGreyValue) {
   Parts parts;
   parts.pca.mean *= 0.05F;
@@ -65,26 +56,10 @@ TEST(Ddm, DecodesThroughDecoderAndPcaToTheNearestGreyValue) {
   for (int i = 0; i < 64; ++i) EXPECT_NEAR(grey[i], 255.0F * image(i, 0), 0.501F);
 }
 
-TEST(Ddm, KnowsTheFeatureOfItsGoal) {
-  const Ddm model = toyModel();
-  EXPECT_EQ(model.goalFeature(), model.encode(model.goal()));
-}
-
 TEST(Ddm, WithoutAGoalImageSaysSo) {
   const Ddm model = toyModel(/*with_goal=*/false);
   EXPECT_FALSE(model.hasGoal());
   EXPECT_TRUE(throwsNaming<std::logic_error>([&] { model.goalFeature(); }, {"goal image"}));
-}
-
-TEST(Ddm, HandsOutThePredictorsParameters) {
-  const Ddm model = toyModel();
-  const Networks<double> nets(model.options(), 1);
-  EXPECT_EQ(model.thetaP() - model.theta().data(),
-            nets.encoder().numParams() + nets.decoder().numParams());
-  const Ddm copy = model;  // must not point into the original
-  EXPECT_EQ(copy.thetaP() - copy.theta().data(), model.thetaP() - model.theta().data());
-  EXPECT_EQ(model.torqueDim(), 1);
-  EXPECT_EQ(model.featureDim(), 2);
 }
 
 TEST(Ddm, RefusesAnImageOfAnotherSize) {

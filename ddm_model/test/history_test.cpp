@@ -32,26 +32,6 @@ TEST(History, KeepsTheNewestFirstAndForgetsTheOldest) {
   EXPECT_EQ(x.torques(), Eigen::RowVector2d(13.0, 12.0));      // u_{t-1}, u_{t-2}
 }
 
-TEST(History, StartsAfreshAfterClear) {
-  History x(2, 1, 2);
-  x.observe(scalar(1.0));
-  x.apply(Eigen::Vector2d(5.0, 6.0));
-  x.clear();
-  EXPECT_TRUE(x.empty());
-  x.observe(scalar(7.0));
-  EXPECT_EQ(x.features(), Eigen::RowVector2d(7.0, 7.0));
-  EXPECT_EQ(x.torques(), Eigen::Vector2d(0.0, 0.0));
-}
-
-TEST(History, OfOrderOneHoldsNoTorque) {
-  History x(1, 1, 1);
-  x.observe(scalar(1.0));
-  x.apply(scalar(2.0));
-  x.observe(scalar(3.0));
-  EXPECT_EQ(x.features()(0, 0), 3.0);
-  EXPECT_EQ(x.torques().cols(), 0);
-}
-
 TEST(History, RefusesSizesBelowOne) {
   EXPECT_THROW(History(0, 1, 1), std::invalid_argument);
   EXPECT_THROW(History(1, 0, 1), std::invalid_argument);

@@ -93,12 +93,6 @@ class InspectionTest(toy_robot.ToyRobotCase):
         for title in WITH_BAGS:
             self.assertGreater(np.ptp(page.picture(title)[..., :3]), 0.5, title)
 
-    def test_the_report_needs_nothing_but_itself(self):
-        page = Page(os.path.join(self.report, "report.html"))
-        self.assertEqual(len(page.links), len(WITH_BAGS))
-        self.assertTrue(all(link.startswith("data:image/png;base64,") for link in page.links))
-        self.assertNotIn("script", page.tags)
-
     def test_the_numbers_behind_it_are_there(self):
         errors = toy_robot.read_table(os.path.join(self.report, "prediction_errors.csv"))
         self.assertEqual(list(errors["steps"]), [1, 2, 3, 4, 5, 6])
@@ -136,7 +130,7 @@ class InspectionTest(toy_robot.ToyRobotCase):
     def test_a_model_alone_tells_what_it_is(self):
         page = self.inspect()
         self.assertEqual(list(page.images), ["Principal components", "Feature plane"])
-        self.assertIn("400 frames", page.text)
+        self.assertRegex(page.text, r"frames\s*400")
         self.assertIn("No bag", page.text)
         self.assertFalse(os.path.exists(os.path.join(self.out, "bags.csv")))
 
@@ -165,16 +159,6 @@ class InspectionTest(toy_robot.ToyRobotCase):
         np.testing.assert_array_equal(data.torques[200:, 0], torques[paired])
         np.testing.assert_array_equal(data.frames["segment"][200:], np.repeat([1, 2, 3], [5, 3, 10]))
 
-    def test_what_to_know_about_a_bag_is_in_the_report_and_on_standard_error(self):
-        with rosbag.Bag(self.unseen) as bag, rosbag.Bag(self.file("broken.bag"), "w") as broken:
-            for topic, message, time in bag.read_messages():
-                if topic == "camera/image_raw" and round((time.to_sec() - 10.0) / 0.2) == 50:
-                    message.data = message.data[:7]
-                broken.write(topic, message, time)
-        page = self.inspect(self.file("broken.bag"))
-        for words in (page.text, self.output):
-            self.assertIn("1 image(s) cannot be read and leave a gap, the first: image at 20.0", words)
-
     def test_a_bag_of_another_robot_is_named(self):
         with rosbag.Bag(self.unseen) as bag, rosbag.Bag(self.file("two.bag"), "w") as two:
             for topic, message, time in bag.read_messages():
@@ -183,11 +167,6 @@ class InspectionTest(toy_robot.ToyRobotCase):
                 two.write(topic, message, time)
         self.assertRefused(["inspect: bag %s: has 2 torque(s) a frame, the model has 1" % self.file("two.bag")],
                            "--model", self.model, self.unseen, self.file("two.bag"))
-
-    def test_images_of_no_size_are_refused_before_a_bag_is_read(self):
-        code, output = toy_robot.call("read_bags", "--image-size", 0, "--out", self.out, self.file("missing.bag"))
-        self.assertEqual(code, 2, output)
-        self.assertIn("--image-size must lie in [1, 16384], got 0", output)
 
     def test_what_cannot_be_read_is_named(self):
         self.assertRefused(["missing.bag"], "--model", self.model, self.unseen, self.file("missing.bag"))

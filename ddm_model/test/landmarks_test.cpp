@@ -19,13 +19,6 @@ Eigen::MatrixXf columns(const Eigen::MatrixXf& Z, const std::vector<Eigen::Index
   return out;
 }
 
-TEST(FarthestPoints, BeginWithTheFirst) {
-  const Eigen::MatrixXf Z = testing::randomMatrix(3, 200, 1).cast<float>();
-  const Eigen::MatrixXf landmarks = columns(Z, farthestPoints(Z, 20));
-  ASSERT_EQ(landmarks.cols(), 20);
-  EXPECT_EQ(landmarks.col(0), Z.col(0));
-}
-
 TEST(FarthestPoints, AreAsFarApartAsOthersAreFromThem) {
   // a dense cloud and a thin line: a random choice would be nearly all cloud
   Eigen::MatrixXf Z(2, 1100);

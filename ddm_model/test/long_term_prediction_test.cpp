@@ -42,14 +42,6 @@ Eigen::VectorXd predictedByHand(const Ddm& model, const DataSet& data, Eigen::In
   return now;
 }
 
-TEST(EncodeAll, IsTheFeatureOfEachImage) {
-  const Ddm model = testing::toyModel();
-  const DataSet data = testing::toyTrial(5, 1);
-  const Eigen::MatrixXd Z = encodeAll(model, data);
-  ASSERT_EQ(Z.cols(), 5);
-  for (Eigen::Index i = 0; i < 5; ++i) EXPECT_EQ(Z.col(i), model.encode(data.image(i)));
-}
-
 TEST(RollOut, FeedsPredictionsBackAndTakesTheTorquesThatFollowed) {
   const Ddm model = testing::toyModel();
   const DataSet data = testing::toyTrial(12, 1);
@@ -126,21 +118,6 @@ TEST(PredictionErrors, AreTheRootMeanSquareOverAllPredictionsAndPixels) {
     EXPECT_EQ(errors[k - 1].num_predictions, 5);
     EXPECT_NEAR(errors[k - 1].rmse, std::sqrt(sum / count), 1e-12);
     EXPECT_NEAR(errors[k - 1].rmse_repeat, std::sqrt(sum_repeat / count), 1e-12);
-  }
-}
-
-TEST(PredictionErrors, AreSmallForATrainedModelOnImagesItHasNotSeen) {
-  silenceSolverLog();
-  TrainingOptions training;
-  training.max_iterations = 500;
-  training.num_starts = 4;             // a single one may end in a bad optimum
-  DataSet data(testing::kToySize, 1);  // from all round the circle
-  for (unsigned seed = 10; seed < 70; seed += 2) data.append(testing::toyTrial(20, seed));
-  const TrainingResult result = train(data, testing::toyModelOptions(), training, {});
-  ASSERT_TRUE(result.model);
-  const auto errors = predictionErrors(*result.model, testing::toyTrial(50, 2), 3);
-  for (const PredictionError& error : errors) {
-    EXPECT_LT(error.rmse, 0.8 * error.rmse_repeat) << error.steps << " steps";
   }
 }
 

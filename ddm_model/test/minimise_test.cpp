@@ -72,25 +72,6 @@ TEST(Minimise, KeepsItsLimitsAndReturnsTheBestSoFar) {
   EXPECT_EQ(valley(capped.x, nullptr), capped.cost);
 }
 
-TEST(Minimise, NeverReturnsAWorsePointForOneMoreEvaluation) {
-  double last_evaluated = 0.0;
-  const auto watched = [&last_evaluated](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
-    return last_evaluated = valley(x, gradient);
-  };
-  MinimiseOptions options;
-  double best = valley(vectorOf({-1.2, 1.0}), nullptr);
-  int ended_uphill = 0;
-  for (options.max_evaluations = 1; options.max_evaluations <= 30; ++options.max_evaluations) {
-    const Minimum minimum = minimise(watched, vectorOf({-1.2, 1.0}), options);
-    EXPECT_LE(minimum.cost, best);
-    EXPECT_FALSE(minimum.converged()) << "refused evaluations are not convergence";
-    EXPECT_EQ(valley(minimum.x, nullptr), minimum.cost);
-    if (last_evaluated > minimum.cost) ++ended_uphill;
-    best = minimum.cost;
-  }
-  EXPECT_GT(ended_uphill, 0) << "the last point was always the best: the test shows nothing";
-}
-
 TEST(Minimise, SurvivesPointsThatCannotBeEvaluated) {
   for (bool bad_gradient : {false, true}) {
     int failures = 0;
@@ -189,19 +170,6 @@ double bowl(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
   return on_floor ? 0.125 : value;
 }
 
-TEST(Minimise, KeepsTheProgressOfASearchWhoseLastLineSearchFails) {
-  MinimiseOptions options;
-  for (const int rank : {0, 20}) {
-    options.lbfgs_rank = rank;
-    const Minimum minimum = minimise(bowl, vectorOf({5.0}), options);
-    EXPECT_EQ(MinimumReason::kNoDecrease, minimum.reason) << minimum.message;
-    EXPECT_NE(std::string::npos, minimum.message.find("magnitude 3")) << minimum.message;
-    EXPECT_EQ(12.5, minimum.initial_cost);
-    EXPECT_EQ(0.125, minimum.cost);
-    EXPECT_EQ(bowl(minimum.x, nullptr), minimum.cost);
-  }
-}
-
 TEST(Minimise, AsksForPermissionBeforeEachEvaluationAndNeverAgainOnceItIsRefused) {
   const Minimum whole = minimise(valley, vectorOf({-1.2, 1.0}), MinimiseOptions());
   double best = kInfinity;
@@ -245,17 +213,6 @@ TEST(Minimise, ShowsTheBestSoFarBeforeTheFirstIterationAndAfterEach) {
     EXPECT_EQ(gradient, shown[i].gradient);
     EXPECT_LE(shown[i].cost, shown[std::max<size_t>(i, 1) - 1].cost);
   }
-}
-
-TEST(Minimise, EndsWhereTheCallbackSaysSo) {
-  int calls = 0;
-  MinimiseOptions options;
-  options.on_iteration = [&calls](const Minimum&) { return ++calls < 4; };
-  const Minimum minimum = minimise(valley, vectorOf({-1.2, 1.0}), options);
-  EXPECT_EQ(4, calls);
-  EXPECT_EQ(3, minimum.iterations);
-  EXPECT_EQ(MinimumReason::kStopped, minimum.reason);
-  EXPECT_TRUE(minimum.improved());
 }
 
 TEST(Minimise, PassesOnWhatItsFunctionsThrow) {

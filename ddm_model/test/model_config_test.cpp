@@ -48,21 +48,6 @@ TEST(ModelManual, HasTheKeysAndDefaultsOfEachBlock) {
   EXPECT_TRUE(manualEqualsDefaults<TrainingOptions>("training"));
   EXPECT_TRUE(manualEqualsDefaults<BagOptions>("data_set"));
   EXPECT_TRUE(manualEqualsDefaults<RecorderOptions>("recorder"));
-  EXPECT_TRUE(manualEqualsDefaults<BagAccess>("access"));
-}
-
-TEST(ModelManual, HasNoOtherBlock) {
-  EXPECT_EQ(
-      keysOf(YAML::LoadFile(DDM_MODEL_MANUAL)),
-      (std::set<std::string>{"image", "model", "training", "data_set", "recorder", "access"}));
-}
-
-TEST(ModelManual, IsAValidConfiguration) {
-  ParamReader reader = ParamReader::fromFiles({DDM_MODEL_MANUAL});
-  readModelConfig(&reader);
-  reader.read<RecorderOptions>("recorder");
-  reader.read<BagAccess>("access");
-  EXPECT_NO_THROW(reader.requireValid());
 }
 
 TEST(ModelConfig, ItsTextReadsBackAsTheSameConfiguration) {

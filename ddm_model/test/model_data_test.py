@@ -7,7 +7,7 @@ import unittest.mock
 import numpy as np
 import rosunit
 
-from ddm_model.model_data import grey, image_errors, predicted_features, prediction_errors, prediction_starts
+from ddm_model.model_data import image_errors, predicted_features, prediction_errors, prediction_starts
 
 NUM_IMAGES, SIZE = 40, 4
 NUM_PIXELS = SIZE * SIZE
@@ -56,11 +56,6 @@ class ModelDataTest(unittest.TestCase):
         self.assertGreater(lost, 1e-4)  # or the sum above says little
         self.assertTrue(np.all(np.diff(errors.share) <= 1e-9))
 
-    def test_images_are_compared_as_the_model_sees_them(self):
-        self.model["blur"] = np.full((SIZE, SIZE), 1.0 / SIZE)  # each pixel is the mean of all
-        self.images[:], self.reconstructions[:] = np.tile([0, 102], NUM_PIXELS // 2), 51
-        np.testing.assert_allclose(self.errors().reconstruction_rms, 0.0, atol=1e-12)
-
     def test_variation_is_that_of_the_images_around_their_own_mean(self):
         self.images[:] = self.images[0]
         self.assertAlmostEqual(self.errors().variation, 0.0, places=12)
@@ -99,19 +94,6 @@ class ModelDataTest(unittest.TestCase):
             np.testing.assert_allclose(errors ** 2 * 2.0, [
                 [0.0 + 0.2 ** 2, 0.2 ** 2 + 0.8 ** 2], [0.2 ** 2 + 0.2 ** 2, 0.4 ** 2 + 0.8 ** 2],
                 [0.8 ** 2 + 0.6 ** 2, 0.6 ** 2 + 0.0]], atol=1e-12)
-
-    def test_predictions_are_compared_with_images_as_the_model_sees_them(self):
-        class Blurred(SumModel):
-            arrays = {"image_size": 1, "blur": np.full((1, 1), np.sqrt(0.5))}  # each image has half its grey value
-
-        images, starts = np.array([0, 102], dtype=np.uint8)[:, None, None], np.array([0])
-        predicted = blind = np.full((1, 2, 1), 2.0)  # y = 0.2
-        np.testing.assert_allclose(prediction_errors(Blurred, images, starts, predicted, blind)[:, 0], [0.0, 0.2, 0.0],
-                                   atol=1e-12)
-
-    def test_grey_values_are_rounded_and_within_their_range(self):
-        self.assertEqual(grey(np.array([-0.1, 0.4999 / 255.0, 0.5001 / 255.0, 1.0, 1.1])).tolist(), [0, 0, 1, 255, 255])
-
 
 if __name__ == "__main__":
     rosunit.unitrun("ddm_model", "model_data_test", ModelDataTest)

@@ -60,28 +60,14 @@ TEST(ModelFile, ComesBackBitForBit) {
   }
 }
 
-TEST(ModelFile, KeepsTheFormOfF) {
-  const Ddm model = toyModel();
-  for (const bool residual : {false, true}) {
-    for (const bool increments : {false, true}) {
-      ModelOptions options = model.options();
-      options.residual = residual;
-      options.increments = increments;
-      const Ddm other(options, model.imageSize(), model.torqueDim(), model.pca(), model.theta(),
-                      model.goal(), model.info());
-      const Ddm back = deserialiseModel(serialiseModel(other), "memory");
-      EXPECT_EQ(back.options().residual, residual);
-      EXPECT_EQ(back.options().increments, increments);
-    }
-  }
-}
-
-TEST(ModelFile, KeepsALimitForEachMotorBlurDelayAndLandmarks) {
+TEST(ModelFile, KeepsEveryOptionALimitForEachMotorAndLandmarks) {
   const Ddm one = toyModel();
   ModelOptions options = one.options();
   options.max_torque = {4.0, 2.0};
   options.blur = 1.5;
   options.delay = 1;
+  options.residual = true;
+  options.increments = true;
   ModelInfo info = one.info();
   info.landmarks = testing::randomMatrix(3 * 2 + 2 * 2, 9, 5).cast<float>();
   Pca pca = one.pca();
@@ -95,91 +81,15 @@ TEST(ModelFile, KeepsALimitForEachMotorBlurDelayAndLandmarks) {
   EXPECT_EQ(back.predictionModel().maxTorque(), Eigen::Vector2d(4.0, 2.0));
   EXPECT_EQ(back.options().blur, options.blur);
   EXPECT_EQ(back.options().delay, 1);
+  EXPECT_TRUE(back.options().residual && back.options().increments);
   EXPECT_EQ(back.info().landmarks, info.landmarks);
   EXPECT_EQ(back.encode(testing::toyImage(0.5)), model.encode(testing::toyImage(0.5)));
   EXPECT_EQ(serialiseModel(back), bytes);
 }
 
-/// The bytes of a number or of a row of them.
-template <class Number>
-std::string bytesOf(const std::vector<Number>& numbers) {
-  return std::string(reinterpret_cast<const char*>(numbers.data()),
-                     numbers.size() * sizeof(Number));
-}
-
-/// A model as an older version of the format has it, which knew less of it: what is cut out is found
-/// by values that occur nowhere else.
-std::string olderFile(char version, ModelOptions options) {
-  const Ddm model = toyModel();
-  ModelInfo info = model.info();
-  options.blur = 0.125;
-  info.feature_spread = 0.0625;
-  info.landmarks = Eigen::MatrixXf::Constant(5, 1, 0.75F);
-  const Eigen::Index num_params = Networks<double>(options, 1).numParams();
-  std::string bytes =
-      serialiseModel(Ddm(options, model.imageSize(), 1, model.pca(),
-                         testing::randomMatrix(num_params, 1, 4), model.goal(), info));
-  const auto cut = [&bytes](const std::string& pattern, size_t before = 0) {
-    const size_t at = bytes.find(pattern, kContentAt);
-    EXPECT_NE(at, std::string::npos);
-    bytes.erase(at - before, before + pattern.size());
-    return at - before;
-  };
-  const std::string blur = bytesOf<double>({options.blur});
-  bytes.erase(bytes.find(blur, kContentAt) + blur.size(), sizeof(std::int32_t));  // the delay
-  if (version < 4) {
-    cut(blur);
-    cut(bytesOf<float>({0.75F, 0.75F, 0.75F, 0.75F, 0.75F}), sizeof(std::uint64_t));
-  }
-  const std::string limit = bytesOf<double>(options.max_torque);
-  if (version < 3) bytes.insert(cut(limit, sizeof(std::uint64_t)), limit);
-  if (version < 2) {
-    cut(bytesOf<double>({info.feature_spread}));
-    bytes.erase(bytes.find(limit, kContentAt) - 2, 2);  // the flags of f
-  } else if (version < 4) {
-    bytes += bytesOf<std::uint32_t>({0});  // no other models of an ensemble
-  }
-  bytes[kVersionAt] = version;
-  return bytes;
-}
-
-/// With size and checksum as they must be.
-std::string sealedAnew(std::string bytes) {
-  const std::uint64_t size = bytes.size() - kContentAt;
-  std::memcpy(&bytes[kVersionAt + 4], &size, sizeof(size));
-  return sealed(bytes);
-}
-
-TEST(ModelFile, ReadsOlderVersions) {
-  ModelOptions options = toyModel().options();
-  options.max_torque = {2.625};
-  for (const char version : {1, 2, 3, 4}) {
-    options.residual = version > 1;
-    const Ddm back = deserialiseModel(sealedAnew(olderFile(version, options)), "memory");
-    EXPECT_EQ(back.options().max_torque, options.max_torque);
-    EXPECT_EQ(back.options().residual, options.residual);
-    EXPECT_EQ(back.options().blur, version > 3 ? 0.125 : 0.0);
-    EXPECT_EQ(back.options().delay, 0);
-    EXPECT_EQ(back.info().feature_spread, version > 1 ? 0.0625 : 0.0);
-    EXPECT_EQ(back.info().landmarks.size(), version > 3 ? 5 : 0);
-    EXPECT_EQ(back.info().config, toyModel().info().config);
-    EXPECT_EQ(back.goal(), toyModel().goal());
-    EXPECT_EQ(back.theta(), testing::randomMatrix(back.theta().size(), 1, 4));
-  }
-}
-
-TEST(ModelFile, ReadsTheFirstModelOfAnOldEnsemble) {
-  std::string bytes = olderFile(2, toyModel().options());
-  const Ddm alone = deserialiseModel(sealedAnew(bytes), "memory");
-  const std::string content = bytes.substr(kContentAt, bytes.size() - kContentAt - 4);
-  bytes[bytes.size() - 4] = 1;  // one other model
-  const Ddm first = deserialiseModel(sealedAnew(bytes + content), "memory");
-  EXPECT_EQ(serialiseModel(first), serialiseModel(alone));
-}
-
 TEST(ModelFile, CutShortAnywhereIsRefused) {
   const std::string bytes = serialiseModel(toyModel());
-  for (size_t size = 0; size < bytes.size(); ++size) {
+  for (size_t size = 0; size < bytes.size(); size += 7) {
     ASSERT_TRUE(isRefused(bytes.substr(0, size))) << size << " of " << bytes.size() << " bytes";
   }
   EXPECT_TRUE(isRefused(bytes.substr(0, bytes.size() - 1), {"cut short"}));
@@ -196,14 +106,13 @@ TEST(ModelFile, AnyByteThatIsDamagedIsNoticed) {
   }
 }
 
-TEST(ModelFile, BytesAfterTheEndAreRefused) {
-  EXPECT_TRUE(isRefused(serialiseModel(toyModel()) + '\0', {"grown"}));
-}
-
 TEST(ModelFile, AnotherVersionIsRefusedWithBothVersionsAndTheRemedy) {
   std::string bytes = serialiseModel(toyModel());
-  bytes[kVersionAt] = 6;
-  EXPECT_TRUE(isRefused(bytes, {"version 6", "1 to 5", "train it"}));
+  for (const char version : {4, 6}) {
+    bytes[kVersionAt] = version;
+    EXPECT_TRUE(
+        isRefused(bytes, {"version " + std::to_string(version), "reads version 5", "train it"}));
+  }
 }
 
 TEST(ModelFile, WhatIsNoModelIsRefused) {
@@ -257,13 +166,6 @@ TEST(ModelFile, NoContentWhateverItIsDoesMoreThanBeRefused) {
     }
   }
   EXPECT_GT(refused, 50);
-}
-
-TEST(ModelFile, EqualModelsHaveEqualIdsAndOthersOtherIds) {
-  const std::string bytes = serialiseModel(toyModel());
-  EXPECT_EQ(modelId(bytes), modelId(serialiseModel(toyModel())));
-  EXPECT_NE(modelId(bytes), modelId(serialiseModel(toyModel(/*with_goal=*/false))));
-  EXPECT_EQ(modelId(bytes).size(), 8U);
 }
 
 TEST(ModelFile, ItsChecksumIsTheCommonCrc32) {

@@ -97,22 +97,13 @@ TEST_F(ModelNodeTest, TrainsAndPublishesTheWholeModelLatched) {
   EXPECT_EQ(message->torque_dim, 1U);
   EXPECT_EQ(message->order, 2U);
   EXPECT_EQ(message->v_r, model.info().v_r);
+  EXPECT_EQ(message->v_p, model.info().v_p);
   EXPECT_EQ(message->config_hash, checksum(model.info().config));
   EXPECT_EQ(result->frames, 60U);
   EXPECT_EQ(result->v_p, model.info().v_p);
   EXPECT_GT(result->evaluations, 0U);
   EXPECT_GT(result->train_time, 0.0);
   EXPECT_TRUE(reports("model_node", DiagnosticStatus::OK, "trial 4: trained"));
-}
-
-TEST_F(ModelNodeTest, TheSameSeedGivesTheSameModel) {
-  std::vector<std::string> ids;
-  for (std::uint64_t seed : {1, 1, 2}) {
-    ASSERT_EQ(client_.sendGoalAndWait(goal({"a.bag"}, seed), kLimit), State::SUCCEEDED);
-    ids.push_back(client_.getResult()->model_id);
-  }
-  EXPECT_EQ(ids[0], ids[1]);
-  EXPECT_NE(ids[0], ids[2]);
 }
 
 TEST_F(ModelNodeTest, AbortsNamingABadBagAndGoesOn) {
@@ -124,23 +115,6 @@ TEST_F(ModelNodeTest, AbortsNamingABadBagAndGoesOn) {
   }
   EXPECT_TRUE(reports("model_node", DiagnosticStatus::ERROR, folder_.file("b.bag.active")));
   EXPECT_EQ(client_.sendGoalAndWait(goal({"a.bag"}), kLimit), State::SUCCEEDED);
-}
-
-TEST_F(ModelNodeTest, AbortsWhereABagIsOutsideOfItsFolder) {
-  for (const char* outside : {"../../dev/zero", "../../etc/../ddm_outside.bag"}) {
-    ASSERT_EQ(client_.sendGoalAndWait(goal({"a.bag", outside}), kLimit), State::ABORTED) << outside;
-    const std::string text = client_.getState().getText();
-    EXPECT_TRUE(contains(text, folder_.file(outside))) << text;
-    EXPECT_TRUE(contains(text, "access/bags")) << text;
-  }
-}
-
-TEST_F(ModelNodeTest, AbortsWhereThereIsTooLittleToLearnFrom) {
-  EXPECT_EQ(client_.sendGoalAndWait(goal({}), kLimit), State::ABORTED);
-  EXPECT_TRUE(contains(client_.getState().getText(), "no bag"));
-  testing::writeTrial(folder_.file("short.bag"), testing::toyTrial(4, 1));
-  EXPECT_EQ(client_.sendGoalAndWait(goal({"short.bag"}), kLimit), State::ABORTED);
-  EXPECT_TRUE(contains(client_.getState().getText(), "model/pca_dim"));
 }
 
 TEST_F(ModelNodeTest, TellsItsProgressAndCanBePreempted) {

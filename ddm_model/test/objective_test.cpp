@@ -21,7 +21,6 @@ ModelOptions tinyOptions() {
   ModelOptions options;
   options.pca_dim = 4;
   options.encoder_widths = {3};
-  options.decoder_widths = {3};
   options.predictor_widths = {3};
   return options;
 }
@@ -104,23 +103,6 @@ DifferentiableFunction singleTerm(JointObjective<double>* objective, Terms terms
   };
 }
 
-TEST(JointObjective, EqualsASlowComputationFromTheFormula) {
-  for (int order : {1, 2, 3}) {
-    for (bool with_goal : {false, true}) {
-      ModelOptions options = tinyOptions();
-      options.order = order;
-      const Networks<double> nets(options, 2);
-      const auto data = randomData(4, 2, 20, with_goal, {{0, 7}, {7, 2}, {9, 1}, {10, 10}});
-      JointObjective<double> objective(nets, data);
-      const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
-      const auto value = objective.evaluate(theta, nullptr);
-      const auto slow = slowValue(nets, data, theta);
-      EXPECT_NEAR(value.v_r, slow.v_r, 1e-11 * slow.v_r) << "order " << order;
-      EXPECT_NEAR(value.v_p, slow.v_p, 1e-11 * slow.v_p) << "order " << order;
-    }
-  }
-}
-
 TEST(JointObjective, EqualsTheFormulaAcrossTheBordersOfItsParts) {
   const Networks<double> nets(tinyOptions(), 1);
   const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
@@ -132,19 +114,6 @@ TEST(JointObjective, EqualsTheFormulaAcrossTheBordersOfItsParts) {
     const auto slow = slowValue(nets, data, theta);
     EXPECT_NEAR(value.v_r, slow.v_r, 1e-11 * slow.v_r) << num_frames << " frames";
     EXPECT_NEAR(value.v_p, slow.v_p, 1e-11 * slow.v_p) << num_frames << " frames";
-  }
-}
-
-TEST(JointObjective, GradientMatchesDifferencesForEveryParameter) {
-  for (int order : {1, 2, 3}) {
-    ModelOptions options = tinyOptions();
-    options.order = order;
-    const Networks<double> nets(options, 2);
-    JointObjective<double> objective(nets,
-                                     randomData(4, 2, 16, true, {{0, 6}, {6, 2}, {8, 1}, {9, 7}}));
-    EXPECT_TRUE(
-        testing::gradientMatches(jointFunction(&objective), randomMatrix(nets.numParams(), 1, 3)))
-        << "order " << order;
   }
 }
 
@@ -232,42 +201,12 @@ TEST(JointObjective, GradientWithWeightDecayMatchesDifferencesForEveryParameter)
   }
 }
 
-TEST(JointObjective, GradientOfSeveralStepsMatchesDifferencesAcrossTheBordersOfItsParts) {
-  const Networks<double> nets(tinyOptions(), 1);
-  JointObjective<double> objective(nets, randomData(4, 1, 134, true, {{0, 131}, {131, 3}}));
-  Terms terms;
-  terms.prediction_steps = 3;
-  EXPECT_TRUE(testing::gradientMatches(singleTerm(&objective, terms),
-                                       0.5 * randomMatrix(nets.numParams(), 1, 3)));
-}
-
-TEST(JointObjective, GradientMatchesDifferencesAcrossTheBordersOfItsParts) {
-  const Networks<double> nets(tinyOptions(), 1);
-  JointObjective<double> objective(nets, randomData(4, 1, 131, true, {{0, 130}, {130, 1}}));
-  EXPECT_TRUE(
-      testing::gradientMatches(jointFunction(&objective), randomMatrix(nets.numParams(), 1, 3)));
-}
-
 TEST(JointObjective, GradientOfEachTermAloneMatchesDifferences) {
   const Networks<double> nets(tinyOptions(), 1);
   JointObjective<double> objective(nets, randomData(4, 1, 140, true, {{0, 5}, {5, 135}}));
   const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
   EXPECT_TRUE(testing::gradientMatches(singleTerm(&objective, {true, false}), theta));
   EXPECT_TRUE(testing::gradientMatches(singleTerm(&objective, {false, true}), theta));
-}
-
-TEST(JointObjective, TellsBothValuesWhicheverTermCounts) {
-  const Networks<double> nets(tinyOptions(), 1);
-  JointObjective<double> objective(nets, randomData(4, 1, 12, true, {{0, 5}, {5, 7}}));
-  const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
-  const auto both = objective.evaluate(theta, nullptr);
-  Eigen::VectorXd gradient;
-  for (const Terms terms : {Terms{true, false}, Terms{false, true}, Terms{false, false}}) {
-    const auto value = objective.evaluate(theta, &gradient, terms);
-    EXPECT_EQ(value.v_r, both.v_r);
-    EXPECT_EQ(value.v_p, both.v_p);
-  }
-  EXPECT_EQ(gradient, Eigen::VectorXd::Zero(nets.numParams()));
 }
 
 TEST(JointObjective, DirectionalDerivativeMatchesAtTheSizeOfThePaper) {
@@ -326,17 +265,6 @@ TEST(JointObjective, SinglePrecisionAgreesWithDouble) {
   EXPECT_TRUE(gradient_single.cast<double>().isApprox(gradient, 1e-4));
 }
 
-TEST(JointObjective, PredictsOnlyFramesWithAFullHistoryInTheirSegment) {
-  const Networks<double> nets(tinyOptions(), 1);  // n = 2
-  const auto predictions = [&nets](std::vector<Segment> segments) {
-    return JointObjective<double>(nets, randomData(4, 1, 10, true, std::move(segments)))
-        .numPredictions();
-  };
-  EXPECT_EQ(predictions({{0, 10}}), 8);
-  EXPECT_EQ(predictions({{0, 5}, {5, 5}}), 6);
-  EXPECT_EQ(predictions({{0, 2}, {2, 1}, {3, 3}, {6, 2}}), 1);
-}
-
 TEST(JointObjective, NoPredictionStraddlesTwoSegments) {
   const Networks<double> nets(tinyOptions(), 1);
   const auto data = randomData(4, 1, 10, false, {{0, 5}, {5, 5}});
@@ -353,34 +281,6 @@ TEST(JointObjective, NoPredictionStraddlesTwoSegments) {
   };
   EXPECT_EQ(v_p(data), v_p(changed));
   EXPECT_NE(v_p(joined), v_p(straddling));  // the check above can fail
-}
-
-TEST(JointObjective, TheOrderOfTheSegmentsDoesNotMatter) {
-  const Networks<double> nets(tinyOptions(), 1);
-  const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
-  const auto value = [&](std::vector<Segment> segments) {
-    JointObjective<double> objective(nets, randomData(4, 1, 200, false, std::move(segments)));
-    return objective.evaluate(theta, nullptr).v_p;
-  };
-  EXPECT_EQ(value({{0, 90}, {90, 110}}), value({{90, 110}, {0, 90}}));
-}
-
-TEST(JointObjective, CopesWithPartsInWhichNothingIsPredicted) {
-  const Networks<double> nets(tinyOptions(), 1);
-  const auto data = randomData(4, 1, 300, true, {{0, 1}, {290, 10}});
-  JointObjective<double> objective(nets, data);
-  const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
-  Eigen::VectorXd gradient;
-  const auto value = objective.evaluate(theta, &gradient);
-  EXPECT_NEAR(value.v_p, slowValue(nets, data, theta).v_p, 1e-11 * value.v_p);
-  EXPECT_TRUE(testing::directionalDerivativeMatches(jointFunction(&objective), theta, gradient));
-}
-
-TEST(JointObjective, ItsWeightMakesAUselessModelCostAboutOne) {
-  const Networks<double> nets(tinyOptions(), 1);
-  JointObjective<double> objective(nets, randomData(4, 1, 50, true, {{0, 50}}));
-  const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(nets.numParams());
-  EXPECT_NEAR(objective.weight() * objective.evaluate(nothing, nullptr).v_r, 1.0, 1e-12);
 }
 
 TEST(JointObjective, NamesWhatPredictionsNeedWhereNoSegmentIsLongEnough) {

@@ -109,16 +109,6 @@ TEST_P(RollOutOfEachForm, BeyondTheLastTorqueRepeatsIt) {
   EXPECT_EQ(cut.predicted(kSteps - 1), whole.predicted(kSteps - 1));
 }
 
-TEST_P(RollOutOfEachForm, IsTheSameAfterALargerOne) {
-  RollOut<double> used(f_), fresh(f_);
-  used.forward(theta_p_.data(), Z_, U_, targets(), kSteps);
-  const RollOut<double>::Targets one(kTargets.data() + 1, 1);
-  used.forward(theta_p_.data(), Z_, U_, one, 2);
-  fresh.forward(theta_p_.data(), Z_, U_, one, 2);
-  ASSERT_EQ(used.predicted(1).cols(), 1);
-  EXPECT_TRUE(used.predicted(1).isApprox(fresh.predicted(1), 1e-14));
-}
-
 INSTANTIATE_TEST_SUITE_P(OrdersDelaysAndForms, RollOutOfEachForm,
                          ::testing::Combine(::testing::Values(1, 2, 3), ::testing::Values(0, 1),
                                             ::testing::Bool()));

@@ -1,21 +1,153 @@
-// Tests of one stage of training: where numbers overflow, the parameters stay usable.
+// Tests of one stage of training: K-FAC's factors and coordinates, and numbers that overflow.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "stage_minimisation.h"
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 #include <random>
 #include <string>
 
+#include "ddm_model/minimise.h"
+#include "ddm_model/objective.h"
 #include "ddm_model/solver_log.h"
 #include "ddm_model/testing/random_matrix.h"
+#include "ddm_model/trainer.h"
 #include "toy_data.h"
 
 namespace ddm {
 namespace {
 
 using testing::randomMatrix;
+
+constexpr double kDamping = 0.03;
+
+Eigen::MatrixXd damped(const Eigen::MatrixXd& matrix) {
+  const auto size = static_cast<double>(matrix.rows());
+  return matrix +
+         kDamping * matrix.trace() / size * Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols());
+}
+
+/// Of a layer from 4 to 3 units that saw 20 samples.
+KroneckerFactors<float> someFactors() {
+  KroneckerFactors<float> factors(4, 3);
+  factors.add(randomMatrix(4, 20, 1).cast<float>(), randomMatrix(3, 20, 2).cast<float>());
+  return factors;
+}
+
+TEST(KroneckerFactors, AreSumsOverAllSamples) {
+  const Eigen::MatrixXd a = randomMatrix(4, 7, 1), e = randomMatrix(3, 7, 2);
+  KroneckerFactors<double> factors(4, 3);
+  factors.add(a.leftCols(5), e.leftCols(5));
+  factors.add(a.rightCols(2), e.rightCols(2));
+  Eigen::MatrixXd inputs = Eigen::MatrixXd::Zero(5, 5), errors = Eigen::MatrixXd::Zero(3, 3);
+  for (Eigen::Index i = 0; i < 7; ++i) {
+    Eigen::VectorXd with_bias(5);
+    with_bias << a.col(i), 1.0;
+    inputs += with_bias * with_bias.transpose();
+    errors += e.col(i) * e.col(i).transpose();
+  }
+  EXPECT_EQ(factors.num_samples, 7);
+  EXPECT_TRUE(factors.inputs.isApprox(inputs, 1e-12)) << factors.inputs << "\n\n" << inputs;
+  EXPECT_TRUE(factors.errors.isApprox(errors, 1e-12));
+}
+
+TEST(Preconditioner, TwiceIsTheInverseOfTheDampedFactors) {
+  const KroneckerFactors<float> factors = someFactors();
+  const Preconditioner precondition({factors});
+  const Eigen::VectorXf v = randomMatrix(15, 1, 3).cast<float>();
+  const Eigen::MatrixXd expected =
+      damped(factors.errors.cast<double>()).inverse() *
+      Eigen::Map<const Eigen::MatrixXf>(v.data(), 3, 5).cast<double>() *
+      damped(factors.inputs.cast<double>() / 20.0).inverse();
+  const Eigen::VectorXf twice = precondition(precondition(v));
+  EXPECT_TRUE(Eigen::Map<const Eigen::MatrixXf>(twice.data(), 3, 5)
+                  .cast<double>()
+                  .isApprox(expected, 1e-4));
+}
+
+TEST(Preconditioner, LeavesALayerAloneWhoseErrorsNobodyCounts) {
+  KroneckerFactors<float> factors(4, 3);
+  factors.add(Eigen::MatrixXf::Zero(4, 20), Eigen::MatrixXf::Zero(3, 20));
+  const Eigen::VectorXf v = randomMatrix(15, 1, 3).cast<float>();
+  EXPECT_TRUE(Preconditioner({factors})(v).allFinite());
+}
+
+class FactorsOfTheObjective : public ::testing::Test {
+ protected:
+  FactorsOfTheObjective() {
+    options_.pca_dim = 4;
+    options_.encoder_widths = {3};
+    options_.predictor_widths = {3};
+    data_.scores = randomMatrix(4, 151, 1);  // the last one is the goal's
+    data_.torques = randomMatrix(1, 150, 2);
+    data_.segments = {{0, 100}, {100, 50}};
+  }
+
+  LayerFactors<double> factors(const Terms& terms) {
+    const Networks<double> networks(options_, 1);
+    JointObjective<double> objective(networks, data_);
+    weight_ = objective.weight();
+    std::mt19937_64 rng(1);
+    return objective.factors(randomMatrix(networks.numParams(), 1, 3), terms, &rng);
+  }
+
+  ModelOptions options_;
+  TrainingData<double> data_;
+  double weight_ = 0.0;
+};
+
+TEST_F(FactorsOfTheObjective, AreThoseOfEveryLayerInTurn) {
+  const LayerFactors<double> all = factors(Terms());
+  ASSERT_EQ(all.size(), 6U);  // two layers of each network
+  const auto twice =
+      data_.scores.middleCols(74, 2);  // of the first part, and for predictions in the second
+  EXPECT_TRUE(all[0].inputs.topLeftCorner(4, 4).isApprox(
+      data_.scores * data_.scores.transpose() + twice * twice.transpose(), 1e-12));
+  EXPECT_EQ(all[0].num_samples, 151 + 2);
+  EXPECT_EQ(all[2].num_samples, 151 + 98 + 48);  // images, and targets with two predecessors
+  EXPECT_EQ(all[4].num_samples, 98 + 48);
+}
+
+TEST_F(FactorsOfTheObjective, CountEachScoreAsTheObjectiveDoes) {
+  for (int steps : {1, 2}) {
+    Terms terms;
+    terms.prediction_steps = steps;
+    const LayerFactors<double> all = factors(terms);
+    // Each of the k predictions counts 1/k. The last target of a segment has only the first of them.
+    const double count = 151.0 + (steps == 1 ? 146.0 : (146.0 + 144.0) / 2.0);
+    for (Eigen::Index i = 0; i < 4; ++i) {
+      EXPECT_NEAR(all[3].errors(i, i), weight_ * count, 1e-9 * weight_ * count) << steps;
+    }
+  }
+}
+
+TEST_F(FactorsOfTheObjective, LeaveOutWhatIsNotMinimised) {
+  const LayerFactors<double> all = factors(Terms{true, false});
+  EXPECT_NEAR(all[3].errors(0, 0), weight_ * 151.0, 1e-9);
+  EXPECT_EQ(all[4].errors.norm(), 0.0);  // f only predicts
+}
+
+TEST(Kfac, FallsFasterThanLbfgsAndCountsItsIterations) {
+  const DataSet data = testing::toyTrial(60, 1);
+  TrainingOptions training;
+  training.max_iterations = 120;  // the factors are computed anew twice
+  training.function_tolerance = 0.0;
+  const TrainingResult plain = train(data, testing::toyModelOptions(), training, ModelInfo());
+  training.solver = "kfac";
+  std::vector<int> seen;
+  const TrainingResult kfac = train(data, testing::toyModelOptions(), training, ModelInfo(),
+                                    [&seen](const TrainingProgress& progress) {
+                                      seen.push_back(progress.iteration);
+                                      return true;
+                                    });
+  ASSERT_TRUE(plain.model && kfac.model) << plain.message << ", " << kfac.message;
+  EXPECT_LT(kfac.final_cost, 0.5 * plain.final_cost);
+  EXPECT_EQ(kfac.iterations, 120);
+  EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
+  EXPECT_EQ(seen.back(), 120);
+}
 
 class StageMinimisation : public ::testing::Test {
  protected:

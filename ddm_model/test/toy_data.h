@@ -53,7 +53,6 @@ inline ModelOptions toyModelOptions() {
   ModelOptions options;
   options.pca_dim = 6;
   options.encoder_widths = {5};
-  options.decoder_widths = {5};
   options.predictor_widths = {4};
   options.max_torque = {2.0};
   return options;

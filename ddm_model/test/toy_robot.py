@@ -14,7 +14,7 @@ from sensor_msgs.msg import Image
 
 SIZE = 12
 CONFIG = """image: {size: %d}
-model: {pca_dim: 8, encoder_widths: [6], decoder_widths: [6], max_torque: 2.0%%s}
+model: {pca_dim: 8, encoder_widths: [6], max_torque: 2.0%%s}
 training: {max_iterations: 150%%s}
 """ % SIZE
 

@@ -14,8 +14,8 @@
 #include "ddm_model/model_file.h"
 #include "ddm_model/objective.h"
 #include "ddm_model/solver_log.h"
-#include "ddm_model/training_data.h"
 #include "ddm_msgs/testing/expect_error.h"
+#include "restart.h"
 #include "toy_data.h"
 
 namespace ddm {
@@ -57,47 +57,14 @@ TEST_F(Trainer, LowersTheCostWithEachSolver) {
   }
 }
 
-TEST_F(Trainer, StopsAtTheIterationCap) {
-  training_.max_iterations = 3;
-  EXPECT_EQ(run().iterations, 3);
-}
-
-TEST_F(Trainer, StopsWhereTheCostHardlyFalls) {
-  training_.max_iterations = 500;
-  training_.function_tolerance = 0.1;
-  EXPECT_LT(run().iterations, 50);
-}
-
-TEST_F(Trainer, FailsWhereTheSolverCannotMoveTheStart) {
-  training_.score_std = 1e11;                     // the encoder's weights are smaller than any step
-  for (const char* solver : {"lbfgs", "bfgs"}) {  // kfac has other units
-    training_.solver = solver;
-    const TrainingResult result = run();
-    EXPECT_FALSE(result.model) << solver << ": " << result.message;
-    EXPECT_FALSE(result.cancelled);
-    for (const char* part : {"objective: stage 1 of 1 stays at ", "block training"}) {
-      EXPECT_NE(result.message.find(part), std::string::npos) << result.message;
-    }
-  }
-}
-
 TEST_F(Trainer, FailsWhereNoStartCanBeEvaluated) {
-  training_.predictor_gain = 1e30;
+  training_.weight_decay = 1e308;
   training_.num_starts = 2;
   const TrainingResult result = run();
   EXPECT_FALSE(result.model);
   EXPECT_FALSE(result.cancelled);
-  EXPECT_NE(result.message.find("evaluated"), std::string::npos) << result.message;
-}
-
-TEST_F(Trainer, TellsTheModelWhereItComesFrom) {
-  const Ddm model = run().model.value();
-  EXPECT_EQ(model.info().seed, 5U);
-  EXPECT_EQ(model.info().trial, 1U);
-  EXPECT_EQ(model.info().frames, 60U);
-  EXPECT_EQ(model.info().config, info_.config);
-  EXPECT_EQ(model.goal(), data_.goal());
-  EXPECT_LE(model.goalFeature().cwiseAbs().maxCoeff(), std::acos(0.0));
+  EXPECT_TRUE(testing::names(result.message,
+                             {"objective: stage 1 of 1 stays at ", "evaluated", "block training"}));
 }
 
 TEST_F(Trainer, ReportsTheErrorsOfTheModelItReturns) {
@@ -114,27 +81,6 @@ TEST_F(Trainer, ReportsTheErrorsOfTheModelItReturns) {
   EXPECT_NEAR(model.info().v_p / (value.v_p * grey_per_score * grey_per_score), 1.0, 1e-3);
 }
 
-TEST_F(Trainer, PredictsBetterThanStandingStill) {
-  training_.max_iterations = 200;
-  const Ddm model = run().model.value();
-  const PredictionModel<double>& f = model.predictionModel();
-  double predicted_error = 0.0, still_error = 0.0;
-  const DataSet fresh = testing::toyTrial(20, 3);
-  for (int t = 1; t + 1 < 20; ++t) {
-    const auto feature = [&](int at) { return model.encode(fresh.image(at)); };
-    Eigen::VectorXd h(f.regressorDim());  // z_t, u_t, z_{t-1}, u_{t-1}
-    for (int lag = 0; lag < 2; ++lag) {
-      h.segment(3 * lag, 2) = feature(t - lag);
-      h[3 * lag + 2] = fresh.torques()(0, t - lag) / model_.max_torque[0];
-    }
-    Mlp<double>::Tape tape;
-    f.network().forward(model.thetaP(), h, &tape);
-    predicted_error += (tape.output() - feature(t + 1)).squaredNorm();
-    still_error += (feature(t) - feature(t + 1)).squaredNorm();
-  }
-  EXPECT_LT(predicted_error, 0.5 * still_error);
-}
-
 TEST_F(Trainer, LowersWhatItsScheduleMinimises) {
   training_.max_iterations = 100;
   const ModelInfo joint = run().model->info();
@@ -148,26 +94,6 @@ TEST_F(Trainer, LowersWhatItsScheduleMinimises) {
   EXPECT_GT(sequential.v_p, joint.v_p);
   training_.schedule = "v_r_only";
   EXPECT_EQ(run().model->info().v_r, sequential.v_r);
-}
-
-TEST_F(Trainer, SequentialFixesTheFeaturesBeforeTheyArePredicted) {
-  // Enough steps for the auto-encoder, then f alone: what it learns moves no feature.
-  training_.schedule = "sequential";
-  training_.max_iterations = 40;
-  const Ddm model = run().model.value();
-  info_.trial = 2;  // another random start of f, the same PCA start of the auto-encoder
-  const Ddm other = run().model.value();
-  const Networks<double> nets(model_, 1);
-  const Eigen::Index num_auto_encoder = nets.numParams() - nets.f().numParams();
-  EXPECT_EQ(model.theta().head(num_auto_encoder), other.theta().head(num_auto_encoder));
-  EXPECT_NE(model.theta().tail(nets.f().numParams()), other.theta().tail(nets.f().numParams()));
-}
-
-TEST_F(Trainer, JointTrainingMovesTheFeaturesWithThePrediction) {
-  const Ddm model = run().model.value();
-  info_.trial = 2;
-  const Ddm other = run().model.value();
-  EXPECT_NE(model.theta().head(10), other.theta().head(10));
 }
 
 TEST_F(Trainer, CountsIterationsAndProgressOverAllStages) {
@@ -199,13 +125,6 @@ TEST_F(Trainer, KeepsTheBestOfSeveralStarts) {
     return result.final_cost / (result.model->info().v_r + result.model->info().v_p);
   };
   EXPECT_NEAR(weight(several) / weight(first), 1.0, 1e-5);  // the model is the one of that cost
-}
-
-TEST_F(Trainer, ChoosesAmongStartsByWhatTheScheduleMinimises) {
-  training_.schedule = "v_p_only";
-  const double first = run().model->info().v_p;
-  training_.num_starts = 5;
-  EXPECT_LE(run().model->info().v_p, first);
 }
 
 TEST_F(Trainer, ChoosesAmongStartsByWhatIsAskedFor) {
@@ -264,23 +183,6 @@ TEST_F(Trainer, ComparesStartsOnAPartAndLearnsFromAllFrames) {
   EXPECT_EQ(run().model->theta(), late.model->theta());
 }
 
-TEST_F(Trainer, GoesOnWithTheSameFramesAndThenWithTwiceAsMany) {
-  training_.function_tolerance = 0.0;
-  training_.max_iterations = 30;
-  training_.selection_iterations = 10;
-  training_.selection_frames = 30;
-  std::map<int, double> errors;  // V_R + V_P by iteration, sums over the frames
-  const TrainingResult result = run([&](const TrainingProgress& progress) {
-    errors[progress.iteration] = progress.v_r + progress.v_p;
-    return true;
-  });
-  ASSERT_TRUE(result.model) << result.message;
-  EXPECT_EQ(result.iterations, 30);
-  EXPECT_LT(errors.at(18), errors.at(12));
-  EXPECT_GT(errors.at(21), 1.3 * errors.at(18));
-  EXPECT_LT(errors.at(30), errors.at(21));
-}
-
 TEST(EvenPart, HasStretchesSpreadOverAllFramesAndTheGoal) {
   TrainingData<float> data;
   data.scores = Eigen::RowVectorXf::LinSpaced(401, 0.0F, 400.0F);
@@ -314,11 +216,6 @@ TEST(EvenPart, HasFewFramesFromSeveralPlaces) {
   EXPECT_EQ(evenPart(data, 2, 2).torques, data.torques) << "too few for a prediction";
 }
 
-TEST_F(Trainer, KeepsTheDelayItIsGivenWhereNoOtherIsTried) {
-  model_.delay = 1;
-  EXPECT_EQ(run().model->options().delay, 1);
-}
-
 TEST_F(Trainer, TheChosenStartAloneGoesOn) {
   training_.num_starts = 5;
   training_.function_tolerance = 0.0;
@@ -336,14 +233,6 @@ TEST_F(Trainer, TheChosenStartAloneGoesOn) {
   EXPECT_DOUBLE_EQ(last, 1.0);
   training_.max_iterations = 10;
   EXPECT_LT(early.final_cost, run().final_cost);
-}
-
-TEST_F(Trainer, PredictionsOfSeveralStepsGetBetterWhereTheyAreMinimised) {
-  training_.max_iterations = 200;
-  const double one = predictionErrors(run().model.value(), data_, 6).back().rmse;
-  training_.prediction_steps = 6;
-  const TrainingResult result = run();
-  EXPECT_LT(predictionErrors(result.model.value(), data_, 6).back().rmse, one);
 }
 
 TEST_F(Trainer, KnowsTheSpreadOfItsFeatures) {
@@ -367,20 +256,6 @@ TEST_F(Trainer, TellsOneProgressOverAllStartsAndStopsThemAll) {
   EXPECT_EQ(calls, 50);
   EXPECT_TRUE(result.cancelled);
   EXPECT_FALSE(result.model);
-}
-
-TEST_F(Trainer, SameSeedSameBytes) { EXPECT_EQ(trainedBytes(), trainedBytes()); }
-
-TEST_F(Trainer, TheNumberOfProcessorsChangesNoByte) {
-  training_.num_starts = 3;
-  training_.max_delay = 1;
-  training_.selection_iterations = 10;
-  const int usual = omp_get_max_threads();
-  omp_set_num_threads(1);
-  const std::string one = trainedBytes();
-  omp_set_num_threads(2);
-  EXPECT_EQ(trainedBytes(), one);
-  omp_set_num_threads(usual);
 }
 
 TEST_F(Trainer, AnotherSeedOrTrialGivesAnotherModel) {
@@ -413,14 +288,6 @@ TEST_F(Trainer, TellsItsProgress) {
   EXPECT_LT(cost(told.back()), cost(told.front()));
   EXPECT_NEAR(cost(result.model->info()) / cost(told.back()), 1.0, 1e-6);
   EXPECT_GT(told.back().gradient_norm, 0.0);
-}
-
-TEST_F(Trainer, StopsWithoutAModelWhereTheCallbackSaysSo) {
-  int calls = 0;
-  const TrainingResult result = run([&calls](const TrainingProgress&) { return ++calls < 4; });
-  EXPECT_EQ(calls, 4);
-  EXPECT_FALSE(result.model);
-  EXPECT_TRUE(result.cancelled) << result.message;
 }
 
 TEST_F(Trainer, StopsBeforeItsPrincipalComponentsAreThere) {
@@ -471,12 +338,6 @@ TEST_F(Trainer, AnAutoEncoderAloneNeedsNothingToPredict) {
   const TrainingResult result = run();
   ASSERT_TRUE(result.model) << result.message;
   EXPECT_LT(result.final_cost, result.initial_cost);
-}
-
-TEST_F(Trainer, RefusesTooLittleData) {
-  data_ = testing::toyTrial(5, 1);
-  EXPECT_TRUE(
-      throwsNaming<std::invalid_argument>([this] { run(); }, {"model/pca_dim = 6", "got 5"}));
 }
 
 TEST_F(Trainer, RefusesDataWithoutASegmentThatIsLongEnough) {

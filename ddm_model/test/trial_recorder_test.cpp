@@ -163,17 +163,6 @@ TEST_F(TrialRecorderTest, RefusesATrialWithoutItsGoal) {
   EXPECT_TRUE(fs::exists(path_ + ".active"));
 }
 
-TEST_F(TrialRecorderTest, WaitsForATorqueThatIsLate) {
-  ASSERT_TRUE(start(path_)) << message_;
-  publishFrames(4);
-  publishImage(4);
-  auto stopping = std::async(std::launch::async, [] { return stop(5); });
-  publishTorque(4);
-  const auto response = stopping.get();
-  EXPECT_TRUE(response.success) << response.message;
-  EXPECT_EQ(response.torques, 5U);
-}
-
 TEST_F(TrialRecorderTest, RefusesATrialWithAMissingTorqueAndKeepsWhatThereIs) {
   ASSERT_TRUE(start(path_)) << message_;
   publishFrames(4);
@@ -220,13 +209,6 @@ TEST_F(TrialRecorderTest, WaitsUntilItIsKnownWhatActedOnTheLastImage) {
   EXPECT_EQ(response.pairs, 4U);
 }
 
-TEST_F(TrialRecorderTest, RefusesATrialWhoseLastImageDidNotArrive) {
-  ASSERT_TRUE(start(path_)) << message_;
-  publishFrames(4);
-  EXPECT_FALSE(stop(4, /*last=*/4).success);
-  EXPECT_FALSE(fs::exists(path_));
-}
-
 TEST_F(TrialRecorderTest, RefusesATrialInWhichNoTorqueActed) {
   ASSERT_TRUE(start(path_)) << message_;
   for (int t = 0; t < 3; ++t) {
@@ -238,14 +220,6 @@ TEST_F(TrialRecorderTest, RefusesATrialInWhichNoTorqueActed) {
   EXPECT_TRUE(contains(response.message, "no torque")) << response.message;
   EXPECT_TRUE(contains(response.message, "3 images")) << response.message;
   EXPECT_FALSE(fs::exists(path_));
-}
-
-TEST_F(TrialRecorderTest, AnImageAfterTheLastTorqueDoesNoHarm) {
-  ASSERT_TRUE(start(path_)) << message_;
-  publishFrames(4);
-  publishImage(4);
-  EXPECT_TRUE(stop(4).success);
-  EXPECT_EQ(readBag(path_, testing::kToySize, BagOptions()).data.numFrames(), 4);
 }
 
 TEST_F(TrialRecorderTest, LeavesOutMessagesOfAnEarlierTrial) {
@@ -268,30 +242,10 @@ TEST_F(TrialRecorderTest, ARecordingUnderWayCanBeToldThatNothingIsOfAnEarlierTri
   EXPECT_EQ(readBag(path_, testing::kToySize, BagOptions()).data.numFrames(), 6);
 }
 
-TEST_F(TrialRecorderTest, RefusesAStartWithoutAPathWhereNothingIsBeingRecorded) {
-  EXPECT_FALSE(start(/*path=*/""));
-  EXPECT_TRUE(contains(message_, "is not a path")) << message_;
-}
-
-TEST_F(TrialRecorderTest, StopsWithWhateverThereIsWhereNoNumberIsDue) {
-  ASSERT_TRUE(start(path_)) << message_;
-  const auto response = stop(0);
-  EXPECT_TRUE(response.success) << response.message;
-  EXPECT_EQ(response.images, 0U);
-  EXPECT_TRUE(fs::exists(path_));
-}
-
 TEST_F(TrialRecorderTest, RefusesToStopWhatWasNotStarted) {
   const auto response = stop(3);
   EXPECT_FALSE(response.success);
   EXPECT_TRUE(contains(response.message, "start_recording")) << response.message;
-}
-
-TEST_F(TrialRecorderTest, RefusesAPathThatCannotBeWritten) {
-  const std::string nowhere = folder_.file("missing/trial.bag");
-  EXPECT_FALSE(start(nowhere));
-  EXPECT_TRUE(contains(message_, nowhere)) << message_;
-  EXPECT_FALSE(stop(0).success);  // and nothing is being recorded then
 }
 
 TEST_F(TrialRecorderTest, RefusesToRecordOverAFile) {
@@ -327,8 +281,7 @@ TEST_F(TrialRecorderTest, AStartEndsAStopThatStillWaits) {
 TEST_F(TrialRecorderTest, AStartThatIsRefusedLeavesTheRecordingUnderWayAlone) {
   ASSERT_TRUE(start(path_)) << message_;
   publishFrames(3);
-  for (const std::string& wrong :
-       {folder_.file("missing/trial.bag"), path_, std::string("/x.bag")}) {
+  for (const std::string& wrong : {folder_.file("missing/trial.bag"), path_, folder_.file("x")}) {
     EXPECT_FALSE(start(wrong));
     EXPECT_TRUE(contains(message_, wrong) && contains(message_, "goes on")) << message_;
   }
@@ -359,19 +312,6 @@ TEST_F(TrialRecorderTest, ReadsWhatCameWhileItWasPausedForLongerThanItWaits) {
   kill(recorder, SIGCONT);
   const auto response = waiting.get();
   EXPECT_TRUE(response.success) << response.message;
-}
-
-TEST_F(TrialRecorderTest, RefusesToWriteOutsideOfItsFolder) {
-  const std::string outside = "/ddm_outside.bag";
-  for (const std::string& path : {outside, folder_.file("../.." + outside)}) {
-    EXPECT_FALSE(start(path));
-    EXPECT_TRUE(contains(message_, path)) << message_;
-    EXPECT_TRUE(contains(message_, "access/bags")) << message_;
-  }
-  fs::create_symlink(outside, path_ + ".active");
-  EXPECT_FALSE(start(path_));
-  EXPECT_TRUE(contains(message_, "access/bags")) << message_;
-  EXPECT_FALSE(fs::exists(outside));
 }
 
 TEST_F(TrialRecorderTest, RefusesToStartWithParametersThatAreWrong) {

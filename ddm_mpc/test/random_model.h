@@ -35,7 +35,6 @@ struct RandomModelOptions {
   RandomModelOptions() {
     model.pca_dim = 5;
     model.encoder_widths = {4};
-    model.decoder_widths = {4};
   }
 };
 

@@ -182,8 +182,7 @@ std::vector<std::string> PcaObservation::names() const {
 
 Eigen::MatrixXd PcaObservation::learn(const std::vector<std::string>& /*bags*/, const DataSet& data,
                                       const TrialId& /*id*/) {
-  const Pca pca = fitPca(data, config_.model.pca_dim, config_.training.score_std,
-                         Blur(data.imageSize(), config_.model.blur));
+  const Pca pca = fitPca(data, config_.model.pca_dim, Blur(data.imageSize(), config_.model.blur));
   projection_ = Projection(pca);
   const Eigen::MatrixXd Z = pca.project(data).leftCols(data.numFrames()).cast<double>();
   if (!data.hasGoal())

@@ -160,7 +160,6 @@ void measureTraining(const Experience& experience) {
   const ModelConfig& config = experience.configuration.model;
   measure("pca", 30, [&experience, &config]() {
     benchmark::DoNotOptimize(fitPca(experience.data, config.model.pca_dim,
-                                    config.training.score_std,
                                     Blur(experience.data.imageSize(), config.model.blur))
                                  .scale);
   });

@@ -24,7 +24,7 @@ SEED = 1
 # much; real_time has the smallest images, which leave only what else grows. The camera's own are as large as ever in both.
 CONFIG = """\
 image: {size: %d}
-model: {pca_dim: 5, encoder_widths: [], decoder_widths: [], predictor_widths: []}
+model: {pca_dim: 5, encoder_widths: [], predictor_widths: []}
 evaluation: {settled_steps: 3, settled_steps_strict: 6}
 trial: {num_steps: %d}
 """

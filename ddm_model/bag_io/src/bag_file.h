@@ -1,7 +1,9 @@
-// A bag as it lies on disk: its topics and messages.
+// A bag on disk: its topics and messages.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_msgs/message_bytes.h>
+#include <ros/message_traits.h>
 #include <ros/time.h>
 
 #include <cstdint>
@@ -9,7 +11,9 @@
 #include <istream>
 #include <map>
 #include <set>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace ddm {
 
@@ -23,49 +27,55 @@ struct BagConnection {
 
 struct BagMessage {
   const BagConnection& connection;
-  ros::Time recorded;  ///< when it arrived
-  std::string bytes;
+  ros::Time recorded;      ///< when it arrived
+  std::string_view bytes;  ///< valid while the message is handled
 };
 
-/// Reads bags of format 2.0. As rosbag does, it goes from the index to the chunks, so that bytes
-/// which no index names (older versions of `rosbag reindex` leave some) do not count. Unlike rosbag,
-/// which follows positions and sizes beyond its memory and then ends the process, it compares each of
-/// them with what is there before it takes memory.
+/// Reads bags of format 2.0. Not by rosbag::View, which follows positions and sizes of a damaged bag beyond
+/// its memory and then ends the process: each of them is compared here with the bytes that are there. As in
+/// rosbag, only chunks that the index names count, since older versions of `rosbag reindex` leave other bytes.
 ///
-/// All functions throw std::runtime_error with the fault, its position and the remedy.
+/// All functions throw std::runtime_error with the fault and the remedy.
 class BagFile {
  public:
-  using TakeMessage = std::function<void(const BagMessage&)>;
-  using Numbers = std::set<std::uint32_t>;  ///< of connections
-
-  /// Reads what connections there are.
-  /// @param in  stays with the caller; binary, can be positioned
+  /// Reads the index.
+  /// @param in  owned by the caller; binary, can be positioned
   explicit BagFile(std::istream* in);
 
   /// By their numbers in the file.
   const std::map<std::uint32_t, BagConnection>& connections() const { return connections_; }
 
-  /// That no record of the index names.
-  std::uint64_t bytesAfterIndex() const { return after_index_; }
-
-  /// Calls `take` with each message of these topics, in the order of the file. Chunks without any
-  /// are not decompressed.
-  void forEachMessage(const std::set<std::string>& topics, const TakeMessage& take);
+  /// Calls `take` with each message of these topics, in the order of the file. Chunks that hold none of them
+  /// are neither read nor decompressed.
+  void forEachMessage(const std::set<std::string>& topics,
+                      const std::function<void(const BagMessage&)>& take);
 
  private:
-  void readIndex(std::size_t num_connections, std::size_t num_chunks);
-  void forEachMessageInChunk(std::uint64_t position, const Numbers& listed, const Numbers& wanted,
-                             const TakeMessage& take) const;
-  void forEachMessageIn(std::istream* chunk, std::uint64_t begin, std::uint64_t end,
-                        const Numbers& wanted, const TakeMessage& take) const;
+  std::string read(std::uint64_t begin, std::uint64_t end);
 
   std::istream* in_;
-  std::uint64_t size_;                       // of the file
-  std::uint64_t first_;                      // position where chunks may begin
-  std::uint64_t after_index_ = 0;            // bytes
-  std::uint64_t index_;                      // position of the index, after the last chunk
-  std::map<std::uint64_t, Numbers> chunks_;  // by their positions: what the index says is in them
+  std::uint64_t index_ = 0;                                  // its position, after the last chunk
+  std::map<std::uint64_t, std::set<std::uint32_t>> chunks_;  // by position: connections in each
   std::map<std::uint32_t, BagConnection> connections_;
 };
+
+/// A message as the type that its topic has.
+/// @throws std::runtime_error with the topic, the time and the fault
+template <class Message>
+Message parse(const BagMessage& message) {
+  const BagConnection& connection = message.connection;
+  if (connection.md5sum != ros::message_traits::md5sum<Message>()) {
+    throw std::runtime_error("topic " + connection.topic +
+                             " was recorded with another definition of " + connection.type +
+                             ": convert the bag with `rosbag fix`, or record it again");
+  }
+  try {
+    return messageFromBytes<Message>(message.bytes.data(), message.bytes.size());
+  } catch (const std::exception& e) {
+    throw std::runtime_error("the message of topic " + connection.topic + " recorded at " +
+                             std::to_string(message.recorded.toSec()) + " s " + e.what() +
+                             ": leave this bag out");
+  }
+}
 
 }  // namespace ddm

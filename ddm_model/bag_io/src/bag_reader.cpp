@@ -24,7 +24,6 @@
 #include <utility>
 
 #include "bag_file.h"
-#include "bag_message.h"
 #include "torque_reader.h"
 #include "trial_messages.h"
 
@@ -327,11 +326,6 @@ BagContent readBagBytes(std::istream* in, int image_size, const BagOptions& opti
         cameras.requireOneAtATime("topic " + images.name + " has images of ",
                                   "record each camera on a topic of its own")}) {
     if (!note.empty()) messages.note(note);
-  }
-  if (bag.bytesAfterIndex() > 0) {
-    messages.note(std::to_string(bag.bytesAfterIndex()) +
-                  " bytes follow its index and do not count: if they are another bag, give each in "
-                  "a file of its own");
   }
   messages.pair(by_stamp ? 0.0 : options.dt);
   std::size_t number = 0;

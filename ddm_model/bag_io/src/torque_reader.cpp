@@ -15,7 +15,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "bag_message.h"
+#include "bag_file.h"
 
 namespace ddm {
 namespace {

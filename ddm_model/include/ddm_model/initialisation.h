@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <random>
 
-#include "ddm_model/model_options.h"
 #include "ddm_model/networks.h"
 
 namespace ddm {
@@ -16,14 +15,12 @@ namespace ddm {
 ///
 ///   encoder:  W = c B^T, b = -c B^T m        decoder:  W = B / c, b = m
 ///
-/// with basis B and mean m of the inputs. c gives the leading unit the spread layer_std, where the
-/// arctan is nearly linear; the arctan's output is the input of the next pair. A pair that is not
-/// mirrored (encoder_widths and decoder_widths differ), and units beyond the rank of the input,
-/// start at random, as does the whole auto-encoder without a PCA start. f starts at random with
-/// weights N(0, predictor_gain^2 / fan-in).
+/// with basis B and mean m of the inputs. c gives the leading unit a spread of 0.3, where the arctan
+/// is nearly linear; the arctan's output is the input of the next pair. Units beyond the rank of the
+/// input have random initial weights, as has the whole auto-encoder without a PCA start, and f.
 /// @param scores  PCA scores of all images  [pca_dim x M]
 /// @return        theta                     [P]
 Eigen::VectorXd initialTheta(const Networks<double>& networks, const Eigen::MatrixXd& scores,
-                             const TrainingOptions& options, bool pca_start, std::mt19937_64* rng);
+                             bool pca_start, std::mt19937_64* rng);
 
 }  // namespace ddm

@@ -5,11 +5,53 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <random>
+#include <type_traits>
 #include <vector>
 
-#include "ddm_model/kronecker_factors.h"
-
 namespace ddm {
+
+/// Approximates the Gauss-Newton matrix of one layer by a Kronecker product (K-FAC: Martens and Grosse,
+/// ICML 2015). For the layer's weights W and biases b and a sum of squares V,
+///
+///   d^2 V / d[W b]^2  ~  (sum_i a_i a_i') (x) (sum_i e_i e_i') / N
+///
+/// a_i are the layer's inputs for sample i, followed by a 1. e_i are the derivatives by the layer's outputs,
+/// back-propagated from independent errors of variance 1 at the outputs of the whole network.
+template <class Scalar>
+struct KroneckerFactors {
+  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+
+  Matrix inputs;                 ///< sum_i a_i a_i'  [width_in + 1 x width_in + 1]
+  Matrix errors;                 ///< sum_i e_i e_i'        [width_out x width_out]
+  Eigen::Index num_samples = 0;  ///< N
+
+  KroneckerFactors(Eigen::Index width_in, Eigen::Index width_out)
+      : inputs(Matrix::Zero(width_in + 1, width_in + 1)),
+        errors(Matrix::Zero(width_out, width_out)) {}
+
+  /// @param a  inputs of the layer, without the 1   [width_in x N]
+  /// @param e  errors at its outputs               [width_out x N]
+  void add(const Eigen::Ref<const Matrix>& a, const Eigen::Ref<const Matrix>& e) {
+    const Eigen::Index width = a.rows();
+    inputs.topLeftCorner(width, width).noalias() += a * a.transpose();
+    inputs.col(width).head(width) += a.rowwise().sum();
+    inputs.row(width).head(width) = inputs.col(width).head(width).transpose();
+    inputs(width, width) += static_cast<Scalar>(a.cols());
+    errors.noalias() += e * e.transpose();
+    num_samples += a.cols();
+  }
+
+  /// Of further samples of the same layer.
+  void add(const KroneckerFactors& other) {
+    inputs += other.inputs;
+    errors += other.errors;
+    num_samples += other.num_samples;
+  }
+};
+
+/// Of all layers of a network, or of several, in the order of their parameters.
+template <class Scalar>
+using LayerFactors = std::vector<KroneckerFactors<Scalar>>;
 
 /// Fully connected network (paper, Sec. 2.1).
 ///
@@ -57,11 +99,16 @@ class Mlp {
   /// @return factors of all layers that nothing was added to yet
   LayerFactors<Scalar> zeroFactors() const;
 
-  /// Views of one layer (0 is the first) inside a parameter vector.
-  Eigen::Map<Matrix> weights(Scalar* theta, int layer) const;
-  Eigen::Map<Vector> biases(Scalar* theta, int layer) const;
-  Eigen::Map<const Matrix> weights(const Scalar* theta, int layer) const;
-  Eigen::Map<const Vector> biases(const Scalar* theta, int layer) const;
+  /// Views of one layer (0 is the first) inside a parameter vector, const or not.
+  template <class Pointer>
+  auto weights(Pointer theta, int layer) const {
+    return View<Pointer, Matrix>(theta + offsets_[layer], widths_[layer + 1], widths_[layer]);
+  }
+  template <class Pointer>
+  auto biases(Pointer theta, int layer) const {
+    const Eigen::Index num_weights = static_cast<Eigen::Index>(widths_[layer + 1]) * widths_[layer];
+    return View<Pointer, Vector>(theta + offsets_[layer] + num_weights, widths_[layer + 1]);
+  }
 
   /// Room in a tape for the inputs of its next forward pass, one sample per column.
   /// @return a_0, to be filled  [width_0 x num_samples]
@@ -89,6 +136,10 @@ class Mlp {
                 Scalar* d_theta, Matrix* d_inputs) const;
 
  private:
+  template <class Pointer, class Values>
+  using View = Eigen::Map<std::conditional_t<std::is_const<std::remove_pointer_t<Pointer>>::value,
+                                             const Values, Values>>;
+
   std::vector<int> widths_;
   Output output_;
   std::vector<Eigen::Index> offsets_;  // where each layer starts in theta
@@ -103,14 +154,14 @@ inline std::vector<int> layerWidths(int first, const std::vector<int>& hidden, i
   return widths;
 }
 
-/// Random parameters: weights N(0, gain^2 / fan-in), biases 0. (Fixed for a given libstdc++.)
+/// Random parameters: weights N(0, 1 / fan-in), biases 0. (Fixed for a given libstdc++.)
 /// @param theta  out: parameters  [P]
 template <class Scalar>
-void randomise(const Mlp<Scalar>& net, double gain, std::mt19937_64* rng, Scalar* theta) {
+void randomise(const Mlp<Scalar>& net, std::mt19937_64* rng, Scalar* theta) {
   std::normal_distribution<double> normal;
   for (int layer = 0; layer < net.numLayers(); ++layer) {
     Eigen::Map<typename Mlp<Scalar>::Matrix> w = net.weights(theta, layer);
-    const double scale = gain / std::sqrt(static_cast<double>(w.cols()));
+    const double scale = 1.0 / std::sqrt(static_cast<double>(w.cols()));
     for (Eigen::Index i = 0; i < w.size(); ++i)
       w.data()[i] = static_cast<Scalar>(scale * normal(*rng));
     net.biases(theta, layer).setZero();

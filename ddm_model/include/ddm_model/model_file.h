@@ -13,10 +13,7 @@ namespace ddm {
 ///   "DDMMODEL" | format version, uint32 | size of the content, uint64 | CRC-32 of the content |
 ///   content
 ///
-/// Versions 1 to 4 are still read. Version 5 added the delay, version 4 blur and landmarks, and
-/// version 3 a max_torque for each motor: before, there was one for all. Versions 2 and 3 may hold
-/// the other models of an ensemble, which older programs trained: they are skipped. Version 1 has
-/// neither those nor the flags of f and the spread of features.
+/// Only the present version of the format is read.
 std::string serialiseModel(const Ddm& model);
 
 /// The inverse. Sizes are checked against what is there before memory is taken.

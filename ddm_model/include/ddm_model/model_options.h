@@ -15,8 +15,7 @@ struct ModelOptions {
   int feature_dim = 2;                            ///< dim z [-]
   int order = 2;                                  ///< n, features and torques that f sees [-]
   int delay = 0;                                  ///< d, how late an image shows a torque [frames]
-  std::vector<int> encoder_widths = {25, 12, 6};  ///< hidden layers of g^-1
-  std::vector<int> decoder_widths = {6, 12, 25};  ///< hidden layers of g
+  std::vector<int> encoder_widths = {25, 12, 6};  ///< hidden layers of g^-1; those of g mirror them
   std::vector<int> predictor_widths = {4};        ///< hidden layers of f
   bool residual = false;                          ///< f predicts the change of z, not z
   bool increments = false;                        ///< f sees past features as their differences
@@ -30,7 +29,6 @@ struct ModelOptions {
     visitor("order", order);
     visitor("delay", delay);
     visitor("encoder_widths", encoder_widths);
-    visitor("decoder_widths", decoder_widths);
     visitor("predictor_widths", predictor_widths);
     visitor("residual", residual);
     visitor("increments", increments);
@@ -38,6 +36,10 @@ struct ModelOptions {
   }
   /// Frames that f looks back: n + d.
   int memory() const { return order + delay; }
+  /// Hidden layers of g, feature first.
+  std::vector<int> decoderWidths() const {
+    return std::vector<int>(encoder_widths.rbegin(), encoder_widths.rend());
+  }
   std::vector<std::string> problems() const;
 };
 
@@ -56,9 +58,6 @@ struct TrainingOptions {
   double weight_decay = 0.0;     ///< weight of V_W, the squared weights [score^2]
   double function_tolerance = 1e-6;  ///< stop when V changes by less than this fraction [-]
   int lbfgs_rank = 20;               ///< pairs that L-BFGS remembers [-]
-  double score_std = 1.0;            ///< spread of the leading PCA score at the encoder's input [-]
-  double layer_std = 0.3;            ///< spread of a layer's leading unit after initialisation [-]
-  double predictor_gain = 1.0;       ///< f starts at weights N(0, gain^2 / fan-in) [-]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
@@ -75,9 +74,6 @@ struct TrainingOptions {
     visitor("weight_decay", weight_decay);
     visitor("function_tolerance", function_tolerance);
     visitor("lbfgs_rank", lbfgs_rank);
-    visitor("score_std", score_std);
-    visitor("layer_std", layer_std);
-    visitor("predictor_gain", predictor_gain);
   }
   std::vector<std::string> problems() const;
 };

@@ -1,10 +1,103 @@
-// The three networks of the deep dynamical model and where each lives in theta.
+// The three networks of the deep dynamical model, and where each lives in theta.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ddm_model/prediction_model.h"
+#include <Eigen/Core>
+
+#include "ddm_model/mlp.h"
+#include "ddm_model/model_options.h"
+#include "ddm_model/per_motor.h"
 
 namespace ddm {
+
+/// One-step prediction in feature space (paper, eq. 2), without its parameters.
+///
+///   z_{t+1} = f(h_n; theta_P),   h_n = [z_t, u_{t-d}, z_{t-1}, u_{t-1-d}, ..., z_{t-n+1}, u_{t-n+1-d}]
+///
+/// with u in units of max_torque; RollOut makes h_n. d is the dead time of the camera, model/delay, 0 in
+/// the paper: an image that is d frames late shows a torque d frames later. f is a network with a linear output layer, or,
+/// with model/residual, z_t plus such a network: what does not move is then predicted without
+/// learning. With model/increments the network sees z_t, z_t - z_{t-1}, z_{t-1} - z_{t-2}, ...
+/// instead: features of successive images are almost equal, and their differences are the motion.
+template <class Scalar>
+class PredictionModel {
+ public:
+  using Matrix = typename Mlp<Scalar>::Matrix;
+
+  /// @throws std::invalid_argument if a width is < 1, or max_torque is for other motors
+  PredictionModel(const ModelOptions& options, int torque_dim)
+      : feature_dim_(options.feature_dim),
+        torque_dim_(torque_dim),
+        order_(options.order),
+        delay_(options.delay),
+        residual_(options.residual),
+        increments_(options.increments),
+        max_torque_(perMotor(options.max_torque, torque_dim, "model/max_torque")),
+        network_(layerWidths(options.order * (options.feature_dim + torque_dim),
+                             options.predictor_widths, options.feature_dim),
+                 Mlp<Scalar>::Output::kLinear) {}
+
+  int featureDim() const { return feature_dim_; }
+  int torqueDim() const { return torque_dim_; }
+  /// @return n
+  int order() const { return order_; }
+  /// @return d
+  int delay() const { return delay_; }
+  /// @return n + d, the frames from the oldest that h_n needs to the current one
+  int memory() const { return order_ + delay_; }
+  /// What f sees as 1 [N m]  [torque_dim]
+  const Eigen::VectorXd& maxTorque() const { return max_torque_; }
+  /// @return n (feature_dim + torque_dim), the size of h_n
+  int regressorDim() const { return network_.inputDim(); }
+
+  /// The network within f.
+  const Mlp<Scalar>& network() const { return network_; }
+
+  /// @param theta_p     parameters of f                                                      [P_f]
+  /// @param regressors  one h_n per column; out: input of the network        [regressorDim() x N]
+  /// @param tape        out: record for backward()
+  /// @param predicted   out: z_{t+1}, of this size already                      [feature_dim x N]
+  void forward(const Scalar* theta_p, Eigen::Ref<Matrix> regressors,
+               typename Mlp<Scalar>::Tape* tape, Eigen::Ref<Matrix> predicted) const {
+    for (int lag = increments_ ? order_ - 1 : 0; lag > 0; --lag) {
+      features(lag, regressors) = features(lag - 1, regressors) - features(lag, regressors);
+    }
+    network_.forward(theta_p, regressors, tape);  // eq. (2)
+    predicted = tape->output();
+    if (residual_) predicted += features(0, regressors);
+  }
+
+  /// Vector-Jacobian product of forward(). Uses the tape up.
+  /// @param d_theta_p     dV/d theta_P is ADDED to this; null: not wanted                    [P_f]
+  /// @param d_regressors  out: dV/dh_n in its first N columns              [regressorDim() x >= N]
+  void backward(const Scalar* theta_p, typename Mlp<Scalar>::Tape* tape,
+                const Eigen::Ref<const Matrix>& d_predicted, Scalar* d_theta_p,
+                Matrix* d_regressors) const {
+    network_.backward(theta_p, tape, d_predicted, d_theta_p, d_regressors);
+    auto d_h = d_regressors->leftCols(d_predicted.cols());
+    for (int lag = 1; lag < (increments_ ? order_ : 1); ++lag) {
+      features(lag - 1, d_h) += features(lag, d_h);
+      features(lag, d_h) *= Scalar(-1);
+    }
+    if (residual_) features(0, d_h) += d_predicted;
+  }
+
+ private:
+  /// Rows of the feature of `lag` steps ago (0: the current one).
+  template <class Regressors>
+  auto features(int lag, Regressors& regressors) const {
+    return regressors.middleRows(lag * (feature_dim_ + torque_dim_), feature_dim_);
+  }
+
+  int feature_dim_;
+  int torque_dim_;
+  int order_;
+  int delay_;
+  bool residual_;
+  bool increments_;
+  Eigen::VectorXd max_torque_;
+  Mlp<Scalar> network_;
+};
 
 /// g^-1, g and f, and their places in the one flat vector theta = [theta_E, theta_D, theta_P].
 ///
@@ -19,7 +112,7 @@ struct Networks {
       : prediction_model(options, torque_dim),
         encoder_(layerWidths(options.pca_dim, options.encoder_widths, options.feature_dim),
                  Mlp<Scalar>::Output::kArctan),
-        decoder_(layerWidths(options.feature_dim, options.decoder_widths, options.pca_dim),
+        decoder_(layerWidths(options.feature_dim, options.decoderWidths(), options.pca_dim),
                  Mlp<Scalar>::Output::kLinear) {}
 
   Eigen::Index numParams() const { return predictorOffset() + f().numParams(); }

@@ -8,12 +8,26 @@
 #include <random>
 #include <vector>
 
+#include "ddm_model/data_set.h"
 #include "ddm_model/networks.h"
+#include "ddm_model/pca.h"
 #include "ddm_model/roll_out.h"
 #include "ddm_model/schedule.h"
-#include "ddm_model/training_data.h"
 
 namespace ddm {
+
+/// What the objective is computed from: PCA scores and torques of a data set.
+template <class Scalar>
+struct TrainingData {
+  Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>
+      scores;                     ///< all frames, then the goal if there is one  [pca_dim x M]
+  Eigen::MatrixXd torques;        ///< [N m]                               [torque_dim x N]
+  std::vector<Segment> segments;  ///< no prediction straddles two of them
+};
+
+inline TrainingData<float> makeTrainingData(const DataSet& data, const Pca& pca) {
+  return {pca.project(data), data.torques(), data.segments()};
+}
 
 /// V = w (V_R + V_P) with (paper, eq. 5a)
 ///

@@ -6,16 +6,56 @@
 #include <cstdint>
 #include <functional>
 
-#include "ddm_model/blur.h"
 #include "ddm_model/data_set.h"
 
 namespace ddm {
+
+/// Y -> G Y G^T for an image Y, with the rows of G a Gaussian about their pixel, cut off at the edge
+/// of the image and normalised: a grey wall stays as it is. Thin parts of a large picture then
+/// share pixels from one pose to the next, and few principal components show them.
+class Blur {
+ public:
+  template <class Scalar>
+  using Images = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+
+  Blur() = default;  ///< none
+  /// @param image_size  width and height of the images [pixels]
+  /// @param std         standard deviation of the Gaussian [pixels]; 0: images stay as they are
+  Blur(int image_size, double std);
+
+  /// @param images  one image per column  [D x N]
+  template <class Scalar>
+  void apply(Images<Scalar>* images) const {
+    map<Scalar>(G_.cast<Scalar>(), images);
+  }
+  /// G; empty where there is no blur  [image_size x image_size]
+  const Eigen::MatrixXf& matrix() const { return G_; }
+  /// The transposed map.
+  /// @param images  one image per column  [D x N]
+  template <class Scalar>
+  void applyTransposed(Images<Scalar>* images) const {
+    map<Scalar>(G_.transpose().cast<Scalar>(), images);
+  }
+
+ private:
+  template <class Scalar>
+  static void map(const Images<Scalar>& G, Images<Scalar>* images) {
+    if (G.size() == 0) return;
+    for (Eigen::Index i = 0; i < images->cols(); ++i) {
+      Eigen::Map<Images<Scalar>> image(images->col(i).data(), G.rows(), G.cols());
+      image = (G * image * G.transpose()).eval();
+    }
+  }
+
+  Eigen::MatrixXf G_;  // empty: no blur  [image_size x image_size]
+};
 
 /// Orthonormal basis of the leading principal components.
 ///
 ///   score = scale * basis^T (blur(y) - mean),      y_hat = mean + basis * score / scale
 ///
-/// One common scale for all scores keeps the geometry of the pixels.
+/// One common scale for all scores keeps the geometry of the pixels; the leading score has a standard
+/// deviation of 1.
 struct Pca {
   Blur blur;                 ///< through which images are seen
   Eigen::VectorXf mean;      ///< mean image, blurred                       [D]
@@ -61,11 +101,10 @@ class Projection {
 /// 1e-3 where images are noise.
 /// @param data       at least dim + 1 images
 /// @param dim        number of components
-/// @param score_std  standard deviation of the leading score; fixes the scale
 /// @param blur       through which all images are seen
 /// @param check      (optional) called before each sweep; may throw to end the search
 /// @throws std::invalid_argument if there are too few images or they are all the same
-Pca fitPca(const DataSet& data, int dim, double score_std, const Blur& blur = Blur(),
+Pca fitPca(const DataSet& data, int dim, const Blur& blur = Blur(),
            const std::function<void()>& check = nullptr);
 
 }  // namespace ddm

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "ddm_model/prediction_model.h"
+#include "ddm_model/networks.h"
 
 namespace ddm {
 

@@ -51,11 +51,7 @@ std::vector<std::string> scheduleNames();
 /// predictions of more than one step are asked for, each stage with V_P is warmed up by one with a
 /// single step: long predictions of an untrained f have no useful gradient. Where starts are chosen
 /// before they are done, `finish` is the rest of the last stage.
+/// @throws std::invalid_argument naming the known ones if there is none of this name
 Schedule makeSchedule(const TrainingOptions& training);
-
-/// The same without iterations.
-/// @param name  one of scheduleNames()
-/// @throws std::invalid_argument naming the known ones
-Schedule makeSchedule(const std::string& name);
 
 }  // namespace ddm

@@ -12,7 +12,7 @@ from ddm_model import report, report_figures
 from ddm_model.model import ModelFileError, load
 from ddm_model.model_data import ModelData, ModelDataError
 from ddm_model.plain_file import write_file
-from ddm_model.verdict import limits, summary, verdict
+from ddm_model.verdict import summary, verdict
 
 # Shorthands for keys of the block data_set, see read_bags.
 DATA_SET_OPTIONS = (
@@ -48,26 +48,14 @@ def facts_of(model):
 
 
 def facts_table(data, path):
-    facts, options = facts_of(data.model), data.options
-    frames, pixels = max(facts["frames"], 1), facts["image_size"] ** 2
-    rms = [(facts[name] / (frames * pixels)) ** 0.5 for name in ("v_r", "v_p")]
-    widths = ["%s: %s" % (name, ", ".join(map(str, options[name + "_widths"])) or "none")
-              for name in ("encoder", "decoder", "predictor")]
-    return report.table(["the model", ""], [
-        ("file", path), ("id", facts["id"]),
-        ("images", "%s x %s pixels, %s principal components" % (
-            facts["image_size"], facts["image_size"], options["pca_dim"])),
-        ("features, torques", "%s, %s; the last %s of each predict the next" % (
-            options["feature_dim"], facts["torque_dim"], options["order"])),
-        ("delay", "%s frame(s): an image shows what the torque of so many frames before it did" % options["delay"]),
-        ("hidden layers", "; ".join(widths)),
-        ("f", "residual: %s, increments: %s, torques in units of %s N m" % (
-            *(str(options[name]).lower() for name in ("residual", "increments")), limits(data))),
-        ("trained on", "%s frames, the last trial was %s, seed %s" % (
-            facts["frames"], facts["trial"], facts["seed"])),
-        ("V_R, V_P", "%.4g, %.4g grey²: %.3g and %.3g grey a pixel, within the principal components" % (
-            facts["v_r"], facts["v_p"], *rms)),
-        ("goal image", "yes" if facts["goal"] else "none")])
+    facts = {"file": path, **facts_of(data.model)}
+    facts.update(facts.pop("options"))
+    del facts["config"]  # a section of its own
+    values = max(facts["frames"], 1) * facts["image_size"] ** 2
+    for name in ("v_r", "v_p"):
+        facts[name] = "%.4g grey²: %.3g grey a pixel, within the principal components" % (
+            facts[name], (facts[name] / values) ** 0.5)
+    return report.table(["the model", ""], facts.items())
 
 
 def bags_table(data):

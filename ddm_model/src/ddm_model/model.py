@@ -7,7 +7,7 @@ import zlib
 import numpy as np
 
 MAGIC, HEADER = b"DDMMODEL", "<IQI"  # version, bytes of content, CRC-32
-VERSION = 5  # of the format; all before it are read
+VERSION = 5  # of the format
 
 
 class ModelFileError(ValueError):
@@ -39,31 +39,31 @@ class _Reader:
 
 
 def _content(data):
-    """(version, content) of the bytes of a model file."""
+    """What follows the header of a model file."""
     begin = len(MAGIC) + struct.calcsize(HEADER)
     if data[:len(MAGIC)] != MAGIC:
         raise ModelFileError("is not a DDM model (it does not begin with %s)" % MAGIC.decode())
     if len(data) < begin:
         raise ModelFileError("is cut short: copy or train it again")
     version, size, checksum = struct.unpack_from(HEADER, data, len(MAGIC))
-    if not 1 <= version <= VERSION:
-        raise ModelFileError("has format version %d, this program reads versions 1 to %d: train it again from its bags"
+    if version != VERSION:
+        raise ModelFileError("has format version %d, this program reads version %d: train it again from its bags"
                              % (version, VERSION))
     if size != len(data) - begin or checksum != zlib.crc32(data[begin:]):
         raise ModelFileError("is damaged (wrong size or checksum): copy or train it again")
-    return version, data[begin:]
+    return data[begin:]
 
 
-def _read_options(version, reader):
+def _read_options(reader):
     """The block `model` of the configuration."""
     options = {name: int(reader.number("<i4")) for name in ("pca_dim", "feature_dim", "order")}
     for name in ("encoder_widths", "decoder_widths", "predictor_widths"):
         options[name] = reader.array("<i4").tolist()
     for name in ("residual", "increments"):
-        options[name] = bool(reader.number("u1")) if version > 1 else False
-    options["max_torque"] = reader.array("<f8") if version > 2 else np.array([reader.number("<f8")])
-    options["blur"] = float(reader.number("<f8")) if version > 3 else 0.0
-    options["delay"] = int(reader.number("<i4")) if version > 4 else 0
+        options[name] = bool(reader.number("u1"))
+    options["max_torque"] = reader.array("<f8")
+    options["blur"] = float(reader.number("<f8"))
+    options["delay"] = int(reader.number("<i4"))
     return options
 
 
@@ -105,16 +105,15 @@ class Model:
 
     def __init__(self, data):
         """data: bytes of a model file. Raises ModelFileError."""
-        version, content = _content(data)
-        reader = _Reader(content)
-        self.options = _read_options(version, reader)
+        reader = _Reader(_content(data))
+        self.options = _read_options(reader)
         self.image_size, self.torque_dim = int(reader.number("<i4")), int(reader.number("<i4"))
         self.info = {"id": "%08x" % zlib.crc32(data)}
         for name, kind in (("seed", "<u8"), ("trial", "<u4"), ("frames", "<u4")):
             self.info[name] = int(reader.number(kind))
         for name in ("v_r", "v_p", "feature_spread"):
-            self.info[name] = float(reader.number("<f8")) if version > 1 or name != "feature_spread" else 0.0
-        landmarks = reader.array("<f4") if version > 3 else np.zeros(0, "<f4")
+            self.info[name] = float(reader.number("<f8"))
+        landmarks = reader.array("<f4")
         self.info["config"] = reader.text()
         self.arrays = self._read_arrays(reader)
         memory, dim = self.options["order"] + self.options["delay"], self.options["feature_dim"]
