@@ -102,7 +102,7 @@ class CoreIsRosFreeTest(unittest.TestCase):
 
     def test_includes_of_a_node_are_seen_as_ros(self):
         node = os.path.join(rospkg.RosPack().get_path("ddm_mpc"), "nodes", "mpc_node.cpp")
-        self.assertIn("ddm_msgs/Plan.h", rosIncludes(node))
+        self.assertIn("ddm_msgs/topics.h", rosIncludes(node))
         self.assertIn("ros/ros.h", rosIncludes(node.replace(".cpp", ".h")))
 
     def test_libraries_of_the_bag_reader_are_seen_as_ros(self):
