@@ -162,14 +162,6 @@ TEST(Minimise, EndsByTheChangeOfTheCostWhateverItsSign) {
   }
 }
 
-/// A bowl with a flat floor, on which the gradient has nothing to do with the function.
-double bowl(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
-  const double value = 0.5 * x.squaredNorm();
-  const bool on_floor = value <= 0.125;
-  if (gradient != nullptr) *gradient = on_floor ? vectorOf({3.0}) : x;
-  return on_floor ? 0.125 : value;
-}
-
 TEST(Minimise, AsksForPermissionBeforeEachEvaluationAndNeverAgainOnceItIsRefused) {
   const Minimum whole = minimise(valley, vectorOf({-1.2, 1.0}), MinimiseOptions());
   double best = kInfinity;

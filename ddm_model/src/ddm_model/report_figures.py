@@ -59,8 +59,7 @@ def draw_spectrum(data):
 def draw_rows(rows, labels, columns):
     """Grey pictures in rows; labels of rows at the left, of columns above."""
     shape = (len(rows), len(columns))
-    figure, axes = plt.subplots(*shape, figsize=(WIDTH, WIDTH / max(len(columns), 6) * len(rows) * 1.12),
-                                squeeze=False, constrained_layout=True)
+    figure, axes = plt.subplots(*shape, figsize=(WIDTH, WIDTH / max(len(columns), 6) * len(rows) * 1.12), squeeze=False)
     for i, (row, label) in enumerate(zip(rows, labels)):
         for j, picture in enumerate(row):
             axes[i, j].imshow(picture, cmap="gray", vmin=0, vmax=255, interpolation="nearest")
@@ -69,6 +68,7 @@ def draw_rows(rows, labels, columns):
             if i == 0:
                 axes[i, j].set_title(columns[j], fontsize=9)
         axes[i, 0].set_ylabel(label, fontsize=9, rotation=0, ha="right", va="center")
+    figure.tight_layout(pad=0.3)  # matplotlib 3.3 takes minutes for a constrained layout of so many axes
     return figure
 
 
