@@ -107,7 +107,7 @@ class InstallTest(SharedScratchCase):
                                  (package, name))
             for path in files_in(os.path.join(CHECKOUT, package)):
                 header = re.match(r"(?:\w+/)?include/(.*\.h)$", path)
-                if header and (has_mujoco() or not path.startswith("mujoco/")):
+                if header and not path.startswith("test/") and (has_mujoco() or not path.startswith("mujoco/")):
                     self.assertTrue(os.path.isfile(os.path.join(self.prefix, "include", header.group(1))), path)
 
     def test_an_experiment_runs_in_one_process_and_with_the_nodes(self):
@@ -135,7 +135,7 @@ class InstallTest(SharedScratchCase):
                 nodes.update(re.findall(r'type="(\w+)"', stream.read()))
         tools = [(package, name) for package in PACKAGES
                  for name in programs_in(os.path.join(self.prefix, "lib", package)) if name not in nodes]
-        self.assertGreater(len(tools), 12)
+        self.assertGreater(len(tools), 8)
         with ThreadPoolExecutor(2) as pool:
             done = list(pool.map(lambda tool: self.runInstalled(os.path.join(self.prefix, "lib", *tool), "--help"), tools))
         usage = re.compile(r"^(usage: |benchmark \[)", re.MULTILINE)  # the latter: Google Benchmark's own

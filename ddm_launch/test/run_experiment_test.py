@@ -174,7 +174,7 @@ class RunExperimentTest(SharedScratchCase):
                 (["'--out'"], ["--preset", "debug"]),
                 (["unknown preset 'papier'", "debug, efficient, paper"], out + ["--preset", "papier"]),
                 (["unknown plant 'sim'", "pendulum, pendulum_gravity"], out + ["--plant", "sim"]),
-                (["unknown nuisance 'fog'", "drops, noise"], out + ["--nuisance", "noise", "--nuisance", "fog"]),
+                (["unknown configuration 'nuisance/fog'", "nuisance/drops, nuisance/noise"], out + ["--nuisance", "noise", "--nuisance", "fog"]),
                 (["unknown method 'pilko'", "ddm, oracle"], out + ["--method", "pilko"]),
                 (["experiment/seed", "-1"], out + ["--seed", "-1"]),
                 (["experiment/trials", "-2"], out + ["--trials", "-2"]),

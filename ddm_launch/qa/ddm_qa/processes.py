@@ -66,14 +66,16 @@ def environment_of_programs(**variables):
 class Process:
     """A program whose output, stdout and stderr together, is read while it runs. As a context it ends the program."""
 
-    def __init__(self, command, environment=None, folder=None):
+    def __init__(self, command, environment=None, folder=None, output=subprocess.PIPE):
+        """output: a terminal that shows the output; then it is not read here."""
         self._changed = threading.Condition()
         self._text, self._ended = "", False
         self._process = subprocess.Popen(
             [str(word) for word in command], env=environment or line_by_line(), cwd=folder, stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+            stdout=output, stderr=subprocess.STDOUT)
         self._reader = threading.Thread(target=self._read, daemon=True)
-        self._reader.start()
+        if output == subprocess.PIPE:
+            self._reader.start()
 
     def __enter__(self):
         return self
@@ -114,7 +116,8 @@ class Process:
         except subprocess.TimeoutExpired:
             self.stop()
             raise TimeoutError("not at its end after %g s:\n%s" % (limit_s, self.output))
-        self._reader.join(10.0)
+        if self._reader.is_alive():
+            self._reader.join(10.0)
         return code
 
     def isRunning(self):
