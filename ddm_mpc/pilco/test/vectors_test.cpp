@@ -1,6 +1,7 @@
-// Compares all that PILCO computes with reference values: the JSON file that the environment variable DDM_PILCO_VECTORS
-// names. Each kind of cases in the file is a test; a case fails where a field is missing or disagrees.
+// Compares all that PILCO computes with the reference values in the JSON file that DDM_PILCO_VECTORS names.
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Each kind of cases in the file is a test; a case fails where a field is missing or disagrees.
 #include <ddm_model/solver_log.h>
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
