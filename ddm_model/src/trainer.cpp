@@ -123,7 +123,7 @@ TrainingResult trainUnlessCancelled(const DataSet& data, const ModelOptions& mod
 }  // namespace
 
 TrainingResult train(const DataSet& data, const ModelOptions& model,
-                     const TrainingOptions& training, ModelInfo info,
+                     const TrainingOptions& training, const ModelInfo& info,
                      const TrainingCallback& callback) {
   const auto began = std::chrono::steady_clock::now();
   TrainingResult result;

@@ -45,7 +45,7 @@ struct TrainingResult {
 /// @param info  seed, trial and config are kept; frames, V_R, V_P and the spread are filled in
 /// @throws std::invalid_argument if the data are too few for the options, or all the same
 TrainingResult train(const DataSet& data, const ModelOptions& model,
-                     const TrainingOptions& training, ModelInfo info,
+                     const TrainingOptions& training, const ModelInfo& info,
                      const TrainingCallback& callback = nullptr);
 
 }  // namespace ddm
