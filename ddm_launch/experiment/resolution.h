@@ -38,7 +38,8 @@ struct ResolvedConfiguration {
 ///
 ///   defaults, preset, plant, method, configs, values
 ///
-/// The defaults are those of the parameter references, then those of a launch file.///
+/// The defaults are those of the parameter references, then those of a launch file.
+///
 /// A saved configuration among the configs (--repeat RUN) takes the place of preset, plant and
 /// method. Otherwise preset, plant and method are those that `experiment` names in values, else in
 /// the last of the configs that names them, else in the defaults.
