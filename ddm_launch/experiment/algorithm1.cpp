@@ -1,4 +1,4 @@
-// Algorithm 1 of the paper: adaptive MPC in feature space, whoever runs its trials.
+// Algorithm 1 of the paper: adaptive MPC in feature space, with either driver.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "algorithm1.h"
 
@@ -38,7 +38,7 @@ class Algorithm1 {
   Driver& driver_;
   RunFolder& folder_;
   Progress& progress_;
-  std::unique_ptr<Plant> plant_;  // judges evaluations; nobody moves it
+  std::unique_ptr<Plant> plant_;  // tells the error of a state; never simulated
 };
 
 }  // namespace

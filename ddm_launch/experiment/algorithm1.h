@@ -1,4 +1,4 @@
-// Algorithm 1 of the paper: adaptive MPC in feature space, whoever runs its trials.
+// Algorithm 1 of the paper: adaptive MPC in feature space, with either driver.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

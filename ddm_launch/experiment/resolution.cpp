@@ -95,8 +95,9 @@ std::string chosenPlant(const std::vector<Layer>& layers) {
   return namesPlantFile(name) ? fs::absolute(name).lexically_normal().string() : name;
 }
 
-/// A saved configuration holds every value of its plant, its preset and its method: with another
-/// name it would be a mixture of the two.
+/// A saved configuration holds every value of its plant, preset and method, so another name for
+/// one of them would not change the values.
+/// @throws std::invalid_argument if the names differ
 void requireSaved(const std::string& kind, const std::string& name, const std::string& saved,
                   const std::string& file) {
   if (name == saved) return;

@@ -1,4 +1,4 @@
-// What an experiment does before its first trial of this call, and what each run is given.
+// How an experiment takes up what an earlier call left, and the request and the table row of each trial.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "resumption.h"
 

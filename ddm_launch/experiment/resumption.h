@@ -1,4 +1,4 @@
-// What an experiment does before its first trial of this call, and what each run is given.
+// How an experiment takes up what an earlier call left, and the request and the table row of each trial.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace ddm {
 
-/// Tells what is run, and what an earlier call has finished.
+/// Prints the preset, the plant and the number of trials, and how many trials an earlier call has finished.
 void announce(const Configuration& configuration, const RunFolder& folder, Progress* progress);
 
 /// Gives the driver the model for a trial, which an earlier call may have begun: that of the
@@ -23,8 +23,8 @@ void resumeTrial(int trial, const Configuration& configuration, Driver* driver,
 /// @param evaluation  the greedy run after the trial
 TrialRequest requestFor(const Configuration& configuration, int trial, bool evaluation);
 
-/// A row of trials.csv, as far as the greedy run decides it.
-/// @param plant  is given the goal of that run
+/// The columns of a row of trials.csv that follow from the evaluation; the others keep their defaults.
+/// @param plant  its goal is set to that of the evaluation
 TrialRow rowOf(const TrialId& id, const TrialOutcome& greedy, const EvaluationOptions& options,
                Plant* plant);
 

@@ -21,8 +21,8 @@ LIMIT_S = 120.0            # for rviz to show something everywhere, once the tri
 TOOLS = {"Xvfb": "xvfb", "import": "imagemagick", "rviz": "rviz"}  # program: Debian's package
 
 # Display: the middle of its place in the window (left, top, right, bottom).
-DISPLAYS = {"Camera": (60, 110, 410, 440), "Learning curve": (20, 530, 450, 870),
-            "Feature space": (1040, 90, 1580, 630), "Prediction": (1040, 690, 1580, 870)}
+DISPLAYS = {"Camera": (190, 110, 570, 440), "Learning curve": (150, 530, 600, 870),
+            "Feature space": (950, 90, 1480, 630), "Prediction": (900, 690, 1500, 870)}
 
 
 def blank_displays(pixels):
