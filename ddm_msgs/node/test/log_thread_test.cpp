@@ -61,8 +61,8 @@ TEST(LogThread, WritesAllLinesInTheirOrderBeforeItEnds) {
 }
 
 TEST(LogThread, KeepsNobodyWaitingWhereTheTerminalIsStopped) {
+  LogThread log;  // ends after the terminal goes on: no thread logs when the process ends
   const StoppedTerminal terminal;
-  LogThread log;
   const auto logged = callWithin(std::chrono::seconds(10), [&log] {
     for (int i = 0; i < 10; ++i) log.info("a line");
     return true;
