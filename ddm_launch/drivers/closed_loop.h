@@ -4,7 +4,7 @@
 
 #include <ddm_mpc/controller.h>
 #include <ddm_plant_plugin/picture_message.h>
-#include <ddm_sim/rig.h>
+#include <ddm_sim/environment.h>
 #include <sensor_msgs/Image.h>
 
 #include <functional>
@@ -15,7 +15,7 @@
 
 namespace ddm {
 
-/// A frame that was seen, and what was decided on it. The rig is where it was photographed.
+/// A frame that was seen, and what was decided on it. The environment is where it was photographed.
 struct ClosedLoopFrame {
   int index = 0;  ///< among the frames seen
   sensor_msgs::Image image;
@@ -29,13 +29,14 @@ using TakeFrame = std::function<void(const ClosedLoopFrame&)>;
 /// goes on where a frame is lost.
 /// @param image_size  `image/size` [pixels]
 /// @param take        called for each frame before its torque acts; the last torque does not act
-void runClosedLoop(Rig* rig, EpsilonGreedy* policy, const TrialId& id, int image_size,
-                   int num_frames, const TakeFrame& take);
+void runClosedLoop(Environment* environment, EpsilonGreedy* policy, const TrialId& id,
+                   int image_size, int num_frames, const TakeFrame& take);
 
 /// The same for a trial of an experiment, with its exploration.
 /// @param policy  may be null where the trial is random
 /// @throws std::invalid_argument if it is null where it is needed
-void runClosedLoop(Rig* rig, std::shared_ptr<Policy> policy, const TrialRequest& request,
-                   const Configuration& configuration, const TakeFrame& take);
+void runClosedLoop(Environment* environment, std::shared_ptr<Policy> policy,
+                   const TrialRequest& request, const Configuration& configuration,
+                   const TakeFrame& take);
 
 }  // namespace ddm

@@ -28,8 +28,9 @@ void write(const sensor_msgs::Image& image, const Decision& decision, BagWriter*
 
 InProcessDriver::InProcessDriver(const Configuration& configuration)
     : configuration_(configuration),
-      rig_(makePlant(*configuration.plant), configuration.camera),
-      method_(methodKind(configuration.experiment.method).make(configuration, rig_.plant())) {
+      environment_(makePlant(*configuration.plant), configuration.camera),
+      method_(
+          methodKind(configuration.experiment.method).make(configuration, environment_.plant())) {
   if (!configuration.sim.lockstep) {
     throw std::invalid_argument(
         "sim/lockstep must be true where everything runs in one process: use experiment.launch for "
@@ -45,8 +46,8 @@ TrialOutcome InProcessDriver::runTrial(const TrialRequest& request, const PhaseC
   TrialOutcome outcome;
   const auto take = [&](const ClosedLoopFrame& frame) {
     const Decision& decision = frame.decision;
-    outcome.times.push_back(rig_.time());
-    outcome.states.push_back(rig_.plant().state());
+    outcome.times.push_back(environment_.time());
+    outcome.states.push_back(environment_.plant().state());
     outcome.torques.push_back(decision.torque);
     outcome.exploratory.push_back(decision.exploratory);
     if (decision.goal_distance) outcome.goal_distances.push_back(*decision.goal_distance);
@@ -54,12 +55,12 @@ TrialOutcome InProcessDriver::runTrial(const TrialRequest& request, const PhaseC
     if (bag != nullptr && frame.index == 0) {
       const ros::Time begin = frame.image.header.stamp;
       const std::string& frame_id = frame.image.header.frame_id;
-      bag->writeGoal(imageMessage(rig_.goalImage(), begin, frame_id), begin);
+      bag->writeGoal(imageMessage(environment_.goalImage(), begin, frame_id), begin);
     }
     if (bag != nullptr) write(frame.image, decision, bag.get());
     progress((frame.index + 1.0) / request.num_steps);
   };
-  runClosedLoop(&rig_, method_->policy(), request, configuration_, take);
+  runClosedLoop(&environment_, method_->policy(), request, configuration_, take);
   if (bag != nullptr) bag->close();
   return outcome;
 }

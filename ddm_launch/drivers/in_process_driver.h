@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_sim/rig.h>
+#include <ddm_sim/environment.h>
 
 #include <memory>
 
@@ -34,7 +34,7 @@ class InProcessDriver : public Driver {
 
  private:
   const Configuration& configuration_;
-  Rig rig_;
+  Environment environment_;
   std::unique_ptr<Method> method_;
 };
 

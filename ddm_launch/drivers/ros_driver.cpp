@@ -3,11 +3,11 @@
 #include "ros_driver.h"
 
 #include <ddm_bag_io/model_message.h>
+#include <ddm_common/topic_peers.h>
+#include <ddm_common/waiting.h>
 #include <ddm_msgs/StartRecording.h>
 #include <ddm_msgs/StopRecording.h>
 #include <ddm_msgs/topics.h>
-#include <ddm_node/topic_peers.h>
-#include <ddm_node/waiting.h>
 
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <ddm_bag_io/model_config.h>
+#include <ddm_common/param_reader.h>
 #include <ddm_mpc/mpc_options.h>
-#include <ddm_params/param_reader.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ddm_robot/robot_options.h>
 #include <ddm_sim/camera_options.h>

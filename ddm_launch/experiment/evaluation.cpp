@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation.h"
 
-#include <ddm_params/param_value.h>
+#include <ddm_common/param_value.h>
 
 #include <algorithm>
 #include <cmath>

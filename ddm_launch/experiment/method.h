@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_common/param_reader.h>
 #include <ddm_mpc/policy.h>
-#include <ddm_params/param_reader.h>
 #include <ddm_sim/plant.h>
 #include <yaml-cpp/yaml.h>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "resolution.h"
 
-#include <ddm_params/config_blocks.h>
+#include <ddm_common/config_blocks.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ddm_robot/robot_options.h>
 #include <ros/package.h>

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_params/param_reader.h>
-#include <ddm_params/param_value.h>
-#include <ddm_params/tool.h>
+#include <ddm_common/param_reader.h>
+#include <ddm_common/param_value.h>
+#include <ddm_common/tool.h>
 #include <yaml-cpp/yaml.h>
 
 #include <string>

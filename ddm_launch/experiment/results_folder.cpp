@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "results_folder.h"
 
-#include <ddm_files/plain_file.h>
-#include <ddm_params/config_blocks.h>
+#include <ddm_common/config_blocks.h>
+#include <ddm_common/plain_file.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_files/folder_lock.h>
+#include <ddm_common/folder_lock.h>
 #include <yaml-cpp/yaml.h>
 
 #include <memory>

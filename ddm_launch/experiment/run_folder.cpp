@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run_folder.h"
 
-#include <ddm_files/plain_file.h>
-#include <ddm_params/param_value.h>
-#include <ddm_params/yaml_text.h>
+#include <ddm_common/param_value.h>
+#include <ddm_common/plain_file.h>
+#include <ddm_common/yaml_text.h>
 
 #include <boost/filesystem.hpp>
 #include <boost/format.hpp>

@@ -3,7 +3,7 @@
 #include "start.h"
 
 #include <ddm_bag_io/bag_reader.h>
-#include <ddm_files/plain_file.h>
+#include <ddm_common/plain_file.h>
 #include <ddm_model/model_file.h>
 #include <ddm_mpc/controller.h>
 #include <ddm_sim/plant_factory.h>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "oracle_method.h"
 
+#include <ddm_common/random_stream.h>
 #include <ddm_mpc/planner.h>
-#include <ddm_random/random_stream.h>
 #include <ddm_sim/plant_factory.h>
 
 #include <utility>

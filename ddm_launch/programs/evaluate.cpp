@@ -1,9 +1,9 @@
 // evaluate: how good is a saved model? Greedy runs on a plant, one for each seed, without a master.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_files/plain_file.h>
+#include <ddm_common/param_value.h>
+#include <ddm_common/plain_file.h>
 #include <ddm_model/model_file.h>
 #include <ddm_model/solver_log.h>
-#include <ddm_params/param_value.h>
 #include <ddm_sim/plant_factory.h>
 #include <ros/time.h>
 #include <unistd.h>

@@ -1,7 +1,7 @@
 // experiment_node: Algorithm 1 with the real nodes.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_common/run_node.h>
 #include <ddm_msgs/topics.h>
-#include <ddm_node/run_node.h>
 #include <std_msgs/String.h>
 
 #include <cstdint>

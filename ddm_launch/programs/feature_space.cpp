@@ -1,13 +1,13 @@
 // feature_space: what a run's model makes of its experience, and what it planned at one step.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/bag_cache.h>
-#include <ddm_files/plain_file.h>
+#include <ddm_common/plain_file.h>
+#include <ddm_common/tool.h>
 #include <ddm_model/long_term_prediction.h>
 #include <ddm_model/solver_log.h>
 #include <ddm_mpc/controller.h>
-#include <ddm_params/tool.h>
+#include <ddm_sim/environment.h>
 #include <ddm_sim/plant_factory.h>
-#include <ddm_sim/rig.h>
 #include <ros/time.h>
 
 #include <iostream>
@@ -83,7 +83,7 @@ Plan planAt(const Arguments& arguments, const Configuration& all,
   }
   TrialRequest request = requestFor(all, arguments.trial, /*evaluation=*/true);
   request.num_steps = arguments.step + 1;
-  Rig rig(makePlant(*all.plant), all.camera);
+  Environment environment(makePlant(*all.plant), all.camera);
   Plan plan;
   const auto take = [&](const ClosedLoopFrame& frame) {
     const Eigen::VectorXd& torque = recorded[static_cast<size_t>(frame.index)];
@@ -93,7 +93,7 @@ Plan planAt(const Arguments& arguments, const Configuration& all,
     }
     plan = *frame.decision.plan;
   };
-  runClosedLoop(&rig, std::make_shared<MpcPolicy>(model, all.mpc), request, all, take);
+  runClosedLoop(&environment, std::make_shared<MpcPolicy>(model, all.mpc), request, all, take);
   if (plan.status == PlanStatus::kFailed) {
     throw std::runtime_error("there is no plan at step " + std::to_string(arguments.step) + ": " +
                              plan.message);

@@ -3,15 +3,15 @@
 #include <actionlib/client/simple_action_client.h>
 #include <ddm_bag_io/bag_reader.h>
 #include <ddm_bag_io/model_message.h>
-#include <ddm_files/plain_file.h>
-#include <ddm_images/image_codec.h>
+#include <ddm_common/image_codec.h>
+#include <ddm_common/option_checks.h>
+#include <ddm_common/plain_file.h>
+#include <ddm_common/run_node.h>
+#include <ddm_common/topic_peers.h>
+#include <ddm_common/waiting.h>
 #include <ddm_msgs/RunTrialAction.h>
 #include <ddm_msgs/Torque.h>
 #include <ddm_msgs/topics.h>
-#include <ddm_node/run_node.h>
-#include <ddm_node/topic_peers.h>
-#include <ddm_node/waiting.h>
-#include <ddm_params/option_checks.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
 

@@ -1,6 +1,6 @@
 // resolve: the configuration of a launch as one text, from the arguments of the launch.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_params/config_blocks.h>
+#include <ddm_common/config_blocks.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ddm_sim/plant_factory.h>
 

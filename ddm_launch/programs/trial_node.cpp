@@ -1,8 +1,8 @@
 // trial_node: one trial with the real nodes, random or with a saved model, recorded or not.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_common/option_checks.h>
+#include <ddm_common/run_node.h>
 #include <ddm_mpc/mpc_options.h>
-#include <ddm_node/run_node.h>
-#include <ddm_params/option_checks.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ddm_sim/plant_factory.h>
 

@@ -71,8 +71,8 @@ around_apt=(sh -c "$without_services" sh)  # for apt_install of workspace.sh
 loop_programs=(resolve sim_node mpc_node view_node trial_recorder model_node experiment_node run_experiment evaluate)
 # What computes and what reads bytes from outside; the other gtests take long to compile.
 gtest_programs=(
-  ddm_bag_io_test ddm_files_test ddm_images_test ddm_model_config_test ddm_model_test ddm_mpc_test ddm_msgs_test
-  ddm_node_test ddm_params_test ddm_random_test ddm_robot_test
+  ddm_bag_io_test ddm_common_test ddm_images_test ddm_model_config_test ddm_model_test ddm_mpc_test ddm_msgs_test
+  ddm_node_test ddm_robot_test
 )
 debug_targets=("${loop_programs[@]}" "${gtest_programs[@]}" fuzz_targets)
 debug_tests="_gtest_($(IFS='|' && echo "${gtest_programs[*]}"))\$"

@@ -39,7 +39,7 @@ std::unique_ptr<Plant> cartWithAGoalPerTrial() {
 }
 
 TEST(ClosedLoop, ShowsThePolicyTheGoalOfEachTrial) {
-  Rig rig(cartWithAGoalPerTrial(), CameraOptions());
+  Environment environment(cartWithAGoalPerTrial(), CameraOptions());
   const auto onlooker = std::make_shared<Onlooker>();
   EpsilonGreedy::Options greedy;
   greedy.epsilon = 0.0;
@@ -47,8 +47,8 @@ TEST(ClosedLoop, ShowsThePolicyTheGoalOfEachTrial) {
   for (std::uint32_t trial = 0; trial < 3; ++trial) {
     const TrialId id{7, trial, false};
     EpsilonGreedy policy(onlooker, greedy, id);
-    runClosedLoop(&rig, &policy, id, kSize, 2, [](const ClosedLoopFrame& /*frame*/) {});
-    expected.push_back(rig.goalImage().bytes);
+    runClosedLoop(&environment, &policy, id, kSize, 2, [](const ClosedLoopFrame& /*frame*/) {});
+    expected.push_back(environment.goalImage().bytes);
   }
   EXPECT_EQ(onlooker->goals, expected);
   EXPECT_NE(expected[0], expected[1]);

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "configuration.h"
 
+#include <ddm_common/param_reader.h>
 #include <ddm_msgs/testing/expect_error.h>
 #include <ddm_msgs/testing/temp_folder.h>
-#include <ddm_params/param_reader.h>
 #include <ddm_sim/plant_factory.h>
 #include <ddm_sim/rod_renderer.h>
 #include <gtest/gtest.h>

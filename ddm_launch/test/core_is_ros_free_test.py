@@ -8,9 +8,7 @@ import unittest
 import rospkg
 
 # library -> folders with its sources and headers: a package, and where in it
-CORES = {"ddm_files": ("ddm_msgs", "files/include", "files/src"),
-         "ddm_params": ("ddm_msgs", "params/include", "params/src"),
-         "ddm_sim": ("ddm_sim", "include", "src"), "ddm_model": ("ddm_model", "include", "src"),
+CORES = {"ddm_sim": ("ddm_sim", "include", "src"), "ddm_model": ("ddm_model", "include", "src"),
          "ddm_mpc": ("ddm_mpc", "include", "src"), "ddm_robot": ("ddm_sim", "robot/include", "robot/src")}
 # These may be left out of a build.
 OPTIONAL = {"ddm_pilco": ("ddm_mpc", "pilco/include", "pilco/src"),
@@ -18,7 +16,7 @@ OPTIONAL = {"ddm_pilco": ("ddm_mpc", "pilco/include", "pilco/src"),
 ROS_INCLUDE = re.compile(
     r'^\s*#\s*include\s*[<"]((?:ros|xmlrpcpp|\w+_msgs|actionlib|cv_bridge|image_transport'
     r'|diagnostic_updater|nodelet|pluginlib|class_loader|tf2?(?:_ros)?|ros\w+|ddm_bag_io'
-    r'|ddm_images|ddm_node|ddm_plant_plugin)/[^>"]+)', re.MULTILINE)
+    r'|ddm_plant_plugin)/[^>"]+)', re.MULTILINE)
 ROS_LIBRARY = re.compile(
     r"^\s*(lib(?:ros\w*|xmlrpcpp|cpp_common|message_filters|actionlib|cv_bridge|image_transport|ddm_images"
     r"|ddm_node|ddm_bag_io|ddm_plant_plugin|class_loader)\.so\S*)", re.MULTILINE)
@@ -55,7 +53,7 @@ for name, places in OPTIONAL.items():
 
 class CoreIsRosFreeTest(unittest.TestCase):
     def test_cores_include_no_header_of_ros(self):
-        """Of ddm_params, those that do not read configurations use only the header that needs no library."""
+        """Of ddm_common, the cores use only the header that needs no library."""
         for library in CORES:
             files = sourceFiles(library)
             self.assertGreater(len(files), 1, library)
@@ -63,12 +61,11 @@ class CoreIsRosFreeTest(unittest.TestCase):
                 with open(path) as stream:
                     text = stream.read()
                 self.assertEqual(ROS_INCLUDE.findall(text), [], path)
-                if library != "ddm_params":
-                    used = re.findall(r'#include [<"](ddm_params/[^>"]+)', text)
-                    self.assertLessEqual(set(used), {"ddm_params/option_checks.h"}, path)
+                used = re.findall(r'#include [<"](ddm_common/[^>"]+)', text)
+                self.assertLessEqual(set(used), {"ddm_common/option_checks.h"}, path)
 
     def test_cores_link_no_library_of_ros(self):
-        for name in CORES:
+        for name in ["ddm_common", *CORES]:
             # what the loader says: all libraries that it needs, directly or not
             libraries = subprocess.run(["ldd", libraryPath(name)], check=True, stdout=subprocess.PIPE,
                                        universal_newlines=True).stdout

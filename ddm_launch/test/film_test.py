@@ -47,7 +47,7 @@ def test_what_was_expected_is_what_the_model_says_a_second_before(run):
     ahead = model.roll_out(model.encode(images[then - 1:then + 1]), torques[then - 1:now])
     np.testing.assert_allclose(clip.expected[now], np.clip(255.0 * model.decode(ahead[-1:])[0], 0, 255))
     assert len(clip.paths[then]) == 1 + STEPS
-    assert clip.landmarks.shape == (len(model.landmarks), 2)
+    assert clip.support_states.shape == (len(model.support_states), 2)
 
 
 def test_other_folders_and_files_are_refused(run, tmp_path):

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco/pilco_method.h"
 
-#include <ddm_files/plain_file.h>
+#include <ddm_common/plain_file.h>
 #include <ddm_model/solver_log.h>
 #include <ddm_model/testing/random_matrix.h>
 #include <ddm_msgs/testing/expect_error.h>

@@ -3,13 +3,13 @@
 #include "ros_driver.h"
 
 #include <actionlib/server/simple_action_server.h>
+#include <ddm_common/waiting.h>
 #include <ddm_msgs/Reset.h>
 #include <ddm_msgs/RunTrialAction.h>
 #include <ddm_msgs/StartRecording.h>
 #include <ddm_msgs/StopRecording.h>
 #include <ddm_msgs/testing/expect_error.h>
 #include <ddm_msgs/topics.h>
-#include <ddm_node/waiting.h>
 #include <gtest/gtest.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>

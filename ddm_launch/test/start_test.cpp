@@ -3,7 +3,7 @@
 #include "start.h"
 
 #include <ddm_bag_io/bag_writer.h>
-#include <ddm_images/image_codec.h>
+#include <ddm_common/image_codec.h>
 #include <ddm_msgs/testing/expect_error.h>
 #include <ddm_msgs/testing/temp_folder.h>
 #include <gtest/gtest.h>

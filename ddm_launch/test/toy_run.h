@@ -3,7 +3,7 @@
 #pragma once
 
 #include <ddm_bag_io/bag_writer.h>
-#include <ddm_images/image_codec.h>
+#include <ddm_common/image_codec.h>
 #include <ddm_msgs/Torque.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ddm_sim/plant_factory.h>

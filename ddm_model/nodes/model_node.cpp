@@ -4,11 +4,11 @@
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_bag_io/model_config.h>
 #include <ddm_bag_io/model_message.h>
+#include <ddm_common/run_node.h>
 #include <ddm_model/solver_log.h>
 #include <ddm_model/trainer.h>
 #include <ddm_msgs/TrainAction.h>
 #include <ddm_msgs/topics.h>
-#include <ddm_node/run_node.h>
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/ros.h>
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "trial_recorder.h"
 
+#include <ddm_common/run_node.h>
 #include <ddm_msgs/topics.h>
-#include <ddm_node/run_node.h>
 
 #include <algorithm>
 #include <chrono>

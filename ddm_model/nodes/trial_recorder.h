@@ -3,9 +3,9 @@
 #pragma once
 
 #include <ddm_bag_io/bag_writer.h>
+#include <ddm_common/option_checks.h>
 #include <ddm_msgs/StartRecording.h>
 #include <ddm_msgs/StopRecording.h>
-#include <ddm_params/option_checks.h>
 #include <image_transport/image_transport.h>
 #include <ros/ros.h>
 

@@ -129,7 +129,7 @@ ModelOptions readOptions(Reader* in) {
   return options;
 }
 
-/// @param state_dim  rows of landmarks
+/// @param state_dim  rows of support_states
 ModelInfo readInfo(size_t state_dim, Reader* in) {
   ModelInfo info;
   info.seed = in->number<std::uint64_t>();
@@ -138,15 +138,17 @@ ModelInfo readInfo(size_t state_dim, Reader* in) {
   info.v_r = in->number<double>();
   info.v_p = in->number<double>();
   info.feature_spread = in->number<double>();
-  const std::vector<float> landmarks = in->array<float>();
-  if (landmarks.size() % state_dim != 0) throw std::runtime_error("its landmarks are no states");
-  info.landmarks =
-      Eigen::Map<const Eigen::MatrixXf>(landmarks.data(), static_cast<Eigen::Index>(state_dim),
-                                        static_cast<Eigen::Index>(landmarks.size() / state_dim));
+  const std::vector<float> support_states = in->array<float>();
+  if (support_states.size() % state_dim != 0)
+    throw std::runtime_error("its support states are no states");
+  info.support_states = Eigen::Map<const Eigen::MatrixXf>(
+      support_states.data(), static_cast<Eigen::Index>(state_dim),
+      static_cast<Eigen::Index>(support_states.size() / state_dim));
   info.config = in->text();
   if (!std::isfinite(info.v_r) || !std::isfinite(info.v_p) || !std::isfinite(info.feature_spread) ||
-      !info.landmarks.allFinite()) {
-    throw std::runtime_error("its errors, landmarks and the spread of its features must be finite");
+      !info.support_states.allFinite()) {
+    throw std::runtime_error(
+        "its errors, support states and the spread of its features must be finite");
   }
   return info;
 }
@@ -197,7 +199,8 @@ void writeContent(const Ddm& model, Writer* out) {
   out->number<double>(model.info().v_r);
   out->number<double>(model.info().v_p);
   out->number<double>(model.info().feature_spread);
-  out->array(model.info().landmarks.data(), static_cast<size_t>(model.info().landmarks.size()));
+  out->array(model.info().support_states.data(),
+             static_cast<size_t>(model.info().support_states.size()));
   out->array(model.info().config.data(), model.info().config.size());
   out->number<float>(model.pca().scale);
   out->array(model.pca().mean.data(), model.pca().mean.size());

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/trainer.h"
 
-#include <ddm_random/random_stream.h>
+#include <ddm_common/random_stream.h>
 
 #include <algorithm>
 #include <chrono>
@@ -12,14 +12,14 @@
 #include <utility>
 
 #include "ddm_model/initialisation.h"
-#include "ddm_model/landmarks.h"
 #include "ddm_model/pca.h"
+#include "ddm_model/support_states.h"
 #include "restart.h"
 
 namespace ddm {
 namespace {
 
-constexpr Eigen::Index kMaxLandmarks = 1000;
+constexpr Eigen::Index kMaxSupportStates = 1000;
 
 /// The largest delay that is tried: up to training/max_delay, as long as there is something to predict.
 int largestDelayOf(const DataSet& data, const ModelOptions& model,
@@ -46,8 +46,8 @@ Ddm makeModel(const Restart& best, Problem* problem, const DataSet& data, const 
   info.v_r = squared_scale * value.v_r;
   info.v_p = squared_scale * value.v_p;
   info.feature_spread = problem->objective.featureSpread();
-  info.landmarks =
-      landmarkStates(problem->objective.features(), data, best.model.memory(), kMaxLandmarks);
+  info.support_states =
+      supportStates(problem->objective.features(), data, best.model.memory(), kMaxSupportStates);
   return Ddm(best.model, data.imageSize(), data.torqueDim(), pca, best.theta, data.goal(), info);
 }
 

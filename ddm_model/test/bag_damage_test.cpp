@@ -11,7 +11,7 @@
 
 #include "ddm_bag_io/bag_reader.h"
 #include "ddm_bag_io/bag_writer.h"
-#include "ddm_files/plain_file.h"
+#include "ddm_common/plain_file.h"
 #include "ddm_msgs/testing/expect_error.h"
 #include "ddm_msgs/testing/run_program.h"
 #include "ddm_msgs/testing/temp_folder.h"

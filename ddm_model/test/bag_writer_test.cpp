@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "ddm_bag_io/bag_reader.h"
-#include "ddm_files/plain_file.h"
+#include "ddm_common/plain_file.h"
 #include "ddm_msgs/testing/expect_error.h"
 #include "ddm_msgs/testing/file_size_limit.h"
 #include "ddm_msgs/testing/temp_folder.h"

@@ -60,7 +60,7 @@ TEST(ModelFile, ComesBackBitForBit) {
   }
 }
 
-TEST(ModelFile, KeepsEveryOptionALimitForEachMotorAndLandmarks) {
+TEST(ModelFile, KeepsEveryOptionALimitForEachMotorAndSupportStates) {
   const Ddm one = toyModel();
   ModelOptions options = one.options();
   options.max_torque = {4.0, 2.0};
@@ -69,7 +69,7 @@ TEST(ModelFile, KeepsEveryOptionALimitForEachMotorAndLandmarks) {
   options.residual = true;
   options.increments = true;
   ModelInfo info = one.info();
-  info.landmarks = testing::randomMatrix(3 * 2 + 2 * 2, 9, 5).cast<float>();
+  info.support_states = testing::randomMatrix(3 * 2 + 2 * 2, 9, 5).cast<float>();
   Pca pca = one.pca();
   pca.blur = Blur(one.imageSize(), options.blur);
   const Eigen::Index num_params = Networks<double>(options, 2).numParams();
@@ -82,7 +82,7 @@ TEST(ModelFile, KeepsEveryOptionALimitForEachMotorAndLandmarks) {
   EXPECT_EQ(back.options().blur, options.blur);
   EXPECT_EQ(back.options().delay, 1);
   EXPECT_TRUE(back.options().residual && back.options().increments);
-  EXPECT_EQ(back.info().landmarks, info.landmarks);
+  EXPECT_EQ(back.info().support_states, info.support_states);
   EXPECT_EQ(back.encode(testing::toyImage(0.5)), model.encode(testing::toyImage(0.5)));
   EXPECT_EQ(serialiseModel(back), bytes);
 }
@@ -138,17 +138,17 @@ TEST(ModelFile, ContentThatMakesNoSenseIsRefusedThoughItsChecksumFits) {
   EXPECT_TRUE(isRefused(withNumber(82, 1001), {"no sense", "motors", "[1, 1000]", "got 1001"}));
 }
 
-TEST(ModelFile, LandmarksThatAreNoStatesAreRefused) {
+TEST(ModelFile, SupportStatesThatAreNoStatesAreRefused) {
   const Ddm model = toyModel();
   ModelInfo info = model.info();
   const auto bytes = [&] {
     return serialiseModel(
         Ddm(model.options(), model.imageSize(), 1, model.pca(), model.theta(), model.goal(), info));
   };
-  info.landmarks = Eigen::MatrixXf::Ones(3, 1);
-  EXPECT_TRUE(isRefused(bytes(), {"no sense", "landmarks"}));
-  info.landmarks = Eigen::MatrixXf::Constant(5, 1, std::numeric_limits<float>::infinity());
-  EXPECT_TRUE(isRefused(bytes(), {"no sense", "landmarks"}));
+  info.support_states = Eigen::MatrixXf::Ones(3, 1);
+  EXPECT_TRUE(isRefused(bytes(), {"no sense", "support states"}));
+  info.support_states = Eigen::MatrixXf::Constant(5, 1, std::numeric_limits<float>::infinity());
+  EXPECT_TRUE(isRefused(bytes(), {"no sense", "support states"}));
 }
 
 TEST(ModelFile, NoContentWhateverItIsDoesMoreThanBeRefused) {

@@ -1,7 +1,7 @@
 // model_test_numbers: what C++ computes with a model, for tests of what Python does.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/bag_reader.h>
-#include <ddm_files/plain_file.h>
+#include <ddm_common/plain_file.h>
 #include <ddm_model/long_term_prediction.h>
 #include <ddm_model/model_file.h>
 #include <ros/time.h>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <ddm_bag_io/bag_reader.h>
-#include <ddm_images/image_codec.h>
+#include <ddm_common/image_codec.h>
 #include <ddm_msgs/Torque.h>
 #include <rosbag/bag.h>
 #include <sensor_msgs/Image.h>

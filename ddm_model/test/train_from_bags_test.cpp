@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "ddm_files/plain_file.h"
+#include "ddm_common/plain_file.h"
 #include "ddm_model/model_file.h"
 #include "ddm_msgs/testing/expect_error.h"
 #include "ddm_msgs/testing/run_program.h"

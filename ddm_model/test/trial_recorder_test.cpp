@@ -1,10 +1,10 @@
 // Tests of trial_recorder: complete bags under their names, incomplete ones as *.active.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_common/topic_peers.h>
 #include <ddm_msgs/StartRecording.h>
 #include <ddm_msgs/StopRecording.h>
 #include <ddm_msgs/testing/node_main.h>
 #include <ddm_msgs/topics.h>
-#include <ddm_node/topic_peers.h>
 #include <gtest/gtest.h>
 #include <ros/network.h>
 #include <ros/ros.h>

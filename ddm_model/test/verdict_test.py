@@ -17,7 +17,7 @@ class GoodData:
     def __init__(self, num_frames=400):
         random = np.random.RandomState(1)
         half = num_frames // 2
-        self.model = types.SimpleNamespace(info={"frames": 500}, landmarks=np.zeros((0, 2)))
+        self.model = types.SimpleNamespace(info={"frames": 500}, support_states=np.zeros((0, 2)))
         self.options = {"pca_dim": 50, "feature_dim": 2}
         self.max_torque = np.array([6.0])
         self.variation = 0.1
@@ -130,9 +130,9 @@ class VerdictTest(unittest.TestCase):
             data = GoodData()
             data.features = features
             never_saw_the_goal(data)
-            data.model.landmarks = np.array([[0.0, -1.0], [0.0, 1.5]])
+            data.model.support_states = np.array([[0.0, -1.0], [0.0, 1.5]])
             self.assertTrue(verdict.check_goal(data).ok)
-            data.model.landmarks = np.array([[0.0, -1.0], [0.0, 0.4]])
+            data.model.support_states = np.array([[0.0, -1.0], [0.0, 0.4]])
             self.assertFalse(verdict.check_goal(data).ok)
 
     def test_figures_are_those_of_the_data(self):

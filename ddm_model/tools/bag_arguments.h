@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_params/tool.h>
+#include <ddm_common/tool.h>
 #include <yaml-cpp/yaml.h>
 
 #include <map>

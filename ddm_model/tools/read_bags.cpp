@@ -1,11 +1,11 @@
 // read_bags: the frames of bags as training reads them, for programs in Python.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/bag_reader.h>
-#include <ddm_files/plain_file.h>
-#include <ddm_params/config_blocks.h>
-#include <ddm_params/param_reader.h>
-#include <ddm_params/param_value.h>
-#include <ddm_params/tool.h>
+#include <ddm_common/config_blocks.h>
+#include <ddm_common/param_reader.h>
+#include <ddm_common/param_value.h>
+#include <ddm_common/plain_file.h>
+#include <ddm_common/tool.h>
 #include <ros/time.h>
 #include <unistd.h>
 

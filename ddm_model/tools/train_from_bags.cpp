@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_bag_io/model_config.h>
-#include <ddm_files/plain_file.h>
-#include <ddm_images/image_codec.h>
+#include <ddm_common/config_blocks.h>
+#include <ddm_common/image_codec.h>
+#include <ddm_common/plain_file.h>
+#include <ddm_common/tool.h>
 #include <ddm_model/model_file.h>
 #include <ddm_model/per_motor.h>
 #include <ddm_model/solver_log.h>
 #include <ddm_model/trainer.h>
-#include <ddm_params/config_blocks.h>
-#include <ddm_params/tool.h>
 #include <ros/time.h>
 #include <unistd.h>
 

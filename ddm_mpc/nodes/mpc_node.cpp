@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mpc_node.h"
 
-#include <ddm_images/image_codec.h>
+#include <ddm_common/image_codec.h>
+#include <ddm_common/topic_peers.h>
 #include <ddm_model/model_file.h>
 #include <ddm_msgs/topics.h>
-#include <ddm_node/topic_peers.h>
 
 #include <algorithm>
 #include <sstream>

@@ -3,12 +3,12 @@
 #pragma once
 
 #include <actionlib/server/simple_action_server.h>
+#include <ddm_common/effort_publisher.h>
+#include <ddm_common/log_thread.h>
 #include <ddm_model/ddm.h>
 #include <ddm_msgs/Model.h>
 #include <ddm_msgs/RunTrialAction.h>
 #include <ddm_msgs/Torque.h>
-#include <ddm_node/effort_publisher.h>
-#include <ddm_node/log_thread.h>
 #include <image_transport/image_transport.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>

@@ -1,8 +1,8 @@
 // mpc_node: reads its parameters and runs.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_common/image_options.h>
+#include <ddm_common/run_node.h>
 #include <ddm_model/solver_log.h>
-#include <ddm_node/run_node.h>
-#include <ddm_params/image_options.h>
 
 #include "mpc_node.h"
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "trial_run.h"
 
-#include <ddm_images/image_codec.h>
+#include <ddm_common/image_codec.h>
 #include <ddm_model/per_motor.h>
 
 #include <algorithm>

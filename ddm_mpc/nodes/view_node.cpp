@@ -1,14 +1,14 @@
 // view_node: shows what the model sees, expects and knows.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cv_bridge/cv_bridge.h>
-#include <ddm_images/image_codec.h>
+#include <ddm_common/image_codec.h>
+#include <ddm_common/image_options.h>
+#include <ddm_common/run_node.h>
 #include <ddm_model/ddm.h>
 #include <ddm_model/model_file.h>
 #include <ddm_msgs/Model.h>
 #include <ddm_msgs/Plan.h>
 #include <ddm_msgs/topics.h>
-#include <ddm_node/run_node.h>
-#include <ddm_params/image_options.h>
 #include <image_transport/image_transport.h>
 #include <ros/ros.h>
 #include <sensor_msgs/image_encodings.h>

@@ -76,10 +76,10 @@ std::vector<Eigen::MatrixXd> predictions(const Ddm& model, const Eigen::MatrixXd
 }  // namespace
 
 CostToGo::CostToGo(const Ddm& model, const Eigen::VectorXd& max_torque) {
-  eigen_assert(model.info().landmarks.cols() >= 2 && max_torque.size() == model.torqueDim() &&
+  eigen_assert(model.info().support_states.cols() >= 2 && max_torque.size() == model.torqueDim() &&
                max_torque.size() <= kMaxMotors);
   torques_ = combinations(max_torque);
-  const Eigen::MatrixXd X = model.info().landmarks.cast<double>();
+  const Eigen::MatrixXd X = model.info().support_states.cast<double>();
   const Eigen::Index dim = model.featureDim(), M = X.cols();
   const Eigen::MatrixXd Z = X.topRows(dim);
   const Eigen::MatrixXd changes = model.options().memory() > 1

@@ -162,7 +162,7 @@ DdmPlanCost makePlanCost(const Ddm& model, const MpcOptions& options) {
                                 " motors, as it compares 3^motors sets of torques, got " +
                                 std::to_string(model.torqueDim()) + ": set mpc/cost to distance");
   }
-  if (model.info().landmarks.cols() < 2) {
+  if (model.info().support_states.cols() < 2) {
     throw std::invalid_argument(
         "mpc/cost time needs a model with support states, and this one has none: train it again "
         "from its bags, or set mpc/cost to distance");

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/mpc_options.h"
 
+#include <ddm_common/option_checks.h>
 #include <ddm_model/per_motor.h>
-#include <ddm_params/option_checks.h>
 
 namespace ddm {
 

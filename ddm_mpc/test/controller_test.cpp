@@ -236,7 +236,7 @@ std::shared_ptr<const Ddm> modelWithMotors(int torque_dim) {
   options.torque_dim = torque_dim;
   const Ddm random = randomModel(options);
   ModelInfo info;  // z_t, z_{t-1}, u_{t-1} of each
-  info.landmarks = testing::randomMatrix(2 + 2 + torque_dim, 4, 7).cast<float>();
+  info.support_states = testing::randomMatrix(2 + 2 + torque_dim, 4, 7).cast<float>();
   return std::make_shared<const Ddm>(random.options(), random.imageSize(), torque_dim, random.pca(),
                                      random.theta(), random.goal(), info);
 }

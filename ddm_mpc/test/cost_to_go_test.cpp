@@ -30,13 +30,13 @@ Ddm pushedModel(const Eigen::MatrixXd& places, const std::vector<double>& max_to
   A.middleCols(2, 2) = kStep * Eigen::Matrix2d::Identity();
   const Ddm model = linearModel(options, A, Eigen::VectorXd::Zero(2));
   ModelInfo info;
-  info.landmarks.resize(6, 9 * places.cols());  // z_t, z_{t-1}, u_{t-1}
+  info.support_states.resize(6, 9 * places.cols());  // z_t, z_{t-1}, u_{t-1}
   Eigen::Index column = 0;
   for (Eigen::Index i = 0; i < places.cols(); ++i) {
     for (const double x : {-1.0, 0.0, 1.0}) {
       for (const double y : {-1.0, 0.0, 1.0}) {
         const Eigen::Vector2d u(x, y);
-        info.landmarks.col(column++) << places.col(i).cast<float>(),
+        info.support_states.col(column++) << places.col(i).cast<float>(),
             (places.col(i) - kStep * u).cast<float>(), u.cast<float>();
       }
     }
@@ -207,7 +207,7 @@ TEST(CostToGo, TakesAtMostHalfAGigabyteForTheMostMotorsAndSupportStates) {
   options.gain = 0.1;
   const Ddm random = randomModel(options);
   ModelInfo info;
-  info.landmarks = testing::randomMatrix(2 + 2 + options.torque_dim, 1000, 7).cast<float>();
+  info.support_states = testing::randomMatrix(2 + 2 + options.torque_dim, 1000, 7).cast<float>();
   const Ddm model(random.options(), random.imageSize(), options.torque_dim, random.pca(),
                   random.theta(), random.goal(), info);
   const auto peakKiB = [] {

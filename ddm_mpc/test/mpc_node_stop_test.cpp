@@ -152,7 +152,7 @@ TEST_F(LongPreparation, DoesNotDelayTheAnswerToACancelledGoal) {
   options.gain = 0.1;
   const Ddm random = randomModel(options);
   ModelInfo info;
-  info.landmarks = testing::randomMatrix(2 + 2 + 3, 1000, 7).cast<float>();
+  info.support_states = testing::randomMatrix(2 + 2 + 3, 1000, 7).cast<float>();
   const Ddm model(random.options(), random.imageSize(), 3, random.pca(), random.theta(),
                   random.goal(), info);
   const auto now = [] { return std::chrono::steady_clock::now(); };

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/mpc_options.h"
 
-#include <ddm_params/param_reader.h>
+#include <ddm_common/param_reader.h>
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 

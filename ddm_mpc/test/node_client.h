@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_images/image_codec.h>
+#include <ddm_common/image_codec.h>
 #include <ddm_model/model_file.h>
 #include <ddm_msgs/Model.h>
 #include <ddm_msgs/topics.h>

@@ -1,9 +1,9 @@
 // Fuzz targets of ddm_msgs: configuration files and image messages.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_images/image_codec.h>
+#include <ddm_common/image_codec.h>
+#include <ddm_common/param_reader.h>
 #include <ddm_msgs/message_bytes.h>
 #include <ddm_msgs/testing/fuzzing.h>
-#include <ddm_params/param_reader.h>
 
 #include <algorithm>
 #include <cmath>

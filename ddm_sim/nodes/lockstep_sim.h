@@ -11,8 +11,8 @@
 #include <string>
 #include <utility>
 
-#include "ddm_node/topic_peers.h"
-#include "ddm_params/param_value.h"
+#include "ddm_common/param_value.h"
+#include "ddm_common/topic_peers.h"
 #include "ddm_sim/sim_options.h"
 #include "sim_node.h"
 
@@ -32,9 +32,9 @@ namespace ddm {
 /// whole nanoseconds, so equality is exact.
 class LockstepSim : public SimNode {
  public:
-  LockstepSim(ros::NodeHandle nh, std::unique_ptr<Rig> rig, const SimOptions& options,
-              const ShowOptions& show)
-      : SimNode(nh, std::move(rig), /*clock=*/true),
+  LockstepSim(ros::NodeHandle nh, std::unique_ptr<Environment> environment,
+              const SimOptions& options, const ShowOptions& show)
+      : SimNode(nh, std::move(environment), /*clock=*/true),
         options_(options),
         step_ns_(static_cast<std::uint64_t>(std::llround(this->plant().info().dt * kSecond))),
         now_ns_(kSecond) {  // not 0, which means "no time yet" to everybody else

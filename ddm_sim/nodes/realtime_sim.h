@@ -27,8 +27,8 @@ namespace ddm {
 /// num_steps has no effect.
 class RealtimeSim : public SimNode {
  public:
-  RealtimeSim(ros::NodeHandle nh, std::unique_ptr<Rig> rig)
-      : SimNode(nh, std::move(rig), /*clock=*/false),
+  RealtimeSim(ros::NodeHandle nh, std::unique_ptr<Environment> environment)
+      : SimNode(nh, std::move(environment), /*clock=*/false),
         cancel_pub_(
             nh.advertise<actionlib_msgs::GoalID>(std::string(topics::kRunTrial) + "/cancel", 1)) {
     switchMotorOff();

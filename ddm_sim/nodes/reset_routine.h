@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_common/waiting.h>
 #include <ddm_msgs/topics.h>
-#include <ddm_node/waiting.h>
 #include <poll.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>

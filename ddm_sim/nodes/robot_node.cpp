@@ -3,9 +3,9 @@
 #include "robot_node.h"
 
 #include <actionlib_msgs/GoalID.h>
-#include <ddm_images/image_codec.h>
+#include <ddm_common/image_codec.h>
+#include <ddm_common/topic_peers.h>
 #include <ddm_msgs/topics.h>
-#include <ddm_node/topic_peers.h>
 #include <std_msgs/Bool.h>
 #include <std_msgs/Float64.h>
 #include <std_msgs/UInt32.h>

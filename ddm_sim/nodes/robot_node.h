@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_common/effort_publisher.h>
+#include <ddm_common/log_thread.h>
+#include <ddm_common/node_watch.h>
 #include <ddm_msgs/Reset.h>
 #include <ddm_msgs/RunTrialAction.h>
 #include <ddm_msgs/Torque.h>
-#include <ddm_node/effort_publisher.h>
-#include <ddm_node/log_thread.h>
-#include <ddm_node/node_watch.h>
 #include <ddm_robot/frame_picker.h>
 #include <ddm_robot/robot_options.h>
 #include <ddm_robot/stamp_check.h>

@@ -1,7 +1,7 @@
 // robot_node: parameters, then the node.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_node/run_node.h>
-#include <ddm_params/image_options.h>
+#include <ddm_common/image_options.h>
+#include <ddm_common/run_node.h>
 
 #include "robot_node.h"
 

@@ -1,7 +1,7 @@
 // robot_node: what a person or the loop asks of it, to enable the motors, show a goal, or reset.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_images/image_codec.h>
-#include <ddm_node/topic_peers.h>
+#include <ddm_common/image_codec.h>
+#include <ddm_common/topic_peers.h>
 
 #include <algorithm>
 #include <cctype>

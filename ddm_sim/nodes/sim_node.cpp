@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "ddm_common/topic_peers.h"
 #include "ddm_msgs/topics.h"
-#include "ddm_node/topic_peers.h"
 #include "ddm_sim/few_numbers.h"
 #include "joint_state.h"
 
@@ -29,8 +29,8 @@ Eigen::VectorXd toEigen(const std::vector<double>& values) {
 
 }  // namespace
 
-SimNode::SimNode(ros::NodeHandle nh, std::unique_ptr<Rig> rig, bool clock)
-    : rig_(std::move(rig)),
+SimNode::SimNode(ros::NodeHandle nh, std::unique_ptr<Environment> environment, bool clock)
+    : environment_(std::move(environment)),
       frame_(opticalFrame(plant().cameraModel())),
       goal_pub_(nh.advertise<sensor_msgs::Image>(topics::kGoalImage, 1, /*latch=*/true)),
       ground_truth_pub_(
@@ -47,7 +47,7 @@ SimNode::SimNode(ros::NodeHandle nh, std::unique_ptr<Rig> rig, bool clock)
 
 bool SimNode::advance(const Eigen::VectorXd& torque) {
   try {
-    seen_ = rig_->step(torque);
+    seen_ = environment_->step(torque);
     return true;
   } catch (const std::range_error& e) {
     ROS_ERROR_STREAM("the trial ends, a reset starts another: " << e.what());
@@ -58,7 +58,7 @@ bool SimNode::advance(const Eigen::VectorXd& torque) {
 bool SimNode::publishFrame(const ros::Time& stamp) {
   if (!seen_) return false;
   image_pub_.publish(imageMessage(*seen_, stamp, frame_));
-  untold_.push_back(jointStateOf(plant(), rig_->applied()));
+  untold_.push_back(jointStateOf(plant(), environment_->applied()));
   untold_.back().header.stamp = stamp;
   view_.publish(*seen_, stamp);  // last: whoever plans does not wait for what people see
   return true;
@@ -85,7 +85,7 @@ void SimNode::publishApplied(ddm_msgs::Torque answer) const {
 }
 
 void SimNode::publishGoal(const ros::Time& stamp) {
-  Picture image = rig_->goalImage();
+  Picture image = environment_->goalImage();
   if (image.bytes == goal_image_.bytes) return;
   goal_image_ = std::move(image);
   goal_stamp_ = stamp;
@@ -96,7 +96,7 @@ bool SimNode::onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Respon
   std::optional<Eigen::VectorXd> start;
   if (!request.start.empty()) start = toEigen(request.start);
   try {
-    seen_ = rig_->reset(request.seed, request.trial, request.evaluation, start);
+    seen_ = environment_->reset(request.seed, request.trial, request.evaluation, start);
     response.start = beginTrial(request);
     response.goal = goal_stamp_;
     response.success = true;

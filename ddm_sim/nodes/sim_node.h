@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "ddm_sim/rig.h"
+#include "ddm_sim/environment.h"
 #include "view_publisher.h"
 
 namespace ddm {
@@ -30,7 +30,7 @@ class SimNode {
  protected:
   /// @param nh     its namespace holds the topics
   /// @param clock  also publish /clock: true in lock-step only
-  SimNode(ros::NodeHandle nh, std::unique_ptr<Rig> rig, bool clock);
+  SimNode(ros::NodeHandle nh, std::unique_ptr<Environment> environment, bool clock);
 
   /// One time step.
   /// @return false if the plant has no next state; the reason has been logged
@@ -56,7 +56,7 @@ class SimNode {
   /// Simulated time. Must not run backwards.
   void publishClock(const ros::Time& stamp) const;
 
-  const Plant& plant() const { return rig_->plant(); }
+  const Plant& plant() const { return environment_->plant(); }
   std::string torqueTopic() const { return torque_sub_.getTopic(); }
 
  private:
@@ -75,7 +75,7 @@ class SimNode {
   /// A torque that was refused; `reason` names its publisher and value, for the log.
   virtual void torqueRefused(const ros::Time& stamp, const std::string& reason) = 0;
 
-  std::unique_ptr<Rig> rig_;
+  std::unique_ptr<Environment> environment_;
   std::optional<Picture> seen_;                  ///< the frame of this time step; empty: lost
   Picture goal_image_;                           ///< as published last
   ros::Time goal_stamp_;                         ///< of goal_image_

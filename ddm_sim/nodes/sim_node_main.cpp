@@ -1,13 +1,13 @@
 // sim_node: a simulated plant with a camera and a motor.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_node/run_node.h>
+#include <ddm_common/run_node.h>
 #include <ddm_plant_plugin/plant_config.h>
 
 #include <memory>
 #include <utility>
 
+#include "ddm_sim/environment.h"
 #include "ddm_sim/plant_factory.h"
-#include "ddm_sim/rig.h"
 #include "ddm_sim/sim_options.h"
 #include "lockstep_sim.h"
 #include "realtime_sim.h"
@@ -28,11 +28,11 @@ int main(int argc, char** argv) {
     ROS_INFO_STREAM("sim_node: effective configuration\n" << effective);
 
     std::unique_ptr<ddm::SimNode> node;
-    auto rig = std::make_unique<ddm::Rig>(ddm::makePlant(*plant), camera);
+    auto environment = std::make_unique<ddm::Environment>(ddm::makePlant(*plant), camera);
     if (sim.lockstep) {
-      node = std::make_unique<ddm::LockstepSim>(nh, std::move(rig), sim, show);
+      node = std::make_unique<ddm::LockstepSim>(nh, std::move(environment), sim, show);
     } else {
-      node = std::make_unique<ddm::RealtimeSim>(nh, std::move(rig));
+      node = std::make_unique<ddm::RealtimeSim>(nh, std::move(environment));
     }
     ros::spin();
   });

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/camera.h"
 
-#include <ddm_params/option_checks.h>
-#include <ddm_random/random_stream.h>
+#include <ddm_common/option_checks.h>
+#include <ddm_common/random_stream.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/plant.h"
 
-#include <ddm_random/random_stream.h>
+#include <ddm_common/random_stream.h>
 
 #include <sstream>
 #include <stdexcept>

@@ -1,6 +1,6 @@
 // Tests of what every plant must fulfil: one for each rule, over all plants that there are and one of yours.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_params/param_reader.h>
+#include <ddm_common/param_reader.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <gtest/gtest.h>
 

@@ -24,7 +24,7 @@ TEST(FailingPlant, IsTheAnswerToItsResetAndTheNextOneBegins) {
   };
   LockstepSim sim(
       ros::NodeHandle(),
-      std::make_unique<Rig>(std::make_unique<testing::ToyPlant>(traits), CameraOptions()),
+      std::make_unique<Environment>(std::make_unique<testing::ToyPlant>(traits), CameraOptions()),
       SimOptions(), ShowOptions());
   const auto reset = [] {
     auto answer = std::async(std::launch::async, [] {

@@ -13,8 +13,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "ddm_common/param_reader.h"
 #include "ddm_msgs/testing/not_finite.h"
-#include "ddm_params/param_reader.h"
 #include "ddm_plant_plugin/plant_config.h"
 #include "ddm_sim/camera_options.h"
 #include "ddm_sim/moving_tile.h"

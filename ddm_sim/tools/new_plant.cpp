@@ -1,7 +1,7 @@
 // new_plant: makes a plant file from a model file, and shows what it proposes.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_files/plain_file.h>
-#include <ddm_images/image_codec.h>
+#include <ddm_common/image_codec.h>
+#include <ddm_common/plain_file.h>
 #include <ddm_mujoco/plant_proposal.h>
 #include <ddm_plant_plugin/picture_message.h>
 #include <ddm_plant_plugin/plant_config.h>
@@ -18,9 +18,9 @@
 #include <string>
 #include <vector>
 
-#include "ddm_params/param_reader.h"
-#include "ddm_params/parse_number.h"
-#include "ddm_params/tool.h"
+#include "ddm_common/param_reader.h"
+#include "ddm_common/parse_number.h"
+#include "ddm_common/tool.h"
 #include "plant_text.h"
 
 namespace ddm {

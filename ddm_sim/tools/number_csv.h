@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_params/parse_number.h>
-#include <ddm_params/yaml_text.h>
+#include <ddm_common/parse_number.h>
+#include <ddm_common/yaml_text.h>
 
 #include <Eigen/Core>
 #include <boost/algorithm/string.hpp>

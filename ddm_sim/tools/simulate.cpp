@@ -1,6 +1,6 @@
 // simulate: moves a plant under given torques, without a master. Torques in, trajectory out.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_images/image_codec.h>
+#include <ddm_common/image_codec.h>
 #include <ddm_plant_plugin/picture_message.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ros/package.h>
@@ -18,9 +18,9 @@
 #include <string>
 #include <vector>
 
-#include "ddm_params/param_reader.h"
-#include "ddm_params/param_value.h"
-#include "ddm_params/tool.h"
+#include "ddm_common/param_reader.h"
+#include "ddm_common/param_value.h"
+#include "ddm_common/tool.h"
 #include "ddm_sim/plant_factory.h"
 #include "number_csv.h"
 

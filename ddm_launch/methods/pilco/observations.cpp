@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "observations.h"
 
-#include <ddm_files/plain_file.h>
+#include <ddm_common/plain_file.h>
+#include <ddm_common/random_stream.h>
 #include <ddm_model/long_term_prediction.h>
 #include <ddm_model/model_file.h>
 #include <ddm_model/trainer.h>
 #include <ddm_pilco/gp.h>
-#include <ddm_random/random_stream.h>
 #include <ddm_sim/angles.h>
 
 #include <Eigen/Eigenvalues>

@@ -1,7 +1,7 @@
 // Where the next training of PILCO starts, as keys of pilco.yaml.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_params/param_value.h>
-#include <ddm_params/yaml_text.h>
+#include <ddm_common/param_value.h>
+#include <ddm_common/yaml_text.h>
 
 #include <stdexcept>
 

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco_method.h"
 
-#include <ddm_files/plain_file.h>
+#include <ddm_common/param_value.h>
+#include <ddm_common/plain_file.h>
+#include <ddm_common/random_stream.h>
 #include <ddm_model/per_motor.h>
-#include <ddm_params/param_value.h>
-#include <ddm_random/random_stream.h>
 #include <ddm_sim/plant.h>
 
 #include <algorithm>

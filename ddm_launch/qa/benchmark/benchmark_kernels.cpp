@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <benchmark/benchmark.h>
 #include <ddm_bag_io/bag_cache.h>
-#include <ddm_files/plain_file.h>
+#include <ddm_common/plain_file.h>
+#include <ddm_common/tool.h>
 #include <ddm_model/initialisation.h>
 #include <ddm_model/model_file.h>
 #include <ddm_model/networks.h>
@@ -12,7 +13,6 @@
 #include <ddm_model/trainer.h>
 #include <ddm_mpc/controller.h>
 #include <ddm_mpc/ddm_plan_cost.h>
-#include <ddm_params/tool.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ddm_sim/plant_factory.h>
 #include <ros/time.h>

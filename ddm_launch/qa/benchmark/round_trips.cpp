@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "round_trips.h"
 
-#include <ddm_images/image_codec.h>
+#include <ddm_common/image_codec.h>
 #include <ddm_msgs/Torque.h>
 #include <ddm_msgs/topics.h>
 #include <ros/ros.h>

@@ -30,8 +30,8 @@ TITLES = ([("image", 0, "black")], [("predicted a second ago", 0, "black")],
 EVALUATION = re.compile(r"evaluation_(\d+)$")
 
 # One evaluation. title; dt [s]; images [N x size x size] and what was expected of them, None at first; features [N x 2]; paths:
-# for each frame the features that are expected from it on; landmarks, goal: features  [.. x 2].
-Clip = collections.namedtuple("Clip", "title dt images expected features paths landmarks goal")
+# for each frame the features that are expected from it on; support_states, goal: features  [.. x 2].
+Clip = collections.namedtuple("Clip", "title dt images expected features paths support_states goal")
 
 
 def simulate(run, evaluation):
@@ -81,7 +81,7 @@ def read_clip(evaluation):
         paths.append(np.concatenate([features[now:now + 1], ahead]))
         if now + steps < len(images):
             expected[now + steps] = np.clip(255.0 * model.decode(ahead[-1:])[0], 0, 255)
-    seen = model.landmarks if len(model.landmarks) > 1 else features
+    seen = model.support_states if len(model.support_states) > 1 else features
     project = plane_of(seen)
     # Where each trial has a goal of its own, the model's is that of another.
     drawn = (read_yaml(os.path.join(run, "config.yaml")).get("plant") or {}).get("goal_site")
@@ -98,12 +98,12 @@ class Plane:
     """The right panel: features as points and ways in a square of PANEL pixels."""
 
     def __init__(self, clip):
-        points = np.concatenate([clip.landmarks, clip.features])
+        points = np.concatenate([clip.support_states, clip.features])
         self._middle = 0.5 * (points.max(axis=0) + points.min(axis=0))
         self._scale = 0.44 * PANEL / max(1e-9, 0.5 * float(np.max(np.ptp(points, axis=0))))
         self._background = Image.new("RGB", (PANEL, PANEL), "white")
         pen = ImageDraw.Draw(self._background)
-        for point in clip.landmarks:
+        for point in clip.support_states:
             self._dot(pen, point, 1, "#cccccc")
         if clip.goal is not None:
             self._dot(pen, clip.goal[0], 6, VERMILLION)

@@ -72,7 +72,7 @@ def has_ended(owner, own):
 
 class FolderLock:
     """While it is held, no other process gets the folder. How, and why that is safe, is told in
-    ddm_msgs/files/include/ddm_files/folder_lock.h, which does the same in C++."""
+    ddm_msgs/common/include/ddm_common/folder_lock.h, which does the same in C++."""
 
     def __init__(self, folder):
         """Raises Failure if another process has the folder, OSError if the files cannot be written."""

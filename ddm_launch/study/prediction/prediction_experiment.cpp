@@ -1,13 +1,13 @@
 // prediction_experiment: how well a model predicts frames that it was not trained on (Sec. 4.1).
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_common/option_checks.h>
+#include <ddm_common/param_value.h>
 #include <ddm_model/long_term_prediction.h>
 #include <ddm_model/model_file.h>
 #include <ddm_model/solver_log.h>
 #include <ddm_model/trainer.h>
-#include <ddm_params/option_checks.h>
-#include <ddm_params/param_value.h>
+#include <ddm_sim/environment.h>
 #include <ddm_sim/plant_factory.h>
-#include <ddm_sim/rig.h>
 
 #include <algorithm>
 #include <iostream>
@@ -51,9 +51,9 @@ struct Experiment {
 };
 
 /// Training and held-out frames in one go: uniformly random torques from a random start.
-Recording record(const Experiment& experiment, Rig* rig) {
+Recording record(const Experiment& experiment, Environment* environment) {
   const Configuration& all = experiment.configuration;
-  const Plant& plant = rig->plant();
+  const Plant& plant = environment->plant();
   const int num_training = experiment.prediction.training_frames;
   TrialRequest request = requestFor(all, 0, /*evaluation=*/false);
   request.num_steps = num_training + experiment.prediction.held_out_frames;
@@ -61,7 +61,7 @@ Recording record(const Experiment& experiment, Rig* rig) {
   const DataSet none(all.model.image.size, plant.torqueDim());
   Recording out{none, none, Eigen::MatrixXd(plant.stateDim(), request.num_steps), {}};
   out.positions.resize(plant.visiblePosition(plant.state()).size(), request.num_steps);
-  runClosedLoop(rig, nullptr, request, all, [&](const ClosedLoopFrame& frame) {
+  runClosedLoop(environment, nullptr, request, all, [&](const ClosedLoopFrame& frame) {
     const bool learn = frame.index < num_training;
     const bool first = frame.index == 0 || frame.index == num_training;
     (learn ? out.training : out.held_out).append(frame.grey, frame.decision.torque, first);
@@ -114,8 +114,8 @@ void run(const Experiment& experiment) {
   ResultsFolder folder(all.experiment.runs, saved);
   for (const std::string& warning : folder.warnings()) std::cout << "warning: " << warning << "\n";
 
-  Rig rig(makePlant(*all.plant), all.camera);
-  const Recording recording = record(experiment, &rig);
+  Environment environment(makePlant(*all.plant), all.camera);
+  const Recording recording = record(experiment, &environment);
   folder.begin();  // nothing is left that could refuse
   ModelInfo info;
   info.seed = static_cast<std::uint64_t>(all.experiment.seed);

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_bag_io/bag_reader.h"
 
-#include <ddm_files/plain_file.h>
-#include <ddm_images/image_codec.h>
-#include <ddm_params/option_checks.h>
+#include <ddm_common/image_codec.h>
+#include <ddm_common/option_checks.h>
+#include <ddm_common/plain_file.h>
 #include <sensor_msgs/CompressedImage.h>
 #include <sys/stat.h>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_bag_io/bag_writer.h"
 
-#include <ddm_files/plain_file.h>
+#include <ddm_common/plain_file.h>
 #include <fcntl.h>
 #include <unistd.h>
 

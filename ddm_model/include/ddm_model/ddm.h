@@ -23,8 +23,8 @@ struct ModelInfo {
   double v_p = 0.0;          ///< V_P [grey^2]
   /// Root of the mean squared distance of the features learned from to their mean; 0: not known.
   double feature_spread = 0.0;
-  /// States learned from, see landmarkStates(); empty: not known.  [state_dim x M]
-  Eigen::MatrixXf landmarks;
+  /// States learned from, see supportStates(); empty: not known.  [state_dim x M]
+  Eigen::MatrixXf support_states;
   std::string config;  ///< YAML text of the configuration it was trained with
 };
 

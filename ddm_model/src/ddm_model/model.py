@@ -99,7 +99,7 @@ class Model:
 
     options: the block `model` of its configuration. image_size [pixels], torque_dim [-]. info: id, seed, trial, frames, v_r,
     v_p, feature_spread, and config, the YAML text that it was trained with. arrays: all that it computes with, under the
-    names of doc/reference/programs.md. goal_feature: z_ref, None without a goal image. landmarks: features of states that it has
+    names of doc/reference/programs.md. goal_feature: z_ref, None without a goal image. support_states: features of states that it has
     seen  [M x feature_dim].
     """
 
@@ -113,11 +113,11 @@ class Model:
             self.info[name] = int(reader.number(kind))
         for name in ("v_r", "v_p", "feature_spread"):
             self.info[name] = float(reader.number("<f8"))
-        landmarks = reader.array("<f4")
+        support_states = reader.array("<f4")
         self.info["config"] = reader.text()
         self.arrays = self._read_arrays(reader)
         memory, dim = self.options["order"] + self.options["delay"], self.options["feature_dim"]
-        self.landmarks = landmarks.reshape(-1, memory * dim + (memory - 1) * self.torque_dim)[:, :dim]
+        self.support_states = support_states.reshape(-1, memory * dim + (memory - 1) * self.torque_dim)[:, :dim]
         goal = reader.array("u1")
         self.goal_feature = None
         if goal.size > 0:

@@ -215,10 +215,10 @@ def check_goal(data):
     if data.goal_feature is None:
         return Check("There is a goal", False, "the model has no goal image", "one, to plan to",
                      "Train with --goal IMAGE, or record goal_image into the bags.")
-    features = data.model.landmarks if data.features is None else data.features
+    features = data.model.support_states if data.features is None else data.features
     if len(features) == 0:
         return Check("There is a goal", True, "the model has a goal image", "one, to plan to", remedy)
-    seen = np.concatenate([data.model.landmarks, features])
+    seen = np.concatenate([data.model.support_states, features])
     near = np.min(np.linalg.norm(seen - data.goal_feature, axis=1)) / max(spread_of(features), 1e-12)
     return Check("The goal has been seen", near <= GOAL_DISTANCE,
                  "of all frames here and of those that the model keeps, the nearest to the goal is %.2f spreads of the features "

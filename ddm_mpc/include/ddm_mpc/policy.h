@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_common/random_stream.h>
 #include <ddm_model/data_set.h>
-#include <ddm_random/random_stream.h>
 
 #include <Eigen/Core>
 #include <optional>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/renderer.h"
 
-#include <ddm_params/option_checks.h>
+#include <ddm_common/option_checks.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>

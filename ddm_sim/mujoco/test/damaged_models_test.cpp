@@ -1,6 +1,6 @@
 // Test with damaged model files: none may crash, hang, or be drawn black without a message.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_params/param_reader.h>
+#include <ddm_common/param_reader.h>
 #include <gtest/gtest.h>
 #include <tinyxml2.h>
 

@@ -1,6 +1,6 @@
 // Test of config/mujoco_pendulum.yaml as the manual of plants `type: mujoco`.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_params/param_reader.h>
+#include <ddm_common/param_reader.h>
 #include <gtest/gtest.h>
 
 #include <set>

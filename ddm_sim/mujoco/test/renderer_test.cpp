@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/renderer.h"
 
-#include <ddm_images/image_codec.h>
+#include <ddm_common/image_codec.h>
 #include <ddm_msgs/testing/expect_error.h>
 #include <ddm_plant_plugin/picture_message.h>
 #include <gtest/gtest.h>

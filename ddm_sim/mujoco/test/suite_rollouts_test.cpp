@@ -1,6 +1,6 @@
 // Plants suite_*: they move, and are rewarded, as the DeepMind Control Suite's own model files do.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_params/param_reader.h>
+#include <ddm_common/param_reader.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <gtest/gtest.h>
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_common/image_options.h>
+#include <ddm_common/param_reader.h>
 #include <ddm_model/model_options.h>
-#include <ddm_params/image_options.h>
-#include <ddm_params/param_reader.h>
 
 #include <string>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_params/param_reader.h>
+#include <ddm_common/param_reader.h>
 #include <ddm_sim/plant_factory.h>
 #include <ddm_sim/plant_options.h>
 

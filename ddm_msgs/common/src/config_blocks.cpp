@@ -1,0 +1,138 @@
+// Blocks of a configuration: read from a file, laid over those of another.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_common/config_blocks.h"
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "ddm_common/home.h"
+#include "ddm_common/yaml_text.h"
+
+namespace ddm {
+namespace {
+
+constexpr std::size_t kMaxBytes = 1000000;  // of a configuration file
+
+[[noreturn]] void refuseAt(const std::string& path, const YAML::Mark& mark,
+                           const std::string& what) {
+  throw std::invalid_argument(path + ":" + std::to_string(mark.line + 1) + ": " + what);
+}
+
+void requireUniqueKeys(const YAML::Node& map, const std::string& path) {
+  std::set<std::string> seen;
+  for (const auto& entry : map) {
+    if (!entry.first.IsScalar()) refuseAt(path, entry.first.Mark(), "a key must be a plain name");
+    if (!seen.insert(entry.first.Scalar()).second) {
+      refuseAt(path, entry.first.Mark(), "'" + entry.first.Scalar() + "' is given twice");
+    }
+  }
+}
+
+std::string readText(const std::string& path) {
+  // A folder opens like a file and then reads as an empty one.
+  std::error_code ignored;
+  std::ifstream in(path);
+  if (std::filesystem::is_directory(path, ignored) || !in) {
+    throw std::runtime_error("cannot read the configuration file " + path);
+  }
+  std::string text(kMaxBytes + 1, '\0');
+  in.read(&text[0], static_cast<std::streamsize>(text.size()));
+  if (in.bad()) throw std::runtime_error("cannot read the configuration file " + path);
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  if (text.size() <= kMaxBytes) return text;
+  throw std::runtime_error(path + " has more than " + std::to_string(kMaxBytes) +
+                           " bytes: it is not a configuration file");
+}
+
+/// Keys whose values name files.
+constexpr std::pair<const char*, const char*> kFileKeys[] = {
+    {"plant", "model"}, {"robot", "goal_file"}, {"start", "model"}, {"start", "bags"}};
+
+/// A plant is named by its file if the name ends in .yaml.
+bool isPlantFile(const YAML::Node& name) {
+  return name.IsScalar() && std::filesystem::path(name.Scalar()).extension() == ".yaml";
+}
+
+/// Makes a relative path, or each one of a list, start at `folder`; package:// stays as it is.
+void resolvePaths(const std::filesystem::path& folder, YAML::Node value) {
+  if (value.IsSequence()) {
+    for (const YAML::Node& one : value) resolvePaths(folder, one);
+  } else if (value.IsScalar() && !value.Scalar().empty() &&
+             value.Scalar().find("://") == std::string::npos) {
+    value = (folder / value.Scalar()).lexically_normal().string();
+  }
+}
+
+}  // namespace
+
+YAML::Node readBlocks(const std::string& path) {
+  const YAML::Node blocks = parseBlocks(readText(path), path);
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  for (const auto& [block, key] : kFileKeys) {
+    if (hasKey(blocks, block, key)) resolvePaths(folder, blocks[block][key]);
+  }
+  if (hasKey(blocks, "experiment", "plant") && isPlantFile(blocks["experiment"]["plant"])) {
+    resolvePaths(folder, blocks["experiment"]["plant"]);
+  }
+  return blocks;
+}
+
+YAML::Node parseBlocks(const std::string& text, const std::string& source) {
+  const YAML::Node document = parseYaml(text, source);
+  if (document.IsNull()) return YAML::Node(YAML::NodeType::Map);  // a preset may be all comments
+  if (!document.IsMap()) {
+    refuseAt(source, document.Mark(), "expected a map of blocks, got " + oneLine(document));
+  }
+  requireUniqueKeys(document, source);
+  for (const auto& block : document) {
+    if (block.second.IsMap()) requireUniqueKeys(block.second, source);
+  }
+  return document;
+}
+
+void overlay(const YAML::Node& above, YAML::Node* below) {
+  for (const auto& block : above) {
+    const std::string name = block.first.Scalar();
+    YAML::Node target = (*below)[name];
+    if (target.IsDefined() && target.IsMap() && block.second.IsMap()) {
+      for (const auto& entry : block.second) {
+        target[entry.first.Scalar()] = YAML::Clone(entry.second);
+      }
+    } else if (!target.IsDefined() || !block.second.IsNull()) {
+      (*below)[name] = YAML::Clone(block.second);  // or an alias would change with its anchor
+    }
+  }
+}
+
+void setValue(const std::string& text, YAML::Node* blocks) {
+  const std::size_t equals = text.find('=');
+  const std::size_t slash = text.find('/');
+  if (slash == std::string::npos || equals == std::string::npos || slash == 0 ||
+      slash + 1 >= equals) {
+    throw std::invalid_argument("--set must be BLOCK/KEY=VALUE, got '" + text + "'");
+  }
+  const std::string key = text.substr(slash + 1, equals - slash - 1);
+  const std::string value = expandHome(text.substr(equals + 1));
+  if (value.empty()) return;
+  const bool list = value.front() == '[' && value.back() == ']';
+  (*blocks)[text.substr(0, slash)][key] =
+      list ? parseYaml(value, "--set " + text) : YAML::Node(value);
+}
+
+bool hasKey(const YAML::Node& blocks, const std::string& block, const std::string& key) {
+  const YAML::Node values = blocks[block];
+  return values.IsDefined() && values.IsMap() && values[key].IsDefined();
+}
+
+std::string ownerOfMotors(const YAML::Node& blocks) {
+  const std::string owner = blocks["robot"].IsDefined() ? "robot" : "plant";
+  if (!hasKey(blocks, owner, "max_torque")) return "";
+  const YAML::Node limits = blocks[owner]["max_torque"];
+  return limits.IsSequence() && limits.size() == 0 ? "" : owner;
+}
+
+}  // namespace ddm

@@ -1,0 +1,150 @@
+// Strict configuration reader: the collection of problems.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_common/param_reader.h"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "ddm_common/config_blocks.h"
+#include "ddm_common/option_checks.h"
+#include "ddm_common/yaml_text.h"
+
+namespace ddm {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string sourcedWorkspaces() {
+  const char* const prefixes = std::getenv("CMAKE_PREFIX_PATH");
+  return prefixes == nullptr ? "" : prefixes;
+}
+
+/// The workspace of this library, PREFIX of PREFIX/lib/libddm_params.so; in a devel space of catkin tools
+/// that is WORKSPACE/.private/ddm_msgs.
+std::string ownPrefixes() {
+  Dl_info library{};
+  std::error_code ignored;
+  if (::dladdr(reinterpret_cast<void*>(&ownPrefixes), &library) == 0) return "";
+  const std::string prefix =
+      fs::canonical(library.dli_fname, ignored).parent_path().parent_path().string();
+  return prefix + ":" + prefix + "/../..";
+}
+
+/// The blocks of all packages: those in the parameter references that ddm_register_parameter_references() of
+/// ddm_msgs/cmake/ddm_build.cmake has registered, in each workspace that was sourced and, since services
+/// and cron jobs source none, in that of this library.
+std::set<std::string> registeredBlocks() {
+  std::set<std::string> blocks;
+  std::istringstream prefixes(sourcedWorkspaces() + ":" + ownPrefixes());
+  std::error_code ignored;  // a workspace without parameter references
+  for (std::string prefix, block; std::getline(prefixes, prefix, ':');) {
+    for (const auto& package : fs::directory_iterator(prefix + "/share/ddm_common", ignored)) {
+      std::ifstream names(package.path());
+      while (names >> block) blocks.insert(block);
+    }
+  }
+  return blocks;
+}
+
+/// " (did you mean horizon? known keys: horizon, epsilon)"
+template <class Names>
+std::string hint(const std::string& name, const char* kind, const Names& known) {
+  std::string list;
+  for (const std::string& one : known) list += (list.empty() ? "" : ", ") + one;
+  const std::size_t limit = std::min<std::size_t>(3, (name.size() + 1) / 2);
+  const std::string nearest = nearestName(name, known, limit);
+  const std::string question = nearest.empty() ? "" : "did you mean " + nearest + "? ";
+  return " (" + question + "known " + kind + ": " + list + ")";
+}
+
+}  // namespace
+
+ParamReader::ParamReader(const YAML::Node& root, std::string source) : source_(std::move(source)) {
+  if (root.IsDefined() && !root.IsNull() && !root.IsMap()) {
+    throw std::invalid_argument("the configuration must be a map of blocks, got " + oneLine(root));
+  }
+  root_ = root.IsDefined() && root.IsMap() ? root : YAML::Node(YAML::NodeType::Map);
+}
+
+ParamReader ParamReader::fromFiles(const std::vector<std::string>& paths) {
+  YAML::Node merged(YAML::NodeType::Map);
+  std::string source;
+  for (const std::string& path : paths) {
+    overlay(readBlocks(path), &merged);
+    source += (source.empty() ? "" : ", ") + path;
+  }
+  return ParamReader(merged, source);
+}
+
+bool ParamReader::has(const std::string& block) const {
+  const YAML::Node& root = root_;
+  return root[block].IsDefined();
+}
+
+YAML::Node ParamReader::openBlock(const std::string& block) {
+  read_.insert(block);
+  const YAML::Node& root = root_;
+  const YAML::Node values = root[block];
+  if (values.IsDefined() && values.IsMap()) return values;
+  if (values.IsDefined() && !values.IsNull()) {
+    report(block + " must be a block of keys, got " + oneLine(values));
+  }
+  return YAML::Node(YAML::NodeType::Map);
+}
+
+void ParamReader::reportUnknownKeys(const std::string& block, const YAML::Node& values,
+                                    const std::vector<std::string>& known_keys) {
+  for (const auto& entry : values) {
+    const std::string key = oneLine(entry.first);
+    if (std::find(known_keys.begin(), known_keys.end(), key) == known_keys.end()) {
+      report("unknown key " + block + "/" + key + hint(key, "keys", known_keys));
+    }
+  }
+}
+
+void ParamReader::reportWrongType(const std::string& path, const YAML::Node& value,
+                                  const std::string& expected) {
+  report(path + " must be " + expected + ", got " + oneLine(value));
+}
+
+void ParamReader::report(const std::string& problem) {
+  // A block may be read by two parts of one program.
+  if (std::find(problems_.begin(), problems_.end(), problem) == problems_.end()) {
+    problems_.push_back(problem);
+  }
+}
+
+std::vector<std::string> ParamReader::problems() const {
+  std::vector<std::string> out = problems_;
+  std::set<std::string> known = registeredBlocks();
+  const char* const remedy =
+      sourcedWorkspaces().empty() ? ": source the setup.bash of its workspace" : "";
+  known.insert(read_.begin(), read_.end());
+  for (const auto& entry : root_) {
+    const std::string name = oneLine(entry.first);
+    if (name == "version" || name == "renderer")
+      continue;  // a saved configuration says what made it
+    if (known.count(name) + ignored_.count(name) == 0) {
+      out.push_back("unknown block " + name + hint(name, "blocks", known) + remedy);
+    }
+  }
+  return out;
+}
+
+void ParamReader::requireValid() const {
+  const std::vector<std::string> all = problems();
+  if (all.empty()) return;
+  std::string message =
+      "invalid configuration" + (source_.empty() ? "" : " (" + source_ + ")") + ":";
+  for (const std::string& problem : all) message += "\n - " + problem;
+  throw std::invalid_argument(message);
+}
+
+}  // namespace ddm

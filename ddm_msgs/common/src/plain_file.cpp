@@ -1,0 +1,141 @@
+// Files that are read and written as a whole.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_common/plain_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <regex>
+#include <sstream>
+#include <stdexcept>
+
+namespace ddm {
+namespace {
+
+std::string reason() { return errno == 0 ? "unknown reason" : std::strerror(errno); }
+
+/// @return the kind of what is at the path, links followed; 0 if there is nothing
+mode_t kindOf(const std::string& path) {
+  struct stat status {};
+  return ::stat(path.c_str(), &status) == 0 ? status.st_mode & S_IFMT : 0;
+}
+
+[[noreturn]] void cannot(const std::string& what, const std::string& path) {
+  throw std::runtime_error("cannot " + what + " " + path + ": " + reason());
+}
+
+/// Opens a new file next to `path`, under a name that no other process or thread has. Unlike
+/// mkstemp() it leaves the permissions to the umask.
+/// @return  its descriptor, or a negative number with errno set
+int openUnfinished(const std::string& path, std::string* unfinished) {
+  std::random_device random;
+  int file = -1;
+  do {
+    std::ostringstream name;
+    name << path << ".unfinished." << std::hex << random() << random();
+    *unfinished = name.str();
+    file = ::open(unfinished->c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+  } while (file < 0 && errno == EEXIST);
+  return file;
+}
+
+/// @return  false, with errno set, if not all bytes were written
+bool writeAll(int file, const std::string& bytes) {
+  size_t written = 0;
+  while (written < bytes.size()) {
+    const ssize_t count = ::write(file, bytes.data() + written, bytes.size() - written);
+    if (count < 0 && errno != EINTR) return false;
+    if (count > 0) written += static_cast<size_t>(count);
+  }
+  return true;
+}
+
+/// Waits until the bytes of a file, or the names in a folder, are on the disk.
+/// @param flags  of open()
+/// @return  false, with errno set, if they are not
+bool store(const std::string& path, int flags) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | flags);
+  if (file < 0) return false;
+  const int error = ::fsync(file) == 0 ? 0 : errno;
+  ::close(file);
+  errno = error;
+  return error == 0;
+}
+
+/// Renames a file and waits until its new name is on the disk.
+/// @return  false, with errno set, if that failed
+bool renameAndStore(const std::string& from, const std::string& to) {
+  if (::rename(from.c_str(), to.c_str()) != 0) return false;
+  const size_t slash = to.find_last_of('/');
+  const std::string folder = slash == std::string::npos ? "." : to.substr(0, slash + 1);
+  // The file is there: it does not matter that a folder may not be read, or that its file system
+  // does not know how to store one.
+  return store(folder, O_DIRECTORY) || errno == EACCES || errno == EINVAL;
+}
+
+}  // namespace
+
+void requirePlainFile(const std::string& path) {
+  errno = 0;
+  const mode_t kind = kindOf(path);
+  if (kind == 0) cannot("read", path);
+  if (kind == S_IFDIR) {
+    errno = EISDIR;
+    cannot("read", path);
+  }
+  if (kind != S_IFREG)
+    throw std::runtime_error("cannot read " + path + ": it is not a regular file");
+}
+
+std::string readFile(const std::string& path) {
+  requirePlainFile(path);
+  std::ifstream file(path, std::ios::binary);
+  if (!file) cannot("read", path);
+  std::ostringstream bytes;
+  if (file.peek() != std::ifstream::traits_type::eof()) bytes << file.rdbuf();
+  if (file.bad() || !bytes) cannot("read", path);
+  return bytes.str();
+}
+
+void writeFileAtomically(const std::string& path, const std::string& bytes) {
+  const mode_t kind = kindOf(path);
+  if (kind != 0 && kind != S_IFREG) {
+    throw std::runtime_error("cannot write " + path + ": it is not a regular file");
+  }
+  std::string unfinished;
+  const int file = openUnfinished(path, &unfinished);
+  if (file < 0) cannot("write", path);
+  int error = writeAll(file, bytes) && ::fsync(file) == 0 ? 0 : errno;
+  if (::close(file) != 0 && error == 0) error = errno;
+  if (error == 0 && !renameAndStore(unfinished, path)) error = errno;
+  if (error == 0) return;
+  ::unlink(unfinished.c_str());
+  errno = error;
+  cannot("write", path);
+}
+
+void removeUnfinished(const std::string& folder) {
+  namespace fs = std::filesystem;
+  static const std::regex kUnfinished(".*\\.unfinished\\.[0-9a-f]+");
+  std::error_code ignored;  // what cannot be removed does no harm
+  const auto options = fs::directory_options::skip_permission_denied;
+  for (fs::recursive_directory_iterator entry(folder, options, ignored), end; entry != end;
+       entry.increment(ignored)) {
+    if (std::regex_match(entry->path().filename().string(), kUnfinished)) {
+      fs::remove(entry->path(), ignored);
+    }
+  }
+}
+
+void renameDurably(const std::string& from, const std::string& to) {
+  if (!store(from, /*flags=*/0)) cannot("store", from);
+  if (!renameAndStore(from, to)) cannot("rename", from + " to " + to);
+}
+
+}  // namespace ddm

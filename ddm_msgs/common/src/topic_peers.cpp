@@ -1,0 +1,225 @@
+// Who is at the other end of a topic, and whether they have found each other.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_common/topic_peers.h"
+
+#include <ros/console.h>
+#include <ros/master.h>
+#include <ros/names.h>
+#include <ros/network.h>
+#include <ros/this_node.h>
+#include <ros/xmlrpc_manager.h>
+#include <xmlrpcpp/XmlRpcException.h>
+
+#include <algorithm>
+#include <boost/algorithm/string/join.hpp>
+#include <chrono>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <thread>
+
+#include "ddm_common/waiting.h"
+
+namespace ddm {
+namespace {
+
+using NodesByTopic = std::map<std::string, std::set<std::string>>;
+using Connections = std::set<std::pair<std::string, std::string>>;  // topic, subscriber
+
+constexpr std::chrono::seconds kLimit(5);   // who was stopped never answers
+constexpr std::chrono::seconds kEnding(3);  // a node that is ending may answer for a while
+
+/// Who publishes and who subscribes, as the master knows it; empty if it does not answer.
+std::optional<std::pair<NodesByTopic, NodesByTopic>> publishersAndSubscribers() {
+  std::optional<XmlRpc::XmlRpcValue> state = askMaster("getSystemState", ros::this_node::getName());
+  if (!state) return std::nullopt;
+  const auto nodesByTopic = [](XmlRpc::XmlRpcValue& list) {
+    NodesByTopic out;
+    for (int i = 0; i < list.size(); ++i) {
+      XmlRpc::XmlRpcValue& nodes = list[i][1];
+      for (int j = 0; j < nodes.size(); ++j) {
+        out[static_cast<std::string>(list[i][0])].insert(static_cast<std::string>(nodes[j]));
+      }
+    }
+    return out;
+  };
+  return std::make_pair(nodesByTopic((*state)[0]), nodesByTopic((*state)[1]));
+}
+
+/// Outgoing connections of the node at this address; empty if it does not answer.
+Connections outgoingConnectionsAt(const std::string& host, std::uint32_t port) {
+  Connections out;
+  XmlRpc::XmlRpcValue caller, response;
+  caller[0] = ros::this_node::getName();
+  // The path alone: a node in Python does not know the page "http://...".
+  XmlRpc::XmlRpcClient* const client =
+      ros::XMLRPCManager::instance()->getXMLRPCClient(host, static_cast<int>(port), "/");
+  if (client == nullptr) return out;
+  try {
+    if (client->execute("getBusInfo", caller, response) && response.size() == 3) {
+      for (int i = 0; i < response[2].size(); ++i) {
+        // id, destination, direction, transport, topic
+        XmlRpc::XmlRpcValue& connection = response[2][i];
+        if (static_cast<std::string>(connection[2]) != "o") continue;
+        out.emplace(static_cast<std::string>(connection[4]),
+                    static_cast<std::string>(connection[1]));
+      }
+    }
+  } catch (const XmlRpc::XmlRpcException&) {  // of other types: no answer
+    out.clear();
+  }
+  ros::XMLRPCManager::instance()->releaseXMLRPCClient(client);
+  return out;
+}
+
+Connections outgoingConnections(const std::string& node) {
+  const std::optional<NodeAddress> address = addressOf(node);
+  if (!address) return {};
+  return callWithin(kLimit, [at = *address] { return outgoingConnectionsAt(at.host, at.port); })
+      .value_or(Connections());
+}
+
+/// Whether a node answers at this address.
+bool answersAt(const std::string& host, std::uint32_t port) {
+  XmlRpc::XmlRpcValue caller, response;
+  caller[0] = ros::this_node::getName();
+  XmlRpc::XmlRpcClient* const client =
+      ros::XMLRPCManager::instance()->getXMLRPCClient(host, static_cast<int>(port), "/");
+  if (client == nullptr) return false;
+  const bool answers = client->execute("getPid", caller, response);
+  ros::XMLRPCManager::instance()->releaseXMLRPCClient(client);
+  return answers;
+}
+
+}  // namespace
+
+std::optional<XmlRpc::XmlRpcValue> askMaster(const std::string& method,
+                                             const XmlRpc::XmlRpcValue& request) {
+  const auto answer = callWithin(kLimit, [method, request] {
+    XmlRpc::XmlRpcValue response;
+    std::optional<XmlRpc::XmlRpcValue> payload(std::in_place);
+    if (!ros::master::execute(method, request, response, *payload, /*wait_for_master=*/false)) {
+      payload.reset();
+    }
+    return payload;
+  });
+  return answer ? *answer : std::nullopt;
+}
+
+std::optional<NodeAddress> addressOf(const std::string& node) {
+  XmlRpc::XmlRpcValue request;
+  request[0] = ros::this_node::getName();
+  request[1] = node;
+  std::optional<XmlRpc::XmlRpcValue> uri = askMaster("lookupNode", request);
+  NodeAddress address;
+  if (!uri || !ros::network::splitURI(static_cast<std::string>(*uri), address.host, address.port)) {
+    return std::nullopt;
+  }
+  return address;
+}
+
+std::string describePublishers(const std::string& topic) {
+  auto nodes = publishersAndSubscribers();
+  if (!nodes) return "the ROS master does not answer";
+  const std::set<std::string>& publishers = nodes->first[topic];
+  if (publishers.empty()) return "nobody publishes " + topic;
+  return "publisher(s) of " + topic + ": " + boost::algorithm::join(publishers, ", ");
+}
+
+std::string describeImagePublishers(const std::string& topic, const std::string& argument) {
+  constexpr char kImage[] = "sensor_msgs/Image";
+  constexpr char kCompressed[] = "sensor_msgs/CompressedImage";
+  const std::string publishers = describePublishers(topic);
+  const auto published = callWithin(kLimit, [] {
+                           ros::master::V_TopicInfo topics;  // that have a publisher
+                           ros::master::getTopics(topics);
+                           return topics;
+                         }).value_or(ros::master::V_TopicInfo());
+  const auto typeOf = [&published](const std::string& name) {
+    const auto found =
+        std::find_if(published.begin(), published.end(),
+                     [&name](const ros::master::TopicInfo& each) { return each.name == name; });
+    return found == published.end() ? std::string() : found->datatype;
+  };
+  const auto republish = [&argument](const std::string& base) {
+    return ": run `rosrun image_transport republish compressed in:=" + base + " raw out:=" + base +
+           "_raw`, and give " + argument + base + "_raw";
+  };
+  const std::string type = typeOf(topic);
+  const std::string suffix = "/compressed";
+  if (type == kCompressed) {
+    const bool ends = topic.size() > suffix.size() &&
+                      topic.compare(topic.size() - suffix.size(), suffix.size(), suffix) == 0;
+    return publishers + ". Its type is " + kCompressed + ", and must be " + kImage +
+           republish(ends ? topic.substr(0, topic.size() - suffix.size()) : topic);
+  }
+  if (!type.empty() && type != kImage) {
+    return publishers + ". Its type is " + type + ", and must be " + kImage +
+           ": give the topic of the camera's images by " + argument + "TOPIC";
+  }
+  if (type.empty() && typeOf(topic + suffix) == kCompressed) {
+    return publishers + ", but " + topic + suffix + " is published, as " + kCompressed +
+           republish(topic);
+  }
+  return publishers;
+}
+
+std::vector<std::string> missingConnections(const std::vector<std::string>& topics) {
+  auto nodes = publishersAndSubscribers();
+  if (!nodes) return {"the ROS master does not answer"};
+  std::vector<std::string> missing;
+  for (const std::string& topic : topics) {
+    for (const std::string& publisher : nodes->first[topic]) {
+      const Connections connections = outgoingConnections(publisher);
+      for (const std::string& subscriber : nodes->second[topic]) {
+        if (connections.count({topic, subscriber}) > 0) continue;
+        missing.push_back(publisher + " -> " + subscriber + " on " + topic);
+      }
+    }
+  }
+  return missing;
+}
+
+std::string otherPublishers(const std::string& topic) {
+  auto nodes = publishersAndSubscribers();
+  if (!nodes) return "";
+  std::set<std::string>& publishers = nodes->first[topic];
+  publishers.erase(ros::this_node::getName());
+  return boost::algorithm::join(publishers, ", ");
+}
+
+std::vector<std::string> sharedTopics(const std::vector<std::string>& topics) {
+  auto nodes = publishersAndSubscribers();
+  if (!nodes) {
+    ROS_WARN("the ROS master does not answer: nodes that know each other go on, nobody new comes");
+    return {};
+  }
+  std::vector<std::string> shared;
+  for (const std::string& topic : topics) {
+    std::set<std::string>& publishers = nodes->first[topic];
+    publishers.erase(ros::this_node::getName());
+    if (publishers.size() < 2) continue;
+    shared.push_back(topic + ": " + boost::algorithm::join(publishers, ", "));
+  }
+  return shared;
+}
+
+void requireFreeName() {
+  const std::string name = ros::this_node::getName();
+  const auto end = std::chrono::steady_clock::now() + kEnding;
+  std::optional<NodeAddress> address;
+  while ((address = addressOf(name)) && callWithin(kLimit, [at = *address] {
+                                          return answersAt(at.host, at.port);
+                                        }).value_or(false)) {
+    if (std::chrono::steady_clock::now() > end) {
+      throw std::runtime_error(
+          "node " + name + " is running already, at " + address->host + ":" +
+          std::to_string(address->port) +
+          ", and the ROS master would end that one: end its launch first, or set ROS_NAMESPACE or "
+          "ROS_MASTER_URI for this one");
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+}
+
+}  // namespace ddm

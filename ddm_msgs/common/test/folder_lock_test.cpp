@@ -1,0 +1,166 @@
+// Tests of folders for one process at a time: who has one, who gets one after a kill, and who is refused.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_common/folder_lock.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <regex>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "ddm_msgs/testing/expect_error.h"
+#include "ddm_msgs/testing/temp_folder.h"
+
+namespace ddm {
+namespace {
+
+using testing::throwsNaming;
+
+/// Runs a function in a process of its own.
+pid_t start(const std::function<void()>& function) {
+  const pid_t child = ::fork();
+  if (child != 0) return child;
+  function();
+  ::_exit(0);
+}
+
+class FolderLockTest : public ::testing::Test {
+ protected:
+  FolderLockTest() : lock_file_(scratch_.file(".lock")), own_(ownLock()) {}
+
+  ::testing::AssertionResult isRefused(const std::vector<std::string>& words) {
+    return throwsNaming<std::runtime_error>([this] { FolderLock lock(scratch_.file("")); }, words);
+  }
+
+  std::string ownLock() {
+    const FolderLock lock(scratch_.file(""));
+    std::ifstream file(lock_file_);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+
+  /// Leaves this process's lock with another value of `key`.
+  void leaveLockWith(const std::string& key, const std::string& value) {
+    const std::string text = std::regex_replace(own_, std::regex(key + ": .*"), key + ": " + value);
+    std::ofstream(lock_file_) << text;
+  }
+
+  /// A process that holds the folder until a signal ends it.
+  pid_t startOwner() {
+    int ready[2];
+    if (::pipe(ready) != 0) throw std::runtime_error("no pipe");
+    const pid_t owner = start([&] {
+      const FolderLock lock(scratch_.file(""));
+      if (::write(ready[1], "x", 1) == 1) ::pause();
+    });
+    char byte = 0;
+    EXPECT_EQ(::read(ready[0], &byte, 1), 1);
+    ::close(ready[0]);
+    ::close(ready[1]);
+    return owner;
+  }
+
+  const testing::TempFolder scratch_;
+  const std::string lock_file_;
+  const std::string own_;  // the lock of this process
+};
+
+TEST_F(FolderLockTest, AHeldFolderIsRefusedAndAFreeOneHasNoFiles) {
+  {
+    const FolderLock lock(scratch_.file(""));
+    EXPECT_TRUE(isRefused({scratch_.file(""), "process " + std::to_string(::getpid()) + " on this",
+                           "another folder"}));
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(scratch_.file("")));
+  EXPECT_NO_THROW(FolderLock lock(scratch_.file("")));
+}
+
+TEST_F(FolderLockTest, TheLockOfAKilledProcessIsReplaced) {
+  const pid_t owner = startOwner();
+  EXPECT_TRUE(isRefused({"process " + std::to_string(owner)}));
+  ::kill(owner, SIGKILL);
+  siginfo_t info;
+  ASSERT_EQ(::waitid(P_PID, static_cast<id_t>(owner), &info, WEXITED | WNOWAIT), 0);
+  EXPECT_NO_THROW(FolderLock lock(scratch_.file("")));  // while the process is a zombie
+  ::waitpid(owner, nullptr, 0);
+}
+
+TEST_F(FolderLockTest, ASignalDeletesTheLockAndEndsTheProcess) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    const pid_t owner = startOwner();
+    ::kill(owner, number);
+    int status = 0;
+    ::waitpid(owner, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == number);
+    EXPECT_TRUE(std::filesystem::is_empty(scratch_.file("")));
+  }
+}
+
+TEST_F(FolderLockTest, OnlyTheLockOfAProcessThatHasCertainlyEndedIsReplaced) {
+  leaveLockWith("start", "1");  // its number has come again
+  EXPECT_NO_THROW(FolderLock lock(scratch_.file("")));
+  leaveLockWith("boot", "another");
+  EXPECT_NO_THROW(FolderLock lock(scratch_.file("")));
+  leaveLockWith("host", "node17");
+  EXPECT_TRUE(isRefused({"on node17", "delete " + lock_file_, "sure"}));
+  leaveLockWith("machine", "of the same name");
+  EXPECT_TRUE(isRefused({"delete " + lock_file_}));
+  leaveLockWith("namespace", "of a container");
+  EXPECT_TRUE(isRefused({"delete " + lock_file_}));
+  EXPECT_TRUE(std::filesystem::exists(lock_file_));
+  EXPECT_FALSE(std::filesystem::exists(lock_file_ + ".new"));
+}
+
+TEST_F(FolderLockTest, ALockWithoutAProcessIsRefusedWithTheFileToDelete) {
+  for (const std::string text : {"", "garbage", "host: a\npid: 1\n"}) {
+    std::ofstream(lock_file_) << text;
+    EXPECT_TRUE(isRefused({"delete " + lock_file_}));
+  }
+}
+
+TEST_F(FolderLockTest, AFolderThatCannotBeWrittenIsNamed) {
+  EXPECT_TRUE(throwsNaming<std::runtime_error>([] { FolderLock lock("/proc/self/net"); },
+                                               {"cannot lock", "/proc/self/net"}));
+}
+
+TEST_F(FolderLockTest, OfManyProcessesOneAtATimeHasTheFolder) {
+  constexpr int kProcesses = 8;
+  std::vector<pid_t> all;
+  for (int i = 0; i < kProcesses; ++i) {
+    all.push_back(start([&] {
+      for (int k = 0; k < 40; ++k) {
+        std::unique_ptr<FolderLock> lock;
+        try {
+          lock = std::make_unique<FolderLock>(scratch_.file(""));
+        } catch (const std::runtime_error&) {
+          continue;
+        }
+        const std::string alone = scratch_.file("alone");
+        if (::open(alone.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0666) < 0) ::_exit(1);
+        ::usleep(200);
+        ::unlink(alone.c_str());
+        if (k % 10 == 9) ::raise(SIGKILL);  // leaves its lock to the others
+      }
+    }));
+  }
+  for (const pid_t one : all) {
+    int status = 0;
+    ::waitpid(one, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status) || WEXITSTATUS(status) == 0);
+  }
+  EXPECT_NO_THROW(FolderLock lock(scratch_.file("")));
+}
+
+}  // namespace
+}  // namespace ddm

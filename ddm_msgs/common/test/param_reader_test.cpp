@@ -1,0 +1,413 @@
+// Tests of the strict configuration reader: files, merging, collected problems.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_common/param_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "ddm_common/config_blocks.h"
+#include "ddm_msgs/testing/expect_error.h"
+#include "ddm_msgs/testing/temp_folder.h"
+
+namespace ddm {
+namespace {
+
+struct MpcOptions {
+  int horizon = 15;
+  double epsilon = 0.2;
+  bool warm_start = true;
+  std::string goal_image = "up";
+  std::vector<int> starts = {1, 2};
+  std::vector<double> start_scale = {0.5};
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("horizon", horizon);
+    visitor("epsilon", epsilon);
+    visitor("warm_start", warm_start);
+    visitor("goal_image", goal_image);
+    visitor("starts", starts);
+    visitor("start_scale", start_scale);
+  }
+
+  std::vector<std::string> problems() const {
+    std::vector<std::string> out;
+    if (!(horizon >= 1)) {
+      out.push_back("mpc/horizon must be >= 1, got " + std::to_string(horizon));
+    }
+    if (!(epsilon >= 0.0 && epsilon <= 1.0)) {
+      out.push_back("mpc/epsilon must lie in [0, 1], got " + formatDouble(epsilon));
+    }
+    return out;
+  }
+};
+
+struct TrialOptions {
+  int num_steps = 100;
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("num_steps", num_steps);
+  }
+  std::vector<std::string> problems() const { return {}; }
+};
+
+ParamReader readerOf(const std::string& yaml) { return ParamReader(YAML::Load(yaml)); }
+
+/// All problems of the block `mpc` in a text.
+std::vector<std::string> mpcProblems(const std::string& yaml) {
+  ParamReader reader = readerOf(yaml);
+  reader.read<MpcOptions>("mpc");
+  return reader.problems();
+}
+
+/// The message with which a call throws `Error`; any other exception fails the test.
+template <class Error, class Call>
+std::string messageOf(Call call) {
+  try {
+    call();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "nothing thrown";
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// A file that is gone when the test ends.
+class ScratchFile {
+ public:
+  ScratchFile(const std::string& name, const std::string& text) : path_(folder_.file(name)) {
+    std::ofstream(path_) << text;
+  }
+  const std::string& path() const { return path_; }
+
+ private:
+  const testing::TempFolder folder_;
+  const std::string path_;
+};
+
+/// Workspaces that are sourced as long as this lives.
+class Workspaces {
+ public:
+  explicit Workspaces(const std::string& prefixes) {
+    const char* const before = std::getenv("CMAKE_PREFIX_PATH");
+    before_ = before == nullptr ? "" : before;
+    ::setenv("CMAKE_PREFIX_PATH", prefixes.c_str(), /*overwrite=*/1);
+  }
+  ~Workspaces() { ::setenv("CMAKE_PREFIX_PATH", before_.c_str(), /*overwrite=*/1); }
+  Workspaces(const Workspaces&) = delete;
+  Workspaces& operator=(const Workspaces&) = delete;
+
+ private:
+  std::string before_;
+};
+
+TEST(ParamReader, GivesDefaultsWhereTheConfigurationIsSilent) {
+  for (const char* yaml : {"", "{}", "mpc:", "mpc: {}"}) {
+    ParamReader reader = readerOf(yaml);
+    const auto options = reader.read<MpcOptions>("mpc");
+    EXPECT_EQ(YAML::Dump(toYaml(options)), YAML::Dump(toYaml(MpcOptions()))) << yaml;
+    EXPECT_NO_THROW(reader.requireValid()) << yaml;
+  }
+  EXPECT_NO_THROW(ParamReader(YAML::Node()).requireValid());
+}
+
+TEST(ParamReader, ReadsEveryTypeOfKey) {
+  ParamReader reader = readerOf(
+      "mpc: {horizon: 25, epsilon: 1e-4, warm_start: false, goal_image: a b, starts: [7], "
+      "start_scale: [1, 2.5]}");
+  const auto options = reader.read<MpcOptions>("mpc");
+  EXPECT_NO_THROW(reader.requireValid());
+  EXPECT_EQ(options.horizon, 25);
+  EXPECT_EQ(options.epsilon, 1e-4);
+  EXPECT_FALSE(options.warm_start);
+  EXPECT_EQ(options.goal_image, "a b");
+  EXPECT_EQ(options.starts, std::vector<int>({7}));
+  EXPECT_EQ(options.start_scale, std::vector<double>({1.0, 2.5}));
+}
+
+TEST(ParamReader, ReportsAnUnknownKeyWithTheNearestAndAllKnownOnes) {
+  const auto problems = mpcProblems("mpc: {horzion: 20}");
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_TRUE(testing::names(problems[0],
+                             {"mpc/horzion", "horizon?",
+                              "horizon, epsilon, warm_start, goal_image, starts, start_scale"}));
+}
+
+TEST(ParamReader, SuggestsNothingForAKeyThatIsFarFromAll) {
+  const auto problems = mpcProblems("mpc: {colour: red}");
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_TRUE(testing::names(problems[0], {"mpc/colour", "horizon, epsilon"}));
+  EXPECT_FALSE(contains(problems[0], "?"));
+}
+
+TEST(ParamReader, ReportsAWrongTypeWithKeyTypeAndValueOnceAndKeepsTheDefault) {
+  ParamReader reader = readerOf("mpc: {horizon: 15.5}");
+  EXPECT_EQ(reader.read<MpcOptions>("mpc").horizon, 15);
+  ASSERT_EQ(reader.problems().size(), 1u);
+  EXPECT_TRUE(testing::names(reader.problems()[0], {"mpc/horizon", "integer", "got 15.5"}));
+}
+
+TEST(ParamReader, NamesTheExpectedTypeOfEveryKey) {
+  const auto problems = mpcProblems(
+      "mpc: {horizon: ~, epsilon: high, warm_start: yes, goal_image: [], "
+      "starts: [1, 2.5], start_scale: {a: 1}}");
+  const std::vector<std::vector<std::string>> parts = {
+      {"mpc/horizon", "integer", "got nothing"},
+      {"mpc/epsilon", "number", "got high"},
+      {"mpc/warm_start", "true", "got yes"},
+      {"mpc/goal_image", "text", "got []"},
+      {"mpc/starts", "list", "integer", "got [1, 2.5]"},
+      {"mpc/start_scale", "number", "list", "got {a: 1}"}};
+  ASSERT_EQ(problems.size(), parts.size());
+  for (size_t i = 0; i < parts.size(); ++i) EXPECT_TRUE(testing::names(problems[i], parts[i]));
+}
+
+TEST(ParamReader, ShortensALongWrongValue) {
+  const auto problems = mpcProblems("mpc: {horizon: " + std::string(5000, 'x') + "}");
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_LT(problems[0].size(), 250u);
+}
+
+TEST(ParamReader, PutsAWrongValueOfSeveralLinesInOne) {
+  const auto problems = mpcProblems("mpc: {horizon: \"1\\n2\\e[0m\"}");
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_TRUE(testing::names(problems[0], {"mpc/horizon", "got 1 2 [0m"}));
+}
+
+TEST(ParamReader, LeavesNaNToTheRulesOfTheOptions) {
+  EXPECT_EQ(mpcProblems("mpc: {epsilon: .nan}"),
+            std::vector<std::string>({"mpc/epsilon must lie in [0, 1], got .nan"}));
+}
+
+TEST(ParamReader, ReportsABlockThatIsNoMap) {
+  for (const std::string value : {"5", "[1]"}) {
+    const auto problems = mpcProblems("mpc: " + value);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_TRUE(testing::names(problems[0], {"mpc", "got " + value}));
+  }
+}
+
+TEST(ParamReader, TellsWhichBlocksAreGiven) {
+  const ParamReader reader(YAML::Load("robot: {}"));
+  EXPECT_TRUE(reader.has("robot"));
+  EXPECT_FALSE(reader.has("mpc"));
+}
+
+TEST(ParamReader, ReportsAnUnknownBlockWithTheNearest) {
+  const auto problems = mpcProblems("mpcc: {horizon: 3}");
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_TRUE(testing::names(problems[0], {" mpcc ", " mpc?"}));
+}
+
+TEST(ParamReader, LeavesBlocksAloneThatPackagesOfAnySourcedWorkspaceHaveRegistered) {
+  const testing::TempFolder below, above, empty;
+  for (const auto& [workspace, package, blocks] :
+       {std::make_tuple(&below, "ddm_sim", "plant\ncamera\n"),
+        std::make_tuple(&below, "ddm_model", "model\n"),
+        std::make_tuple(&above, "my_package", "my_robot\n")}) {
+    std::filesystem::create_directories(workspace->file("share/ddm_common"));
+    std::ofstream(workspace->file("share/ddm_common/") + package) << blocks;
+  }
+  const std::string yaml = "{plant: 1, camera: 1, model: 1, my_robot: 1, mpc: {horizon: 3}}";
+  {
+    const Workspaces sourced(above.file("") + ":" + empty.file("") + ":" + below.file(""));
+    EXPECT_EQ(mpcProblems(yaml), std::vector<std::string>());
+    ASSERT_EQ(mpcProblems("my_robt: 1").size(), 1u);
+    // among those of the workspace of the library
+    EXPECT_TRUE(testing::names(mpcProblems("my_robt: 1")[0],
+                               {"camera", "model", "mpc", "my_robot", "plant"}));
+  }
+  const Workspaces sourced(below.file(""));
+  ASSERT_EQ(mpcProblems(yaml).size(), 1u);
+  EXPECT_TRUE(contains(mpcProblems(yaml)[0], " my_robot "));
+  const Workspaces none("");  // but that of the library
+  EXPECT_TRUE(testing::names(mpcProblems("my_robot: 1").at(0), {" my_robot ", "setup.bash"}));
+}
+
+TEST(ParamReader, IgnoresAForeignBlockOnlyIfTold) {
+  ParamReader reader = readerOf("image_transport: raw");
+  EXPECT_EQ(reader.problems().size(), 1u);
+  reader.ignore("image_transport");
+  EXPECT_TRUE(reader.problems().empty());
+}
+
+TEST(ParamReader, KnowsABlockThatItHasRead) {
+  ParamReader reader = readerOf("my_robot: {num_steps: 7}");
+  EXPECT_EQ(reader.read<TrialOptions>("my_robot").num_steps, 7);
+  EXPECT_NO_THROW(reader.requireValid());
+}
+
+TEST(ParamReader, ThrowsAllProblemsOfAllBlocksAtOnce) {
+  ParamReader reader(
+      YAML::Load("mpc: {horizon: 0, epsilon: 1.5, horzion: 3}\ntrial: {num_steps: many}\nfoo: 1"),
+      "my.yaml");
+  reader.read<MpcOptions>("mpc");
+  reader.read<TrialOptions>("trial");
+  const auto message = messageOf<std::invalid_argument>([&reader] { reader.requireValid(); });
+  EXPECT_TRUE(
+      testing::names(message, {"(my.yaml):\n - ", "\n - mpc/horizon must be >= 1, got 0",
+                               "\n - mpc/epsilon must lie in [0, 1], got 1.5", " mpc/horzion (",
+                               "\n - trial/num_steps ", "got many", "block foo ("}));
+  EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 5) << message;
+}
+
+TEST(ParamReader, LeavesTheSourceOutOfTheMessageIfThereIsNone) {
+  ParamReader reader = readerOf("mpc: {horizon: 0}");
+  reader.read<MpcOptions>("mpc");
+  EXPECT_EQ(messageOf<std::invalid_argument>([&reader] { reader.requireValid(); }),
+            "invalid configuration:\n - mpc/horizon must be >= 1, got 0");
+}
+
+TEST(ParamReader, ReportsABlockThatIsReadTwiceOnlyOnce) {
+  ParamReader reader = readerOf("mpc: {horizon: 0, foo: 1}");
+  reader.read<MpcOptions>("mpc");
+  reader.read<MpcOptions>("mpc");
+  EXPECT_EQ(reader.problems().size(), 2u);
+}
+
+TEST(ParamReader, RefusesARootThatIsNoMap) {
+  EXPECT_THROW(readerOf("5"), std::invalid_argument);
+  EXPECT_THROW(readerOf("[mpc]"), std::invalid_argument);
+}
+
+TEST(ParamReader, WritesTheEffectiveValuesReadablyAndInOrder) {
+  MpcOptions options;
+  options.start_scale = {0.1 + 0.2, 1.0};
+  EXPECT_EQ(YAML::Dump(toYaml(options)),
+            "horizon: 15\nepsilon: 0.2\nwarm_start: true\ngoal_image: up\nstarts: [1, 2]\n"
+            "start_scale: [0.30000000000000004, 1.0]");
+}
+
+TEST(ParamReader, ReadsBackExactlyWhatItWrites) {
+  MpcOptions options;
+  options.horizon = -3;
+  options.epsilon = 1.0 / 3.0;
+  options.warm_start = false;
+  options.goal_image = "a: b # c";
+  options.starts = {};
+  options.start_scale = {1e-300, -2.0 / 7.0};
+  YAML::Node root;
+  root["mpc"] = toYaml(options);
+  ParamReader reader = readerOf(YAML::Dump(root));
+  const auto read_back = reader.read<MpcOptions>("mpc");
+  EXPECT_EQ(read_back.horizon, options.horizon);
+  EXPECT_EQ(read_back.epsilon, options.epsilon);
+  EXPECT_EQ(read_back.warm_start, options.warm_start);
+  EXPECT_EQ(read_back.goal_image, options.goal_image);
+  EXPECT_EQ(read_back.starts, options.starts);
+  EXPECT_EQ(read_back.start_scale, options.start_scale);
+}
+
+TEST(ParamReaderFiles, LetsTheLaterFileWinKeyByKey) {
+  const ScratchFile manual("manual.yaml", "mpc: {horizon: 20, epsilon: 0.3, starts: [1, 2, 3]}");
+  const ScratchFile preset("preset.yaml", "mpc: {horizon: 25, starts: [9]}\ntrial: {num_steps: 7}");
+  ParamReader reader = ParamReader::fromFiles({manual.path(), preset.path()});
+  const auto options = reader.read<MpcOptions>("mpc");
+  EXPECT_EQ(options.horizon, 25);
+  EXPECT_EQ(options.epsilon, 0.3);
+  EXPECT_EQ(options.starts, std::vector<int>({9}));
+  EXPECT_EQ(reader.read<TrialOptions>("trial").num_steps, 7);
+  EXPECT_NO_THROW(reader.requireValid());
+}
+
+TEST(ParamReaderFiles, StartsRelativePathsAtTheFolderOfTheFileThatGivesThem) {
+  const testing::TempFolder folder;
+  std::filesystem::create_directories(folder.file("plants"));
+  const std::string file = folder.file("plants/robot.yaml");
+  std::ofstream(file) << "plant: {model: ../arm.urdf}\n"
+                         "robot: {goal_file: goal.png}\n"
+                         "start: {model: package://robots/m.ddm, bags: [a.bag, /b.bag]}\n"
+                         "experiment: {plant: ./arm.yaml}";
+  const YAML::Node blocks = readBlocks(file);
+  const auto text = [&blocks](const char* block, const char* key) {
+    return YAML::Dump(blocks[block][key]);
+  };
+  EXPECT_EQ(text("plant", "model"), folder.file("arm.urdf"));
+  EXPECT_EQ(text("robot", "goal_file"), folder.file("plants/goal.png"));
+  EXPECT_EQ(text("start", "model"), "package://robots/m.ddm");
+  EXPECT_EQ(text("start", "bags"), "[" + folder.file("plants/a.bag") + ", /b.bag]");
+  EXPECT_EQ(text("experiment", "plant"), folder.file("plants/arm.yaml"));
+}
+
+TEST(ParamReaderFiles, LeavesNamesAndValuesOfOtherTypesAsTheyAre) {
+  const ScratchFile file("names.yaml",
+                         "experiment: {plant: pendulum}\nplant: {model: \"\"}\nstart: {bags: []}");
+  EXPECT_EQ(YAML::Dump(readBlocks(file.path())),
+            "experiment: {plant: pendulum}\nplant: {model: \"\"}\nstart: {bags: []}");
+}
+
+TEST(ParamReaderFiles, KeepsABlockThatALaterFileLeavesEmpty) {
+  const ScratchFile manual("manual.yaml", "mpc: {horizon: 25}");
+  const ScratchFile preset("preset.yaml", "mpc:\n  # nothing differs\n");
+  ParamReader reader = ParamReader::fromFiles({manual.path(), preset.path()});
+  EXPECT_EQ(reader.read<MpcOptions>("mpc").horizon, 25);
+}
+
+TEST(ParamReaderFiles, OverridesOneUserOfAnAnchorOnly) {
+  const ScratchFile shared("shared.yaml", "mpc: &same {num_steps: 5}\ntrial: *same");
+  const ScratchFile later("later.yaml", "mpc: {num_steps: 6}");
+  ParamReader reader = ParamReader::fromFiles({shared.path(), later.path()});
+  EXPECT_EQ(reader.read<TrialOptions>("mpc").num_steps, 6);
+  EXPECT_EQ(reader.read<TrialOptions>("trial").num_steps, 5);
+}
+
+TEST(ParamReaderFiles, TakesAFileOfCommentsForAnEmptyConfiguration) {
+  const ScratchFile comments("comments.yaml", "# everything as in the paper\n");
+  const ScratchFile empty("empty.yaml", "");
+  EXPECT_NO_THROW(ParamReader::fromFiles({comments.path(), empty.path()}).requireValid());
+  EXPECT_NO_THROW(ParamReader::fromFiles({}).requireValid());
+}
+
+TEST(ParamReaderFiles, NamesTheFilesInItsMessage) {
+  const ScratchFile file("bad.yaml", "foo: 1");
+  const ParamReader reader = ParamReader::fromFiles({file.path()});
+  EXPECT_TRUE(contains(messageOf<std::invalid_argument>([&reader] { reader.requireValid(); }),
+                       "(" + file.path() + ")"));
+}
+
+TEST(ParamReaderFiles, RefusesAMissingFileAndAFolder) {
+  for (const std::string& path : {std::string("/no/such/file.yaml"), ::testing::TempDir()}) {
+    EXPECT_TRUE(testing::throwsNaming<std::runtime_error>(
+        [&path] { ParamReader::fromFiles({path}); }, {"read", path}));
+  }
+}
+
+TEST(ParamReaderFiles, RefusesAFileThatIsTooLargeToBeAConfiguration) {
+  const ScratchFile file("large.yaml", "#" + std::string(1000000, 'x'));
+  EXPECT_TRUE(testing::throwsNaming<std::runtime_error>(
+      [&file] { ParamReader::fromFiles({file.path()}); }, {file.path(), "1000000 bytes"}));
+}
+
+TEST(ParamReaderFiles, RefusesBadFilesWithPathAndLine) {
+  struct Case {
+    std::string yaml, line, part;
+  };
+  for (const Case& bad :
+       std::vector<Case>{{"mpc:\n  horizon: [1, 2\ntrial: {\n", ":3: ", "valid YAML"},
+                         {"\n- mpc\n- trial\n", ":2: ", " map "},
+                         {"just text", ":1: ", "got just text"},
+                         {"mpc: {horizon: 1}\n---\nmpc: {horizon: 2}\n", ":2: ", "document"},
+                         {"mpc: {horizon: 1}\ntrial:\nmpc: {horizon: 2}\n", ":3: ", "'mpc'"},
+                         {"mpc:\n  horizon: 1\n  epsilon: 0\n  horizon: 2\n", ":4: ", "'horizon'"},
+                         {"mpc: {[1, 2]: 3}\n", ":1: ", "plain name"}}) {
+    const ScratchFile file("bad.yaml", bad.yaml);
+    EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
+        [&file] { ParamReader::fromFiles({file.path()}); }, {file.path() + bad.line, bad.part}))
+        << bad.yaml;
+  }
+}
+
+}  // namespace
+}  // namespace ddm

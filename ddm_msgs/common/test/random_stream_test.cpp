@@ -1,0 +1,37 @@
+// Tests of the random streams: a stream for each role of each run, the same in every version.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_common/random_stream.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace ddm {
+namespace {
+
+constexpr StreamRole kRole = StreamRole::kInitialisation;
+
+TEST(RandomStream, DoesNotChangeFromOneVersionToTheNext) {
+  const std::uint64_t draws[] = {// published seeds stand for these
+                                 2172617572647196348U,  9735909815621124326U, 880987923637700293U,
+                                 8837459983291567139U,  4097341192330693964U, 7253929432131995732U,
+                                 312604272161489043U,   6020029715130901224U, 9449926314368251004U,
+                                 13420142379881102563U, 7218843632006366136U};
+  std::uint32_t role = 0;
+  for (const std::uint64_t draw : draws) {
+    EXPECT_EQ(randomStream({1, 2, false}, static_cast<StreamRole>(++role))(), draw) << role;
+  }
+  EXPECT_EQ(role, static_cast<std::uint32_t>(StreamRole::kGoal));
+}
+
+TEST(RandomStream, IsFixedByRunAndRole) {
+  EXPECT_EQ(randomStream({1, 2, true}, kRole), randomStream({1, 2, true}, kRole));
+  const std::set<std::uint64_t> draws = {
+      randomStream({1, 2, true}, kRole)(), randomStream({1, 2, false}, kRole)(),
+      randomStream({1, 3, true}, kRole)(), randomStream({2, 2, true}, kRole)(),
+      randomStream({1 + (1ULL << 32), 2, true}, kRole)()};
+  EXPECT_EQ(draws.size(), 5U);
+}
+
+}  // namespace
+}  // namespace ddm

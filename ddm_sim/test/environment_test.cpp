@@ -1,0 +1,173 @@
+// Tests of plant and camera together: what is seen, what time it is, and how a run begins.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddm_sim/environment.h"
+
+#include <ddm_msgs/testing/expect_error.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <set>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "ddm_sim/pendulum.h"
+#include "ddm_sim/testing/toy_plant.h"
+
+namespace ddm {
+namespace {
+
+using testing::allNuisances;
+using testing::ToyPlant;
+
+constexpr std::uint64_t kSeed = 7;
+constexpr std::uint32_t kTrial = 3;
+
+PendulumOptions quickPendulum() {
+  PendulumOptions options;
+  options.dt = 0.1;
+  return options;
+}
+
+std::unique_ptr<Plant> quickPlant() { return std::make_unique<Pendulum>(quickPendulum()); }
+
+Eigen::VectorXd torqueOf(double value) { return Eigen::VectorXd::Constant(1, value); }
+
+/// Plant and camera, moved by hand.
+struct ByHand {
+  Pendulum plant{quickPendulum()};
+  Camera camera{allNuisances(), quickPendulum().dt};
+
+  std::optional<Picture> begin() {
+    std::mt19937_64 starts = startStream(kSeed, kTrial, true);
+    plant.setState(plant.drawStart(starts));
+    camera.begin(kSeed, kTrial, true);
+    return look();
+  }
+  std::optional<Picture> step(double value) {
+    plant.step(torqueOf(value));
+    return look();
+  }
+  std::optional<Picture> look() { return camera.photograph(plant.render(plant.state())); }
+};
+
+TEST(Environment, GoesOnUnderTheSameTorqueUntilAFrameIsSeenAndCountsTheLostOnes) {
+  Environment environment(quickPlant(), allNuisances());
+  ByHand by_hand;
+  environment.reset(kSeed, kTrial, true);
+  by_hand.begin();
+  std::uint64_t steps = 0;
+  for (int frame = 1; frame <= 40; ++frame) {
+    const double value = frame % 2 == 0 ? 4.0 : -1.0;
+    const Picture seen = environment.stepUntilSeen(torqueOf(value));
+    std::optional<Picture> expected;
+    while (!expected) {
+      expected = by_hand.step(value);
+      ++steps;
+    }
+    ASSERT_EQ(seen.bytes, expected->bytes) << frame;
+    ASSERT_EQ(environment.plant().state(), by_hand.plant.state()) << frame;
+    EXPECT_EQ(environment.numSteps(), steps);
+    EXPECT_DOUBLE_EQ(environment.time(), 0.1 * static_cast<double>(steps));
+  }
+  EXPECT_GT(steps, 40U);
+}
+
+TEST(Environment, BeginsARunAtAGivenStartDigitByDigitWithTheFramesOfThatRun) {
+  Environment environment(quickPlant(), allNuisances());
+  const Eigen::Vector2d start(0.1 + 0.2, -1e-17);
+  const Picture first = environment.reset(kSeed, kTrial, true, start);
+  EXPECT_EQ(environment.plant().state(), start);
+  ByHand by_hand;
+  by_hand.begin();
+  by_hand.plant.setState(start);
+  by_hand.camera.begin(kSeed, kTrial, true);
+  EXPECT_EQ(first.bytes, by_hand.look()->bytes);
+}
+
+TEST(Environment, ChangesNothingWhereAStartIsRefused) {
+  ToyPlant::Traits traits = testing::colourfulToy();
+  Environment environment(std::make_unique<ToyPlant>(traits), allNuisances());
+  Environment undisturbed(std::make_unique<ToyPlant>(traits), allNuisances());
+  for (Environment* each : {&environment, &undisturbed}) {
+    each->reset(kSeed, kTrial, true);
+    each->stepUntilSeen(torqueOf(2.0));
+  }
+  EXPECT_THROW(environment.reset(1, 1, false, Eigen::VectorXd::Zero(3)), std::invalid_argument);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(environment.reset(1, 1, false, Eigen::Vector2d(0.0, nan)), std::invalid_argument);
+  EXPECT_EQ(environment.plant().state(), undisturbed.plant().state());
+  EXPECT_EQ(environment.plant().goal(), undisturbed.plant().goal());
+  EXPECT_EQ(environment.numSteps(), undisturbed.numSteps());
+  EXPECT_EQ(environment.applied(), undisturbed.applied());
+  for (int t = 0; t < 20; ++t) {
+    const std::optional<Picture> expected = undisturbed.step(torqueOf(1.0));
+    const std::optional<Picture> seen = environment.step(torqueOf(1.0));
+    ASSERT_EQ(seen.has_value(), expected.has_value());
+    if (!seen) continue;
+    ASSERT_EQ(seen->bytes, expected->bytes);
+  }
+}
+
+TEST(Environment, StaysAtTheLastStateWhereThePlantHasNoNext) {
+  ToyPlant::Traits traits;
+  traits.advance = [](const Eigen::VectorXd& state, const Eigen::VectorXd&) {
+    const double limit = state[0] < 2.5 ? 1.0 : std::numeric_limits<double>::infinity();
+    return Eigen::VectorXd(state.array() + limit);
+  };
+  Environment environment(std::make_unique<ToyPlant>(traits), CameraOptions());
+  environment.reset(0, 0, false, Eigen::Vector2d(0.0, 0.0));
+  for (int t = 0; t < 3; ++t) environment.stepUntilSeen(torqueOf(1.0));
+  EXPECT_TRUE(
+      testing::throwsNaming<std::range_error>([&] { environment.stepUntilSeen(torqueOf(1.0)); },
+                                              {"plant of a test", "[3 3]", "[inf inf]", "step 3"}));
+  EXPECT_EQ(environment.plant().state(), Eigen::Vector2d(3.0, 3.0));
+  EXPECT_EQ(environment.numSteps(), 3U);
+}
+
+TEST(Environment, DrawsAGoalForEachRunAndShowsItOnTheGoalImage) {
+  const auto toy = [] { return std::make_unique<ToyPlant>(testing::colourfulToy()); };
+  const ToyPlant alone(testing::colourfulToy());
+  Environment environment(toy(), CameraOptions());
+  EXPECT_EQ(environment.plant().goal(), alone.info().goal);
+  std::set<double> goals;
+  std::set<std::vector<std::uint8_t>> images;
+  for (const bool evaluation : {false, true}) {
+    for (std::uint32_t trial = 0; trial < 5; ++trial) {
+      environment.reset(kSeed, trial, evaluation);
+      const Eigen::VectorXd goal = environment.plant().goal();
+      EXPECT_EQ(goal, goalOf(alone, kSeed, trial, evaluation));
+      EXPECT_EQ(environment.goalImage().bytes, alone.render(goal).bytes);
+      EXPECT_EQ(environment.plant().goalError(goal), 0.0);
+      goals.insert(goal[0]);
+      images.insert(environment.goalImage().bytes);
+      // A given start leaves the goal of the run as it is.
+      environment.reset(kSeed, trial, evaluation, Eigen::Vector2d(0.0, 0.0));
+      EXPECT_EQ(environment.plant().goal(), goal);
+    }
+  }
+  EXPECT_EQ(goals.size(), 10U);
+  EXPECT_GT(images.size(), 3U);  // pixels are coarser
+}
+
+TEST(Environment, StaysAsItIsWhereTheGoalIsOutOfReach) {
+  bool within_reach = true;
+  ToyPlant::Traits traits;
+  traits.draw_goal = [&within_reach](std::mt19937_64*) {
+    if (!within_reach) throw std::invalid_argument("out of reach");
+    return testing::toyInfo().goal;
+  };
+  Environment environment(std::make_unique<ToyPlant>(traits), CameraOptions());
+  environment.reset(kSeed, 0, false);
+  environment.step(torqueOf(1.0));
+  const Eigen::VectorXd state = environment.plant().state();
+  within_reach = false;
+  EXPECT_THROW(environment.reset(kSeed, 1, false), std::invalid_argument);
+  EXPECT_EQ(environment.plant().state(), state);
+  EXPECT_EQ(environment.numSteps(), 1U);
+}
+
+}  // namespace
+}  // namespace ddm
