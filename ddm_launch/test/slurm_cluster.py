@@ -39,9 +39,15 @@ NodeName=localhost NodeAddr=127.0.0.1 CPUs=2
 PartitionName=all Nodes=localhost Default=YES
 """
 CGROUP_CONF = """\
-CgroupPlugin=cgroup/v1
+{plugin}
 CgroupMountpoint={folder}/no_cgroup
 """
+
+
+def cgroup_plugin():
+    """The line of cgroup.conf that names the plugin, which versions before 22.05 do not know (Debian 11 has 20.11)."""
+    version = subprocess.check_output(["/usr/sbin/slurmd", "-V"], universal_newlines=True)
+    return "CgroupPlugin=cgroup/v1" if int(version.split()[-1].split(".")[0]) >= 22 else ""
 
 
 class SlurmCluster:
@@ -53,7 +59,7 @@ class SlurmCluster:
         self.environment = {"SLURM_CONF": os.path.join(folder, "slurm.conf")}
         self._daemons = []
         values = {"folder": folder, "user": getpass.getuser(), "controller_port": free_port(),
-                  "daemon_port": free_port()}
+                  "daemon_port": free_port(), "plugin": cgroup_plugin()}
         for name, text in (("slurm.conf", SLURM_CONF), ("cgroup.conf", CGROUP_CONF)):
             with open(os.path.join(folder, name), "w") as stream:
                 stream.write(text.format(**values))

@@ -3,6 +3,7 @@
 import sys
 import time
 
+import ddm_launch  # noqa: F401  (mends rospy for Python 3.9)
 from ddm_msgs.msg import Model, Torque
 import rosgraph
 import rospy
