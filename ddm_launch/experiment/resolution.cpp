@@ -139,12 +139,11 @@ std::optional<Motors> motorsOf(const YAML::Node& blocks) {
     ParamReader reader(blocks);
     const std::shared_ptr<const PlantPlugin> plant = readPlant(&reader);
     reader.requireValid();
-    const PlantInfo info = makePlant(*plant)->info();
-    const std::vector<double> limits(info.max_torque.data(),
-                                     info.max_torque.data() + info.max_torque.size());
     const YAML::Node block = plant->block();
-    return Motors{block["max_torque"].IsDefined() ? block["max_torque"] : valueToYaml(limits),
-                  info.torqueDim()};
+    const YAML::Node limits = block["max_torque"];
+    if (!limits.IsDefined()) return std::nullopt;
+    return Motors{limits, limits.IsSequence() ? static_cast<int>(limits.size())
+                                              : makePlant(*plant)->info().torqueDim()};
   } catch (const std::exception&) {
     return std::nullopt;
   }

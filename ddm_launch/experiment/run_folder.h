@@ -98,7 +98,9 @@ class RunFolder {
   bool confirmSummary() const;
 
  private:
-  std::string at(const std::string& name) const { return path_ + "/" + name; }
+  std::string at(const std::string& name) const {
+    return name.empty() ? path_ : path_ + "/" + name;
+  }
   void compareWith(const std::string& file);
   void readRows(const std::string& file);
   void makeFolder(const std::string& name);
