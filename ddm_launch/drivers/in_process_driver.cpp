@@ -3,16 +3,27 @@
 #include "in_process_driver.h"
 
 #include <ddm_bag_io/bag_writer.h>
+#include <ddm_common/image_codec.h>
+#include <ddm_model/per_motor.h>
 #include <ddm_msgs/Torque.h>
 #include <ddm_sim/plant_factory.h>
 
+#include <cmath>
 #include <stdexcept>
+#include <utility>
 
-#include "closed_loop.h"
-#include "method_kinds.h"
+#include "method.h"
 
 namespace ddm {
 namespace {
+
+/// Stamp of an image of a trial that begins at one second, like sim_node's first.
+ros::Time stampOf(const Environment& environment) {
+  const auto step_ns =
+      static_cast<std::uint64_t>(std::llround(environment.plant().info().dt * 1e9));
+  return ros::Time(1, 0) +
+         ros::Duration().fromNSec(static_cast<std::int64_t>(environment.numSteps() * step_ns));
+}
 
 /// An image and the torque that answers it.
 void write(const sensor_msgs::Image& image, const Decision& decision, BagWriter* bag) {
@@ -25,6 +36,35 @@ void write(const sensor_msgs::Image& image, const Decision& decision, BagWriter*
 }
 
 }  // namespace
+
+void runClosedLoop(Environment* environment, std::shared_ptr<Policy> policy,
+                   const TrialRequest& request, const Configuration& configuration,
+                   const std::function<void(const ClosedLoopFrame&)>& take) {
+  const TrialId& id = request.id;
+  const int image_size = configuration.model.image.size;
+  EpsilonGreedy::Options options;
+  options.epsilon = request.epsilon;
+  options.hold_steps = request.hold_steps;
+  options.max_torque =
+      perMotor(configuration.mpc.max_torque, environment->plant().torqueDim(), "mpc/max_torque");
+  EpsilonGreedy explorer(request.epsilon < 1.0 ? std::move(policy) : nullptr, options, id);
+  Picture picture = environment->reset(id.seed, id.trial, id.evaluation);
+  explorer.setGoal(
+      decodeImage(imageMessage(environment->goalImage(), stampOf(*environment)), image_size));
+  const std::string optical_frame = opticalFrame(environment->plant().cameraModel());
+  ClosedLoopFrame frame;
+  for (frame.index = 0; frame.index < request.num_steps; ++frame.index) {
+    if (frame.index > 0) {
+      const std::uint64_t steps = environment->numSteps();
+      picture = environment->stepUntilSeen(frame.decision.torque);
+      if (environment->numSteps() > steps + 1) explorer.startSegment();  // an image was lost
+    }
+    frame.image = imageMessage(picture, stampOf(*environment), optical_frame);
+    frame.grey = decodeImage(frame.image, image_size);
+    frame.decision = explorer.decide(frame.grey);
+    take(frame);
+  }
+}
 
 InProcessDriver::InProcessDriver(const Configuration& configuration)
     : configuration_(configuration),

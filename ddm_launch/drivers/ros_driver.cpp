@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
 #include <chrono>
-#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -24,9 +23,8 @@ namespace ddm {
 namespace {
 
 constexpr std::uint32_t kThreads = 2;
-constexpr char kBagUnderWay[] = "";  // for StartRecording
-// How often conditions without a callback are checked.
-constexpr std::chrono::milliseconds kLook(20);
+constexpr char kBagUnderWay[] = "";             // for StartRecording
+constexpr std::chrono::milliseconds kLook(20);  // between checks of conditions without a callback
 
 /// For action clients.
 ros::NodeHandle withQueue(ros::NodeHandle nh, ros::CallbackQueue* queue, double limit) {
@@ -45,6 +43,10 @@ std::vector<std::string> loopTopics(const ros::NodeHandle& nh) {
   return names;
 }
 
+Eigen::VectorXd vectorOf(const double* values, size_t size) {
+  return Eigen::Map<const Eigen::VectorXd>(values, static_cast<Eigen::Index>(size));
+}
+
 }  // namespace
 
 RosDriver::RosDriver(const ros::NodeHandle& nh, double timeout, Peers peers)
@@ -61,12 +63,12 @@ RosDriver::RosDriver(const ros::NodeHandle& nh, double timeout, Peers peers)
       topics::kGroundTruth, 0, [this](const sensor_msgs::JointStateConstPtr& state) {
         if (keeps_ground_truth_) ground_truth_[state->header.stamp] = *state;
       });
-  model_sub_ = nh_.subscribe<ddm_msgs::Model>(topics::kModel, 1,
-                                              [this](const ddm_msgs::ModelConstPtr& model) {
-                                                const std::lock_guard<std::mutex> lock(mutex_);
-                                                model_ = model;
-                                                changed_.notify_all();
-                                              });
+  const auto on_model = [this](const ddm_msgs::ModelConstPtr& model) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    model_ = model;
+    changed_.notify_all();
+  };
+  model_sub_ = nh_.subscribe<ddm_msgs::Model>(topics::kModel, 1, on_model);
   // Not before: an action client that is still being made drops the server's first status, and in
   // simulated time that stands still there is no second one.
   spinner_.start();
@@ -90,10 +92,7 @@ void RosDriver::connect() {
   action(trial_client_, topics::kRunTrial);
   if (peers_.trainer) action(train_client_, topics::kTrain);
   std::vector<std::string> missing;
-  const auto connected = [&] {
-    missing = missingConnections(loopTopics(nh_));
-    return missing.empty();
-  };
+  const auto connected = [&] { return (missing = missingConnections(loopTopics(nh_))).empty(); };
   waitFor(connected, [&] {
     return "nodes do not find each other: check ROS_HOSTNAME or ROS_IP on each machine\n - " +
            boost::algorithm::join(missing, "\n - ");
@@ -175,22 +174,20 @@ auto RosDriver::execute(Client* client, const std::string& name, const Goal& goa
     client->cancelGoal();
     throw;
   }
-  const actionlib::SimpleClientGoalState state = client->getState();
-  if (state == actionlib::SimpleClientGoalState::PREEMPTED) {
-    throw std::runtime_error("action " + name +
-                             " was cancelled, as it is when the motors of a robot are stopped in a "
-                             "trial: the same command resumes");
+  using State = actionlib::SimpleClientGoalState;
+  const State state = client->getState();
+  if (state == State::SUCCEEDED) return *client->getResult();
+  std::string reason = state.toString() + ", " + state.getText();
+  if (state == State::PREEMPTED) {
+    reason =
+        "was cancelled, as it is when the motors of a robot are stopped in a trial: the same "
+        "command resumes";
+  } else if (state == State::RECALLED) {
+    reason =
+        "takes no goal with an earlier stamp than its last one, and the clock was set back: "
+        "start the nodes again; the same command resumes";
   }
-  if (state == actionlib::SimpleClientGoalState::RECALLED) {
-    throw std::runtime_error(
-        "action " + name +
-        " takes no goal with an earlier stamp than its last one, and the clock "
-        "was set back: start the nodes again; the same command resumes");
-  }
-  if (state != actionlib::SimpleClientGoalState::SUCCEEDED) {
-    throw std::runtime_error("action " + name + ": " + state.toString() + ", " + state.getText());
-  }
-  return *client->getResult();
+  throw std::runtime_error("action " + name + ": " + reason);
 }
 
 /// A bag does not say who published what is in it: a trial counts only if one node could have.
@@ -223,8 +220,7 @@ TrialOutcome RosDriver::runTrial(const TrialRequest& request, const PhaseCallbac
   TrialOutcome outcome;
   const size_t torque_dim = result.torque.size() / result.num_steps;
   for (size_t step = 0; step < result.num_steps; ++step) {
-    outcome.torques.push_back(Eigen::Map<const Eigen::VectorXd>(
-        result.torque.data() + step * torque_dim, static_cast<Eigen::Index>(torque_dim)));
+    outcome.torques.push_back(vectorOf(result.torque.data() + step * torque_dim, torque_dim));
     outcome.exploratory.push_back(result.exploratory[step] != 0);
   }
   outcome.solve_times = result.solve_time;
@@ -295,25 +291,18 @@ ddm_msgs::RunTrialResult RosDriver::runPolicy(const TrialRequest& request,
 /// Stores the true state at each image that was answered; in real time there are states in between.
 /// If the simulator has left since the trial began, this fails, because success would stay unknown.
 void RosDriver::takeGroundTruth(const std::vector<ros::Time>& stamps, TrialOutcome* outcome) {
-  waitFor(
-      [&] {
-        return std::all_of(stamps.begin(), stamps.end(), [this](const ros::Time& stamp) {
-          return ground_truth_.count(stamp) > 0;
-        });
-      },
-      [&] {
-        return "ground truth of the trial is incomplete, " +
-               describePublishers(ground_truth_sub_.getTopic());
-      });
+  const auto is_known = [this](const ros::Time& stamp) { return ground_truth_.count(stamp) > 0; };
+  waitFor([&] { return std::all_of(stamps.begin(), stamps.end(), is_known); },
+          [&] {
+            return "ground truth of the trial is incomplete, " +
+                   describePublishers(ground_truth_sub_.getTopic());
+          });
   for (const ros::Time& stamp : stamps) {
     const sensor_msgs::JointState& joints = ground_truth_[stamp];
-    const auto dim = static_cast<Eigen::Index>(joints.position.size());
-    const auto rate_dim = static_cast<Eigen::Index>(joints.velocity.size());
-    Eigen::VectorXd state(dim + rate_dim);
-    state.head(dim) = Eigen::Map<const Eigen::VectorXd>(joints.position.data(), dim);
-    state.tail(rate_dim) = Eigen::Map<const Eigen::VectorXd>(joints.velocity.data(), rate_dim);
+    std::vector<double> values = joints.position;
+    values.insert(values.end(), joints.velocity.begin(), joints.velocity.end());
     outcome->times.push_back((stamp - stamps.front()).toSec());
-    outcome->states.push_back(state);
+    outcome->states.push_back(vectorOf(values.data(), values.size()));
   }
 }
 
@@ -347,14 +336,13 @@ bool RosDriver::useModel(const std::string& path) {
 }
 
 std::string RosDriver::takeModel(const std::string& model_id) {
-  waitFor(
-      [&] {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        return model_ != nullptr && model_->id == model_id;
-      },
-      [&] {
-        return "model " + model_id + " did not come, " + describePublishers(model_sub_.getTopic());
-      });
+  const auto is_there = [&] {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return model_ != nullptr && model_->id == model_id;
+  };
+  waitFor(is_there, [&] {
+    return "model " + model_id + " did not come, " + describePublishers(model_sub_.getTopic());
+  });
   const std::lock_guard<std::mutex> lock(mutex_);
   return std::string(model_->data.begin(), model_->data.end());
 }

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <memory>
 
-#include "resumption.h"
+#include "start.h"
 
 namespace ddm {
 namespace {

@@ -36,7 +36,6 @@ Configuration readEachBlock(ParamReader* reader) {
   if (reader->has("robot")) all.robot = reader->read<RobotOptions>("robot");
   reader->requireValid();
   all.plant_info = makePlant(*all.plant)->info();
-  all.evaluation.complete(all.plant_info);
   return all;
 }
 
@@ -66,14 +65,9 @@ void requireConsistent(const Configuration& all) {
   require(all.mpc.time_budget <= (all.robot ? all.robot->dt : all.plant_info.dt),
           "mpc/time_budget must be at most " + owner + "/dt, when the next image comes",
           all.mpc.time_budget);
-  require(all.evaluation.settled_steps_strict <= all.evaluation.stepsWith(all.trial),
-          "evaluation/settled_steps_strict must be at most trial/num_steps, or "
-          "evaluation/num_steps where that is given",
-          all.evaluation.settled_steps_strict);
   require(num_steps * all.trial.episodes > model.pca_dim,
           "trial/num_steps times trial/episodes must be more than model/pca_dim: the first model "
-          "has one trial to learn "
-          "from",
+          "has one trial to learn from",
           num_steps * all.trial.episodes);
   require(num_steps > model.order + largestDelay(model, all.model.training),
           "trial/num_steps must be more than model/order and the largest delay together, "
@@ -103,7 +97,8 @@ YAML::Node toYaml(const Configuration& configuration) {
   if (!configuration.start.empty()) out["start"] = toYaml(configuration.start);
   out["trial"] = toYaml(configuration.trial);
   out["evaluation"] = toYaml(configuration.evaluation);
-  if (configuration.evaluation.num_steps == 0) out["evaluation"].remove("num_steps");
+  out["goal"]["error_unit"] = configuration.plant_info.error_unit;
+  out["goal"]["tolerance"] = valueToYaml(configuration.plant_info.tolerance);
   out["plant"] = configuration.plant->block();
   out["camera"] = toYaml(configuration.camera);
   out["sim"] = toYaml(configuration.sim);

@@ -12,38 +12,33 @@
 namespace ddm {
 namespace {
 
-/// Whether the last frames are all within the tolerance.
-/// @param errors  distance to the goal of each frame, in whatever unit
-Evaluation settled(const std::vector<double>& errors, double tolerance,
-                   const EvaluationOptions& options) {
-  if (static_cast<int>(errors.size()) < options.settled_steps_strict) {
-    throw std::invalid_argument("an evaluation needs at least " +
-                                std::to_string(options.settled_steps_strict) + " frames, got " +
-                                std::to_string(errors.size()));
-  }
+/// Whether the last images are all within the tolerance.
+/// @param errors  distance to the goal of each image, in whatever unit
+Evaluation settled(const std::vector<double>& errors, double tolerance) {
+  const auto num_images = static_cast<int>(errors.size());
   int num_settled = 0;
   for (auto error = errors.rbegin(); error != errors.rend() && *error <= tolerance; ++error) {
     ++num_settled;
   }
   Evaluation evaluation;
   evaluation.known = true;
-  evaluation.success = num_settled >= options.settled_steps;
-  evaluation.success_strict = num_settled >= options.settled_steps_strict;
+  evaluation.success = num_settled >= std::min(kSettledSteps, num_images);
+  evaluation.success_strict = num_settled >= std::min(kSettledStepsStrict, num_images);
   return evaluation;
 }
 
 /// @return value
-double requireFinite(double value, const std::string& what, const Plant& plant, std::size_t frame) {
+double requireFinite(double value, const std::string& what, const Plant& plant, std::size_t image) {
   if (std::isfinite(value)) return value;
-  throw std::range_error("plant " + plant.info().type + ": the " + what + " of frame " +
-                         std::to_string(frame) + " must be finite, got " + formatDouble(value) +
+  throw std::range_error("plant " + plant.info().type + ": the " + what + " of image " +
+                         std::to_string(image) + " must be finite, got " + formatDouble(value) +
                          ": correct the plant; the same command resumes with this evaluation");
 }
 
-/// Time steps between a frame and the next one; 1 after the last.
-int stepsAfter(std::size_t frame, const std::vector<double>& times, double dt) {
-  if (frame + 1 >= times.size()) return 1;
-  return std::max(1, static_cast<int>(std::lround((times[frame + 1] - times[frame]) / dt)));
+/// Time steps between an image and the next one; 1 after the last.
+int stepsAfter(std::size_t image, const std::vector<double>& times, double dt) {
+  if (image + 1 >= times.size()) return 1;
+  return std::max(1, static_cast<int>(std::lround((times[image + 1] - times[image]) / dt)));
 }
 
 /// @return as Evaluation::total_reward
@@ -64,14 +59,13 @@ std::optional<double> totalReward(const Plant& plant, const std::vector<Eigen::V
 }  // namespace
 
 Evaluation evaluate(const Plant& plant, const std::vector<Eigen::VectorXd>& states,
-                    const std::vector<Eigen::VectorXd>& torques, const EvaluationOptions& options,
-                    const std::vector<double>& times) {
+                    const std::vector<Eigen::VectorXd>& torques, const std::vector<double>& times) {
   if (states.empty()) return Evaluation();
   std::vector<double> errors;
   for (const Eigen::VectorXd& state : states) {
     errors.push_back(requireFinite(plant.goalError(state), "error", plant, errors.size()));
   }
-  Evaluation evaluation = settled(errors, options.tolerance, options);
+  Evaluation evaluation = settled(errors, plant.info().tolerance);
   evaluation.final_error = errors.back();
   evaluation.total_reward = totalReward(plant, states, torques, times);
   return evaluation;
@@ -80,7 +74,32 @@ Evaluation evaluate(const Plant& plant, const std::vector<Eigen::VectorXd>& stat
 Evaluation evaluateFeatures(const std::vector<double>& goal_distances,
                             const EvaluationOptions& options) {
   if (goal_distances.empty() || options.goal_distance == 0.0) return Evaluation();
-  return settled(goal_distances, options.goal_distance, options);
+  return settled(goal_distances, options.goal_distance);
+}
+
+TrialRequest requestFor(const Configuration& configuration, int trial, bool evaluation) {
+  TrialRequest request;
+  request.id.seed = static_cast<std::uint64_t>(configuration.experiment.seed);
+  request.id.trial = static_cast<std::uint32_t>(trial);
+  request.id.evaluation = evaluation;
+  const int of_plant = configuration.plant_info.evaluation_steps;
+  request.num_steps = evaluation && of_plant > 0 ? of_plant : configuration.trial.num_steps;
+  request.hold_steps = configuration.mpc.hold_steps;
+  return request;
+}
+
+TrialRow rowOf(const TrialId& id, const TrialOutcome& greedy, const EvaluationOptions& options,
+               Plant* plant) {
+  TrialRow row;
+  row.seed = static_cast<int>(id.seed);
+  row.trial = static_cast<int>(id.trial);
+  plant->setGoal(goalOf(*plant, id.seed, id.trial, id.evaluation));
+  row.evaluation = greedy.states.empty()
+                       ? evaluateFeatures(greedy.goal_distances, options)
+                       : evaluate(*plant, greedy.states, greedy.torques, greedy.times);
+  row.plan_ms_median = 1e3 * quantile(greedy.solve_times, 0.5);
+  row.plan_ms_p99 = 1e3 * quantile(greedy.solve_times, 0.99);
+  return row;
 }
 
 std::pair<double, double> wilsonInterval(int successes, int n) {

@@ -5,21 +5,25 @@
 #include <ddm_common/config_blocks.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ddm_robot/robot_options.h>
+#include <ddm_sim/plant_factory.h>
 #include <ros/package.h>
 
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
 #include <boost/filesystem.hpp>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 namespace ddm {
 namespace {
 
 namespace fs = boost::filesystem;
+namespace po = boost::program_options;
 
 using boost::algorithm::join;
 
@@ -54,21 +58,35 @@ YAML::Node namedConfigurations() {
   return readBlocks(packageFolder("ddm_launch") + "/config/named.yaml");
 }
 
-/// A configuration by its name, or the file of this path.
+/// The file of this path, or a configuration by its name, GROUP/NAME.
+/// @throws std::invalid_argument listing the names that exist, if there is neither
 Layer layerOf(const std::string& config) {
   if (fs::path(config).extension() == ".yaml" || fs::exists(config)) {
     return {config, readBlocks(config)};
   }
-  return {config, namedConfiguration(config)};
+  const YAML::Node all = namedConfigurations();
+  std::vector<std::string> known;
+  for (const auto& group : all) {
+    for (const auto& one : group.second) {
+      known.push_back(group.first.Scalar() + "/" + one.first.Scalar());
+      if (known.back() == config) return {config, one.second};
+    }
+  }
+  throw std::invalid_argument("unknown configuration '" + config +
+                              "': it is not a file, and there are " + join(known, ", "));
 }
 
-/// Where each option has its default and its explanation.
-std::vector<std::string> parameterReferences() {
-  return {packageFolder("ddm_sim") + "/config/sim.yaml",
-          packageFolder("ddm_model") + "/config/model.yaml",
-          packageFolder("ddm_mpc") + "/config/mpc.yaml",
-          packageFolder("ddm_mpc") + "/config/pilco.yaml",
-          packageFolder("ddm_launch") + "/config/experiment.yaml"};
+/// The parameter references, where each option has its default and its explanation.
+std::vector<Layer> defaults() {
+  std::vector<Layer> layers;
+  for (const auto& [package, name] : {std::pair("ddm_sim", "sim"),
+                                      {"ddm_model", "model"},
+                                      {"ddm_mpc", "mpc"},
+                                      {"ddm_mpc", "pilco"},
+                                      {"ddm_launch", "experiment"}}) {
+    layers.push_back(layerOf(packageFolder(package) + "/config/" + name + ".yaml"));
+  }
+  return layers;
 }
 
 /// BLOCK/KEY, if it is there and has this type.
@@ -80,40 +98,15 @@ std::optional<Value> valueAt(const YAML::Node& blocks, const std::string& block,
   return value;
 }
 
-/// Preset, plant or method: the last layer that names it decides.
-std::string chosen(const std::string& key, const std::vector<Layer>& layers) {
+/// Preset, plant or method: the last layer that names it decides. A plant's file is found from any
+/// folder.
+std::string chosen(const std::string& kind, const std::vector<Layer>& layers) {
   std::string name;
   for (const Layer& layer : layers) {
-    name = valueAt<std::string>(layer.blocks, "experiment", key).value_or(name);
+    name = valueAt<std::string>(layer.blocks, "experiment", kind).value_or(name);
   }
-  return name;
-}
-
-/// A plant's file is found from any folder.
-std::string chosenPlant(const std::vector<Layer>& layers) {
-  const std::string name = chosen("plant", layers);
-  return namesPlantFile(name) ? fs::absolute(name).lexically_normal().string() : name;
-}
-
-/// A saved configuration holds every value of its plant, preset and method, so another name for
-/// one of them would not change the values.
-/// @throws std::invalid_argument if the names differ
-void requireSaved(const std::string& kind, const std::string& name, const std::string& saved,
-                  const std::string& file) {
-  if (name == saved) return;
-  throw std::invalid_argument(file + " describes an experiment with the " + kind + " " + saved +
-                              ", not " + name + ": leave the " + kind +
-                              " out, or leave this file out and choose preset and values yourself");
-}
-
-/// A file that is given instead of another one has another checksum.
-void forgetChecksums(const YAML::Node& values, YAML::Node* blocks) {
-  if (hasKey(values, "start", "model") && hasKey(*blocks, "start", "model_id")) {
-    (*blocks)["start"].remove("model_id");
-  }
-  if (hasKey(values, "start", "bags") && hasKey(*blocks, "start", "bag_ids")) {
-    (*blocks)["start"].remove("bag_ids");
-  }
+  const bool of_file = kind == "plant" && namesPlantFile(name);
+  return of_file ? fs::absolute(name).lexically_normal().string() : name;
 }
 
 /// Whether the user, the preset, the plant or another layer above the defaults gives BLOCK/KEY.
@@ -126,44 +119,53 @@ void follow(const std::string& block, const std::string& key, const YAML::Node& 
   if (!values.IsDefined() || values.IsMap()) (*blocks)[block][key] = YAML::Clone(value);
 }
 
-/// A plant may know its motors where the YAML does not say all: how many they are, and in a model file
-/// their limits. Whoever reads the plant after this reports what is wrong with it.
-void askPlantForMotors(YAML::Node* blocks) {
-  const bool known = !ownerOfMotors(*blocks).empty() && !hasKey(*blocks, "plant", "model");
-  if ((*blocks)["robot"].IsDefined() || known) return;
-  ParamReader reader(*blocks, "");
-  std::shared_ptr<const PlantPlugin> plant;
-  try {
-    plant = readPlant(&reader);
-  } catch (const std::exception&) {
-    return;
+/// What a learner must know about its motors is written once: `max_torque` of the robot, without a
+/// robot of the plant, which a model file may hold.
+struct Motors {
+  YAML::Node limits;  ///< a number that holds for all motors, or one for each
+  int count = 1;
+};
+
+/// Empty where the robot or the plant does not say, or is wrong: its reader reports what is wrong.
+std::optional<Motors> motorsOf(const YAML::Node& blocks) {
+  if (blocks["robot"].IsDefined()) {
+    if (!hasKey(blocks, "robot", "max_torque")) return std::nullopt;
+    const YAML::Node limits = blocks["robot"]["max_torque"];
+    if (!limits.IsSequence()) return Motors{limits, 1};
+    if (limits.size() == 0) return std::nullopt;
+    return Motors{limits, static_cast<int>(limits.size())};
   }
-  if (!reader.problems().empty()) return;
-  const YAML::Node limits = plant->block()["max_torque"];
-  if (limits.IsDefined()) follow("plant", "max_torque", limits, blocks);
+  try {
+    ParamReader reader(blocks);
+    const std::shared_ptr<const PlantPlugin> plant = readPlant(&reader);
+    reader.requireValid();
+    const YAML::Node block = plant->block();
+    const YAML::Node limits = block["max_torque"];
+    if (!limits.IsDefined()) return std::nullopt;
+    return Motors{limits, limits.IsSequence() ? static_cast<int>(limits.size())
+                                              : makePlant(*plant)->info().torqueDim()};
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
 }
 
-/// What a learner must know about its motors is written once: `max_torque` of the block `robot`,
-/// without a robot of the block `plant`. A list has one entry per motor.
 /// @throws std::invalid_argument if another number of motors is given
 void shareMotors(const Given& given, YAML::Node* blocks) {
-  const std::string owner = ownerOfMotors(*blocks);
-  if (owner.empty()) return;
-  const YAML::Node limits = (*blocks)[owner]["max_torque"];
+  const std::optional<Motors> motors = motorsOf(*blocks);
+  if (!motors) return;
   for (const std::string learner : {"model", "mpc"}) {
-    if (!given(learner, "max_torque")) follow(learner, "max_torque", limits, blocks);
+    if (!given(learner, "max_torque")) follow(learner, "max_torque", motors->limits, blocks);
   }
-  if (owner == "plant" && !limits.IsSequence()) return;  // one number holds for all its motors
-  const int num_motors = limits.IsSequence() ? static_cast<int>(limits.size()) : 1;
   if (!given("controller", "torque_dim")) {
-    follow("controller", "torque_dim", valueToYaml(num_motors), blocks);
+    follow("controller", "torque_dim", valueToYaml(motors->count), blocks);
     return;
   }
   const auto torque_dim = valueAt<int>(*blocks, "controller", "torque_dim");
-  if (!torque_dim || torque_dim == num_motors) return;  // the reader refuses anything else
-  throw std::invalid_argument("controller/torque_dim must be the number of motors in " + owner +
-                              "/max_torque, " + std::to_string(num_motors) + ", got " +
-                              std::to_string(*torque_dim) + ": leave it out");
+  if (!torque_dim || torque_dim == motors->count) return;  // the reader refuses anything else
+  throw std::invalid_argument(
+      "controller/torque_dim must be the number of motors of robot or "
+      "plant, " +
+      std::to_string(motors->count) + ", got " + std::to_string(*torque_dim) + ": leave it out");
 }
 
 /// The controller's time step is that of what it controls. In real time a plan has to be there
@@ -191,8 +193,7 @@ void requireOneWayToTheMotors(const YAML::Node& blocks) {
 }  // namespace
 
 ResolvedConfiguration resolve(const Arguments& arguments) {
-  std::vector<Layer> layers;
-  for (const std::string& file : parameterReferences()) layers.push_back(layerOf(file));
+  std::vector<Layer> layers = defaults();
   for (const std::string& config : arguments.defaults) layers.push_back(layerOf(config));
   const auto num_defaults = static_cast<std::ptrdiff_t>(layers.size());
   std::vector<Layer> configs;
@@ -202,24 +203,28 @@ ResolvedConfiguration resolve(const Arguments& arguments) {
   std::vector<Layer> naming = layers;
   naming.insert(naming.end(), configs.begin(), configs.end());
   naming.push_back({"", values});
-  const std::string preset = chosen("preset", naming);
-  const std::string plant = chosenPlant(naming);
-  const std::string method = chosen("method", naming);
+  std::map<std::string, std::string> names;
+  for (const char* kind : {"preset", "plant", "method"}) names[kind] = chosen(kind, naming);
   const auto saved = std::find_if(configs.begin(), configs.end(), [](const Layer& config) {
     return config.blocks["version"].IsDefined();
   });
   if (saved != configs.end()) {
-    requireSaved("preset", preset, chosen("preset", {*saved}), saved->file);
-    requireSaved("plant", plant, chosenPlant({*saved}), saved->file);
-    requireSaved("method", method, chosen("method", {*saved}), saved->file);
+    // It holds every value of its preset, plant and method: another name would change no value.
+    for (const auto& [kind, name] : names) {
+      const std::string saved_name = chosen(kind, {*saved});
+      if (name == saved_name) continue;
+      throw std::invalid_argument(saved->file + " describes an experiment with the " + kind + " " +
+                                  saved_name + ", not " + name + ": leave the " + kind +
+                                  " out, or leave this file out and choose preset and values "
+                                  "yourself");
+    }
     layers.push_back(*saved);
   } else {
-    for (const std::string& file : {presetFile(preset), plantFile(plant)}) {
-      layers.push_back(layerOf(file));
-    }
+    layers.push_back(layerOf(presetFile(names["preset"])));
+    layers.push_back(layerOf(plantFile(names["plant"])));
     const std::vector<std::string> methods = namesInGroup("method");
-    if (std::count(methods.begin(), methods.end(), method) > 0) {
-      layers.push_back(layerOf("method/" + method));
+    if (std::count(methods.begin(), methods.end(), names["method"]) > 0) {
+      layers.push_back(layerOf("method/" + names["method"]));
     }
   }
   for (auto config = configs.begin(); config != configs.end(); ++config) {
@@ -231,39 +236,20 @@ ResolvedConfiguration resolve(const Arguments& arguments) {
     overlay(layer.blocks, &resolved.blocks);
     resolved.sources += (resolved.sources.empty() ? "" : ", ") + layer.file;
   }
-  for (const char* made_by : {"version", "renderer"}) resolved.blocks.remove(made_by);
-  forgetChecksums(values, &resolved.blocks);
+  if (values["start"].IsDefined() && resolved.blocks["start"].IsMap()) {
+    resolved.blocks["start"].remove("checksums");  // of other files
+  }
   overlay(values, &resolved.blocks);
-  follow("experiment", "plant", YAML::Node(plant), &resolved.blocks);
+  follow("experiment", "plant", YAML::Node(names["plant"]), &resolved.blocks);
   layers.push_back({"", values});
   const Given given = [&](const std::string& block, const std::string& key) {
     return std::any_of(layers.begin() + num_defaults, layers.end(),
                        [&](const Layer& layer) { return hasKey(layer.blocks, block, key); });
   };
-  askPlantForMotors(&resolved.blocks);
   shareMotors(given, &resolved.blocks);
   shareTimeStep(given, &resolved.blocks);
   requireOneWayToTheMotors(resolved.blocks);
   return resolved;
-}
-
-YAML::Node namedConfiguration(const std::string& name) {
-  const YAML::Node all = namedConfigurations();
-  const std::string::size_type slash = name.find('/');
-  const std::string group = name.substr(0, slash);
-  if (slash != std::string::npos && hasKey(all, group, name.substr(slash + 1))) {
-    return all[group][name.substr(slash + 1)];
-  }
-  std::vector<std::string> known;
-  for (const auto& entry : all) {
-    for (const std::string& one : namesInGroup(entry.first.Scalar())) {
-      if (!all[group].IsDefined() || group == entry.first.Scalar()) {
-        known.push_back(entry.first.Scalar() + "/" + one);
-      }
-    }
-  }
-  throw std::invalid_argument("unknown configuration '" + name +
-                              "': it is not a file, and there are " + join(known, ", "));
 }
 
 std::vector<std::string> namesInGroup(const std::string& group) {
@@ -272,46 +258,41 @@ std::vector<std::string> namesInGroup(const std::string& group) {
   return names;
 }
 
-boost::program_options::options_description configurationOptions(const std::string& about,
-                                                                 Arguments* arguments) {
-  boost::program_options::options_description options(about + "\n\noptions");
+po::options_description configurationOptions(const std::string& about, Arguments* arguments) {
+  using Texts = std::vector<std::string>;
+  po::options_description options(about + "\n\noptions");
   auto add = options.add_options();
+  const auto add_first = [arguments](const Texts& configs) {
+    arguments->configs.insert(arguments->configs.begin(), configs.begin(), configs.end());
+  };
+  const auto add_nuisances = [add_first](Texts names) {
+    for (std::string& name : names) name = "nuisance/" + name;
+    add_first(names);
+  };
+  const auto repeat = [add_first](const std::string& run) { add_first({run + "/config.yaml"}); };
+  const auto set_all = [arguments](const Texts& all) {
+    for (const std::string& one : all) setValue(one, &arguments->values);
+  };
   add("preset", given<std::string>("experiment/preset", arguments),
       "name in ddm_launch/config/presets; otherwise that of the files, or paper");
   add("plant", given<std::string>("experiment/plant", arguments),
       "name in ddm_sim/config; PACKAGE/NAME: in config of another package; otherwise that of the "
       "files, or pendulum");
-  add("config", boost::program_options::value(&arguments->configs)->composing(),
+  add("config", po::value(&arguments->configs)->composing(),
       "YAML file, or GROUP/NAME of ddm_launch/config/named.yaml; repeatable, later ones win");
-  const auto first = [arguments](const std::vector<std::string>& configs) {
-    arguments->configs.insert(arguments->configs.begin(), configs.begin(), configs.end());
-  };
-  const auto add_nuisances = [first](std::vector<std::string> names) {
-    for (std::string& name : names) name = "nuisance/" + name;
-    first(names);
-  };
-  add("nuisance",
-      boost::program_options::value<std::vector<std::string>>()->composing()->notifier(
-          add_nuisances),
+  add("nuisance", po::value<Texts>()->composing()->notifier(add_nuisances),
       ("a disturbance of camera or scene, the same as --config nuisance/NAME before others: " +
        join(namesInGroup("nuisance"), ", ") + "; repeatable")
           .c_str());
-  add("repeat",
-      boost::program_options::value<std::string>()->notifier(
-          [first](const std::string& run) { first({run + "/config.yaml"}); }),
+  add("repeat", po::value<std::string>()->notifier(repeat),
       "folder of an experiment whose configuration is repeated; later options win");
-  const auto set_all = [arguments](const std::vector<std::string>& all) {
-    for (const std::string& one : all) setValue(one, &arguments->values);
-  };
-  add("set",
-      boost::program_options::value<std::vector<std::string>>()->composing()->notifier(set_all),
+  add("set", po::value<Texts>()->composing()->notifier(set_all),
       "BLOCK/KEY=VALUE, wins over all files; a list is [A, B]; repeatable");
   return options;
 }
 
-boost::program_options::options_description commonOptions(const std::string& about,
-                                                          Arguments* arguments) {
-  boost::program_options::options_description options = configurationOptions(about, arguments);
+po::options_description commonOptions(const std::string& about, Arguments* arguments) {
+  po::options_description options = configurationOptions(about, arguments);
   auto add = options.add_options();
   add("seed", given<int>("experiment/seed", arguments),
       "fixes every random draw; otherwise that of the files, or 0");

@@ -53,11 +53,6 @@ struct ResolvedConfiguration {
 /// @throws std::runtime_error or std::invalid_argument as readBlocks(), for a file
 ResolvedConfiguration resolve(const Arguments& arguments);
 
-/// Blocks of a configuration in ddm_launch/config/named.yaml.
-/// @param name  GROUP/NAME
-/// @throws std::invalid_argument listing those that exist, if there is no such configuration
-YAML::Node namedConfiguration(const std::string& name);
-
 /// The names in a group of named configurations; empty if there is no such group.
 std::vector<std::string> namesInGroup(const std::string& group);
 

@@ -2,26 +2,82 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run_folder.h"
 
+#include <ddm_common/config_blocks.h>
 #include <ddm_common/param_value.h>
 #include <ddm_common/plain_file.h>
 #include <ddm_common/yaml_text.h>
+#include <ddm_model/model_file.h>
+#include <ddm_plant_plugin/plant_config.h>
+#include <fcntl.h>
+#include <sys/stat.h>
 
+#include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
 #include <boost/format.hpp>
+#include <map>
+#include <set>
 #include <stdexcept>
+#include <utility>
 
-#include "csv_text.h"
-#include "run_csv.h"
-#include "trials_csv.h"
+#include "tables.h"
+#include "version.h"
 
 namespace ddm {
 namespace {
 
 namespace fs = boost::filesystem;
+using Keys = std::set<std::string>;
 
 constexpr char kRows[] = "trials.csv";
 constexpr char kChecksums[] = ".trials.crc32";
 constexpr char kTraining[] = "training.yaml";
+constexpr char kSummary[] = "summary.yaml";
+constexpr char kConfiguration[] = "config.yaml";
+
+/// In these, two runs of one experiment may differ.
+const Keys kMayDiffer = {"experiment/trials", "experiment/runs", "experiment/timeout",
+                         "sim/watchdog", "evaluation/record"};
+
+/// These a user chooses by looking at the robot, which takes more than one launch. They may change
+/// until the first trial is finished.
+const Keys kChosenOnTheRobot = {"robot/crop_x",      "robot/crop_y",    "robot/crop_width",
+                                "robot/crop_height", "robot/goal_file", "evaluation/goal_distance"};
+
+/// The differences with which an experiment must not go on, a line each; empty: none.
+/// @param there  blocks by name; anything that is not a block is left out
+/// @param here   likewise
+std::string differencesOf(const YAML::Node& there, const YAML::Node& here, bool trial_finished) {
+  std::map<std::string, std::pair<std::string, std::string>> values;  // as YAML, by "block/key"
+  const auto take = [&values](const YAML::Node& blocks, auto side) {
+    for (const auto& block : blocks) {
+      if (!block.second.IsMap()) continue;
+      for (const auto& entry : block.second) {
+        values[block.first.Scalar() + "/" + entry.first.Scalar()].*side = YAML::Dump(entry.second);
+      }
+    }
+  };
+  using Pair = std::pair<std::string, std::string>;
+  take(there, &Pair::first);
+  take(here, &Pair::second);
+  const bool robot = there["robot"].IsDefined() && here["robot"].IsDefined();
+  const auto words = [](const std::string& value) { return value.empty() ? "nothing" : value; };
+  std::string differences;
+  for (const auto& [key, value] : values) {
+    if (kMayDiffer.count(key) > 0 || value.first == value.second) continue;
+    // A plant's file may have moved, or its path be relative: what is in it is compared.
+    const bool of_files = namesPlantFile(value.first) && namesPlantFile(value.second);
+    if (key == "experiment/plant" && of_files) continue;
+    const bool chosen = robot && kChosenOnTheRobot.count(key) > 0;
+    if (chosen && !trial_finished) continue;
+    differences += "\n - " + key + ": " + words(value.first) + " there, " + words(value.second) +
+                   " here" +
+                   (key == "plant/model_digest"
+                        ? ": the model file, or a file that it names, has changed since"
+                        : "") +
+                   (chosen ? ", fixed since the first trial was finished" : "");
+  }
+  return differences;
+}
 
 /// Gives a file of an earlier try another name: "trial.bag" is "trial.1.bag" then, or
 /// "trial.2.bag".
@@ -38,6 +94,14 @@ std::string keep(const std::string& stem, const std::string& ending) {
 
 }  // namespace
 
+std::string codeVersion() {
+#if defined(__x86_64__) && !defined(__AVX2__)
+  return DDM_CODE_VERSION " without AVX2";  // it rounds differently
+#else
+  return DDM_CODE_VERSION;
+#endif
+}
+
 std::string runName(const RunId& run) {
   std::string name =
       boost::str(boost::format("%s_%03d") % (run.evaluation ? "evaluation" : "trial") % run.trial);
@@ -45,26 +109,46 @@ std::string runName(const RunId& run) {
   return name;
 }
 
-namespace {
-
-/// The configuration, with the driver that draws the images where their pixels depend on it.
-YAML::Node withRenderer(const Configuration& configuration) {
-  YAML::Node blocks = toYaml(configuration);
+RunFolder::RunFolder(const Configuration& configuration)
+    : configuration_(configuration),
+      path_(configuration.experiment.runs),
+      blocks_(toYaml(configuration)) {
+  // The driver that draws the images, where their pixels depend on it.
   const std::string renderer = configuration.robot ? "" : configuration.plant->renderer();
-  if (!renderer.empty()) blocks["renderer"] = renderer;
-  return blocks;
+  if (!renderer.empty()) blocks_["renderer"] = renderer;
+  if (path_.empty()) throw std::runtime_error("no folder was given for the results");
+  if (!fs::exists(path_)) return;
+  lock_ = std::make_unique<FolderLock>(path_);
+  if (fs::exists(at(kConfiguration))) {
+    compareWith(at(kConfiguration));
+  } else if (fs::exists(at(kRows))) {
+    throw std::runtime_error(path_ + " holds a trials.csv but no config.yaml: use another folder");
+  }
+  if (fs::exists(at(kRows))) readRows(at(kRows));
 }
 
-}  // namespace
-
-RunFolder::RunFolder(const Configuration& configuration)
-    : ResultsFolder(configuration.experiment.runs, withRenderer(configuration)),
-      configuration_(configuration) {
-  readRows(path() + "/" + kRows);
+void RunFolder::compareWith(const std::string& file) {
+  YAML::Node there;
+  try {
+    there = readBlocks(file);
+  } catch (const std::exception& e) {
+    throw std::runtime_error(file + " cannot be read (" + e.what() + "): use another folder");
+  }
+  const std::string differences = differencesOf(there, blocks_, fs::exists(at(kRows)));
+  if (!differences.empty()) {
+    throw std::runtime_error("the folder " + path_ +
+                             " holds another experiment, use another folder:" + differences);
+  }
+  recordings_fit_ = YAML::Dump(there["robot"]) == YAML::Dump(blocks_["robot"]);
+  version_ = there["version"].IsDefined() ? there["version"].Scalar() : "?";
+  if (version_ != codeVersion()) {
+    warnings_.push_back("the folder " + path_ + " was begun by version " + version_ +
+                        " of the code, this is " + codeVersion() +
+                        ": its results may not be comparable");
+  }
 }
 
 void RunFolder::readRows(const std::string& file) {
-  if (!fs::exists(file)) return;
   const std::string text = readFile(file);
   rows_ = parseTrialsCsv(text, file);
   for (size_t i = 0; i < rows_.size(); ++i) {
@@ -81,19 +165,23 @@ void RunFolder::readRows(const std::string& file) {
                                "put it back, or use another folder");
     }
   }
-  const std::string checksums = path() + "/" + kChecksums;
+  const std::string checksums = at(kChecksums);
   if (!fs::exists(checksums)) {
-    warn(file + " has no checksums beside it (" + kChecksums + "): it is taken as it is");
-  } else if (!isUnchanged(text, rows_.size(), readFile(checksums))) {
-    throw std::runtime_error(
-        file + " is not as it was written: it does not match its checksum in " + checksums +
-        ". Put both back, or use another folder; if you have changed the "
-        "table yourself, remove the checksums");
+    warnings_.push_back(file + " has no checksums beside it (.trials.crc32): it is not checked");
+    return;
   }
+  std::vector<std::string> lines;
+  boost::split(lines, readFile(checksums), boost::is_any_of("\n"));
+  lines.resize(rows_.size());
+  if (rows_.empty() || lines.back() == checksum(text)) return;
+  throw std::runtime_error(file + " is not as it was written: it does not match its checksum in " +
+                           checksums +
+                           ". Put both back, or use another folder; if you have changed the "
+                           "table yourself, remove the checksums");
 }
 
 std::string RunFolder::bagPath(int trial, int episode) const {
-  return path() + "/" + runName({trial, /*evaluation=*/false, episode}) + "/trial.bag";
+  return at(runName({trial, /*evaluation=*/false, episode}) + "/trial.bag");
 }
 
 std::vector<std::string> RunFolder::bagsUpTo(int trial) const {
@@ -107,55 +195,50 @@ std::vector<std::string> RunFolder::bagsUpTo(int trial) const {
 }
 
 bool RunFolder::isRecorded(const RunId& run) const {
-  const std::string folder = path() + "/" + runName(run);
-  if (!recordingsFit() || !fs::exists(folder + "/trial.bag")) return false;
+  const std::string folder = at(runName(run));
+  if (!recordings_fit_ || !fs::exists(folder + "/trial.bag")) return false;
   // Written after the bag. Lock-step gives the same torques again; in real time the bag has to do.
   const bool repeatable = configuration_.sim.lockstep && !configuration_.robot;
   return !repeatable || fs::exists(folder + "/torques.csv");
 }
 
-std::string RunFolder::trainingPath(int trial) const { return path() + "/" + runName({trial}); }
+void RunFolder::begin() {
+  if (begun_) return;
+  if (lock_ == nullptr) {
+    makeFolder("");
+    lock_ = std::make_unique<FolderLock>(path_);
+    if (fs::exists(at(kConfiguration))) {
+      throw std::runtime_error("another experiment was begun in the folder " + path_ +
+                               " meanwhile: use another folder");
+    }
+  }
+  removeUnfinished(path_);
+  YAML::Node versioned(YAML::NodeType::Map);
+  versioned["version"] = version_;
+  for (const auto& block : blocks_) versioned[block.first] = block.second;
+  fs::remove(at(kSummary));
+  writeFileAtomically(at(kConfiguration), YAML::Dump(versioned) + "\n");
+  begun_ = true;
+}
+
+void RunFolder::makeFolder(const std::string& name) {
+  const std::string folder = at(name);
+  boost::system::error_code error;
+  fs::create_directories(folder, error);
+  if (fs::is_directory(folder)) return;
+  throw std::runtime_error("cannot make the folder " + folder + ": " + error.message());
+}
 
 std::string RunFolder::beginRun(const RunId& run, std::vector<std::string>* kept) {
-  const std::string folder = runName(run);
-  makeFolder(folder);
-  const std::string stem = path() + "/" + folder + "/trial";
+  begin();
+  makeFolder(runName(run));
+  const std::string stem = at(runName(run)) + "/trial";
   for (const char* ending : {".bag", ".bag.active"}) {
     const std::string kept_as = keep(stem, ending);
     if (!kept_as.empty() && kept != nullptr) kept->push_back(kept_as);
   }
-  if (!run.evaluation) fs::remove(trainingPath(run.trial) + "/" + kTraining);
+  if (!run.evaluation) fs::remove(at(runName({run.trial}) + "/" + kTraining));
   return stem + ".bag";
-}
-
-void RunFolder::writeTraining(int trial, const TrainingOutcome& outcome) {
-  for (const auto& file : outcome.files) {
-    write(runName({trial}) + "/" + file.first, file.second);
-  }
-  YAML::Node training(YAML::NodeType::Map);
-  training["frames"] = outcome.frames;
-  if (outcome.v_r) training["v_r"] = valueToYaml(*outcome.v_r);
-  if (outcome.v_p) training["v_p"] = valueToYaml(*outcome.v_p);
-  training["train_s"] = valueToYaml(outcome.seconds);
-  training["train_evaluations"] = outcome.evaluations;
-  write(runName({trial}) + "/" + kTraining, YAML::Dump(training) + "\n");
-}
-
-std::optional<TrainingOutcome> RunFolder::savedTraining(int trial) const {
-  const std::string file = trainingPath(trial) + "/" + kTraining;
-  if (!fs::exists(file)) return std::nullopt;
-  try {
-    const YAML::Node training = parseYaml(readFile(file), file);
-    TrainingOutcome outcome;
-    outcome.frames = training["frames"].as<std::uint32_t>();
-    if (training["v_r"].IsDefined()) outcome.v_r = training["v_r"].as<double>();
-    if (training["v_p"].IsDefined()) outcome.v_p = training["v_p"].as<double>();
-    outcome.seconds = training["train_s"].as<double>();
-    outcome.evaluations = training["train_evaluations"].as<std::uint32_t>();
-    return outcome;
-  } catch (const std::exception&) {  // damaged: a training on the bags gives it again
-    return std::nullopt;
-  }
 }
 
 void RunFolder::writeRun(const RunId& run, const TrialOutcome& outcome) {
@@ -175,10 +258,44 @@ void RunFolder::writeRun(const RunId& run, const TrialOutcome& outcome) {
         formatTorquesCsv({outcome.torques, outcome.exploratory}, torqueNames(configuration_)));
 }
 
+void RunFolder::writeTraining(int trial, const TrainingOutcome& outcome) {
+  for (const auto& file : outcome.files) write(runName({trial}) + "/" + file.first, file.second);
+  YAML::Node training(YAML::NodeType::Map);
+  training["frames"] = outcome.frames;
+  if (outcome.v_r) training["v_r"] = valueToYaml(*outcome.v_r);
+  if (outcome.v_p) training["v_p"] = valueToYaml(*outcome.v_p);
+  training["train_s"] = valueToYaml(outcome.seconds);
+  training["train_evaluations"] = outcome.evaluations;
+  write(runName({trial}) + "/" + kTraining, YAML::Dump(training) + "\n");
+}
+
+std::optional<TrainingOutcome> RunFolder::savedTraining(int trial) const {
+  const std::string file = at(runName({trial}) + "/" + kTraining);
+  if (!fs::exists(file)) return std::nullopt;
+  try {
+    const YAML::Node training = parseYaml(readFile(file), file);
+    TrainingOutcome outcome;
+    outcome.frames = training["frames"].as<std::uint32_t>();
+    if (training["v_r"].IsDefined()) outcome.v_r = training["v_r"].as<double>();
+    if (training["v_p"].IsDefined()) outcome.v_p = training["v_p"].as<double>();
+    outcome.seconds = training["train_s"].as<double>();
+    outcome.evaluations = training["train_evaluations"].as<std::uint32_t>();
+    return outcome;
+  } catch (const std::exception&) {  // damaged: a training on the bags gives it again
+    return std::nullopt;
+  }
+}
+
 void RunFolder::finishTrial(const TrialRow& row) {
   rows_.push_back(row);
   write(kChecksums, formatTrialsChecksums(rows_));  // first, see formatTrialsChecksums()
   write(kRows, formatTrialsCsv(rows_));
+}
+
+void RunFolder::write(const std::string& name, const std::string& content) {
+  begin();
+  makeFolder(fs::path(name).parent_path().string());
+  writeFileAtomically(at(name), content);
 }
 
 void RunFolder::writeSummary(double wall_s) {
@@ -205,6 +322,26 @@ void RunFolder::writeSummary(double wall_s) {
   summary["train_s"] = valueToYaml(train_s);
   summary["wall_s"] = valueToYaml(wall_s);
   finish(summary);
+}
+
+void RunFolder::finish(const YAML::Node& summary) {
+  YAML::Node all(YAML::NodeType::Map);
+  all["finished"] = true;
+  for (const auto& entry : summary) all[entry.first] = entry.second;
+  all["version"] = codeVersion();
+  write(kSummary, YAML::Dump(all) + "\n");
+}
+
+bool RunFolder::confirmSummary() const {
+  const std::string file = at(kSummary);
+  if (!fs::exists(file)) return false;
+  try {
+    if (!YAML::Load(readFile(file))["finished"].as<bool>(false)) return false;
+  } catch (const YAML::Exception&) {
+    return false;
+  }
+  ::utimensat(AT_FDCWD, file.c_str(), nullptr, 0);
+  return true;
 }
 
 }  // namespace ddm

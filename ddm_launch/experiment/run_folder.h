@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
+#include <ddm_common/folder_lock.h>
+#include <yaml-cpp/yaml.h>
+
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,26 +13,13 @@
 #include "configuration.h"
 #include "driver.h"
 #include "evaluation.h"
-#include "results_folder.h"
 
 namespace ddm {
 
-/// One row of trials.csv: the model trained on `frames` frames and its greedy evaluation.
-struct TrialRow {
-  int seed = 0;
-  int trial = 0;
-  std::uint32_t frames = 0;
-  Evaluation evaluation;
-  std::optional<double> v_r;  ///< empty: the method has none
-  std::optional<double> v_p;
-  double train_s = 0.0;
-  std::uint32_t train_evaluations = 0;
-  double plan_ms_median = 0.0;
-  double plan_ms_p99 = 0.0;
-  std::string version = "?";  ///< of the code that produced the row; "?": not known
-};
+/// Version of the package, commit, and instruction set if it is not the usual one: "1.0.0 (1a2b3c4)".
+std::string codeVersion();
 
-/// One run of the plant from a start.
+/// One run of the plant from an initial state.
 struct RunId {
   int trial = 0;
   bool evaluation = false;  ///< the greedy run after the trial
@@ -40,6 +30,9 @@ struct RunId {
 /// "trial_007/episode_001" of the second episode.
 std::string runName(const RunId& run);
 
+/// One configuration, one process at a time. All files appear under their names only when they are
+/// complete.
+///
 ///   config.yaml                          effective configuration, version of the code that began
 ///   trials.csv                           one row per finished trial
 ///   .trials.crc32                        its checksums
@@ -50,14 +43,19 @@ std::string runName(const RunId& run);
 ///   trial_NNN/episode_EEE/               the same of its second, third, ... episode, where it has them
 ///   trial_NNN/trial.K.bag[.active]       of the K-th try that was not finished
 ///   summary.yaml                         written last: the verdict
-class RunFolder : public ResultsFolder {
+class RunFolder {
  public:
-  /// Looks at the folder, which need not exist, and changes nothing: the first that is written
-  /// makes it. If it is there, no other process gets it while this object lives.
+  /// Looks at the folder, which need not exist, and changes nothing. If the folder is there, it is
+  /// locked while this object lives, by the file .lock.
   /// @throws std::runtime_error if it is held by another process, or holds another experiment (the
   ///         keys that differ are named) or files that make no sense
   explicit RunFolder(const Configuration& configuration);
+  RunFolder(const RunFolder&) = delete;
+  RunFolder& operator=(const RunFolder&) = delete;
 
+  const std::string& path() const { return path_; }
+  /// Things a user should know about a folder that is used again.
+  const std::vector<std::string>& warnings() const { return warnings_; }
   /// Rows of the trials finished so far.
   const std::vector<TrialRow>& rows() const { return rows_; }
 
@@ -67,9 +65,15 @@ class RunFolder : public ResultsFolder {
   /// Whether an earlier call recorded this run completely, so that it is not to be repeated.
   bool isRecorded(const RunId& run) const;
   /// Folder where a training leaves its files.
-  std::string trainingPath(int trial) const;
+  std::string trainingPath(int trial) const { return at(runName({trial})); }
   /// Its model, if it can be saved.
   std::string modelPath(int trial) const { return trainingPath(trial) + "/model.ddm"; }
+
+  /// Makes the folder, keeps the configuration with the version that began, and takes back an
+  /// earlier summary. Called by all that writes: before the first result, and no sooner, since a
+  /// command that is refused must leave everything as it is.
+  /// @throws std::runtime_error with path and reason, also if another process has begun meanwhile
+  void begin();
   /// Makes the folder of a run of a trial that is to be recorded. Bags of an earlier try, complete
   /// or not, are kept under other names: they may be all that is left of it.
   /// @param kept  (optional) out: their new names are added
@@ -82,12 +86,35 @@ class RunFolder : public ResultsFolder {
   std::optional<TrainingOutcome> savedTraining(int trial) const;
   /// Ends a trial: from here on it is never run again.
   void finishTrial(const TrialRow& row);
+
+  /// @param name  of a file in this folder, may be in a folder within, which is made
+  /// @throws std::runtime_error with path and reason
+  void write(const std::string& name, const std::string& content);
   void writeSummary(double wall_s);
+  /// Writes summary.yaml, which begins with `finished: true` and ends with the version.
+  void finish(const YAML::Node& summary);
+  /// Whether there is a summary.yaml that says so. If there is, sets its time to now and changes
+  /// nothing else, by which its caller can tell that a call found everything finished.
+  bool confirmSummary() const;
 
  private:
+  std::string at(const std::string& name) const {
+    return name.empty() ? path_ : path_ + "/" + name;
+  }
+  void compareWith(const std::string& file);
   void readRows(const std::string& file);
+  void makeFolder(const std::string& name);
 
   Configuration configuration_;
+  std::string path_;
+  YAML::Node blocks_;                       // of the configuration, and what draws its images
+  std::string version_ = codeVersion();     // of the code that began
+  std::unique_ptr<const FolderLock> lock_;  // null: the folder is not there yet
+  bool begun_ = false;
+  // False if crop or goal of the robot have been chosen anew since config.yaml was written: images
+  // recorded before do not go with those to come.
+  bool recordings_fit_ = true;
+  std::vector<std::string> warnings_;
   std::vector<TrialRow> rows_;
 };
 

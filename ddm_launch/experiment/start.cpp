@@ -1,13 +1,15 @@
-// What an experiment starts from instead of nothing: a saved model, and bags.
+// What an experiment begins with: a saved model, bags, and what an earlier call has left.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "start.h"
 
+#include <ddm_bag_io/bag_cache.h>
 #include <ddm_bag_io/bag_reader.h>
 #include <ddm_common/plain_file.h>
 #include <ddm_model/model_file.h>
 #include <ddm_mpc/controller.h>
 #include <ddm_sim/plant_factory.h>
 
+#include <algorithm>
 #include <boost/filesystem.hpp>
 #include <cmath>
 #include <iostream>
@@ -19,15 +21,15 @@ namespace {
 
 constexpr double kRateTolerance = 0.1;  // of dt
 
-/// Makes a path absolute and fills its id in, or compares it with the one that is there.
-void identify(std::string* path, std::string* id) {
+/// Makes a path absolute and fills its checksum in, or compares it with the one that is there.
+void identify(std::string* path, std::string* checksum) {
   *path = boost::filesystem::absolute(*path).lexically_normal().string();
-  const std::string here = "crc32-" + checksum(readFile(*path));  // no YAML takes it for a number
-  if (!id->empty() && *id != here) {
-    throw std::invalid_argument(*path + " has changed: its id was " + *id + ", it is " + here +
-                                " now; put it back, or start another experiment");
+  const std::string here = "crc32-" + ddm::checksum(readFile(*path));  // no number for YAML
+  if (!checksum->empty() && *checksum != here) {
+    throw std::invalid_argument(*path + " has changed: its checksum was " + *checksum + ", it is " +
+                                here + " now; put it back, or start another experiment");
   }
-  *id = here;
+  *checksum = here;
 }
 
 /// A bag must have been recorded on such a plant or robot, whose images come at the model's size.
@@ -58,6 +60,35 @@ void requireFits(const std::string& path, const Configuration& configuration, co
   for (const std::string& note : bag.notes) {
     std::cerr << "warning: bag " << path << ": " << note << "\n";
   }
+}
+
+std::string firstTrial(const StartOptions& start) {
+  if (start.empty()) return "a random one";
+  return "one that starts from " + std::to_string(start.bags.size()) + " bag(s) and " +
+         (start.model.empty() ? "the model trained on them" : "model " + start.model);
+}
+
+/// The number of episodes of this trial that an earlier call has recorded completely.
+/// @throws std::runtime_error if a bag of this trial or of one before it cannot be read
+int requireReadableBags(int trial, const Configuration& configuration, const RunFolder& folder) {
+  const ModelConfig& learner = configuration.model;
+  BagCache cache(learner.image.size, learner.data_set);
+  std::vector<std::string> bags = folder.bagsUpTo(trial - 1);
+  if (trial > 0) cache.read(bags);
+  const size_t num_before = bags.size();
+  for (int episode = 0; episode < configuration.trial.episodes; ++episode) {
+    if (!folder.isRecorded({trial, /*evaluation=*/false, episode})) continue;
+    bags.push_back(folder.bagPath(trial, episode));
+  }
+  if (bags.size() == num_before) return 0;
+  try {
+    cache.read(bags);
+  } catch (const std::exception& e) {
+    throw std::runtime_error(std::string(e.what()) + "; this bag is the recording of trial " +
+                             std::to_string(trial) + ", which is not finished: repair it, or " +
+                             "move it away and the trial is run again");
+  }
+  return static_cast<int>(bags.size() - num_before);
 }
 
 }  // namespace
@@ -96,22 +127,59 @@ void prepareStart(Configuration* configuration) {
     throw std::invalid_argument("an experiment with method " + configuration->experiment.method +
                                 " cannot start from a model or bags: only ddm can");
   }
-  const std::unique_ptr<Plant> plant = makePlant(*configuration->plant);
+  const size_t num_files = start.bags.size() + (start.model.empty() ? 0 : 1);
+  if (start.checksums.empty()) start.checksums.resize(num_files);
+  if (start.checksums.size() != num_files) {
+    throw std::invalid_argument("start/checksums must have " + std::to_string(num_files) +
+                                " entries, one for each of start/bags and the last for "
+                                "start/model, got " +
+                                std::to_string(start.checksums.size()) + ": leave them out");
+  }
   if (!start.model.empty()) {
-    identify(&start.model, &start.model_id);
+    identify(&start.model, &start.checksums.back());
     requireModelFits(readModel(start.model), start.model, *configuration);
   }
-  if (start.bag_ids.empty()) start.bag_ids.resize(start.bags.size());
-  if (start.bag_ids.size() != start.bags.size()) {
-    throw std::invalid_argument(
-        "start/bag_ids must have one entry for each of start/bags, or none");
-  }
   requireDifferentBags(start.bags);
+  const std::unique_ptr<Plant> plant = makePlant(*configuration->plant);
   DifferentFrames different;
   for (size_t i = 0; i < start.bags.size(); ++i) {
-    identify(&start.bags[i], &start.bag_ids[i]);
+    identify(&start.bags[i], &start.checksums[i]);
     requireFits(start.bags[i], *configuration, *plant, &different);
   }
+}
+
+void announce(const Configuration& configuration, const RunFolder& folder, Progress* progress) {
+  const ExperimentOptions& options = configuration.experiment;
+  for (const std::string& warning : folder.warnings()) progress->note("warning: " + warning);
+  progress->note("preset " + options.preset + ", plant " + options.plant + ", seed " +
+                 std::to_string(options.seed) + ", " + std::to_string(options.trials) +
+                 " trials after " + firstTrial(configuration.start));
+  const int num_finished = static_cast<int>(folder.rows().size());
+  if (num_finished > options.trials) {
+    progress->note("all " + std::to_string(num_finished) +
+                   " trials are finished already: nothing is run");
+  } else if (num_finished > 0) {
+    progress->note("resuming after trial " + std::to_string(num_finished - 1));
+  }
+}
+
+void resumeTrial(int trial, const Configuration& configuration, Driver* driver,
+                 const RunFolder& folder, Progress* progress) {
+  const int num_recorded = requireReadableBags(trial, configuration, folder);
+  if (num_recorded == configuration.trial.episodes) return;  // nothing is left to explore
+  const StartOptions& start = configuration.start;
+  if (trial == 0 && !start.model.empty()) {
+    if (driver->useModel(start.model)) return;
+    throw std::logic_error("method " + configuration.experiment.method + " cannot use the model " +
+                           start.model);
+  }
+  if (trial == 0 && start.bags.empty()) return;  // the first trial is random
+  const int before = std::max(trial - 1, 0);
+  const std::vector<std::string> bags = folder.bagsUpTo(trial - 1);
+  const TrialId id = requestFor(configuration, before, /*evaluation=*/false).id;
+  if (trial > 0 && driver->resume(folder.trainingPath(before), bags, id)) return;
+  progress->beginPhase(before, "train");
+  driver->train(bags, id, [progress](double fraction) { progress->update(fraction); });
 }
 
 }  // namespace ddm

@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/testing/fuzzing.h>
 
-#include <cmath>
+#include <optional>
 
 #include "configuration.h"
-#include "run_csv.h"
-#include "trials_csv.h"
+#include "tables.h"
 
 using ddm::testing::accepts;
 using ddm::testing::require;
@@ -31,59 +30,42 @@ void configuration(const std::uint8_t* data, std::size_t size) {
   require(YAML::Dump(ddm::toYaml(read(file))) == written, "a saved configuration comes back");
 }
 
-void checkTorques(const std::string& text) {
-  static const std::vector<std::string> names = {"dx_px", "dy_px"};
-  ddm::TorqueRows rows;
-  const auto read = [&] { rows = ddm::parseTorquesCsv(text, names, "torques.csv"); };
-  if (!accepts<std::runtime_error>(read)) return;
-  require(rows.torques.size() == rows.exploratory.size(), "each torque is exploratory or not");
-  for (const Eigen::VectorXd& torque : rows.torques) {
-    require(torque.size() == 2 && torque.allFinite(), "torques are finite");
-  }
-  const ddm::TorqueRows again =
-      ddm::parseTorquesCsv(ddm::formatTorquesCsv(rows, names), names, "torques.csv");
-  require(again.torques == rows.torques && again.exploratory == rows.exploratory,
-          "torques come back digit by digit");
-}
-
-void checkTrajectory(const std::string& text) {
-  static const std::vector<std::string> names = {"x_px", "y_px"};
-  Eigen::MatrixXd states;
-  const auto read = [&] { states = ddm::parseTrajectoryCsv(text, names, "trajectory.csv"); };
-  if (!accepts<std::runtime_error>(read)) return;
-  require(states.rows() == 2 && states.allFinite(), "states are finite");
-  std::vector<Eigen::VectorXd> columns;
-  for (Eigen::Index i = 0; i < states.cols(); ++i) columns.push_back(states.col(i));
-  const std::string written =
-      ddm::formatTrajectoryCsv(std::vector<double>(columns.size(), 0.2), columns, names);
-  require(ddm::parseTrajectoryCsv(written, names, "trajectory.csv") == states,
-          "states come back digit by digit");
+/// A table is refused, or it holds finite numbers, which are written and read again digit by digit:
+/// the functions that write refuse all others.
+template <class Parse, class Format>
+void checkTable(const std::string& text, const Parse& parse, const Format& format) {
+  std::optional<decltype(parse(text))> read;
+  if (!accepts<std::runtime_error>([&] { read = parse(text); })) return;
+  const std::string written = format(*read);
+  require(format(parse(written)) == written, "what is written is read");
 }
 
 /// torques.csv and trajectory.csv.
 void runCsv(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
-  checkTorques(text);
-  checkTrajectory(text);
+  static const std::vector<std::string> torques = {"dx_px", "dy_px"}, states = {"x_px", "y_px"};
+  checkTable(
+      text,
+      [](const std::string& table) { return ddm::parseTorquesCsv(table, torques, "torques.csv"); },
+      [](const ddm::TorqueRows& rows) { return ddm::formatTorquesCsv(rows, torques); });
+  checkTable(
+      text,
+      [](const std::string& table) {
+        return ddm::parseTrajectoryCsv(table, states, "trajectory.csv");
+      },
+      [](const Eigen::MatrixXd& read) {
+        std::vector<Eigen::VectorXd> columns;
+        for (Eigen::Index i = 0; i < read.cols(); ++i) columns.push_back(read.col(i));
+        return ddm::formatTrajectoryCsv(std::vector<double>(columns.size(), 0.2), columns, states);
+      });
 }
 
 /// trials.csv of a run folder.
 void trialsCsv(const std::uint8_t* data, std::size_t size) {
-  const std::string text(reinterpret_cast<const char*>(data), size);
-  std::vector<ddm::TrialRow> rows;
-  const auto read = [&] { rows = ddm::parseTrialsCsv(text, "trials.csv"); };
-  if (!accepts<std::runtime_error>(read)) return;
-  for (const ddm::TrialRow& row : rows) {
-    require(std::isfinite(row.train_s) && row.train_s >= 0.0, "a training takes time");
-    require(std::isfinite(row.v_r.value_or(0.0)) && std::isfinite(row.v_p.value_or(0.0)),
-            "V_R and V_P are finite");
-    require(row.v_r.has_value() == row.v_p.has_value(), "errors come in pairs");
-    require(std::isfinite(row.evaluation.final_error.value_or(0.0)), "errors are finite");
-    require(std::isfinite(row.evaluation.total_reward.value_or(0.0)), "returns are finite");
-  }
-  const std::string written = ddm::formatTrialsCsv(rows);
-  require(ddm::formatTrialsCsv(ddm::parseTrialsCsv(written, "trials.csv")) == written,
-          "what is written is read");
+  checkTable(
+      std::string(reinterpret_cast<const char*>(data), size),
+      [](const std::string& table) { return ddm::parseTrialsCsv(table, "trials.csv"); },
+      ddm::formatTrialsCsv);
 }
 
 }  // namespace

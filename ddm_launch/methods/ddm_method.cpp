@@ -7,7 +7,7 @@
 
 #include <stdexcept>
 
-#include "method_kinds.h"
+#include "method.h"
 #include "start.h"
 
 namespace ddm {

@@ -8,7 +8,7 @@
 
 #include <utility>
 
-#include "method_kinds.h"
+#include "method.h"
 
 namespace ddm {
 namespace {

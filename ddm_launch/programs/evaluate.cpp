@@ -6,7 +6,6 @@
 #include <ddm_model/solver_log.h>
 #include <ddm_sim/plant_factory.h>
 #include <ros/time.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <boost/filesystem.hpp>
@@ -19,12 +18,12 @@
 #include <thread>
 #include <vector>
 
-#include "csv_text.h"
+#include "evaluation.h"
 #include "in_process_driver.h"
-#include "method_kinds.h"
+#include "method.h"
 #include "resolution.h"
-#include "resumption.h"
 #include "start.h"
+#include "tables.h"
 
 namespace po = boost::program_options;
 
@@ -97,27 +96,21 @@ std::vector<ddm::TrialRow> evaluateAll(const ddm::Configuration& configuration,
                                        const Request& request, int trial) {
   std::vector<ddm::TrialRow> rows(static_cast<size_t>(request.end_seed - request.first_seed));
   std::atomic<int> next{request.first_seed};
-  std::mutex mutex;
-  size_t num_done = 0;
-  const bool live = ::isatty(STDERR_FILENO) != 0;
+  std::mutex making;
   const auto work = [&] {
     for (int seed = next++; seed < request.end_seed; seed = next++) {
       try {
         rows[static_cast<size_t>(seed - request.first_seed)] =
-            evaluateSeed(configuration, request.model, seed, trial, &mutex);
+            evaluateSeed(configuration, request.model, seed, trial, &making);
       } catch (...) {
         next = request.end_seed;
         throw;
       }
-      const std::lock_guard<std::mutex> lock(mutex);
-      ++num_done;
-      if (live) std::cerr << "\r" << num_done << " of " << rows.size() << " runs" << std::flush;
     }
   };
   std::vector<std::future<void>> workers;
   for (int i = 0; i < request.jobs; ++i) workers.push_back(std::async(std::launch::async, work));
   for (std::future<void>& worker : workers) worker.get();
-  if (live) std::cerr << "\n";
   return rows;
 }
 
@@ -134,72 +127,63 @@ std::string csvOf(const std::vector<ddm::TrialRow>& rows) {
   return text;
 }
 
-/// Entries of a YAML map. Texts are in quotes: to readers of YAML 1.1 such as PyYAML, 20:40 is a number,
-/// and so is an id of digits.
-class Summary {
- public:
-  Summary() { out_ << YAML::BeginMap; }
-  void add(const std::string& key, const std::string& text) {
-    out_ << YAML::Key << key << YAML::Value << YAML::DoubleQuoted << text;
-  }
-  template <class Numbers>
-  void addNumbers(const std::string& key, const Numbers& numbers) {
-    out_ << YAML::Key << key << YAML::Value << ddm::valueToYaml(numbers);
-  }
-  std::string text() {
-    out_ << YAML::EndMap;
-    return out_.c_str();
-  }
-
- private:
-  YAML::Emitter out_;
-};
-
-/// A rate with the interval that it does not speak against.
-void addRate(const std::vector<ddm::TrialRow>& rows, const std::string& name,
-             bool ddm::Evaluation::*measure, Summary* summary) {
-  int successes = 0;
-  for (const ddm::TrialRow& row : rows) successes += row.evaluation.*measure ? 1 : 0;
-  const auto n = static_cast<int>(rows.size());
-  const auto interval = ddm::wilsonInterval(successes, n);
-  summary->add(name, std::to_string(successes) + " of " + std::to_string(n));
-  summary->addNumbers(name + "_rate", rounded(static_cast<double>(successes) / n));
-  summary->addNumbers(name + "_interval_95",
-                      std::vector<double>{rounded(interval.first), rounded(interval.second)});
-}
-
-void run(const Request& request, ddm::Configuration configuration) {
-  const std::shared_ptr<const ddm::Ddm> model = ddm::readModel(request.model);
-  // What the model is, it says itself; how it is used, the configuration.
-  configuration.model.image.size = model->imageSize();
-  configuration.model.model = model->options();
-  const std::string& folder = request.out;
-  std::cerr << "model " << request.model << " on " << configuration.experiment.plant
-            << ", mpc of preset " << configuration.experiment.preset << "\n";
-  ddm::requireModelFits(model, request.model, configuration);
-  const std::vector<ddm::TrialRow> rows =
-      evaluateAll(configuration, request, static_cast<int>(model->info().trial));
-  Summary summary;
-  summary.add("model", request.model);
-  summary.add("id", ddm::modelId(ddm::readFile(request.model)));
-  summary.add("plant", configuration.experiment.plant);
-  summary.add("preset", configuration.experiment.preset);
-  summary.add("seeds", std::to_string(request.first_seed) + ":" + std::to_string(request.end_seed));
-  addRate(rows, "success", &ddm::Evaluation::success, &summary);
-  addRate(rows, "success_strict", &ddm::Evaluation::success_strict, &summary);
+/// Counts, rates with their intervals, and medians, as a YAML map. Texts are in quotes: to readers of
+/// YAML 1.1 such as PyYAML, 20:40 is a number, and so is an id of digits.
+std::string summaryOf(const std::vector<ddm::TrialRow>& rows, const Request& request,
+                      const ddm::Configuration& configuration) {
+  YAML::Emitter out;
+  out << YAML::BeginMap;
+  const auto add = [&out](const std::string& key, const std::string& text) {
+    out << YAML::Key << key << YAML::Value << YAML::DoubleQuoted << text;
+  };
+  const auto add_numbers = [&out](const std::string& key, const auto& numbers) {
+    out << YAML::Key << key << YAML::Value << ddm::valueToYaml(numbers);
+  };
+  const auto add_rate = [&](const std::string& name, bool ddm::Evaluation::*measure) {
+    int successes = 0;
+    for (const ddm::TrialRow& row : rows) successes += row.evaluation.*measure ? 1 : 0;
+    const auto n = static_cast<int>(rows.size());
+    const auto interval = ddm::wilsonInterval(successes, n);
+    add(name, std::to_string(successes) + " of " + std::to_string(n));
+    add_numbers(name + "_rate", rounded(static_cast<double>(successes) / n));
+    add_numbers(name + "_interval_95",
+                std::vector<double>{rounded(interval.first), rounded(interval.second)});
+  };
+  add("model", request.model);
+  add("id", ddm::modelId(ddm::readFile(request.model)));
+  add("plant", configuration.experiment.plant);
+  add("preset", configuration.experiment.preset);
+  add("seeds", std::to_string(request.first_seed) + ":" + std::to_string(request.end_seed));
+  add_rate("success", &ddm::Evaluation::success);
+  add_rate("success_strict", &ddm::Evaluation::success_strict);
   std::vector<double> errors, returns;
   for (const ddm::TrialRow& row : rows) {
     errors.push_back(row.evaluation.final_error.value());
     if (row.evaluation.total_reward) returns.push_back(*row.evaluation.total_reward);
   }
-  summary.add("error_unit", configuration.evaluation.error_unit);
-  summary.addNumbers("final_error_median", ddm::quantile(errors, 0.5));
-  if (!returns.empty()) summary.addNumbers("return_median", ddm::quantile(returns, 0.5));
-  boost::filesystem::create_directories(boost::filesystem::absolute(folder));  // refuses a mere "."
-  ddm::writeFileAtomically(folder + "/evaluation.csv", csvOf(rows));
-  const std::string text = summary.text();
-  ddm::writeFileAtomically(folder + "/evaluation.yaml", text + "\n");
-  std::cout << text << "\nrows: " << folder << "/evaluation.csv\n";
+  add("error_unit", configuration.plant_info.error_unit);
+  add_numbers("final_error_median", ddm::quantile(errors, 0.5));
+  if (!returns.empty()) add_numbers("return_median", ddm::quantile(returns, 0.5));
+  out << YAML::EndMap;
+  return out.c_str();
+}
+
+void run(const Request& request, ddm::Configuration configuration) {
+  const std::shared_ptr<const ddm::Ddm> model = ddm::readModel(request.model);
+  // The model file says what the model is; the configuration says how it is used.
+  configuration.model.image.size = model->imageSize();
+  configuration.model.model = model->options();
+  std::cerr << "model " << request.model << " on " << configuration.experiment.plant
+            << ", mpc of preset " << configuration.experiment.preset << "\n";
+  ddm::requireModelFits(model, request.model, configuration);
+  const std::vector<ddm::TrialRow> rows =
+      evaluateAll(configuration, request, static_cast<int>(model->info().trial));
+  const std::string summary = summaryOf(rows, request, configuration);
+  // create_directories() refuses a mere "."
+  boost::filesystem::create_directories(boost::filesystem::absolute(request.out));
+  ddm::writeFileAtomically(request.out + "/evaluation.csv", csvOf(rows));
+  ddm::writeFileAtomically(request.out + "/evaluation.yaml", summary + "\n");
+  std::cout << summary << "\nrows: " << request.out << "/evaluation.csv\n";
 }
 
 }  // namespace

@@ -1,65 +1,30 @@
-// experiment_node: Algorithm 1 with the real nodes.
+// experiment_node: what launch files need, in one program: `experiment_node ROLE ...`.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_common/run_node.h>
-#include <ddm_msgs/topics.h>
-#include <std_msgs/String.h>
+#include <ddm_common/tool.h>
 
-#include <cstdint>
-#include <optional>
-#include <stdexcept>
+#include <map>
+#include <string>
 
-#include "algorithm1.h"
-#include "configuration.h"
-#include "ros_driver.h"
-#include "start.h"
-#include "trials_csv.h"
+namespace ddm {
 
-namespace {
+// One file for each role.
+int experimentNode(int argc, char** argv);        // Algorithm 1 with the real nodes
+int trialNode(int argc, char** argv);             // one trial with them
+int replayNode(int argc, char** argv);            // plays a bag to mpc_node
+int resolveConfiguration(int argc, char** argv);  // prints the configuration of a launch
 
-/// What learning_curve_node draws, for whoever looks and whoever comes.
-void publishTrials(const ros::Publisher& publisher, const std::vector<ddm::TrialRow>& rows,
-                   const ddm::Configuration& configuration) {
-  YAML::Node trials;
-  trials["evaluation"] = toYaml(configuration.evaluation);
-  trials["frames"] = static_cast<std::int64_t>(configuration.experiment.trials + 1) *
-                     configuration.trial.num_steps * configuration.trial.episodes;
-  trials["trials_csv"] = ddm::formatTrialsCsv(rows);
-  std_msgs::String message;
-  message.data = YAML::Dump(trials);
-  publisher.publish(message);
-}
-
-/// What belongs to ROS and outlives an error: to end it takes a master that answers.
-struct Node {
-  ros::Publisher trials_pub;
-  std::optional<ddm::RosDriver> driver;
-};
-
-void run(ros::NodeHandle nh, ddm::ParamReader* params, Node* node) {
-  ddm::Configuration configuration = ddm::readConfiguration(params);
-  if (configuration.experiment.method != "ddm") {
-    throw std::invalid_argument("experiment/method must be ddm where the nodes act, got " +
-                                configuration.experiment.method + ": use run_experiment");
-  }
-  ddm::requireLearnedPrediction(configuration.model.training);
-  ddm::prepareStart(&configuration);
-  ddm::RunFolder folder(configuration);
-  ddm::Progress progress(configuration.experiment.trials, configuration.evaluation.error_unit);
-  node->trials_pub = nh.advertise<std_msgs::String>(ddm::topics::kTrials, 1, /*latch=*/true);
-  ddm::RosDriver::Peers peers;
-  if (configuration.robot) peers.reset_timeout = configuration.robot->reset_timeout;
-  node->driver.emplace(nh, configuration.experiment.timeout, peers);
-  ddm::runExperiment(configuration, &*node->driver, &folder, &progress,
-                     [&](const std::vector<ddm::TrialRow>& rows) {
-                       publishTrials(node->trials_pub, rows, configuration);
-                     });
-  progress.note("The experiment is finished. roslaunch ends the nodes, and says so in red.");
-}
-
-}  // namespace
+}  // namespace ddm
 
 int main(int argc, char** argv) {
-  Node node;
-  return ddm::runNode("experiment_node", argc, argv,
-                      [&node](auto nh, auto, ddm::ParamReader* params) { run(nh, params, &node); });
+  const std::map<std::string, int (*)(int, char**)> roles = {
+      {"experiment", ddm::experimentNode},
+      {"trial", ddm::trialNode},
+      {"replay", ddm::replayNode},
+      {"resolve", ddm::resolveConfiguration}};
+  const auto role = roles.find(argc > 1 ? argv[1] : "");
+  if (role != roles.end()) return role->second(argc - 1, argv + 1);
+  std::cerr << "usage: rosrun ddm_launch experiment_node experiment|trial|replay|resolve ...\n"
+               "The launch files start it; `experiment_node resolve --help` lists the options of a "
+               "configuration.\n";
+  return argc > 1 && std::string(argv[1]) == "--help" ? EXIT_SUCCESS : ddm::kUsageError;
 }

@@ -16,12 +16,12 @@
 #include <string>
 #include <vector>
 
-#include "closed_loop.h"
 #include "configuration.h"
-#include "csv_text.h"
-#include "resumption.h"
-#include "run_csv.h"
+#include "evaluation.h"
+#include "in_process_driver.h"
+#include "run_folder.h"
 #include "start.h"
+#include "tables.h"
 
 namespace ddm {
 namespace {

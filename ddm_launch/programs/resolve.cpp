@@ -1,4 +1,4 @@
-// resolve: the configuration of a launch as one text, from the arguments of the launch.
+// Role `resolve` of experiment_node: the configuration of a launch as one text.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/config_blocks.h>
 #include <ddm_plant_plugin/plant_config.h>
@@ -27,10 +27,10 @@ namespace fs = boost::filesystem;
 constexpr char kAbout[] =
     "Prints the configuration that arguments and files make up, as YAML. The launch files set it\n"
     "as the parameter `configuration`, which all their nodes read. An option with an empty value\n"
-    "counts as not given. Relative paths in arguments start at the current folder, those in a file "
-    "at\n"
-    "the folder of that file.\n\n"
-    "usage: rosrun ddm_launch resolve --preset paper --plant pendulum --config my.yaml";
+    "counts as not given. Relative paths in arguments start at the current folder, those in a\n"
+    "file at the folder of that file.\n\n"
+    "usage: rosrun ddm_launch experiment_node resolve --preset paper --plant pendulum --config "
+    "my.yaml";
 
 struct Request {
   Arguments arguments;
@@ -52,40 +52,15 @@ void setCrop(const std::string& text, Arguments* arguments) {
   arguments->set("robot/crop_height", crop[3]);
 }
 
-/// Words with blanks between them, in quotes where a word has a blank itself.
-std::vector<std::string> splitQuoted(const std::string& text) {
-  std::vector<std::string> words;
-  bool in_word = false;
-  char quote = 0;
-  for (const char c : text) {
-    const bool blank = c == ' ' || c == '\t';
-    if (quote == 0 && blank) {
-      in_word = false;
-      continue;
-    }
-    if (!in_word) words.emplace_back();
-    in_word = true;
-    if (quote == 0 && (c == '\'' || c == '"')) {
-      quote = c;
-    } else if (c == quote) {
-      quote = 0;
-    } else {
-      words.back() += c;
-    }
-  }
-  if (quote == 0) return words;
-  throw po::error("bags must be paths with a blank between two, got a quote without its end: " +
-                  text);
-}
-
-/// The bags in the text of a launch argument: one, or several with blanks between them.
+/// The bags in the text of a launch argument: one, or several with blanks between them. A bag that
+/// does not exist and has a blank in its name stands in quotes.
 std::vector<std::string> splitBags(const std::string& text) {
   const auto exists = [](const std::string& bag) { return fs::exists(expandHome(bag)); };
   if (exists(text)) return {text};
   std::istringstream in(text);
   const std::istream_iterator<std::string> first(in), end;
   const std::vector<std::string> bags(first, end);
-  return std::all_of(bags.begin(), bags.end(), exists) ? bags : splitQuoted(text);
+  return std::all_of(bags.begin(), bags.end(), exists) ? bags : po::split_unix(text);
 }
 
 void setBags(const std::vector<std::string>& texts, Arguments* arguments) {
@@ -156,16 +131,16 @@ void makeAbsolute(YAML::Node path) {
   path = fs::absolute(path.Scalar()).lexically_normal().string();
 }
 
-/// mpc_node ends a trial in which no image comes for controller/timeout, and a robot's images are robot/dt apart. Only
-/// nodes read that block, and no saved configuration has it: the check is here, not in requireConsistent().
+/// mpc_node ends a trial in which no image comes for controller/timeout, and a robot's images are
+/// robot/dt apart. Only nodes read that block, and no saved configuration has it: the check is here,
+/// not in requireConsistent(). mpc_node refuses a timeout that is not a number.
 /// @throws std::invalid_argument if the timeout is shorter than two time steps
 void requirePatience(const RobotOptions& robot, const YAML::Node& blocks) {
   double timeout = 0.0;
   if (!hasKey(blocks, "controller", "timeout") ||
-      !parseValue(blocks["controller"]["timeout"], &timeout)) {
-    return;  // mpc_node refuses what is not a number
+      !parseValue(blocks["controller"]["timeout"], &timeout) || timeout >= 2.0 * robot.dt) {
+    return;
   }
-  if (timeout >= 2.0 * robot.dt) return;
   std::ostringstream problem;
   problem << "controller/timeout must be at least 2 robot/dt, " << 2.0 * robot.dt << " s, got "
           << timeout << ": raise it, or the next image would count as missing";
@@ -208,10 +183,11 @@ void run(const Request& request) {
 }
 
 }  // namespace
-}  // namespace ddm
 
-int main(int argc, char** argv) {
-  ddm::Request request;
-  return ddm::runTool(
-      "resolve", [&] { return ddm::configure(argc, argv, &request); }, [&] { ddm::run(request); });
+int resolveConfiguration(int argc, char** argv) {
+  Request request;
+  return runTool(
+      "resolve", [&] { return configure(argc, argv, &request); }, [&] { run(request); });
 }
+
+}  // namespace ddm

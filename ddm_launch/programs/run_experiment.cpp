@@ -8,7 +8,7 @@
 
 #include "algorithm1.h"
 #include "in_process_driver.h"
-#include "method_kinds.h"
+#include "method.h"
 #include "resolution.h"
 #include "start.h"
 
@@ -48,7 +48,7 @@ void run(ddm::Configuration configuration) {
   ddm::prepareStart(&configuration);
   ddm::InProcessDriver driver(configuration);  // first: what it refuses must not leave a folder
   ddm::RunFolder folder(configuration);
-  ddm::Progress progress(configuration.experiment.trials, configuration.evaluation.error_unit);
+  ddm::Progress progress(configuration.experiment.trials, configuration.plant_info.error_unit);
   ddm::runExperiment(configuration, &driver, &folder, &progress);
 }
 

@@ -68,7 +68,7 @@ for unit in $units; do
 done'
 around_apt=(sh -c "$without_services" sh)  # for apt_install of workspace.sh
 
-loop_programs=(resolve sim_node mpc_node view_node trial_recorder model_node experiment_node run_experiment evaluate)
+loop_programs=(sim_node mpc_node view_node trial_recorder model_node experiment_node run_experiment evaluate)
 # What computes and what reads bytes from outside; the other gtests take long to compile.
 gtest_programs=(
   ddm_bag_io_test ddm_common_test ddm_images_test ddm_model_config_test ddm_model_test ddm_mpc_test ddm_msgs_test
@@ -77,7 +77,7 @@ gtest_programs=(
 debug_targets=("${loop_programs[@]}" "${gtest_programs[@]}" fuzz_targets)
 debug_tests="_gtest_($(IFS='|' && echo "${gtest_programs[*]}"))\$"
 threaded_programs=(
-  model_node_test mpc_node_stop_test mpc_node_test refused_params_test replay_node robot_node train_from_bags trial_recorder_test
+  model_node_test mpc_node_stop_test mpc_node_test refused_params_test experiment_node robot_node train_from_bags trial_recorder_test
 )
 threaded_tests='^_ctest_ddm_[a-z]+_rostest_test_(model_node|mpc_node|replay|robot_node|trial_recorder)\.test$'
 

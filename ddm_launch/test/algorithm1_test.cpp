@@ -13,9 +13,8 @@
 #include <memory>
 #include <sstream>
 
-#include "results_folder.h"
+#include "tables.h"
 #include "toy_run.h"
-#include "trials_csv.h"
 
 namespace ddm {
 namespace {
@@ -60,13 +59,16 @@ TEST_F(ExperimentTest, EachTrialIsRunThenLearnedFromThenEvaluated) {
   run();
   EXPECT_EQ(driver_.calls, (Calls{"run 0", "train 0", "evaluate 0", "run 1", "train 1",
                                   "evaluate 1", "run 2", "train 2", "evaluate 2"}));
-}
-
-TEST_F(ExperimentTest, ShowsTheRowsAtTheStartAndAfterEachTrial) {
-  run();
   EXPECT_EQ(shown_, (std::vector<size_t>{0, 1, 2, 3}));
+  driver_.calls.clear();
+  fs::remove(file("summary.yaml"));  // as if it had ended before its verdict
+  run();
+  EXPECT_EQ(driver_.calls, Calls());
+  EXPECT_TRUE(fs::exists(file("summary.yaml")));
   configuration_.experiment.trials = 3;
   run();
+  EXPECT_EQ(driver_.calls,
+            (Calls{"use " + file("trial_002/model.ddm"), "run 3", "train 3", "evaluate 3"}));
   EXPECT_EQ(shown_, (std::vector<size_t>{3, 4}));
 }
 
@@ -81,13 +83,6 @@ TEST_F(ExperimentTest, TrialsGiveOneModelAndRowMoreThanTheirNumber) {
   EXPECT_TRUE(fs::exists(file("summary.yaml")));
 }
 
-TEST_F(ExperimentTest, NoTrialsAreTheRandomOneAndItsModel) {
-  configuration_.experiment.trials = 0;
-  run();
-  EXPECT_EQ(driver_.calls, (Calls{"run 0", "train 0", "evaluate 0"}));
-  EXPECT_EQ(numRows(), 1u);
-}
-
 TEST_F(ExperimentTest, TheFirstTrialIsRandomTheOthersExploreAndEvaluationsAreGreedy) {
   configuration_.mpc.epsilon = 0.3;
   configuration_.mpc.hold_steps = 4;
@@ -97,9 +92,12 @@ TEST_F(ExperimentTest, TheFirstTrialIsRandomTheOthersExploreAndEvaluationsAreGre
   EXPECT_EQ(driver_.requests[2].epsilon, 0.3);
   EXPECT_EQ(driver_.requests[4].epsilon, 0.3);
   for (const size_t evaluation : {1, 3, 5}) EXPECT_EQ(driver_.requests[evaluation].epsilon, 0.0);
-  for (const TrialRequest& request : driver_.requests) {
-    EXPECT_EQ(request.hold_steps, 4);
-    EXPECT_EQ(request.num_steps, kToySteps);
+  for (size_t i = 0; i < driver_.requests.size(); ++i) {
+    EXPECT_EQ(driver_.requests[i].hold_steps, 4);
+    EXPECT_EQ(driver_.requests[i].num_steps, kToySteps);
+    EXPECT_EQ(driver_.requests[i].id.seed, 7u);
+    EXPECT_EQ(driver_.requests[i].id.trial, i / 2);
+    EXPECT_EQ(driver_.requests[i].id.evaluation, i % 2 == 1);
   }
 }
 
@@ -131,15 +129,6 @@ TEST_F(ExperimentTest, BagsToStartFromCountAsTrialsBeforeTheFirst) {
             (Calls{"use " + file("trial_000/model.ddm"), "run 1", "train 1", "evaluate 1"}));
 }
 
-TEST_F(ExperimentTest, EachRunHasItsOwnIdentity) {
-  run();
-  for (size_t i = 0; i < driver_.requests.size(); ++i) {
-    EXPECT_EQ(driver_.requests[i].id.seed, 7u);
-    EXPECT_EQ(driver_.requests[i].id.trial, i / 2);
-    EXPECT_EQ(driver_.requests[i].id.evaluation, i % 2 == 1);
-  }
-}
-
 TEST_F(ExperimentTest, ATrialOfSeveralEpisodesIsThatManyRunsWithDrawsAndBagsOfTheirOwn) {
   configuration_.trial.episodes = 2;
   configuration_.experiment.trials = 1;
@@ -158,7 +147,15 @@ TEST_F(ExperimentTest, ATrialOfSeveralEpisodesIsThatManyRunsWithDrawsAndBagsOfTh
   EXPECT_TRUE(throwsNaming<std::runtime_error>([this] { run(); }, {first[1], "missing"}));
 }
 
-TEST_F(ExperimentTest, EvaluationsAreNotRecordedAndNotLearnedFrom) {
+TEST_F(ExperimentTest, EvaluationsAreRecordedOnRequestAloneAndNeverLearnedFrom) {
+  configuration_.evaluation.record = true;
+  run();
+  for (const TrialRequest& request : driver_.requests) EXPECT_FALSE(request.bag.empty());
+  EXPECT_TRUE(fs::exists(file("evaluation_001/trial.bag")));
+  configuration_ = toyConfiguration(scratch_.file("run"));
+  fs::remove_all(scratch_.file("run"));
+  driver_.requests.clear();
+  driver_.bags_of_training.clear();
   run();
   for (const TrialRequest& request : driver_.requests) {
     EXPECT_EQ(request.bag.empty(), request.id.evaluation);
@@ -191,7 +188,7 @@ TEST_F(ExperimentTest, ARowTellsTheErrorInTheUnitOfThePlantAndItsReturn) {
   EXPECT_EQ(row.evaluation.final_error, 0.25);
   EXPECT_FALSE(row.evaluation.success);
   EXPECT_NEAR(row.evaluation.total_reward.value(), -2.0 * 0.75 * 30 - 1.2 * 43.5, 1e-9);
-  EXPECT_EQ(YAML::LoadFile(file("config.yaml"))["evaluation"]["error_unit"].as<std::string>(), "m");
+  EXPECT_EQ(YAML::LoadFile(file("config.yaml"))["goal"]["error_unit"].as<std::string>(), "m");
 }
 
 TEST_F(ExperimentTest, AGreedyRunIsJudgedByTheGoalThatWasDrawnForIt) {
@@ -209,14 +206,6 @@ TEST_F(ExperimentTest, AGreedyRunIsJudgedByTheGoalThatWasDrawnForIt) {
   }
 }
 
-TEST_F(ExperimentTest, WithoutGroundTruthSuccessStaysEmpty) {
-  configuration_.experiment.trials = 0;
-  driver_.state.resize(0);
-  run();
-  EXPECT_NE(textOf(file("trials.csv")).find("\n7,0,30,,,,"), std::string::npos);
-  EXPECT_FALSE(fs::exists(file("evaluation_000/trajectory.csv")));
-}
-
 TEST_F(ExperimentTest, WithoutGroundTruthSuccessIsThatInFeatures) {
   driver_.goal_distance = 0.2;
   configuration_.evaluation.goal_distance = 0.3;
@@ -232,17 +221,6 @@ TEST_F(ExperimentTest, WithoutGroundTruthSuccessIsThatInFeatures) {
   EXPECT_NE(rows.find("\n7,0,30,1,1,,"), std::string::npos) << rows;
 }
 
-TEST_F(ExperimentTest, AnExperimentThatIsTakenUpGoesOnWithItsLastModel) {
-  configuration_.experiment.trials = 1;
-  run();
-  driver_.calls.clear();
-  configuration_.experiment.trials = 2;
-  run();
-  EXPECT_EQ(driver_.calls,
-            (Calls{"use " + file("trial_001/model.ddm"), "run 2", "train 2", "evaluate 2"}));
-  EXPECT_EQ(numRows(), 3u);
-}
-
 TEST_F(ExperimentTest, AnExperimentWhoseModelsCannotBeSavedTrainsOnceAndGoesOn) {
   driver_.has_models = false;
   configuration_.experiment.trials = 1;
@@ -253,28 +231,6 @@ TEST_F(ExperimentTest, AnExperimentWhoseModelsCannotBeSavedTrainsOnceAndGoesOn) 
   EXPECT_EQ(driver_.calls, (Calls{"train 1", "run 2", "train 2", "evaluate 2"}));
   EXPECT_EQ(numRows(), 3u);
   EXPECT_NE(terminal_.find("after trial 1"), std::string::npos) << terminal_;
-}
-
-TEST_F(ExperimentTest, AnExperimentWithADamagedBagIsNotTakenUp) {
-  configuration_.experiment.trials = 1;
-  run();
-  driver_.calls.clear();
-  testing::writeText(file("trial_000/trial.bag"), "no bag");
-  configuration_.experiment.trials = 2;
-  EXPECT_TRUE(throwsNaming<std::runtime_error>([this] { run(); }, {file("trial_000/trial.bag")}));
-  EXPECT_EQ(driver_.calls, Calls());
-}
-
-TEST_F(ExperimentTest, GreedyRunsAreRecordedOnRequest) {
-  configuration_.experiment.trials = 1;
-  configuration_.evaluation.record = true;
-  run();
-  for (const char* name : {"evaluation_000/trial.bag", "evaluation_001/trial.bag"}) {
-    EXPECT_TRUE(fs::exists(file(name))) << name;
-  }
-  for (const std::vector<std::string>& bags : driver_.bags_of_training) {
-    for (const std::string& bag : bags) EXPECT_EQ(bag.find("evaluation_"), std::string::npos);
-  }
 }
 
 TEST_F(ExperimentTest, AFinishedExperimentIsSummedUpAndOnlyTheTimeOfItsVerdictChanges) {
@@ -296,16 +252,6 @@ TEST_F(ExperimentTest, AFinishedExperimentIsSummedUpAndOnlyTheTimeOfItsVerdictCh
   }
 }
 
-TEST_F(ExperimentTest, AnExperimentThatEndedBeforeItsVerdictGetsIt) {
-  run();
-  fs::remove(file("summary.yaml"));
-  driver_.calls.clear();
-  run();
-  EXPECT_EQ(driver_.calls, Calls());
-  EXPECT_EQ(numRows(), 3u);
-  EXPECT_TRUE(fs::exists(file("summary.yaml")));
-}
-
 TEST_F(ExperimentTest, ADriverThatFailsBeforeTheFirstResultLeavesTheFolderAsItWas) {
   configuration_.start.bags = {"/a.bag"};
   driver_.fails_at = 1;  // train 0
@@ -320,16 +266,6 @@ TEST_F(ExperimentTest, ADriverThatFailsBeforeTheFirstResultLeavesTheFolderAsItWa
   driver_.fails_at = 1;  // use the model of trial 2
   EXPECT_THROW(run(), std::runtime_error);
   EXPECT_EQ(testing::fingerprintOf(scratch_.file("run")), before);
-}
-
-TEST_F(ExperimentTest, ATrialThatIsRunAgainSaysWhereItsBagIs) {
-  driver_.fails_at = 1;  // run 0
-  EXPECT_THROW(run(), std::runtime_error);
-  testing::writeText(file("trial_000/trial.bag.active"), "half a bag");
-  driver_ = ObedientDriver();
-  run();
-  EXPECT_NE(terminal_.find(file("trial_000/trial.1.bag.active")), std::string::npos) << terminal_;
-  EXPECT_EQ(textOf(file("trial_000/trial.1.bag.active")), "half a bag");
 }
 
 TEST_F(ExperimentTest, OnlyTheEpisodesThatAreNotRecordedAreRunAgain) {
@@ -377,7 +313,7 @@ TEST_F(ExperimentTest, AnErrorOfThePlantThatIsNotFiniteIsRefusedWithPlantFrameAn
   testing::usePlant(testing::plantOf(traits), &configuration_);
   driver_.state = Eigen::Vector2d(7.0, 0.0);
   EXPECT_TRUE(throwsNaming<std::range_error>([this] { run(); },
-                                             {"their_package/Toy", "error", "frame 0", "nan"}));
+                                             {"their_package/Toy", "error", "image 0", "nan"}));
   EXPECT_FALSE(fs::exists(file("trials.csv")));
   traits.distance = testing::ToyPlant::Traits().distance;
   traits.reward = [](const Eigen::VectorXd&, const Eigen::VectorXd& torque) {
@@ -385,15 +321,8 @@ TEST_F(ExperimentTest, AnErrorOfThePlantThatIsNotFiniteIsRefusedWithPlantFrameAn
   };
   testing::usePlant(testing::plantOf(traits), &configuration_);
   EXPECT_TRUE(throwsNaming<std::range_error>([this] { run(); },
-                                             {"their_package/Toy", "reward", "frame 3", "inf"}));
+                                             {"their_package/Toy", "reward", "image 3", "inf"}));
   EXPECT_FALSE(fs::exists(file("trials.csv")));
-}
-
-TEST_F(ExperimentTest, AFolderThatCannotBeWrittenIsNamedBeforeAnythingRuns) {
-  testing::writeText(scratch_.file("plain_file"), "");
-  configuration_.experiment.runs = scratch_.file("plain_file/run");
-  EXPECT_TRUE(throwsNaming<std::runtime_error>([this] { run(); }, {"folder", "plain_file/run"}));
-  EXPECT_EQ(driver_.calls, Calls());
 }
 
 TEST_F(ExperimentTest, ADriverThatFailsLeavesFinishedWorkToWhichTheSameCallAddsTheRest) {

@@ -4,7 +4,7 @@ from unittest import mock
 
 from ddm_launch.command import distribution, processor
 from ddm_qa import benchmark
-from processes import call, find_program, run_experiment
+from processes import run_experiment
 from scratch_case import SharedScratchCase
 
 
@@ -24,25 +24,11 @@ class BenchmarkProgramsTest(SharedScratchCase):
             self.assertGreater(self.bench.rows[name]["median_us"], 0.0, name)
 
     def test_kernels_tell_the_quantiles_of_single_calls(self):
-        kernels = ("objective_gradient", "matrix_products", "retrain", "pca", "encode", "plan", "plan_cost_gradient",
-                   "render", "read_bag")
-        self.bench.kernels(only="-^plan_5_ms")
-        for name in kernels:
+        self.bench.kernels()
+        for name in ("objective_gradient", "matrix_products", "retrain", "plan"):
             row = self.bench.rows[name]
             self.assertTrue(0.0 < row["median_us"] <= row["p99_us"], (name, row))
         self.assertGreater(self.bench.plan_iterations, 0.0)
-
-    def test_plans_end_with_their_budget_and_plants_are_drawn(self):
-        code, output = call([find_program("benchmark_kernels"), self.run_folder, "pendulum", "moving_tile",
-                             "--benchmark_filter=^plan_5_ms|^render/[mp]|^view/", "--benchmark_format=csv"], 120.0)
-        self.assertEqual(code, 0, output)
-        medians = {name.split("/iterations")[0].strip('"'): float(rest.split(",")[1]) for name, _, rest in (
-            line.partition(",") for line in output.splitlines() if "_median" in line)}
-        self.assertEqual(sorted(medians), ["plan_5_ms", "render/moving_tile", "render/pendulum"], output)
-        self.assertGreater(medians["plan_5_ms"], 5000.0)
-        code, output = call([find_program("benchmark_kernels"), self.run_folder, "pendulumm"])
-        self.assertEqual(code, 1)
-        self.assertIn("pendulumm", output)
 
     def test_processors_of_one_name_are_told_apart_by_family_and_model(self):
         path = self.write("cpuinfo", "processor\t: 0\ncpu family\t: 26\nmodel\t\t: 2\n"

@@ -24,7 +24,7 @@ mpc: {cost: time}
 trial: {episodes: 2}
 """
 QUICK = "training: {num_starts: 1, max_iterations: 20}\n"
-DRAWN_GOALS = QUICK + "trial: {num_steps: 26, episodes: 1}\nevaluation: {num_steps: 30, record: true}\n"
+DRAWN_GOALS = QUICK + "trial: {num_steps: 26, episodes: 1}\nplant: {episode_frames: 150}\nevaluation: {record: true}\n"
 
 
 def check_paper(nodes, _):
@@ -64,8 +64,7 @@ def check_tile(nodes, _):
     assert torques[0] == ["step", "dx_px", "dy_px", "exploratory"]
     assert all(abs(float(cell)) <= 5.0 for row in torques[1:] for cell in row[1:3])
     assert read_rows(nodes, "evaluation_001", "trajectory.csv")[0] == ["step", "time_s", "x_px", "y_px"]
-    evaluation = read_yaml(nodes, "config.yaml")["evaluation"]
-    assert (evaluation["tolerance"], evaluation["error_unit"]) == (2.0, "px")
+    assert read_yaml(nodes, "config.yaml")["goal"] == {"error_unit": "px", "tolerance": 2.0}
     assert all(row[3] in ("0", "1") and 0.0 <= float(row[5]) <= 51.0 for row in read_rows(nodes, "trials.csv")[1:])
 
 
@@ -88,7 +87,7 @@ def check_drawn_goals(nodes, process):
     for row in (dict(zip(header, row)) for row in rows):
         assert 0.0 <= float(row["return"]) <= 30 * 5
         assert 0.0 < float(row["final_error"]) <= 0.44  # in metres, across the reach of the arm
-    assert read_yaml(nodes, "config.yaml")["evaluation"]["error_unit"] == "m"
+    assert read_yaml(nodes, "config.yaml")["goal"]["error_unit"] == "m"
 
 
 @pytest.mark.parametrize("arguments, config, check", [

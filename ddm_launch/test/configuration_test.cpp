@@ -14,8 +14,7 @@
 #include <limits>
 #include <set>
 
-#include "method_kinds.h"
-#include "prediction_options.h"
+#include "method.h"
 #include "resolution.h"
 #include "toy_run.h"
 
@@ -81,9 +80,7 @@ TEST(Configuration, EveryPresetLoadsWithEveryPlant) {
       ASSERT_EQ(all.mpc.max_torque.size(), 1U) << preset << ", " << plant;
       EXPECT_EQ(all.plant_info.max_torque.minCoeff(), all.mpc.max_torque[0]) << preset << plant;
       EXPECT_EQ(all.plant_info.max_torque.maxCoeff(), all.mpc.max_torque[0]) << preset << plant;
-      EXPECT_EQ(all.evaluation.error_unit, plant == "moving_tile" ? "px" : "deg") << preset;
-      EXPECT_EQ(all.evaluation.tolerance, plant == "moving_tile" ? 2.0 : 10.0) << preset;
-      EXPECT_NO_THROW(makePlant(*all.plant)) << preset << ", " << plant;
+      EXPECT_EQ(all.plant_info.error_unit, plant == "moving_tile" ? "px" : "deg") << preset;
     }
   }
 }
@@ -110,31 +107,33 @@ TEST(Configuration, ThePaperPresetHoldsTheNumbersOfThePaper) {
   for (const char* key : {"length", "mass", "friction"}) {
     EXPECT_EQ(all.plant->block()[key].as<double>(), 1.0) << key;
   }
-  EXPECT_EQ(all.evaluation.tolerance, 10.0);
+  EXPECT_EQ(all.plant_info.tolerance, 10.0);
+  // a plant knows better than a preset what it needs
+  EXPECT_EQ(all.model.training.max_iterations, 500);
+  EXPECT_EQ(read(arguments("paper", "moving_tile")).model.training.max_iterations, 3000);
 }
 
-TEST(Configuration, APresetThatDoesNotExistIsRefusedWithThoseThatDo) {
-  EXPECT_TRUE(
-      throwsNaming<std::invalid_argument>([] { resolve(arguments("papier", "pendulum")); },
-                                          {"unknown preset 'papier'", "debug, efficient, paper"}));
-}
-
-TEST(Configuration, APlantThatDoesNotExistIsRefusedWithThoseThatDo) {
+TEST(Configuration, ANameThatDoesNotExistIsRefusedWithThoseThatDo) {
+  const auto refused = [](const Arguments& given, const std::vector<std::string>& words) {
+    return throwsNaming<std::invalid_argument>([&] { read(given); }, words);
+  };
+  EXPECT_TRUE(refused(arguments("papier", "pendulum"),
+                      {"unknown preset 'papier'", "debug, efficient, paper"}));
+  for (const std::string name : {"nuisance/fog", "noise", "noise/noise"}) {
+    EXPECT_TRUE(refused(arguments("paper", "pendulum", {name}),
+                        {"'" + name + "'", "nuisance/clutter", "oracle/suite_reacher"}));
+  }
+  EXPECT_TRUE(refused(arguments("paper", "pendulum", {"nuisance/scene_camera"}),
+                      {"plant/camera_shift"}));  // this plant has no scene
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([] { methodKind("oracel"); },
+                                                  {"unknown method 'oracel'", "ddm, oracle"}));
   // sim.yaml stands in the same folder but is no plant
   for (const std::string plant : {"pendulumm", "sim", "", "../config/pendulum"}) {
-    EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-        [&] { resolve(arguments("paper", plant)); },
-        {"'" + plant + "'", "moving_tile", "mujoco_pendulum, pendulum, pendulum_gravity",
-         "two_link"}))
+    EXPECT_TRUE(refused(arguments("paper", plant),
+                        {"'" + plant + "'", "moving_tile",
+                         "mujoco_pendulum, pendulum, pendulum_gravity", "two_link"}))
         << plant;
   }
-}
-
-TEST(Configuration, APlantKnowsBetterThanAPresetWhatItNeeds) {
-  const Configuration tile = read(arguments("paper", "moving_tile"));
-  const Configuration pendulum = read(arguments("paper", "pendulum"));
-  EXPECT_EQ(tile.model.training.max_iterations, 3000);
-  EXPECT_EQ(pendulum.model.training.max_iterations, 500);
 }
 
 TEST(Configuration, AMethodIsGivenItsNamedConfiguration) {
@@ -168,47 +167,16 @@ TEST(Configuration, EveryNamedConfigurationIsReadAndChangesSomething) {
   }
 }
 
-TEST(Configuration, ANuisanceOfASceneIsRefusedForAPlantWithoutOne) {
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [] { read(arguments("paper", "pendulum", {"nuisance/scene_camera"})); },
-      {"plant/camera_shift"}));
-}
-
-TEST(Configuration, ANameThatDoesNotExistIsRefusedWithThoseThatDo) {
-  const auto refused = [](const std::string& name, const std::vector<std::string>& words) {
-    return throwsNaming<std::invalid_argument>([&] { namedConfiguration(name); }, words);
-  };
-  EXPECT_TRUE(refused("nuisance/fog", {"'nuisance/fog'", "nuisance/brightness, nuisance/clutter"}));
-  EXPECT_TRUE(refused("noise", {"'noise'", "nuisance/noise", "oracle/suite_reacher"}));
-}
-
-TEST(Configuration, AnUnknownMethodIsRefusedWithThoseThatThereAre) {
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>([] { methodKind("oracel"); },
-                                                  {"unknown method 'oracel'", "ddm, oracle"}));
-}
-
-TEST(Configuration, WhatIsPredictedIsChecked) {
-  PredictionOptions options;
-  EXPECT_TRUE(options.problems().empty());
-  options.training_frames = 0;
-  options.held_out_frames = 0;
-  EXPECT_EQ(options.problems().size(), 2u);
-  options = PredictionOptions();
-  options.max_steps = 0;
-  EXPECT_EQ(options.problems().size(), 1u);
-}
-
 TEST(Configuration, ProblemsOfAllBlocksAreReportedAtOnce) {
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
       [] {
         readText(
             "mpc: {horzion: 3, epsilon: 1.5}\nexperiment: {seed: -1}\ntrial: {num_steps: 0}\n"
-            "evaluation: {tolerance: .nan, settled_steps: 0}\nplant: {dt: fast}\n"
+            "evaluation: {goal_distance: .nan}\nplant: {dt: fast}\n"
             "model: {order: 2.5}\nsin: {watchdog: 1}\n");
       },
       {"mpc/horzion", "horizon?", "mpc/epsilon", "1.5", "experiment/seed", "-1", "trial/num_steps",
-       "evaluation/tolerance", "nan", "evaluation/settled_steps", "plant/dt", "fast", "model/order",
-       "2.5", "block sin"}));
+       "evaluation/goal_distance", "nan", "plant/dt", "fast", "model/order", "2.5", "block sin"}));
 }
 
 TEST(Configuration, WhatContradictsIsRefused) {
@@ -222,9 +190,8 @@ TEST(Configuration, WhatContradictsIsRefused) {
         "got time with the 6 of robot/max_torque"}},
       {"mpc: {time_budget: 0.3}", {"mpc/time_budget", "plant/dt", "got 0.3"}},
       {"mpc: {time_budget: 0.15}\nrobot: {dt: 0.1}", {"mpc/time_budget", "robot/dt", "got 0.15"}},
-      {"trial: {num_steps: 60}\nevaluation: {settled_steps_strict: 61}",
-       {"evaluation/settled_steps_strict", "trial/num_steps", "got 61"}},
-      {"trial: {num_steps: 50}", {"trial/num_steps", "model/pca_dim", "got 50"}},
+      {"mpc: {max_torque: 8.0}\ntrial: {num_steps: 50}",
+       {"plant/max_torque", "model/max_torque", "trial/num_steps", "model/pca_dim", "got 50"}},
       {"trial: {num_steps: 25, episodes: 2}", {"trial/episodes", "model/pca_dim", "got 50"}},
       {"trial: {num_steps: 30}\nmodel: {pca_dim: 10, order: 30}",
        {"trial/num_steps", "model/order", "got 30"}}};
@@ -261,26 +228,12 @@ TEST(Configuration, EachMotorBoundsWhatIsPlannedForIt) {
   }
 }
 
-TEST(Configuration, AToleranceInAnotherUnitThanThatOfThePlantIsRefused) {
-  EXPECT_EQ(readText("evaluation: {tolerance: 5.0}").evaluation.tolerance, 5.0);
-  EXPECT_EQ(readText("evaluation: {tolerance: 5.0, error_unit: deg}").evaluation.tolerance, 5.0);
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [] { readText("evaluation: {tolerance: 0.1, error_unit: m}"); },
-      {"evaluation/error_unit", "deg"}));
-}
-
 TEST(Configuration, WhatJustFitsIsAccepted) {
-  EXPECT_NO_THROW(readText("trial: {num_steps: 51}\nevaluation: {settled_steps_strict: 51}\n"));
+  EXPECT_NO_THROW(readText("trial: {num_steps: 51}\n"));
   EXPECT_NO_THROW(readText("trial: {num_steps: 30}\nmodel: {pca_dim: 10, order: 29}\n"));
   EXPECT_NO_THROW(readText("mpc: {time_budget: 0.2}\n"));
   EXPECT_NO_THROW(readText("mpc: {cost: time}\nrobot: {max_torque: [6, 6, 6]}\n"));
   EXPECT_NO_THROW(readText("robot: {max_torque: [6, 6, 6, 6, 6, 6]}\n"));  // cost: distance
-}
-
-TEST(Configuration, AllContradictionsAreReportedAtOnce) {
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [] { readText("mpc: {max_torque: 8.0}\ntrial: {num_steps: 20}"); },
-      {"plant/max_torque", "model/max_torque", "settled_steps_strict", "model/pca_dim"}));
 }
 
 TEST(Configuration, WhatIsSavedIsReadBackAsTheSameConfiguration) {
@@ -289,7 +242,7 @@ TEST(Configuration, WhatIsSavedIsReadBackAsTheSameConfiguration) {
   all.experiment.runs = "/some/where";
   testing::usePlant(testing::plantOf("{type: pendulum, start_std: [0.1, 0.25]}"), &all);
   all.start.bags = {"/a.bag", "/b c.bag"};
-  all.start.bag_ids = {"crc32-00000001", "crc32-1e234567"};
+  all.start.checksums = {"crc32-00000001", "crc32-1e234567"};
   writeText(folder.file("config.yaml"), YAML::Dump(toYaml(all)));
   EXPECT_EQ(YAML::Dump(toYaml(read({folder.file("config.yaml")}))), YAML::Dump(toYaml(all)));
 }
@@ -312,17 +265,15 @@ TEST(ExperimentManual, HasTheKeysAndDefaultsOfEachBlock) {
   expected["experiment"] = toYaml(ExperimentOptions());
   expected["trial"] = toYaml(TrialOptions());
   expected["evaluation"] = toYaml(EvaluationOptions());
-  expected["prediction"] = toYaml(PredictionOptions());
   expected["start"] = toYaml(StartOptions());
   YAML::Node there;
   ParamReader reader = ParamReader::fromFiles({manual});
   there["experiment"] = toYaml(reader.read<ExperimentOptions>("experiment"));
   there["trial"] = toYaml(reader.read<TrialOptions>("trial"));
   there["evaluation"] = toYaml(reader.read<EvaluationOptions>("evaluation"));
-  there["prediction"] = toYaml(reader.read<PredictionOptions>("prediction"));
   there["start"] = toYaml(reader.read<StartOptions>("start"));
   EXPECT_NO_THROW(reader.requireValid());
-  const std::set<std::string> names = {"experiment", "trial", "evaluation", "prediction", "start"};
+  const std::set<std::string> names = {"experiment", "trial", "evaluation", "start"};
   EXPECT_EQ(keysOf(blocks), names);
   for (const std::string& block : names) {
     EXPECT_EQ(keysOf(blocks[block]), keysOf(expected[block])) << block;
@@ -362,19 +313,11 @@ TEST(ExperimentOptions, EachKeyOutOfRangeIsNamed) {
     options.num_steps = num_steps;
     EXPECT_NE(problem(options).find("trial/num_steps"), std::string::npos);
   }
-  for (const double tolerance : {-1.0, inf, nan}) {
-    EXPECT_NE(evaluation([&](auto* o) { o->tolerance = tolerance; }).find("evaluation/tolerance"),
-              std::string::npos);
-  }
   for (const double distance : {-0.1, nan, inf}) {
     EXPECT_NE(
         evaluation([&](auto* o) { o->goal_distance = distance; }).find("evaluation/goal_distance"),
         std::string::npos);
   }
-  EXPECT_NE(evaluation([](auto* o) { o->settled_steps = 0; }).find("evaluation/settled_steps "),
-            std::string::npos);
-  EXPECT_NE(evaluation([](auto* o) { o->settled_steps_strict = 9; }).find("settled_steps_strict"),
-            std::string::npos);
 }
 
 }  // namespace

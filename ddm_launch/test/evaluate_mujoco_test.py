@@ -8,7 +8,7 @@ from scratch_case import SharedScratchCase
 
 SEEDS = 6
 PLANT = ["--preset", "debug", "--plant", "suite_reacher_hard"]  # draws goals and has a reward
-SHORT = "training: {num_starts: 1, max_iterations: 20}\nevaluation: {num_steps: 40}\n"
+SHORT = "training: {num_starts: 1, max_iterations: 20}\nplant: {episode_frames: 200}\n"  # 40 images
 
 
 @needs_mujoco

@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation.h"
 
-#include <ddm_msgs/testing/expect_error.h>
 #include <ddm_sim/angles.h>
-#include <ddm_sim/moving_tile.h>
 #include <ddm_sim/pendulum.h>
 #include <ddm_sim/testing/toy_plant.h>
 #include <gtest/gtest.h>
@@ -21,20 +19,9 @@ using States = std::vector<Eigen::VectorXd>;
 
 constexpr double kDegree = kPi / 180.0;
 
-/// Options that the plant has completed.
-EvaluationOptions optionsFor(const Plant& plant) {
-  EvaluationOptions options;
-  options.complete(plant.info());
-  return options;
-}
-
-States zeroTorques(const Plant& plant, const States& states) {
-  return States(states.size(), Eigen::VectorXd::Zero(plant.torqueDim()));
-}
-
 /// Of a run without torques.
-Evaluation evaluated(const Plant& plant, const States& states, const EvaluationOptions& options) {
-  return evaluate(plant, states, zeroTorques(plant, states), options);
+Evaluation evaluated(const Plant& plant, const States& states) {
+  return evaluate(plant, states, States(states.size(), Eigen::VectorXd::Zero(plant.torqueDim())));
 }
 
 class EvaluationTest : public ::testing::Test {
@@ -48,39 +35,28 @@ class EvaluationTest : public ::testing::Test {
     return states;
   }
 
-  Evaluation evaluated(const States& states) const {
-    return ddm::evaluated(plant_, states, options_);
-  }
+  Evaluation evaluated(const States& states) const { return ddm::evaluated(plant_, states); }
 
   Pendulum plant_{PendulumOptions()};
-  EvaluationOptions options_ = optionsFor(plant_);
+  EvaluationOptions options_;
 };
 
 TEST_F(EvaluationTest, SuccessTakesTheLastTenFramesAtTheGoal) {
   EXPECT_FALSE(evaluated(arriving(9)).success);
   EXPECT_TRUE(evaluated(arriving(10)).success);
   EXPECT_TRUE(evaluated(arriving(9)).known);  // a failure is known, too
-}
-
-TEST_F(EvaluationTest, StrictSuccessTakesTheLast25) {
-  EXPECT_TRUE(evaluated(arriving(24)).success);
-  EXPECT_FALSE(evaluated(arriving(24)).success_strict);
-  EXPECT_TRUE(evaluated(arriving(25)).success_strict);
-}
-
-TEST_F(EvaluationTest, LeavingTheGoalAtTheVeryEndIsNoSuccess) {
   States states(40, at(kPi));
   states.back() = at(kPi - 11.0 * kDegree);
   EXPECT_FALSE(evaluated(states).success);
   EXPECT_NEAR(evaluated(states).final_error.value(), 11.0, 1e-12);
 }
 
-TEST_F(EvaluationTest, AFrameAtExactlyTheToleranceCounts) {
-  const States states(40, at(kPi - 10.0 * kDegree));
-  options_.tolerance = plant_.goalError(states[0]);
-  EXPECT_TRUE(evaluated(states).success);
-  options_.tolerance = std::nextafter(options_.tolerance, 0.0);
-  EXPECT_FALSE(evaluated(states).success);
+TEST_F(EvaluationTest, StrictSuccessTakesTheLast25) {
+  EXPECT_TRUE(evaluated(arriving(24)).success);
+  EXPECT_FALSE(evaluated(arriving(24)).success_strict);
+  EXPECT_TRUE(evaluated(arriving(25)).success_strict);
+  EXPECT_TRUE(evaluated(arriving(7, 7)).success_strict);  // all of a shorter run
+  EXPECT_FALSE(evaluated(arriving(6, 7)).success);
 }
 
 TEST_F(EvaluationTest, AnglesCountModuloAWholeTurn) {
@@ -107,28 +83,10 @@ TEST_F(EvaluationTest, WithoutGroundTruthNothingIsKnown) {
   EXPECT_FALSE(evaluation.total_reward.has_value());
 }
 
-TEST(EvaluationOfLengths, CountsTheTileWithinItsPixels) {
-  const MovingTile tile{MovingTileOptions()};
-  const EvaluationOptions options = optionsFor(tile);
-  EXPECT_EQ(options.error_unit, "px");
-  const auto away = [&](double distance) {
-    const Eigen::VectorXd state = tile.goal() + distance * Eigen::Vector2d(0.6, -0.8);
-    return evaluated(tile, States(40, state), options);
-  };
-  EXPECT_TRUE(away(1.99).success_strict);
-  EXPECT_NEAR(away(1.99).final_error.value(), 1.99, 1e-12);
-  EXPECT_TRUE(away(2.01).known);
-  EXPECT_FALSE(away(2.01).success);
-  EXPECT_FALSE(away(1.0).total_reward.has_value());
-}
-
 TEST(EvaluationOfLengths, CountsTheCartWithinItsMetres) {
   const testing::ToyPlant cart{testing::ToyPlant::Traits()};
-  const EvaluationOptions options = optionsFor(cart);
-  EXPECT_EQ(options.error_unit, "m");
-  EXPECT_EQ(options.tolerance, 0.05);
   const auto at = [&](double position) {
-    return evaluated(cart, States(40, Eigen::Vector2d(position, 3.0)), options);
+    return evaluated(cart, States(40, Eigen::Vector2d(position, 3.0)));
   };
   EXPECT_TRUE(at(0.951).success);
   EXPECT_FALSE(at(0.949).success);
@@ -145,13 +103,12 @@ TEST(EvaluationOfRewards, AddsUpWhatThePlantSaysOfEachStepAndTheTorqueThatActs) 
     torques.emplace_back(Eigen::VectorXd::Constant(1, u));
     expected -= std::pow(x + 0.1 * u, 2) + std::pow(v + 0.1 * u, 2) + 0.1 * u * u;
   }
-  const EvaluationOptions options = optionsFor(plant);
-  EXPECT_NEAR(evaluate(plant, states, torques, options).total_reward.value(), expected, 1e-9);
+  EXPECT_NEAR(evaluate(plant, states, torques).total_reward.value(), expected, 1e-9);
   torques.back() *= 6.0 / 5.8;
-  const double saturated = evaluate(plant, states, torques, options).total_reward.value();
+  const double saturated = evaluate(plant, states, torques).total_reward.value();
   EXPECT_LT(saturated, expected - 1e-3);
   torques.back() *= 2.0;  // beyond its limit the motor does the same
-  EXPECT_NEAR(evaluate(plant, states, torques, options).total_reward.value(), saturated, 1e-9);
+  EXPECT_NEAR(evaluate(plant, states, torques).total_reward.value(), saturated, 1e-9);
 }
 
 TEST(EvaluationOfRewards, CountsTheStepsOfLostFramesAndNoMoreStepsThanARunHas) {
@@ -172,49 +129,18 @@ TEST(EvaluationOfRewards, CountsTheStepsOfLostFramesAndNoMoreStepsThanARunHas) {
       time += plant.info().dt;
     }
   }
-  const EvaluationOptions options = optionsFor(plant);
-  EXPECT_NEAR(evaluate(plant, states, torques, options, times).total_reward.value(), expected,
-              1e-9);
-  const double without = evaluate(plant, states, torques, options).total_reward.value();
+  EXPECT_NEAR(evaluate(plant, states, torques, times).total_reward.value(), expected, 1e-9);
+  const double without = evaluate(plant, states, torques).total_reward.value();
   EXPECT_GT(std::abs(without - expected), 1e-3);
 }
 
-TEST(EvaluationOptions, LastAsLongAsThePlantSaysAndElseAsATrial) {
-  PlantInfo info = testing::toyInfo();
-  TrialOptions trial;
-  trial.num_steps = 60;
-  EvaluationOptions options;
-  options.complete(info);
-  EXPECT_EQ(options.stepsWith(trial), 60);
-  info.evaluation_steps = 200;
-  options.complete(info);
-  EXPECT_EQ(options.stepsWith(trial), 200);
-  options.num_steps = 7;
-  options.complete(info);
-  EXPECT_EQ(options.stepsWith(trial), 7);
-}
-
-TEST(EvaluationOptions, AreCompletedByThePlant) {
-  const PlantInfo info = testing::toyInfo();
-  EvaluationOptions options;
-  options.complete(info);
-  EXPECT_EQ(options.tolerance, 0.05);
-  EXPECT_EQ(options.error_unit, "m");
-  options.complete(info);  // of a saved file
-  EXPECT_EQ(options.tolerance, 0.05);
-  options = EvaluationOptions();
-  options.tolerance = 0.5;
-  options.error_unit = "m";
-  options.complete(info);
-  EXPECT_EQ(options.tolerance, 0.5);
-}
-
-TEST(EvaluationOptions, AreRefusedInAnotherUnitThanThatOfThePlant) {
-  EvaluationOptions options;
-  options.tolerance = 10.0;
-  options.error_unit = "deg";
-  EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
-      [&] { options.complete(testing::toyInfo()); }, {"evaluation/error_unit", "deg", "m"}));
+TEST(RequestFor, AnEvaluationLastsAsLongAsThePlantSaysAndElseAsATrial) {
+  Configuration configuration;
+  configuration.trial.num_steps = 60;
+  EXPECT_EQ(requestFor(configuration, 0, /*evaluation=*/true).num_steps, 60);
+  configuration.plant_info.evaluation_steps = 200;
+  EXPECT_EQ(requestFor(configuration, 0, /*evaluation=*/true).num_steps, 200);
+  EXPECT_EQ(requestFor(configuration, 0, /*evaluation=*/false).num_steps, 60);
 }
 
 TEST_F(EvaluationTest, WithoutGroundTruthTheLastFramesMustBeNearInFeatures) {
@@ -233,17 +159,8 @@ TEST_F(EvaluationTest, WithoutAToleranceOrFeaturesNothingIsKnown) {
   EXPECT_FALSE(evaluateFeatures(std::vector<double>(40, 0.0), options_).known);
   options_.goal_distance = 0.5;
   EXPECT_FALSE(evaluateFeatures({}, options_).known);
-}
-
-TEST_F(EvaluationTest, ADistanceThatIsNoNumberIsNoSuccess) {
-  options_.goal_distance = 0.5;
   const std::vector<double> distances(40, std::numeric_limits<double>::quiet_NaN());
   EXPECT_FALSE(evaluateFeatures(distances, options_).success);
-}
-
-TEST_F(EvaluationTest, FewerFramesThanTheStrictCriterionNeedsAreRefused) {
-  EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>([this] { evaluated(arriving(24, 24)); },
-                                                           {"25", "got 24"}));
 }
 
 TEST(Quantile, IsTheValueThatAFractionDoesNotExceed) {

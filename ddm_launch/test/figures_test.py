@@ -114,14 +114,14 @@ def test_tables_that_say_nothing_of_success_are_refused(rows, part, tmp_path):
 def test_errors_are_in_the_unit_of_the_run_and_a_run_must_tell_its_goal(tmp_path):
     (tmp_path / "trials.csv").write_text(HEADER + "0,0,100,1,-0.04\n")
     config = tmp_path / "config.yaml"
-    config.write_text("evaluation: {tolerance: 0.05, error_unit: m}\n")
+    config.write_text("goal: {tolerance: 0.05, error_unit: m}\n")
     assert read_goal(str(tmp_path)) == ("m", 0.05)
     assert read_trials(str(tmp_path))[0].final_error == 0.04
     with figure_style.new_screen_figure(7.0, 4.2) as drawn:
         axes = drawn.subplots()
         learning_curve.draw_one(axes, read_trials(str(tmp_path)), read_goal(str(tmp_path)))
         assert "[m]" in axes.get_ylabel()
-    for text in ("evaluation: [\n", "plant: {dt: 0.1}\n", "evaluation: {tolerance: 0.05}\n", "7\n"):
+    for text in ("goal: [\n", "plant: {dt: 0.1}\n", "goal: {tolerance: 0.05}\n", "7\n"):
         config.write_text(text)
         with pytest.raises(Failure, match="config.yaml"):
             read_goal(str(tmp_path))

@@ -13,8 +13,7 @@
 #include <limits>
 #include <set>
 
-#include "method_kinds.h"
-#include "resumption.h"
+#include "method.h"
 #include "toy_run.h"
 
 namespace ddm {
@@ -65,14 +64,6 @@ class InProcessDriverTest : public ::testing::Test {
   TrialRequest request_;
 };
 
-TEST_F(InProcessDriverTest, APerfectCameraGivesAFrameInEachStepAndOneSegment) {
-  const TrialOutcome outcome = run();
-  ASSERT_EQ(outcome.times.size(), 40u);
-  for (size_t t = 0; t + 1 < 40; ++t) EXPECT_EQ(stepsAfter(outcome, t), 1) << t;
-  ASSERT_EQ(bag().data.segments().size(), 1u);
-  EXPECT_EQ(bag().data.numFrames(), 40);
-}
-
 TEST_F(InProcessDriverTest, ThePlantStaysWhereTheLastFrameShowsItAsInLockStep) {
   testing::usePlant(testing::plantOf(counter(39)), &configuration_);
   const TrialOutcome outcome = run();
@@ -97,25 +88,6 @@ TEST_F(InProcessDriverTest, ThePlantGoesOnUnderTheLastTorqueWhereAFrameIsLost) {
     EXPECT_EQ(plant->state(), outcome.states[t + 1]) << t;
   }
   EXPECT_GT(num_lost, 0);
-}
-
-TEST_F(InProcessDriverTest, TheReturnIsThatOfAsManyStepsAsWithoutLostFrames) {
-  testing::usePlant(testing::plantOf(testing::colourfulToy()), &configuration_);
-  configuration_.camera.drop_rate = 0.2;
-  const TrialOutcome outcome = run();
-  const auto plant = makePlant(*configuration_.plant);
-  double expected = 0.0;
-  int num_steps = 0;
-  for (size_t t = 0; t + 1 < 40; ++t) {
-    plant->setState(outcome.states[t]);
-    for (int step = 0; step < stepsAfter(outcome, t) && num_steps < 40; ++step, ++num_steps) {
-      expected += plant->stepReward(plant->state(), outcome.torques[t]).value();
-      plant->step(outcome.torques[t]);
-    }
-  }
-  EXPECT_EQ(num_steps, 40);  // with frames to spare
-  const TrialRow row = rowOf(request_.id, outcome, configuration_.evaluation, plant.get());
-  EXPECT_NEAR(row.evaluation.total_reward.value(), expected, 1e-9);
 }
 
 TEST_F(InProcessDriverTest, NoPairOfTheBagStraddlesALostFrame) {
@@ -182,6 +154,32 @@ TEST_F(InProcessDriverTest, EachRunHasAGoalOfItsOwnInItsBagWhereThePlantDrawsOne
     goals.insert(expected);
   }
   EXPECT_EQ(goals.size(), 3u);
+}
+
+/// Keeps the goals that it is shown.
+class Onlooker : public Policy {
+ public:
+  void startTrial(const TrialId& /*id*/) override {}
+  void setGoal(const Grey& goal) override { goals.insert(goal); }
+  void observe(const Grey& /*grey*/) override {}
+  Answer answer() override { return {Eigen::VectorXd::Zero(1), 0.0, {}}; }
+  void apply(const Eigen::VectorXd& /*u*/) override {}
+
+  std::set<Grey> goals;
+};
+
+TEST_F(InProcessDriverTest, ShowsThePolicyTheGoalOfEachTrial) {
+  testing::usePlant(testing::plantOf(wandering()), &configuration_);
+  Environment environment(makePlant(*configuration_.plant), configuration_.camera);
+  const auto onlooker = std::make_shared<Onlooker>();
+  request_.epsilon = 0.0;
+  std::set<Grey> expected;
+  for (request_.id.trial = 0; request_.id.trial < 3; ++request_.id.trial) {
+    runClosedLoop(&environment, onlooker, request_, configuration_, [](const auto&) {});
+    expected.insert(environment.goalImage().bytes);
+  }
+  EXPECT_EQ(onlooker->goals, expected);
+  EXPECT_EQ(expected.size(), 3u);
 }
 
 TEST_F(InProcessDriverTest, APlantWithTwoMotorsIsDrivenByBoth) {

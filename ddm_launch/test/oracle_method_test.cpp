@@ -13,7 +13,7 @@
 
 #include "evaluation.h"
 #include "in_process_driver.h"
-#include "method_kinds.h"
+#include "method.h"
 #include "toy_run.h"
 
 namespace ddm {
@@ -97,20 +97,10 @@ TEST_F(OracleTest, StandsUpAndStaysWhereverItStarts) {
   const std::unique_ptr<Plant> plant = makePlantOf("pendulum");
   for (int trial = 0; trial < 10; ++trial) {
     const TrialOutcome run = greedyRun(trial);
-    const Evaluation evaluation =
-        evaluate(*plant, run.states, run.torques, configuration_.evaluation);
+    const Evaluation evaluation = evaluate(*plant, run.states, run.torques);
     EXPECT_TRUE(evaluation.success_strict) << "trial " << trial;
     EXPECT_LT(evaluation.final_error.value(), 0.1) << "trial " << trial;
   }
-}
-
-TEST_F(OracleTest, BringsTheTileToItsGoal) {
-  testing::usePlant(testing::plantOf("{type: moving_tile, max_torque: 5.0}"), &configuration_);
-  configuration_.mpc.max_torque = {5.0};
-  const std::unique_ptr<Plant> plant = makePlant(*configuration_.plant);
-  const TrialOutcome outcome = greedyRun(0);
-  EXPECT_GT(plant->goalError(outcome.states.front()), 10.0);
-  EXPECT_LT(plant->goalError(outcome.states.back()), 0.01);
 }
 
 TEST_F(OracleTest, BringsACartToTheGoalOfEachRun) {
@@ -122,8 +112,7 @@ TEST_F(OracleTest, BringsACartToTheGoalOfEachRun) {
     plant->setGoal(goalOf(*plant, 7, static_cast<std::uint32_t>(trial), /*evaluation=*/true));
     EXPECT_NE(plant->goal(), plant->info().goal);
     EXPECT_LT(plant->goalError(outcome.states.back()), 0.02) << trial;
-    EXPECT_TRUE(
-        evaluate(*plant, outcome.states, outcome.torques, configuration_.evaluation).success);
+    EXPECT_TRUE(evaluate(*plant, outcome.states, outcome.torques).success);
   }
 }
 

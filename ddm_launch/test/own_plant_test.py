@@ -58,7 +58,7 @@ class OwnPlantTest(SharedScratchCase):
         rows = read_rows(self.process, "evaluation_000", "torques.csv")
         self.assertEqual(rows[0], ["step", "force_n", "exploratory"])
         self.assertTrue(any(abs(float(row[1])) > 0.0 for row in rows[1:]))
-        self.assertEqual(read_yaml(self.process, "config.yaml")["evaluation"]["error_unit"], "m")
+        self.assertEqual(read_yaml(self.process, "config.yaml")["goal"]["error_unit"], "m")
         rows = read_rows(self.process, "trial_000", "trajectory.csv")
         self.assertEqual(rows[0], ["step", "time_s", "x_m", "rate_m_per_s"])
         self.assertGreater(len({row[2] for row in rows[1:]}), 20)  # it moves

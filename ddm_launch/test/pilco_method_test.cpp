@@ -16,7 +16,7 @@
 
 #include "algorithm1.h"
 #include "in_process_driver.h"
-#include "method_kinds.h"
+#include "method.h"
 #include "toy_run.h"
 
 namespace ddm {

@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "pilco/observations.h"
-#include "run_csv.h"
+#include "tables.h"
 #include "toy_run.h"
 
 namespace ddm {

@@ -92,7 +92,7 @@ class ReplayTest(SharedScratchCase):
     def test_time_that_does_not_come_is_named(self):
         rospy.set_param("/use_sim_time", True)
         self.addCleanup(rospy.delete_param, "/use_sim_time")
-        code, output = call([find_program("replay_node"), "_replay/bag:=" + self.bag,
+        code, output = call([find_program("experiment_node"), "replay", "_replay/bag:=" + self.bag,
                              "_replay/model:=" + self.model, "_replay/timeout:=0.5"])
         self.assertEqual(code, 1, output)
         for word in ("0.5 s", "nobody", "/clock"):

@@ -12,13 +12,13 @@ from scratch_case import ScratchCase
 class ResolveTest(ScratchCase):
     def resolve(self, *arguments):
         """What is printed, read as YAML. The home folder is that of the test."""
-        code, output = call([find_program("resolve")] + list(arguments), folder=self.scratch,
+        code, output = call([find_program("experiment_node"), "resolve"] + list(arguments), folder=self.scratch,
                             environment=dict(os.environ, HOME=self.scratch))
         self.assertEqual(code, 0, output)
         return yaml.safe_load(output)
 
     def assertRefused(self, words, *arguments, code=2):
-        actual, output = call([find_program("resolve")] + list(arguments), folder=self.scratch)
+        actual, output = call([find_program("experiment_node"), "resolve"] + list(arguments), folder=self.scratch)
         self.assertEqual(actual, code, output)
         for word in words:
             self.assertIn(word, output)
@@ -26,14 +26,6 @@ class ResolveTest(ScratchCase):
     def test_an_option_with_an_empty_value_counts_as_not_given(self):
         self.assertEqual(self.resolve("--preset", "", "--plant", "", "--set", "experiment/seed=", "--crop", "",
                                       "--model", "", "--bags", "--config", ""), self.resolve())
-
-    def test_values_win_over_files(self):
-        self.write("more.yaml", "experiment: {seed: 3, trials: 4}\nshow: {frame_rate: 2.0}\n")
-        blocks = self.resolve("--preset", "debug", "--config", "more.yaml", "--set", "experiment/trials=5")
-        self.assertEqual([blocks["experiment"][key] for key in ("preset", "seed")], ["debug", 3])
-        self.assertEqual(int(blocks["experiment"]["trials"]), 5)
-        self.assertEqual(blocks["show"]["frame_rate"], 2.0)
-        self.assertEqual(blocks["trial"]["num_steps"], 30)  # of the preset
 
     def test_a_saved_configuration_wins_over_the_defaults_of_a_launch_file_and_options_win_over_both(self):
         self.write("run/config.yaml", "version: 2\nexperiment: {preset: debug, plant: pendulum, method: ddm}\n"
@@ -103,10 +95,11 @@ class ResolveTest(ScratchCase):
         for crop in ("1,2,3", "1,2,3,4,5", "a,2,3,4"):
             self.assertRefused(["--crop", crop], "--crop", crop)
 
-    def test_one_value_can_be_printed(self):
-        self.assertIs(self.resolve("--print", "sim/lockstep"), True)
+    def test_one_value_can_be_printed_and_the_status_of_actions_is_rare_in_simulated_time(self):
         self.write("real_time.yaml", "sim: {lockstep: false}\n")
-        self.assertIs(self.resolve("--config", "real_time.yaml", "--print", "sim/lockstep"), False)
+        for words, lockstep, frequency in (([], True, 0.1), (["--config", "real_time.yaml"], False, 5.0)):
+            self.assertIs(self.resolve(*words, "--print", "sim/lockstep"), lockstep)
+            self.assertEqual(self.resolve(*words, "--print", "status_frequency"), frequency)
 
     def test_a_value_may_be_a_list(self):
         model = self.resolve("--set", "model/encoder_widths=[30, 12]", "--set", "model/max_torque=[2.5]")["model"]
@@ -135,11 +128,6 @@ class ResolveTest(ScratchCase):
         self.assertEqual(code, 1)
         self.assertIn("no.bag", output)
         self.assertNotIn("unknown block", output)
-
-    def test_the_status_of_actions_is_rare_in_simulated_time(self):
-        self.write("real_time.yaml", "sim: {lockstep: false}\n")
-        self.assertEqual(self.resolve("--print", "status_frequency"), 0.1)
-        self.assertEqual(self.resolve("--config", "real_time.yaml", "--print", "status_frequency"), 5.0)
 
     def test_bad_arguments_and_files_are_named(self):
         self.assertRefused(["--set", "seed"], "--set", "seed")

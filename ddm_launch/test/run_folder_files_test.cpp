@@ -2,19 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <boost/filesystem.hpp>
 #include <cmath>
-#include <fstream>
 #include <limits>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "run_folder.h"
 #include "run_folder_case.h"
+#include "tables.h"
 #include "toy_run.h"
-#include "trials_csv.h"
 
 namespace ddm {
 namespace {
@@ -63,47 +60,6 @@ TEST_F(RunFolderFilesTest, AFolderThatCannotBeMadeOrWrittenIsNamed) {
   }
 }
 
-TEST_F(RunFolderFilesTest, FilesAreReplacedAsAWhole) {
-  RunFolder folder(configuration_);
-  folder.finishTrial(toyRow(0));
-  std::ifstream reader(file("trials.csv"));  // begins to read before the next row is written
-  folder.finishTrial(toyRow(1));
-  std::ostringstream seen;
-  seen << reader.rdbuf();
-  EXPECT_EQ(seen.str(), formatTrialsCsv({toyRow(0)}));
-  EXPECT_EQ(textOf(file("trials.csv")), formatTrialsCsv({toyRow(0), toyRow(1)}));
-}
-
-TEST_F(RunFolderFilesTest, NothingButTheFilesOfTheContractIsLeft) {
-  {
-    RunFolder folder(configuration_);
-    testing::ObedientDriver driver;
-    driver.state = Eigen::Vector2d::Zero();
-    TrialRequest request;
-    request.num_steps = 2;
-    const TrialOutcome outcome = driver.runTrial(request, [](double) {});
-    folder.writeRun({0, /*evaluation=*/false}, outcome);
-    TrainingOutcome training;
-    training.files["model.ddm"] = "model";
-    folder.writeTraining(0, training);
-    folder.writeRun({0, /*evaluation=*/true}, outcome);
-    folder.finishTrial(toyRow(0));
-    folder.writeSummary(1.0);
-  }
-  std::vector<std::string> names;
-  for (const auto& entry : fs::recursive_directory_iterator(scratch_.file("run"))) {
-    if (fs::is_regular_file(entry)) {
-      names.push_back(fs::relative(entry.path(), scratch_.file("run")).string());
-    }
-  }
-  std::sort(names.begin(), names.end());
-  EXPECT_EQ(names, (std::vector<std::string>{
-                       ".trials.crc32", "config.yaml", "evaluation_000/torques.csv",
-                       "evaluation_000/trajectory.csv", "summary.yaml", "trial_000/model.ddm",
-                       "trial_000/torques.csv", "trial_000/training.yaml",
-                       "trial_000/trajectory.csv", "trials.csv"}));
-}
-
 TEST_F(RunFolderFilesTest, DistancesInFeaturesAreWrittenWhereTheTrueStateIsNotKnown) {
   RunFolder folder(configuration_);
   TrialOutcome outcome;
@@ -118,16 +74,6 @@ TEST_F(RunFolderFilesTest, DistancesInFeaturesAreWrittenWhereTheTrueStateIsNotKn
   EXPECT_FALSE(fs::exists(file("evaluation_001/goal_distance.csv")));
 }
 
-TEST_F(RunFolderFilesTest, TorquesAreWrittenWith17Digits) {
-  RunFolder folder(configuration_);
-  TrialOutcome outcome;
-  outcome.torques = {Eigen::VectorXd::Constant(1, 0.1), Eigen::VectorXd::Constant(1, -6.0)};
-  outcome.exploratory = {true, false};
-  folder.writeRun({3, /*evaluation=*/false}, outcome);
-  EXPECT_EQ(textOf(file("trial_003/torques.csv")),
-            "step,torque_nm,exploratory\n0,0.10000000000000001,1\n1,-6,0\n");
-}
-
 TEST_F(RunFolderFilesTest, TorquesOfARobotAreThoseOfItsMotorsWhateverThePlantIs) {
   configuration_.robot = RobotOptions();
   TrialOutcome outcome;
@@ -137,9 +83,10 @@ TEST_F(RunFolderFilesTest, TorquesOfARobotAreThoseOfItsMotorsWhateverThePlantIs)
     RunFolder(configuration_).writeRun({0, /*evaluation=*/false}, outcome);
     return textOf(file(name + "/trial_000/torques.csv"));
   };
-  outcome.torques = {Eigen::Vector2d(0.5, -2.0)};
+  outcome.torques = {Eigen::Vector2d(0.1, -2.0)};
   configuration_.robot->max_torque = {6.0, 4.0};
-  EXPECT_EQ(written("two_motors"), "step,torque_1_nm,torque_2_nm,exploratory\n0,0.5,-2,1\n");
+  EXPECT_EQ(written("two_motors"),
+            "step,torque_1_nm,torque_2_nm,exploratory\n0,0.10000000000000001,-2,1\n");
   outcome.torques = {Eigen::VectorXd::Constant(1, 0.5)};
   configuration_.robot->max_torque = {6.0};
   testing::usePlant(testing::plantOf("{type: moving_tile}"), &configuration_);
@@ -179,26 +126,20 @@ TEST_F(RunFolderFilesTest, NumbersThatNoReaderTakesAreNotWritten) {
   EXPECT_FALSE(fs::exists(file("trials.csv")));
 }
 
-TEST_F(RunFolderFilesTest, TheVerdictOfAnEarlierCallIsRemovedBeforeTheNextTrial) {
-  {
-    RunFolder folder(configuration_);
-    folder.finishTrial(toyRow(0));
-    writeText(folder.beginRun({0}), "a bag");
-    folder.writeSummary(1.0);
-  }
-  RunFolder folder(configuration_);
-  ASSERT_TRUE(folder.isFinished());
-  folder.beginRun({1});
-  EXPECT_FALSE(fs::exists(file("summary.yaml")));
-  EXPECT_FALSE(folder.isFinished());
-}
-
-TEST_F(RunFolderFilesTest, ASummaryThatMakesNoSenseIsNoVerdict) {
+TEST_F(RunFolderFilesTest, AVerdictIsOneThatSaysSoAndIsRemovedBeforeTheNextTrial) {
   finish(1);
   for (const std::string text : {"", "[", "7\n", "[1]\n", "finished: false\n", "finished: [1]\n"}) {
     writeText(file("summary.yaml"), text);
-    EXPECT_FALSE(RunFolder(configuration_).isFinished()) << text;
+    EXPECT_FALSE(RunFolder(configuration_).confirmSummary()) << text;
   }
+  {
+    RunFolder folder(configuration_);
+    folder.writeSummary(1.0);
+    EXPECT_TRUE(folder.confirmSummary());
+  }
+  RunFolder folder(configuration_);
+  folder.beginRun({1});
+  EXPECT_FALSE(folder.confirmSummary());
 }
 
 TEST_F(RunFolderFilesTest, TheSummaryHoldsTheVerdict) {
@@ -212,18 +153,67 @@ TEST_F(RunFolderFilesTest, TheSummaryHoldsTheVerdict) {
   EXPECT_EQ(summary["success"].as<std::vector<int>>(), (std::vector<int>{0, 1, 0}));
   EXPECT_DOUBLE_EQ(summary["mean_success"].as<double>(), 1.0 / 3.0);
   EXPECT_EQ(summary["wall_s"].as<double>(), 2.5);
-}
-
-TEST_F(RunFolderFilesTest, TheSummaryClaimsNoSuccessThatIsNotKnown) {
-  RunFolder folder(configuration_);
-  TrialRow row = toyRow(0);
+  TrialRow row = toyRow(3);
   row.evaluation = Evaluation();
   folder.finishTrial(row);
   folder.writeSummary(1.0);
-  const YAML::Node summary = YAML::LoadFile(file("summary.yaml"));
-  EXPECT_TRUE(summary["finished"].as<bool>());
-  EXPECT_FALSE(summary["success"].IsDefined());
-  EXPECT_FALSE(summary["mean_success"].IsDefined());
+  const YAML::Node unknown = YAML::LoadFile(file("summary.yaml"));
+  EXPECT_TRUE(unknown["finished"].as<bool>());
+  EXPECT_FALSE(unknown["success"].IsDefined() || unknown["mean_success"].IsDefined());
+}
+
+TEST_F(RunFolderFilesTest, RowsThatAreNotThoseOfTheExperimentAreRefused) {
+  finish(2);
+  writeText(file("trials.csv"), formatTrialsCsv({toyRow(0), toyRow(2)}));
+  expectRefused({"trials.csv", "row 2", "trial 1"});
+  writeText(file("trials.csv"), formatTrialsCsv({toyRow(0, /*seed=*/9)}));
+  expectRefused({"trials.csv", "row 1", "seed 7"});
+  writeText(file("trials.csv"), "nonsense\n");
+  expectRefused({"trials.csv", "line 1"});
+}
+
+TEST_F(RunFolderFilesTest, RowsOfWhichAnyByteHasChangedAreRefused) {
+  finish(2);
+  const std::string rows = textOf(file("trials.csv"));
+  for (size_t at = 0; at < rows.size(); ++at) {
+    std::string changed = rows;
+    changed[at] = static_cast<char>(changed[at] ^ 1);  // another digit, where there is one
+    writeText(file("trials.csv"), changed);
+    expectRefused({"trials.csv"});
+  }
+  writeText(file("trials.csv"), rows);
+  EXPECT_EQ(RunFolder(configuration_).rows().size(), 2u);
+}
+
+TEST_F(RunFolderFilesTest, AnExperimentThatEndedBetweenTheChecksumAndItsRowIsTakenUp) {
+  finish(2);
+  writeText(file("trials.csv"), formatTrialsCsv({toyRow(0)}));
+  EXPECT_EQ(RunFolder(configuration_).rows().size(), 1u);
+}
+
+TEST_F(RunFolderFilesTest, RowsThatTheChecksumsDoNotKnowAreRefused) {
+  finish(2);
+  writeText(file(".trials.crc32"), "");
+  expectRefused({"trials.csv", ".trials.crc32", "remove"});
+}
+
+TEST_F(RunFolderFilesTest, RowsWithoutChecksumsAreTakenWithAWarning) {
+  finish(2);
+  fs::remove(file(".trials.crc32"));
+  {
+    RunFolder folder(configuration_);
+    ASSERT_EQ(folder.warnings().size(), 1u);
+    EXPECT_NE(folder.warnings()[0].find(".trials.crc32"), std::string::npos);
+    writeText(folder.beginRun({2}), "a bag");
+    folder.finishTrial(toyRow(2));
+  }
+  EXPECT_TRUE(RunFolder(configuration_).warnings().empty());
+}
+
+TEST_F(RunFolderFilesTest, RowsWithoutAConfigurationAreRefused) {
+  finish(1);
+  fs::remove(file("config.yaml"));
+  expectRefused({"trials.csv", "no config.yaml"});
 }
 
 }  // namespace

@@ -61,13 +61,13 @@ TEST_F(StartTest, NothingToStartFromStaysNothing) {
   EXPECT_FALSE(toYaml(configuration_)["start"]);
 }
 
-TEST_F(StartTest, BagsOfThePlantGetTheirIds) {
+TEST_F(StartTest, BagsOfThePlantGetTheirChecksums) {
   configuration_.start.bags = {bag(51)};
   prepareStart(&configuration_);
-  ASSERT_EQ(configuration_.start.bag_ids.size(), 1U);
-  EXPECT_EQ(configuration_.start.bag_ids[0].substr(0, 6), "crc32-");
+  ASSERT_EQ(configuration_.start.checksums.size(), 1U);
+  EXPECT_EQ(configuration_.start.checksums[0].substr(0, 6), "crc32-");
   EXPECT_NO_THROW(prepareStart(&configuration_));  // an experiment that is taken up
-  configuration_.start.bag_ids[0] = "crc32-00000000";
+  configuration_.start.checksums[0] = "crc32-00000000";
   EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { prepareStart(&configuration_); },
                                                   {"51.bag has changed", "crc32-00000000"}));
 }

@@ -309,12 +309,11 @@ class SweepTest(SharedScratchCase):
         self.assertTableIsComplete([7], 0)
 
     def test_predictions_are_collected_too(self):
-        small = self.write("small.yaml", "prediction: {training_frames: 40, held_out_frames: 10, max_steps: 2}\n")
         arguments = ["--program", "prediction_experiment", "--preset", "debug", "--seeds", "0:2", "--out", self.out,
-                     "--", "--config", small]
+                     "--set", "training/max_iterations=5"]
         self.assertEnds(0, ["prediction_experiment", "2 of 2 seeds finished"], *arguments)
         rows = read_rows(self.out, "sweep.csv")
         self.assertEqual(rows[0][:3], ["seed", "steps", "num_predictions"])
-        self.assertEqual([row[:2] for row in rows[1:]], [["0", "1"], ["0", "2"], ["1", "1"], ["1", "2"]])
+        self.assertEqual([row[:2] for row in rows[1:]], [[str(seed), str(k)] for seed in (0, 1) for k in range(1, 9)])
         self.assertEnds(0, ["0 of 2 seeds to run"], *arguments)
         self.assertEqual(read_yaml(self.out, "sweep.yaml")["program"], "prediction_experiment")

@@ -52,9 +52,6 @@ class ToyPlugin : public PlantPlugin {
 inline void usePlant(std::shared_ptr<const PlantPlugin> plant, Configuration* all) {
   all->plant = std::move(plant);
   all->plant_info = makePlant(*all->plant)->info();
-  all->evaluation.tolerance = 0.0;
-  all->evaluation.error_unit.clear();
-  all->evaluation.complete(all->plant_info);
 }
 
 /// @param block  of YAML, like {type: moving_tile, dt: 0.1}

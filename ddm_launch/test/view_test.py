@@ -59,7 +59,7 @@ class ViewTest(SharedScratchCase):
         self.assertEqual([table["trials_csv"].count("\n") for table in tables], list(range(1, TRIALS + 3)))
         self.assertEqual({table["frames"] for table in tables}, {30 * (TRIALS + 1)})
         rospy.Publisher("trials", String, queue_size=1, latch=True).publish(self.heard["trials"][-1])
-        node = Process([find_program("learning_curve_node")])
+        node = Process([find_program("figure"), "learning_curve_node"])
         self.addCleanup(node.stop)
         image = rospy.wait_for_message("learning_curve_image", Image, 60.0)
         self.assertEqual((image.width, image.height, image.encoding), (640, 480, "rgb8"), node.output)

@@ -16,8 +16,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "csv_text.h"
-#include "run_csv.h"
+#include "tables.h"
 
 namespace ddm {
 namespace {

@@ -15,8 +15,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "csv_text.h"
-#include "method_kinds.h"
+#include "tables.h"
+#include "method.h"
 
 namespace ddm {
 namespace {

@@ -1,6 +1,6 @@
 // No baselines: what a build without PILCO links.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "method_kinds.h"
+#include "method.h"
 
 namespace ddm {
 

@@ -1,7 +1,5 @@
-// See round_trips.h.
+// Round trips of images and torques between nodes, for `rosrun ddm_launch qa benchmark`.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "round_trips.h"
-
 #include <ddm_common/image_codec.h>
 #include <ddm_msgs/Torque.h>
 #include <ddm_msgs/topics.h>
@@ -30,27 +28,27 @@ class Stopwatch {
   /// So many round trips by now. The first ones do not count: connections and caches are new.
   void tick(int number) {
     if (number < kWarmUp) return;
-    last_ = {std::chrono::steady_clock::now(), number};
-    if (first_.number == 0) first_ = last_;
+    last_ = Clock::now();
+    num_last_ = number;
+    if (num_first_ > 0) return;
+    first_ = last_;
+    num_first_ = number;
   }
 
   /// Mean [us].
   /// @throws std::runtime_error if fewer than two have been told
   double mean() const {
-    if (last_.number <= first_.number) throw std::runtime_error("no round trip was timed");
-    const std::chrono::duration<double, std::micro> time = last_.time - first_.time;
-    return time.count() / (last_.number - first_.number);
+    if (num_last_ <= num_first_) throw std::runtime_error("no round trip was timed");
+    return std::chrono::duration<double, std::micro>(last_ - first_).count() /
+           (num_last_ - num_first_);
   }
 
  private:
-  struct Event {
-    std::chrono::steady_clock::time_point time;
-    int number = 0;
-  };
-
+  using Clock = std::chrono::steady_clock;
   static constexpr int kWarmUp = 100;
 
-  Event first_, last_;
+  Clock::time_point first_, last_;
+  int num_first_ = 0, num_last_ = 0;
 };
 
 /// Times the real nodes by the feedback of their trial: to hear of each frame would be a load.
@@ -105,6 +103,15 @@ void answerImages(ros::NodeHandle* nh) {
 
 }  // namespace
 
+/// Runs one node of a loop, if the first argument says so; the second is the number of round trips.
+/// The one that times them prints their mean [us].
+///
+///   lockstep         has the real nodes run a random trial, without recorder
+///   bare_camera      publishes an image as soon as the last one has its torque
+///   bare_controller  answers images by torques
+///
+/// @return false if the first argument is another
+/// @throws std::runtime_error if the nodes do not come or nothing was timed
 bool timesRoundTrips(int argc, char** argv) {
   const std::string role = argv[1];
   if (role != "lockstep" && role != "bare_camera" && role != "bare_controller") return false;

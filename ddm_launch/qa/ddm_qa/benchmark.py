@@ -22,8 +22,8 @@ ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 LIMIT_S = 900.0  # of a program
 
 ABOUT = """\
-Times objective and gradient, one retraining, PCA, encoding, plans, renderer and bag reading on the 1600 images of an
-experiment that it runs first; the experiment itself, in one process and with the nodes; and the lock-step loop next to
+Times objective and gradient, one retraining and plans on the 1600 images of an experiment that it runs first; the
+experiment itself, in one process and with the nodes; and the lock-step loop next to
 two nodes that only send the same messages to and fro. Starts what it needs, a master too. Everything runs on one core where
 it can; the machine should have nothing else to do."""
 
@@ -33,11 +33,7 @@ DIR/speed.csv, one row a name; times in microseconds, of single calls unless sai
   matrix_products/N    the matrix products of the same and nothing else, N samples at a time
   matrix_products      the same in their best blocking
   retrain              a retraining of 200 iterations on 1600 images, PCA included
-  pca, encode          PCA of 1601 images; the features of one image
-  plan                 a whole plan along greedy trials; plan_cost_gradient: one evaluation of its cost
-  plan_5_ms            from when an image is due to its torque, where a plan would take minutes and mpc/time_budget is
-                       5 ms; plan_5_ms_busy: the same with a busy process on each core
-  render, read_bag     an image of the simulator; a bag of 100 images
+  plan                 a whole plan along greedy trials
   lockstep_round_trip  image to torque to next image with sim_node and mpc_node, random policy, recorder off: the mean of
                        a start, median of 9 starts
   bare_round_trip      the same messages between two nodes that do nothing with them, starts taking turns
@@ -47,17 +43,6 @@ DIR/speed.csv, one row a name; times in microseconds, of single calls unless sai
                        efficient_experiment_all_cores, the only row in which training may use all cores
   ros_experiment       the same by roslaunch, from the first image to the last; once
 DIR/machine.yaml       processor, version, iterations of a plan"""
-
-
-@contextlib.contextmanager
-def busy_cores():
-    """Within, a process on each core computes."""
-    processes = [Process(["sh", "-c", "while :; do :; done"]) for _ in range(os.cpu_count())]
-    try:
-        yield
-    finally:
-        for process in processes:
-            process.stop()
 
 
 class Benchmark:
@@ -92,13 +77,12 @@ class Benchmark:
             launch.waitForEnd(LIMIT_S)
         self.keep_wall_time("ros_experiment", run)
 
-    def kernels(self, prefix="", only=".", suffix=""):
-        """Of the experiment of this prefix. only: a regular expression for the names of the rows."""
+    def kernels(self, prefix=""):
+        """Of the experiment of this prefix."""
         name = prefix + "kernels"
         report = os.path.join(self.scratch, name + ".json")
         call(name, [find_program("benchmark_kernels"), os.path.join(self.scratch, prefix + "experiment"),
-                    "--benchmark_filter=" + only, "--benchmark_out_format=json", "--benchmark_out=" + report], LIMIT_S,
-             **ONE_THREAD)
+                    "--benchmark_out_format=json", "--benchmark_out=" + report], LIMIT_S, **ONE_THREAD)
         with open(report) as stream:
             found = json.load(stream)["benchmarks"]
         times = {}  # name: {median, p99}
@@ -110,14 +94,9 @@ class Benchmark:
             if not prefix and kernel == "plan" and row.get("aggregate_name") == "mean":
                 self.plan_iterations = row["plan_iterations"]
         products = [found for name, found in times.items() if name.startswith("matrix_products/")]
-        if products:
-            times["matrix_products"] = min(products, key=lambda found: found["median"])
+        times["matrix_products"] = min(products, key=lambda found: found["median"])
         for kernel, found in times.items():
-            self.rows[prefix + kernel + suffix] = {"median_us": found["median"], "p99_us": found["p99"]}
-
-    def busy_plans(self, prefix=""):
-        with busy_cores():
-            self.kernels(prefix, "^plan_5_ms", "_busy")
+            self.rows[prefix + kernel] = {"median_us": found["median"], "p99_us": found["p99"]}
 
     def round_trips(self, progress):
         """Restarts of both loops, on all cores and on one, taking turns."""
@@ -158,7 +137,6 @@ class Benchmark:
         steps = [("experiment", self.experiment), ("kernels", self.kernels)]
         steps += [("efficient, seed %d" % seed, lambda seed=seed: self.efficient(seed)) for seed in range(SEEDS)]
         steps.append(("kernels of efficient", lambda: self.kernels("efficient_")))
-        steps += [("plans on busy cores", self.busy_plans), ("of efficient", lambda: self.busy_plans("efficient_"))]
         steps.append(("roslaunch experiment", self.ros_experiment))
         with tqdm(total=len(steps) + 2 * len(LOOPS) * RESTARTS, unit="step", dynamic_ncols=True, disable=None) as progress:
             for name, step in steps:

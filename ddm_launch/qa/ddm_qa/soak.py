@@ -25,7 +25,6 @@ SEED = 1
 CONFIG = """\
 image: {size: %d}
 model: {pca_dim: 5, encoder_widths: [], predictor_widths: []}
-evaluation: {settled_steps: 3, settled_steps_strict: 6}
 trial: {num_steps: %d}
 """
 LOCKSTEP_SIZE, REAL_TIME_SIZE = 51, 5  # of an image [pixels]

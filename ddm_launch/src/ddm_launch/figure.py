@@ -1,5 +1,8 @@
 # figure NAME: every figure that is made of run folders and of what programs leave.
 # SPDX-License-Identifier: BSD-3-Clause
+import importlib
+import sys
+
 from ddm_launch import film, film_strip, learning_curve, success_rate
 from ddm_launch.command import Parser, run_program
 
@@ -25,6 +28,8 @@ def add_figures(parser, figures):
 
 
 def main(arguments=None):
+    if arguments is None and sys.argv[1:2] == ["learning_curve_node"]:  # a node, for launch files; figures need no ROS
+        return importlib.import_module("ddm_launch.learning_curve_node").main()
     parser = Parser(prog="figure", description="Draws a figure; `figure FIGURE --help` lists its options.")
     add_figures(parser, FIGURES)
     options = parser.parse_args(arguments)

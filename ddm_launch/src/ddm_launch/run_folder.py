@@ -35,13 +35,13 @@ def read_goal(folder):
     path = os.path.join(folder, "config.yaml")
     try:
         with open(path) as stream:
-            evaluation = yaml.load(stream, Loader=LOADER)["evaluation"]
-        return Goal(str(evaluation["error_unit"]), float(evaluation["tolerance"]))
+            goal = yaml.load(stream, Loader=LOADER)["goal"]
+        return Goal(str(goal["error_unit"]), float(goal["tolerance"]))
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         raise unreadable(path, error)
     except (KeyError, TypeError, ValueError):
-        raise Failure("%s does not tell what counts as success (keys evaluation/error_unit and evaluation/tolerance): take a "
-                      "run folder with its own config.yaml" % path) from None
+        raise Failure("%s does not tell what counts as success (keys goal/error_unit and goal/tolerance): take a run folder "
+                      "with its own config.yaml" % path) from None
 
 
 def read_sweep(path, remedy="give a trials.csv or sweep.csv"):

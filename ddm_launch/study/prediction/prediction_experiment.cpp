@@ -9,33 +9,34 @@
 #include <ddm_sim/environment.h>
 #include <ddm_sim/plant_factory.h>
 
-#include <algorithm>
+#include <Eigen/QR>
 #include <iostream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "closed_loop.h"
-#include "csv_text.h"
-#include "method_kinds.h"
-#include "prediction_options.h"
+#include "evaluation.h"
+#include "in_process_driver.h"
+#include "method.h"
 #include "progress.h"
-#include "quadratic_fit.h"
 #include "resolution.h"
-#include "results_folder.h"
-#include "resumption.h"
+#include "run_folder.h"
+#include "tables.h"
 
 namespace ddm {
 namespace {
 
 constexpr char kAbout[] =
-    "Records one long random trial, trains on its first frames and predicts the rest, 1 step "
-    "ahead\n"
-    "and more. Writes config.yaml, model.ddm, predictions.csv (errors by steps ahead), "
-    "features.csv\n"
-    "(of every frame), strip.csv (one prediction, step by step) and, last, summary.yaml.\n\n"
+    "Records one long random trial of 601 samples, trains on the first 501 and predicts the rest,\n"
+    "1 to 8 steps ahead. Writes config.yaml, model.ddm, predictions.csv (errors by steps ahead),\n"
+    "features.csv (of every image), strip.csv (one prediction, step by step) and, last,\n"
+    "summary.yaml.\n\n"
     "usage: rosrun ddm_launch prediction_experiment --preset paper --plant moving_tile --seed 1\n"
     "                                               --out DIR";
+
+constexpr int kTrainingSamples = 501;  // the paper has 601 in all
+constexpr int kHeldOutSamples = 100;   // after them, not learned from
+constexpr int kMaxSteps = 8;           // longest prediction
 
 /// A random trial: what a learner sees, and the true states behind it.
 struct Recording {
@@ -45,30 +46,54 @@ struct Recording {
   Eigen::MatrixXd positions;  ///< visiblePosition() of all  [. x N]
 };
 
-struct Experiment {
-  Configuration configuration;
-  PredictionOptions prediction;
-};
-
-/// Training and held-out frames in one go: uniformly random torques from a random start.
-Recording record(const Experiment& experiment, Environment* environment) {
-  const Configuration& all = experiment.configuration;
-  const Plant& plant = environment->plant();
-  const int num_training = experiment.prediction.training_frames;
+/// Training and held-out samples in one go: uniformly random torques from a random initial state.
+Recording record(const Configuration& all) {
+  Environment environment(makePlant(*all.plant), all.camera);
+  const Plant& plant = environment.plant();
   TrialRequest request = requestFor(all, 0, /*evaluation=*/false);
-  request.num_steps = num_training + experiment.prediction.held_out_frames;
+  request.num_steps = kTrainingSamples + kHeldOutSamples;
   request.epsilon = 1.0;
   const DataSet none(all.model.image.size, plant.torqueDim());
   Recording out{none, none, Eigen::MatrixXd(plant.stateDim(), request.num_steps), {}};
   out.positions.resize(plant.visiblePosition(plant.state()).size(), request.num_steps);
-  runClosedLoop(environment, nullptr, request, all, [&](const ClosedLoopFrame& frame) {
-    const bool learn = frame.index < num_training;
-    const bool first = frame.index == 0 || frame.index == num_training;
+  runClosedLoop(&environment, nullptr, request, all, [&](const ClosedLoopFrame& frame) {
+    const bool learn = frame.index < kTrainingSamples;
+    const bool first = frame.index == 0 || frame.index == kTrainingSamples;
     (learn ? out.training : out.held_out).append(frame.grey, frame.decision.torque, first);
     out.positions.col(frame.index) = plant.visiblePosition(plant.state());
     out.states.col(frame.index) = plant.state();
   });
   return out;
+}
+
+/// [1, x_i, x_i x_j (i <= j)] of each sample.
+Eigen::MatrixXd monomials(const Eigen::MatrixXd& x) {
+  const Eigen::Index n = x.rows();
+  Eigen::MatrixXd out(1 + n + n * (n + 1) / 2, x.cols());
+  out.row(0).setOnes();
+  out.middleRows(1, n) = x;
+  Eigen::Index row = 1 + n;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = i; j < n; ++j) out.row(row++) = x.row(i).cwiseProduct(x.row(j));
+  }
+  return out;
+}
+
+/// How much the features say about the position of the moving part, if they may be a bent map of it:
+/// a quadratic map from features to positions is fitted to the training samples, and the result is
+/// its R^2 = 1 - sum |y - fit(x)|^2 / sum |y - mean(y)|^2 on the held-out ones; 1 is perfect.
+/// @param x  features of all samples, one per column
+/// @param y  positions of all samples
+double positionR2(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) {
+  const Eigen::MatrixXd coefficients = monomials(x.leftCols(kTrainingSamples))
+                                           .transpose()
+                                           .colPivHouseholderQr()
+                                           .solve(y.leftCols(kTrainingSamples).transpose())
+                                           .transpose();
+  const Eigen::MatrixXd held_out = y.rightCols(kHeldOutSamples);
+  const Eigen::MatrixXd spread = held_out.colwise() - held_out.rowwise().mean().eval();
+  return 1.0 - (held_out - coefficients * monomials(x.rightCols(kHeldOutSamples))).squaredNorm() /
+                   spread.squaredNorm();
 }
 
 std::string featuresCsv(const PlantInfo& plant, const Recording& recording,
@@ -84,14 +109,14 @@ std::string featuresCsv(const PlantInfo& plant, const Recording& recording,
 
 /// The prediction from the middle of the held-out frames, of those that have a full history.
 std::string stripCsv(const PlantInfo& plant, const Recording& recording, const Ddm& model,
-                     const Eigen::MatrixXd& Z, int max_steps) {
+                     const Eigen::MatrixXd& Z) {
   const Eigen::Index memory = model.options().memory();
-  const Eigen::Index frame = memory - 1 + (recording.held_out.numFrames() - max_steps - memory) / 2;
+  const Eigen::Index frame = memory - 1 + (recording.held_out.numFrames() - kMaxSteps - memory) / 2;
   const Eigen::Index begin = recording.training.numFrames() + frame;
   const Eigen::MatrixXd predicted = model.rollOut(Z.rightCols(recording.held_out.numFrames()),
-                                                  recording.held_out.torques(), frame, max_steps);
+                                                  recording.held_out.torques(), frame, kMaxSteps);
   std::string text = csvLine("steps", plant.state_names, featureNames(model.featureDim()));
-  for (int k = 0; k <= max_steps; ++k) {
+  for (int k = 0; k <= kMaxSteps; ++k) {
     text += csvLine(k, recording.states.col(begin + k), predicted.col(k));
   }
   return text;
@@ -107,15 +132,10 @@ std::string predictionsCsv(const std::vector<PredictionError>& errors, double po
   return text;
 }
 
-void run(const Experiment& experiment) {
-  const Configuration& all = experiment.configuration;
-  YAML::Node saved = toYaml(all);
-  saved["prediction"] = toYaml(experiment.prediction);
-  ResultsFolder folder(all.experiment.runs, saved);
+void run(const Configuration& all) {
+  RunFolder folder(all);
   for (const std::string& warning : folder.warnings()) std::cout << "warning: " << warning << "\n";
-
-  Environment environment(makePlant(*all.plant), all.camera);
-  const Recording recording = record(experiment, &environment);
+  const Recording recording = record(all);
   folder.begin();  // nothing is left that could refuse
   ModelInfo info;
   info.seed = static_cast<std::uint64_t>(all.experiment.seed);
@@ -130,20 +150,15 @@ void run(const Experiment& experiment) {
   if (!result.model) throw std::runtime_error(result.message);
   const Ddm& model = *result.model;
 
-  const int max_steps = experiment.prediction.max_steps;
-  const Eigen::Index num_training = recording.training.numFrames();
-  const Eigen::Index num_held_out = recording.held_out.numFrames();
-  Eigen::MatrixXd Z(model.featureDim(), num_training + num_held_out);
+  Eigen::MatrixXd Z(model.featureDim(), kTrainingSamples + kHeldOutSamples);
   Z << encodeAll(model, recording.training), encodeAll(model, recording.held_out);
-  const QuadraticFit fit(Z.leftCols(num_training), recording.positions.leftCols(num_training));
-  const double position_r2 =
-      fit.explained(Z.rightCols(num_held_out), recording.positions.rightCols(num_held_out));
+  const double position_r2 = positionR2(Z, recording.positions);
   const std::vector<PredictionError> errors =
-      predictionErrors(model, recording.held_out, max_steps);
+      predictionErrors(model, recording.held_out, kMaxSteps);
 
   folder.write("model.ddm", serialiseModel(model));
   folder.write("features.csv", featuresCsv(all.plant_info, recording, Z));
-  folder.write("strip.csv", stripCsv(all.plant_info, recording, model, Z, max_steps));
+  folder.write("strip.csv", stripCsv(all.plant_info, recording, model, Z));
   folder.write("predictions.csv",
                predictionsCsv(errors, position_r2, model.info(), result.seconds));
   YAML::Node summary(YAML::NodeType::Map);
@@ -155,42 +170,22 @@ void run(const Experiment& experiment) {
   summary["position_r2"] = valueToYaml(position_r2);
   summary["train_s"] = valueToYaml(result.seconds);
   folder.finish(summary);
-  std::cout << YAML::Dump(summary) << "\nresults, up to " << max_steps
+  std::cout << YAML::Dump(summary) << "\nresults, up to " << kMaxSteps
             << " steps ahead: " << folder.path() << "\n";
 }
 
-/// What no block can see by itself.
-void requireFit(const Experiment& experiment) {
-  const Configuration& all = experiment.configuration;
-  const PredictionOptions& prediction = experiment.prediction;
-  const ModelOptions& model = all.model.model;
-  const int memory = model.order + largestDelay(model, all.model.training);
-  OptionChecks checks("prediction");
-  checks.require(prediction.held_out_frames >= prediction.max_steps + memory, "held_out_frames",
-                 "be at least prediction/max_steps + model/order + the delay = " +
-                     std::to_string(prediction.max_steps + memory),
-                 prediction.held_out_frames);
-  checks.require(prediction.training_frames > std::max(model.pca_dim, memory), "training_frames",
-                 "be more than model/pca_dim, and model/order + the delay",
-                 prediction.training_frames);
-  OptionChecks camera("camera");
-  camera.require(all.camera.drop_rate == 0.0, "drop_rate",
-                 "be 0, since predictions go on from frame to frame", all.camera.drop_rate);
-  checks.add(camera.problems());
-  OptionChecks names("experiment");
-  names.require(all.experiment.method == "ddm", "method", "be ddm", all.experiment.method);
-  checks.add(names.problems());
-  requireNone(checks.problems());
-}
-
 /// @return false where --help was asked for and has been printed
-bool configure(int argc, char** argv, Experiment* experiment) {
+bool configure(int argc, char** argv, Configuration* all) {
   Arguments arguments;
   if (!parseCommandLine(argc, argv, commonOptions(kAbout, &arguments))) return false;
   ParamReader reader = resolve(arguments).reader();
-  experiment->prediction = reader.read<PredictionOptions>("prediction");
-  experiment->configuration = readWithMethod(&reader);
-  requireFit(*experiment);
+  *all = readWithMethod(&reader);
+  OptionChecks camera("camera"), names("experiment");
+  camera.require(all->camera.drop_rate == 0.0, "drop_rate",
+                 "be 0, since predictions go on from image to image", all->camera.drop_rate);
+  names.require(all->experiment.method == "ddm", "method", "be ddm", all->experiment.method);
+  camera.add(names.problems());
+  requireNone(camera.problems());
   return true;
 }
 
@@ -199,8 +194,8 @@ bool configure(int argc, char** argv, Experiment* experiment) {
 
 int main(int argc, char** argv) {
   ddm::silenceSolverLog();
-  ddm::Experiment experiment;
+  ddm::Configuration configuration;
   return ddm::runTool(
-      "prediction_experiment", [&] { return ddm::configure(argc, argv, &experiment); },
-      [&] { ddm::run(experiment); });
+      "prediction_experiment", [&] { return ddm::configure(argc, argv, &configuration); },
+      [&] { ddm::run(configuration); });
 }

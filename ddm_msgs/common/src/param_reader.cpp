@@ -129,8 +129,8 @@ std::vector<std::string> ParamReader::problems() const {
   known.insert(read_.begin(), read_.end());
   for (const auto& entry : root_) {
     const std::string name = oneLine(entry.first);
-    if (name == "version" || name == "renderer")
-      continue;  // a saved configuration says what made it
+    // A saved configuration says what made it, and what counts as success.
+    if (name == "version" || name == "renderer" || name == "goal") continue;
     if (known.count(name) + ignored_.count(name) == 0) {
       out.push_back("unknown block " + name + hint(name, "blocks", known) + remedy);
     }

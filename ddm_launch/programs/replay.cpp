@@ -1,4 +1,4 @@
-// replay_node: plays a bag to mpc_node and compares what it proposes with what was recorded.
+// Role `replay` of experiment_node: plays a bag to mpc_node and compares its torques with the recorded ones.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <actionlib/client/simple_action_client.h>
 #include <ddm_bag_io/bag_reader.h>
@@ -20,10 +20,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "csv_text.h"
 #include "progress.h"
 #include "start.h"
+#include "tables.h"
 
+namespace ddm {
 namespace {
 
 constexpr char kRecorded[] = "replay/torque";
@@ -47,7 +48,7 @@ struct ReplayOptions {
     visitor("timeout", timeout);
   }
   std::vector<std::string> problems() const {
-    ddm::OptionChecks checks("replay");
+    OptionChecks checks("replay");
     checks.require(!bag.empty(), "bag", "be a bag", "nothing");
     checks.require(!model.empty(), "model", "be a model file", "nothing");
     checks.require(rate >= 0.0 && rate <= 1000.0, "rate", "lie in [0, 1000]", rate);
@@ -60,25 +61,25 @@ struct ReplayOptions {
 /// below `replay/`, and mpc_node's own topics are remapped there.
 class Replay {
  public:
-  Replay(ros::NodeHandle nh, const ReplayOptions& options, const ddm::Ddm& model)
+  Replay(ros::NodeHandle nh, const ReplayOptions& options, const Ddm& model)
       : options_(options),
-        trial_client_(nh, ddm::topics::kRunTrial, /*spin_thread=*/false),
-        image_pub_(nh.advertise<sensor_msgs::Image>(ddm::topics::kImage, 1)),
-        model_pub_(nh.advertise<ddm_msgs::Model>(ddm::topics::kModel, 1, /*latch=*/true)),
+        trial_client_(nh, topics::kRunTrial, /*spin_thread=*/false),
+        image_pub_(nh.advertise<sensor_msgs::Image>(topics::kImage, 1)),
+        model_pub_(nh.advertise<ddm_msgs::Model>(topics::kModel, 1, /*latch=*/true)),
         recorded_pub_(nh.advertise<ddm_msgs::Torque>(kRecorded, 1)),
         proposed_sub_(nh.subscribe<ddm_msgs::Torque>(
             kProposed, 1, [this](const ddm_msgs::TorqueConstPtr& torque) { answer_ = torque; })) {
-    const ddm_msgs::Model message = ddm::toMessage(model, ros::Time::now());
+    const ddm_msgs::Model message = toMessage(model, ros::Time::now());
     model_id_ = message.id;
     model_pub_.publish(message);
     waitFor([this] { return trial_client_.isServerConnected(); },
-            "action " + nh.resolveName(ddm::topics::kRunTrial) + " is not offered");
-    const std::vector<std::string> topics = {nh.resolveName(ddm::topics::kImage),
+            "action " + nh.resolveName(topics::kRunTrial) + " is not offered");
+    const std::vector<std::string> topics = {nh.resolveName(topics::kImage),
                                              nh.resolveName(kProposed)};
     waitFor(
         [&] {
           return image_pub_.getNumSubscribers() > 0 && proposed_sub_.getNumPublishers() > 0 &&
-                 ddm::missingConnections(topics).empty();
+                 missingConnections(topics).empty();
         },
         "nothing takes " + topics[0] + " and answers on " + topics[1]);
   }
@@ -96,12 +97,12 @@ class Replay {
   }
 
   /// @return the torque that mpc_node proposes for an image
-  Eigen::VectorXd propose(const ddm::Grey& grey, int size, const Eigen::VectorXd& recorded) {
+  Eigen::VectorXd propose(const Grey& grey, int size, const Eigen::VectorXd& recorded) {
     const ros::Time stamp = ros::Time::now();
     ddm_msgs::Torque torque;
     torque.header.stamp = stamp;
     torque.torque.assign(recorded.data(), recorded.data() + recorded.size());
-    image_pub_.publish(ddm::encodeImage(grey, size, stamp, "camera"));
+    image_pub_.publish(encodeImage(grey, size, stamp, "camera"));
     recorded_pub_.publish(torque);
     waitFor([this, stamp] { return answer_ != nullptr && answer_->header.stamp == stamp; },
             "mpc_node does not answer");
@@ -132,7 +133,7 @@ class Replay {
         throw std::runtime_error("mpc_node: " + trial_client_.getState().getText());
       }
       if ((ros::SteadyTime::now() - begin).toSec() > options_.timeout) {
-        throw std::runtime_error(what + ddm::waited(options_.timeout));
+        throw std::runtime_error(what + waited(options_.timeout));
       }
       ros::getGlobalCallbackQueue()->callAvailable(kLook);
     }
@@ -155,12 +156,11 @@ double rms(const Eigen::MatrixXd& values) {
 
 /// Plays all frames.
 /// @return proposed torques [N m]  [torque_dim x N]
-Eigen::MatrixXd play(const ddm::BagContent& bag, double rate, Replay* replay,
-                     ddm::Progress* progress) {
-  const ddm::DataSet& data = bag.data;
+Eigen::MatrixXd play(const BagContent& bag, double rate, Replay* replay, Progress* progress) {
+  const DataSet& data = bag.data;
   Eigen::MatrixXd proposed(data.torqueDim(), data.numFrames());
   const ros::SteadyTime begin = ros::SteadyTime::now();
-  for (const ddm::Segment& segment : data.segments()) {
+  for (const Segment& segment : data.segments()) {
     replay->beginSegment(segment.size);
     for (Eigen::Index frame = segment.begin; frame < segment.begin + segment.size; ++frame) {
       const double time = bag.times[static_cast<size_t>(frame)];
@@ -180,32 +180,31 @@ Eigen::MatrixXd play(const ddm::BagContent& bag, double rate, Replay* replay,
   return proposed;
 }
 
-void writeCsv(const ddm::BagContent& bag, const Eigen::MatrixXd& proposed,
-              const std::string& path) {
-  const ddm::DataSet& data = bag.data;
+void writeCsv(const BagContent& bag, const Eigen::MatrixXd& proposed, const std::string& path) {
+  const DataSet& data = bag.data;
   std::string text =
-      ddm::csvLine("frame", "segment", "time_s", ddm::featureNames(data.torqueDim(), "recorded"),
-                   ddm::featureNames(data.torqueDim(), "proposed"));
+      csvLine("frame", "segment", "time_s", featureNames(data.torqueDim(), "recorded"),
+              featureNames(data.torqueDim(), "proposed"));
   for (size_t p = 0; p < data.segments().size(); ++p) {
-    const ddm::Segment& segment = data.segments()[p];
+    const Segment& segment = data.segments()[p];
     for (Eigen::Index frame = segment.begin; frame < segment.begin + segment.size; ++frame) {
-      text += ddm::csvLine(frame, p, bag.times[static_cast<size_t>(frame)],
-                           data.torques().col(frame), proposed.col(frame));
+      text += csvLine(frame, p, bag.times[static_cast<size_t>(frame)], data.torques().col(frame),
+                      proposed.col(frame));
     }
   }
-  ddm::writeFileAtomically(path, text);
+  writeFileAtomically(path, text);
 }
 
-void run(const ros::NodeHandle& nh, ddm::ParamReader* params) {
+void run(const ros::NodeHandle& nh, ParamReader* params) {
   const auto options = params->read<ReplayOptions>("replay");
-  const auto topics = params->read<ddm::BagOptions>("data_set");
+  const auto topics = params->read<BagOptions>("data_set");
   params->requireValid();
-  const std::shared_ptr<const ddm::Ddm> model = ddm::readModel(options.model);
-  const ddm::BagContent bag = ddm::readBag(options.bag, model->imageSize(), topics);
+  const std::shared_ptr<const Ddm> model = readModel(options.model);
+  const BagContent bag = readBag(options.bag, model->imageSize(), topics);
   for (const std::string& note : bag.notes) ROS_WARN_STREAM("bag " << options.bag << ": " << note);
-  ddm::waitForSimulatedTime(options.timeout);
+  waitForSimulatedTime(options.timeout);
   Replay replay(nh, options, *model);
-  ddm::Progress progress;
+  Progress progress;
   progress.beginPhase(0, "replay");
   const Eigen::MatrixXd proposed = play(bag, options.rate, &replay, &progress);
   std::ostringstream summary;
@@ -220,7 +219,9 @@ void run(const ros::NodeHandle& nh, ddm::ParamReader* params) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  return ddm::runNode("replay_node", argc, argv,
-                      [](auto nh, auto, ddm::ParamReader* params) { run(nh, params); });
+int replayNode(int argc, char** argv) {
+  return runNode("replay_node", argc, argv,
+                 [](auto nh, auto, ParamReader* params) { run(nh, params); });
 }
+
+}  // namespace ddm

@@ -1,4 +1,4 @@
-// trial_node: one trial with the real nodes, random or with a saved model, recorded or not.
+// Role `trial` of experiment_node: one trial, random or with a saved model, recorded or not.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/option_checks.h>
 #include <ddm_common/run_node.h>
@@ -9,10 +9,11 @@
 #include <memory>
 #include <optional>
 
+#include "evaluation.h"
 #include "progress.h"
-#include "resumption.h"
 #include "ros_driver.h"
 
+namespace ddm {
 namespace {
 
 /// Block `run`.
@@ -34,7 +35,7 @@ struct RunOptions {
     visitor("timeout", timeout);
   }
   std::vector<std::string> problems() const {
-    ddm::OptionChecks checks("run");
+    OptionChecks checks("run");
     checks.require(epsilon >= 0.0 && epsilon <= 1.0, "epsilon", "lie in [0, 1]", epsilon);
     checks.require(num_steps >= 1, "num_steps", "be >= 1", num_steps);
     checks.require(seed >= 0, "seed", "be >= 0", seed);
@@ -44,35 +45,30 @@ struct RunOptions {
 };
 
 /// @param driver  outlives an error: to end it takes a master that answers
-void run(const ros::NodeHandle& nh, ddm::ParamReader* params,
-         std::optional<ddm::RosDriver>* driver) {
+void run(const ros::NodeHandle& nh, ParamReader* params, std::optional<RosDriver>* driver) {
   const auto options = params->read<RunOptions>("run");
-  const auto plant = ddm::readPlant(params);
-  auto evaluation = params->read<ddm::EvaluationOptions>("evaluation");
-  const auto mpc = params->read<ddm::MpcOptions>("mpc");
+  const auto plant = readPlant(params);
+  const auto mpc = params->read<MpcOptions>("mpc");
   params->requireValid();
 
-  ddm::TrialRequest request;
+  TrialRequest request;
   request.id.seed = static_cast<std::uint64_t>(options.seed);
   request.num_steps = options.num_steps;
   request.epsilon = options.model.empty() ? 1.0 : options.epsilon;
   request.hold_steps = mpc.hold_steps;
   request.bag = options.bag;
-  driver->emplace(nh, options.timeout,
-                  ddm::RosDriver::Peers{!options.bag.empty(), /*trainer=*/false});
+  driver->emplace(nh, options.timeout, RosDriver::Peers{!options.bag.empty(), /*trainer=*/false});
   if (!options.model.empty()) (*driver)->useModel(options.model);
-  ddm::Progress progress;
+  Progress progress;
   progress.beginPhase(0, options.model.empty() ? "random" : "control");
-  const ddm::TrialOutcome outcome =
+  const TrialOutcome outcome =
       (*driver)->runTrial(request, [&progress](double fraction) { progress.update(fraction); });
   progress.note(std::to_string(outcome.torques.size()) + " torques");
-  if (static_cast<int>(outcome.states.size()) >= evaluation.settled_steps_strict) {
-    const std::unique_ptr<ddm::Plant> judge = ddm::makePlant(*plant);
-    evaluation.complete(judge->info());
-    const ddm::Evaluation verdict =
-        ddm::rowOf(request.id, outcome, evaluation, judge.get()).evaluation;
+  if (!outcome.states.empty()) {
+    const std::unique_ptr<Plant> judge = makePlant(*plant);
+    const Evaluation verdict = rowOf(request.id, outcome, {}, judge.get()).evaluation;
     progress.note("final error " + std::to_string(*verdict.final_error) + " " +
-                  evaluation.error_unit + ": " +
+                  judge->info().error_unit + ": " +
                   (verdict.success ? "the goal was reached" : "the goal was not reached"));
   }
   if (!options.bag.empty()) progress.note("recorded: " + options.bag);
@@ -80,9 +76,10 @@ void run(const ros::NodeHandle& nh, ddm::ParamReader* params,
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  std::optional<ddm::RosDriver> driver;
-  return ddm::runNode("trial_node", argc, argv, [&driver](auto nh, auto, ddm::ParamReader* params) {
-    run(nh, params, &driver);
-  });
+int trialNode(int argc, char** argv) {
+  std::optional<RosDriver> driver;
+  return runNode("trial_node", argc, argv,
+                 [&driver](auto nh, auto, ParamReader* params) { run(nh, params, &driver); });
 }
+
+}  // namespace ddm

@@ -12,11 +12,10 @@
 #include <string>
 #include <vector>
 
+#include "configuration.h"
 #include "driver.h"
 
 namespace ddm {
-
-struct Configuration;
 
 /// The seam between Algorithm 1 and who learns in it: the deep dynamical model, or a baseline.
 class Method : public Learner {
@@ -37,5 +36,21 @@ struct MethodKind {
   /// @throws std::invalid_argument if the method does not fit them
   std::function<std::unique_ptr<Method>(const Configuration&, const Plant&)> make;
 };
+
+/// All that are built, the paper's own first.
+std::vector<MethodKind> methodKinds();
+
+std::unique_ptr<Method> makeDdmMethod(const Configuration& configuration, const Plant& plant);
+std::unique_ptr<Method> makeOracleMethod(const Configuration& configuration, const Plant& plant);
+
+/// pilco_state, pilco_features, pilco_pca. None where DDM_PILCO is off.
+std::vector<MethodKind> pilcoMethods();
+
+/// @throws std::invalid_argument naming what there is, if there is no such method
+MethodKind methodKind(const std::string& name);
+
+/// Reads all blocks, those of the method too.
+/// @throws std::invalid_argument with all problems
+Configuration readWithMethod(ParamReader* reader);
 
 }  // namespace ddm

@@ -1,6 +1,6 @@
-// Which methods there are.
+// A method: what learns from trials and acts in the next one.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "method_kinds.h"
+#include "method.h"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,0 +1,247 @@
+// Tables of an experiment: the text of CSV files, and the files that are read back.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tables.h"
+
+#include <ddm_common/param_value.h>
+#include <ddm_model/model_file.h>
+
+#include <algorithm>
+#include <boost/algorithm/string.hpp>
+#include <boost/format.hpp>
+#include <boost/lexical_cast.hpp>
+#include <cmath>
+#include <functional>
+#include <sstream>
+#include <stdexcept>
+
+namespace ddm {
+namespace {
+
+using Cells = std::vector<std::string>;
+
+constexpr char kTrialsHeader[] =
+    "seed,trial,frames,success,success_strict,final_error,v_r,v_p,train_s,train_evaluations,"
+    "plan_ms_median,plan_ms_p99,version,return\n";
+
+void requireFinite(double value) {
+  if (std::isfinite(value)) return;
+  throw std::range_error("a number of a table must be finite, got " + formatDouble(value) +
+                         ": nothing is written");
+}
+
+/// Calls `take` with the cells of each line after the header.
+/// @param header  as csvLine() writes it
+/// @param source  file, for messages
+/// @throws std::runtime_error with source, line and fault, also for what `take` throws: another
+///         header, another number of cells than in the header, a last line without its end
+void parseCsv(const std::string& text, const std::string& header, const std::string& source,
+              const std::function<void(const Cells& cells)>& take) {
+  std::istringstream in(text);
+  std::string line;
+  if (!std::getline(in, line) || line + "\n" != header) {
+    throw std::runtime_error(source + ", line 1: must be " + boost::trim_right_copy(header));
+  }
+  const auto num_columns = std::count(header.begin(), header.end(), ',') + 1;
+  for (int number = 2; std::getline(in, line); ++number) {
+    try {
+      Cells cells;
+      boost::split(cells, line, boost::is_any_of(","));
+      if (static_cast<std::ptrdiff_t>(cells.size()) != num_columns) {
+        throw std::runtime_error("has " + std::to_string(cells.size()) + " columns, " +
+                                 std::to_string(num_columns) + " are due");
+      }
+      if (in.eof()) throw std::runtime_error("has no end: the file is cut short");
+      take(cells);
+    } catch (const std::exception& e) {
+      throw std::runtime_error(source + ", line " + std::to_string(number) + ": " + e.what());
+    }
+  }
+}
+
+double finiteNumber(const std::string& cell) {
+  double value = 0.0;
+  if (!boost::conversion::try_lexical_convert(cell, value)) {
+    throw std::runtime_error("'" + cell + "' is not a number");
+  }
+  if (!std::isfinite(value)) throw std::runtime_error("'" + cell + "' is not finite");
+  return value;
+}
+
+std::optional<double> optionalNumber(const std::string& cell) {
+  if (cell.empty()) return std::nullopt;
+  return finiteNumber(cell);
+}
+
+bool flag(const std::string& cell) {
+  if (cell != "0" && cell != "1") throw std::runtime_error("'" + cell + "' must be 0 or 1");
+  return cell == "1";
+}
+
+/// lexical_cast alone would make a huge number of "-1".
+std::uint32_t count(const std::string& cell) {
+  if (cell.empty() || cell[0] == '-') throw std::runtime_error("'" + cell + "' must be >= 0");
+  return boost::lexical_cast<std::uint32_t>(cell);
+}
+
+/// A time, which is written with three decimals.
+double duration(const std::string& cell) {
+  const double value = finiteNumber(cell);
+  if (value < 0.0 || value > 1e12) throw std::runtime_error("'" + cell + "' is not a duration");
+  return value;
+}
+
+void requireStep(const std::string& cell, std::size_t step) {
+  if (cell == std::to_string(step)) return;
+  throw std::runtime_error("must be step " + std::to_string(step) + ", got " + cell);
+}
+
+/// The numbers in some cells of a row.
+Eigen::VectorXd numbersOf(const Cells& cells, std::size_t begin, std::size_t size) {
+  Eigen::VectorXd numbers(static_cast<Eigen::Index>(size));
+  for (std::size_t i = 0; i < size; ++i) {
+    numbers[static_cast<Eigen::Index>(i)] = finiteNumber(cells[begin + i]);
+  }
+  return numbers;
+}
+
+std::string torquesHeader(const Cells& names) { return csvLine("step", names, "exploratory"); }
+
+std::string trajectoryHeader(const Cells& names) { return csvLine("step", "time_s", names); }
+
+std::string milliseconds(double value) { return boost::str(boost::format("%.3f") % value); }
+
+TrialRow parseTrialRow(const Cells& cells) {
+  TrialRow row;
+  row.seed = boost::lexical_cast<int>(cells[0]);
+  row.trial = boost::lexical_cast<int>(cells[1]);
+  row.frames = count(cells[2]);
+  row.evaluation.known = !cells[3].empty();
+  if (row.evaluation.known) {
+    row.evaluation.success = flag(cells[3]);
+    row.evaluation.success_strict = flag(cells[4]);
+    row.evaluation.final_error = optionalNumber(cells[5]);
+    row.evaluation.total_reward = optionalNumber(cells[13]);
+  } else if (!(cells[4] + cells[5] + cells[13]).empty()) {
+    throw std::runtime_error(
+        "success_strict, final_error and return must be empty where success is");
+  }
+  row.v_r = optionalNumber(cells[6]);
+  row.v_p = optionalNumber(cells[7]);
+  if (row.v_r.has_value() != row.v_p.has_value()) {
+    throw std::runtime_error("v_r and v_p must be both empty or both given");
+  }
+  row.train_s = duration(cells[8]);
+  row.train_evaluations = count(cells[9]);
+  row.plan_ms_median = duration(cells[10]);
+  row.plan_ms_p99 = duration(cells[11]);
+  row.version = cells[12];
+  if (row.version.empty()) throw std::runtime_error("version must not be empty; unknown is ?");
+  return row;
+}
+
+}  // namespace
+
+std::string csvCell(double value) {
+  requireFinite(value);
+  return formatDouble(value);
+}
+
+std::string csvCell(const std::optional<double>& value) { return value ? csvCell(*value) : ""; }
+
+std::string csvCell(const Eigen::VectorXd& values) {
+  std::ostringstream text;
+  text.precision(17);
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    requireFinite(values[i]);
+    text << (i == 0 ? "" : ",") << values[i];
+  }
+  return text.str();
+}
+
+std::string csvCell(const std::vector<std::string>& names) { return boost::join(names, ","); }
+
+std::vector<std::string> featureNames(int feature_dim, const std::string& name) {
+  std::vector<std::string> names;
+  for (int i = 1; i <= feature_dim; ++i) names.push_back(name + "_" + std::to_string(i));
+  return names;
+}
+
+std::string formatTorquesCsv(const TorqueRows& rows, const std::vector<std::string>& names) {
+  std::string text = torquesHeader(names);
+  for (std::size_t step = 0; step < rows.torques.size(); ++step) {
+    const auto size = static_cast<std::size_t>(rows.torques[step].size());
+    if (size != names.size()) {
+      throw std::invalid_argument("torques.csv: step " + std::to_string(step) + " has " +
+                                  std::to_string(size) + " torque(s), the header " +
+                                  std::to_string(names.size()) + " (" + csvCell(names) +
+                                  "): the plant or robot of the configuration is not the one that "
+                                  "ran");
+    }
+    text += csvLine(step, rows.torques[step], bool(rows.exploratory[step]));
+  }
+  return text;
+}
+
+std::string formatTrajectoryCsv(const std::vector<double>& times,
+                                const std::vector<Eigen::VectorXd>& states,
+                                const std::vector<std::string>& names) {
+  std::string text = trajectoryHeader(names);
+  for (std::size_t step = 0; step < states.size(); ++step) {
+    text += csvLine(step, boost::str(boost::format("%.9g") % times[step]), states[step]);
+  }
+  return text;
+}
+
+std::string formatTrialsCsv(const std::vector<TrialRow>& rows) {
+  std::string text = kTrialsHeader;
+  for (const TrialRow& row : rows) {
+    const Evaluation& evaluation = row.evaluation;
+    const auto known = [&](bool value) { return evaluation.known ? csvCell(value) : ""; };
+    text +=
+        csvLine(row.seed, row.trial, row.frames, known(evaluation.success),
+                known(evaluation.success_strict), evaluation.final_error, row.v_r, row.v_p,
+                milliseconds(row.train_s), row.train_evaluations, milliseconds(row.plan_ms_median),
+                milliseconds(row.plan_ms_p99), row.version, evaluation.total_reward);
+  }
+  return text;
+}
+
+TorqueRows parseTorquesCsv(const std::string& text, const std::vector<std::string>& names,
+                           const std::string& source) {
+  TorqueRows rows;
+  parseCsv(text, torquesHeader(names), source, [&](const Cells& cells) {
+    requireStep(cells[0], rows.torques.size());
+    rows.torques.push_back(numbersOf(cells, 1, names.size()));
+    rows.exploratory.push_back(flag(cells.back()));
+  });
+  return rows;
+}
+
+Eigen::MatrixXd parseTrajectoryCsv(const std::string& text, const std::vector<std::string>& names,
+                                   const std::string& source) {
+  Eigen::MatrixXd states(static_cast<Eigen::Index>(names.size()), 0);
+  parseCsv(text, trajectoryHeader(names), source, [&](const Cells& cells) {
+    requireStep(cells[0], static_cast<std::size_t>(states.cols()));
+    finiteNumber(cells[1]);
+    states.conservativeResize(Eigen::NoChange, states.cols() + 1);
+    states.rightCols(1) = numbersOf(cells, 2, names.size());
+  });
+  return states;
+}
+
+std::vector<TrialRow> parseTrialsCsv(const std::string& text, const std::string& source) {
+  std::vector<TrialRow> rows;
+  parseCsv(text, kTrialsHeader, source,
+           [&rows](const Cells& cells) { rows.push_back(parseTrialRow(cells)); });
+  return rows;
+}
+
+std::string formatTrialsChecksums(const std::vector<TrialRow>& rows) {
+  std::string lines;
+  for (auto end = rows.begin(); end != rows.end();) {
+    lines += checksum(formatTrialsCsv({rows.begin(), ++end})) + "\n";
+  }
+  return lines;
+}
+
+}  // namespace ddm
