@@ -67,7 +67,7 @@ std::vector<std::string> parameterReferences() {
   return {packageFolder("ddm_sim") + "/config/sim.yaml",
           packageFolder("ddm_model") + "/config/model.yaml",
           packageFolder("ddm_mpc") + "/config/mpc.yaml",
-          packageFolder("ddm_mpc") + "/config/pilco.yaml",
+          packageFolder("ddm_launch") + "/methods/pilco/pilco.yaml",
           packageFolder("ddm_launch") + "/config/experiment.yaml"};
 }
 

@@ -1,6 +1,6 @@
 // Tests of moment matching through a GP: samples, derivatives, limits, refusals.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_pilco/gp_moments.h"
+#include "pilco/gp_moments.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
 // Tests of the features of a state with angles and of its cost: samples, derivatives, limits.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_pilco/features.h"
+#include "pilco/state_cost.h"
 
+#include <ddm_model/testing/vector_of.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "ddm_model/testing/vector_of.h"
 #include "random_problems.h"
 
 namespace ddm::pilco {

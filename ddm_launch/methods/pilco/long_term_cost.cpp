@@ -1,6 +1,6 @@
 // Long-term cost of a policy under the learned dynamics, and the search for the best policy.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_pilco/long_term_cost.h"
+#include "pilco/long_term_cost.h"
 
 #include <algorithm>
 #include <cmath>

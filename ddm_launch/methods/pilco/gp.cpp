@@ -1,13 +1,13 @@
 // Full Gaussian processes: hyper-parameters that maximise the marginal likelihood.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_pilco/gp.h"
+#include "pilco/gp.h"
 
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "ddm_pilco/moments.h"
+#include "pilco/moments.h"
 
 namespace ddm::pilco {
 namespace {

@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "ddm_pilco/long_term_cost.h"
+#include "pilco/long_term_cost.h"
 
 namespace ddm::pilco {
 namespace {

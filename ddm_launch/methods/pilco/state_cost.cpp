@@ -1,6 +1,6 @@
 // Features of a state with angles, and the saturating cost of a state.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_pilco/features.h"
+#include "pilco/state_cost.h"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -7,10 +7,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "ddm_pilco/features.h"
-#include "ddm_pilco/gp_moments.h"
-#include "ddm_pilco/options.h"
-#include "ddm_pilco/policy.h"
+#include "pilco/gp_moments.h"
+#include "pilco/options.h"
+#include "pilco/policy.h"
+#include "pilco/state_cost.h"
 
 namespace ddm::pilco {
 

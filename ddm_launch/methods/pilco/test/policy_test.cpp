@@ -1,7 +1,8 @@
 // Tests of the policies: values, samples, derivatives down to the parameters, refusals.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_pilco/policy.h"
+#include "pilco/policy.h"
 
+#include <ddm_model/testing/vector_of.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -10,7 +11,6 @@
 #include <random>
 #include <utility>
 
-#include "ddm_model/testing/vector_of.h"
 #include "random_problems.h"
 
 namespace ddm::pilco {

@@ -1,18 +1,17 @@
 // Tests of the marginal likelihood and of training on it.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_pilco/gp.h"
+#include "pilco/gp.h"
 
+#include <ddm_model/testing/gradient_check.h>
+#include <ddm_model/testing/random_matrix.h>
+#include <ddm_model/testing/vector_of.h>
+#include <ddm_msgs/testing/expect_error.h>
+#include <ddm_msgs/testing/not_finite.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
-
-#include "ddm_model/testing/gradient_check.h"
-#include "ddm_model/testing/random_matrix.h"
-#include "ddm_model/testing/vector_of.h"
-#include "ddm_msgs/testing/expect_error.h"
-#include "ddm_msgs/testing/not_finite.h"
 
 namespace ddm::pilco {
 namespace {

@@ -1,16 +1,16 @@
 // Tests of the sparse GP (FITC) and of the learner that switches to it.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ddm_model/testing/gradient_check.h>
+#include <ddm_model/testing/random_matrix.h>
+#include <ddm_model/testing/vector_of.h>
+#include <ddm_msgs/testing/expect_error.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
-#include "ddm_model/testing/gradient_check.h"
-#include "ddm_model/testing/random_matrix.h"
-#include "ddm_model/testing/vector_of.h"
-#include "ddm_msgs/testing/expect_error.h"
-#include "ddm_pilco/gp.h"
+#include "pilco/gp.h"
 
 namespace ddm::pilco {
 namespace {
@@ -138,7 +138,6 @@ TEST(LearnGp, UsesInducingInputsOnlyBeyondTheSetSize) {
   SparseGpOptions sparse;
   sparse.max_points = 10;
   sparse.first_iterations = 20;
-  sparse.max_iterations = 5;
   GpLearnerState state;
   std::mt19937_64 rng(1);
   const auto learn = [&](int n) {
@@ -155,12 +154,10 @@ TEST(LearnGp, UsesInducingInputsOnlyBeyondTheSetSize) {
   ASSERT_TRUE(first.ok) << first.message;
   EXPECT_EQ(10, first.model.numPoints());
   ASSERT_EQ(3u, first.outputs.size());
-  EXPECT_GT(first.outputs[2].iterations, 5);
 
   const std::mt19937_64 before = rng;
   const GpFit next = learn(40);
   ASSERT_TRUE(next.ok) << next.message;
-  EXPECT_LE(next.outputs[2].iterations, 5);
   EXPECT_EQ(before, rng) << "the inducing inputs of the trial before are the start";
   EXPECT_EQ(next.outputs[2].initial_cost,
             sparseNegativeLogLikelihood(first.model.inputs, toy.inputs, toy.targets,

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "ddm_pilco/options.h"
+#include "pilco/options.h"
 
 namespace ddm::pilco {
 

@@ -1,7 +1,8 @@
 // Tests of the propagation and of the long-term cost: samples, derivatives, numerical trouble.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_pilco/long_term_cost.h"
+#include "pilco/long_term_cost.h"
 
+#include <ddm_model/testing/vector_of.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +10,6 @@
 #include <random>
 #include <utility>
 
-#include "ddm_model/testing/vector_of.h"
 #include "random_problems.h"
 
 namespace ddm::pilco {

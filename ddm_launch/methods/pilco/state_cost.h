@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "ddm_pilco/moments.h"
+#include "pilco/moments.h"
 
 namespace ddm::pilco {
 
