@@ -174,13 +174,4 @@ std::vector<double> LongTermCost::costStandardDeviations() const {
   return out;
 }
 
-Minimum searchPolicy(const DifferentiableFunction& cost, const Eigen::VectorXd& start,
-                     const PolicySearchOptions& options) {
-  MinimiseOptions solver;
-  solver.max_iterations = options.max_iterations;
-  solver.max_evaluations = options.max_evaluations;
-  solver.function_tolerance = 1e-8;
-  return minimise(cost, start, solver);
-}
-
 }  // namespace ddm::pilco

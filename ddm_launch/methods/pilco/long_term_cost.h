@@ -2,13 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_model/minimise.h>
-
 #include <Eigen/Core>
 #include <vector>
 
 #include "pilco/gp_moments.h"
-#include "pilco/options.h"
 #include "pilco/policy.h"
 #include "pilco/state_cost.h"
 
@@ -109,12 +106,5 @@ class LongTermCost {
   std::vector<double> costs_;
   std::vector<Propagation::Tape> tapes_;
 };
-
-/// Minimises J(parameters) by BFGS from `start`. A policy for which J is not finite (a predicted
-/// distribution that grows without bound) makes the line search take a shorter step.
-/// @param cost   J, with its gradient
-/// @param start  parameters of the last trial's policy                                     [P]
-Minimum searchPolicy(const DifferentiableFunction& cost, const Eigen::VectorXd& start,
-                     const PolicySearchOptions& options);
 
 }  // namespace ddm::pilco

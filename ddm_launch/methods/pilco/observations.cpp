@@ -216,7 +216,7 @@ PilcoTask imageTask(const Eigen::MatrixXd& X, const std::vector<Segment>& segmen
   return {{},
           false,
           startDistribution(X, segments, kStartStd * spread),
-          pilco::StateCost(pilco::replaceAngles(dim, {}), pilco::SaturatingCost(goal, weight)),
+          pilco::StateCost(pilco::replaceAngles(dim, {}), goal, weight),
           std};
 }
 

@@ -5,6 +5,7 @@
 #include <ddm_common/param_value.h>
 #include <ddm_common/plain_file.h>
 #include <ddm_common/random_stream.h>
+#include <ddm_model/minimise.h>
 #include <ddm_model/per_motor.h>
 #include <ddm_sim/plant.h>
 
@@ -219,15 +220,20 @@ pilco::LongTermCost PilcoMethod::improvePolicy(pilco::Propagation dynamics, cons
   pilco::LongTermCost cost(std::move(dynamics), task.cost, policy_.get(), task.start,
                            pilco_.pilco.horizon);
   int evaluations = 0;
+  MinimiseOptions solver;
+  solver.max_iterations = pilco_.policy_search.max_iterations;
+  solver.max_evaluations = pilco_.policy_search.max_evaluations;
+  solver.function_tolerance = 1e-8;
   const auto search = [&] {
-    return pilco::searchPolicy(
+    // Where the cost is not finite, because a predicted distribution grows without bound, the line search takes a shorter step.
+    return minimise(
         [&](const Eigen::VectorXd& p, Eigen::VectorXd* gradient) {
           // The line search takes about two evaluations an iteration.
           const double done = ++evaluations / (2.0 * pilco_.policy_search.max_iterations + 1.0);
           training->progress(kDynamicsShare + (1.0 - kDynamicsShare) * std::min(done, 1.0));
           return cost.evaluate(p, gradient);
         },
-        parameters, pilco_.policy_search);
+        parameters, solver);
   };
   Minimum result = search();
   const bool afresh = result.reason == MinimumReason::kStartFailed;

@@ -103,24 +103,6 @@ TEST(Penalty, IsOneWhereALimitIsReachedAndNothingFarInsideAndItsGradientMatchesD
   EXPECT_TRUE(gradientMatches(f, theta, 1e-6));
 }
 
-TEST(MakeGpModel, InvertsTheCovariance) {
-  const Toy toy(12);
-  const Hyperparameters hyperparameters = initialHyperparameters(toy.inputs, toy.targets);
-  const GpFit fit = makeGpModel(toy.inputs, toy.targets, hyperparameters);
-  ASSERT_TRUE(fit.ok) << fit.message;
-  for (int output = 0; output < 2; ++output) {
-    const Eigen::VectorXd theta = thetaOf(hyperparameters, output);
-    Eigen::MatrixXd a = squaredExponential(
-        toy.inputs, toy.inputs, theta.head(3).array().exp().matrix(), std::exp(theta[3]));
-    a.diagonal().array() += std::exp(2.0 * theta[4]);
-    const Eigen::MatrixXd& inverse = fit.model.inverse[output];
-    EXPECT_LT((a * inverse - Eigen::MatrixXd::Identity(12, 12)).cwiseAbs().maxCoeff(), 1e-10);
-    EXPECT_EQ(inverse, inverse.transpose());
-    EXPECT_LT((a * fit.model.beta.col(output) - toy.targets.col(output)).cwiseAbs().maxCoeff(),
-              1e-10);
-  }
-}
-
 TEST(TrainGp, EndsAtAnOptimumThatKnowsNoiseAndRelevance) {
   const Toy toy(80);
   const GpFit fit = trainGp(toy.inputs, toy.targets, kIterations);
@@ -139,19 +121,6 @@ TEST(TrainGp, EndsAtAnOptimumThatKnowsNoiseAndRelevance) {
   const double expected = negativeLogLikelihood(toy.inputs, toy.targets.col(1), theta) +
                           penalty(theta, sampleStd(toy.inputs));
   EXPECT_NEAR(expected, fit.outputs[1].cost, 1e-9 * std::abs(expected));
-}
-
-TEST(TrainGp, GoesOnFromThePreviousOptimum) {
-  const Toy toy(60);
-  const GpFit first = trainGp(toy.inputs, toy.targets, kIterations);
-  const Hyperparameters optimum = first.model.hyperparameters;
-  const GpFit again = trainGp(toy.inputs, toy.targets, kIterations, &optimum);
-  ASSERT_TRUE(again.ok) << again.message;
-  for (int output = 0; output < 2; ++output) {
-    EXPECT_EQ(first.outputs[output].cost, again.outputs[output].initial_cost);
-    EXPECT_LE(again.outputs[output].cost, again.outputs[output].initial_cost);
-    EXPECT_LT(again.outputs[output].iterations, first.outputs[output].iterations);
-  }
 }
 
 TEST(TrainGp, TrainsAnewAndSaysSoWhereThePreviousOptimumCannotBeEvaluated) {

@@ -231,7 +231,7 @@ class PointlessObservation : public Observation {
                      const TrialId& /*id*/) override {
     const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
     const Eigen::VectorXd zero = Eigen::VectorXd::Zero(1);
-    const pilco::StateCost cost(pilco::replaceAngles(1, {}), pilco::SaturatingCost(zero, one));
+    const pilco::StateCost cost(pilco::replaceAngles(1, {}), zero, one);
     return {randomMatrix(1, data.numFrames(), 1),
             {{}, false, {zero, one}, cost, Eigen::VectorXd::Constant(1, 1e-200)}};
   }

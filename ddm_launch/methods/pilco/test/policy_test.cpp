@@ -82,18 +82,6 @@ TEST(RbfPolicy, AdjointMatchesDifferencesForOneAndTwoControls) {
   }
 }
 
-TEST(RbfPolicy, PredictsNaNForParametersThatAreNotFinite) {
-  std::mt19937_64 random(4);
-  const RbfPolicy policy = randomRbfPolicy(2, 1, 3, random);
-  for (int i = 0; i < policy.parameters().size(); ++i) {
-    Eigen::VectorXd parameters = policy.parameters();
-    parameters[i] = std::numeric_limits<double>::quiet_NaN();
-    RbfPolicy broken(2, 1, 3);
-    broken.setParameters(parameters);
-    EXPECT_TRUE(std::isnan(broken.predict(randomGaussian(2, 2, 0.5, random)).mean[0])) << i;
-  }
-}
-
 TEST(Squashing, HasTheMomentsOfSamples) {
   std::mt19937_64 random(1);
   const Squashing squashing(vectorOf({6.0, 2.5}));

@@ -116,23 +116,6 @@ TEST(TrainSparseGp, ImprovesOnTheRandomSubset) {
                                                              toy.targets, toy.hyperparameters));
 }
 
-TEST(LearnGp, CopesWithRepeatedPointsInBothGps) {
-  const SparseToy toy(20);
-  SparseGpOptions sparse;
-  sparse.first_iterations = 20;
-  for (const int max_points : {100, 30}) {  // full GP; sparse, with repeated inducing inputs
-    sparse.max_points = max_points;
-    GpLearnerState state;
-    std::mt19937_64 rng(1);
-    const GpFit fit = learnGp(GpTrainingOptions(), sparse, toy.inputs.replicate(1, 2),
-                              toy.targets.replicate(2, 1), &rng, &state);
-    ASSERT_TRUE(fit.ok) << fit.message;
-    EXPECT_EQ(std::min(max_points, 40), fit.model.numPoints());
-    EXPECT_TRUE(fit.model.beta.allFinite());
-    EXPECT_TRUE(fit.model.inverse[0].allFinite() && fit.model.inverse[1].allFinite());
-  }
-}
-
 TEST(LearnGp, UsesInducingInputsOnlyBeyondTheSetSize) {
   const SparseToy toy(40);
   SparseGpOptions sparse;
