@@ -11,7 +11,7 @@
 
 namespace ddm::pilco {
 
-/// What the state means to the dynamics GP and the policy.
+/// How the dynamics GP and the policy use the state.
 struct PropagationOptions {
   std::vector<int> angles;  ///< entries of the state that are angles [rad]
   /// The policy sees a measurement of the state: half the noise variance of each output of the GP

@@ -83,7 +83,7 @@ struct PolicySearchOptions {
   }
 };
 
-/// All blocks that PILCO alone reads.
+/// All blocks of PILCO. No other method reads them.
 struct PilcoConfig {
   PilcoOptions pilco;
   GpTrainingOptions gp;

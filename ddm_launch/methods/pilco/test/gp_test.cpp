@@ -1,4 +1,4 @@
-// Tests of the marginal likelihood and of training on it.
+// Tests of full and sparse GPs: their likelihoods, their training, and the learner that chooses between them.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco/gp.h"
 
@@ -160,6 +160,169 @@ TEST(TrainGp, RefusesDataItCannotLearnFromAndNamesThem) {
   EXPECT_TRUE(refused(toy.inputs, changed, {"target 2 of point 4", "finite", "inf"}));
   EXPECT_TRUE(refused(toy.inputs, 1e200 * toy.targets, {"target 1", "too large"}));
   EXPECT_TRUE(refused(toy.inputs.leftCols(1), toy.targets.topRows(1), {" 2 points", "got 1"}));
+}
+
+/// The same with two inputs, and hyper-parameters.
+struct SparseToy : Toy {
+  explicit SparseToy(int n) : Toy(n) {
+    inputs = inputs.topRows(2).eval();
+    hyperparameters.log_length_scales.resize(2, 2);
+    hyperparameters.log_length_scales << 0.1, 0.3, 0.8, 0.2;
+    hyperparameters.log_signal_std = vectorOf({0.3, 0.1});
+    hyperparameters.log_noise_std = vectorOf({-2.0, -1.5});
+  }
+  Hyperparameters hyperparameters;
+};
+
+/// Matrices of one output as the formulas have them, inverted outright.
+struct PlainFitc {
+  PlainFitc(const SparseToy& toy, const Eigen::MatrixXd& inducing, int output) {
+    const Eigen::VectorXd theta = thetaOf(toy.hyperparameters, output);
+    const Eigen::VectorXd l = theta.head(2).array().exp();
+    const double sf = std::exp(theta[2]);
+    k_mn = squaredExponential(inducing, toy.inputs, l, sf);
+    k_mm = squaredExponential(inducing, inducing, l, sf);
+    k_mm.diagonal().array() += kRidge;
+    const Eigen::MatrixXd q = k_mn.transpose() * k_mm.inverse() * k_mn;
+    lambda = std::exp(2.0 * theta[3]) + sf * sf - q.diagonal().array();
+    c = q;
+    c.diagonal() += lambda.matrix();
+  }
+  Eigen::MatrixXd k_mn, k_mm, c;
+  Eigen::ArrayXd lambda;
+};
+
+TEST(SparseLikelihood, IsThatOfAMultivariateNormalSummedOverOutputs) {
+  const SparseToy toy(12);
+  const Eigen::MatrixXd inducing = randomMatrix(2, 4, 3);
+  double expected = 0.0;
+  for (int output = 0; output < 2; ++output) {
+    const PlainFitc plain(toy, inducing, output);
+    const Eigen::VectorXd y = toy.targets.col(output);
+    expected += 0.5 * y.dot(plain.c.inverse() * y) + 0.5 * std::log(plain.c.determinant()) +
+                6.0 * std::log(2.0 * M_PI);
+  }
+  EXPECT_NEAR(expected,
+              sparseNegativeLogLikelihood(inducing, toy.inputs, toy.targets, toy.hyperparameters),
+              1e-8);
+}
+
+TEST(SparseLikelihood, GradientInTheInducingInputsMatchesDifferences) {
+  const SparseToy toy(15);
+  const Eigen::MatrixXd inducing = randomMatrix(2, 5, 3);
+  const auto f = [&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+    const Eigen::MatrixXd z = Eigen::Map<const Eigen::MatrixXd>(x.data(), 2, 5);
+    Eigen::MatrixXd d_z;
+    const double value = sparseNegativeLogLikelihood(
+        z, toy.inputs, toy.targets, toy.hyperparameters, gradient != nullptr ? &d_z : nullptr);
+    if (gradient != nullptr) *gradient = Eigen::Map<const Eigen::VectorXd>(d_z.data(), 10);
+    return value;
+  };
+  EXPECT_TRUE(gradientMatches(f, Eigen::Map<const Eigen::VectorXd>(inducing.data(), 10), 1e-7));
+}
+
+TEST(SparseGpModel, HasTheMatricesOfTheFormulas) {
+  const SparseToy toy(14);
+  const Eigen::MatrixXd inducing = randomMatrix(2, 5, 3);
+  const GpFit fit = makeSparseGpModel(inducing, toy.inputs, toy.targets, toy.hyperparameters);
+  ASSERT_TRUE(fit.ok) << fit.message;
+  EXPECT_EQ(inducing, fit.model.inputs);
+  for (int output = 0; output < 2; ++output) {
+    const PlainFitc plain(toy, inducing, output);
+    const Eigen::MatrixXd scaled = plain.k_mn * plain.lambda.inverse().matrix().asDiagonal();
+    const Eigen::MatrixXd b = plain.k_mm + scaled * plain.k_mn.transpose();
+    const Eigen::VectorXd beta = b.inverse() * scaled * toy.targets.col(output);
+    const Eigen::MatrixXd inverse = plain.k_mm.inverse() - b.inverse();
+    EXPECT_LT((fit.model.beta.col(output) - beta).cwiseAbs().maxCoeff(),
+              1e-8 * beta.cwiseAbs().maxCoeff());
+    EXPECT_LT((fit.model.inverse[output] - inverse).cwiseAbs().maxCoeff(),
+              1e-8 * inverse.cwiseAbs().maxCoeff());
+    EXPECT_EQ(fit.model.inverse[output], fit.model.inverse[output].transpose());
+  }
+}
+
+TEST(TrainSparseGp, ImprovesOnTheRandomSubset) {
+  const SparseToy toy(60);
+  const Eigen::MatrixXd start = toy.inputs.leftCols(8);
+  const GpFit fit = trainSparseGp(start, toy.inputs, toy.targets, toy.hyperparameters, 50);
+  ASSERT_TRUE(fit.ok) << fit.message;
+  ASSERT_EQ(1u, fit.outputs.size());
+  EXPECT_EQ(sparseNegativeLogLikelihood(start, toy.inputs, toy.targets, toy.hyperparameters),
+            fit.outputs[0].initial_cost);
+  EXPECT_LT(fit.outputs[0].cost, fit.outputs[0].initial_cost - 1.0);
+  EXPECT_EQ(fit.outputs[0].cost, sparseNegativeLogLikelihood(fit.model.inputs, toy.inputs,
+                                                             toy.targets, toy.hyperparameters));
+}
+
+TEST(LearnGp, UsesInducingInputsOnlyBeyondTheSetSize) {
+  const SparseToy toy(40);
+  SparseGpOptions sparse;
+  sparse.max_points = 10;
+  sparse.first_iterations = 20;
+  GpLearnerState state;
+  std::mt19937_64 rng(1);
+  const auto learn = [&](int n) {
+    return learnGp(GpTrainingOptions(), sparse, toy.inputs.leftCols(n), toy.targets.topRows(n),
+                   &rng, &state);
+  };
+  const GpFit full = learn(10);
+  ASSERT_TRUE(full.ok) << full.message;
+  EXPECT_EQ(toy.inputs.leftCols(10), full.model.inputs);
+  EXPECT_EQ(2u, full.outputs.size());
+  EXPECT_EQ(full.outputs[1].cost, learn(10).outputs[1].initial_cost) << "goes on from its optimum";
+
+  const GpFit first = learn(30);
+  ASSERT_TRUE(first.ok) << first.message;
+  EXPECT_EQ(10, first.model.numPoints());
+  ASSERT_EQ(3u, first.outputs.size());
+
+  const std::mt19937_64 before = rng;
+  const GpFit next = learn(40);
+  ASSERT_TRUE(next.ok) << next.message;
+  EXPECT_EQ(before, rng) << "the inducing inputs of the trial before are the start";
+  EXPECT_EQ(next.outputs[2].initial_cost,
+            sparseNegativeLogLikelihood(first.model.inputs, toy.inputs, toy.targets,
+                                        next.model.hyperparameters));
+}
+
+TEST(LearnGp, RefusesAStateOfOtherInputs) {
+  const SparseToy toy(30);
+  GpLearnerState state{toy.hyperparameters, Eigen::MatrixXd::Zero(3, 10)};
+  std::mt19937_64 rng(1);
+  const auto learn = [&] {
+    learnGp(GpTrainingOptions(), SparseGpOptions(), toy.inputs, toy.targets, &rng, &state);
+  };
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(learn, {"2 entries, got 10 of 3"}));
+  state = {toy.hyperparameters, {}};
+  state.hyperparameters.log_noise_std.resize(3);
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>(learn, {"2 inputs", "2 outputs"}));
+}
+
+TEST(LearnGp, LearnsHyperparametersFromSomePointsAndPredictsWithAll) {
+  const SparseToy toy(60);
+  GpTrainingOptions training;
+  training.training_points = 40;
+  SparseGpOptions sparse;
+  sparse.first_iterations = 5;
+  const auto learn = [&](int max_points) {
+    sparse.max_points = max_points;
+    GpLearnerState state;
+    std::mt19937_64 rng(1);
+    return learnGp(training, sparse, toy.inputs, toy.targets, &rng, &state);
+  };
+  const GpFit full = learn(100);
+  ASSERT_TRUE(full.ok) << full.message;
+  EXPECT_EQ(60, full.model.numPoints());
+  const GpFit from_all = trainGp(toy.inputs, toy.targets, 300);
+  const Eigen::MatrixXd difference = full.model.hyperparameters.log_length_scales -
+                                     from_all.model.hyperparameters.log_length_scales;
+  EXPECT_GT(difference.cwiseAbs().maxCoeff(), 1e-6);  // other points
+  EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1.0);   // of the same function
+  const GpFit few = learn(30);
+  ASSERT_TRUE(few.ok) << few.message;
+  EXPECT_EQ(30, few.model.numPoints());
+  EXPECT_EQ(full.model.hyperparameters.log_length_scales,
+            few.model.hyperparameters.log_length_scales);
 }
 
 }  // namespace
