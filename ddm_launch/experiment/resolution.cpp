@@ -79,12 +79,12 @@ Layer layerOf(const std::string& config) {
 /// The parameter references, where each option has its default and its explanation.
 std::vector<Layer> defaults() {
   std::vector<Layer> layers;
-  for (const auto& [package, name] : {std::pair("ddm_sim", "sim"),
-                                      {"ddm_model", "model"},
-                                      {"ddm_mpc", "mpc"},
-                                      {"ddm_mpc", "pilco"},
-                                      {"ddm_launch", "experiment"}}) {
-    layers.push_back(layerOf(packageFolder(package) + "/config/" + name + ".yaml"));
+  for (const auto& [package, file] : {std::pair("ddm_sim", "config/sim.yaml"),
+                                      {"ddm_model", "config/model.yaml"},
+                                      {"ddm_mpc", "config/mpc.yaml"},
+                                      {"ddm_launch", "methods/pilco/pilco.yaml"},
+                                      {"ddm_launch", "config/experiment.yaml"}}) {
+    layers.push_back(layerOf(packageFolder(package) + "/" + file));
   }
   return layers;
 }

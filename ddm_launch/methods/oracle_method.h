@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_mpc/plan_cost.h>
+#include <ddm_mpc/planner.h>
 #include <ddm_sim/plant.h>
 
 #include <memory>

@@ -12,7 +12,7 @@ CHECKOUT = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file_
 COMPILER = "aarch64-linux-gnu-g++"
 # Among them the vectors of arctan, the threads of the objective and the clock of the planner.
 SOURCES = ["ddm_sim/src/pendulum.cpp", "ddm_model/src/arctan.cpp", "ddm_model/src/objective.cpp", "ddm_mpc/src/planner.cpp"]
-FOLDERS = ["ddm_sim", "ddm_model", "ddm_mpc", "ddm_msgs/params", "ddm_msgs/random"]
+FOLDERS = ["ddm_sim", "ddm_model", "ddm_mpc", "ddm_msgs/common"]
 # Objects only: libraries to link with exist for this machine alone, but headers are the same on all.
 PROJECT = """
 cmake_minimum_required(VERSION 3.16)

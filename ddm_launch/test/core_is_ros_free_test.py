@@ -11,8 +11,7 @@ import rospkg
 CORES = {"ddm_sim": ("ddm_sim", "include", "src"), "ddm_model": ("ddm_model", "include", "src"),
          "ddm_mpc": ("ddm_mpc", "include", "src"), "ddm_robot": ("ddm_sim", "robot/include", "robot/src")}
 # These may be left out of a build.
-OPTIONAL = {"ddm_pilco": ("ddm_mpc", "pilco/include", "pilco/src"),
-            "ddm_mujoco": ("ddm_sim", "mujoco/include", "mujoco/src")}
+OPTIONAL = {"ddm_mujoco": ("ddm_sim", "mujoco/include", "mujoco/src")}
 ROS_INCLUDE = re.compile(
     r'^\s*#\s*include\s*[<"]((?:ros|xmlrpcpp|\w+_msgs|actionlib|cv_bridge|image_transport'
     r'|diagnostic_updater|nodelet|pluginlib|class_loader|tf2?(?:_ros)?|ros\w+|ddm_bag_io'

@@ -9,7 +9,7 @@ import pytest
 
 CHECKOUT = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 CORES = ["ddm_sim", "ddm_model", "ddm_mpc"]
-INCLUDES = ["-I%s/include" % folder for folder in CORES + ["ddm_msgs/params", "ddm_msgs/random"]] + [
+INCLUDES = ["-I%s/include" % folder for folder in CORES + ["ddm_msgs/common"]] + [
     "-isystem/usr/include/eigen3"]
 # clang-tidy takes about ten seconds for a file: these, and those of the last commit, at most so many.
 ALGORITHM, MOST_TIDIED = ("objective.cpp", "trainer.cpp", "planner.cpp", "controller.cpp"), 12

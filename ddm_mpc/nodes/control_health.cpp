@@ -1,4 +1,4 @@
-// How mpc_node is doing, for /diagnostics: camera, torque, plans, model.
+// Health of mpc_node for /diagnostics: camera, torque, plans, model.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "control_health.h"
 
@@ -7,14 +7,14 @@
 namespace ddm {
 namespace {
 
-constexpr double kLate = 1.0;  // what is expected and comes later is a warning [s]
+constexpr double kLate = 1.0;  // a message that is expected for longer is a warning [s]
 
 double ageOf(const ros::SteadyTime& time) { return (ros::SteadyTime::now() - time).toSec(); }
 
 }  // namespace
 
 ControlHealth::ControlHealth(const ros::NodeHandle& nh, const ros::NodeHandle& pnh)
-    : reported_(ros::SteadyTime::now()), updater_(nh, pnh) {
+    : last_report_(ros::SteadyTime::now()), updater_(nh, pnh) {
   updater_.setHardwareID("none");
   updater_.add("camera", [this](Status& status) { reportStream("image", &images_, &status); });
   updater_.add("torque", [this](Status& status) { reportStream("torque", &torques_, &status); });
@@ -31,26 +31,22 @@ void ControlHealth::expect(Expected expected) {
   expected_since_ = ros::SteadyTime::now();
 }
 
-void ControlHealth::countImage() {
+void ControlHealth::count(Stream* stream) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  images_.count();
-}
-
-void ControlHealth::countTorque() {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  torques_.count();
+  ++stream->total;
+  stream->last = ros::SteadyTime::now();
 }
 
 void ControlHealth::countPlan(const Plan& plan) {
   const std::lock_guard<std::mutex> lock(mutex_);
   ++plans_.count;
-  if (plan.status == PlanStatus::kFailed) ++plans_.failed;
-  if (plan.status == PlanStatus::kTimeLimit) ++plans_.cut;
+  plans_.failed += plan.status == PlanStatus::kFailed ? 1 : 0;
+  plans_.cut += plan.status == PlanStatus::kTimeLimit ? 1 : 0;
   plans_.sum_s += plan.solve_time;
   plans_.max_s = std::max(plans_.max_s, plan.solve_time);
 }
 
-void ControlHealth::takeModel(const ddm_msgs::Model& model) {
+void ControlHealth::setModel(const ddm_msgs::Model& model) {
   const std::lock_guard<std::mutex> lock(mutex_);
   model_ = model;
   model_.data.clear();
@@ -59,25 +55,21 @@ void ControlHealth::takeModel(const ddm_msgs::Model& model) {
 
 void ControlHealth::onTick() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  period_ = ageOf(reported_);
-  reported_ = ros::SteadyTime::now();
-  num_plans_ += plans_.count;
-  num_failed_plans_ += plans_.failed;
-  num_cut_plans_ += plans_.cut;
+  period_ = ageOf(last_report_);
+  last_report_ = ros::SteadyTime::now();
   updater_.force_update();
   plans_ = Plans();
 }
 
 void ControlHealth::reportStream(const char* name, Stream* stream, Status* status) const {
-  const double rate = static_cast<double>(stream->total - stream->told) / period_;
-  stream->told = stream->total;
+  const double rate = static_cast<double>(stream->total - stream->reported) / period_;
+  stream->reported = stream->total;
   const double silence = ageOf(std::max(stream->last, expected_since_));
   if (expected_ == Expected::kImage && silence > kLate) {
     status->summaryf(Status::WARN, "no %s for %.1f s of a trial", name, silence);
   } else {
     status->summaryf(Status::OK, "%.1f %ss/s", rate, name);
   }
-  status->addf("rate [1/s]", "%.2f", rate);
   status->add("total", stream->total);
   if (stream->total > 0) status->addf("age of the newest [s]", "%.3f", ageOf(stream->last));
 }
@@ -93,13 +85,7 @@ void ControlHealth::reportPlans(Status* status) const {
   status->add("plans", plans_.count);
   status->add("failed", plans_.failed);
   status->add("cut short", plans_.cut);
-  if (plans_.count > 0) {
-    status->addf("mean solve time [ms]", "%.3f", mean_ms);
-    status->addf("longest solve time [ms]", "%.3f", 1e3 * plans_.max_s);
-  }
-  status->add("plans in all", num_plans_);
-  status->add("failed in all", num_failed_plans_);
-  status->add("cut short in all", num_cut_plans_);
+  if (plans_.count > 0) status->addf("longest solve time [ms]", "%.3f", 1e3 * plans_.max_s);
 }
 
 void ControlHealth::reportModel(Status* status) const {
@@ -113,8 +99,7 @@ void ControlHealth::reportModel(Status* status) const {
   }
   if (model_.id.empty()) return;
   status->add("id", model_.id);
-  status->add("trial", model_.trial);
-  status->add("frames learned from", model_.frames);
+  status->add("images learned from", model_.frames);
   status->addf("V_R [grey^2]", "%.4g", model_.v_r);
   status->addf("V_P [grey^2]", "%.4g", model_.v_p);
   status->addf("age [s]", "%.1f", ageOf(model_came_));

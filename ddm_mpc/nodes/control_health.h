@@ -1,4 +1,4 @@
-// How mpc_node is doing, for /diagnostics: camera, torque, plans, model.
+// Health of mpc_node for /diagnostics: camera, torque, plans, model.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,7 +8,6 @@
 
 #include <cstdint>
 #include <mutex>
-#include <string>
 
 #include "ddm_mpc/planner.h"
 
@@ -19,30 +18,24 @@ namespace ddm {
 /// time runs as fast as it can.
 class ControlHealth {
  public:
-  /// What the node is waiting for.
+  /// The message without which the trial cannot go on.
   enum class Expected { kNothing, kModel, kImage };
 
   ControlHealth(const ros::NodeHandle& nh, const ros::NodeHandle& pnh);
 
   void expect(Expected expected);
-  void countImage();
-  void countTorque();
+  void countImage() { count(&images_); }
+  void countTorque() { count(&torques_); }
   void countPlan(const Plan& plan);
-  void takeModel(const ddm_msgs::Model& model);
+  void setModel(const ddm_msgs::Model& model);
 
  private:
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
 
-  /// Something that comes again and again.
   struct Stream {
     std::uint64_t total = 0;
-    std::uint64_t told = 0;  ///< of which in earlier reports
+    std::uint64_t reported = 0;  ///< of these, in earlier reports
     ros::SteadyTime last;
-
-    void count() {
-      ++total;
-      last = ros::SteadyTime::now();
-    }
   };
   struct Plans {
     int count = 0;
@@ -52,6 +45,7 @@ class ControlHealth {
     double max_s = 0.0;
   };
 
+  void count(Stream* stream);
   void onTick();
   void reportStream(const char* name, Stream* stream, Status* status) const;
   void reportPlans(Status* status) const;
@@ -60,15 +54,12 @@ class ControlHealth {
   std::mutex mutex_;  // guards all of these
   Expected expected_ = Expected::kNothing;
   ros::SteadyTime expected_since_;
-  ros::SteadyTime reported_;
-  double period_ = 0.0;  ///< since the last report [s]
+  ros::SteadyTime last_report_;
+  double period_ = 0.0;  ///< between the last two reports [s]
   Stream images_;
   Stream torques_;
-  Plans plans_;  ///< since the last report
-  std::uint64_t num_plans_ = 0;
-  std::uint64_t num_failed_plans_ = 0;
-  std::uint64_t num_cut_plans_ = 0;
-  ddm_msgs::Model model_;  ///< without its data
+  Plans plans_;            ///< since the last report
+  ddm_msgs::Model model_;  ///< without its data; no id: none came
   ros::SteadyTime model_came_;
 
   diagnostic_updater::Updater updater_;

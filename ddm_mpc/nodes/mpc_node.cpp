@@ -97,7 +97,7 @@ void MpcNode::onModel(const ddm_msgs::ModelConstPtr& message) {
     return;
   }
   model_id_ = modelId(bytes);
-  health_.takeModel(*message);
+  health_.setModel(*message);
   log_.info("model " + model_id_ + " of trial " + std::to_string(message->trial) + " received");
   beginIfReady(std::unique_lock<std::mutex>(mutex_));
 }
@@ -115,55 +115,53 @@ void MpcNode::onGoalImage(const sensor_msgs::ImageConstPtr& image) {
   beginIfReady(std::move(lock));
 }
 
-/// Lets the thread of the images prepare the trial once its model and its goal image are there.
-/// @param lock  of mutex_, held until the end
-void MpcNode::beginIfReady(std::unique_lock<std::mutex> /*lock*/) {
-  if (goal_ == nullptr || trial_ != nullptr || preparing_ != nullptr || finished_) return;
-  if (!goal_->model_id.empty() && goal_->model_id != model_id_) return;
+/// Makes the trial once its model and its goal image are there, and lets the thread of the images
+/// prepare it.
+/// @param lock  of mutex_
+void MpcNode::beginIfReady(std::unique_lock<std::mutex> lock) {
+  if (goal_ == nullptr || trial_ != nullptr || finished_) return;
+  const std::string& model_id = goal_->model_id;
+  if (!model_id.empty() && model_id != model_id_) return;
   const bool goal_image_is_there =
       goal_->goal.isZero() || (goal_image_ != nullptr && goal_image_->header.stamp == goal_->goal);
   if (!goal_image_is_there) return;
-  preparing_ = std::make_shared<const Preparation>(
-      Preparation{*goal_, goal_->model_id.empty() ? nullptr : model_, goal_image_});
+  try {
+    trial_ = std::make_shared<TrialRun>(*goal_, model_id.empty() ? nullptr : model_, goal_image_,
+                                        image_size_, mpc_, controller_);
+  } catch (const std::exception& e) {
+    lock.unlock();
+    abort({std::string("trial refused: ") + e.what(), ""});
+    return;
+  }
+  preparing_ = true;
   goal_changed_ = false;
   fed_back_ = 0;
   health_.expect(ControlHealth::Expected::kNothing);
   image_queue_.addCallback(prepare_);
 }
 
-/// In lock-step the first image may have come before the goal; there will be no second one.
+/// In lock-step the first image may have come before the goal, and no second one will come.
 void MpcNode::prepare() {
-  const std::shared_ptr<const Preparation> made = makeTrial();
-  if (made != nullptr && !made->goal.start.isZero() && last_image_ != nullptr) answer(*last_image_);
+  const std::shared_ptr<TrialRun> trial = preparedTrial();
+  if (trial == nullptr || !trial->startIsGiven() || trial->lastAnswered()) return;
+  if (last_image_ != nullptr) answer(*last_image_);
 }
 
-/// Without the lock, because the cost-to-go takes up to two seconds.
-/// @return what a trial was made from; null: no trial is wanted any more, or it was refused
-std::shared_ptr<const MpcNode::Preparation> MpcNode::makeTrial() {
+/// Prepares the trial if that has not been done, without the lock because it takes up to two seconds.
+/// @return the trial under way; null if there is none
+std::shared_ptr<TrialRun> MpcNode::preparedTrial() {
   std::unique_lock<std::mutex> lock(mutex_);
-  const std::shared_ptr<const Preparation> wanted = preparing_;
-  if (wanted == nullptr) return nullptr;
+  const std::shared_ptr<TrialRun> trial = trial_;
+  if (trial == nullptr || !preparing_) return trial;
   lock.unlock();
-  std::shared_ptr<TrialRun> trial;
-  Trouble trouble;
-  try {
-    trial = std::make_shared<TrialRun>(wanted->goal, wanted->model, wanted->goal_image, image_size_,
-                                       mpc_, controller_);
-  } catch (const std::exception& e) {
-    trouble.text = std::string("trial refused: ") + e.what();
-  }
+  trial->prepare();
   lock.lock();
-  if (preparing_ != wanted) return nullptr;  // cancelled meanwhile
-  preparing_.reset();
-  if (trial == nullptr) {
-    finish(trouble);
-    return nullptr;
-  }
-  trial_ = trial;
+  if (trial_ != trial) return nullptr;  // cancelled meanwhile
+  preparing_ = false;
   applied_.clear();
   last_progress_ = ros::SteadyTime::now();
   health_.expect(ControlHealth::Expected::kImage);
-  return wanted;
+  return trial;
 }
 
 void MpcNode::onImage(const sensor_msgs::ImageConstPtr& image) {
@@ -174,16 +172,21 @@ void MpcNode::onImage(const sensor_msgs::ImageConstPtr& image) {
 
 void MpcNode::answer(const sensor_msgs::Image& image) {
   const auto arrival = std::chrono::steady_clock::now();
-  makeTrial();  // whoever sees the goal accepted may send an image at once
+  // A client that sees its goal accepted may send an image before prepare() has been called.
+  const std::shared_ptr<TrialRun> trial = preparedTrial();
   std::unique_lock<std::mutex> lock(mutex_);
-  if (trial_ == nullptr || trial_->ended()) return;
-  const std::shared_ptr<TrialRun> trial = trial_;
+  if (trial == nullptr || trial->ended()) return;
   const sensor_msgs::ImageConstPtr new_goal = goal_changed_ ? goal_image_ : nullptr;
   goal_changed_ = false;
   deciding_since_ = ros::SteadyTime::now();
   lock.unlock();
+  std::optional<Decision> decision;
   Trouble trouble;
-  const std::optional<Decision> decision = decide(trial.get(), new_goal, image, arrival, &trouble);
+  try {
+    decision = decide(trial.get(), new_goal, image, arrival);
+  } catch (const std::exception& e) {
+    trouble = {std::string("image refused: ") + e.what(), image_sub_.getTopic()};
+  }
 
   lock.lock();
   deciding_since_.reset();
@@ -200,38 +203,25 @@ void MpcNode::answer(const sensor_msgs::Image& image) {
     return;
   }
   trial->end();
-  finish(trouble);
-}
-
-/// Lets the thread of the global queue end the trial. Locked by the caller.
-void MpcNode::finish(const Trouble& trouble) {
   finished_ = trouble;
   ros::getGlobalCallbackQueue()->addCallback(finish_);
 }
 
 /// Without the lock: another goal may take as long as a plan.
 /// @param new_goal  the goal image that came since the last image; null: none came
-/// @param trouble   out: why the image cannot be answered
+/// @throws std::invalid_argument if the image cannot be answered
 std::optional<Decision> MpcNode::decide(TrialRun* trial, const sensor_msgs::ImageConstPtr& new_goal,
                                         const sensor_msgs::Image& image,
-                                        std::chrono::steady_clock::time_point arrival,
-                                        Trouble* trouble) {
+                                        std::chrono::steady_clock::time_point arrival) {
   if (image_sub_.getNumPublishers() > 1) {
-    trouble->text = "image refused: only one node may publish images: stop the others";
-    trouble->topic = image_sub_.getTopic();
-    return std::nullopt;
+    throw std::invalid_argument("only one node may publish images: stop the others");
   }
-  try {
-    if (new_goal != nullptr) trial->setGoal(*new_goal);
-    if (const std::optional<ros::Time> last = trial->lastAnswered()) {
-      const ddm_msgs::TorqueConstPtr applied = applied_.after(*last);
-      if (applied != nullptr) trial->takeApplied(*applied);
-    }
-    return trial->decide(image, arrival);
-  } catch (const std::exception& e) {
-    trouble->text = std::string("image refused: ") + e.what();
-    return std::nullopt;
+  if (new_goal != nullptr) trial->setGoal(*new_goal);
+  if (const std::optional<ros::Time> last = trial->lastAnswered()) {
+    const ddm_msgs::TorqueConstPtr applied = applied_.after(*last);
+    if (applied != nullptr) trial->takeApplied(*applied);
   }
+  return trial->decide(image, arrival);
 }
 
 void MpcNode::publish(const std_msgs::Header& header, const Decision& decision) {
@@ -297,7 +287,7 @@ std::optional<MpcNode::Trouble> MpcNode::describeSilence() {
   std::ostringstream reason;
   std::string topic = model_sub_.getTopic();
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (finished_ || preparing_ != nullptr) return std::nullopt;
+  if (finished_ || preparing_) return std::nullopt;
   const ros::SteadyTime since = std::max(last_progress_, deciding_since_.value_or(last_progress_));
   if ((ros::SteadyTime::now() - since).toSec() <= controller_.timeout) return std::nullopt;
   if (trial_ == nullptr) {
@@ -328,7 +318,7 @@ ddm_msgs::RunTrialResult MpcNode::endTrial() {
     trial_->end();
   }
   trial_.reset();
-  preparing_.reset();
+  preparing_ = false;
   finished_.reset();
   if (effort_) effort_->publishZero();
   return result;

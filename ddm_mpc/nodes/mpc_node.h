@@ -30,9 +30,9 @@
 namespace ddm {
 
 /// Action `run_trial`: each image of the trial is answered on `torque` with the image's stamp.
-/// Images have a thread of their own, which prepares trials and plans, and so have applied torques, which that thread needs.
-/// Everything else, such as a goal that is cancelled, a trial that times out or Ctrl-C, is for the thread that spins the
-/// global queue, which waits for neither.
+/// Images have a thread of their own, which prepares trials, plans, and takes in the applied torques. Everything else, such as
+/// a goal that is cancelled, a trial that times out or Ctrl-C, is handled by the thread that spins the global queue, so that
+/// neither a plan nor a preparation delays it.
 class MpcNode {
  public:
   /// @param nh   topics and action
@@ -65,13 +65,6 @@ class MpcNode {
     std::string topic;  ///< whose publishers are to be named; may be empty
   };
 
-  /// A trial that has all it needs.
-  struct Preparation {
-    ddm_msgs::RunTrialGoal goal;
-    std::shared_ptr<const Ddm> model;       // null: a random trial
-    sensor_msgs::ImageConstPtr goal_image;  // null: the model's
-  };
-
   // In the thread of the global queue.
   void onGoal();
   void onPreempt();
@@ -86,15 +79,14 @@ class MpcNode {
 
   // In the thread of the images.
   void prepare();
-  std::shared_ptr<const Preparation> makeTrial();
+  std::shared_ptr<TrialRun> preparedTrial();
   void onImage(const sensor_msgs::ImageConstPtr& image);
   void answer(const sensor_msgs::Image& image);
   std::optional<Decision> decide(TrialRun* trial, const sensor_msgs::ImageConstPtr& new_goal,
                                  const sensor_msgs::Image& image,
-                                 std::chrono::steady_clock::time_point arrival, Trouble* trouble);
+                                 std::chrono::steady_clock::time_point arrival);
   void publish(const std_msgs::Header& header, const Decision& decision);
   void publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torque, bool exploratory);
-  void finish(const Trouble& trouble);
 
   LogThread log_;  // a terminal that is stopped must not be in the way of a stop
   const int image_size_;
@@ -113,11 +105,11 @@ class MpcNode {
   ros::SteadyTime last_plan_log_;
 
   std::mutex mutex_;  // not held while a plan is computed; guards these and effort_
-  std::shared_ptr<const Preparation> preparing_;  // null: no trial is being prepared
-  sensor_msgs::ImageConstPtr goal_image_;         // the newest; null: none came
-  bool goal_changed_ = false;                     // the trial does not know yet
-  std::shared_ptr<TrialRun> trial_;               // null: no trial, or it is not ready yet
-  std::optional<Trouble> finished_;  // why the image thread ended the trial, if all is not done
+  sensor_msgs::ImageConstPtr goal_image_;  // the newest; null: none came
+  bool goal_changed_ = false;              // the trial plans to an older one
+  std::shared_ptr<TrialRun> trial_;  // null: no trial, or its model or goal image has not come
+  bool preparing_ = false;           // trial_, before its first image
+  std::optional<Trouble> finished_;  // the thread of the images has ended the trial, and why
   ros::SteadyTime last_progress_;
   std::optional<ros::SteadyTime> deciding_since_;
 

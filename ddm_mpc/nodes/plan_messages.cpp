@@ -5,23 +5,13 @@
 #include <limits>
 
 namespace ddm {
-namespace {
 
-std::uint8_t statusOf(const Plan& plan) {
-  switch (plan.status) {
-    case PlanStatus::kConverged:
-      return ddm_msgs::Plan::CONVERGED;
-    case PlanStatus::kIterationLimit:
-      return ddm_msgs::Plan::ITERATION_LIMIT;
-    case PlanStatus::kTimeLimit:
-      return ddm_msgs::Plan::TIME_LIMIT;
-    case PlanStatus::kFailed:
-      break;
-  }
-  return ddm_msgs::Plan::FAILED;
-}
-
-}  // namespace
+static_assert(static_cast<int>(PlanStatus::kConverged) == ddm_msgs::Plan::CONVERGED &&
+                  static_cast<int>(PlanStatus::kIterationLimit) ==
+                      ddm_msgs::Plan::ITERATION_LIMIT &&
+                  static_cast<int>(PlanStatus::kFailed) == ddm_msgs::Plan::FAILED &&
+                  static_cast<int>(PlanStatus::kTimeLimit) == ddm_msgs::Plan::TIME_LIMIT,
+              "a plan's status has the same number in both");
 
 std::vector<double> flat(const Eigen::MatrixXd& values) {
   return std::vector<double>(values.data(), values.data() + values.size());
@@ -37,7 +27,7 @@ ddm_msgs::Plan planMessage(const ros::Time& stamp, const Plan& plan) {
   message.cost = plan.cost;
   message.iterations = plan.iterations;
   message.evaluations = plan.evaluations;
-  message.status = statusOf(plan);
+  message.status = static_cast<std::uint8_t>(plan.status);
   message.message = plan.message;
   message.solve_time = plan.solve_time;
   return message;

@@ -19,14 +19,15 @@ std::vector<double> flat(const Eigen::MatrixXd& values);
 /// @param stamp  of the image that the plan answers
 ddm_msgs::Plan planMessage(const ros::Time& stamp, const Plan& plan);
 
-/// Looks at the plans of a trial in turn: what one predicts, the next one finds to be so or not.
+/// Numbers about each plan of a trial. The prediction error compares the feature that the last plan predicted
+/// with the feature of the next image.
 class PlanScalars {
  public:
   /// @param goal_distance  in units of the features' spread; empty: not known
   ddm_msgs::PlanScalars of(const ros::Time& stamp, const Plan& plan,
                            const std::optional<double>& goal_distance);
 
-  /// The next image is not what the last plan was for.
+  /// Says that the next image does not follow the last plan.
   void forget() { predicted_.resize(0); }
 
  private:

@@ -42,13 +42,14 @@ TrialRun::TrialRun(const ddm_msgs::RunTrialGoal& goal, std::shared_ptr<const Ddm
                    const sensor_msgs::ImageConstPtr& goal_image, int image_size,
                    const MpcOptions& mpc, const ControllerOptions& controller)
     : num_steps_(goal.num_steps),
+      start_is_given_(!goal.start.isZero()),
       image_size_(image_size),
       dt_(controller.dt),
       greedy_(makePolicy(std::move(model), image_size, mpc, controller)),
       policy_(greedy_, explorationOf(goal, mpc, controller),
               TrialId{goal.seed, goal.trial, goal.evaluation != 0}) {
   if (num_steps_ < 1) throw std::invalid_argument("num_steps must be >= 1, got 0");
-  if (!goal.start.isZero()) last_stamp_ = goal.start - ros::Duration(0, 1);
+  if (start_is_given_) last_stamp_ = goal.start - ros::Duration(0, 1);
   if (goal_image != nullptr) setGoal(*goal_image);
   if (greedy_ == nullptr) return;
   if (!greedy_->hasGoal()) {
@@ -57,7 +58,6 @@ TrialRun::TrialRun(const ddm_msgs::RunTrialGoal& goal, std::shared_ptr<const Ddm
         "one");
   }
   greedy_->setStop([this] { return ended(); });
-  greedy_->prepare();  // before the first image: no torque is late for it
 }
 
 std::optional<Decision> TrialRun::decide(const sensor_msgs::Image& image,

@@ -24,13 +24,18 @@ namespace ddm {
 /// not hold while decide() plans.
 class TrialRun {
  public:
-  /// Computes the cost-to-go, which takes up to two seconds.
   /// @param model       may be null where goal.epsilon = 1
   /// @param goal_image  to plan to; null: the model's
   /// @throws std::invalid_argument if goal, model and options do not fit together
   TrialRun(const ddm_msgs::RunTrialGoal& goal, std::shared_ptr<const Ddm> model,
            const sensor_msgs::ImageConstPtr& goal_image, int image_size, const MpcOptions& mpc,
            const ControllerOptions& controller);
+
+  /// Computes what the first plan needs, so that its torque is not late: the cost-to-go takes up to two
+  /// seconds.
+  void prepare() {
+    if (greedy_ != nullptr) greedy_->prepare();
+  }
 
   /// @param arrival  of the image: mpc/time_budget begins there
   /// @return the decision, or nothing for an image that is not the next of this trial: one from
@@ -40,12 +45,15 @@ class TrialRun {
   std::optional<Decision> decide(const sensor_msgs::Image& image,
                                  std::chrono::steady_clock::time_point arrival);
 
+  /// Whether the goal says with which image the trial starts.
+  bool startIsGiven() const { return start_is_given_; }
+
   /// Stamp of the last image that was answered; empty before the first.
   std::optional<ros::Time> lastAnswered() const {
     return answered_ ? std::make_optional(last_stamp_) : std::nullopt;
   }
 
-  /// What acted after the last image that was answered, see topic `applied_torque`.
+  /// Takes in the torque that acted after the last image that was answered, see topic `applied_torque`.
   /// @throws std::invalid_argument if it is neither empty nor one finite number for each motor
   void takeApplied(const ddm_msgs::Torque& applied);
 
@@ -56,8 +64,8 @@ class TrialRun {
   /// Adds a decision that was published to the result.
   void collect(const ros::Time& stamp, const Decision& decision);
 
-  /// No image is answered from here on. From any thread: a decide() under way ends its search, and
-  /// what it returns no longer counts.
+  /// No image is answered from here on. May be called from any thread. A decide() under way ends its search,
+  /// and its decision no longer counts.
   void end() { ended_ = true; }
   bool ended() const { return ended_; }
 
@@ -68,6 +76,7 @@ class TrialRun {
   bool isGap(double interval);
 
   std::uint32_t num_steps_;
+  bool start_is_given_;
   int image_size_;
   double dt_;              // 0: not known [s]
   ros::Time last_stamp_;   // images up to this one do not count

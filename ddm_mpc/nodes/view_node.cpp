@@ -1,4 +1,4 @@
-// view_node: shows what the model sees, expects and knows.
+// view_node: shows the image, its reconstruction, the prediction and the feature space.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cv_bridge/cv_bridge.h>
 #include <ddm_common/image_codec.h>
@@ -27,21 +27,23 @@ namespace ddm {
 namespace {
 
 constexpr int kQueue = 10;
-constexpr double kWarnPeriod = 5.0;        // [s]
-constexpr std::size_t kMaxSeen = 2000;     // images of experience
-constexpr std::uint32_t kMaxSteps = 1000;  // of a plan, as in the rules of mpc/horizon
+constexpr double kWarnPeriod = 5.0;     // [s]
+constexpr std::size_t kMaxSeen = 2000;  // images of experience
 const ros::WallDuration kTick(0.1);
 
+/// @return predicted features, a column each; none where the plan failed
 /// @throws std::invalid_argument if the plan cannot be drawn
-void requireDrawable(const ddm_msgs::Plan& plan) {
-  if (plan.status == ddm_msgs::Plan::FAILED) return;
-  if (plan.horizon > kMaxSteps) {
-    throw std::invalid_argument("it has " + std::to_string(plan.horizon) + " steps, at most " +
-                                std::to_string(kMaxSteps) + " can be drawn");
+Eigen::MatrixXd featuresOf(const ddm_msgs::Plan& plan, std::size_t feature_dim) {
+  if (plan.status == ddm_msgs::Plan::FAILED) return {};
+  const std::size_t count = static_cast<std::size_t>(plan.horizon) + 1;
+  if (plan.feature.size() != feature_dim * count) {
+    throw std::invalid_argument("it has " + std::to_string(plan.feature.size()) + " numbers for " +
+                                std::to_string(count) + " features of size " +
+                                std::to_string(feature_dim));
   }
-  for (const double value : plan.feature) {
-    if (!std::isfinite(value)) throw std::invalid_argument("it holds features that are not finite");
-  }
+  const Eigen::Map<const Eigen::MatrixXd> features(plan.feature.data(), feature_dim, count);
+  if (!features.allFinite()) throw std::invalid_argument("it holds features that are not finite");
+  return features;
 }
 
 /// Publishes `prediction_image` and `feature_space_image`, each at most ten times a second and only
@@ -95,7 +97,6 @@ class ViewNode {
                                     ", this node has image/size " + std::to_string(image_size_) +
                                     ": start both with the same configuration");
       }
-      if (model_) plan_.reset();  // a plan in the features of the last model means nothing in these
       model_ = std::move(model);
     } catch (const std::exception& e) {
       ROS_WARN_STREAM_THROTTLE(kWarnPeriod, "model not shown: " << e.what());
@@ -103,19 +104,28 @@ class ViewNode {
     }
     model_id_ = id;
     plane_.reset();
+    plan_features_.resize(0, 0);  // a plan in the features of the last model means nothing in these
+    goal_feature_.resize(0);
     for (SeenImage& seen : seen_) seen.feature.resize(0);
     markOutdated();
   }
 
+  /// A plan that comes before the first model is not kept.
   void onPlan(const ddm_msgs::PlanConstPtr& message) {
+    if (!model_) return;
     try {
-      requireDrawable(*message);
+      plan_features_ = featuresOf(*message, model_->featureDim());
     } catch (const std::exception& e) {
       ROS_WARN_STREAM_THROTTLE(kWarnPeriod,
                                "plan on " << plan_sub_.getTopic() << " not shown: " << e.what());
       return;
     }
-    plan_ = message;
+    goal_feature_.resize(0);
+    if (plan_features_.cols() > 0 &&
+        static_cast<int>(message->goal_feature.size()) == model_->featureDim()) {
+      goal_feature_ =
+          Eigen::Map<const Eigen::VectorXd>(message->goal_feature.data(), plan_features_.rows());
+    }
     markOutdated();
   }
 
@@ -131,7 +141,7 @@ class ViewNode {
   }
 
   void advertise(const char* topic, Output* output) {
-    // Somebody who comes when nothing changes any more wants to see the last state too.
+    // A subscriber that connects when nothing changes any more shall see the last state, too.
     output->publisher = transport_.advertise(
         topic, 1,
         [output](const image_transport::SingleSubscriberPublisher&) { output->outdated = true; });
@@ -142,20 +152,6 @@ class ViewNode {
     feature_space_.outdated = true;
   }
 
-  /// Predicted features of the latest plan, empty if there is none that the model can show.
-  Eigen::MatrixXd planFeatures() const {
-    if (!model_ || plan_ == nullptr || plan_->status == ddm_msgs::Plan::FAILED) return {};
-    const Eigen::Index dim = model_->featureDim();
-    const Eigen::Index count = static_cast<Eigen::Index>(plan_->horizon) + 1;
-    if (static_cast<Eigen::Index>(plan_->feature.size()) != dim * count) {
-      ROS_WARN_STREAM_THROTTLE(
-          kWarnPeriod, "plan on " << plan_sub_.getTopic() << " not shown: " << plan_->feature.size()
-                                  << " numbers for " << count << " features of size " << dim);
-      return {};
-    }
-    return Eigen::Map<const Eigen::MatrixXd>(plan_->feature.data(), dim, count);
-  }
-
   /// The image just seen, its reconstruction, the last image of the plan. A panel whose image is not
   /// known stays black.
   sensor_msgs::ImagePtr drawPrediction() const {
@@ -164,20 +160,14 @@ class ViewNode {
         {seen_.back().grey, "camera"}, {{}, "reconstruction"}, {{}, "prediction"}};
     if (model_) {
       panels[1].grey = model_->decode(model_->encode(seen_.back().grey));
-      const Eigen::MatrixXd features = planFeatures();
-      if (features.cols() > 0) {
-        panels[2].grey = model_->decode(features.rightCols(1));
-        panels[2].caption += ", " + std::to_string(features.cols() - 1) + " steps ahead";
+      if (plan_features_.cols() > 0) {
+        panels[2].grey = model_->decode(plan_features_.rightCols(1));
+        panels[2].caption += ", " + std::to_string(plan_features_.cols() - 1) + " steps ahead";
       }
     }
     return cv_bridge::CvImage(header_, sensor_msgs::image_encodings::MONO8,
                               drawPanels(panels, image_size_))
         .toImageMsg();
-  }
-
-  const FeaturePlane& plane() {
-    if (!plane_) plane_.emplace(*model_);
-    return *plane_;
   }
 
   FeatureOverlay overlay() {
@@ -189,18 +179,15 @@ class ViewNode {
     }
     if (!seen_.empty()) overlay.current = seen_.back().feature;
     if (model_->hasGoal()) overlay.goal = model_->goalFeature();
-    overlay.plan = planFeatures();
-    const bool planned = overlay.plan.cols() > 0;
-    if (planned && static_cast<int>(plan_->goal_feature.size()) == model_->featureDim()) {
-      overlay.goal = Eigen::Map<const Eigen::VectorXd>(plan_->goal_feature.data(),
-                                                       model_->featureDim());  // may not be its own
-    }
+    overlay.plan = plan_features_;
+    if (goal_feature_.size() > 0) overlay.goal = goal_feature_;
     return overlay;
   }
 
   sensor_msgs::ImagePtr drawFeatureSpace() {
     if (!model_) return nullptr;
-    return cv_bridge::CvImage(header_, sensor_msgs::image_encodings::RGB8, plane().draw(overlay()))
+    if (!plane_) plane_.emplace(*model_);
+    return cv_bridge::CvImage(header_, sensor_msgs::image_encodings::RGB8, plane_->draw(overlay()))
         .toImageMsg();
   }
 
@@ -208,9 +195,10 @@ class ViewNode {
   std::optional<Ddm> model_;
   std::optional<FeaturePlane> plane_;  // empty: not yet drawn for this model
   std::string model_id_;
-  ddm_msgs::PlanConstPtr plan_;
-  std::deque<SeenImage> seen_;  // newest last
-  std_msgs::Header header_;     // of the newest image
+  Eigen::MatrixXd plan_features_;  // of the newest plan; empty: none, or it failed
+  Eigen::VectorXd goal_feature_;   // to which it leads; empty: the model's
+  std::deque<SeenImage> seen_;     // newest last
+  std_msgs::Header header_;        // of the newest image
 
   image_transport::ImageTransport transport_;
   Output prediction_;

@@ -75,14 +75,17 @@ std::vector<Eigen::MatrixXd> predictions(const Ddm& model, const Eigen::MatrixXd
 
 }  // namespace
 
-CostToGo::CostToGo(const Ddm& model, const Eigen::VectorXd& max_torque) {
+CostToGo::CostToGo(const Ddm& model, const Eigen::VectorXd& max_torque)
+    : model_(&model), torques_(combinations(max_torque)) {
   eigen_assert(model.info().support_states.cols() >= 2 && max_torque.size() == model.torqueDim() &&
                max_torque.size() <= kMaxMotors);
-  torques_ = combinations(max_torque);
-  const Eigen::MatrixXd X = model.info().support_states.cast<double>();
-  const Eigen::Index dim = model.featureDim(), M = X.cols();
+}
+
+void CostToGo::predictOutcomes() {
+  const Eigen::MatrixXd X = model_->info().support_states.cast<double>();
+  const Eigen::Index dim = model_->featureDim(), M = X.cols();
   const Eigen::MatrixXd Z = X.topRows(dim);
-  const Eigen::MatrixXd changes = model.options().memory() > 1
+  const Eigen::MatrixXd changes = model_->options().memory() > 1
                                       ? Eigen::MatrixXd(Z - X.middleRows(dim, dim))
                                       : Eigen::MatrixXd::Zero(dim, M);
   // Where nothing moved, or a state is one sample, states differ by their features alone.
@@ -95,7 +98,7 @@ CostToGo::CostToGo(const Ddm& model, const Eigen::VectorXd& max_torque) {
   h_ = kSmoothness * spacing(points_);
   outcomes_.resize(static_cast<size_t>(M));
   for (Eigen::Index i = 0; i < torques_.cols(); ++i) {
-    const auto steps = predictions(model, X, torques_.col(i), kHoldSteps);
+    const auto steps = predictions(*model_, X, torques_.col(i), kHoldSteps);
     Eigen::MatrixXd path(dim, kHoldSteps);
     for (Eigen::Index state = 0; state < M; ++state) {
       for (int step = 0; step < kHoldSteps; ++step) path.col(step) = steps[step].col(state);
@@ -136,6 +139,7 @@ CostToGo::Outcome CostToGo::outcomeOf(const Eigen::MatrixXd& path) const {
 double CostToGo::unknownValue() const { return exploring_ ? kOptimism * kWorst : kWorst; }
 
 void CostToGo::setGoal(const Eigen::VectorXd& z_ref, bool exploring) {
+  if (outcomes_.empty()) predictOutcomes();
   z_ref_ = z_ref;
   exploring_ = exploring;
   const auto costOf = [this](const Outcome& outcome) {

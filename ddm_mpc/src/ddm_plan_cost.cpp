@@ -21,7 +21,7 @@ DdmPlanCost::DdmPlanCost(const Ddm& model, int horizon, double control_weight,
       control_weight_(Eigen::ArrayXd::Constant(f_.torqueDim(), control_weight)),
       cost_to_go_(std::move(cost_to_go)),
       roll_out_(f_) {
-  if (horizon < 1) throw std::invalid_argument("plan cost: horizon must be >= 1");
+  eigen_assert(horizon >= 1);
   roll_out_.reserve(/*num_targets=*/1, horizon);
   torques_.setZero(f_.torqueDim(), f_.memory() - 1 + horizon);
   if (!cost_to_go_) return;
@@ -29,9 +29,7 @@ DdmPlanCost::DdmPlanCost(const Ddm& model, int horizon, double control_weight,
 }
 
 void DdmPlanCost::setGoal(const Eigen::VectorXd& goal_feature, bool exploring) {
-  if (goal_feature.size() != f_.featureDim()) {
-    throw std::invalid_argument("plan cost: the goal feature does not fit the model");
-  }
+  eigen_assert(goal_feature.size() == f_.featureDim());
   const bool same_goal = goal_feature_.size() > 0 && goal_feature_ == goal_feature;
   if (same_goal && exploring_ == exploring) return;
   goal_feature_ = goal_feature;
@@ -41,10 +39,9 @@ void DdmPlanCost::setGoal(const Eigen::VectorXd& goal_feature, bool exploring) {
 
 void DdmPlanCost::setProblem(const History& x, const Eigen::VectorXd& goal_feature,
                              const Eigen::VectorXd& offset) {
-  if (x.empty() || x.features().rows() != f_.featureDim() || x.features().cols() != f_.memory() ||
-      x.torques().rows() != f_.torqueDim() || offset.size() != f_.featureDim()) {
-    throw std::invalid_argument("plan cost: history or offset do not fit the model");
-  }
+  eigen_assert(!x.empty() && x.features().rows() == f_.featureDim() &&
+               x.features().cols() == f_.memory() && x.torques().rows() == f_.torqueDim() &&
+               offset.size() == f_.featureDim());
   features_ = x.features().rowwise().reverse();
   torques_.leftCols(f_.memory() - 1) = x.torques().rowwise().reverse();
   setGoal(goal_feature, exploring_);

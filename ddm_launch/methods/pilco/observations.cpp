@@ -1,21 +1,20 @@
-// PILCO's observations: the true state, an auto-encoder's features, principal components.
+// What PILCO takes for the state: the true state, features of images, or principal components of images.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "observations.h"
+#include "pilco/observations.h"
 
 #include <ddm_common/plain_file.h>
-#include <ddm_common/random_stream.h>
 #include <ddm_model/long_term_prediction.h>
 #include <ddm_model/model_file.h>
+#include <ddm_model/pca.h>
 #include <ddm_model/trainer.h>
-#include <ddm_pilco/gp.h>
 #include <ddm_sim/angles.h>
 
-#include <Eigen/Eigenvalues>
 #include <boost/filesystem.hpp>
-#include <chrono>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
+#include "pilco/gp.h"
 #include "tables.h"
 
 namespace ddm {
@@ -34,13 +33,149 @@ constexpr double kStartStd = 0.1;     // images: standard deviation of the initi
 /// (angle, rate) of the plant to x.
 Eigen::VectorXd reorder(const Eigen::VectorXd& state) { return state.reverse(); }
 
-/// One joint that turns, seen as angle and rate, whose goal is upright: what the cost is made for.
+/// The cost is made for one joint that turns, seen as angle and rate, whose goal is upright.
 bool isPendulum(const Plant& plant) {
   const PlantInfo& info = plant.info();
   return info.joints.size() == 1 && info.joints[0].kind == JointKind::kAngle &&
          info.stateDim() == 2 &&
          std::abs(std::remainder(info.goal[0] - kPi, 2.0 * kPi)) <= kUprightWithin;
 }
+
+class TrueStateObservation : public Observation {
+ public:
+  explicit TrueStateObservation(const Plant& plant) : plant_(plant) {
+    pilco::require(
+        isPendulum(plant),
+        "PILCO on the true state is for one joint with angle and rate whose goal is the angle pi; "
+        "this plant has ",
+        plant.info().joints.size(), " joint(s), ", plant.stateDim(),
+        " state component(s) and the goal [", plant.info().goal.transpose(),
+        "]: use method pilco_features or pilco_pca");
+  }
+
+  std::vector<std::string> names() const override {
+    const std::vector<std::string>& of_plant = plant_.info().state_names;
+    return {of_plant[1], of_plant[0]};
+  }
+
+  ObservedData learn(const std::vector<std::string>& bags, const DataSet& data,
+                     const TrialId& id) override {
+    Eigen::MatrixXd X(2, data.numFrames());
+    Eigen::Index sample = 0;
+    for (size_t trial = 0; trial < bags.size(); ++trial) {
+      const std::string file =
+          (boost::filesystem::path(bags[trial]).parent_path() / "trajectory.csv").string();
+      const Eigen::MatrixXd states =
+          parseTrajectoryCsv(readFile(file), plant_.info().state_names, file);
+      const Eigen::Index due = trial < data.segments().size() ? data.segments()[trial].size : 0;
+      if (states.cols() != due) {
+        throw std::runtime_error(pilco::message(file, " must have the ", due,
+                                                " frames of the bag beside it, got ", states.cols(),
+                                                ": the run folder is damaged, use another"));
+      }
+      startTrial({id.seed, static_cast<std::uint32_t>(trial), false});
+      for (Eigen::Index i = 0; i < states.cols(); ++i) X.col(sample++) = measure(states.col(i));
+    }
+    return {X, task()};
+  }
+
+  bool keepsCoordinates() const override { return true; }
+  void startTrial(const TrialId& id) override {
+    noise_ = randomStream(id, StreamRole::kMeasurement);
+  }
+  Eigen::VectorXd observe(const Grey& /*grey*/) override { return measure(plant_.state()); }
+
+ private:
+  PilcoTask task() const {
+    const Eigen::VectorXd variance = reorder(plant_.info().start_std).cwiseAbs2();
+    const pilco::Gaussian start{reorder(plant_.info().start), variance.asDiagonal()};
+    Eigen::VectorXd length_scales(3);  // of rate, sine, cosine, as in the published runs
+    length_scales << 1.0, 0.7, 0.7;
+    // Distance and width are in lengths of the rod, so the length need not be known.
+    return {{kAngle}, true, start, pilco::pendulumCost(/*length=*/1.0, kCostWidth), length_scales};
+  }
+
+  Eigen::VectorXd measure(const Eigen::VectorXd& state) {
+    std::normal_distribution<double> normal;
+    Eigen::VectorXd x = reorder(state);
+    x[kRate] += kRateNoise * normal(noise_);
+    x[kAngle] += kAngleNoise * normal(noise_);
+    return x;
+  }
+
+  const Plant& plant_;
+  std::mt19937_64 noise_;
+};
+
+class FeatureObservation : public Observation {
+ public:
+  explicit FeatureObservation(const ModelConfig& model) : config_(model) {
+    pilco::require(config_.training.schedule == "v_r_only",
+                   "training/schedule must be v_r_only where PILCO learns the dynamics, got ",
+                   config_.training.schedule);
+  }
+
+  std::vector<std::string> names() const override {
+    return featureNames(config_.model.feature_dim);
+  }
+
+  ObservedData learn(const std::vector<std::string>& /*bags*/, const DataSet& data,
+                     const TrialId& id) override {
+    ModelInfo info;
+    info.seed = id.seed;
+    info.trial = id.trial;
+    info.config = toText(config_);
+    const TrainingResult result = train(data, config_.model, config_.training, info);
+    if (!result.model) throw std::runtime_error("auto-encoder: " + result.message);
+    model_ = *result.model;
+    return observeAll(data);
+  }
+
+  ObservedData resume(const std::string& folder, const std::vector<std::string>& /*bags*/,
+                      const DataSet& data, const TrialId& /*id*/) override {
+    const std::string file = folder + "/" + kModelFile;
+    model_ = deserialiseModel(readFile(file), file);
+    return observeAll(data);
+  }
+
+  std::map<std::string, std::string> files() const override {
+    return {{kModelFile, serialiseModel(*model_)}};
+  }
+  Eigen::VectorXd observe(const Grey& grey) override { return model_->encode(grey); }
+
+ private:
+  ObservedData observeAll(const DataSet& data) const {
+    const Eigen::MatrixXd Z = encodeAll(*model_, data);
+    return {Z, imageTask(Z, data.segments(), model_->goalFeature())};
+  }
+
+  ModelConfig config_;
+  std::optional<Ddm> model_;
+};
+
+class PcaObservation : public Observation {
+ public:
+  explicit PcaObservation(const ModelOptions& options) : options_(options) {}
+
+  std::vector<std::string> names() const override { return featureNames(options_.pca_dim); }
+
+  ObservedData learn(const std::vector<std::string>& /*bags*/, const DataSet& data,
+                     const TrialId& /*id*/) override {
+    if (!data.hasGoal()) {
+      throw std::runtime_error(
+          "the bags hold no goal image, which tells the goal: record one on goal_image");
+    }
+    const Pca pca = fitPca(data, options_.pca_dim, Blur(data.imageSize(), options_.blur));
+    projection_ = Projection(pca);
+    const Eigen::MatrixXd Z = pca.project(data).leftCols(data.numFrames()).cast<double>();
+    return {Z, imageTask(Z, data.segments(), observe(data.goal()))};
+  }
+  Eigen::VectorXd observe(const Grey& grey) override { return projection_(grey); }
+
+ private:
+  ModelOptions options_;
+  Projection projection_;
+};
 
 pilco::Gaussian startDistribution(const Eigen::MatrixXd& X, const std::vector<Segment>& segments,
                                   double distance) {
@@ -59,65 +194,14 @@ pilco::Gaussian startDistribution(const Eigen::MatrixXd& X, const std::vector<Se
 
 }  // namespace
 
-TrueStateObservation::TrueStateObservation(const Plant& plant) : plant_(plant) {
-  pilco::require(
-      isPendulum(plant),
-      "PILCO on the true state is for one joint with angle and rate whose goal is the angle pi; "
-      "this plant has ",
-      plant.info().joints.size(), " joint(s), ", plant.stateDim(),
-      " state component(s) and the goal [", plant.info().goal.transpose(),
-      "]: use method pilco_features or pilco_pca");
+std::unique_ptr<Observation> observeTrueState(const Plant& plant) {
+  return std::make_unique<TrueStateObservation>(plant);
 }
-
-std::vector<std::string> TrueStateObservation::names() const {
-  const std::vector<std::string>& of_plant = plant_.info().state_names;
-  return {of_plant[1], of_plant[0]};
+std::unique_ptr<Observation> observeFeatures(const ModelConfig& model) {
+  return std::make_unique<FeatureObservation>(model);
 }
-
-Eigen::MatrixXd TrueStateObservation::learn(const std::vector<std::string>& bags,
-                                            const DataSet& data, const TrialId& id) {
-  Eigen::MatrixXd X(2, data.numFrames());
-  Eigen::Index frame = 0;
-  for (size_t trial = 0; trial < bags.size(); ++trial) {
-    const std::string file =
-        (boost::filesystem::path(bags[trial]).parent_path() / "trajectory.csv").string();
-    const Eigen::MatrixXd states =
-        parseTrajectoryCsv(readFile(file), plant_.info().state_names, file);
-    const Eigen::Index due = trial < data.segments().size() ? data.segments()[trial].size : 0;
-    if (states.cols() != due) {
-      throw std::runtime_error(pilco::message(file, " must have the ", due,
-                                              " frames of the bag beside it, got ", states.cols(),
-                                              ": the run folder is damaged, use another"));
-    }
-    startTrial({id.seed, static_cast<std::uint32_t>(trial), false});
-    for (Eigen::Index i = 0; i < states.cols(); ++i) X.col(frame++) = measure(states.col(i));
-  }
-  return X;
-}
-
-PilcoTask TrueStateObservation::task() const {
-  const Eigen::VectorXd variance = reorder(plant_.info().start_std).cwiseAbs2();
-  const pilco::Gaussian start{reorder(plant_.info().start), variance.asDiagonal()};
-  Eigen::VectorXd length_scales(3);  // of rate, sine, cosine, as in the published runs
-  length_scales << 1.0, 0.7, 0.7;
-  // Distance and width are in lengths of the rod, so no rod needs to be known.
-  return {{kAngle}, true, start, pilco::pendulumCost(/*length=*/1.0, kCostWidth), length_scales};
-}
-
-void TrueStateObservation::startTrial(const TrialId& id) {
-  noise_ = randomStream(id, StreamRole::kMeasurement);
-}
-
-Eigen::VectorXd TrueStateObservation::observe(const Grey& /*grey*/) {
-  return measure(plant_.state());
-}
-
-Eigen::VectorXd TrueStateObservation::measure(const Eigen::VectorXd& state) {
-  std::normal_distribution<double> normal;
-  Eigen::VectorXd x = reorder(state);
-  x[kRate] += kRateNoise * normal(noise_);
-  x[kAngle] += kAngleNoise * normal(noise_);
-  return x;
+std::unique_ptr<Observation> observePrincipalComponents(const ModelConfig& model) {
+  return std::make_unique<PcaObservation>(model.model);
 }
 
 PilcoTask imageTask(const Eigen::MatrixXd& X, const std::vector<Segment>& segments,
@@ -131,96 +215,8 @@ PilcoTask imageTask(const Eigen::MatrixXd& X, const std::vector<Segment>& segmen
   return {{},
           false,
           startDistribution(X, segments, kStartStd * spread),
-          pilco::StateCost(pilco::replaceAngles(dim, {}), pilco::SaturatingCost(goal, weight)),
+          pilco::StateCost(pilco::replaceAngles(dim, {}), goal, weight),
           std};
-}
-
-FeatureObservation::FeatureObservation(const ModelConfig& model) : ImageObservation(model) {
-  pilco::require(config_.training.schedule == "v_r_only",
-                 "training/schedule must be v_r_only where PILCO learns the dynamics, got ",
-                 config_.training.schedule);
-}
-
-std::vector<std::string> FeatureObservation::names() const {
-  return featureNames(config_.model.feature_dim);
-}
-
-Eigen::MatrixXd FeatureObservation::learn(const std::vector<std::string>& /*bags*/,
-                                          const DataSet& data, const TrialId& id) {
-  ModelInfo info;
-  info.seed = id.seed;
-  info.trial = id.trial;
-  info.config = toText(config_);
-  const TrainingResult result = train(data, config_.model, config_.training, info);
-  if (!result.model) throw std::runtime_error("auto-encoder: " + result.message);
-  model_ = *result.model;
-  return observeAll(data);
-}
-
-void FeatureObservation::resume(const std::string& folder, const std::vector<std::string>& /*bags*/,
-                                const DataSet& data, const TrialId& /*id*/) {
-  const std::string file = folder + "/" + kModelFile;
-  model_ = deserialiseModel(readFile(file), file);
-  observeAll(data);
-}
-
-/// Sets task_. @return features of all frames  [feature_dim x N]
-Eigen::MatrixXd FeatureObservation::observeAll(const DataSet& data) {
-  const Eigen::MatrixXd Z = encodeAll(*model_, data);
-  task_ = imageTask(Z, data.segments(), model_->goalFeature());
-  return Z;
-}
-
-std::map<std::string, std::string> FeatureObservation::files() const {
-  return {{kModelFile, serialiseModel(*model_)}};
-}
-
-std::vector<std::string> PcaObservation::names() const {
-  return featureNames(config_.model.pca_dim);
-}
-
-Eigen::MatrixXd PcaObservation::learn(const std::vector<std::string>& /*bags*/, const DataSet& data,
-                                      const TrialId& /*id*/) {
-  const Pca pca = fitPca(data, config_.model.pca_dim, Blur(data.imageSize(), config_.model.blur));
-  projection_ = Projection(pca);
-  const Eigen::MatrixXd Z = pca.project(data).leftCols(data.numFrames()).cast<double>();
-  if (!data.hasGoal())
-    throw std::runtime_error(
-        "the bags hold no goal image, which tells the goal: record one on goal_image");
-  task_ = imageTask(Z, data.segments(), observe(data.goal()));
-  return Z;
-}
-
-Answer PilcoPolicy::answer() {
-  const auto start = std::chrono::steady_clock::now();
-  Answer answer;
-  answer.torque = policy_->control(features_.value(x_));
-  if (!answer.torque.allFinite()) answer.torque.setZero();
-  answer.solve_time =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return answer;
-}
-
-Eigen::VectorXd drawPolicyStart(const PilcoTask& task, const pilco::Augmentation& features,
-                                int num_centres, int torque_dim, std::mt19937_64* rng) {
-  constexpr double kTargetStd = 0.1;  // of the published runs
-  const auto drawNormal = [rng](Eigen::Index rows, Eigen::Index cols) {
-    std::normal_distribution<double> normal;
-    Eigen::MatrixXd out(rows, cols);
-    for (Eigen::Index i = 0; i < out.size(); ++i) out.data()[i] = normal(*rng);
-    return out;
-  };
-  const pilco::Moments start = features.predict(task.start);
-  // A root of the covariance, which may be singular.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(start.covariance);
-  const Eigen::MatrixXd root =
-      solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-  const Eigen::MatrixXd centres =
-      (root * drawNormal(start.mean.size(), num_centres)).colwise() + start.mean;
-  const Eigen::MatrixXd targets = kTargetStd * drawNormal(num_centres, torque_dim);
-  const Eigen::MatrixXd log_length_scales =
-      task.policy_length_scales.array().log().matrix().replicate(1, torque_dim);
-  return pilco::RbfPolicy::packParameters(log_length_scales, centres, targets);
 }
 
 }  // namespace ddm

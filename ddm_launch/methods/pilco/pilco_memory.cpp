@@ -1,11 +1,12 @@
 // Where the next training of PILCO starts, as keys of pilco.yaml.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/param_value.h>
+#include <ddm_common/plain_file.h>
 #include <ddm_common/yaml_text.h>
 
 #include <stdexcept>
 
-#include "pilco_method.h"
+#include "pilco/pilco_method.h"
 
 namespace ddm {
 namespace {
@@ -18,41 +19,31 @@ YAML::Node matrixToYaml(const Eigen::MatrixXd& matrix) {
         "PILCO: the policy or the GPs that were found are not finite: check the bags, or lower "
         "policy_search/max_iterations or gp/max_iterations");
   }
-  YAML::Node out(YAML::NodeType::Sequence);
+  std::vector<std::vector<double>> columns;
   for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
-    YAML::Node column(YAML::NodeType::Sequence);
-    column.SetStyle(YAML::EmitterStyle::Flow);
-    for (Eigen::Index i = 0; i < matrix.rows(); ++i) column.push_back(valueToYaml(matrix(i, j)));
-    out.push_back(column);
+    columns.emplace_back(matrix.col(j).data(), matrix.col(j).data() + matrix.rows());
   }
-  return out;
+  return valueToYaml(columns);
 }
 
-/// @param max_numbers  that can be there at all: aliases would make much of little
-Eigen::MatrixXd matrixOf(const YAML::Node& memory, const std::string& key, size_t max_numbers) {
-  const YAML::Node columns = memory[key];
-  if (!columns.IsDefined() || !columns.IsSequence()) {
+Eigen::MatrixXd matrixOf(const YAML::Node& memory, const std::string& key) {
+  std::vector<std::vector<double>> columns;
+  if (!memory[key].IsDefined() || !parseValue(memory[key], &columns)) {
     throw std::runtime_error(key + " must be a list of columns");
   }
-  const auto rows = columns.size() == 0 ? 0 : columns[0].size();
-  if (columns.size() > 0 && rows > max_numbers / columns.size()) {
-    throw std::runtime_error(key + " is longer than the file");
-  }
-  Eigen::MatrixXd out(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns.size()));
+  const size_t rows = columns.empty() ? 0 : columns[0].size();
+  Eigen::MatrixXd out(rows, columns.size());
   for (size_t j = 0; j < columns.size(); ++j) {
-    if (!columns[j].IsSequence() || columns[j].size() != rows)
-      throw std::runtime_error(key + " must have columns of one size");
-    for (size_t i = 0; i < rows; ++i) {
-      out(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = columns[j][i].as<double>();
-    }
+    if (columns[j].size() != rows) throw std::runtime_error(key + " must have columns of one size");
+    out.col(j) = Eigen::Map<const Eigen::VectorXd>(columns[j].data(), rows);
   }
   if (!out.allFinite()) throw std::runtime_error(key + " must be finite");
   return out;
 }
 
 /// The single column that a vector is kept as.
-Eigen::VectorXd vectorOf(const YAML::Node& memory, const std::string& key, size_t max_numbers) {
-  const Eigen::MatrixXd matrix = matrixOf(memory, key, max_numbers);
+Eigen::VectorXd vectorOf(const YAML::Node& memory, const std::string& key) {
+  const Eigen::MatrixXd matrix = matrixOf(memory, key);
   if (matrix.cols() != 1) throw std::runtime_error(key + " must be one column");
   return matrix.col(0);
 }
@@ -67,19 +58,18 @@ void writeMemory(const PilcoMemory& memory, YAML::Node* out) {
   (*out)["inducing"] = matrixToYaml(memory.gps.inducing);
 }
 
-PilcoMemory readMemory(const std::string& text, const std::string& source) {
+PilcoMemory readMemory(const std::string& file) {
+  const std::string text = readFile(file);
   try {
-    const YAML::Node root = parseYaml(text, source);
+    const YAML::Node root = parseYaml(text, file);
     if (!root.IsMap()) throw std::runtime_error("must be a map");
-    PilcoMemory memory;
-    memory.policy = vectorOf(root, "policy", text.size());
-    memory.gps.hyperparameters = {matrixOf(root, "log_length_scales", text.size()),
-                                  vectorOf(root, "log_signal_std", text.size()),
-                                  vectorOf(root, "log_noise_std", text.size())};
-    memory.gps.inducing = matrixOf(root, "inducing", text.size());
-    return memory;
+    return {vectorOf(root, "policy"),
+            {{matrixOf(root, "log_length_scales"), vectorOf(root, "log_signal_std"),
+              vectorOf(root, "log_noise_std")},
+             matrixOf(root, "inducing")},
+            file};
   } catch (const std::exception& e) {
-    throw std::runtime_error(source + ": " + e.what() +
+    throw std::runtime_error(file + ": " + e.what() +
                              ": PILCO goes on from this file, so use another run folder");
   }
 }

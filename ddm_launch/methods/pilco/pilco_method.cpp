@@ -1,13 +1,15 @@
 // PILCO as a method: Gaussian processes and policy search on an observation.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pilco_method.h"
+#include "pilco/pilco_method.h"
 
 #include <ddm_common/param_value.h>
 #include <ddm_common/plain_file.h>
 #include <ddm_common/random_stream.h>
+#include <ddm_model/minimise.h>
 #include <ddm_model/per_motor.h>
 #include <ddm_sim/plant.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <boost/filesystem.hpp>
 #include <chrono>
@@ -30,13 +32,6 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// The file that the previous training left next to the bags of the last trial but one.
-/// @param episodes  bags of each trial
-std::string memoryFile(const std::vector<std::string>& bags, int episodes) {
-  const boost::filesystem::path bag = bags.at(bags.size() - 2 * static_cast<size_t>(episodes));
-  return (bag.parent_path() / kMemoryFile).string();
-}
-
 /// What the GPs learn from: inputs [features of x_t, u_t] in columns, targets x_{t+1} - x_t in rows.
 /// No transition straddles two segments.
 std::pair<Eigen::MatrixXd, Eigen::MatrixXd> transitions(const DataSet& data,
@@ -54,35 +49,52 @@ std::pair<Eigen::MatrixXd, Eigen::MatrixXd> transitions(const DataSet& data,
   return {inputs, targets};
 }
 
-void requireParameters(const Eigen::VectorXd& parameters, const pilco::SquashedPolicy& policy,
-                       const std::string& file) {
-  const Eigen::Index count = policy.parameters().size();
-  if (parameters.size() == count) return;
-  throw std::runtime_error(pilco::message(file, ": policy must have ", count, " parameters, got ",
-                                          parameters.size(), ": use another run folder"));
-}
+/// The policy that PILCO searches, on an observation: u = policy(features of x).
+class PilcoPolicy : public Policy {
+ public:
+  PilcoPolicy(std::shared_ptr<Observation> observation,
+              std::shared_ptr<pilco::SquashedPolicy> policy, pilco::Augmentation features)
+      : observation_(std::move(observation)),
+        policy_(std::move(policy)),
+        features_(std::move(features)) {}
 
-using MakeObservation =
-    std::function<std::unique_ptr<Observation>(const Configuration&, const Plant&)>;
+  void startTrial(const TrialId& id) override { observation_->startTrial(id); }
+  void observe(const Grey& grey) override { x_ = observation_->observe(grey); }
+  /// 0 where the policy's torque is not finite.
+  Answer answer() override {
+    const Clock::time_point start = Clock::now();
+    Answer answer;
+    answer.torque = policy_->control(features_.value(x_));
+    if (!answer.torque.allFinite()) answer.torque.setZero();
+    answer.solve_time = secondsSince(start);
+    return answer;
+  }
+  void apply(const Eigen::VectorXd& /*u*/) override {}
+
+ private:
+  std::shared_ptr<Observation> observation_;
+  std::shared_ptr<pilco::SquashedPolicy> policy_;
+  pilco::Augmentation features_;
+  Eigen::VectorXd x_;
+};
 
 pilco::PilcoConfig readConfig(ParamReader* reader) {
   pilco::PilcoConfig config;
-  config.pilco = reader->read<pilco::PilcoOptions>("pilco");
-  config.gp = reader->read<pilco::GpTrainingOptions>("gp");
-  config.sparse_gp = reader->read<pilco::SparseGpOptions>("sparse_gp");
-  config.policy_search = reader->read<pilco::PolicySearchOptions>("policy_search");
+  config.visitBlocks([reader](const char* name, auto& block) {
+    block = reader->read<std::decay_t<decltype(block)>>(name);
+  });
   return config;
 }
 
 YAML::Node readBlocks(ParamReader* reader) {
-  const pilco::PilcoConfig config = readConfig(reader);
   YAML::Node out;
-  out["pilco"] = toYaml(config.pilco);
-  out["gp"] = toYaml(config.gp);
-  out["sparse_gp"] = toYaml(config.sparse_gp);
-  out["policy_search"] = toYaml(config.policy_search);
+  readConfig(reader).visitBlocks(
+      [&out](const char* name, auto& block) { out[name] = toYaml(block); });
   return out;
 }
+
+using MakeObservation =
+    std::function<std::unique_ptr<Observation>(const Configuration&, const Plant&)>;
 
 MethodKind pilcoKind(const std::string& name, const std::string& about,
                      const MakeObservation& make_observation) {
@@ -116,25 +128,15 @@ PilcoMethod::PilcoMethod(const Configuration& configuration, const pilco::PilcoC
       observation_(std::move(observation)),
       bags_(configuration.model.image.size, configuration.model.data_set) {}
 
-PilcoMemory PilcoMethod::lastMemory(const std::vector<std::string>& bags) const {
-  const int episodes = configuration_.trial.episodes;
-  if (bags.size() < 2 * static_cast<size_t>(episodes) || !observation_->keepsCoordinates()) {
-    return {};
-  }
-  const std::string file = memoryFile(bags, episodes);
-  return readMemory(readFile(file), file);
-}
-
 TrainingOutcome PilcoMethod::train(const std::vector<std::string>& bags, const TrialId& id,
                                    const PhaseCallback& progress) {
   const Clock::time_point start = Clock::now();
   Training training{lastMemory(bags), randomStream(id, StreamRole::kPolicySearch), progress};
   const DataSet data = bags_.read(bags);
-  const Eigen::MatrixXd X = observation_->learn(bags, data, id);
-  const PilcoTask task = observation_->task();
-  pilco::Propagation dynamics = learnDynamics(data, X, task, &training);
-
-  pilco::LongTermCost cost = improvePolicy(std::move(dynamics), task, bags, &training);
+  const ObservedData observed = observation_->learn(bags, data, id);
+  makePolicy(observed, data.torqueDim());
+  pilco::Propagation dynamics = learnDynamics(data, observed, &training);
+  const pilco::LongTermCost cost = improvePolicy(std::move(dynamics), observed.task, &training);
   writeMemory(training.memory, &training.report);
 
   TrainingOutcome outcome;
@@ -147,36 +149,48 @@ TrainingOutcome PilcoMethod::train(const std::vector<std::string>& bags, const T
   return outcome;
 }
 
+/// The previous training left it next to the bags of the last trial but one.
+PilcoMemory PilcoMethod::lastMemory(const std::vector<std::string>& bags) const {
+  const size_t last_two_trials = 2 * static_cast<size_t>(configuration_.trial.episodes);
+  if (bags.size() < last_two_trials || !observation_->keepsCoordinates()) return {};
+  const boost::filesystem::path bag = bags[bags.size() - last_two_trials];
+  return readMemory((bag.parent_path() / kMemoryFile).string());
+}
+
 bool PilcoMethod::resume(const std::string& folder, const std::vector<std::string>& bags,
                          const TrialId& id) {
   const std::string file = folder + "/" + kMemoryFile;
   if (!boost::filesystem::exists(file)) return false;
-  const PilcoMemory memory = readMemory(readFile(file), file);
+  const PilcoMemory memory = readMemory(file);
   const DataSet data = bags_.read(bags);
-  observation_->resume(folder, bags, data, id);
-  const auto features = pilco::replaceAngles(static_cast<int>(observation_->names().size()),
-                                             observation_->task().angles);
-  makePolicy(features.outputDim(), data.torqueDim());
-  requireParameters(memory.policy, *policy_, file);
+  makePolicy(observation_->resume(folder, bags, data, id), data.torqueDim());
+  requireFit(memory);
   policy_->setParameters(memory.policy);
   return true;
 }
 
-void PilcoMethod::makePolicy(int num_features, int torque_dim) {
+void PilcoMethod::makePolicy(const ObservedData& observed, int torque_dim) {
+  features_ = pilco::replaceAngles(static_cast<int>(observed.X.rows()), observed.task.angles);
   policy_ = std::make_shared<pilco::SquashedPolicy>(
-      pilco::RbfPolicy(num_features, torque_dim, pilco_.pilco.num_centres),
+      pilco::RbfPolicy(features_->outputDim(), torque_dim, pilco_.pilco.num_centres),
       perMotor(configuration_.mpc.max_torque, torque_dim, "mpc/max_torque"));
 }
 
-pilco::Propagation PilcoMethod::learnDynamics(const DataSet& data, const Eigen::MatrixXd& X,
-                                              const PilcoTask& task, Training* training) const {
+void PilcoMethod::requireFit(const PilcoMemory& memory) const {
+  const Eigen::Index count = policy_->parameters().size();
+  if (memory.policy.size() == count) return;
+  throw std::runtime_error(pilco::message(memory.file, ": policy must have ", count,
+                                          " parameters, got ", memory.policy.size(),
+                                          ": use another run folder"));
+}
+
+pilco::Propagation PilcoMethod::learnDynamics(const DataSet& data, const ObservedData& observed,
+                                              Training* training) const {
   const Clock::time_point start = Clock::now();
-  const pilco::Augmentation features =
-      pilco::replaceAngles(static_cast<int>(X.rows()), task.angles);
-  const auto [inputs, targets] = transitions(data, X, features);
+  const auto [inputs, targets] = transitions(data, observed.X, *features_);
   int evaluations = 0;
   const auto count = [&] {
-    const double most = static_cast<double>(X.rows()) * pilco_.gp.max_iterations;
+    const double most = static_cast<double>(observed.X.rows()) * pilco_.gp.max_iterations;
     training->progress(kDynamicsShare * std::min(1.0, ++evaluations / most));
   };
   const pilco::GpFit fit = pilco::learnGp(pilco_.gp, pilco_.sparse_gp, inputs, targets,
@@ -186,7 +200,7 @@ pilco::Propagation PilcoMethod::learnDynamics(const DataSet& data, const Eigen::
   training->report["sparse"] = inputs.cols() > pilco_.sparse_gp.max_points;
   training->report["gp_s"] = valueToYaml(secondsSince(start));
   training->report["gp_message"] = fit.message;
-  return pilco::Propagation(fit.model, {task.angles, /*noisy_policy_input=*/task.noisy});
+  return pilco::Propagation(fit.model, {observed.task.angles, observed.task.noisy});
 }
 
 /// Sets policy_. Where the last policy's prediction leaves the finite numbers under the new GPs,
@@ -194,34 +208,32 @@ pilco::Propagation PilcoMethod::learnDynamics(const DataSet& data, const Eigen::
 /// error would come again each time that it is resumed.
 /// @return the cost, evaluated at the policy
 pilco::LongTermCost PilcoMethod::improvePolicy(pilco::Propagation dynamics, const PilcoTask& task,
-                                               const std::vector<std::string>& bags,
                                                Training* training) {
   const Clock::time_point start = Clock::now();
-  const pilco::Augmentation features = dynamics.features();
-  const int torque_dim = dynamics.controlDim();
-  const int num_centres = pilco_.pilco.num_centres;
-  makePolicy(features.outputDim(), torque_dim);
   const auto drawStart = [&] {
-    return drawPolicyStart(task, features, num_centres, torque_dim, &training->rng);
+    return drawFirstPolicy(task, *features_, pilco_.pilco.num_centres, policy_->outputDim(),
+                           &training->rng);
   };
   Eigen::VectorXd& parameters = training->memory.policy;
-  if (parameters.size() == 0) {
-    parameters = drawStart();
-  } else {
-    requireParameters(parameters, *policy_, memoryFile(bags, configuration_.trial.episodes));
-  }
+  if (parameters.size() == 0) parameters = drawStart();
+  requireFit(training->memory);
   pilco::LongTermCost cost(std::move(dynamics), task.cost, policy_.get(), task.start,
                            pilco_.pilco.horizon);
   int evaluations = 0;
+  MinimiseOptions solver;
+  solver.max_iterations = pilco_.policy_search.max_iterations;
+  solver.max_evaluations = pilco_.policy_search.max_evaluations;
+  solver.function_tolerance = 1e-8;
   const auto search = [&] {
-    return pilco::searchPolicy(
+    // Where the cost is not finite, because a predicted distribution grows without bound, the line search takes a shorter step.
+    return minimise(
         [&](const Eigen::VectorXd& p, Eigen::VectorXd* gradient) {
           // The line search takes about two evaluations an iteration.
           const double done = ++evaluations / (2.0 * pilco_.policy_search.max_iterations + 1.0);
           training->progress(kDynamicsShare + (1.0 - kDynamicsShare) * std::min(done, 1.0));
           return cost.evaluate(p, gradient);
         },
-        parameters, pilco_.policy_search);
+        parameters, solver);
   };
   Minimum result = search();
   const bool afresh = result.reason == MinimumReason::kStartFailed;
@@ -272,22 +284,41 @@ std::string PilcoMethod::predictionCsv(const pilco::LongTermCost& cost) const {
 
 std::shared_ptr<Policy> PilcoMethod::policy() const {
   if (policy_ == nullptr) return nullptr;
-  return std::make_shared<PilcoPolicy>(observation_, policy_, observation_->task().angles);
+  return std::make_shared<PilcoPolicy>(observation_, policy_, *features_);
+}
+
+Eigen::VectorXd drawFirstPolicy(const PilcoTask& task, const pilco::Augmentation& features,
+                                int num_centres, int torque_dim, std::mt19937_64* rng) {
+  constexpr double kTargetStd = 0.1;  // of the published runs
+  const auto drawNormal = [rng](Eigen::Index rows, Eigen::Index cols) {
+    std::normal_distribution<double> normal;
+    Eigen::MatrixXd out(rows, cols);
+    for (Eigen::Index i = 0; i < out.size(); ++i) out.data()[i] = normal(*rng);
+    return out;
+  };
+  const pilco::Moments start = features.predict(task.start);
+  // A root of the covariance, which may be singular.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(start.covariance);
+  const Eigen::MatrixXd root =
+      solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const Eigen::MatrixXd centres =
+      (root * drawNormal(start.mean.size(), num_centres)).colwise() + start.mean;
+  const Eigen::MatrixXd targets = kTargetStd * drawNormal(num_centres, torque_dim);
+  const Eigen::MatrixXd log_length_scales =
+      task.policy_length_scales.array().log().matrix().replicate(1, torque_dim);
+  return pilco::RbfPolicy::packParameters(log_length_scales, centres, targets);
 }
 
 std::vector<MethodKind> pilcoMethods() {
-  return {pilcoKind("pilco_state", "the true state",
-                    [](const Configuration&, const Plant& plant) {
-                      return std::make_unique<TrueStateObservation>(plant);
-                    }),
-          pilcoKind("pilco_features", "features of an auto-encoder that is trained alone",
-                    [](const Configuration& all, const Plant&) {
-                      return std::make_unique<FeatureObservation>(all.model);
-                    }),
-          pilcoKind("pilco_pca", "principal components of the image",
-                    [](const Configuration& all, const Plant&) {
-                      return std::make_unique<PcaObservation>(all.model);
-                    })};
+  return {
+      pilcoKind("pilco_state", "the true state",
+                [](const Configuration&, const Plant& plant) { return observeTrueState(plant); }),
+      pilcoKind("pilco_features", "features of an auto-encoder that is trained alone",
+                [](const Configuration& all, const Plant&) { return observeFeatures(all.model); }),
+      pilcoKind("pilco_pca", "principal components of the image",
+                [](const Configuration& all, const Plant&) {
+                  return observePrincipalComponents(all.model);
+                })};
 }
 
 }  // namespace ddm

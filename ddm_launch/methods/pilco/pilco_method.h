@@ -3,17 +3,19 @@
 #pragma once
 
 #include <ddm_bag_io/bag_cache.h>
-#include <ddm_pilco/long_term_cost.h>
 #include <yaml-cpp/yaml.h>
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "configuration.h"
 #include "method.h"
-#include "observations.h"
+#include "pilco/long_term_cost.h"
+#include "pilco/observations.h"
 
 namespace ddm {
 
@@ -21,15 +23,15 @@ namespace ddm {
 struct PilcoMemory {
   Eigen::VectorXd policy;     ///< parameters; empty: none yet
   pilco::GpLearnerState gps;  ///< empty: none yet
+  std::string file;           ///< from which it was read, for messages
 };
 
-/// As keys that writeMemory() adds and readMemory() takes, all digits kept.
+/// Adds the memory to a map, all digits kept, from which readMemory() reads it.
+/// @throws std::runtime_error if it is not finite
 void writeMemory(const PilcoMemory& memory, YAML::Node* out);
 
-/// @param text    YAML that holds those keys
-/// @param source  file, for messages
-/// @throws std::runtime_error with source and fault
-PilcoMemory readMemory(const std::string& text, const std::string& source);
+/// @throws std::runtime_error with file and fault
+PilcoMemory readMemory(const std::string& file);
 
 /// After each trial: GPs of the dynamics from all data, then the policy that minimises the expected
 /// cost over the horizon (Deisenroth and Rasmussen, 2011, Alg. 1). Training k goes on from the
@@ -56,19 +58,27 @@ class PilcoMethod : public Method {
  private:
   struct Training;
 
-  void makePolicy(int num_features, int torque_dim);
   PilcoMemory lastMemory(const std::vector<std::string>& bags) const;
-  pilco::Propagation learnDynamics(const DataSet& data, const Eigen::MatrixXd& X,
-                                   const PilcoTask& task, Training* training) const;
+  void makePolicy(const ObservedData& observed, int torque_dim);
+  void requireFit(const PilcoMemory& memory) const;
+  pilco::Propagation learnDynamics(const DataSet& data, const ObservedData& observed,
+                                   Training* training) const;
   pilco::LongTermCost improvePolicy(pilco::Propagation dynamics, const PilcoTask& task,
-                                    const std::vector<std::string>& bags, Training* training);
+                                    Training* training);
   std::string predictionCsv(const pilco::LongTermCost& cost) const;
 
   const Configuration& configuration_;
   pilco::PilcoConfig pilco_;
   std::shared_ptr<Observation> observation_;
   BagCache bags_;
+  std::optional<pilco::Augmentation> features_;    // of x, what the policy sees
   std::shared_ptr<pilco::SquashedPolicy> policy_;  // null before the first training
 };
+
+/// Parameters of the RBF policy of PILCO's first trial: centres drawn from the features of the
+/// start distribution, which is taken as Gaussian, small random targets, length-scales of the task.
+/// @param features  of the task's state
+Eigen::VectorXd drawFirstPolicy(const PilcoTask& task, const pilco::Augmentation& features,
+                                int num_centres, int torque_dim, std::mt19937_64* rng);
 
 }  // namespace ddm

@@ -26,7 +26,7 @@ namespace ddm {
 ///
 ///   offset <- offset + offset_gain (z_{t+1} - z_{t+1|t} - offset)
 ///
-/// so that a model that is a little wrong about rest does not keep the plant off its goal.
+/// so that the plant reaches its goal although the model is a little wrong about states at rest.
 class MpcPolicy : public Policy {
  public:
   /// @throws std::invalid_argument if max_torque exceeds the model's or is for another number of motors; with mpc/cost time
@@ -44,10 +44,10 @@ class MpcPolicy : public Policy {
   /// @pre hasGoal()
   void prepare() { cost_.setGoal(z_ref_, exploring_); }
 
-  /// When the image arrived that observe() takes in next; otherwise the budget begins there.
+  /// Sets the time at which the next image arrived. Without it the time budget begins with observe().
   void setArrival(std::chrono::steady_clock::time_point arrival) { arrival_ = arrival; }
 
-  /// Another reason to end the search for a plan, asked before each evaluation of the cost.
+  /// Sets a condition that ends the search for a plan. It is checked before each evaluation of the cost.
   void setStop(std::function<bool()> stop) { stop_ = std::move(stop); }
 
   void observe(const Grey& grey) override;
@@ -77,7 +77,7 @@ class MpcPolicy : public Policy {
   std::mt19937_64 rng_;
 };
 
-/// What was decided for one image.
+/// The decision for one image.
 struct Decision {
   Eigen::VectorXd torque;               ///< u_t [N m]                     [torque_dim]
   bool exploratory = false;             ///< a random torque
@@ -104,7 +104,7 @@ class EpsilonGreedy {
   /// See Policy::setGoal().
   void setGoal(const Grey& goal);
 
-  /// Another torque acted than the last one decided. To be called before the next decide().
+  /// Says that another torque acted than the last one decided. To be called before the next decide().
   /// @param torque  [N m]                                                          [torque_dim]
   /// @throws std::invalid_argument if it is not one finite number for each motor
   void correctTorque(const Eigen::VectorXd& torque);

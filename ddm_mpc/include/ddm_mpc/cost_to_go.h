@@ -36,12 +36,12 @@ class CostToGo {
   /// gigabyte, which takes two seconds. One motor more takes three times as much of both.
   static constexpr int kMaxMotors = 3;
 
-  /// @param model       has at least two support states, and at most kMaxMotors motors; is not needed afterwards
+  /// @param model       has at least two support states, and at most kMaxMotors motors; outlives this
   /// @param max_torque  of each motor [N m]  [torque_dim]
   /// @pre as above (checked by eigen_assert, i.e. in debug builds only)
   CostToGo(const Ddm& model, const Eigen::VectorXd& max_torque);
 
-  /// Computes V, which takes a while.
+  /// Computes V, which takes up to two seconds the first time, when the outcomes of all torques are predicted.
   /// @param z_ref      feature of the goal  [feature_dim]
   /// @param exploring  whether epsilon > 0, see V_0
   void setGoal(const Eigen::VectorXd& z_ref, bool exploring);
@@ -68,6 +68,7 @@ class CostToGo {
     std::vector<double> weights;  // of these in V; what is missing to 1 is the weight of V_0
   };
 
+  void predictOutcomes();
   Eigen::VectorXd pointOf(const Eigen::Ref<const Eigen::VectorXd>& z,
                           const Eigen::Ref<const Eigen::VectorXd>& before) const;
   Eigen::ArrayXd kernel(const Eigen::VectorXd& point) const;
@@ -75,13 +76,14 @@ class CostToGo {
   double unknownValue() const;
   void iterate(const std::vector<std::vector<double>>& costs);
 
+  const Ddm* model_;
   Eigen::MatrixXd torques_;
   double spread_ = 1.0;         // of the support states' features
   double change_spread_ = 1.0;  // of their changes from one frame to the next
   double h_ = 1.0;              // in units of both
   Eigen::MatrixXd points_;      // p(x_i)  [2 feature_dim x M]
   std::vector<std::vector<Outcome>>
-      outcomes_;  // of each support state, one for each set of torques
+      outcomes_;  // of each support state, one for each set of torques; empty before setGoal()
   Eigen::VectorXd z_ref_;
   bool exploring_ = false;
   Eigen::ArrayXd values_;  // V_i  [M]

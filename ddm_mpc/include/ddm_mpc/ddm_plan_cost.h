@@ -11,7 +11,7 @@
 
 #include "ddm_mpc/cost_to_go.h"
 #include "ddm_mpc/mpc_options.h"
-#include "ddm_mpc/plan_cost.h"
+#include "ddm_mpc/planner.h"
 
 namespace ddm {
 
@@ -31,19 +31,17 @@ namespace ddm {
 class DdmPlanCost : public PlanCost {
  public:
   /// @param model           outlives the cost
-  /// @param horizon         K, steps
+  /// @param horizon         K >= 1, steps
   /// @param control_weight  lambda [(N m)^-2], with a CostToGo [-]: of a torque of max_torque
-  /// @throws std::invalid_argument if the horizon is < 1
   DdmPlanCost(const Ddm& model, int horizon, double control_weight,
               std::optional<CostToGo> cost_to_go = std::nullopt);
 
   /// The feature to plan to, and whether epsilon > 0, which is for the CostToGo. If one has changed, computes the
   /// cost-to-go, which takes up to two seconds. setProblem() does so too.
-  /// @throws std::invalid_argument for a wrong size
   void setGoal(const Eigen::VectorXd& goal_feature, bool exploring);
 
   /// The state to plan from, the feature to plan to, and the offset.
-  /// @throws std::invalid_argument for a wrong size or an empty history
+  /// @pre the history is not empty, and all sizes are those of the model (checked by eigen_assert)
   void setProblem(const History& x, const Eigen::VectorXd& goal_feature,
                   const Eigen::VectorXd& offset);
   /// The same without an offset.

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_common/option_checks.h>
+#include <ddm_model/per_motor.h>
+
 #include <string>
 #include <vector>
 
@@ -36,7 +39,21 @@ struct MpcOptions {
     visitor("time_budget", time_budget);
   }
   /// Everything wrong with these values, in words a user can act on. Empty means valid.
-  std::vector<std::string> problems() const;
+  std::vector<std::string> problems() const {
+    OptionChecks mpc("mpc");
+    mpc.requireWithin("horizon", horizon, 1, 1000);
+    mpc.require(cost == "distance" || cost == "time", "cost", "be distance or time", cost);
+    mpc.requireNotNegative("control_weight", control_weight);
+    mpc.requireWithin("offset_gain", offset_gain, 0.0, 1.0);
+    mpc.require(areLimits(max_torque), "max_torque", "be > 0 and finite", limitsText(max_torque));
+    mpc.requireWithin("epsilon", epsilon, 0.0, 1.0);
+    mpc.requireAtLeast("hold_steps", hold_steps, 1);
+    mpc.requireWithin("num_starts", num_starts, 1, 1000);
+    mpc.requireAtLeast("max_iterations", max_iterations, 1);
+    mpc.requireFraction("function_tolerance", function_tolerance);
+    mpc.requireNotNegative("time_budget", time_budget);
+    return mpc.problems();
+  }
 };
 
 /// Block `controller`: parameters of mpc_node beyond the planner's.
@@ -53,7 +70,13 @@ struct ControllerOptions {
     visitor("dt", dt);
     visitor("publish_effort", publish_effort);
   }
-  std::vector<std::string> problems() const;
+  std::vector<std::string> problems() const {
+    OptionChecks controller("controller");
+    controller.requireWithin("torque_dim", torque_dim, 1, 1000);
+    controller.requireTimeLimit("timeout", timeout);
+    controller.requireWithin("dt", dt, 0.0, 1000.0);
+    return controller.problems();
+  }
 };
 
 }  // namespace ddm

@@ -13,7 +13,7 @@
 
 namespace ddm {
 
-/// What a policy answers an image with.
+/// The answer of a policy to an image.
 struct Answer {
   Eigen::VectorXd torque;    ///< u_t [N m]; 0 where the policy finds none  [torque_dim]
   double solve_time = 0.0;   ///< wall time that it took [s]
@@ -29,8 +29,8 @@ inline Answer answerWith(Plan plan) {
   return answer;
 }
 
-/// Called in turn for each frame: observe(y_t), answer() unless something else decides, apply(u_t).
-/// apply() comes before the next observe(), when it is known which torque acted.
+/// Decides torques. For each image, observe(y_t) is called first, then answer(), unless a random torque is
+/// chosen, and then apply(u_t), before the next observe(), when it is known which torque acted.
 class Policy {
  public:
   virtual ~Policy() = default;
@@ -38,30 +38,30 @@ class Policy {
   /// Forgets the last trial.
   virtual void startTrial(const TrialId& id) = 0;
 
-  /// Another goal than that of the data, from the next answer on. Ignored by those who have learned
-  /// to reach one goal, or know the true one.
+  /// Sets another goal than that of the data, from the next answer on. Policies that have learned to reach
+  /// one goal, or that read the true goal from the plant, ignore it.
   /// @throws std::invalid_argument for a wrong number of pixels
   virtual void setGoal(const Grey& /*goal*/) {}
 
-  /// The next image does not follow the last one by a time step, or no single torque acted between
-  /// them: no state may be made from both, as in training. Ignored by policies without a memory.
+  /// Says that the next image does not follow the last one by one time step, or that no single torque acted
+  /// between them. As in training, no state may then contain both. Policies without a memory ignore it.
   virtual void startSegment() {}
 
-  /// Whether random torques are wanted too: only then may a policy go where it knows little.
+  /// Says whether epsilon > 0. Only then may a policy lead to states of which little is known.
   virtual void setExploring(bool /*exploring*/) {}
 
   /// Takes in the image just seen.
   /// @throws std::invalid_argument for a wrong number of pixels
   virtual void observe(const Grey& grey) = 0;
 
-  /// Distance of the image just seen to the goal, in units that mean the same for every model;
-  /// nothing where the policy knows none.
+  /// Distance of the last image to the goal, in units that mean the same for every model. Empty if the policy
+  /// has no such distance.
   virtual std::optional<double> goalDistance() const { return std::nullopt; }
 
   /// Decides u_t, the torque that answers the image just seen.
   virtual Answer answer() = 0;
 
-  /// Takes in the torque [N m] that was applied, whoever decided it.
+  /// Takes in the torque that was applied, also if another part decided it [N m].
   virtual void apply(const Eigen::VectorXd& u) = 0;
 };
 

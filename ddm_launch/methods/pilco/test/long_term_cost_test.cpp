@@ -1,7 +1,8 @@
 // Tests of the propagation and of the long-term cost: samples, derivatives, numerical trouble.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_pilco/long_term_cost.h"
+#include "pilco/long_term_cost.h"
 
+#include <ddm_model/testing/vector_of.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +10,6 @@
 #include <random>
 #include <utility>
 
-#include "ddm_model/testing/vector_of.h"
 #include "random_problems.h"
 
 namespace ddm::pilco {
@@ -150,9 +150,8 @@ TEST(LongTermCost, GradientMatchesDifferencesWithoutAnglesAndForTwoControls) {
   GpModel model = randomGp(5, 3, 10, true, random);
   model.beta *= 0.3;
   SquashedPolicy policy = randomPolicy(3, 2, vectorOf({1.0, 2.0}), random);
-  const StateCost state_cost(
-      Augmentation(3, {0, 1, 2}, {}),
-      SaturatingCost(vectorOf({0.5, 0.0, -0.5}), Eigen::MatrixXd::Identity(3, 3)));
+  const StateCost state_cost(replaceAngles(3, {}), vectorOf({0.5, 0.0, -0.5}),
+                             Eigen::MatrixXd::Identity(3, 3));
   LongTermCost cost(Propagation(model, PropagationOptions()), state_cost, &policy,
                     randomGaussian(3, 3, 0.2, random), 6);
   EXPECT_TRUE(gradientMatches(&cost, policy.parameters()));

@@ -1,13 +1,13 @@
 // Full Gaussian processes: hyper-parameters that maximise the marginal likelihood.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_pilco/gp.h"
+#include "pilco/gp.h"
 
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "ddm_pilco/moments.h"
+#include "pilco/moments.h"
 
 namespace ddm::pilco {
 namespace {
@@ -90,30 +90,6 @@ Eigen::VectorXd likelihoodGradient(const Eigen::MatrixXd& inputs, const Eigen::V
   gradient[dim] = w.sum();
   gradient[dim + 1] = covariance.noise_variance * trace;
   return gradient;
-}
-
-/// Where training starts, and what is minimised: one output.
-struct OutputProblem {
-  const Eigen::MatrixXd& inputs;
-  Eigen::VectorXd targets;
-  const Eigen::VectorXd& input_std;
-  const std::function<void()>& on_evaluation;
-
-  double operator()(const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) const {
-    const double plain = negativeLogLikelihood(inputs, targets, theta, gradient);
-    if (on_evaluation) on_evaluation();
-    return plain + penalty(theta, input_std, gradient);
-  }
-};
-
-Minimum trainOutput(const OutputProblem& problem, const Eigen::VectorXd& start,
-                    int max_iterations) {
-  MinimiseOptions solver;
-  solver.max_iterations = max_iterations;
-  solver.max_evaluations = kEvaluationsPerIteration * max_iterations;
-  solver.function_tolerance = 1e-13;
-  solver.gradient_tolerance = 1e-6;
-  return minimise(problem, start, solver);
 }
 
 void setTheta(const Eigen::VectorXd& theta, Eigen::Index output, Hyperparameters* out) {
@@ -237,18 +213,30 @@ GpFit trainGp(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets, int
   const Hyperparameters initial = initialHyperparameters(inputs, targets);
   const Eigen::VectorXd input_std = sampleStd(inputs);
 
+  MinimiseOptions solver;
+  solver.max_iterations = max_iterations;
+  solver.max_evaluations = kEvaluationsPerIteration * max_iterations;
+  solver.function_tolerance = 1e-13;
+  solver.gradient_tolerance = 1e-6;
   Hyperparameters trained = initial;
   GpFit training;
   for (int a = 0; a < targets.cols(); ++a) {
     const auto say = [&training, a](const std::string& text) {
       training.addMessage(message("output ", a + 1, ": ", text));
     };
-    const OutputProblem problem{inputs, targets.col(a), input_std, on_evaluation};
-    Minimum minimum =
-        trainOutput(problem, thetaOf(start != nullptr ? *start : initial, a), max_iterations);
+    const Eigen::VectorXd y = targets.col(a);
+    const auto trainFrom = [&](const Hyperparameters& from) {
+      const auto objective = [&](const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
+        const double plain = negativeLogLikelihood(inputs, y, theta, gradient);
+        if (on_evaluation) on_evaluation();
+        return plain + penalty(theta, input_std, gradient);
+      };
+      return minimise(objective, thetaOf(from, a), solver);
+    };
+    Minimum minimum = trainFrom(start != nullptr ? *start : initial);
     if (minimum.reason == MinimumReason::kStartFailed && start != nullptr) {
       say("the previous hyper-parameters cannot be evaluated, trained anew");
-      minimum = trainOutput(problem, thetaOf(initial, a), max_iterations);
+      minimum = trainFrom(initial);
     }
     if (minimum.reason == MinimumReason::kStartFailed) {
       say("the likelihood cannot be evaluated at the start of the training");

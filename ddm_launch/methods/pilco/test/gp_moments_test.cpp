@@ -1,6 +1,6 @@
 // Tests of moment matching through a GP: samples, derivatives, limits, refusals.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_pilco/gp_moments.h"
+#include "pilco/gp_moments.h"
 
 #include <gtest/gtest.h>
 
@@ -34,25 +34,6 @@ TEST(GpMoments, AreThoseOfSamplesWithAndWithoutModelUncertaintyAlsoForASingularC
                                     GpSampler(model, &random), random))
         << (uncertain ? "with" : "without") << " model uncertainty";
   }
-}
-
-TEST(GpMoments, BecomeThePlainPredictionAtAKnownInput) {
-  std::mt19937_64 random(3);
-  const GpModel model = randomGp(3, 2, 12, true, random);
-  Gaussian input = randomGaussian(3, 3, 0.5, random);
-  input.covariance.setZero();
-  const Moments output = GpMoments(model).predict(input);
-  GpModel mean_only = model;
-  mean_only.inverse.clear();
-  EXPECT_LE((output.mean - GpSampler(mean_only, &random)(input.mean)).norm(), 1e-12);
-  for (int a = 0; a < 2; ++a) {
-    const Eigen::VectorXd scales = model.hyperparameters.log_length_scales.col(a).array().exp();
-    const double signal_std = std::exp(model.hyperparameters.log_signal_std[a]);
-    const Eigen::VectorXd k = squaredExponential(model.inputs, input.mean, scales, signal_std);
-    EXPECT_NEAR(output.covariance(a, a), signal_std * signal_std - k.dot(model.inverse[a] * k),
-                1e-11);
-  }
-  EXPECT_NEAR(output.covariance(0, 1), 0.0, 1e-11);
 }
 
 TEST(GpMoments, AdjointMatchesDifferencesForModerateSingularAndZeroCovariance) {

@@ -1,6 +1,6 @@
 // Exact moment matching: mean, covariance and gain of a GP at a Gaussian input, with derivatives.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_pilco/gp_moments.h"
+#include "pilco/gp_moments.h"
 
 #include <Eigen/Cholesky>
 #include <cmath>

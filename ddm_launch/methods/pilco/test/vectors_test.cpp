@@ -3,11 +3,11 @@
 //
 // Each kind of cases in the file is a test; a case fails where a field is missing or disagrees.
 #include <ddm_model/solver_log.h>
+#include <ddm_sim/pendulum.h>
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <boost/numeric/odeint.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "ddm_pilco/long_term_cost.h"
+#include "pilco/long_term_cost.h"
 
 namespace ddm::pilco {
 namespace {
@@ -357,8 +357,7 @@ void checkPolicy(const Case& reference) {
   }
 }
 
-template <class Cost>
-void compareCost(const Case& reference, const Cost& cost) {
+void compareCost(const Case& reference, const StateCost& cost) {
   const Gaussian input = reference.gaussian("m", "s");
   Gaussian d_input;
   reference.compare("L", cost.expected(input, &d_input), kClosedForm);
@@ -368,7 +367,9 @@ void compareCost(const Case& reference, const Cost& cost) {
 }
 
 void checkSaturatingCost(const Case& reference) {
-  compareCost(reference, SaturatingCost(reference.vector("z"), reference.matrix("W")));
+  const Eigen::VectorXd z = reference.vector("z");
+  const int dim = static_cast<int>(z.size());
+  compareCost(reference, StateCost(replaceAngles(dim, {}), z, reference.matrix("W")));
 }
 
 void checkPendulumCost(const Case& reference) {
@@ -394,20 +395,15 @@ Scenario readScenario(const Case& reference) {
 void checkSimulation(const Case& reference) {
   const Scenario scenario = readScenario(reference);
   reference.compare("dt", scenario.time_step, kClosedForm);
-  const Eigen::VectorXd start = reference.vector("x0");
-  const double torque = reference.number("u");
-  // State [rate, angle]; mass and length are 1, and so the moment of inertia is 1/3.
-  using State = std::vector<double>;
-  const auto ode = [&scenario, torque](const State& x, State& dx, double) {
-    dx[0] = 3.0 * (torque - scenario.friction * x[0] - 0.5 * scenario.gravity * std::sin(x[1]));
-    dx[1] = x[0];
-  };
-  namespace odeint = boost::numeric::odeint;
-  State x = {start[0], start[1]};
-  odeint::integrate_adaptive(
-      odeint::make_controlled(1e-13, 1e-13, odeint::runge_kutta_dopri5<State>()), ode, x, 0.0,
-      scenario.time_step, 0.01 * scenario.time_step);
-  reference.compare("x1", Eigen::Vector2d(x[0], x[1]), kState);
+  PendulumOptions options;
+  options.gravity = scenario.gravity;
+  options.friction = scenario.friction;
+  options.dt = scenario.time_step;
+  options.max_torque = {1000.0};
+  Pendulum pendulum(options);  // its state is (angle, rate), in the file it is (rate, angle)
+  pendulum.setState(reference.vector("x0").reverse());
+  pendulum.step(reference.vector("u"));
+  reference.compare("x1", pendulum.state().reverse(), kState);
 }
 
 SquashedPolicy readSquashedPolicy(const Case& reference) {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "ddm_pilco/gp_moments.h"
+#include "pilco/gp_moments.h"
 
 namespace ddm::pilco {
 

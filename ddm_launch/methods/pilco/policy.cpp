@@ -1,12 +1,12 @@
 // PILCO's policy: an RBF network with free pseudo-data, its output squashed by two sines.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_pilco/policy.h"
+#include "pilco/policy.h"
 
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "ddm_pilco/features.h"
+#include "pilco/state_cost.h"
 
 namespace ddm::pilco {
 namespace {

@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "ddm_pilco/gp.h"
-#include "ddm_pilco/moments.h"
+#include "pilco/gp.h"
+#include "pilco/moments.h"
 
 namespace ddm::pilco {
 

@@ -1,4 +1,4 @@
-// What every block of PILCO takes and returns: a Gaussian, and mean, covariance and gain of an output.
+// The input and output of every block of PILCO: a Gaussian, and mean, covariance and gain of an output.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -40,7 +40,7 @@ inline Gaussian constantGaussian(int dim, double value = 0.0) {
 /// Mean and covariance of y alone.
 inline Gaussian marginal(const Moments& moments) { return {moments.mean, moments.covariance}; }
 
-/// x without doubt: the covariance is 0.
+/// A known x: its covariance is 0.
 inline Gaussian known(const Eigen::VectorXd& x) {
   return {x, Eigen::MatrixXd::Zero(x.size(), x.size())};
 }
@@ -48,7 +48,7 @@ inline Gaussian known(const Eigen::VectorXd& x) {
 /// (A + A^T) / 2
 inline Eigen::MatrixXd symmetricPart(const Eigen::MatrixXd& A) { return 0.5 * (A + A.transpose()); }
 
-/// All parts one after the other, as a stream prints them.
+/// All parts in one text, as a stream prints them.
 template <class... Parts>
 std::string message(const Parts&... parts) {
   std::ostringstream text;
@@ -57,7 +57,7 @@ std::string message(const Parts&... parts) {
 }
 
 /// @param ok  to be written so that NaN makes it false
-/// @throws std::invalid_argument that says all parts, unless `ok`
+/// @throws std::invalid_argument with all parts as its text, unless `ok`
 template <class... Parts>
 void require(bool ok, const Parts&... parts) {
   if (!ok) throw std::invalid_argument(message(parts...));

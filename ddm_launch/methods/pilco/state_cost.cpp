@@ -1,6 +1,6 @@
 // Features of a state with angles, and the saturating cost of a state.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_pilco/features.h"
+#include "pilco/state_cost.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -154,56 +154,39 @@ Augmentation replaceAngles(int input_dim, const std::vector<int>& angles) {
   return Augmentation(input_dim, kept, angles);
 }
 
-SaturatingCost::SaturatingCost(Eigen::VectorXd target, const Eigen::MatrixXd& weight)
-    : target_(std::move(target)), weight_(weight) {
-  eigen_assert(weight_.isApprox(weight_.transpose(), kRounding));
+StateCost::StateCost(Augmentation features, Eigen::VectorXd target, const Eigen::MatrixXd& weight)
+    : features_(std::move(features)), target_(std::move(target)), weight_(weight) {
+  eigen_assert(features_.outputDim() == target_.size() &&
+               weight_.isApprox(weight_.transpose(), kRounding));
 }
 
 /// dE[c]/dm = r P d,  dE[c]/ds = r (P - P d d^T P) / 2,  with r = 1 - E[c], d = m - z.
-double SaturatingCost::expected(const Gaussian& input, Gaussian* d_input) const {
+double StateCost::expected(const Gaussian& state, Gaussian* d_state) const {
+  const Gaussian features = marginal(features_.predict(state));
   Eigen::MatrixXd P;
-  const double reward = expectedReward(input, target_, weight_, 1.0, &P);
-  if (d_input != nullptr) {
-    const Eigen::VectorXd P_d = P * (input.mean - target_);
-    d_input->mean = reward * P_d;
-    d_input->covariance = 0.5 * reward * (P - P_d * P_d.transpose());
+  const double reward = expectedReward(features, target_, weight_, 1.0, &P);
+  if (d_state != nullptr) {
+    const Eigen::VectorXd P_d = P * (features.mean - target_);
+    *d_state = features_.backward(
+        state, Moments{reward * P_d, 0.5 * reward * (P - P_d * P_d.transpose()),
+                       Eigen::MatrixXd::Zero(features_.inputDim(), features_.outputDim())});
   }
   return 1.0 - reward;
 }
 
-double SaturatingCost::variance(const Gaussian& input) const {
+double StateCost::variance(const Gaussian& state) const {
+  const Gaussian features = marginal(features_.predict(state));
   Eigen::MatrixXd P;
-  const double reward = expectedReward(input, target_, weight_, 1.0, &P);
-  const double squared = expectedReward(input, target_, weight_, 2.0, &P);
+  const double reward = expectedReward(features, target_, weight_, 1.0, &P);
+  const double squared = expectedReward(features, target_, weight_, 2.0, &P);
   const double variance = squared - reward * reward;
   return variance < kRounding ? 0.0 : variance;
 }
 
-StateCost::StateCost(Augmentation features, SaturatingCost cost)
-    : features_(std::move(features)), cost_(std::move(cost)) {
-  eigen_assert(features_.outputDim() == cost_.inputDim());
-}
-
-double StateCost::expected(const Gaussian& state, Gaussian* d_state) const {
-  const Gaussian features = marginal(features_.predict(state));
-  if (d_state == nullptr) return cost_.expected(features);
-  Gaussian d_features;
-  const double expected = cost_.expected(features, &d_features);
-  *d_state = features_.backward(
-      state, Moments{d_features.mean, d_features.covariance,
-                     Eigen::MatrixXd::Zero(features_.inputDim(), features_.outputDim())});
-  return expected;
-}
-
-double StateCost::variance(const Gaussian& state) const {
-  return cost_.variance(marginal(features_.predict(state)));
-}
-
 StateCost pendulumCost(double length, double width) {
   const double weight = length * length / (width * width);
-  return StateCost(
-      Augmentation(2, {}, {1}),
-      SaturatingCost(Eigen::Vector2d(0.0, -1.0), weight * Eigen::MatrixXd::Identity(2, 2)));
+  return StateCost(Augmentation(2, {}, {1}), Eigen::Vector2d(0.0, -1.0),
+                   weight * Eigen::MatrixXd::Identity(2, 2));
 }
 
 }  // namespace ddm::pilco

@@ -1,13 +1,13 @@
 // Tests of the features of a state with angles and of its cost: samples, derivatives, limits.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_pilco/features.h"
+#include "pilco/state_cost.h"
 
+#include <ddm_model/testing/vector_of.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "ddm_model/testing/vector_of.h"
 #include "random_problems.h"
 
 namespace ddm::pilco {
@@ -70,8 +70,7 @@ TEST(SineCovariance, IsExactForVariancesNearTheSmallestNumbers) {
 
 constexpr double kPi = 3.14159265358979323846;
 
-template <class Cost>
-::testing::AssertionResult costGradientMatches(const Cost& cost, const Gaussian& input) {
+::testing::AssertionResult costGradientMatches(const StateCost& cost, const Gaussian& input) {
   const int dim = static_cast<int>(input.mean.size());
   const auto expected = [&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
     const Gaussian at = unflatten(x, dim);
@@ -89,12 +88,12 @@ Eigen::MatrixXd randomWeight(int dim, int rank, std::mt19937_64& random) {
   return root * root.transpose();
 }
 
-TEST(SaturatingCost, HasExpectationAndVarianceOfSamples) {
+TEST(StateCost, HasExpectationAndVarianceOfSamples) {
   std::mt19937_64 random(1);
   for (const int rank : {3, 1}) {
     const Eigen::VectorXd z = normalMatrix(3, 1, 0.5, random);
     const Eigen::MatrixXd W = randomWeight(3, rank, random);
-    const SaturatingCost cost(z, W);
+    const StateCost cost(replaceAngles(3, {}), z, W);
     const Gaussian input = randomGaussian(3, 3, 0.8, random);
     const double expected = cost.expected(input);
     const Eigen::MatrixXd root = squareRoot(input.covariance);
@@ -108,12 +107,12 @@ TEST(SaturatingCost, HasExpectationAndVarianceOfSamples) {
   }
 }
 
-TEST(SaturatingCost, GradientMatchesDifferencesAlsoForSingularWeightAndCovariance) {
+TEST(StateCost, GradientMatchesDifferencesAlsoForSingularWeightAndCovariance) {
   std::mt19937_64 random(2);
   for (const int rank : {3, 1, 0}) {
     for (const int weight_rank : {3, 1}) {
-      const SaturatingCost cost(normalMatrix(3, 1, 0.5, random),
-                                randomWeight(3, weight_rank, random));
+      const StateCost cost(replaceAngles(3, {}), normalMatrix(3, 1, 0.5, random),
+                           randomWeight(3, weight_rank, random));
       EXPECT_TRUE(costGradientMatches(cost, randomGaussian(3, rank, 0.6, random)))
           << "rank " << rank << ", weight of rank " << weight_rank;
     }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco/pilco_method.h"
 
-#include <ddm_common/plain_file.h>
+#include <ddm_common/param_reader.h>
 #include <ddm_model/solver_log.h>
 #include <ddm_model/testing/random_matrix.h>
 #include <ddm_msgs/testing/expect_error.h>
@@ -127,7 +127,7 @@ TEST_F(PilcoMethodTest, ARunThatIsResumedGoesOnWithItsPolicyAndEndsLikeOneThatIs
     // The policy acts, and not a training that was repeated meanwhile.
     const std::string memory = parts + "/trial_002/pilco.yaml";
     YAML::Node changed = YAML::LoadFile(memory);
-    PilcoMemory other = readMemory(readFile(memory), memory);
+    PilcoMemory other = readMemory(memory);
     other.policy.setZero();
     writeMemory(other, &changed);
     writeText(memory, YAML::Dump(changed));
@@ -146,7 +146,7 @@ TEST_F(PilcoMethodTest, APolicyGoesOnFromTheLastOneWhereTheCoordinatesStay) {
     return YAML::LoadFile(folder("run") + "/trial_00" + std::to_string(trial) + "/pilco.yaml");
   };
   const std::string file = folder("run") + "/trial_001/pilco.yaml";
-  const PilcoMemory last = readMemory(readFile(file), file);
+  const PilcoMemory last = readMemory(file);
   EXPECT_EQ(last.policy.size(), 3 + 4 * 3 + 4);
   EXPECT_EQ(last.gps.inducing.cols(), 40);
   // Another policy to go on from, and the training of trial 2 comes to another one.
@@ -174,15 +174,6 @@ TEST_F(PilcoMethodTest, APolicyGoesOnFromTheLastOneWhereTheCoordinatesStay) {
   EXPECT_NE(YAML::Dump(noisier["log_noise_std"]), YAML::Dump(report(2)["log_noise_std"]));
 }
 
-TEST(PilcoMemoryFile, AColumnThatIsNamedOverAndOverIsRefusedBeforeMemoryIsTaken) {
-  std::string text = "policy: [&c [";
-  for (int i = 0; i < 100; ++i) text += "0,";
-  text += "0]";
-  for (int i = 0; i < 100; ++i) text += ", *c";
-  EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { readMemory(text + "]\n", "pilco.yaml"); },
-                                               {"pilco.yaml", "policy", "longer"}));
-}
-
 TEST_F(PilcoMethodTest, AMissingOrDamagedMemoryIsNamed) {
   const Configuration all = smallConfiguration("pilco_state", folder("run"));
   runSmall(all);
@@ -192,7 +183,7 @@ TEST_F(PilcoMethodTest, AMissingOrDamagedMemoryIsNamed) {
     bags.push_back(folder("run") + "/trial_00" + std::to_string(k) + "/trial.bag");
   }
   const auto train = [&] { InProcessDriver(all).train(bags, {7, 2, false}, [](double) {}); };
-  PilcoMemory short_policy = readMemory(readFile(file), file);
+  PilcoMemory short_policy = readMemory(file);
   short_policy.policy.conservativeResize(2);
   YAML::Node changed(YAML::NodeType::Map);
   writeMemory(short_policy, &changed);
@@ -236,21 +227,14 @@ TEST_F(PilcoMethodTest, WhatIsPredictedIsWhatHappensAndItIsBetterThanTheFirstPol
 class PointlessObservation : public Observation {
  public:
   std::vector<std::string> names() const override { return {"z_1"}; }
-  Eigen::MatrixXd learn(const std::vector<std::string>& /*bags*/, const DataSet& data,
-                        const TrialId& /*id*/) override {
-    return randomMatrix(1, data.numFrames(), 1);
-  }
-  bool keepsCoordinates() const override { return true; }
-  PilcoTask task() const override {
+  ObservedData learn(const std::vector<std::string>& /*bags*/, const DataSet& data,
+                     const TrialId& /*id*/) override {
     const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
-    const pilco::SaturatingCost cost(Eigen::VectorXd::Zero(1), one);
-    return {{},
-            false,
-            {Eigen::VectorXd::Zero(1), one},
-            pilco::StateCost(pilco::replaceAngles(1, {}), cost),
-            Eigen::VectorXd::Constant(1, 1e-200)};
+    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(1);
+    const pilco::StateCost cost(pilco::replaceAngles(1, {}), zero, one);
+    return {randomMatrix(1, data.numFrames(), 1),
+            {{}, false, {zero, one}, cost, Eigen::VectorXd::Constant(1, 1e-200)}};
   }
-  void startTrial(const TrialId& /*id*/) override {}
   Eigen::VectorXd observe(const Grey& /*grey*/) override { return Eigen::VectorXd::Zero(1); }
 };
 
@@ -275,20 +259,44 @@ TEST_F(PilcoMethodTest, GoesOnWithAFirstPolicyWhereNoCostIsFinite) {
   EXPECT_FALSE(answer.plan);
 }
 
-TEST(Schedules, OneThatLeavesTheMotionToChanceIsRefusedWherePlansFollowIt) {
-  testing::TempFolder scratch;
-  Configuration all = smallConfiguration("ddm", scratch.file("run"));
-  all.model.training.schedule = "v_r_only";
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { InProcessDriver driver(all); },
-                                                  {"training/schedule", "got v_r_only"}));
+TEST_F(PilcoMethodTest, AScheduleThatDoesNotFitTheMethodIsRefused) {
+  for (const std::string method : {"ddm", "pilco_features"}) {
+    Configuration all = smallConfiguration(method, folder(method));
+    all.model.training.schedule = method == "ddm" ? "v_r_only" : "joint";
+    EXPECT_TRUE(throwsNaming<std::invalid_argument>(
+        [&] { InProcessDriver driver(all); },
+        {"training/schedule", "got " + all.model.training.schedule}));
+  }
 }
 
-TEST(FeatureObservation, AScheduleThatTrainsThePredictorIsRefused) {
-  testing::TempFolder scratch;
-  Configuration all = smallConfiguration("pilco_features", scratch.file("run"));
-  all.model.training.schedule = "joint";
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { InProcessDriver driver(all); },
-                                                  {"training/schedule", "v_r_only", "got joint"}));
+TEST(PilcoOptions, HaveTheDefaultsOfTheParameterReferenceInItsOrderAndReportAllProblems) {
+  const YAML::Node reference = YAML::LoadFile(DDM_PILCO_REFERENCE);
+  YAML::Node defaults;
+  pilco::PilcoConfig config;
+  config.visitBlocks([&](const char* name, auto& block) { defaults[name] = toYaml(block); });
+  ParamReader reader(reference);
+  const auto keys = [](const YAML::Node& map) {
+    std::string out;
+    for (const auto& entry : map) out += entry.first.as<std::string>() + " ";
+    return out;
+  };
+  EXPECT_EQ(YAML::Dump(methodKind("pilco_state").readBlocks(&reader)), YAML::Dump(defaults));
+  EXPECT_NO_THROW(reader.requireValid());
+  EXPECT_EQ(keys(reference), keys(defaults));
+  for (const auto& block : defaults) {
+    EXPECT_EQ(keys(reference[block.first.as<std::string>()]), keys(block.second));
+  }
+  config = {{0, 0}, {-1, 1}, {0, -1}, {-1, 0}};
+  config.visitBlocks(
+      [](const char* name, auto& block) { EXPECT_EQ(block.problems().size(), 2U) << name; });
+}
+
+TEST_F(PilcoMethodTest, ASavedConfigurationCanBeGivenAgain) {
+  Configuration all = smallConfiguration("pilco_state", folder("run"));
+  testing::usePlant(testing::plantOf("{type: pendulum}"), &all);
+  ParamReader reader(toYaml(all));
+  const Configuration again = readWithMethod(&reader);
+  EXPECT_EQ(YAML::Dump(again.method_blocks), YAML::Dump(all.method_blocks));
 }
 
 }  // namespace

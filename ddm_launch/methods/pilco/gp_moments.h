@@ -5,8 +5,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "ddm_pilco/gp.h"
-#include "ddm_pilco/moments.h"
+#include "pilco/gp.h"
+#include "pilco/moments.h"
 
 namespace ddm::pilco {
 

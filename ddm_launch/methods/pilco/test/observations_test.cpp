@@ -1,5 +1,8 @@
-// Tests of what the baselines observe, of the task that they make of it, and of their first policy.
+// Tests of what the baselines observe, and of the task that they make of it.
 // SPDX-License-Identifier: BSD-3-Clause
+
+#include "pilco/observations.h"
+
 #include <ddm_msgs/testing/expect_error.h>
 #include <ddm_msgs/testing/temp_folder.h>
 #include <ddm_sim/plant_factory.h>
@@ -8,7 +11,6 @@
 #include <boost/filesystem.hpp>
 #include <cmath>
 
-#include "pilco/observations.h"
 #include "tables.h"
 #include "toy_run.h"
 
@@ -43,23 +45,23 @@ class TrueStateTest : public ::testing::Test {
 };
 
 TEST_F(TrueStateTest, LearningMeetsTheMeasurementsThatThePolicyActedOn) {
-  TrueStateObservation acting(*plant_);
+  const auto acting = observeTrueState(*plant_);
   const TrialId id{5, 0, false};
   std::vector<Eigen::VectorXd> states, measured;
   std::vector<double> times;
   DataSet data(2, 1);
-  acting.startTrial(id);
+  acting->startTrial(id);
   for (int t = 0; t < 20; ++t) {
     states.push_back(plant_->state());
     times.push_back(0.2 * t);
-    measured.push_back(acting.observe({}));
+    measured.push_back(acting->observe({}));
     data.append(Grey(4, 0), Eigen::VectorXd::Zero(1), t == 0);
     plant_->step(Eigen::VectorXd::Constant(1, 0.3 * t));
   }
   writeText(scratch_.file("trajectory.csv"),
             formatTrajectoryCsv(times, states, plant_->info().state_names));
-  TrueStateObservation learning(*plant_);
-  const Eigen::MatrixXd X = learning.learn({scratch_.file("trial.bag")}, data, id);
+  const Eigen::MatrixXd X =
+      observeTrueState(*plant_)->learn({scratch_.file("trial.bag")}, data, id).X;
   ASSERT_EQ(X.cols(), 20);
   for (int t = 0; t < 20; ++t) EXPECT_EQ(X.col(t), measured[static_cast<size_t>(t)]) << t;
   EXPECT_NE(X(0, 19), states[19][1]);
@@ -69,7 +71,7 @@ TEST_F(TrueStateTest, LearningMeetsTheMeasurementsThatThePolicyActedOn) {
 TEST_F(TrueStateTest, FramesThatDoNotFitTheBagBesideThemAreRefusedWithTheFile) {
   DataSet data(2, 1);  // two trials of 3 frames
   for (int t = 0; t < 6; ++t) data.append(Grey(4, 0), Eigen::VectorXd::Zero(1), t % 3 == 0);
-  TrueStateObservation observation(*plant_);
+  const auto observation = observeTrueState(*plant_);
   std::vector<std::string> bags;
   const auto write = [&](const std::string& trial, size_t frames) {
     fs::create_directories(scratch_.file(trial));
@@ -79,7 +81,7 @@ TEST_F(TrueStateTest, FramesThatDoNotFitTheBagBesideThemAreRefusedWithTheFile) {
         formatTrajectoryCsv(std::vector<double>(frames, 0.0), states, plant_->info().state_names));
     bags.push_back(scratch_.file(trial + "/trial.bag"));
   };
-  const auto learn = [&] { observation.learn(bags, data, TrialId()); };
+  const auto learn = [&] { observation->learn(bags, data, TrialId()); };
   write("a", 2);
   write("b", 4);  // as many in all
   EXPECT_TRUE(throwsNaming<std::runtime_error>(
@@ -94,27 +96,25 @@ TEST_F(TrueStateTest, FramesThatDoNotFitTheBagBesideThemAreRefusedWithTheFile) {
   EXPECT_NO_THROW(learn());
 }
 
-TEST_F(TrueStateTest, TheTaskIsUprightWithinTheLengthOfTheRod) {
+PilcoTask trueStateTask(const Plant& plant) {
+  return observeTrueState(plant)->learn({}, DataSet(2, 1), TrialId()).task;
+}
+
+TEST_F(TrueStateTest, TheTaskIsUprightWithinTheLengthOfTheRodAlsoForAPlugin) {
   plant_ = makePlant(*testing::plantOf("{type: pendulum, length: 2.0, start_std: [0.3, 0.5]}"));
-  const TrueStateObservation observation(*plant_);
-  const PilcoTask task = observation.task();
+  const PilcoTask task = trueStateTask(*plant_);
   EXPECT_EQ(task.angles, std::vector<int>{1});
-  EXPECT_NEAR(task.cost.expected(pilco::known(pair(3.0, M_PI))), 0.0, 1e-12);
-  // Hanging, the tip is two lengths away: four widths of half a length each.
-  EXPECT_NEAR(task.cost.expected(pilco::known(pair(0.0, 0.0))), 1.0 - std::exp(-8.0), 1e-12);
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(2, 2);
   covariance.diagonal() << 0.5 * 0.5, 0.3 * 0.3;  // rate first
   EXPECT_EQ(task.start.covariance, covariance);
   EXPECT_EQ(task.start.mean, Eigen::VectorXd::Zero(2));
-}
-
-TEST_F(TrueStateTest, APluginIsLearnedInLengthsOfItsRodIfItsGoalIsUpright) {
-  const std::unique_ptr<Plant> plant = makePlant(testing::ToyMaker(armTo(-M_PI)));
-  const PilcoTask task = TrueStateObservation(*plant).task();
-  for (const double angle : {0.0, 1.0, 3.0}) {
-    const double lengths = 2.0 * std::cos(angle / 2.0);  // of the tip from its goal
-    EXPECT_NEAR(task.cost.expected(pilco::known(pair(0.0, angle))),
-                1.0 - std::exp(-2.0 * lengths * lengths), 1e-12);
+  const std::unique_ptr<Plant> plugin = makePlant(testing::ToyMaker(armTo(-M_PI)));
+  for (const PilcoTask& each : {task, trueStateTask(*plugin)}) {
+    for (const double angle : {0.0, 1.0, 3.0, M_PI}) {
+      const double lengths = 2.0 * std::cos(angle / 2.0);  // of the tip from its goal
+      EXPECT_NEAR(each.cost.expected(pilco::known(pair(0.0, angle))),
+                  1.0 - std::exp(-2.0 * lengths * lengths), 1e-12);
+    }
   }
 }
 
@@ -125,7 +125,7 @@ TEST_F(TrueStateTest, APlantThatIsNoPendulumIsRefused) {
   two_joints.info.state_names = {"shoulder_rad", "elbow_rad"};
   for (const testing::ToyPlant::Traits& traits : {length, two_joints, armTo(0.0)}) {
     const std::unique_ptr<Plant> plant = makePlant(testing::ToyMaker(traits));
-    EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { TrueStateObservation{*plant}; },
+    EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { observeTrueState(*plant); },
                                                     {"joint(s)", "pilco_features"}));
   }
 }
@@ -142,12 +142,11 @@ DataSet imagesOf(const Plant& plant) {
 
 /// What is learned from is what is observed, and the goal image is the goal.
 void expectConsistent(Observation* observation, const DataSet& data) {
-  const Eigen::MatrixXd X = observation->learn({}, data, TrialId());
+  const auto [X, task] = observation->learn({}, data, TrialId());
   ASSERT_EQ(X.rows(), static_cast<Eigen::Index>(observation->names().size()));
   ASSERT_EQ(X.cols(), data.numFrames());
   const Eigen::VectorXd x = observation->observe(data.image(7));
   EXPECT_LT((x - X.col(7)).norm(), 1e-5 * X.norm());
-  const PilcoTask task = observation->task();
   EXPECT_NEAR(task.cost.expected(pilco::known(observation->observe(data.goal()))), 0.0, 1e-9);
   EXPECT_GT(task.cost.expected(pilco::known(X.col(0))), 0.5);
 }
@@ -159,10 +158,8 @@ TEST(ImageObservations, LearnFromWhatTheyObserveAndTakeTheGoalFromItsImage) {
   config.model.pca_dim = 5;
   config.training.max_iterations = 30;
   config.training.schedule = "v_r_only";
-  FeatureObservation features(config);
-  expectConsistent(&features, data);
-  PcaObservation pca(config);
-  expectConsistent(&pca, data);
+  expectConsistent(observeFeatures(config).get(), data);
+  expectConsistent(observePrincipalComponents(config).get(), data);
 }
 
 TEST(ImageTask, TakesGoalStartAndScaleFromTheData) {
@@ -182,27 +179,6 @@ TEST(ImageTask, TakesGoalStartAndScaleFromTheData) {
   const double prior = 0.01 * spread * spread / 2.0;
   EXPECT_NEAR(task.start.covariance(0, 0), (2.0 + prior) / 2.0, 1e-12);
   EXPECT_NEAR(task.start.covariance(0, 1), 1.0, 1e-12);
-}
-
-TEST(PolicyStart, CentresFollowTheFeaturesOfTheStart) {
-  const std::unique_ptr<Plant> plant = pendulum();
-  const PilcoTask task = TrueStateObservation(*plant).task();
-  const pilco::Augmentation features = pilco::replaceAngles(2, {1});
-  std::mt19937_64 rng(1);
-  const int count = 4000;
-  const Eigen::VectorXd parameters = drawPolicyStart(task, features, count, 1, &rng);
-  ASSERT_EQ(parameters.size(), 3 + 4 * count);
-  EXPECT_NEAR(parameters[0], 0.0, 1e-15);
-  EXPECT_NEAR(parameters[1], std::log(0.7), 1e-15);
-  const pilco::Moments start = features.predict(task.start);
-  for (int d = 0; d < 3; ++d) {
-    const Eigen::VectorXd centres = parameters.segment(3 + d * count, count);
-    EXPECT_NEAR(centres.mean(), start.mean[d], 0.01) << d;
-    const double variance = (centres.array() - centres.mean()).square().mean();
-    EXPECT_NEAR(variance, start.covariance(d, d), 0.1 * start.covariance(d, d) + 1e-6) << d;
-  }
-  const Eigen::VectorXd targets = parameters.tail(count);
-  EXPECT_NEAR(std::sqrt(targets.squaredNorm() / count), 0.1, 0.005);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Long-term cost of a policy under the learned dynamics, and the search for the best policy.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_pilco/long_term_cost.h"
+#include "pilco/long_term_cost.h"
 
 #include <algorithm>
 #include <cmath>
@@ -172,15 +172,6 @@ std::vector<double> LongTermCost::costStandardDeviations() const {
     out.push_back(std::sqrt(std::max(0.0, cost_.variance(states_[t]))));  // rounded below 0
   }
   return out;
-}
-
-Minimum searchPolicy(const DifferentiableFunction& cost, const Eigen::VectorXd& start,
-                     const PolicySearchOptions& options) {
-  MinimiseOptions solver;
-  solver.max_iterations = options.max_iterations;
-  solver.max_evaluations = options.max_evaluations;
-  solver.function_tolerance = 1e-8;
-  return minimise(cost, start, solver);
 }
 
 }  // namespace ddm::pilco

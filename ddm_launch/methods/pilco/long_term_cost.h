@@ -2,19 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_model/minimise.h>
-
 #include <Eigen/Core>
 #include <vector>
 
-#include "ddm_pilco/features.h"
-#include "ddm_pilco/gp_moments.h"
-#include "ddm_pilco/options.h"
-#include "ddm_pilco/policy.h"
+#include "pilco/gp_moments.h"
+#include "pilco/policy.h"
+#include "pilco/state_cost.h"
 
 namespace ddm::pilco {
 
-/// What the state means to the dynamics GP and the policy.
+/// How the dynamics GP and the policy use the state.
 struct PropagationOptions {
   std::vector<int> angles;  ///< entries of the state that are angles [rad]
   /// The policy sees a measurement of the state: half the noise variance of each output of the GP
@@ -109,12 +106,5 @@ class LongTermCost {
   std::vector<double> costs_;
   std::vector<Propagation::Tape> tapes_;
 };
-
-/// Minimises J(parameters) by BFGS from `start`. A policy for which J is not finite (a predicted
-/// distribution that grows without bound) makes the line search take a shorter step.
-/// @param cost   J, with its gradient
-/// @param start  parameters of the last trial's policy                                     [P]
-Minimum searchPolicy(const DifferentiableFunction& cost, const Eigen::VectorXd& start,
-                     const PolicySearchOptions& options);
 
 }  // namespace ddm::pilco

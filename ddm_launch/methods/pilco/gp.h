@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "ddm_pilco/options.h"
+#include "pilco/options.h"
 
 namespace ddm::pilco {
 
@@ -41,12 +41,12 @@ struct GpModel {
   int numPoints() const { return static_cast<int>(inputs.cols()); }
 };
 
-/// GPs, or why there are none.
+/// The result of a training: GPs, or the reason why there are none.
 struct GpFit {
   bool ok = false;               ///< whether `model` can be used
   GpModel model;                 ///< empty if not
-  std::vector<Minimum> outputs;  ///< how it went: one for each minimisation
-  std::string message;           ///< what failed, or was noteworthy; empty: all went well
+  std::vector<Minimum> outputs;  ///< result of each minimisation
+  std::string message;           ///< what failed or is noteworthy; empty if all went well
 
   void addMessage(const std::string& text);
 };
@@ -88,7 +88,7 @@ Eigen::VectorXd thetaOf(const Hyperparameters& hyperparameters, int output);
 double negativeLogLikelihood(const Eigen::MatrixXd& inputs, const Eigen::VectorXd& targets,
                              const Eigen::VectorXd& theta, Eigen::VectorXd* gradient = nullptr);
 
-/// Keeps training from absurd length-scales and from a noise of next to nothing.
+/// A penalty that keeps the training from absurd length-scales and from almost no noise.
 ///
 ///   sum_d (log(l_d / std_d) / log kLengthScaleLimit)^p + (log(sf / sn) / log kSignalToNoiseLimit)^p
 ///
@@ -99,8 +99,8 @@ double negativeLogLikelihood(const Eigen::MatrixXd& inputs, const Eigen::VectorX
 double penalty(const Eigen::VectorXd& theta, const Eigen::VectorXd& input_std,
                Eigen::VectorXd* gradient = nullptr);
 
-/// Where the first training starts: length-scales = spread of the inputs, signal = spread of the
-/// target, noise = a tenth of it.
+/// Initial hyper-parameters of the first training: length-scales = spread of the inputs, signal =
+/// spread of the target, noise = a tenth of the signal.
 /// @param inputs   one per column                                                      [D x n]
 /// @param targets  one per row                                                         [n x E]
 /// @throws std::invalid_argument that names what makes the data unusable: fewer than two points, a
@@ -140,7 +140,7 @@ double sparseNegativeLogLikelihood(const Eigen::MatrixXd& inducing, const Eigen:
                                    const Hyperparameters& hyperparameters,
                                    Eigen::MatrixXd* d_inducing = nullptr);
 
-/// The GP that these inducing inputs stand for. With B = Kmm + Kmn diag(lambda)^-1 Knm:
+/// The GP of these inducing inputs. With B = Kmm + Kmn diag(lambda)^-1 Knm:
 ///
 ///   beta = B^-1 Kmn diag(lambda)^-1 y,   GpModel::inverse = Kmm^-1 - B^-1
 ///
@@ -149,15 +149,15 @@ GpFit makeSparseGpModel(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& 
                         const Eigen::MatrixXd& targets, const Hyperparameters& hyperparameters);
 
 /// Inducing inputs by L-BFGS on sparseNegativeLogLikelihood(), the hyper-parameters staying as they
-/// are; then makeSparseGpModel(). If the optimisation gets nowhere, the start is used and the
-/// message says so.
+/// are; then makeSparseGpModel(). If the optimisation does not improve the likelihood, the initial
+/// inducing inputs are used, and the message says so.
 /// @param start  inducing inputs to start from                                         [D x m]
 /// @return       `outputs` has one entry, for all outputs together
 GpFit trainSparseGp(const Eigen::MatrixXd& start, const Eigen::MatrixXd& inputs,
                     const Eigen::MatrixXd& targets, const Hyperparameters& hyperparameters,
                     int max_iterations, const std::function<void()>& on_evaluation = nullptr);
 
-/// What learnGp() carries from trial to trial.
+/// The state that learnGp() keeps from one trial to the next.
 struct GpLearnerState {
   Hyperparameters hyperparameters;  ///< last optimum; empty before the first training
   Eigen::MatrixXd inducing;         ///< last inducing inputs; empty before the first sparse GP

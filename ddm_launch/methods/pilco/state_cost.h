@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "ddm_pilco/moments.h"
+#include "pilco/moments.h"
 
 namespace ddm::pilco {
 
@@ -62,46 +62,31 @@ class Augmentation {
 /// and the policy see of a state.
 Augmentation replaceAngles(int input_dim, const std::vector<int>& angles);
 
-/// c(x) = 1 - exp(-1/2 (x - z)^T W (x - z)) (Deisenroth and Rasmussen, 2011). For x ~ N(m, s),
-/// with P_k = W (I + k s W)^-1:
+/// c(x) = 1 - exp(-1/2 (y - z)^T W (y - z)) (Deisenroth and Rasmussen, 2011) with the features y of an
+/// Augmentation, which are taken as Gaussian. For y ~ N(m, s), with P_k = W (I + k s W)^-1:
 ///
 ///   E[c]         = 1 - |I + s W|^-1/2 exp(-1/2 (m - z)^T P_1 (m - z))
 ///   E[(1 - c)^2] = |I + 2 s W|^-1/2 exp(-(m - z)^T P_2 (m - z))
-class SaturatingCost {
- public:
-  /// @param target  z                                                  [D]
-  /// @param weight  W, symmetric and positive semi-definite        [D x D]
-  SaturatingCost(Eigen::VectorXd target, const Eigen::MatrixXd& weight);
-
-  int inputDim() const { return static_cast<int>(target_.size()); }
-
-  /// E[c].
-  /// @param d_input  (optional) out: dE[c]/dm, dE[c]/ds (symmetric)
-  double expected(const Gaussian& input, Gaussian* d_input = nullptr) const;
-
-  /// var[c]. What is below 1e-12 is rounding and becomes 0.
-  double variance(const Gaussian& input) const;
-
- private:
-  Eigen::VectorXd target_;
-  Eigen::MatrixXd weight_;
-};
-
-/// c(y(x)) with the features y of an Augmentation, which are taken as Gaussian.
 class StateCost {
  public:
-  StateCost(Augmentation features, SaturatingCost cost);
+  /// @param features  y(x)
+  /// @param target    z                                                  [E]
+  /// @param weight    W, symmetric and positive semi-definite        [E x E]
+  StateCost(Augmentation features, Eigen::VectorXd target, const Eigen::MatrixXd& weight);
 
   int inputDim() const { return features_.inputDim(); }
 
-  /// Expected cost. Parameters as in SaturatingCost.
+  /// E[c].
+  /// @param d_state  (optional) out: derivatives of E[c] by mean and covariance of x (symmetric)
   double expected(const Gaussian& state, Gaussian* d_state = nullptr) const;
 
+  /// var[c]. What is below 1e-12 is rounding and becomes 0.
   double variance(const Gaussian& state) const;
 
  private:
   Augmentation features_;
-  SaturatingCost cost_;
+  Eigen::VectorXd target_;
+  Eigen::MatrixXd weight_;
 };
 
 /// 1 - exp(-d^2 / (2 width^2)), d the distance of the tip of a pendulum from its upright position.
