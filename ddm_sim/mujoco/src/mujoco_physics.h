@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ddm_mujoco/mujoco_model.h"
+#include "load_model.h"
 #include "motors.h"
 
 namespace ddm {
@@ -65,7 +66,7 @@ class MujocoPhysics {
   std::shared_ptr<const MujocoModel> model_;
   mjModel physics_;  // shares all arrays with model_
   std::vector<Motor> motors_;
-  std::unique_ptr<mjData, void (*)(mjData*)> data_;
+  DataPointer data_;
 };
 
 }  // namespace ddm

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ddm_mujoco/render_options.h"
+#include "ddm_mujoco/renderer.h"
 #include "ddm_sim/plant_options.h"
 
 namespace ddm {
@@ -35,8 +35,7 @@ struct MujocoOptions : PlantOptions {
   std::string reward;                     ///< one of rewards.h; empty: none
   int episode_frames = 0;                 ///< physics frames of a greedy run; 0: those of a trial
 
-  RenderOptions look;
-  SceneOptions scene;
+  RenderOptions look;  ///< of the learner's image; its size is picture_size
 
   MujocoOptions() {
     type = "mujoco";
@@ -66,13 +65,11 @@ struct MujocoOptions : PlantOptions {
     visitor("camera", look.camera);
     visitor("camera_position", look.position);
     visitor("camera_look_at", look.look_at);
-    visitor("camera_field_of_view", look.field_of_view);
     visitor("colour", look.colour);
     visitor("samples", look.samples);
     visitor("supersampling", look.supersampling);
-    visitor("camera_shift", scene.camera_shift);
-    visitor("colour_shift", scene.colour_shift);
-    visitor("scene_seed", scene.seed);
+    visitor("camera_shift", look.camera_shift);
+    visitor("colour_shift", look.colour_shift);
   }
 
   /// Everything wrong with these values, in words a user can act on. Empty means valid. What does
