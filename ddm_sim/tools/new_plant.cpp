@@ -106,28 +106,6 @@ bool parse(int argc, char** argv, Arguments* arguments) {
   return true;
 }
 
-/// A file that is removed unless it is kept.
-class Draft {
- public:
-  /// In the folder of the final file, from which its relative paths count.
-  Draft(const std::string& file, const std::string& text)
-      : file_(file), draft_(file + ".unfinished") {
-    writeFileAtomically(draft_, text);
-  }
-  ~Draft() {
-    std::error_code ignored;
-    fs::remove(draft_, ignored);
-  }
-  Draft(const Draft&) = delete;
-  Draft& operator=(const Draft&) = delete;
-
-  const std::string& path() const { return draft_; }
-  void keep() { renameDurably(draft_, file_); }
-
- private:
-  std::string file_, draft_;
-};
-
 constexpr int kCell = 204;  // four times the learner's image [pixels]
 constexpr int kColumns = 6;
 constexpr int kLine = 22;  // of text
@@ -231,11 +209,17 @@ void newPlant(const Arguments& arguments) {
   const PlantProposal proposal = proposePlant(model, arguments.motors, arguments.max_torque);
   printProposal(proposal);
 
-  Draft draft(arguments.out, plantText(arguments.model, arguments.out, proposal));
-  const std::unique_ptr<Plant> plant = makePlant(*readPlantFiles({draft.path()}));
+  // In the folder of the final file, from which its relative paths count. Removed if anything fails.
+  const std::string draft = arguments.out + ".unfinished";
+  const std::shared_ptr<void> cleanup(nullptr, [&draft](void*) {
+    std::error_code ignored;
+    fs::remove(draft, ignored);
+  });
+  writeFileAtomically(draft, plantText(arguments.model, arguments.out, proposal));
+  const std::unique_ptr<Plant> plant = makePlant(*readPlantFiles({draft}));
   printCheck(model->get(), proposal, checkPlant(proposal, plant.get()));
   writeContactSheet(proposal, *plant, pictureFile(arguments.out));
-  draft.keep();
+  renameDurably(draft, arguments.out);
 
   std::cout << "\nwrote " << arguments.out << " and " << pictureFile(arguments.out) << "\nset in "
             << arguments.out << ":";

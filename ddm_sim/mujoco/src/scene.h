@@ -25,7 +25,6 @@ class Scene {
 
   /// The model as it looks, for drawing alone. Belongs to this object.
   mjModel& appearance() { return appearance_; }
-  const mjModel& appearance() const { return appearance_; }
 
   /// Moves the camera of a drawn scene around the point that it looks at.
   void moveCamera(mjvGLCamera* camera) const;
