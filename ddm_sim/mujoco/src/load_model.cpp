@@ -3,7 +3,6 @@
 #include "load_model.h"
 
 // mjxmacro.h has the names and sizes of all arrays of a model.
-#include <ddm_common/plain_file.h>
 #include <fcntl.h>
 #include <mujoco/mjxmacro.h>
 #include <sys/resource.h>
@@ -18,6 +17,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <new>
 #include <sstream>
 #include <stdexcept>
@@ -115,7 +115,7 @@ void requireFinite(const char* name, const Value* values, int count) {
 ModelPointer compile(const ModelText& model) {
   const MemoryFiles files = noFiles();
   for (const auto& mesh : model.meshes) {
-    const std::string bytes = readFile(mesh.second);
+    const std::string bytes = readModelFile(mesh.second);
     const bool ascii = isAsciiStl(bytes);
     const bool binary = !ascii && fs::path(mesh.first).extension() == ".stl";
     if (binary && !bytes.empty() && bytes.size() != sizeOfStl(bytes)) {
@@ -241,6 +241,13 @@ void tryInOwnProcess(const ModelText& model) {
 void installMujocoHandlers() {
   mju_user_error = throwError;
   mju_user_warning = ignoreWarning;
+}
+
+std::string readModelFile(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  if (!in || in.bad()) refuse(path, " cannot be read");
+  return bytes;
 }
 
 ModelPointer loadModel(const ModelText& model) {

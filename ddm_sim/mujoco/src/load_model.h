@@ -21,6 +21,10 @@ struct ModelText {
 using ModelPointer = std::unique_ptr<mjModel, void (*)(mjModel*)>;
 using DataPointer = std::unique_ptr<mjData, void (*)(mjData*)>;
 
+/// The whole file.
+/// @throws std::invalid_argument with the path if it cannot be read
+std::string readModelFile(const std::string& path);
+
 /// Compiles a model, after a process of its own has compiled it, moved it by a few frames and
 /// updated its scene: MuJoCo may crash, hang or fill the memory there.
 /// @throws std::invalid_argument with MuJoCo's reason, or with what became of that process, or naming

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "model_files.h"
 
-#include <ddm_common/plain_file.h>
-
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
 #include <boost/crc.hpp>
@@ -44,7 +42,7 @@ class Collector {
 
   void add(const fs::path& file) {
     if (!seen_.insert(file.lexically_normal().string()).second) return;
-    const std::string bytes = readFile(file.string());
+    const std::string bytes = readModelFile(file.string());
     boost::crc_32_type checksum;
     checksum.process_bytes(bytes.data(), bytes.size());
     checksum_ += checksum.checksum();

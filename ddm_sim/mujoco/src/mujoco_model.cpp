@@ -3,7 +3,6 @@
 #include "ddm_mujoco/mujoco_model.h"
 
 #include <ddm_common/option_checks.h>
-#include <ddm_common/plain_file.h>
 
 #include <algorithm>
 #include <boost/algorithm/string/case_conv.hpp>
@@ -162,7 +161,7 @@ MujocoModel::MujocoModel(const std::string& uri, const FindPackage& find_package
   ModelFiles files;
   try {
     const std::string path = pathOf(uri, find_package);
-    const std::string text = readFile(path);
+    const std::string text = readModelFile(path);
     const std::string root =
         boost::to_lower_copy(std::string(parseXml(text)->RootElement()->Value()));
     if (root == "robot") {

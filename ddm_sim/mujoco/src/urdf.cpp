@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "urdf.h"
 
-#include <ddm_common/plain_file.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <boost/algorithm/string/case_conv.hpp>
@@ -43,7 +41,7 @@ class MeshNames {
       return;
     }
     const std::string mistaken = fs::is_regular_file(file)
-                                     ? mistakenFor(readFile(file.string()))
+                                     ? mistakenFor(readModelFile(file.string()))
                                      : "is not there: correct its name, or fetch the package that "
                                        "holds it";
     if (!mistaken.empty()) {
