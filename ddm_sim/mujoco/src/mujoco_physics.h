@@ -23,8 +23,8 @@ double timestepOf(const MujocoModel& model, const MujocoOptions& options);
 /// A model with a workspace of its own; for one thread at a time. What it returns depends on its
 /// arguments alone.
 ///
-/// The torques of `motors` act alone: where the options name motors, all actuators of the file are
-/// switched off.
+/// If the options name motors, all actuators of the file are switched off, and only the torques of
+/// these motors act.
 class MujocoPhysics {
  public:
   /// @throws std::invalid_argument as motorsOf()

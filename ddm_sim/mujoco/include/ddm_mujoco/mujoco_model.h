@@ -36,9 +36,9 @@ struct UrdfFacts {
   std::vector<std::string> transmissions;      ///< joints that the <transmission> elements name
 };
 
-/// A compiled model. Nobody changes it, so that all plants of one maker share it.
+/// A compiled model. It is never changed, so that all plants of one maker share it.
 ///
-/// A URDF is taken as its author meant it: its visual shapes are kept, `package://` in mesh names
+/// A URDF is read as its author meant it: its visual shapes are kept, `package://` in mesh names
 /// is resolved, links behind fixed joints are merged into their parents, continuous joints turn
 /// without end, and joints follow those that they <mimic>. Nothing touches anything, and there is
 /// light. A <mujoco> block of the file overrides what it names.
@@ -48,7 +48,7 @@ struct UrdfFacts {
 class MujocoModel {
  public:
   /// @param uri           path, or package://PACKAGE/PATH
-  /// @param find_package  what finds packages, here and in the file
+  /// @param find_package  finds the packages that the uri and the file name
   /// @throws std::invalid_argument naming file or package and what is wrong: not found, no model,
   ///         something in it that MuJoCo does not take (with its line)
   MujocoModel(const std::string& uri, const FindPackage& find_package);
@@ -90,7 +90,7 @@ class MujocoModel {
   std::shared_ptr<const mjModel> model_;
 };
 
-/// "did you mean wrist? There are shoulder, wrist": what helps who has written `name`.
+/// Help for an unknown name: "did you mean wrist? There are shoulder, wrist".
 std::string suggestion(const std::string& name, const std::vector<std::string>& known);
 
 }  // namespace ddm
