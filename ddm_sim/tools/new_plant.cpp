@@ -39,8 +39,7 @@ constexpr char kAbout[] =
     "usage: rosrun ddm_sim new_plant ROBOT.urdf|ROBOT.xml --out my_plant.yaml [options]\n\n"
     "Also writes my_plant.png beside it: the start, the goal and random poses, large and as the\n"
     "learner sees them.\n"
-    "Exit:   0 done, 1 the model cannot be a plant, 2 bad options or motors that have to be "
-    "named.\n\n"
+    "Exit:   0 done, 1 the model cannot be a plant as it is, 2 bad options.\n\n"
     "Options";
 
 struct Arguments {
@@ -57,6 +56,19 @@ Texts partsOf(const std::string& text) {
   return parts;
 }
 
+/// @throws po::error naming a file that exists and must not be replaced
+void requireRoom(const Arguments& arguments) {
+  const fs::path folder = fs::absolute(arguments.out).parent_path();
+  if (!fs::is_directory(folder)) {
+    throw po::error("option --out must be in a folder that exists, got " + folder.string() +
+                    ": make it first");
+  }
+  for (const std::string& file : {arguments.out, pictureFile(arguments.out)}) {
+    if (arguments.force || !fs::exists(file)) continue;
+    throw po::error(file + " is there already: choose another name, or replace it by --force");
+  }
+}
+
 /// @return false if only help was asked for, and printed
 /// @throws po::error for wrong use
 bool parse(int argc, char** argv, Arguments* arguments) {
@@ -67,7 +79,7 @@ bool parse(int argc, char** argv, Arguments* arguments) {
       "plant file to write");
   add("motors", po::value(&motors)->value_name("A,B"),
       "joints that have a motor; without it the file's actuators, or for a URDF the joints with an "
-      "effort limit if these are one or two");
+      "effort limit if one or two joints have one");
   add("max-torque", po::value(&max_torque)->value_name("V1,V2"),
       "limit of each motor, in their order [N m, slides N]; without it the file's limits, or "
       "estimates from weight and inertia");
@@ -90,68 +102,19 @@ bool parse(int argc, char** argv, Arguments* arguments) {
     throw po::error("option --out must name a file that ends in .yaml, got \"" + arguments->out +
                     "\"");
   }
+  requireRoom(*arguments);
   return true;
 }
-
-/// @throws po::error naming what is there and must not be replaced
-void requireRoom(const Arguments& arguments) {
-  const fs::path folder = fs::absolute(arguments.out).parent_path();
-  if (!fs::is_directory(folder)) {
-    throw po::error("option --out must be in a folder that exists, got " + folder.string() +
-                    ": make it first");
-  }
-  for (const std::string& file : {arguments.out, pictureFile(arguments.out)}) {
-    if (arguments.force || !fs::exists(file)) continue;
-    throw po::error(file + " is there already: choose another name, or replace it by --force");
-  }
-}
-
-/// As configured by a file.
-std::unique_ptr<Plant> plantOf(const std::string& file) {
-  ParamReader params =
-      ParamReader::fromFiles({ros::package::getPath("ddm_sim") + "/config/sim.yaml", file});
-  const auto plugin = readPlant(&params);
-  params.requireValid();
-  return makePlant(*plugin);
-}
-
-/// A file that goes unless it is kept.
-class Draft {
- public:
-  /// In the folder of the file that it will be, where its relative paths start.
-  Draft(const std::string& file, const std::string& text)
-      : file_(file), draft_(file + ".unfinished") {
-    writeFileAtomically(draft_, text);
-  }
-  ~Draft() {
-    std::error_code ignored;
-    fs::remove(draft_, ignored);
-  }
-  Draft(const Draft&) = delete;
-  Draft& operator=(const Draft&) = delete;
-
-  const std::string& path() const { return draft_; }
-  void keep() { renameDurably(draft_, file_); }
-
- private:
-  std::string file_;
-  std::string draft_;
-};
 
 constexpr int kCell = 204;  // four times the learner's image [pixels]
 constexpr int kColumns = 6;
 constexpr int kLine = 22;  // of text
 
 cv::Mat colourOf(Picture picture) {
-  const cv::Mat grey_or_rgb(picture.height, picture.width,
-                            picture.channels == 1 ? CV_8UC1 : CV_8UC3, picture.bytes.data());
-  cv::Mat out;
-  if (picture.channels == 1) {
-    cv::cvtColor(grey_or_rgb, out, cv::COLOR_GRAY2RGB);
-  } else {
-    out = grey_or_rgb.clone();
-  }
-  return out;
+  cv::Mat out(picture.height, picture.width, picture.channels == 1 ? CV_8UC1 : CV_8UC3,
+              picture.bytes.data());
+  if (picture.channels == 1) cv::cvtColor(out, out, cv::COLOR_GRAY2RGB);
+  return out.clone();
 }
 
 /// Poses in rows: large, and below as the learner sees them.
@@ -185,51 +148,28 @@ void writeContactSheet(const PlantProposal& proposal, const Plant& plant, const 
   writePicture(file, imageMessage(picture, ros::Time()));
 }
 
-/// The text of a model file that has been read already.
-std::string textOf(const std::string& model) {
-  constexpr char kScheme[] = "package://";
-  if (model.rfind(kScheme, 0) != 0) return readFile(model);
-  const std::size_t name = sizeof(kScheme) - 1, end = model.find('/', name);
-  return readFile(ros::package::getPath(model.substr(name, end - name)) + model.substr(end));
-}
-
-/// The motors that were asked for, or those of the file.
-/// @throws po::error listing the candidates if somebody has to choose
-MotorChoice motorsFor(const Arguments& arguments, const MujocoModel& model,
-                      const std::vector<ModelJoint>& joints) {
-  MotorChoice choice = chooseMotors(model, joints, transmissionJoints(textOf(arguments.model)));
-  if (!arguments.motors.empty()) {
-    choice.joints = arguments.motors;
-    choice.by_actuators = false;
-    choice.why = "as given";
-  }
-  if (!choice.joints.empty()) return choice;
-  throw po::error(
-      "name the joints that have a motor, because the file does not say which one or "
-      "two: --motors with some of " +
-      join(choice.candidates, ","));
-}
-
-void printJoints(const std::vector<ModelJoint>& joints, const MotorChoice* choice) {
-  for (const ModelJoint& joint : joints) {
-    const bool motor = choice != nullptr &&
-                       std::count(choice->joints.begin(), choice->joints.end(), joint.name) > 0;
-    std::cout << "  " << joint.name << ": " << (joint.kind == JointKind::kAngle ? "hinge" : "slide")
-              << ", " << rangeOf(joint) << ", "
+void printProposal(const PlantProposal& proposal) {
+  for (const ModelJoint& joint : proposal.joints) {
+    const bool motor = std::count(proposal.motors.begin(), proposal.motors.end(), joint.name) > 0;
+    std::cout << "  " << joint.name << ": " << (joint.isHinge() ? "hinge" : "slide") << ", "
+              << rangeOf(joint) << ", "
               << (joint.effort > 0.0 ? "effort limit " + number(joint.effort, "%.4g") +
-                                           (joint.kind == JointKind::kAngle ? " N m" : " N")
+                                           (joint.isHinge() ? " N m" : " N")
                                      : std::string("no effort limit"))
               << (motor ? ", motor" : "") << "\n";
   }
+  std::cout << "motors: " << join(proposal.motors, ", ") << " (" << proposal.reasons.at("motors")
+            << ")\nmax_torque: " << list(proposal.options.max_torque) << " ("
+            << proposal.reasons.at("max_torque") << ")\ndt: " << number(proposal.options.dt)
+            << " s\n";
 }
 
 void printCheck(const mjModel& model, const PlantProposal& proposal, const PlantCheck& check) {
   std::cout << "simulation: stable; fastest joint " << number(check.still_speed, "%.2g")
             << " rad/s or m/s in 2 s without torque, " << number(check.random_speed, "%.2g")
             << " under random torques\nimage: " << check.changed_pixels
-            << " of 2601 pixels differ between two poses, by up to " << check.contrast
-            << " of 255 grey levels\n";
-  constexpr int kFewPixels = 25, kLittleContrast = 40;
+            << " of 2601 pixels differ between two poses\n";
+  constexpr int kFewPixels = 25;
   const auto warn = [](const std::string& text) { std::cout << "warning: " << text << "\n"; };
   if (!check.unseen.empty()) {
     warn("the image does not change with " + join(check.unseen, ", ") +
@@ -239,10 +179,7 @@ void printCheck(const mjModel& model, const PlantProposal& proposal, const Plant
   if (check.changed_pixels < kFewPixels) {
     warn(
         "the robot is small or thin in the image: a learner sees little of it; thicken its "
-        "shapes, narrow the joints' limits, or bring the camera nearer");
-  }
-  if (check.contrast < kLittleContrast) {
-    warn("the robot hardly differs from what is behind it: give it a brighter material");
+        "shapes, brighten them, narrow the joints' limits, or bring the camera nearer");
   }
   if (std::any_of(model.eq_type, model.eq_type + model.neq,
                   [](int type) { return type == mjEQ_CONNECT || type == mjEQ_WELD; })) {
@@ -252,15 +189,9 @@ void printCheck(const mjModel& model, const PlantProposal& proposal, const Plant
   }
   constexpr double kNarrow = 0.1;  // a usual range in radians, taken for degrees [rad]
   for (const ModelJoint& joint : proposal.joints) {
-    if (joint.kind != JointKind::kAngle || joint.upper - joint.lower >= kNarrow) continue;
+    if (!joint.isHinge() || joint.upper - joint.lower >= kNarrow) continue;
     warn("the range of " + joint.name + " is only " + rangeOf(joint) +
          ": MJCF has degrees unless the file has <compiler angle=\"radian\"/>");
-  }
-  constexpr double kOften = 0.1;
-  if (check.share_outside > kOften) {
-    warn("in " + number(100.0 * check.share_outside, "%.2g") +
-         " % of the images of random trials a slide is beyond what the camera shows: shorten "
-         "trial/num_steps, lower plant/max_torque, or limit the joint in the model file");
   }
   for (const ModelJoint& joint : proposal.joints) {
     if (!joint.shownInPart()) continue;
@@ -271,32 +202,24 @@ void printCheck(const mjModel& model, const PlantProposal& proposal, const Plant
 }
 
 void newPlant(const Arguments& arguments) {
-  requireRoom(arguments);
   const auto model = std::make_shared<MujocoModel>(
       arguments.model, [](const std::string& package) { return ros::package::getPath(package); });
-  const std::vector<ModelJoint> joints = jointsOf(model);
-  std::cout << arguments.model << ": " << joints.size() << " joint(s), " << model->get().nu
+  std::cout << arguments.model << ": " << model->get().njnt << " joint(s), " << model->get().nu
             << " actuator(s)\n";
-  MotorChoice choice;
-  try {
-    choice = motorsFor(arguments, *model, joints);
-  } catch (const po::error&) {
-    printJoints(joints, nullptr);
-    throw;
-  }
-  const PlantProposal proposal = proposePlant(model, choice, arguments.max_torque);
-  printJoints(proposal.joints, &choice);
-  std::cout << "motors: " << join(choice.joints, ", ") << " (" << choice.why
-            << ")\nmax_torque: " << list(proposal.options.max_torque) << " ("
-            << proposal.reasons.at("max_torque") << ")\ndt: " << number(proposal.options.dt)
-            << " s\n";
+  const PlantProposal proposal = proposePlant(model, arguments.motors, arguments.max_torque);
+  printProposal(proposal);
 
-  Draft draft(arguments.out, plantText(arguments.model, arguments.out, proposal, choice));
-  const std::unique_ptr<Plant> plant = plantOf(draft.path());
-  const PlantCheck check = checkPlant(proposal, plant.get());
-  printCheck(model->get(), proposal, check);
+  // In the folder of the final file, from which its relative paths count. Removed if anything fails.
+  const std::string draft = arguments.out + ".unfinished";
+  const std::shared_ptr<void> cleanup(nullptr, [&draft](void*) {
+    std::error_code ignored;
+    fs::remove(draft, ignored);
+  });
+  writeFileAtomically(draft, plantText(arguments.model, arguments.out, proposal));
+  const std::unique_ptr<Plant> plant = makePlant(*readPlantFiles({draft}));
+  printCheck(model->get(), proposal, checkPlant(proposal, plant.get()));
   writeContactSheet(proposal, *plant, pictureFile(arguments.out));
-  draft.keep();
+  renameDurably(draft, arguments.out);
 
   std::cout << "\nwrote " << arguments.out << " and " << pictureFile(arguments.out) << "\nset in "
             << arguments.out << ":";
@@ -311,15 +234,8 @@ void newPlant(const Arguments& arguments) {
 }  // namespace ddm
 
 int main(int argc, char** argv) {
-  try {
-    ddm::Arguments arguments;
-    if (ddm::parse(argc, argv, &arguments)) ddm::newPlant(arguments);
-  } catch (const boost::program_options::error& e) {
-    std::cerr << "new_plant: " << e.what() << "\nnew_plant --help lists the options\n";
-    return ddm::kUsageError;
-  } catch (const std::exception& e) {
-    std::cerr << "new_plant: " << e.what() << '\n';
-    return EXIT_FAILURE;
-  }
-  return EXIT_SUCCESS;
+  ddm::Arguments arguments;
+  return ddm::runTool(
+      "new_plant", [&] { return ddm::parse(argc, argv, &arguments); },
+      [&] { ddm::newPlant(arguments); });
 }

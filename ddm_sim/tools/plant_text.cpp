@@ -33,28 +33,13 @@ std::string list(const std::vector<double>& values) {
   return "[" + join(texts, ", ") + "]";
 }
 
-std::string unitOf(const ModelJoint& joint) {
-  return joint.kind == JointKind::kAngle ? "rad" : "m";
-}
-
 std::string rangeOf(const ModelJoint& joint) {
   if (!joint.limited) return "no limits";
-  return number(joint.lower, "%.4g") + " to " + number(joint.upper, "%.4g") + " " + unitOf(joint);
+  return number(joint.lower, "%.4g") + " to " + number(joint.upper, "%.4g") +
+         (joint.isHinge() ? " rad" : " m");
 }
 
 namespace {
-
-/// Motors as the joints that they move, with units of their torques.
-Texts motorNames(const PlantProposal& proposal, const MotorChoice& choice) {
-  Texts out;
-  for (const std::string& name : choice.joints) {
-    for (const ModelJoint& joint : proposal.joints) {
-      if (joint.name != name) continue;
-      out.push_back(name + (joint.kind == JointKind::kAngle ? " [N m]" : " [N]"));
-    }
-  }
-  return out;
-}
 
 /// Relative where the model lies with the plant file or below, so that their folder can be moved.
 std::string modelPath(const std::string& named, const std::string& plant_file) {
@@ -95,73 +80,66 @@ std::string comment(const std::string& text, const std::string& indent = "  ") {
 }  // namespace
 
 std::string plantText(const std::string& model, const std::string& plant_file,
-                      const PlantProposal& proposal, const MotorChoice& choice) {
+                      const PlantProposal& proposal) {
   const MujocoOptions& options = proposal.options;
-  const auto why = [&proposal](const char* key) {
-    const auto found = proposal.reasons.find(key);
-    return found == proposal.reasons.end() ? std::string() : found->second;
-  };
-  const auto set = [&proposal](const char* key) {
-    const Texts& keys = proposal.to_set;
-    return std::string(std::count(keys.begin(), keys.end(), key) > 0 ? "SET: " : "");
-  };
-  Texts joints, wide;
+  Texts joints, motors, shown;
   for (const ModelJoint& joint : proposal.joints) {
-    joints.push_back(joint.name + " [" + unitOf(joint) + "], " + rangeOf(joint));
-    if (joint.shownInPart() || (!joint.limited && joint.kind == JointKind::kLength)) {
-      wide.push_back(joint.name + " from " + number(joint.shown_lower, "%.3g") + " to " +
-                     number(joint.shown_upper, "%.3g") + " m");
-    }
+    joints.push_back(joint.name + (joint.isHinge() ? " [rad], " : " [m], ") + rangeOf(joint));
+    if (joint.isHinge() || (joint.limited && !joint.shownInPart())) continue;
+    shown.push_back(joint.name + " from " + number(joint.shown_lower, "%.3g") + " to " +
+                    number(joint.shown_upper, "%.3g") + " m");
   }
+  for (const std::string& name : proposal.motors) {
+    const auto joint = std::find_if(proposal.joints.begin(), proposal.joints.end(),
+                                    [&](const ModelJoint& one) { return one.name == name; });
+    motors.push_back(name + (joint->isHinge() ? " [N m]" : " [N]"));
+  }
+  const bool metres = !proposal.joints.front().isHinge() && options.error_joints.empty();
   std::ostringstream out;
+  // A key with its meaning and the reason for its value.
+  const auto write = [&](const char* key, const std::string& value, const std::string& meaning) {
+    const auto why = proposal.reasons.find(key);
+    const bool set = std::count(proposal.to_set.begin(), proposal.to_set.end(), key) > 0;
+    out << comment((set ? "SET: " : "") + meaning +
+                   (why == proposal.reasons.end() ? "" : " (" + why->second + ")") + ".")
+        << "  " << key << ": " << value << "\n";
+  };
   out << comment("A plant of " + fs::path(model).filename().string() +
                      ", proposed by new_plant. It works as it is; lines with SET are values that "
-                     "the model file does not say. Pictures: " +
+                     "the model file does not say. Images: " +
                      fs::path(pictureFile(plant_file)).filename().string() +
                      ". All keys: config/mujoco_pendulum.yaml of ddm_sim.",
                  "")
       << "#\n"
       << comment("Joints, in the order of start and goal: " + join(joints, "; ") + ".", "")
-      << "\nplant:\n  type: mujoco\n"
-      << comment("A relative path starts at the folder of this file.")
-      << "  model: " << quoted(modelPath(model, plant_file)) << "\n\n"
-      << comment("Motors: " + join(motorNames(proposal, choice), ", ") + "; " + why("motors") + ".")
-      << "  motors: " << quoted(options.motors) << "\n"
-      << comment(set("max_torque") + "The largest torque of each motor. " + why("max_torque") + ".")
-      << "  max_torque: " << list(options.max_torque) << "\n\n"
-      << comment("Seconds between two images; " + why("dt") + ".")
-      << "  dt: " << number(options.dt, "%.12g") << "\n"
-      << (options.timestep > 0.0 ? comment("Time step of the physics; " + why("timestep") + ".") +
-                                       "  timestep: " + number(options.timestep, "%.12g") + "\n"
-                                 : "")
-      << "\n"
-      << comment("Each episode starts near this pose: " + why("start") +
-                 ". start_std: standard deviation of each position and rate.")
-      << "  start: " << list(options.start) << "\n  start_std: " << list(options.start_std)
-      << "\n\n"
-      << comment("SET: The pose to reach, which the learner is shown as an image. " + why("goal") +
-                 ".")
-      << "  goal: " << list(options.goal) << "\n"
-      << comment(std::string("SET: The goal is reached within this error of each joint ") +
-                 (proposal.joints.front().kind == JointKind::kLength && options.error_joints.empty()
-                      ? "[m]"
-                      : "[deg]") +
-                 ".")
-      << "  tolerance: " << number(options.tolerance) << "\n";
-  if (!options.error_joints.empty()) {
-    out << comment("Joints whose error counts; " + why("error_joints") + ".")
-        << "  error_joints: " << quoted(options.error_joints) << "\n";
+      << "\nplant:\n  type: mujoco\n";
+  write("model", quoted(modelPath(model, plant_file)),
+        "A relative path starts at the folder of this file");
+  write("motors", quoted(options.motors), "Motors: " + join(motors, ", "));
+  write("max_torque", list(options.max_torque), "The largest torque of each motor");
+  write("dt", number(options.dt, "%.12g"), "Seconds between two images");
+  if (options.timestep > 0.0) {
+    write("timestep", number(options.timestep, "%.12g"), "Time step of the physics [s]");
   }
-  out << "\n"
-      << comment("The camera sees all poses" +
-                 (wide.empty()
-                      ? std::string(".")
-                      : " of " + join(wide, ", ") + "; farther away the robot leaves the image.") +
-                 " An MJCF file's own camera: `camera: NAME` instead of these three lines.")
-      << "  camera_position: " << list(options.look.position)
-      << "\n  camera_look_at: " << list(options.look.look_at)
-      << "\n  camera_field_of_view: " << number(options.look.field_of_view)
-      << "\n  supersampling: " << options.look.supersampling << "\n";
+  write("start", list(options.start), "Each episode starts near this pose");
+  write("start_std", list(options.start_std),
+        "Standard deviation of each position and rate of the initial state");
+  write("goal", list(options.goal), "The pose to reach, which the learner is shown as an image");
+  write("tolerance", number(options.tolerance),
+        std::string("The goal is reached within this error of each joint ") +
+            (metres ? "[m]" : "[deg]"));
+  if (!options.error_joints.empty()) {
+    write("error_joints", quoted(options.error_joints), "Joints whose error counts");
+  }
+  write("camera_position", list(options.look.position),
+        "The camera sees all poses" +
+            (shown.empty()
+                 ? ""
+                 : " of " + join(shown, ", ") + "; farther away the robot leaves the image") +
+            ". For a camera of an MJCF file, write `camera: NAME` instead of these two keys");
+  write("camera_look_at", list(options.look.look_at), "The point in the middle of the image");
+  write("supersampling", std::to_string(options.look.supersampling),
+        "Images are drawn so many times larger, then averaged, so that edges are soft");
   if (proposal.feature_dim > 2) {
     out << "\n"
         << comment("Two features for a joint that turns far, one for another one.", "")

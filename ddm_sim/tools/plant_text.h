@@ -9,18 +9,17 @@
 
 namespace ddm {
 
-/// The picture beside a plant file.
+/// The contact sheet beside a plant file.
 std::string pictureFile(const std::string& plant_file);
 
 std::string number(double value, const char* format = "%.7g");
 std::string list(const std::vector<double>& values);
-std::string unitOf(const ModelJoint& joint);
 
 /// "-1 to 1 rad", or "no limits".
 std::string rangeOf(const ModelJoint& joint);
 
 /// A plant file with the reason for each value.
 std::string plantText(const std::string& model, const std::string& plant_file,
-                      const PlantProposal& proposal, const MotorChoice& choice);
+                      const PlantProposal& proposal);
 
 }  // namespace ddm

@@ -33,18 +33,13 @@ namespace po = boost::program_options;
 constexpr char kAbout[] =
     "Moves a plant under given torques.\n\n"
     "usage: rosrun ddm_sim simulate --plant NAME [options] < torques.csv > trajectory.csv\n\n"
-    "Input:  a header, then one torque a line, N of them. The header is `torque` of --describe, "
-    "such\n"
-    "        as torque_nm for a pendulum. A torque beyond the plant's max_torque saturates, as "
-    "the\n"
-    "        motor does.\n"
-    "Output: a header, then N + 1 rows; row 0 is the start. The header is step,time_s and `state` "
-    "of\n"
-    "        --describe; angles are not wrapped. A plant with a reward also has `reward`, of\n"
-    "        this state under the torque of the row before (row 0: none). Nothing is written if "
-    "any of the "
-    "input\n"
-    "        is wrong.\n"
+    "Input:  a header, then N lines with one torque each. The header is `torque` of --describe,\n"
+    "        such as torque_nm for a pendulum. A torque beyond the plant's max_torque saturates,\n"
+    "        as the motor does.\n"
+    "Output: a header, then N + 1 rows; row 0 is the initial state. The header is step,time_s and\n"
+    "        `state` of --describe; angles are not wrapped. A plant with a reward also has\n"
+    "        `reward`, of this state under the torque of the row before (row 0: no torque).\n"
+    "        Nothing is written if any of the input is wrong.\n"
     "Exit:   0 done, 1 bad data, 2 bad options.\n\n"
     "Options";
 
@@ -71,8 +66,9 @@ bool parse(int argc, char** argv, Arguments* arguments) {
       "place to reach, on which the reward depends, for plants that draw one in each trial [m]; "
       "without it the goal is the one of the plant's file");
   add("frames", po::value(&arguments->frames)->value_name("DIR"),
-      "also write one picture a row, without nuisances of the camera: DIR/frame_0000.png, ... The "
-      "folder is made if need be; pictures of these names in it are replaced");
+      "also write one rendered image for each row, without disturbances of the camera: "
+      "DIR/frame_0000.png, ... The folder is made if necessary; images of these names are "
+      "replaced");
   add("describe", po::bool_switch(&arguments->describe),
       "print as YAML what the plant says of itself, its joints, units, limits, start, goal and "
       "tolerance, and what draws it, and exit");
@@ -88,24 +84,16 @@ bool parse(int argc, char** argv, Arguments* arguments) {
   throw po::error("unexpected \"" + words.front() + "\"; each value needs its option");
 }
 
-/// The files that describe camera and plant, then the user's own.
 /// @throws po::error with the known plants if there is none of this name
-std::vector<std::string> configFiles(const Arguments& arguments) {
-  std::vector<std::string> files{ros::package::getPath("ddm_sim") + "/config/sim.yaml"};
+std::shared_ptr<const PlantPlugin> configuredPlant(const Arguments& arguments) {
+  std::vector<std::string> files;
   try {
     files.push_back(plantFile(arguments.plant));
   } catch (const std::invalid_argument& e) {
     throw po::error(std::string("option --plant: ") + e.what());
   }
   files.insert(files.end(), arguments.configs.begin(), arguments.configs.end());
-  return files;
-}
-
-std::shared_ptr<const PlantPlugin> configuredPlant(const Arguments& arguments) {
-  ParamReader params = ParamReader::fromFiles(configFiles(arguments));
-  const auto plant = readPlant(&params);
-  params.requireValid();
-  return plant;
+  return readPlantFiles(files);
 }
 
 void writeFrame(const Plant& plant, const std::string& folder, std::size_t row) {

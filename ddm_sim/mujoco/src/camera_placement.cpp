@@ -5,10 +5,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "ddm_mujoco/renderer.h"
 #include "ddm_sim/angles.h"
+#include "refuse.h"
 
 namespace ddm {
 namespace {
@@ -16,14 +16,9 @@ namespace {
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
-constexpr double kMargin = 0.06;      // of half the picture, on each side
+constexpr double kMargin = 0.06;      // of half the image, on each side
 constexpr double kAlmostBest = 0.05;  // of the motion that a direction shows
-constexpr std::size_t kMaxPlaces = 6;
-
-struct CameraPlace {
-  Vector3d position;  // [m]
-  Vector3d look_at;   // [m]
-};
+constexpr std::size_t kMaxTried = 6;  // directions from which images are drawn
 
 /// Half the sides of the box around a geom, in its own frame.
 Vector3d halfSides(const mjModel& m, int geom) {
@@ -70,17 +65,16 @@ bool moves(const mjModel& m, int joint, int body) {
 }
 
 /// Share of a joint's motion that is seen from each direction; least over all joints.
-Eigen::VectorXd motionSeen(const MujocoModel& model, const PlaceModel& place,
+Eigen::VectorXd motionSeen(const mjModel& m, const Mechanism& mechanism,
                            const std::vector<Eigen::VectorXd>& poses,
                            const std::vector<Vector3d>& directions) {
-  const mjModel& m = model.get();
   const auto num_directions = static_cast<Eigen::Index>(directions.size());
   Eigen::MatrixXd seen = Eigen::MatrixXd::Zero(num_directions, m.njnt);
   Eigen::RowVectorXd all = Eigen::RowVectorXd::Zero(m.njnt);
   const std::vector<int> geoms = movingGeoms(m);
   for (const Eigen::VectorXd& pose : poses) {
-    const mjData& data = place(pose);
-    const Matrix3Xd corners = movingCorners(model, data);
+    const mjData& data = mechanism.place(pose);
+    const Matrix3Xd corners = movingCorners(m, data);
     for (Eigen::Index i = 0; i < corners.cols(); ++i) {
       const int body = m.geom_bodyid[geoms[static_cast<std::size_t>(i / 8)]];
       for (int joint = 0; joint < m.njnt; ++joint) {
@@ -101,9 +95,9 @@ Eigen::VectorXd motionSeen(const MujocoModel& model, const PlaceModel& place,
 
 /// From the model to the camera: along the axes of the world and of the joints, then from above at
 /// an angle.
-std::vector<Vector3d> directionsOf(const MujocoModel& model, const mjData& placed) {
+std::vector<Vector3d> directionsOf(const mjModel& m, const mjData& placed) {
   std::vector<Vector3d> directions = {{0, -1, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}};
-  for (int i = 0; i < model.get().njnt; ++i) {
+  for (int i = 0; i < m.njnt; ++i) {
     Vector3d axis = Eigen::Map<const Vector3d>(placed.xaxis + 3 * i);
     axis = (axis.array().abs() < 1e-3).select(0.0, axis).normalized();
     for (const Vector3d& one : {axis, Vector3d(-axis)}) {
@@ -129,8 +123,8 @@ Vector3d rounded(const Vector3d& point, double distance) {
   return (point / unit).array().round() * unit;
 }
 
-/// The camera in this direction in whose picture the corners fit, with a margin.
-CameraPlace placeFor(const Vector3d& direction, const Matrix3Xd& corners, double field_of_view) {
+/// `look` from this direction, so far away that the corners fit into the image, with a margin.
+RenderOptions lookFrom(const Vector3d& direction, const Matrix3Xd& corners, RenderOptions look) {
   const bool vertical = direction.head<2>().isZero();
   const Vector3d above = vertical ? Vector3d::UnitY() : Vector3d::UnitZ();
   Eigen::Matrix3d axes;  // right, up and towards the camera
@@ -140,48 +134,24 @@ CameraPlace placeFor(const Vector3d& direction, const Matrix3Xd& corners, double
   Matrix3Xd seen = axes * corners;
   const Vector3d middle = 0.5 * (seen.rowwise().minCoeff() + seen.rowwise().maxCoeff());
   seen.colwise() -= middle;
-  const double widest = (1.0 - kMargin) * std::tan(0.5 * field_of_view * kPi / 180.0);
+  const double widest = (1.0 - kMargin) * std::tan(0.5 * RenderOptions::kFieldOfView * kPi / 180.0);
   const Eigen::RowVectorXd reach = seen.topRows(2).cwiseAbs().colwise().maxCoeff();
   const double distance = std::max(1e-3, (reach / widest + seen.row(2)).maxCoeff());
   const Vector3d look_at = rounded(axes.transpose() * middle, distance);
-  return {look_at + rounded(distance * direction, distance), look_at};
-}
-
-/// Places that see all poses, in the directions that show the motion of each joint best; not empty,
-/// the most usual direction first.
-std::vector<CameraPlace> cameraPlaces(const MujocoModel& model, const PlaceModel& place,
-                                      const std::vector<Eigen::VectorXd>& poses,
-                                      double field_of_view) {
-  Matrix3Xd corners;
-  for (const Eigen::VectorXd& pose : poses) {
-    const Matrix3Xd here = movingCorners(model, place(pose));
-    corners.conservativeResize(3, corners.cols() + here.cols());
-    corners.rightCols(here.cols()) = here;
-  }
-  if (corners.cols() == 0) {
-    throw std::invalid_argument(
-        model.uri() +
-        " has no shape that a joint moves, so no image could show its pose: "
-        "give the moving links a <visual>, the moving bodies a <geom>");
-  }
-  const std::vector<Vector3d> directions = directionsOf(model, place(poses.front()));
-  const Eigen::VectorXd seen = motionSeen(model, place, poses, directions);
-  std::vector<CameraPlace> places;
-  for (std::size_t i = 0; i < directions.size() && places.size() < kMaxPlaces; ++i) {
-    if (seen[static_cast<Eigen::Index>(i)] < seen.maxCoeff() - kAlmostBest) continue;
-    places.push_back(placeFor(directions[i], corners, field_of_view));
-  }
-  return places;
+  const Vector3d position = look_at + rounded(distance * direction, distance);
+  look.position = {position.x(), position.y(), position.z()};
+  look.look_at = {look_at.x(), look_at.y(), look_at.z()};
+  return look;
 }
 
 /// Mean over the pixels of how much each differs between poses.
-double changeOfImages(const MujocoModel& model, const PlaceModel& place,
+double changeOfImages(const MujocoModel& model, const Mechanism& mechanism,
                       const std::vector<Eigen::VectorXd>& poses, const RenderOptions& look) {
   constexpr int kPoses = 8;
-  Renderer renderer(model.share(), look, SceneOptions());
+  Renderer renderer(model.share(), look);
   Eigen::ArrayXd sum, squares;
   for (int i = 0; i < kPoses; ++i) {
-    const Picture picture = renderer.draw(place(poses[static_cast<std::size_t>(i)]));
+    const Picture picture = renderer.draw(mechanism.place(poses[static_cast<std::size_t>(i)]));
     const Eigen::ArrayXd pixels =
         Eigen::Map<const Eigen::Array<std::uint8_t, Eigen::Dynamic, 1>>(
             picture.bytes.data(), static_cast<Eigen::Index>(picture.bytes.size()))
@@ -194,8 +164,7 @@ double changeOfImages(const MujocoModel& model, const PlaceModel& place,
 
 }  // namespace
 
-Matrix3Xd movingCorners(const MujocoModel& model, const mjData& placed) {
-  const mjModel& m = model.get();
+Matrix3Xd movingCorners(const mjModel& m, const mjData& placed) {
   const std::vector<int> geoms = movingGeoms(m);
   Matrix3Xd corners(3, 8 * static_cast<Eigen::Index>(geoms.size()));
   Eigen::Index column = 0;
@@ -213,21 +182,34 @@ Matrix3Xd movingCorners(const MujocoModel& model, const mjData& placed) {
   return corners;
 }
 
-RenderOptions placedCamera(const MujocoModel& model, const PlaceModel& place,
+RenderOptions placedCamera(const MujocoModel& model, const Mechanism& mechanism,
                            const std::vector<Eigen::VectorXd>& poses, const RenderOptions& look) {
-  const auto list = [](const Vector3d& point) {
-    return std::vector<double>(point.data(), point.data() + 3);
-  };
+  Matrix3Xd corners;
+  for (const Eigen::VectorXd& pose : poses) {
+    const Matrix3Xd here = movingCorners(model.get(), mechanism.place(pose));
+    corners.conservativeResize(3, corners.cols() + here.cols());
+    corners.rightCols(here.cols()) = here;
+  }
+  if (corners.cols() == 0) {
+    refuse(
+        model.uri(),
+        " has no shape that a joint moves, so no image could show its pose: give the moving links "
+        "a <visual>, the moving bodies a <geom>");
+  }
+  const std::vector<Vector3d> directions =
+      directionsOf(model.get(), mechanism.place(poses.front()));
+  const Eigen::VectorXd seen = motionSeen(model.get(), mechanism, poses, directions);
   RenderOptions best;
   double most = -1.0;
-  for (const CameraPlace& at : cameraPlaces(model, place, poses, look.field_of_view)) {
-    RenderOptions placed = look;
-    placed.position = list(at.position);
-    placed.look_at = list(at.look_at);
-    const double shown = changeOfImages(model, place, poses, placed);
+  std::size_t tried = 0;
+  for (std::size_t i = 0; i < directions.size() && tried < kMaxTried; ++i) {
+    if (seen[static_cast<Eigen::Index>(i)] < seen.maxCoeff() - kAlmostBest) continue;
+    ++tried;
+    const RenderOptions from_here = lookFrom(directions[i], corners, look);
+    const double shown = changeOfImages(model, mechanism, poses, from_here);
     if (shown <= 1.1 * most) continue;  // the more usual direction comes first
     most = shown;
-    best = placed;
+    best = from_here;
   }
   return best;
 }

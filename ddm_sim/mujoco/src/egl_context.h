@@ -18,7 +18,7 @@ class EglContext {
   EglContext(const EglContext&) = delete;
   EglContext& operator=(const EglContext&) = delete;
 
-  /// Makes a context current on this thread, and gives the one before back at the end.
+  /// Makes a context current on this thread for its lifetime.
   class Current {
    public:
     /// @throws std::runtime_error if another thread holds the context
@@ -29,13 +29,9 @@ class EglContext {
 
    private:
     EGLDisplay display_;
-    EGLDisplay display_before_;
-    EGLContext context_before_;
-    EGLSurface draw_before_;
-    EGLSurface read_before_;
   };
 
-  /// Largest side of a picture that this driver can draw [pixels].
+  /// Largest side of an image that this driver can draw [pixels].
   /// @pre this context is current
   int maxSize() const;
 

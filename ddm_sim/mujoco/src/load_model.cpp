@@ -1,22 +1,30 @@
-// Compiles a model.
+// Compiles a model, and tries it in a process of its own first.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "load_model.h"
 
-// mjxmacro.h knows the names and sizes of all arrays of a model.
+// mjxmacro.h has the names and sizes of all arrays of a model.
+#include <fcntl.h>
 #include <mujoco/mjxmacro.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <new>
 #include <sstream>
 #include <stdexcept>
 #include <type_traits>
 
 #include "ddm_mujoco/mujoco_model.h"
+#include "refuse.h"
 
 namespace ddm {
 namespace {
@@ -73,78 +81,60 @@ std::string binaryStl(const std::string& ascii) {
   return binary;
 }
 
-/// Files in memory, which MuJoCo finds by their name without a folder.
-class MemoryFiles {
- public:
-  MemoryFiles() : vfs_(new mjVFS) { mj_defaultVFS(vfs_.get()); }
-  ~MemoryFiles() { mj_deleteVFS(vfs_.get()); }
-  MemoryFiles(const MemoryFiles&) = delete;
-  MemoryFiles& operator=(const MemoryFiles&) = delete;
+/// Files in memory, which MuJoCo finds by their name without a folder. 2 MB, too much for a stack.
+using MemoryFiles = std::unique_ptr<mjVFS, void (*)(mjVFS*)>;
 
-  void add(const std::string& name, const std::string& bytes) {
-    const int index = vfs_->nfile;
-    if (bytes.empty()) throw std::invalid_argument(name + " is empty");
-    if (mj_makeEmptyFileVFS(vfs_.get(), name.c_str(), static_cast<int>(bytes.size())) != 0) {
-      throw std::invalid_argument("it names more files than MuJoCo takes, " +
-                                  std::to_string(mjMAXVFS - 2));
-    }
-    std::memcpy(vfs_->filedata[index], bytes.data(), bytes.size());
+MemoryFiles noFiles() {
+  const auto remove = [](mjVFS* files) {
+    mj_deleteVFS(files);
+    delete files;
+  };
+  MemoryFiles files(new mjVFS, remove);
+  mj_defaultVFS(files.get());
+  return files;
+}
+
+void add(const std::string& name, const std::string& bytes, mjVFS* files) {
+  const int index = files->nfile;
+  if (bytes.empty()) refuse(name, " is empty");
+  if (mj_makeEmptyFileVFS(files, name.c_str(), static_cast<int>(bytes.size())) != 0) {
+    refuse("it names more files than MuJoCo takes, ", mjMAXVFS - 2);
   }
-
-  const mjVFS* get() const { return vfs_.get(); }
-
- private:
-  std::unique_ptr<mjVFS> vfs_;  // 2 MB, too much for a stack
-};
+  std::memcpy(files->filedata[index], bytes.data(), bytes.size());
+}
 
 template <class Value>
 void requireFinite(const char* name, const Value* values, int count) {
   if constexpr (std::is_floating_point_v<Value>) {
     if (std::all_of(values, values + count, [](Value x) { return std::isfinite(x); })) return;
-    throw std::invalid_argument(
-        std::string("the compiled model has numbers that are not finite in ") + name +
-        ": look for nan, inf and very large numbers in the file");
+    refuse("the compiled model has numbers that are not finite in ", name,
+           ": look for nan, inf and very large numbers in the file");
   }
 }
 
-}  // namespace
-
-void installMujocoHandlers() {
-  mju_user_error = throwError;
-  mju_user_warning = ignoreWarning;
-}
-
-std::string readModelFile(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  if (!in || in.bad()) throw std::invalid_argument(path + " cannot be read");
-  return bytes;
-}
-
-std::unique_ptr<mjModel, void (*)(mjModel*)> compile(const ModelText& model) {
-  installMujocoHandlers();
-  MemoryFiles files;
+ModelPointer compile(const ModelText& model) {
+  const MemoryFiles files = noFiles();
   for (const auto& mesh : model.meshes) {
     const std::string bytes = readModelFile(mesh.second);
     const bool ascii = isAsciiStl(bytes);
     const bool binary = !ascii && fs::path(mesh.first).extension() == ".stl";
     if (binary && !bytes.empty() && bytes.size() != sizeOfStl(bytes)) {
-      throw std::invalid_argument(mesh.second + " has " + std::to_string(bytes.size()) +
-                                  " bytes and must have " + std::to_string(sizeOfStl(bytes)) +
-                                  " for the triangles that it counts: fetch or export it again");
+      refuse(mesh.second, " has ", bytes.size(), " bytes and must have ", sizeOfStl(bytes),
+             " for the triangles that it counts: fetch or export it again");
     }
-    files.add(mesh.first, ascii ? binaryStl(bytes) : bytes);
+    add(mesh.first, ascii ? binaryStl(bytes) : bytes, files.get());
   }
   // A name that no included file has: MuJoCo would take the text in memory for that file.
   const std::string path =
       (fs::absolute(model.path).parent_path() / "model text.in memory").string();
-  files.add(path, model.text);
+  add(path, model.text, files.get());
   char error[1000] = "";
   mjModel* const compiled = mj_loadXML(path.c_str(), files.get(), error, sizeof(error));
   if (compiled == nullptr) throw std::invalid_argument(error);
   return {compiled, mj_deleteModel};
 }
 
+/// Compiles a model, moves it by a few frames and updates its scene, in this process.
 void tryHere(const ModelText& text) {
   const auto model = compile(text);
   const mjModel& m = *model;
@@ -154,16 +144,7 @@ void tryHere(const ModelText& text) {
     MJMODEL_POINTERS
 #undef X
   }
-  std::unique_ptr<mjData, void (*)(mjData*)> data(nullptr, mj_deleteData);
-  try {
-    data.reset(mj_makeData(&m));
-  } catch (const std::runtime_error&) {  // said below
-  }
-  if (!data) {
-    throw std::invalid_argument("there is not enough memory for its workspace of " +
-                                std::to_string(m.nstack / 131072) +
-                                " MB: give it a smaller <size nstack, njmax, nconmax>");
-  }
+  const DataPointer data = makeData(m);
   for (int frame = 0; frame < 3; ++frame) mj_step(&m, data.get());
   mj_resetData(&m, data.get());
   mj_forward(&m, data.get());
@@ -176,6 +157,114 @@ void tryHere(const ModelText& text) {
   mjv_makeScene(&m, &scene, m.ngeom + 1000);
   mjv_updateScene(&m, data.get(), &all, nullptr, &camera, mjCAT_ALL, &scene);
   mjv_freeScene(&scene);
+}
+
+void limit(int resource, rlim_t value) {
+  const rlimit both = {value, value};
+  setrlimit(static_cast<__rlimit_resource_t>(resource), &both);
+}
+
+/// Of this process now [bytes].
+rlim_t addressSpace() {
+  rlim_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
+}
+
+/// What the child process does: writes `ok` or a reason, and ends without cleaning up.
+[[noreturn]] void tryAndTell(const ModelText& model, int told) {
+  constexpr rlim_t kMemory = rlim_t{4} << 30;  // more than this process has already [bytes]
+  constexpr rlim_t kComputing = 60;            // [s]
+  constexpr unsigned int kWaiting = 300;       // for a loaded machine or a file that never ends [s]
+  std::signal(SIGINT, SIG_DFL);
+  limit(RLIMIT_AS, addressSpace() + kMemory);
+  limit(RLIMIT_CPU, kComputing);
+  limit(RLIMIT_CORE, 0);
+  alarm(kWaiting);
+  const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  dup2(nowhere, STDOUT_FILENO);
+  dup2(nowhere, STDERR_FILENO);
+  std::string said = "ok";
+  try {
+    tryHere(model);
+  } catch (const std::bad_alloc&) {
+    said = "it needs more than 4 GB of memory: make its meshes, textures and sizes smaller";
+  } catch (const std::exception& e) {
+    said = e.what();
+    if (said.empty()) said = "MuJoCo refuses it without a reason";
+  }
+  for (std::size_t done = 0; done < said.size();) {
+    const ssize_t written = write(told, said.data() + done, said.size() - done);
+    if (written <= 0) break;
+    done += static_cast<std::size_t>(written);
+  }
+  _exit(0);
+}
+
+/// As tryHere(), in a process of its own.
+void tryInOwnProcess(const ModelText& model) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) {
+    throw std::runtime_error(textOf("a model cannot be tried, pipe: ", std::strerror(errno)));
+  }
+  const pid_t process = fork();
+  if (process == 0) tryAndTell(model, ends[1]);
+  close(ends[1]);
+  std::string said;
+  char part[4096];
+  for (ssize_t size = 1; process > 0 && size != 0;) {
+    size = read(ends[0], part, sizeof(part));
+    if (size > 0) said.append(part, static_cast<std::size_t>(size));
+    if (size < 0 && errno != EINTR) break;
+  }
+  close(ends[0]);
+  if (process < 0) {
+    throw std::runtime_error(textOf("a model cannot be tried, fork: ", std::strerror(errno)));
+  }
+  int status = 0;
+  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (said == "ok") return;
+  if (!said.empty()) refuse(said);
+  const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  if (signal == SIGXCPU || signal == SIGALRM || signal == SIGKILL) {
+    refuse("MuJoCo ", mj_versionString(),
+           " did not finish reading it within a minute: make its meshes and textures smaller");
+  }
+  refuse("MuJoCo ", mj_versionString(), " crashes on it (",
+         signal == 0 ? "it ends the process" : strsignal(signal),
+         "): look for indices that do not exist, damaged meshes, and empty elements");
+}
+
+}  // namespace
+
+void installMujocoHandlers() {
+  mju_user_error = throwError;
+  mju_user_warning = ignoreWarning;
+}
+
+std::string readModelFile(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  if (!in || in.bad()) refuse(path, " cannot be read");
+  return bytes;
+}
+
+ModelPointer loadModel(const ModelText& model) {
+  installMujocoHandlers();
+  tryInOwnProcess(model);
+  return compile(model);
+}
+
+DataPointer makeData(const mjModel& model) {
+  try {
+    DataPointer data(mj_makeData(&model), mj_deleteData);
+    if (data) return data;
+  } catch (const std::runtime_error&) {
+    // Reported below.
+  }
+  refuse("there is not enough memory for its workspace of ", model.nstack / 131072,
+         " MB: give it a smaller <size nstack, njmax, nconmax>");
 }
 
 }  // namespace ddm

@@ -18,22 +18,22 @@ struct ModelText {
   std::vector<std::pair<std::string, std::string>> meshes;  ///< name in the text, and its file
 };
 
+using ModelPointer = std::unique_ptr<mjModel, void (*)(mjModel*)>;
+using DataPointer = std::unique_ptr<mjData, void (*)(mjData*)>;
+
 /// The whole file.
 /// @throws std::invalid_argument with the path if it cannot be read
 std::string readModelFile(const std::string& path);
 
-/// @throws std::invalid_argument with MuJoCo's reason
-/// @throws std::runtime_error with an error that MuJoCo does not survive by itself
-std::unique_ptr<mjModel, void (*)(mjModel*)> compile(const ModelText& model);
-
-/// Compiles a model, moves it by a few frames and updates its scene, in this process.
-/// @throws std::invalid_argument with MuJoCo's reason, or naming an array with a number that is not
-///         finite
-void tryHere(const ModelText& model);
-
-/// As tryHere(), in a process of its own. MuJoCo may crash, hang or fill the memory there.
-/// @throws std::invalid_argument with the reason, or with what became of that process
+/// Compiles a model, after a process of its own has compiled it, moved it by a few frames and
+/// updated its scene: MuJoCo may crash, hang or fill the memory there.
+/// @throws std::invalid_argument with MuJoCo's reason, or with what became of that process, or naming
+///         an array with a number that is not finite
 /// @throws std::runtime_error if there can be no other process
-void tryInOwnProcess(const ModelText& model);
+ModelPointer loadModel(const ModelText& model);
+
+/// The workspace in which a model moves.
+/// @throws std::invalid_argument if there is not enough memory
+DataPointer makeData(const mjModel& model);
 
 }  // namespace ddm

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "camera_placement.h"
 #include "ddm_sim/angles.h"
@@ -15,19 +14,18 @@ namespace ddm {
 using Eigen::VectorXd;
 
 Mechanism::Mechanism(const std::shared_ptr<const MujocoModel>& model)
-    : model_(model), data_(nullptr, mj_deleteData) {
+    : model_(model), data_(makeData(model->get())) {
   requirePositionsAndRates(*model);
-  data_.reset(mj_makeData(&model->get()));
-  if (!data_) throw std::runtime_error("not enough memory for " + model->uri());
   const mjModel& m = model->get();
   for (int i = 0; i < m.njnt; ++i) {
     ModelJoint joint;
     joint.name = model->name(mjOBJ_JOINT, i);
     joint.kind = m.jnt_type[i] == mjJNT_HINGE ? JointKind::kAngle : JointKind::kLength;
     joint.limited = m.jnt_limited[i] != 0;
-    joint.lower = joint.limited ? m.jnt_range[2 * i] : m.qpos0[i] - (isHinge(joint) ? kPi : 0.0);
-    joint.upper =
-        joint.limited ? m.jnt_range[2 * i + 1] : m.qpos0[i] + (isHinge(joint) ? kPi : 0.0);
+    joint.effort = model->effortLimit(joint.name).value_or(0.0);
+    const double reach = joint.isHinge() ? kPi : 0.0;  // a slide's follows from the robot's size
+    joint.lower = joint.limited ? m.jnt_range[2 * i] : m.qpos0[i] - reach;
+    joint.upper = joint.limited ? m.jnt_range[2 * i + 1] : m.qpos0[i] + reach;
     joint.shown_lower = joint.lower;
     joint.shown_upper = joint.upper;
     joints_.push_back(joint);
@@ -78,13 +76,6 @@ VectorXd Mechanism::load(const VectorXd& position, bool springs) const {
   VectorXd load = Eigen::Map<const VectorXd>(data_->qfrc_bias, position.size());
   if (springs) load -= Eigen::Map<const VectorXd>(data_->qfrc_passive, position.size());
   return load;
-}
-
-bool Mechanism::hasSprings() const {
-  const mjModel& m = model_->get();
-  const auto pulls = [](mjtNum stiffness) { return stiffness != 0.0; };
-  return std::any_of(m.jnt_stiffness, m.jnt_stiffness + m.njnt, pulls) ||
-         std::any_of(m.tendon_stiffness, m.tendon_stiffness + m.ntendon, pulls);
 }
 
 double Mechanism::energy(const VectorXd& position, bool springs) const {
@@ -144,9 +135,9 @@ void Mechanism::showSlidesInPart() {
   for (int i = 0; i < kPoses; ++i) {
     VectorXd position = draw(&engine);
     for (std::size_t k = 0; k < joints_.size(); ++k) {
-      if (!isHinge(joints_[k])) position[static_cast<Eigen::Index>(k)] = model_->get().qpos0[k];
+      if (!joints_[k].isHinge()) position[static_cast<Eigen::Index>(k)] = model_->get().qpos0[k];
     }
-    const Eigen::Matrix3Xd corners = movingCorners(*model_, place(position));
+    const Eigen::Matrix3Xd corners = movingCorners(model_->get(), place(position));
     if (corners.cols() == 0) continue;
     low = low.cwiseMin(corners.rowwise().minCoeff());
     high = high.cwiseMax(corners.rowwise().maxCoeff());
@@ -155,14 +146,14 @@ void Mechanism::showSlidesInPart() {
   for (std::size_t k = 0; k < joints_.size(); ++k) {
     ModelJoint& joint = joints_[k];
     const double wide = joint.upper - joint.lower;
-    if (isHinge(joint) || (joint.limited && wide <= kWideSlide * size_)) continue;
+    if (joint.isHinge() || (joint.limited && wide <= kWideSlide * size_)) continue;
     const double zero = std::clamp<double>(model_->get().qpos0[k], joint.lower, joint.upper);
-    joint.shown_lower = joint.limited ? std::max(joint.lower, zero - size_) : zero - size_;
-    joint.shown_upper = joint.limited ? std::min(joint.upper, zero + size_) : zero + size_;
     if (!joint.limited) {
-      joint.lower = joint.shown_lower;
-      joint.upper = joint.shown_upper;
+      joint.lower = zero - size_;
+      joint.upper = zero + size_;
     }
+    joint.shown_lower = std::max(joint.lower, zero - size_);
+    joint.shown_upper = std::min(joint.upper, zero + size_);
   }
 }
 

@@ -9,10 +9,9 @@
 
 #include "ddm_mujoco/mujoco_model.h"
 #include "ddm_mujoco/plant_proposal.h"
+#include "load_model.h"
 
 namespace ddm {
-
-inline bool isHinge(const ModelJoint& joint) { return joint.kind == JointKind::kAngle; }
 
 /// For one thread at a time. Positions are those of all joints                              [n x 1]
 class Mechanism {
@@ -23,7 +22,7 @@ class Mechanism {
   const std::vector<ModelJoint>& joints() const { return joints_; }
 
   /// The length that motions of a joint compare with: 1 rad, or half the size of the robot.
-  double unit(int joint) const { return isHinge(joints_[joint]) ? 1.0 : 0.5 * size_; }
+  double unit(int joint) const { return joints_[joint].isHinge() ? 1.0 : 0.5 * size_; }
 
   /// Pose 0 of the file, within the limits.
   Eigen::VectorXd zero() const;
@@ -39,8 +38,6 @@ class Mechanism {
 
   /// Torque that weight and springs ask for at rest: the gradient of energy().
   Eigen::VectorXd load(const Eigen::VectorXd& position, bool springs = true) const;
-
-  bool hasSprings() const;
 
   /// Of weight and springs [J].
   double energy(const Eigen::VectorXd& position, bool springs = true) const;
@@ -61,7 +58,7 @@ class Mechanism {
   void showSlidesInPart();
 
   std::shared_ptr<const MujocoModel> model_;
-  std::unique_ptr<mjData, void (*)(mjData*)> data_;
+  DataPointer data_;
   std::vector<ModelJoint> joints_;
   double size_ = 1.0;  // [m]
 };

@@ -2,27 +2,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "motors.h"
 
-#include <ddm_common/option_checks.h>
-
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
 #include <string>
 
-#include "ddm_mujoco/plant_proposal.h"
-#include "xml_text.h"
+#include "refuse.h"
 
 namespace ddm {
 namespace {
 
-constexpr std::size_t kMaxMotors = 2;  // without being asked for more
+using Texts = std::vector<std::string>;
 
-std::string text(double number) {
-  std::ostringstream out;
-  out << number;
-  return out.str();
-}
+/// Torques of an actuator at its joint [N m or N]; infinite where the file has no limit.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+
+  /// What a motor can do in both directions; none if it has no limit.
+  std::optional<double> limit() const {
+    const double limit = std::min(-low, high);
+    return limit > 0.0 && std::isfinite(limit) ? std::make_optional(limit) : std::nullopt;
+  }
+};
 
 /// Torque at the joint for a control of 1 of actuator `i`; 0 if its torque is not just a multiple of
 /// its control.
@@ -33,110 +38,83 @@ double strengthOf(const mjModel& m, int i) {
   return plain ? m.actuator_gear[6 * i] * m.actuator_gainprm[mjNGAIN * i] : 0.0;
 }
 
-/// What the actuators of the file can do at a joint in both directions [N m or N]; none if there is
-/// none, or one of them has no limit.
+Range rangeOf(const mjModel& m, int i) {
+  Range range;
+  const auto bound = [&range](const mjtNum* ends, double unit) {
+    range.low = std::max(range.low, std::min(ends[0] * unit, ends[1] * unit));
+    range.high = std::min(range.high, std::max(ends[0] * unit, ends[1] * unit));
+  };
+  const double strength = strengthOf(m, i);
+  if (m.actuator_ctrllimited[i] && strength != 0.0) bound(m.actuator_ctrlrange + 2 * i, strength);
+  if (m.actuator_forcelimited[i]) bound(m.actuator_forcerange + 2 * i, m.actuator_gear[6 * i]);
+  return range;
+}
+
+/// What all actuators of the file together can do at a joint; none if one of them has no limit.
 std::optional<double> limitOfActuators(const mjModel& m, int joint) {
-  double low = 0.0, high = 0.0;
+  Range sum = {0.0, 0.0};
   for (int i = 0; i < m.nu; ++i) {
     if (m.actuator_trntype[i] != mjTRN_JOINT || m.actuator_trnid[2 * i] != joint) continue;
-    const double endless = std::numeric_limits<double>::infinity();
-    double least = -endless, most = endless;
-    const auto bound = [&](const mjtNum* range, double unit) {
-      least = std::max(least, std::min(range[0] * unit, range[1] * unit));
-      most = std::min(most, std::max(range[0] * unit, range[1] * unit));
-    };
-    const double strength = strengthOf(m, i);
-    if (m.actuator_ctrllimited[i] && strength != 0.0) {
-      bound(&m.actuator_ctrlrange[2 * i], strength);
-    }
-    if (m.actuator_forcelimited[i]) {
-      bound(&m.actuator_forcerange[2 * i], m.actuator_gear[6 * i]);
-    }
-    low += least;
-    high += most;
+    const Range range = rangeOf(m, i);
+    sum = {sum.low + range.low, sum.high + range.high};
   }
-  const double limit = std::min(-low, high);
-  return limit > 0.0 && std::isfinite(limit) ? std::make_optional(limit) : std::nullopt;
+  return sum.limit();
 }
 
 /// Actuator `i` of the file, if its torque is nothing but a multiple of its control.
 Motor actuator(const MujocoModel& model, int i) {
   const mjModel& m = model.get();
-  const double strength = strengthOf(m, i);
-  if (strength == 0.0) {
-    throw std::invalid_argument("actuator " + model.name(mjOBJ_ACTUATOR, i) + " of " + model.uri() +
-                                " must be a <motor> of a joint: make it one, or list the joints "
-                                "that have a motor in plant/motors");
+  const std::string name = "actuator " + model.name(mjOBJ_ACTUATOR, i) + " of " + model.uri();
+  if (strengthOf(m, i) == 0.0) {
+    refuse(name,
+           " must be a <motor> of a joint: make it one, or list the joints that have a motor "
+           "in plant/motors");
   }
+  const Range range = rangeOf(m, i);
+  if (range.low != -range.high) {
+    refuse(name, " has the torques [", range.low, ", ", range.high,
+           "] (ctrlrange and forcerange times gear): they must be symmetric about 0, as "
+           "plant/max_torque is; make them so, or list the joint in plant/motors and give "
+           "plant/max_torque, which leaves this actuator switched off");
+  }
+  return {m.actuator_trnid[2 * i], range.limit()};
+}
+
+Motor namedMotor(const MujocoModel& model, const std::string& name) {
   Motor motor;
-  motor.joint = m.actuator_trnid[2 * i];
-  const auto bound = [&](const char* name, const mjtNum* range, double unit) {
-    if (range[0] != -range[1]) {
-      throw std::invalid_argument(
-          "actuator " + model.name(mjOBJ_ACTUATOR, i) + " of " + model.uri() + " has the " + name +
-          " [" + text(range[0]) + ", " + text(range[1]) +
-          "]: it must be symmetric about 0, as plant/max_torque is; make it so, or list the joint "
-          "in "
-          "plant/motors and give plant/max_torque, which leaves this actuator switched off");
-    }
-    const double limit = std::abs(range[1]) * unit;
-    motor.limit = std::min(motor.limit.value_or(limit), limit);
-  };
-  if (m.actuator_ctrllimited[i]) {
-    bound("ctrlrange", &m.actuator_ctrlrange[2 * i], std::abs(strength));
+  motor.joint = model.id(mjOBJ_JOINT, name, "plant/motors");
+  const auto follows = model.urdf().leaders.find(name);
+  if (follows != model.urdf().leaders.end()) {
+    refuse("plant/motors must list joints that move by themselves, got ", name, " of ", model.uri(),
+           ", which mimics the joint ", follows->second, ": list that one");
   }
-  if (m.actuator_forcelimited[i]) {
-    bound("forcerange", &m.actuator_forcerange[2 * i], std::abs(m.actuator_gear[6 * i]));
-  }
+  motor.limit = model.effortLimit(name);
+  if (!motor.limit) motor.limit = limitOfActuators(model.get(), motor.joint);
   return motor;
 }
 
-std::string nameOf(const MujocoModel& model, const Motor& motor) {
-  return model.name(mjOBJ_JOINT, motor.joint);
-}
-
-void requireDifferentJoints(const MujocoModel& model, const std::vector<Motor>& motors) {
-  for (auto motor = motors.begin(); motor != motors.end(); ++motor) {
-    const auto same = [motor](const Motor& other) { return other.joint == motor->joint; };
-    if (std::none_of(motors.begin(), motor, same)) continue;
-    throw std::invalid_argument("plant/motors must differ, got two for the joint " +
-                                nameOf(model, *motor) + " of " + model.uri());
-  }
+bool isIn(const Texts& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 }  // namespace
 
 std::vector<Motor> motorsOf(const MujocoModel& model, const MujocoOptions& options) {
   std::vector<Motor> motors;
-  if (options.motors.empty()) {
-    for (int i = 0; i < model.get().nu; ++i) motors.push_back(actuator(model, i));
+  for (int i = 0; options.motors.empty() && i < model.get().nu; ++i) {
+    motors.push_back(actuator(model, i));
   }
-  for (const std::string& name : options.motors) {
-    Motor motor;
-    motor.joint = model.id(mjOBJ_JOINT, name, "plant/motors");
-    const std::string leader = model.leaderOf(name);
-    if (!leader.empty()) {
-      throw std::invalid_argument("plant/motors must list joints that move by themselves, got " +
-                                  name + " of " + model.uri() + ", which mimics the joint " +
-                                  leader + ": list that one");
-    }
-    motor.limit = model.effortLimit(name);
-    if (!motor.limit) motor.limit = limitOfActuators(model.get(), motor.joint);
-    motors.push_back(motor);
-  }
-  if (model.get().njnt == 0) {
-    throw std::invalid_argument("plant/model must have a joint that moves, got none in " +
-                                model.uri());
-  }
+  for (const std::string& name : options.motors) motors.push_back(namedMotor(model, name));
   if (motors.empty()) {
-    std::string joints;
-    for (const std::string& joint : model.names(mjOBJ_JOINT)) {
-      joints += (joints.empty() ? "" : ", ") + joint;
-    }
-    throw std::invalid_argument("plant/motors must list the joints that have a motor, since " +
-                                model.uri() + " has none: there are " + joints);
+    refuse("plant/motors must list the joints that have a motor, since ", model.uri(),
+           " has none: there are ", boost::algorithm::join(model.names(mjOBJ_JOINT), ", "));
   }
-  requireDifferentJoints(model, motors);
+  std::set<int> joints;
+  for (const Motor& motor : motors) {
+    if (joints.insert(motor.joint).second) continue;
+    refuse("plant/motors must differ, got two for the joint ", model.name(mjOBJ_JOINT, motor.joint),
+           " of ", model.uri());
+  }
   return motors;
 }
 
@@ -144,90 +122,70 @@ std::vector<double> limitsOf(const MujocoModel& model, const MujocoOptions& opti
   const std::vector<Motor> motors = motorsOf(model, options);
   const std::vector<double>& given = options.max_torque;
   if (given.size() > 1 && given.size() != motors.size()) {
-    throw std::invalid_argument("plant/max_torque must be one number, or one for each of the " +
-                                std::to_string(motors.size()) + " motors, got " +
-                                std::to_string(given.size()));
+    refuse("plant/max_torque must be one number, or one for each of the ", motors.size(),
+           " motors, got ", given.size());
   }
   std::vector<double> limits;
   for (std::size_t i = 0; i < motors.size(); ++i) {
-    const Motor& motor = motors[i];
-    const std::string joint = nameOf(model, motor);
-    if (given.empty() && motor.limit.value_or(0.0) == 0.0) {
-      throw std::invalid_argument(
-          "plant/max_torque must be given, because " + model.uri() +
-          (motor.limit ? " has a limit of 0" : " has no limit") + " for the motor of the joint " +
-          joint +
+    const std::string joint = model.name(mjOBJ_JOINT, motors[i].joint);
+    // Files that were made by a drawing program often say effort 0 for what is not known.
+    const double allowed = motors[i].limit.value_or(0.0);
+    if (given.empty() && allowed == 0.0) {
+      refuse(
+          "plant/max_torque must be given, because ", model.uri(),
+          (motors[i].limit ? " has a limit of 0" : " has no limit"), " for the motor of the joint ",
+          joint,
           ": write it there, or give the joint an effort (URDF) or the motor a ctrlrange (MJCF)");
     }
-    const double limit = given.empty() ? *motor.limit : given[given.size() == 1 ? 0 : i];
-    // Files that were made by a drawing program often say effort 0 for what is not known.
-    if (motor.limit.value_or(0.0) > 0.0 && limit > *motor.limit * (1.0 + 1e-9)) {
-      throw std::invalid_argument("plant/max_torque must be at most what " + model.uri() +
-                                  " allows, " + text(*motor.limit) + " at the joint " + joint +
-                                  ", got " + text(limit));
+    const double limit = given.empty() ? allowed : given[given.size() == 1 ? 0 : i];
+    if (allowed > 0.0 && limit > allowed * (1.0 + 1e-9)) {
+      refuse("plant/max_torque must be at most what ", model.uri(), " allows, ", allowed,
+             " at the joint ", joint, ", got ", limit);
     }
     limits.push_back(limit);
   }
   return limits;
 }
 
-std::vector<std::string> transmissionJoints(const std::string& text) {
-  const XmlDocument document = parseXml(text);
-  const tinyxml2::XMLElement* const root = document->RootElement();
-  std::vector<std::string> names;
-  for (const auto* one = root->FirstChildElement("transmission"); one != nullptr;
-       one = one->NextSiblingElement("transmission")) {
-    const tinyxml2::XMLElement* const joint = one->FirstChildElement("joint");
-    if (joint != nullptr) names.push_back(attribute(*joint, "name"));
-  }
-  return names;
-}
-
-MotorChoice chooseMotors(const MujocoModel& model, const std::vector<ModelJoint>& joints,
-                         const std::vector<std::string>& transmissions) {
+MotorChoice chosenMotors(const MujocoModel& model, const std::vector<ModelJoint>& joints) {
+  constexpr std::size_t kMaxMotors = 2;  // without being asked for more
   const mjModel& m = model.get();
-  MotorChoice choice;
-  std::vector<std::string> with_effort;
+  Texts candidates, with_effort, actuated;
   for (const ModelJoint& joint : joints) {
-    if (!model.leaderOf(joint.name).empty()) continue;  // has no motor of its own
-    choice.candidates.push_back(joint.name);
+    if (model.urdf().leaders.count(joint.name) > 0) continue;  // has no motor of its own
+    candidates.push_back(joint.name);
     if (joint.effort > 0.0) with_effort.push_back(joint.name);
   }
-  /// @return whether these decide it: one or two different joints of the model
-  const auto decide = [&choice](const std::vector<std::string>& names, const std::string& why) {
-    std::vector<std::string> chosen;
-    for (const std::string& name : names) {
-      const auto in = [&name](const std::vector<std::string>& all) {
-        return std::count(all.begin(), all.end(), name) > 0;
-      };
-      if (in(choice.candidates) && !in(chosen)) chosen.push_back(name);
+  for (int i = 0; i < m.nu; ++i) {
+    if (m.actuator_trntype[i] != mjTRN_JOINT) continue;
+    actuated.push_back(model.name(mjOBJ_JOINT, m.actuator_trnid[2 * i]));
+  }
+  bool usable = true;
+  std::string why = "the motors of the file";
+  try {
+    motorsOf(model, MujocoOptions());
+  } catch (const std::invalid_argument& e) {
+    usable = false;
+    why = std::string("joints of the file's actuators, which are off: ") + e.what();
+  }
+  const MotorChoice choices[] = {
+      {actuated, why, usable},
+      {model.urdf().transmissions, "joints of the transmissions in the file"},
+      {with_effort, "joints with an effort limit in the file"},
+      {candidates.size() == 1 ? candidates : Texts(), "the only joint"}};
+  for (MotorChoice choice : choices) {
+    Texts chosen;
+    for (const std::string& name : choice.joints) {
+      if (isIn(candidates, name) && !isIn(chosen, name)) chosen.push_back(name);
     }
-    if (chosen.empty() || chosen.size() > kMaxMotors) return false;
+    if (chosen.empty() || chosen.size() > kMaxMotors) continue;
     choice.joints = chosen;
-    choice.why = why;
-    return true;
-  };
-  if (m.nu > 0) {
-    std::vector<std::string> names;
-    for (int i = 0; i < m.nu; ++i) {
-      if (m.actuator_trntype[i] != mjTRN_JOINT) continue;
-      names.push_back(model.name(mjOBJ_JOINT, m.actuator_trnid[2 * i]));
-    }
-    try {
-      const bool plain = !motorsOf(model, MujocoOptions()).empty();
-      choice.by_actuators = decide(names, "the motors of the file") && plain;
-    } catch (const std::invalid_argument& e) {
-      decide(names, std::string("joints of the file's actuators, which are off: ") + e.what());
-    }
     return choice;
   }
-  if (decide(transmissions, "joints of the transmissions in the file") ||
-      decide(with_effort, "joints with an effort limit in the file") ||
-      choice.candidates.size() != 1) {
-    return choice;
-  }
-  decide(choice.candidates, "the only joint");
-  return choice;
+  refuse(
+      "name the joints that have a motor, because the file does not say which one or two: "
+      "--motors with some of ",
+      boost::algorithm::join(candidates, ","));
 }
 
 }  // namespace ddm

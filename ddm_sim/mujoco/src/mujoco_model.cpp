@@ -5,6 +5,8 @@
 #include <ddm_common/option_checks.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/case_conv.hpp>
+#include <boost/algorithm/string/join.hpp>
 #include <boost/algorithm/string/replace.hpp>
 #include <boost/algorithm/string/trim.hpp>
 #include <filesystem>
@@ -13,7 +15,9 @@
 #include <utility>
 
 #include "model_files.h"
+#include "refuse.h"
 #include "urdf.h"
+#include "xml_text.h"
 
 namespace ddm {
 namespace {
@@ -25,15 +29,11 @@ std::string pathOf(const std::string& uri, const FindPackage& find_package) {
   const std::string path = resolved(uri, find_package);
   std::error_code none;
   if (fs::is_regular_file(path, none)) return path;
-  if (fs::is_directory(path, none)) {
-    throw std::invalid_argument(path + " is a folder: name the model file in it");
-  }
-  if (fs::exists(path, none)) {
-    throw std::invalid_argument(path + " is a pipe or device: write the model into a file");
-  }
+  if (fs::is_directory(path, none)) refuse(path, " is a folder: name the model file in it");
+  if (fs::exists(path, none)) refuse(path, " is a pipe or device: write the model into a file");
   if (fs::is_symlink(path, none)) {
-    throw std::invalid_argument(path + " is a link to " + fs::read_symlink(path, none).string() +
-                                ", where there is no file: correct the link");
+    refuse(path, " is a link to ", fs::read_symlink(path, none).string(),
+           ", where there is no file: correct the link");
   }
   std::vector<std::string> there;
   for (const fs::directory_entry& entry :
@@ -43,8 +43,7 @@ std::string pathOf(const std::string& uri, const FindPackage& find_package) {
     if (model && entry.is_regular_file(none)) there.push_back(name.string());
   }
   std::sort(there.begin(), there.end());
-  throw std::invalid_argument("there is no file " + path + ": " +
-                              suggestion(fs::path(path).filename().string(), there));
+  refuse("there is no file ", path, ": ", suggestion(fs::path(path).filename().string(), there));
 }
 
 /// Does not draw the collision shapes (group 0) of links that have visual ones (group 1): they lie
@@ -88,26 +87,25 @@ struct CoupledModel {
 
 std::shared_ptr<const mjModel> coupled(std::shared_ptr<const mjModel> base,
                                        const std::vector<Coupling>& couplings) {
-  if (couplings.empty()) return base;
+  const std::size_t n = couplings.size();
+  if (n == 0) return base;
   const auto own = std::make_shared<CoupledModel>();
   own->base = std::move(base);
   mjModel& m = own->model = *own->base;
-  for (const Coupling& one : couplings) {
-    own->types.push_back(mjEQ_JOINT);
-    own->followers.push_back(mj_name2id(&m, mjOBJ_JOINT, one.follower.c_str()));
-    own->leaders.push_back(mj_name2id(&m, mjOBJ_JOINT, one.leader.c_str()));
-    own->names.push_back(0);
-    own->active.push_back(1);
-    mjtNum solref[mjNREF], solimp[mjNIMP];
-    mj_defaultSolRefImp(solref, solimp);
-    own->solref.insert(own->solref.end(), solref, solref + mjNREF);
-    own->solimp.insert(own->solimp.end(), solimp, solimp + mjNIMP);
-    std::vector<mjtNum> data(mjNEQDATA, 0.0);
-    data[0] = one.offset;
-    data[1] = one.multiplier;
-    own->data.insert(own->data.end(), data.begin(), data.end());
+  own->types.assign(n, mjEQ_JOINT);
+  own->names.assign(n, 0);
+  own->active.assign(n, 1);
+  own->solref.resize(n * mjNREF);
+  own->solimp.resize(n * mjNIMP);
+  own->data.resize(n * mjNEQDATA);
+  for (std::size_t i = 0; i < n; ++i) {
+    own->followers.push_back(mj_name2id(&m, mjOBJ_JOINT, couplings[i].follower.c_str()));
+    own->leaders.push_back(mj_name2id(&m, mjOBJ_JOINT, couplings[i].leader.c_str()));
+    mj_defaultSolRefImp(&own->solref[i * mjNREF], &own->solimp[i * mjNIMP]);
+    own->data[i * mjNEQDATA] = couplings[i].offset;
+    own->data[i * mjNEQDATA + 1] = couplings[i].multiplier;
   }
-  m.neq = static_cast<int>(couplings.size());  // a URDF has no others
+  m.neq = static_cast<int>(n);  // a URDF has no others
   m.nemax += m.neq;
   m.njmax += m.neq;
   m.nstack += 10 * (m.njmax + m.nv) * m.neq;
@@ -122,22 +120,21 @@ std::shared_ptr<const mjModel> coupled(std::shared_ptr<const mjModel> base,
   return {own, &m};
 }
 
-std::shared_ptr<const mjModel> compileMjcf(const ModelText& text) {
-  tryInOwnProcess(text);
-  auto model = compile(text);
-  if (!isLit(*model)) light(model.get());
-  return model;
-}
-
 /// Adds what a URDF cannot say. Neighbouring links overlap in most of them, and all are in the
 /// dark.
-std::shared_ptr<const mjModel> compileUrdf(const Urdf& urdf) {
-  tryInOwnProcess(urdf.model);
-  auto model = compile(urdf.model);
+std::shared_ptr<const mjModel> completedUrdf(ModelPointer model, const Urdf& urdf) {
   if (!urdf.contacts) model->opt.disableflags |= mjDSBL_CONTACT;
   hideCollisionShapes(model.get());
   light(model.get());
   return coupled(std::move(model), urdf.couplings);
+}
+
+/// What helps if the outermost element of a file is not that of a model.
+std::string hintForRoot(const std::string& root) {
+  if (root == "sdf") return ": take the URDF or xacro that it was made from, or convert it to URDF";
+  if (root == "collada") return ": this is a mesh; name the URDF or MJCF file that uses it";
+  if (root != "mujocoinclude") return "";
+  return ": this is a part of a model; name the MJCF file that includes it";
 }
 
 /// In one line, with the files of meshes in the place of the names that MuJoCo was given.
@@ -152,68 +149,49 @@ std::string readable(std::string error, const ModelText& text) {
   return error;
 }
 
-int countOf(const mjModel& model, mjtObj type) {
-  switch (type) {
-    case mjOBJ_JOINT:
-      return model.njnt;
-    case mjOBJ_SITE:
-      return model.nsite;
-    case mjOBJ_BODY:
-      return model.nbody;
-    default:
-      return 0;
-  }
-}
-
 }  // namespace
 
 MujocoModel::MujocoModel(const std::string& uri, const FindPackage& find_package) : uri_(uri) {
-  installMujocoHandlers();
   if (uri.empty()) {
-    throw std::invalid_argument(
+    refuse(
         "plant/model must name a model file (MJCF or URDF), got nothing: for example "
         "package://PACKAGE/robot.urdf");
   }
-  std::string text, missing;
   ModelText given;
+  ModelFiles files;
   try {
     const std::string path = pathOf(uri, find_package);
-    text = readModelFile(path);
-    const std::string root = rootOf(text);
+    const std::string text = readModelFile(path);
+    const std::string root =
+        boost::to_lower_copy(std::string(parseXml(text)->RootElement()->Value()));
     if (root == "robot") {
       const Urdf urdf = readUrdf(text, path, find_package);
       given = urdf.model;
-      efforts_ = urdf.efforts;
-      fixed_ = urdf.fixed;
-      for (const Coupling& one : urdf.couplings) leaders_[one.follower] = one.leader;
-      digest_ = filesOf(given, find_package).digest;
-      model_ = compileUrdf(urdf);
+      urdf_ = urdf.facts;
+      files = filesOf(given, find_package);
+      files.missing.clear();  // readUrdf() has checked the meshes; all other names are ignored
+      model_ = completedUrdf(loadModel(given), urdf);
     } else if (root == "mujoco") {
       given = readMjcf(text, path, find_package);
-      const ModelFiles files = filesOf(given, find_package);
-      digest_ = files.digest;
-      missing = files.missing;
-      model_ = compileMjcf(given);
+      files = filesOf(given, find_package);
+      ModelPointer model = loadModel(given);
+      if (!isLit(*model)) light(model.get());
+      model_ = std::move(model);
     } else {
-      throw std::invalid_argument(
-          "its outermost element must be <mujoco> (MJCF) or <robot> (URDF), got <" + root + ">" +
-          (root == "sdf" ? ": take the URDF or xacro that it was made from, or convert it to URDF"
-           : root == "collada" ? ": this is a mesh; name the URDF or MJCF file that uses it"
-           : root == "mujocoinclude"
-               ? ": this is a part of a model; name the MJCF file that includes it"
-               : ""));
+      refuse("its outermost element must be <mujoco> (MJCF) or <robot> (URDF), got <", root, ">",
+             hintForRoot(root));
     }
   } catch (const std::exception& e) {
     const std::string hint = hintFor(e.what());
-    throw std::invalid_argument(
-        "plant/model must be a model that MuJoCo can read, got " + uri + ": " +
-        readable(e.what(), given) +
-        (missing.empty() ? ""
-                         : "; it names files that are not there: " + missing +
-                               " (all paths count from the folder of the model file, also those in "
-                               "included files)") +
-        (hint.empty() ? "" : "; " + hint));
+    refuse("plant/model must be a model that MuJoCo can read, got ", uri, ": ",
+           readable(e.what(), given),
+           files.missing.empty() ? ""
+                                 : "; it names files that are not there: " + files.missing +
+                                       " (all paths count from the folder of the model file, also "
+                                       "those in included files)",
+           hint.empty() ? "" : "; ", hint);
   }
+  digest_ = files.digest;
 }
 
 int MujocoModel::id(mjtObj type, const std::string& name, const std::string& key) const {
@@ -222,8 +200,8 @@ int MujocoModel::id(mjtObj type, const std::string& name, const std::string& key
   const std::vector<std::string> all = names(type);  // with those that name() gives
   const auto found = std::find(all.begin(), all.end(), name);
   if (found != all.end()) return static_cast<int>(found - all.begin());
-  throw std::invalid_argument(key + " must name a " + mju_type2Str(type) + " of " + uri_ +
-                              ", got " + name + ": " + suggestion(name, all));
+  refuse(key, " must name a ", mju_type2Str(type), " of ", uri_, ", got ", name, ": ",
+         suggestion(name, all));
 }
 
 Place MujocoModel::place(const std::string& name, const std::string& key) const {
@@ -231,21 +209,20 @@ Place MujocoModel::place(const std::string& name, const std::string& key) const 
     const int id = mj_name2id(model_.get(), type, name.c_str());
     if (id >= 0) return {type, id};
   }
-  if (fixed_.count(name) > 0) {
+  if (urdf_.fixed.count(name) > 0) {
     std::string parent = name;
-    while (fixed_.count(parent) > 0) parent = fixed_.at(parent);
+    while (urdf_.fixed.count(parent) > 0) parent = urdf_.fixed.at(parent);
     const bool moves = mj_name2id(model_.get(), mjOBJ_BODY, parent.c_str()) > 0;
-    throw std::invalid_argument(
-        key + " must name a link of " + uri_ + " that a joint moves, got " + name +
-        ", which is behind a fixed joint: links behind fixed joints are merged into their "
-        "parent; " +
-        (moves ? "name that one, " + parent + ", or " : "this one does not move; ") +
+    refuse(
+        key, " must name a link of ", uri_, " that a joint moves, got ", name,
+        ", which is behind a fixed joint: links behind fixed joints are merged into their parent; ",
+        moves ? "name that one, " + parent + ", or " : "this one does not move; ",
         "keep them apart by <mujoco><compiler fusestatic=\"false\"/></mujoco> in the URDF");
   }
   std::vector<std::string> known = names(mjOBJ_SITE);
   for (const std::string& body : names(mjOBJ_BODY)) known.push_back(body);
-  throw std::invalid_argument(key + " must name a site or body (link) of " + uri_ + ", got " +
-                              name + ": " + suggestion(name, known));
+  refuse(key, " must name a site or body (link) of ", uri_, ", got ", name, ": ",
+         suggestion(name, known));
 }
 
 std::string MujocoModel::name(mjtObj type, int id) const {
@@ -257,28 +234,26 @@ std::string MujocoModel::name(mjtObj type, int id) const {
 
 std::vector<std::string> MujocoModel::names(mjtObj type) const {
   std::vector<std::string> out;
-  for (int i = 0; i < countOf(*model_, type); ++i) out.push_back(name(type, i));
+  const int count = type == mjOBJ_JOINT  ? model_->njnt
+                    : type == mjOBJ_SITE ? model_->nsite
+                    : type == mjOBJ_BODY ? model_->nbody
+                                         : 0;
+  for (int i = 0; i < count; ++i) out.push_back(name(type, i));
   return out;
 }
 
 std::optional<double> MujocoModel::effortLimit(const std::string& joint) const {
-  const auto found = efforts_.find(joint);
-  return found == efforts_.end() ? std::nullopt : std::make_optional(found->second);
-}
-
-std::string MujocoModel::leaderOf(const std::string& joint) const {
-  const auto found = leaders_.find(joint);
-  return found == leaders_.end() ? "" : found->second;
+  const auto found = urdf_.efforts.find(joint);
+  return found == urdf_.efforts.end() ? std::nullopt : std::make_optional(found->second);
 }
 
 std::string suggestion(const std::string& name, const std::vector<std::string>& known) {
   if (known.empty()) return "there is none";
   constexpr std::size_t kMost = 10;
-  std::string all;
-  for (std::size_t i = 0; i < std::min(known.size(), kMost); ++i) {
-    all += (i == 0 ? "" : ", ") + known[i];
-  }
-  if (known.size() > kMost) all += " and " + std::to_string(known.size() - kMost) + " more";
+  const std::vector<std::string> first(
+      known.begin(), known.begin() + static_cast<std::ptrdiff_t>(std::min(known.size(), kMost)));
+  std::string all = boost::algorithm::join(first, ", ");
+  if (known.size() > kMost) all += textOf(" and ", known.size() - kMost, " more");
   const std::string near = nearestName(name, known, std::max<std::size_t>(3, name.size() / 3 + 1));
   return (near.empty() ? "there are " : "did you mean " + near + "? There are ") + all;
 }

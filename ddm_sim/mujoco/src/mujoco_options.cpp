@@ -9,11 +9,40 @@
 #include "ddm_mujoco/rewards.h"
 
 namespace ddm {
+namespace {
+
+void checkLook(const RenderOptions& look, int picture_size, OptionChecks* plant) {
+  constexpr int kMaxSize = 4096;  // of what is drawn: 1 GB of memory with samples [pixels]
+  const auto requirePoint = [plant](const std::string& key, const std::vector<double>& point) {
+    const bool finite =
+        std::all_of(point.begin(), point.end(), [](double x) { return std::isfinite(x); });
+    plant->require(point.empty() || (point.size() == 3 && finite), key,
+                   "be a point of three finite numbers", std::to_string(point.size()) + " of them");
+  };
+  requirePoint("camera_position", look.position);
+  requirePoint("camera_look_at", look.look_at);
+  plant->require(look.position.empty() == look.look_at.empty(), "camera_look_at",
+                 "be given where camera_position is",
+                 look.position.empty() ? "no position" : "no point to look at");
+  plant->require(look.position.empty() || look.position != look.look_at, "camera_look_at",
+                 "differ from camera_position", "the same");
+  plant->require(look.camera.empty() || look.position.empty(), "camera",
+                 "be left out where camera_position is given", look.camera);
+  plant->require(look.samples == 0 || look.samples == 4, "samples", "be 0 or 4", look.samples);
+  plant->requireWithin("supersampling", look.supersampling, 1, 8);
+  const int size = picture_size * look.supersampling;
+  plant->require(size <= kMaxSize, "supersampling",
+                 "times picture_size be at most " + std::to_string(kMaxSize) + " pixels", size);
+  plant->requireWithin("camera_shift", look.camera_shift, 0.0, 1.0);
+  plant->requireWithin("colour_shift", look.colour_shift, 0.0, 1.0);
+}
+
+}  // namespace
 
 std::vector<std::string> MujocoOptions::problems() const {
   OptionChecks plant("plant");
   PlantOptions common = *this;
-  if (common.max_torque.empty()) common.max_torque = {1.0};  // the file knows
+  if (common.max_torque.empty()) common.max_torque = {1.0};  // the model file has the limits
   plant.add(common.problems());
   const auto each = [&plant](const std::vector<double>& numbers, const char* key, const char* rule,
                              bool (*ok)(double)) {
@@ -31,20 +60,15 @@ std::vector<std::string> MujocoOptions::problems() const {
       "goal_distance", "be the least and the largest distance", goal_distance.size());
   plant.require(error_joints.empty() || error_sites.empty(), "error_sites",
                 "be left out where plant/error_joints is given", error_sites.size());
-  plant.require(isNotNegative(timestep), "timestep", "be >= 0 and finite [s]", timestep);
-  plant.require(isPositive(tolerance), "tolerance", "be given, > 0 and finite [deg, or m]",
-                tolerance);
-  plant.require(episode_frames >= 0 && episode_frames <= 10000000, "episode_frames",
-                "lie in [0, 10000000]", episode_frames);
+  plant.requireNotNegative("timestep", timestep);
+  plant.requirePositive("tolerance", tolerance);
+  plant.requireWithin("episode_frames", episode_frames, 0, 10000000);
   std::vector<std::string> names;
   for (const Reward& one : rewards()) names.push_back(one.name);
   plant.require(reward.empty() || std::count(names.begin(), names.end(), reward) > 0, "reward",
                 "be empty or one of those that there are",
                 reward + ": " + suggestion(reward, names));
-  RenderOptions picture = look;
-  picture.width = picture.height = picture_size;
-  plant.add(picture.problems("plant"));
-  plant.add(scene.problems("plant"));
+  checkLook(look, picture_size, &plant);
   return plant.problems();
 }
 

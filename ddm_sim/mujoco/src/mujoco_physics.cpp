@@ -6,28 +6,18 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "ddm_sim/angles.h"
 #include "ddm_sim/few_numbers.h"
+#include "load_model.h"
+#include "refuse.h"
 
 namespace ddm {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-/// @throws std::runtime_error if there is not enough memory
-mjData* workspaceOf(const MujocoModel& model, const mjModel& physics) {
-  try {
-    if (mjData* const data = mj_makeData(&physics)) return data;
-  } catch (const std::runtime_error&) {  // said below
-  }
-  throw std::runtime_error("not enough memory for " + model.uri() + ", whose workspace has " +
-                           std::to_string(model.get().nstack / 131072) +
-                           " MB: give it a smaller <size nstack, njmax, nconmax>");
-}
 
 /// Where the options name motors, MuJoCo computes no actuator of the file, of whatever kind.
 mjModel physicsOf(const MujocoModel& model, const MujocoOptions& options) {
@@ -43,25 +33,18 @@ void requirePositionsAndRates(const MujocoModel& model) {
   const mjModel& m = model.get();
   for (int i = 0; i < m.njnt; ++i) {
     if (m.jnt_type[i] == mjJNT_HINGE || m.jnt_type[i] == mjJNT_SLIDE) continue;
-    throw std::invalid_argument("plant/model must have hinges and slides alone, got the " +
-                                std::string(m.jnt_type[i] == mjJNT_FREE ? "free" : "ball") +
-                                " joint " + model.name(mjOBJ_JOINT, i) + " of " + model.uri() +
-                                ": fix that body, or move it by hinges and slides");
+    refuse("plant/model must have hinges and slides alone, got the ",
+           m.jnt_type[i] == mjJNT_FREE ? "free" : "ball", " joint ", model.name(mjOBJ_JOINT, i),
+           " of ", model.uri(), ": fix that body, or move it by hinges and slides");
   }
-  if (m.njnt == 0) {
-    throw std::invalid_argument("plant/model must have a joint, got none in " + model.uri());
-  }
+  if (m.njnt == 0) refuse("plant/model must have a joint that moves, got none in ", model.uri());
   for (int i = 0; i < m.nv; ++i) {
-    const std::pair<const char*, mjtNum> resistances[] = {{"damping", m.dof_damping[i]},
-                                                          {"friction", m.dof_frictionloss[i]}};
-    for (const auto& one : resistances) {
-      if (one.second >= 0.0) continue;
-      std::ostringstream text;
-      text << "the joint " << model.name(mjOBJ_JOINT, m.dof_jntid[i]) << " of " << model.uri()
-           << " must have a " << one.first << " >= 0, got " << one.second
-           << ", which drives the joint: correct its sign";
-      throw std::invalid_argument(text.str());
-    }
+    const bool damped = m.dof_damping[i] >= 0.0;
+    if (damped && m.dof_frictionloss[i] >= 0.0) continue;
+    refuse("the joint ", model.name(mjOBJ_JOINT, m.dof_jntid[i]), " of ", model.uri(),
+           " must have a ", damped ? "friction" : "damping", " >= 0, got ",
+           damped ? m.dof_frictionloss[i] : m.dof_damping[i],
+           ", which drives the joint: correct its sign");
   }
 }
 
@@ -70,19 +53,16 @@ double timestepOf(const MujocoModel& model, const MujocoOptions& options) {
   if (options.timestep > 0.0) return options.timestep;
   const double timestep = model.get().opt.timestep;
   if (timestep >= kSmallest) return timestep;
-  std::ostringstream text;
-  text << "the timestep of " << model.uri() << " must be at least " << kSmallest << " s, got "
-       << timestep
-       << ": write <option timestep=\"0.002\"/> in the file, or set plant/timestep in the plant "
-          "file";
-  throw std::invalid_argument(text.str());
+  refuse(
+      "the timestep of ", model.uri(), " must be at least ", kSmallest, " s, got ", timestep,
+      ": write <option timestep=\"0.002\"/> in the file, or set plant/timestep in the plant file");
 }
 
 MujocoPhysics::MujocoPhysics(std::shared_ptr<const MujocoModel> model, const MujocoOptions& options)
     : model_(std::move(model)),
       physics_(physicsOf(*model_, options)),
       motors_(motorsOf(*model_, options)),
-      data_(workspaceOf(*model_, physics_), mj_deleteData) {}
+      data_(makeData(physics_)) {}
 
 /// Everything that the next frame depends on. Setting these costs a hundredth of mj_resetData().
 void MujocoPhysics::set(const Eigen::VectorXd& state) const {
@@ -107,13 +87,12 @@ void MujocoPhysics::requireStable(int frame, const Eigen::VectorXd& state) const
   for (int i = 0; i < mjNWARNING; ++i) {
     const mjWarningStat& warning = data_->warning[i];
     if (warning.number == 0) continue;
-    std::ostringstream text;
-    text << "plant: the simulation of " << model_->uri() << " is unstable, MuJoCo says \""
-         << mju_warningText(i, warning.lastinfo) << "\" in frame " << frame + 1
-         << " of the step from the state " << fewNumbers(state)
-         << ": use a smaller plant/timestep than " << physics_.opt.timestep
-         << " s, more damping or armature in the file, or a smaller plant/max_torque";
-    throw std::range_error(text.str());
+    throw std::range_error(
+        textOf("plant: the simulation of ", model_->uri(), " is unstable, MuJoCo says \"",
+               mju_warningText(i, warning.lastinfo), "\" in frame ", frame + 1,
+               " of the step from the state ", fewNumbers(state),
+               ": use a smaller plant/timestep than ", physics_.opt.timestep,
+               " s, more damping or armature in the file, or a smaller plant/max_torque"));
   }
 }
 
@@ -224,10 +203,8 @@ Eigen::VectorXd MujocoPhysics::reach(const Place& place, const Eigen::Vector2d& 
     }
     if (approach(place, point, &state)) return state;
   }
-  std::ostringstream text;
-  text << "the target must be within reach of " << model_->name(place.type, place.id) << " of "
-       << model_->uri() << ", got " << fewNumbers(point);
-  throw std::invalid_argument(text.str());
+  refuse("the target must be within reach of ", model_->name(place.type, place.id), " of ",
+         model_->uri(), ", got ", fewNumbers(point));
 }
 
 }  // namespace ddm

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ddm_mujoco/mujoco_model.h"
+#include "load_model.h"
 #include "motors.h"
 
 namespace ddm {
@@ -22,8 +23,8 @@ double timestepOf(const MujocoModel& model, const MujocoOptions& options);
 /// A model with a workspace of its own; for one thread at a time. What it returns depends on its
 /// arguments alone.
 ///
-/// The torques of `motors` act alone: where the options name motors, all actuators of the file are
-/// switched off.
+/// If the options name motors, all actuators of the file are switched off, and only the torques of
+/// these motors act.
 class MujocoPhysics {
  public:
   /// @throws std::invalid_argument as motorsOf()
@@ -65,7 +66,7 @@ class MujocoPhysics {
   std::shared_ptr<const MujocoModel> model_;
   mjModel physics_;  // shares all arrays with model_
   std::vector<Motor> motors_;
-  std::unique_ptr<mjData, void (*)(mjData*)> data_;
+  DataPointer data_;
 };
 
 }  // namespace ddm

@@ -2,11 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/mujoco_plant.h"
 
-#include <ddm_common/option_checks.h>
-
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -15,6 +12,7 @@
 #include "ddm_sim/plant_factory.h"
 #include "motors.h"
 #include "mujoco_physics.h"
+#include "refuse.h"
 
 namespace ddm {
 namespace {
@@ -23,53 +21,44 @@ bool isHinge(const MujocoModel& model, int joint) {
   return model.get().jnt_type[joint] == mjJNT_HINGE;
 }
 
-[[noreturn]] void refuse(const std::string& key, const std::string& rule, const std::string& got) {
-  throw std::invalid_argument("plant/" + key + " must " + rule + ", got " + got);
-}
-
 /// A state from numbers that may leave out the rates, which are 0 then.
 /// @param numbers  none: all 0
 Eigen::VectorXd stateOf(const std::vector<double>& numbers, int num_joints, const char* key) {
   Eigen::VectorXd state = Eigen::VectorXd::Zero(2 * num_joints);
   const auto count = static_cast<Eigen::Index>(numbers.size());
   if (count != 0 && count != num_joints && count != 2 * num_joints) {
-    refuse(key,
-           "have a number for each of the " + std::to_string(num_joints) +
-               " joints, or one for each and then one for each rate",
-           std::to_string(count));
+    refuse("plant/", key, " must have a number for each of the ", num_joints,
+           " joints, or one for each and then one for each rate, got ", count);
   }
   std::copy(numbers.begin(), numbers.end(), state.data());
   return state;
 }
 
-constexpr double kMaxFrames = 1e6;  // a step takes about a second then
-
 /// Frames of the physics in one time step.
 int framesOf(const MujocoModel& model, const MujocoOptions& options) {
+  constexpr double kMaxFrames = 1e6;  // a step takes about a second then
   const double dt = options.dt;
   const double step = timestepOf(model, options);
   const double frames = std::max(1.0, std::round(dt / step));
   if (!(frames <= kMaxFrames)) {
-    std::ostringstream got;
-    got << step << " s, which is " << frames << " frames in plant/dt: use a larger plant/timestep";
-    refuse("timestep", "divide plant/dt into at most 1000000 frames", got.str());
+    refuse("plant/timestep must divide plant/dt into at most 1000000 frames, got ", step,
+           " s, which is ", frames, " frames in plant/dt: use a larger plant/timestep");
   }
   if (std::abs(frames * step - dt) <= 1e-9 * dt) return static_cast<int>(frames);
-  std::ostringstream rule, got;
-  rule << "be a whole multiple of the timestep of "
-       << (options.timestep > 0.0 ? "plant/timestep" : model.uri()) << ", " << step << " s";
-  got << dt << ": the nearest is " << frames * step;
-  refuse("dt", rule.str(), got.str());
+  refuse("plant/dt must be a whole multiple of the timestep of ",
+         options.timestep > 0.0 ? "plant/timestep" : model.uri(), ", ", step, " s, got ", dt,
+         ": the nearest is ", frames * step);
 }
 
 /// Name of a joint that heads columns of CSV files.
 std::string columnOf(const MujocoModel& model, int joint) {
   const std::string name = model.name(mjOBJ_JOINT, joint);
   if (usableName(name)) return name;
-  throw std::invalid_argument("the joint \"" + name + "\" of " + model.uri() +
-                              " must have a name of ASCII characters without blanks, commas and "
-                              "double quotes, because it heads columns of CSV files: rename it in "
-                              "the file, or give plant/state_names and plant/torque_names");
+  refuse(
+      "the joint \"", name, "\" of ", model.uri(),
+      " must have a name of ASCII characters without blanks, commas and double quotes, because it "
+      "heads columns of CSV files: rename it in the file, or give plant/state_names and "
+      "plant/torque_names");
 }
 
 std::vector<std::string> stateNames(const MujocoModel& model, const MujocoOptions& options) {
@@ -102,15 +91,15 @@ std::vector<int> errorJoints(const MujocoModel& model, const MujocoOptions& opti
   for (int i = 0; options.error_joints.empty() && i < model.get().njnt; ++i) joints.push_back(i);
   const auto as_first = [&](int i) { return isHinge(model, i) == isHinge(model, joints[0]); };
   if (std::all_of(joints.begin(), joints.end(), as_first)) return joints;
-  refuse("error_joints", "be hinges or slides alone, whose errors have one unit",
-         "both: list some of them, or sites or links in plant/error_sites");
+  refuse(
+      "plant/error_joints must be hinges or slides alone, whose errors have one unit, got both: "
+      "list some of them, or sites or links in plant/error_sites");
 }
 
 int evaluationSteps(const MujocoOptions& options, int frames) {
   if (options.episode_frames % frames != 0) {
-    refuse("episode_frames",
-           "be whole time steps of plant/dt, which is " + std::to_string(frames) + " frames",
-           std::to_string(options.episode_frames));
+    refuse("plant/episode_frames must be whole time steps of plant/dt, which is ", frames,
+           " frames, got ", options.episode_frames);
   }
   return options.episode_frames / frames;
 }
@@ -126,13 +115,13 @@ PlantInfo infoOf(const MujocoModel& model, const MujocoOptions& options) {
   }
   info.state_names = stateNames(model, options);
   if (info.stateDim() != 2 * n) {
-    refuse("state_names", "have a name for each joint and then one for each rate",
-           std::to_string(info.stateDim()));
+    refuse("plant/state_names must have a name for each joint and then one for each rate, got ",
+           info.stateDim());
   }
   info.torque_names = torqueNames(model, options);
   const std::vector<double> limits = limitsOf(model, options);
   if (info.torque_names.size() != limits.size()) {
-    refuse("torque_names", "have a name for each motor", std::to_string(info.torqueDim()));
+    refuse("plant/torque_names must have a name for each motor, got ", info.torqueDim());
   }
   info.max_torque = forEach(limits, info.torqueDim(), "plant/max_torque");
   info.dt = options.dt;
@@ -149,25 +138,31 @@ PlantInfo infoOf(const MujocoModel& model, const MujocoOptions& options) {
   return info;
 }
 
-std::vector<std::string> nameIn(const std::string& name) {
-  return name.empty() ? std::vector<std::string>() : std::vector<std::string>{name};
+/// Places in the model; an empty name is none.
+std::vector<Place> places(const MujocoModel& model, const std::vector<std::string>& names,
+                          const std::string& key) {
+  std::vector<Place> out;
+  for (const std::string& name : names) {
+    if (!name.empty()) out.push_back(model.place(name, key));
+  }
+  return out;
 }
 
-std::unique_ptr<Renderer> pictureOf(const MujocoModel& model, const MujocoOptions& options) {
+RenderOptions imageLook(const MujocoOptions& options) {
   RenderOptions look = options.look;
   look.width = look.height = options.picture_size;
-  return std::make_unique<Renderer>(model.share(), look, options.scene);
+  return look;
 }
 
 /// The same scene as the learner's, through the same camera.
-std::unique_ptr<Renderer> viewOf(const MujocoModel& model, const MujocoOptions& options) {
+RenderOptions viewLook(const MujocoOptions& options) {
   RenderOptions look = options.look;
   look.width = 640;
   look.height = 480;
   look.colour = look.for_people = true;
   look.samples = 4;
   look.supersampling = 1;
-  return std::make_unique<Renderer>(model.share(), look, options.scene);
+  return look;
 }
 
 const Reward* rewardOf(const MujocoOptions& options, const PlantInfo& info) {
@@ -175,11 +170,9 @@ const Reward* rewardOf(const MujocoOptions& options, const PlantInfo& info) {
     if (reward.name != options.reward) continue;
     const int joints = static_cast<int>(info.joints.size());
     if (reward.num_joints == joints && reward.num_motors == info.torqueDim()) return &reward;
-    refuse("reward",
-           "be one for " + std::to_string(joints) + " joints and " +
-               std::to_string(info.torqueDim()) + " motors",
-           reward.name + ", which is for " + std::to_string(reward.num_joints) + " and " +
-               std::to_string(reward.num_motors));
+    refuse("plant/reward must be one for ", joints, " joints and ", info.torqueDim(),
+           " motors, got ", reward.name, ", which is for ", reward.num_joints, " and ",
+           reward.num_motors);
   }
   return nullptr;
 }
@@ -194,12 +187,12 @@ MujocoPlant::MujocoPlant(std::shared_ptr<const MujocoModel> model, const MujocoO
       start_normal_(forEach(options.start_std, stateDim(), "plant/start_std")),
       start_uniform_(stateOf(options.start_uniform, physics_->numJoints(), "start_uniform")),
       error_joints_(errorJoints(*model_, options)),
-      error_sites_(places(options.error_sites, "plant/error_sites")),
-      visible_sites_(places(options.visible_sites, "plant/visible_sites")),
-      goal_site_(places(nameIn(options.goal_site), "plant/goal_site")),
+      error_sites_(places(*model_, options.error_sites, "plant/error_sites")),
+      visible_sites_(places(*model_, options.visible_sites, "plant/visible_sites")),
+      goal_site_(places(*model_, {options.goal_site}, "plant/goal_site")),
       goal_distance_(options.goal_distance),
-      picture_(pictureOf(*model_, options)),
-      view_(viewOf(*model_, options)),
+      image_(std::make_unique<Renderer>(model_->share(), imageLook(options))),
+      view_(std::make_unique<Renderer>(model_->share(), viewLook(options))),
       reward_(rewardOf(options, info())),
       reward_scale_(info().max_torque) {
   const std::vector<Motor> motors = motorsOf(*model_, options);
@@ -210,13 +203,6 @@ MujocoPlant::MujocoPlant(std::shared_ptr<const MujocoModel> model, const MujocoO
 }
 
 MujocoPlant::~MujocoPlant() = default;
-
-std::vector<Place> MujocoPlant::places(const std::vector<std::string>& names,
-                                       const std::string& key) const {
-  std::vector<Place> out;
-  for (const std::string& name : names) out.push_back(model_->place(name, key));
-  return out;
-}
 
 Eigen::VectorXd MujocoPlant::drawStart(std::mt19937_64& engine) const {
   std::normal_distribution<double> normal;
@@ -240,8 +226,7 @@ Eigen::VectorXd MujocoPlant::drawGoal(std::mt19937_64& engine) const {
 Eigen::VectorXd MujocoPlant::goalAt(const Eigen::VectorXd& target) const {
   if (goal_site_.empty()) return Plant::goalAt(target);
   if (target.size() != 2 || !target.allFinite()) {
-    throw std::invalid_argument("plant: the target must be two finite numbers, x and y [m], got " +
-                                fewNumbers(target));
+    refuse("plant: the target must be two finite numbers, x and y [m], got ", fewNumbers(target));
   }
   return physics_->reach(goal_site_[0], target, info().goal);
 }
@@ -281,11 +266,11 @@ double MujocoPlant::distance(const Eigen::VectorXd& state, const Eigen::VectorXd
 }
 
 Picture MujocoPlant::draw(const Eigen::VectorXd& state) const {
-  return picture_->draw(physics_->placed(state));
+  return image_->draw(physics_->placed(state));
 }
 
 std::optional<CameraModel> MujocoPlant::cameraModel() const {
-  return picture_->camera(physics_->placed(state()));
+  return image_->camera(physics_->placed(state()));
 }
 
 std::optional<CameraModel> MujocoPlant::viewModel() const {
@@ -306,10 +291,11 @@ MujocoOptions completed(MujocoOptions options, const MujocoModel& model) {
   requirePositionsAndRates(model);
   const std::string& digest = model.digest();
   if (!options.model_digest.empty() && options.model_digest != digest) {
-    refuse("model_digest", "be that of " + model.uri() + " and the files that it names, " + digest,
-           options.model_digest +
-               ": one of them has changed since this "
-               "configuration was saved; put it back, or begin anew without this key");
+    refuse(
+        "plant/model_digest must be that of ", model.uri(), " and the files that it names, ",
+        digest, ", got ", options.model_digest,
+        ": one of them has changed since this configuration was saved; put it back, or begin anew "
+        "without this key");
   }
   options.model_digest = digest;
   options.max_torque = limitsOf(model, options);

@@ -6,7 +6,6 @@
 #include <boost/algorithm/string/join.hpp>
 #include <cmath>
 #include <random>
-#include <sstream>
 #include <stdexcept>
 
 #include "camera_placement.h"
@@ -20,16 +19,16 @@ namespace {
 
 using boost::algorithm::join;
 using Eigen::VectorXd;
+using Texts = std::vector<std::string>;
 
-constexpr int kNumPoses = 200;  // that the camera has to see
-constexpr double kAcceleration =
-    10;  // that a proposed torque gives [rad/s^2], slides [sizes/s^2 / 2]
-constexpr double kTooStrong = 4.0;  // a file's limit beyond so many proposed torques is not used
-constexpr double kStep = 0.8;       // motion between two images that dt aims at [rad]
-constexpr double kFastest = 40.0;   // so that dt is not below the 0.02 s of a usual camera [rad/s]
-constexpr double kSeconds = 2.0;    // of a simulation
-constexpr double kHold = 0.3;       // a random torque is held [s]
-constexpr double kStartStd = 0.1;   // [rad]
+constexpr int kNumPoses = 200;        // that the camera has to see
+constexpr double kAcceleration = 10;  // by a proposed torque [rad/s^2], slides [half sizes/s^2]
+constexpr double kTooStrong = 4.0;    // a file's limit beyond so many proposed torques is not used
+constexpr double kStep = 0.8;         // motion between two images that dt aims at [rad]
+constexpr double kFastest = 40.0;  // so that dt is not below the 0.02 s of a usual camera [rad/s]
+constexpr double kSeconds = 2.0;   // of a simulation
+constexpr double kHold = 0.3;      // a random torque is held [s]
+constexpr double kStartStd = 0.1;  // [rad]
 
 std::string shortText(double number, const char* format = "%.3g") {
   char out[32];
@@ -60,15 +59,19 @@ std::vector<double> listOf(const VectorXd& values) {
 /// Fills in a proposal, key by key.
 class Proposer {
  public:
-  Proposer(const std::shared_ptr<const MujocoModel>& model, const MotorChoice& choice)
+  Proposer(const std::shared_ptr<const MujocoModel>& model, const Texts& motors)
       : model_(model), mechanism_(model) {
     out_.joints = mechanism_.joints();
+    const MotorChoice choice =
+        motors.empty() ? chosenMotors(*model, out_.joints) : MotorChoice{motors, "as given"};
     out_.options.model = model->uri();
     if (!choice.by_actuators) out_.options.motors = choice.joints;
     out_.options.max_torque = {1.0};  // until it is known
     motors_ = motorsOf(*model, out_.options);
     for (const Motor& motor : motors_) {
-      out_.joints[static_cast<std::size_t>(motor.joint)].effort = motor.limit.value_or(0.0);
+      ModelJoint& joint = out_.joints[static_cast<std::size_t>(motor.joint)];
+      joint.effort = motor.limit.value_or(0.0);
+      out_.motors.push_back(joint.name);
     }
     out_.reasons["motors"] = choice.why;
     std::mt19937_64 engine(1);
@@ -87,24 +90,23 @@ class Proposer {
 
  private:
   bool gravityMatters() const {
-    double least = 1e300, most = -1e300, load = 0.0;
+    double least = 1e300, most = -1e300;
     for (const VectorXd& position : positions_) {
       const double energy = mechanism_.energy(position, false);
       least = std::min(least, energy);
       most = std::max(most, energy);
-      load = std::max(load, mechanism_.load(position, false).lpNorm<Eigen::Infinity>());
     }
-    return most - least > 1e-6 * std::max(1.0, std::abs(most)) && load > 1e-9;
+    return most - least > 1e-6 * std::max(1.0, std::abs(most));
   }
 
   void proposeStartAndGoal() {
     const VectorXd zero = mechanism_.zero();
-    const bool gravity = gravityMatters();
-    const bool settles = gravity || mechanism_.hasSprings();
-    const VectorXd rest =
-        settles ? mechanism_.settled(mechanism_.coupled(zero.array() + 0.02)) : zero;
+    const VectorXd nudged = mechanism_.coupled(zero.array() + 0.02);  // off an unstable equilibrium
+    VectorXd rest = mechanism_.settled(nudged);
+    const bool settles = rest != nudged;
+    if (!settles) rest = zero;
     VectorXd start = rest, goal = rest;
-    if (gravity) {
+    if (gravityMatters()) {
       std::vector<VectorXd> candidates = positions_;
       for (VectorXd& one : candidates) {  // a joint that weight does not move stays where it starts
         const VectorXd load = mechanism_.load(one, false);
@@ -114,24 +116,29 @@ class Proposer {
       }
       goal = mechanism_.highest(candidates);
     }
-    out_.options.start_std.clear();
-    for (int k = 0; k < 2; ++k) {
-      for (std::size_t i = 0; i < out_.joints.size(); ++i) {
-        out_.options.start_std.push_back(rounded(kStartStd * mechanism_.unit(static_cast<int>(i))));
-      }
+    std::vector<double>& start_std = out_.options.start_std;
+    start_std.clear();
+    for (std::size_t i = 0; i < out_.joints.size(); ++i) {
+      start_std.push_back(rounded(kStartStd * mechanism_.unit(static_cast<int>(i))));
     }
     for (Eigen::Index i = 0; i < start.size(); ++i) {
       const ModelJoint& joint = out_.joints[static_cast<std::size_t>(i)];
-      const double inside = std::min(2.0 * out_.options.start_std[static_cast<std::size_t>(i)],
-                                     0.1 * (joint.upper - joint.lower));
+      const double inside =
+          std::min(2.0 * start_std[static_cast<std::size_t>(i)], 0.1 * (joint.upper - joint.lower));
       for (double* value : {&start[i], &goal[i]}) {
         if (joint.limited) *value = std::clamp(*value, joint.lower + inside, joint.upper - inside);
-        *value = roundedPosition(*value, isHinge(joint));
+        *value = roundedPosition(*value, joint.isHinge());
       }
     }
+    const std::vector<double> of_positions = start_std;  // and the same for the rates
+    start_std.insert(start_std.end(), of_positions.begin(), of_positions.end());
     start = mechanism_.coupled(start);
     goal = mechanism_.coupled(goal);
-    bool upright = (goal - start).lpNorm<Eigen::Infinity>() > 0.1 * smallestUnit();
+    bool upright = false;
+    for (Eigen::Index i = 0; i < start.size(); ++i) {
+      const double far = 0.1 * mechanism_.unit(static_cast<int>(i));
+      upright = upright || std::abs(goal[i] - start[i]) > far;
+    }
     if (!upright) goal = elsewhere(start);
     out_.options.start = listOf(start);
     out_.options.goal = listOf(goal);
@@ -142,14 +149,6 @@ class Proposer {
     out_.to_set.push_back("goal");
   }
 
-  double smallestUnit() const {
-    double unit = 1.0;
-    for (std::size_t i = 0; i < out_.joints.size(); ++i) {
-      unit = std::min(unit, mechanism_.unit(static_cast<int>(i)));
-    }
-    return unit;
-  }
-
   /// The motors' joints a quarter of their way from here.
   VectorXd elsewhere(VectorXd position) const {
     for (const Motor& motor : motors_) {
@@ -157,7 +156,7 @@ class Proposer {
       const double quarter = 0.25 * (joint.shown_upper - joint.shown_lower);
       double& value = position[motor.joint];
       value += joint.limited && value + quarter > joint.shown_upper ? -quarter : quarter;
-      value = roundedPosition(value, isHinge(joint));
+      value = roundedPosition(value, joint.isHinge());
     }
     return mechanism_.coupled(position);
   }
@@ -184,7 +183,7 @@ class Proposer {
       return;
     }
     limits.clear();
-    std::vector<std::string> reasons;
+    Texts reasons;
     for (const Motor& motor : motors_) {
       const double needed = rounded(neededTorque(motor));
       const std::string joint = model_->name(mjOBJ_JOINT, motor.joint);
@@ -274,12 +273,12 @@ class Proposer {
   }
 
   void proposeSuccess() {
-    std::vector<std::string> hinges, slides;
+    Texts hinges, slides;
     double shortest = 1e300;
     out_.feature_dim = 0;
     for (const ModelJoint& joint : out_.joints) {
-      (isHinge(joint) ? hinges : slides).push_back(joint.name);
-      if (!isHinge(joint)) shortest = std::min(shortest, joint.shown_upper - joint.shown_lower);
+      (joint.isHinge() ? hinges : slides).push_back(joint.name);
+      if (!joint.isHinge()) shortest = std::min(shortest, joint.shown_upper - joint.shown_lower);
       out_.feature_dim += joint.turnsFar() ? 2 : 1;
     }
     out_.feature_dim = std::max(2, out_.feature_dim);
@@ -313,10 +312,7 @@ class Proposer {
 
   void proposeCamera() {
     out_.options.look.supersampling = 4;
-    out_.options.look = placedCamera(
-        *model_,
-        [this](const VectorXd& position) -> const mjData& { return mechanism_.place(position); },
-        withLimits(), out_.options.look);
+    out_.options.look = placedCamera(*model_, mechanism_, withLimits(), out_.options.look);
   }
 
   std::shared_ptr<const MujocoModel> model_;
@@ -328,15 +324,9 @@ class Proposer {
 
 }  // namespace
 
-std::vector<ModelJoint> jointsOf(const std::shared_ptr<const MujocoModel>& model) {
-  std::vector<ModelJoint> joints = Mechanism(model).joints();
-  for (ModelJoint& joint : joints) joint.effort = model->effortLimit(joint.name).value_or(0.0);
-  return joints;
-}
-
-PlantProposal proposePlant(const std::shared_ptr<const MujocoModel>& model,
-                           const MotorChoice& choice, const std::vector<double>& max_torque) {
-  return Proposer(model, choice).propose(max_torque);
+PlantProposal proposePlant(const std::shared_ptr<const MujocoModel>& model, const Texts& motors,
+                           const std::vector<double>& max_torque) {
+  return Proposer(model, motors).propose(max_torque);
 }
 
 }  // namespace ddm

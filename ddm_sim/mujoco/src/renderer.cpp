@@ -2,13 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/renderer.h"
 
-#include <ddm_common/option_checks.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <mutex>
 #include <set>
 #include <sstream>
@@ -68,7 +65,7 @@ int findCamera(const mjModel& model, const RenderOptions& options) {
                               options.camera + "\": " + suggestion(options.camera, names));
 }
 
-/// A camera that stands at `position`; its picture's upper edge is up, or +y where it looks down.
+/// A camera at `position`. The upper edge of its image is up, or +y if it looks straight down.
 mjvCamera placed(const std::vector<double>& position, const std::vector<double>& look_at) {
   mjvCamera camera;
   mjv_defaultCamera(&camera);
@@ -83,7 +80,7 @@ mjvCamera placed(const std::vector<double>& position, const std::vector<double>&
   return camera;
 }
 
-/// Colours of a picture that was drawn `factor` times larger and upside down, averaged.
+/// Averages the colours of an image that was drawn `factor` times larger and upside down.
 Picture averaged(const std::vector<std::uint8_t>& drawn, int width, int height, int factor) {
   Picture picture;
   picture.width = width;
@@ -108,6 +105,15 @@ Picture averaged(const std::vector<std::uint8_t>& drawn, int width, int height, 
     }
   }
   return picture;
+}
+
+void requireNoError(const char* what) {
+  const int error = mjr_getError();
+  if (error == 0) return;
+  std::ostringstream message;
+  message << what << " of a MuJoCo model failed, OpenGL error 0x" << std::hex << error
+          << (error == 0x505 ? ": out of memory" : "");
+  throw std::runtime_error(message.str());
 }
 
 }  // namespace
@@ -137,176 +143,127 @@ Picture greyOf(const Picture& picture) {
   return grey;
 }
 
-class Renderer::Implementation {
- public:
-  Implementation(std::shared_ptr<const mjModel> model, const RenderOptions& options,
-                 const SceneOptions& scene)
-      : options_(options), scene_(std::move(model), scene) {
-    mjModel& look = scene_.appearance();
-    look.vis.global.offwidth = options_.width * options_.supersampling;
-    look.vis.global.offheight = options_.height * options_.supersampling;
-    look.vis.quality.offsamples = options_.samples;
-    const int index = findCamera(look, options_);
-    if (index == kNoCamera) {
-      look.vis.global.fovy = static_cast<float>(options_.field_of_view);
-      camera_ = placed(options_.position, options_.look_at);
-    } else {
-      mjv_defaultCamera(&camera_);
-      camera_.type = mjCAMERA_FIXED;
-      camera_.fixedcamid = index;
-    }
-    mjv_defaultOption(&shown_);
-    if (options_.for_people) {
-      shown_.geomgroup[RenderOptions::kPeopleGroup] = 1;
-      shown_.sitegroup[RenderOptions::kPeopleGroup] = 1;
-    }
-    const int group = groupToShow(look);
-    if (group >= 0) shown_.geomgroup[group] = 1;
-    mjv_defaultScene(&drawn_);
-    mjv_makeScene(&look, &drawn_, look.ngeom + kMaxDecor);
-    drawn_.flags[mjRND_SHADOW] = drawn_.flags[mjRND_REFLECTION] = 1;
-    mjr_defaultContext(&gpu_);
+Renderer::Renderer(const std::shared_ptr<const mjModel>& model, const RenderOptions& options)
+    : options_(options), scene_(std::make_unique<Scene>(model, options)) {
+  mjModel& look = scene_->appearance();
+  look.vis.global.offwidth = options_.width * options_.supersampling;
+  look.vis.global.offheight = options_.height * options_.supersampling;
+  look.vis.quality.offsamples = options_.samples;
+  const int index = findCamera(look, options_);
+  if (index == kNoCamera) {
+    look.vis.global.fovy = static_cast<float>(RenderOptions::kFieldOfView);
+    camera_ = placed(options_.position, options_.look_at);
+  } else {
+    mjv_defaultCamera(&camera_);
+    camera_.type = mjCAMERA_FIXED;
+    camera_.fixedcamid = index;
   }
-
-  ~Implementation() {
-    if (context_) {
-      try {
-        const EglContext::Current current(*context_);
-        mjr_freeContext(&gpu_);
-      } catch (const std::runtime_error&) {
-        // What is left goes with the context.
-      }
-    }
-    mjv_freeScene(&drawn_);
+  mjv_defaultOption(&shown_);
+  if (options_.for_people) {
+    shown_.geomgroup[RenderOptions::kPeopleGroup] = 1;
+    shown_.sitegroup[RenderOptions::kPeopleGroup] = 1;
   }
-
-  Implementation(const Implementation&) = delete;
-  Implementation& operator=(const Implementation&) = delete;
-
-  Picture draw(const mjData& data) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (!context_) openContext();
-    const EglContext::Current current(*context_);
-    updateScene(data);
-    const mjrRect all = {0, 0, gpu_.offWidth, gpu_.offHeight};
-    mjr_render(all, &drawn_, &gpu_);
-    pixels_.resize(std::size_t{3} * static_cast<std::size_t>(all.width) *
-                   static_cast<std::size_t>(all.height));
-    mjr_readPixels(pixels_.data(), nullptr, all, &gpu_);
-    requireNoError("drawing");
-    const Picture colour =
-        averaged(pixels_, options_.width, options_.height, options_.supersampling);
-    return options_.colour ? colour : greyOf(colour);
-  }
-
-  CameraModel camera(const mjData& data) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    updateScene(data);
-    const mjModel& look = scene_.appearance();
-    const mjvGLCamera camera = mjv_averageCamera(&drawn_.camera[0], &drawn_.camera[1]);
-    const Eigen::Vector3f forward = Eigen::Map<const Eigen::Vector3f>(camera.forward);
-    const Eigen::Vector3f down = -Eigen::Map<const Eigen::Vector3f>(camera.up);
-    const int index = camera_.fixedcamid;
-    CameraModel out;
-    out.name = nameOfCamera();
-    out.width = options_.width;
-    out.height = options_.height;
-    out.fovy = kDegree * (index < 0 ? options_.field_of_view : look.cam_fovy[index]);
-    out.fixed = index < 0 || (look.cam_mode[index] == mjCAMLIGHT_FIXED &&
-                              look.body_weldid[look.cam_bodyid[index]] == 0);
-    out.position = Eigen::Map<const Eigen::Vector3f>(camera.pos).cast<double>();
-    out.rotation << down.cross(forward).cast<double>(), down.cast<double>(), forward.cast<double>();
-    return out;
-  }
-
- private:
-  std::string nameOfCamera() const {
-    const char* name = camera_.fixedcamid < 0
-                           ? nullptr
-                           : mj_id2name(&scene_.appearance(), mjOBJ_CAMERA, camera_.fixedcamid);
-    return name == nullptr ? "camera" : name;
-  }
-
-  void updateScene(const mjData& data) {
-    // mjv_updateScene() reads data, and writes its own buffers; its signature does not say so.
-    mjv_updateScene(&scene_.appearance(), const_cast<mjData*>(&data), &shown_, nullptr, &camera_,
-                    mjCAT_ALL, &drawn_);
-    scene_.moveCamera(&drawn_.camera[0]);
-    scene_.moveCamera(&drawn_.camera[1]);
-  }
-
-  void openContext() {
-    auto context = std::make_unique<EglContext>();
-    const EglContext::Current current(*context);
-    const mjModel& look = scene_.appearance();
-    const int side = std::max(look.vis.global.offwidth, look.vis.global.offheight);
-    if (side > context->maxSize()) {
-      throw std::runtime_error("a picture with a side of " + std::to_string(side) +
-                               " pixels, supersampling included, is too large for this OpenGL "
-                               "driver, which can draw " +
-                               std::to_string(context->maxSize()));
-    }
-    makeGpuContext();
-    mjr_setBuffer(mjFB_OFFSCREEN, &gpu_);
-    if (gpu_.currentBuffer != mjFB_OFFSCREEN) {
-      throw std::runtime_error("this OpenGL driver cannot draw without a screen");
-    }
-    requireNoError("making the textures and the picture");
-    context_ = std::move(context);
-  }
-
-  /// Textures, meshes, shadow map and picture on the graphics side.
-  void makeGpuContext() {
-    static std::mutex loading;  // MuJoCo keeps what it finds of OpenGL in global variables
-    const std::lock_guard<std::mutex> lock(loading);
-    const mjModel& look = scene_.appearance();
-    mjr_defaultContext(&gpu_);
-    try {
-      mjr_makeContext(&look, &gpu_, mjFONTSCALE_50);
-    } catch (const std::runtime_error& e) {
-      std::ostringstream message;
-      message << "OpenGL cannot draw pictures of " << look.vis.global.offwidth << " x "
-              << look.vis.global.offheight << " pixels, supersampling included, with "
-              << look.vis.quality.offsamples << " samples and a shadow map of "
-              << look.vis.quality.shadowsize << ": " << e.what()
-              << "; free some memory, or make them smaller";
-      throw std::runtime_error(message.str());
-    }
-  }
-
-  static void requireNoError(const char* what) {
-    const int error = mjr_getError();
-    if (error == 0) return;
-    std::ostringstream message;
-    message << what << " of a MuJoCo model failed, OpenGL error 0x" << std::hex << error
-            << (error == 0x505 ? ": out of memory" : "");
-    throw std::runtime_error(message.str());
-  }
-
-  RenderOptions options_;
-  Scene scene_;
-  mjvCamera camera_;
-  mjvOption shown_;
-  mjvScene drawn_;
-  mjrContext gpu_;
-  std::unique_ptr<EglContext> context_;  ///< with gpu_ in it; none: nothing has been drawn yet
-  std::vector<std::uint8_t> pixels_;     ///< as drawn, kept for the next time
-  std::mutex mutex_;
-};
-
-Renderer::Renderer(std::shared_ptr<const mjModel> model, const RenderOptions& options,
-                   const SceneOptions& scene) {
-  std::vector<std::string> problems = options.problems("plant");
-  const std::vector<std::string> others = scene.problems("plant");
-  problems.insert(problems.end(), others.begin(), others.end());
-  requireNone(problems);
-  implementation_ = std::make_unique<Implementation>(std::move(model), options, scene);
+  const int group = groupToShow(look);
+  if (group >= 0) shown_.geomgroup[group] = 1;
+  mjv_defaultScene(&drawn_);
+  mjv_makeScene(&look, &drawn_, look.ngeom + kMaxDecor);
+  drawn_.flags[mjRND_SHADOW] = drawn_.flags[mjRND_REFLECTION] = 1;
+  mjr_defaultContext(&gpu_);
 }
 
-Renderer::~Renderer() = default;
+Renderer::~Renderer() {
+  if (context_) {
+    try {
+      const EglContext::Current current(*context_);
+      mjr_freeContext(&gpu_);
+    } catch (const std::runtime_error&) {
+      // The context takes with it what remains.
+    }
+  }
+  mjv_freeScene(&drawn_);
+}
 
-Picture Renderer::draw(const mjData& data) { return implementation_->draw(data); }
+Picture Renderer::draw(const mjData& data) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!context_) openContext();
+  const EglContext::Current current(*context_);
+  updateScene(data);
+  const mjrRect all = {0, 0, gpu_.offWidth, gpu_.offHeight};
+  mjr_render(all, &drawn_, &gpu_);
+  pixels_.resize(std::size_t{3} * static_cast<std::size_t>(all.width) *
+                 static_cast<std::size_t>(all.height));
+  mjr_readPixels(pixels_.data(), nullptr, all, &gpu_);
+  requireNoError("drawing");
+  const Picture colour = averaged(pixels_, options_.width, options_.height, options_.supersampling);
+  return options_.colour ? colour : greyOf(colour);
+}
 
-CameraModel Renderer::camera(const mjData& data) const { return implementation_->camera(data); }
+CameraModel Renderer::camera(const mjData& data) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  updateScene(data);
+  const mjModel& look = scene_->appearance();
+  const mjvGLCamera camera = mjv_averageCamera(&drawn_.camera[0], &drawn_.camera[1]);
+  const Eigen::Vector3f forward = Eigen::Map<const Eigen::Vector3f>(camera.forward);
+  const Eigen::Vector3f down = -Eigen::Map<const Eigen::Vector3f>(camera.up);
+  const int index = camera_.fixedcamid;
+  const char* const name = index < 0 ? nullptr : mj_id2name(&look, mjOBJ_CAMERA, index);
+  CameraModel out;
+  out.name = name == nullptr ? "camera" : name;
+  out.width = options_.width;
+  out.height = options_.height;
+  out.fovy = kDegree * (index < 0 ? RenderOptions::kFieldOfView : look.cam_fovy[index]);
+  out.fixed = index < 0 || (look.cam_mode[index] == mjCAMLIGHT_FIXED &&
+                            look.body_weldid[look.cam_bodyid[index]] == 0);
+  out.position = Eigen::Map<const Eigen::Vector3f>(camera.pos).cast<double>();
+  out.rotation << down.cross(forward).cast<double>(), down.cast<double>(), forward.cast<double>();
+  return out;
+}
+
+void Renderer::updateScene(const mjData& data) {
+  // mjv_updateScene() only reads data; its signature does not say so.
+  mjv_updateScene(&scene_->appearance(), const_cast<mjData*>(&data), &shown_, nullptr, &camera_,
+                  mjCAT_ALL, &drawn_);
+  scene_->moveCamera(&drawn_.camera[0]);
+  scene_->moveCamera(&drawn_.camera[1]);
+}
+
+void Renderer::openContext() {
+  auto context = std::make_unique<EglContext>();
+  const EglContext::Current current(*context);
+  const auto& size = scene_->appearance().vis.global;
+  const int side = std::max(size.offwidth, size.offheight);
+  if (side > context->maxSize()) {
+    throw std::runtime_error("an image with a side of " + std::to_string(side) +
+                             " pixels, supersampling included, is too large for this OpenGL "
+                             "driver, which can draw " +
+                             std::to_string(context->maxSize()));
+  }
+  makeGpuContext();
+  mjr_setBuffer(mjFB_OFFSCREEN, &gpu_);
+  if (gpu_.currentBuffer != mjFB_OFFSCREEN) {
+    throw std::runtime_error("this OpenGL driver cannot draw without a screen");
+  }
+  requireNoError("making the textures and the image");
+  context_ = std::move(context);
+}
+
+/// Textures, meshes, shadow map and image on the graphics side.
+void Renderer::makeGpuContext() {
+  static std::mutex loading;  // MuJoCo keeps what it finds of OpenGL in global variables
+  const std::lock_guard<std::mutex> lock(loading);
+  const mjModel& look = scene_->appearance();
+  mjr_defaultContext(&gpu_);
+  try {
+    mjr_makeContext(&look, &gpu_, mjFONTSCALE_50);
+  } catch (const std::runtime_error& e) {
+    std::ostringstream message;
+    message << "OpenGL cannot draw images of " << look.vis.global.offwidth << " x "
+            << look.vis.global.offheight << " pixels, supersampling included, with "
+            << look.vis.quality.offsamples << " samples and a shadow map of "
+            << look.vis.quality.shadowsize << ": " << e.what()
+            << "; free some memory, or make them smaller";
+    throw std::runtime_error(message.str());
+  }
+}
 
 }  // namespace ddm

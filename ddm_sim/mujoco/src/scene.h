@@ -1,4 +1,4 @@
-// The scene that is drawn: a model with the nuisances of colours and camera.
+// The scene that is drawn: a model with disturbances of its colours and camera.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "ddm_mujoco/render_options.h"
+#include "ddm_mujoco/renderer.h"
 
 namespace ddm {
 
@@ -19,21 +19,19 @@ constexpr std::array<float, 4> kUnset = {0.5F, 0.5F, 0.5F, 1.0F};
 /// Physics never sees it: the model that it is made from stays as it is.
 class Scene {
  public:
-  /// @pre options have no problems
-  Scene(std::shared_ptr<const mjModel> model, const SceneOptions& options);
+  Scene(std::shared_ptr<const mjModel> model, const RenderOptions& options);
   Scene(const Scene&) = delete;  // appearance() points into this object
   Scene& operator=(const Scene&) = delete;
 
   /// The model as it looks, for drawing alone. Belongs to this object.
   mjModel& appearance() { return appearance_; }
-  const mjModel& appearance() const { return appearance_; }
 
   /// Moves the camera of a drawn scene around the point that it looks at.
   void moveCamera(mjvGLCamera* camera) const;
 
  private:
-  void drawCamera(const SceneOptions& options);
-  void drawColours(const SceneOptions& options);
+  void drawCamera(double share);
+  void drawColours(double share);
 
   std::shared_ptr<const mjModel> model_;
   mjModel appearance_;  ///< shares everything with model_ except for these colours

@@ -7,9 +7,8 @@
 #include <boost/algorithm/string/case_conv.hpp>
 #include <boost/algorithm/string/join.hpp>
 #include <filesystem>
-#include <optional>
+#include <iterator>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 
 #include "model_files.h"
@@ -20,55 +19,39 @@ namespace {
 
 namespace fs = std::filesystem;
 using boost::algorithm::join;
-using tinyxml2::XMLElement;
-
-/// The file that an attribute names, as a path.
-std::string fileOf(const XMLElement& element, const std::string& name, const fs::path& folder,
-                   const FindPackage& find_package) {
-  try {
-    const std::string path = resolved(attribute(element, name.c_str()), find_package);
-    return (folder / path).lexically_normal().string();
-  } catch (const std::invalid_argument& e) {
-    refuseElement(element, e.what());
-  }
-}
-
-/// `meshdir` and `strippath` of a <mujoco> block, as MuJoCo applies them: by default it strips the
-/// folder.
-std::optional<fs::path> inMeshFolder(const XMLElement* compiler, const std::string& name) {
-  if (compiler == nullptr || compiler->Attribute("meshdir") == nullptr) return std::nullopt;
-  const bool keeps_folders = attribute(*compiler, "strippath") == "false";
-  return fs::path(attribute(*compiler, "meshdir")) /
-         (keeps_folders ? fs::path(name) : fs::path(name).filename());
-}
 
 /// Gives each file of a mesh a name of its own: MuJoCo tells meshes apart by the name without its
 /// folder.
 class MeshNames {
  public:
-  MeshNames(const fs::path& folder, const FindPackage& find_package, const XMLElement* compiler)
+  MeshNames(const fs::path& folder, const FindPackage& find_package, const XMLElement& compiler)
       : folder_(folder), find_package_(find_package), compiler_(compiler) {}
 
   /// Renames the file of a <mesh>.
   void name(XMLElement* mesh) {
     const std::string named = attribute(*mesh, "filename");
     if (named.empty()) refuseElement(*mesh, "must have a filename");
-    const auto in_folder = inMeshFolder(compiler_, named);
-    const std::string file = in_folder && fs::is_regular_file(folder_ / *in_folder)
-                                 ? (folder_ / *in_folder).string()
-                                 : fileOf(*mesh, "filename", folder_, find_package_);
-    if (fs::is_directory(file))
-      refuseElement(*mesh, "names a folder, " + file + ": name a mesh in it");
-    if (!isMeshKind(file)) {
+    const fs::path file = fileOf(*mesh, named);
+    if (fs::is_directory(file)) {
+      refuseElement(*mesh, "names a folder, ", file.string(), ": name a mesh in it");
+    }
+    const std::string kind = boost::to_lower_copy(file.extension().string());
+    if (!isOneOf({".stl", ".obj", ".msh"}, kind)) {
       unreadable_.insert(named);
       return;
     }
-    requireMesh(*mesh, named, file);
-    std::string& name = names_[{file, attribute(*mesh, "scale")}];
+    const std::string mistaken = fs::is_regular_file(file)
+                                     ? mistakenFor(readModelFile(file.string()))
+                                     : "is not there: correct its name, or fetch the package that "
+                                       "holds it";
+    if (!mistaken.empty()) {
+      refuse("the mesh \"", named, "\" in line ", mesh->GetLineNum(), " ", mistaken, " (",
+             file.string(), ")");
+    }
+    std::string& name = names_[{file.string(), attribute(*mesh, "scale")}];
     if (name.empty()) {
-      const std::string kind = boost::to_lower_copy(fs::path(file).extension().string());
-      name = std::to_string(names_.size()) + "_" + fs::path(file).stem().string() + kind;
-      files.emplace_back(name, file);
+      name = std::to_string(names_.size()) + "_" + file.stem().string() + kind;
+      files.emplace_back(name, file.string());
     }
     mesh->SetAttribute("filename", name.c_str());
   }
@@ -77,19 +60,35 @@ class MeshNames {
   void requireReadable() const {
     if (unreadable_.empty()) return;
     const fs::path first(*unreadable_.begin());
-    throw std::invalid_argument(
-        "it has meshes that are no STL, OBJ or MSH files, which MuJoCo reads: " +
-        join(unreadable_, ", ") + "; convert each, for example by `assimp export " +
-        first.filename().string() + " " + first.stem().string() +
-        ".stl` (Debian's assimp-utils), and name the new files in the model");
+    refuse("it has meshes that are no STL, OBJ or MSH files, which MuJoCo reads: ",
+           join(unreadable_, ", "), "; convert each, for example by `assimp export ",
+           first.filename().string(), " ", first.stem().string(),
+           ".stl` (Debian's assimp-utils), and name the new files in the model");
   }
 
   std::vector<std::pair<std::string, std::string>> files;  ///< by their new names
 
  private:
+  /// A file is searched in the `meshdir` of the <mujoco> block as MuJoCo does, which strips the
+  /// folder by default, then from the folder of the model.
+  fs::path fileOf(const XMLElement& mesh, const std::string& named) const {
+    if (compiler_.Attribute("meshdir") != nullptr) {
+      const fs::path name = attribute(compiler_, "strippath") == "false"
+                                ? fs::path(named)
+                                : fs::path(named).filename();
+      const fs::path file = folder_ / attribute(compiler_, "meshdir") / name;
+      if (fs::is_regular_file(file)) return file;
+    }
+    try {
+      return (folder_ / resolved(named, find_package_)).lexically_normal();
+    } catch (const std::invalid_argument& e) {
+      refuseElement(mesh, e.what());
+    }
+  }
+
   fs::path folder_;
   const FindPackage& find_package_;
-  const XMLElement* compiler_;
+  const XMLElement& compiler_;
   std::map<std::pair<std::string, std::string>, std::string> names_;  // by file and scale
   std::set<std::string> unreadable_;
 };
@@ -106,12 +105,16 @@ void completeCompiler(XMLElement* compiler) {
   compiler->DeleteAttribute("meshdir");
 }
 
-/// Leaves out what MuJoCo does not read, such as <gazebo> and <transmission>.
-void keepWhatMujocoReads(XMLElement* robot) {
+/// Leaves out what MuJoCo does not read, such as <gazebo>, after its facts have been noted.
+void keepWhatMujocoReads(XMLElement* robot, UrdfFacts* facts) {
+  for (const XMLElement* transmission : children(*robot, "transmission")) {
+    const XMLElement* const joint = transmission->FirstChildElement("joint");
+    if (joint != nullptr) facts->transmissions.push_back(attribute(*joint, "name"));
+  }
   for (auto* child = robot->FirstChildElement(); child != nullptr;) {
     auto* const next = child->NextSiblingElement();
-    if (!isOneOf({"link", "joint", "material", "mujoco"}, child->Value()))
-      robot->DeleteChild(child);
+    const bool read = isOneOf({"link", "joint", "material", "mujoco"}, child->Value());
+    if (!read) robot->DeleteChild(child);
     child = next;
   }
 }
@@ -122,19 +125,17 @@ XMLElement* firstChild(XMLElement* parent, const char* name) {
 }
 
 Coupling couplingOf(const XMLElement& joint, const std::vector<XMLElement*>& joints) {
-  const XMLElement& mimic = *joint.FirstChildElement("mimic");
   Coupling coupling;
   coupling.follower = attribute(joint, "name");
-  coupling.leader = attribute(mimic, "joint");
-  coupling.multiplier = numberOr(joint, "mimic", "multiplier", 1.0);
-  coupling.offset = numberOr(joint, "mimic", "offset", 0.0);
-  std::vector<std::string> moving;
-  for (const XMLElement* one : joints) {
-    if (attribute(*one, "type") != "fixed") moving.push_back(attribute(*one, "name"));
-  }
-  if (coupling.leader == coupling.follower || !isOneOf(moving, coupling.leader)) {
-    refuseElement(joint, "must mimic another joint that moves, got \"" + coupling.leader +
-                             "\": " + suggestion(coupling.leader, moving));
+  coupling.leader = attribute(*joint.FirstChildElement("mimic"), "joint");
+  coupling.multiplier = number(joint, "mimic", "multiplier").value_or(1.0);
+  coupling.offset = numberOrZero(joint, "mimic", "offset");
+  std::vector<XMLElement*> moving;
+  std::copy_if(joints.begin(), joints.end(), std::back_inserter(moving),
+               [](const XMLElement* one) { return attribute(*one, "type") != "fixed"; });
+  if (coupling.leader == coupling.follower || !isOneOf(namesOf(moving), coupling.leader)) {
+    refuseElement(joint, "must mimic another joint that moves, got \"", coupling.leader,
+                  "\": ", suggestion(coupling.leader, namesOf(moving)));
   }
   return coupling;
 }
@@ -151,7 +152,7 @@ void makePossible(XMLElement* link) {
       {"ixx", "ixy", "ixz"}, {"ixy", "iyy", "iyz"}, {"ixz", "iyz", "izz"}};
   Eigen::Matrix3d inertia;
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) inertia(i, j) = numberOr(*inertial, "inertia", kNames[i][j], 0.0);
+    for (int j = 0; j < 3; ++j) inertia(i, j) = numberOrZero(*inertial, "inertia", kNames[i][j]);
   }
   if (inertia.isZero(0.0)) return;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia);
@@ -160,13 +161,12 @@ void makePossible(XMLElement* link) {
   constexpr double kSmallest = 1e-3;  // share of the largest
   if (principal[0] < -kSmallest * principal[2] ||
       principal[2] > kNearly * (principal[0] + principal[1])) {
-    std::ostringstream got;
-    got << principal[0] << ", " << principal[1] << ", " << principal[2];
     refuseElement(
         *link,
-        "must have an <inertia> that a body can have: principal inertias > 0, none larger than "
-        "the sum of the others, got " +
-            got.str() + "; correct ixx to izz, which are about the centre of mass");
+        "must have an <inertia> that a body can have: principal inertias > 0, none larger than the "
+        "sum of the others, got ",
+        principal[0], ", ", principal[1], ", ", principal[2],
+        "; correct ixx to izz, which are about the centre of mass");
   }
   const double least = std::max(principal[2] - principal[1], kSmallest * principal[2]);
   if (principal[0] >= least) return;
@@ -177,13 +177,49 @@ void makePossible(XMLElement* link) {
   }
 }
 
+/// Notes what a joint says beyond MuJoCo's model.
+void readJoint(const XMLElement& joint, const std::vector<XMLElement*>& joints, Urdf* urdf) {
+  const std::string name = attribute(joint, "name");
+  if (attribute(joint, "type") == "fixed") {
+    urdf->facts.fixed[linkOf(joint, "child")] = linkOf(joint, "parent");
+    return;
+  }
+  if (const auto effort = number(joint, "limit", "effort")) {
+    if (*effort < 0.0) refuseElement(joint, "must have an effort >= 0, got \"", *effort, "\"");
+    urdf->facts.efforts[name] = *effort;
+  }
+  if (joint.FirstChildElement("mimic") == nullptr) return;
+  urdf->couplings.push_back(couplingOf(joint, joints));
+  urdf->facts.leaders[name] = urdf->couplings.back().leader;
+}
+
+/// Checks masses and inertias, unless the <mujoco> block lets MuJoCo replace them.
+void completeInertias(const std::vector<XMLElement*>& links, const std::vector<XMLElement*>& joints,
+                      const std::map<std::string, std::string>& fixed, const XMLElement& compiler) {
+  if (compiler.Attribute("boundinertia") != nullptr ||
+      compiler.Attribute("inertiafromgeom") != nullptr) {
+    return;
+  }
+  std::map<std::string, XMLElement*> by_name;
+  for (XMLElement* link : links) by_name[attribute(*link, "name")] = link;
+  for (const XMLElement* joint : joints) {
+    if (attribute(*joint, "type") == "fixed") continue;
+    requireInertia(linkOf(*joint, "child"), by_name, fixed);
+  }
+  if (attribute(compiler, "balanceinertia") == "true") return;
+  for (XMLElement* link : links) {
+    if (fixed.count(attribute(*link, "name")) == 0) makePossible(link);
+  }
+}
+
 }  // namespace
 
 Urdf readUrdf(const std::string& text, const std::string& path, const FindPackage& find_package) {
+  Urdf urdf;
   const XmlDocument document = parseXml(text);
   XMLElement* const robot = document->RootElement();
   requireNoXacro(robot);
-  keepWhatMujocoReads(robot);
+  keepWhatMujocoReads(robot, &urdf.facts);
   const std::vector<XMLElement*> links = children(*robot, "link");
   const std::vector<XMLElement*> joints = children(*robot, "joint");
   if (links.empty()) refuseElement(*robot, "has no <link>");
@@ -191,55 +227,24 @@ Urdf readUrdf(const std::string& text, const std::string& path, const FindPackag
   requireNames(joints);
   XMLElement* const mujoco = firstChild(robot, "mujoco");
   requireKnownBlock(*mujoco);
-  for (const XMLElement* joint : joints) requireKnownType(*joint);
+  for (const XMLElement* joint : joints) requireTypeAndLimits(*joint);
   requireTree(links, joints);
-  Urdf urdf;
-  for (XMLElement* joint : joints) {
-    const std::string name = attribute(*joint, "name");
-    const std::string type = attribute(*joint, "type");
-    if (type == "fixed") {
-      urdf.fixed[linkOf(*joint, "child")] = linkOf(*joint, "parent");
-      continue;
-    }
-    if (const auto effort = number(*joint, "limit", "effort")) {
-      if (*effort < 0.0) {
-        refuseElement(*joint, "must have an effort >= 0, got \"" +
-                                  attribute(*joint->FirstChildElement("limit"), "effort") + "\"");
-      }
-      urdf.efforts[name] = *effort;
-    }
-    if (type == "continuous") {  // has no positions to end at, whatever is written
-      for (XMLElement* limit : children(*joint, "limit")) {
-        limit->DeleteAttribute("lower");
-        limit->DeleteAttribute("upper");
-      }
-    } else {
-      requireLimits(*joint);
-    }
-    if (joint->FirstChildElement("mimic") != nullptr) {
-      urdf.couplings.push_back(couplingOf(*joint, joints));
+  for (const XMLElement* joint : joints) {
+    readJoint(*joint, joints, &urdf);
+    if (attribute(*joint, "type") != "continuous") continue;
+    for (XMLElement* limit :
+         children(*joint, "limit")) {  // it turns without end, whatever they say
+      limit->DeleteAttribute("lower");
+      limit->DeleteAttribute("upper");
     }
   }
-  requireNoCycle(urdf.couplings);
+  requireNoCycle(urdf.facts.leaders);
   const XMLElement* const option = mujoco->FirstChildElement("option");
   const XMLElement* const flag = option == nullptr ? nullptr : option->FirstChildElement("flag");
   urdf.contacts = flag != nullptr && attribute(*flag, "contact") == "enable";
   XMLElement* const compiler = firstChild(mujoco, "compiler");
-  if (compiler->Attribute("boundinertia") == nullptr &&
-      compiler->Attribute("inertiafromgeom") == nullptr) {
-    std::map<std::string, const XMLElement*> by_name;
-    for (const XMLElement* link : links) by_name[attribute(*link, "name")] = link;
-    for (const XMLElement* joint : joints) {
-      if (attribute(*joint, "type") == "fixed") continue;
-      requireInertia(linkOf(*joint, "child"), by_name, urdf.fixed);
-    }
-    if (attribute(*compiler, "balanceinertia") != "true") {
-      for (XMLElement* link : links) {
-        if (urdf.fixed.count(attribute(*link, "name")) == 0) makePossible(link);
-      }
-    }
-  }
-  MeshNames meshes(fs::absolute(path).parent_path(), find_package, compiler);
+  completeInertias(links, joints, urdf.facts.fixed, *compiler);
+  MeshNames meshes(fs::absolute(path).parent_path(), find_package, *compiler);
   for (const XMLElement* link : links) {
     for (const char* kind : {"visual", "collision"}) {
       for (const XMLElement* part : children(*link, kind)) {
@@ -249,10 +254,8 @@ Urdf readUrdf(const std::string& text, const std::string& path, const FindPackag
     }
   }
   meshes.requireReadable();
-  urdf.model.meshes = meshes.files;
   completeCompiler(compiler);
-  urdf.model.path = path;
-  urdf.model.text = xmlText(*document);
+  urdf.model = {path, xmlText(*document), meshes.files};
   return urdf;
 }
 

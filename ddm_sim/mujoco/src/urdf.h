@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -22,9 +21,7 @@ struct Coupling {
 
 struct Urdf {
   ModelText model;
-  std::map<std::string, double> efforts;  ///< of joints that have one [N m or N]
-  std::map<std::string, std::string>
-      fixed;                        ///< links behind fixed joints, and what they are fixed to
+  UrdfFacts facts;
   std::vector<Coupling> couplings;  ///< <mimic>
   bool contacts = false;            ///< a <mujoco> block asks for them
 };

@@ -6,52 +6,30 @@
 #include <boost/algorithm/string/case_conv.hpp>
 #include <boost/algorithm/string/trim.hpp>
 #include <boost/locale/utf.hpp>
-#include <stdexcept>
-#include <vector>
+#include <utility>
 
 namespace ddm {
 namespace {
 
-class Writer {
+/// Prints elements alone, each in the line in which it was read.
+class LinePrinter : public tinyxml2::XMLPrinter {
  public:
-  std::string text;
+  LinePrinter() : XMLPrinter(nullptr, /*compact=*/true) {}
 
-  void write(const tinyxml2::XMLElement& element) {
-    for (; line_ < element.GetLineNum(); ++line_) text += '\n';
-    text += std::string("<") + element.Value();
-    for (auto* one = element.FirstAttribute(); one != nullptr; one = one->Next()) {
-      text += std::string(" ") + one->Name() + "=\"";
-      writeValue(one->Value());
-      text += '"';
+  bool VisitEnter(const XMLElement& element, const tinyxml2::XMLAttribute* first) override {
+    for (; line_ < element.GetLineNum(); ++line_) PushText("\n");
+    for (auto* one = first; one != nullptr; one = one->Next()) {
+      const std::string value = one->Value();
+      line_ += static_cast<int>(std::count(value.begin(), value.end(), '\n'));
     }
-    text += '>';
-    for (auto* child = element.FirstChildElement(); child != nullptr;
-         child = child->NextSiblingElement()) {
-      write(*child);
-    }
-    text += std::string("</") + element.Value() + ">";
+    return XMLPrinter::VisitEnter(element, first);
   }
+  bool Visit(const tinyxml2::XMLText& /*text*/) override { return true; }
+  bool Visit(const tinyxml2::XMLComment& /*comment*/) override { return true; }
+  bool Visit(const tinyxml2::XMLDeclaration& /*declaration*/) override { return true; }
+  bool Visit(const tinyxml2::XMLUnknown& /*unknown*/) override { return true; }
 
  private:
-  void writeValue(const std::string& value) {
-    for (const char c : value) {
-      switch (c) {
-        case '&':
-          text += "&amp;";
-          break;
-        case '<':
-          text += "&lt;";
-          break;
-        case '"':
-          text += "&quot;";
-          break;
-        default:
-          text += c;
-      }
-    }
-    line_ += static_cast<int>(std::count(value.begin(), value.end(), '\n'));
-  }
-
   int line_ = 1;
 };
 
@@ -68,13 +46,12 @@ bool isUtf8(const std::string& text) {
   return true;
 }
 
-void requireUtf8(const tinyxml2::XMLElement& element) {
+void requireUtf8(const XMLElement& element) {
   for (auto* one = element.FirstAttribute(); one != nullptr; one = one->Next()) {
     if (isUtf8(one->Value())) continue;
-    throw std::invalid_argument("the attribute " + std::string(one->Name()) + " in line " +
-                                std::to_string(element.GetLineNum()) +
-                                " is not in UTF-8: convert the file, for example by `iconv -f "
-                                "LATIN1 -t UTF-8 FILE > NEW_FILE`");
+    refuse("the attribute ", one->Name(), " in line ", element.GetLineNum(),
+           " is not in UTF-8: convert the file, for example by `iconv -f LATIN1 -t UTF-8 FILE > "
+           "NEW_FILE`");
   }
 }
 
@@ -92,20 +69,23 @@ std::string whyBroken(const std::string& text) {
 }  // namespace
 
 std::string mistakenFor(const std::string& bytes) {
+  constexpr char kWebPage[] = "is a web page: download the raw file";
+  constexpr char kUtf16[] =
+      "is in UTF-16: convert it by `iconv -f UTF-16 -t UTF-8 FILE > NEW_FILE`";
+  constexpr char kUsd[] = "is USD: export it as URDF or MJCF";
   const std::pair<std::string, const char*> kinds[] = {
       {"version https://git-lfs",
        "is a pointer of Git LFS in the place of the file: run `git lfs pull` in its repository"},
-      {"<!doctype html", "is a web page: download the raw file"},
-      {"<html", "is a web page: download the raw file"},
-      {"404", "is a web page: download the raw file"},
+      {"<!doctype html", kWebPage},
+      {"<html", kWebPage},
+      {"404", kWebPage},
       {"pk\x03\x04", "is an archive: unpack it by `unzip`"},
       {"\x1f\x8b\x08", "is an archive: unpack it by `gunzip`"},
-      {"\xff\xfe", "is in UTF-16: convert it by `iconv -f UTF-16 -t UTF-8 FILE > NEW_FILE`"},
-      {"\xfe\xff", "is in UTF-16: convert it by `iconv -f UTF-16 -t UTF-8 FILE > NEW_FILE`"},
-      {std::string("<\0", 2),
-       "is in UTF-16: convert it by `iconv -f UTF-16 -t UTF-8 FILE > NEW_FILE`"},
-      {"#usda", "is USD: export it as URDF or MJCF"},
-      {"pxr-usdc", "is USD: export it as URDF or MJCF"}};
+      {"\xff\xfe", kUtf16},
+      {"\xfe\xff", kUtf16},
+      {std::string("<\0", 2), kUtf16},
+      {"#usda", kUsd},
+      {"pxr-usdc", kUsd}};
   const std::string first = boost::to_lower_copy(boost::trim_left_copy(bytes.substr(0, 1000)));
   if (first.empty()) return "is empty: fetch or write it again";
   for (const auto& kind : kinds) {
@@ -116,30 +96,27 @@ std::string mistakenFor(const std::string& bytes) {
 
 XmlDocument parseXml(const std::string& text) {
   const std::string mistaken = mistakenFor(text);
-  if (!mistaken.empty()) throw std::invalid_argument("it " + mistaken);
+  if (!mistaken.empty()) refuse("it ", mistaken);
   if (begins(text, "solid") || text.find('\0') != std::string::npos) {
-    throw std::invalid_argument(
-        "it is no XML: if it is a mesh, name the URDF or MJCF file that uses it");
+    refuse("it is no XML: if it is a mesh, name the URDF or MJCF file that uses it");
   }
   auto document = std::make_unique<tinyxml2::XMLDocument>();
   if (document->Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-    throw std::invalid_argument("line " + std::to_string(document->ErrorLineNum()) +
-                                " is not XML: " + document->ErrorStr() + whyBroken(text));
+    refuse("line ", document->ErrorLineNum(), " is not XML: ", document->ErrorStr(),
+           whyBroken(text));
   }
-  if (document->RootElement() == nullptr) throw std::invalid_argument("it has no XML element");
-  forEachElement(document->RootElement(),
-                 [](tinyxml2::XMLElement* element) { requireUtf8(*element); });
+  if (document->RootElement() == nullptr) refuse("it has no XML element");
+  forEachElement(document->RootElement(), [](XMLElement* element) { requireUtf8(*element); });
   return document;
 }
 
 std::string xmlText(const tinyxml2::XMLDocument& document) {
-  Writer writer;
-  writer.write(*document.RootElement());
-  return writer.text;
+  LinePrinter printer;
+  document.RootElement()->Accept(&printer);
+  return printer.CStr();
 }
 
-void forEachElement(tinyxml2::XMLElement* element,
-                    const std::function<void(tinyxml2::XMLElement*)>& visit) {
+void forEachElement(XMLElement* element, const std::function<void(XMLElement*)>& visit) {
   visit(element);
   for (auto* child = element->FirstChildElement(); child != nullptr;
        child = child->NextSiblingElement()) {
@@ -147,17 +124,19 @@ void forEachElement(tinyxml2::XMLElement* element,
   }
 }
 
-void forEachFile(tinyxml2::XMLElement* root,
-                 const std::function<void(tinyxml2::XMLElement*, const std::string&)>& visit) {
-  forEachElement(root, [&visit](tinyxml2::XMLElement* element) {
-    const std::vector<std::string> kinds = {"mesh", "texture", "hfield", "skin"};
-    if (std::find(kinds.begin(), kinds.end(), element->Value()) == kinds.end()) return;
-    std::vector<std::string> names;  // `visit` may change their values
-    for (auto* one = element->FirstAttribute(); one != nullptr; one = one->Next()) {
-      if (std::string(one->Name()).rfind("file", 0) == 0) names.emplace_back(one->Name());
-    }
-    for (const std::string& name : names) visit(element, name);
-  });
+std::vector<XMLElement*> children(const XMLElement& parent, const char* name) {
+  std::vector<XMLElement*> out;
+  for (auto* child = parent.FirstChildElement(name); child != nullptr;
+       child = child->NextSiblingElement(name)) {
+    out.push_back(const_cast<XMLElement*>(child));
+  }
+  return out;
+}
+
+std::string placeOf(const XMLElement& element) {
+  const std::string name = attribute(element, "name");
+  return textOf("<", element.Value(), name.empty() ? "" : " ", name, "> in line ",
+                element.GetLineNum());
 }
 
 }  // namespace ddm

@@ -7,13 +7,17 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
+
+#include "refuse.h"
 
 namespace ddm {
 
+using tinyxml2::XMLElement;
 using XmlDocument = std::unique_ptr<tinyxml2::XMLDocument>;
 
-/// What a file is that was taken for another one, by its first bytes, with what helps: "is a web page:
-/// ..."; empty if it is none of the usual ones.
+/// Says by the first bytes of a file that it is no model or mesh but, say, a web page, and what
+/// helps: "is a web page: ...". Empty if it is none of the usual mistakes.
 std::string mistakenFor(const std::string& bytes);
 
 /// @throws std::invalid_argument with the line and the reason if the text is not XML
@@ -24,18 +28,24 @@ XmlDocument parseXml(const std::string& text);
 std::string xmlText(const tinyxml2::XMLDocument& document);
 
 /// Visits an element and all elements within it, outer ones first.
-void forEachElement(tinyxml2::XMLElement* element,
-                    const std::function<void(tinyxml2::XMLElement*)>& visit);
+void forEachElement(XMLElement* element, const std::function<void(XMLElement*)>& visit);
+
+/// The elements of this name directly within an element.
+std::vector<XMLElement*> children(const XMLElement& parent, const char* name);
 
 /// The value of an attribute; empty if there is none.
-inline std::string attribute(const tinyxml2::XMLElement& element, const char* name) {
+inline std::string attribute(const XMLElement& element, const char* name) {
   const char* const value = element.Attribute(name);
   return value == nullptr ? "" : value;
 }
 
-/// Attributes that name a file in elements that name one: meshes, textures, height fields, skins.
-/// @param visit  gets the element and the name of the attribute
-void forEachFile(tinyxml2::XMLElement* root,
-                 const std::function<void(tinyxml2::XMLElement*, const std::string&)>& visit);
+/// "<joint hinge> in line 7"
+std::string placeOf(const XMLElement& element);
+
+/// @throws std::invalid_argument, always: the element, its name and line, then the parts
+template <class... Parts>
+[[noreturn]] void refuseElement(const XMLElement& element, const Parts&... parts) {
+  refuse(placeOf(element), " ", parts...);
+}
 
 }  // namespace ddm

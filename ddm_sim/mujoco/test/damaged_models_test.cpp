@@ -1,6 +1,6 @@
 // Test with damaged model files: none may crash, hang, or be drawn black without a message.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_common/param_reader.h>
+#include <ddm_common/plain_file.h>
 #include <gtest/gtest.h>
 #include <tinyxml2.h>
 
@@ -15,7 +15,6 @@
 
 #include "ddm_plant_plugin/plant_config.h"
 #include "ddm_sim/plant_factory.h"
-#include "load_model.h"
 #include "model_folder.h"
 
 namespace ddm {
@@ -100,10 +99,7 @@ class Damage {
 /// @throws std::exception with what is wrong
 /// @return the brightest grey value of its images
 int tryPlant(const std::string& plant_file) {
-  ParamReader reader = ParamReader::fromFiles({plant_file});
-  const auto maker = readPlant(&reader);
-  reader.requireValid();
-  const std::unique_ptr<Plant> plant = makePlant(*maker);
+  const std::unique_ptr<Plant> plant = makePlant(*readPlantFiles({plant_file}));
   int brightest = 0;
   for (int t = 0; t < 5; ++t) {
     const Picture image = plant->render(plant->state());
@@ -163,7 +159,7 @@ TEST(DamagedModels, AreDrawnOrRefusedWithAReason) {
     std::vector<std::string> files = {block["model"].as<std::string>()};
     if (copy % 5 == 4) files = meshesIn(".");
     for (const std::string& file : files) {
-      const std::string damaged = Damage(static_cast<unsigned int>(copy))(readModelFile(file));
+      const std::string damaged = Damage(static_cast<unsigned int>(copy))(readFile(file));
       std::ofstream(file, std::ios::binary) << damaged;
     }
     try {

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <unistd.h>
+#include <ddm_msgs/testing/temp_folder.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -24,24 +23,16 @@ constexpr char kTetrahedron[] =
 /// Of the only package that there is, `robots`.
 class ModelFolder {
  public:
-  ModelFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "models_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    folder_ = name;
-  }
-  ~ModelFolder() { std::filesystem::remove_all(folder_); }
-  ModelFolder(const ModelFolder&) = delete;
-  ModelFolder& operator=(const ModelFolder&) = delete;
-
   std::string write(const std::string& name, const std::string& text) const {
-    std::filesystem::create_directories((folder_ / name).parent_path());
-    std::ofstream(folder_ / name) << text;
-    return (folder_ / name).string();
+    const std::filesystem::path file = folder_.file(name);
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file) << text;
+    return file.string();
   }
 
   std::shared_ptr<const MujocoModel> load(const std::string& uri) const {
     return std::make_shared<MujocoModel>(uri, [this](const std::string& package) {
-      return package == "robots" ? folder_.string() : std::string();
+      return package == "robots" ? path() : std::string();
     });
   }
 
@@ -50,10 +41,10 @@ class ModelFolder {
     return load(write(name, text));
   }
 
-  std::string path() const { return folder_.string(); }
+  std::string path() const { return folder_.file(""); }
 
  private:
-  std::filesystem::path folder_;
+  TempFolder folder_;
 };
 
 /// An arm of two links in the plane, 0.2 and 0.1 m, with a motor in each joint.

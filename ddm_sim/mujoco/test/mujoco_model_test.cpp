@@ -108,46 +108,19 @@ TEST_F(MujocoModelTest, FindsPackagesInIncludesAndSaysFromWherePathsCount) {
   const std::string include = "<include file='package://robots/parts/look.xml'/>";
   EXPECT_TRUE(isRefused(folder_.write("robot/a.xml", armText(include)),
                         {"not there: gone.stl", "folder of the model file", "included"}));
+  EXPECT_TRUE(isRefused(folder_.write("robot/b.xml", armText("<include file='look.xml'/>")),
+                        {"plant/model", "look.xml"}));
   folder_.write("parts/look.xml", "<mujocoinclude><option timestep='0.001'/></mujocoinclude>");
   EXPECT_EQ(folder_.loadText(armText(include), "robot/a.xml")->get().opt.timestep, 0.001);
 }
 
-TEST_F(MujocoModelTest, NamesAMissingIncludeMeshOrTexture) {
-  EXPECT_TRUE(isRefused(folder_.write("a.xml", armText("<include file='look.xml'/>")),
-                        {"plant/model", "look.xml"}));
-  EXPECT_TRUE(
-      isRefused(folder_.write("b.xml", armText("<asset><mesh name='m' file='hand.stl'/></asset>")),
-                {"plant/model", "hand.stl"}));
-  EXPECT_TRUE(isRefused(
-      folder_.write("c.xml",
-                    armText("<asset><texture name='t' type='2d' file='oak.png'/></asset>")),
-      {"plant/model", "oak.png"}));
-}
-
-TEST_F(MujocoModelTest, ReadsAUrdfWithItsVisualShapesAndLimits) {
-  const auto model = folder_.loadText(armUrdf(), "arm.urdf");
-  EXPECT_EQ(model->names(mjOBJ_JOINT), (std::vector<std::string>{"shoulder", "elbow"}));
-  EXPECT_EQ(model->get().ngeom, 2);
-  EXPECT_EQ(model->effortLimit("elbow"), 3.0);
-  EXPECT_FALSE(model->effortLimit("shoulder"));
-}
-
-TEST_F(MujocoModelTest, FindsTheMeshesOfAUrdfInPackagesAndBesideIt) {
-  folder_.write("meshes/base.obj", kTetrahedron);
-  for (const char* mesh : {"package://robots/meshes/base.obj", "../meshes/base.obj"}) {
-    const auto model = folder_.loadText(armUrdf(mesh), "urdf/arm.urdf");
-    EXPECT_EQ(model->get().nmesh, 1) << mesh;
-    EXPECT_EQ(model->get().ngeom, 2) << mesh;
-  }
-  EXPECT_TRUE(isRefused(folder_.write("urdf/b.urdf", armUrdf("package://robots/meshes/b.obj")),
-                        {"plant/model", "meshes/b.obj"}));
-  EXPECT_TRUE(isRefused(folder_.write("urdf/c.urdf", armUrdf("package://hands/meshes/b.obj")),
-                        {"plant/model", "package hands"}));
-}
-
-TEST_F(MujocoModelTest, HasLightAndNoContactsForAUrdf) {
+TEST_F(MujocoModelTest, ReadsAUrdfWithItsShapesAndLimitsAndAddsLightButNoContacts) {
   const auto urdf = folder_.loadText(armUrdf(), "arm.urdf");
   const mjModel& model = urdf->get();
+  EXPECT_EQ(urdf->names(mjOBJ_JOINT), (std::vector<std::string>{"shoulder", "elbow"}));
+  EXPECT_EQ(model.ngeom, 2);
+  EXPECT_EQ(urdf->effortLimit("elbow"), 3.0);
+  EXPECT_FALSE(urdf->effortLimit("shoulder"));
   EXPECT_NE(model.opt.disableflags & mjDSBL_CONTACT, 0);
   EXPECT_EQ(model.vis.headlight.diffuse[0], 0.6F);
   EXPECT_EQ(folder_.loadText(armText())->get().opt.disableflags & mjDSBL_CONTACT, 0);
@@ -156,22 +129,18 @@ TEST_F(MujocoModelTest, HasLightAndNoContactsForAUrdf) {
 TEST_F(MujocoModelTest, DrawsNoCollisionShapeOfAUrdfOverAVisualOne) {
   const std::string cylinder =
       "<collision><geometry><cylinder radius='0.2' length='1'/></geometry></collision>";
-  const auto drawnCylinders = [this](const std::string& text) {
+  const auto drawnCylinders = [&](const char* before) {
+    std::string text = armUrdf();
+    text.insert(text.rfind(before), cylinder);
     const auto urdf = folder_.loadText(text, "arm.urdf");
-    const mjModel& model = urdf->get();
     int drawn = 0;
-    for (int i = 0; i < model.ngeom; ++i) {
-      drawn += model.geom_type[i] == mjGEOM_CYLINDER && model.geom_group[i] < 3 ? 1 : 0;
+    for (int i = 0; i < urdf->get().ngeom; ++i) {
+      drawn += urdf->get().geom_type[i] == mjGEOM_CYLINDER && urdf->get().geom_group[i] < 3 ? 1 : 0;
     }
-    EXPECT_EQ(model.ngeom, 3);
     return drawn;
   };
-  std::string of_the_seen_link = armUrdf();
-  of_the_seen_link.insert(of_the_seen_link.rfind("<visual>"), cylinder);
-  EXPECT_EQ(drawnCylinders(of_the_seen_link), 0);
-  std::string of_the_bare_link = armUrdf();
-  of_the_bare_link.insert(of_the_bare_link.rfind("</link>"), cylinder);
-  EXPECT_EQ(drawnCylinders(of_the_bare_link), 1);
+  EXPECT_EQ(drawnCylinders("<visual>"), 0);
+  EXPECT_EQ(drawnCylinders("</link>"), 1);  // of a link without visual shapes
 }
 
 TEST_F(MujocoModelTest, FindsPlacesAmongSitesAndBodies) {
@@ -232,22 +201,21 @@ TEST_F(MujocoModelTest, RefusesAModelThatNeedsTooMuchMemory) {
 }
 
 TEST_F(MujocoModelTest, HasADigestOfAllFilesThatItNames) {
-  folder_.write("assets/base.obj", kTetrahedron);
-  folder_.write("look.xml", "<mujocoinclude><visual/></mujocoinclude>");
   const std::string text = armText(
       "<include file=\"look.xml\"/><compiler meshdir='assets'/>"
       "<asset><mesh name='m' file='base.obj'/></asset>");
-  const std::string digest = folder_.loadText(text)->digest();
-  EXPECT_EQ(folder_.loadText(text)->digest(), digest);
-  EXPECT_NE(folder_.loadText(text + "<!-- another word -->")->digest(), digest);
-  folder_.write("look.xml", "<mujocoinclude><visual/><size/></mujocoinclude>");
-  const std::string with_size = folder_.loadText(text)->digest();
-  EXPECT_NE(with_size, digest);
-  folder_.write("assets/base.obj", std::string(kTetrahedron) + "# painted\n");
-  EXPECT_NE(folder_.loadText(text)->digest(), with_size);
-  const std::string with_paint = folder_.loadText(text, "arm.mjcf")->digest();
-  folder_.write("assets/base.obj", kTetrahedron);
-  EXPECT_NE(folder_.loadText(text, "arm.mjcf")->digest(), with_paint);
+  const auto digest = [&](const std::string& look, const std::string& mesh,
+                          const std::string& comment) {
+    folder_.write("look.xml", look);
+    folder_.write("assets/base.obj", mesh);
+    return folder_.loadText(text + comment)->digest();
+  };
+  const std::string look = "<mujocoinclude><visual/></mujocoinclude>";
+  const std::string first = digest(look, kTetrahedron, "");
+  EXPECT_EQ(digest(look, kTetrahedron, ""), first);
+  EXPECT_NE(digest(look, kTetrahedron, "<!-- another word -->"), first);
+  EXPECT_NE(digest("<mujocoinclude><size/></mujocoinclude>", kTetrahedron, ""), first);
+  EXPECT_NE(digest(look, std::string(kTetrahedron) + "# painted\n", ""), first);
 }
 
 TEST_F(MujocoModelTest, ThrowsWhatMujocoCallsAnErrorAndLeavesNoLogBehind) {

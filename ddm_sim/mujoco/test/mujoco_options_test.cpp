@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/mujoco_options.h"
 
+#include <ddm_common/param_reader.h>
 #include <gtest/gtest.h>
 
-#include <functional>
-#include <memory>
-#include <ostream>
+#include <set>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "ddm_msgs/testing/expect_error.h"
@@ -26,145 +27,73 @@ using testing::plantOf;
 using testing::refusalOf;
 using testing::urdfOptions;
 
-struct Flaw {
-  const char* name;
-  std::function<std::unique_ptr<MujocoPlant>()> make;
-  std::vector<std::string> words;  ///< that the refusal must have
-};
+using Words = std::vector<std::string>;
 
-void PrintTo(const Flaw& flaw, std::ostream* out) { *out << flaw.name; }
-
-class MujocoPlantFlawTest : public ::testing::TestWithParam<Flaw> {};
-
-TEST_P(MujocoPlantFlawTest, IsRefusedByName) {
-  const std::string text = refusalOf(GetParam().make);
-  for (const std::string& word : GetParam().words) {
-    EXPECT_NE(text.find(word), std::string::npos) << word << " is not in: " << text;
+/// armOptions() or urdfOptions() with other values, as a plant file gives them.
+MujocoOptions with(const MujocoOptions& options, const std::string& yaml) {
+  YAML::Node blocks;
+  blocks["plant"] = toYaml(options);
+  for (const auto& one : YAML::Load("{" + yaml + "}")) {
+    blocks["plant"][one.first.as<std::string>()] = one.second;
   }
-}
-
-/// The arm with one option that is wrong.
-std::function<std::unique_ptr<MujocoPlant>()> armWith(
-    const std::function<void(MujocoOptions*)>& spoil) {
-  return [spoil] {
-    MujocoOptions options = armOptions();
-    spoil(&options);
-    return arm(options);
-  };
+  return ParamReader(blocks).read<MujocoOptions>("plant");
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   return text.replace(text.find(from), from.size(), to);
 }
 
-std::vector<Flaw> options() {
-  using O = MujocoOptions;
-  return {
-      {"UnknownMotor",
-       armWith([](O* o) { o->motors = {"elbw"}; }),
-       {"plant/motors", "elbw", "elbow?"}},
-      {"TwoMotorsOfOneJoint",
-       armWith([](O* o) {
-         o->motors = {"elbow", "elbow"};
-       }),
-       {"plant/motors", "elbow"}},
-      {"UnknownErrorJoint",
-       armWith([](O* o) { o->error_joints = {"knee"}; }),
-       {"plant/error_joints", "knee", "shoulder, elbow"}},
-      {"UnknownGoalSite",
-       armWith([](O* o) {
-         o->goal_site = "top";
-         o->goal_distance = {0.1, 0.2};
-       }),
-       {"plant/goal_site", "top", "tip"}},
-      {"UnknownCamera", armWith([](O* o) { o->look.camera = "abowe"; }), {"abowe", "above"}},
-      {"UnknownReward",
-       armWith([](O* o) { o->reward = "reacher_esay"; }),
-       {"plant/reward", "reacher_esay", "reacher_easy?"}},
-      {"RewardOfAnotherPlant",
-       armWith([](O* o) { o->reward = "pendulum_swingup"; }),
-       {"plant/reward", "pendulum_swingup", "2 joints"}},
-      {"TimeStepIsNoMultiple",
-       armWith([](O* o) { o->dt = 0.125; }),
-       {"plant/dt", "0.01", "0.125", "nearest"}},
-      {"EpisodeIsNoMultiple",
-       armWith([](O* o) { o->episode_frames = 1001; }),
-       {"plant/episode_frames", "1001"}},
-      {"LimitBeyondTheMotor",
-       armWith([](O* o) {
-         o->max_torque = {1.0, 0.5};
-       }),
-       {"plant/max_torque", "elbow", "0.4", "0.5"}},
-      {"AnotherNumberOfLimits",
-       armWith([](O* o) {
-         o->max_torque = {0.1, 0.1, 0.1};
-       }),
-       {"plant/max_torque", "2", "3"}},
-      {"AnotherNumberOfStarts",
-       armWith([](O* o) {
-         o->start = {0, 0, 0};
-       }),
-       {"plant/start", "3"}},
-      {"AnotherNumberOfColumns",
-       armWith([](O* o) {
-         o->state_names = {"a", "b"};
-       }),
-       {"plant/state_names", "2"}},
-      {"NoTolerance", armWith([](O* o) { o->tolerance = 0.0; }), {"plant/tolerance"}},
-      {"NegativeTimestep", armWith([](O* o) { o->timestep = -0.01; }), {"plant/timestep", "-0.01"}},
-      {"TinyTimestep",
-       armWith([](O* o) { o->timestep = 1e-300; }),
-       {"plant/timestep", "1000000", "1e-300"}},
-  };
+TEST(MujocoOptions, AreRefusedByNameWhereTheyDoNotFitTheModel) {
+  const std::pair<const char*, Words> flaws[] = {
+      {"motors: [elbw]", {"plant/motors", "elbw", "elbow?"}},
+      {"motors: [elbow, elbow]", {"plant/motors", "elbow"}},
+      {"error_joints: [knee]", {"plant/error_joints", "knee", "shoulder, elbow"}},
+      {"goal_site: top, goal_distance: [0.1, 0.2]", {"plant/goal_site", "top", "tip"}},
+      {"camera: abowe", {"abowe", "above"}},
+      {"reward: reacher_esay", {"plant/reward", "reacher_esay", "reacher_easy?"}},
+      {"reward: pendulum_swingup", {"plant/reward", "pendulum_swingup", "2 joints"}},
+      {"dt: 0.125", {"plant/dt", "0.01", "0.125", "nearest"}},
+      {"episode_frames: 1001", {"plant/episode_frames", "1001"}},
+      {"max_torque: [1.0, 0.5]", {"plant/max_torque", "elbow", "0.4", "0.5"}},
+      {"max_torque: [0.1, 0.1, 0.1]", {"plant/max_torque", "2", "3"}},
+      {"start: [0.0, 0.0, 0.0]", {"plant/start", "3"}},
+      {"state_names: [a, b]", {"plant/state_names", "2"}},
+      {"tolerance: 0.0", {"plant/tolerance"}},
+      {"timestep: -0.01", {"plant/timestep", "-0.01"}},
+      {"timestep: 1.0e-300", {"plant/timestep", "1000000", "1e-300"}}};
+  for (const auto& [yaml, words] : flaws) {
+    EXPECT_TRUE(testing::names(refusalOf([&, y = yaml] { arm(with(armOptions(), y)); }), words));
+  }
+  EXPECT_TRUE(testing::names(
+      refusalOf([] { plantOf(armUrdf(), with(urdfOptions(), "motors: []"), "arm.urdf"); }),
+      {"plant/motors", "shoulder, elbow"}));
+  EXPECT_TRUE(testing::names(
+      refusalOf([] { plantOf(armUrdf(), with(urdfOptions(), "max_torque: []"), "arm.urdf"); }),
+      {"plant/max_torque", "shoulder", "effort"}));
 }
 
-std::vector<Flaw> files() {
-  const auto fileWith = [](const std::string& from, const std::string& to) {
-    return [=] { return plantOf(replaced(armText(), from, to), armOptions()); };
-  };
-  const auto urdfWith = [](const std::function<void(MujocoOptions*)>& spoil) {
-    return [spoil] {
-      MujocoOptions options = urdfOptions();
-      spoil(&options);
-      return plantOf(armUrdf(), options, "arm.urdf");
-    };
-  };
-  return {
-      {"UrdfWithoutMotors",
-       urdfWith([](MujocoOptions* o) { o->motors.clear(); }),
-       {"plant/motors", "shoulder, elbow"}},
-      {"JointWithoutALimit",
-       urdfWith([](MujocoOptions* o) { o->max_torque.clear(); }),
-       {"plant/max_torque", "shoulder", "effort"}},
-      {"MotorWithoutALimit",
-       fileWith("gear=\"2\" ctrllimited=\"true\" ctrlrange=\"-0.5 0.5\"", "gear=\"2\""),
-       {"plant/max_torque", "shoulder", "ctrlrange"}},
-      {"PositionServo",
-       fileWith("<motor name=\"first\" joint=\"shoulder\" gear=\"2\"",
-                "<position name=\"first\" joint=\"shoulder\""),
+TEST(MujocoOptions, AreRefusedForAModelWithoutUsableJointsOrMotors) {
+  const std::string control = "ctrlrange=\"-0.5 0.5\"", limit = "ctrllimited=\"true\" " + control,
+                    joint = "axis=\"0 0 1\" damping=\"0.1\"/>";
+  const std::tuple<std::string, std::string, Words> flaws[] = {
+      {"gear=\"2\" " + limit, "gear=\"2\"", {"plant/max_torque", "shoulder", "ctrlrange"}},
+      {"<motor name=\"first\" joint=\"shoulder\" gear=\"2\"",
+       "<position name=\"first\" joint=\"shoulder\"",
        {"actuator first", "motor", "plant/motors"}},
-      {"OnewayControl",
-       fileWith("ctrlrange=\"-0.5 0.5\"", "ctrlrange=\"0 0.5\""),
-       {"actuator first", "ctrlrange [0, 0.5]", "symmetric", "plant/motors"}},
-      {"LopsidedForce",
-       fileWith("ctrlrange=\"-0.5 0.5\"",
-                "ctrlrange=\"-0.5 0.5\" forcelimited=\"true\" forcerange=\"-3 1\""),
-       {"actuator first", "forcerange [-3, 1]", "symmetric"}},
-      {"FreeJoint",
-       fileWith("<worldbody>",
-                "<worldbody><body><freejoint name=\"loose\"/><geom size=\"0.1\"/></body>"),
+      {control, "ctrlrange=\"0 0.5\"", {"actuator first", "[0, 1]", "symmetric", "plant/motors"}},
+      {control,
+       control + " forcelimited=\"true\" forcerange=\"-3 0.1\"",
+       {"actuator first", "[-1, 0.2]", "symmetric"}},
+      {"<worldbody>",
+       "<worldbody><body><freejoint name=\"loose\"/><geom size=\"0.1\"/></body>",
        {"plant/model", "free joint", "loose"}},
-      {"BallJoint", fileWith("axis=\"0 0 1\" damping=\"0.1\"/>", "type=\"ball\"/>"), {"shoulder"}},
-      {"SlideBesideHinge",
-       fileWith("axis=\"0 0 1\" damping=\"0.1\"/>", "type=\"slide\"/>"),
-       {"plant/error_joints", "plant/error_sites"}},
-  };
+      {joint, "type=\"ball\"/>", {"shoulder"}},
+      {joint, "type=\"slide\"/>", {"plant/error_joints", "plant/error_sites"}}};
+  for (const auto& flaw : flaws) {
+    const std::string text = replaced(armText(), std::get<0>(flaw), std::get<1>(flaw));
+    EXPECT_TRUE(testing::names(refusalOf([&] { plantOf(text, armOptions()); }), std::get<2>(flaw)));
+  }
 }
-
-std::string flawName(const ::testing::TestParamInfo<Flaw>& info) { return info.param.name; }
-
-INSTANTIATE_TEST_SUITE_P(Options, MujocoPlantFlawTest, ::testing::ValuesIn(options()), flawName);
-INSTANTIATE_TEST_SUITE_P(Files, MujocoPlantFlawTest, ::testing::ValuesIn(files()), flawName);
 
 TEST(MujocoOptions, AreCompletedByLimitsAndDigestAndRefuseThatOfAnotherFile) {
   const ModelFolder folder;
@@ -181,12 +110,33 @@ TEST(MujocoOptions, AreCompletedByLimitsAndDigestAndRefuseThatOfAnotherFile) {
   }
 }
 
-TEST(MujocoOptions, AreRefusedForAFreeJointBeforeAnythingElseOfTheModel) {
-  const ModelFolder folder;
-  const auto model = folder.loadText(
-      armText("<worldbody><body><freejoint name='loose'/><geom size='0.1'/></body></worldbody>"));
-  EXPECT_TRUE(testing::names(refusalOf([&] { completed(armOptions(), *model); }),
-                             {"plant/model", "free joint", "loose"}));
+TEST(MujocoOptions, ReportAllProblemsOfTheImage) {
+  const MujocoOptions options =
+      with(armOptions(),
+           "camera_position: [0.0, 1.0], samples: 2, supersampling: 9, camera_shift: -0.1, "
+           "colour_shift: 2.0");
+  EXPECT_TRUE(testing::names(refusalOf([&] { arm(options); }),
+                             {"plant/camera_position", "plant/camera_look_at", "plant/samples",
+                              "plant/supersampling", "plant/camera_shift", "plant/colour_shift"}));
+}
+
+TEST(MujocoOptions, AreInTheParameterReferenceWithTheirDefaultsButForWhatThePendulumNeeds) {
+  const std::string file = DDM_SIM_SOURCE_DIR "/config/mujoco_pendulum.yaml";
+  const YAML::Node reference = YAML::LoadFile(file)["plant"];
+  const std::set<std::string> of_the_pendulum = {
+      "model",         "max_torque",  "start",        "goal",   "tolerance",
+      "visible_sites", "state_names", "torque_names", "camera", "supersampling"};
+  ParamReader reader = ParamReader::fromFiles({file});
+  const YAML::Node read = toYaml(reader.read<MujocoOptions>("plant"));
+  ASSERT_NO_THROW(reader.requireValid());
+  const YAML::Node defaults = toYaml(MujocoOptions());
+  EXPECT_EQ(reference.size(), defaults.size());
+  for (const auto& entry : defaults) {
+    const auto key = entry.first.as<std::string>();
+    EXPECT_TRUE(reference[key].IsDefined()) << key;
+    EXPECT_EQ(YAML::Dump(read[key]) == YAML::Dump(entry.second), of_the_pendulum.count(key) == 0)
+        << key << " of the reference is " << YAML::Dump(read[key]);
+  }
 }
 
 }  // namespace

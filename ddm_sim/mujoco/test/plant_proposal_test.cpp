@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "ddm_msgs/testing/expect_error.h"
 #include "ddm_mujoco/mujoco_plant.h"
 #include "ddm_sim/angles.h"
 #include "model_folder.h"
@@ -56,15 +57,9 @@ std::string cartPole(const std::string& rail) {
 
 class Proposal : public ::testing::Test {
  protected:
-  MotorChoice choose(const std::string& text, const std::string& name = "robot.urdf") {
-    model_ = folder_.loadText(text, name);
-    return chooseMotors(*model_, jointsOf(model_), transmissionJoints(text));
-  }
-
   PlantProposal propose(const std::string& text, const std::string& name = "robot.urdf") {
-    const MotorChoice choice = choose(text, name);
-    EXPECT_FALSE(choice.joints.empty());
-    return proposePlant(model_, choice, {});
+    model_ = folder_.loadText(text, name);
+    return proposePlant(model_, {}, {});
   }
 
   ModelFolder folder_;
@@ -98,33 +93,32 @@ TEST_F(Proposal, MotorsAreTheTransmissionsOfAUrdfThenItsJointsWithAnEffortLimit)
                  jointOf("upper", "continuous", "base", "a", "0 1 0", upper) +
                  jointOf("lower", "continuous", "a", "b", "0 1 0", lower) + more);
   };
-  EXPECT_EQ(choose(two(strong, weak, "")).joints, Texts({"upper"}));
-  EXPECT_EQ(choose(two(strong, strong, "")).joints, Texts({"upper", "lower"}));
-  EXPECT_EQ(choose(two(strong, weak, "<transmission name='t'><joint name='lower'/></transmission>"))
-                .joints,
-            Texts({"lower"}));
-  const MotorChoice unclear = choose(two(weak, weak, ""));
-  EXPECT_TRUE(unclear.joints.empty());
-  EXPECT_EQ(unclear.candidates, Texts({"upper", "lower"}));
-  EXPECT_EQ(choose(pendulum("")).joints, Texts({"hinge"}));  // the only joint
-  EXPECT_EQ(choose(two(strong, strong + "<mimic joint='upper'/>", "")).joints, Texts({"upper"}));
-  EXPECT_EQ(choose(two(weak, weak + "<mimic joint='upper'/>", "")).joints, Texts({"upper"}));
+  const std::string mimic = "<mimic joint='upper'/>";
+  const std::string transmission = "<transmission name='t'><joint name='lower'/></transmission>";
+  const std::pair<std::string, Texts> cases[] = {
+      {two(strong, weak, ""), {"upper"}},
+      {two(strong, strong, ""), {"upper", "lower"}},
+      {two(strong, weak, transmission), {"lower"}},
+      {two(strong, strong + mimic, ""), {"upper"}},
+      {two(weak, weak + mimic, ""), {"upper"}},  // the only joint that moves by itself
+      {pendulum(""), {"hinge"}}};
+  for (const auto& one : cases) EXPECT_EQ(propose(one.first).motors, one.second) << one.first;
+  EXPECT_TRUE(testing::names(testing::refusalOf([&] { propose(two(weak, weak, "")); }),
+                             {"--motors", "upper,lower"}));
 }
 
 TEST_F(Proposal, MotorsOfAnMjcfFileAreItsActuatorsAndServosBecomeTorques) {
   const auto arm = [](const std::string& actuator) {
     return "<mujoco><worldbody><body><joint name='swing' axis='0 1 0'/><geom type='capsule' "
-           "size='.05 .4'/>"
-           "</body></worldbody><actuator>" +
+           "size='.05 .4'/></body></worldbody><actuator>" +
            actuator + "</actuator></mujoco>";
   };
-  const MotorChoice motor =
-      choose(arm("<motor joint='swing' ctrllimited='true' ctrlrange='-1 1'/>"), "m.xml");
-  EXPECT_TRUE(motor.by_actuators);
-  EXPECT_EQ(motor.joints, Texts({"swing"}));
-  const MotorChoice servo = choose(arm("<position joint='swing' kp='10'/>"), "s.xml");
-  EXPECT_FALSE(servo.by_actuators);
-  EXPECT_EQ(servo.joints, Texts({"swing"}));
+  const PlantProposal motor =
+      propose(arm("<motor joint='swing' ctrllimited='true' ctrlrange='-1 1'/>"), "m.xml");
+  EXPECT_EQ(motor.options.motors, Texts());
+  EXPECT_EQ(motor.motors, Texts({"swing"}));
+  const PlantProposal servo = propose(arm("<position joint='swing' kp='10'/>"), "s.xml");
+  EXPECT_EQ(servo.options.motors, Texts({"swing"}));
 }
 
 TEST_F(Proposal, APendulumStartsHangingAndItsGoalIsUpright) {

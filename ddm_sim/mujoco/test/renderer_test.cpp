@@ -1,4 +1,4 @@
-// Tests of the renderer: what is seen where, that equal states give equal bytes, what is refused.
+// Tests of the renderer: what is seen where, equal bytes for equal states, disturbances of the scene.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/renderer.h"
 
@@ -8,16 +8,16 @@
 #include <gtest/gtest.h>
 
 #include <boost/filesystem.hpp>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
-#include <limits>
 #include <memory>
-#include <set>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "model_folder.h"
 #include "scene_model.h"
 
 namespace ddm {
@@ -28,9 +28,8 @@ using testing::SceneModel;
 using testing::throwsNaming;
 using Bytes = std::vector<std::uint8_t>;
 
-Picture drawn(const SceneModel& scene, const RenderOptions& options,
-              const SceneOptions& nuisances = {}) {
-  return Renderer(scene.model, options, nuisances).draw(*scene.data);
+Picture drawn(const SceneModel& scene, const RenderOptions& options) {
+  return Renderer(scene.model, options).draw(*scene.data);
 }
 
 /// Middle of the pixels of a colour: column and row from the upper left corner [pixels].
@@ -75,7 +74,7 @@ TEST(Renderer, ShowsThingsWhereACameraWithItsModelSeesThem) {
       RenderOptions options = colourful(name);
       options.width = 160;
       options.height = 120;
-      Renderer renderer(scene.model, options, SceneOptions());
+      Renderer renderer(scene.model, options);
       const Spot ball = spotOf(renderer.draw(*scene.data), isRed);
       ASSERT_GT(ball.count, 50) << name;
 
@@ -93,17 +92,17 @@ TEST(Renderer, ShowsThingsWhereACameraWithItsModelSeesThem) {
   }
 }
 
-TEST(Renderer, PlacesACameraThatTheModelDoesNotHave) {
+TEST(Renderer, TakesTheFirstCameraOfTheModelOrPlacesOneThatTheModelDoesNotHave) {
   const SceneModel scene(0.3);
+  EXPECT_EQ(drawn(scene, colourful("")).bytes, drawn(scene, colourful("front")).bytes);
   RenderOptions placed = colourful("");
   placed.position = {0.0, -4.0, 1.0};
   placed.look_at = {0.0, 0.0, 1.0};
-  placed.field_of_view = 40.0;
   EXPECT_LT(meanDifference(drawn(scene, placed), drawn(scene, colourful("front"))), 0.1);
 
   placed.position = {0.2, 0.1, 5.0};
   placed.look_at = {0.2, 0.1, 0.0};
-  const CameraModel camera = Renderer(scene.model, placed, SceneOptions()).camera(*scene.data);
+  const CameraModel camera = Renderer(scene.model, placed).camera(*scene.data);
   Eigen::Matrix3d down_with_y_up;
   down_with_y_up << 1, 0, 0, 0, -1, 0, 0, 0, -1;
   EXPECT_TRUE(camera.rotation.isApprox(down_with_y_up, 1e-6)) << camera.rotation;
@@ -111,48 +110,37 @@ TEST(Renderer, PlacesACameraThatTheModelDoesNotHave) {
   EXPECT_TRUE(camera.fixed);
 }
 
-TEST(Renderer, TakesTheFirstCameraOfTheModelWhereNoneIsNamed) {
-  const SceneModel scene;
-  EXPECT_EQ(drawn(scene, colourful("")).bytes, drawn(scene, colourful("front")).bytes);
-}
-
-TEST(Renderer, GivesTheSameBytesForTheSameStateInTurnsAndTwins) {
+TEST(Renderer, GivesTheSameBytesForTheSameStateInTurns) {
   SceneModel scene(0.4);
   RenderOptions options;
   options.samples = 4;
-  Renderer renderer(scene.model, options, SceneOptions());
+  Renderer renderer(scene.model, options);
   const Bytes first = renderer.draw(*scene.data).bytes;
   EXPECT_EQ(first.size(), std::size_t{51 * 51});
   scene.turn(1.0);
   EXPECT_NE(renderer.draw(*scene.data).bytes, first);
   scene.turn(0.4);
   EXPECT_EQ(renderer.draw(*scene.data).bytes, first);
-  EXPECT_EQ(drawn(scene, options).bytes, first);
 }
 
 TEST(Renderer, GivesTheSameBytesOnAllThreads) {
   const SceneModel scene(0.4);
-  const RenderOptions options = colourful();
-  Renderer shared(scene.model, options, SceneOptions());
+  Renderer shared(scene.model, colourful());
   const Bytes expected = shared.draw(*scene.data).bytes;
-  std::vector<Bytes> of_shared(4);
-  std::vector<Bytes> of_own(4);
+  std::vector<Bytes> results(8);
   std::vector<std::thread> threads;
-  for (std::size_t i = 0; i < of_own.size(); ++i) {
+  for (std::size_t i = 0; i < results.size(); i += 2) {
     threads.emplace_back([&, i] {
       const SceneModel own_scene(0.4);
-      Renderer own(own_scene.model, options, SceneOptions());
+      Renderer own(own_scene.model, colourful());
       for (int k = 0; k < 5; ++k) {
-        of_own[i] = own.draw(*own_scene.data).bytes;
-        of_shared[i] = shared.draw(*scene.data).bytes;
+        results[i] = own.draw(*own_scene.data).bytes;
+        results[i + 1] = shared.draw(*scene.data).bytes;
       }
     });
   }
   for (std::thread& thread : threads) thread.join();
-  for (std::size_t i = 0; i < of_own.size(); ++i) {
-    EXPECT_EQ(of_own[i], expected) << i;
-    EXPECT_EQ(of_shared[i], expected) << i;
-  }
+  for (const Bytes& result : results) EXPECT_EQ(result, expected);
 }
 
 TEST(Renderer, DrawsOnTheCallersThread) {
@@ -180,15 +168,14 @@ TEST(Renderer, TurnsEveryColourIntoTheGreyOfAReader) {
 
 TEST(Renderer, AveragesWhatItDrawsLarger) {
   const SceneModel scene(0.4);
-  RenderOptions options = colourful();
-  options.width = 20;
-  options.height = 10;
-  options.supersampling = 3;
-  const Picture small = drawn(scene, options);
-  options.width = 60;
-  options.height = 30;
-  options.supersampling = 1;
-  const Picture large = drawn(scene, options);
+  const auto drawnIn = [&scene](int width, int supersampling) {
+    RenderOptions options = colourful();
+    options.width = width;
+    options.height = width / 2;
+    options.supersampling = supersampling;
+    return drawn(scene, options);
+  };
+  const Picture small = drawnIn(20, 3), large = drawnIn(60, 1);
   for (int row = 0; row < 10; ++row) {
     for (int byte = 0; byte < 60; ++byte) {
       int sum = 0;
@@ -212,41 +199,54 @@ TEST(Renderer, ShowsPeopleWhatALearnerDoesNotSee) {
 
 TEST(Renderer, RefusesACameraThatIsNotThereNamingThoseThatAre) {
   const SceneModel scene;
+  EXPECT_TRUE(
+      throwsNaming<std::invalid_argument>([&scene] { Renderer(scene.model, colourful("frnt")); },
+                                          {"plant/camera", "frnt", "front", "oblique", "riding"}));
+  const auto bare =
+      testing::ModelFolder().loadText("<mujoco><worldbody><geom size='1'/></worldbody></mujoco>");
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&scene] { Renderer(scene.model, colourful("frnt"), SceneOptions()); },
-      {"plant/camera", "frnt", "front", "oblique", "riding"}));
-  const std::string without_camera = "<mujoco><worldbody><geom size='1'/></worldbody></mujoco>";
-  mjVFS files;
-  mj_defaultVFS(&files);
-  ASSERT_EQ(mj_makeEmptyFileVFS(&files, "bare.xml", static_cast<int>(without_camera.size())), 0);
-  std::copy(without_camera.begin(), without_camera.end(), static_cast<char*>(files.filedata[0]));
-  char problem[500] = "";
-  const std::shared_ptr<mjModel> bare(mj_loadXML("bare.xml", &files, problem, 500), mj_deleteModel);
-  mj_deleteVFS(&files);
-  ASSERT_TRUE(bare) << problem;
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&bare] { Renderer(bare, RenderOptions(), SceneOptions()); },
+      [&bare] { Renderer(bare->share(), RenderOptions()); },
       {"no camera", "plant/camera_position", "plant/camera_look_at"}));
 }
 
-TEST(Renderer, ReportsAllProblemsOfItsOptions) {
+double RenderOptions::*const kShifts[] = {&RenderOptions::camera_shift,
+                                          &RenderOptions::colour_shift};
+
+TEST(SceneDisturbances, ChangeTheImageMoreOrLessAndTheModelNever) {
+  const SceneModel scene(0.4);
+  const int colours = 4 * scene.model->ngeom;
+  const std::vector<float> before(scene.model->geom_rgba, scene.model->geom_rgba + colours);
+  const Bytes plain = drawn(scene, colourful()).bytes;
+  for (const auto shift : kShifts) {
+    RenderOptions options = colourful();
+    options.*shift = 0.1;
+    const Bytes once = drawn(scene, options).bytes;
+    EXPECT_NE(once, plain);
+    EXPECT_EQ(drawn(scene, options).bytes, once);
+    options.*shift = 0.2;
+    EXPECT_NE(drawn(scene, options).bytes, once);
+  }
+  EXPECT_EQ(std::vector<float>(scene.model->geom_rgba, scene.model->geom_rgba + colours), before);
+  EXPECT_EQ(scene.model->cam_pos[1], -4.0);
+}
+
+TEST(SceneDisturbances, MoveTheCameraAroundThePointThatItLooksAt) {
   const SceneModel scene;
-  RenderOptions options;
-  options.position = {0.0, 1.0};
-  options.field_of_view = std::numeric_limits<double>::quiet_NaN();
-  options.samples = 2;
-  options.supersampling = 9;
-  SceneOptions nuisances;
-  nuisances.camera_shift = -0.1;
-  nuisances.colour_shift = 2.0;
-  nuisances.seed = -1;
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { Renderer(scene.model, options, nuisances); },
-      {"plant/camera_position", "plant/camera_look_at", "plant/camera_field_of_view",
-       "plant/samples", "plant/supersampling", "plant/camera_shift", "plant/colour_shift",
-       "plant/scene_seed"}));
-  EXPECT_TRUE(RenderOptions().problems("plant").empty());
-  EXPECT_TRUE(SceneOptions().problems("plant").empty());
+  RenderOptions options = colourful();
+  const CameraModel plain = Renderer(scene.model, options).camera(*scene.data);
+  options.colour_shift = 0.1;  // leaves the camera alone
+  EXPECT_EQ(Renderer(scene.model, options).camera(*scene.data).position, plain.position);
+  options.camera_shift = 0.1;
+  const CameraModel moved = Renderer(scene.model, options).camera(*scene.data);
+  const Eigen::Vector3d ahead = plain.rotation.col(2);
+  const double distance = (Eigen::Vector3d(scene.model->stat.center) - plain.position).dot(ahead);
+  const Eigen::Vector3d to_target = plain.position + distance * ahead - moved.position;
+  EXPECT_TRUE((moved.rotation.transpose() * moved.rotation).isIdentity(1e-5));
+  EXPECT_LT(to_target.normalized().cross(moved.rotation.col(2)).norm(), 1e-5);
+  EXPECT_NEAR(to_target.norm() / distance, 1.0, 0.05 + 1e-5);
+  EXPECT_GT((moved.position - plain.position).norm(), 0.01);
+  // Two turns of at most 9 degrees each move the view, a third one rolls it.
+  EXPECT_GT(moved.rotation.col(2).dot(ahead), std::cos(0.1 * M_PI * std::sqrt(0.5)));
 }
 
 }  // namespace

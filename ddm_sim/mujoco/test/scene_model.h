@@ -9,17 +9,18 @@
 #include <string>
 
 #include "ddm_mujoco/mujoco_model.h"
-#include "ddm_mujoco/render_options.h"
+#include "ddm_mujoco/renderer.h"
 
 namespace ddm {
 namespace testing {
 
 /// A model, and its data with the first joint at an angle.
 struct SceneModel {
-  explicit SceneModel(double angle = 0.0, const std::string& path = DDM_MUJOCO_TEST_SCENE) {
+  explicit SceneModel(double angle = 0.0) {
     installMujocoHandlers();
     char problem[500] = "";
-    model.reset(mj_loadXML(path.c_str(), nullptr, problem, sizeof(problem)), mj_deleteModel);
+    model.reset(mj_loadXML(DDM_MUJOCO_TEST_SCENE, nullptr, problem, sizeof(problem)),
+                mj_deleteModel);
     if (!model) throw std::runtime_error(problem);
     data.reset(mj_makeData(model.get()), mj_deleteData);
     turn(angle);

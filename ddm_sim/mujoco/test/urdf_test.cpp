@@ -74,30 +74,25 @@ class UrdfTest : public ::testing::Test {
     return load(leg);
   }
 
-  /// A box as STL.
-  void writeBox(const std::string& name, double size, bool ascii) const {
-    const int faces[12][3] = {{0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}, {0, 4, 5}, {0, 5, 1},
-                              {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
-    const auto at = [size](int corner, int axis) {
-      return static_cast<float>(((corner >> (2 - axis)) & 1) * size);
-    };
+  /// A tetrahedron as STL.
+  void writeStl(const std::string& name, float size, bool ascii) const {
+    const float corners[4][3] = {{0, 0, 0}, {size, 0, 0}, {0, size, 0}, {0, 0, size}};
+    const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
     std::ostringstream text;
-    text << "solid box\n";
-    std::string binary = "solid" + std::string(75, ' ') + std::string("\x0c\0\0\0", 4);
+    text << "solid\n";
+    std::string binary = "solid" + std::string(75, ' ') + std::string("\x04\0\0\0", 4);
     for (const auto& face : faces) {
       text << "facet normal 0 0 0\nouter loop\n";
-      float numbers[12] = {0, 0, 0};
+      char raw[50] = {};
       for (int k = 0; k < 3; ++k) {
-        for (int axis = 0; axis < 3; ++axis) numbers[3 + 3 * k + axis] = at(face[k], axis);
-        text << "vertex " << numbers[3 + 3 * k] << ' ' << numbers[4 + 3 * k] << ' '
-             << numbers[5 + 3 * k] << '\n';
+        const float* const corner = corners[face[k]];
+        text << "vertex " << corner[0] << ' ' << corner[1] << ' ' << corner[2] << '\n';
+        std::memcpy(raw + 12 * (k + 1), corner, 12);
       }
       text << "endloop\nendfacet\n";
-      char raw[50] = {};
-      std::memcpy(raw, numbers, sizeof(numbers));
       binary.append(raw, sizeof(raw));
     }
-    folder_.write(name, ascii ? text.str() + "endsolid box\n" : binary);
+    folder_.write(name, ascii ? text.str() + "endsolid\n" : binary);
   }
 
   ModelFolder folder_;
@@ -290,13 +285,13 @@ TEST_F(UrdfTest, LooksForPackagesInMeshesAlone) {
 }
 
 TEST_F(UrdfTest, DrawsTheVisualMeshOfTwoThatHaveOneName) {
-  writeBox("visual/box.stl", 0.1, false);
-  writeBox("collision/box.stl", 0.4, false);
+  writeStl("visual/part.stl", 0.1F, false);
+  writeStl("collision/part.stl", 0.4F, false);
   Leg leg;
   leg.shape =
-      "<mesh filename='../visual/box.stl'/></geometry></visual><collision><geometry>"
-      "<mesh filename='../collision/box.stl'/></geometry></collision>"
-      "<visual><geometry><mesh filename='../visual/box.stl' scale='2 2 2'/>";
+      "<mesh filename='../visual/part.stl'/></geometry></visual><collision><geometry>"
+      "<mesh filename='../collision/part.stl'/></geometry></collision>"
+      "<visual><geometry><mesh filename='../visual/part.stl' scale='2 2 2'/>";
   const auto model = load(leg);
   EXPECT_EQ(model->get().nmesh, 3);
   std::vector<double> drawn;
@@ -309,8 +304,8 @@ TEST_F(UrdfTest, DrawsTheVisualMeshOfTwoThatHaveOneName) {
 }
 
 TEST_F(UrdfTest, ReadsMeshesByAnyNameAndInText) {
-  writeBox("meshes/UPPER.STL", 0.1, false);
-  writeBox("meshes/text.stl", 0.1, true);
+  writeStl("meshes/UPPER.STL", 0.1F, false);
+  writeStl("meshes/text.stl", 0.1F, true);
   const std::string whole = "file://" + folder_.path() + "/meshes/UPPER.STL";
   for (const std::string& name :
        {std::string("../meshes/UPPER.STL"), std::string("../meshes/text.stl"),
@@ -319,7 +314,7 @@ TEST_F(UrdfTest, ReadsMeshesByAnyNameAndInText) {
     leg.shape = "<mesh filename='" + name + "'/>";
     const auto model = load(leg);
     EXPECT_EQ(model->get().nmesh, 1) << name;
-    EXPECT_EQ(model->get().nmeshvert, 8) << name;
+    EXPECT_EQ(model->get().nmeshvert, 4) << name;
   }
   Leg leg;
   leg.shape = "<mesh filename='package://elsewhere/UPPER.STL'/>";

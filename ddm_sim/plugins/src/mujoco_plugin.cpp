@@ -12,8 +12,8 @@
 namespace ddm {
 namespace {
 
-/// As seen from any folder: nodes run in another one than the user, and an experiment may be taken
-/// up from another one.
+/// Absolute, because nodes run in another folder than the user, and an experiment may be resumed
+/// from another folder.
 std::string absolute(const std::string& path) {
   if (path.empty() || path.rfind("package://", 0) == 0) return path;
   return std::filesystem::absolute(path).lexically_normal().string();

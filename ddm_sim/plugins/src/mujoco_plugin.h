@@ -8,7 +8,7 @@
 
 namespace ddm {
 
-/// If ddm_sim was built without MuJoCo, its read() throws std::invalid_argument.
+/// @throws std::invalid_argument if ddm_sim was built without MuJoCo
 std::shared_ptr<PlantPlugin> makeMujocoPlugin();
 
 }  // namespace ddm

@@ -49,28 +49,22 @@ const std::map<std::string, MakePlugin>& ownPlants() {
   return plants;
 }
 
-std::vector<std::string> ownTypes() {
-  std::vector<std::string> types;
-  for (const auto& plant : ownPlants()) types.push_back(plant.first);
-  return types;
-}
-
 std::shared_ptr<PlantPlugin> makePlugin(const std::string& type) {
   const auto own = ownPlants().find(type);
   if (own != ownPlants().end()) return own->second();
+  std::vector<std::string> known;
+  for (const auto& plant : ownPlants()) known.push_back(plant.first);
   if (type.find('/') == std::string::npos) {
     throw std::invalid_argument(
-        "plant/type must be a plant of ddm_sim or PACKAGE/CLASS of another "
-        "package, got \"" +
-        type + "\": there are " + join(ownTypes(), ", "));
+        "plant/type must be a plant of ddm_sim or PACKAGE/CLASS of another package, got \"" + type +
+        "\": there are " + join(known, ", "));
   }
   // Never destroyed: the plants that it has loaded, and their code, live until the program ends.
   static auto* const loader =
       new pluginlib::ClassLoader<PlantPlugin>("ddm_sim", "ddm::PlantPlugin");
   if (!loader->isClassAvailable(type)) {
-    std::vector<std::string> known = loader->getDeclaredClasses();
-    for (const std::string& own_type : ownTypes()) known.push_back(own_type);
-    std::sort(known.begin(), known.end());
+    const std::vector<std::string> others = loader->getDeclaredClasses();
+    known.insert(known.end(), others.begin(), others.end());
     throw std::invalid_argument("plant/type must be a plant of this workspace, got \"" + type +
                                 "\": there are " + join(known, ", ") +
                                 "; source the setup.bash of the workspace that holds it");
@@ -109,6 +103,14 @@ std::shared_ptr<const PlantPlugin> readPlant(ParamReader* reader) {
   const std::shared_ptr<PlantPlugin> plugin = makePlugin(ahead.read<TypeOption>("plant").type);
   plugin->read(reader);
   return plugin;
+}
+
+std::shared_ptr<const PlantPlugin> readPlantFiles(std::vector<std::string> files) {
+  files.insert(files.begin(), ros::package::getPath("ddm_sim") + "/config/sim.yaml");
+  ParamReader params = ParamReader::fromFiles(files);
+  const auto plant = readPlant(&params);
+  params.requireValid();
+  return plant;
 }
 
 bool namesPlantFile(const std::string& name) { return fs::path(name).extension() == ".yaml"; }

@@ -28,9 +28,17 @@ struct Place {
   int id;
 };
 
-/// A compiled model. Nobody changes it, so that all plants of one maker share it.
+/// What a URDF says beyond the model that MuJoCo compiles of it. Empty for an MJCF file.
+struct UrdfFacts {
+  std::map<std::string, double> efforts;       ///< largest torques of joints [N m or N]
+  std::map<std::string, std::string> leaders;  ///< joints that mimic another one, and that one
+  std::map<std::string, std::string> fixed;    ///< links behind fixed joints, and their parents
+  std::vector<std::string> transmissions;      ///< joints that the <transmission> elements name
+};
+
+/// A compiled model. It is never changed, so that all plants of one maker share it.
 ///
-/// A URDF is taken as its author meant it: its visual shapes are kept, `package://` in mesh names
+/// A URDF is read as its author meant it: its visual shapes are kept, `package://` in mesh names
 /// is resolved, links behind fixed joints are merged into their parents, continuous joints turn
 /// without end, and joints follow those that they <mimic>. Nothing touches anything, and there is
 /// light. A <mujoco> block of the file overrides what it names.
@@ -40,7 +48,7 @@ struct Place {
 class MujocoModel {
  public:
   /// @param uri           path, or package://PACKAGE/PATH
-  /// @param find_package  what finds packages, here and in the file
+  /// @param find_package  finds the packages that the uri and the file name
   /// @throws std::invalid_argument naming file or package and what is wrong: not found, no model,
   ///         something in it that MuJoCo does not take (with its line)
   MujocoModel(const std::string& uri, const FindPackage& find_package);
@@ -63,12 +71,11 @@ class MujocoModel {
   /// @throws std::invalid_argument as id()
   Place place(const std::string& name, const std::string& key) const;
 
+  const UrdfFacts& urdf() const { return urdf_; }
+
   /// Largest torque of a joint by a URDF [N m or N]; none if the file does not say. Many files say
   /// 0.
   std::optional<double> effortLimit(const std::string& joint) const;
-
-  /// The joint that a joint of a URDF mimics; empty if it moves by itself.
-  std::string leaderOf(const std::string& joint) const;
 
   /// Name of an object; "joint_2" if it has none.
   std::string name(mjtObj type, int id) const;
@@ -79,14 +86,11 @@ class MujocoModel {
  private:
   std::string uri_;
   std::string digest_;
-  std::map<std::string, double> efforts_;
-  std::map<std::string, std::string> leaders_;  // of joints that mimic one
-  std::map<std::string, std::string>
-      fixed_;  // links behind fixed joints, and what they are fixed to
+  UrdfFacts urdf_;
   std::shared_ptr<const mjModel> model_;
 };
 
-/// "did you mean wrist? There are shoulder, wrist": what helps who has written `name`.
+/// Help for an unknown name: "did you mean wrist? There are shoulder, wrist".
 std::string suggestion(const std::string& name, const std::vector<std::string>& known);
 
 }  // namespace ddm

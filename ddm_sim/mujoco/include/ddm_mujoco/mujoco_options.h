@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ddm_mujoco/render_options.h"
+#include "ddm_mujoco/renderer.h"
 #include "ddm_sim/plant_options.h"
 
 namespace ddm {
@@ -18,25 +18,24 @@ struct MujocoOptions : PlantOptions {
 
   double timestep = 0.0;  ///< of MuJoCo [s]; 0: that of the file
 
-  std::vector<std::string> motors;  ///< joints that have one; empty: the actuators of the file
+  std::vector<std::string> motors;  ///< joints that have a motor; empty: the actuators of the file
 
-  std::vector<double> start;          ///< middle of the starts [rad, m]; empty: pose 0 of the file
-  std::vector<double> start_uniform;  ///< half-width of a uniform part of the start; empty: none
+  std::vector<double> start;          ///< mean initial state [rad, m]; empty: pose 0 of the file
+  std::vector<double> start_uniform;  ///< half-width of a uniform part of the initial state
   std::vector<double> goal;           ///< state to reach and hold [rad, m]; empty: all zero
   std::string goal_site;  ///< site or body that a drawn goal brings to a point of the x-y plane
   std::vector<double> goal_distance;       ///< least and largest distance of that point from 0 [m]
   std::vector<std::string> error_joints;   ///< joints whose error counts; empty: all
   std::vector<std::string> error_sites;    ///< or sites and bodies, whose distance counts
   double tolerance = 0.0;                  ///< largest error at the goal [deg or m]
-  std::vector<std::string> visible_sites;  ///< seen by who plans on the truth; empty: all bodies
+  std::vector<std::string> visible_sites;  ///< what the oracle method sees; empty: all bodies
 
   std::vector<std::string> state_names;   ///< columns; empty: by joint and unit
   std::vector<std::string> torque_names;  ///< columns; empty: by joint and unit
   std::string reward;                     ///< one of rewards.h; empty: none
-  int episode_frames = 0;                 ///< physics frames of a greedy run; 0: those of a trial
+  int episode_frames = 0;                 ///< physics frames of an evaluation; 0: those of a trial
 
-  RenderOptions look;
-  SceneOptions scene;
+  RenderOptions look;  ///< of the learner's image; its size is picture_size
 
   MujocoOptions() {
     type = "mujoco";
@@ -66,17 +65,15 @@ struct MujocoOptions : PlantOptions {
     visitor("camera", look.camera);
     visitor("camera_position", look.position);
     visitor("camera_look_at", look.look_at);
-    visitor("camera_field_of_view", look.field_of_view);
     visitor("colour", look.colour);
     visitor("samples", look.samples);
     visitor("supersampling", look.supersampling);
-    visitor("camera_shift", scene.camera_shift);
-    visitor("colour_shift", scene.colour_shift);
-    visitor("scene_seed", scene.seed);
+    visitor("camera_shift", look.camera_shift);
+    visitor("colour_shift", look.colour_shift);
   }
 
-  /// Everything wrong with these values, in words a user can act on. Empty means valid. What does
-  /// not fit the model file, MujocoPlant finds.
+  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  /// MujocoPlant checks that they fit the model file.
   std::vector<std::string> problems() const;
 };
 

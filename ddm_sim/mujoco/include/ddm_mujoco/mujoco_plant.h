@@ -50,8 +50,6 @@ class MujocoPlant : public Plant {
   Picture draw(const Eigen::VectorXd& state) const override;
   Eigen::VectorXd locate(const Eigen::VectorXd& state) const override;
 
-  std::vector<Place> places(const std::vector<std::string>& names, const std::string& key) const;
-
   std::shared_ptr<const MujocoModel> model_;
   std::unique_ptr<const MujocoPhysics> physics_;
   int num_frames_;                 // of a time step
@@ -62,10 +60,10 @@ class MujocoPlant : public Plant {
   std::vector<Place> visible_sites_;  // empty: all bodies
   std::vector<Place> goal_site_;      // none: the goal is always the same
   std::vector<double> goal_distance_;
-  std::unique_ptr<Renderer> picture_;  // what the learner sees
-  std::unique_ptr<Renderer> view_;     // what people see
-  const Reward* reward_;               // null: none
-  Eigen::VectorXd reward_scale_;       // torque of each motor that is a control of 1
+  std::unique_ptr<Renderer> image_;  // what the learner sees
+  std::unique_ptr<Renderer> view_;   // what people see
+  const Reward* reward_;             // null: none
+  Eigen::VectorXd reward_scale_;     // torque of each motor that is a control of 1
 };
 
 /// Draws a few poses of a plant, which takes as long as opening the renderer.

@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "ddm_plant_plugin/plant_plugin.h"
 
@@ -16,6 +17,10 @@ namespace ddm {
 /// @throws std::invalid_argument naming what there is, if there is no such plant
 /// @throws std::runtime_error if its library cannot be loaded
 std::shared_ptr<const PlantPlugin> readPlant(ParamReader* reader);
+
+/// The plant that configuration files describe on top of ddm_sim's defaults; later files win.
+/// @throws std::exception with what is wrong with them, or as above
+std::shared_ptr<const PlantPlugin> readPlantFiles(std::vector<std::string> files);
 
 /// Whether a plant is named by its file, not by a name in a package.
 bool namesPlantFile(const std::string& name);
