@@ -241,7 +241,7 @@ TEST(Configuration, WhatIsSavedIsReadBackAsTheSameConfiguration) {
   EXPECT_EQ(YAML::Dump(toYaml(read({folder.file("config.yaml")}))), YAML::Dump(toYaml(all)));
 }
 
-TEST(Manuals, AreRegisteredSoThatEveryProgramLeavesTheirBlocksAlone) {
+TEST(ParameterReferences, HaveBlocksThatEveryProgramLeavesAlone) {
   for (const char* package : {"ddm_launch", "ddm_model", "ddm_mpc", "ddm_sim"}) {
     const std::string folder = std::string(DDM_LAUNCH_SOURCE_DIR "/../") + package + "/config/";
     for (const std::string& name : namesIn(folder)) {

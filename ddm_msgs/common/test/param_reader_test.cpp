@@ -5,12 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "ddm_common/config_blocks.h"
@@ -95,22 +93,6 @@ class ScratchFile {
  private:
   const testing::TempFolder folder_;
   const std::string path_;
-};
-
-/// Workspaces that are sourced as long as this lives.
-class Workspaces {
- public:
-  explicit Workspaces(const std::string& prefixes) {
-    const char* const before = std::getenv("CMAKE_PREFIX_PATH");
-    before_ = before == nullptr ? "" : before;
-    ::setenv("CMAKE_PREFIX_PATH", prefixes.c_str(), /*overwrite=*/1);
-  }
-  ~Workspaces() { ::setenv("CMAKE_PREFIX_PATH", before_.c_str(), /*overwrite=*/1); }
-  Workspaces(const Workspaces&) = delete;
-  Workspaces& operator=(const Workspaces&) = delete;
-
- private:
-  std::string before_;
 };
 
 TEST(ParamReader, GivesDefaultsWhereTheConfigurationIsSilent) {
@@ -211,29 +193,12 @@ TEST(ParamReader, ReportsAnUnknownBlockWithTheNearest) {
   EXPECT_TRUE(testing::names(problems[0], {" mpcc ", " mpc?"}));
 }
 
-TEST(ParamReader, LeavesBlocksAloneThatPackagesOfAnySourcedWorkspaceHaveRegistered) {
-  const testing::TempFolder below, above, empty;
-  for (const auto& [workspace, package, blocks] :
-       {std::make_tuple(&below, "ddm_sim", "plant\ncamera\n"),
-        std::make_tuple(&below, "ddm_model", "model\n"),
-        std::make_tuple(&above, "my_package", "my_robot\n")}) {
-    std::filesystem::create_directories(workspace->file("share/ddm_common"));
-    std::ofstream(workspace->file("share/ddm_common/") + package) << blocks;
-  }
-  const std::string yaml = "{plant: 1, camera: 1, model: 1, my_robot: 1, mpc: {horizon: 3}}";
-  {
-    const Workspaces sourced(above.file("") + ":" + empty.file("") + ":" + below.file(""));
-    EXPECT_EQ(mpcProblems(yaml), std::vector<std::string>());
-    ASSERT_EQ(mpcProblems("my_robt: 1").size(), 1u);
-    // among those of the workspace of the library
-    EXPECT_TRUE(testing::names(mpcProblems("my_robt: 1")[0],
-                               {"camera", "model", "mpc", "my_robot", "plant"}));
-  }
-  const Workspaces sourced(below.file(""));
-  ASSERT_EQ(mpcProblems(yaml).size(), 1u);
-  EXPECT_TRUE(contains(mpcProblems(yaml)[0], " my_robot "));
-  const Workspaces none("");  // but that of the library
-  EXPECT_TRUE(testing::names(mpcProblems("my_robot: 1").at(0), {" my_robot ", "setup.bash"}));
+TEST(ParamReader, LeavesBlocksOfOtherProgramsAloneAndNamesThemWhereABlockIsUnknown) {
+  EXPECT_EQ(mpcProblems("{plant: 1, camera: 1, robot: 1, version: 2, mpc: {horizon: 3}}"),
+            std::vector<std::string>());
+  ASSERT_EQ(mpcProblems("my_robot: 1").size(), 1u);
+  EXPECT_TRUE(testing::names(mpcProblems("my_robot: 1")[0],
+                             {" my_robot ", "camera", "model", "mpc", "plant", "robot"}));
 }
 
 TEST(ParamReader, IgnoresAForeignBlockOnlyIfTold) {
