@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/config_blocks.h>
 #include <ddm_plant_plugin/plant_config.h>
-#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/plant.h>
 
 #include <algorithm>
 #include <boost/filesystem.hpp>

@@ -6,7 +6,7 @@
 #include <ddm_msgs/testing/expect_error.h>
 #include <ddm_msgs/testing/parameter_reference.h>
 #include <ddm_msgs/testing/temp_folder.h>
-#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/plant.h>
 #include <ddm_sim/rod_renderer.h>
 #include <gtest/gtest.h>
 

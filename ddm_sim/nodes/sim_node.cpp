@@ -12,7 +12,7 @@
 
 #include "ddm_common/topic_peers.h"
 #include "ddm_msgs/topics.h"
-#include "ddm_sim/few_numbers.h"
+#include "ddm_sim/plant.h"
 #include "joint_state.h"
 
 namespace ddm {

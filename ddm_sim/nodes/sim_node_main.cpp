@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "ddm_sim/plant_factory.h"
+#include "ddm_sim/plant.h"
 #include "sim_node.h"
 
 int main(int argc, char** argv) {

@@ -16,10 +16,10 @@
 #include "ddm_common/param_reader.h"
 #include "ddm_msgs/testing/not_finite.h"
 #include "ddm_plant_plugin/plant_config.h"
-#include "ddm_sim/camera_options.h"
+#include "ddm_sim/camera.h"
 #include "ddm_sim/moving_tile.h"
 #include "ddm_sim/pendulum.h"
-#include "ddm_sim/plant_factory.h"
+#include "ddm_sim/plant.h"
 #include "ddm_sim/sim_options.h"
 #include "ddm_sim/two_link.h"
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "ddm_sim/angles.h"
-#include "ddm_sim/few_numbers.h"
+#include "ddm_sim/plant.h"
 
 namespace ddm {
 namespace {
