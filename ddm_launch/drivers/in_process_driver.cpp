@@ -6,7 +6,7 @@
 #include <ddm_common/image_codec.h>
 #include <ddm_model/per_motor.h>
 #include <ddm_msgs/Torque.h>
-#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/plant.h>
 
 #include <cmath>
 #include <stdexcept>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "algorithm1.h"
 
-#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/plant.h>
 
 #include <chrono>
 #include <memory>

@@ -5,7 +5,7 @@
 #include <ddm_model/per_motor.h>
 #include <ddm_model/schedule.h>
 #include <ddm_mpc/cost_to_go.h>
-#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/plant.h>
 
 #include <sstream>
 #include <stdexcept>

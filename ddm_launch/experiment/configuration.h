@@ -8,7 +8,7 @@
 #include <ddm_mpc/mpc_options.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ddm_robot/robot_options.h>
-#include <ddm_sim/camera_options.h>
+#include <ddm_sim/camera.h>
 #include <ddm_sim/sim_options.h>
 #include <yaml-cpp/yaml.h>
 

@@ -5,7 +5,7 @@
 #include <ddm_common/config_blocks.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ddm_robot/robot_options.h>
-#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/plant.h>
 #include <ros/package.h>
 
 #include <algorithm>

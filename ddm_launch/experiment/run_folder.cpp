@@ -40,8 +40,7 @@ const Keys kMayDiffer = {"experiment/trials", "experiment/runs", "experiment/tim
 
 /// These a user chooses by looking at the robot, which takes more than one launch. They may change
 /// until the first trial is finished.
-const Keys kChosenOnTheRobot = {"robot/crop_x",      "robot/crop_y",    "robot/crop_width",
-                                "robot/crop_height", "robot/goal_file", "evaluation/goal_distance"};
+const Keys kChosenOnTheRobot = {"robot/crop", "robot/goal_file", "evaluation/goal_distance"};
 
 /// The differences with which an experiment must not go on, a line each; empty: none.
 /// @param there  blocks by name; anything that is not a block is left out

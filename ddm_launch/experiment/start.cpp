@@ -7,7 +7,7 @@
 #include <ddm_common/plain_file.h>
 #include <ddm_model/model_file.h>
 #include <ddm_mpc/controller.h>
-#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/plant.h>
 
 #include <algorithm>
 #include <boost/filesystem.hpp>

@@ -4,7 +4,7 @@
 
 #include <ddm_common/random_stream.h>
 #include <ddm_mpc/planner.h>
-#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/plant.h>
 
 #include <utility>
 

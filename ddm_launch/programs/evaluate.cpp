@@ -4,7 +4,7 @@
 #include <ddm_common/plain_file.h>
 #include <ddm_model/model_file.h>
 #include <ddm_model/solver_log.h>
-#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/plant.h>
 #include <ros/time.h>
 
 #include <atomic>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/config_blocks.h>
 #include <ddm_plant_plugin/plant_config.h>
-#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/plant.h>
 
 #include <algorithm>
 #include <boost/filesystem.hpp>
@@ -40,16 +40,13 @@ struct Request {
 
 /// X,Y,WIDTH,HEIGHT of a robot's camera.
 void setCrop(const std::string& text, Arguments* arguments) {
-  int crop[4];
+  std::vector<int> crop(4);
   char rest = 0;
   if (std::sscanf(text.c_str(), "%d,%d,%d,%d%c", &crop[0], &crop[1], &crop[2], &crop[3], &rest) !=
       4) {
     throw po::error("--crop must be X,Y,WIDTH,HEIGHT in whole pixels, got '" + text + "'");
   }
-  arguments->set("robot/crop_x", crop[0]);
-  arguments->set("robot/crop_y", crop[1]);
-  arguments->set("robot/crop_width", crop[2]);
-  arguments->set("robot/crop_height", crop[3]);
+  arguments->set("robot/crop", crop);
 }
 
 /// The bags in the text of a launch argument: one, or several with blanks between them. A bag that
@@ -71,7 +68,7 @@ void setBags(const std::vector<std::string>& texts, Arguments* arguments) {
   arguments->set("start/bags", all);
 }
 
-/// The robot is a stand-in: this plant, simulated.
+/// The robot is this plant, simulated.
 void setMotors(const std::string& plant, Arguments* arguments) {
   ParamReader reader = ParamReader::fromFiles({plantFile(plant)});
   const std::shared_ptr<const PlantPlugin> plugin = readPlant(&reader);

@@ -4,7 +4,7 @@
 #include <ddm_common/run_node.h>
 #include <ddm_mpc/mpc_options.h>
 #include <ddm_plant_plugin/plant_config.h>
-#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/plant.h>
 
 #include <memory>
 #include <optional>

@@ -4,15 +4,15 @@
 
 #include <ddm_common/param_reader.h>
 #include <ddm_msgs/testing/expect_error.h>
+#include <ddm_msgs/testing/parameter_reference.h>
 #include <ddm_msgs/testing/temp_folder.h>
-#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/plant.h>
 #include <ddm_sim/rod_renderer.h>
 #include <gtest/gtest.h>
 
 #include <boost/filesystem.hpp>
 #include <functional>
 #include <limits>
-#include <set>
 
 #include "method.h"
 #include "resolution.h"
@@ -55,12 +55,6 @@ Arguments arguments(const std::string& preset, const std::string& plant,
   given.set("experiment/plant", plant);
   given.configs = configs;
   return given;
-}
-
-std::set<std::string> keysOf(const YAML::Node& map) {
-  std::set<std::string> keys;
-  for (const auto& entry : map) keys.insert(entry.first.as<std::string>());
-  return keys;
 }
 
 /// A configuration that a YAML text changes.
@@ -158,7 +152,7 @@ TEST(Configuration, EveryNamedConfigurationIsReadAndChangesSomething) {
         EXPECT_NO_THROW(plantFile(name)) << full;
       }
       if (of_scene) {
-        EXPECT_EQ(keysOf(one.second), std::set<std::string>{"plant"}) << full;
+        EXPECT_EQ(testing::keysOf(one.second), std::vector<std::string>{"plant"}) << full;
       }
       if (of_scene || of_others) continue;
       EXPECT_NE(YAML::Dump(toYaml(read(arguments("efficient", "pendulum", {full})))), plain)
@@ -247,7 +241,7 @@ TEST(Configuration, WhatIsSavedIsReadBackAsTheSameConfiguration) {
   EXPECT_EQ(YAML::Dump(toYaml(read({folder.file("config.yaml")}))), YAML::Dump(toYaml(all)));
 }
 
-TEST(Manuals, AreRegisteredSoThatEveryProgramLeavesTheirBlocksAlone) {
+TEST(ParameterReferences, HaveBlocksThatEveryProgramLeavesAlone) {
   for (const char* package : {"ddm_launch", "ddm_model", "ddm_mpc", "ddm_sim"}) {
     const std::string folder = std::string(DDM_LAUNCH_SOURCE_DIR "/../") + package + "/config/";
     for (const std::string& name : namesIn(folder)) {
@@ -258,27 +252,12 @@ TEST(Manuals, AreRegisteredSoThatEveryProgramLeavesTheirBlocksAlone) {
   }
 }
 
-TEST(ExperimentManual, HasTheKeysAndDefaultsOfEachBlock) {
-  const std::string manual = DDM_LAUNCH_SOURCE_DIR "/config/experiment.yaml";
-  const YAML::Node blocks = YAML::LoadFile(manual);
-  YAML::Node expected;
-  expected["experiment"] = toYaml(ExperimentOptions());
-  expected["trial"] = toYaml(TrialOptions());
-  expected["evaluation"] = toYaml(EvaluationOptions());
-  expected["start"] = toYaml(StartOptions());
-  YAML::Node there;
-  ParamReader reader = ParamReader::fromFiles({manual});
-  there["experiment"] = toYaml(reader.read<ExperimentOptions>("experiment"));
-  there["trial"] = toYaml(reader.read<TrialOptions>("trial"));
-  there["evaluation"] = toYaml(reader.read<EvaluationOptions>("evaluation"));
-  there["start"] = toYaml(reader.read<StartOptions>("start"));
-  EXPECT_NO_THROW(reader.requireValid());
-  const std::set<std::string> names = {"experiment", "trial", "evaluation", "start"};
-  EXPECT_EQ(keysOf(blocks), names);
-  for (const std::string& block : names) {
-    EXPECT_EQ(keysOf(blocks[block]), keysOf(expected[block])) << block;
-    EXPECT_EQ(YAML::Dump(there[block]), YAML::Dump(expected[block])) << block;
-  }
+TEST(ExperimentReference, HasTheKeysAndDefaultsOfEachBlock) {
+  const std::string file = DDM_LAUNCH_SOURCE_DIR "/config/experiment.yaml";
+  testing::expectDefaults<ExperimentOptions>(file, "experiment");
+  testing::expectDefaults<TrialOptions>(file, "trial");
+  testing::expectDefaults<EvaluationOptions>(file, "evaluation");
+  testing::expectDefaults<StartOptions>(file, "start");
 }
 
 TEST(ExperimentOptions, EachKeyOutOfRangeIsNamed) {

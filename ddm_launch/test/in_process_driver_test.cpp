@@ -5,7 +5,7 @@
 #include <ddm_bag_io/bag_reader.h>
 #include <ddm_msgs/testing/temp_folder.h>
 #include <ddm_sim/camera.h>
-#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/plant.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

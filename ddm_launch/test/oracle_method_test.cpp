@@ -6,7 +6,7 @@
 #include <ddm_model/testing/gradient_check.h>
 #include <ddm_model/testing/random_matrix.h>
 #include <ddm_msgs/testing/temp_folder.h>
-#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/plant.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -37,7 +37,7 @@ class ResolveTest(ScratchCase):
             self.assertEqual(blocks["experiment"]["preset"], "debug" if words else "efficient")
         self.assertRefused(["run/config.yaml", "preset debug, not paper"], "--repeat", "run", "--preset", "paper", code=1)
 
-    def test_a_stand_in_robot_has_the_motors_of_its_plant(self):
+    def test_a_simulated_robot_has_the_motors_of_its_plant(self):
         for plant, limits in (("pendulum", 6.0), ("moving_tile", [5.0, 5.0]), ("two_link", [4.0, 2.0])):
             blocks = self.resolve("--motors-of", plant)
             self.assertEqual(blocks["robot"]["max_torque"], limits, plant)
@@ -90,8 +90,7 @@ class ResolveTest(ScratchCase):
         self.assertEqual(float(self.resolve("--set", "robot/dt=2.5")["controller"]["timeout"]), 5.0)
 
     def test_a_crop_is_four_numbers(self):
-        robot = self.resolve("--crop", "1,2,30,40")["robot"]
-        self.assertEqual([robot["crop_" + key] for key in ("x", "y", "width", "height")], [1, 2, 30, 40])
+        self.assertEqual(self.resolve("--crop", "1,2,30,40")["robot"]["crop"], [1, 2, 30, 40])
         for crop in ("1,2,3", "1,2,3,4,5", "a,2,3,4"):
             self.assertRefused(["--crop", crop], "--crop", crop)
 

@@ -26,7 +26,7 @@ class RobotLoopTest(ScratchCase):
     def test_an_experiment_on_a_robot_is_stopped_and_resumed_with_another_crop(self):
         """As the tutorial says: crop and goal_distance are chosen by looking, until the first trial is finished."""
         arguments = ["robot_check.launch", "preset:=debug", "trials:=0", "dt:=%g" % DT, "load:=false", "runs:=" + self.out]
-        launch = start_roslaunch(self.scratch, *arguments, "crop:=100,20,440,440", "goal_distance:=0.5",
+        launch = start_roslaunch(self.scratch, *arguments, "crop:=10,10,180,180", "goal_distance:=0.5",
                                  port=0)  # on the master of this test
         self.addCleanup(launch.stop)
         launch.waitForText("motors follow", LIMIT_S)
@@ -41,8 +41,8 @@ class RobotLoopTest(ScratchCase):
         self.checkRobotRun()
 
         rows = read_bytes(self.out, "trials.csv")
-        _, output = roslaunch(self.scratch, *arguments, "crop:=100,20,440,440", limit_s=LIMIT_S)
-        self.assertRegex(output, r"robot/crop_x: 140 there, 100 here, .*first trial")
+        _, output = roslaunch(self.scratch, *arguments, "crop:=10,10,180,180", limit_s=LIMIT_S)
+        self.assertRegex(output, r"robot/crop: \[5, 5, 190, 190\] there, \[10, 10, 180, 180\] here, .*first trial")
         self.assertEqual(read_bytes(self.out, "trials.csv"), rows)
 
     def checkRobotRun(self):
@@ -52,7 +52,7 @@ class RobotLoopTest(ScratchCase):
              "trial_000/model.ddm", "trial_000/torques.csv", "trial_000/training.yaml", "trial_000/trial.bag",
              "trial_000/trial.1.bag.active"]))  # of the trial that was stopped
         config = read_yaml(self.out, "config.yaml")
-        self.assertEqual((config["evaluation"]["goal_distance"], config["robot"]["crop_x"]), (0.3, 140))
+        self.assertEqual((config["evaluation"]["goal_distance"], config["robot"]["crop"][0]), (0.3, 5))
         bag = os.path.join(self.out, "trial_000", "trial.bag")
         stamps = read_bag(bag)
         self.assertTrue(set(stamps["torque"]) <= set(stamps["camera/image_raw"]))

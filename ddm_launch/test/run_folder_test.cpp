@@ -145,8 +145,8 @@ TEST_F(RunFolderTest, AChangedModelFileIsRefused) {
 
 TEST_F(RunFolderTest, CropAndGoalOfARobotMayChangeUntilATrialIsFinished) {
   const std::vector<std::pair<std::string, std::function<void(Configuration*)>>> changes = {
-      {"robot/crop_x: 0 there, 8 here", [](auto* c) { c->robot->crop_x = 8; }},
-      {"robot/crop_height: 0 there, 80 here", [](auto* c) { c->robot->crop_height = 80; }},
+      {"robot/crop: [0, 0, 0, 0] there, [8, 0, 0, 80] here",
+       [](auto* c) { c->robot->crop = {8, 0, 0, 80}; }},
       {"robot/goal_file", [](auto* c) { c->robot->goal_file = "/goal.png"; }},
       {"evaluation/goal_distance: 0.0 there, 0.4 here",
        [](auto* c) { c->evaluation.goal_distance = 0.4; }}};
@@ -155,7 +155,7 @@ TEST_F(RunFolderTest, CropAndGoalOfARobotMayChangeUntilATrialIsFinished) {
   begin();
   for (const auto& change : changes) change.second(&configuration_);
   begin();
-  EXPECT_EQ(YAML::LoadFile(file("config.yaml"))["robot"]["crop_x"].as<int>(), 8);
+  EXPECT_EQ(YAML::LoadFile(file("config.yaml"))["robot"]["crop"][0].as<int>(), 8);
   configuration_ = there;
   finish(1);
   for (const auto& change : changes) {
@@ -179,7 +179,7 @@ TEST_F(RunFolderTest, InLockStepARunIsRecordedWithItsTablesAndOnARobotWithItsBag
     RunFolder(configuration_).writeRun(run, {});
     EXPECT_TRUE(isRecorded());
   }
-  configuration_.robot->crop_x = 8;  // images of another crop do not go with those to come
+  configuration_.robot->crop[0] = 8;  // images of another crop do not go with those to come
   EXPECT_FALSE(isRecorded());
 }
 

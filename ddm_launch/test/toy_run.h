@@ -6,7 +6,7 @@
 #include <ddm_common/image_codec.h>
 #include <ddm_msgs/Torque.h>
 #include <ddm_plant_plugin/plant_config.h>
-#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/plant.h>
 #include <ddm_sim/testing/toy_plant.h>
 #include <sys/stat.h>
 

@@ -1,14 +1,14 @@
-// Tests of the configuration: the manual and the defaults say the same.
+// Tests of the configuration: the parameter reference has the defaults.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_bag_io/model_config.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <set>
 #include <stdexcept>
 
 #include "ddm_msgs/testing/expect_error.h"
+#include "ddm_msgs/testing/parameter_reference.h"
 #include "trial_recorder.h"
 
 namespace ddm {
@@ -16,38 +16,12 @@ namespace {
 
 using testing::throwsNaming;
 
-std::set<std::string> keysOf(const YAML::Node& map) {
-  std::set<std::string> keys;
-  for (const auto& entry : map) keys.insert(entry.first.as<std::string>());
-  return keys;
-}
-
-/// Whether the manual's block has each key of the struct, no other, and the struct's defaults.
-template <class Options>
-::testing::AssertionResult manualEqualsDefaults(const std::string& block) {
-  const YAML::Node manual = YAML::LoadFile(DDM_MODEL_MANUAL)[block];
-  const YAML::Node defaults = toYaml(Options());
-  if (!manual.IsMap() || keysOf(manual) != keysOf(defaults)) {
-    return ::testing::AssertionFailure() << "keys differ: the manual has\n"
-                                         << manual << "\nthe struct\n"
-                                         << defaults;
-  }
-  ParamReader reader = ParamReader::fromFiles({DDM_MODEL_MANUAL});
-  const std::string read = YAML::Dump(toYaml(reader.template read<Options>(block)));
-  if (read != YAML::Dump(defaults)) {
-    return ::testing::AssertionFailure() << "values differ: the manual has\n"
-                                         << read << "\nthe struct\n"
-                                         << defaults;
-  }
-  return ::testing::AssertionSuccess();
-}
-
-TEST(ModelManual, HasTheKeysAndDefaultsOfEachBlock) {
-  EXPECT_TRUE(manualEqualsDefaults<ImageOptions>("image"));
-  EXPECT_TRUE(manualEqualsDefaults<ModelOptions>("model"));
-  EXPECT_TRUE(manualEqualsDefaults<TrainingOptions>("training"));
-  EXPECT_TRUE(manualEqualsDefaults<BagOptions>("data_set"));
-  EXPECT_TRUE(manualEqualsDefaults<RecorderOptions>("recorder"));
+TEST(ModelReference, HasTheKeysAndDefaultsOfEachBlock) {
+  testing::expectDefaults<ImageOptions>(DDM_MODEL_MANUAL, "image");
+  testing::expectDefaults<ModelOptions>(DDM_MODEL_MANUAL, "model");
+  testing::expectDefaults<TrainingOptions>(DDM_MODEL_MANUAL, "training");
+  testing::expectDefaults<BagOptions>(DDM_MODEL_MANUAL, "data_set");
+  testing::expectDefaults<RecorderOptions>(DDM_MODEL_MANUAL, "recorder");
 }
 
 TEST(ModelConfig, ItsTextReadsBackAsTheSameConfiguration) {

@@ -8,6 +8,9 @@
 
 #include <map>
 #include <string>
+#include <vector>
+
+#include "ddm_msgs/testing/parameter_reference.h"
 
 namespace ddm {
 namespace {
@@ -48,22 +51,9 @@ TEST(MpcOptions, RefuseValuesOutOfRangeNanIncluded) {
                                                   {"dt", "[-0.1, 1000.1, .nan]"}});
 }
 
-/// Each key of the block stands in the reference with its default, in the order of the struct.
-template <class Options>
-void expectReference(const std::string& block) {
-  const YAML::Node defaults = toYaml(Options()), given = YAML::LoadFile(kReference)[block];
-  ParamReader reader = ParamReader::fromFiles({kReference});
-  EXPECT_EQ(YAML::Dump(toYaml(reader.read<Options>(block))), YAML::Dump(defaults));
-  EXPECT_NO_THROW(reader.requireValid());
-  ASSERT_EQ(given.size(), defaults.size());
-  for (auto a = given.begin(), b = defaults.begin(); a != given.end(); ++a, ++b) {
-    EXPECT_EQ(a->first.as<std::string>(), b->first.as<std::string>());
-  }
-}
-
 TEST(ParameterReference, GivesTheDefaultsOfBothBlocksAndHoldsNothingElse) {
-  expectReference<MpcOptions>("mpc");
-  expectReference<ControllerOptions>("controller");
+  testing::expectDefaults<MpcOptions>(kReference, "mpc");
+  testing::expectDefaults<ControllerOptions>(kReference, "controller");
   EXPECT_EQ(YAML::LoadFile(kReference).size(), 2U);
 }
 

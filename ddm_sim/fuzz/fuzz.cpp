@@ -1,7 +1,6 @@
 // Fuzz targets of ddm_sim: what reaches robot_node, and the standard input of simulate.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/testing/fuzzing.h>
-#include <ddm_robot/frame_picker.h>
 #include <ddm_robot/stamp_check.h>
 #include <ddm_robot/torque_gate.h>
 
@@ -85,7 +84,7 @@ void robotInput(const std::uint8_t* data, std::size_t size) {
   if (kind_of_robot / 2 % 2 == 1) options.max_torque = {4.0, 2.0};
   TorqueGate gate(options);
   ddm::StampCheck stamps(options.dt);
-  ddm::FramePicker picker(options.dt);
+  ddm::ImagePicker picker(options.dt);
   ddm::SteadyTime time{};
   while (!bytes.empty()) {
     const auto kind = bytes.number<std::uint8_t>();

@@ -4,7 +4,8 @@
 
 #include <actionlib_msgs/GoalID.h>
 #include <ddm_common/image_codec.h>
-#include <ddm_common/topic_peers.h>
+#include <ddm_common/image_options.h>
+#include <ddm_common/run_node.h>
 #include <ddm_msgs/topics.h>
 #include <std_msgs/Bool.h>
 #include <std_msgs/Float64.h>
@@ -19,8 +20,9 @@ namespace {
 constexpr int kQueue = 10;
 constexpr int kRecordedQueue = 1000;             // a recorder that is slow must not lose one
 constexpr std::chrono::seconds kFreshCamera(1);  // one that is silent for longer is not there
+const ros::WallDuration kEffortPeriod(0.01);     // torques are sent and timeouts checked so often
 const ros::WallDuration kDiagnosisPeriod(1.0);
-const ros::WallDuration kFrameLogPeriod(5.0);
+const ros::WallDuration kImageLogPeriod(5.0);
 
 }  // namespace
 
@@ -28,9 +30,7 @@ RobotNode::RobotNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size,
                      const RobotOptions& options)
     : image_size_(image_size),
       options_(options),
-      routine_(
-          nh, options.reset_service, [this] { return beginRoutine(); },
-          [this](bool answered) { return endRoutine(answered); }),
+      reset_service_(options.reset_service.empty() ? "" : nh.resolveName(options.reset_service)),
       gate_(options),
       stamps_(options.dt),
       picker_(options.dt),
@@ -67,16 +67,16 @@ RobotNode::RobotNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size,
   }
   trial_end_sub_ =
       nh.subscribe(std::string(topics::kRunTrial) + "/result", 1, &RobotNode::onTrialEnd, this);
-  frame_sub_ = transport_.subscribe(
-      topics::kCamera, 1, &RobotNode::onFrame, this,
+  camera_sub_ = transport_.subscribe(
+      topics::kCamera, 1, &RobotNode::onImage, this,
       image_transport::TransportHints("raw", ros::TransportHints().tcpNoDelay(), pnh));
-  timer_ =
-      nh.createSteadyTimer(ros::WallDuration(1.0 / options.effort_rate), &RobotNode::onTick, this);
+  timer_ = nh.createSteadyTimer(kEffortPeriod, &RobotNode::onTick, this);
   diagnosis_timer_ = nh.createSteadyTimer(kDiagnosisPeriod, [this](const ros::SteadyTimerEvent&) {
     guarded([this] { updater_.force_update(); });  // update() goes by a clock that may be set
   });
   enable_server_ = nh.advertiseService(topics::kEnable, &RobotNode::onEnable, this);
   take_goal_server_ = nh.advertiseService(topics::kTakeGoal, &RobotNode::onTakeGoal, this);
+  reset_done_server_ = nh.advertiseService(topics::kResetDone, &RobotNode::onResetDone, this);
   // Last: whoever sees the service finds everything else in place.
   reset_server_ = nh.advertiseService(topics::kReset, &RobotNode::onReset, this);
 }
@@ -86,7 +86,6 @@ void RobotNode::stopMotors(const std::string& reason) {
   stop(reason);
 }
 
-/// Requires the lock.
 void RobotNode::stop(const std::string& reason) {
   gate_.stop(reason);
   publishEffort();
@@ -103,102 +102,91 @@ void RobotNode::guarded(const Work& work) {
   }
 }
 
-/// What the controller sees of a frame of the camera.
+/// What the controller sees of an image of the camera.
 /// @throws std::invalid_argument for one that cannot be used
-sensor_msgs::Image RobotNode::shown(const sensor_msgs::Image& frame) const {
-  const ImageCrop crop = {options_.crop_x, options_.crop_y, options_.crop_width,
-                          options_.crop_height};
-  return encodeImage(decodeImage(frame, image_size_, crop), image_size_, frame.header.stamp,
-                     frame.header.frame_id);
+sensor_msgs::Image RobotNode::shown(const sensor_msgs::Image& image) const {
+  const ImageCrop crop{options_.crop[0], options_.crop[1], options_.crop[2], options_.crop[3]};
+  return encodeImage(decodeImage(image, image_size_, crop), image_size_, image.header.stamp,
+                     image.header.frame_id);
 }
 
 bool RobotNode::seesCamera() const {
-  return frame_ != nullptr && steadyNow() - frame_arrival_ <= kFreshCamera;
+  return image_ != nullptr && steadyNow() - image_arrival_ <= kFreshCamera;
 }
 
-void RobotNode::onFrame(const sensor_msgs::ImageConstPtr& frame) {
-  guarded([&] { takeFrame(frame); });
-}
-
-void RobotNode::takeFrame(const sensor_msgs::ImageConstPtr& frame) {
-  const Stamp stamp = toStamp(frame->header.stamp);
-  const auto num_cameras = frame_sub_.getNumPublishers();
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    frame_ = frame;
-    frame_arrival_ = steadyNow();
-    frame_arrival_clock_ = toStamp(ros::Time::now());
-    std::string refusal = num_cameras > 1 ? std::to_string(num_cameras) +
-                                                " nodes publish images there: end all but one"
-                                          : formatProblem(*frame);
-    if (refusal.empty()) refusal = stamps_.take(frame_arrival_, frame_arrival_clock_, stamp);
-    if (!refusal.empty()) {
-      frame_problem_ = refusal;
-      logFrameProblem();
-      return;
+void RobotNode::onImage(const sensor_msgs::ImageConstPtr& image) {
+  guarded([&] {
+    const Stamp stamp = toStamp(image->header.stamp);
+    const auto num_cameras = camera_sub_.getNumPublishers();
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      image_ = image;
+      image_arrival_ = steadyNow();
+      image_arrival_clock_ = toStamp(ros::Time::now());
+      std::string problem = num_cameras > 1 ? std::to_string(num_cameras) +
+                                                  " nodes publish images there: end all but one"
+                                            : formatProblem(*image);
+      if (problem.empty()) problem = stamps_.take(image_arrival_, image_arrival_clock_, stamp);
+      if (!problem.empty()) return refuseImage(problem);
+      if (!picker_.pick(stamp)) return;
     }
-    if (!picker_.pick(stamp)) return;
-  }
-  std::string problem;
-  sensor_msgs::Image image;
-  try {
-    image = shown(*frame);
-  } catch (const std::exception& e) {
-    problem = e.what();
-  }
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    frame_problem_ = problem;
-    if (!problem.empty()) {
-      logFrameProblem();
-      return;
+    sensor_msgs::Image out;
+    std::string problem;
+    try {
+      out = shown(*image);  // without the lock, because it takes a while
+    } catch (const std::exception& e) {
+      problem = e.what();
     }
-    settle(true);
-    gate_.showImage(stamps_.taken(), stamp);  // before anybody can answer it
-  }
-  image_pub_.publish(image);
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (!problem.empty()) return refuseImage(problem);
+      image_problem_.clear();
+      settle(true);
+      gate_.showImage(stamps_.taken(), stamp);  // before anybody can answer it
+    }
+    image_pub_.publish(out);
+  });
 }
 
-/// Why the crop would show something else than before; empty: it does not. Requires the lock.
-std::string RobotNode::formatProblem(const sensor_msgs::Image& frame) const {
-  if (camera_format_.empty() || formatOf(frame) == camera_format_) return "";
-  return "the images have changed from " + camera_format_ + " to " + formatOf(frame) +
+/// Why the crop would show something else than before; empty if it does not.
+std::string RobotNode::formatProblem(const sensor_msgs::Image& image) const {
+  if (camera_format_.empty() || formatOf(image) == camera_format_) return "";
+  return "the images have changed from " + camera_format_ + " to " + formatOf(image) +
          ", so that the crop shows something else: set the camera back, or start again with "
          "another goal and another folder";
 }
 
-/// Logs at most once every kFrameLogPeriod. Requires the lock.
-void RobotNode::logFrameProblem() {
+/// Logs the problem of the newest image, at most once every kImageLogPeriod.
+void RobotNode::refuseImage(const std::string& problem) {
+  image_problem_ = problem;
   const ros::SteadyTime now = ros::SteadyTime::now();
-  if (now - last_frame_log_ < kFrameLogPeriod) return;
-  last_frame_log_ = now;
-  log_.warn("frame of " + frame_sub_.getTopic() + ": " + frame_problem_);
+  if (now - last_image_log_ < kImageLogPeriod) return;
+  last_image_log_ = now;
+  log_.warn("image of " + camera_sub_.getTopic() + ": " + problem);
 }
 
 void RobotNode::onTorque(const ros::MessageEvent<const ddm_msgs::Torque>& event) {
-  guarded([&] { takeTorque(*event.getConstMessage(), event.getPublisherName()); });
-}
-
-void RobotNode::takeTorque(const ddm_msgs::Torque& torque, const std::string& publisher) {
-  const Stamp arrival = toStamp(ros::Time::now());
-  const Stamp stamp = toStamp(torque.header.stamp);
-  const std::lock_guard<std::mutex> lock(mutex_);
-  controller_watch_.hear(publisher);
-  lookAtPeers();
-  const bool acts = gate_.takeTorque(steadyNow(), stamp, torque.torque);
-  publishEffort();
-  if (acts) {
-    if (camera_format_.empty() && frame_ != nullptr) camera_format_ = formatOf(*frame_);
-    settle(true);
-    acting_.header.stamp = torque.header.stamp;
-    acting_.torque = gate_.target();
-    acting_.exploratory = torque.exploratory;
-  }
-  if (!gate_.armed()) cancelTrial();  // it has begun without the motors
-  std_msgs::Float64 latency;
-  latency.data = std::chrono::duration<double>(arrival - stamp).count();
-  latency_pub_.publish(latency);
-  worst_latency_ = std::max(worst_latency_, latency.data);
+  guarded([&] {
+    const ddm_msgs::Torque& torque = *event.getConstMessage();
+    const Stamp arrival = toStamp(ros::Time::now());
+    const Stamp stamp = toStamp(torque.header.stamp);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    controller_watch_.hear(event.getPublisherName());
+    lookAtPeers();
+    const bool acts = gate_.takeTorque(steadyNow(), stamp, torque.torque);
+    publishEffort();
+    if (acts) {
+      if (camera_format_.empty() && image_ != nullptr) camera_format_ = formatOf(*image_);
+      settle(true);
+      acting_ = torque;
+      acting_.torque = gate_.target();
+    }
+    if (!gate_.armed()) cancelTrial();  // it has begun without the motors
+    std_msgs::Float64 latency;
+    latency.data = toSeconds(arrival - stamp);
+    latency_pub_.publish(latency);
+    worst_latency_ = std::max(worst_latency_, latency.data);
+  });
 }
 
 void RobotNode::onJointStates(const ros::MessageEvent<const sensor_msgs::JointState>& event) {
@@ -235,7 +223,6 @@ void RobotNode::onTick(const ros::SteadyTimerEvent& /*event*/) {
   });
 }
 
-/// Requires the lock.
 void RobotNode::lookAtPeers() {
   auto num_publishers = static_cast<int>(torque_sub_.getNumPublishers());
   if (controller_watch_.died()) num_publishers = 0;
@@ -243,7 +230,7 @@ void RobotNode::lookAtPeers() {
   gate_.setListeners(effort_.numSubscribers());
 }
 
-/// Requires the lock. Call it whenever something may have changed.
+/// To be called whenever something may have changed.
 void RobotNode::publishEffort() {
   const std::vector<double>& effort = gate_.effort(steadyNow());
   if (!gate_.armed()) routine_moves_ = false;  // a stop takes the motors from the reset service
@@ -257,9 +244,9 @@ void RobotNode::publishEffort() {
   reportState();
 }
 
-/// Publishes what acted as the answer to the last image that was answered: its step is over.
-/// @param acted  to the end of the step. False, as publishEffort() finds it: the motors got zero
-///               before, and nothing is to be learned from the step
+/// Reports which torque acted as the answer to the last answered image, at the end of its step.
+/// @param acted  whether it acted to the end of the step. If the motors got zero before, nothing can
+///               be learned from the step
 void RobotNode::settle(bool acted) {
   if (acting_.torque.empty()) return;
   if (!acted) acting_.torque.clear();
@@ -307,8 +294,8 @@ void RobotNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.summary(
       fine ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
       gate_.describe());
-  if (!frame_problem_.empty()) {
-    status.summary(diagnostic_msgs::DiagnosticStatus::ERROR, frame_problem_);
+  if (!image_problem_.empty()) {
+    status.summary(diagnostic_msgs::DiagnosticStatus::ERROR, image_problem_);
   }
   const std::string frozen = gate_.frozenJoint();
   if (!frozen.empty()) status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, frozen);
@@ -321,3 +308,23 @@ void RobotNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
 }
 
 }  // namespace ddm
+
+int main(int argc, char** argv) {
+  const auto run = [](const auto& nh, const auto& pnh, ddm::ParamReader* params) {
+    params->ignore("image_transport");    // read by image_transport itself
+    params->ignore("diagnostic_period");  // read by diagnostic_updater itself
+    const auto image = params->read<ddm::ImageOptions>("image");
+    const auto robot = params->read<ddm::RobotOptions>("robot");
+    params->requireValid();
+    ROS_INFO_STREAM("robot_node runs with\n" << ddm::toYaml(robot));
+    ddm::RobotNode node(nh, pnh, image.size, robot);
+    ros::AsyncSpinner spinner(4);  // a reset waits in one of them
+    spinner.start();
+    const auto stop = [&node] {
+      node.stopMotors("this node ends");
+      return true;
+    };
+    ddm::runUntilEnd([] { ros::WallDuration(0.05).sleep(); }, stop);
+  };
+  return ddm::runNode("robot_node", argc, argv, run, ddm::Ending::kByLastMessage);
+}

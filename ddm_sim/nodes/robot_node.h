@@ -8,7 +8,6 @@
 #include <ddm_msgs/Reset.h>
 #include <ddm_msgs/RunTrialAction.h>
 #include <ddm_msgs/Torque.h>
-#include <ddm_robot/frame_picker.h>
 #include <ddm_robot/robot_options.h>
 #include <ddm_robot/stamp_check.h>
 #include <ddm_robot/torque_gate.h>
@@ -19,10 +18,9 @@
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
 
+#include <atomic>
 #include <mutex>
 #include <string>
-
-#include "reset_routine.h"
 
 namespace ddm {
 
@@ -32,6 +30,7 @@ inline Stamp toStamp(const ros::Time& time) {
 
 inline SteadyTime steadyNow() { return std::chrono::steady_clock::now(); }
 
+/// Size and encoding, for messages.
 inline std::string formatOf(const sensor_msgs::Image& image) {
   return std::to_string(image.width) + "x" + std::to_string(image.height) + " " + image.encoding;
 }
@@ -41,6 +40,8 @@ inline std::string formatOf(const sensor_msgs::Image& image) {
 /// torques do not act, so nothing is to be learned from it.
 ///
 /// Needs a spinner with several threads: a reset may wait for a person while all else goes on.
+/// Implementation: robot_node.cpp has camera and motors, robot_reset.cpp what people and Algorithm 1
+/// ask for: `enable`, `take_goal` and `reset`.
 class RobotNode {
  public:
   /// @param pnh  private: the user's choice of an image transport
@@ -52,9 +53,12 @@ class RobotNode {
   void stopMotors(const std::string& reason);
 
  private:
+  /// What the motors must be before a reset goes on.
+  enum class Motors { kAny, kOn, kFit };
+
   template <class Work>
   void guarded(const Work& work);
-  void onFrame(const sensor_msgs::ImageConstPtr& frame);
+  void onImage(const sensor_msgs::ImageConstPtr& image);
   void onTorque(const ros::MessageEvent<const ddm_msgs::Torque>& event);
   void onJointStates(const ros::MessageEvent<const sensor_msgs::JointState>& event);
   void onTrialEnd(const ddm_msgs::RunTrialActionResultConstPtr& result);
@@ -62,50 +66,51 @@ class RobotNode {
   bool onEnable(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   bool onTakeGoal(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Response& response);
+  bool onResetDone(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
-  void stop(const std::string& reason);
-  void takeFrame(const sensor_msgs::ImageConstPtr& frame);
-  void takeTorque(const ddm_msgs::Torque& torque, const std::string& publisher);
-  bool seesCamera() const;
-  void logFrameProblem();
-  sensor_msgs::Image shown(const sensor_msgs::Image& frame) const;
+  sensor_msgs::Image shown(const sensor_msgs::Image& image) const;
   void loadGoal();
   void publishGoal(const sensor_msgs::Image& goal);
+  std::string waitFor(Motors motors, const ros::SteadyTime& deadline);
+  std::string missing(Motors motors);
+  std::string moveToInitialState(const ros::SteadyTime& deadline);
+  std::string callResetService(const ros::SteadyTime& deadline);
+  std::string askPerson(const ros::SteadyTime& deadline);
+  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  // These require the lock.
+  void stop(const std::string& reason);
+  bool seesCamera() const;
+  std::string formatProblem(const sensor_msgs::Image& image) const;
+  void refuseImage(const std::string& problem);
   void publishEffort();
   void settle(bool acted);
   void reportState();
   void cancelTrial();
   void lookAtPeers();
-  std::string beginRoutine();
-  std::string endRoutine(bool answered);
-  std::string bringToStart(const ros::SteadyTime& deadline);
-  /// What the motors must be before a reset goes on.
-  enum class Motors { kAny, kOn, kFit };
-  std::string waitUntilThere(const ros::SteadyTime& deadline, Motors motors);
-  std::string missing(Motors motors);
-  std::string formatProblem(const sensor_msgs::Image& frame) const;
-  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void restartImages();
+  std::string stepProblem();
 
   LogThread log_;  // a terminal that is stopped must not be in the way of a stop
   const int image_size_;
   const RobotOptions options_;
-  ResetRoutine routine_;
+  const std::string reset_service_;  // resolved name; empty: a person resets the robot
   NodeWatch controller_watch_;
 
   std::mutex mutex_;  // guards what callbacks change, below
   TorqueGate gate_;
   StampCheck stamps_;
-  FramePicker picker_;
-  sensor_msgs::ImageConstPtr frame_;  // the newest of the camera
-  SteadyTime frame_arrival_;
-  Stamp frame_arrival_clock_{0};  // the same by the clock of this machine
-  std::string frame_problem_;     // why the newest frame cannot be used
+  ImagePicker picker_;
+  sensor_msgs::ImageConstPtr image_;  // the newest of the camera
+  SteadyTime image_arrival_;
+  Stamp image_arrival_clock_{0};  // the same by the clock of this machine
+  std::string image_problem_;     // why the newest image cannot be used
   std::string camera_format_;     // size and encoding that the crop was used with; empty: not yet
   bool has_goal_ = false;
   bool routine_runs_ = false;   // the user's reset service has been called and has not answered
   bool routine_moves_ = false;  // the service has the motors, and no effort is published
-  ddm_msgs::Torque acting_;     // what is not yet published as applied; no torque: nothing is
-  ros::SteadyTime last_frame_log_;
+  ddm_msgs::Torque acting_;     // acts now and is not yet reported; empty: all are reported
+  ros::SteadyTime last_image_log_;
   bool was_armed_ = false;
   std::string last_state_;
   std::string last_frozen_;
@@ -113,6 +118,7 @@ class RobotNode {
   double worst_latency_ = 0.0;  // since the last diagnosis [s]
 
   std::mutex one_reset_;
+  std::atomic<bool> person_asked_{false};  // to bring the robot to its initial state
   image_transport::ImageTransport transport_;
   image_transport::Publisher image_pub_;
   ros::Publisher goal_pub_;
@@ -122,7 +128,7 @@ class RobotNode {
   ros::Publisher misses_pub_;
   ros::Publisher cancel_pub_;
   ros::Publisher enabled_pub_;
-  image_transport::Subscriber frame_sub_;
+  image_transport::Subscriber camera_sub_;
   ros::Subscriber torque_sub_;
   ros::Subscriber joints_sub_;  // only where joints have limits
   ros::Subscriber trial_end_sub_;
@@ -131,6 +137,7 @@ class RobotNode {
   ros::SteadyTimer diagnosis_timer_;
   ros::ServiceServer enable_server_;
   ros::ServiceServer take_goal_server_;
+  ros::ServiceServer reset_done_server_;
   ros::ServiceServer reset_server_;
 };
 

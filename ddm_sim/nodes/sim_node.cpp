@@ -4,7 +4,6 @@
 
 #include <ddm_plant_plugin/picture_message.h>
 #include <image_transport/image_transport.h>
-#include <rosgraph_msgs/Clock.h>
 
 #include <algorithm>
 #include <sstream>
@@ -13,7 +12,7 @@
 
 #include "ddm_common/topic_peers.h"
 #include "ddm_msgs/topics.h"
-#include "ddm_sim/few_numbers.h"
+#include "ddm_sim/plant.h"
 #include "joint_state.h"
 
 namespace ddm {
@@ -29,18 +28,22 @@ Eigen::VectorXd toEigen(const std::vector<double>& values) {
 
 }  // namespace
 
-SimNode::SimNode(ros::NodeHandle nh, std::unique_ptr<Environment> environment, bool clock)
+SimNode::SimNode(ros::NodeHandle nh, std::unique_ptr<Environment> environment)
     : environment_(std::move(environment)),
-      frame_(opticalFrame(plant().cameraModel())),
+      optical_frame_(opticalFrame(plant().cameraModel())),
       goal_pub_(nh.advertise<sensor_msgs::Image>(topics::kGoalImage, 1, /*latch=*/true)),
       ground_truth_pub_(
           nh.advertise<sensor_msgs::JointState>(topics::kGroundTruth, kLongQueueSize)),
       applied_pub_(nh.advertise<ddm_msgs::Torque>(topics::kAppliedTorque, kLongQueueSize)),
       image_pub_(image_transport::ImageTransport(nh).advertise(topics::kImage, kLongQueueSize)),
       view_(nh, plant()) {
-  if (clock) clock_pub_ = nh.advertise<rosgraph_msgs::Clock>("/clock", 1, /*latch=*/true);
-  torque_sub_ = nh.subscribe(topics::kTorque, kQueueSize, &SimNode::onTorque, this,
-                             ros::TransportHints().tcpNoDelay());
+  torque_sub_ = nh.subscribe<ddm_msgs::Torque>(
+      topics::kTorque, kQueueSize,
+      boost::function<void(const ros::MessageEvent<const ddm_msgs::Torque>&)>(
+          [this](const ros::MessageEvent<const ddm_msgs::Torque>& event) {
+            handleTorque(*event.getMessage(), event.getPublisherName(), torque_sub_.getTopic());
+          }),
+      ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
   // Last: whoever sees the service finds everything else in place.
   reset_server_ = nh.advertiseService(topics::kReset, &SimNode::onReset, this);
 }
@@ -55,9 +58,9 @@ bool SimNode::advance(const Eigen::VectorXd& torque) {
   }
 }
 
-bool SimNode::publishFrame(const ros::Time& stamp) {
+bool SimNode::publishImage(const ros::Time& stamp) {
   if (!seen_) return false;
-  image_pub_.publish(imageMessage(*seen_, stamp, frame_));
+  image_pub_.publish(imageMessage(*seen_, stamp, optical_frame_));
   untold_.push_back(jointStateOf(plant(), environment_->applied()));
   untold_.back().header.stamp = stamp;
   view_.publish(*seen_, stamp);  // last: whoever plans does not wait for what people see
@@ -67,12 +70,6 @@ bool SimNode::publishFrame(const ros::Time& stamp) {
 void SimNode::publishGroundTruth() {
   for (const sensor_msgs::JointState& joints : untold_) ground_truth_pub_.publish(joints);
   untold_.clear();
-}
-
-void SimNode::publishClock(const ros::Time& stamp) const {
-  rosgraph_msgs::Clock clock;
-  clock.clock = stamp;
-  clock_pub_.publish(clock);
 }
 
 void SimNode::publishApplied(ddm_msgs::Torque answer) const {
@@ -89,7 +86,7 @@ void SimNode::publishGoal(const ros::Time& stamp) {
   if (image.bytes == goal_image_.bytes) return;
   goal_image_ = std::move(image);
   goal_stamp_ = stamp;
-  goal_pub_.publish(imageMessage(goal_image_, stamp, frame_));
+  goal_pub_.publish(imageMessage(goal_image_, stamp, optical_frame_));
 }
 
 bool SimNode::onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Response& response) {
@@ -111,17 +108,14 @@ bool SimNode::onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Respon
   return true;
 }
 
-void SimNode::onTorque(const ros::MessageEvent<ddm_msgs::Torque const>& event) {
-  const ddm_msgs::Torque& message = *event.getMessage();
+void SimNode::handleTorque(const ddm_msgs::Torque& message, const std::string& publisher,
+                           const std::string& topic) {
   const Eigen::VectorXd torque = toEigen(message.torque);
   const std::string rule = brokenRule(torque);
-  if (rule.empty()) {
-    takeTorque(message, torque, event.getPublisherName());
-    return;
-  }
+  if (rule.empty()) return takeTorque(message, torque, publisher);
   std::ostringstream reason;
-  reason << "torque refused: " << event.getPublisherName() << " published " << fewNumbers(torque)
-         << " on " << torqueTopic() << ", " << rule;
+  reason << "torque refused: " << publisher << " published " << fewNumbers(torque) << " on "
+         << topic << ", " << rule;
   torqueRefused(message.header.stamp, reason.str());
 }
 
@@ -129,7 +123,7 @@ void SimNode::onTorque(const ros::MessageEvent<ddm_msgs::Torque const>& event) {
 std::string SimNode::brokenRule(const Eigen::VectorXd& torque) const {
   if (torque_sub_.getNumPublishers() > 1) {
     return "only one node may drive the motor: stop the others, " +
-           describePublishers(torqueTopic());
+           describePublishers(torque_sub_.getTopic());
   }
   std::ostringstream rule;
   const PlantInfo& info = plant().info();

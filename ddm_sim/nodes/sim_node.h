@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "ddm_sim/environment.h"
+#include "ddm_sim/sim_options.h"
 #include "view_publisher.h"
 
 namespace ddm {
@@ -28,43 +29,42 @@ class SimNode {
   SimNode& operator=(const SimNode&) = delete;
 
  protected:
-  /// @param nh     its namespace holds the topics
-  /// @param clock  also publish /clock: true in lock-step only
-  SimNode(ros::NodeHandle nh, std::unique_ptr<Environment> environment, bool clock);
+  /// @param nh  its namespace holds the topics
+  SimNode(ros::NodeHandle nh, std::unique_ptr<Environment> environment);
 
   /// One time step.
   /// @return false if the plant has no next state; the reason has been logged
   bool advance(const Eigen::VectorXd& torque);
 
   /// The image of this time step. publishGroundTruth() publishes the rest.
-  /// @return false if the camera has lost the frame: there will be nothing of it
-  bool publishFrame(const ros::Time& stamp);
+  /// @return false if the camera has lost the image: nothing of this time step is published
+  bool publishImage(const ros::Time& stamp);
 
-  /// Ground truth of the frames since the last call. Not much later than the frames: that of each
-  /// is kept in memory.
+  /// Ground truth of the images since the last call, which it keeps in memory until then.
   void publishGroundTruth();
 
   /// What acted as the answer to an image: this torque, as far as the motor can do it. To be called
   /// once for each image that was shown.
-  /// @param answer  without a torque: none acted in time
+  /// @param answer  without a torque if none acted in time
   void publishApplied(ddm_msgs::Torque answer) const;
 
-  /// The goal of this run, unless it looks like the last one: who waits for it knows its stamp from
-  /// the answer to `reset`.
+  /// The goal of this run, unless it looks like the last one: the answer to `reset` has the stamp of
+  /// the goal that counts.
   void publishGoal(const ros::Time& stamp);
 
-  /// Simulated time. Must not run backwards.
-  void publishClock(const ros::Time& stamp) const;
+  /// Checks a torque as if it had come on the topic `torque`, and hands it to the mode.
+  /// @param topic  that the torque came on, for messages
+  void handleTorque(const ddm_msgs::Torque& message, const std::string& publisher,
+                    const std::string& topic);
+  bool onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Response& response);
 
   const Plant& plant() const { return environment_->plant(); }
-  std::string torqueTopic() const { return torque_sub_.getTopic(); }
+  const ros::Subscriber& torques() const { return torque_sub_; }
 
  private:
-  bool onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Response& response);
-  void onTorque(const ros::MessageEvent<ddm_msgs::Torque const>& event);
   std::string brokenRule(const Eigen::VectorXd& torque) const;
 
-  /// The plant has been set to its start: show the first image.
+  /// The plant has been set to its initial state: show the first image.
   /// @return stamp of that image
   virtual ros::Time beginTrial(const ddm_msgs::Reset::Request& request) = 0;
 
@@ -76,12 +76,11 @@ class SimNode {
   virtual void torqueRefused(const ros::Time& stamp, const std::string& reason) = 0;
 
   std::unique_ptr<Environment> environment_;
-  std::optional<Picture> seen_;                  ///< the frame of this time step; empty: lost
-  Picture goal_image_;                           ///< as published last
-  ros::Time goal_stamp_;                         ///< of goal_image_
-  std::vector<sensor_msgs::JointState> untold_;  ///< of frames since the last publishGroundTruth()
-  std::string frame_;                            ///< of the images, in tf
-  ros::Publisher clock_pub_;
+  std::optional<Picture> seen_;  ///< the image of this time step; empty if the camera has lost it
+  Picture goal_image_;           ///< as published last
+  ros::Time goal_stamp_;         ///< of goal_image_
+  std::vector<sensor_msgs::JointState> untold_;  ///< of images since the last publishGroundTruth()
+  std::string optical_frame_;                    ///< of the images, in tf
   ros::Publisher goal_pub_;
   ros::Publisher ground_truth_pub_;
   ros::Publisher applied_pub_;
@@ -90,5 +89,14 @@ class SimNode {
   ros::ServiceServer reset_server_;
   ros::Subscriber torque_sub_;
 };
+
+/// Simulated time stands still until each image has its torque, see lockstep_sim.cpp.
+std::unique_ptr<SimNode> makeLockstepSim(const ros::NodeHandle& nh,
+                                         std::unique_ptr<Environment> environment,
+                                         const SimOptions& options, const ShowOptions& show);
+
+/// The plant moves by itself, as a robot does, see realtime_sim.cpp.
+std::unique_ptr<SimNode> makeRealtimeSim(const ros::NodeHandle& nh,
+                                         std::unique_ptr<Environment> environment);
 
 }  // namespace ddm

@@ -6,11 +6,8 @@
 #include <memory>
 #include <utility>
 
-#include "ddm_sim/environment.h"
-#include "ddm_sim/plant_factory.h"
-#include "ddm_sim/sim_options.h"
-#include "lockstep_sim.h"
-#include "realtime_sim.h"
+#include "ddm_sim/plant.h"
+#include "sim_node.h"
 
 int main(int argc, char** argv) {
   return ddm::runNode("sim_node", argc, argv, [](auto nh, auto, ddm::ParamReader* params) {
@@ -27,13 +24,10 @@ int main(int argc, char** argv) {
     effective["show"] = ddm::toYaml(show);
     ROS_INFO_STREAM("sim_node: effective configuration\n" << effective);
 
-    std::unique_ptr<ddm::SimNode> node;
     auto environment = std::make_unique<ddm::Environment>(ddm::makePlant(*plant), camera);
-    if (sim.lockstep) {
-      node = std::make_unique<ddm::LockstepSim>(nh, std::move(environment), sim, show);
-    } else {
-      node = std::make_unique<ddm::RealtimeSim>(nh, std::move(environment));
-    }
+    const std::unique_ptr<ddm::SimNode> node =
+        sim.lockstep ? ddm::makeLockstepSim(nh, std::move(environment), sim, show)
+                     : ddm::makeRealtimeSim(nh, std::move(environment));
     ros::spin();
   });
 }

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "ddm_sim/plant_factory.h"
+#include "ddm_sim/plant.h"
 #include "ddm_sim/testing/toy_plant.h"
 
 namespace ddm {

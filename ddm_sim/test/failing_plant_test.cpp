@@ -10,7 +10,7 @@
 #include <string>
 
 #include "ddm_sim/testing/toy_plant.h"
-#include "lockstep_sim.h"
+#include "sim_node.h"
 
 namespace ddm {
 namespace {
@@ -22,7 +22,7 @@ TEST(FailingPlant, IsTheAnswerToItsResetAndTheNextOneBegins) {
     if (fails) throw std::runtime_error("no display is free");
     return testing::plainPicture(51, 255);
   };
-  LockstepSim sim(
+  const auto sim = makeLockstepSim(
       ros::NodeHandle(),
       std::make_unique<Environment>(std::make_unique<testing::ToyPlant>(traits), CameraOptions()),
       SimOptions(), ShowOptions());

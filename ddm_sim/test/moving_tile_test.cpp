@@ -128,14 +128,5 @@ TEST(DrawTile, IsBlackWhereTheTileIsFarOutside) {
   }
 }
 
-TEST(DrawTile, ChangesWithinATenthOfAPixel) {
-  for (int tenth = 0; tenth < 420; ++tenth) {
-    const double x = 4.5 + 0.1 * tenth;
-    ASSERT_NE(drawTile(kTilePicture, {x, 20.0}).bytes,
-              drawTile(kTilePicture, {x + 0.1, 20.0}).bytes)
-        << x;
-  }
-}
-
 }  // namespace
 }  // namespace ddm

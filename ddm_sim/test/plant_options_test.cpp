@@ -14,12 +14,14 @@
 #include <vector>
 
 #include "ddm_common/param_reader.h"
+#include "ddm_msgs/testing/expect_error.h"
 #include "ddm_msgs/testing/not_finite.h"
+#include "ddm_msgs/testing/parameter_reference.h"
 #include "ddm_plant_plugin/plant_config.h"
-#include "ddm_sim/camera_options.h"
+#include "ddm_sim/camera.h"
 #include "ddm_sim/moving_tile.h"
 #include "ddm_sim/pendulum.h"
-#include "ddm_sim/plant_factory.h"
+#include "ddm_sim/plant.h"
 #include "ddm_sim/sim_options.h"
 #include "ddm_sim/two_link.h"
 
@@ -95,14 +97,8 @@ TEST(PlantOptions, GiveEachComponentItsNumberOrAllTheSame) {
   EXPECT_EQ(forEach({2.5}, 3, "key"), Eigen::Vector3d::Constant(2.5));
   EXPECT_EQ(forEach({1.0, 2.0, 3.0}, 3, "key"), Eigen::Vector3d(1.0, 2.0, 3.0));
   for (const std::vector<double>& bad : {std::vector<double>{}, std::vector<double>{1.0, 2.0}}) {
-    try {
-      forEach(bad, 3, "plant/key");
-      FAIL() << bad.size() << " number(s) were taken for 3";
-    } catch (const std::invalid_argument& e) {
-      const std::string message = e.what();
-      EXPECT_NE(message.find("plant/key"), std::string::npos) << message;
-      EXPECT_NE(message.find(std::to_string(bad.size())), std::string::npos) << message;
-    }
+    EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
+        [&] { forEach(bad, 3, "plant/key"); }, {"plant/key", std::to_string(bad.size())}));
   }
 }
 
@@ -122,30 +118,11 @@ TEST(CameraOptions, ReportEachNuisanceOutOfRange) {
   EXPECT_EQ(options.problems().size(), 1U);
 }
 
-/// The plant that a file of the folder config/ describes.
-std::shared_ptr<const PlantPlugin> plantOf(const std::vector<std::string>& files) {
-  std::vector<std::string> paths;
-  for (const std::string& file : files) paths.push_back(kConfig + file);
-  ParamReader reader = ParamReader::fromFiles(paths);
-  auto plant = readPlant(&reader);
-  reader.requireValid();
-  return plant;
-}
-
 std::shared_ptr<const PlantPlugin> plantOfText(const std::string& text) {
   ParamReader reader(YAML::Load(text));
   auto plant = readPlant(&reader);
   reader.requireValid();
   return plant;
-}
-
-std::string refusalOfText(const std::string& text) {
-  try {
-    plantOfText(text);
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "";
 }
 
 TEST(PlantRegistry, ReadsThePlantThatItsTypeNamesWithItsOwnKeys) {
@@ -159,26 +136,21 @@ TEST(PlantRegistry, ReadsThePlantThatItsTypeNamesWithItsOwnKeys) {
 }
 
 TEST(PlantRegistry, RefusesAnUnknownTypeAndListsTheKnownOnes) {
-  const std::string text = refusalOfText("plant: {type: cart}");
-  for (const char* part : {"plant/type", "cart", "moving_tile", "pendulum", "two_link"}) {
-    EXPECT_NE(text.find(part), std::string::npos) << part << " is not in: " << text;
-  }
+  EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
+      [] { plantOfText("plant: {type: cart}"); },
+      {"plant/type", "cart", "moving_tile", "pendulum", "two_link"}));
 }
 
-TEST(Config, ManualSaysWhatTheStructsSay) {
-  ParamReader reader = ParamReader::fromFiles({kConfig + "sim.yaml"});
-  const auto camera = reader.read<CameraOptions>("camera");
-  const auto sim = reader.read<SimOptions>("sim");
-  const auto show = reader.read<ShowOptions>("show");
-  ASSERT_NO_THROW(reader.requireValid());
-  EXPECT_EQ(yaml(plantOf({"pendulum.yaml"})->block()), yaml(PendulumOptions()));
-  EXPECT_EQ(yaml(plantOf({"two_link.yaml"})->block()), yaml(TwoLinkOptions()));
-  EXPECT_EQ(yaml(camera), yaml(CameraOptions()));
-  EXPECT_EQ(yaml(sim), yaml(SimOptions()));
-  EXPECT_EQ(yaml(show), yaml(ShowOptions()));
-  const YAML::Node manual = YAML::LoadFile(kConfig + "sim.yaml");
-  EXPECT_EQ(manual["camera"].size(), toYaml(camera).size()) << "each key is there";
-  EXPECT_EQ(manual["sim"].size(), toYaml(sim).size());
+TEST(ParameterReferences, HaveTheDefaultsOfTheStructs) {
+  testing::expectDefaults<CameraOptions>(kConfig + "sim.yaml", "camera");
+  testing::expectDefaults<SimOptions>(kConfig + "sim.yaml", "sim");
+  testing::expectDefaults<ShowOptions>(kConfig + "sim.yaml", "show");
+  for (const auto& [file, expected] : {std::make_pair("pendulum.yaml", yaml(PendulumOptions())),
+                                       std::make_pair("two_link.yaml", yaml(TwoLinkOptions()))}) {
+    ParamReader reader = ParamReader::fromFiles({kConfig + file});
+    EXPECT_EQ(yaml(readPlant(&reader)->block()), expected);
+    reader.requireValid();
+  }
   EXPECT_EQ(YAML::LoadFile(kConfig + "pendulum.yaml")["plant"].size(),
             toYaml(PendulumOptions()).size());
 }

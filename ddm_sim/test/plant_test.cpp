@@ -15,7 +15,6 @@
 
 #include "ddm_msgs/testing/not_finite.h"
 #include "ddm_sim/pendulum.h"
-#include "ddm_sim/plant_factory.h"
 #include "ddm_sim/testing/toy_plant.h"
 
 namespace ddm {

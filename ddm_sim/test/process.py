@@ -19,12 +19,12 @@ def find_program(package, name):
 class Process:
     """stdout and stderr together are `output`, unless they go to the file `written_to`."""
 
-    def __init__(self, command, terminal=subprocess.DEVNULL, written_to=None):
+    def __init__(self, command, written_to=None):
         self._changed = threading.Condition()
         self._text = ""
         self._ended = False
         environment = dict(os.environ, PYTHONUNBUFFERED="1", ROSCONSOLE_STDOUT_LINE_BUFFERED="1")
-        self._process = subprocess.Popen(command, env=environment, stdin=terminal, stdout=written_to or subprocess.PIPE,
+        self._process = subprocess.Popen(command, env=environment, stdin=subprocess.DEVNULL, stdout=written_to or subprocess.PIPE,
                                          stderr=subprocess.STDOUT, universal_newlines=True, errors="replace")
         self._reader = None
         if written_to is None:

@@ -186,11 +186,5 @@ TEST_F(Realtime, ResetsAtAnyTimeAndDropsTheTorqueOnHold) {
   EXPECT_EQ((first + 1)->effort[0], 0.0);
 }
 
-TEST_F(Realtime, PublishesNoClock) {
-  ros::master::V_TopicInfo published;
-  ASSERT_TRUE(ros::master::getTopics(published));
-  for (const ros::master::TopicInfo& topic : published) EXPECT_NE(topic.name, "/clock");
-}
-
 }  // namespace
 }  // namespace ddm

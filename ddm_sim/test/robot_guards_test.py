@@ -13,11 +13,11 @@ from sensor_msgs.msg import JointState
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from process import Process  # noqa: E402
-from robot_stand_in import LIMIT_S, Listener, RobotCase, SharedRobotCase, wait_until  # noqa: E402
+from robot_case import LIMIT_S, Listener, RobotCase, SharedRobotCase, wait_until  # noqa: E402
 
 CLOCK_DT = 0.1
 HOUR_S = 3600.0
-TRIES = 8
+TRIES = 4
 DELAY_LIMIT_S = 2.0 * CLOCK_DT + 0.05  # from the last good image to the zero
 
 

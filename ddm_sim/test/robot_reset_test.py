@@ -2,7 +2,6 @@
 # robot_node: how a robot comes to its start and its goal, and what is refused.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import pty
 import re
 import sys
 import threading
@@ -15,7 +14,7 @@ from std_srvs.srv import Trigger, TriggerResponse
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from process import Process, find_program  # noqa: E402
-from robot_stand_in import LIMIT_S, Listener, RobotCase, wait_until  # noqa: E402
+from robot_case import LIMIT_S, Listener, RobotCase, wait_until  # noqa: E402
 
 
 class RobotResetTest(RobotCase):
@@ -44,20 +43,6 @@ class RobotResetTest(RobotCase):
         self.assertLess(abs((rospy.Time.now() - reset.start).to_sec()), LIMIT_S)
         wait_until(lambda: any(image.header.stamp > reset.start for image in robot.images.messages), "an image of the trial")
         self.assertEqual(list(bytearray(robot.goals.messages[0].data)), 4 * [255, 255, 0, 0])
-
-    def test_a_person_presses_enter_on_the_terminal(self):
-        ours, terminal = pty.openpty()
-        self.addCleanup(os.close, ours)
-        robot = self.start(terminal=terminal)
-        os.close(terminal)
-        wait_until(lambda: robot.takeGoal().success, "a camera")
-        self.assertTrue(robot.enable(True).success)
-        os.write(ours, b"typed before\n")
-        answer = robot.reset()
-        robot.process.waitForText("Enter", LIMIT_S)
-        self.assertNotIn("waits: ", robot.process.output)
-        os.write(ours, b"\n")
-        self.assertTrue(answer().success)
 
     def test_the_service_of_the_user_has_the_motor_to_itself_once_the_motors_are_on(self):
         robot = self.start("_robot/reset_service:=go_home")
@@ -157,6 +142,7 @@ class RobotResetTest(RobotCase):
         other = rospy.Publisher("camera/source", CompressedImage, queue_size=1)
         self.addCleanup(other.unregister)
         wait_until(lambda: "must be sensor_msgs/Image" in robot.reset()().message, "the type")
+
     def assertRefused(self, words, *arguments):
         if rospy.has_param("/refused"):
             rospy.delete_param("/refused")

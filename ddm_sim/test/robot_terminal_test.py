@@ -15,7 +15,7 @@ import rospy
 import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from robot_stand_in import LIMIT_S, RobotCase, wait_until  # noqa: E402
+from robot_case import LIMIT_S, RobotCase, wait_until  # noqa: E402
 
 
 class StoppedTerminal:

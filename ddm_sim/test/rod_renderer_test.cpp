@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <stdexcept>
 
 #include "ddm_sim/angles.h"
 
@@ -79,26 +77,6 @@ TEST(RodRenderer, StartsARodWhereItSays) {
   for (int i = 0; i < kSize - 2; ++i) {
     for (int j = 0; j < kSize - kShift; ++j) {  // to the right, and two rows up
       ASSERT_NEAR(moved[i * kSize + j + kShift], middle[(i + 2) * kSize + j], 1) << i << ", " << j;
-    }
-  }
-}
-
-TEST(RodRenderer, RefusesALookWithoutAWidthOrAnEdge) {
-  const auto accepts = [](double RodLook::*value, double number) {
-    RodLook look;
-    look.*value = number;
-    try {
-      RodRenderer(kSize, look).render({rodAt(0.0)});
-    } catch (const std::invalid_argument&) {
-      return false;
-    }
-    return true;
-  };
-  for (const auto value : {&RodLook::rod_half_width, &RodLook::edge_softness}) {
-    EXPECT_TRUE(accepts(value, 0.5));
-    for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
-                             std::numeric_limits<double>::infinity()}) {
-      EXPECT_FALSE(accepts(value, bad)) << bad;
     }
   }
 }

@@ -18,7 +18,7 @@ import rosunit
 from sensor_msgs.msg import Image
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from robot_stand_in import LIMIT_S, Listener, wait_until  # noqa: E402
+from robot_case import LIMIT_S, Listener, wait_until  # noqa: E402
 
 TOPIC = "camera/image_raw"
 NUM_STEPS = 200

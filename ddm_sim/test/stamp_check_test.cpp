@@ -1,12 +1,12 @@
-// Tests of whether the stamps of a camera can be trusted, and of a motor whose camera's cannot.
+// Tests of stamps: whether those of a camera can be trusted, and which of its images are acted on.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_robot/stamp_check.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
+#include <vector>
 
-#include "ddm_robot/frame_picker.h"
 #include "ddm_robot/torque_gate.h"
 
 namespace ddm {
@@ -65,7 +65,7 @@ class Robot {
   RobotOptions options_;
   TorqueGate gate_{options_};
   StampCheck stamps_{kDt};
-  FramePicker picker_{kDt};
+  ImagePicker picker_{kDt};
 };
 
 TEST(StampCheck, AfterAnImageFromTheFutureAndThenSilenceTheMotorStopsInTwentyOfTwentyTries) {
@@ -169,6 +169,60 @@ TEST(StampCheck, AnImageThatComesTwiceOrOutOfOrderIsRefusedOnce) {
   EXPECT_NE(check.take(at(0.02), clockAt(0.02), clockAt(-0.01)), "");
   EXPECT_EQ(check.take(at(0.03), clockAt(0.03), clockAt(0.03)), "");
   EXPECT_EQ(check.numRefused(), 2);
+}
+
+/// Steps between the images that are picked of those at these times [s].
+std::vector<double> stepsOf(ImagePicker* picker, const std::vector<double>& images) {
+  std::vector<double> picked;
+  for (const double image : images) {
+    if (picker->pick(clockAt(image))) picked.push_back(image);
+  }
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < picked.size(); ++i) steps.push_back(picked[i] - picked[i - 1]);
+  return steps;
+}
+
+std::vector<double> camera(double rate, double jitter = 0.0) {
+  std::mt19937_64 rng(1);
+  std::uniform_real_distribution<double> error(-jitter, jitter);
+  std::vector<double> images;
+  for (int i = 0; i < 20 * rate; ++i) images.push_back(i / rate + error(rng));
+  return images;
+}
+
+TEST(ImagePicker, TakesEverySixthImageOfThirtyHertzAtDtOfAFifth) {
+  for (const double rate : {29.97, 30.0, 30.03}) {
+    for (const double jitter : {0.0, 0.006}) {
+      ImagePicker picker(0.2);
+      const std::vector<double> steps = stepsOf(&picker, camera(rate, jitter));
+      ASSERT_GT(steps.size(), 95u);
+      for (const double step : steps) EXPECT_NEAR(step, 6.0 / rate, 2.0 * jitter + 1e-6);
+    }
+  }
+}
+
+TEST(ImagePicker, StepsAreEquallyLongWhereDtIsNoMultipleOfThePeriod) {
+  ImagePicker picker(0.2);
+  for (const double step : stepsOf(&picker, camera(24.0))) EXPECT_NEAR(step, 5.0 / 24.0, 1e-6);
+  EXPECT_NEAR(picker.step(), 5.0 / 24.0, 1e-6);
+}
+
+TEST(ImagePicker, LostImagesAndPausesDoNotShortenSteps) {
+  ImagePicker picker(0.2);
+  std::vector<double> images = camera(30.0);
+  images.erase(images.begin() + 32, images.begin() + 35);
+  for (std::size_t i = 100; i < images.size(); ++i) images[i] += 60.0;
+  for (const double step : stepsOf(&picker, images)) EXPECT_GT(step, 0.199);
+}
+
+TEST(ImagePicker, ARestartTakesTheNextImageAndCountsFromIt) {
+  ImagePicker picker(0.2);
+  for (int i = 0; i <= 8; ++i) picker.pick(clockAt(i / 30.0));
+  EXPECT_FALSE(picker.pick(clockAt(8.0 / 30.0))) << "no image is taken twice";
+  picker.restart();
+  const std::vector<double> steps = stepsOf(&picker, {9.0 / 30, 10.0 / 30, 14.0 / 30, 15.0 / 30});
+  ASSERT_EQ(steps.size(), 1u);
+  EXPECT_NEAR(steps[0], 6.0 / 30, 1e-6);
 }
 
 }  // namespace

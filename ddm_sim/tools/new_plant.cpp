@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "ddm_common/param_reader.h"
-#include "ddm_common/parse_number.h"
+#include "ddm_common/param_value.h"
 #include "ddm_common/tool.h"
 #include "plant_text.h"
 

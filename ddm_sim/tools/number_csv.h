@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_common/parse_number.h>
+#include <ddm_common/param_value.h>
 #include <ddm_common/yaml_text.h>
 
 #include <Eigen/Core>

@@ -21,7 +21,7 @@
 #include "ddm_common/param_reader.h"
 #include "ddm_common/param_value.h"
 #include "ddm_common/tool.h"
-#include "ddm_sim/plant_factory.h"
+#include "ddm_sim/plant.h"
 #include "number_csv.h"
 
 namespace ddm {

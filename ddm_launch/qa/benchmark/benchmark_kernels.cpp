@@ -9,7 +9,7 @@
 #include <ddm_model/solver_log.h>
 #include <ddm_model/trainer.h>
 #include <ddm_mpc/controller.h>
-#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/plant.h>
 #include <ros/time.h>
 
 #include <cstdlib>

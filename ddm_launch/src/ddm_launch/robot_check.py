@@ -1,4 +1,4 @@
-# Plays the user of robot.launch on a stand-in robot, and measures whether torques came in time and it reached its goal.
+# Plays the user of robot.launch on a simulated robot, and measures whether torques came in time and it reached its goal.
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
 import math

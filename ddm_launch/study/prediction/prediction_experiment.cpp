@@ -7,7 +7,7 @@
 #include <ddm_model/solver_log.h>
 #include <ddm_model/trainer.h>
 #include <ddm_sim/environment.h>
-#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/plant.h>
 
 #include <Eigen/QR>
 #include <iostream>

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "ddm_common/home.h"
+#include "ddm_common/plain_file.h"
 #include "ddm_common/yaml_text.h"
 
 namespace ddm {

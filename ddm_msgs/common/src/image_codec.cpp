@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/case_conv.hpp>
-#include <boost/make_shared.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -124,43 +123,36 @@ void requireUnitRange(const cv::Mat& grey) {
   }
 }
 
-/// The image with the byte order of this computer.
-sensor_msgs::Image littleEndian(sensor_msgs::Image image, const std::string& encoding) {
-  const std::size_t bytes = depthBytes(encoding);
-  for (std::size_t row = 0; row < image.height; ++row) {
-    const auto begin = image.data.begin() + static_cast<std::ptrdiff_t>(row * image.step);
-    for (std::size_t at = 0; at + bytes <= image.step; at += bytes) {
-      const auto value = begin + static_cast<std::ptrdiff_t>(at);
-      std::reverse(value, value + static_cast<std::ptrdiff_t>(bytes));
+/// Gives the pixels the byte order of this computer. cv_bridge would take their bytes for channels.
+void swapBytes(std::size_t depth_bytes, sensor_msgs::Image* image) {
+  for (std::size_t row = 0; row < image->data.size(); row += image->step) {
+    for (std::size_t at = 0; at + depth_bytes <= image->step; at += depth_bytes) {
+      std::uint8_t* const value = &image->data[row + at];
+      std::reverse(value, value + depth_bytes);
     }
   }
-  image.is_bigendian = 0;
-  return image;
+  image->is_bigendian = 0;
 }
 
 /// One channel, of the depth that the image has.
 cv::Mat greyImage(const sensor_msgs::Image& image, const std::string& encoding) {
-  if (image.is_bigendian && depthBytes(encoding) > 1) {
-    return greyImage(littleEndian(image, encoding), encoding);
-  }
-  // The view shares the caller's bytes and does not outlive this function. OpenCV has none of
-  // constant pixels; they are only read.
-  const int type = isYuv422(encoding) ? CV_8UC2 : cv_bridge::getCvType(encoding);
-  const cv::Mat pixels(static_cast<int>(image.height), static_cast<int>(image.width), type,
-                       const_cast<std::uint8_t*>(image.data.data()), image.step);
   if (isYuv422(encoding)) {
+    // A view of the caller's bytes, which are only read; OpenCV has none of constant pixels.
+    const cv::Mat pixels(static_cast<int>(image.height), static_cast<int>(image.width), CV_8UC2,
+                         const_cast<std::uint8_t*>(image.data.data()), image.step);
     cv::Mat luma;
     cv::extractChannel(pixels, luma, encoding == kLumaFirst ? 0 : 1);
     return luma;
   }
-  if (pixels.depth() == CV_32F || pixels.depth() == CV_64F) {
-    if (pixels.depth() == CV_32F) requireUnitRange<float>(pixels);
-    if (pixels.depth() == CV_64F) requireUnitRange<double>(pixels);
-    return pixels.clone();
-  }
-  const auto view = boost::make_shared<cv_bridge::CvImage>(image.header, encoding, pixels);
-  const char* grey = pixels.depth() == CV_16U ? "mono16" : "mono8";
-  return cv_bridge::cvtColor(view, grey)->image;
+  sensor_msgs::Image named = image;
+  named.encoding = encoding;
+  if (image.is_bigendian) swapBytes(depthBytes(encoding), &named);
+  const cv_bridge::CvImagePtr pixels = cv_bridge::toCvCopy(named);
+  const int depth = pixels->image.depth();
+  if (depth == CV_32F) requireUnitRange<float>(pixels->image);
+  if (depth == CV_64F) requireUnitRange<double>(pixels->image);
+  if (depth == CV_32F || depth == CV_64F) return pixels->image;
+  return cv_bridge::cvtColor(pixels, depth == CV_16U ? "mono16" : "mono8")->image;
 }
 
 cv::Mat cropped(const cv::Mat& grey, const ImageCrop& crop) {
@@ -188,6 +180,20 @@ double greyScale(int depth) {
   return 255.0;
 }
 
+/// Whether these are the bytes of a JPEG that was cut short: OpenCV makes grey of what is missing.
+/// The mark of its end is looked for after the headers, which may hold a smaller JPEG.
+bool isJpegCutShort(const std::vector<std::uint8_t>& data) {
+  constexpr std::uint8_t kMark = 0xff, kBegin = 0xd8, kScan = 0xda, kEnd = 0xd9;
+  if (data.size() < 2 || data[0] != kMark || data[1] != kBegin) return false;
+  std::size_t at = 2;
+  while (at + 4 <= data.size() && data[at] == kMark && data[at + 1] != kScan) {
+    at += data[at + 1] == kMark ? 1 : 2 + 256U * data[at + 2] + data[at + 3];  // 1: a fill byte
+  }
+  const std::uint8_t end[] = {kMark, kEnd};
+  return at >= data.size() || std::search(data.begin() + static_cast<std::ptrdiff_t>(at),
+                                          data.end(), end, end + 2) == data.end();
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> decodeImage(const sensor_msgs::Image& image, int size,
@@ -204,9 +210,9 @@ std::vector<std::uint8_t> decodeImage(const sensor_msgs::Image& image, int size,
   try {
     grey = centralSquare(cropped(greyImage(image, encoding), crop));
     if (grey.rows != size) cv::resize(grey, grey, cv::Size(size, size), 0, 0, cv::INTER_AREA);
-  } catch (const cv_bridge::Exception& e) {
-    refuse("cannot convert " + extent(image) + " to grey: " + e.what());
-  } catch (const cv::Exception& e) {
+  } catch (const std::invalid_argument&) {  // with our own words
+    throw;
+  } catch (const std::exception& e) {
     refuse("cannot convert " + extent(image) + " to grey: " + e.what());
   }
   const double scale = greyScale(grey.depth());
@@ -221,24 +227,6 @@ std::vector<std::uint8_t> decodeImage(const sensor_msgs::Image& image, int size,
   }
   return out;
 }
-
-namespace {
-
-/// Whether these are the bytes of a JPEG that was cut short: OpenCV makes grey of what is missing.
-/// The mark of its end is looked for after the headers, which may hold a smaller JPEG.
-bool isJpegCutShort(const std::vector<std::uint8_t>& data) {
-  constexpr std::uint8_t kMark = 0xff, kBegin = 0xd8, kScan = 0xda, kEnd = 0xd9;
-  if (data.size() < 2 || data[0] != kMark || data[1] != kBegin) return false;
-  std::size_t at = 2;
-  while (at + 4 <= data.size() && data[at] == kMark && data[at + 1] != kScan) {
-    at += data[at + 1] == kMark ? 1 : 2 + 256U * data[at + 2] + data[at + 3];  // 1: a fill byte
-  }
-  const std::uint8_t end[] = {kMark, kEnd};
-  return at >= data.size() || std::search(data.begin() + static_cast<std::ptrdiff_t>(at),
-                                          data.end(), end, end + 2) == data.end();
-}
-
-}  // namespace
 
 sensor_msgs::Image unpacked(const sensor_msgs::CompressedImage& image) {
   const bool cut_short = isJpegCutShort(image.data);

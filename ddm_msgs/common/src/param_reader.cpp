@@ -2,13 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/param_reader.h"
 
-#include <dlfcn.h>
-
 #include <algorithm>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -19,39 +13,15 @@
 namespace ddm {
 namespace {
 
-namespace fs = std::filesystem;
+/// All blocks of the parameter references in config/ of each package. A program leaves those alone
+/// that it does not read, so that all programs can be given the same files.
+const std::set<std::string> kBlocks = {
+    "plant",     "camera",   "sim",        "show",          "robot",      "image", "model",
+    "training",  "data_set", "recorder",   "mpc",           "controller", "pilco", "gp",
+    "sparse_gp", "trial",    "experiment", "policy_search", "evaluation", "start"};
 
-std::string sourcedWorkspaces() {
-  const char* const prefixes = std::getenv("CMAKE_PREFIX_PATH");
-  return prefixes == nullptr ? "" : prefixes;
-}
-
-/// The workspace of this library, PREFIX of PREFIX/lib/libddm_params.so; in a devel space of catkin tools
-/// that is WORKSPACE/.private/ddm_msgs.
-std::string ownPrefixes() {
-  Dl_info library{};
-  std::error_code ignored;
-  if (::dladdr(reinterpret_cast<void*>(&ownPrefixes), &library) == 0) return "";
-  const std::string prefix =
-      fs::canonical(library.dli_fname, ignored).parent_path().parent_path().string();
-  return prefix + ":" + prefix + "/../..";
-}
-
-/// The blocks of all packages: those in the parameter references that ddm_register_parameter_references() of
-/// ddm_msgs/cmake/ddm_build.cmake has registered, in each workspace that was sourced and, since services
-/// and cron jobs source none, in that of this library.
-std::set<std::string> registeredBlocks() {
-  std::set<std::string> blocks;
-  std::istringstream prefixes(sourcedWorkspaces() + ":" + ownPrefixes());
-  std::error_code ignored;  // a workspace without parameter references
-  for (std::string prefix, block; std::getline(prefixes, prefix, ':');) {
-    for (const auto& package : fs::directory_iterator(prefix + "/share/ddm_common", ignored)) {
-      std::ifstream names(package.path());
-      while (names >> block) blocks.insert(block);
-    }
-  }
-  return blocks;
-}
+/// What a saved configuration also says: what made it, and what counts as success.
+const std::set<std::string> kOrigin = {"version", "renderer", "goal"};
 
 /// " (did you mean horizon? known keys: horizon, epsilon)"
 template <class Names>
@@ -123,17 +93,12 @@ void ParamReader::report(const std::string& problem) {
 
 std::vector<std::string> ParamReader::problems() const {
   std::vector<std::string> out = problems_;
-  std::set<std::string> known = registeredBlocks();
-  const char* const remedy =
-      sourcedWorkspaces().empty() ? ": source the setup.bash of its workspace" : "";
+  std::set<std::string> known = kBlocks;
   known.insert(read_.begin(), read_.end());
   for (const auto& entry : root_) {
     const std::string name = oneLine(entry.first);
-    // A saved configuration says what made it, and what counts as success.
-    if (name == "version" || name == "renderer" || name == "goal") continue;
-    if (known.count(name) + ignored_.count(name) == 0) {
-      out.push_back("unknown block " + name + hint(name, "blocks", known) + remedy);
-    }
+    if (known.count(name) + ignored_.count(name) + kOrigin.count(name) > 0) continue;
+    out.push_back("unknown block " + name + hint(name, "blocks", known));
   }
   return out;
 }

@@ -3,6 +3,7 @@
 #include "ddm_common/param_value.h"
 
 #include <algorithm>
+#include <boost/algorithm/string/trim.hpp>
 #include <charconv>
 #include <cmath>
 #include <iomanip>
@@ -75,6 +76,13 @@ std::string formatDouble(double value) {
     text.insert(std::min(text.find('e'), text.size()), ".0");
   }
   return text;
+}
+
+bool parseNumber(const std::string& text, double* value) {
+  double parsed = 0.0;
+  if (!parseText(boost::trim_copy(text), &parsed) || !std::isfinite(parsed)) return false;
+  *value = parsed;
+  return true;
 }
 
 bool parseValue(const YAML::Node& node, int* value) { return parseScalar(node, value); }

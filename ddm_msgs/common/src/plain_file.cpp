@@ -3,10 +3,13 @@
 #include "ddm_common/plain_file.h"
 
 #include <fcntl.h>
+#include <pwd.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -136,6 +139,19 @@ void removeUnfinished(const std::string& folder) {
 void renameDurably(const std::string& from, const std::string& to) {
   if (!store(from, /*flags=*/0)) cannot("store", from);
   if (!renameAndStore(from, to)) cannot("rename", from + " to " + to);
+}
+
+std::string expandHome(std::string word) {
+  const std::size_t start = word.rfind("--", 0) == 0 ? word.find('=') + 1 : 0;  // npos + 1 is 0
+  if (start >= word.size() || word[start] != '~') return word;
+  const std::size_t end = std::min(word.find('/', start), word.size());
+  const std::string name = word.substr(start + 1, end - start - 1);
+  const char* home = name.empty() ? std::getenv("HOME") : nullptr;
+  if (!name.empty()) {
+    const passwd* const user = ::getpwnam(name.c_str());
+    if (user != nullptr) home = user->pw_dir;
+  }
+  return home == nullptr ? word : word.replace(start, end - start, home);
 }
 
 }  // namespace ddm

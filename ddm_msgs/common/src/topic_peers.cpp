@@ -10,8 +10,8 @@
 #include <ros/xmlrpc_manager.h>
 #include <xmlrpcpp/XmlRpcException.h>
 
-#include <algorithm>
 #include <boost/algorithm/string/join.hpp>
+#include <boost/algorithm/string/predicate.hpp>
 #include <chrono>
 #include <map>
 #include <set>
@@ -26,7 +26,7 @@ namespace {
 using NodesByTopic = std::map<std::string, std::set<std::string>>;
 using Connections = std::set<std::pair<std::string, std::string>>;  // topic, subscriber
 
-constexpr std::chrono::seconds kLimit(5);   // who was stopped never answers
+constexpr std::chrono::seconds kLimit(5);   // a node that was stopped never answers
 constexpr std::chrono::seconds kEnding(3);  // a node that is ending may answer for a while
 
 /// Who publishes and who subscribes, as the master knows it; empty if it does not answer.
@@ -46,64 +46,62 @@ std::optional<std::pair<NodesByTopic, NodesByTopic>> publishersAndSubscribers() 
   return std::make_pair(nodesByTopic((*state)[0]), nodesByTopic((*state)[1]));
 }
 
-/// Outgoing connections of the node at this address; empty if it does not answer.
-Connections outgoingConnectionsAt(const std::string& host, std::uint32_t port) {
+/// Calls a method of a node's interface; empty if it does not answer, or not in time.
+std::optional<XmlRpc::XmlRpcValue> askNode(const NodeAddress& node, const std::string& method) {
+  const auto ask = [node, method]() -> std::optional<XmlRpc::XmlRpcValue> {
+    XmlRpc::XmlRpcValue caller, response;
+    caller[0] = ros::this_node::getName();
+    // The path alone: a node in Python does not know the page "http://...".
+    XmlRpc::XmlRpcClient* const client = ros::XMLRPCManager::instance()->getXMLRPCClient(
+        node.host, static_cast<int>(node.port), "/");
+    if (client == nullptr) return std::nullopt;
+    const bool answered = client->execute(method.c_str(), caller, response);
+    ros::XMLRPCManager::instance()->releaseXMLRPCClient(client);
+    return answered ? std::make_optional(response) : std::nullopt;
+  };
+  return callWithin(kLimit, ask).value_or(std::nullopt);
+}
+
+/// Outgoing connections of a node; empty if it does not answer.
+Connections outgoingConnections(const std::string& node) {
+  const std::optional<NodeAddress> address = addressOf(node);
+  std::optional<XmlRpc::XmlRpcValue> response;
+  if (address) response = askNode(*address, "getBusInfo");
   Connections out;
-  XmlRpc::XmlRpcValue caller, response;
-  caller[0] = ros::this_node::getName();
-  // The path alone: a node in Python does not know the page "http://...".
-  XmlRpc::XmlRpcClient* const client =
-      ros::XMLRPCManager::instance()->getXMLRPCClient(host, static_cast<int>(port), "/");
-  if (client == nullptr) return out;
   try {
-    if (client->execute("getBusInfo", caller, response) && response.size() == 3) {
-      for (int i = 0; i < response[2].size(); ++i) {
-        // id, destination, direction, transport, topic
-        XmlRpc::XmlRpcValue& connection = response[2][i];
-        if (static_cast<std::string>(connection[2]) != "o") continue;
-        out.emplace(static_cast<std::string>(connection[4]),
-                    static_cast<std::string>(connection[1]));
-      }
+    if (!response || response->size() != 3) return out;
+    for (int i = 0; i < (*response)[2].size(); ++i) {
+      // id, destination, direction, transport, topic
+      XmlRpc::XmlRpcValue& connection = (*response)[2][i];
+      if (static_cast<std::string>(connection[2]) != "o") continue;
+      out.emplace(static_cast<std::string>(connection[4]), static_cast<std::string>(connection[1]));
     }
-  } catch (const XmlRpc::XmlRpcException&) {  // of other types: no answer
+  } catch (const XmlRpc::XmlRpcException&) {  // an answer of other types counts as none
     out.clear();
   }
-  ros::XMLRPCManager::instance()->releaseXMLRPCClient(client);
   return out;
 }
 
-Connections outgoingConnections(const std::string& node) {
-  const std::optional<NodeAddress> address = addressOf(node);
-  if (!address) return {};
-  return callWithin(kLimit, [at = *address] { return outgoingConnectionsAt(at.host, at.port); })
-      .value_or(Connections());
-}
-
-/// Whether a node answers at this address.
-bool answersAt(const std::string& host, std::uint32_t port) {
-  XmlRpc::XmlRpcValue caller, response;
-  caller[0] = ros::this_node::getName();
-  XmlRpc::XmlRpcClient* const client =
-      ros::XMLRPCManager::instance()->getXMLRPCClient(host, static_cast<int>(port), "/");
-  if (client == nullptr) return false;
-  const bool answers = client->execute("getPid", caller, response);
-  ros::XMLRPCManager::instance()->releaseXMLRPCClient(client);
-  return answers;
+/// The nodes that publish a topic, this one not counted.
+std::set<std::string> othersThatPublish(const NodesByTopic& publishers, const std::string& topic) {
+  const auto found = publishers.find(topic);
+  if (found == publishers.end()) return {};
+  std::set<std::string> nodes = found->second;
+  nodes.erase(ros::this_node::getName());
+  return nodes;
 }
 
 }  // namespace
 
 std::optional<XmlRpc::XmlRpcValue> askMaster(const std::string& method,
                                              const XmlRpc::XmlRpcValue& request) {
-  const auto answer = callWithin(kLimit, [method, request] {
-    XmlRpc::XmlRpcValue response;
-    std::optional<XmlRpc::XmlRpcValue> payload(std::in_place);
-    if (!ros::master::execute(method, request, response, *payload, /*wait_for_master=*/false)) {
-      payload.reset();
-    }
-    return payload;
-  });
-  return answer ? *answer : std::nullopt;
+  const auto ask = [method, request]() -> std::optional<XmlRpc::XmlRpcValue> {
+    XmlRpc::XmlRpcValue response, payload;
+    const bool answered =
+        ros::master::execute(method, request, response, payload, /*wait_for_master=*/false);
+    return answered ? std::make_optional(payload) : std::nullopt;
+  };
+  return callWithin(kLimit, ask).value_or(std::nullopt);
 }
 
 std::optional<NodeAddress> addressOf(const std::string& node) {
@@ -130,38 +128,31 @@ std::string describeImagePublishers(const std::string& topic, const std::string&
   constexpr char kImage[] = "sensor_msgs/Image";
   constexpr char kCompressed[] = "sensor_msgs/CompressedImage";
   const std::string publishers = describePublishers(topic);
-  const auto published = callWithin(kLimit, [] {
-                           ros::master::V_TopicInfo topics;  // that have a publisher
-                           ros::master::getTopics(topics);
-                           return topics;
-                         }).value_or(ros::master::V_TopicInfo());
-  const auto typeOf = [&published](const std::string& name) {
-    const auto found =
-        std::find_if(published.begin(), published.end(),
-                     [&name](const ros::master::TopicInfo& each) { return each.name == name; });
-    return found == published.end() ? std::string() : found->datatype;
+  const auto list_types = [] {
+    ros::master::V_TopicInfo topics;  // that have a publisher
+    ros::master::getTopics(topics);
+    std::map<std::string, std::string> types;
+    for (const ros::master::TopicInfo& each : topics) types[each.name] = each.datatype;
+    return types;
   };
+  auto types = callWithin(kLimit, list_types).value_or(std::map<std::string, std::string>());
   const auto republish = [&argument](const std::string& base) {
     return ": run `rosrun image_transport republish compressed in:=" + base + " raw out:=" + base +
            "_raw`, and give " + argument + base + "_raw";
   };
-  const std::string type = typeOf(topic);
+  const std::string type = types[topic];
   const std::string suffix = "/compressed";
-  if (type == kCompressed) {
-    const bool ends = topic.size() > suffix.size() &&
-                      topic.compare(topic.size() - suffix.size(), suffix.size(), suffix) == 0;
-    return publishers + ". Its type is " + kCompressed + ", and must be " + kImage +
-           republish(ends ? topic.substr(0, topic.size() - suffix.size()) : topic);
-  }
-  if (!type.empty() && type != kImage) {
-    return publishers + ". Its type is " + type + ", and must be " + kImage +
-           ": give the topic of the camera's images by " + argument + "TOPIC";
-  }
-  if (type.empty() && typeOf(topic + suffix) == kCompressed) {
+  if (type.empty() && types[topic + suffix] == kCompressed) {
     return publishers + ", but " + topic + suffix + " is published, as " + kCompressed +
            republish(topic);
   }
-  return publishers;
+  if (type.empty() || type == kImage) return publishers;
+  const std::string problem = publishers + ". Its type is " + type + ", and must be " + kImage;
+  if (type != kCompressed) {
+    return problem + ": give the topic of the camera's images by " + argument + "TOPIC";
+  }
+  const bool ends = boost::algorithm::ends_with(topic, suffix);
+  return problem + republish(topic.substr(0, topic.size() - (ends ? suffix.size() : 0)));
 }
 
 std::vector<std::string> missingConnections(const std::vector<std::string>& topics) {
@@ -181,23 +172,20 @@ std::vector<std::string> missingConnections(const std::vector<std::string>& topi
 }
 
 std::string otherPublishers(const std::string& topic) {
-  auto nodes = publishersAndSubscribers();
-  if (!nodes) return "";
-  std::set<std::string>& publishers = nodes->first[topic];
-  publishers.erase(ros::this_node::getName());
-  return boost::algorithm::join(publishers, ", ");
+  const auto nodes = publishersAndSubscribers();
+  return nodes ? boost::algorithm::join(othersThatPublish(nodes->first, topic), ", ") : "";
 }
 
 std::vector<std::string> sharedTopics(const std::vector<std::string>& topics) {
-  auto nodes = publishersAndSubscribers();
+  const auto nodes = publishersAndSubscribers();
   if (!nodes) {
-    ROS_WARN("the ROS master does not answer: nodes that know each other go on, nobody new comes");
+    ROS_WARN(
+        "the ROS master does not answer: connected nodes keep working, new nodes cannot connect");
     return {};
   }
   std::vector<std::string> shared;
   for (const std::string& topic : topics) {
-    std::set<std::string>& publishers = nodes->first[topic];
-    publishers.erase(ros::this_node::getName());
+    const std::set<std::string> publishers = othersThatPublish(nodes->first, topic);
     if (publishers.size() < 2) continue;
     shared.push_back(topic + ": " + boost::algorithm::join(publishers, ", "));
   }
@@ -208,9 +196,7 @@ void requireFreeName() {
   const std::string name = ros::this_node::getName();
   const auto end = std::chrono::steady_clock::now() + kEnding;
   std::optional<NodeAddress> address;
-  while ((address = addressOf(name)) && callWithin(kLimit, [at = *address] {
-                                          return answersAt(at.host, at.port);
-                                        }).value_or(false)) {
+  while ((address = addressOf(name)) && askNode(*address, "getPid")) {
     if (std::chrono::steady_clock::now() > end) {
       throw std::runtime_error(
           "node " + name + " is running already, at " + address->host + ":" +

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "ddm_common/home.h"
+#include "ddm_common/plain_file.h"
 #include "ddm_msgs/testing/expect_error.h"
 
 namespace ddm {

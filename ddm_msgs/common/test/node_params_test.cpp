@@ -45,12 +45,6 @@ TEST(XmlRpcToYaml, ConvertsEveryScalar) {
   EXPECT_EQ(toYaml(XmlRpc::XmlRpcValue("1e-4"), "p").Scalar(), "1e-4");
 }
 
-TEST(XmlRpcToYaml, ReadsANumberFromATextWhereANumberIsDue) {
-  double value = 0.0;
-  EXPECT_TRUE(parseValue(toYaml(XmlRpc::XmlRpcValue("1e-4"), "p"), &value));
-  EXPECT_EQ(value, 1e-4);
-}
-
 TEST(XmlRpcToYaml, ConvertsNestedListsAndStructs) {
   XmlRpc::XmlRpcValue value;
   value["mpc"]["starts"][0] = 3;
@@ -59,13 +53,6 @@ TEST(XmlRpcToYaml, ConvertsNestedListsAndStructs) {
   const YAML::Node tree = toYaml(value, "p");
   EXPECT_EQ(YAML::Dump(tree["mpc"]["starts"]), "[3, 4]");
   EXPECT_EQ(tree["mpc"]["epsilon"].Scalar(), "0.25");
-}
-
-TEST(XmlRpcToYaml, ConvertsAnEmptyListToAnEmptyList) {
-  XmlRpc::XmlRpcValue value;
-  value.setSize(0);
-  EXPECT_TRUE(toYaml(value, "p").IsSequence());
-  EXPECT_EQ(toYaml(value, "p").size(), 0u);
 }
 
 TEST(XmlRpcToYaml, RefusesDatesBinaryDataAndNothingByName) {
@@ -113,12 +100,6 @@ TEST(NodeParams, LaysPrivateParametersOverTheConfigurationOfTheNamespace) {
 
 TEST(NodeParams, RefusesAConfigurationThatIsNotAText) {
   EXPECT_THROW(nodeParams(ros::NodeHandle("/broken/node")), std::invalid_argument);
-}
-
-TEST(NodeParams, GivesAnEmptyMapToANodeWithoutParameters) {
-  const YAML::Node params = nodeParams(ros::NodeHandle("/nobody"));
-  EXPECT_TRUE(params.IsMap());
-  EXPECT_EQ(params.size(), 0u);
 }
 
 TEST(NodeParams, RefusesAValueInPlaceOfParameters) {

@@ -5,12 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "ddm_common/config_blocks.h"
@@ -80,10 +78,6 @@ std::string messageOf(Call call) {
   return "nothing thrown";
 }
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 /// A file that is gone when the test ends.
 class ScratchFile {
  public:
@@ -95,22 +89,6 @@ class ScratchFile {
  private:
   const testing::TempFolder folder_;
   const std::string path_;
-};
-
-/// Workspaces that are sourced as long as this lives.
-class Workspaces {
- public:
-  explicit Workspaces(const std::string& prefixes) {
-    const char* const before = std::getenv("CMAKE_PREFIX_PATH");
-    before_ = before == nullptr ? "" : before;
-    ::setenv("CMAKE_PREFIX_PATH", prefixes.c_str(), /*overwrite=*/1);
-  }
-  ~Workspaces() { ::setenv("CMAKE_PREFIX_PATH", before_.c_str(), /*overwrite=*/1); }
-  Workspaces(const Workspaces&) = delete;
-  Workspaces& operator=(const Workspaces&) = delete;
-
- private:
-  std::string before_;
 };
 
 TEST(ParamReader, GivesDefaultsWhereTheConfigurationIsSilent) {
@@ -145,20 +123,6 @@ TEST(ParamReader, ReportsAnUnknownKeyWithTheNearestAndAllKnownOnes) {
                               "horizon, epsilon, warm_start, goal_image, starts, start_scale"}));
 }
 
-TEST(ParamReader, SuggestsNothingForAKeyThatIsFarFromAll) {
-  const auto problems = mpcProblems("mpc: {colour: red}");
-  ASSERT_EQ(problems.size(), 1u);
-  EXPECT_TRUE(testing::names(problems[0], {"mpc/colour", "horizon, epsilon"}));
-  EXPECT_FALSE(contains(problems[0], "?"));
-}
-
-TEST(ParamReader, ReportsAWrongTypeWithKeyTypeAndValueOnceAndKeepsTheDefault) {
-  ParamReader reader = readerOf("mpc: {horizon: 15.5}");
-  EXPECT_EQ(reader.read<MpcOptions>("mpc").horizon, 15);
-  ASSERT_EQ(reader.problems().size(), 1u);
-  EXPECT_TRUE(testing::names(reader.problems()[0], {"mpc/horizon", "integer", "got 15.5"}));
-}
-
 TEST(ParamReader, NamesTheExpectedTypeOfEveryKey) {
   const auto problems = mpcProblems(
       "mpc: {horizon: ~, epsilon: high, warm_start: yes, goal_image: [], "
@@ -174,21 +138,10 @@ TEST(ParamReader, NamesTheExpectedTypeOfEveryKey) {
   for (size_t i = 0; i < parts.size(); ++i) EXPECT_TRUE(testing::names(problems[i], parts[i]));
 }
 
-TEST(ParamReader, ShortensALongWrongValue) {
-  const auto problems = mpcProblems("mpc: {horizon: " + std::string(5000, 'x') + "}");
-  ASSERT_EQ(problems.size(), 1u);
-  EXPECT_LT(problems[0].size(), 250u);
-}
-
 TEST(ParamReader, PutsAWrongValueOfSeveralLinesInOne) {
   const auto problems = mpcProblems("mpc: {horizon: \"1\\n2\\e[0m\"}");
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_TRUE(testing::names(problems[0], {"mpc/horizon", "got 1 2 [0m"}));
-}
-
-TEST(ParamReader, LeavesNaNToTheRulesOfTheOptions) {
-  EXPECT_EQ(mpcProblems("mpc: {epsilon: .nan}"),
-            std::vector<std::string>({"mpc/epsilon must lie in [0, 1], got .nan"}));
 }
 
 TEST(ParamReader, ReportsABlockThatIsNoMap) {
@@ -199,41 +152,18 @@ TEST(ParamReader, ReportsABlockThatIsNoMap) {
   }
 }
 
-TEST(ParamReader, TellsWhichBlocksAreGiven) {
-  const ParamReader reader(YAML::Load("robot: {}"));
-  EXPECT_TRUE(reader.has("robot"));
-  EXPECT_FALSE(reader.has("mpc"));
-}
-
 TEST(ParamReader, ReportsAnUnknownBlockWithTheNearest) {
   const auto problems = mpcProblems("mpcc: {horizon: 3}");
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_TRUE(testing::names(problems[0], {" mpcc ", " mpc?"}));
 }
 
-TEST(ParamReader, LeavesBlocksAloneThatPackagesOfAnySourcedWorkspaceHaveRegistered) {
-  const testing::TempFolder below, above, empty;
-  for (const auto& [workspace, package, blocks] :
-       {std::make_tuple(&below, "ddm_sim", "plant\ncamera\n"),
-        std::make_tuple(&below, "ddm_model", "model\n"),
-        std::make_tuple(&above, "my_package", "my_robot\n")}) {
-    std::filesystem::create_directories(workspace->file("share/ddm_common"));
-    std::ofstream(workspace->file("share/ddm_common/") + package) << blocks;
-  }
-  const std::string yaml = "{plant: 1, camera: 1, model: 1, my_robot: 1, mpc: {horizon: 3}}";
-  {
-    const Workspaces sourced(above.file("") + ":" + empty.file("") + ":" + below.file(""));
-    EXPECT_EQ(mpcProblems(yaml), std::vector<std::string>());
-    ASSERT_EQ(mpcProblems("my_robt: 1").size(), 1u);
-    // among those of the workspace of the library
-    EXPECT_TRUE(testing::names(mpcProblems("my_robt: 1")[0],
-                               {"camera", "model", "mpc", "my_robot", "plant"}));
-  }
-  const Workspaces sourced(below.file(""));
-  ASSERT_EQ(mpcProblems(yaml).size(), 1u);
-  EXPECT_TRUE(contains(mpcProblems(yaml)[0], " my_robot "));
-  const Workspaces none("");  // but that of the library
-  EXPECT_TRUE(testing::names(mpcProblems("my_robot: 1").at(0), {" my_robot ", "setup.bash"}));
+TEST(ParamReader, LeavesBlocksOfOtherProgramsAloneAndNamesThemWhereABlockIsUnknown) {
+  EXPECT_EQ(mpcProblems("{plant: 1, camera: 1, robot: 1, version: 2, mpc: {horizon: 3}}"),
+            std::vector<std::string>());
+  ASSERT_EQ(mpcProblems("my_robot: 1").size(), 1u);
+  EXPECT_TRUE(testing::names(mpcProblems("my_robot: 1")[0],
+                             {" my_robot ", "camera", "model", "mpc", "plant", "robot"}));
 }
 
 TEST(ParamReader, IgnoresAForeignBlockOnlyIfTold) {
@@ -241,12 +171,6 @@ TEST(ParamReader, IgnoresAForeignBlockOnlyIfTold) {
   EXPECT_EQ(reader.problems().size(), 1u);
   reader.ignore("image_transport");
   EXPECT_TRUE(reader.problems().empty());
-}
-
-TEST(ParamReader, KnowsABlockThatItHasRead) {
-  ParamReader reader = readerOf("my_robot: {num_steps: 7}");
-  EXPECT_EQ(reader.read<TrialOptions>("my_robot").num_steps, 7);
-  EXPECT_NO_THROW(reader.requireValid());
 }
 
 TEST(ParamReader, ThrowsAllProblemsOfAllBlocksAtOnce) {
@@ -261,13 +185,6 @@ TEST(ParamReader, ThrowsAllProblemsOfAllBlocksAtOnce) {
                                "\n - mpc/epsilon must lie in [0, 1], got 1.5", " mpc/horzion (",
                                "\n - trial/num_steps ", "got many", "block foo ("}));
   EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 5) << message;
-}
-
-TEST(ParamReader, LeavesTheSourceOutOfTheMessageIfThereIsNone) {
-  ParamReader reader = readerOf("mpc: {horizon: 0}");
-  reader.read<MpcOptions>("mpc");
-  EXPECT_EQ(messageOf<std::invalid_argument>([&reader] { reader.requireValid(); }),
-            "invalid configuration:\n - mpc/horizon must be >= 1, got 0");
 }
 
 TEST(ParamReader, ReportsABlockThatIsReadTwiceOnlyOnce) {
@@ -292,7 +209,6 @@ TEST(ParamReader, WritesTheEffectiveValuesReadablyAndInOrder) {
 
 TEST(ParamReader, ReadsBackExactlyWhatItWrites) {
   MpcOptions options;
-  options.horizon = -3;
   options.epsilon = 1.0 / 3.0;
   options.warm_start = false;
   options.goal_image = "a: b # c";
@@ -301,13 +217,7 @@ TEST(ParamReader, ReadsBackExactlyWhatItWrites) {
   YAML::Node root;
   root["mpc"] = toYaml(options);
   ParamReader reader = readerOf(YAML::Dump(root));
-  const auto read_back = reader.read<MpcOptions>("mpc");
-  EXPECT_EQ(read_back.horizon, options.horizon);
-  EXPECT_EQ(read_back.epsilon, options.epsilon);
-  EXPECT_EQ(read_back.warm_start, options.warm_start);
-  EXPECT_EQ(read_back.goal_image, options.goal_image);
-  EXPECT_EQ(read_back.starts, options.starts);
-  EXPECT_EQ(read_back.start_scale, options.start_scale);
+  EXPECT_EQ(YAML::Dump(toYaml(reader.read<MpcOptions>("mpc"))), YAML::Dump(root["mpc"]));
 }
 
 TEST(ParamReaderFiles, LetsTheLaterFileWinKeyByKey) {
@@ -368,13 +278,6 @@ TEST(ParamReaderFiles, TakesAFileOfCommentsForAnEmptyConfiguration) {
   const ScratchFile empty("empty.yaml", "");
   EXPECT_NO_THROW(ParamReader::fromFiles({comments.path(), empty.path()}).requireValid());
   EXPECT_NO_THROW(ParamReader::fromFiles({}).requireValid());
-}
-
-TEST(ParamReaderFiles, NamesTheFilesInItsMessage) {
-  const ScratchFile file("bad.yaml", "foo: 1");
-  const ParamReader reader = ParamReader::fromFiles({file.path()});
-  EXPECT_TRUE(contains(messageOf<std::invalid_argument>([&reader] { reader.requireValid(); }),
-                       "(" + file.path() + ")"));
 }
 
 TEST(ParamReaderFiles, RefusesAMissingFileAndAFolder) {

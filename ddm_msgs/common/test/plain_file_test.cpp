@@ -90,14 +90,6 @@ TEST_F(PlainFile, AFileOfTheCurrentFolderNeedsNoFolderInItsPath) {
   EXPECT_EQ(readFile(path_), "new");
 }
 
-TEST_F(PlainFile, FilesOfOtherWritersAreNotTouched) {
-  const std::string others = path_ + ".unfinished";
-  writeFileAtomically(others, "of another process");
-  writeFileAtomically(path_, "new");
-  EXPECT_EQ(readFile(others), "of another process");
-  EXPECT_EQ(readFile(path_), "new");
-}
-
 TEST_F(PlainFile, WhatKilledWritersLeftBehindIsRemovedOnRequest) {
   std::filesystem::create_directory(folder_.file("trial_000"));
   const std::vector<std::string> others = {"file.unfinished.txt", "unfinished.0f",

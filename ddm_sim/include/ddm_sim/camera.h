@@ -6,12 +6,33 @@
 #include <deque>
 #include <optional>
 #include <random>
+#include <string>
 #include <vector>
 
-#include "ddm_sim/camera_options.h"
 #include "ddm_sim/picture.h"
 
 namespace ddm {
+
+/// Faults of the camera, see Camera; if all are 0, the camera is perfect. YAML block `camera:`.
+struct CameraOptions {
+  double noise_std = 0.0;         ///< standard deviation of each pixel in each frame [grey]
+  double brightness_drift = 0.0;  ///< amplitude of a slow change of brightness [-]
+  double clutter = 0.0;           ///< largest grey value of a static background [grey]
+  int delay = 0;                  ///< so many frames late [-]
+  double drop_rate = 0.0;         ///< probability that a frame is lost [-]
+
+  template <class Visitor>
+  void visit(Visitor& visitor) {
+    visitor("noise_std", noise_std);
+    visitor("brightness_drift", brightness_drift);
+    visitor("clutter", clutter);
+    visitor("delay", delay);
+    visitor("drop_rate", drop_rate);
+  }
+
+  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  std::vector<std::string> problems() const;
+};
 
 /// Turns what there is to see into photographs. That of the picture p at frame t is
 ///

@@ -1,9 +1,12 @@
-// A picture: what a plant looks like, and what a camera makes of it.
+// A rendered image of a plant, and the pinhole camera that it may come from.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -31,5 +34,22 @@ struct Picture {
 inline Picture brightOnBlack(int size, std::vector<std::uint8_t> bytes) {
   return {size, size, 1, bytes, std::move(bytes)};
 }
+
+/// A camera without distortion, with square pixels, whose optical axis goes through the middle of its
+/// images.
+struct CameraModel {
+  std::string name;    ///< as the scene calls it; its optical frame is NAME_optical_frame
+  int width = 0;       ///< [pixels]
+  int height = 0;      ///< [pixels]
+  double fovy = 0.0;   ///< vertical field of view [rad]
+  bool fixed = false;  ///< stands still in the world, at `position`
+
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< in the world [m]
+
+  /// Optical frame in the world: x to the right, y down, z ahead.
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+
+  double focalLength() const { return 0.5 * height / std::tan(0.5 * fovy); }  ///< [pixels]
+};
 
 }  // namespace ddm

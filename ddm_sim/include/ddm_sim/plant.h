@@ -4,15 +4,46 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <random>
 #include <string>
+#include <vector>
 
-#include "ddm_sim/camera_model.h"
 #include "ddm_sim/picture.h"
-#include "ddm_sim/plant_info.h"
 
 namespace ddm {
+
+enum class JointKind { kAngle, kLength };
+
+struct Joint {
+  std::string name;  ///< in ground_truth/joint_states
+  JointKind kind = JointKind::kAngle;
+};
+
+/// What a plant says of itself; columns, limits, units and success follow from it.
+struct PlantInfo {
+  std::string type = "of a test";  ///< plant/type, for messages; makePlant() fills it in
+
+  std::vector<Joint> joints;  ///< in the order of their positions in the state
+
+  /// Components of a state with their units, the headers of CSV files: "angle_rad". Positions come
+  /// first, one for each joint, then their rates if the plant has them.              [stateDim()]
+  std::vector<std::string> state_names;
+
+  std::vector<std::string> torque_names;  ///< the same for a torque: "torque_nm"  [torqueDim()]
+  Eigen::VectorXd max_torque;  ///< bound on each |u|, in the unit of its name [torqueDim() x 1]
+  double dt = 0.2;             ///< time step [s]
+  Eigen::VectorXd start;       ///< middle of the start states                 [stateDim() x 1]
+  Eigen::VectorXd start_std;   ///< standard deviation of each component       [stateDim() x 1]
+  Eigen::VectorXd goal;        ///< state to reach and hold                    [stateDim() x 1]
+  std::string error_unit;      ///< unit of Plant::goalError(): "deg", "m", "px"
+  double tolerance = 0.0;      ///< the goal is reached where goalError() is at most this
+  int evaluation_steps = 0;    ///< time steps of a greedy run; 0: as many as a trial has
+
+  int stateDim() const { return static_cast<int>(state_names.size()); }
+  int torqueDim() const { return static_cast<int>(torque_names.size()); }
+};
 
 /// The plant that a policy controls; the paper's "system" behind the pixels.
 ///
@@ -142,5 +173,35 @@ std::mt19937_64 startStream(std::uint64_t seed, std::uint32_t trial, bool evalua
 /// The goal of a run, drawn from a stream of its own; arguments as above.
 Eigen::VectorXd goalOf(const Plant& plant, std::uint64_t seed, std::uint32_t trial,
                        bool evaluation);
+
+/// Makes plants of one kind, with the options that it holds.
+class PlantMaker {
+ public:
+  virtual ~PlantMaker() = default;
+
+  virtual std::string type() const = 0;  ///< `plant/type`, for messages
+
+  /// @throws std::invalid_argument if the options do not fit together
+  virtual std::unique_ptr<Plant> make() const = 0;
+};
+
+/// A plant in the middle of its start states. Its PlantInfo must have
+///
+///   - as many names, limits, starts and goals as components, 1 to 1000 of each, all finite; names
+///     differ and have neither blanks nor commas nor quotes, since they head columns
+///   - no more joints than components of the state, and at least one
+///   - dt > 0, limits > 0, start_std >= 0, tolerance > 0, and an error_unit
+///
+/// Class Plant checks what the plant returns while it runs. test/every_plant_test.cpp tests all other
+/// rules, also of a plant of another package.
+/// @throws std::invalid_argument with the problems of the options, or with the type and all rules
+///         that its plant breaks
+std::unique_ptr<Plant> makePlant(const PlantMaker& maker);
+
+/// Whether a name can head a column of CSV files: neither blanks nor commas nor quotes, ASCII alone.
+bool usableName(const std::string& name);
+
+/// "[1 2 3]", of many the first ten: a million of them, sent by mistake, must not fill the logs.
+std::string fewNumbers(const Eigen::VectorXd& numbers);
 
 }  // namespace ddm

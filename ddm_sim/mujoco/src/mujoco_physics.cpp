@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "ddm_sim/angles.h"
-#include "ddm_sim/few_numbers.h"
+#include "ddm_sim/plant.h"
 #include "load_model.h"
 #include "refuse.h"
 

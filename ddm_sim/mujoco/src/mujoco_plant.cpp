@@ -8,8 +8,7 @@
 #include <utility>
 
 #include "ddm_sim/angles.h"
-#include "ddm_sim/few_numbers.h"
-#include "ddm_sim/plant_factory.h"
+#include "ddm_sim/plant.h"
 #include "motors.h"
 #include "mujoco_physics.h"
 #include "refuse.h"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "ddm_plant_plugin/plant_config.h"
-#include "ddm_sim/plant_factory.h"
+#include "ddm_sim/plant.h"
 #include "model_folder.h"
 
 namespace ddm {

@@ -1,23 +1,29 @@
-// Whether the stamps of a sensor can be trusted: each is compared with the arrival of its message.
+// Stamps of a sensor: whether they can be trusted, and which images of a camera are acted on.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_robot/stamp_check.h"
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
-#include <vector>
 
 namespace ddm {
 namespace {
 
 constexpr std::size_t kNumOffsets = 100;  // some seconds of a camera: drift within them is nothing
 constexpr int kLargestDrift = 500;        // clocks drift apart by less than 1 part in this many
+constexpr std::size_t kNumIntervals = 9;  // between images
 
-Stamp median(const std::deque<Stamp>& values) {
-  std::vector<Stamp> sorted(values.begin(), values.end());
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return *middle;
+/// The value that `index` others precede in order.
+Stamp ranked(std::deque<Stamp> values, std::size_t index) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(index);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/// Appends a value, and forgets the oldest beyond a number of values.
+void append(Stamp value, std::size_t max_count, std::deque<Stamp>* values) {
+  values->push_back(value);
+  if (values->size() > max_count) values->pop_front();
 }
 
 }  // namespace
@@ -62,9 +68,8 @@ std::string StampCheck::take(SteadyTime arrival, Stamp clock, Stamp stamp) {
   const Stamp offset = stamp - arrival.time_since_epoch();
   highest_ = last_ ? std::max(highest_, offset) : offset;
   last_ = stamp;
-  offsets_.push_back(offset);
-  if (offsets_.size() > kNumOffsets) offsets_.pop_front();
-  const Stamp usual = median(offsets_);
+  append(offset, kNumOffsets, &offsets_);
+  const Stamp usual = ranked(offsets_, offsets_.size() / 2);
   usual_ = usual_ ? std::max(usual, *usual_ - (arrival - arrival_) / kLargestDrift) : usual;
   arrival_ = arrival;
   taken_ = arrival + std::min(Stamp(0), offset - *usual_);
@@ -75,6 +80,23 @@ void StampCheck::restart() {
   last_.reset();
   offsets_.clear();
   usual_.reset();
+}
+
+bool ImagePicker::pick(Stamp stamp) {
+  const bool first = !last_image_;
+  if (!first) {
+    if (stamp <= *last_image_) return false;
+    append(stamp - *last_image_, kNumIntervals, &intervals_);
+    period_ = toSeconds(ranked(intervals_, (intervals_.size() - 1) / 2));
+  }
+  last_image_ = stamp;
+  if (!first && toSeconds(stamp - last_pick_) < dt_ - 0.5 * period_) return false;
+  last_pick_ = stamp;
+  return true;
+}
+
+double ImagePicker::step() const {
+  return period_ == 0.0 ? 0.0 : std::max(1.0, std::round(dt_ / period_)) * period_;
 }
 
 }  // namespace ddm

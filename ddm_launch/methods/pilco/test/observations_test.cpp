@@ -5,7 +5,7 @@
 
 #include <ddm_msgs/testing/expect_error.h>
 #include <ddm_msgs/testing/temp_folder.h>
-#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/plant.h>
 #include <gtest/gtest.h>
 
 #include <boost/filesystem.hpp>

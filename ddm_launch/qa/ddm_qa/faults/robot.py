@@ -28,11 +28,11 @@ class RobotInjection(Injection):
         self.effort, self.ends, self.pids = Effort(), 0.0, None
         self.images = rospy.Publisher("faults/image_raw", Image, queue_size=2, tcp_nodelay=True)
         self.joints = rospy.Publisher("faults/joint_states", JointState, queue_size=QUEUE, tcp_nodelay=True)
-        rospy.Subscriber("effort_command", Float64, self.effort.take, queue_size=QUEUE, tcp_nodelay=True)
+        rospy.Subscriber("plant/effort_command", Float64, self.effort.take, queue_size=QUEUE, tcp_nodelay=True)
         rospy.Subscriber("run_trial/goal", RunTrialActionGoal, self.on_goal, queue_size=QUEUE)
         rospy.Subscriber("torque", Torque, self.on_torque, queue_size=QUEUE)
         rospy.Subscriber("plant/ground_truth/joint_states", JointState, self.on_joints, queue_size=QUEUE)
-        rospy.Subscriber("stand_in/image_raw", Image, self.on_image, queue_size=2, buff_size=IMAGE_BYTES)
+        rospy.Subscriber("plant/camera/image_raw", Image, self.on_image, queue_size=2, buff_size=IMAGE_BYTES)
 
     def on_goal(self, message):
         if self.fault == "lose mpc_node" and self.pids is None:

@@ -32,10 +32,8 @@ YAML::Node toYaml(const Options& options) {
 ///   const auto mpc = reader.read<MpcOptions>("mpc");
 ///   reader.requireValid();  // not before all blocks are read: it reports them together
 ///
-/// A block that another package has registered is left alone, so that each program can be given the
-/// same files. A block that nobody knows is a mistake. A package registers its blocks by the parameter reference
-/// in its CMakeLists.txt, ddm_register_parameter_references(config/mpc.yaml); they are found in the workspaces
-/// that setup.bash has put into CMAKE_PREFIX_PATH, and in that of this library.
+/// A block of another program of DDM is left alone, so that each program can be given the same files.
+/// A block that no program knows is a mistake.
 class ParamReader {
  public:
   /// @param root    blocks by name; nothing at all is an empty configuration

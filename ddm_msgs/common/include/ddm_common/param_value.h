@@ -36,6 +36,10 @@ bool parseValue(const YAML::Node& node, std::vector<Value>* value) {
   return true;
 }
 
+/// A finite decimal number of a command line or a CSV file, without a unit behind it. Blanks around it
+/// are allowed. Returns false, and leaves `value` alone, for anything else.
+bool parseNumber(const std::string& text, double* value);
+
 /// What a value of this type must be, to end the sentence "key must be ...".
 inline std::string expectedType(const int*) { return "an integer (32 bit)"; }
 inline std::string expectedType(const double*) { return "a number"; }

@@ -1,4 +1,4 @@
-// Files that are read and written as a whole.
+// Files that are read and written as a whole, and paths in a home folder.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -28,5 +28,10 @@ void removeUnfinished(const std::string& folder);
 /// name, and the name is when this returns: after a power cut nothing incomplete has it.
 /// @throws std::runtime_error with the path and the reason
 void renameDurably(const std::string& from, const std::string& to);
+
+/// `~/x` and `~name/x` with the home folder, which a shell expands at the start of a word only: not in
+/// `--out=~/x`, and not in `runs:=~/x` of roslaunch. Any other text stays as it is.
+/// @param word  may be an option with its value, `--out=~/x`
+std::string expandHome(std::string word);
 
 }  // namespace ddm

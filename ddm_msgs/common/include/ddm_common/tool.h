@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "ddm_common/home.h"
+#include "ddm_common/plain_file.h"
 
 namespace ddm {
 

@@ -14,11 +14,9 @@
 #include <utility>
 #include <vector>
 
-#include "ddm_sim/camera_options.h"
+#include "ddm_sim/camera.h"
 #include "ddm_sim/picture.h"
 #include "ddm_sim/plant.h"
-#include "ddm_sim/plant_factory.h"
-#include "ddm_sim/plant_info.h"
 
 namespace ddm {
 namespace testing {

@@ -11,7 +11,6 @@
 #include "ddm_mujoco/mujoco_model.h"
 #include "ddm_mujoco/mujoco_options.h"
 #include "ddm_sim/plant.h"
-#include "ddm_sim/plant_info.h"
 
 namespace ddm {
 

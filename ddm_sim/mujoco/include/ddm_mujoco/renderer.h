@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_sim/camera_model.h>
 #include <ddm_sim/picture.h>
 #include <mujoco/mujoco.h>
 

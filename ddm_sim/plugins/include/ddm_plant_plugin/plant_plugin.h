@@ -3,7 +3,7 @@
 #pragma once
 
 #include <ddm_common/param_reader.h>
-#include <ddm_sim/plant_factory.h>
+#include <ddm_sim/plant.h>
 #include <ddm_sim/plant_options.h>
 
 #include <memory>

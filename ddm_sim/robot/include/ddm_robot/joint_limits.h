@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "ddm_robot/clocks.h"
 #include "ddm_robot/robot_options.h"
 #include "ddm_robot/stamp_check.h"
 

@@ -1,15 +1,32 @@
-// Whether the stamps of a sensor can be trusted: each is compared with the arrival of its message.
+// Stamps of a sensor: whether they can be trusted, and which images of a camera are acted on.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <chrono>
 #include <deque>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include "ddm_robot/clocks.h"
-
 namespace ddm {
+
+// Two kinds of time, which cannot be mixed up: one guards a motor, the other pairs messages.
+
+/// Of the monotonic clock, which nobody can set: all deadlines of the motor.
+using SteadyTime = std::chrono::steady_clock::time_point;
+
+/// Header stamp, since the epoch of the camera's clock: pairs an image with its torque and chooses
+/// the images that are acted on. It may shorten a deadline, never extend one.
+using Stamp = std::chrono::nanoseconds;
+
+inline double toSeconds(std::chrono::nanoseconds time) {
+  return std::chrono::duration<double>(time).count();
+}
+
+inline std::chrono::nanoseconds fromSeconds(double seconds) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+      std::chrono::duration<double>(seconds));
+}
 
 /// Refuses images whose stamps jump, and finds out how long an accepted one was on its way.
 ///
@@ -70,6 +87,35 @@ class StampCheck {
   SteadyTime arrival_;
   SteadyTime taken_;
   int num_refused_ = 0;
+};
+
+/// Chooses the images of a camera that are acted on, because the camera has a rate of its own and
+/// the loop has its time step: of all images the one that comes nearest to dt after the last one.
+///
+/// An image is judged when it comes, so the chosen one is the newest and not a moment old. With dt a
+/// whole multiple of the camera's period T all steps are equally long, whatever the jitter of stamps
+/// below T / 2; otherwise they are round(dt / T) T, still equally long.
+class ImagePicker {
+ public:
+  /// @param dt  time step, > 0 [s]
+  explicit ImagePicker(double dt) : dt_(dt) {}
+
+  /// To be called for each image.
+  /// @return whether to act on it; never for one that is not newer than all since restart()
+  bool pick(Stamp stamp);
+
+  /// The next image will be picked, whatever its stamp.
+  void restart() { last_image_.reset(); }
+
+  /// Time between images that are picked [s]; 0 if it is not known yet.
+  double step() const;
+
+ private:
+  double dt_;
+  std::optional<Stamp> last_image_;  // empty: none since restart()
+  Stamp last_pick_{0};
+  std::deque<Stamp> intervals_;  // between the latest images
+  double period_ = 0.0;          // T, their median: a lost image or a pause must not count [s]
 };
 
 }  // namespace ddm

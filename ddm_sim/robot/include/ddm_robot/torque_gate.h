@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "ddm_robot/clocks.h"
 #include "ddm_robot/joint_limits.h"
 #include "ddm_robot/robot_options.h"
 

@@ -1,6 +1,6 @@
 // Lock-step: simulated time stands still until each image has its torque.
 // SPDX-License-Identifier: BSD-3-Clause
-#pragma once
+#include <rosgraph_msgs/Clock.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,18 +13,18 @@
 
 #include "ddm_common/param_value.h"
 #include "ddm_common/topic_peers.h"
-#include "ddm_sim/sim_options.h"
 #include "sim_node.h"
 
 namespace ddm {
+namespace {
 
 /// Shows image t, waits for the torque that carries its stamp, steps, shows image t + 1.
 ///
 ///   idle --reset--> image 0 --torque--> image 1 --torque--> ... image num_steps - 1 --torque-->
 ///   idle
 ///
-/// A frame that the camera loses is never shown: the plant goes on for another dt under the torque
-/// of the last one, and the stamps have a gap. A torque with another stamp is counted and ignored.
+/// An image that the camera loses is never shown: the plant goes on for another dt under the last
+/// torque, and the stamps have a gap. A torque with another stamp is counted and ignored.
 /// A torque that cannot be applied, or does not come within the watchdog's wall time, ends the
 /// trial: idle until the next reset. /clock never runs backwards: each trial starts later than the
 /// last one ended, with a gap that no reader can take for a step. Ground truth and /clock come ten
@@ -34,15 +34,15 @@ class LockstepSim : public SimNode {
  public:
   LockstepSim(ros::NodeHandle nh, std::unique_ptr<Environment> environment,
               const SimOptions& options, const ShowOptions& show)
-      : SimNode(nh, std::move(environment), /*clock=*/true),
+      : SimNode(nh, std::move(environment)),
+        clock_pub_(nh.advertise<rosgraph_msgs::Clock>("/clock", 1, /*latch=*/true)),
         options_(options),
         step_ns_(static_cast<std::uint64_t>(std::llround(this->plant().info().dt * kSecond))),
         now_ns_(kSecond) {  // not 0, which means "no time yet" to everybody else
     if (show.frame_rate > 0.0) pace_.emplace(show.frame_rate);
     tell_timer_ = nh.createWallTimer(
         ros::WallDuration(kTellPeriod), [this](const ros::WallTimerEvent&) { tell(); },
-        /*oneshot=*/true,
-        /*autostart=*/false);
+        /*oneshot=*/true, /*autostart=*/false);
     tell();
     publishGoal(now());
     // Ticks instead of one long timer: they stop counting while this process itself is held up, so a
@@ -67,7 +67,7 @@ class LockstepSim : public SimNode {
     running_ = true;
     tell();
     publishGoal(now());
-    showFrame();
+    showImage();
     return now();
   }
 
@@ -96,7 +96,7 @@ class LockstepSim : public SimNode {
         return;
       }
       now_ns_ += step_ns_;
-    } while (!showFrame());
+    } while (!showImage());
     publishApplied(message);  // after the image, for which the controller waits
     ++frame_;
   }
@@ -112,11 +112,11 @@ class LockstepSim : public SimNode {
   }
 
   /// @return false if the camera has lost the frame
-  bool showFrame() {
+  bool showImage() {
     if (pace_) pace_->sleep();  // nothing else is to be done: whoever has answered is waiting, too
     silent_ticks_ = 0;
     tell_timer_.start();  // does nothing if it runs
-    return publishFrame(now());
+    return publishImage(now());
   }
 
   /// Ground truth and time. No node waits for them, but several wake up for each message: soon is
@@ -124,7 +124,9 @@ class LockstepSim : public SimNode {
   void tell() {
     tell_timer_.stop();
     publishGroundTruth();
-    publishClock(now());
+    rosgraph_msgs::Clock clock;
+    clock.clock = now();
+    clock_pub_.publish(clock);
   }
 
   void onWatchdogTick(const ros::WallTimerEvent& /*event*/) {
@@ -132,7 +134,7 @@ class LockstepSim : public SimNode {
     if (!running_ || ++silent_ticks_ <= kWatchdogTicks) return;
     ROS_ERROR_STREAM("no torque for "
                      << frameName() << " within " << formatDouble(options_.watchdog)
-                     << " s: " << describePublishers(torqueTopic()) << " (" << ignored_
+                     << " s: " << describePublishers(torques().getTopic()) << " (" << ignored_
                      << " torques with another stamp ignored). " << trial_
                      << " ends, a reset starts another");
     endTrial();
@@ -151,6 +153,7 @@ class LockstepSim : public SimNode {
 
   ros::Time now() const { return ros::Time().fromNSec(now_ns_); }
 
+  ros::Publisher clock_pub_;
   SimOptions options_;
   std::optional<ros::WallRate> pace_;  ///< empty: as fast as torques come
   std::uint64_t step_ns_;              ///< dt [ns]
@@ -165,5 +168,13 @@ class LockstepSim : public SimNode {
   ros::WallTimer watchdog_;
   ros::WallTimer tell_timer_;
 };
+
+}  // namespace
+
+std::unique_ptr<SimNode> makeLockstepSim(const ros::NodeHandle& nh,
+                                         std::unique_ptr<Environment> environment,
+                                         const SimOptions& options, const ShowOptions& show) {
+  return std::make_unique<LockstepSim>(nh, std::move(environment), options, show);
+}
 
 }  // namespace ddm

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# A stand-in robot with two motors: torques move the tile in both directions, and the camera shows it.
+# A simulated robot with two motors: torques move the tile in both directions, and the camera shows it.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import sys
@@ -13,7 +13,7 @@ from sensor_msgs.msg import Image, JointState
 from std_srvs.srv import SetBool, Trigger
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from robot_stand_in import LIMIT_S, Listener, wait_until  # noqa: E402
+from robot_case import LIMIT_S, Listener, wait_until  # noqa: E402
 
 MIDDLE = 25.5  # [pixels]
 TORQUE = [1.0, -0.5]  # to the right and up [pixels per step]
@@ -25,7 +25,7 @@ def bright(image):
     return [0.5 + sum(pixel[axis] for pixel in pixels) / len(pixels) for axis in (1, 0)]
 
 
-class StandInTest(unittest.TestCase):
+class SimulatedRobotTest(unittest.TestCase):
     def test_two_torques_move_the_tile_in_two_directions_until_they_end(self):
         images = Listener("camera/image_raw", Image)
         truth = Listener("plant/ground_truth/joint_states", JointState)
@@ -53,10 +53,10 @@ class StandInTest(unittest.TestCase):
         wait_until(lambda: list(truth.messages[-1].effort) == [0.0, 0.0], "zero for both motors")
         at_rest = list(truth.messages[-1].position)
         wait_until(lambda: all(abs(seen - there) < 1.0 for seen, there in zip(bright(images.next()), at_rest)),
-                   "a picture of the tile at %s" % at_rest)
+                   "an image of the tile at %s" % at_rest)
         self.assertEqual(list(truth.messages[-1].position), at_rest)
 
 
 if __name__ == "__main__":
-    rospy.init_node("stand_in_test")
-    rosunit.unitrun("ddm_sim", "stand_in", StandInTest)
+    rospy.init_node("simulated_robot_test")
+    rosunit.unitrun("ddm_sim", "simulated_robot", SimulatedRobotTest)

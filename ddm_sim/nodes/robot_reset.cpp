@@ -1,12 +1,15 @@
-// robot_node: what a person or the loop asks of it, to enable the motors, show a goal, or reset.
+// robot_node: its services, by which people and Algorithm 1 enable the motors, show a goal, and reset.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/image_codec.h>
 #include <ddm_common/topic_peers.h>
+#include <ddm_common/waiting.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
@@ -18,8 +21,13 @@ namespace {
 constexpr double kStepTolerance = 0.1;     // of dt
 constexpr double kMaxStepTolerance = 0.5;  // of dt: beyond, each step would count as a gap
 constexpr char kGoalInTrial[] = "a trial is under way, and it has a goal: wait for its end";
-const ros::WallDuration kWatchPeriod(0.1);
+const ros::WallDuration kPollPeriod(0.05);
 const ros::WallDuration kRemindPeriod(10.0);
+
+double timeLeft(const ros::SteadyTime& deadline) {
+  return (deadline - ros::SteadyTime::now()).toSec();
+}
+bool timeIsLeft(const ros::SteadyTime& deadline) { return ros::ok() && timeLeft(deadline) > 0.0; }
 
 /// A problem without its numbers: the same problem with another value need not be logged again.
 std::string withoutNumbers(std::string text) {
@@ -78,7 +86,7 @@ void RobotNode::publishGoal(const sensor_msgs::Image& goal) {
 
 bool RobotNode::onTakeGoal(std_srvs::Trigger::Request& /*request*/,
                            std_srvs::Trigger::Response& response) {
-  sensor_msgs::ImageConstPtr frame;
+  sensor_msgs::ImageConstPtr image;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (gate_.inTrial()) {
@@ -86,20 +94,20 @@ bool RobotNode::onTakeGoal(std_srvs::Trigger::Request& /*request*/,
       return true;
     }
     if (!seesCamera()) {
-      response.message = "no image on " + frame_sub_.getTopic();
+      response.message = "no image on " + camera_sub_.getTopic();
       return true;
     }
-    response.message = formatProblem(*frame_);
+    response.message = formatProblem(*image_);
     if (!response.message.empty()) return true;
-    frame = frame_;
+    image = image_;
   }
   try {  // without the lock: a disk may be slow, and must not be in the way of a stop
-    const sensor_msgs::Image goal = shown(*frame);
+    const sensor_msgs::Image goal = shown(*image);
     if (!options_.goal_file.empty()) writePicture(options_.goal_file, goal);
     publishGoal(goal);
     {
       const std::lock_guard<std::mutex> lock(mutex_);
-      camera_format_ = formatOf(*frame);
+      camera_format_ = formatOf(*image);
     }
     response.success = true;
     response.message = "the goal is what the camera sees now" +
@@ -131,28 +139,17 @@ bool RobotNode::onReset(ddm_msgs::Reset::Request& /*request*/,
     gate_.beginReset();
     publishEffort();
   }
-  // The goal first: to show it, the robot has to leave its start. The motors last where a person
-  // brings the robot to its start, who reaches in; first where a service of the user moves it.
-  std::string problem =
-      waitUntilThere(deadline, routine_.usesMotors() ? Motors::kOn : Motors::kAny);
-  if (problem.empty()) problem = bringToStart(deadline);
-  if (problem.empty()) problem = waitUntilThere(deadline, Motors::kFit);
+  // The goal first: to show it, the robot has to leave its initial state. A person who brings the
+  // robot to its initial state reaches in, so the motors come last. A service needs them first.
+  const bool uses_motors = !reset_service_.empty();
+  std::string problem = waitFor(uses_motors ? Motors::kOn : Motors::kAny, deadline);
+  if (problem.empty()) problem = moveToInitialState(deadline);
+  if (problem.empty()) problem = waitFor(Motors::kFit, deadline);
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     gate_.endReset();
-    const double step = picker_.step();  // 0: not known
-    if (step > 0.0 && std::abs(step - options_.dt) > kStepTolerance * options_.dt) {
-      std::ostringstream text;
-      text << "the camera's frames do not fit: images are " << step << " s apart where robot/dt is "
-           << options_.dt << " s: make dt a whole multiple of the time between frames";
-      if (std::abs(step - options_.dt) <= kMaxStepTolerance * options_.dt) {
-        log_.warn(text.str());
-      } else if (problem.empty()) {
-        problem = "the trial cannot begin: " + text.str();
-      }
-    }
-    stamps_.restart();
-    picker_.restart();
+    if (problem.empty()) problem = stepProblem();
+    restartImages();
     publishEffort();
   }
   response.success = problem.empty();
@@ -162,47 +159,114 @@ bool RobotNode::onReset(ddm_msgs::Reset::Request& /*request*/,
   return true;
 }
 
-/// Permission for the user's reset service to move the robot. A stop takes it back.
-std::string RobotNode::beginRoutine() {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (!gate_.armed()) return "the robot was not brought to its start: " + gate_.describe();
-  routine_runs_ = routine_moves_ = true;
+/// Forgets stamps and rate of the images so far.
+void RobotNode::restartImages() {
+  stamps_.restart();
+  picker_.restart();
+}
+
+/// Why no trial can begin with the images of the camera; empty if it can, perhaps with a warning.
+std::string RobotNode::stepProblem() {
+  const double step = picker_.step();  // 0: not known
+  const double error = std::abs(step - options_.dt);
+  if (step == 0.0 || error <= kStepTolerance * options_.dt) return "";
+  std::ostringstream text;
+  text << "the camera's rate does not fit: images are " << step << " s apart where robot/dt is "
+       << options_.dt << " s: make dt a whole multiple of the time between images";
+  if (error > kMaxStepTolerance * options_.dt) return "the trial cannot begin: " + text.str();
+  log_.warn(text.str());
   return "";
 }
 
-std::string RobotNode::endRoutine(bool answered) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  const bool stopped = !routine_moves_;
-  routine_runs_ = routine_moves_ = false;
-  if (!answered) stop("the reset service does not answer");
-  if (!stopped) return "";
-  return "the motors were switched off while the reset service moved the robot: call service "
-         "enable, and begin the trial again";
-}
-
-std::string RobotNode::bringToStart(const ros::SteadyTime& deadline) {
+std::string RobotNode::moveToInitialState(const ros::SteadyTime& deadline) {
   try {
-    return routine_.run(deadline);
+    return reset_service_.empty() ? askPerson(deadline) : callResetService(deadline);
   } catch (const std::exception& e) {
-    return std::string("the robot was not brought to its start: ") + e.what();
+    return std::string("the robot was not brought to its initial state: ") + e.what();
   }
 }
 
-/// @return what has not come in time; empty: nothing
-std::string RobotNode::waitUntilThere(const ros::SteadyTime& deadline, Motors motors) {
+std::string RobotNode::askPerson(const ros::SteadyTime& deadline) {
+  const std::string call = "rosservice call " + reset_done_server_.getService();
+  person_asked_ = true;
+  log_.warn("Bring the robot to its initial state. Then: " + call);
+  while (timeIsLeft(deadline) && person_asked_) kPollPeriod.sleep();
+  if (!person_asked_.exchange(false)) return "";
+  return "nobody said in time that the robot is in its initial state: " + call +
+         ", or set a longer robot/reset_timeout";
+}
+
+bool RobotNode::onResetDone(std_srvs::Trigger::Request& /*request*/,
+                            std_srvs::Trigger::Response& response) {
+  response.success = person_asked_.exchange(false);
+  response.message = response.success ? "the trial may begin"
+                                      : "no reset waits for the robot: begin a trial first";
+  return true;
+}
+
+/// Has the user's service move the robot, which needs the motors. A stop takes them from it.
+/// Services are called in threads of their own, because a stopped master may never answer.
+std::string RobotNode::callResetService(const ros::SteadyTime& deadline) {
+  const std::string service = "service " + reset_service_;
+  const auto exists = [name = reset_service_] {
+    return ros::service::exists(name, /*print_failure=*/false);
+  };
+  while (!answerWithin(timeLeft(deadline), exists).value_or(false)) {
+    if (!timeIsLeft(deadline)) {
+      return service + " is not offered: start its node, or correct robot/reset_service";
+    }
+    kPollPeriod.sleep();
+  }
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!gate_.armed()) {
+      return "the robot was not brought to its initial state: " + gate_.describe();
+    }
+    routine_runs_ = routine_moves_ = true;
+  }
+  const auto trigger = std::make_shared<std_srvs::Trigger>();
+  const std::optional<bool> answer =
+      answerWithin(timeLeft(deadline),
+                   [trigger, name = reset_service_] { return ros::service::call(name, *trigger); });
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const bool stopped = !routine_moves_;
+    routine_runs_ = routine_moves_ = false;
+    if (!answer) {
+      stop("the reset service does not answer");
+      return service +
+             " does not answer, and the motors were switched off: look at its node, or set a "
+             "longer robot/reset_timeout";
+    }
+    if (stopped) {
+      return "the motors were switched off while the reset service moved the robot: call service "
+             "enable, and begin the trial again";
+    }
+  }
+  if (*answer && trigger->response.success) return "";
+  if (*answer && !trigger->response.message.empty()) {
+    return service + ": " + trigger->response.message;
+  }
+  return service + (*answer ? " failed without a message" : " ended without an answer") +
+         ": look at the output of its node";
+}
+
+/// Waits until nothing is missing that a trial needs.
+/// @return what has not come in time; empty if nothing is missing
+std::string RobotNode::waitFor(Motors motors, const ros::SteadyTime& deadline) {
   std::string told;
   ros::SteadyTime last_told;
   for (;;) {
     const std::string what = missing(motors);
-    const ros::SteadyTime now = ros::SteadyTime::now();
     if (what.empty()) return "";
-    if (!ros::ok() || now > deadline) return "the trial cannot begin: " + what;
+    if (!timeIsLeft(deadline)) return "the trial cannot begin: " + what;
+    const ros::SteadyTime now = ros::SteadyTime::now();
     if (withoutNumbers(what) != told || now - last_told > kRemindPeriod) {
       told = withoutNumbers(what);
       last_told = now;
       log_.warn("the trial waits: " + what);
     }
-    kWatchPeriod.sleep();
+    kPollPeriod.sleep();
   }
 }
 
@@ -212,13 +276,12 @@ std::string RobotNode::missing(Motors motors) {
   if (!seesCamera()) {
     lock.unlock();  // the master may be slow, and must not be in the way of a stop
     return "no image from the camera, " +
-           describeImagePublishers(frame_sub_.getTopic(), "camera:=");
+           describeImagePublishers(camera_sub_.getTopic(), "camera:=");
   }
-  std::string problem = stamps_.compare(frame_arrival_clock_, toStamp(frame_->header.stamp));
-  if (problem.empty()) problem = frame_problem_;
+  std::string problem = stamps_.compare(image_arrival_clock_, toStamp(image_->header.stamp));
+  if (problem.empty()) problem = image_problem_;
   if (!problem.empty()) {
-    stamps_.restart();  // the clocks may be set while the trial waits
-    picker_.restart();
+    restartImages();  // the clocks may be set while the trial waits
     return problem;
   }
   if (!has_goal_) return "no goal image: bring the robot to its goal and call service take_goal";

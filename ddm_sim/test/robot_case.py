@@ -19,7 +19,7 @@ from process import Process, find_program
 LIMIT_S = 15.0
 DT = 0.4
 WIDTH, HEIGHT = 48, 40
-OPTIONS = ["_image/size:=4", "_robot/crop_x:=8", "_robot/crop_width:=32", "_robot/crop_height:=32"]
+CROP = [8, 0, 32, 32]
 
 
 def wait_until(condition, what="the condition"):
@@ -228,9 +228,9 @@ def start_robot(*arguments, dt=DT, max_torque=4.0, robot=None, **kwargs):
     """A robot_node with its surroundings; `robot` has the parameters that are lists."""
     if rospy.has_param("/robot_node"):
         rospy.delete_param("/robot_node")
-    rospy.set_param("/robot_node/robot", dict(robot or {}, dt=dt, max_torque=max_torque))
+    rospy.set_param("/robot_node/robot", dict(robot or {}, dt=dt, max_torque=max_torque, crop=CROP))
     num_motors = len(max_torque) if isinstance(max_torque, list) else 1
-    return Robot(num_motors, *(OPTIONS + list(arguments)), **kwargs)
+    return Robot(num_motors, "_image/size:=4", *arguments, **kwargs)
 
 
 class RobotCase(unittest.TestCase):
