@@ -34,7 +34,7 @@ void identify(std::string* path, std::string* checksum) {
 
 /// A bag must have been recorded on such a plant or robot, whose images come at the model's size.
 void requireFits(const std::string& path, const Configuration& configuration, const Plant& plant,
-                 DifferentFrames* different) {
+                 DifferentBags* different) {
   const bool robot = configuration.robot.has_value();
   const int size = configuration.model.image.size;
   const Picture picture = robot ? Picture{size, size, 1, {}, {}} : plant.render(plant.state());
@@ -139,9 +139,8 @@ void prepareStart(Configuration* configuration) {
     identify(&start.model, &start.checksums.back());
     requireModelFits(readModel(start.model), start.model, *configuration);
   }
-  requireDifferentBags(start.bags);
   const std::unique_ptr<Plant> plant = makePlant(*configuration->plant);
-  DifferentFrames different;
+  DifferentBags different;
   for (size_t i = 0; i < start.bags.size(); ++i) {
     identify(&start.bags[i], &start.checksums[i]);
     requireFits(start.bags[i], *configuration, *plant, &different);

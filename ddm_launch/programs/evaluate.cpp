@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/param_value.h>
 #include <ddm_common/plain_file.h>
+#include <ddm_model/minimise.h>
 #include <ddm_model/model_file.h>
-#include <ddm_model/solver_log.h>
 #include <ddm_sim/plant.h>
 #include <ros/time.h>
 

@@ -3,8 +3,8 @@
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_common/plain_file.h>
 #include <ddm_common/tool.h>
-#include <ddm_model/long_term_prediction.h>
-#include <ddm_model/solver_log.h>
+#include <ddm_model/ddm.h>
+#include <ddm_model/minimise.h>
 #include <ddm_mpc/controller.h>
 #include <ddm_sim/environment.h>
 #include <ddm_sim/plant.h>

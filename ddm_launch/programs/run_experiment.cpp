@@ -1,6 +1,6 @@
 // run_experiment: Algorithm 1 in one process, without a ROS master.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_model/solver_log.h>
+#include <ddm_model/minimise.h>
 #include <ros/time.h>
 
 #include <string>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "oracle_method.h"
 
-#include <ddm_model/solver_log.h>
+#include <ddm_model/minimise.h>
 #include <ddm_model/testing/gradient_check.h>
 #include <ddm_model/testing/random_matrix.h>
 #include <ddm_msgs/testing/temp_folder.h>

@@ -5,7 +5,7 @@
 #include <ddm_bag_io/model_config.h>
 #include <ddm_bag_io/model_message.h>
 #include <ddm_common/run_node.h>
-#include <ddm_model/solver_log.h>
+#include <ddm_model/minimise.h>
 #include <ddm_model/trainer.h>
 #include <ddm_msgs/TrainAction.h>
 #include <ddm_msgs/topics.h>

@@ -1,15 +1,24 @@
 // trial_recorder: one bag per trial, complete or not under its final name.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "trial_recorder.h"
-
+#include <ddm_bag_io/bag_writer.h>
+#include <ddm_bag_io/model_config.h>
 #include <ddm_common/run_node.h>
+#include <ddm_msgs/StartRecording.h>
+#include <ddm_msgs/StopRecording.h>
 #include <ddm_msgs/topics.h>
+#include <image_transport/image_transport.h>
+#include <ros/ros.h>
 
 #include <algorithm>
 #include <chrono>
+#include <condition_variable>
 #include <filesystem>
 #include <iterator>
+#include <memory>
+#include <mutex>
+#include <set>
 #include <sstream>
+#include <string>
 
 namespace ddm {
 namespace {
@@ -30,7 +39,44 @@ void requireNew(const std::string& path) {
   }
 }
 
-}  // namespace
+/// Services `start_recording` and `stop_recording`; writes images, the goal image, and the torques
+/// that acted, by topic `applied_torque`. An image whose torque did not act in time has none in the
+/// bag: the trial has a gap there. An image of which nobody says what acted is an error.
+/// Needs a spinner with two threads or more: stopping waits for messages on their way.
+class TrialRecorder {
+ public:
+  TrialRecorder(ros::NodeHandle nh, const BagOptions& bag, const RecorderOptions& options);
+
+ private:
+  bool start(ddm_msgs::StartRecording::Request& request,
+             ddm_msgs::StartRecording::Response& response);
+  bool stop(ddm_msgs::StopRecording::Request& request, ddm_msgs::StopRecording::Response& response);
+  void writeGoal(BagWriter* bag) const;
+  template <class Message>
+  void record(const Message& message);
+  void recordApplied(const ddm_msgs::Torque& torque);
+  bool hasGoal(const ddm_msgs::StopRecording::Request& request) const;
+  bool complete(const ddm_msgs::StopRecording::Request& request) const;
+  std::string shortcoming(const ddm_msgs::StopRecording::Request& request) const;
+
+  BagOptions bag_options_;
+  RecorderOptions options_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::unique_ptr<BagWriter> bag_;  // null while not recording
+  ros::Time after_;                 // messages up to this stamp are of an earlier trial
+  std::string error_;               // first write that failed
+  std::set<ros::Time> unanswered_;  // images of which is known that no torque acted in time
+  sensor_msgs::ImageConstPtr goal_;
+  int num_recordings_ = 0;
+  int stopping_ = 0;  // the recording for whose end a stop waits or has waited
+  image_transport::ImageTransport transport_;
+  image_transport::Subscriber image_sub_;
+  ros::Subscriber torque_sub_;
+  ros::Subscriber goal_sub_;
+  ros::ServiceServer start_server_;
+  ros::ServiceServer stop_server_;
+};
 
 TrialRecorder::TrialRecorder(ros::NodeHandle nh, const BagOptions& bag,
                              const RecorderOptions& options)
@@ -200,6 +246,7 @@ bool TrialRecorder::stop(ddm_msgs::StopRecording::Request& request,
   return true;
 }
 
+}  // namespace
 }  // namespace ddm
 
 int main(int argc, char** argv) {

@@ -1,8 +1,8 @@
 // The activation sigma = arctan of the paper, on whole arrays, together with its slope.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_model/arctan.h"
-
 #include <cmath>
+
+#include "ddm_model/mlp.h"
 
 namespace ddm {
 namespace {

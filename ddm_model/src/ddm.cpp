@@ -33,6 +33,29 @@ std::string shape(Eigen::Index rows, Eigen::Index cols) {
   return "[" + std::to_string(rows) + " x " + std::to_string(cols) + "]";
 }
 
+using Pixels = Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>;
+
+/// Sum over all pixels of the squared difference [grey^2].
+double squaredDistance(const Grey& a, const Grey& b) {
+  const auto size = static_cast<Eigen::Index>(a.size());
+  return (Eigen::Map<const Pixels>(a.data(), size).cast<double>() -
+          Eigen::Map<const Pixels>(b.data(), size).cast<double>())
+             .squaredNorm() /
+         (255.0 * 255.0);
+}
+
+/// Frames that have n + d - 1 predecessors and num_steps successors without a gap: what can be
+/// predicted from. In the order of the data.
+std::vector<Eigen::Index> predictionStarts(const Ddm& model, const DataSet& data, int num_steps) {
+  std::vector<Eigen::Index> starts;
+  for (const Segment& segment : data.segments()) {
+    for (Eigen::Index i = model.options().memory() - 1; i + num_steps < segment.size; ++i) {
+      starts.push_back(segment.begin + i);
+    }
+  }
+  return starts;
+}
+
 }  // namespace
 
 Ddm::Ddm(ModelOptions options, int image_size, int torque_dim, Pca pca, Eigen::VectorXd theta,
@@ -90,18 +113,14 @@ Grey Ddm::decode(const Eigen::VectorXd& z) const {
 }
 
 Eigen::VectorXd Ddm::predict(const History& x, const Eigen::VectorXd& u) const {
-  const PredictionModel<double>& f = predictionModel();
-  const Eigen::Index n = f.memory();
   if (x.empty()) throw std::invalid_argument("prediction: the history is empty: observe() first");
-  if (x.features().rows() != f.featureDim() || x.features().cols() != n ||
-      x.torques().rows() != f.torqueDim() || u.size() != f.torqueDim()) {
-    throw std::invalid_argument(
-        "prediction: the model takes features " + shape(f.featureDim(), n) + ", torques " +
-        shape(f.torqueDim(), n - 1) + " and " + std::to_string(f.torqueDim()) +
-        " new torque(s), got " + shape(x.features().rows(), x.features().cols()) + ", " +
-        shape(x.torques().rows(), x.torques().cols()) + " and " + std::to_string(u.size()));
+  if (u.size() != x.torques().rows()) {
+    throw std::invalid_argument("prediction: a torque must have " +
+                                std::to_string(x.torques().rows()) + " value(s), got " +
+                                std::to_string(u.size()));
   }
-  Eigen::MatrixXd torques(f.torqueDim(), n);
+  const Eigen::Index n = x.features().cols();
+  Eigen::MatrixXd torques(u.size(), n);
   torques.leftCols(n - 1) = x.torques().rowwise().reverse();
   torques.col(n - 1) = u;
   return rollOut(x.features().rowwise().reverse(), torques, n - 1, 1).col(1);
@@ -136,6 +155,47 @@ Eigen::MatrixXd Ddm::rollOut(const Eigen::MatrixXd& Z,
 const Eigen::VectorXd& Ddm::goalFeature() const {
   if (!hasGoal()) throw std::logic_error("model has no goal image: train it with one");
   return goal_feature_;
+}
+
+Eigen::MatrixXd encodeAll(const Ddm& model, const DataSet& data) {
+  Eigen::MatrixXd Z(model.featureDim(), data.numFrames());
+  for (Eigen::Index i = 0; i < data.numFrames(); ++i) {
+    Z.col(i) = model.encode(data.image(i));
+  }
+  return Z;
+}
+
+std::vector<PredictionError> predictionErrors(const Ddm& model, const DataSet& data,
+                                              int max_steps) {
+  if (max_steps < 1) throw std::invalid_argument("predictions: steps must be >= 1");
+  const std::vector<Eigen::Index> starts = predictionStarts(model, data, max_steps);
+  if (starts.empty()) {
+    throw std::invalid_argument(
+        "predictions: no frame has " + std::to_string(model.options().memory() - 1) +
+        " frames before it and " + std::to_string(max_steps) + " after it without a gap");
+  }
+  const Eigen::MatrixXd Z = encodeAll(model, data);
+  std::vector<PredictionError> errors(max_steps);
+  for (const Eigen::Index frame : starts) {
+    const Eigen::MatrixXd predicted = model.rollOut(Z, data.torques(), frame, max_steps);
+    for (int k = 1; k <= max_steps; ++k) {
+      const Grey& truth = data.image(frame + k);
+      PredictionError& error = errors[k - 1];
+      error.rmse += squaredDistance(model.decode(predicted.col(k)), truth);
+      error.rmse_repeat += squaredDistance(data.image(frame), truth);
+    }
+  }
+  const auto num_predictions = static_cast<Eigen::Index>(starts.size());
+  const auto num_pixels = static_cast<double>(num_predictions * data.numPixels());
+  for (int k = 1; k <= max_steps; ++k) {
+    PredictionError& error = errors[k - 1];
+    error.steps = k;
+    error.num_predictions = num_predictions;
+    for (double* sum : {&error.rmse, &error.rmse_repeat}) {
+      *sum = std::sqrt(*sum / num_pixels);
+    }
+  }
+  return errors;
 }
 
 }  // namespace ddm

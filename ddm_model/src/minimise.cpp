@@ -4,6 +4,7 @@
 
 #include <ceres/gradient_problem.h>
 #include <ceres/gradient_problem_solver.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <cmath>
@@ -169,5 +170,7 @@ Minimum minimise(const DifferentiableFunction& f, const Eigen::VectorXd& start,
   ceres::Solve(solverOptions(options, &search), problem, x.data(), &summary);
   return std::move(search).result(summary);
 }
+
+void silenceSolverLog() { FLAGS_minloglevel = google::GLOG_FATAL; }
 
 }  // namespace ddm

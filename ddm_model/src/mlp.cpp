@@ -5,8 +5,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "ddm_model/arctan.h"
-
 namespace ddm {
 namespace {
 
@@ -34,10 +32,8 @@ Mlp<Scalar>::Mlp(std::vector<int> widths, Output output)
 }
 
 template <class Scalar>
-LayerFactors<Scalar> Mlp<Scalar>::zeroFactors() const {
-  LayerFactors<Scalar> factors;
-  for (size_t l = 1; l < widths_.size(); ++l) factors.emplace_back(widths_[l - 1], widths_[l]);
-  return factors;
+void Mlp<Scalar>::appendZeroFactors(LayerFactors<Scalar>* factors) const {
+  for (size_t l = 1; l < widths_.size(); ++l) factors->emplace_back(widths_[l - 1], widths_[l]);
 }
 
 template <class Scalar>
@@ -92,7 +88,7 @@ void Mlp<Scalar>::backward(const Scalar* theta, Tape* tape,
       biases(d_theta, layer).noalias() += delta * tape->ones.head(n);
     }
     if (tape->factors != nullptr) {
-      (*tape->factors)[layer].add(tape->activations[layer].leftCols(n), delta);
+      tape->factors[layer].add(tape->activations[layer].leftCols(n), delta);
     }
     if (layer > 0) {
       // a_layer has served its purpose: its memory takes the error that arrives there.

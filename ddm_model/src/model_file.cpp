@@ -20,6 +20,7 @@ constexpr std::uint32_t kVersion = 5;
 constexpr size_t kHeaderSize = kMagicSize + 4 + 8 + 4;
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "model files are little-endian");
+static_assert(sizeof(int) == 4 && sizeof(bool) == 1, "as in the file");
 
 std::uint32_t crc32(const char* bytes, size_t size) {
   boost::crc_32_type crc;
@@ -27,200 +28,164 @@ std::uint32_t crc32(const char* bytes, size_t size) {
   return crc.checksum();
 }
 
-class Writer {
- public:
-  template <class Number>
-  void number(Number value) {
-    static_assert(std::is_arithmetic<Number>::value, "numbers only");
-    bytes_.append(reinterpret_cast<const char*>(&value), sizeof(value));
-  }
-  template <class Number>
-  void array(const Number* values, size_t count) {
-    number<std::uint64_t>(count);
-    if (count > 0) bytes_.append(reinterpret_cast<const char*>(values), count * sizeof(Number));
-  }
-  const std::string& bytes() const { return bytes_; }
+/// Appends numbers, vectors and texts to bytes. A vector has its size before it.
+struct Writer {
+  std::string bytes;
 
- private:
-  std::string bytes_;
+  template <class Value>
+  void operator()(const Value& value) {
+    if constexpr (std::is_arithmetic<Value>::value) {
+      bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+    } else {
+      (*this)(std::uint64_t{value.size()});
+      if (value.empty()) return;
+      bytes.append(reinterpret_cast<const char*>(value.data()), value.size() * sizeof(value[0]));
+    }
+  }
 };
 
+/// The inverse. Sizes are compared with what is there before memory is taken.
 class Reader {
  public:
   Reader(const char* bytes, size_t size) : at_(bytes), left_(size) {}
 
-  template <class Number>
-  Number number() {
-    Number value;
-    std::memcpy(&value, take(sizeof(Number)), sizeof(Number));
-    return value;
-  }
-  template <class Number>
-  std::vector<Number> array() {
-    const auto count = number<std::uint64_t>();
-    if (count > left_ / sizeof(Number))
-      throw std::runtime_error("an array is longer than the file");
-    std::vector<Number> values(count);
-    if (count > 0) std::memcpy(values.data(), take(count * sizeof(Number)), count * sizeof(Number));
-    return values;
-  }
-  bool flag() {
-    const auto value = number<std::uint8_t>();
-    if (value > 1) throw std::runtime_error("a flag is neither 0 nor 1");
-    return value == 1;
-  }
-  std::string text() {
-    const std::vector<char> characters = array<char>();
-    return std::string(characters.begin(), characters.end());
+  template <class Value>
+  void operator()(Value& value) {
+    if constexpr (std::is_same<Value, bool>::value) {
+      std::uint8_t flag;
+      (*this)(flag);
+      if (flag > 1) throw std::runtime_error("a flag is neither 0 nor 1");
+      value = flag == 1;
+    } else if constexpr (std::is_arithmetic<Value>::value) {
+      std::memcpy(&value, take(sizeof(value)), sizeof(value));
+    } else {
+      std::uint64_t count;
+      (*this)(count);
+      if (count > left_ / sizeof(value[0])) {
+        throw std::runtime_error("an array is longer than the file");
+      }
+      value.resize(count);
+      if (count > 0)
+        std::memcpy(&value[0], take(count * sizeof(value[0])), count * sizeof(value[0]));
+    }
   }
   size_t left() const { return left_; }
 
  private:
   const char* take(size_t size) {
     if (size > left_) throw std::runtime_error("its content ends early");
-    const char* const taken = at_;
+    const char* const begin = at_;
     at_ += size;
     left_ -= size;
-    return taken;
+    return begin;
   }
 
   const char* at_;
   size_t left_;
 };
 
-void writeOptions(const ModelOptions& options, Writer* out) {
-  const auto widths = [out](const std::vector<int>& values) {
-    const std::vector<std::int32_t> fixed(values.begin(), values.end());
-    out->array(fixed.data(), fixed.size());
-  };
-  out->number<std::int32_t>(options.pca_dim);
-  out->number<std::int32_t>(options.feature_dim);
-  out->number<std::int32_t>(options.order);
-  widths(options.encoder_widths);
-  widths(options.decoderWidths());
-  widths(options.predictor_widths);
-  out->number<std::uint8_t>(options.residual ? 1 : 0);
-  out->number<std::uint8_t>(options.increments ? 1 : 0);
-  out->array(options.max_torque.data(), options.max_torque.size());
-  out->number<double>(options.blur);
-  out->number<std::int32_t>(options.delay);
+/// What follows the header of a file.
+struct Content {
+  ModelOptions options;
+  std::vector<int> decoder_widths;
+  int image_size = 0, torque_dim = 0;
+  ModelInfo info;
+  std::vector<float> support_states;
+  float scale = 0.0F;
+  std::vector<float> mean, basis;
+  std::vector<double> variance, theta;
+  Grey goal;
+
+  /// Shows all values to a Writer or a Reader, in the order of the file.
+  template <class Archive>
+  void visit(Archive* archive) {
+    const auto each = [archive](auto&... values) { ((*archive)(values), ...); };
+    each(options.pca_dim, options.feature_dim, options.order);
+    each(options.encoder_widths, decoder_widths, options.predictor_widths);
+    each(options.residual, options.increments, options.max_torque, options.blur, options.delay);
+    each(image_size, torque_dim);
+    each(info.seed, info.trial, info.frames, info.v_r, info.v_p, info.feature_spread);
+    each(support_states, info.config);
+    each(scale, mean, basis, variance, theta, goal);
+  }
+};
+
+template <class Matrix>
+std::vector<typename Matrix::Scalar> valuesOf(const Matrix& matrix) {
+  return {matrix.data(), matrix.data() + matrix.size()};
 }
 
-ModelOptions readOptions(Reader* in) {
-  const auto widths = [in] {
-    const std::vector<std::int32_t> fixed = in->array<std::int32_t>();
-    return std::vector<int>(fixed.begin(), fixed.end());
-  };
-  ModelOptions options;
-  options.pca_dim = in->number<std::int32_t>();
-  options.feature_dim = in->number<std::int32_t>();
-  options.order = in->number<std::int32_t>();
-  options.encoder_widths = widths();
-  if (widths() != options.decoderWidths()) {
+Content contentOf(const Ddm& model) {
+  Content content;
+  content.options = model.options();
+  content.decoder_widths = model.options().decoderWidths();
+  content.image_size = model.imageSize();
+  content.torque_dim = model.torqueDim();
+  content.info = model.info();
+  content.support_states = valuesOf(model.info().support_states);
+  content.scale = model.pca().scale;
+  content.mean = valuesOf(model.pca().mean);
+  content.basis = valuesOf(model.pca().basis);
+  content.variance = valuesOf(model.pca().variance);
+  content.theta = valuesOf(model.theta());
+  content.goal = model.goal();
+  return content;
+}
+
+/// @throws std::exception if the content makes no sense
+Ddm modelOf(Content content) {
+  const ModelOptions& options = content.options;
+  ModelInfo& info = content.info;
+  for (const std::string& problem : options.problems()) throw std::runtime_error(problem);
+  if (content.decoder_widths != options.decoderWidths()) {
     throw std::runtime_error("its decoder does not mirror its encoder");
   }
-  options.predictor_widths = widths();
-  options.residual = in->flag();
-  options.increments = in->flag();
-  options.max_torque = in->array<double>();
-  options.blur = in->number<double>();
-  options.delay = in->number<std::int32_t>();
-  for (const std::string& problem : options.problems()) throw std::runtime_error(problem);
-  return options;
-}
-
-/// @param state_dim  rows of support_states
-ModelInfo readInfo(size_t state_dim, Reader* in) {
-  ModelInfo info;
-  info.seed = in->number<std::uint64_t>();
-  info.trial = in->number<std::uint32_t>();
-  info.frames = in->number<std::uint32_t>();
-  info.v_r = in->number<double>();
-  info.v_p = in->number<double>();
-  info.feature_spread = in->number<double>();
-  const std::vector<float> support_states = in->array<float>();
-  if (support_states.size() % state_dim != 0)
-    throw std::runtime_error("its support states are no states");
-  info.support_states = Eigen::Map<const Eigen::MatrixXf>(
-      support_states.data(), static_cast<Eigen::Index>(state_dim),
-      static_cast<Eigen::Index>(support_states.size() / state_dim));
-  info.config = in->text();
-  if (!std::isfinite(info.v_r) || !std::isfinite(info.v_p) || !std::isfinite(info.feature_spread) ||
-      !info.support_states.allFinite()) {
-    throw std::runtime_error(
-        "its errors, support states and the spread of its features must be finite");
-  }
-  return info;
-}
-
-Ddm readContent(Reader* in) {
-  const ModelOptions options = readOptions(in);
-  const int image_size = in->number<std::int32_t>();
-  const int torque_dim = in->number<std::int32_t>();
   const auto requireWithin = [](const std::string& name, int value, int largest) {
     if (value >= 1 && value <= largest) return;
     throw std::runtime_error("its " + name + " must lie in [1, " + std::to_string(largest) +
                              "], got " + std::to_string(value));
   };
-  requireWithin("image size", image_size, 16384);
-  requireWithin("number of motors", torque_dim, 1000);
+  requireWithin("image size", content.image_size, 16384);
+  requireWithin("number of motors", content.torque_dim, 1000);
   const auto state_dim = static_cast<size_t>(options.memory()) * options.feature_dim +
-                         static_cast<size_t>(options.memory() - 1) * torque_dim;
-  ModelInfo info = readInfo(state_dim, in);
-  Pca pca;
-  pca.scale = in->number<float>();
-  const std::vector<float> mean = in->array<float>();
-  const std::vector<float> basis = in->array<float>();
-  const std::vector<double> variance = in->array<double>();
-  const std::vector<double> theta = in->array<double>();
-  Grey goal = in->array<std::uint8_t>();
-  const auto num_pixels = static_cast<size_t>(image_size) * image_size;
+                         static_cast<size_t>(options.memory() - 1) * content.torque_dim;
+  if (content.support_states.size() % state_dim != 0) {
+    throw std::runtime_error("its support states are no states");
+  }
+  info.support_states = Eigen::Map<const Eigen::MatrixXf>(
+      content.support_states.data(), static_cast<Eigen::Index>(state_dim),
+      static_cast<Eigen::Index>(content.support_states.size() / state_dim));
+  if (!std::isfinite(info.v_r) || !std::isfinite(info.v_p) || !std::isfinite(info.feature_spread) ||
+      !info.support_states.allFinite()) {
+    throw std::runtime_error(
+        "its errors, support states and the spread of its features must be finite");
+  }
+  const auto num_pixels = static_cast<size_t>(content.image_size) * content.image_size;
   const auto pca_dim = static_cast<size_t>(options.pca_dim);
-  if (mean.size() != num_pixels || basis.size() != num_pixels * pca_dim ||
-      variance.size() != pca_dim) {
+  if (content.mean.size() != num_pixels || content.basis.size() != num_pixels * pca_dim ||
+      content.variance.size() != pca_dim) {
     throw std::runtime_error("the sizes of its PCA do not fit");
   }
-  pca.blur = Blur(image_size, options.blur);
-  pca.mean = Eigen::Map<const Eigen::VectorXf>(mean.data(), mean.size());
-  pca.basis = Eigen::Map<const Eigen::MatrixXf>(basis.data(), num_pixels, pca_dim);
-  pca.variance = Eigen::Map<const Eigen::VectorXd>(variance.data(), variance.size());
-  return Ddm(options, image_size, torque_dim, std::move(pca),
-             Eigen::Map<const Eigen::VectorXd>(theta.data(), theta.size()), std::move(goal),
-             std::move(info));
-}
-
-void writeContent(const Ddm& model, Writer* out) {
-  writeOptions(model.options(), out);
-  out->number<std::int32_t>(model.imageSize());
-  out->number<std::int32_t>(model.torqueDim());
-  out->number<std::uint64_t>(model.info().seed);
-  out->number<std::uint32_t>(model.info().trial);
-  out->number<std::uint32_t>(model.info().frames);
-  out->number<double>(model.info().v_r);
-  out->number<double>(model.info().v_p);
-  out->number<double>(model.info().feature_spread);
-  out->array(model.info().support_states.data(),
-             static_cast<size_t>(model.info().support_states.size()));
-  out->array(model.info().config.data(), model.info().config.size());
-  out->number<float>(model.pca().scale);
-  out->array(model.pca().mean.data(), model.pca().mean.size());
-  out->array(model.pca().basis.data(), model.pca().basis.size());
-  out->array(model.pca().variance.data(), model.pca().variance.size());
-  out->array(model.theta().data(), model.theta().size());
-  out->array(model.goal().data(), model.goal().size());
+  Pca pca;
+  pca.scale = content.scale;
+  pca.blur = Blur(content.image_size, options.blur);
+  pca.mean = Eigen::Map<const Eigen::VectorXf>(content.mean.data(), num_pixels);
+  pca.basis = Eigen::Map<const Eigen::MatrixXf>(content.basis.data(), num_pixels, pca_dim);
+  pca.variance = Eigen::Map<const Eigen::VectorXd>(content.variance.data(), pca_dim);
+  return Ddm(options, content.image_size, content.torque_dim, std::move(pca),
+             Eigen::Map<const Eigen::VectorXd>(content.theta.data(), content.theta.size()),
+             std::move(content.goal), std::move(info));
 }
 
 }  // namespace
 
 std::string serialiseModel(const Ddm& model) {
-  Writer content;
-  writeContent(model, &content);
-
-  Writer header;
-  header.number<std::uint32_t>(kVersion);
-  header.number<std::uint64_t>(content.bytes().size());
-  header.number<std::uint32_t>(crc32(content.bytes().data(), content.bytes().size()));
-  return kMagic + header.bytes() + content.bytes();
+  Writer content, header;
+  contentOf(model).visit(&content);
+  header(kVersion);
+  header(std::uint64_t{content.bytes.size()});
+  header(crc32(content.bytes.data(), content.bytes.size()));
+  return kMagic + header.bytes + content.bytes;
 }
 
 Ddm deserialiseModel(const std::string& bytes, const std::string& source) {
@@ -232,25 +197,29 @@ Ddm deserialiseModel(const std::string& bytes, const std::string& source) {
   }
   if (bytes.size() < kHeaderSize) throw fail("is cut short: copy or train it again");
   Reader header(bytes.data() + kMagicSize, kHeaderSize - kMagicSize);
-  const auto version = header.number<std::uint32_t>();
+  std::uint32_t version, crc;
+  std::uint64_t size;
+  header(version);
+  header(size);
+  header(crc);
   if (version != kVersion) {
     throw fail("has format version " + std::to_string(version) + ", this program reads version " +
                std::to_string(kVersion) + ": train it again from its bags");
   }
-  const auto size = header.number<std::uint64_t>();
   if (size != bytes.size() - kHeaderSize) {
     throw fail("is cut short or has grown: " + std::to_string(bytes.size() - kHeaderSize) +
                " bytes of content where it announces " + std::to_string(size) +
                "; copy or train it again");
   }
-  if (header.number<std::uint32_t>() != crc32(bytes.data() + kHeaderSize, size)) {
+  if (crc != crc32(bytes.data() + kHeaderSize, size)) {
     throw fail("is damaged (wrong checksum): copy or train it again");
   }
-  Reader content(bytes.data() + kHeaderSize, size);
+  Reader reader(bytes.data() + kHeaderSize, size);
   try {
-    Ddm model = readContent(&content);
-    if (content.left() > 0) throw std::runtime_error("there are bytes after its content");
-    return model;
+    Content content;
+    content.visit(&reader);
+    if (reader.left() > 0) throw std::runtime_error("there are bytes after its content");
+    return modelOf(std::move(content));
   } catch (const std::exception& e) {
     throw fail(std::string("makes no sense: ") + e.what());
   }

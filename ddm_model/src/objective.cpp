@@ -12,24 +12,6 @@ namespace {
 constexpr Eigen::Index kMaxPart = 128;  // images whose activations stay in cache
 constexpr size_t kLanes = 8;  // sums that are computed at once, however many processors there are
 
-/// Sum of the squared weights of a network, its biases not among them.
-template <class Scalar>
-double squaredWeights(const Mlp<Scalar>& net, const Scalar* theta) {
-  double sum = 0.0;
-  for (int layer = 0; layer < net.numLayers(); ++layer) {
-    sum += static_cast<double>(net.weights(theta, layer).squaredNorm());
-  }
-  return sum;
-}
-
-/// Adds the derivative of weight_decay times that.
-template <class Scalar>
-void addDecay(const Mlp<Scalar>& net, const Scalar* theta, Scalar weight_decay, Scalar* d_theta) {
-  for (int layer = 0; layer < net.numLayers(); ++layer) {
-    net.weights(d_theta, layer) += 2 * weight_decay * net.weights(theta, layer);
-  }
-}
-
 }  // namespace
 
 template <class Scalar>
@@ -109,10 +91,15 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::evaluate(const Ve
     for (const Lane& lane : lanes_) *d_theta += 2 * lane.d_theta;
   }
   const auto addDecay = [&](const Mlp<Scalar>& net, auto part_of) {
-    value.v_w += squaredWeights(net, part_of(theta.data()));
-    if (d_theta == nullptr || terms.weight_decay == 0.0) return;
-    const auto weight = static_cast<Scalar>(terms.weight_decay);
-    ddm::addDecay(net, part_of(theta.data()), weight, part_of(d_theta->data()));
+    double sum = 0.0;  // of the squared weights; biases are free
+    for (int layer = 0; layer < net.numLayers(); ++layer) {
+      const auto weights = net.weights(part_of(theta.data()), layer);
+      sum += static_cast<double>(weights.squaredNorm());
+      if (d_theta == nullptr || terms.weight_decay == 0.0) continue;
+      net.weights(part_of(d_theta->data()), layer) +=
+          2 * static_cast<Scalar>(terms.weight_decay) * weights;
+    }
+    value.v_w += sum;
   };
   addDecay(networks_.encoder(), [this](auto of) { return networks_.encoderOf(of); });
   addDecay(networks_.decoder(), [this](auto of) { return networks_.decoderOf(of); });
@@ -125,22 +112,23 @@ LayerFactors<Scalar> JointObjective<Scalar>::factors(const Vector& theta, const 
                                                      std::mt19937_64* rng) {
   const std::uint64_t seed = (*rng)();
   sumOverParts(theta, terms, true, &seed);
-  LayerFactors<Scalar> sum = networks_.encoder().zeroFactors();
-  const auto append = [&sum](const LayerFactors<Scalar>& more) {
-    sum.insert(sum.end(), more.begin(), more.end());
-  };
-  append(networks_.decoder().zeroFactors());
-  append(networks_.f().zeroFactors());
+  LayerFactors<Scalar> sum = zeroFactors();
   for (Lane& lane : lanes_) {
-    auto layer = sum.begin();
-    for (LayerFactors<Scalar>* of :
-         {&lane.encoder_factors, &lane.decoder_factors, &lane.f_factors}) {
-      for (const KroneckerFactors<Scalar>& factors : *of) (layer++)->add(factors);
-      of->clear();
-    }
+    for (size_t layer = 0; layer < sum.size(); ++layer) sum[layer].add(lane.factors[layer]);
+    lane.factors.clear();
   }
   for (KroneckerFactors<Scalar>& layer : sum) layer.errors *= static_cast<Scalar>(weight_);
   return sum;
+}
+
+/// Kronecker factors of all layers that nothing was added to yet.
+template <class Scalar>
+LayerFactors<Scalar> JointObjective<Scalar>::zeroFactors() const {
+  LayerFactors<Scalar> factors;
+  for (const Mlp<Scalar>* net : {&networks_.encoder(), &networks_.decoder(), &networks_.f()}) {
+    net->appendZeroFactors(&factors);
+  }
+  return factors;
 }
 
 /// Fills the lanes.
@@ -154,14 +142,16 @@ void JointObjective<Scalar>::sumOverParts(const Vector& theta, const Terms& term
     Lane& lane = lanes_[i];
     lane.value = Value();
     lane.d_theta.setZero();
+    KroneckerFactors<Scalar>* factors = nullptr;
     if (error_seed != nullptr) {
-      lane.encoder_factors = networks_.encoder().zeroFactors();
-      lane.decoder_factors = networks_.decoder().zeroFactors();
-      lane.f_factors = networks_.f().zeroFactors();
+      lane.factors = zeroFactors();
+      factors = lane.factors.data();
     }
-    lane.encoder_tape.factors = error_seed != nullptr ? &lane.encoder_factors : nullptr;
-    lane.decoder_tape.factors = error_seed != nullptr ? &lane.decoder_factors : nullptr;
-    lane.roll_out.collect(error_seed != nullptr ? &lane.f_factors : nullptr);
+    lane.encoder_tape.factors = factors;
+    if (factors != nullptr) factors += networks_.encoder().numLayers();
+    lane.decoder_tape.factors = factors;
+    if (factors != nullptr) factors += networks_.decoder().numLayers();
+    lane.roll_out.collect(factors);
     for (size_t p = i; p < parts_.size(); p += lanes_.size()) {
       forward(parts_[p], theta.data(), terms, &lane);
       if (error_seed != nullptr) {

@@ -3,25 +3,24 @@
 #include "ddm_model/schedule.h"
 
 #include <algorithm>
-#include <boost/algorithm/string/join.hpp>
-#include <stdexcept>
-#include <utility>
+#include <map>
 
 namespace ddm {
 namespace {
 
-using Named = std::pair<std::string, Schedule>;
-
-std::vector<Named> schedules() {
+/// The stages of each schedule, without their numbers.
+const std::map<std::string, Schedule>& schedules() {
   const Stage joint{{true, true}, Stage::Free::kAll};
   const Stage auto_encoder{{true, false}, Stage::Free::kAutoEncoder};
   const Stage predictor{{false, true}, Stage::Free::kPredictor};
   const Stage v_p_only{{false, true}, Stage::Free::kAll};
-  return {{"joint", {true, {joint}, {}}},
-          {"sequential", {true, {auto_encoder, predictor}, {}}},
-          {"v_p_only", {true, {v_p_only}, {}}},
-          {"v_r_only", {true, {auto_encoder}, {}}},
-          {"joint_random_init", {false, {joint}, {}}}};
+  static const std::map<std::string, Schedule> schedules = {
+      {"joint", {true, {joint}, {}}},
+      {"sequential", {true, {auto_encoder, predictor}, {}}},
+      {"v_p_only", {true, {v_p_only}, {}}},
+      {"v_r_only", {true, {auto_encoder}, {}}},
+      {"joint_random_init", {false, {joint}, {}}}};
+  return schedules;
 }
 
 }  // namespace
@@ -39,19 +38,12 @@ Terms Schedule::terms() const {
 
 std::vector<std::string> scheduleNames() {
   std::vector<std::string> names;
-  for (const Named& named : schedules()) names.push_back(named.first);
+  for (const auto& schedule : schedules()) names.push_back(schedule.first);
   return names;
 }
 
 Schedule makeSchedule(const TrainingOptions& training) {
-  const std::vector<Named> known = schedules();
-  const auto named = std::find_if(known.begin(), known.end(),
-                                  [&](const Named& one) { return one.first == training.schedule; });
-  if (named == known.end()) {
-    throw std::invalid_argument("unknown schedule '" + training.schedule + "': there are " +
-                                boost::algorithm::join(scheduleNames(), ", "));
-  }
-  Schedule schedule = named->second;
+  Schedule schedule = schedules().at(training.schedule);
   std::vector<Stage> stages;
   for (Stage stage : schedule.stages) {
     stage.terms.weight_decay = training.weight_decay;

@@ -11,9 +11,9 @@
 #include <sstream>
 #include <utility>
 
-#include "ddm_model/initialisation.h"
+#include "ddm_model/history.h"
+#include "ddm_model/networks.h"
 #include "ddm_model/pca.h"
-#include "ddm_model/support_states.h"
 #include "restart.h"
 
 namespace ddm {

@@ -118,14 +118,9 @@ TEST_F(BagCacheTest, RefusesToMixCameras) {
         cache_.read({small, large});
       },
       {small, large, "8x8 mono8", "16x16 mono8"}));
-}
-
-TEST_F(BagCacheTest, MixesCamerasWhereSomeBagsWereRecordedByOthers) {
-  BagOptions options;
-  options.dt = 0.2;
-  BagCache cache(testing::kToySize, options);
-  const std::string small = write("small.bag", toyTrial(5, 1));
-  EXPECT_EQ(cache.read({small, write("large.bag", toyTrial(5, 1, 16))}).numFrames(), 10);
+  BagOptions others;
+  others.dt = 0.2;  // as for bags that others recorded, whose cameras may differ
+  EXPECT_EQ(BagCache(testing::kToySize, others).read({small, large}).numFrames(), 10);
 }
 
 TEST_F(BagCacheTest, RefusesToMixNumbersOfMotors) {

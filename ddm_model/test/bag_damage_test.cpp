@@ -27,14 +27,8 @@ using testing::torqueMessage;
 using testing::ToyBag;
 using testing::toyImage;
 
-class BagDamage : public ::testing::Test {
+class BagDamage : public testing::BagTest {
  protected:
-  ::testing::AssertionResult isRefused(const std::vector<std::string>& parts = {}) const {
-    std::vector<std::string> all = {"bag " + path_};
-    all.insert(all.end(), parts.begin(), parts.end());
-    return testing::throwsNaming<std::runtime_error>(
-        [this] { readBag(path_, testing::kToySize, BagOptions()); }, all);
-  }
   std::string goodBytes() const {
     testing::writeTrial(path_, testing::toyTrial(30, 1));
     return readFile(path_);
@@ -42,9 +36,6 @@ class BagDamage : public ::testing::Test {
   void writeBytes(const std::string& bytes) const {
     std::ofstream(path_, std::ios::binary | std::ios::trunc) << bytes;
   }
-
-  const testing::TempFolder folder_;
-  std::string path_ = folder_.file("trial.bag");
 };
 
 TEST_F(BagDamage, ABagCutShortAnywhereIsRefused) {
@@ -65,7 +56,7 @@ TEST_F(BagDamage, DamageAnywhereIsRefusedOrHarmlessWithEachCompression) {
       bag.write("camera/image_raw", ros::Time(1.0), imageMessage(1.0, toyImage(0.5)));
       bag.write("torque", ros::Time(1.0), torqueMessage(1.0, {2.0}));
     }
-    const BagContent content = readBag(path_, testing::kToySize, BagOptions());
+    const BagContent content = read();
     EXPECT_EQ(content.data.image(0), toyImage(0.5));
     EXPECT_EQ(content.data.torques()(0, 0), 2.0);
     const std::string bytes = readFile(path_);
@@ -75,7 +66,7 @@ TEST_F(BagDamage, DamageAnywhereIsRefusedOrHarmlessWithEachCompression) {
       damaged[at] ^= static_cast<char>(1 << at % 8);
       writeBytes(damaged);
       try {
-        readBag(path_, testing::kToySize, BagOptions());
+        read();
       } catch (const std::runtime_error&) {
         ++refused;
       }
@@ -111,7 +102,7 @@ TEST_F(BagDamage, WhatIsInNoIndexDoesNotCountAsInRosbag) {
   index += junk.size();
   std::memcpy(&padded[at], &index, sizeof(index));
   writeBytes(padded);
-  EXPECT_EQ(readBag(path_, testing::kToySize, BagOptions()).data.numFrames(), 30);
+  EXPECT_EQ(read().data.numFrames(), 30);
 }
 
 TEST_F(BagDamage, WhatPeopleTakeForABagIsToldWithTheCommandThatHelps) {
@@ -168,16 +159,13 @@ TEST_F(BagDamage, ARecordingThatWasNotCompletedIsRecoveredByTheCommandThatTheErr
   EXPECT_GT(num_frames, 200) << "all but the last chunk";
 }
 
-TEST_F(BagDamage, MissingTopicsAreRefusedWithThoseThatAreThere) {
+TEST_F(BagDamage, TopicsThatAreMissingOrOfAnotherTypeAreRefused) {
   { ToyBag(path_).image(1.0, 0.0); }
   EXPECT_TRUE(isRefused({"no topic torque", "camera/image_raw", "data_set/torque_topic"}));
   { ToyBag(path_).torque(1.0, {1.0}); }
   EXPECT_TRUE(isRefused({"no topic camera/image_raw", "data_set/image_topic"}));
   { ToyBag bag(path_); }
   EXPECT_TRUE(isRefused({"it holds: nothing"}));
-}
-
-TEST_F(BagDamage, ATopicOfAnotherTypeIsRefused) {
   {
     ToyBag bag(path_);
     bag.image(1.0, 0.0);
@@ -187,15 +175,12 @@ TEST_F(BagDamage, ATopicOfAnotherTypeIsRefused) {
 }
 
 TEST_F(BagDamage, TorquesThatAreNotFiniteAreRefusedWithTheirTime) {
-  for (double bad :
-       {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
-    {
-      ToyBag bag(path_);
-      bag.frame(1.0, 0.0, 1.0);
-      bag.frame(1.2, 0.0, bad);
-    }
-    EXPECT_TRUE(isRefused({"torque at 1.2", "finite"}));
+  {
+    ToyBag bag(path_);
+    bag.frame(1.0, 0.0, 1.0);
+    bag.frame(1.2, 0.0, std::numeric_limits<double>::quiet_NaN());
   }
+  EXPECT_TRUE(isRefused({"torque at 1.2", "finite"}));
 }
 
 TEST_F(BagDamage, ImagesThatChangeSizeOrEncodingAreRefused) {

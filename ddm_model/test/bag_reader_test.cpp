@@ -4,55 +4,17 @@
 
 #include <gtest/gtest.h>
 
-#include <stdexcept>
-
-#include "ddm_msgs/testing/expect_error.h"
-#include "ddm_msgs/testing/temp_folder.h"
 #include "toy_bags.h"
 
 namespace ddm {
 namespace {
 
 using testing::imageMessage;
-using testing::kToySize;
 using testing::torqueMessage;
 using testing::ToyBag;
 using testing::toyImage;
 
-class BagReader : public ::testing::Test {
- protected:
-  BagContent read(const BagOptions& options = BagOptions()) const {
-    return readBag(path_, kToySize, options);
-  }
-  std::vector<Eigen::Index> segmentSizes() const {
-    const BagContent content = read();
-    std::vector<Eigen::Index> sizes;
-    for (const Segment& segment : content.data.segments()) sizes.push_back(segment.size);
-    return sizes;
-  }
-  /// Five images, each answered by torque 1 on the first of the topics, 2 on the second, and so on.
-  void writeTorqueTopics(const std::vector<std::string>& topics) const {
-    ToyBag bag(path_);
-    for (int t = 0; t < 5; ++t) {
-      const double stamp = 1.0 + 0.2 * t;
-      bag.write("/camera/image_raw", stamp, imageMessage(stamp, toyImage(0.1 * t)));
-      double torque = 0.0;
-      for (const std::string& topic : topics) {
-        bag.write(topic, stamp, torqueMessage(stamp, {torque += 1.0}));
-      }
-    }
-  }
-  ::testing::AssertionResult isRefused(const std::vector<std::string>& parts,
-                                       const BagOptions& options = BagOptions()) const {
-    std::vector<std::string> all = {"bag " + path_};
-    all.insert(all.end(), parts.begin(), parts.end());
-    return testing::throwsNaming<std::runtime_error>([&] { read(options); }, all);
-  }
-
-  const testing::TempFolder folder_;
-  const std::string path_ = folder_.file("trial.bag");
-};
-
+using BagReader = testing::BagTest;
 using Sizes = std::vector<Eigen::Index>;
 
 TEST_F(BagReader, GivesBackTheTrialThatWasWritten) {
@@ -91,12 +53,13 @@ TEST_F(BagReader, AnImageWithoutTorqueSplitsTheTrial) {
     ToyBag bag(path_);
     for (int t = 0; t < 10; ++t) {
       bag.image(1.0 + 0.2 * t, 0.1 * t);
-      if (t != 4) bag.torque(1.0 + 0.2 * t, {1.0});
+      if (t == 8) bag.torque(1.0 + 0.2 * t, {});  // no torque acted
+      if (t != 4 && t != 8) bag.torque(1.0 + 0.2 * t, {1.0});
     }
     bag.torque(50.0, {1.0});
   }
-  EXPECT_EQ(segmentSizes(), (Sizes{4, 5}));
-  EXPECT_EQ(read().images_without_torque.size(), 1u);
+  EXPECT_EQ(segmentSizes(), (Sizes{4, 3, 1}));
+  EXPECT_EQ(read().images_without_torque.size(), 2u);
   EXPECT_EQ(read().torques_without_image.size(), 1u);
   EXPECT_TRUE(read().notes.empty());
 }
@@ -111,21 +74,8 @@ TEST_F(BagReader, WhatHasNoPartnerIsToldOfBagsThatOthersRecorded) {
     }
     bag.torque(50.0, {1.0});
   }
-  const std::vector<std::string> notes = read().notes;
-  ASSERT_EQ(notes.size(), 2U);
-  EXPECT_TRUE(testing::names(notes[0], {"1 of 10 images", "1 of 10 torques", "stamp each"}));
-  EXPECT_TRUE(testing::names(notes[1], {"at 1 place(s)", "after 1.6", "2 segments"}));
-}
-
-TEST_F(BagReader, ATorqueWithoutANumberIsNone) {
-  {
-    ToyBag bag(path_);
-    for (int t = 0; t < 10; ++t) {
-      bag.image(1.0 + 0.2 * t, 0.1 * t);
-      bag.torque(1.0 + 0.2 * t, t == 4 ? std::vector<double>() : std::vector<double>{1.0});
-    }
-  }
-  EXPECT_EQ(segmentSizes(), (Sizes{4, 5}));
+  EXPECT_TRUE(notes({{"1 of 10 images", "1 of 10 torques", "stamp each"},
+                     {"at 1 place(s)", "after 1.6", "2 segments"}}));
 }
 
 TEST_F(BagReader, AGapInTimeSplitsTheTrialAndJitterDoesNot) {
@@ -142,6 +92,7 @@ TEST_F(BagReader, AGapInTimeSplitsTheTrialAndJitterDoesNot) {
 
 TEST_F(BagReader, FindsTopicsUnderAnyNamespaceAsPlainRosbagRecordWritesThem) {
   for (const std::string& prefix : {std::string("/"), std::string("/robot/left/")}) {
+    options_ = BagOptions();
     BagOptions topics;
     topics.image_topic = prefix + topics.image_topic;
     topics.torque_topic = prefix + topics.torque_topic;
@@ -149,7 +100,8 @@ TEST_F(BagReader, FindsTopicsUnderAnyNamespaceAsPlainRosbagRecordWritesThem) {
     testing::writeTrial(path_, testing::toyTrial(5, 1), /*with_goal=*/true, topics);
     EXPECT_EQ(read().data.numFrames(), 5) << prefix;
     EXPECT_TRUE(read().data.hasGoal()) << prefix;
-    EXPECT_EQ(read(topics).data.numFrames(), 5) << prefix;
+    options_ = topics;
+    EXPECT_EQ(read().data.numFrames(), 5) << prefix;
   }
 }
 
@@ -161,11 +113,15 @@ TEST_F(BagReader, DoesNotTakeHalfAWordForATopic) {
 }
 
 TEST_F(BagReader, AsksWhichOfTwoTopicsIsMeantAndTakesTheAnswer) {
-  writeTorqueTopics({"/left/torque", "/right/torque"});
+  {
+    ToyBag bag(path_);
+    bag.image(1.0, 0.0);
+    bag.write("/left/torque", 1.0, torqueMessage(1.0, {1.0}));
+    bag.write("/right/torque", 1.0, torqueMessage(1.0, {2.0}));
+  }
   EXPECT_TRUE(isRefused({"/left/torque", "/right/torque", "data_set/torque_topic"}));
-  BagOptions options;
-  options.torque_topic = "/right/torque";
-  EXPECT_EQ(read(options).data.torques()(0, 0), 2.0);
+  options_.torque_topic = "/right/torque";
+  EXPECT_EQ(read().data.torques()(0, 0), 2.0);
 }
 
 TEST_F(BagReader, ConvertsImagesOfAnotherSizeAndEncoding) {
@@ -226,20 +182,13 @@ TEST_F(BagReader, AClockThatIsSetBackChangesNeitherOrderNorPairs) {
   for (int t = 0; t < 10; ++t) EXPECT_EQ(content.data.torques()(0, t), t);
   EXPECT_EQ(content.data.image(7), toyImage(0.7));
   EXPECT_NEAR(content.times[9], 1.8, 1e-6);
-  ASSERT_EQ(content.notes.size(), 1U);
-  EXPECT_TRUE(testing::names(content.notes[0], {"go back", "21.0", "20.3"}));
+  EXPECT_TRUE(notes({{"go back", "21.0", "20.3"}}));
 }
 
 TEST_F(BagReader, ATopicCannotBeTwoThings) {
   testing::writeTrial(path_, testing::toyTrial(5, 1));
-  BagOptions options;
-  options.goal_topic = "/" + options.image_topic;
-  EXPECT_TRUE(testing::names(options.problems().at(0), {"goal_topic", "image_topic"}));
-  options.torque_topic = options.goal_topic;
-  EXPECT_EQ(options.problems().size(), 3U);
-  options = BagOptions();
-  options.goal_topic = "image_raw";  // found in the namespace /camera
-  EXPECT_TRUE(isRefused({"camera/image_raw", "data_set/goal_topic"}, options));
+  options_.goal_topic = "image_raw";  // found in the namespace /camera
+  EXPECT_TRUE(isRefused({"camera/image_raw", "data_set/goal_topic"}));
 }
 
 }  // namespace

@@ -56,18 +56,15 @@ TEST(Ddm, DecodesThroughDecoderAndPcaToTheNearestGreyValue) {
   for (int i = 0; i < 64; ++i) EXPECT_NEAR(grey[i], 255.0F * image(i, 0), 0.501F);
 }
 
-TEST(Ddm, WithoutAGoalImageSaysSo) {
+TEST(Ddm, RefusesAGoalFeatureWithoutAGoalAndAnImageOfAnotherSize) {
   const Ddm model = toyModel(/*with_goal=*/false);
   EXPECT_FALSE(model.hasGoal());
   EXPECT_TRUE(throwsNaming<std::logic_error>([&] { model.goalFeature(); }, {"goal image"}));
-}
-
-TEST(Ddm, RefusesAnImageOfAnotherSize) {
   EXPECT_TRUE(throwsNaming<std::invalid_argument>([] { toyModel().encode(Grey(63)); },
                                                   {"64 pixels", "got 63"}));
 }
 
-TEST(Ddm, RefusesPartsThatDoNotFit) {
+TEST(Ddm, RefusesPartsThatDoNotFitAndValuesThatAreNotFinite) {
   const auto refuses = [](const std::function<void(Parts*)>& spoil, const std::string& fault) {
     Parts parts;
     spoil(&parts);
@@ -85,14 +82,6 @@ TEST(Ddm, RefusesPartsThatDoNotFit) {
   EXPECT_TRUE(refuses([](Parts* parts) { parts->theta.conservativeResize(10); }, ", got 10"));
   EXPECT_TRUE(refuses([](Parts* parts) { parts->goal.pop_back(); },
                       "pixels of the goal image must be 64, got 63"));
-}
-
-TEST(Ddm, RefusesValuesThatAreNotFinite) {
-  const auto refuses = [](const std::function<void(Parts*)>& spoil, const std::string& fault) {
-    Parts parts;
-    spoil(&parts);
-    return throwsNaming<std::invalid_argument>([&] { parts.model(); }, {fault, "train it again"});
-  };
   const float nan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_TRUE(refuses([&](Parts* parts) { parts->theta[5] = nan; },
                       "parameters must be finite, number 5 is nan"));

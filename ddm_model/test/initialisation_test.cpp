@@ -1,12 +1,10 @@
 // Tests of the initial parameters: layer-wise PCA of the auto-encoder, random predictor.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_model/initialisation.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
 
-#include "ddm_model/objective.h"
+#include "ddm_model/networks.h"
 #include "ddm_model/pca.h"
 #include "toy_data.h"
 
@@ -20,29 +18,10 @@ class Initialisation : public ::testing::Test {
     return initialTheta(Networks<double>(options, 1), scores_, pca_start_, &rng);
   }
 
-  /// V_R over its value for a model that knows nothing.
-  double cost(const ModelOptions& options, const Eigen::VectorXd& theta) const {
-    const Networks<double> nets(options, 1);
-    TrainingData<double> data{scores_, data_.torques(), data_.segments()};
-    JointObjective<double> objective(nets, data);
-    return objective.weight() * objective.evaluate(theta, nullptr).v_r;
-  }
-
   const DataSet data_ = testing::toyTrial(80, 1);
   const Eigen::MatrixXd scores_ = fitPca(data_, 6).project(data_).cast<double>();
   bool pca_start_ = true;
 };
-
-TEST_F(Initialisation, ReconstructsFarBetterThanARandomStart) {
-  ModelOptions options = testing::toyModelOptions();
-  options.encoder_widths = {5, 4};
-  const Networks<double> nets(options, 1);
-  const double start = cost(options, initial(options));
-  for (unsigned seed = 1; seed <= 5; ++seed) {
-    const Eigen::VectorXd random = testing::randomMatrix(nets.numParams(), 1, seed);
-    EXPECT_LT(start, 0.5 * cost(options, 0.4 * random)) << "seed " << seed;
-  }
-}
 
 TEST_F(Initialisation, MirroredLayersFormAProjectionOntoPrincipalComponents) {
   const ModelOptions options = testing::toyModelOptions();  // 6-5-2-5-6

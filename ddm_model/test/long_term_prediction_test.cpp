@@ -1,14 +1,13 @@
 // Tests of long-term predictions: the roll-out, its errors, what they are compared with.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_model/long_term_prediction.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
+#include "ddm_model/ddm.h"
 #include "ddm_model/history.h"
-#include "ddm_model/solver_log.h"
+#include "ddm_model/minimise.h"
 #include "ddm_model/trainer.h"
 #include "ddm_msgs/testing/expect_error.h"
 #include "toy_data.h"
@@ -42,18 +41,6 @@ Eigen::VectorXd predictedByHand(const Ddm& model, const DataSet& data, Eigen::In
   return now;
 }
 
-TEST(RollOut, FeedsPredictionsBackAndTakesTheTorquesThatFollowed) {
-  const Ddm model = testing::toyModel();
-  const DataSet data = testing::toyTrial(12, 1);
-  const Eigen::MatrixXd Z = encodeAll(model, data);
-  const Eigen::MatrixXd path = model.rollOut(Z, data.torques(), 3, 6);
-  ASSERT_EQ(path.cols(), 7);
-  EXPECT_EQ(path.col(0), Z.col(3));
-  for (int k = 1; k <= 6; ++k) {
-    EXPECT_TRUE(path.col(k).isApprox(predictedByHand(model, data, 3, k), 1e-12)) << k << " steps";
-  }
-}
-
 TEST(Predict, IsTheFirstStepOfARollOut) {
   const Ddm model = testing::toyModel();
   const DataSet data = testing::toyTrial(6, 1);
@@ -68,21 +55,9 @@ TEST(Predict, IsTheFirstStepOfARollOut) {
   EXPECT_TRUE(model.predict(x, data.torques().col(3))
                   .isApprox(model.rollOut(Z, data.torques(), 3, 1).col(1), 1e-14));
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { model.predict(x, Eigen::Vector2d::Zero()); },
-      {"features [2 x 2], torques [1 x 1] and 1 new torque(s)", "and 2"}));
+      [&] { model.predict(x, Eigen::Vector2d::Zero()); }, {"1 value(s), got 2"}));
   EXPECT_FALSE(model.predict(x, data.torques().col(2))
                    .isApprox(model.rollOut(Z, data.torques(), 3, 1).col(1), 1e-6));
-}
-
-TEST(RollOut, UsesNothingThatComesLaterThanItsFrame) {
-  const Ddm model = testing::toyModel();
-  const DataSet data = testing::toyTrial(12, 1);
-  Eigen::MatrixXd Z = encodeAll(model, data);
-  const Eigen::MatrixXd path = model.rollOut(Z, data.torques(), 3, 6);
-  Z.rightCols(8).setConstant(100.0);
-  EXPECT_EQ(model.rollOut(Z, data.torques(), 3, 6), path);
-  Z.col(2).setZero();
-  EXPECT_NE(model.rollOut(Z, data.torques(), 3, 6), path);  // the check above can fail
 }
 
 TEST(RollOut, ReachesFromTheFirstPossibleFrameToTheLast) {

@@ -20,19 +20,6 @@ using testing::randomMatrix;
 const std::vector<std::vector<int>> kDepths = {{4, 2}, {4, 5, 2}, {4, 6, 3, 6, 2}};
 const Net::Output kOutputs[] = {Net::Output::kLinear, Net::Output::kArctan};
 
-/// |net(inputs) - targets|^2 as a function of theta or of the inputs, by one forward and backward.
-double squaredError(const Net& net, const Eigen::VectorXd& theta, const Eigen::MatrixXd& inputs,
-                    const Eigen::MatrixXd& targets, Eigen::VectorXd* d_theta,
-                    Eigen::MatrixXd* d_inputs) {
-  Net::Tape tape;
-  net.forward(theta.data(), inputs, &tape);
-  const Eigen::MatrixXd residual = tape.output() - targets;
-  if (d_theta != nullptr) d_theta->setZero(theta.size());
-  net.backward(theta.data(), &tape, 2.0 * residual, d_theta != nullptr ? d_theta->data() : nullptr,
-               d_inputs);
-  return residual.squaredNorm();
-}
-
 TEST(Mlp, ComputesTheDocumentedFormula) {
   const Net net({2, 3, 1}, Net::Output::kLinear);
   const Eigen::VectorXd theta = randomMatrix(net.numParams(), 1, 1);
@@ -47,34 +34,28 @@ TEST(Mlp, ComputesTheDocumentedFormula) {
   }
 }
 
-TEST(Mlp, GradientInThetaMatchesDifferencesForEveryDepthAndOutput) {
+TEST(Mlp, GradientInThetaAndInputsMatchesDifferencesForEveryDepthAndOutput) {
   for (const auto& widths : kDepths) {
     for (Net::Output output : kOutputs) {
       const Net net(widths, output);
-      const Eigen::MatrixXd inputs = randomMatrix(4, 7, 1), targets = randomMatrix(2, 7, 2);
-      const auto f = [&](const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
-        return squaredError(net, theta, inputs, targets, gradient, nullptr);
-      };
-      EXPECT_TRUE(testing::gradientMatches(f, randomMatrix(net.numParams(), 1, 3)))
-          << widths.size() - 1 << " layers, output " << static_cast<int>(output);
-    }
-  }
-}
-
-TEST(Mlp, GradientInTheInputsMatchesDifferencesForEveryDepthAndOutput) {
-  for (const auto& widths : kDepths) {
-    for (Net::Output output : kOutputs) {
-      const Net net(widths, output);
-      const Eigen::VectorXd theta = randomMatrix(net.numParams(), 1, 1);
+      const Eigen::Index num_params = net.numParams();
       const Eigen::MatrixXd targets = randomMatrix(2, 3, 2);
+      // |net(inputs) - targets|^2 as a function of theta, then the inputs.
       const auto f = [&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
-        const Eigen::MatrixXd inputs = Eigen::Map<const Eigen::MatrixXd>(x.data(), 4, 3);
+        Net::Tape tape;
+        net.forward(x.data(), Eigen::Map<const Eigen::MatrixXd>(x.data() + num_params, 4, 3),
+                    &tape);
+        const Eigen::MatrixXd residual = tape.output() - targets;
+        Eigen::VectorXd d_theta = Eigen::VectorXd::Zero(num_params);
         Eigen::MatrixXd d_inputs;
-        const double value = squaredError(net, theta, inputs, targets, nullptr, &d_inputs);
-        if (gradient != nullptr) *gradient = Eigen::Map<Eigen::VectorXd>(d_inputs.data(), 12);
-        return value;
+        net.backward(x.data(), &tape, 2.0 * residual, d_theta.data(), &d_inputs);
+        if (gradient != nullptr) {
+          gradient->resize(x.size());
+          *gradient << d_theta, Eigen::Map<Eigen::VectorXd>(d_inputs.data(), 12);
+        }
+        return residual.squaredNorm();
       };
-      EXPECT_TRUE(testing::gradientMatches(f, randomMatrix(12, 1, 3)))
+      EXPECT_TRUE(testing::gradientMatches(f, randomMatrix(num_params + 12, 1, 3)))
           << widths.size() - 1 << " layers, output " << static_cast<int>(output);
     }
   }

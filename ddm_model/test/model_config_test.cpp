@@ -4,12 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "ddm_msgs/testing/expect_error.h"
 #include "ddm_msgs/testing/parameter_reference.h"
-#include "trial_recorder.h"
 
 namespace ddm {
 namespace {
@@ -36,38 +35,48 @@ TEST(ModelConfig, ItsTextReadsBackAsTheSameConfiguration) {
   EXPECT_NO_THROW(reader.requireValid());
 }
 
+TEST(ModelConfig, RefusesEachValueOutOfRangeWithItsKeyRuleAndValue) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> rows = {
+      {"image: {size: 0}", {"image/size", "[4, 1024]", "got 0"}},
+      {"model: {ordre: 3}", {"model/ordre"}},
+      {"model: {pca_dim: 0}", {"model/pca_dim", "got 0"}},
+      {"model: {feature_dim: 101}", {"model/feature_dim", "got 101"}},
+      {"model: {order: 0}", {"model/order", "[1, 50]", "got 0"}},
+      {"model: {delay: -1}", {"model/delay", "got -1"}},
+      {"model: {encoder_widths: [4097, 4]}", {"model/encoder_widths", "got 4097"}},
+      {"model: {predictor_widths: [4, 0]}", {"model/predictor_widths", "got 0"}},
+      {"model: {max_torque: [6, .inf]}", {"model/max_torque", "got [6, inf]"}},
+      {"model: {max_torque: []}", {"model/max_torque", "got []"}},
+      {"training: {schedule: jont}", {"training/schedule", "joint, ", "got jont"}},
+      {"training: {solver: adam}", {"training/solver", "lbfgs, kfac or bfgs", "got adam"}},
+      {"training: {max_iterations: 0}", {"training/max_iterations", "got 0"}},
+      {"training: {function_tolerance: .nan}", {"training/function_tolerance", "got nan"}},
+      {"training: {selection_steps: 4}", {"training/selection_steps", "num_starts", "got 4"}},
+      {"training: {selection_iterations: 7}", {"training/selection_iterations", "got 7"}},
+      {"training: {prediction_steps: 0}", {"training/prediction_steps", "got 0"}},
+      {"training: {warm_up_iterations: -1}", {"training/warm_up_iterations", "got -1"}},
+      {"training: {weight_decay: -0.5}", {"training/weight_decay", "got -0.5"}},
+      {"training: {lbfgs_rank: 0}", {"training/lbfgs_rank", "got 0"}},
+      {"data_set: {image_topic: camera/}", {"data_set/image_topic", "got 'camera/'"}},
+      {"data_set: {torque_topic: ''}", {"data_set/torque_topic", "got ''"}},
+      {"data_set: {goal_topic: /}", {"data_set/goal_topic", "got '/'"}},
+      {"data_set: {goal_topic: /torque}", {"data_set/torque_topic", "goal_topic"}},
+      {"data_set: {goal_topic: /camera/image_raw}", {"data_set/goal_topic", "image_topic"}},
+      {"recorder: {timeout: 0.0}", {"recorder/timeout", "(0, 86400]", "got 0"}},
+      {"recorder: {timeout: .nan}", {"recorder/timeout", "got nan"}}};
+  for (const auto& [yaml, parts] : rows) {
+    ParamReader reader(YAML::Load(yaml));
+    readModelConfig(&reader);
+    reader.read<RecorderOptions>("recorder");
+    EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { reader.requireValid(); }, parts)) << yaml;
+  }
+}
+
 TEST(ModelConfig, ReportsTheProblemsOfAllBlocksAtOnce) {
-  ParamReader reader(YAML::Load(
-      "{image: {size: 0}, model: {ordre: 3}, training: {solver: 7}, data_set: {goal_topic: ''}}"));
+  ParamReader reader(YAML::Load("{image: {size: 0}, model: {ordre: 3}, training: {solver: 7}}"));
   readModelConfig(&reader);
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { reader.requireValid(); },
-      {"image/size", "model/ordre", "training/solver", "data_set/goal_topic"}));
-}
-
-TEST(BagOptions, RefusesTopicsWithoutAName) {
-  EXPECT_TRUE(BagOptions().problems().empty());
-  for (std::string BagOptions::*topic :
-       {&BagOptions::image_topic, &BagOptions::torque_topic, &BagOptions::goal_topic}) {
-    for (const char* bad : {"", "/", "camera/"}) {
-      BagOptions options;
-      options.*topic = bad;
-      ASSERT_EQ(options.problems().size(), 1U) << bad;
-      EXPECT_NE(options.problems().front().find("got '" + std::string(bad) + "'"),
-                std::string::npos);
-    }
-  }
-}
-
-TEST(RecorderOptions, RefusesATimeoutThatIsNone) {
-  EXPECT_TRUE(RecorderOptions().problems().empty());
-  for (double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
-                     std::numeric_limits<double>::infinity(), 1e5}) {
-    RecorderOptions options;
-    options.timeout = bad;
-    ASSERT_EQ(options.problems().size(), 1U) << bad;
-    EXPECT_TRUE(testing::names(options.problems().front(), {"recorder/timeout", "(0, 86400]"}));
-  }
+      [&] { reader.requireValid(); }, {"image/size", "model/ordre", "training/solver"}));
 }
 
 }  // namespace

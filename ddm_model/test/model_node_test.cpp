@@ -19,6 +19,7 @@
 #include <mutex>
 
 #include "ddm_model/model_file.h"
+#include "ddm_msgs/testing/refused_params.h"
 #include "ddm_msgs/testing/run_program.h"
 #include "ddm_msgs/testing/temp_folder.h"
 #include "toy_bags.h"
@@ -166,16 +167,13 @@ TEST_F(ModelNodeTest, ATrainingThatFailsTellsWhyAndCanBePreemptedWhileItReadsBag
   EXPECT_EQ(failing.getState(), State::PREEMPTED) << failing.getState().getText();
 }
 
-TEST_F(ModelNodeTest, RefusesToStartWithParametersThatAreWrong) {
-  ros::param::set("/wrong_model_node/training/max_iteratoins", 3);
-  ros::param::set("/wrong_model_node/model/order", 0);
-  const testing::Outcome outcome =
-      testing::run("timeout 20 " DDM_MODEL_NODE " __name:=wrong_model_node");
-  EXPECT_EQ(outcome.exit_code, 1);
-  const std::string text = outcome.out + outcome.err;
-  for (const char* part : {"training/max_iteratoins", "model/order", "[1, 50]", "got 0"}) {
-    EXPECT_TRUE(contains(text, part)) << part << " is not in: " << text;
-  }
+using ModelNodeParams = testing::RefusedParams;
+
+TEST_F(ModelNodeParams, RefusesToStartWithParametersThatAreWrong) {
+  ros::param::set("/bad_node/training/max_iteratoins", 3);
+  ros::param::set("/bad_node/model/order", 0);
+  expectRefused("timeout 20 " DDM_MODEL_NODE,
+                {"training/max_iteratoins", "model/order", "[1, 50]", "got 0"});
 }
 
 }  // namespace

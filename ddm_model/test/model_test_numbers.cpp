@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/bag_reader.h>
 #include <ddm_common/plain_file.h>
-#include <ddm_model/long_term_prediction.h>
+#include <ddm_model/ddm.h>
 #include <ddm_model/model_file.h>
 #include <ros/time.h>
 

@@ -103,20 +103,6 @@ DifferentiableFunction singleTerm(JointObjective<double>* objective, Terms terms
   };
 }
 
-TEST(JointObjective, EqualsTheFormulaAcrossTheBordersOfItsParts) {
-  const Networks<double> nets(tinyOptions(), 1);
-  const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
-  for (int num_frames : {127, 128, 129, 256, 300}) {
-    const auto data =
-        randomData(4, 1, num_frames, true, {{0, 126}, {126, Eigen::Index(num_frames - 126)}});
-    JointObjective<double> objective(nets, data);
-    const auto value = objective.evaluate(theta, nullptr);
-    const auto slow = slowValue(nets, data, theta);
-    EXPECT_NEAR(value.v_r, slow.v_r, 1e-11 * slow.v_r) << num_frames << " frames";
-    EXPECT_NEAR(value.v_p, slow.v_p, 1e-11 * slow.v_p) << num_frames << " frames";
-  }
-}
-
 /// f without and with each of its flags.
 std::vector<ModelOptions> formsOfF(int order) {
   std::vector<ModelOptions> forms;
@@ -131,13 +117,13 @@ std::vector<ModelOptions> formsOfF(int order) {
   return forms;
 }
 
-TEST(JointObjective, PredictionsOfSeveralStepsEqualASlowComputationFromTheFormula) {
-  for (const int order : {1, 2, 3}) {
+TEST(JointObjective, EqualsTheFormulaForOneAndSeveralStepsAcrossTheBordersOfItsParts) {
+  for (const int order : {1, 3}) {
     for (const ModelOptions& options : formsOfF(order)) {
-      for (const int steps : {1, 2, 5}) {
+      for (const int steps : {1, 5}) {
         const Networks<double> nets(options, 2);
-        // The second segment is shorter than the longest prediction; the last one crosses a part.
-        const auto data = randomData(4, 2, 140, true, {{0, 7}, {7, 4}, {11, 1}, {12, 128}});
+        // The second segment is shorter than the longest prediction; the last one crosses two parts.
+        const auto data = randomData(4, 2, 300, true, {{0, 7}, {7, 4}, {11, 1}, {12, 288}});
         JointObjective<double> objective(nets, data);
         const Eigen::VectorXd theta = 0.5 * randomMatrix(nets.numParams(), 1, 3);
         Terms terms;
@@ -189,24 +175,13 @@ TEST(JointObjective, WeightDecayCountsTheSquaredWeightsOfAllNetworksAndNoBias) {
   EXPECT_EQ(value.of(Terms()), value.v_r + value.v_p);
 }
 
-TEST(JointObjective, GradientWithWeightDecayMatchesDifferencesForEveryParameter) {
-  const Networks<double> nets(tinyOptions(), 1);
-  JointObjective<double> objective(nets, randomData(4, 1, 20, true, {{0, 20}}));
-  for (const bool v_p : {false, true}) {
-    Terms terms;
-    terms.v_p = v_p;
-    terms.weight_decay = 0.3;
-    EXPECT_TRUE(testing::gradientMatches(singleTerm(&objective, terms),
-                                         0.5 * randomMatrix(nets.numParams(), 1, 3)));
-  }
-}
-
-TEST(JointObjective, GradientOfEachTermAloneMatchesDifferences) {
+TEST(JointObjective, GradientOfEachTermAloneAndWithWeightDecayMatchesDifferences) {
   const Networks<double> nets(tinyOptions(), 1);
   JointObjective<double> objective(nets, randomData(4, 1, 140, true, {{0, 5}, {5, 135}}));
   const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
   EXPECT_TRUE(testing::gradientMatches(singleTerm(&objective, {true, false}), theta));
   EXPECT_TRUE(testing::gradientMatches(singleTerm(&objective, {false, true}), theta));
+  EXPECT_TRUE(testing::gradientMatches(singleTerm(&objective, {true, true, 1, 0.3}), theta));
 }
 
 TEST(JointObjective, DirectionalDerivativeMatchesAtTheSizeOfThePaper) {

@@ -16,13 +16,12 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
+#include <functional>
 
 #include "ddm_bag_io/bag_cache.h"
 #include "ddm_bag_io/bag_reader.h"
 #include "ddm_common/plain_file.h"
 #include "ddm_msgs/testing/expect_error.h"
-#include "ddm_msgs/testing/temp_folder.h"
 #include "toy_bags.h"
 
 namespace ddm {
@@ -45,26 +44,15 @@ double commandedAt(double time) {
 
 double angleOf(int image) { return 0.05 * image; }
 
-class OtherBags : public ::testing::Test {
+class OtherBags : public testing::BagTest {
  protected:
   OtherBags() {
     options_.torque_topic = "command";
     options_.dt = kDt;
   }
 
-  BagContent read() const { return readBag(path_, kToySize, options_); }
-  /// Whether the only note has all the parts.
-  ::testing::AssertionResult notes(const std::vector<std::string>& parts) const {
-    const std::vector<std::string> notes = read().notes;
-    if (notes.size() == 1) return testing::names(notes[0], parts);
-    return ::testing::AssertionFailure() << notes.size() << " notes";
-  }
-  ::testing::AssertionResult isRefused(const std::vector<std::string>& parts) const {
-    std::vector<std::string> all = {"bag " + path_};
-    all.insert(all.end(), parts.begin(), parts.end());
-    return testing::throwsNaming<std::runtime_error>([&] { read(); }, all);
-  }
-
+  void open() { bag_ = std::make_unique<rosbag::Bag>(path_, rosbag::bagmode::Write); }
+  void close() { bag_.reset(); }
   template <class Message>
   void write(const std::string& topic, double time, const Message& message,
              const std::string& publisher = "/recorded") {
@@ -122,14 +110,20 @@ class OtherBags : public ::testing::Test {
     return message;
   }
   static sensor_msgs::JointState jointsOf(const std::vector<std::string>& names,
-                                          const std::vector<double>& efforts) {
+                                          const std::vector<double>& efforts, double stamp = 0.0) {
     sensor_msgs::JointState message;
+    message.header.stamp = ros::Time(stamp);
     message.name = names;
     message.effort = efforts;
     return message;
   }
-  void close() { bag_.reset(); }
 
+  /// All frames are there, each with the torque that the controller commanded on its image.
+  void expectTorques() const {
+    const DataSet data = read().data;
+    ASSERT_EQ(data.numFrames(), kFrames);
+    for (int k = 0; k < kFrames; ++k) EXPECT_FLOAT_EQ(data.torques()(0, k), torqueOf(k)) << k;
+  }
   /// Each frame has the third image of all, and the torque commanded on it.
   void expectAllFrames(int motor = 0) const {
     const BagContent content = read();
@@ -143,9 +137,6 @@ class OtherBags : public ::testing::Test {
     }
   }
 
-  BagOptions options_;
-  const testing::TempFolder folder_;
-  const std::string path_ = folder_.file("other.bag");
   std::unique_ptr<rosbag::Bag> bag_ = std::make_unique<rosbag::Bag>(path_, rosbag::bagmode::Write);
 };
 
@@ -164,22 +155,18 @@ Message arrayOf(double u) {
 }
 
 TEST_F(OtherBags, NumbersAndArraysWithoutAHeader) {
-  const auto expectTorques = [this](auto make) {
-    bag_ = std::make_unique<rosbag::Bag>(path_, rosbag::bagmode::Write);
+  const auto expectReadable = [this](auto make) {
+    open();
     writeImages();
     writeTorques([&make](double, double u) { return make(u); });
     close();
-    const BagContent content = read();
-    ASSERT_EQ(content.data.numFrames(), kFrames);
-    EXPECT_TRUE(content.notes.empty());
-    for (int k = 0; k < kFrames; ++k) {
-      EXPECT_FLOAT_EQ(content.data.torques()(0, k), torqueOf(k)) << k;
-    }
+    expectTorques();
+    EXPECT_TRUE(notes({}));
   };
-  expectTorques(numberOf<std_msgs::Float32>);
-  expectTorques(arrayOf<std_msgs::Float32MultiArray>);
-  expectTorques(arrayOf<std_msgs::Float64MultiArray>);
-  expectTorques(numberOf<std_msgs::Float64>);
+  expectReadable(numberOf<std_msgs::Float32>);
+  expectReadable(arrayOf<std_msgs::Float32MultiArray>);
+  expectReadable(arrayOf<std_msgs::Float64MultiArray>);
+  expectReadable(numberOf<std_msgs::Float64>);
   expectAllFrames();
   options_.motors = {"arm"};
   EXPECT_TRUE(isRefused({"command", "std_msgs/Float64", "data_set/motors"}));
@@ -228,101 +215,72 @@ TEST_F(OtherBags, PublishersWithoutEffortOfTheJointsDoNotCount) {
   }
   close();
   expectAllFrames(/*motor=*/1);
-  EXPECT_TRUE(notes({"10 messages of /positions", "10 messages of /rates", "no effort"}));
+  EXPECT_TRUE(notes({{"10 messages of /positions", "10 messages of /rates", "no effort"}}));
 }
 
 TEST_F(OtherBags, ALagOfTheRecorderDoesNotMoveTorquesWithoutStamps) {
   writeImagePerFrame([](int k) { return kBegin + kDt * k; }, /*lag=*/0.5);
   writeTorquePerFrame([](double, double u) { return floatOf(u); }, /*lag=*/0.5);
   close();
-  const BagContent content = read();
-  ASSERT_EQ(content.data.numFrames(), kFrames);
-  for (int k = 0; k < kFrames; ++k) EXPECT_EQ(content.data.torques()(0, k), torqueOf(k)) << k;
-  EXPECT_TRUE(notes({"0.5 s after their stamps", "training/max_delay to 5"}));
+  expectTorques();
+  EXPECT_TRUE(notes({{"0.5 s after their stamps", "training/max_delay to 5"}}));
 }
 
-TEST_F(OtherBags, WhereTheCameraClockCannotBeTrustedRecordingTimesCount) {
-  const auto expectPairs = [this](const char* what, const auto& stampOf, bool stamped) {
-    bag_ = std::make_unique<rosbag::Bag>(path_, rosbag::bagmode::Write);
-    writeImagePerFrame(stampOf);
-    writeTorquePerFrame([stamped](double time, double u) {
-      auto message = jointsOf({"arm"}, {u});
-      if (stamped) message.header.stamp = ros::Time(time);
-      return message;
-    });
-    close();
-    const BagContent content = read();
-    ASSERT_EQ(content.data.numFrames(), kFrames) << what;
-    EXPECT_EQ(content.data.segments().size(), 1U) << what;
-    for (int k = 0; k < kFrames; ++k) {
-      EXPECT_EQ(content.data.image(k), toyImage(angleOf(kImagesPerFrame * k))) << what << k;
-      EXPECT_EQ(content.data.torques()(0, k), torqueOf(k)) << what << k;
-    }
-    EXPECT_TRUE(notes({what, "recorded count instead"}));
+TEST_F(OtherBags, WhereAClockCannotBeTrustedRecordingTimesCount) {
+  struct Row {
+    const char* fault;
+    std::function<double(int)> image, torque;  // stamps of frame k
   };
-  for (const bool stamped : {false, true}) {
-    expectPairs(
-        "stand still at 7.0", [](int) { return 7.0; }, stamped);
-    expectPairs(
-        "stand still at 10.9", [](int k) { return kBegin + kDt * std::min(k, 9); }, stamped);
-    expectPairs(
-        "go back", [](int k) { return kBegin + kDt * k - (k < 9 ? 0.0 : 5.0); }, stamped);
-    expectPairs(
-        "go back", [](int k) { return kBegin + kDt * k - (k < 9 ? 0.0 : 0.25); }, stamped);
-    expectPairs(
-        "leap", [](int k) { return kBegin + kDt * k + (k < 9 ? 0.0 : 37.0); }, stamped);
-    expectPairs(
-        "have no stamp", [](int k) { return k % 2 == 0 ? 0.0 : kBegin + kDt * k; }, stamped);
-  }
-  expectPairs(
-      "two clocks", [](int k) { return 500.0 + kDt * k; }, /*stamped=*/true);
-}
-
-TEST_F(OtherBags, WhereTheTorqueClockCannotBeTrustedRecordingTimesCount) {
-  const auto expectPairs = [this](const char* what, const auto& stampOf) {
-    bag_ = std::make_unique<rosbag::Bag>(path_, rosbag::bagmode::Write);
-    writeImagePerFrame([](int k) { return kBegin + kDt * k; });
+  const auto right = [](int k) { return kBegin + kDt * k; };
+  const auto none = [](int) { return 0.0; };
+  const auto at = [&](double jump) {
+    return [=](int k) { return right(k) + (k < 9 ? 0.0 : jump); };
+  };
+  const std::vector<Row> rows = {
+      {"image stamps stand still at 7.0", [](int) { return 7.0; }, none},
+      {"image stamps stand still at 10.9", [&](int k) { return right(std::min(k, 9)); }, right},
+      {"image stamps go back", at(-5.0), none},
+      {"image stamps go back", at(-0.25), right},
+      {"image stamps leap", at(37.0), none},
+      {"images have no stamp", [&](int k) { return k % 2 == 0 ? 0.0 : right(k); }, right},
+      {"two clocks", [](int k) { return 500.0 + kDt * k; }, right},
+      {"torque stamps leap", right, at(100.0)},
+      {"torque stamps go back from 10.8", right, at(-0.5)},
+      {"torque stamps stand still at 10.5", right, [&](int k) { return k < 5 ? right(k) : 10.5; }},
+      {"torque stamps stand still at 10.0", right,
+       [&](int k) { return k < 19 ? 10.0 : right(k); }}};
+  for (const Row& row : rows) {
+    SCOPED_TRACE(row.fault);
+    open();
+    writeImagePerFrame(row.image);
     int frame = 0;
-    writeTorquePerFrame([&](double time, double u) {
-      auto message = jointsOf({"arm"}, {u});
-      message.header.stamp = ros::Time(stampOf(frame++, time));
-      return message;
-    });
+    writeTorquePerFrame(
+        [&](double, double u) { return jointsOf({"arm"}, {u}, row.torque(frame++)); });
     close();
-    const BagContent content = read();
-    ASSERT_EQ(content.data.numFrames(), kFrames) << what;
+    const DataSet data = read().data;
+    expectTorques();
+    EXPECT_EQ(data.segments().size(), 1U);
     for (int k = 0; k < kFrames; ++k) {
-      EXPECT_EQ(content.data.torques()(0, k), torqueOf(k)) << what << k;
+      EXPECT_EQ(data.image(k), toyImage(angleOf(kImagesPerFrame * k))) << k;
     }
-    EXPECT_TRUE(notes({what, "recorded count instead"}));
-  };
-  expectPairs("stamps leap", [](int k, double time) { return time + (k < 9 ? 0.0 : 100.0); });
-  expectPairs("go back from 10.8", [](int k, double time) { return time - (k < 9 ? 0.0 : 0.5); });
-  expectPairs("stand still at 10.5", [](int k, double time) { return k < 5 ? time : 10.5; });
-  expectPairs("stand still at 10.0", [](int k, double time) { return k < 19 ? 10.0 : time; });
+    EXPECT_TRUE(notes({{row.fault, "recorded count instead"}}));
+  }
 }
 
 TEST_F(OtherBags, StampsOfTwoClocksThatOverlapAreReported) {
   writeImagePerFrame([](int k) { return kBegin + kDt * k - 0.7; });
-  writeTorquePerFrame([](double time, double u) {
-    auto message = jointsOf({"arm"}, {u});
-    message.header.stamp = ros::Time(time);
-    return message;
-  });
+  writeTorquePerFrame([](double time, double u) { return jointsOf({"arm"}, {u}, time); });
   close();
   EXPECT_EQ(read().data.numFrames(), kFrames - 7);
-  const std::vector<std::string> all = read().notes;
-  ASSERT_EQ(all.size(), 2U);
-  EXPECT_TRUE(testing::names(all[0], {"0.7 s after their stamps", "0 s after theirs"}));
-  EXPECT_TRUE(testing::names(all[1], {"7 image(s)", "before the first torque"}));
+  EXPECT_TRUE(notes({{"0.7 s after their stamps", "0 s after theirs"},
+                     {"7 image(s)", "before the first torque"}}));
 }
 
 TEST_F(OtherBags, AStampCountsMoreThanTheTimeOfTheRecording) {
   writeImages();
   for (double time = kLatency; time < kDt * kFrames; time += 0.02) {
-    auto message = jointsOf({"arm"}, {commandedAt(time)});
-    message.header.stamp = ros::Time(kBegin + time);
-    write("command", kBegin + time + 0.3, message);  // the network was slow
+    write("command", kBegin + time + 0.3,  // the network was slow
+          jointsOf({"arm"}, {commandedAt(time)}, kBegin + time));
   }
   close();
   expectAllFrames();
@@ -338,7 +296,7 @@ TEST_F(OtherBags, ADroppedImageIsReplacedByItsNeighbourOrSplitsTheBag) {
   EXPECT_EQ(content.data.image(7), toyImage(angleOf(27)));
   EXPECT_DOUBLE_EQ(content.data.torques()(0, 7), torqueOf(9));
   EXPECT_EQ(content.data.numFrames(), kFrames - 2);
-  EXPECT_TRUE(notes({"at 1 place(s)", "after 10.6", "2 segments"}));
+  EXPECT_TRUE(notes({{"at 1 place(s)", "after 10.6", "2 segments"}}));
 }
 
 TEST_F(OtherBags, ATorqueHoldsHoweverLongItTakesAndImagesBeforeTheFirstAreDropped) {
@@ -352,9 +310,8 @@ TEST_F(OtherBags, ATorqueHoldsHoweverLongItTakesAndImagesBeforeTheFirstAreDroppe
   for (int k = 3; k < kFrames; ++k) {
     EXPECT_EQ(content.data.torques()(0, k - 3), k < 5 ? k : k < 13 ? 5 : 13) << k;
   }
-  ASSERT_EQ(content.notes.size(), 2U);
-  EXPECT_TRUE(testing::names(content.notes[0], {"3 image(s)", "before the first torque"}));
-  EXPECT_TRUE(testing::names(content.notes[1], {"13 of 17 frames", "0.79 s", "until the next"}));
+  EXPECT_TRUE(notes({{"3 image(s)", "before the first torque"},
+                     {"13 of 17 frames", "0.79 s", "until the next"}}));
 }
 
 TEST_F(OtherBags, ATorqueFromBeforeTheFirstImageHolds) {
@@ -364,7 +321,7 @@ TEST_F(OtherBags, ATorqueFromBeforeTheFirstImageHolds) {
   const BagContent content = read();
   ASSERT_EQ(content.data.numFrames(), kFrames);
   EXPECT_EQ(content.data.torques()(0, 0), 2.5);
-  EXPECT_TRUE(notes({"20 of 20 frames", "at most 5 s"}));
+  EXPECT_TRUE(notes({{"20 of 20 frames", "at most 5 s"}}));
 }
 
 TEST_F(OtherBags, AFewImagesThatTheRecorderGotLateMoveNoTorque) {
@@ -375,18 +332,16 @@ TEST_F(OtherBags, AFewImagesThatTheRecorderGotLateMoveNoTorque) {
   }
   writeTorquePerFrame([](double, double u) { return floatOf(u); });
   close();
-  const BagContent content = read();
-  ASSERT_EQ(content.data.numFrames(), kFrames);
-  for (int k = 0; k < kFrames; ++k) EXPECT_EQ(content.data.torques()(0, k), torqueOf(k)) << k;
-  EXPECT_TRUE(content.notes.empty());
+  expectTorques();
+  EXPECT_TRUE(notes({}));
 }
 
 TEST_F(OtherBags, NumbersThatSayNothingAreReported) {
   writeImages();
   writeTorques([](double, double) { return floatOf(0.0); });
   close();
-  EXPECT_TRUE(notes({"all its torques are 0"}));
-  bag_ = std::make_unique<rosbag::Bag>(path_, rosbag::bagmode::Write);
+  EXPECT_TRUE(notes({{"all its torques are 0"}}));
+  open();
   writeImages();
   int number = 0;
   writeTorques([&number](double, double u) {
@@ -395,7 +350,7 @@ TEST_F(OtherBags, NumbersThatSayNothingAreReported) {
     return message;
   });
   close();
-  EXPECT_TRUE(notes({"topic command", "50 messages of /recorded", "no effort or number"}));
+  EXPECT_TRUE(notes({{"topic command", "50 messages of /recorded", "no effort or number"}}));
 }
 
 TEST_F(OtherBags, MessagesThatWereRecordedAtOneTimeAreRefused) {
@@ -435,7 +390,7 @@ TEST_F(OtherBags, ControllersOneAfterTheOtherAndThoseWithoutANameAreNoTwoAtOnce)
   }
   close();
   expectAllFrames();
-  EXPECT_TRUE(notes({"/first (8 from 10.0", "/second (8 from 11.0", "one after the other"}));
+  EXPECT_TRUE(notes({{"/first (8 from 10.0", "/second (8 from 11.0", "one after the other"}}));
 }
 
 TEST_F(OtherBags, TheTimeBetweenFramesMustBeGivenAndSuitTheCamera) {
@@ -475,7 +430,7 @@ TEST_F(OtherBags, CompressedImagesAreUnpacked) {
     return message;
   };
   for (const char* suffix : {".png", ".jpg"}) {
-    bag_ = std::make_unique<rosbag::Bag>(path_, rosbag::bagmode::Write);
+    open();
     for (int i = 0; i < kFrames; ++i) {
       write("camera/image_raw", kBegin + kDt * i,
             compressed(kBegin + kDt * i, suffix, imageMessage(0.0, toyImage(angleOf(i)))));
@@ -497,7 +452,7 @@ TEST_F(OtherBags, ABrokenJpegLeavesAGapThatIsTold) {
   writePicture(picture, imageMessage(0.0, toyImage(1.0, 64), 64));
   const std::string bytes = readFile(picture);
   for (const double part : {0.05, 0.7}) {  // of the header alone, and of the pixels
-    bag_ = std::make_unique<rosbag::Bag>(path_, rosbag::bagmode::Write);
+    open();
     for (int k = 0; k < kFrames; ++k) {
       sensor_msgs::CompressedImage message;
       message.header.stamp = ros::Time(kBegin + kDt * k);
@@ -512,7 +467,7 @@ TEST_F(OtherBags, ABrokenJpegLeavesAGapThatIsTold) {
     ASSERT_EQ(content.data.segments().size(), 2U);
     EXPECT_EQ(content.data.segments()[0].size, 12);
     EXPECT_EQ(content.data.torques()(0, 12), torqueOf(13));
-    EXPECT_TRUE(notes({"1 image(s)", "at 11.2"}));
+    EXPECT_TRUE(notes({{"1 image(s)", "at 11.2"}}));
   }
 }
 
@@ -523,7 +478,7 @@ TEST_F(OtherBags, TransportsOfAnImageTopicAreFoundByItsNameOrNamed) {
   writeFloats();
   close();
   expectAllFrames();  // of the raw ones
-  bag_ = std::make_unique<rosbag::Bag>(path_, rosbag::bagmode::Write);
+  open();
   write("/robot/camera/image_raw/theora", kBegin, std_msgs::String());
   writeFloats();
   close();
@@ -531,7 +486,7 @@ TEST_F(OtherBags, TransportsOfAnImageTopicAreFoundByItsNameOrNamed) {
   options_.image_topic = "/robot/camera/image_raw/theora";
   EXPECT_TRUE(isRefused({"/robot/camera/image_raw/theora", "transport theora", "republish"}));
   options_.image_topic = BagOptions().image_topic;
-  bag_ = std::make_unique<rosbag::Bag>(path_, rosbag::bagmode::Write);
+  open();
   write("/left/camera/image_raw", kBegin, imageMessage(kBegin, toyImage(0.0)));
   write("/right/camera/image_raw/compressed", kBegin, broken);
   writeFloats();
@@ -551,7 +506,7 @@ TEST_F(OtherBags, ImagesThatUseFewOfTheirGreyValuesAreReported) {
   }
   writeTorquePerFrame([](double, double u) { return floatOf(u); });
   close();
-  EXPECT_TRUE(notes({"8x8 mono16", "from 0 to 15 of 255"}));
+  EXPECT_TRUE(notes({{"8x8 mono16", "from 0 to 15 of 255"}}));
 }
 
 TEST_F(OtherBags, ThePartOfTheImageIsTakenThatCounts) {

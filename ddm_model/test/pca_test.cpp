@@ -131,27 +131,10 @@ void expectNearlyBest(const DataSet& data, int dim) {
   EXPECT_GT(pca.variance.minCoeff(), 0.0);
 }
 
-TEST(Pca, IsOrthonormalAndNearlyBestForNoiseAlone) {
-  for (const int dim : {20, 50}) {
-    for (const int num_frames : {60, 300, 500}) {
-      SCOPED_TRACE(::testing::Message() << num_frames << " frames, dim " << dim);
-      expectNearlyBest(noise(num_frames, 31, 1), dim);
-    }
-  }
-}
-
-TEST(Pca, IsOrthonormalAndNearlyBestForRodsUnderPixelNoise) {
-  for (const double noise_std : {0.0, 0.1, 0.2, 0.3, 0.4}) {
-    SCOPED_TRACE(noise_std);
-    expectNearlyBest(noisyRods(400, 51, noise_std, 1), 50);
-  }
-}
-
-TEST(Pca, IsOrthonormalAndNearlyBestWithOneImageMoreThanComponents) {
-  for (const int dim : {1, 6, 50}) {
-    SCOPED_TRACE(dim);
-    expectNearlyBest(noisyRods(dim + 1, 21, 0.25, 1), dim);
-  }
+TEST(Pca, IsOrthonormalAndNearlyBestForNoiseRodsAndFewImages) {
+  for (const int num_frames : {60, 300}) expectNearlyBest(noise(num_frames, 31, 1), 50);
+  for (const double noise_std : {0.0, 0.2}) expectNearlyBest(noisyRods(400, 51, noise_std, 1), 50);
+  for (const int dim : {1, 6, 50}) expectNearlyBest(noisyRods(dim + 1, 21, 0.25, 1), dim);
 }
 
 TEST(Pca, ItsBasisIsOrthonormalEvenIfTheImagesSpanLess) {
@@ -212,21 +195,16 @@ TEST(Projection, ComputesTheScoresOfSingleImagesInDouble) {
             1e-4 * scores.norm());  // in float
 }
 
-TEST(Pca, RefusesAsManyImagesAsComponentsWithTheirNumberAndTheRemedy) {
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [] { fitPca(testing::toyTrial(6, 1), 6); },
-      {"model/pca_dim = 6", "at least 7 images", "got 6", "lower model/pca_dim"}));
-}
-
-TEST(Pca, RefusesMoreComponentsThanPixels) {
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>([] { fitPca(noise(30, 4, 1), 17); },
-                                                  {"model/pca_dim = 17", "16 pixels"}));
-}
-
-TEST(Pca, RefusesImagesThatAreAllTheSame) {
-  DataSet data(4, 1);
-  for (int t = 0; t < 10; ++t) data.append(Grey(16, 77), Eigen::VectorXd::Zero(1), false);
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { fitPca(data, 3); }, {"10 images", "same"}));
+TEST(Pca, RefusesTooFewImagesTooFewPixelsAndImagesThatAreAllTheSame) {
+  const auto refuses = [](const DataSet& data, int dim, const std::vector<std::string>& parts) {
+    return throwsNaming<std::invalid_argument>([&] { fitPca(data, dim); }, parts);
+  };
+  EXPECT_TRUE(refuses(testing::toyTrial(6, 1), 6,
+                      {"model/pca_dim = 6", "at least 7 images", "got 6", "lower model/pca_dim"}));
+  EXPECT_TRUE(refuses(noise(30, 4, 1), 17, {"model/pca_dim = 17", "16 pixels"}));
+  DataSet same(4, 1);
+  for (int t = 0; t < 10; ++t) same.append(Grey(16, 77), Eigen::VectorXd::Zero(1), false);
+  EXPECT_TRUE(refuses(same, 3, {"10 images", "same"}));
 }
 
 constexpr int kSize = 21;

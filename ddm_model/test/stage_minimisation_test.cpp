@@ -11,7 +11,6 @@
 
 #include "ddm_model/minimise.h"
 #include "ddm_model/objective.h"
-#include "ddm_model/solver_log.h"
 #include "ddm_model/testing/random_matrix.h"
 #include "ddm_model/trainer.h"
 #include "toy_data.h"

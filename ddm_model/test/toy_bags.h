@@ -5,9 +5,13 @@
 #include <ddm_bag_io/bag_reader.h>
 #include <ddm_common/image_codec.h>
 #include <ddm_msgs/Torque.h>
+#include <ddm_msgs/testing/expect_error.h>
+#include <ddm_msgs/testing/temp_folder.h>
+#include <gtest/gtest.h>
 #include <rosbag/bag.h>
 #include <sensor_msgs/Image.h>
 
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -73,6 +77,37 @@ inline void writeTrial(const std::string& path, const DataSet& trial, bool with_
     bag.torque(stamp, {trial.torques()(0, t)});
   }
 }
+
+/// A bag that a test writes and reads.
+class BagTest : public ::testing::Test {
+ protected:
+  BagContent read() const { return readBag(path_, kToySize, options_); }
+  std::vector<Eigen::Index> segmentSizes() const {
+    const DataSet data = read().data;
+    std::vector<Eigen::Index> sizes;
+    for (const Segment& segment : data.segments()) sizes.push_back(segment.size);
+    return sizes;
+  }
+  /// Whether there are as many notes as texts are given, and each has all of its parts.
+  ::testing::AssertionResult notes(const std::vector<std::vector<std::string>>& texts) const {
+    const std::vector<std::string> notes = read().notes;
+    if (notes.size() != texts.size()) {
+      return ::testing::AssertionFailure() << ::testing::PrintToString(notes);
+    }
+    ::testing::AssertionResult all = ::testing::AssertionSuccess();
+    for (std::size_t i = 0; i < texts.size() && all; ++i) all = names(notes[i], texts[i]);
+    return all;
+  }
+  /// Whether the error names the bag and all the parts.
+  ::testing::AssertionResult isRefused(std::vector<std::string> parts = {}) const {
+    parts.push_back("bag " + path_);
+    return throwsNaming<std::runtime_error>([this] { read(); }, parts);
+  }
+
+  BagOptions options_;
+  const TempFolder folder_;
+  const std::string path_ = folder_.file("trial.bag");
+};
 
 }  // namespace testing
 }  // namespace ddm

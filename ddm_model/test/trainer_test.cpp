@@ -10,10 +10,10 @@
 #include <map>
 #include <stdexcept>
 
-#include "ddm_model/long_term_prediction.h"
+#include "ddm_model/ddm.h"
+#include "ddm_model/minimise.h"
 #include "ddm_model/model_file.h"
 #include "ddm_model/objective.h"
-#include "ddm_model/solver_log.h"
 #include "ddm_msgs/testing/expect_error.h"
 #include "restart.h"
 #include "toy_data.h"
@@ -94,24 +94,6 @@ TEST_F(Trainer, LowersWhatItsScheduleMinimises) {
   EXPECT_GT(sequential.v_p, joint.v_p);
   training_.schedule = "v_r_only";
   EXPECT_EQ(run().model->info().v_r, sequential.v_r);
-}
-
-TEST_F(Trainer, CountsIterationsAndProgressOverAllStages) {
-  training_.schedule = "sequential";
-  training_.max_iterations = 7;
-  training_.function_tolerance = 0.0;
-  std::vector<TrainingProgress> told;
-  const TrainingResult result = run([&told](const TrainingProgress& progress) {
-    told.push_back(progress);
-    return true;
-  });
-  EXPECT_EQ(result.iterations, 14);
-  EXPECT_EQ(told.back().iteration, 14);
-  EXPECT_DOUBLE_EQ(told.back().fraction_done, 1.0);
-  for (size_t i = 1; i < told.size(); ++i) {
-    EXPECT_GE(told[i].fraction_done, told[i - 1].fraction_done) << "callback " << i;
-    EXPECT_GE(told[i].iteration, told[i - 1].iteration) << "callback " << i;
-  }
 }
 
 TEST_F(Trainer, KeepsTheBestOfSeveralStarts) {
@@ -216,6 +198,21 @@ TEST(EvenPart, HasFewFramesFromSeveralPlaces) {
   EXPECT_EQ(evenPart(data, 2, 2).torques, data.torques) << "too few for a prediction";
 }
 
+TEST_F(Trainer, CountsIterationsAndProgressOverAllStages) {
+  training_.schedule = "sequential";
+  training_.max_iterations = 7;
+  training_.function_tolerance = 0.0;
+  TrainingProgress last;
+  const TrainingResult result = run([&last](const TrainingProgress& progress) {
+    EXPECT_GE(progress.fraction_done, last.fraction_done);
+    last = progress;
+    return true;
+  });
+  EXPECT_EQ(result.iterations, 14);
+  EXPECT_EQ(last.iteration, 14);
+  EXPECT_DOUBLE_EQ(last.fraction_done, 1.0);
+}
+
 TEST_F(Trainer, TheChosenStartAloneGoesOn) {
   training_.num_starts = 5;
   training_.function_tolerance = 0.0;
@@ -260,9 +257,7 @@ TEST_F(Trainer, TellsOneProgressOverAllStartsAndStopsThemAll) {
 
 TEST_F(Trainer, AnotherSeedOrTrialGivesAnotherModel) {
   const Eigen::VectorXd theta = run().model->theta();
-  info_.seed = 6;
-  EXPECT_NE(run().model->theta(), theta);
-  info_.seed = 5 + (1ULL << 32);  // the high bits count too
+  info_.seed = 5 + (1ULL << 32);  // the high bits count, too
   EXPECT_NE(run().model->theta(), theta);
   info_.seed = 5;
   info_.trial = 2;
@@ -283,9 +278,6 @@ TEST_F(Trainer, TellsItsProgress) {
     EXPECT_EQ(told[i].iteration, told[i - 1].iteration + 1);
     EXPECT_LE(cost(told[i]), cost(told[i - 1])) << "not the accepted point, but one probed later";
   }
-  EXPECT_EQ(told.front().fraction_done, 0.0);
-  EXPECT_LE(told.back().fraction_done, 1.0);
-  EXPECT_LT(cost(told.back()), cost(told.front()));
   EXPECT_NEAR(cost(result.model->info()) / cost(told.back()), 1.0, 1e-6);
   EXPECT_GT(told.back().gradient_norm, 0.0);
 }
@@ -311,7 +303,8 @@ TEST_F(Trainer, DoesNotTryADelayThatLeavesNothingToPredict) {
   EXPECT_EQ(more.model->theta(), possible.model->theta());
   EXPECT_EQ(more.iterations, possible.iterations);
   model_.delay = 3;
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { run(); }, {"model/delay"}));
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { run(); },
+                                                  {"model/order + model/delay", "= 5 frames"}));
 }
 
 TEST_F(Trainer, ComparesDelaysByHowWellAndNotByHowOftenTheyPredict) {
@@ -338,13 +331,6 @@ TEST_F(Trainer, AnAutoEncoderAloneNeedsNothingToPredict) {
   const TrainingResult result = run();
   ASSERT_TRUE(result.model) << result.message;
   EXPECT_LT(result.final_cost, result.initial_cost);
-}
-
-TEST_F(Trainer, RefusesDataWithoutASegmentThatIsLongEnough) {
-  DataSet segments(testing::kToySize, 1);
-  for (unsigned seed = 1; seed <= 5; ++seed) segments.append(testing::toyTrial(2, seed));
-  data_ = segments;
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { run(); }, {"model/order"}));
 }
 
 }  // namespace

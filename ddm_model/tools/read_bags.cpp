@@ -28,7 +28,7 @@ struct Arguments {
   int image_size = 0;
   std::string out;
   std::vector<std::string> bags;
-  ddm::BagArguments data_set;
+  YAML::Node data_set;  // from the options of bags
 };
 
 /// @return false where --help was asked for and has been printed
@@ -50,7 +50,7 @@ bool parse(int argc, char** argv, Arguments* arguments) {
                         "folder of these folders; made if need be");
   options.add_options()("config", po::value(&arguments->configs)->composing()->value_name("FILE"),
                         "YAML file whose block data_set names the topics; repeatable");
-  arguments->data_set.addTo(&options);
+  ddm::addBagOptions(&options, &arguments->data_set);
   const ddm::Positional bags{"bag", po::value(&arguments->bags)->required(), -1};
   if (!ddm::parseCommandLine(argc, argv, options, bags)) return false;
   if (arguments->image_size < 1 || arguments->image_size > kMaxImageSize) {
@@ -86,14 +86,13 @@ void writeBag(const ddm::BagContent& content, const std::string& folder) {
 void run(const Arguments& arguments) {
   YAML::Node blocks(YAML::NodeType::Map);
   for (const std::string& file : arguments.configs) ddm::overlay(ddm::readBlocks(file), &blocks);
-  arguments.data_set.overlayOn(&blocks);
+  ddm::overlay(arguments.data_set, &blocks);
   ddm::ParamReader params(blocks, boost::algorithm::join(arguments.configs, ", "));
   const auto topics = params.read<ddm::BagOptions>("data_set");
   params.requireValid();
-  ddm::requireDifferentBags(arguments.bags);
   const bool live = ::isatty(STDERR_FILENO) != 0;
   const std::size_t number = arguments.bags.size();
-  ddm::DifferentFrames different;
+  ddm::DifferentBags different;
   for (std::size_t i = 0; i < number; ++i) {
     if (live) std::cerr << "\rbag " << i + 1 << " of " << number << (i + 1 == number ? "\n" : "");
     const std::string& bag = arguments.bags[i];

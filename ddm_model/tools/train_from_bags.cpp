@@ -6,9 +6,9 @@
 #include <ddm_common/image_codec.h>
 #include <ddm_common/plain_file.h>
 #include <ddm_common/tool.h>
+#include <ddm_model/minimise.h>
 #include <ddm_model/model_file.h>
 #include <ddm_model/per_motor.h>
-#include <ddm_model/solver_log.h>
 #include <ddm_model/trainer.h>
 #include <ros/time.h>
 #include <unistd.h>
@@ -32,7 +32,7 @@ struct Arguments {
   std::int64_t seed = 0;  // signed: -1 is to be refused, not to become a huge number
   std::string out;
   std::vector<std::string> bags;
-  ddm::BagArguments data_set;
+  YAML::Node data_set;  // from the options of bags
 };
 
 /// @return false where --help was asked for and has been printed
@@ -54,7 +54,7 @@ bool parse(int argc, char** argv, Arguments* arguments) {
   options.add_options()("seed", po::value(&arguments->seed)->default_value(0),
                         "seed of the initial parameters");
   options.add_options()("out", po::value(&arguments->out), "model file to write");
-  arguments->data_set.addTo(&options);
+  ddm::addBagOptions(&options, &arguments->data_set);
   const ddm::Positional bags{"bag", po::value(&arguments->bags), -1};
   if (!ddm::parseCommandLine(argc, argv, options, bags)) return false;
   if (arguments->out.empty()) throw po::error("--out FILE is missing: say where the model goes");
@@ -80,7 +80,7 @@ bool showProgress(const ddm::TrainingProgress& progress) {
 YAML::Node readConfigs(const Arguments& arguments, std::string* limits_from) {
   YAML::Node blocks(YAML::NodeType::Map);
   for (const std::string& file : arguments.configs) ddm::overlay(ddm::readBlocks(file), &blocks);
-  arguments.data_set.overlayOn(&blocks);
+  ddm::overlay(arguments.data_set, &blocks);
   for (const std::string& value : arguments.values) ddm::setValue(value, &blocks);
   const std::string owner =
       ddm::hasKey(blocks, "model", "max_torque") ? "model" : ddm::ownerOfMotors(blocks);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/image_options.h>
 #include <ddm_common/run_node.h>
-#include <ddm_model/solver_log.h>
+#include <ddm_model/minimise.h>
 
 #include "mpc_node.h"
 

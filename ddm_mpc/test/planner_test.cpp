@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/planner.h"
 
-#include <ddm_model/solver_log.h>
+#include <ddm_model/minimise.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>

@@ -3,7 +3,7 @@
 #include "pilco/observations.h"
 
 #include <ddm_common/plain_file.h>
-#include <ddm_model/long_term_prediction.h>
+#include <ddm_model/ddm.h>
 #include <ddm_model/model_file.h>
 #include <ddm_model/pca.h>
 #include <ddm_model/trainer.h>

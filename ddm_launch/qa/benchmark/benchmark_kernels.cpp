@@ -3,10 +3,10 @@
 #include <benchmark/benchmark.h>
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_common/tool.h>
+#include <ddm_model/minimise.h>
 #include <ddm_model/networks.h>
 #include <ddm_model/objective.h>
 #include <ddm_model/schedule.h>
-#include <ddm_model/solver_log.h>
 #include <ddm_model/trainer.h>
 #include <ddm_mpc/controller.h>
 #include <ddm_sim/plant.h>

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/option_checks.h>
 #include <ddm_common/param_value.h>
-#include <ddm_model/long_term_prediction.h>
+#include <ddm_model/ddm.h>
+#include <ddm_model/minimise.h>
 #include <ddm_model/model_file.h>
-#include <ddm_model/solver_log.h>
 #include <ddm_model/trainer.h>
 #include <ddm_sim/environment.h>
 #include <ddm_sim/plant.h>

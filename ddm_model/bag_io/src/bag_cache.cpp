@@ -34,7 +34,6 @@ const BagContent& BagCache::contentOf(const std::string& path) {
 
 DataSet BagCache::read(const std::vector<std::string>& paths, const KeepGoing& keep_going) {
   if (paths.empty()) throw std::runtime_error("no bag was given: there is nothing to learn from");
-  requireDifferentBags(paths);
   for (auto entry = entries_.begin(); entry != entries_.end();) {
     const bool wanted = std::find(paths.begin(), paths.end(), entry->first) != paths.end();
     entry = wanted ? std::next(entry) : entries_.erase(entry);
@@ -42,7 +41,7 @@ DataSet BagCache::read(const std::vector<std::string>& paths, const KeepGoing& k
   const std::string camera = contentOf(paths.front()).camera;
   const int torque_dim = contentOf(paths.front()).data.torqueDim();
   DataSet data(image_size_, torque_dim);
-  DifferentFrames different;
+  DifferentBags different;
   for (const std::string& path : paths) {
     if (&path != &paths.front() && keep_going && !keep_going()) {
       throw ReadingCancelled("reading bags was cancelled");

@@ -14,7 +14,6 @@ namespace ddm {
 namespace {
 
 constexpr char kMagic[] = "#ROSBAG V2.0\n";
-constexpr char kRemedy[] = ": it is cut short, damaged or no bag; copy it again or leave it out";
 constexpr std::uint64_t kMaxChunk = 1U << 30U;  // [bytes]; rosbag writes 768 kB
 constexpr std::uint64_t kMaxBagHeader = 8192;   // [bytes]; rosbag writes 4096
 
@@ -27,7 +26,7 @@ struct OtherFormat {
 const OtherFormat kOtherFormats[] = {
     {"\x89MCAP0\r\n", "a recording of ROS 2 or Foxglove (MCAP)",
      "convert it with `rosbags-convert --src FILE.mcap --dst FILE.bag` (pip install rosbags)"},
-    {std::string("SQLite format 3\0", 16), "a recording of ROS 2 (SQLite, .db3)",
+    {"SQLite format 3", "a recording of ROS 2 (SQLite, .db3)",
      "convert its folder with `rosbags-convert --src FOLDER --dst FILE.bag` (pip install rosbags)"},
     {"version https://git-lfs", "a pointer of Git LFS instead of the file",
      "download the file with `git lfs pull`"},
@@ -38,9 +37,8 @@ const OtherFormat kOtherFormats[] = {
     {"\x1f\x8b", "compressed as a whole (gzip)", "unpack it with `gunzip` or `tar xzf`"},
     {"PK\x03\x04", "a zip archive", "unpack it with `unzip`"},
     {"BZh", "compressed as a whole (bzip2)", "unpack it with `bunzip2` or `tar xjf`"},
-    {std::string("\xfd"
-                 "7zXZ\0",
-                 6),
+    {"\xfd"
+     "7zXZ",
      "compressed as a whole (xz)", "unpack it with `unxz` or `tar xJf`"},
     {"\x28\xb5\x2f\xfd", "compressed as a whole (Zstandard)", "unpack it with `unzstd`"},
     {"7z\xbc\xaf\x27\x1c", "a 7-Zip archive", "unpack it with `7z x`"},
@@ -58,10 +56,14 @@ struct Damage : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-[[noreturn]] void refuse(const std::string& what) { throw Damage(what + kRemedy); }
+template <class... Parts>
+[[noreturn]] void refuseDamage(const Parts&... parts) {
+  throw Damage(
+      textOf(parts..., ": it is cut short, damaged or no bag; copy it again or leave it out"));
+}
 
 [[noreturn]] void refuseFormat(const std::string& what, const std::string& remedy) {
-  throw std::runtime_error("is " + what + "; only bags of format 2.0 (ROS 1) are read: " + remedy);
+  refuse("is ", what, "; only bags of format 2.0 (ROS 1) are read: ", remedy);
 }
 
 void requireBag(const std::string& front) {
@@ -78,15 +80,14 @@ void requireBag(const std::string& front) {
     refuseFormat("a tar archive", "unpack it with `tar xf`");
   }
   if (front.compare(0, sizeof(kMagic) - 1, kMagic) != 0) {
-    refuse("does not begin as a bag of format 2.0");
+    refuseDamage("does not begin as a bag of format 2.0");
   }
 }
 
 /// Takes the first bytes of what is left of a bag.
 std::string_view take(std::size_t size, std::string_view* left) {
   if (size > left->size()) {
-    refuse(std::to_string(size) + " bytes are due where " + std::to_string(left->size()) +
-           " are left");
+    refuseDamage(size, " bytes are due where ", left->size(), " are left");
   }
   const std::string_view taken = left->substr(0, size);
   left->remove_prefix(size);
@@ -95,8 +96,7 @@ std::string_view take(std::size_t size, std::string_view* left) {
 
 template <class Number>
 Number numberOf(std::string_view bytes) {
-  if (bytes.size() != sizeof(Number))
-    refuse("a number has " + std::to_string(bytes.size()) + " bytes");
+  if (bytes.size() != sizeof(Number)) refuseDamage("a number has ", bytes.size(), " bytes");
   Number value;
   std::memcpy(&value, bytes.data(), sizeof(value));
   return value;
@@ -114,7 +114,7 @@ class Fields {
     while (!bytes.empty()) {
       const std::string_view field = takeSized(&bytes);
       const std::size_t sign = field.find('=');
-      if (sign == std::string_view::npos) refuse("a field has no name");
+      if (sign == std::string_view::npos) refuseDamage("a field has no name");
       fields_[std::string(field.substr(0, sign))] = field.substr(sign + 1);
     }
   }
@@ -122,7 +122,7 @@ class Fields {
   bool has(const std::string& name) const { return fields_.count(name) > 0; }
   std::string text(const std::string& name) const {
     const auto found = fields_.find(name);
-    if (found == fields_.end()) refuse("a record has no field " + name);
+    if (found == fields_.end()) refuseDamage("a record has no field ", name);
     return std::string(found->second);
   }
   template <class Number>
@@ -138,7 +138,10 @@ struct Record {
   explicit Record(std::string_view* left)
       : fields(takeSized(left)), data(takeSized(left)), kind(fields.number<std::uint8_t>("op")) {}
 
-  [[noreturn]] void refuseKind() const { refuse("a record has the op " + std::to_string(kind)); }
+  void requireKind(std::uint8_t wanted) const {
+    if (kind != wanted)
+      refuseDamage("a record has the op ", int{kind}, " where ", int{wanted}, " is due");
+  }
 
   Fields fields;
   std::string_view data;
@@ -162,7 +165,7 @@ std::string decompress(const Record& chunk) {
   const std::string compression = chunk.fields.text("compression");
   const auto size = chunk.fields.number<std::uint32_t>("size");
   if (compression == "none") return std::string(chunk.data);
-  if (size > kMaxChunk) refuse("it announces " + std::to_string(size) + " bytes");
+  if (size > kMaxChunk) refuseDamage("it announces ", size, " bytes");
   std::string in(chunk.data), out(size, '\0');
   const auto size_in = static_cast<unsigned>(in.size());
   unsigned written = size;
@@ -176,7 +179,7 @@ std::string decompress(const Record& chunk) {
                  "', known are none, lz4 and bz2: write the bag again with one of them, or copy it "
                  "again if it is damaged");
   }
-  if (!whole || written != size) refuse("its " + compression + " is damaged");
+  if (!whole || written != size) refuseDamage("its ", compression, " is damaged");
   return out;
 }
 
@@ -191,17 +194,15 @@ BagFile::BagFile(std::istream* in) : in_(in) {
   std::string_view left(front);
   take(sizeof(kMagic) - 1, &left);
   const Record header(&left);
-  if (header.kind != kBagHeader) header.refuseKind();
+  header.requireKind(kBagHeader);
   if (header.fields.has("encryptor") && !header.fields.text("encryptor").empty()) {
-    throw std::runtime_error("is encrypted by " + header.fields.text("encryptor") +
-                             ": decrypt it with `rosbag decrypt`");
+    refuse("is encrypted by ", header.fields.text("encryptor"),
+           ": decrypt it with `rosbag decrypt`");
   }
   index_ = header.fields.number<std::uint64_t>("index_pos");
-  if (index_ == 0) {
-    throw std::runtime_error("was not closed: run `rosbag reindex` on it, then read it again");
-  }
+  if (index_ == 0) refuse("was not closed: run `rosbag reindex` on it, then read it again");
   if (index_ > size || size - index_ > kMaxChunk) {
-    refuse("its index is due at byte " + std::to_string(index_) + " of " + std::to_string(size));
+    refuseDamage("its index is due at byte ", index_, " of ", size);
   }
   const std::string index = read(index_, size);
   left = index;
@@ -211,13 +212,12 @@ BagFile::BagFile(std::istream* in) : in_(in) {
     const Record record(&left);
     if (record.kind == kConnection) {
       connections_[record.fields.number<std::uint32_t>("conn")] = connectionOf(record);
-    } else if (record.kind == kChunkInfo) {
+    } else {
+      record.requireKind(kChunkInfo);
       std::set<std::uint32_t>& held = chunks_[record.fields.number<std::uint64_t>("chunk_pos")];
       for (std::string_view counts = record.data; !counts.empty(); take(4, &counts)) {
         held.insert(numberOf<std::uint32_t>(take(4, &counts)));
       }
-    } else {
-      record.refuseKind();
     }
   }
 }
@@ -227,7 +227,8 @@ std::string BagFile::read(std::uint64_t begin, std::uint64_t end) {
   std::string bytes(end - begin, '\0');
   in_->clear();
   in_->seekg(static_cast<std::streamoff>(begin));
-  if (!in_->read(&bytes[0], static_cast<std::streamsize>(bytes.size()))) refuse("cannot be read");
+  if (!in_->read(&bytes[0], static_cast<std::streamsize>(bytes.size())))
+    refuseDamage("cannot be read");
   return bytes;
 }
 
@@ -243,30 +244,34 @@ void BagFile::forEachMessage(const std::set<std::string>& topics,
       const auto next = std::next(chunk);
       const std::uint64_t end = next == chunks_.end() ? index_ : next->first;
       if (end > index_ || chunk->first >= end || end - chunk->first > kMaxChunk) {
-        refuse("it does not lie before the index at byte " + std::to_string(index_));
+        refuseDamage("it does not lie before the index at byte ", index_);
       }
       const std::string bytes = read(chunk->first, end);
       std::string_view left(bytes);
       const Record record(&left);
-      if (record.kind != kChunk) record.refuseKind();
+      record.requireKind(kChunk);
       const std::string messages = decompress(record);
       for (left = messages; !left.empty();) {
         const Record message(&left);
         if (message.kind == kConnection) continue;  // they are in the index, too
-        if (message.kind != kMessage) message.refuseKind();
+        message.requireKind(kMessage);
         const auto number = message.fields.number<std::uint32_t>("conn");
         if (connections_.count(number) == 0) {
-          refuse("a message is of connection " + std::to_string(number) +
-                 ", which its index does not list");
+          refuseDamage("a message is of connection ", number, ", which its index does not list");
         }
         if (isWanted(number)) {
           take({connections_.at(number), timeOf(message.fields), message.data});
         }
       }
     } catch (const Damage& e) {
-      throw std::runtime_error("chunk at byte " + std::to_string(chunk->first) + ": " + e.what());
+      refuse("chunk at byte ", chunk->first, ": ", e.what());
     }
   }
+}
+
+void refuseMessage(const BagMessage& message, const std::exception& fault) {
+  refuse("the message of topic ", message.connection.topic, " recorded at ",
+         timeText(message.recorded), " ", fault.what(), ": leave this bag out");
 }
 
 }  // namespace ddm

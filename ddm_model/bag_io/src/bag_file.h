@@ -15,6 +15,8 @@
 #include <string>
 #include <string_view>
 
+#include "refuse.h"
+
 namespace ddm {
 
 /// A topic of a bag.
@@ -59,22 +61,22 @@ class BagFile {
   std::map<std::uint32_t, BagConnection> connections_;
 };
 
+/// @throws std::runtime_error with the topic, the time and the fault
+[[noreturn]] void refuseMessage(const BagMessage& message, const std::exception& fault);
+
 /// A message as the type that its topic has.
 /// @throws std::runtime_error with the topic, the time and the fault
 template <class Message>
 Message parse(const BagMessage& message) {
   const BagConnection& connection = message.connection;
   if (connection.md5sum != ros::message_traits::md5sum<Message>()) {
-    throw std::runtime_error("topic " + connection.topic +
-                             " was recorded with another definition of " + connection.type +
-                             ": convert the bag with `rosbag fix`, or record it again");
+    refuse("topic ", connection.topic, " was recorded with another definition of ", connection.type,
+           ": convert the bag with `rosbag fix`, or record it again");
   }
   try {
     return messageFromBytes<Message>(message.bytes.data(), message.bytes.size());
   } catch (const std::exception& e) {
-    throw std::runtime_error("the message of topic " + connection.topic + " recorded at " +
-                             std::to_string(message.recorded.toSec()) + " s " + e.what() +
-                             ": leave this bag out");
+    refuseMessage(message, e);
   }
 }
 

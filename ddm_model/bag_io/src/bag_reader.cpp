@@ -18,226 +18,212 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <set>
-#include <stdexcept>
 #include <string_view>
 #include <utility>
 
 #include "bag_file.h"
-#include "torque_reader.h"
-#include "trial_messages.h"
+#include "bag_topics.h"
+#include "pairing.h"
+#include "refuse.h"
 
 namespace ddm {
 namespace {
 
 /// "[1, 2]"
-std::string listText(const std::vector<int>& numbers) {
+std::string listOf(const std::vector<int>& numbers) {
   std::vector<std::string> texts;
   for (const int number : numbers) texts.push_back(std::to_string(number));
   return "[" + boost::algorithm::join(texts, ", ") + "]";
 }
 
-using Connections = std::map<std::uint32_t, BagConnection>;
+constexpr int kFewGreyValues = 64;  // of 256: what 14 bits of 16 leave
 
-std::string absolute(const std::string& topic) {
-  return !topic.empty() && topic.front() == '/' ? topic : "/" + topic;
-}
-
-using Types = std::vector<std::string>;
-
-/// A topic of a bag; an empty name: there is none.
-struct Topic {
-  std::string name;
-  std::string type;
-};
-
-constexpr char kCompressed[] = "/compressed";  // of image_transport
-
-/// The topic that image_transport made this one of.
-std::string baseOf(const std::string& topic) {
-  return boost::algorithm::ends_with(topic, kCompressed)
-             ? topic.substr(0, topic.size() - (sizeof(kCompressed) - 1))
-             : topic;
-}
-
-[[noreturn]] void refuseTransport(const Topic& topic) {
-  const std::size_t slash = topic.name.rfind('/');
-  const std::string base = absolute(topic.name.substr(0, slash));
-  const std::string transport = topic.name.substr(slash + 1);
-  throw std::runtime_error("topic " + topic.name + " has images of the transport " + transport +
-                           " (" + topic.type + "), which cannot be read: record " + base + " or " +
-                           base +
-                           "/compressed, or play the bag with `rosrun image_transport republish " +
-                           transport + " in:=" + base + " raw out:=/image_raw` and record that");
-}
-
-/// The recorded topic that `name` means: the one of this name, else one in some namespace; of an
-/// image, that name or its compressed form.
-Topic findTopic(const Connections& connections, const std::string& name, const Types& types,
-                const std::string& key) {
-  std::map<std::string, std::set<std::string>> found;  // by the name without transport
-  bool exact = false;
-  for (const auto& entry : connections) {
-    const std::string& topic = entry.second.topic;
-    for (const std::string& base : {topic, baseOf(topic)}) {
-      const bool is_exact = absolute(base) == absolute(name);
-      if (!is_exact && (exact || !boost::algorithm::ends_with(absolute(base), absolute(name)))) {
-        continue;
-      }
-      if (is_exact && !exact) found.clear();
-      exact = is_exact;
-      found[base].insert(topic);
-    }
-  }
-  if (found.size() > 1) {
-    throw std::runtime_error("topics " + *found.begin()->second.begin() + " and " +
-                             *found.rbegin()->second.begin() + " both match: set data_set/" + key +
-                             " to one of them");
-  }
-  if (found.empty()) return {};
-  Topic topic{*found.begin()->second.begin(), ""};  // the raw one sorts first
-  for (const auto& entry : connections) {
-    const BagConnection& connection = entry.second;
-    if (connection.topic != topic.name) continue;
-    for (const char* transport : {"/theora", "/compressedDepth"}) {
-      if (key == "image_topic" && boost::algorithm::ends_with(topic.name, transport)) {
-        refuseTransport({topic.name, connection.type});
-      }
-    }
-    if (std::find(types.begin(), types.end(), connection.type) == types.end()) {
-      throw std::runtime_error("topic " + topic.name + " has type " + connection.type +
-                               ", it must be " + boost::algorithm::join(types, " or ") +
-                               ": set data_set/" + key);
-    }
-    if (!topic.type.empty() && topic.type != connection.type) {
-      throw std::runtime_error("topic " + topic.name + " has messages of " + topic.type + " and " +
-                               connection.type + ": leave this bag out");
-    }
-    topic.type = connection.type;
-  }
-  return topic;
-}
-
-Topic requireTopic(const Connections& connections, const std::string& name, const Types& types,
-                   const std::string& key) {
-  Topic topic = findTopic(connections, name, types, key);
-  if (!topic.name.empty()) return topic;
-  std::set<std::string> topics;
-  for (const auto& entry : connections) {
-    const std::string& other = entry.second.topic;
-    topics.insert(other + " (" + entry.second.type + ")");
-    const std::string base = absolute(other.substr(0, other.rfind('/')));
-    if (key == "image_topic" && boost::algorithm::ends_with(base, absolute(name))) {
-      refuseTransport({other, entry.second.type});
-    }
-  }
-  throw std::runtime_error("no topic " + name + " (it holds: " +
-                           (topics.empty() ? "nothing" : boost::algorithm::join(topics, ", ")) +
-                           "): record it, or set data_set/" + key);
-}
-
-const Types kImages = {"sensor_msgs/Image", "sensor_msgs/CompressedImage"};
-
-/// Tells the stamp of an image, and what is the same in images with the same content.
-void takeTimeOf(const BagMessage& message, TrialMessages* messages) {
+/// The times of an image, and what is the same in images with the same content.
+BagImage bagImageOf(const BagMessage& message, std::size_t number) {
   MessageBytes bytes(message.bytes.data(), message.bytes.size());
   std_msgs::Header header;
   try {
     bytes.next(header);
   } catch (const std::exception& e) {
-    throw std::runtime_error("the message of topic " + message.connection.topic + " recorded at " +
-                             std::to_string(message.recorded.toSec()) + " s " + e.what() +
-                             ": leave this bag out");
+    refuseMessage(message, e);
   }
-  const std::string_view content(message.bytes.data() + message.bytes.size() - bytes.left(),
-                                 bytes.left());
-  messages->takeImageTime(header.stamp, message.recorded, std::hash<std::string_view>()(content));
+  const std::string_view content = message.bytes.substr(message.bytes.size() - bytes.left());
+  return {header.stamp, message.recorded, number, std::hash<std::string_view>()(content)};
 }
 
-void takeImage(const BagMessage& message, std::size_t number, TrialMessages* messages) {
-  if (message.connection.type == kImages[0]) {
-    const auto image = parse<sensor_msgs::Image>(message);
-    return messages->takeImage(number, image, image.encoding);
+/// @param encoding  out: as the camera sent it
+/// @throws std::invalid_argument if a compressed image cannot be decoded
+sensor_msgs::Image imageOf(const BagMessage& message, std::string* encoding) {
+  if (isRaw(message.connection)) {
+    auto image = parse<sensor_msgs::Image>(message);
+    *encoding = image.encoding;
+    return image;
   }
   const auto compressed = parse<sensor_msgs::CompressedImage>(message);
-  sensor_msgs::Image image;
-  try {
-    image = unpacked(compressed);
-  } catch (const std::invalid_argument& e) {
-    return messages->takeBrokenImage(number, e.what());
-  }
-  messages->takeImage(number, image, compressed.format);
+  *encoding = compressed.format;
+  return unpacked(compressed);
 }
 
-void takeGoal(const BagMessage& message, TrialMessages* messages) {
-  const bool raw = message.connection.type == kImages[0];
-  try {
-    messages->takeGoal(raw ? parse<sensor_msgs::Image>(message)
-                           : unpacked(parse<sensor_msgs::CompressedImage>(message)));
-  } catch (const std::exception& e) {
-    throw std::runtime_error("goal image on " + message.connection.topic + ": " + e.what());
+/// Reads the times of all images and torques, and pairs them. Pixels are not decoded: many of a fast camera's
+/// images are in no frame.
+Pairs readPairs(BagFile* bag, const BagTopics& topics, const BagOptions& options) {
+  TorqueReader reader(options.motors);
+  Publishers controllers, cameras;
+  std::vector<BagImage> images;
+  std::vector<BagTorque> torques;
+  bag->forEachMessage({topics.images.name, topics.torques.name}, [&](const BagMessage& message) {
+    if (message.connection.topic == topics.images.name) {
+      cameras.add(message.connection.publisher, message.recorded);
+      images.push_back(bagImageOf(message, images.size()));
+    } else if (const std::optional<BagTorque> torque = reader.read(message)) {
+      controllers.add(message.connection.publisher, message.recorded);
+      torques.push_back(*torque);
+    }
+  });
+  const std::string& topic = topics.torques.name;
+  const std::string unknown = reader.withoutEffort();
+  if (torques.empty()) {
+    const std::string motors = boost::algorithm::join(options.motors, " and ");
+    refuse("topic ", topic, " has no torque", motors.empty() ? "" : " of " + motors,
+           unknown.empty() ? "" : " (" + unknown + " have no effort or number of them)",
+           ": leave this bag out, or set data_set/torque_topic and motors");
   }
+  std::vector<std::string> notes;
+  if (!unknown.empty()) {
+    notes.push_back("topic " + topic + ": " + unknown +
+                    " have no effort or number of the motors and do not count");
+  }
+  notes.push_back(controllers.requireOneAtATime("topic " + topic + " has torques of ",
+                                                "record the one that moves the motor"));
+  notes.push_back(cameras.requireOneAtATime("topic " + topics.images.name + " has images of ",
+                                            "record each camera on a topic of its own"));
+  notes.erase(std::remove(notes.begin(), notes.end(), ""), notes.end());
+  const bool by_stamp = TorqueReader::answersImages(topics.torques.type);
+  Pairs pairs = pairUp(std::move(images), std::move(torques), by_stamp ? 0.0 : options.dt);
+  pairs.notes.insert(pairs.notes.begin(), notes.begin(), notes.end());
+  return pairs;
 }
 
-/// Who published on a topic, and when.
-class Publishers {
+/// The images of the frames of a bag, and its goal image.
+class FrameImages {
  public:
-  void take(const std::string& name, const ros::Time& time) {
-    Span& span = spans_.try_emplace(name, Span{time, time, 0}).first->second;
-    span.first = std::min(span.first, time);
-    span.last = std::max(span.last, time);
-    ++span.number;
+  FrameImages(Pairs pairs, int image_size, const BagOptions& options)
+      : pairs_(std::move(pairs)),
+        image_size_(image_size),
+        options_(options),
+        greys_(pairs_.frames.size()) {
+    for (std::size_t i = 0; i < greys_.size(); ++i) frame_of_[pairs_.frames[i].image] = i;
   }
-  bool empty() const { return spans_.empty(); }
 
-  /// A publisher without a name is not known to be another one: rosbag leaves it out in some
-  /// latched messages.
-  /// @return a note if there are several, one after the other; else empty
-  /// @throws std::runtime_error if two published at the same time
-  /// @param remedy  for two at the same time
-  std::string requireOneAtATime(const std::string& what, const std::string& remedy) const {
-    std::vector<std::pair<std::string, Span>> named;
-    std::vector<std::string> texts;
-    for (const auto& entry : spans_) {
-      if (!entry.first.empty()) named.push_back(entry);
+  /// Takes in the next image in the order of the file. One that cannot be decoded leaves a gap.
+  void add(const BagMessage& message) {
+    const auto found = frame_of_.find(number_++);
+    if (found == frame_of_.end()) return;
+    const std::string time = timeText(pairs_.frames[found->second].time);
+    try {
+      std::string encoding;
+      const sensor_msgs::Image image = imageOf(message, &encoding);
+      if (image.data.empty()) throw std::invalid_argument("it has no pixels");
+      requireSameCamera(image, encoding, time);
+      greys_[found->second] = greyOf(image, image_size_, options_);
+    } catch (const std::invalid_argument& e) {
+      if (num_broken_++ == 0) first_broken_ = "image at " + time + ": " + e.what();
     }
-    std::sort(named.begin(), named.end(),
-              [](const auto& a, const auto& b) { return a.second.first < b.second.first; });
-    bool overlap = false;
-    for (std::size_t i = 0; i < named.size(); ++i) {
-      const Span& span = named[i].second;
-      texts.push_back(named[i].first + " (" + std::to_string(span.number) + " from " +
-                      std::to_string(span.first.toSec()) + " s to " +
-                      std::to_string(span.last.toSec()) + " s)");
-      overlap = overlap || (i > 0 && span.first <= named[i - 1].second.last);
+  }
+
+  void setGoal(const BagMessage& message) {
+    try {
+      std::string encoding;
+      goal_ = greyOf(imageOf(message, &encoding), image_size_, options_);
+    } catch (const std::exception& e) {
+      refuse("goal image on ", message.connection.topic, ": ", e.what());
     }
-    if (texts.size() > kMostNamed + 1) {
-      texts[kMostNamed] = std::to_string(texts.size() - kMostNamed) + " more";
-      texts.resize(kMostNamed + 1);
+  }
+
+  /// @throws std::runtime_error if more images are broken than whole
+  BagContent content() const {
+    if (2 * num_broken_ > greys_.size()) refuse(first_broken_);
+    const auto torque_dim = static_cast<Eigen::Index>(pairs_.frames.front().torque.size());
+    BagContent content{DataSet(image_size_, static_cast<int>(torque_dim)), camera_};
+    std::vector<ros::Time> times;
+    bool new_segment = false;
+    int darkest = 255, brightest = 0;
+    for (std::size_t i = 0; i < greys_.size(); ++i) {
+      const Pairs::Frame& frame = pairs_.frames[i];
+      const Grey& grey = greys_[i];
+      new_segment = new_segment || frame.new_segment || grey.empty();
+      if (grey.empty()) continue;
+      const auto range = std::minmax_element(grey.begin(), grey.end());
+      darkest = std::min<int>(darkest, *range.first);
+      brightest = std::max<int>(brightest, *range.second);
+      times.push_back(frame.time);
+      if (pairs_.of_others) content.frame_ids.push_back(idOf(grey, frame));
+      content.data.append(grey, Eigen::Map<const Eigen::VectorXd>(frame.torque.data(), torque_dim),
+                          new_segment);
+      new_segment = false;
     }
-    const std::string text = what + boost::algorithm::join(texts, " and ");
-    if (overlap) throw std::runtime_error(text + ": " + remedy);
-    return named.size() > 1 ? text + ", one after the other: all of them count" : "";
+    const auto since = [&times](const ros::Time& time) {
+      return secondsBetween(times.front(), time);
+    };
+    for (const ros::Time& time : times) content.times.push_back(since(time));
+    content.interval = medianInterval(times);
+    for (const ros::Time& time : pairs_.images_without_torque) {
+      content.images_without_torque.push_back(since(time));
+    }
+    for (const ros::Time& time : pairs_.torques_without_image) {
+      content.torques_without_image.push_back(since(time) - pairs_.lag);
+    }
+    if (!goal_.empty()) content.data.setGoal(goal_);
+    content.notes = pairs_.notes;
+    if (pairs_.of_others && content.data.torques().isZero(0.0)) {
+      content.notes.emplace_back("all its torques are 0: record what commands the motors");
+    }
+    if (num_broken_ > 0) {
+      addNote(&content.notes, num_broken_,
+              " image(s) cannot be read and leave a gap, the first: ", first_broken_);
+    }
+    if (brightest - darkest < kFewGreyValues) {
+      addNote(&content.notes, "its images (", camera_, ") have grey values from ", darkest, " to ",
+              brightest,
+              " of 255, so that little can be told apart: scale 10 or 12 "
+              "bits, or a depth, to the whole range before they are "
+              "recorded");
+    }
+    return content;
   }
 
  private:
-  static constexpr std::size_t kMostNamed = 2;
-  struct Span {
-    ros::Time first, last;
-    std::size_t number;
-  };
-  std::map<std::string, Span> spans_;
-};
-
-/// "12 messages of /driver"
-std::string countsOf(const std::map<std::string, std::size_t>& messages) {
-  std::vector<std::string> texts;
-  for (const auto& entry : messages) {
-    texts.push_back(std::to_string(entry.second) + " messages of " +
-                    (entry.first.empty() ? "an unnamed node" : entry.first));
+  void requireSameCamera(const sensor_msgs::Image& image, const std::string& encoding,
+                         const std::string& time) {
+    const std::string size = textOf(image.width, "x", image.height, " ");
+    if (camera_.empty()) camera_ = size + encoding;
+    // What a compressed image is called does not change its pixels.
+    const bool compressed = encoding != image.encoding;
+    if (camera_ == size + encoding) return;
+    if (compressed && boost::algorithm::starts_with(camera_, size)) return;
+    refuse("the images change from ", camera_, " to ", size, encoding, " at ", time,
+           ": record one camera setting per bag");
   }
-  return boost::algorithm::join(texts, " and ");
-}
+
+  /// The same number for frames with the same time, image and torque.
+  static std::size_t idOf(const Grey& grey, const Pairs::Frame& frame) {
+    std::string bytes(grey.begin(), grey.end());
+    bytes.append(reinterpret_cast<const char*>(frame.torque.data()),
+                 frame.torque.size() * sizeof(double));
+    return std::hash<std::string>()(bytes + timeText(frame.time));
+  }
+
+  Pairs pairs_;
+  int image_size_;
+  const BagOptions& options_;
+  std::map<std::size_t, std::size_t> frame_of_;  // by the number of the image
+  std::vector<Grey> greys_;                      // of the frames; empty until they come
+  std::size_t number_ = 0;                       // of the next image
+  std::size_t num_broken_ = 0;
+  std::string first_broken_;
+  Grey goal_;
+  std::string camera_;
+};
 
 }  // namespace
 
@@ -264,7 +250,7 @@ std::vector<std::string> BagOptions::problems() const {
                    "motors", "be names", "an empty one");
   data_set.require(crop.size() == 4 && std::all_of(crop.begin(), crop.end(),
                                                    [](int n) { return n >= 0 && n <= 16384; }),
-                   "crop", "be [column, row, width, height], each in [0, 16384]", listText(crop));
+                   "crop", "be [column, row, width, height], each in [0, 16384]", listOf(crop));
   return data_set.problems();
 }
 
@@ -278,119 +264,61 @@ Grey greyOf(const sensor_msgs::Image& image, int image_size, const BagOptions& o
 
 BagContent readBagBytes(std::istream* in, int image_size, const BagOptions& options) {
   BagFile bag(in);
-  const Topic images = requireTopic(bag.connections(), options.image_topic, kImages, "image_topic");
-  const Topic torques =
-      requireTopic(bag.connections(), options.torque_topic, TorqueReader::types(), "torque_topic");
-  const Topic goal = findTopic(bag.connections(), options.goal_topic, kImages, "goal_topic");
-  const bool by_stamp = TorqueReader::answersImages(torques.type);
-  if (!by_stamp && options.dt == 0.0) {
-    throw std::runtime_error("topic " + torques.name + " has type " + torques.type +
-                             ", which does not say which image it answers: set data_set/dt, the "
-                             "time between frames [s]");
-  }
-  if (goal.name == images.name) {
-    throw std::runtime_error(
-        "topic " + goal.name +
-        " is meant by data_set/image_topic and data_set/goal_topic: set one of "
-        "them to another topic");
-  }
-  TrialMessages messages(image_size, options);
-  TorqueReader reader(options.motors);
-  Publishers publishers, cameras;
-  bag.forEachMessage({images.name, torques.name}, [&](const BagMessage& message) {
-    if (message.connection.topic == images.name) {
-      cameras.take(message.connection.publisher, message.recorded);
-      return takeTimeOf(message, &messages);
+  const BagTopics topics = findTopics(bag, options);
+  FrameImages images(readPairs(&bag, topics, options), image_size, options);
+  bag.forEachMessage({topics.images.name, topics.goal.name}, [&](const BagMessage& message) {
+    if (message.connection.topic == topics.goal.name) {
+      images.setGoal(message);
+    } else {
+      images.add(message);
     }
-    const std::optional<TimedTorque> torque = reader.read(message);
-    if (!torque) return;
-    messages.takeTorque(*torque);
-    publishers.take(message.connection.publisher, torque->recorded);
   });
-  const std::string without_effort = countsOf(reader.withoutEffort());
-  if (publishers.empty()) {
-    throw std::runtime_error(
-        "topic " + torques.name + " has no torque" +
-        (options.motors.empty() ? "" : " of " + boost::algorithm::join(options.motors, " and ")) +
-        (without_effort.empty() ? ""
-                                : " (" + without_effort + " have no effort or number of them)") +
-        ": leave this bag out, or set data_set/torque_topic and motors");
-  }
-  if (!without_effort.empty()) {
-    messages.note("topic " + torques.name + ": " + without_effort +
-                  " have no effort or number of the motors and do not count");
-  }
-  for (const std::string& note :
-       {publishers.requireOneAtATime("topic " + torques.name + " has torques of ",
-                                     "record the one that moves the motor"),
-        cameras.requireOneAtATime("topic " + images.name + " has images of ",
-                                  "record each camera on a topic of its own")}) {
-    if (!note.empty()) messages.note(note);
-  }
-  messages.pair(by_stamp ? 0.0 : options.dt);
-  std::size_t number = 0;
-  bag.forEachMessage({images.name, goal.name}, [&](const BagMessage& message) {
-    if (message.connection.topic == goal.name) return takeGoal(message, &messages);
-    if (messages.wants(number)) takeImage(message, number, &messages);
-    ++number;
-  });
-  return messages.frames();
+  return images.content();
 }
 
 BagContent readBag(const std::string& path, int image_size, const BagOptions& options) {
-  if (boost::algorithm::ends_with(path, ".active")) {
-    throw std::runtime_error(
-        "bag " + path +
-        ": its recording was not completed; `rosbag reindex` recovers what was "
-        "written, then rename it to *.bag");
-  }
-  if (std::filesystem::exists(path + "/metadata.yaml")) {
-    throw std::runtime_error(
-        "bag " + path +
-        ": is the folder of a recording of ROS 2; only bags of format 2.0 (ROS "
-        "1) are read: convert it with `rosbags-convert --src FOLDER --dst FILE.bag` (pip "
-        "install rosbags)");
-  }
-  if (std::filesystem::is_directory(path)) {
-    throw std::runtime_error("bag " + path + ": is a folder: name the bags in it");
-  }
+  namespace fs = std::filesystem;
   try {
+    if (boost::algorithm::ends_with(path, ".active")) {
+      refuse(
+          "its recording was not completed; `rosbag reindex` recovers what was written, then "
+          "rename it to *.bag");
+    }
+    if (fs::exists(path + "/metadata.yaml")) {
+      refuse(
+          "is the folder of a recording of ROS 2; only bags of format 2.0 (ROS 1) are read: "
+          "convert it with `rosbags-convert --src FOLDER --dst FILE.bag` (pip install rosbags)");
+    }
+    if (fs::is_directory(path)) refuse("is a folder: name the bags in it");
     requirePlainFile(path);
     std::ifstream in(path, std::ios::binary);
-    if (!in) throw std::runtime_error(std::strerror(errno));
+    if (!in) refuse(std::strerror(errno));
     return readBagBytes(&in, image_size, options);
   } catch (const std::exception& e) {
-    throw std::runtime_error("bag " + path + ": " + e.what());
+    refuse("bag ", path, ": ", e.what());
   }
 }
 
-void requireDifferentBags(const std::vector<std::string>& paths) {
-  std::map<std::pair<dev_t, ino_t>, std::string> seen;
-  for (const std::string& path : paths) {
-    struct stat status {};
-    if (::stat(path.c_str(), &status) != 0) continue;  // whoever reads it says so
-    const auto added = seen.emplace(std::make_pair(status.st_dev, status.st_ino), path);
-    if (added.second) continue;
+void DifferentBags::require(const std::string& path, const BagContent& content) {
+  constexpr char kRemedy[] = ": it would count twice, so leave one of them out";
+  struct stat status {};
+  if (::stat(path.c_str(), &status) == 0) {
+    const auto added = files_.emplace(std::make_pair(status.st_dev, status.st_ino), path);
     const std::string& before = added.first->second;
-    throw std::runtime_error("bag " + path + " is given twice" +
-                             (before == path ? "" : ", also as " + before) +
-                             ": it would count twice, so leave one of them out");
+    if (!added.second) {
+      refuse("bag ", path, " is given twice", before == path ? "" : ", also as " + before, kRemedy);
+    }
   }
-}
-
-void DifferentFrames::require(const std::string& path, const BagContent& content) {
   std::map<std::string, std::size_t> shared;  // by bag
   for (const std::size_t id : content.frame_ids) {
-    const auto added = seen_.emplace(id, path);
+    const auto added = frames_.emplace(id, path);
     if (!added.second && added.first->second != path) ++shared[added.first->second];
   }
   const std::size_t all = content.frame_ids.size();
-  for (const auto& entry : shared) {
-    if (10 * entry.second <= all) continue;
-    throw std::runtime_error("bag " + path + ": " + std::to_string(entry.second) + " of its " +
-                             std::to_string(all) + " frames are also in bag " + entry.first +
-                             ", with the same times: they would count twice, so leave one of the "
-                             "bags out, or split the recording without an overlap");
+  for (const auto& [other, number] : shared) {
+    if (10 * number <= all) continue;
+    refuse("bag ", path, ": ", number, " of its ", all, " frames are also in bag ", other,
+           ", with the same times", kRemedy, ", or split the recording without an overlap");
   }
 }
 

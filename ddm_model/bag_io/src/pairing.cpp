@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
-#include <string>
 #include <utility>
+
+#include "refuse.h"
 
 namespace ddm {
 namespace {
@@ -16,26 +15,11 @@ constexpr double kGap = 1.5;            // in median intervals
 constexpr double kTolerance = 0.25;     // of dt: how far an image may be from where it is due
 constexpr double kRateTolerance = 0.1;  // of dt: how far the usual interval may be from it
 
-bool isEarlier(const TimedTorque& a, const TimedTorque& b) { return a.time < b.time; }
-
 template <class Item>
 std::vector<ros::Time> timesOf(const std::vector<Item>& items) {
   std::vector<ros::Time> times;
   for (const Item& item : items) times.push_back(item.time);
   return times;
-}
-
-/// [s]; 0 if there are fewer than two.
-double medianInterval(const std::vector<ros::Time>& times) {
-  std::vector<double> intervals;
-  for (size_t i = 1; i < times.size(); ++i) {
-    intervals.push_back(secondsBetween(times[i - 1], times[i]));
-  }
-  if (intervals.empty()) return 0.0;
-  // The lower of two middle ones: a gap only ever lengthens an interval.
-  const auto middle = intervals.begin() + (intervals.size() - 1) / 2;
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
 }
 
 /// The position of the time that is nearest to another.
@@ -75,6 +59,7 @@ std::vector<std::pair<std::size_t, bool>> pickImages(const std::vector<ros::Time
 
 /// The images of a camera whose rate does not fit dt are each where the one before lets them be due,
 /// so that frames come at another rate, or one by one.
+/// @param apart  usual time between images [s]
 void requireRate(const Pairs& pairs, double apart, double dt) {
   const auto& frames = pairs.frames;
   std::size_t num_alone = 0;
@@ -82,7 +67,7 @@ void requireRate(const Pairs& pairs, double apart, double dt) {
     const bool last = i + 1 == frames.size() || frames[i + 1].new_segment;
     num_alone += frames[i].new_segment && last ? 1 : 0;
   }
-  const double interval = pairs.interval();
+  const double interval = medianInterval(pairs.times());
   const bool fits =
       std::abs(interval - dt) <= kRateTolerance * dt && 4 * num_alone <= frames.size();
   if (fits || frames.size() < 2 || apart <= 0.0) return;
@@ -92,33 +77,30 @@ void requireRate(const Pairs& pairs, double apart, double dt) {
   text << "its images come every " << apart << " s, which does not fit data_set/dt = " << dt
        << ": set it (--dt) to a multiple, such as " << multiple * apart << " or "
        << (multiple + 1.0) * apart;
-  throw std::runtime_error(text.str());
+  refuse(text.str());
 }
 
 }  // namespace
 
-double Pairs::interval() const { return medianInterval(timesOf(frames)); }
-
-Pairs pairByStamp(const std::vector<TimedImage>& images, std::vector<TimedTorque> torques) {
-  const auto byStamp = [](const TimedTorque& a, const TimedTorque& b) { return a.stamp < b.stamp; };
+Pairs pairByStamp(const std::vector<BagImage>& images, std::vector<BagTorque> torques) {
+  static constexpr char kRuns[] =
+      ", and record each run of a simulation, whose time begins anew, in a bag of its own";
+  const auto byStamp = [](const BagTorque& a, const BagTorque& b) { return a.stamp < b.stamp; };
   std::stable_sort(torques.begin(), torques.end(), byStamp);
-  for (size_t i = 1; i < torques.size(); ++i) {
-    if (torques[i].stamp == torques[i - 1].stamp && torques[i].torque != torques[i - 1].torque) {
-      throw std::runtime_error(
-          "two different torques of data_set/torque_topic have the stamp " +
-          std::to_string(torques[i].stamp.toSec()) +
-          " s: stamp each with the image it answers, and record each run of a simulation, whose "
-          "time begins anew, in a bag of its own");
+  const auto isSame = [](const BagTorque& a, const BagTorque& b) {
+    if (a.stamp == b.stamp && a.torque != b.torque) {
+      refuse("two different torques of data_set/torque_topic have the stamp ", timeText(a.stamp),
+             ": stamp each with the image it answers", kRuns);
     }
-  }
-  const auto isSame = [](const TimedTorque& a, const TimedTorque& b) { return a.stamp == b.stamp; };
+    return a.stamp == b.stamp;
+  };
   torques.erase(std::unique(torques.begin(), torques.end(), isSame), torques.end());
   Pairs pairs;
   std::vector<bool> paired(torques.size(), false);
   bool new_segment = true;
-  for (const TimedImage& image : images) {
-    const auto torque = std::lower_bound(torques.begin(), torques.end(),
-                                         TimedTorque{image.stamp, {}, {}, {}}, byStamp);
+  for (const BagImage& image : images) {
+    const auto torque =
+        std::lower_bound(torques.begin(), torques.end(), BagTorque{image.stamp, {}, {}}, byStamp);
     if (torque == torques.end() || torque->stamp != image.stamp) {
       pairs.images_without_torque.push_back(image.time);
       new_segment = true;
@@ -126,46 +108,42 @@ Pairs pairByStamp(const std::vector<TimedImage>& images, std::vector<TimedTorque
     }
     auto is_paired = paired[static_cast<std::size_t>(torque - torques.begin())];
     if (is_paired) {
-      throw std::runtime_error(
-          "two different images of data_set/image_topic have the stamp " +
-          std::to_string(image.stamp.toSec()) +
-          " s: let the camera stamp each image anew, and record each run of a simulation, whose "
-          "time begins anew, in a bag of its own");
+      refuse("two different images of data_set/image_topic have the stamp ", timeText(image.stamp),
+             ": let the camera stamp each image anew", kRuns);
     }
     is_paired = true;
     pairs.frames.push_back({image.number, image.time, torque->torque, new_segment});
     new_segment = false;
   }
-  for (size_t i = 0; i < torques.size(); ++i) {
+  for (std::size_t i = 0; i < torques.size(); ++i) {
     if (!paired[i]) pairs.torques_without_image.push_back(torques[i].time);
   }
-  const double gap = kGap * pairs.interval();
-  for (size_t i = 1; i < pairs.frames.size(); ++i) {
+  const double gap = kGap * medianInterval(pairs.times());
+  for (std::size_t i = 1; i < pairs.frames.size(); ++i) {
     const double interval = secondsBetween(pairs.frames[i - 1].time, pairs.frames[i].time);
     pairs.frames[i].new_segment = pairs.frames[i].new_segment || interval > gap;
   }
   return pairs;
 }
 
-Pairs pairInTime(const std::vector<TimedImage>& images, std::vector<TimedTorque> torques,
-                 double dt) {
+Pairs pairInTime(const std::vector<BagImage>& images, std::vector<BagTorque> torques, double dt) {
   const std::vector<ros::Time> image_times = timesOf(images);
   const double apart = medianInterval(image_times);
   if (apart > (1.0 + kTolerance) * dt) {
-    std::ostringstream text;
-    text << "its images are " << apart << " s apart, and frames must be data_set/dt = " << dt
-         << " s apart: make that as long as images are apart, or longer";
-    throw std::runtime_error(text.str());
+    refuse("its images are ", apart, " s apart, and frames must be data_set/dt = ", dt,
+           " s apart: make that as long as images are apart, or longer");
   }
-  std::stable_sort(torques.begin(), torques.end(), isEarlier);
+  std::stable_sort(torques.begin(), torques.end(),
+                   [](const BagTorque& a, const BagTorque& b) { return a.time < b.time; });
   const std::vector<ros::Time> times = timesOf(torques);
-
+  const double usual_age = std::max(dt, kGap * medianInterval(times));
   const auto picked = pickImages(image_times, dt);
   Pairs pairs;
-  pairs.usual_age = std::max(dt, kGap * medianInterval(times));
-  size_t next_torque = 0;  // the first that is not counted yet
-  for (size_t i = 0; i < picked.size(); ++i) {
-    const TimedImage& image = images[picked[i].first];
+  std::size_t next_torque = 0;  // the first that is not counted yet
+  std::size_t num_held = 0;     // frames whose torque is older than usual
+  double longest_held = 0.0;    // age of the oldest torque when its frame ends [s]
+  for (std::size_t i = 0; i < picked.size(); ++i) {
+    const BagImage& image = images[picked[i].first];
     const bool continued = i + 1 < picked.size() && !picked[i + 1].second;
     const ros::Time end =
         continued ? images[picked[i + 1].first].act : image.act + ros::Duration(dt);
@@ -174,10 +152,10 @@ Pairs pairInTime(const std::vector<TimedImage>& images, std::vector<TimedTorque>
       pairs.images_without_torque.push_back(image.time);
       continue;
     }
-    const auto last = static_cast<size_t>(after - times.begin()) - 1;
+    const auto last = static_cast<std::size_t>(after - times.begin()) - 1;
     const double age = secondsBetween(times[last], end);
-    pairs.num_held += age > pairs.usual_age ? 1 : 0;
-    pairs.longest_held = std::max(pairs.longest_held, age);
+    num_held += age > usual_age ? 1 : 0;
+    longest_held = std::max(longest_held, age);
     for (; next_torque < times.size() && times[next_torque] < image.act; ++next_torque) {
       if (next_torque != last) pairs.torques_without_image.push_back(times[next_torque]);
     }
@@ -189,7 +167,34 @@ Pairs pairInTime(const std::vector<TimedImage>& images, std::vector<TimedTorque>
                                      times.begin() + static_cast<std::ptrdiff_t>(next_torque),
                                      times.end());
   requireRate(pairs, apart, dt);
+  if (!pairs.images_without_torque.empty()) {
+    pairs.notes.push_back(
+        textOf(pairs.images_without_torque.size(),
+               " image(s) before the first torque were dropped: nothing says what "
+               "acted then"));
+  }
+  if (num_held > 0) {
+    addNote(&pairs.notes, num_held, " of ", pairs.frames.size(),
+            " frames have a torque that is older than ", secondsText(usual_age), ", at most ",
+            secondsText(longest_held), ": a torque counts until the next one");
+  }
   return pairs;
 }
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double medianInterval(const std::vector<ros::Time>& times) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    intervals.push_back(secondsBetween(times[i - 1], times[i]));
+  }
+  return intervals.empty() ? 0.0 : median(intervals);
+}
+
+std::vector<ros::Time> Pairs::times() const { return timesOf(frames); }
 
 }  // namespace ddm

@@ -28,10 +28,10 @@ enum class MinimumReason {
 struct Minimum {
   MinimumReason reason = MinimumReason::kStartFailed;
   std::string message;       ///< the reason in words
-  Eigen::VectorXd x;         ///< the best point evaluated; the start if there is none       [n]
+  Eigen::VectorXd x;         ///< the best point evaluated; the initial point if there is none  [n]
   Eigen::VectorXd gradient;  ///< there                        [n], empty if there is none
   double cost = std::numeric_limits<double>::infinity();          ///< there
-  double initial_cost = std::numeric_limits<double>::infinity();  ///< at the start
+  double initial_cost = std::numeric_limits<double>::infinity();  ///< at the initial point
   int iterations = 0;                                             ///< line searches
   int evaluations = 0;                                            ///< of the function
 
@@ -47,19 +47,22 @@ struct MinimiseOptions {
   double function_tolerance = 1e-10;  ///< end when an iteration changes the cost, which may be
                                       ///< negative, by no more than this fraction [-]
   double gradient_tolerance = 1e-7;   ///< end when no entry of the gradient is larger
-  /// Asked before each evaluation, the one at the start included; true ends the search.
+  /// Called before each evaluation, also before the first; true ends the search.
   std::function<bool()> stop;
   /// Called with the best so far before the first iteration and after each; false ends the search.
   std::function<bool(const Minimum& so_far)> on_iteration;
 };
 
-/// Minimises f from `start`. A point where f cannot be evaluated makes the line search take a
-/// shorter step. The result is never worse than the start, however the search ends, and the reason
-/// does not rely on the verdict of the solver, which may call a search successful that went
-/// nowhere.
-/// @throws std::invalid_argument if the start is empty or not finite, or a limit is negative;
+/// Minimises f from an initial point. Where f cannot be evaluated, the line search takes a shorter step. The result is
+/// never worse than the initial point, however the search ends. The reason does not rely on the verdict of the solver,
+/// which may call a search successful although no step lowered the cost.
+/// @throws std::invalid_argument if the initial point is empty or not finite, or a limit is negative;
 ///         whatever f, stop and on_iteration throw
 Minimum minimise(const DifferentiableFunction& f, const Eigen::VectorXd& start,
                  const MinimiseOptions& options);
+
+/// Ceres warns on stderr about line searches over flat functions, which are no news to a user: how
+/// a solver ended is in every result. Called once by a program, never by a library.
+void silenceSolverLog();
 
 }  // namespace ddm

@@ -47,10 +47,10 @@ struct ModelOptions {
 struct TrainingOptions {
   std::string schedule = "joint";  ///< what is minimised over what, see scheduleNames()
   std::string solver = "lbfgs";    ///< "lbfgs", "kfac" or "bfgs"
-  int num_starts = 1;              ///< trainings, of which the best is kept [-]
+  int num_starts = 1;              ///< restarts, of which the best is kept [-]
   int max_delay = 0;               ///< largest model/delay that is tried [frames]
   int selection_steps = 0;         ///< by predictions so many steps ahead; 0: by what is minimised
-  int selection_iterations = 0;  ///< after so many of each start's last stage; 0: when all are done
+  int selection_iterations = 0;  ///< of each restart's last stage before they are compared; 0: all
   int selection_frames = 0;      ///< compared on so many frames at most; 0: on all
   int max_iterations = 500;      ///< cap on the iterations of the solver, each stage [-]
   int prediction_steps = 1;      ///< V_P: predictions up to so many steps ahead [-]

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <random>
 
 #include "ddm_model/mlp.h"
 #include "ddm_model/model_options.h"
@@ -26,25 +27,21 @@ class PredictionModel {
 
   /// @throws std::invalid_argument if a width is < 1, or max_torque is for other motors
   PredictionModel(const ModelOptions& options, int torque_dim)
-      : feature_dim_(options.feature_dim),
+      : options_(options),
         torque_dim_(torque_dim),
-        order_(options.order),
-        delay_(options.delay),
-        residual_(options.residual),
-        increments_(options.increments),
         max_torque_(perMotor(options.max_torque, torque_dim, "model/max_torque")),
         network_(layerWidths(options.order * (options.feature_dim + torque_dim),
                              options.predictor_widths, options.feature_dim),
                  Mlp<Scalar>::Output::kLinear) {}
 
-  int featureDim() const { return feature_dim_; }
+  int featureDim() const { return options_.feature_dim; }
   int torqueDim() const { return torque_dim_; }
   /// @return n
-  int order() const { return order_; }
+  int order() const { return options_.order; }
   /// @return d
-  int delay() const { return delay_; }
+  int delay() const { return options_.delay; }
   /// @return n + d, the frames from the oldest that h_n needs to the current one
-  int memory() const { return order_ + delay_; }
+  int memory() const { return options_.memory(); }
   /// What f sees as 1 [N m]  [torque_dim]
   const Eigen::VectorXd& maxTorque() const { return max_torque_; }
   /// @return n (feature_dim + torque_dim), the size of h_n
@@ -59,12 +56,12 @@ class PredictionModel {
   /// @param predicted   out: z_{t+1}, of this size already                      [feature_dim x N]
   void forward(const Scalar* theta_p, Eigen::Ref<Matrix> regressors,
                typename Mlp<Scalar>::Tape* tape, Eigen::Ref<Matrix> predicted) const {
-    for (int lag = increments_ ? order_ - 1 : 0; lag > 0; --lag) {
+    for (int lag = options_.increments ? order() - 1 : 0; lag > 0; --lag) {
       features(lag, regressors) = features(lag - 1, regressors) - features(lag, regressors);
     }
     network_.forward(theta_p, regressors, tape);  // eq. (2)
     predicted = tape->output();
-    if (residual_) predicted += features(0, regressors);
+    if (options_.residual) predicted += features(0, regressors);
   }
 
   /// Vector-Jacobian product of forward(). Uses the tape up.
@@ -75,26 +72,22 @@ class PredictionModel {
                 Matrix* d_regressors) const {
     network_.backward(theta_p, tape, d_predicted, d_theta_p, d_regressors);
     auto d_h = d_regressors->leftCols(d_predicted.cols());
-    for (int lag = 1; lag < (increments_ ? order_ : 1); ++lag) {
+    for (int lag = 1; lag < (options_.increments ? order() : 1); ++lag) {
       features(lag - 1, d_h) += features(lag, d_h);
       features(lag, d_h) *= Scalar(-1);
     }
-    if (residual_) features(0, d_h) += d_predicted;
+    if (options_.residual) features(0, d_h) += d_predicted;
   }
 
  private:
   /// Rows of the feature of `lag` steps ago (0: the current one).
   template <class Regressors>
   auto features(int lag, Regressors& regressors) const {
-    return regressors.middleRows(lag * (feature_dim_ + torque_dim_), feature_dim_);
+    return regressors.middleRows(lag * (featureDim() + torque_dim_), featureDim());
   }
 
-  int feature_dim_;
+  ModelOptions options_;
   int torque_dim_;
-  int order_;
-  int delay_;
-  bool residual_;
-  bool increments_;
   Eigen::VectorXd max_torque_;
   Mlp<Scalar> network_;
 };
@@ -140,5 +133,19 @@ struct Networks {
   Mlp<Scalar> encoder_;  // g^-1: pca_dim ... feature_dim
   Mlp<Scalar> decoder_;  // g:    feature_dim ... pca_dim
 };
+
+/// Initial theta (paper, Sec. 2.3, "Initialization"). The auto-encoder is unfolded: encoder layer k
+/// and the decoder layer that mirrors it form a pair, which starts as the PCA of that layer's
+/// input,
+///
+///   encoder:  W = c B^T, b = -c B^T m        decoder:  W = B / c, b = m
+///
+/// with basis B and mean m of the inputs. c gives the leading unit a spread of 0.3, where the arctan
+/// is nearly linear; the arctan's output is the input of the next pair. Units beyond the rank of the
+/// input have random initial weights, as has the whole auto-encoder without a PCA start, and f.
+/// @param scores  PCA scores of all images  [pca_dim x M]
+/// @return        theta                     [P]
+Eigen::VectorXd initialTheta(const Networks<double>& networks, const Eigen::MatrixXd& scores,
+                             bool pca_start, std::mt19937_64* rng);
 
 }  // namespace ddm

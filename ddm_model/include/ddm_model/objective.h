@@ -111,10 +111,8 @@ class JointObjective {
     explicit Lane(const PredictionModel<Scalar>& f) : roll_out(f) {}
 
     Value value;
-    Vector d_theta;                        // of V / 2
-    LayerFactors<Scalar> encoder_factors;  // empty: not wanted
-    LayerFactors<Scalar> decoder_factors;
-    LayerFactors<Scalar> f_factors;
+    Vector d_theta;                // of V / 2
+    LayerFactors<Scalar> factors;  // of all layers in the order of theta; empty: not wanted
     typename Mlp<Scalar>::Tape encoder_tape;
     typename Mlp<Scalar>::Tape decoder_tape;
     RollOut<Scalar> roll_out;  // of the part's targets
@@ -124,6 +122,7 @@ class JointObjective {
   };
 
   void reserve(int num_steps);
+  LayerFactors<Scalar> zeroFactors() const;
   void sumOverParts(const Vector& theta, const Terms& terms, bool gradient,
                     const std::uint64_t* error_seed);
   void forward(const Part& part, const Scalar* theta, const Terms& terms, Lane* lane);

@@ -32,8 +32,8 @@ class RollOut {
   /// Takes the memory for so many targets and steps at once.
   void reserve(Eigen::Index num_targets, int num_steps);
 
-  /// backward() adds the Kronecker factors of f to these from now on; null: no more.
-  void collect(LayerFactors<Scalar>* factors) {
+  /// backward() adds the Kronecker factors of f to these, one for each layer, from now on; null: no more.
+  void collect(KroneckerFactors<Scalar>* factors) {
     for (typename Mlp<Scalar>::Tape& tape : tapes_) tape.factors = factors;
   }
 

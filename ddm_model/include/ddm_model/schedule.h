@@ -30,8 +30,8 @@ struct Stage {
 /// How theta is found.
 struct Schedule {
   bool pca_start = true;        ///< auto-encoder starts from layer-wise PCA; false: at random
-  std::vector<Stage> stages;    ///< at least one; each start goes through them
-  std::optional<Stage> finish;  ///< for the start that is chosen, alone, on more and more frames
+  std::vector<Stage> stages;    ///< at least one; each restart goes through them
+  std::optional<Stage> finish;  ///< for the best restart alone, on more and more frames
 
   /// The terms that any stage minimises.
   Terms terms() const;
@@ -49,9 +49,9 @@ std::vector<std::string> scheduleNames();
 
 /// The schedule training/schedule with what else `training` says of V_P, V_W and iterations. Where
 /// predictions of more than one step are asked for, each stage with V_P is warmed up by one with a
-/// single step: long predictions of an untrained f have no useful gradient. Where starts are chosen
-/// before they are done, `finish` is the rest of the last stage.
-/// @throws std::invalid_argument naming the known ones if there is none of this name
+/// single step: long predictions of an untrained f have no useful gradient. Where restarts are
+/// compared before they are done, `finish` is the rest of the last stage.
+/// @pre the schedule has one of scheduleNames(), as TrainingOptions::problems() checks
 Schedule makeSchedule(const TrainingOptions& training);
 
 }  // namespace ddm

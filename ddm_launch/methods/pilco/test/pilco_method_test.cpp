@@ -3,7 +3,7 @@
 #include "pilco/pilco_method.h"
 
 #include <ddm_common/param_reader.h>
-#include <ddm_model/solver_log.h>
+#include <ddm_model/minimise.h>
 #include <ddm_model/testing/random_matrix.h>
 #include <ddm_msgs/testing/expect_error.h>
 #include <ddm_msgs/testing/temp_folder.h>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Each kind of cases in the file is a test; a case fails where a field is missing or disagrees.
-#include <ddm_model/solver_log.h>
+#include <ddm_model/minimise.h>
 #include <ddm_sim/pendulum.h>
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>

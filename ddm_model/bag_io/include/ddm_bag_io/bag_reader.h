@@ -5,9 +5,12 @@
 #include <ddm_model/data_set.h>
 #include <sensor_msgs/Image.h>
 
+#include <cstdint>
 #include <istream>
+#include <map>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace ddm {
@@ -86,17 +89,16 @@ BagContent readBag(const std::string& path, int image_size, const BagOptions& op
 /// @param in  binary, can be positioned
 BagContent readBagBytes(std::istream* in, int image_size, const BagOptions& options);
 
-/// @throws std::runtime_error if two paths are the same file
-void requireDifferentBags(const std::vector<std::string>& paths);
-
-/// Compares each bag with those before it: copies, and parts of a recording that overlap.
-class DifferentFrames {
+/// Compares each bag with those before it: the same file by two paths, copies, and parts of a recording that overlap.
+class DifferentBags {
  public:
-  /// @throws std::runtime_error if more than a tenth of the frames were in another bag
+  /// @throws std::runtime_error if the file, or more than a tenth of the frames, were there before
   void require(const std::string& path, const BagContent& content);
 
  private:
-  std::unordered_map<std::size_t, std::string> seen_;  // bag of each frame
+  std::map<std::pair<std::uintmax_t, std::uintmax_t>, std::string>
+      files_;                                            // path of each device and inode
+  std::unordered_map<std::size_t, std::string> frames_;  // bag of each frame
 };
 
 }  // namespace ddm

@@ -1,10 +1,8 @@
-// Support states: a few of the states that were seen, spread evenly over where they are.
+// Controller state x: the last n features and the last n-1 torques; and states of a data set.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_model/support_states.h"
+#include "ddm_model/history.h"
 
 #include <algorithm>
-
-#include "ddm_model/history.h"
 
 namespace ddm {
 

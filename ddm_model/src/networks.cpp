@@ -1,6 +1,6 @@
-// Initial parameters: the auto-encoder from layer-wise PCA, the predictor at random.
+// The three networks of the deep dynamical model: their initial parameters.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ddm_model/initialisation.h"
+#include "ddm_model/networks.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -1,0 +1,291 @@
+// Which topics of a bag are meant, what their messages say, and who published them.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bag_topics.h"
+
+#include <ddm_msgs/Torque.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <sensor_msgs/JointState.h>
+#include <std_msgs/Float32.h>
+#include <std_msgs/Float32MultiArray.h>
+#include <std_msgs/Float64.h>
+#include <std_msgs/Float64MultiArray.h>
+
+#include <algorithm>
+#include <boost/algorithm/string/join.hpp>
+#include <boost/algorithm/string/predicate.hpp>
+#include <cmath>
+#include <set>
+
+#include "refuse.h"
+
+namespace ddm {
+namespace {
+
+using boost::algorithm::ends_with;
+using Names = std::vector<std::string>;
+
+const Names kImages = {"sensor_msgs/Image", "sensor_msgs/CompressedImage"};
+
+constexpr char kJoints[] = "sensor_msgs/JointState";
+constexpr char kWrench[] = "geometry_msgs/WrenchStamped";
+
+/// What a message says.
+struct Values {
+  ros::Time stamp;             ///< of the header; 0: there is none
+  Names names;                 ///< of the values; empty: they have none
+  std::vector<double> values;  ///< [N m]
+};
+
+template <class Message>
+Values numberFrom(const BagMessage& message) {
+  return {{}, {}, {static_cast<double>(parse<Message>(message).data)}};
+}
+
+template <class Message>
+Values arrayFrom(const BagMessage& message) {
+  const auto data = parse<Message>(message).data;
+  return {{}, {}, std::vector<double>(data.begin(), data.end())};
+}
+
+Values torqueFrom(const BagMessage& message) {
+  const auto torque = parse<ddm_msgs::Torque>(message);
+  return {torque.header.stamp, {}, torque.torque};
+}
+
+Values wrenchFrom(const BagMessage& message) {
+  const auto wrench = parse<geometry_msgs::WrenchStamped>(message);
+  const geometry_msgs::Vector3 &f = wrench.wrench.force, &t = wrench.wrench.torque;
+  return {wrench.header.stamp,
+          {"force.x", "force.y", "force.z", "torque.x", "torque.y", "torque.z"},
+          {f.x, f.y, f.z, t.x, t.y, t.z}};
+}
+
+Values effortsFrom(const BagMessage& message) {
+  const auto joints = parse<sensor_msgs::JointState>(message);
+  return {joints.header.stamp, joints.name, joints.effort};
+}
+
+/// How a message of each type is read.
+const std::map<std::string, Values (*)(const BagMessage&)> kReaders = {
+    {"ddm_msgs/Torque", torqueFrom},
+    {"std_msgs/Float64", numberFrom<std_msgs::Float64>},
+    {"std_msgs/Float64MultiArray", arrayFrom<std_msgs::Float64MultiArray>},
+    {"std_msgs/Float32", numberFrom<std_msgs::Float32>},
+    {"std_msgs/Float32MultiArray", arrayFrom<std_msgs::Float32MultiArray>},
+    {kWrench, wrenchFrom},
+    {kJoints, effortsFrom}};
+
+std::string listOf(const Names& names) {
+  return names.empty() ? "nothing" : boost::algorithm::join(names, ", ");
+}
+
+bool anyIn(const Names& names, const Names& wanted) {
+  return std::find_first_of(names.begin(), names.end(), wanted.begin(), wanted.end()) !=
+         names.end();
+}
+
+/// The values of the motors, in the order of the motors.
+std::vector<double> valuesOf(const Names& motors, const Values& all, const std::string& topic) {
+  std::vector<double> values;
+  Names missing;
+  for (const std::string& motor : motors) {
+    const auto name = std::find(all.names.begin(), all.names.end(), motor);
+    if (name == all.names.end()) {
+      missing.push_back(motor);
+    } else {
+      values.push_back(all.values[static_cast<std::size_t>(name - all.names.begin())]);
+    }
+  }
+  if (missing.empty()) return values;
+  refuse("topic ", topic, " has ", listOf(all.names), ", but no ", listOf(missing),
+         ": set data_set/motors to names that are there");
+}
+
+/// "/camera/image_raw" of "camera/image_raw/compressed".
+std::string parentOf(const std::string& topic) {
+  return absolute(topic.substr(0, topic.rfind('/')));
+}
+
+/// @param topic  found for an option, but cannot be read
+/// @param base   the name by which it was found
+[[noreturn]] void refuseType(const Topic& topic, std::string base, const Names& types,
+                             const std::string& key) {
+  if (absolute(topic.name) == base) {
+    if (!ends_with(base, "/theora") && !ends_with(base, "/compressedDepth")) {
+      refuse("topic ", topic.name, " has type ", topic.type, ", it must be ",
+             boost::algorithm::join(types, " or "), ": set data_set/", key);
+    }
+    base = parentOf(topic.name);
+  }
+  const std::string transport = topic.name.substr(topic.name.rfind('/') + 1);
+  refuse("topic ", topic.name, " has images of the transport ", transport, " (", topic.type,
+         "), which cannot be read: record ", base, " or ", base,
+         "/compressed, or play the bag with `rosrun image_transport republish ", transport,
+         " in:=", base, " raw out:=/image_raw` and record that");
+}
+
+/// @param key  of the option that has the name
+Topic findTopic(const BagFile& bag, const std::string& name, const Names& types,
+                const std::string& key) {
+  using Found = std::map<std::string, std::map<std::string, std::string>>;
+  Found exact, in_namespace;  // types by topic by base, the topic that image_transport made them of
+  for (const auto& entry : bag.connections()) {
+    const BagConnection& connection = entry.second;
+    std::vector<std::string> bases = {absolute(connection.topic)};
+    if (&types == &kImages && !isRaw(connection)) bases.push_back(parentOf(connection.topic));
+    for (const std::string& base : bases) {
+      const bool is_exact = base == absolute(name);
+      if (!is_exact && !ends_with(base, absolute(name))) continue;
+      std::string& type = (is_exact ? exact : in_namespace)[base][connection.topic];
+      if (!type.empty() && type != connection.type) {
+        refuse("topic ", connection.topic, " has messages of ", type, " and ", connection.type,
+               ": leave this bag out");
+      }
+      type = connection.type;
+    }
+  }
+  const Found& found = exact.empty() ? in_namespace : exact;
+  if (found.empty()) return {};
+  const auto& [base, topics] = *found.begin();
+  if (found.size() > 1) {
+    refuse("topics ", topics.begin()->first, " and ", found.rbegin()->second.begin()->first,
+           " both match: set data_set/", key, " to one of them");
+  }
+  for (const auto& [topic, type] : topics) {  // the raw one is the first
+    const bool known = absolute(topic) == base || ends_with(topic, "/compressed");
+    if (known && std::find(types.begin(), types.end(), type) != types.end()) return {topic, type};
+  }
+  refuseType({topics.begin()->first, topics.begin()->second}, base, types, key);
+}
+
+Topic requireTopic(const BagFile& bag, const std::string& name, const Names& types,
+                   const std::string& key) {
+  Topic topic = findTopic(bag, name, types, key);
+  if (!topic.name.empty()) return topic;
+  std::set<std::string> topics;
+  for (const auto& entry : bag.connections()) {
+    topics.insert(entry.second.topic + " (" + entry.second.type + ")");
+  }
+  refuse("no topic ", name,
+         " (it holds: ", topics.empty() ? "nothing" : boost::algorithm::join(topics, ", "),
+         "): record it, or set data_set/", key);
+}
+
+}  // namespace
+
+std::string absolute(const std::string& topic) {
+  return !topic.empty() && topic.front() == '/' ? topic : "/" + topic;
+}
+
+BagTopics findTopics(const BagFile& bag, const BagOptions& options) {
+  BagTopics topics;
+  topics.images = requireTopic(bag, options.image_topic, kImages, "image_topic");
+  topics.torques = requireTopic(bag, options.torque_topic, TorqueReader::types(), "torque_topic");
+  topics.goal = findTopic(bag, options.goal_topic, kImages, "goal_topic");
+  if (!TorqueReader::answersImages(topics.torques.type) && options.dt == 0.0) {
+    refuse("topic ", topics.torques.name, " has type ", topics.torques.type,
+           ", which does not say which image it answers: set data_set/dt, the time between frames "
+           "[s]");
+  }
+  if (topics.goal.name == topics.images.name) {
+    refuse("topic ", topics.goal.name,
+           " is meant by data_set/image_topic and data_set/goal_topic: set one of them to another "
+           "topic");
+  }
+  return topics;
+}
+
+bool isRaw(const BagConnection& connection) { return connection.type == kImages.front(); }
+
+std::vector<std::string> TorqueReader::types() {
+  std::vector<std::string> types;
+  for (const auto& reader : kReaders) types.push_back(reader.first);
+  return types;
+}
+
+std::optional<BagTorque> TorqueReader::read(const BagMessage& message) {
+  const auto& [topic, type, md5sum, publisher] = message.connection;
+  const Values all = kReaders.at(type)(message);
+  if (!motors_.empty() && type.rfind("std_msgs/", 0) == 0) {
+    refuse("topic ", topic, " has type ", type,
+           ", whose numbers have no names: leave data_set/motors empty");
+  }
+  if (type == kWrench && !anyIn(all.names, motors_)) {
+    refuse("topic ", topic, " has forces and torques along ", listOf(all.names),
+           ": set data_set/motors to those of the motors");
+  }
+  BagTorque out{all.stamp, message.recorded, all.values};
+  if (type == kJoints) {
+    if (!motors_.empty() && !anyIn(all.names, motors_)) return std::nullopt;
+    if (names_.empty() && !all.values.empty()) names_ = all.names;
+    if (motors_.empty() && !all.values.empty() && all.names != names_) {
+      refuse("the joints of topic ", topic, " change from ", listOf(names_), " to ",
+             listOf(all.names), ": set data_set/motors to those of the motors");
+    }
+    if (!all.values.empty() && all.values.size() != all.names.size()) {
+      refuse("topic ", topic, " has ", all.values.size(), " effort(s) for ", all.names.size(),
+             " joint(s): record what commands the motors");
+    }
+  }
+  const bool by_name = !motors_.empty() && !all.names.empty() && !all.values.empty();
+  if (by_name) out.torque = valuesOf(motors_, all, topic);
+  // An effort that is not known is left out of a JointState, or NaN. Where no torque acted in time,
+  // applied_torque has no number.
+  const bool is_unknown = std::all_of(out.torque.begin(), out.torque.end(),
+                                      [](double value) { return std::isnan(value); });
+  if (out.torque.empty() || (type == kJoints && is_unknown)) {
+    if (!answersImages(type)) ++without_effort_[publisher];
+    return std::nullopt;
+  }
+  const std::string time = timeText(out.stamp.isZero() ? out.recorded : out.stamp);
+  for (const double value : out.torque) {
+    if (std::isfinite(value)) continue;
+    refuse("the torque at ", time, " must be finite, got ", value,
+           ": leave this bag out, or mend what commands the motor");
+  }
+  if (dim_ == 0) dim_ = out.torque.size();
+  if (out.torque.size() != dim_) {
+    refuse("the torque of topic ", topic, " at ", time, " has ", out.torque.size(),
+           " value(s) where ", dim_, " are due: give each robot a topic, or leave this bag out");
+  }
+  return out;
+}
+
+std::string TorqueReader::withoutEffort() const {
+  Names texts;
+  for (const auto& entry : without_effort_) {
+    texts.push_back(textOf(entry.second, " messages of ",
+                           entry.first.empty() ? "an unnamed node" : entry.first));
+  }
+  return boost::algorithm::join(texts, " and ");
+}
+
+void Publishers::add(const std::string& name, const ros::Time& time) {
+  Span& span = spans_.try_emplace(name, Span{time, time}).first->second;
+  span.first = std::min(span.first, time);
+  span.last = std::max(span.last, time);
+  ++span.number;
+}
+
+std::string Publishers::requireOneAtATime(const std::string& what,
+                                          const std::string& remedy) const {
+  std::vector<std::pair<std::string, Span>> named;
+  for (const auto& entry : spans_) {
+    if (!entry.first.empty()) named.push_back(entry);
+  }
+  std::sort(named.begin(), named.end(),
+            [](const auto& a, const auto& b) { return a.second.first < b.second.first; });
+  bool overlap = false;
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    const Span& span = named[i].second;
+    texts.push_back(textOf(named[i].first, " (", span.number, " from ", timeText(span.first),
+                           " to ", timeText(span.last), ")"));
+    overlap = overlap || (i > 0 && span.first <= named[i - 1].second.last);
+  }
+  const std::string text = what + boost::algorithm::join(texts, " and ");
+  if (overlap) refuse(text, ": ", remedy);
+  return named.size() > 1 ? text + ", one after the other: all of them count" : "";
+}
+
+}  // namespace ddm
