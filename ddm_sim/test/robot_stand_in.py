@@ -17,7 +17,7 @@ from std_srvs.srv import SetBool, Trigger
 from process import Process, find_program
 
 LIMIT_S = 15.0
-DT = 0.4
+DT = 0.25
 WIDTH, HEIGHT = 48, 40
 OPTIONS = ["_image/size:=4", "_robot/crop_x:=8", "_robot/crop_width:=32", "_robot/crop_height:=32"]
 
