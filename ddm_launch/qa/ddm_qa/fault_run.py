@@ -27,12 +27,12 @@ LIMIT_S = 120.0  # of a launch
 # between them.
 CONFIG = """\
 training: {{max_iterations: 15000, function_tolerance: 0.0}}
-sim: {{watchdog: {node_s}}}
-controller: {{timeout: {controller_s}}}
-recorder: {{timeout: {node_s}}}
-experiment: {{timeout: {experiment_s}}}
+sim: {{watchdog: {0}}}
+controller: {{timeout: {1}}}
+recorder: {{timeout: {0}}}
+experiment: {{timeout: {2}}}
 """
-NODE_S, CONTROLLER_S, EXPERIMENT_S = 5.0, 8.0, 11.0  # without a sign of life
+SILENT_S = (5.0, 8.0, 11.0)  # without a sign of life
 REAL_TIME_DT_S = 0.05  # shorter waits than with the paper's 0.2 s
 REAL_TIME_CONFIG = "plant: {dt: %g}\n" % REAL_TIME_DT_S
 ROBOT_CONFIG = "robot: {position_limits: [[-1000.0, 1000.0]], speed_limit: [1000.0]}\n"
@@ -108,10 +108,9 @@ class FaultBench:
     def __init__(self, out, patience=1.0):
         """patience: what all time limits are multiplied by, but a robot's: its motors must stop in time anywhere."""
         self.out, self.limit_s = out, LIMIT_S * patience
-        self.config = CONFIG.format(node_s=NODE_S * patience, controller_s=CONTROLLER_S * patience,
-                                    experiment_s=EXPERIMENT_S * patience)
+        self.config = CONFIG.format(*(limit * patience for limit in SILENT_S))
         self.reference, self.begun = os.path.join(out, "reference", "run"), os.path.join(out, "begun")
-        self.launches = []
+        self.launches = set()  # that run
         os.makedirs(os.path.join(out, "logs"), exist_ok=True)
 
     def make_reference(self):
@@ -139,19 +138,12 @@ class FaultBench:
 
     def launch(self, beside, launch_file, arguments):
         """Runs a launch to its end. Returns its output; raises TimeoutError if it does not end."""
-        launch = start_roslaunch(os.path.join(os.path.dirname(beside), "ros"), launch_file, *arguments,
-                                 options=["--sigint-timeout=5", "--sigterm-timeout=2"])
-        self.launches.append(launch)
-        try:
+        with start_roslaunch(os.path.join(os.path.dirname(beside), "ros"), launch_file, *arguments,
+                             options=["--sigint-timeout=5", "--sigterm-timeout=2"]) as launch:
+            self.launches.add(launch)
             launch.waitForEnd(self.limit_s)
-        finally:
-            self.launches.remove(launch)
+        self.launches.discard(launch)
         return launch.output
-
-    def stop(self):
-        """Ends what runs."""
-        for launch in list(self.launches):
-            launch.stop()
 
     def run(self, case):
         """Returns what was observed, in the words of the case's expected outcome."""

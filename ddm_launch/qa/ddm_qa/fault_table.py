@@ -1,5 +1,6 @@
 # The fault table: every case of fault_cases.py, several at a time, as DIR/faults.csv.
 # SPDX-License-Identifier: BSD-3-Clause
+from concurrent.futures import ThreadPoolExecutor, as_completed
 import os
 import time
 
@@ -9,7 +10,6 @@ from ddm_launch.command import Failure, number, program_parser, run_program
 from ddm_launch.tables import write_csv
 from ddm_qa.fault_cases import CASES, FAULTS_OF_ROOT, QUICK
 from ddm_qa.fault_run import FaultBench
-from ddm_qa.processes import side_by_side
 
 COLUMNS = ["case", "phase", "fault", "expected", "observed", "passed"]
 
@@ -35,10 +35,20 @@ def run(options):
         print("SKIPPED, because these need root to mount file systems:\n - %s" % "\n - ".join(case.name for case in skipped))
     bench = FaultBench(out, options.patience)
     bench.make_reference()
-    for case, result in side_by_side(bench.run, cases, options.jobs, bench.stop, "case"):
-        observed[case.name] = result
-        if result != case.expected:
-            tqdm.write("failed: %s: expected '%s', got '%s'" % (case.name, case.expected, result))
+    with ThreadPoolExecutor(options.jobs) as pool:
+        futures = {pool.submit(bench.run, case): case for case in cases}
+        try:
+            for future in tqdm(as_completed(futures), total=len(cases), unit="case", dynamic_ncols=True, disable=None):
+                case, result = futures[future], future.result()
+                observed[case.name] = result
+                if result != case.expected:
+                    tqdm.write("failed: %s: expected '%s', got '%s'" % (case.name, case.expected, result))
+        except BaseException:  # interrupted
+            for future in futures:
+                future.cancel()
+            for launch in list(bench.launches):
+                launch.stop()
+            raise
     rows = [[*case[:4], observed[case.name], int(observed[case.name] == case.expected)] for case in cases]
     write_csv(os.path.join(out, "faults.csv"), COLUMNS, rows)
     num_passed = sum(row[-1] for row in rows)

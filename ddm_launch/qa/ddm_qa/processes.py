@@ -1,6 +1,5 @@
 # Programs whose output is read while they run or at their end, and launches with masters of their own. All have a limit.
 # SPDX-License-Identifier: BSD-3-Clause
-import concurrent.futures
 import os
 import random
 import signal
@@ -10,24 +9,7 @@ import threading
 import urllib.parse
 import xmlrpc.client
 
-from tqdm import tqdm
-
 PORTS = range(12000, 32768)  # Linux gives none of them to programs that take any port
-
-
-def side_by_side(work, items, jobs, stop, unit):
-    """Yields (item, work(item)) when it is there, `jobs` at a time, with a bar. An exception calls stop() first."""
-    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        futures = {pool.submit(work, item): item for item in items}
-        try:
-            for future in tqdm(concurrent.futures.as_completed(futures), total=len(futures), unit=unit,
-                               dynamic_ncols=True, disable=None):
-                yield futures[future], future.result()
-        except BaseException:
-            for future in futures:
-                future.cancel()
-            stop()
-            raise
 
 
 def free_port():
