@@ -1,5 +1,6 @@
 # Which sockets of a launch other machines reach: as doc/reference/network.md says, and none with its rule.
 # SPDX-License-Identifier: BSD-3-Clause
+import contextlib
 import glob
 import os
 import re
@@ -46,7 +47,7 @@ def family(process_id):
             words = stream.read().split("\0")
         found[os.path.basename(words[1] if "python" in os.path.basename(words[0]) else words[0])] = number
         for path in glob.glob("/proc/%d/task/*/children" % number):
-            with open(path) as stream:
+            with contextlib.suppress(FileNotFoundError), open(path) as stream:  # a thread may have ended meanwhile
                 todo += [int(word) for word in stream.read().split()]
     return found
 
