@@ -10,7 +10,7 @@ NODES = {"experiment_node", "master", "model_node", "mpc_node", "rosout", "sim_n
 
 
 def test_both_runs_leave_tables_and_a_lost_frame_is_noticed(tmp_path):
-    code, output = call([find_program("qa"), "soak", "--trials", "3", "--minutes", "0.12", "--steps", "10", "--out", tmp_path],
+    code, output = call([find_program("qa"), "soak", "--trials", "3", "--minutes", "0.2", "--steps", "10", "--out", tmp_path],
                         limit_s=200.0)
     targets = read_rows(tmp_path, "targets.csv")[1:]
     assert code == (0 if all(row[3] == "1" for row in targets) else 1), output
