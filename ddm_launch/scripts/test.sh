@@ -7,7 +7,7 @@ set -euo pipefail
 
 usage() {
   cat <<TEXT
-usage: bash test.sh [-R PATTERN | --thread-sanitizer | --fuzz --out DIR [--runs N] [--only TARGET...] [--seed S]]
+usage: bash test.sh [-R PATTERN | --thread-sanitizer | --fuzz DIR [RUNS]]
 
 Installs the packages that are missing (as root, or through sudo), builds the workspace \$DDM_WS, and
 runs every test: gtest, rosunit, rostest, roslaunch-check and the linters on the Release build; the gtests of the core
@@ -19,8 +19,9 @@ reports anything.
   -R PATTERN          instead of all that: the Release build, and the tests whose names match this regular expression,
                       for example -R 'python_film|ddm_mpc_test'
   --thread-sanitizer  instead of all that: what has several threads, on a Debug build with ThreadSanitizer
-  --fuzz              instead of all that: feeds random bytes to what reads bytes from outside, for as long as --runs says,
-                      and writes what it found to DIR; 'rosrun ddm_launch qa fuzz --help' explains the options
+  --fuzz DIR [RUNS]   instead of all that: feeds random bytes to everything that reads bytes from outside, RUNS (default
+                      100000) inputs for each target. DIR gets a table fuzzing.csv; logs/, what each target said; corpus/,
+                      from which the next call continues; and findings/, the inputs that break a promise
   --help              this text
 
   DDM_WS              catkin workspace to make or use, default ~/ddm_ws (Release in devel/, Debug in debug/devel/,
@@ -79,7 +80,7 @@ debug_tests="_gtest_($(IFS='|' && echo "${gtest_programs[*]}"))\$"
 threaded_programs=(
   model_node_test mpc_node_stop_test mpc_node_test refused_params_test experiment_node robot_node train_from_bags trial_recorder_test
 )
-threaded_tests='^_ctest_ddm_[a-z]+_rostest_test_(model_node|mpc_node|replay|robot_node|trial_recorder)\.test$'
+threaded_tests='^_ctest_ddm_[a-z]+_(rostest_test_(model_node|mpc_node|robot_node|trial_recorder)\.test|python_replay)$'
 
 parse_arguments() {
   mode=all
@@ -87,7 +88,7 @@ parse_arguments() {
   [[ " $* " == *" --help "* || " $* " == *" -h "* ]] && usage && exit 0
   [[ $1 == -R && $# == 2 ]] && mode=part && pattern=$2 && return
   [[ $1 == --thread-sanitizer && $# == 1 ]] && mode=thread && return
-  [[ $1 == --fuzz && $# -gt 1 ]] && mode=fuzz && return
+  [[ $1 == --fuzz && $# -ge 2 && ${3:-1} =~ ^[0-9]+$ ]] && mode=fuzz && return
   printf 'test.sh: unknown argument %s\n\n' "'$1'" >&2
   usage >&2
   exit 2
@@ -97,8 +98,7 @@ parse_arguments() {
 # alone. What failed is told by the results.
 run_tests() {  # BUILD_FOLDER PATTERN
   cd "$1" || return
-  rm -rf test_results/* tests_declared.json Testing/TAG  # results of an earlier call must not count
-  ctest -R "$2" --show-only=json-v1 >tests_declared.json
+  rm -rf test_results/* Testing  # results of an earlier call must not count
   : >DartConfiguration.tcl  # -T asks for this file, whose settings are all optional
   ctest -T Test -j "$(nproc)" -R "$2" --output-on-failure --timeout 600 </dev/null && return
   # what failed, now and not only when the other builds are done
@@ -163,18 +163,40 @@ run_sanitized() {  # address|thread PATTERN
   if compgen -G "$reports/*" >/dev/null; then tail -n +1 "$reports"/*; else echo "no report"; fi
 }
 
-run_fuzzing() {  # OPTION...
-  PYTHONPATH=$checkout/ddm_launch/src:$checkout/ddm_model/src /usr/bin/python3 "$checkout/ddm_launch/qa/scripts/qa" fuzz \
-    --programs "$(sanitized_folder address)/devel/lib" "$@"
+# Runs one target: a program of libFuzzer with sanitizers, and a folder of seeds. An input must not need much memory, or the
+# program did not check the input; inputs are a few times as long as seeds, since the time of a run grows with the length.
+fuzz_target() {  # FOLDER_OF_SEEDS
+  local target=${1##*/} package longest start=$SECONDS found=0
+  package=$(basename "$(realpath "$1/../../..")")
+  longest=$(stat -c %s "$1"/* | sort -n | tail -n 1)
+  mkdir -p "$out/corpus/$target"
+  FUZZ_TARGET=$target LD_LIBRARY_PATH=$programs:$LD_LIBRARY_PATH "$programs/$package/${package}_fuzz" -runs="$runs" \
+    -seed="$seed" -max_len=$((longest < 64 ? 256 : 4 * longest)) -malloc_limit_mb=64 -rss_limit_mb=2048 -timeout=30 \
+    -artifact_prefix="$out/findings/$target-" "$out/corpus/$target" "$1" >"$out/logs/$target.txt" 2>&1 || found=1
+  ((found == 0)) || { tail -n 40 "$out/logs/$target.txt" && echo "FOUND by $target: see $out/findings and $out/logs/$target.txt"; }
+  echo "$target,$((found ? 0 : runs)),$((SECONDS - start)),$(find "$out/corpus/$target" -type f | wc -l),$found" >>"$out/fuzzing.csv"
+  return "$found"
 }
 
-# From the committed seeds on, always the same draws. A finding is told by the result file.
+# Runs all targets, as many at a time as there are cores.
+run_fuzzing() {  # DIR RUNS SEED
+  local out=$1 runs=$2 seed=$3 programs
+  programs=$(sanitized_folder address)/devel/lib
+  export out runs seed programs
+  export -f fuzz_target
+  mkdir -p "$out"/{logs,corpus,findings}
+  echo "target,runs,seconds,corpus_files,findings" >"$out/fuzzing.csv"
+  printf '%s\n' "$checkout"/ddm_*/fuzz/corpus/* | xargs -P "$(nproc)" -I FOLDER bash -c 'fuzz_target FOLDER'
+}
+
+# From the committed seeds on, always the same draws. A finding counts as a report of the sanitizers.
 fuzz_shortly() {
-  local out result
-  out=$(sanitized_folder address)/fuzzing
-  result=$(sanitized_folder address)/build/test_results/ddm_launch/fuzzing.xml
-  rm -rf "$out" "$result"
-  run_fuzzing --runs 1000 --seed 1 --out "$out" --junit "$result" || [[ -f $result ]]
+  local out reports
+  out=$(sanitized_folder address)/fuzzing reports=$(sanitized_folder address)/build/sanitizer_reports
+  rm -rf "$out"
+  mkdir -p "$out"
+  run_fuzzing "$out" 1000 1 2>&1 | tee "$out/output.txt" || cp "$out/output.txt" "$reports/fuzzing"
+  cat "$out/fuzzing.csv"
 }
 
 # Builds in a session of its own, whose processes run only where all others leave a core idle.
@@ -249,7 +271,7 @@ main() {
   if [[ $mode == fuzz ]]; then
     phase "Debug build of the fuzz targets into $DDM_WS/debug/devel" build_sanitized address fuzz_targets
     reported=yes
-    run_fuzzing "${@:2}"
+    run_fuzzing "$(realpath -m -- "$2")" "${3:-100000}" 0
     return
   fi
   run_mode

@@ -8,7 +8,8 @@ import subprocess
 
 import pytest
 
-CHECKOUT = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+from rooms import CHECKOUT
+
 COMPILER = "aarch64-linux-gnu-g++"
 # Among them the vectors of arctan, the threads of the objective and the clock of the planner.
 SOURCES = ["ddm_sim/src/pendulum.cpp", "ddm_model/src/arctan.cpp", "ddm_model/src/objective.cpp", "ddm_mpc/src/planner.cpp"]

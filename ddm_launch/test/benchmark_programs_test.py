@@ -5,38 +5,26 @@ from unittest import mock
 from ddm_launch.command import distribution, processor
 from ddm_qa import benchmark
 from processes import run_experiment
-from scratch_case import SharedScratchCase
 
 
-class BenchmarkProgramsTest(SharedScratchCase):
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.run_folder = cls.class_scratch + "/experiment"
-        code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 1, "--out", cls.run_folder)
-        assert code == 0, output
-        cls.bench = benchmark.Benchmark(cls.class_scratch, cls.class_scratch)
+def test_both_loops_and_all_kernels_are_timed(tmp_path):
+    code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 1, "--out", tmp_path / "experiment")
+    assert code == 0, output
+    bench = benchmark.Benchmark(str(tmp_path), str(tmp_path))
+    with mock.patch.object(benchmark, "RESTARTS", 1), mock.patch.object(benchmark, "NUM_FRAMES", 1000):
+        bench.round_trips(mock.Mock())
+    for name in ("lockstep_round_trip", "bare_round_trip", "lockstep_round_trip_one_core", "bare_round_trip_one_core"):
+        assert bench.rows[name]["median_us"] > 0.0, name
+    bench.kernels()
+    for name in ("objective_gradient", "matrix_products", "retrain", "plan"):
+        assert 0.0 < bench.rows[name]["median_us"] <= bench.rows[name]["p99_us"], name
+    assert bench.plan_iterations > 0.0
 
-    def test_both_loops_give_their_round_trips(self):
-        with mock.patch.object(benchmark, "RESTARTS", 1), mock.patch.object(benchmark, "NUM_FRAMES", 5000):
-            self.bench.round_trips(mock.Mock())
-        for name in ("lockstep_round_trip", "bare_round_trip", "lockstep_round_trip_one_core", "bare_round_trip_one_core"):
-            self.assertGreater(self.bench.rows[name]["median_us"], 0.0, name)
 
-    def test_kernels_tell_the_quantiles_of_single_calls(self):
-        self.bench.kernels()
-        for name in ("objective_gradient", "matrix_products", "retrain", "plan"):
-            row = self.bench.rows[name]
-            self.assertTrue(0.0 < row["median_us"] <= row["p99_us"], (name, row))
-        self.assertGreater(self.bench.plan_iterations, 0.0)
-
-    def test_processors_of_one_name_are_told_apart_by_family_and_model(self):
-        path = self.write("cpuinfo", "processor\t: 0\ncpu family\t: 26\nmodel\t\t: 2\n"
-                          "model name\t: AMD EPYC\n\nprocessor\t: 1\nmodel name\t: other\n")
-        self.assertEqual(processor(path), "AMD EPYC (family 26, model 2)")
-        self.assertNotEqual(processor(self.file("no_such_file")), "")
-
-    def test_the_distribution_is_named_as_its_own_file_has_it(self):
-        path = self.write("os-release", 'ID=debian\n\nPRETTY_NAME="Debian GNU/Linux 12 (bookworm)"\n')
-        self.assertEqual(distribution(path), "Debian GNU/Linux 12 (bookworm)")
-        self.assertEqual(distribution(self.file("no_such_file")), "?")
+def test_processors_of_one_name_are_told_apart_and_the_distribution_is_named(tmp_path):
+    (tmp_path / "cpuinfo").write_text("processor\t: 0\ncpu family\t: 26\nmodel\t\t: 2\nmodel name\t: AMD EPYC\n\nprocessor\t: 1\n")
+    (tmp_path / "os-release").write_text('ID=debian\n\nPRETTY_NAME="Debian GNU/Linux 12 (bookworm)"\n')
+    assert processor(tmp_path / "cpuinfo") == "AMD EPYC (family 26, model 2)"
+    assert processor(tmp_path / "no_such_file") != ""
+    assert distribution(tmp_path / "os-release") == "Debian GNU/Linux 12 (bookworm)"
+    assert distribution(tmp_path / "no_such_file") == "?"

@@ -1,3 +1,22 @@
-# Lets the tests of this folder import the Python packages of study and qa, which are not installed.
+# Lets the tests of this folder import the Python packages of study and qa, and gives them a ROS master.
 # SPDX-License-Identifier: BSD-3-Clause
+import os
+
+import pytest
+
 import rooms  # noqa: F401: the Python packages that are not installed
+import ddm_launch  # noqa: F401: mends rospy for Python 3.9
+from ddm_qa.processes import Process, free_port, on_this_machine
+
+
+@pytest.fixture(scope="session")
+def master():
+    """A ROS master for all tests of this process, which is the node `/test`."""
+    import rospy  # pylint: disable=import-outside-toplevel
+    port = free_port()
+    os.environ.update(on_this_machine(ROS_MASTER_URI="http://localhost:%d" % port))
+    with Process(["roscore", "-p", port]) as core:
+        core.waitForText("started core service", 60.0)
+        rospy.init_node("test", disable_signals=True)
+        yield
+        rospy.signal_shutdown("the tests are over")

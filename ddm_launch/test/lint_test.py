@@ -1,57 +1,64 @@
-# Linters find nothing: shellcheck, pyflakes, and clang-tidy where there is time for it.
+# Rules that every source file keeps, and linters that find nothing: clang-format, catkin_lint, shellcheck, pyflakes, clang-tidy.
 # SPDX-License-Identifier: BSD-3-Clause
 from concurrent.futures import ThreadPoolExecutor
+import glob
 import os
+import re
 import shutil
 import subprocess
 
 import pytest
 
-CHECKOUT = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+from rooms import CHECKOUT
+
+FILES = [path for path in glob.glob(os.path.join(CHECKOUT, "**"), recursive=True)
+         if os.path.isfile(path) and "__pycache__" not in path] + [os.path.join(CHECKOUT, ".ci", "run")]
+CPP_FILES = [path for path in FILES if path.endswith((".h", ".cpp"))]
+
+
+def read(path):
+    with open(path, encoding="utf-8", errors="replace") as stream:
+        return stream.read()
+
+
+def scripts(interpreter, suffix):
+    """All files that an interpreter runs, told by suffix or first line."""
+    return [path for path in FILES if path.endswith(suffix) or
+            "." not in os.path.basename(path) and re.match("#!.*" + interpreter, read(path))]
+
+
+BASH_FILES, PYTHON_FILES = scripts("bash", ".sh"), scripts("python3", ".py")
 CORES = ["ddm_sim", "ddm_model", "ddm_mpc"]
-INCLUDES = ["-I%s/include" % folder for folder in CORES + ["ddm_msgs/common"]] + [
-    "-isystem/usr/include/eigen3"]
+INCLUDES = ["-I%s/include" % folder for folder in CORES + ["ddm_msgs/common"]] + ["-isystem/usr/include/eigen3"]
 # clang-tidy takes about ten seconds for a file: these, and those of the last commit, at most so many.
 ALGORITHM, MOST_TIDIED = ("objective.cpp", "trainer.cpp", "planner.cpp", "controller.cpp"), 12
+# What could execute something from a file or a message.
+UNSAFE_PYTHON = re.compile(r"\b(eval|exec|execvp)\(|\bpickle\b|\bos\.(system|popen)\b|shell=True|allow_pickle=True|"
+                           r"yaml\.(unsafe_|full_)?load(_all)?\((?!.*Loader=(LOADER|yaml\.BaseLoader)\))")
+UNSAFE_CPP = re.compile(r"\b(system|popen|dlopen|exec[lv]p?e?)\(")
+MAY_EXECUTE = ("ddm_study/pages.py", "ddm_study/program.py")  # text of our pages; make
 
 
-def needs(program, version):
-    """Those of Debian 12 judge: others find other things."""
+def output_of(*command):
+    return subprocess.run(command, cwd=CHECKOUT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          universal_newlines=True)
+
+
+def needs(program, version=""):
+    """Linters of Debian 12 judge: other versions find other things."""
     found = shutil.which(program) and output_of(program, "--version").stdout
     return pytest.mark.skipif(not found or version not in found, reason="%s %s is not installed" % (program, version))
 
 
-def output_of(*command):
-    return subprocess.run(command, cwd=CHECKOUT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                          universal_newlines=True)
-
-
-def scripts(interpreter, suffix):
-    """All files below the checkout that an interpreter runs, told by suffix or first line."""
-    found = []
-    for folder, folders, names in os.walk(CHECKOUT):
-        folders[:] = [name for name in folders if name not in (".git", "__pycache__", "results")]
-        for path in (os.path.join(folder, name) for name in names):
-            with open(path, "rb") as stream:
-                first = stream.readline(80)
-            if path.endswith(suffix) or first.startswith(b"#!") and interpreter in first:
-                found.append(path)
-    return found
-
-
-@needs("shellcheck", "0.9")
-def test_shellcheck_finds_nothing():
-    files = scripts(b"bash", ".sh")
-    assert os.path.join(CHECKOUT, ".ci", "run") in files
-    done = output_of("shellcheck", *files)
-    assert done.returncode == 0, done.stdout
-
-
-@needs("flake8", "")
-def test_pyflakes_finds_nothing():
-    files = scripts(b"python3", ".py")
-    assert os.path.realpath(__file__) in files
-    done = output_of("flake8", "--isolated", "--select=F", *files)
+@pytest.mark.parametrize("command, files", [
+    pytest.param(["clang-format", "--dry-run", "-Werror"], CPP_FILES, marks=needs("clang-format", " 14.")),
+    pytest.param(["shellcheck"], BASH_FILES, marks=needs("shellcheck", "0.9")),
+    pytest.param(["flake8", "--isolated", "--select=F"], PYTHON_FILES, marks=needs("flake8")),
+    pytest.param(["env", "ROS_HOME=/nonexistent", "catkin_lint", "--strict", "--offline"],  # without a rosdep database
+                 [os.path.dirname(path) for path in FILES if path.endswith("/package.xml")], marks=needs("catkin_lint"))])
+def test_linters_find_nothing(command, files):
+    assert files
+    done = output_of(*command, *files)
     assert done.returncode == 0, done.stdout
 
 
@@ -65,3 +72,20 @@ def test_clang_tidy_finds_nothing_in_the_algorithm_and_in_core_sources_of_the_la
         results = pool.map(lambda path: output_of("clang-tidy", "--quiet", "--warnings-as-errors=*", path, "--", "-std=c++17",
                                                   "-fopenmp", *INCLUDES), paths)
         assert "".join(done.stdout for done in results if done.returncode != 0) == ""
+
+
+def test_each_source_file_says_what_it_is_and_has_a_licence_line():
+    for path in CPP_FILES + BASH_FILES + PYTHON_FILES:
+        lines = [line for line in read(path).split("\n")[:3] if not line.startswith("#!")]
+        assert len(lines[0]) >= 12 and lines[1].lstrip("#/ ") == "SPDX-License-Identifier: BSD-3-Clause", path
+
+
+def test_programs_execute_nothing_that_a_file_or_message_says():
+    for path in CPP_FILES + PYTHON_FILES:
+        if not re.search("/test/|/testing/", path) and not path.endswith(MAY_EXECUTE):
+            assert not (UNSAFE_CPP if path in CPP_FILES else UNSAFE_PYTHON).search(read(path)), path
+
+
+def test_no_file_names_a_folder_of_a_machine():
+    for path in [path for path in FILES if path.endswith((".h", ".cpp", ".sh", ".py", ".md", ".yaml", ".csv"))]:
+        assert not re.search(r"(?<![\w.~}$])/(root/dev|work)/\w", read(path)), path

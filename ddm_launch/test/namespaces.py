@@ -15,9 +15,9 @@ def hiding(folders):
 
 def why_not(*kinds):
     """Why this process cannot make namespaces of these kinds (mount, net), or an empty text."""
-    done = subprocess.run(["unshare"] + ["--" + kind for kind in kinds] + ["ip", "link"], stdin=subprocess.DEVNULL,
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
-    return "" if done.returncode == 0 else "no namespaces (%s): run it as root" % done.stdout.strip()
+    done = subprocess.run(["unshare"] + ["--" + kind for kind in kinds] + ["ip", "link"],
+                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, universal_newlines=True)
+    return "" if done.returncode == 0 else "no namespaces (%s): run it as root" % done.stderr.strip()
 
 
 def why_no_nft():
@@ -32,7 +32,7 @@ def nft_rule(peers=False):
 
 
 class Network:
-    """Machines with an address of their own on one wire, and with some folders that no other machine sees."""
+    """Machines with an address of their own on one wire, and with some folders that no other machine sees. A context."""
 
     def __init__(self):
         self._holders = []
@@ -57,7 +57,10 @@ class Network:
         """enter: words before a command on that machine. rules: text for nft."""
         subprocess.run(enter + ["nft", "-f", "-"], input=rules, universal_newlines=True, check=True)
 
-    def close(self):
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
         for holder in self._holders:
             holder.stdin.close()
             holder.wait()

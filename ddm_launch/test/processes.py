@@ -2,15 +2,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import contextlib
 import io
-import unittest
 
 import rooms  # noqa: F401
-import skips  # noqa: F401
 from ddm_launch.command import find_program
 from ddm_qa.processes import Process, free_port, line_by_line, start_roslaunch  # noqa: F401
 
+LIMIT_S = 150.0  # of a program that takes a few seconds on a machine that has nothing else to do
 
-def call(command, limit_s=60.0, **kwargs):
+
+def call(command, limit_s=LIMIT_S, **kwargs):
     """Runs a program to its end. Returns (exit code, output)."""
     process = Process(command, **kwargs)
     return process.waitForEnd(limit_s), process.output
@@ -23,11 +23,6 @@ def has_mujoco():
     return code == 0
 
 
-def needs_mujoco(case):
-    """Decorator of a test or a class of tests that simulate model files."""
-    return unittest.skipUnless(has_mujoco(), "ddm_sim was built without MuJoCo")(case)
-
-
 def call_main(main, *arguments):
     """Calls the main function of a program in this process. Returns (exit code, output)."""
     with io.StringIO() as output, contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
@@ -38,11 +33,11 @@ def call_main(main, *arguments):
         return code, output.getvalue()
 
 
-def run_experiment(*arguments, limit_s=60.0, **kwargs):
+def run_experiment(*arguments, limit_s=LIMIT_S, **kwargs):
     return call([find_program("run_experiment")] + list(arguments), limit_s, **kwargs)
 
 
-def roslaunch(log_folder, *arguments, limit_s=60.0, **kwargs):
+def roslaunch(log_folder, *arguments, limit_s=LIMIT_S, **kwargs):
     """Runs a launch file of ddm_launch to its end. Returns (exit code, output)."""
     launch = start_roslaunch(log_folder, *arguments, **kwargs)
     return launch.waitForEnd(limit_s), launch.output

@@ -1,43 +1,56 @@
-# What rviz shows of an experiment: pictures of the real one by `qa rviz_screenshot`, on a screen in memory.
+# rviz shows something in each of its displays during a real experiment, on a screen in memory.
 # SPDX-License-Identifier: BSD-3-Clause
+import io
 import os
-import tempfile
-import unittest
+import subprocess
+import time
 
 import numpy as np
 from PIL import Image
+import pytest
 
-from ddm_qa.rviz_screenshot import DISPLAYS, HEIGHT, WIDTH, blank_displays
+from ddm_launch.run_folder import num_finished
+from processes import start_roslaunch
 
-from processes import call, find_program
+WIDTH, HEIGHT = 1600, 900  # as in ddm.rviz
+LIMIT_S = 120.0            # for rviz to show something everywhere, once a trial is over
+
+# Display: the middle of its place in the window (left, top, right, bottom).
+DISPLAYS = {"Camera": (190, 110, 570, 440), "Learning curve": (150, 530, 600, 870),
+            "Feature space": (950, 90, 1480, 630), "Prediction": (900, 690, 1500, 870)}
 
 
-class RvizTest(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        with tempfile.TemporaryDirectory() as scratch:
-            out = os.path.join(scratch, "rviz.png")
-            cls.code, cls.output = call(
-                [find_program("qa"), "rviz_screenshot", "--out", out, "--after-trial", 1, "--seconds", 0, "--",
-                 "preset:=debug", "trials:=999", "seed:=1"], limit_s=200.0)
-            cls.pixels = np.array(Image.open(out).convert("RGB")) if cls.code == 0 else None
+@pytest.fixture(name="screen")
+def start_screen(tmp_path):
+    """The environment of programs that draw on an X server in memory."""
+    reading, writing = os.pipe()
+    server = subprocess.Popen(  # it picks a free number by itself, and writes it when it is ready
+        ["Xvfb", "-displayfd", str(writing), "-screen", "0", "%dx%dx24" % (WIDTH, HEIGHT), "-nolisten", "tcp"],
+        pass_fds=[writing], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    os.close(writing)
+    with os.fdopen(reading) as stream:
+        number = stream.readline().strip()
+    yield {"DISPLAY": ":" + number, "QT_X11_NO_MITSHM": "1", "XDG_RUNTIME_DIR": str(tmp_path)}
+    server.terminate()
+    server.wait()
 
-    def test_each_display_shows_what_it_should(self):
-        self.assertEqual(self.code, 0, self.output)
-        self.assertEqual(self.pixels.shape, (HEIGHT, WIDTH, 3))
-        self.assertEqual(blank_displays(self.pixels), [])
 
-    def test_a_display_of_one_colour_is_noticed(self):
-        self.assertEqual(self.code, 0, self.output)
-        for name, (left, top, right, bottom) in DISPLAYS.items():
-            for spoilt in (0, 48, 255):
-                pixels = self.pixels.copy()
-                pixels[top:bottom, left:right] = spoilt
-                self.assertEqual(blank_displays(pixels), [name])
+def blank_displays(screen):
+    """Names of the displays whose places on the screen are of one colour."""
+    png = subprocess.check_output(["import", "-window", "root", "-depth", "8", "png:-"], env=dict(os.environ, **screen))
+    pixels = np.array(Image.open(io.BytesIO(png)).convert("RGB"))
+    assert pixels.shape == (HEIGHT, WIDTH, 3)
+    return [name for name, (left, top, right, bottom) in DISPLAYS.items()
+            if pixels[top:bottom, left:right].std(axis=(0, 1)).max() < 1.0]
 
-    def test_what_the_launch_file_does_not_accept_is_told(self):
-        code, output = call([find_program("qa"), "rviz_screenshot", "--out", "/nowhere/rviz.png", "--",
-                             "preset:=no_such_preset"])
-        self.assertEqual(code, 1)
-        self.assertIn("no_such_preset", output)
-        self.assertIn("ended before the end of trial 5", output)
+
+def test_each_display_shows_something(screen, tmp_path):
+    runs = str(tmp_path / "run")
+    with start_roslaunch(str(tmp_path / "ros"), "experiment.launch", "rviz:=true", "preset:=debug", "trials:=999",
+                         "runs:=" + runs, variables=screen) as launch:
+        end, blank = time.monotonic() + LIMIT_S, list(DISPLAYS)
+        while blank and launch.isRunning() and time.monotonic() < end:
+            time.sleep(0.1)
+            if num_finished(runs) > 1:
+                blank = blank_displays(screen)
+        assert not blank, launch.output[-2000:]

@@ -1,58 +1,47 @@
 # Plant, controller and trainer on three machines without a shared disk: the experiment is that of one process.
 # SPDX-License-Identifier: BSD-3-Clause
-import os
 import signal
-import unittest
+
+import pytest
 
 from namespaces import Network, nft_rule, why_no_nft
 from processes import Process, line_by_line, run_experiment
 from run_files import differences, expected_files, files_in
-from scratch_case import ScratchCase
 
-TRIALS = 1
 HINDRANCE = why_no_nft()
 
 
-@unittest.skipIf(HINDRANCE, "SEVERAL MACHINES ARE NOT TESTED: %s" % HINDRANCE)
-class SeveralMachinesTest(ScratchCase):
-    def setUp(self):
-        super().setUp()
-        self.disk, self.reference = self.file("disk"), self.file("reference")
-        os.mkdir(self.disk)
-        self.network = Network()
-        self.addCleanup(self.network.close)
-
-    def startOn(self, machine, master, *words):
-        """roslaunch on a machine, with what doc/reference/network.md says to set there."""
-        address, enter = machine
-        environment = dict(line_by_line(), ROS_MASTER_URI="http://%s:11311" % master, ROS_IP=address,
-                           ROS_HOME=os.path.join(self.disk, "ros"))
-        environment.pop("ROS_HOSTNAME", None)
-        launch = Process(enter + ["roslaunch"] + list(words), environment)
-        self.addCleanup(launch.stop)
-        return launch
-
-    def test_three_machines_give_the_torques_and_models_of_one_process(self):
-        trainer = self.network.addMachine([])
-        plant, controller = self.network.addMachine([self.disk]), self.network.addMachine([self.disk])
+@pytest.mark.skipif(bool(HINDRANCE), reason="SEVERAL MACHINES ARE NOT TESTED: %s" % HINDRANCE)
+def test_three_machines_give_the_torques_and_models_of_one_process(tmp_path):
+    disk, reference = tmp_path / "disk", str(tmp_path / "reference")
+    disk.mkdir()
+    runs = str(disk / "runs")
+    with Network() as network:
+        trainer = network.addMachine([])
+        plant, controller = network.addMachine([str(disk)]), network.addMachine([str(disk)])
         for _, enter in (trainer, plant, controller):
-            self.network.load(enter, nft_rule(peers=True))
-        runs = os.path.join(self.disk, "runs")
-        same = ["preset:=debug"]
-        parts = [self.startOn(machine, trainer[0], "--wait", "ddm_launch", "part.launch", part + ":=true", *same)
-                 for machine, part in ((plant, "simulator"), (controller, "controller"))]
-        experiment = self.startOn(trainer, trainer[0], "ddm_launch", "experiment.launch", "simulator_here:=false",
-                                  "controller_here:=false", "seed:=1", "trials:=%d" % TRIALS, "runs:=" + runs, *same)
-        experiment.waitForEnd(90.0)
-        for part in parts:
-            part.send(signal.SIGINT)
-            part.waitForEnd(20.0)
-        output = "\n".join(launch.output for launch in [experiment] + parts)
-        self.assertEqual(files_in(runs), expected_files(TRIALS), output)
-        for started, launch in zip((["sim_node"], ["mpc_node"]), parts):
-            self.assertEqual([name for name in ("sim_node", "mpc_node", "model_node", "trial_recorder")
-                              if "process[%s-" % name in launch.output], started)
-        code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", TRIALS, "--out", self.reference)
-        self.assertEqual(code, 0, output)
-        names = [name for name in expected_files(TRIALS) if not name.endswith((".bag", "config.yaml"))]
-        self.assertEqual(differences(self.reference, runs, names), [])
+            network.load(enter, nft_rule(peers=True))
+
+        def start(machine, *words):
+            """roslaunch on a machine, with what doc/reference/network.md says to set there."""
+            environment = dict(line_by_line(), ROS_MASTER_URI="http://%s:11311" % trainer[0], ROS_IP=machine[0],
+                               ROS_HOME=str(disk / "ros"))
+            environment.pop("ROS_HOSTNAME", None)
+            return Process(machine[1] + ["roslaunch", *words, "preset:=debug"], environment)
+
+        with start(plant, "--wait", "ddm_launch", "part.launch", "simulator:=true") as first, \
+                start(controller, "--wait", "ddm_launch", "part.launch", "controller:=true") as second, \
+                start(trainer, "ddm_launch", "experiment.launch", "simulator_here:=false", "controller_here:=false", "seed:=1",
+                      "trials:=1", "runs:=" + runs) as experiment:
+            experiment.waitForEnd(200.0)
+            for part in (first, second):
+                part.send(signal.SIGINT)
+                part.waitForEnd(120.0)
+    assert files_in(runs) == expected_files(1), experiment.output + first.output + second.output
+    for part, started in ((first, ["sim_node"]), (second, ["mpc_node"])):
+        assert [name for name in ("sim_node", "mpc_node", "model_node", "trial_recorder")
+                if "process[%s-" % name in part.output] == started
+    code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 1, "--out", reference)
+    assert code == 0, output
+    names = [name for name in expected_files(1) if not name.endswith((".bag", "config.yaml"))]
+    assert differences(reference, runs, names) == []

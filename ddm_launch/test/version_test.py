@@ -3,61 +3,49 @@
 import os
 import shutil
 import subprocess
-import unittest
 
-from scratch_case import ScratchCase
+import pytest
 
-SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "cmake", "write_version.cmake")
+from rooms import PACKAGE
+
+pytestmark = pytest.mark.skipif(not shutil.which("git"), reason="needs git")
 
 
-@unittest.skipUnless(shutil.which("git"), "needs git")
-class VersionTest(ScratchCase):
-    def setUp(self):
-        super().setUp()
-        self.source = self.file("checkout", "ddm_launch")
-        self.write("checkout/ddm_launch/code", "1")
-        self.git("init", "--quiet")
-        self.git("add", ".")
-        self.git("-c", "user.name=n", "-c", "user.email=e", "commit", "--quiet", "-m", "m")
-        self.commit = self.git("rev-parse", "HEAD")[:7]
+def git(checkout, *arguments):
+    return subprocess.check_output(["git", "-C", checkout, *arguments], universal_newlines=True).strip()
 
-    def git(self, *arguments):
-        done = subprocess.run(["git", "-C", self.file("checkout"), *arguments], stdout=subprocess.PIPE, check=True,
-                              universal_newlines=True)
-        return done.stdout.strip()
 
-    def version(self, **environment):
-        """Returns the version that a build would record, and checks that the checkout does not change."""
-        before = sorted(os.walk(self.file("checkout")))
-        out = self.file("version.h")
-        subprocess.run([shutil.which("cmake"), "-DSOURCE=" + self.source, "-DOUT=" + out, "-DPACKAGE_VERSION=1.2.3", "-P",
-                        SCRIPT], check=True, env=dict(os.environ, **environment))
-        self.assertEqual(sorted(os.walk(self.file("checkout"))), before)
-        self.assertEqual(sorted(os.listdir(self.scratch)), ["checkout", "version.h"])
-        with open(out) as stream:
-            return stream.read().split('"')[1]
+def version(checkout, **environment):
+    """The version that a build would record. The checkout must not change."""
+    before, out = sorted(os.walk(checkout)), checkout.parent / "version.h"
+    subprocess.run([shutil.which("cmake"), "-DSOURCE=%s" % (checkout / "ddm_launch"), "-DOUT=%s" % out, "-DPACKAGE_VERSION=1.2.3",
+                    "-P", os.path.join(PACKAGE, "cmake", "write_version.cmake")], check=True, env=dict(os.environ, **environment))
+    assert sorted(os.walk(checkout)) == before
+    return out.read_text().split('"')[1]
 
-    def test_a_checkout_has_its_commit_and_tells_changes(self):
-        self.assertEqual(self.version(), "1.2.3 (%s)" % self.commit)
-        self.write("checkout/ddm_launch/code", "2")
-        self.assertEqual(self.version(), "1.2.3 (%s-dirty)" % self.commit)
 
-    @unittest.skipUnless(os.geteuid() == 0, "only root can give a checkout away")
-    def test_a_checkout_of_another_user_has_its_commit(self):
-        for folder, _, files in os.walk(self.file("checkout")):
+def test_a_checkout_has_its_commit_and_tells_changes_as_far_as_git_knows_them(tmp_path):
+    checkout, nothing = tmp_path / "checkout", {"PATH": str(tmp_path / "no" / "programs")}
+    (checkout / "ddm_launch").mkdir(parents=True)
+    (checkout / "ddm_launch" / "code").write_text("1")
+    git(checkout, "init", "--quiet")
+    git(checkout, "add", ".")
+    git(checkout, "-c", "user.name=n", "-c", "user.email=e", "commit", "--quiet", "-m", "m")
+    commit = git(checkout, "rev-parse", "HEAD")[:7]
+    assert version(checkout) == "1.2.3 (%s)" % commit
+    unknown = "1.2.3 (%s, changes unknown)" % commit
+    assert version(checkout, **nothing) == unknown
+    (checkout / "ddm_launch" / "code").write_text("2")
+    assert version(checkout) == "1.2.3 (%s-dirty)" % commit
+    (checkout / "ddm_launch" / "code").write_text("1")
+    if os.geteuid() == 0:  # a checkout of another user
+        for folder, _, files in os.walk(checkout):
             for name in [""] + files:
                 os.chown(os.path.join(folder, name), 12345, 12345)
-        self.assertEqual(self.version(), "1.2.3 (%s)" % self.commit)
-
-    def test_a_machine_without_git_reads_the_commit_only(self):
-        path = {"PATH": self.file("no", "programs")}
-        expected = "1.2.3 (%s, changes unknown)" % self.commit
-        self.assertEqual(self.version(**path), expected)
-        self.git("pack-refs", "--all")
-        self.assertEqual(self.version(**path), expected)
-        shutil.rmtree(self.file("checkout", ".git", "objects"))
-        self.assertEqual(self.version(), expected)
-        self.write("checkout/.git/HEAD", self.commit + "0" * 33 + "\n")
-        self.assertEqual(self.version(**path), expected)
-        shutil.rmtree(self.file("checkout", ".git"))
-        self.assertEqual(self.version(), "1.2.3 (unknown commit)")
+        assert version(checkout) == "1.2.3 (%s)" % commit
+    shutil.move(str(checkout / ".git" / "objects"), str(tmp_path / "objects"))
+    assert version(checkout) == unknown
+    (checkout / ".git" / "HEAD").write_text(commit + "0" * 33 + "\n")
+    assert version(checkout, **nothing) == unknown
+    shutil.rmtree(checkout / ".git")
+    assert version(checkout) == "1.2.3 (unknown commit)"

@@ -11,8 +11,7 @@ import roslib.packages
 def find_program(package, name):
     """Path of a program of a package, in the devel or the install space."""
     paths = roslib.packages.find_node(package, name)
-    if not paths:
-        raise AssertionError("%s has no program %s: build the workspace first" % (package, name))
+    assert paths, "%s has no program %s: build the workspace first" % (package, name)
     return paths[0]
 
 
@@ -20,49 +19,38 @@ class Process:
     """stdout and stderr together are `output`, unless they go to the file `written_to`."""
 
     def __init__(self, command, written_to=None):
-        self._changed = threading.Condition()
-        self._text = ""
-        self._ended = False
+        self.output = ""
+        self._changed, self._ended = threading.Condition(), False
         environment = dict(os.environ, PYTHONUNBUFFERED="1", ROSCONSOLE_STDOUT_LINE_BUFFERED="1")
         self._process = subprocess.Popen(command, env=environment, stdin=subprocess.DEVNULL, stdout=written_to or subprocess.PIPE,
                                          stderr=subprocess.STDOUT, universal_newlines=True, errors="replace")
-        self._reader = None
-        if written_to is None:
-            self._reader = threading.Thread(target=self._read, daemon=True)
-            self._reader.start()
+        self._reader = threading.Thread(target=self._read, args=(self._process.stdout or [],), daemon=True)
+        self._reader.start()
 
-    def _read(self):
-        with self._process.stdout as stream:
-            for line in stream:
-                with self._changed:
-                    self._text += line
-                    self._changed.notify_all()
+    def _read(self, lines):
+        for line in lines:
+            with self._changed:
+                self.output += line
+                self._changed.notify_all()
         with self._changed:
             self._ended = True
             self._changed.notify_all()
 
-    @property
-    def output(self):
-        with self._changed:
-            return self._text
-
     def waitForText(self, text, limit_s):
         """Returns as soon as the output holds this text; fails if the program ends or time runs out before."""
         with self._changed:
-            self._changed.wait_for(lambda: text in self._text or self._ended, limit_s)
-            if text not in self._text:
-                raise TimeoutError("'%s' did not come within %g s:\n%s" % (text, limit_s, self._text))
+            self._changed.wait_for(lambda: text in self.output or self._ended, limit_s)
+            if text not in self.output:
+                raise TimeoutError("'%s' did not come within %g s:\n%s" % (text, limit_s, self.output))
 
     def waitForEnd(self, limit_s):
         """The exit code."""
         code = self._process.wait(limit_s)
-        if self._reader is not None:
-            self._reader.join(limit_s)
+        self._reader.join(limit_s)
         return code
 
     def send(self, signal_number):
-        if self._process.poll() is None:
-            self._process.send_signal(signal_number)
+        self._process.send_signal(signal_number)  # nothing if it has ended
 
     def stop(self, limit_s=20.0):
         """Ends the program, by SIGKILL if SIGINT does not."""

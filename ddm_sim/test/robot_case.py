@@ -17,7 +17,7 @@ from std_srvs.srv import SetBool, Trigger
 from process import Process, find_program
 
 LIMIT_S = 15.0
-DT = 0.4
+DT = 0.25
 WIDTH, HEIGHT = 48, 40
 CROP = [8, 0, 32, 32]
 

@@ -122,7 +122,6 @@ class RobotClockTest(RobotCase):
             delays.append(wait_until(lambda: self.zeroAfter(seen), "zero") - last_good)
             self.robot.camera.showing = True
             self.robot.waitForEffort(2.0)
-        print("from the last good image to zero [s]: %s" % " ".join("%.3f" % delay for delay in sorted(delays)))
         self.assertLessEqual(sorted(delays)[TRIES // 2], DELAY_LIMIT_S)  # a busy machine holds some of them up
         self.assertLessEqual(max(delays), DELAY_LIMIT_S + 0.5)
 

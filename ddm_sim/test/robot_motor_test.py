@@ -2,9 +2,11 @@
 # robot_node: what the controller sees of a camera, and what the motors get of its torques, over the wire.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
+import select
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 from ddm_msgs.msg import RunTrialActionResult
@@ -162,6 +164,21 @@ class RobotEndTest(RobotCase):
             wait_until(lambda: robot.efforts.messages[-1].data == (0.0, 0.0), "zero")
             robot.end()
             self.assertTrue(number or "user request" in robot.process.output)
+
+    def test_the_motor_stops_with_the_camera_and_the_node_ends_where_nobody_reads_what_it_logs(self):
+        """As on a terminal that is stopped (Ctrl-S), in a pager, or over a connection that hangs."""
+        _, writer = os.pipe()
+        robot = self.start(written_to=writer)
+        self.assertTrue(robot.enable(True).success)
+        threading.Thread(target=os.write, args=(writer, bytes(1 << 20)), daemon=True).start()  # more than a pipe can hold
+        wait_until(lambda: not select.select([], [writer], [], 0)[1], "a full pipe")
+        robot.answer(2.0)  # from here on it has something to log
+        robot.waitForEffort(2.0)
+        robot.camera.showing = False
+        robot.waitForEffort(0.0)
+        robot.process.send(signal.SIGINT)
+        self.assertEqual(robot.process.waitForEnd(LIMIT_S), 0)  # it gives up on the terminal after ten seconds
+        wait_until(lambda: robot.efforts.messages[-1].data == 0.0, "zero")
 
 
 if __name__ == "__main__":

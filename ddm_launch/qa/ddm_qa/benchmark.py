@@ -13,7 +13,7 @@ from ddm_launch.command import Failure, find_program, processor, program_parser,
 from ddm_launch.settings import read_yaml
 from ddm_launch.tables import write_csv
 from ddm_model.plain_file import write_file
-from ddm_qa.processes import Process, call, environment_of_programs, free_port, start_roslaunch
+from ddm_qa.processes import Process, free_port, on_this_machine, start_roslaunch
 
 LOOPS = ("lockstep", "bare")
 COLUMNS = ["name", "median_us", "p99_us"]
@@ -52,6 +52,13 @@ class Benchmark:
         self.wall_us = {}  # name: of each run
         self.plan_iterations = None
 
+    def call(self, program, *arguments, **variables):
+        """What a program printed. variables: of its environment."""
+        process = Process([find_program(program), *arguments], on_this_machine(**dict(ONE_THREAD, **variables)))
+        if process.waitForEnd(LIMIT_S) != 0:
+            raise Failure("%s failed:\n%s" % (program, process.output[-2000:]))
+        return process.output
+
     def keep_wall_time(self, name, run):
         summary = read_yaml(os.path.join(run, "summary.yaml"))
         if summary.get("finished") is not True:
@@ -59,16 +66,16 @@ class Benchmark:
         self.wall_us.setdefault(name, []).append(1e6 * summary["wall_s"])
         self.rows[name] = {"median_us": statistics.median(self.wall_us[name])}
 
-    def experiment(self, name="experiment", preset="paper", seed=0, threads="1"):
+    def experiment(self, name="experiment", preset="paper", seed=0, threads=1):
         """Leaves the run of seed 0 in SCRATCH/NAME."""
         run = os.path.join(self.scratch, name + ("_%d" % seed if seed else ""))
-        call(name, [find_program("run_experiment"), "--preset", preset, "--plant", "pendulum", "--seed", str(seed),
-                    "--trials", str(TRIALS), "--out", run], LIMIT_S, **dict(ONE_THREAD, OMP_NUM_THREADS=threads))
+        self.call("run_experiment", "--preset", preset, "--plant", "pendulum", "--seed", seed, "--trials", TRIALS, "--out", run,
+                  OMP_NUM_THREADS=str(threads))
         self.keep_wall_time(name, run)
 
     def efficient(self, seed):
         self.experiment("efficient_experiment", "efficient", seed)
-        self.experiment("efficient_experiment_all_cores", "efficient", seed, str(os.cpu_count()))
+        self.experiment("efficient_experiment_all_cores", "efficient", seed, os.cpu_count())
 
     def ros_experiment(self):
         run = os.path.join(self.scratch, "ros_experiment")
@@ -79,16 +86,15 @@ class Benchmark:
 
     def kernels(self, prefix=""):
         """Of the experiment of this prefix."""
-        name = prefix + "kernels"
-        report = os.path.join(self.scratch, name + ".json")
-        call(name, [find_program("benchmark_kernels"), os.path.join(self.scratch, prefix + "experiment"),
-                    "--benchmark_out_format=json", "--benchmark_out=" + report], LIMIT_S, **ONE_THREAD)
+        report = os.path.join(self.scratch, "kernels.json")
+        self.call("benchmark_kernels", os.path.join(self.scratch, prefix + "experiment"), "--benchmark_out_format=json",
+                  "--benchmark_out=" + report)
         with open(report) as stream:
             found = json.load(stream)["benchmarks"]
         times = {}  # name: {median, p99}
         for row in found:
             if row.get("error_occurred"):
-                raise Failure("%s: %s: %s" % (name, row["name"], row.get("error_message", "failed")))
+                raise Failure("%s: %s" % (row["name"], row.get("error_message", "failed")))
             kernel = row["run_name"].split("/iterations")[0]
             times.setdefault(kernel, {})[row.get("aggregate_name")] = row["real_time"]
             if not prefix and kernel == "plan" and row.get("aggregate_name") == "mean":
@@ -100,15 +106,13 @@ class Benchmark:
 
     def round_trips(self, progress):
         """Restarts of both loops, on all cores and on one, taking turns."""
-        all_cores = os.sched_getaffinity(0)
-        cores = {"": all_cores, "_one_core": {min(all_cores)}}
-        times = {loop + "_round_trip" + suffix: [] for suffix in cores for loop in LOOPS}
+        all_cores, times = os.sched_getaffinity(0), {}
         for _ in range(RESTARTS):
-            for suffix, chosen in cores.items():
-                for loop in LOOPS:
-                    os.sched_setaffinity(0, chosen)  # what is started from here on inherits it
+            for loop in LOOPS:
+                for suffix, cores in (("", all_cores), ("_one_core", {min(all_cores)})):
+                    os.sched_setaffinity(0, cores)  # what is started from here on inherits it
                     try:
-                        times[loop + "_round_trip" + suffix].append(self.round_trip_us(loop))
+                        times.setdefault(loop + "_round_trip" + suffix, []).append(self.round_trip_us(loop))
                     finally:
                         os.sched_setaffinity(0, all_cores)
                     progress.update(1)
@@ -117,21 +121,19 @@ class Benchmark:
 
     def round_trip_us(self, loop):
         """The mean of one start of one of LOOPS."""
-        port, program = free_port(), find_program("benchmark_kernels")
-        variables = dict(ONE_THREAD, ROS_MASTER_URI="http://localhost:%d" % port, ROS_HOME=self.scratch)
+        port = free_port()
+        master = dict(ONE_THREAD, ROS_MASTER_URI="http://localhost:%d" % port, ROS_HOME=self.scratch)
         with contextlib.ExitStack() as running:
             if loop == "lockstep":
                 nodes = running.enter_context(start_roslaunch(
                     self.scratch, "nodes.launch", "preset:=paper", "plant:=pendulum", "recorder:=false", "trainer:=false",
                     port=port, variables=ONE_THREAD))
                 nodes.waitForText("process[mpc_node", 60.0)  # its parameters, use_sim_time among them, are set by then
-                timed = "lockstep"
             else:
-                environment = environment_of_programs(**variables)
-                running.enter_context(Process(["roscore", "-p", port], environment))
-                running.enter_context(Process([program, "bare_controller"], environment))
-                timed = "bare_camera"
-            return float(call(loop, [program, timed, str(NUM_FRAMES)], LIMIT_S, **variables).split()[-1])
+                for command in (["roscore", "-p", port], [find_program("benchmark_kernels"), "bare_controller"]):
+                    running.enter_context(Process(command, on_this_machine(**master)))
+            timed = {"lockstep": "lockstep", "bare": "bare_camera"}[loop]
+            return float(self.call("benchmark_kernels", timed, NUM_FRAMES, **master).split()[-1])
 
     def work(self):
         steps = [("experiment", self.experiment), ("kernels", self.kernels)]
@@ -139,14 +141,11 @@ class Benchmark:
         steps.append(("kernels of efficient", lambda: self.kernels("efficient_")))
         steps.append(("roslaunch experiment", self.ros_experiment))
         with tqdm(total=len(steps) + 2 * len(LOOPS) * RESTARTS, unit="step", dynamic_ncols=True, disable=None) as progress:
-            for name, step in steps:
+            for name, step in steps + [("lock-step and bare loop", lambda: self.round_trips(progress))]:
                 progress.set_description(name)
                 step()
                 self.write()  # after each step: what was timed is kept if a later one fails
                 progress.update(1)
-            progress.set_description("lock-step and bare loop")
-            self.round_trips(progress)
-        self.write()
 
     def write(self):
         write_csv(os.path.join(self.out, "speed.csv"), COLUMNS,
@@ -164,7 +163,6 @@ def main():
 
     def work():
         with tempfile.TemporaryDirectory() as scratch:
-            benchmark = Benchmark(options.out, scratch)
-            benchmark.work()
-        print("results: %s" % benchmark.out)
+            Benchmark(options.out, scratch).work()
+        print("results: %s" % os.path.abspath(options.out))
     return run_program("benchmark", work)

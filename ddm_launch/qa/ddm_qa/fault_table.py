@@ -1,5 +1,6 @@
-# The fault table: every case of cases.py, several at a time, as DIR/faults.csv.
+# The fault table: every case of fault_cases.py, several at a time, as DIR/faults.csv.
 # SPDX-License-Identifier: BSD-3-Clause
+from concurrent.futures import ThreadPoolExecutor, as_completed
 import os
 import time
 
@@ -7,9 +8,8 @@ from tqdm import tqdm
 
 from ddm_launch.command import Failure, number, program_parser, run_program
 from ddm_launch.tables import write_csv
-from ddm_qa.faults.cases import CASES
-from ddm_qa.faults.run import FaultBench
-from ddm_qa.processes import side_by_side
+from ddm_qa.fault_cases import CASES, FAULTS_OF_ROOT, QUICK
+from ddm_qa.fault_run import FaultBench
 
 COLUMNS = ["case", "phase", "fault", "expected", "observed", "passed"]
 
@@ -23,34 +23,33 @@ The folder of a case that failed stays in DIR. Exit code: 0 all passed, 1 not, 2
 or a read-only file system need root, and are left out without it."""
 
 
-def selected(subset, only):
-    cases = [case for case in CASES if subset == "all" or case.quick]
-    return [case for case in cases if not only or any(word in case.name for word in only)]
-
-
-def table(cases, observed):
-    """Rows of COLUMNS."""
-    return [[case.name, case.phase, case.fault, case.expected, observed[case.name],
-             int(observed[case.name] == case.expected)] for case in cases]
-
-
 def run(options):
     start, observed, out = time.monotonic(), {}, os.path.abspath(options.out)
-    cases = selected(options.subset, options.only)
+    cases = [case for case in CASES if (options.subset == "all" or case.name in QUICK)
+             and (not options.only or any(word in case.name for word in options.only))]
     if not cases:
         raise Failure("no case has one of these words in its name: %s" % ", ".join(options.only))
-    skipped = [case for case in cases if case.root and os.geteuid() != 0]
-    cases = [case for case in cases if case not in skipped]
-    if skipped:
-        print("SKIPPED, because these need root to mount file systems:\n - %s" % "\n - ".join(
-            case.name for case in skipped))
+    if os.geteuid() != 0:
+        skipped = [case for case in cases if case.fault in FAULTS_OF_ROOT]
+        cases = [case for case in cases if case not in skipped]
+        print("SKIPPED, because these need root to mount file systems:\n - %s" % "\n - ".join(case.name for case in skipped))
     bench = FaultBench(out, options.patience)
     bench.make_reference()
-    for case, result in side_by_side(bench.run, cases, options.jobs, bench.stop, "case"):
-        observed[case.name] = result
-        if result != case.expected:
-            tqdm.write("failed: %s: expected '%s', got '%s'" % (case.name, case.expected, result))
-    rows = table(cases, observed)
+    with ThreadPoolExecutor(options.jobs) as pool:
+        futures = {pool.submit(bench.run, case): case for case in cases}
+        try:
+            for future in tqdm(as_completed(futures), total=len(cases), unit="case", dynamic_ncols=True, disable=None):
+                case, result = futures[future], future.result()
+                observed[case.name] = result
+                if result != case.expected:
+                    tqdm.write("failed: %s: expected '%s', got '%s'" % (case.name, case.expected, result))
+        except BaseException:  # interrupted
+            for future in futures:
+                future.cancel()
+            for launch in list(bench.launches):
+                launch.stop()
+            raise
+    rows = [[*case[:4], observed[case.name], int(observed[case.name] == case.expected)] for case in cases]
     write_csv(os.path.join(out, "faults.csv"), COLUMNS, rows)
     num_passed = sum(row[-1] for row in rows)
     print("table: %s (%.0f s)" % (os.path.join(out, "faults.csv"), time.monotonic() - start))

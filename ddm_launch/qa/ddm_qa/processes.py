@@ -1,6 +1,5 @@
 # Programs whose output is read while they run or at their end, and launches with masters of their own. All have a limit.
 # SPDX-License-Identifier: BSD-3-Clause
-import concurrent.futures
 import os
 import random
 import signal
@@ -10,26 +9,7 @@ import threading
 import urllib.parse
 import xmlrpc.client
 
-from tqdm import tqdm
-
-from ddm_launch.command import Failure
-
 PORTS = range(12000, 32768)  # Linux gives none of them to programs that take any port
-
-
-def side_by_side(work, items, jobs, stop, unit):
-    """Yields (item, work(item)) when it is there, `jobs` at a time, with a bar. An exception calls stop() first."""
-    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        futures = {pool.submit(work, item): item for item in items}
-        try:
-            for future in tqdm(concurrent.futures.as_completed(futures), total=len(futures), unit=unit,
-                               dynamic_ncols=True, disable=None):
-                yield futures[future], future.result()
-        except BaseException:
-            for future in futures:
-                future.cancel()
-            stop()
-            raise
 
 
 def free_port():
@@ -44,23 +24,19 @@ def free_port():
                 pass  # in use
 
 
-def on_this_machine(environment):
-    """The environment for a ROS master and nodes that only this machine can reach: ROS_IP=127.0.0.1. One that names an
-    address (ROS_IP, ROS_HOSTNAME) or a master on another machine is left as it is."""
-    host = urllib.parse.urlparse(environment.get("ROS_MASTER_URI", "http://localhost")).hostname
-    if environment.get("ROS_IP") or environment.get("ROS_HOSTNAME") or host not in ("localhost", "127.0.0.1"):
-        return environment
-    return dict(environment, ROS_IP="127.0.0.1")
-
-
 def line_by_line():
     """The environment in which ROS programs write each line at once, into a pipe too."""
     return dict(os.environ, PYTHONUNBUFFERED="1", ROSCONSOLE_STDOUT_LINE_BUFFERED="1")
 
 
-def environment_of_programs(**variables):
-    """Of programs that only this machine can reach. variables: more of it, which win."""
-    return on_this_machine(dict(line_by_line(), **variables))
+def on_this_machine(**variables):
+    """The environment for a ROS master and nodes that only this machine can reach: ROS_IP=127.0.0.1. An environment that names
+    an address (ROS_IP, ROS_HOSTNAME) or a master on another machine stays as it is. variables: of the environment."""
+    environment = dict(line_by_line(), **variables)
+    host = urllib.parse.urlparse(environment.get("ROS_MASTER_URI", "http://localhost")).hostname
+    if not (environment.get("ROS_IP") or environment.get("ROS_HOSTNAME")) and host in ("localhost", "127.0.0.1"):
+        environment["ROS_IP"] = "127.0.0.1"
+    return environment
 
 
 class Process:
@@ -139,25 +115,10 @@ class Process:
 def start_roslaunch(log_folder, *arguments, port=None, folder=None, options=(), variables=None):
     """Starts `roslaunch ddm_launch ...` with a master of its own; port 0 joins the master that runs already.
     options: of roslaunch itself. variables: of its environment."""
-    environment = dict(line_by_line(), ROS_HOME=log_folder, **(variables or {}))
-    own_master = [] if port == 0 else ["-p", str(port or free_port())]
-    if own_master:
-        environment.pop("ROS_MASTER_URI", None)
-    return Process(["roslaunch", *options] + own_master + ["ddm_launch"] + list(arguments),
-                   on_this_machine(environment), folder)
-
-
-def call(what, command, limit_s, **variables):
-    """Returns what a program printed on stdout. variables: of its environment. Raises Failure with its last words."""
-    try:
-        done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                              universal_newlines=True, timeout=limit_s, env=environment_of_programs(**variables))
-    except subprocess.TimeoutExpired:
-        raise Failure("%s: '%s' has not ended within %g s" % (what, " ".join(command), limit_s)) from None
-    if done.returncode != 0:
-        raise Failure("%s: '%s' failed with code %d:\n%s" % (
-            what, " ".join(command), done.returncode, (done.stderr or done.stdout)[-2000:].strip()))
-    return done.stdout
+    port = free_port() if port is None else port
+    own_master = {"ROS_MASTER_URI": "http://localhost:%d" % port} if port else {}
+    return Process(["roslaunch", *options, *(["-p", port] if port else []), "ddm_launch", *arguments],
+                   on_this_machine(ROS_HOME=log_folder, **dict(variables or {}, **own_master)), folder)
 
 
 def pid_of(master, node):

@@ -1,0 +1,126 @@
+# The table of faults: what can happen to an experiment, and what must come of it.
+# SPDX-License-Identifier: BSD-3-Clause
+import collections
+import itertools
+
+# Outcomes; fault_run.py has a check for each word.
+RECOVERS = "finished, equal"
+NOTICED = "finished, named, equal"
+ENDS = "ended, named, undamaged, resumes, equal"
+ENDS_IN_FIRST_TRIAL = "ended, named, resumes, equal"
+KILLED = "ended, undamaged, resumes, equal"  # roslaunch names the node, and ends the others at once
+KILLED_IN_FIRST_TRIAL = "ended, resumes, equal"
+STAYS = "ended, named, unchanged, undamaged, resumes, equal"
+REFUSED = "refused, named, acts when restored"
+REFUSED_AND_KEPT = "refused, named, kept, acts when restored"
+GOES_ON_AFTER_ZERO = "finished, zero"
+GOES_ON_NAMED_AFTER_ZERO = "finished, named, zero"
+ENDS_WITH_ZERO = "ended, named, zero, undamaged, resumes"
+
+# name: unique. phase, fault: when and what, as fault_injector and fault_run.py read them. words: which the output must have.
+Case = collections.namedtuple("Case", "name phase fault expected words")
+FAULTS_OF_ROOT = ("read-only folder", "fill disk")  # these mount a read-only or a small file system
+
+NODES = "sim_node|mpc_node|trial_recorder|model_node|experiment_node|master"
+AT_REST, REAL_TIME, ON_A_ROBOT = "at rest", " in real time", " on a robot"  # the latter two: ends of names
+FIRST, EXPLORING, RECORDING, TRAINING, EVALUATION = PHASES = (
+    "random trial", "exploring trial", "recording", "training", "evaluation")
+RUNS = (EXPLORING, EVALUATION)
+NO_TORQUES = "nan|inf|none|twice|1e300"
+CHANGE = "the images change from 51x51 mono8 to "
+FULL = ("cannot", "No space left on device")
+# The small subset: some cases of each class.
+QUICK = (
+    "kill mpc_node in evaluation", "lose sim_node in exploring trial", "drop image in exploring trial",
+    "publish torque in exploring trial", "cut chunk of trial.bag at rest", "fill disk in random trial",
+    "mute image in exploring trial in real time", "future image in exploring trial on a robot")
+
+
+def cases(phases, *rows):
+    """A case for each phase and row (fault, expected, words of the output); the fault `a|b c` stands for `a c` and `b c`."""
+    for phase in phases:
+        for alternatives, expected, *words in rows:
+            for parts in itertools.product(*(part.split("|") for part in alternatives.split())):
+                fault = " ".join(parts)
+                name = "%s %s" % (fault, phase if phase == AT_REST else "in " + phase)
+                yield Case(name, phase, fault, expected, tuple(words))
+
+
+def real_time(run):
+    """The plant does not wait: whatever happens, the motor must stop by itself, and no torque that came too late or
+    never reached the motor may be learned from."""
+    learns = ", learned what acted" if run == EXPLORING else ""
+    return cases([run + REAL_TIME],
+                 # For the plant it is as good as dead. If it were killed, roslaunch would end the plant as well.
+                 ("hold mpc_node", ENDS_WITH_ZERO, "action /run_trial shows no sign of life"),
+                 ("pause mpc_node", GOES_ON_AFTER_ZERO + learns),
+                 ("mute image", ENDS_WITH_ZERO, "no image after step", "/fault_injector"),
+                 ("mute torque", GOES_ON_AFTER_ZERO + learns),  # a motor that hears nothing says nothing
+                 ("late image|torque", GOES_ON_AFTER_ZERO + learns),
+                 ("alter torque " + NO_TORQUES, ENDS_WITH_ZERO, "torque refused", "/fault_injector"),
+                 ("publish torque", ENDS_WITH_ZERO, "torque refused", "/intruder"))
+
+
+CASES = [
+    # Processes that end or stop for a while.
+    *cases([FIRST], ("kill " + NODES, KILLED_IN_FIRST_TRIAL)),
+    *cases(PHASES[1:], ("kill " + NODES, KILLED), ("pause " + NODES, RECOVERS)),
+    # A node that dies out of roslaunch's sight, is stopped for longer than any other node waits, or for good: the nodes
+    # that wait for it say so.
+    *cases(RUNS, ("lose|oversleep|hold sim_node", ENDS, "no image after step", "action /run_trial"),
+           ("lose|oversleep|hold mpc_node", ENDS, "no torque for frame", "action /run_trial")),
+    *cases([EXPLORING], ("lose|oversleep|hold trial_recorder", ENDS, "service /stop_recording does not answer")),
+    *cases([TRAINING], ("lose|oversleep|hold model_node", ENDS, "action /train shows no sign of life")),
+    # No node says whether the last torque acted.
+    *cases([RECORDING], ("lose sim_node", ENDS, "service /stop_recording")),
+    *cases([TRAINING], ("lose sim_node", ENDS, "service /reset does not answer")),
+    *cases([RECORDING, TRAINING], ("lose mpc_node", ENDS, "action /run_trial shows no sign of life")),
+    # Connected nodes need no master: the experiment takes longer, since each of its questions to the master has a limit.
+    *cases(RUNS + (TRAINING,), ("hold master", NOTICED, "the ROS master does not answer")),
+
+    # Messages that are lost, late, repeated or from another publisher.
+    *cases(RUNS, ("drop image|torque", ENDS, "no torque for frame 7 ", "/fault_injector"),
+           ("double|late|repeat image|torque", RECOVERS), ("publish torque|image|model|clock", ENDS, "/intruder"),
+           ("mute clock", RECOVERS)),  # no node waits for time to pass
+
+    *real_time(EXPLORING), *real_time(EVALUATION),
+    *cases(["every run" + REAL_TIME],  # plans that would go on for minutes
+           ("long plans", "ended, named", "no plan for step 1", "mpc/time_budget"),
+           ("long plans with a budget", "finished, in time")),
+
+    # A wrong clock, old joint states, another camera, a dead controller or a joint beyond its limits must bring zero torque
+    # within two dt and 50 ms.
+    *cases([run + ON_A_ROBOT for run in RUNS],
+           ("future image", ENDS_WITH_ZERO, "no image after step"),  # and then silence
+           ("set clock forward", GOES_ON_NAMED_AFTER_ZERO, "the camera's clock has jumped forward"),
+           ("set clock back", GOES_ON_NAMED_AFTER_ZERO, "before the one that came before it"),
+           ("age joints", GOES_ON_NAMED_AFTER_ZERO, "joint_states does not report"),
+           ("resize image", ENDS_WITH_ZERO, "the images have changed from", "no image after step"),
+           ("lose mpc_node", ENDS_WITH_ZERO, "no node publishes torques", "action /run_trial shows no sign of life"),
+           ("exceed position", ENDS_WITH_ZERO, "robot/position_limits", "was cancelled"),
+           ("exceed speed", ENDS_WITH_ZERO, "robot/speed_limit", "was cancelled")),
+
+    # Messages with values that must not be used.
+    *cases(RUNS, ("alter torque " + NO_TORQUES, ENDS, "torque refused", "/fault_injector"),
+           ("alter image size", ENDS, CHANGE + "25x25 mono8"), ("alter image encoding", ENDS, CHANGE + "51x51 rgb8")),
+    *cases([EXPLORING], ("alter image unknown", ENDS, CHANGE + "51x51 smell"),
+           ("alter image cut", ENDS, "image refused", "data must hold"),
+           ("alter image unstamped", ENDS, "image refused", "it has no stamp")),
+
+    # Files that are damaged, and folders that cannot be used.
+    *cases([AT_REST],
+           ("cut version|header|chunk|index|connection|chunk_info of trial.bag", STAYS, "trial_000/trial.bag"),
+           ("flip chunk of trial.bag", STAYS, "trial_000/trial.bag"),
+           ("remove trial.bag", STAYS, "trial_000/trial.bag is missing", "put it back"),
+           ("flip end|digit of trials.csv", STAYS, "trials.csv is not as it was written"),
+           ("flip head of trials.csv", STAYS, "trials.csv, line 1"),
+           ("flip config.yaml", STAYS, "use another folder"),
+           ("flip model.ddm", REFUSED, "model.ddm", "is damaged (wrong checksum)"),
+           ("flip head of model.ddm", REFUSED, "model.ddm"), ("cut model.ddm", REFUSED, "model.ddm"),
+           ("read-only folder", STAYS, "config.yaml: Read-only file system"),
+           ("other seed", STAYS, "holds another experiment", "experiment/seed"),
+           ("unfinished bag", REFUSED_AND_KEPT, "new.bag.active", "rosbag reindex"),
+           ("unfinished trial", "finished, kept, equal")),
+    *cases([FIRST], ("fill disk", ENDS_IN_FIRST_TRIAL, *FULL)),
+    *cases(PHASES[1:], ("fill disk", ENDS, *FULL)),
+    *cases([EXPLORING, FIRST], ("begin experiment", NOTICED, "another process is running in the folder"))]

@@ -1,0 +1,348 @@
+# Runs the experiment of a case with its fault, then the same command without the fault, and tells what came of it.
+# SPDX-License-Identifier: BSD-3-Clause
+import bisect
+import contextlib
+import json
+import os
+import re
+import shutil
+import struct
+import subprocess
+import traceback
+
+import rosbag
+
+from ddm_launch.command import Failure
+from ddm_launch.run_folder import is_finished
+from ddm_model.plain_file import write_file
+from ddm_qa.fault_cases import AT_REST, FAULTS_OF_ROOT, ON_A_ROBOT, REAL_TIME
+from ddm_qa.processes import start_roslaunch
+from ddm_qa.run_comparison import Finished, differences, digest, digests, expected_files, read_bytes, read_rows
+
+SEED, TRIALS = 1, 1
+NO_FAULT = "no fault"
+LIMIT_S = 120.0  # of a launch
+# Trainings last half a second, so that faults reach them even on fast processors. Limits are short, so that a silent node is
+# named soon. The controller waits longer than the simulator, which therefore is the one that reports a message lost
+# between them.
+CONFIG = """\
+training: {{max_iterations: 15000, function_tolerance: 0.0}}
+sim: {{watchdog: {0}}}
+controller: {{timeout: {1}}}
+recorder: {{timeout: {0}}}
+experiment: {{timeout: {2}}}
+"""
+SILENT_S = (5.0, 8.0, 11.0)  # without a sign of life
+REAL_TIME_DT_S = 0.05  # shorter waits than with the paper's 0.2 s
+REAL_TIME_CONFIG = "plant: {dt: %g}\n" % REAL_TIME_DT_S
+ROBOT_CONFIG = "robot: {position_limits: [[-1000.0, 1000.0]], speed_limit: [1000.0]}\n"
+LONG_PLANS = "mpc: {horizon: 200, num_starts: 1000, max_iterations: 1000000, function_tolerance: 0.0, time_budget: %g}\n"
+CONFIGS = {"long plans": LONG_PLANS % 0.0, "long plans with a budget": LONG_PLANS % 0.02}  # by fault
+CRASH = re.compile(r"exit code -(?!2\b|9\b|15\b)\d+|Traceback|terminate called|Segmentation fault")
+DISK_BYTES = 2 * 1024 * 1024
+COMPARED = [name for name in expected_files(TRIALS) if not name.endswith((".bag", "config.yaml"))]
+FEWEST_PAIRS = 5  # of image and torque in a bag, from which anything can be told
+# Kinds of records in a bag, by the field `op` of their headers.
+RECORDS = {"header": 3, "index": 4, "chunk": 5, "chunk_info": 6, "connection": 7}
+VERSION_LINE = b"#ROSBAG V2.0\n"
+BAG, UNFINISHED = "new.bag", {"unfinished bag": "new.bag.active", "unfinished trial": "trial_001/trial.bag.active"}
+
+
+@contextlib.contextmanager
+def small_disk(folder):
+    """A file system of its own for a folder, which can be full or read-only. Needs root."""
+    os.makedirs(folder)
+    subprocess.run(["mount", "-t", "tmpfs", "-o", "size=%d" % DISK_BYTES, "none", folder], check=True)
+    try:
+        yield
+    finally:
+        subprocess.run(["umount", "--lazy", folder], check=True)
+
+
+def write(path, content):
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "wb") as stream:
+        stream.write(content)
+
+
+def find_place(data, name):
+    """(begin, end) of a place in a file: of its head, end or last digit, or of a bag's first record of a kind."""
+    digit = data.rfind(b",") - 1  # the last one of a table: its last column is text
+    places = {"": (0, len(data)), "head": (0, 8), "end": (len(data) - 16, len(data)), "digit": (digit, digit + 1),
+              "version": (0, len(VERSION_LINE))}
+    begin = len(VERSION_LINE)
+    while name not in places:
+        header_size, = struct.unpack_from("<I", data, begin)
+        header = data[begin + 4:begin + 4 + header_size]
+        data_size, = struct.unpack_from("<I", data, begin + 4 + header_size)
+        end = begin + 8 + header_size + data_size
+        if b"op=" + bytes([RECORDS[name]]) in header:
+            return begin, end
+        begin = end
+    return places[name]
+
+
+def damage(fault, path):
+    """Does to a file what the fault says, `cut|flip|remove [PLACE of] FILE`."""
+    verb, *place = fault.split()[:-1]
+    place = place[0] if place else ""
+    data = read_bytes(path)
+    middle = sum(find_place(data, place)) // 2
+    if verb == "remove":
+        os.remove(path)
+    elif verb == "cut":
+        write(path, data[:middle])
+    else:
+        bit = 0x01 if place == "digit" else 0x80  # which makes another digit of one
+        write(path, data[:middle] + bytes([data[middle] ^ bit]) + data[middle + 1:])
+
+
+class FaultBench:
+    """Runs cases in folders of their own under `out`:
+
+      reference/, begun/   the undisturbed experiment, and how it was when its first trial was finished
+      CASE/run             the experiment of a case; CASE/ros: logs of its nodes
+      logs/CASE.txt        what its launches said
+    """
+
+    def __init__(self, out, patience=1.0):
+        """patience: what all time limits are multiplied by, but a robot's: its motors must stop in time anywhere."""
+        self.out, self.limit_s = out, LIMIT_S * patience
+        self.config = CONFIG.format(*(limit * patience for limit in SILENT_S))
+        self.reference, self.begun = os.path.join(out, "reference", "run"), os.path.join(out, "begun")
+        self.launches = set()  # that run
+        os.makedirs(os.path.join(out, "logs"), exist_ok=True)
+
+    def make_reference(self):
+        """Raises Failure if even the undisturbed experiment does not finish."""
+        for folder in (os.path.dirname(self.reference), self.begun):
+            shutil.rmtree(folder, ignore_errors=True)
+        output = self.launch_experiment(self.reference, self.reference)
+        if not is_finished(self.reference):
+            raise Failure("the undisturbed experiment did not finish:\n%s" % output[-2000:])
+        shutil.copytree(self.reference, self.begun)
+        os.remove(os.path.join(self.begun, "summary.yaml"))
+        for name in ("trial_001", "evaluation_001"):
+            shutil.rmtree(os.path.join(self.begun, name))
+        rows = read_bytes(self.begun, "trials.csv").splitlines(keepends=True)
+        write(os.path.join(self.begun, "trials.csv"), b"".join(rows[:2]))
+
+    def launch_experiment(self, beside, folder, launch_file="experiment.launch", config="", **more):
+        """Without a fault, in lock-step, unless `more` arguments say otherwise. beside: the logs of its nodes go next to
+        this folder. config: more of it."""
+        path = os.path.join(os.path.dirname(beside), "config.yaml")
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        write_file(path, self.config + config)  # whole, since several cases may read it
+        values = dict({"preset": "debug", "seed": SEED, "trials": TRIALS, "runs": folder, "config": path}, **more)
+        return self.launch(beside, launch_file, ["%s:=%s" % item for item in values.items()])
+
+    def launch(self, beside, launch_file, arguments):
+        """Runs a launch to its end. Returns its output; raises TimeoutError if it does not end."""
+        with start_roslaunch(os.path.join(os.path.dirname(beside), "ros"), launch_file, *arguments,
+                             options=["--sigint-timeout=5", "--sigterm-timeout=2"]) as launch:
+            self.launches.add(launch)
+            launch.waitForEnd(self.limit_s)
+        self.launches.discard(launch)
+        return launch.output
+
+    def run(self, case):
+        """Returns what was observed, in the words of the case's expected outcome."""
+        name = case.name.replace(" ", "_")
+        folder = os.path.join(self.out, name, "run")
+        shutil.rmtree(os.path.dirname(folder), ignore_errors=True)
+        with open(os.path.join(self.out, "logs", name + ".txt"), "w") as log, contextlib.ExitStack() as stack:
+            if case.fault in FAULTS_OF_ROOT:
+                stack.enter_context(small_disk(folder))
+            try:
+                observed = (AtRest if case.phase == AT_REST else Live)(self, case, folder, log).observed()
+            except TimeoutError as error:
+                log.write(str(error))
+                observed = "hung"
+            except (OSError, ValueError, IndexError, KeyError, rosbag.ROSBagException) as error:  # of files that it has left
+                log.write(traceback.format_exc())
+                observed = "unreadable: %s" % error
+        if observed == case.expected:
+            shutil.rmtree(os.path.dirname(folder))
+        return observed
+
+
+class CaseRun:
+    """A case that is run. Each word of an expected outcome is a method, which returns the word, or what was seen instead."""
+
+    def __init__(self, bench, case, folder, log):
+        self.bench, self.case, self.folder, self.log = bench, case, folder, log
+        self.resumed, self.report = False, {}
+
+    def launch_and_log(self, fault):
+        output = self.launch(fault)
+        self.log.write(output)
+        return output
+
+    def observed(self):
+        self.output = self.disturb()
+        if self.report is None:
+            return "not injected"
+        facts = [getattr(self, word.replace(" ", "_"))() for word in self.case.expected.split(", ")]
+        return ", ".join(facts + (["crashed"] if CRASH.search(self.output) else []))
+
+    def finished(self):
+        """summary.yaml says so. `ended`: the launch ended by itself, without a verdict."""
+        return "finished" if is_finished(self.folder) else "ended"
+
+    ended = finished
+
+    def named(self):
+        """The output has the case's words."""
+        missing = [word for word in self.case.words if word not in self.output]
+        return "not named: " + " | ".join(missing) if missing else "named"
+
+    def undamaged(self):
+        """What was finished before the fault, at least one trial, is there, byte by byte, after the fault and after
+        resuming."""
+        damaged = self.resume() + self.before.lost(self.folder)
+        if not self.case.phase.endswith((REAL_TIME, ON_A_ROBOT)):  # in which no two experiments are equal
+            damaged += differences(self.bench.reference, self.folder, [name for name in COMPARED if name in self.before.files])
+        if damaged:
+            return "damaged: " + " ".join(sorted(set(damaged)))
+        return "undamaged" if self.before.files else "nothing to compare"
+
+    def resumes(self):
+        """The same command finishes the experiment."""
+        self.resume()
+        return "resumes" if is_finished(self.folder) else "does not resume"
+
+    def resume(self):
+        """Once: takes the fault away and runs the same command again. Returns the finished files that were lost before."""
+        if self.resumed:
+            return []
+        self.resumed = True
+        self.undo()
+        lost = self.before.lost(self.folder)
+        self.log.write("\n--- the same command again ---\n")
+        self.launch_and_log(NO_FAULT)
+        return lost
+
+    def equal(self):
+        """All files but bags are those of the undisturbed experiment, apart from times."""
+        found = differences(self.bench.reference, self.folder, COMPARED) if is_finished(self.folder) else ["no verdict"]
+        return "differs: " + " ".join(found) if found else "equal"
+
+
+class Live(CaseRun):
+    """The fault comes while the experiment runs: fault_injector causes it, and reports what it has seen."""
+
+    def launch(self, fault):
+        phase, arguments, config = self.case.phase, {}, CONFIGS.get(fault, "")
+        if fault not in CONFIGS and (fault != NO_FAULT or phase.endswith(ON_A_ROBOT)):
+            arguments = {"launch_file": "fault.launch", "fault": fault, "report": self.report_path,
+                         "phase": phase if fault != NO_FAULT else "never" + ON_A_ROBOT}
+        if phase.endswith(ON_A_ROBOT):
+            arguments["robot"], config = "true", ROBOT_CONFIG
+        if phase.endswith(REAL_TIME):
+            arguments["real_time"], config = "true", REAL_TIME_CONFIG + config
+        return self.bench.launch_experiment(self.folder, self.folder, config=config, **arguments)
+
+    def disturb(self):
+        self.report_path = os.path.join(os.path.dirname(self.folder), "report.json")
+        output = self.launch_and_log(self.case.fault)
+        if self.case.fault not in CONFIGS:
+            self.report = json.loads(read_bytes(self.report_path)) if os.path.exists(self.report_path) else None
+        if self.report:
+            self.before = Finished(*self.report["finished"])
+            self.log.write(self.report["said"])
+            output += self.report["said"]
+        return output
+
+    def undo(self):
+        filler = os.path.join(self.folder, "filler")
+        if os.path.exists(filler):
+            os.remove(filler)
+
+    def zero(self):
+        """In real time, from the third period after the last torque on, no torque acts."""
+        return self.report.get("motor", "the motor was not watched")
+
+    def in_time(self):
+        """Plans take less than a time step."""
+        header, *rows = read_rows(self.folder, "trials.csv")
+        slowest_ms = max(float(row[header.index("plan_ms_median")]) for row in rows)
+        return "in time" if slowest_ms < 1e3 * REAL_TIME_DT_S else "plans took %g ms" % slowest_ms
+
+    def learned_what_acted(self):
+        """In the bag of the trial, an image has the torque that acted after it or none, and some have none."""
+        acted = self.report["acted"]  # (stamp of an image [ns], torque that acted before it) of all frames, in order
+        stamps, images, torques = [stamp for stamp, _ in acted], set(), {}
+        with rosbag.Bag(os.path.join(self.folder, "trial_001", "trial.bag")) as bag:
+            for topic, message, _ in bag.read_messages(["camera/image_raw", "torque"]):
+                if topic == "torque":
+                    torques[message.header.stamp.to_nsec()] = message.torque[0]
+                else:
+                    images.add(message.header.stamp.to_nsec())
+        pairs = images & set(torques)
+        after = {stamp: bisect.bisect_right(stamps, stamp) for stamp in pairs}
+        wrong = [stamp for stamp in pairs if after[stamp] == len(acted) or acted[after[stamp]][1] != torques[stamp]]
+        if wrong:
+            return "%d of %d pairs have a torque that did not act" % (len(wrong), len(pairs))
+        if len(pairs) < FEWEST_PAIRS:
+            return "only %d pairs" % len(pairs)
+        return "learned what acted" if pairs != images else "no image is without a torque"
+
+
+class AtRest(CaseRun):
+    """A command is given a run folder that is damaged, or belongs to another experiment, or must not be written: a copy of
+    an experiment that is not finished. What must not run on such a folder is the experiment itself, or a short recording."""
+
+    def disturb(self):
+        fault, folder, bench = self.case.fault, self.folder, self.bench
+        shutil.copytree(bench.begun, folder, dirs_exist_ok=True)
+        self.before, self.undo = Finished.of(folder), lambda: None
+        if fault in UNFINISHED:  # what is left of a bag whose recorder was killed
+            content, path = read_bytes(bench.begun, "trial_000", "trial.bag"), os.path.join(folder, UNFINISHED[fault])
+            self.half = content[:len(content) // 2]
+            write(path, self.half)
+            self.undo = lambda: os.path.exists(path) and os.remove(path)
+        elif fault == "read-only folder":
+            subprocess.run(["mount", "-o", "remount,ro", folder], check=True)
+            self.undo = lambda: subprocess.run(["mount", "-o", "remount,rw", folder], check=True)
+        elif fault != "other seed":
+            name = fault.split()[-1]
+            path = os.path.join(folder, name if name in os.listdir(folder) else os.path.join("trial_000", name))
+            content = read_bytes(path)
+            damage(fault, path)
+            self.undo = lambda: write(path, content)
+        self.there = digests(folder)
+        return self.launch_and_log(fault)
+
+    def launch(self, fault):
+        bench, folder = self.bench, self.folder
+        if not self.case.expected.startswith("refused"):
+            # logs go elsewhere: the folder may be read-only
+            return bench.launch_experiment(bench.reference, folder, seed=SEED + (fault == "other seed"))
+        arguments = ["preset:=debug", "num_steps:=10", "bag:=" + os.path.join(folder, BAG)]
+        if self.case.fault.endswith("model.ddm"):
+            arguments.append("model:=" + os.path.join(folder, "trial_000", "model.ddm"))
+        return bench.launch(folder, "record.launch", arguments)
+
+    def bags(self):
+        """Names of the new bags, complete or not."""
+        return {name for name in os.listdir(self.folder) if name.startswith(BAG)}
+
+    def refused(self):
+        """The launch left no bag."""
+        return "acted" if self.bags() - set(self.there) else "refused"
+
+    def acts_when_restored(self):
+        """With the fault taken away, the same launch leaves a bag."""
+        self.undo()
+        self.launch_and_log(NO_FAULT)
+        return "acts when restored" if self.bags() == {BAG} else "does not act when restored"
+
+    def unchanged(self):
+        """The command left every byte of the run folder."""
+        now = digests(self.folder)
+        changed = sorted(name for name in set(self.there) | set(now) if self.there.get(name) != now.get(name))
+        return "changed: " + " ".join(changed) if changed else "unchanged"
+
+    def kept(self):
+        """A bag that was not completed is still there, byte by byte."""
+        return "kept" if digest(self.half) in digests(self.folder).values() else "not kept"
