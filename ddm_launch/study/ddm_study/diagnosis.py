@@ -10,12 +10,12 @@ import rosbag
 from tqdm import tqdm
 
 from ddm_launch.command import Failure
-from ddm_launch.images import recorded_images
 from ddm_launch.plant import describe_plant, simulator
 from ddm_launch.run_folder import read_setting
 from ddm_launch.settings import read_yaml
-from ddm_launch.tables import motors_of, read_columns, write_csv
-from ddm_model.model import ModelFileError, load
+from ddm_launch.tables import motors_of, read_table, write_csv
+from ddm_model.model import load
+from ddm_study.results import recorded_images
 
 ABOUT = """\
 Shows why a task is not learned. For each run folder it takes the last model but one and the images of the next trial,
@@ -57,6 +57,11 @@ class Joints:
     def share_near_goal(self, positions):
         limits = np.array([NEAR[unit] for unit in self.units])
         return np.mean(np.all(self.distances(positions, self.goal) < limits, axis=1))
+
+
+def read_columns(path, names):
+    """Numbers of these columns  [rows x names]."""
+    return read_table(path, *names)[names].to_numpy(float)
 
 
 def read_trial(run, trial, joints):
@@ -122,7 +127,7 @@ def work(options):
     for run in tqdm(options.runs, unit="run", disable=None):
         try:
             rows += diagnose(run)
-        except (ModelFileError, OSError, rosbag.ROSBagException) as error:
+        except (OSError, rosbag.ROSBagException) as error:
             raise Failure("%s: %s" % (run, error))
     write_csv(options.out, COLUMNS, rows)
     print("wrote %s" % options.out)

@@ -7,8 +7,10 @@ import numpy as np
 from ddm_launch.command import Failure
 from ddm_launch.figure_style import (COLUMN_WIDTH, GREEN, PAGE_WIDTH, SKY, VERMILLION, YELLOW, Figure, add_legend, argument,
                                      new_figure, panel_above_legend, save, show_image)
-from ddm_launch.images import Camera, Decoder
+from ddm_launch.plant import describe_plant, draw_images, simulator_of
 from ddm_model.feature_grid import GRID, FeatureGrid
+from ddm_model.model import load
+from ddm_model.model_data import grey
 from ddm_study.results import read_table
 
 SETS = {"training": ("o", VERMILLION, "training frames"), "held_out": ("^", YELLOW, "held-out frames")}
@@ -30,6 +32,16 @@ def grid_around(points):
     return FeatureGrid(low - margin, high + margin)
 
 
+def decode(path, features):
+    """One grey image for each feature [feature_dim], by the model in a file. Raises Failure if it has another number of
+    them."""
+    features, model = np.asarray(features, dtype=float), load(path)
+    if features.ndim != 2 or features.shape[1] != model.options["feature_dim"]:
+        raise Failure("model %s: needs %d feature(s) of each image, got an array %s: take a model of the same run" % (
+            path, model.options["feature_dim"], features.shape))
+    return grey(model.decode(features))
+
+
 def draw_plane(options):
     """One panel per folder."""
     width = COLUMN_WIDTH if len(options.folders) == 1 else PAGE_WIDTH
@@ -38,7 +50,7 @@ def draw_plane(options):
         for column, (title, folder) in enumerate(options.folders):
             axes, features = figure.add_subplot(grid[0, column]), read_table(folder, "features.csv")
             plane = grid_around(features[["z_1", "z_2"]])
-            plane.draw(axes, Decoder(os.path.join(folder, "model.ddm")).decode(plane.features))
+            plane.draw(axes, decode(os.path.join(folder, "model.ddm"), plane.features))
             for name, (marker, colour, label) in SETS.items():
                 rows = features[features.set == name]
                 axes.scatter(rows.z_1, rows.z_2, marker=marker, s=7, color=colour, edgecolors="black", linewidths=0.25,
@@ -53,9 +65,10 @@ def draw_strip(options):
     strip = read_table(options.folder, "strip.csv")
     features = [name for name in strip if name.startswith("z_")]
     states = strip.drop(columns=features + ["steps"])
-    camera, decoder = Camera(options.folder), Decoder(os.path.join(options.folder, "model.ddm"))
-    images = (("true", [camera.shoot(*state) for state in states.values]),
-              ("predicted", decoder.decode(strip[features].values)))
+    command = simulator_of(options.folder)
+    motors = describe_plant(command)["torque"]
+    images = (("true", [draw_images(command, state, motors, [])[0] for state in states.values]),
+              ("predicted", decode(os.path.join(options.folder, "model.ddm"), strip[features].values)))
     with new_figure(PAGE_WIDTH, 1.85) as figure:
         axes = figure.subplots(2, len(strip))
         for of_row, (label, of_label) in zip(axes, images):
@@ -74,7 +87,7 @@ def draw_space(options):
     grid = FeatureGrid((-1.0, -1.0), (1.0, 1.0))
     with new_figure(COLUMN_WIDTH, COLUMN_WIDTH + 0.05) as figure:
         axes, place = panel_above_legend(figure)
-        grid.draw(axes, Decoder(options.model).decode(grid.features))
+        grid.draw(axes, decode(options.model, grid.features))
         way = space[space.kind.isin(["current", "plan"])].sort_values("step")
         axes.plot(way.z_1, way.z_2, color=YELLOW, linewidth=0.8, zorder=5)
         for order, (kind, (marker, size, colour)) in enumerate(KINDS.items()):
