@@ -54,19 +54,11 @@ parse_arguments() {
 
 # A port for the ROS master: the usual one, or any free one when another master has it.
 free_master_port() {
-  /usr/bin/python3 - <<'PYTHON'
-import socket
-
-for port in (11311, 0):
-    with socket.socket() as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # a master that just ended is no obstacle
-        try:
-            probe.bind(("", port))
-        except OSError:
-            continue
-        print(probe.getsockname()[1])
-        break
-PYTHON
+  if (: </dev/tcp/localhost/11311) 2>/dev/null; then
+    /usr/bin/python3 -c 'import socket; probe = socket.socket(); probe.bind(("", 0)); print(probe.getsockname()[1])'
+  else
+    echo 11311
+  fi
 }
 
 # Which file a path names, and when it was changed last; empty if there is none.
