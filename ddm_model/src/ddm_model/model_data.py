@@ -218,6 +218,6 @@ class ModelData:
         return np.broadcast_to(self.options["max_torque"], (self.model.torque_dim,))
 
     def decode_plane(self, features):
-        """Images of features of which the first two, or one, are given. The others are the goal's, without a goal zero."""
+        """Images of features of which the first two are given. The others are the goal's, without a goal zero."""
         goal = np.zeros(self.options["feature_dim"]) if self.goal_feature is None else self.goal_feature
         return grey(self.model.decode(np.column_stack([features, np.tile(goal[2:], (len(features), 1))])))
