@@ -5,7 +5,6 @@ import shutil
 
 import pytest
 
-from ddm_launch.folder_lock import FolderLock
 from processes import call, find_program, roslaunch, run_experiment
 from run_files import changes, fingerprint
 
@@ -101,9 +100,6 @@ def test_a_refused_experiment_leaves_the_run_as_it_is(made, tmp_path):
     shutil.copytree(made.run, folder)
     assert_refused("experiment/seed: 1 there, 2 here", folder, *made.experiment(folder, 2, 2))
     assert_refused("experiment/plant", folder, *made.experiment(folder, 1, 2), "--plant", "pendulum_gravity")
-    lock = FolderLock(folder)
-    assert_refused("is running", folder, *made.experiment(folder, 1, 2))
-    lock.release()
     bag = os.path.join(folder, "trial_000", "trial.bag")
     os.truncate(bag, os.path.getsize(bag) // 2)
     assert_refused(bag, folder, *made.experiment(folder, 1, 2))

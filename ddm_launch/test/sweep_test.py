@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import errno
 import os
+import platform
 import resource
 import shutil
 import signal
@@ -107,6 +108,15 @@ def test_a_signal_ends_all_seeds_and_a_second_sweep_in_the_folder_is_refused(num
         process.send(number)
         assert process.waitForEnd(20.0) == code, process.output
     assert "SIG" in process.output and "seed 1: " in process.output
+
+
+def test_only_the_lock_of_a_sweep_that_has_ended_on_this_machine_is_replaced(copy):
+    lock = os.path.join(copy, ".lock")
+    for owner, words in (("%s 4194305" % platform.node(), []), ("node17 4194305", ["process 4194305 on node17"]), ("", ["?"])):
+        with open(lock, "w") as stream:
+            stream.write(owner)
+        assert_ends(1 if words else 0, words and words + ["is running", "delete " + lock], *debug(copy))
+        assert os.path.exists(lock) == bool(words)
 
 
 def test_a_folder_of_another_sweep_is_refused_and_left_as_it_is(copy):

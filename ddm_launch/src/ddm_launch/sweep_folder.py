@@ -3,13 +3,13 @@
 import contextlib
 import csv
 import os
+import platform
 import shlex
 import subprocess
 
 import yaml
 
 from ddm_launch.command import Failure, find_program
-from ddm_launch.folder_lock import FolderLock
 from ddm_launch.settings import differences, read_yaml
 from ddm_model.plain_file import remove_unfinished, write_file
 
@@ -59,6 +59,31 @@ def find_setup(program):
                   "workspace's devel/setup.bash" % (prefix, program))
 
 
+def lock(path):
+    """Creates the file of a lock, which names host and process: on file systems that clusters share, locks of the kernel may be
+    missing. The folder of each seed has a lock of its own, by its program, which protects the results.
+
+    Raises Failure if a process that may be running has the lock, OSError if the file cannot be written.
+    """
+    for attempt in range(2):
+        try:
+            with open(path, "x") as stream:
+                stream.write("%s %d\n" % (platform.node(), os.getpid()))
+            return
+        except FileExistsError:
+            with open(path, errors="replace") as stream:
+                host, _, pid = stream.read().strip().partition(" ")
+        except OSError:  # for example a full disk
+            with contextlib.suppress(OSError):
+                os.remove(path)
+            raise
+        has_ended = host == platform.node() and pid.isdigit() and not os.path.exists("/proc/" + pid)
+        if attempt > 0 or not has_ended:
+            raise Failure("another sweep is running in the folder %s: process %s on %s. Wait for it, or use another folder. If you "
+                          "are sure that this process has ended, delete %s" % (os.path.dirname(path), pid or "?", host or "?", path))
+        os.remove(path)
+
+
 class SweepFolder:
     """The folder that --out names:
 
@@ -68,6 +93,7 @@ class SweepFolder:
       logs/seed_NNNN.log   what the program said when it ran last
       joblog.tsv           GNU parallel's job log of the last call
       slurm_job            number and cluster of the job array while it is in the hands of Slurm
+      .lock                host and process of the sweep that holds the folder
       sweep.csv            the rows of all finished seeds
 
     A context manager: at most one sweep holds the folder at a time.
@@ -78,19 +104,19 @@ class SweepFolder:
         seed and folder. seed: any of the seeds. Raises Failure if the program is not there, refuses its options, or if the
         folder holds another sweep; the folder is made when the options are known to be good."""
         self.path, self.trials, self.title = os.path.abspath(path), trials, " ".join([program] + options)
-        self.script, self.table, self.joblog = (
-            os.path.join(self.path, name) for name in ("run_seed.sh", "sweep.csv", "joblog.tsv"))
+        self.script, self.table, self.joblog, self._lock = (
+            os.path.join(self.path, name) for name in ("run_seed.sh", "sweep.csv", "joblog.tsv", ".lock"))
         self._table_of_seed, self._program = TABLES[program], find_program(program)
         self._command = [self._program] + ([] if trials is None else ["--trials", str(trials)]) + options
         self._setup = find_setup(self._program)
         self._check_options(seed)
         try:
             os.makedirs(os.path.join(self.path, "logs"), exist_ok=True)
-            self._lock = FolderLock(self.path)
+            lock(self._lock)
         except OSError as error:
             raise Failure("cannot write into the folder %s (%s): choose another with --out" % (self.path, error.strerror))
         with contextlib.ExitStack() as stack:
-            stack.callback(self._lock.release)
+            stack.callback(self.__exit__)
             remove_unfinished(self.path)
             self._require_same_sweep({"program": program, "options": options})
             stack.pop_all()
@@ -99,7 +125,8 @@ class SweepFolder:
         return self
 
     def __exit__(self, *_):
-        self._lock.release()
+        with contextlib.suppress(FileNotFoundError):  # a person may have deleted it
+            os.remove(self._lock)
 
     def _check_options(self, seed):
         """Runs the program with a folder that cannot be made. If its options are good, it fails for that reason before it has
