@@ -95,7 +95,7 @@ def test_without_learning_the_curve_is_level_and_what_is_mostly_zero_is_told_in_
     assert list(level.index) == [0, 1500] and (level.iloc[0] == level.iloc[1]).all()
     for last, expected in ((0.4, True), (0.5, False)):
         slow = success_rate.Curve("slow", "slow (1 seed)", rates.assign(rate=[0.0, 0.0, last]), True)
-        assert success_rate.is_mostly_zero(slow) is expected
+        assert success_rate.is_mostly_zero(slow) == expected
     assert success_rate.in_words(slow) == "slow (1 seed): mostly 0, at most 0.5"
 
 

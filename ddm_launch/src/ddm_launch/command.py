@@ -84,8 +84,7 @@ def expand_home(word):
 
 def program_parser(name, about, epilog=None, **more):
     """Whose help keeps the lines of both texts."""
-    return Parser(prog=name, description=about, epilog=epilog,
-                                   formatter_class=argparse.RawDescriptionHelpFormatter, **more)
+    return Parser(prog=name, description=about, epilog=epilog, formatter_class=argparse.RawDescriptionHelpFormatter, **more)
 
 
 def number(kind, least, most=math.inf):
@@ -127,12 +126,3 @@ def processor(path="/proc/cpuinfo"):
     if "cpu family" in facts and "model" in facts:
         name += " (family %s, model %s)" % (facts["cpu family"], facts["model"])
     return name
-
-
-def distribution(path="/etc/os-release"):
-    """Name of the distribution, whose compiler and libraries made the programs."""
-    try:
-        with open(path) as stream:
-            return dict(line.rstrip("\n").split("=", 1) for line in stream if "=" in line)["PRETTY_NAME"].strip('"')
-    except (OSError, KeyError):
-        return "?"

@@ -1,13 +1,9 @@
 # learning_curve_node: draws the learning curve of the running experiment as an image, again after each trial.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import socket
-import sys
 import tempfile
-import xmlrpc.client
 
 import numpy as np
-import rosgraph
 import rospy
 from sensor_msgs.msg import Image
 from std_msgs.msg import String
@@ -53,24 +49,7 @@ def picture(text):
     return Image(height=height, width=width, encoding="rgb8", step=3 * width, data=pixels.tobytes())
 
 
-def is_running(name):
-    """Whether a node of this name answers: the master would end it when this one registers."""
-    try:
-        uri = rosgraph.Master(name).lookupNode(name)
-        socket.setdefaulttimeout(5.0)  # a node whose process is stopped never answers
-        xmlrpc.client.ServerProxy(uri).getPid(name)
-        return True
-    except (rosgraph.MasterException, OSError, xmlrpc.client.Error):
-        return False
-    finally:
-        socket.setdefaulttimeout(None)
-
-
 def main():
-    name = rosgraph.names.ns_join(rosgraph.names.get_ros_namespace(), "learning_curve_node")
-    if is_running(name):
-        print("node %s is running already: end its launch first" % name, file=sys.stderr)
-        return 1
     rospy.init_node("learning_curve_node")
     publisher = rospy.Publisher("learning_curve_image", Image, queue_size=1, latch=True)
     rospy.Subscriber("trials", String, lambda trials: publisher.publish(picture(trials.data)), queue_size=1)

@@ -24,12 +24,8 @@ example:
   rosrun ddm_launch sweep --seeds 0:50 --trials 15 --out ~/runs/oracle -- --method oracle
 
 in DIR:
-  sweep.csv           the rows of trials.csv (predictions.csv) of all finished seeds
-  seed_NNNN/          all that the program writes for a seed
-  logs/seed_NNNN.log  what the program said about a seed
-  joblog.tsv          GNU parallel's job log of the last call
-  run_seed.sh         one seed by hand: bash run_seed.sh SEED
-  sweep.yaml          what is run; a sweep with other options is refused in this folder
+  sweep.csv has the rows of trials.csv (predictions.csv) of all finished seeds, seed_NNNN/ all that the program writes for a
+  seed, and logs/ what it said. `bash run_seed.sh SEED` runs one seed by hand.
 
 hosts (--hosts FILE):
   GNU parallel's --sshloginfile: one ssh host a line, ':' is this machine. Hosts that do not answer are left out. Each
