@@ -4,7 +4,6 @@ import os
 
 import numpy as np
 
-from ddm_launch.command import Failure
 from ddm_launch.figure_style import (COLUMN_WIDTH, GREEN, PAGE_WIDTH, SKY, VERMILLION, YELLOW, Figure, add_legend, argument,
                                      new_figure, panel_above_legend, save, show_image)
 from ddm_launch.plant import describe_plant, draw_images, simulator_of
@@ -19,27 +18,9 @@ KINDS = {"experience": ("o", 6, GREEN), "goal": ("*", 190, VERMILLION), "plan": 
 OUTSIDE = "#333333"  # where there are features and no images
 
 
-def grid_around(points):
-    """The grid over all these features, with a margin of a twentieth of their range.
-
-    Raises Failure if they lie on a line along an axis: then there is no plane to draw.
-    """
-    low, high = np.min(points, axis=0), np.max(points, axis=0)
-    if not np.all(high - low > 1e-9):
-        raise Failure("the features cover [%g, %g] x [%g, %g], which is not a plane: take another model" % (
-            low[0], high[0], low[1], high[1]))
-    margin = 0.05 * (high - low)
-    return FeatureGrid(low - margin, high + margin)
-
-
 def decode(path, features):
-    """One grey image for each feature [feature_dim], by the model in a file. Raises Failure if it has another number of
-    them."""
-    features, model = np.asarray(features, dtype=float), load(path)
-    if features.ndim != 2 or features.shape[1] != model.options["feature_dim"]:
-        raise Failure("model %s: needs %d feature(s) of each image, got an array %s: take a model of the same run" % (
-            path, model.options["feature_dim"], features.shape))
-    return grey(model.decode(features))
+    """One grey image for each feature, by the model in a file."""
+    return grey(load(path).decode(features))
 
 
 def draw_plane(options):
@@ -49,7 +30,9 @@ def draw_plane(options):
         grid = figure.add_gridspec(2, len(options.folders), height_ratios=[1.0, 0.001])
         for column, (title, folder) in enumerate(options.folders):
             axes, features = figure.add_subplot(grid[0, column]), read_table(folder, "features.csv")
-            plane = grid_around(features[["z_1", "z_2"]])
+            points = features[["z_1", "z_2"]].to_numpy()
+            margin = 0.05 * np.ptp(points, axis=0)
+            plane = FeatureGrid(points.min(axis=0) - margin, points.max(axis=0) + margin)
             plane.draw(axes, decode(os.path.join(folder, "model.ddm"), plane.features))
             for name, (marker, colour, label) in SETS.items():
                 rows = features[features.set == name]
