@@ -12,8 +12,8 @@ import rosgraph
 from tqdm import tqdm
 
 from ddm_launch.command import Failure, number, program_parser, run_program
-from ddm_launch.run_folder import Trajectory, is_finished, num_finished, read_setting
-from ddm_launch.tables import read_csv, write_csv
+from ddm_launch.run_folder import is_finished, num_finished, read_setting, read_trajectory
+from ddm_launch.tables import read_table, write_csv
 from ddm_qa.processes import free_port, pid_of, start_roslaunch
 
 CALL_LIMIT_S = 30.0  # of a question to a master or node
@@ -99,7 +99,7 @@ def count_frames(run, folder, num_trials):
     rows = []
     for trial in range(num_trials):
         for part, times in (("trial", answered_times(os.path.join(folder, "trial_%03d" % trial, "trial.bag"))),
-                            ("evaluation", Trajectory(os.path.join(folder, "evaluation_%03d" % trial)).time_s)):
+                            ("evaluation", read_trajectory(os.path.join(folder, "evaluation_%03d" % trial)).time_s.tolist())):
             due = max(num_steps, int(round((times[-1] - times[0]) / dt)) + 1 if len(times) else 0)
             rows.append(Frames(run, trial, part, due, len(times), due - len(times)))
     return rows
@@ -177,8 +177,8 @@ def write_results(out, run, *tables):
     """Of a run; the rows of other runs stay. tables: for each the kind of its rows and the rows."""
     for name, kind, rows in zip(("soak.csv", "frames.csv", "targets.csv"), (Sample, Frames, Target), tables):
         path = os.path.join(out, name)
-        others = read_csv(path, kind._fields) if os.path.exists(path) else []
-        write_csv(path, kind._fields, [[row[column] for column in kind._fields] for row in others if row["run"] != run]
+        others = read_table(path).itertuples(index=False) if os.path.exists(path) else []
+        write_csv(path, kind._fields, [list(row) for row in others if row.run != run]
                   + [list(row) for row in rows])
 
 
