@@ -136,7 +136,7 @@ def draw(options):
 FIGURE = Figure(
     "Success rate over the frames learned from. One curve per file of many seeds, with the standard error "
     "sqrt(p (1 - p) / (n - 1)); a level line where nothing is learned. Of more than five curves those that are 0 at most "
-    "points are not drawn but told in words.",
+    "points are not drawn; the legend names them.",
     [argument("curves", metavar="LABEL=FILE.csv", nargs="+", type=source,
               help="a label, and a trials.csv or sweep.csv; the labels %s have the colours of the paper's curves"
               % "; ".join(method[0] for method in METHODS)),

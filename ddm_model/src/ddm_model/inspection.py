@@ -1,4 +1,4 @@
-# Is the model any good, and if not, what to do? A report of a model and of what it makes of bags.
+# Reports how good a model is, by itself and on bags, and what to do if it is not.
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
 import os
@@ -64,7 +64,7 @@ def figures_of(data):
                     "When there are frames, and when images and torques that have no partner. A frame that is missing "
                     "splits its bag, and nothing is predicted across it."))
         out.append(("Reconstructions", lambda: report_figures.draw_reconstructions(data),
-                    "Images, what the principal components keep of them after model/blur, and what the features do."))
+                    "Images, what the principal components keep of them after model/blur, and what the features keep."))
         for kind, words in (("typical", "in the middle"), ("worst", "at the end")):
             if kind in data.predictions:
                 out.append(("A prediction: %s" % kind, lambda kind=kind: report_figures.draw_prediction(data, kind),
@@ -125,9 +125,9 @@ def inspect(path, bags, out, steps, options):
 def main(arguments=None):
     parser = argparse.ArgumentParser(
         prog="inspect",
-        description="Tells what a model is and, given bags, how well it describes and predicts them: DIR/report.html, "
-        "one file without links, and the numbers behind it as CSV and YAML. The verdict names what fails, the "
-        "figure, the rule and what to do.")
+        description="Tells what a model is and, given bags, how well it describes and predicts them. DIR/report.html is "
+        "a self-contained file; the numbers behind it are CSV and YAML files. The verdict names each check that "
+        "fails, what was measured, the rule and what to do.")
     parser.add_argument("--model", metavar="FILE", required=True, help="model file")
     parser.add_argument("--out", metavar="DIR", required=True, help="folder of the report; made if need be")
     parser.add_argument("--steps", type=int, default=15, help="longest prediction (%(default)s, as plans are)")

@@ -1,4 +1,4 @@
-# What a model makes of bags: features, reconstructions, predictions, their errors, and the tables of them.
+# Applies a model to bags: features, reconstructions, predictions, their errors, and tables of them.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
 import os
@@ -125,7 +125,7 @@ Prediction = collections.namedtuple("Prediction", "frame features images")
 
 
 class ModelData:
-    """A Model and what it makes of bags. Without bags `bags` and what comes after it are None, and tables is empty.
+    """A Model and its results on bags. Without bags, `bags` and the attributes after it are None, and tables is empty.
     unpaired: {what: number of the bag and time since its first frame [s]  [2 x N]}. notes: (bag, what to know about it).
     """
 

@@ -1,4 +1,4 @@
-# The figures of a report: what a model makes of bags.
+# The figures of a report.
 # SPDX-License-Identifier: BSD-3-Clause
 import base64
 import io
@@ -14,10 +14,10 @@ from ddm_model.feature_grid import FeatureGrid  # noqa: E402
 from ddm_model.model import blurred  # noqa: E402
 from ddm_model.model_data import kept_by_pca  # noqa: E402
 
-# From the Okabe-Ito set: told apart by colour-blind readers, and dashes and shapes differ too.
+# From the Okabe-Ito set, which colour-blind readers can distinguish; dashes and shapes differ, too.
 BLUE, VERMILLION, YELLOW, GREY, LIGHT = "#0072B2", "#D55E00", "#F0E442", "#666666", "#dddddd"
 WIDTH = 9.0  # [in]
-MAX_COLUMNS = 16  # pictures side by side
+MAX_COLUMNS = 16  # images side by side
 RECONSTRUCTIONS = 8
 BAGS = 20
 

@@ -1,4 +1,4 @@
-# What is good and what is not about a model and the bags it is shown, each with its figure, rule and remedy.
+# Judges a model and bags by checks, each with what was measured, the rule and the remedy.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
 
