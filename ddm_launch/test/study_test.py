@@ -70,12 +70,6 @@ def test_returns_are_means_of_the_seeds_after_each_number_of_images(tmp_path):
     assert list(table.se) == pytest.approx([100, 0])
 
 
-def test_a_table_that_is_missing_or_empty_is_named(tmp_path):
-    for path in (str(tmp_path / "missing.csv"), write(tmp_path / "empty.csv", "")):
-        with pytest.raises(Failure, match="%s cannot be read" % path):
-            results.read_table(path)
-
-
 @pytest.mark.parametrize("again, code, part", [
     ("300,0,1.5,0.2,1.0.1\n300,1,2.5,0.2,1.0.1\n", 0, "equal    trials.csv: 2 rows"),
     ("300,0,1.5,0.2,1.0.1\n300,1,2.25,0.2,1.0.1\n", 1, "row 2, seed 300: v_r is 2.5 in the committed file, and 2.25"),

@@ -9,7 +9,7 @@ import signal
 
 import pytest
 
-from processes import call, call_main, find_program, run_experiment
+from processes import call_main, run_experiment
 from run_files import differences, expected_files, files_in, read_bytes, read_rows, read_yaml
 from sweeps import (Sweep, assert_ends, assert_nothing_runs, assert_table, debug, is_finished, programs_of, seed_folder, snapshot,
                     wait_for)
@@ -201,14 +201,6 @@ def test_a_missing_engine_is_named_with_its_package(out, tmp_path):
     (tmp_path / "parallel").chmod(0o755)
     assert_ends(1, ["not GNU", "apt-get install parallel"], *debug(out), environment={"PATH": "%s:/usr/bin:/bin" % tmp_path})
     assert_ends(1, ["sbatch", "apt-get install slurm-client"], *debug(out), "--slurm", environment={"PATH": str(tmp_path)})
-
-
-def test_help_names_every_option_and_has_an_example():
-    code, output = call([find_program("sweep"), "--help"])
-    assert code == 0
-    for words in ("--preset", "--plant", "--seeds A:B", "--trials", "--out", "--jobs", "--hosts", "--slurm", "--program", "-- ",
-                  "SBATCH_PARTITION", "example:"):
-        assert words in output
 
 
 def test_folders_with_odd_names_and_relative_ones_will_do_and_single_values_are_those_of_all_seeds(tmp_path):
