@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from unittest import mock
 
-from ddm_launch.command import processor
+from ddm_launch.command import distribution, processor
 from ddm_qa import benchmark
 from processes import call, find_program, run_experiment
 from scratch_case import SharedScratchCase
@@ -49,3 +49,8 @@ class BenchmarkProgramsTest(SharedScratchCase):
                           "model name\t: AMD EPYC\n\nprocessor\t: 1\nmodel name\t: other\n")
         self.assertEqual(processor(path), "AMD EPYC (family 26, model 2)")
         self.assertNotEqual(processor(self.file("no_such_file")), "")
+
+    def test_the_distribution_is_named_as_its_own_file_has_it(self):
+        path = self.write("os-release", 'ID=debian\n\nPRETTY_NAME="Debian GNU/Linux 12 (bookworm)"\n')
+        self.assertEqual(distribution(path), "Debian GNU/Linux 12 (bookworm)")
+        self.assertEqual(distribution(self.file("no_such_file")), "?")

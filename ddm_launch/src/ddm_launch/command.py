@@ -126,3 +126,12 @@ def processor(path="/proc/cpuinfo"):
     if "cpu family" in facts and "model" in facts:
         name += " (family %s, model %s)" % (facts["cpu family"], facts["model"])
     return name
+
+
+def distribution(path="/etc/os-release"):
+    """Name of the distribution, whose compiler and libraries made the programs."""
+    try:
+        with open(path) as stream:
+            return dict(line.rstrip("\n").split("=", 1) for line in stream if "=" in line)["PRETTY_NAME"].strip('"')
+    except (OSError, KeyError):
+        return "?"
