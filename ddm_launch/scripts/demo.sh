@@ -54,19 +54,11 @@ parse_arguments() {
 
 # A port for the ROS master: the usual one, or any free one when another master has it.
 free_master_port() {
-  /usr/bin/python3 - <<'PYTHON'
-import socket
-
-for port in (11311, 0):
-    with socket.socket() as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # a master that just ended is no obstacle
-        try:
-            probe.bind(("", port))
-        except OSError:
-            continue
-        print(probe.getsockname()[1])
-        break
-PYTHON
+  if (: </dev/tcp/localhost/11311) 2>/dev/null; then
+    /usr/bin/python3 -c 'import socket; probe = socket.socket(); probe.bind(("", 0)); print(probe.getsockname()[1])'
+  else
+    echo 11311
+  fi
 }
 
 # Which file a path names, and when it was changed last; empty if there is none.
@@ -105,28 +97,25 @@ TEXT
   check_summary "$runs" "$trials" "$before"
 }
 
-draw_pictures() {
+draw_and_print_result() {
   say "Drawing"
-  rosrun ddm_launch figure learning_curve "$runs" --out "$runs/learning_curve.png" || fail "no learning curve was drawn."
-  rosrun ddm_launch figure film_strip "$runs" --out "$runs/film_strip.png" || fail "no film strip was drawn."
-}
-
-print_result() {
+  local figure
+  for figure in learning_curve film_strip; do
+    rosrun ddm_launch figure "$figure" "$runs" --out "$runs/$figure.png" || fail "the figure $figure was not drawn: see the line above."
+  done
   say "Summary ($runs/summary.yaml)"
   sed 's/^/  /' "$runs/summary.yaml"
   cat <<TEXT
 
-Pictures
+Figures
   $runs/learning_curve.png   error and success of the greedy policy after each trial
-  $runs/film_strip.png       the last greedy run that succeeded (if none did: the last one), image by image
+  $runs/film_strip.png       the last greedy evaluation that succeeded (if none did: the last one), image by image
 
 What to try next (in a new terminal, first: export PATH=/usr/bin:\$PATH; . $DDM_WS/devel/setup.bash)
   bash $checkout/ddm_launch/scripts/demo.sh --trials $((trials + 5))
-      goes on with more trials
+      continues with more trials
   rosrun ddm_launch figure film $runs/evaluation_000 --out /tmp/film.webp
-      the evaluation of the first model as an animation
-  roslaunch ddm_launch experiment.launch preset:=efficient plant:=pendulum seed:=2 trials:=3 runs:=$DDM_WS/runs/seed_2 rviz:=true
-      another seed, with the camera, the predictions and the feature space on the screen
+      shows the evaluation of the first model as an animation
   bash $checkout/ddm_launch/scripts/test.sh
       runs every test
 TEXT
@@ -145,8 +134,7 @@ main() {
   build_release || fail "the build failed: see the first error above."
   source_setup "$DDM_WS/devel/setup.bash"
   run_experiment
-  draw_pictures
-  print_result
+  draw_and_print_result
 }
 
 # Sourced (by its test) it only defines the functions.

@@ -1,9 +1,10 @@
 # Means over experiments: standard errors, Wilson's intervals against published ones, and tests by hand.
 # SPDX-License-Identifier: BSD-3-Clause
+import numpy as np
+import pandas
 import pytest
 
 from ddm_launch.averages import holm, mean_and_error, sign_test, success_rates, wilson_interval
-from ddm_launch.run_folder import Trial
 
 
 def test_wilsons_intervals_are_those_of_newcombes_table():
@@ -14,8 +15,11 @@ def test_wilsons_intervals_are_those_of_newcombes_table():
 
 
 def test_success_counts_where_it_is_known():
-    runs = [[Trial(0, 100, True, None), Trial(1, 200, True, None)], [Trial(0, 100, False, None), Trial(1, 200, None, None)]]
-    assert success_rates(runs) == [(100, 0.5, 0.5, 2), (200, 1.0, 0.0, 1)]
+    trials = pandas.DataFrame({"frames": [100, 200, 100, 200], "success": [1, 1, 0, np.nan]})
+    rates = success_rates(trials)
+    assert rates[["rate", "se", "runs"]].values.tolist() == [[0.5, 0.5, 2], [1.0, 0.0, 1]]
+    assert rates.low[100] + rates.high[100] == pytest.approx(1.0)
+    assert rates.low[200] == pytest.approx(1.0 / (1.0 + 1.959964 ** 2))
 
 
 def test_the_standard_error_is_that_of_a_sample():

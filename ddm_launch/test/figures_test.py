@@ -1,16 +1,18 @@
 # Figures: each is drawn from committed tables; the numbers behind them, and what they refuse.
 # SPDX-License-Identifier: BSD-3-Clause
-import math
 import os
+import shutil
 
+import numpy as np
 from PIL import Image
 import pytest
 
-from processes import call_main  # noqa: F401  finds the packages that are not installed
+from processes import call_main, run_experiment
 from rooms import PACKAGE
-from ddm_launch import figure, figure_style, film_strip, learning_curve, success_rate
+from ddm_launch import figure, figure_style, film, learning_curve, success_rate
 from ddm_launch.command import Failure
-from ddm_launch.run_folder import read_goal, read_trials
+from ddm_launch.plant import draw_evaluation
+from ddm_model.model import load
 from ddm_study import program
 
 RESULTS = os.path.join(PACKAGE, "results")
@@ -23,15 +25,11 @@ FIGURES = [
     (figure.main, "learning_curve first_run"),
     (figure.main, "success_rate DDM=paper/trials.csv oracle=paper/oracle/trials.csv --published published/success_rate.csv"),
     (figure.main, "success_rate efficient=efficient/trials.csv --wilson"),
-    (program.main, "figure ablation efficient/ablation --reference efficient/ablation/preset/trials.csv"),
     (program.main, "figure angle_trajectories paper/angle_trajectories.csv"),
     (program.main, "figure feature_plane joint=paper/tile sequential=paper/tile_predictions/sequential"),
-    (program.main, "figure nuisances efficient"),
     (program.main, "figure pendulum_feature_space paper/pendulum/feature_space.csv --model paper/pendulum/model.ddm"),
     (program.main, "figure prediction_strip paper/tile"),
-    (program.main, "figure schedules paper"),
-    (program.main, "figure task efficient/tasks/suite_pendulum/trials.csv --task suite_pendulum"),
-    (program.main, "figure trajectory_distributions paper/trajectory_distributions.csv --seconds 3")]
+    (program.main, "figure task efficient/tasks/suite_pendulum/trials.csv --task suite_pendulum")]
 
 
 @pytest.fixture(name="sweep")
@@ -52,16 +50,16 @@ def test_each_figure_is_drawn_from_committed_results(main, words, tmp_path, monk
 
 def test_the_tests_draw_every_figure():
     drawn = {words.replace("figure ", "").split()[0] for _, words in FIGURES}
-    assert drawn | {"film"} == set(figure.FIGURES) | set(program.FIGURES)  # film_test draws the film
+    assert drawn | {"film"} == set(figure.FIGURES) | set(program.FIGURES)
 
 
 @pytest.mark.parametrize("words, parts", [
-    (["success_rate", "x=SWEEP", "x=SWEEP"], ["'x' twice"]),
-    (["success_rate", "DDM=SWEEP", *("%d=SWEEP" % k for k in range(5))], ["at most 4 curves", "got 6"]),
+    (["success_rate", "x=SWEEP", "x=SWEEP"], ["label of its own", "x; x"]),
+    (["success_rate", "DDM=SWEEP", *("%d=SWEEP" % k for k in range(5))], ["at most 4 labels"]),
     (["success_rate", "x=missing.csv"], ["missing.csv cannot be read", "sweep.csv"]),
+    (["success_rate", "x=/dev/null"], ["/dev/null cannot be read"]),
     (["success_rate", "x=SWEEP", "--published", "no.csv"], ["no.csv", "results/published/success_rate.csv"]),
-    (["learning_curve", "."], ["trials.csv cannot be read"]),
-    (["film_strip", "."], ["trials.csv cannot be read"])])
+        (["film_strip", "."], ["trials.csv cannot be read"])])
 def test_what_cannot_be_drawn_is_refused_and_nothing_is_written(words, parts, sweep, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     code, output = call_main(figure.main, [word.replace("SWEEP", sweep) for word in words] + ["--out", "figure.png"])
@@ -78,28 +76,27 @@ def test_a_curve_without_label_or_file_is_refused(word):
 
 def test_a_curve_is_the_rate_over_all_seeds_of_a_file(sweep):
     curve = success_rate.read_curve("mine", sweep)
-    assert (curve.label, curve.frames, curve.rates) == ("mine (4 seeds)", [100, 200], [0.5, 1.0])
-    assert curve.highs[0] - curve.rates[0] == pytest.approx((0.25 / 3.0) ** 0.5)
-    curve = success_rate.read_curve("mine", sweep, wilson=True)
-    assert curve.lows[0] + curve.highs[0] == pytest.approx(1.0)  # 2 of 4 seeds
-    assert curve.lows[1] == pytest.approx(1.0 / (1.0 + 1.959964 ** 2 / 2.0))  # 2 of 2
+    assert (curve.label, curve.rates.rate.to_dict()) == ("mine (4 seeds)", {100: 0.5, 200: 1.0})
+    assert curve.rates.high[100] - curve.rates.rate[100] == pytest.approx((0.25 / 3.0) ** 0.5)
+    assert success_rate.read_curve("mine", sweep, wilson=True).rates.low[200] == pytest.approx(1.0 / (1.0 + 1.959964 ** 2 / 2.0))
 
 
 def test_the_published_curve_is_the_papers():
     paper, *others = success_rate.read_published(PUBLISHED)
-    assert paper.frames == [100.0 * k for k in range(16)]
-    assert paper.rates[1:4] + paper.rates[-1:] == [0.08, 0.22, 0.5, 0.86]
-    for rate, high in zip(paper.rates, paper.highs):  # 50 seeds
-        assert high - rate == pytest.approx((rate * (1.0 - rate) / 49.0) ** 0.5, abs=1e-5)
-    assert [curve.rates[1] for curve in others] == [0.91, 0.0, 0.0]
+    assert list(paper.rates.index) == [100.0 * k for k in range(16)]
+    assert list(paper.rates.rate.loc[[100, 200, 300, 1500]]) == [0.08, 0.22, 0.5, 0.86]
+    np.testing.assert_allclose(paper.rates.high - paper.rates.rate, (paper.rates.rate * (1.0 - paper.rates.rate) / 49.0) ** 0.5,
+                               atol=1e-5)  # 50 seeds
+    assert [curve.rates.rate[100] for curve in others] == [0.91, 0.0, 0.0]
 
 
 def test_without_learning_the_curve_is_level_and_what_is_mostly_zero_is_told_in_words():
-    oracle = success_rate.Curve("oracle", "oracle (2 seeds)", [0], [0.5], None, None)._replace(lows=[0.4], highs=[0.6])
-    assert success_rate.level_line(oracle, 1500)[2:] == ([0, 1500], [0.5, 0.5], [0.4, 0.4], [0.6, 0.6])
+    rates = success_rate.read_published(PUBLISHED)[0].rates.iloc[:3]
+    level = success_rate.level_line(rates.iloc[:1], 1500)
+    assert list(level.index) == [0, 1500] and (level.iloc[0] == level.iloc[1]).all()
     for last, expected in ((0.4, True), (0.5, False)):
-        slow = success_rate.Curve("slow", "slow (1 seed)", [1, 2, 3], [0.0, 0.0, last], None, None)
-        assert success_rate.is_mostly_zero(slow) is expected
+        slow = success_rate.Curve("slow", "slow (1 seed)", rates.assign(rate=[0.0, 0.0, last]), True)
+        assert success_rate.is_mostly_zero(slow) == expected
     assert success_rate.in_words(slow) == "slow (1 seed): mostly 0, at most 0.5"
 
 
@@ -115,33 +112,65 @@ def test_errors_are_in_the_unit_of_the_run_and_a_run_must_tell_its_goal(tmp_path
     (tmp_path / "trials.csv").write_text(HEADER + "0,0,100,1,-0.04\n")
     config = tmp_path / "config.yaml"
     config.write_text("goal: {tolerance: 0.05, error_unit: m}\n")
-    assert read_goal(str(tmp_path)) == ("m", 0.05)
-    assert read_trials(str(tmp_path))[0].final_error == 0.04
     with figure_style.new_screen_figure(7.0, 4.2) as drawn:
         axes = drawn.subplots()
-        learning_curve.draw_one(axes, read_trials(str(tmp_path)), read_goal(str(tmp_path)))
+        learning_curve.draw_one(axes, str(tmp_path))
         assert "[m]" in axes.get_ylabel()
+        assert axes.lines[0].get_ydata().tolist() == [0.04]
     for text in ("goal: [\n", "plant: {dt: 0.1}\n", "goal: {tolerance: 0.05}\n", "7\n"):
         config.write_text(text)
-        with pytest.raises(Failure, match="config.yaml"):
-            read_goal(str(tmp_path))
+        code, output = call_main(figure.main, ["learning_curve", str(tmp_path), "--out", str(tmp_path / "figure.png")])
+        assert code == 1 and "config.yaml" in output
 
 
-def test_the_film_strip_ends_a_little_after_the_target_is_reached_for_good():
-    angles = [math.pi * min(1.0, k / 16.0) for k in range(100)]
-    assert film_strip.swing_up_end(angles, math.pi, math.radians(10.0)) == 21  # within 10 degrees from step 16 on
-    passing = angles[:30] + [1.0] + [-math.pi] * 69  # overshoots once, then stays: the arrival is step 31
-    assert film_strip.swing_up_end(passing, math.pi, math.radians(10.0)) == 38
-    assert film_strip.swing_up_end([0.01 * k for k in range(50)], math.pi, 0.1) == 49  # never arrives
-    assert film_strip.steps_to_show(21, 100) == list(range(0, 23, 2))
-    assert film_strip.steps_to_show(3, 4) == [0, 1, 2, 3]
+@pytest.fixture(name="run", scope="module")
+def make_run(tmp_path_factory):
+    folder = str(tmp_path_factory.mktemp("film") / "run")
+    code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 1, "--out", folder)
+    assert code == 0, output
+    return folder
 
 
-def test_the_film_strip_shows_the_last_success_or_the_last_trial(tmp_path):
-    for successes, expected in (("010", 1), ("000", 2)):
-        (tmp_path / "trials.csv").write_text(HEADER + "".join(
-            "0,%d,%d,%s,1\n" % (trial, 100 * trial + 100, success) for trial, success in enumerate(successes)))
-        assert film_strip.default_trial(read_trials(str(tmp_path))) == expected
+def test_a_film_shows_evaluations_one_after_the_other_in_real_time(run, tmp_path):
+    out = str(tmp_path / "film.webp")
+    evaluations = [os.path.join(run, "evaluation_%03d" % trial) for trial in (0, 1)]
+    code, output = call_main(figure.main, ["film", *evaluations, "--seconds", "2", "--out", out])
+    assert code == 0, output
+    durations = []
+    with Image.open(out) as picture:
+        for frame in range(picture.n_frames):
+            picture.seek(frame)
+            picture.load()
+            durations.append(picture.info["duration"])
+    assert durations == 2 * (10 * [200] + [film.LAST_MS])
+
+
+def test_what_a_film_expects_is_what_the_model_says_a_second_before(run):
+    now, steps = 20, 5
+    clip = film.read_clip(os.path.join(run, "evaluation_001"))
+    assert clip.title == "pendulum, after 60 images (12 s)"
+    model = load(os.path.join(run, "trial_001", "model.ddm"))
+    images, torques, motors = draw_evaluation(run, 1)
+    assert motors == ["torque_nm"] and clip.expected[:1 + steps] == (1 + steps) * [None]  # two images are needed, and a second
+    then = now - steps
+    ahead = model.roll_out(model.encode(images[then - 1:then + 1]), torques[then - 1:now])
+    np.testing.assert_allclose(clip.expected[now], np.clip(255.0 * model.decode(ahead[-1:])[0], 0, 255))
+    assert len(clip.paths[then]) == 1 + steps
+    assert clip.support_states.shape == (len(model.support_states), 2)
+
+
+def test_a_film_of_other_folders_is_refused_and_no_file_is_written(run, tmp_path):
+    broken, lost = str(tmp_path / "broken"), str(tmp_path / "lost")
+    shutil.copytree(run, broken)
+    os.remove(os.path.join(broken, "trial_001", "model.ddm"))
+    code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 0, "--nuisance", "drops", "--out", lost)
+    assert code == 0, output
+    for words, part in (([run], "evaluation_NNN"), ([broken + "/evaluation_001"], "trial_001/model.ddm"),
+                        ([lost + "/evaluation_000"], "lost frames"),
+                        ([run + "/evaluation_000", "--out", str(tmp_path / "film.png")], ".webp")):
+        code, output = call_main(figure.main, ["film", "--out", str(tmp_path / "film.webp"), *words])
+        assert code == 1 and part in output, output
+    assert not os.path.exists(str(tmp_path / "film.webp"))
 
 
 def test_the_same_figure_gives_the_same_bytes_and_only_a_png(tmp_path):

@@ -1,145 +1,186 @@
-# Sweeps as Slurm job arrays: their files, that an interruption changes nothing, and what they refuse.
+# Sweeps as Slurm job arrays: on a cluster that is this machine, and where sbatch, squeue and scancel answer in other ways.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import re
 import signal
 
+import pytest
+
 from ddm_launch.slurm import index_ranges
 from processes import run_experiment
-from run_files import differences, expected_files, files_in, read_bytes, read_rows
-from scratch_case import SharedScratchCase
+from run_files import differences, expected_files, files_in, read_bytes
 from slurm_cluster import SlurmCluster
-from sweeps import (Sweep, is_finished, processes_with, programs_of, seed_folder, snapshot, sweep,
-                    wait_for)
+from sweeps import (Sweep, assert_ends, assert_nothing_runs, assert_table, debug, is_finished, processes_with, programs_of,
+                    seed_folder, snapshot, wait_for)
+
+QUEUED = "echo PENDING; echo RUNNING"
+FORGOTTEN = "echo slurm_load_jobs error: Invalid job id specified >&2; exit 1"
+UNREACHABLE = "echo slurm_load_jobs error: Unable to contact slurm controller >&2; exit 1"
 
 
-class SlurmTest(SharedScratchCase):
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.cluster = SlurmCluster(cls.class_scratch)
-        cls.addClassCleanup(cls.stopCluster)
+@pytest.fixture(name="cluster", scope="module")
+def make_cluster(tmp_path_factory):
+    folder = str(tmp_path_factory.mktemp("cluster"))
+    cluster = SlurmCluster(folder)
+    yield cluster
+    cluster.stop()
+    wait_for(lambda: not processes_with([folder]), "the end of all daemons", 10.0)
 
-    @classmethod
-    def stopCluster(cls):
-        cls.cluster.stop()
-        wait_for(lambda: not processes_with([cls.class_scratch]), "the end of all daemons", 10.0)
 
-    def debug(self, seeds, trials):
-        return ["--preset", "debug", "--seeds", seeds, "--trials", trials, "--out", self.out, "--slurm"]
+def job_of(output):
+    return re.search(r"Slurm job (\d+)", output).group(1)
 
-    def start(self, *arguments):
-        process = Sweep(*arguments, environment=self.cluster.environment)
-        self.addCleanup(process.stop)
+
+def test_seeds_are_the_tasks_of_a_job_array_and_gnu_parallel_goes_on_where_slurm_ended(cluster, tmp_path):
+    out = str(tmp_path / "out")
+    output = assert_ends(0, ["3 of 3 seeds finished", "seed 2 finished ("], *debug(out, "0:3"), "--slurm",
+                         environment=cluster.environment)
+    jobs = cluster.call("scontrol", "show", "job", job_of(output))
+    for seed in range(3):
+        assert "ArrayTaskId=%d " % seed in jobs
+        log = read_bytes(out, "logs", "seed_%04d.log" % seed).decode()
+        assert "task %s_%d of Slurm" % (job_of(output), seed) in log
+    assert jobs.count("JobState=COMPLETED") == 3
+    assert [name for name in files_in(out) if not name.startswith(("seed_", "logs/"))] == ["run_seed.sh", "sweep.csv", "sweep.yaml"]
+    single = str(tmp_path / "single")
+    run_experiment("--preset", "debug", "--seed", 2, "--trials", 1, "--out", single)
+    assert differences(single, seed_folder(out, 2), expected_files(1)) == []
+    assert_ends(0, ["1 of 4 seeds to run"], *debug(out, "0:4"))
+    output = assert_ends(0, ["1 of 5 seeds to run"], *debug(out, "0:5"), "--slurm", environment=cluster.environment)
+    assert "ArrayTaskId=4 " in cluster.call("scontrol", "show", "job", job_of(output))
+    assert_table(out, range(5))
+
+
+def test_the_job_of_a_killed_sweep_goes_on_and_is_waited_for_and_a_cancelled_task_is_named(cluster, tmp_path):
+    out, words = str(tmp_path / "out"), (*debug(str(tmp_path / "out"), "0:3", 12), "--slurm", "--jobs", 1)
+    with Sweep(*words, environment=cluster.environment) as process:
+        wait_for(lambda: is_finished(out, 0) and programs_of(seed_folder(out, 1)), "the middle of the sweep")
+        process.kill_group()
+    job, before = job_of(process.output), snapshot(seed_folder(out, 0))
+    cluster.call("scancel", job + "_2")
+    output = assert_ends(0, ["Slurm job %s\n" % job, "1 of 3 seeds to run", "3 of 3 seeds finished"], *words,
+                         environment=cluster.environment)
+    assert "CANCELLED" not in output and snapshot(seed_folder(out, 0)) == before
+    assert "JobState=COMPLETED" in cluster.call("scontrol", "show", "job", job + "_1")
+    assert_table(out, range(3), 12)
+
+
+def test_ctrl_c_cancels_the_job_and_what_sbatch_refuses_is_told_with_its_words(cluster, tmp_path):
+    out = str(tmp_path / "out")
+    with Sweep(*debug(out, "0:2", 999), "--slurm", environment=cluster.environment) as process:
+        wait_for(lambda: programs_of(seed_folder(out, 0)), "the program of seed 0")
+        process.send(signal.SIGINT)
+        assert process.waitForEnd(30.0) == 130, process.output
+    assert "slurm_job" not in files_in(out)
+    wait_for(lambda: not cluster.tasks(), "the end of all tasks")
+    assert_nothing_runs(out)
+    assert_ends(1, ["job array 0-1", "nonsense", "SBATCH_PARTITION"], *debug(out, "0:2", 999), "--slurm",
+                environment=dict(cluster.environment, SBATCH_PARTITION="nonsense"))
+    assert_ends(1, ["job array 1001", "MaxArraySize"], *debug(out, "1001:1002", 999), "--slurm", environment=cluster.environment)
+
+
+class Site:
+    """A cluster whose commands answer as a test says, and whose tasks compute nothing."""
+
+    def __init__(self, folder):
+        self.folder, self.out, self.started = folder, str(folder / "out"), []
+        (folder / "bin").mkdir()
+        self.answer("sbatch", "echo 4711")
+        self.answer("squeue", QUEUED)
+        self.answer("scancel", "echo '%s' > '%s'" % (FORGOTTEN, folder / "squeue_answer"))
+
+    def answer(self, name, script):
+        """From now on the command runs this script, which never changes under a shell that reads it."""
+        (self.folder / "new").write_text(script + "\n")
+        (self.folder / "new").rename(self.folder / (name + "_answer"))
+        path = self.folder / "bin" / name
+        path.write_text("#!/bin/bash\necho \"%s $*\" >> '%s'\n. '%s'\n" % (
+            name, self.folder / "calls", self.folder / (name + "_answer")))
+        path.chmod(0o755)
+
+    def calls(self, name):
+        """The arguments of each call of a command."""
+        lines = (self.folder / "calls").read_text().splitlines() if (self.folder / "calls").exists() else []
+        return [line[len(name) + 1:] for line in lines if line.startswith(name + " ")]
+
+    def start(self, seeds="0:2", engine=("--slurm",)):
+        self.started.append(Sweep(*debug(self.out, seeds, 0), *engine,
+                                  environment={"PATH": "%s:%s" % (self.folder / "bin", os.environ["PATH"])}))
+        return self.started[-1]
+
+    def start_and_watch(self):
+        """A sweep that has asked for the state of its job."""
+        before, process = len(self.calls("squeue")), self.start()
+        wait_for(lambda: len(self.calls("squeue")) > before, "the first squeue")
         return process
 
-    def assertEnds(self, code, words, *arguments, **environment):
-        actual, output = sweep(*arguments, environment=dict(self.cluster.environment, **environment))
-        self.assertEqual(actual, code, output)
-        for word in words:
-            self.assertIn(word, output)
-        return output
+    def wait_for_questions(self, count):
+        asked = len(self.calls("squeue"))
+        wait_for(lambda: len(self.calls("squeue")) > asked + count, "more questions")
 
-    def assertTableIsComplete(self, seeds, trials):
-        rows = read_rows(self.out, "sweep.csv")[1:]
-        self.assertEqual([row[:2] for row in rows],
-                         [[str(seed), str(k)] for seed in seeds for k in range(trials + 1)])
 
-    def assertNothingRuns(self):
-        self.assertEqual(self.cluster.tasks(), [])
-        wait_for(lambda: not processes_with([self.out]), "the end of all processes", 10.0)
-        self.assertNotIn("slurm_job", files_in(self.out))
+@pytest.fixture(name="site")
+def make_site(tmp_path):
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)  # not as under nohup
+    site = Site(tmp_path)
+    yield site
+    for process in site.started:
+        process.stop()
+    signal.signal(signal.SIGHUP, before)
 
-    def jobOf(self, output):
-        return re.search(r"Slurm job (\d+)", output).group(1)
 
-    def log(self, seed):
-        return read_bytes(self.out, "logs", "seed_%04d.log" % seed).decode()
+def assert_end(process, code, *words):
+    assert process.waitForEnd(30.0) == code, process.output
+    assert all(word in process.output for word in words) and "not started" not in process.output, process.output
 
-    def test_seeds_are_the_tasks_of_a_job_array(self):
-        output = self.assertEnds(0, ["4 of 4 seeds finished", "seed 3 finished ("], *self.debug("0:4", 1))
-        job = self.jobOf(output)
-        jobs = self.cluster.call("scontrol", "show", "job", job)
-        for seed in range(4):
-            self.assertRegex(jobs, r"ArrayJobId=%s ArrayTaskId=%d " % (job, seed))
-            self.assertIn("task %s_%d of Slurm" % (job, seed), self.log(seed))
-            self.assertEqual(files_in(seed_folder(self.out, seed)), expected_files(1))
-        self.assertEqual(jobs.count("JobState=COMPLETED"), 4)
-        self.assertTableIsComplete(range(4), 1)
-        own = [name for name in files_in(self.out) if not name.startswith(("seed_", "logs/"))]
-        self.assertEqual(own, ["run_seed.sh", "sweep.csv", "sweep.yaml"])
-        single = self.file("single")
-        run_experiment("--preset", "debug", "--seed", 3, "--trials", 1, "--out", single)
-        self.assertEqual(differences(single, seed_folder(self.out, 3), expected_files(1)), [])
 
-    def test_gnu_parallel_goes_on_where_slurm_ended_and_the_other_way_round(self):
-        self.assertEnds(0, ["1 of 1 seeds finished"], *self.debug("1:2", 1))
-        before = snapshot(seed_folder(self.out, 1))
-        self.assertEnds(0, ["1 of 2 seeds to run"], *self.debug("0:2", 1)[:-1])
-        output = self.assertEnds(0, ["1 of 3 seeds to run"], *self.debug("0:3", 1))
-        self.assertIn("ArrayTaskId=2 ", self.cluster.call("scontrol", "show", "job", self.jobOf(output)))
-        self.assertEqual(snapshot(seed_folder(self.out, 1)), before)
-        self.assertTableIsComplete(range(3), 1)
+@pytest.mark.parametrize("reply", [
+    "Welcome\\n--> 2 allocations: ok\\n4711\\n", "4711\\nPlease acknowledge us in 2026\\n", "sbatch: warning\\n 4711\\r\\n\\n",
+    "12\\n4711\\n", "4711\\nYour quota [h]:\\n37\\n", "Your job:\\n4711\\n"])
+def test_the_number_is_found_among_the_lines_of_a_site(reply, site):
+    site.answer("sbatch", "echo a warning >&2; printf '%s'" % reply)
+    process = site.start_and_watch()
+    process.send(signal.SIGINT)
+    assert_end(process, 130, "Slurm job 4711\n", "SIGINT")
+    assert "--jobs 4711 " in site.calls("squeue")[-1] and site.calls("scancel") == ["4711"]
+    assert "slurm_job" not in files_in(site.out)
 
-    def test_a_task_that_was_cancelled_is_named_and_run_again(self):
-        process = self.start(*self.debug("0:4", 12))
-        process.waitForText("Slurm job ", 30.0)
-        wait_for(lambda: programs_of(seed_folder(self.out, 1)), "the program of seed 1")
-        self.cluster.call("scancel", self.jobOf(process.output) + "_1")
-        self.assertEqual(process.waitForEnd(60.0), 1, process.output)
-        self.assertIn("3 of 4 seeds finished", process.output)
-        self.assertRegex(process.output, r"seed 1: .*logs/seed_0001.log")
-        self.assertIn("CANCELLED", self.log(1))
-        self.assertTableIsComplete([0, 2, 3], 12)
-        before = snapshot(seed_folder(self.out, 0))
 
-        output = self.assertEnds(0, ["1 of 4 seeds to run", "4 of 4 seeds finished"], *self.debug("0:4", 12))
-        self.assertIn("ArrayTaskId=1 ", self.cluster.call("scontrol", "show", "job", self.jobOf(output)))
-        self.assertEqual(snapshot(seed_folder(self.out, 0)), before)
-        self.assertTableIsComplete(range(4), 12)
-        self.assertNothingRuns()
+def test_a_job_outlives_its_sweep_and_its_cluster_is_asked_and_told_to_cancel_it(site):
+    site.answer("sbatch", "echo '4711;west'")
+    site.answer("squeue", "[[ $* = '-M west '* ]] || { %s; }\necho CLUSTER: west; %s" % (FORGOTTEN, QUEUED))
+    for number in (signal.SIGHUP, signal.SIGTERM, signal.SIGKILL):
+        process = site.start_and_watch()
+        process.send(number)
+        assert_end(process, *([-number] if number == signal.SIGKILL else [
+            128 + number, "Slurm job 4711 of cluster west may be running", "same command waits for it", "'scancel -M west 4711'"]))
+    assert_end(site.start(engine=()), 1, "4711 of cluster west may be running", site.out + "/slurm_job")  # by GNU parallel
+    process = site.start_and_watch()
+    process.send(signal.SIGINT)
+    assert_end(process, 130)
+    assert len(site.calls("sbatch")) == 1 and site.calls("scancel") == ["-M west 4711"]
 
-    def test_ctrl_c_cancels_the_job(self):
-        process = self.start(*self.debug("0:2", 999), "--jobs", 1)
-        process.waitForText("Slurm job ", 30.0)
-        wait_for(lambda: programs_of(seed_folder(self.out, 0)), "the program of seed 0")
-        self.assertEqual(sorted(self.cluster.tasks()), ["PENDING", "RUNNING"])
-        self.assertIn("ArrayTaskThrottle=1",
-                      self.cluster.call("scontrol", "show", "job", self.jobOf(process.output)))
-        process.send(signal.SIGINT)
-        self.assertEqual(process.waitForEnd(30.0), 130, process.output)
-        self.assertNothingRuns()
 
-    def test_the_job_of_a_sweep_that_has_ended_goes_on_and_is_waited_for(self):
-        process = self.start(*self.debug("0:2", 12), "--jobs", 1)
-        wait_for(lambda: is_finished(self.out, 0) and programs_of(seed_folder(self.out, 1)), "the middle of the sweep")
-        job = self.jobOf(process.output)
-        process.kill_group()
-        self.assertEqual(self.cluster.tasks(), ["RUNNING"])
-        before = snapshot(seed_folder(self.out, 0))
-        process = self.start(*self.debug("0:3", 12))
-        process.waitForText("Slurm job %s\n" % job, 30.0)
-        process.send(signal.SIGTERM)
-        self.assertEqual(process.waitForEnd(30.0), 143, process.output)
-        output = self.assertEnds(0, ["Slurm job %s\n" % job, "1 of 3 seeds to run", "3 of 3 seeds finished"],
-                                 *self.debug("0:3", 12))
-        self.assertRegex(self.cluster.call("scontrol", "show", "job", job + "_1"), "JobState=COMPLETED")
-        self.assertNotIn("CANCELLED", output)
-        self.assertEqual(snapshot(seed_folder(self.out, 0)), before)
-        self.assertTableIsComplete(range(3), 12)
-        self.assertNothingRuns()
+@pytest.mark.parametrize("answer, told", [
+    (UNREACHABLE, True), ("sleep 0.1; exit 3", True), ("echo squeue: error: busy >&2", True),
+    ("echo PREEMPTED; echo NODE_FAIL", False)])  # such tasks may be queued again
+def test_a_job_that_may_be_running_is_waited_for(answer, told, site):
+    site.answer("squeue", answer)
+    process = site.start_and_watch()
+    site.wait_for_questions(2)
+    assert process.isRunning() and ("waiting for Slurm" in process.output) == told
+    site.answer("squeue", "echo NOTICE; echo MAINTENANCE; echo COMPLETED; echo CANCELLED")
+    assert_end(process, 1, "0 of 2 seeds finished")
 
-    def test_what_sbatch_refuses_is_told_with_its_words(self):
-        self.assertEnds(1, ["job array 0-1", "nonsense", "SBATCH_PARTITION"], *self.debug("0:2", 0),
-                        SBATCH_PARTITION="nonsense")
-        self.assertEnds(1, ["job array 1001", "MaxArraySize"], *self.debug("1001:1002", 0))
-        self.assertNothingRuns()
 
-    def test_a_machine_without_slurm_is_told_what_to_install(self):
-        self.assertEnds(1, ["sbatch", "apt-get install slurm-client"], *self.debug("0:2", 0),
-                        PATH=self.scratch)
-        self.assertFalse(os.path.exists(self.out))
+@pytest.mark.parametrize("reply, said", [
+    ("echo Welcome", "Welcome"), ("kill -9 $$", "said nothing"), ("echo 4711; exit 1", "4711"),
+    ("echo 'sbatch: error: Batch job submission failed: Socket timed out' >&2; exit 1", "Socket timed out")])
+def test_a_job_without_a_number_may_be_running(reply, said, site):
+    site.answer("sbatch", reply)
+    assert_end(site.start(), 1, "may be running", "squeue --me", said)
 
-    def test_indices_are_written_as_ranges(self):
-        for seeds, text in (([3], "3"), ([0, 1, 2, 5], "0-2,5"), ([0, 2, 3, 7, 8], "0,2-3,7-8")):
-            self.assertEqual(index_ranges(seeds), text)
+
+def test_indices_are_written_as_ranges():
+    for seeds, text in (([3], "3"), ([0, 1, 2, 5], "0-2,5"), ([0, 2, 3, 7, 8], "0,2-3,7-8")):
+        assert index_ranges(seeds) == text

@@ -10,7 +10,7 @@ import pytest
 from processes import call, call_main, find_program, has_mujoco, run_experiment
 from rooms import PACKAGE
 from ddm_launch.command import Failure
-from ddm_study import collect, diagnosis, dots, results
+from ddm_study import collect, diagnosis, pages, results
 from ddm_study.program import main
 from run_files import read_rows
 
@@ -31,33 +31,23 @@ def write_trials(path, success, seeds=4, trials=3):
 
 
 def test_variants_are_compared_with_the_preset_by_seed_and_the_worst_comes_first(tmp_path):
-    reference = write_trials(tmp_path / "ablation/preset/trials.csv", lambda seed, trial: True)
-    write_trials(tmp_path / "ablation/blur/trials.csv", lambda seed, trial: seed > 0)
-    write_trials(tmp_path / "ablation/steps/trials.csv", lambda seed, trial: False, seeds=3)
-    table = results.differences(str(tmp_path / "ablation"), reference)
+    reference = write_trials(tmp_path / "efficient/ablation/preset/trials.csv", lambda seed, trial: True)
+    write_trials(tmp_path / "efficient/ablation/blur/trials.csv", lambda seed, trial: seed > 0)
+    write_trials(tmp_path / "efficient/ablation/steps/trials.csv", lambda seed, trial: False, seeds=3)
+    table = results.differences(str(tmp_path / "efficient/ablation"), reference)
     assert list(dict.fromkeys(table.frames)) == ["100", "200", "300", "100 to 300", "200 to 300"]
     steps, blur = (table[(table.variant == name) & (table.frames == "200 to 300")].iloc[0] for name in ("steps", "blur"))
     assert (steps.seeds, steps.difference, steps.se) == (3, -1.0, 0.0)
     assert (steps.p, steps.p_holm) == (0.25, 0.5)  # three of three pairs, two variants
     assert blur.difference == -0.25 and blur.se == pytest.approx(0.25)
-    assert dots.ablation_order(table) == ["steps", "blur"]
-    first, later = dots.ablation_series(table)
-    assert (first.label, later.label) == ("100 frames", "mean of 200 to 300 frames")
-    assert list(later.lows) == pytest.approx([-1.0, -0.75])  # two standard errors
+    rows = pages.Functions(str(tmp_path)).variants("ablation", "200 to 300").split("\n")
+    assert rows == ["| no multi-step loss | −1.000 ± 0.000 | 0.500 |", "| no blur | −0.250 ± 0.250 | 1.000 |"]
 
 
 def test_variants_without_common_frames_are_refused(tmp_path):
     reference = write_trials(tmp_path / "tried/preset/trials.csv", lambda seed, trial: True, trials=1)
     with pytest.raises(Failure, match="must hold trials.csv of variants"):
         results.differences(str(tmp_path / "tried"), reference)
-
-
-def test_without_nuisance_only_their_seeds_count(tmp_path):
-    write_trials(tmp_path / "trials.csv", lambda seed, trial: seed < 2)
-    write_trials(tmp_path / "nuisances/noise/trials.csv", lambda seed, trial: seed == 0, seeds=2)
-    names, (first, _) = dots.nuisance_series(str(tmp_path))
-    assert names == ["none", "noise"]
-    assert list(first.values) == [1.0, 0.5]
 
 
 def test_schedules_are_compared_on_the_seeds_that_all_have(tmp_path):
@@ -73,17 +63,11 @@ def test_schedules_are_compared_on_the_seeds_that_all_have(tmp_path):
     assert list(ratio.index) == [0, 1] and ratio.sequential[0] == pytest.approx(0.4)
 
 
-def test_returns_are_means_of_the_seeds_after_each_number_of_physics_frames(tmp_path):
+def test_returns_are_means_of_the_seeds_after_each_number_of_images(tmp_path):
     path = write(tmp_path / "trials.csv", "seed,frames,return\n0,400,300\n1,400,500\n0,800,700\n")
     table = results.returns(path)
-    assert list(table["mean"]) == [400, 700] and list(table.physics_frames) == [2000, 4000]
+    assert list(table["mean"]) == [400, 700] and list(table.index) == [400, 800]
     assert list(table.se) == pytest.approx([100, 0])
-
-
-def test_a_table_that_is_missing_or_empty_is_named(tmp_path):
-    for path in (str(tmp_path / "missing.csv"), write(tmp_path / "empty.csv", "")):
-        with pytest.raises(Failure, match="%s cannot be read" % path):
-            results.read_table(path)
 
 
 @pytest.mark.parametrize("again, code, part", [
@@ -107,21 +91,14 @@ def write_pilco_run(folder, trials=2):
         "7,%d,%d,1,1\n" % (k, 125 * (k + 1)) for k in range(trials)))
     for k in range(trials):
         write(folder / ("trial_%03d" % k) / "pilco.yaml", "".join("%s: %d\n" % (key, k) for key in collect.SEARCH_KEYS))
-        write(folder / ("trial_%03d" % k) / "prediction.csv", "step,time_s,angle_rad_mean,angle_rad_std\n0,0,1,0.25\n")
-        for kind, angle in (("trial", 3), ("evaluation", 2)):
-            write(folder / ("%s_%03d" % (kind, k)) / "trajectory.csv", "time_s,angle_rad,rate_rad_per_s\n3,%d,0\n" % angle)
+        write(folder / ("evaluation_%03d" % k) / "trajectory.csv", "time_s,angle_rad,rate_rad_per_s\n3,2,0\n")
 
 
 def test_runs_of_pilco_are_collected(tmp_path):
     write_pilco_run(tmp_path / "seed_0007")
     for kind, expected in (
             ("policies", [["7", "0", "125"] + 9 * ["0"], ["7", "1", "250"] + 9 * ["1"]]),
-            ("angles", [["7", "125", "1", "0", "0.000", "2.0000"], ["7", "250", "1", "0", "0.000", "2.0000"]]),
-            ("distributions", [["7", "0", "125", "predicted", "0", "0.000", "1.0000", "0.2500"],
-                               ["7", "0", "125", "evaluation", "0", "0.000", "2.0000", ""],
-                               ["7", "0", "125", "trial", "0", "0.000", "3.0000", ""],
-                               ["7", "1", "250", "predicted", "0", "0.000", "1.0000", "0.2500"],
-                               ["7", "1", "250", "evaluation", "0", "0.000", "2.0000", ""]])):
+            ("angles", [["7", "125", "1", "0", "0.000", "2.0000"], ["7", "250", "1", "0", "0.000", "2.0000"]])):
         out = str(tmp_path / (kind + ".csv"))
         assert call_main(main, ["collect", kind, str(tmp_path), "--out", out]) == (0, "")
         assert read_rows(out)[1:] == expected
@@ -194,8 +171,8 @@ def test_programs_accept_the_options_of_every_sweep(plan):
 
 
 def test_results_are_made_and_the_same_command_resumes(tmp_path):
-    words = [STUDY, "reproduce", "--out", str(tmp_path), "--jobs", "2", "efficient/nuisances/none/image.png",
-             "efficient/success_rate.png", "efficient/config.yaml", "SEEDS=2", "EFFICIENT=debug"]
+    words = [STUDY, "reproduce", "--out", str(tmp_path), "--jobs", "2", "efficient/success_rate.png",
+             "efficient/config.yaml", "SEEDS=2", "EFFICIENT=debug"]
     code, output = call(words, 200.0)
     assert code == 0, output
     assert len(read_rows(str(tmp_path), "efficient", "trials.csv")) == 1 + 2 * 16

@@ -1,44 +1,111 @@
 # Sweeps over ssh hosts, played by this machine: seeds are spread, hosts may be gone, nothing is left running.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
+import socket
+import subprocess
 
-from run_files import read_rows
-from scratch_case import ScratchCase
-from ssh_hosts import SshHosts
-from sweeps import Sweep, processes_with, programs_of, seed_folder, wait_for
+import pytest
+
+from processes import Process, free_port
+from run_files import read_bytes, read_rows
+from sweeps import Sweep, assert_nothing_runs, debug, programs_of, seed_folder, wait_for
+
+SSHD_CONFIG = """\
+Port {port}
+ListenAddress 127.0.0.1
+HostKey {folder}/host_key
+AuthorizedKeysFile {folder}/user_key.pub
+PidFile none
+StrictModes no
+UsePAM no
+PasswordAuthentication no
+SetEnv PATH={folder}/bin:/usr/bin:/bin
+"""
+SSH_CONFIG = """\
+Host first second
+  HostName 127.0.0.1
+  Port {port}
+  IdentityFile {folder}/user_key
+  IdentitiesOnly yes
+Host *
+  BatchMode yes
+  UserKnownHostsFile {folder}/known_hosts
+  StrictHostKeyChecking no
+  LogLevel ERROR
+"""
+PRIVILEGE_SEPARATION = "/run/sshd"  # sshd started by root wants it; a boot makes it, a bare system has none
 
 
-class SweepHostsTest(ScratchCase):
-    def setUp(self):
-        super().setUp()
-        self.hosts = SshHosts(self.scratch)
-        self.addCleanup(self.hosts.stop)
+class SshHosts:
+    """The hosts `first` and `second`, for ssh called as `ssh_command` says."""
 
-    def start(self, hosts, seeds, trials):
-        list_of_hosts = self.write("hosts", "\n".join(hosts) + "\n")
+    def __init__(self, folder):
+        self.folder = folder
+        self.port = free_port()
+        self.ssh_command = "ssh -F %s/ssh_config" % folder
+        self._made_folder = os.getuid() == 0 and not os.path.isdir(PRIVILEGE_SEPARATION)
+        if self._made_folder:
+            os.mkdir(PRIVILEGE_SEPARATION, 0o755)
+        # Where /sys is missing (a bare chroot) lscpu complains, and GNU parallel takes that for a fault of its own.
+        # Without an answer from lscpu it counts the cores in /proc.
+        os.mkdir(os.path.join(folder, "bin"))
+        with open(os.path.join(folder, "bin", "lscpu"), "w") as stream:
+            stream.write("#!/bin/sh\nexit 1\n")
+        os.chmod(os.path.join(folder, "bin", "lscpu"), 0o755)
+        for name in ("host_key", "user_key"):
+            subprocess.check_call(["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", os.path.join(folder, name)])
+        for name, text in (("sshd_config", SSHD_CONFIG), ("ssh_config", SSH_CONFIG)):
+            with open(os.path.join(folder, name), "w") as stream:
+                stream.write(text.format(folder=folder, port=self.port))
+        # falls with this process even if it is killed
+        self._sshd = Process(["setpriv", "--pdeathsig", "KILL", "/usr/sbin/sshd", "-D", "-e", "-f",
+                              os.path.join(folder, "sshd_config")])
+        wait_for(self._answers, "sshd")
+
+    def _answers(self):
+        if not self._sshd.isRunning():
+            raise AssertionError("sshd has ended: %s" % self._sshd.output)
+        with socket.socket() as probe:
+            return probe.connect_ex(("127.0.0.1", self.port)) == 0
+
+    def stop(self):
+        self._sshd.stop()
+        if self._made_folder:
+            os.rmdir(PRIVILEGE_SEPARATION)
+
+
+@pytest.fixture(name="start")
+def make_start(tmp_path):
+    """A function that starts a sweep over hosts."""
+    hosts = SshHosts(str(tmp_path))
+
+    def start(names, seeds, trials):
+        (tmp_path / "hosts").write_text("\n".join(names) + "\n")
         # a shell on another machine knows nothing of this workspace: sshd hands no variable of ours on
-        return Sweep("--preset", "debug", "--seeds", seeds, "--trials", trials, "--jobs", 1, "--hosts", list_of_hosts,
-                     "--out", self.out, environment={"PARALLEL_SSH": self.hosts.ssh_command})
+        return Sweep(*debug(str(tmp_path / "out"), seeds, trials), "--jobs", 1, "--hosts", tmp_path / "hosts",
+                     environment={"PARALLEL_SSH": hosts.ssh_command})
+    yield start
+    hosts.stop()
 
-    def test_seeds_are_spread_over_the_hosts_that_answer(self):
-        process = self.start(["first", "second", ":", "gone.invalid"], "0:6", 1)
-        self.assertEqual(process.waitForEnd(60.0), 0, process.output)
-        self.assertIn("6 of 6 seeds finished", process.output)
-        self.assertIn("gone.invalid", process.output)
-        with open(os.path.join(self.out, "joblog.tsv")) as stream:
-            hosts = {line.split("\t")[1] for line in stream.read().splitlines()[1:]}
-        self.assertEqual(hosts, {"first", "second", ":"})
-        self.assertEqual([row[0] for row in read_rows(self.out, "sweep.csv")[1:]], [str(k // 2) for k in range(12)])
 
-    def test_hosts_that_are_all_gone_leave_all_seeds_to_be_run(self):
-        process = self.start(["gone.invalid"], "0:2", 0)
-        self.assertEqual(process.waitForEnd(60.0), 1, process.output)
-        for words in ("gone.invalid", "0 of 2 seeds finished", "seed 1: it has not written anything"):
-            self.assertIn(words, process.output)
+def test_seeds_are_spread_over_the_hosts_that_answer(start, tmp_path):
+    process, out = start(["first", "second", ":", "gone.invalid"], "0:6", 1), str(tmp_path / "out")
+    assert process.waitForEnd(60.0) == 0, process.output
+    assert "6 of 6 seeds finished" in process.output and "gone.invalid" in process.output
+    jobs = read_bytes(out, "joblog.tsv").decode().splitlines()[1:]
+    assert {line.split("\t")[1] for line in jobs} == {"first", "second", ":"}
+    assert [row[0] for row in read_rows(out, "sweep.csv")[1:]] == [str(k // 2) for k in range(12)]
 
-    def test_seeds_on_other_hosts_end_with_a_sweep_that_is_killed(self):
-        process = self.start(["first"], "0:1", 999)
-        self.addCleanup(process.stop)
-        wait_for(lambda: programs_of(seed_folder(self.out, 0)), "the program of seed 0")
+
+def test_hosts_that_are_all_gone_leave_all_seeds_to_be_run(start):
+    process = start(["gone.invalid"], "0:2", 0)
+    assert process.waitForEnd(60.0) == 1, process.output
+    for words in ("gone.invalid", "0 of 2 seeds finished", "seed 1: it has not written anything"):
+        assert words in process.output
+
+
+def test_seeds_on_other_hosts_end_with_a_sweep_that_is_killed(start, tmp_path):
+    with start(["first"], "0:1", 999) as process:
+        wait_for(lambda: programs_of(seed_folder(str(tmp_path / "out"), 0)), "the program of seed 0")
         process.kill_group()
-        wait_for(lambda: not processes_with([self.out]), "the end of all processes", 10.0)
+    assert_nothing_runs(str(tmp_path / "out"))

@@ -21,10 +21,25 @@ class Sweep(Process):
         self.waitForEnd(10.0)
 
 
-def sweep(*arguments, limit_s=90.0, **kwargs):
-    """Runs a sweep to its end. Returns (exit code, output)."""
+def debug(out, seeds="0:4", trials=1):
+    """Arguments of a sweep that takes seconds."""
+    return ["--preset", "debug", "--seeds", seeds, "--trials", trials, "--out", out]
+
+
+def assert_ends(code, words, *arguments, **kwargs):
+    """Runs a sweep to its end, which has this exit code and these words. Returns its output."""
     process = Sweep(*arguments, **kwargs)
-    return process.waitForEnd(limit_s), process.output
+    assert process.waitForEnd(90.0) == code, process.output
+    assert all(word in process.output for word in words), process.output
+    return process.output
+
+
+def assert_table(out, seeds, trials=1):
+    """sweep.csv: one header, then exactly the rows of these seeds."""
+    expected = [read_bytes(seed_folder(out, seed), "trials.csv").splitlines() for seed in seeds]
+    lines = read_bytes(out, "sweep.csv").splitlines()
+    assert lines == expected[0][:1] + [row for table in expected for row in table[1:trials + 2]]
+    assert [line.split(b",")[:2] for line in lines[1:]] == [[b"%d" % seed, b"%d" % k] for seed in seeds for k in range(trials + 1)]
 
 
 def wait_for(condition, what, limit_s=30.0):
@@ -52,10 +67,15 @@ def processes_with(words):
     return found  # what has ended and waits for its parent has an empty command line
 
 
-def programs_of(seed_folder):
+def assert_nothing_runs(out):
+    """No process that names the folder is left, or it ends by itself at once."""
+    wait_for(lambda: not processes_with([out]), "the end of all processes", 10.0)
+
+
+def programs_of(folder):
     """Numbers of the processes that compute a seed."""
-    return [pid for pid, command in processes_with([seed_folder]).items()
-            if command[0].endswith("/run_experiment") and seed_folder in command]
+    return [pid for pid, command in processes_with([folder]).items()
+            if command[0].endswith("/run_experiment") and folder in command]
 
 
 def snapshot(folder):

@@ -1,9 +1,7 @@
-# A robot for tests of the Python side: a blob that a torque moves around a circle; its bags and models, and a folder.
+# A robot for tests of the Python side: a blob that a torque moves around a circle; its bags and models.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import subprocess
-import tempfile
-import unittest
 
 import numpy as np
 import rosbag
@@ -66,31 +64,9 @@ def write_bag(path, num_frames=150, seed=1, size=SIZE, channels=1, image_topic="
 
 def train(folder, bags, model_options="", training_options=""):
     """Trains on bags, with more keys of the blocks model and training. Returns the path of the model."""
-    config, out = os.path.join(folder, "toy.yaml"), os.path.join(folder, "toy.ddm")
+    config, out = os.path.join(str(folder), "toy.yaml"), os.path.join(str(folder), "toy.ddm")
     with open(config, "w") as stream:
         stream.write(CONFIG % (model_options, training_options))
     code, output = call("train_from_bags", "--config", config, "--out", out, *bags)
     assert code == 0, output
     return out
-
-
-def read_table(path):
-    """A CSV file as a structured array: a field for each column."""
-    return np.atleast_1d(np.genfromtxt(path, delimiter=",", names=True, dtype=None, encoding="utf-8"))
-
-
-def new_folder(add_cleanup):
-    """A new folder, which goes when the test or class of `add_cleanup` has ended."""
-    folder = tempfile.TemporaryDirectory()
-    add_cleanup(folder.cleanup)
-    return folder.name
-
-
-class ToyRobotCase(unittest.TestCase):
-    """scratch: a folder of each test."""
-
-    def setUp(self):
-        self.scratch = new_folder(self.addCleanup)
-
-    def file(self, name):
-        return os.path.join(self.scratch, name)

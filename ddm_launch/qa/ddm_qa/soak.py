@@ -12,7 +12,7 @@ import rosgraph
 from tqdm import tqdm
 
 from ddm_launch.command import Failure, number, program_parser, run_program
-from ddm_launch.run_folder import Trajectory, is_finished, num_finished, read_setting
+from ddm_launch.run_folder import is_finished, num_finished, read_setting, read_trajectory
 from ddm_launch.tables import write_csv
 from ddm_qa.processes import free_port, pid_of, start_roslaunch
 
@@ -89,7 +89,7 @@ def count_frames(run, folder, num_trials):
     num_steps = int(read_setting(folder, "trial", "num_steps", "frames of a trial"))
     for trial in range(num_trials):
         for part, times in (("trial", answered_times(os.path.join(folder, "trial_%03d" % trial, "trial.bag"))),
-                            ("evaluation", Trajectory(os.path.join(folder, "evaluation_%03d" % trial)).time_s)):
+                            ("evaluation", read_trajectory(os.path.join(folder, "evaluation_%03d" % trial)).time_s.tolist())):
             due = max(num_steps, int(round((times[-1] - times[0]) / dt)) + 1 if len(times) else 0)
             yield Frames(run, trial, part, due, len(times), due - len(times))
 

@@ -1,26 +1,24 @@
 # Means over experiments, with their standard errors, confidence intervals and tests.
 # SPDX-License-Identifier: BSD-3-Clause
-import itertools
 import math
 import statistics
 
+import numpy as np
+import pandas
 
-def success_rates(runs):
-    """The rate of success over runs, for each number of frames that any run has.
 
-    runs: one list of Trial per run; trials whose success is not known are left out.
-    Returns rows (frames, rate, standard error, number of runs), ascending. The standard error of a rate p over
-    n runs is sqrt(p (1 - p) / (n - 1)), as in the paper's Fig. 8; 0 for a single run.
+def success_rates(trials):
+    """The rate of success over seeds at each number of frames, of a table of read_trials().
+
+    Columns rate, se, runs, and low and high, the ends of Wilson's interval; the index is frames. Trials whose success is not
+    known do not count. The standard error of a rate p over n runs is sqrt(p (1 - p) / (n - 1)), as in the paper's Fig. 8; 0
+    for a single run.
     """
-    by_frames = {}
-    for trial in itertools.chain(*runs):
-        if trial.success is not None:
-            by_frames.setdefault(trial.frames, []).append(trial.success)
-    rows = []
-    for frames, successes in sorted(by_frames.items()):
-        n, rate = len(successes), sum(successes) / len(successes)
-        rows.append((frames, rate, math.sqrt(rate * (1.0 - rate) / (n - 1)) if n > 1 else 0.0, n))
-    return rows
+    groups = trials.dropna(subset=["success"]).groupby("frames").success
+    rate, runs = groups.mean(), groups.size()
+    low, high = wilson_interval(rate, runs)
+    return pandas.DataFrame({"rate": rate, "se": np.sqrt(rate * (1.0 - rate) / (runs - 1).clip(lower=1)), "runs": runs,
+                             "low": low, "high": high})
 
 
 def wilson_interval(rate, n, confidence=0.95):
@@ -33,8 +31,8 @@ def wilson_interval(rate, n, confidence=0.95):
     """
     z = statistics.NormalDist().inv_cdf(0.5 + 0.5 * confidence)
     centre = (rate + z * z / (2.0 * n)) / (1.0 + z * z / n)
-    half = z / (1.0 + z * z / n) * math.sqrt(rate * (1.0 - rate) / n + z * z / (4.0 * n * n))
-    return max(0.0, centre - half), min(1.0, centre + half)
+    half = z / (1.0 + z * z / n) * np.sqrt(rate * (1.0 - rate) / n + z * z / (4.0 * n * n))
+    return np.maximum(0.0, centre - half), np.minimum(1.0, centre + half)
 
 
 def mean_and_error(values):

@@ -1,4 +1,4 @@
-# What the programs of ddm_launch share: how they fail, how a signal ends them, and where other programs and files are.
+# What the programs of ddm_launch share: failures, signals, arguments, and the paths of other programs and files.
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
 import contextlib
@@ -23,8 +23,8 @@ class Interrupted(BaseException):
 
 @contextlib.contextmanager
 def raised_as_exception():
-    """Within, the first signal raises Interrupted in the main thread; those after it are ignored, so that the ending
-    that it begins comes to its end."""
+    """In this context the first signal raises Interrupted in the main thread. Later signals are ignored, so that they do
+    not interrupt the clean-up."""
     def on_signal(number, _):
         for each in SIGNALS:
             signal.signal(each, signal.SIG_IGN)
@@ -43,7 +43,7 @@ def raised_as_exception():
 
 @contextlib.contextmanager
 def held_back():
-    """Within, signals wait: for what must not be cut in two."""
+    """In this context signals wait. For steps that must not be interrupted between them."""
     before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
     try:
         yield
@@ -83,9 +83,8 @@ def expand_home(word):
 
 
 def program_parser(name, about, epilog=None, **more):
-    """Whose help keeps the lines of both texts."""
-    return Parser(prog=name, description=about, epilog=epilog,
-                                   formatter_class=argparse.RawDescriptionHelpFormatter, **more)
+    """A parser whose help keeps the line breaks of both texts."""
+    return Parser(prog=name, description=about, epilog=epilog, formatter_class=argparse.RawDescriptionHelpFormatter, **more)
 
 
 def number(kind, least, most=math.inf):

@@ -3,10 +3,10 @@
 import importlib
 import sys
 
-from ddm_launch import film, film_strip, learning_curve, success_rate
+from ddm_launch import film, learning_curve, success_rate
 from ddm_launch.command import Parser, run_program
 
-FIGURES = {"film": film.FIGURE, "film_strip": film_strip.FIGURE, "learning_curve": learning_curve.FIGURE,
+FIGURES = {"film": film.FILM, "film_strip": film.STRIP, "learning_curve": learning_curve.FIGURE,
            "success_rate": success_rate.FIGURE}
 
 

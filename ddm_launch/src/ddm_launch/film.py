@@ -1,4 +1,4 @@
-# Draws greedy evaluations as one animation: the camera, what the model expected, and the feature space.
+# Draws greedy evaluations: as an animation of camera, prediction and feature space, and as a strip of images.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
 import os
@@ -9,17 +9,13 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from ddm_launch.command import Failure, number
-from ddm_launch.figure_style import BLUE, GREY, ORANGE, VERMILLION, Figure, argument, save_picture
-from ddm_launch.images import draw_images, read_model
-from ddm_launch.plant import describe_plant, simulator
+from ddm_launch.figure_style import (BLUE, GREY, ORANGE, VERMILLION, Figure, argument, new_screen_figure, save, save_picture,
+                                     show_image)
+from ddm_launch.plant import draw_evaluation
 from ddm_launch.run_folder import read_setting, read_trials
 from ddm_launch.settings import read_yaml
-from ddm_launch.tables import motors_of, read_columns
+from ddm_model.model import load
 
-ABOUT = ("Greedy evaluations of run folders, one after the other. Left: the image, without nuisances of the camera. Middle: the "
-         "image that the model predicted one second earlier, given the torques applied since. Right: the feature space, with states "
-         "that the model has seen (grey), the goal (red), the current image (blue) and the features predicted from it under the "
-         "torques to come (orange).")
 SUFFIX = ".webp"
 AHEAD_S = 1.0
 PANEL, MARGIN, HEADER, FOOTER = 200, 8, 26, 24  # [pixels]
@@ -28,24 +24,11 @@ LAST_MS = 1500  # the last picture of an evaluation stays
 TITLES = ([("image", 0, "black")], [("predicted a second ago", 0, "black")],
           [("features:", 0, "black"), ("now", 66, BLUE), ("plan", 98, ORANGE), ("goal", 132, VERMILLION), ("seen", 166, GREY)])
 EVALUATION = re.compile(r"evaluation_(\d+)$")
+STRIP_IMAGES = 12
 
 # One evaluation. title; dt [s]; images [N x size x size] and what was expected of them, None at first; features [N x 2]; paths:
-# for each frame the features that are expected from it on; support_states, goal: features  [.. x 2].
+# for each image the features that are expected from it on; support_states, goal: features  [.. x 2].
 Clip = collections.namedtuple("Clip", "title dt images expected features paths support_states goal")
-
-
-def simulate(run, evaluation):
-    """Images of an evaluation as the plant draws them, one for each torque, and the torques [N x motors, N m]."""
-    program = simulator(read_setting(run, "experiment", "plant", "plant"), "--config", os.path.join(run, "config.yaml"))
-    plant, trajectory = describe_plant(program), os.path.join(evaluation, "trajectory.csv")
-    if np.any(np.diff(read_columns(trajectory, ["time_s"])[:, 0]) > 1.5 * plant["dt"]):
-        raise Failure("in %s the camera has lost frames: only runs without camera/drop_rate can be filmed" % trajectory)
-    start = read_columns(trajectory, plant["state"])[0]
-    motors = motors_of(os.path.join(evaluation, "torques.csv"))
-    torques = read_columns(os.path.join(evaluation, "torques.csv"), motors)
-    text = "\n".join([",".join(motors)] + [",".join(map(repr, map(float, row))) for row in torques]) + "\n"
-    pictures = draw_images(program + ["--start", ",".join(map(repr, map(float, start)))], text)[:len(torques)]
-    return np.array([np.asarray(picture) for picture in pictures]), torques
 
 
 def plane_of(points):
@@ -63,9 +46,8 @@ def read_clip(evaluation):
     if not found:
         raise Failure("a film shows folders RUN/evaluation_NNN, got '%s'" % evaluation)
     run, trial = os.path.dirname(evaluation) or ".", int(found.group(1))
-    model = read_model(os.path.join(run, "trial_%03d" % trial, "model.ddm"))
-    frames = next((row.frames for row in read_trials(run) if row.trial == trial), None)
-    images, torques = simulate(run, evaluation)
+    model, trials = load(os.path.join(run, "trial_%03d" % trial, "model.ddm")), read_trials(os.path.join(run, "trials.csv"))
+    images, torques, _ = draw_evaluation(run, trial)
     if images.shape[1] != model.image_size:
         raise Failure("the plant of %s draws %d pixels and the model sees %d: film runs in which both are equal" % (
             run, images.shape[1], model.image_size))
@@ -86,16 +68,14 @@ def read_clip(evaluation):
     # Where each trial has a goal of its own, the model's is that of another.
     drawn = (read_yaml(os.path.join(run, "config.yaml")).get("plant") or {}).get("goal_site")
     goal = None if drawn or model.goal_feature is None else project(model.goal_feature[None])
-    title = read_setting(run, "experiment", "plant", "plant")
-    if title.endswith(".yaml"):
-        title = os.path.basename(title)[:-len(".yaml")]
-    if frames:
-        title += ", after {:,} images ({:g} s)".format(frames, frames * dt)
+    title = re.sub(r".*/(.*)\.yaml$", r"\1", read_setting(run, "experiment", "plant", "plant"))
+    for count in trials[trials.trial == trial].frames:
+        title += ", after {:,} images ({:g} s)".format(count, count * dt)
     return Clip(title, dt, images, expected, project(features), [project(path) for path in paths], project(seen), goal)
 
 
 class Plane:
-    """The right panel: features as points and ways in a square of PANEL pixels."""
+    """The right panel: features as points and paths in a square of PANEL pixels."""
 
     def __init__(self, clip):
         points = np.concatenate([clip.support_states, clip.features])
@@ -130,11 +110,10 @@ def font(size):
 
 
 def pictures_of(clip):
-    """RGB pictures of all frames."""
-    width = 3 * PANEL + 4 * MARGIN
+    """RGB pictures of all images of a clip."""
     plane, pictures = Plane(clip), []
     for now, image in enumerate(clip.images):
-        picture = Image.new("RGB", (width, HEADER + PANEL + FOOTER + MARGIN), "white")
+        picture = Image.new("RGB", (3 * PANEL + 4 * MARGIN, HEADER + PANEL + FOOTER + MARGIN), "white")
         pen = ImageDraw.Draw(picture)
         pen.text((MARGIN, 5), "%s:   %4.1f s" % (clip.title, now * clip.dt), fill="black", font=font(14))
         panels = [as_panel(image), as_panel(clip.expected[now]),
@@ -156,7 +135,7 @@ def as_panel(image):
     return Image.fromarray(np.asarray(image, dtype=np.uint8)).resize((PANEL, PANEL), Image.BICUBIC).convert("RGB")
 
 
-def draw(options):
+def draw_film(options):
     if not options.out.lower().endswith(SUFFIX):
         raise Failure("a film must be a .webp, got '%s': give --out another name" % options.out)
     pictures, durations = [], []
@@ -169,6 +148,43 @@ def draw(options):
                  quality=60, method=4)
 
 
-FIGURE = Figure(ABOUT, [
-    argument("evaluations", metavar="RUN/evaluation_NNN", nargs="+", help="shown one after the other"),
-    argument("--seconds", type=number(float, 0), default=10.0, help="of each, default %(default)g")], draw, SUFFIX)
+def draw_strip(options):
+    """Images above, the torques over the same time below."""
+    trials = read_trials(os.path.join(options.folder, "trials.csv"))
+    successes = trials[trials.success > 0]
+    trial = options.trial if options.trial is not None else (trials if successes.empty else successes).trial.iloc[-1]
+    images, torques, motors = draw_evaluation(options.folder, trial)
+    dt = float(read_setting(options.folder, "plant", "dt", "time step"))
+    shown = max(1, min(round(options.seconds / dt), len(images)))
+    steps = np.unique(np.linspace(0, shown - 1, STRIP_IMAGES).round().astype(int))
+    with new_screen_figure(len(steps) * 1.0 + 0.6, 3.0) as figure:
+        grid = figure.add_gridspec(2, len(steps), height_ratios=[1.0, 1.1])
+        for column, step in enumerate(steps):
+            axes = figure.add_subplot(grid[0, column])
+            show_image(axes, images[step])
+            axes.set_title("%.1f s" % (step * dt), fontsize=10)
+        axes = figure.add_subplot(grid[1, :])
+        for column, motor in zip(torques[:shown].T, motors):
+            axes.step(dt * np.arange(shown + 1), np.append(column, column[-1]), where="post", label=motor)
+        for step in steps:
+            axes.axvline(step * dt, color=GREY, linewidth=0.6, linestyle=":")
+        axes.axhline(0.0, color=GREY, linewidth=0.6)
+        axes.set_xlim(0.0, shown * dt)
+        axes.set_xlabel("time [s]")
+        axes.legend(loc="best")
+        save(figure, options.out)
+    print("evaluation after trial %d" % trial)
+
+
+FILM = Figure(
+    "Greedy evaluations of run folders, one after the other. Left: the image, without nuisances of the camera. Middle: the "
+    "image that the model predicted one second earlier, given the torques applied since. Right: the feature space, with states "
+    "that the model has seen (grey), the goal (red), the current image (blue) and the features predicted from it under the "
+    "torques to come (orange).",
+    [argument("evaluations", metavar="RUN/evaluation_NNN", nargs="+", help="shown one after the other"),
+     argument("--seconds", type=number(float, 0), default=10.0, help="of each, default %(default)g")], draw_film, SUFFIX)
+STRIP = Figure(
+    "A greedy evaluation of a run folder as a strip. %d images, and the torques below." % STRIP_IMAGES,
+    [argument("folder", metavar="DIR", help="run folder (it holds trials.csv and evaluation_NNN)"),
+     argument("--trial", type=int, metavar="N", help="default: the last that succeeded, else the last"),
+     argument("--seconds", type=number(float, 0), default=3.0, help="from the start on, default %(default)g")], draw_strip)

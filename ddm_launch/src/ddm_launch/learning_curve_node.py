@@ -1,13 +1,9 @@
-# learning_curve_node: the learning curve of the experiment under way as a picture, drawn anew after each trial.
+# learning_curve_node: draws the learning curve of the running experiment as an image, again after each trial.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
-import socket
-import sys
 import tempfile
-import xmlrpc.client
 
 import numpy as np
-import rosgraph
 import rospy
 from sensor_msgs.msg import Image
 from std_msgs.msg import String
@@ -16,23 +12,22 @@ import yaml
 from ddm_launch.command import Failure
 from ddm_launch.figure_style import GREY, ORANGE, new_figure
 from ddm_launch.learning_curve import draw_one
-from ddm_launch.run_folder import read_goal, read_trials
 from ddm_launch.settings import LOADER
-from ddm_launch.tables import optional, read_csv
+from ddm_launch.tables import read_table
 from ddm_model.plain_file import write_file
 
 
 def draw_model_errors(axes, path):
     """V_R and V_P per frame, where the method has them."""
-    rows = read_csv(path, {"frames": int, "v_r": optional(float), "v_p": optional(float)})
+    table = read_table(path, "frames", "v_r", "v_p")
     for name, label, colour in (("v_r", "reconstruction V_R", GREY), ("v_p", "prediction V_P", ORANGE)):
-        known = [(row["frames"], row[name] / row["frames"]) for row in rows if row[name]]
-        axes.semilogy(*zip(*known or [((), ())]), color=colour, marker=".", label=label)
+        known = table[table[name] > 0.0]
+        axes.semilogy(known.frames, known[name] / known.frames, color=colour, marker=".", label=label)
     axes.legend(loc="upper right")
 
 
 def picture(text):
-    """The picture of a message on the topic `trials`, 640 x 480 pixels in colour; it grows to the right."""
+    """The image for a message on the topic `trials`, 640 x 480 pixels in colour. Its curves grow to the right."""
     trials = yaml.load(text, Loader=LOADER)
     with tempfile.TemporaryDirectory() as folder, new_figure(6.4, 4.8, dpi=100) as figure:
         table = os.path.join(folder, "trials.csv")
@@ -42,7 +37,7 @@ def picture(text):
         if trials["trials_csv"].count("\n") > 1:
             draw_model_errors(below, table)
             try:
-                draw_one(above, read_trials(folder), read_goal(folder))
+                draw_one(above, folder)
             except Failure:
                 above.set_title("success is not known: there is no ground truth")
         below.set_xlim(0, max(trials["frames"], below.dataLim.x1))  # frames of start/bags count, too
@@ -54,24 +49,7 @@ def picture(text):
     return Image(height=height, width=width, encoding="rgb8", step=3 * width, data=pixels.tobytes())
 
 
-def is_running(name):
-    """Whether a node of this name answers: the master would end it when this one registers."""
-    try:
-        uri = rosgraph.Master(name).lookupNode(name)
-        socket.setdefaulttimeout(5.0)  # one that was stopped never answers
-        xmlrpc.client.ServerProxy(uri).getPid(name)
-        return True
-    except (rosgraph.MasterException, OSError, xmlrpc.client.Error):
-        return False
-    finally:
-        socket.setdefaulttimeout(None)
-
-
 def main():
-    name = rosgraph.names.ns_join(rosgraph.names.get_ros_namespace(), "learning_curve_node")
-    if is_running(name):
-        print("node %s is running already: end its launch first" % name, file=sys.stderr)
-        return 1
     rospy.init_node("learning_curve_node")
     publisher = rospy.Publisher("learning_curve_image", Image, queue_size=1, latch=True)
     rospy.Subscriber("trials", String, lambda trials: publisher.publish(picture(trials.data)), queue_size=1)

@@ -1,8 +1,8 @@
 # Plays the user of robot.launch on a simulated robot, and measures whether torques came in time and it reached its goal.
 # SPDX-License-Identifier: BSD-3-Clause
-import glob
 import math
 import os
+import signal
 import subprocess
 import tempfile
 import threading
@@ -45,34 +45,25 @@ class PlantGoal:
 
 
 class Load:
-    """Trains on the bags so far again and again, in a process of its own."""
+    """Trains on the bags so far again and again, in processes of its own."""
+
+    LOOP = """while sleep 0.5; do
+      OMP_NUM_THREADS=1 "$0" --config "$1" --out "$2/model.ddm" "$3"/trial_*/trial.bag >"$2/output" 2>&1 && echo >>"$2/trained"
+    done"""
 
     def __init__(self, runs, preset_file):
-        self.num_trainings, self._process = 0, None
-        self._thread = threading.Thread(target=self._work, args=(runs, preset_file), daemon=True)
-        self._thread.start()
+        self._scratch = tempfile.TemporaryDirectory()
+        words = [find_program("train_from_bags", "ddm_model"), preset_file, self._scratch.name, runs]
+        self._process = subprocess.Popen(["setpriv", "--pdeathsig", "KILL", "bash", "-c", self.LOOP, *words],
+                                         stdin=subprocess.DEVNULL, start_new_session=True)
 
-    def _work(self, runs, preset_file):
-        with tempfile.TemporaryDirectory() as scratch:
-            command = [find_program("train_from_bags", "ddm_model"), "--config", preset_file,
-                       "--out", os.path.join(scratch, "model.ddm")]
-            while not rospy.is_shutdown():
-                bags = sorted(glob.glob(os.path.join(runs, "trial_*", "trial.bag")))
-                if not bags:
-                    rospy.sleep(0.5)
-                    continue
-                self._process = subprocess.Popen(
-                    command + bags, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                    env=dict(os.environ, OMP_NUM_THREADS="1"))
-                code = self._process.wait()
-                self.num_trainings += code == 0
-                if code != 0 and not rospy.is_shutdown():
-                    rospy.logwarn_throttle(60.0, "robot_check: the other training ended with code %d", code)
+    def num_trainings(self):
+        path = os.path.join(self._scratch.name, "trained")
+        return os.path.getsize(path) if os.path.exists(path) else 0
 
     def end(self):
-        if self._process is not None:
-            self._process.kill()
-        self._thread.join(5.0)
+        os.killpg(self._process.pid, signal.SIGKILL)
+        self._process.wait()
 
 
 def call(name, kind, *values, **fields):
@@ -142,7 +133,7 @@ class RobotCheck:
         return {"frames": self._frames, "control_minutes": round(self._control_s / 60.0, 2),
                 "deadline_misses": self._misses,
                 "latency_ms": {"median": round(median, 2), "p99": round(p99, 2), "max": round(largest, 2)},
-                "other_trainings": self.load.num_trainings if self.load else 0,
+                "other_trainings": self.load.num_trainings() if self.load else 0,
                 "error_unit": self._plant_goal.unit, "evaluations": self._evaluations,
                 "in_time": self._misses <= DEADLINE_MISSES and p99 < LATENCY_P99_MS,
                 "reached": bool(self._evaluations) and self._evaluations[-1]["reached"]}

@@ -6,11 +6,10 @@ import re
 import sys
 import time
 
-from ddm_launch.command import Failure, Interrupted, expand_home, number, program_parser, run_program
+from ddm_launch.command import Interrupted, expand_home, number, program_parser, run_program
 from ddm_launch.gnu_parallel import GnuParallel
-from ddm_launch.seed_script import TABLES, SeedProgram
-from ddm_launch.slurm import SlurmArray, indices, job_file, remembered
-from ddm_launch.sweep_folder import SweepFolder
+from ddm_launch.slurm import SlurmArray, remembered
+from ddm_launch.sweep_folder import TABLES, SweepFolder
 
 MAX_SEEDS = 100000
 
@@ -25,12 +24,8 @@ example:
   rosrun ddm_launch sweep --seeds 0:50 --trials 15 --out ~/runs/oracle -- --method oracle
 
 in DIR:
-  sweep.csv           the rows of trials.csv (predictions.csv) of all finished seeds
-  seed_NNNN/          all that the program writes for a seed
-  logs/seed_NNNN.log  what the program said about a seed
-  joblog.tsv          GNU parallel's job log of the last call
-  run_seed.sh         one seed by hand: bash run_seed.sh SEED
-  sweep.yaml          what is run; a sweep with other options is refused in this folder
+  sweep.csv has the rows of trials.csv (predictions.csv) of all finished seeds, seed_NNNN/ all that the program writes for a
+  seed, and logs/ what it said. `bash run_seed.sh SEED` runs one seed by hand.
 
 hosts (--hosts FILE):
   GNU parallel's --sshloginfile: one ssh host a line, ':' is this machine. Hosts that do not answer are left out. Each
@@ -79,11 +74,9 @@ def parse(arguments):
     """(options, words for the program). Ends the process with code 2 and a message if they make no sense."""
     parser = make_parser()
     split = arguments.index("--") if "--" in arguments else len(arguments)
-    options, more = parser.parse_args(arguments[:split]), [expand_home(word) for word in arguments[split + 1:]]
-    for word in more:
-        if re.match(r"(-h|--(help|preset|plant|seed|trials|out)(=.*)?)$", word):
-            parser.error("%s after '--': only options that sweep itself does not have may follow it" % word)
-    more = [word for name in ("preset", "plant") if getattr(options, name) for word in ("--" + name, getattr(options, name))] + more
+    options = parser.parse_args(arguments[:split])
+    more = [word for name in ("preset", "plant") if getattr(options, name) for word in ("--" + name, getattr(options, name))]
+    more += [expand_home(word) for word in arguments[split + 1:]]
     for value in options.set:
         more += ["--set", value]
     if options.program != "run_experiment" and options.trials is not None:
@@ -97,72 +90,54 @@ def parse(arguments):
     return options, more
 
 
+def run_seeds(engine, folder, seeds):
+    """Runs those seeds that are not finished, and prints a line for each seed that finishes."""
+    pending = [seed for seed in seeds if not folder.is_finished(seed)]
+
+    def tell():
+        for seed in [seed for seed in pending if folder.is_finished(seed)]:
+            pending.remove(seed)
+            print("seed %d finished (%d of %d)" % (seed, len(seeds) - len(pending), len(seeds)), flush=True)
+
+    engine.resume(folder, tell)
+    tell()
+    print("%s: %d of %d seeds to run" % (folder.title, len(pending), len(seeds)), flush=True)
+    if pending:
+        folder.prepare(pending)
+        engine.run(folder, list(pending), tell)
+        tell()
+
+
 def report(folder, seeds, start):
     """Collects, says how it went, and returns whether all seeds are finished."""
-    last_rows, problems = folder.collect(seeds)
+    finished, problems = folder.collect(seeds)
     job = remembered(folder)
     if job is not None:
         print("sweep: %s" % job.how_to_go_on(), file=sys.stderr)
     elif problems:
-        print("sweep: not finished:", file=sys.stderr)
-        for seed, problem in problems.items():
-            print("  seed %d: %s" % (seed, problem), file=sys.stderr)
-        print("sweep: the same command resumes where this one ended", file=sys.stderr)
-    versions = folder.versions(last_rows)
+        print("\n".join(["sweep: not finished:"] + ["  seed %d: %s" % problem for problem in problems.items()]
+                        + ["sweep: the same command resumes where this one ended"]), file=sys.stderr)
+    versions = sorted({row.get("version", "?") for rows in finished.values() for row in rows})
     if len(versions) > 1:
         print("sweep: warning: the seeds come from %d versions of the code, they may not be comparable: %s"
               % (len(versions), ", ".join(versions)), file=sys.stderr)
-    known = [float(row["success"]) for row in last_rows.values() if row.get("success")]
+    known = [float(rows[-1]["success"]) for rows in finished.values() if rows[-1].get("success")]
     print("%d of %d seeds finished%s; this call took %.1f s" % (
-        len(last_rows), len(seeds), ", mean success at the last trial %.2f" % (sum(known) / len(known)) if known else "",
+        len(finished), len(seeds), ", mean success at the last trial %.2f" % (sum(known) / len(known)) if known else "",
         time.monotonic() - start))
-    if last_rows:
+    if finished:
         print("results: %s" % folder.table)
     return not problems
 
 
-def run(engine, folder, seeds, terminal):
-    """Runs those seeds that are not finished."""
-    job = remembered(folder)
-    if job is not None and not isinstance(engine, SlurmArray):
-        raise Failure("%s. Or delete %s if no such job is left" % (job.how_to_go_on(), job_file(folder)))
-    pending = [seed for seed in seeds if not folder.is_finished(seed)]
-
-    def tell():
-        """A line for each seed that finishes; none on a terminal, where the engine has a line of its own. Returns how
-        far the sweep is, in words."""
-        for seed in [seed for seed in pending if folder.is_finished(seed)]:
-            pending.remove(seed)
-            if not (terminal and sys.stdout.isatty()):
-                print("seed %d finished (%d of %d)" % (seed, len(seeds) - len(pending), len(seeds)), flush=True)
-        return "%d of %d" % (len(seeds) - len(pending), len(seeds))
-
-    under_way = set()
-    if job is not None:
-        print("waiting for the job array that an earlier call has submitted", flush=True)
-        engine.wait(folder, job, tell)
-        tell()
-        under_way = indices(job.ranges)  # a seed that failed there is left to the next call, as without an interruption
-    to_run = [seed for seed in pending if seed not in under_way]
-    print("%s: %d of %d seeds to run" % (" ".join([folder.program.name] + folder.program.options), len(to_run), len(seeds)),
-          flush=True)
-    if to_run:
-        folder.prepare(to_run)
-        engine.run(folder, to_run, tell)
-        tell()
-
-
 def sweep(options, more):
-    """Returns the exit code. Raises Interrupted, when all is tidied up, if a signal asked to end."""
-    start, terminal = time.monotonic(), sys.stderr.isatty()
-    engine = (SlurmArray(options.jobs, terminal) if options.slurm
-              else GnuParallel(options.jobs, options.hosts, terminal))
-    program = SeedProgram(options.program, options.trials, more)
-    program.check(options.seeds[0])
-    with SweepFolder(options.out, program) as folder:
+    """Returns the exit code. Raises Interrupted, after the report, if a signal asked to end."""
+    start = time.monotonic()
+    engine = SlurmArray(options.jobs) if options.slurm else GnuParallel(options.jobs, options.hosts)
+    with SweepFolder(options.out, options.program, options.trials, more, options.seeds[0]) as folder:
         interruption = None
         try:
-            run(engine, folder, options.seeds, terminal)
+            run_seeds(engine, folder, options.seeds)
         except Interrupted as error:
             interruption = error
         complete = report(folder, options.seeds, start)

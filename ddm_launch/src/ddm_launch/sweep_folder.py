@@ -1,22 +1,87 @@
-# The folder of a sweep: which seeds are finished, and the rows of all of them in one table.
+# The folder of a sweep: the script that runs a seed, which seeds are finished, and the rows of all of them in one table.
 # SPDX-License-Identifier: BSD-3-Clause
 import contextlib
 import csv
 import os
-import shutil
+import platform
+import shlex
+import subprocess
 
 import yaml
 
-from ddm_launch.command import Failure
-from ddm_launch.folder_lock import FolderLock
+from ddm_launch.command import Failure, find_program
 from ddm_launch.settings import differences, read_yaml
 from ddm_model.plain_file import remove_unfinished, write_file
+
+# The programs that a sweep can run, and the table that each writes into its folder.
+TABLES = {"run_experiment": "trials.csv", "prediction_experiment": "predictions.csv"}
 
 # Keys of config.yaml in which the seeds of one sweep may differ.
 MAY_DIFFER = {"version", "renderer", "experiment/seed", "experiment/trials", "experiment/runs", "experiment/timeout",
               "sim/watchdog"}
 
-FULL_BYTES = 1 << 20  # free space below which a disk may be why nothing was said
+# A process may be killed without a chance to end those that it started: then the kernel ends them. With this, each link of
+# the chain sweep - parallel - (ssh -) script - program falls with the one before it.
+DIE_WITH_PARENT = ["setpriv", "--pdeathsig", "KILL"]
+
+SCRIPT = """\
+#!/bin/bash
+# One seed of this sweep, by hand: bash run_seed.sh SEED. As a task of a Slurm job array the seed is its index.
+seed=${{1:-${{SLURM_ARRAY_TASK_ID:?}}}}
+name=$(printf seed_%04d "$seed")
+exec >>{folder}/logs/"$name".log 2>&1
+echo "seed $seed on $(uname -n)${{SLURM_JOB_ID:+, task ${{SLURM_ARRAY_JOB_ID}}_${{SLURM_ARRAY_TASK_ID}} of Slurm}}"
+. {setup} || exit
+cd {working_folder} || exit
+export OMP_NUM_THREADS=1  # a core for each seed
+{command} --seed "$seed" --out {folder}/"$name"
+code=$?
+((code <= 128)) || echo "ended by signal $(kill -l "$code")"
+exit "$code"
+"""
+
+
+class BadOptions(Failure):
+    """The program refuses the options that it is given."""
+
+    exit_code = 2
+
+
+def find_setup(program):
+    """The setup.bash that each seed sources first, on other hosts too: that of the topmost workspace that is sourced here,
+    which may hold plants that the workspace of the program does not know. Where none is sourced, that of the program."""
+    prefix = os.path.dirname(os.path.dirname(os.path.dirname(program)))  # PREFIX/lib/ddm_launch/PROGRAM
+    for folder in os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep) + [prefix]:
+        path = os.path.join(folder, "setup.bash")
+        if folder and os.path.isfile(path):
+            return path
+    raise Failure("there is no setup.bash in %s, where %s comes from, nor in CMAKE_PREFIX_PATH: source the "
+                  "workspace's devel/setup.bash" % (prefix, program))
+
+
+def lock(path):
+    """Creates the file of a lock, which names host and process: on file systems that clusters share, locks of the kernel may be
+    missing. The folder of each seed has a lock of its own, by its program, which protects the results.
+
+    Raises Failure if a process that may be running has the lock, OSError if the file cannot be written.
+    """
+    for attempt in range(2):
+        try:
+            with open(path, "x") as stream:
+                stream.write("%s %d\n" % (platform.node(), os.getpid()))
+            return
+        except FileExistsError:
+            with open(path, errors="replace") as stream:
+                host, _, pid = stream.read().strip().partition(" ")
+        except OSError:  # for example a full disk
+            with contextlib.suppress(OSError):
+                os.remove(path)
+            raise
+        has_ended = host == platform.node() and pid.isdigit() and not os.path.exists("/proc/" + pid)
+        if attempt > 0 or not has_ended:
+            raise Failure("another sweep is running in the folder %s: process %s on %s. Wait for it, or use another folder. If you "
+                          "are sure that this process has ended, delete %s" % (os.path.dirname(path), pid or "?", host or "?", path))
+        os.remove(path)
 
 
 class SweepFolder:
@@ -27,37 +92,52 @@ class SweepFolder:
       seed_NNNN/           the results of a seed, by the program itself
       logs/seed_NNNN.log   what the program said when it ran last
       joblog.tsv           GNU parallel's job log of the last call
-      slurm_job            number, cluster and seeds of the job array while it is in the hands of Slurm
+      slurm_job            number and cluster of the job array while it is in the hands of Slurm
+      .lock                host and process of the sweep that holds the folder
       sweep.csv            the rows of all finished seeds
 
     A context manager: at most one sweep holds the folder at a time.
     """
 
-    def __init__(self, path, program):
-        """Makes the folder, or opens that of the same sweep. Raises Failure if it holds another one."""
-        self.path, self.program = os.path.abspath(path), program
-        self.script, self.table, self.joblog = (
-            os.path.join(self.path, name) for name in ("run_seed.sh", "sweep.csv", "joblog.tsv"))
+    def __init__(self, path, program, trials, options, seed):
+        """program: a key of TABLES. trials: None for a program that has none. options: all other options of the program but
+        seed and folder. seed: any of the seeds. Raises Failure if the program is not there, refuses its options, or if the
+        folder holds another sweep; the folder is made when the options are known to be good."""
+        self.path, self.trials, self.title = os.path.abspath(path), trials, " ".join([program] + options)
+        self.script, self.table, self.joblog, self._lock = (
+            os.path.join(self.path, name) for name in ("run_seed.sh", "sweep.csv", "joblog.tsv", ".lock"))
+        self._table_of_seed, self._program = TABLES[program], find_program(program)
+        self._command = [self._program] + ([] if trials is None else ["--trials", str(trials)]) + options
+        self._setup = find_setup(self._program)
+        self._check_options(seed)
         try:
             os.makedirs(os.path.join(self.path, "logs"), exist_ok=True)
-            self._lock = FolderLock(self.path)
+            lock(self._lock)
         except OSError as error:
             raise Failure("cannot write into the folder %s (%s): choose another with --out" % (self.path, error.strerror))
         with contextlib.ExitStack() as stack:
-            stack.callback(self._lock.release)
+            stack.callback(self.__exit__)
             remove_unfinished(self.path)
-            self._compare()
+            self._require_same_sweep({"program": program, "options": options})
             stack.pop_all()
 
     def __enter__(self):
         return self
 
     def __exit__(self, *_):
-        self._lock.release()
+        with contextlib.suppress(FileNotFoundError):  # a person may have deleted it
+            os.remove(self._lock)
 
-    def _compare(self):
+    def _check_options(self, seed):
+        """Runs the program with a folder that cannot be made. If its options are good, it fails for that reason before it has
+        computed anything. Otherwise it ends with code 2 and its own words, or with code 0 after it has printed a help text."""
+        done = subprocess.run(self._command + ["--seed", str(seed), "--out", os.devnull], stdin=subprocess.DEVNULL,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, universal_newlines=True)
+        if done.returncode in (0, 2):
+            raise BadOptions(done.stderr.strip() or "'%s' runs no experiment: correct the options" % self.title)
+
+    def _require_same_sweep(self, here):
         path = os.path.join(self.path, "sweep.yaml")
-        here = {"program": self.program.name, "options": self.program.options}
         if not os.path.exists(path):
             write_file(path, yaml.safe_dump(here, sort_keys=False))
             return
@@ -77,11 +157,13 @@ class SweepFolder:
         summary = read_yaml(os.path.join(self.seed_folder(seed), "summary.yaml"))
         trials = summary.get("trials")
         return summary.get("finished") is True and (
-            self.program.trials is None or (isinstance(trials, int) and trials >= self.program.trials))
+            self.trials is None or (isinstance(trials, int) and trials >= self.trials))
 
     def prepare(self, seeds):
-        """Writes the script that runs a seed; what earlier calls said about these seeds is forgotten."""
-        write_file(self.script, self.program.script(self.path))
+        """Writes the script that runs a seed, and removes what earlier calls said about these seeds."""
+        quoted = {name: shlex.quote(text) for name, text in (
+            ("folder", self.path), ("setup", self._setup), ("working_folder", os.getcwd()))}
+        write_file(self.script, SCRIPT.format(command=" ".join(map(shlex.quote, DIE_WITH_PARENT + self._command)), **quoted))
         for seed in seeds:
             with contextlib.suppress(FileNotFoundError):
                 os.remove(self.log(seed))
@@ -93,69 +175,55 @@ class SweepFolder:
                 lines = [line.strip() for line in stream if line.strip()]
         except OSError:
             return "it has not written anything yet"
-        if lines:
-            return "%s (%s)" % (lines[-1], self.log(seed))
-        is_full = shutil.disk_usage(self.path).free < FULL_BYTES
-        return "it said nothing%s (%s)" % (", is the disk full?" if is_full else "", self.log(seed))
+        return "%s (%s)" % (lines[-1] if lines else "it said nothing", self.log(seed))
 
     def collect(self, seeds):
         """Writes sweep.csv over the finished ones of these seeds; removes it if there are none.
 
-        Returns ({seed: its last row}, {seed: what is wrong with it}), together all seeds.
+        Returns ({seed: its rows}, {seed: what is wrong with it}), together all seeds.
         """
-        last_rows, problems, lines, first = {}, {}, [], None
+        finished, problems, lines, first = {}, {}, [], None
         for seed in sorted(seeds):
             if not self.is_finished(seed):
                 problems[seed] = self.last_words(seed)
                 continue
             try:
-                header, rows = self._read_table(seed)
-                first = first or (seed, header)
-                self._require_equal(first, seed, header)
+                table = self._read_table(seed)
+                first = first or (seed, table[0])
+                self._require_same_experiment(first, seed, table[0])
             except Failure as error:
                 problems[seed] = str(error)
                 continue
-            lines += rows
-            last_rows[seed] = next(csv.DictReader([header, rows[-1]]))
+            lines += table[1:]
+            finished[seed] = list(csv.DictReader(table))
         if first:
             write_file(self.table, "\n".join([first[1]] + lines) + "\n")
         else:
             with contextlib.suppress(FileNotFoundError):
                 os.remove(self.table)
-        return last_rows, problems
+        return finished, problems
 
     def _read_table(self, seed):
-        """(header line, lines) of a finished seed, up to the trial asked for."""
-        path = os.path.join(self.seed_folder(seed), self.program.table)
+        """The lines of a finished seed's table, the header first, up to the trial asked for."""
+        path = os.path.join(self.seed_folder(seed), self._table_of_seed)
         try:
             with open(path, newline="") as stream:
                 lines = stream.read().splitlines()
         except (OSError, UnicodeDecodeError) as error:
             raise Failure("%s cannot be read (%s): remove the folder, and the seed is run again" % (path, error))
-        count = len(lines) - 1 if self.program.trials is None else self.program.trials + 1
+        count = len(lines) - 1 if self.trials is None else self.trials + 1
         rows = list(csv.DictReader(lines))
         if not 1 <= count <= len(rows) or any(row.get("seed") != str(seed) for row in rows):
             raise Failure("%s must hold %s rows of seed %d: remove the folder, and the seed is run again"
-                             % (path, "some" if self.program.trials is None else count, seed))
-        return lines[0], lines[1:count + 1]
+                          % (path, "some" if self.trials is None else count, seed))
+        return lines[:count + 1]
 
-    def _require_equal(self, first, seed, header):
-        """A table is about one experiment: same columns, same configuration as the first finished seed."""
+    def _require_same_experiment(self, first, seed, header):
+        """All rows of a table are of one experiment: they have the columns and configuration of the first finished seed."""
         there, here = (read_yaml(os.path.join(self.seed_folder(k), "config.yaml")) for k in (first[0], seed))
         found = differences(there, here, MAY_DIFFER)
         if header != first[1]:
-            found.append("columns of %s" % self.program.table)
+            found.append("columns of %s" % self._table_of_seed)
         if found:
             raise Failure("%s is not the experiment of seed %d: %s; use another folder for it"
-                             % (self.seed_folder(seed), first[0], ", ".join(found)))
-
-    def versions(self, seeds):
-        """All versions of the code that made the rows of these finished seeds. config.yaml names that of rows that do
-        not."""
-        found = set()
-        for seed in seeds:
-            begun = str(read_yaml(os.path.join(self.seed_folder(seed), "config.yaml")).get("version"))
-            header, lines = self._read_table(seed)
-            rows = csv.DictReader([header] + lines)
-            found.update(begun if row.get("version", "?") == "?" else row["version"] for row in rows)
-        return sorted(found)
+                          % (self.seed_folder(seed), first[0], ", ".join(found)))

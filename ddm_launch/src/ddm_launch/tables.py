@@ -2,78 +2,45 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import csv
 import io
-import math
 import os
 
 import numpy as np
+import pandas
 
 from ddm_launch.command import Failure
 from ddm_model.plain_file import write_file
 
 
-def unreadable(path, error, remedy=None):
-    """The exception to raise for a file that cannot be read at all."""
-    reason = getattr(error, "strerror", None) or error
-    return Failure("%s cannot be read (%s): %s" % (path, reason, remedy or "is its folder a run folder?"))
+def read_table(path, *numbers, remedy="is its folder a run folder?", once=()):
+    """A CSV file as a data frame.
 
-
-def convert(text, kind):
-    if kind not in (float, int):
-        return kind(text)
-    if not math.isfinite(float(text)):
-        raise ValueError
-    return kind(float(text))
-
-
-def optional(kind):
-    """A kind of column whose cells may be empty: None."""
-    return lambda text: convert(text, kind) if (text or "").strip() else None
-
-
-def read_csv(path, columns, remedy=None, once=()):
-    """The rows of a CSV file as dictionaries.
-
-    columns: those that must be there; as {name: kind} their cells are converted by kind: str, int, float (finite) or a
-    function of the text that raises ValueError. remedy: what to do if the file is missing, unless it is a run's.
-    once: columns whose cells name a row. Raises Failure if the file is missing,
-    lacks a column, has no row, names a row twice, or if a cell cannot be converted.
+    numbers: columns that must be there, with finite numbers or nothing in their cells. once: columns whose cells name a
+    row. Raises Failure with the remedy if the file cannot be read, and if it lacks a column, has no row, has another text
+    in place of a number, or names a row twice.
     """
     try:
-        with open(path, newline="") as stream:
-            reader = csv.DictReader(stream)
-            header = reader.fieldnames or []
-            rows = list(reader)
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise unreadable(path, error, remedy)
-    missing = [column for column in columns if column not in header]
+        table = pandas.read_csv(path, float_precision="round_trip")
+    except (OSError, ValueError) as error:  # ValueError: whatever pandas finds wrong with the contents
+        raise Failure("%s cannot be read (%s): %s" % (path, getattr(error, "strerror", None) or error, remedy)) from None
+    missing = [name for name in numbers if name not in table]
     if missing:
-        raise Failure("%s has no column %s, only: %s" % (path, ", ".join(missing), ", ".join(header)))
-    if not rows:
-        raise Failure("%s has no row yet: %s" % (path, remedy or "wait for the first trial"))
-    seen = set()
-    for row in rows:
-        for name, kind in columns.items() if isinstance(columns, dict) else ():
-            try:
-                row[name] = convert(row[name], kind)
-            except (TypeError, ValueError):
-                raise Failure("%s: column %s must hold numbers, got '%s'" % (path, name, row[name])) from None
-        named = tuple(row[column] for column in once)
-        if once and named in seen:
-            raise Failure("%s has two rows of %s: give each once" % (path, ", ".join(
-                "%s %s" % item for item in zip(once, named))))
-        seen.add(named)
-    return rows
-
-
-def read_columns(path, names):
-    """Numbers of these columns  [rows x names]. Raises Failure as read_csv() does."""
-    return np.array([[row[name] for name in names] for row in read_csv(path, dict.fromkeys(names, float))])
+        raise Failure("%s has no column %s, only: %s" % (path, ", ".join(missing), ", ".join(table)))
+    if table.empty:
+        raise Failure("%s has no row yet: %s" % (path, remedy))
+    for name in numbers:
+        values = pandas.to_numeric(table[name], errors="coerce")
+        wrong = table[name][table[name].notna() & ~np.isfinite(values)]
+        if len(wrong) > 0:
+            raise Failure("%s: column %s must hold numbers, got '%s'" % (path, name, wrong.iloc[0]))
+    twice = table[table.duplicated(list(once))] if once else ()
+    if len(twice) > 0:
+        raise Failure("%s has two rows of %s: give each once" % (path, ", ".join("%s %s" % (name, twice[name].iloc[0]) for name in once)))
+    return table
 
 
 def motors_of(path):
     """Names of the motors' columns of a torques.csv: step, motors, exploratory."""
-    with open(path) as stream:
-        return stream.readline().strip().split(",")[1:-1]
+    return list(read_table(path))[1:-1]
 
 
 def write_csv(path, header, rows):

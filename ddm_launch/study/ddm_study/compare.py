@@ -17,42 +17,36 @@ MAY_DIFFER = ["version", "train_s", "wall_s", "plan_ms_median", "plan_ms_p99", "
 
 
 def compare(committed, again):
-    """(number of rows, the first difference or None) of a table that was made again for some seeds; no rows: it has no
-    seeds."""
+    """(number of rows, the first difference or None) of a table that was made again for some seeds."""
     old, new = (read_table(path).drop(columns=MAY_DIFFER, errors="ignore") for path in (committed, again))
-    if "seed" not in new or len(new.columns) < 2:
+    if "seed" not in new or len(new.columns) < 2:  # nothing in it is a result of a seed
         return 0, None
-    in_one = set(old.columns) ^ set(new.columns)
-    if in_one:
-        return len(new), "only one of the two files has the columns %s" % ", ".join(sorted(in_one))
-    old = old[old.seed.isin(new.seed)].reset_index(drop=True)
+    if set(old.columns) != set(new.columns):
+        return len(new), "only one of the two files has the columns %s" % ", ".join(sorted(set(old.columns) ^ set(new.columns)))
+    old, new = old[old.seed.isin(new.seed)].reset_index(drop=True), new[old.columns]
     if len(old) != len(new):
         return len(new), "%d rows of these seeds are committed, and %d were made" % (len(old), len(new))
-    new = new[old.columns]
     differs = (old != new) & ~(old.isna() & new.isna())
-    for row, name in zip(*differs.values.nonzero()):
-        name = old.columns[name]
+    for row, column in zip(*differs.values.nonzero()):
         return len(new), "row %d, seed %d: %s is %s in the committed file, and %s" % (
-            row + 1, new.seed[row], name, old[name][row], new[name][row])
+            row + 1, new.seed[row], old.columns[column], old.iloc[row, column], new.iloc[row, column])
     return len(new), None
 
 
 def work(options):
-    paths = glob.glob(os.path.join(options.again, "**", "*.csv"), recursive=True)
-    names = sorted(os.path.relpath(path, options.again) for path in paths)
-    num_compared = num_different = 0
-    for name in names:
-        if os.path.isfile(os.path.join(options.committed, name)):
-            count, difference = compare(os.path.join(options.committed, name), os.path.join(options.again, name))
-            if count:
-                print("%-7s  %s: %s" % ("differs" if difference else "equal", name, difference or "%d rows" % count))
-            num_compared += count > 0
-            num_different += difference is not None
-    if not num_compared:
+    paths = sorted(glob.glob(os.path.join(options.again, "**", "*.csv"), recursive=True))
+    names = [os.path.relpath(path, options.again) for path in paths]
+    found = {name: compare(os.path.join(options.committed, name), os.path.join(options.again, name)) for name in names
+             if os.path.isfile(os.path.join(options.committed, name))}
+    found = {name: result for name, result in found.items() if result[0] > 0}
+    for name, (count, difference) in found.items():
+        print("%-7s  %s: %s" % ("differs" if difference else "equal", name, difference or "%d rows" % count))
+    if not found:
         raise Failure("%s has no table of seeds that %s has too: make it again with the same command" % (
             options.again, options.committed))
+    num_different = sum(difference is not None for _, difference in found.values())
     if num_different:
-        raise Failure("%d of %d tables differ: see above" % (num_different, num_compared))
+        raise Failure("%d of %d tables differ: see above" % (num_different, len(found)))
 
 
 def add_arguments(parser):

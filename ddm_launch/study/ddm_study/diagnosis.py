@@ -10,12 +10,12 @@ import rosbag
 from tqdm import tqdm
 
 from ddm_launch.command import Failure
-from ddm_launch.images import recorded_images
 from ddm_launch.plant import describe_plant, simulator
 from ddm_launch.run_folder import read_setting
 from ddm_launch.settings import read_yaml
-from ddm_launch.tables import motors_of, read_columns, write_csv
-from ddm_model.model import ModelFileError, load
+from ddm_launch.tables import motors_of, read_table, write_csv
+from ddm_model.model import load
+from ddm_study.results import recorded_images
 
 ABOUT = """\
 Shows why a task is not learned. For each run folder it takes the last model but one and the images of the next trial,
@@ -31,7 +31,7 @@ BATCH = 1000  # features compared at a time
 NEAR = {"rad": math.radians(20.0), "m": 0.1}  # of the goal
 COLUMNS = ["task", "seed", "frames", "part", "steps", "joint", "unit", "median", "quantile_90", "share"]
 
-# One recorded run. images: grey values [N x D]. torques [N x torque_dim, N m]. positions [N x joints].
+# One recorded episode. images: grey values [N x size x size]. torques [N x torque_dim, N m]. positions [N x joints].
 Episode = collections.namedtuple("Episode", "images torques positions")
 
 
@@ -43,10 +43,9 @@ class Joints:
         self.columns = [name for name in facts["state"] if not name.endswith("_per_s")]
         self.names, self.units = zip(*(name.rsplit("_", 1) for name in self.columns))
         self.goal = np.array(facts["goal"][:len(self.columns)])
-        unknown = sorted(set(self.units) - set(NEAR))
-        if unknown:
+        if not set(self.units) <= set(NEAR):
             raise Failure("plant %s: positions must be in %s, got %s: take a run of another plant" % (
-                plant, " or ".join(NEAR), ", ".join(unknown)))
+                plant, " or ".join(NEAR), ", ".join(self.units)))
 
     def distances(self, a, b):
         """Of positions a to positions b, angles around the circle  [.. x joints]."""
@@ -63,9 +62,9 @@ def read_trial(run, trial, joints):
     """The Episodes of a trial."""
     first, episodes = os.path.join(run, "trial_%03d" % trial), []
     for folder in [first] + sorted(glob.glob(os.path.join(first, "episode_*"))):
-        images, torques = recorded_images(os.path.join(folder, "trial.bag")), os.path.join(folder, "torques.csv")
-        episodes.append(Episode(images, read_columns(torques, motors_of(torques))[:len(images)],
-                                read_columns(os.path.join(folder, "trajectory.csv"), joints.columns)[:len(images)]))
+        images, path = recorded_images(os.path.join(folder, "trial.bag")), os.path.join(folder, "torques.csv")
+        tables = ((path, motors_of(path)), (os.path.join(folder, "trajectory.csv"), joints.columns))
+        episodes.append(Episode(images, *(read_table(path, *names)[names].to_numpy(float)[:len(images)] for path, names in tables)))
     return episodes
 
 
@@ -122,7 +121,7 @@ def work(options):
     for run in tqdm(options.runs, unit="run", disable=None):
         try:
             rows += diagnose(run)
-        except (ModelFileError, OSError, rosbag.ROSBagException) as error:
+        except (OSError, rosbag.ROSBagException) as error:
             raise Failure("%s: %s" % (run, error))
     write_csv(options.out, COLUMNS, rows)
     print("wrote %s" % options.out)

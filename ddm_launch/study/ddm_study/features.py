@@ -4,11 +4,12 @@ import os
 
 import numpy as np
 
-from ddm_launch.command import Failure
 from ddm_launch.figure_style import (COLUMN_WIDTH, GREEN, PAGE_WIDTH, SKY, VERMILLION, YELLOW, Figure, add_legend, argument,
                                      new_figure, panel_above_legend, save, show_image)
-from ddm_launch.images import Camera, Decoder
+from ddm_launch.plant import describe_plant, draw_images, simulator_of
 from ddm_model.feature_grid import GRID, FeatureGrid
+from ddm_model.model import load
+from ddm_model.model_data import grey
 from ddm_study.results import read_table
 
 SETS = {"training": ("o", VERMILLION, "training frames"), "held_out": ("^", YELLOW, "held-out frames")}
@@ -17,17 +18,9 @@ KINDS = {"experience": ("o", 6, GREEN), "goal": ("*", 190, VERMILLION), "plan": 
 OUTSIDE = "#333333"  # where there are features and no images
 
 
-def grid_around(points):
-    """The grid over all these features, with a margin of a twentieth of their range.
-
-    Raises Failure if they lie on a line along an axis: then there is no plane to draw.
-    """
-    low, high = np.min(points, axis=0), np.max(points, axis=0)
-    if not np.all(high - low > 1e-9):
-        raise Failure("the features cover [%g, %g] x [%g, %g], which is not a plane: take another model" % (
-            low[0], high[0], low[1], high[1]))
-    margin = 0.05 * (high - low)
-    return FeatureGrid(low - margin, high + margin)
+def decode(path, features):
+    """One grey image for each feature, by the model in a file."""
+    return grey(load(path).decode(features))
 
 
 def draw_plane(options):
@@ -37,8 +30,10 @@ def draw_plane(options):
         grid = figure.add_gridspec(2, len(options.folders), height_ratios=[1.0, 0.001])
         for column, (title, folder) in enumerate(options.folders):
             axes, features = figure.add_subplot(grid[0, column]), read_table(folder, "features.csv")
-            plane = grid_around(features[["z_1", "z_2"]])
-            plane.draw(axes, Decoder(os.path.join(folder, "model.ddm")).decode(plane.features))
+            points = features[["z_1", "z_2"]].to_numpy()
+            margin = 0.05 * np.ptp(points, axis=0)
+            plane = FeatureGrid(points.min(axis=0) - margin, points.max(axis=0) + margin)
+            plane.draw(axes, decode(os.path.join(folder, "model.ddm"), plane.features))
             for name, (marker, colour, label) in SETS.items():
                 rows = features[features.set == name]
                 axes.scatter(rows.z_1, rows.z_2, marker=marker, s=7, color=colour, edgecolors="black", linewidths=0.25,
@@ -53,9 +48,10 @@ def draw_strip(options):
     strip = read_table(options.folder, "strip.csv")
     features = [name for name in strip if name.startswith("z_")]
     states = strip.drop(columns=features + ["steps"])
-    camera, decoder = Camera(options.folder), Decoder(os.path.join(options.folder, "model.ddm"))
-    images = (("true", [camera.shoot(*state) for state in states.values]),
-              ("predicted", decoder.decode(strip[features].values)))
+    command = simulator_of(options.folder)
+    motors = describe_plant(command)["torque"]
+    images = (("true", [draw_images(command, state, motors, [])[0] for state in states.values]),
+              ("predicted", decode(os.path.join(options.folder, "model.ddm"), strip[features].values)))
     with new_figure(PAGE_WIDTH, 1.85) as figure:
         axes = figure.subplots(2, len(strip))
         for of_row, (label, of_label) in zip(axes, images):
@@ -74,7 +70,7 @@ def draw_space(options):
     grid = FeatureGrid((-1.0, -1.0), (1.0, 1.0))
     with new_figure(COLUMN_WIDTH, COLUMN_WIDTH + 0.05) as figure:
         axes, place = panel_above_legend(figure)
-        grid.draw(axes, Decoder(options.model).decode(grid.features))
+        grid.draw(axes, decode(options.model, grid.features))
         way = space[space.kind.isin(["current", "plan"])].sort_values("step")
         axes.plot(way.z_1, way.z_2, color=YELLOW, linewidth=0.8, zorder=5)
         for order, (kind, (marker, size, colour)) in enumerate(KINDS.items()):

@@ -4,9 +4,10 @@ import glob
 import os
 import re
 
-from ddm_launch.averages import mean_and_error
+from ddm_launch.averages import mean_and_error, success_rates
 from ddm_launch.command import Failure, package_path
-from ddm_study import dots, results
+from ddm_launch.run_folder import read_trials
+from ddm_study import results
 
 ABOUT = """\
 Fills the marked blocks of pages with numbers of ddm_launch/results. A block is
@@ -22,28 +23,41 @@ Fills the marked blocks of pages with numbers of ddm_launch/results. A block is
 The text is an f-string of Python. Its expressions read tables below results by table(FILE), a data frame of pandas;
 ddm_launch/study/ddm_study/pages.py has the other functions, such as of(FILE, ROWS), which gives '48 of 50'."""
 BLOCK = re.compile(r"(<!-- fill\n(.*?)\n-->\n\n).*?(\n\n<!-- filled -->)", re.DOTALL)
-
-
-def signed(value, digits):
-    return ("%+.*f" % (digits, value)).replace("-", "−")
+# What the variants in efficient/ablation and efficient/tried are. The first two mean other values in the folder tried.
+TRIED_LABELS = {"auto_encoder_widths": "a wider auto-encoder", "starts": "6 starts"}
+LABELS = {"auto_encoder_widths": "the paper's auto-encoder", "blur": "no blur", "cost": "the paper's cost and horizon",
+          "delay": "no choice of the delay", "epsilon": "the paper's share of random torques",
+          "held_torques": "no held torques", "increments": "no increments", "offset": "no offset correction",
+          "predictor_widths": "the paper's width of f", "residual": "no residual prediction",
+          "selection": "starts chosen by what is minimised", "solver": "plain L-BFGS", "starts": "one start",
+          "steps": "no multi-step loss", "warm_up": "no warm-up", "weight_decay": "no weight decay",
+          "horizon": "plans of 8 steps", "iterations": "1000 iterations", "order": "order 3",
+          "predictor_narrow": "a predictor half as wide"}
 
 
 def plus_minus(mean, error, digits=2, sign=False):
-    return "%s ± %.*f" % (signed(mean, digits) if sign else "%.*f" % (digits, mean), digits, error)
+    return (("%+.*f ± %.*f" if sign else "%.*f ± %.*f") % (digits, mean, digits, error)).replace("-", "−")
+
+
+def table_row(*cells):
+    return "| %s |" % " | ".join(map(str, cells))
 
 
 class Functions:
     """The functions of expressions; paths are relative to a folder of results."""
 
     def __init__(self, folder):
-        self.folder = folder
+        self._folder = folder
 
     def path(self, name):
         """In that folder; the published results are committed only."""
-        return os.path.join(package_path("results") if name.startswith("published/") else self.folder, name)
+        return os.path.join(package_path("results") if name.startswith("published/") else self._folder, name)
 
     def table(self, name):
         return results.read_table(self.path(name))
+
+    def rates(self, name):
+        return success_rates(read_trials(self.path(name)))
 
     def of(self, name, rows="", holds="success > 0"):
         """Of how many rows something holds, as '48 of 50'."""
@@ -66,22 +80,29 @@ class Functions:
     def paper_difference(self):
         """Success of the preset `paper` less that of the paper, in standard errors of the paper."""
         paper = self.table("published/success_rate.csv").set_index("frames")
-        rate = results.rates(self.path("paper/trials.csv")).rate
-        return ((rate - paper.ddm_mpc) / paper.ddm_mpc_se).loc[100:].dropna()
+        return ((self.rates("paper/trials.csv").rate - paper.ddm_mpc) / paper.ddm_mpc_se).loc[100:].dropna()
 
     def nuisances(self, rows):
+        """Of how many models under all nuisances the evaluation succeeds."""
         tables = [self.table(path).query(rows) for path in results.variants(self.path("efficient/nuisances")).values()]
         return "%d of %d" % (sum(table.success.sum() for table in tables), sum(map(len, tables)))
 
-    def ablation(self):
-        """Rows of the variants that matter most at 100 images or later."""
-        table = results.differences(self.path("efficient/ablation"), self.path("efficient/ablation/preset/trials.csv"))
+    def each_nuisance(self, *frames):
+        """A row for each nuisance, with its successes after these numbers of images."""
+        return "\n".join(table_row(name.replace("_", " "), *(self.of(path, "frames == %d" % count) for count in frames))
+                         for name, path in results.variants(self.path("efficient/nuisances")).items())
+
+    def variants(self, kind, *frames):
+        """A row for each variant of a preset, with differences of success and p-values at these frames; those that harm most
+        at the first number of frames and over all later ones come first."""
+        table = results.differences(self.path("efficient/" + kind), self.path("efficient/ablation/preset/trials.csv"))
+        labels = dict(LABELS, **TRIED_LABELS) if kind == "tried" else LABELS
+        drawn = table[table.frames.isin((table.frames.iloc[0], table.frames.iloc[-1]))]
         lines = []
-        for variant in dots.ablation_order(table):
+        for variant in drawn.groupby("variant").difference.sum().sort_values(kind="stable").index:
             rows = table[table.variant == variant].set_index("frames")
-            lines.append("| %s | %s |" % (dots.LABELS[variant], " | ".join(
-                "%s | %.3f" % (plus_minus(rows.difference[text], rows.se[text], 3, True), rows.p_holm[text])
-                for text in ("100", "200 to 400", "100 to 400"))))
+            lines.append(table_row(labels[variant], *(cell for text in frames for cell in (
+                plus_minus(rows.difference[text], rows.se[text], 3, True), "%.3f" % rows.p_holm[text]))))
         return "\n".join(lines)
 
     def schedules(self):
@@ -93,11 +114,10 @@ class Functions:
                             ("pendulum: error 8 steps ahead over repeating the last frame", pendulum["ratio"].loc[8]),
                             ("tile: error 8 steps ahead over repeating the last frame", tile["ratio"].loc[8]),
                             ("tile: R² of the position", tile["position_r2"].loc[1])):
-            cells = [name, "%d" % len(table), plus_minus(*mean_and_error(list(table.joint)), 3)]
-            for schedule in results.SCHEDULES[1:]:
-                difference = mean_and_error(list(table[schedule] - table.joint))
-                cells.append("%.3f (%s)" % (table[schedule].mean(), plus_minus(*difference, 3, True)))
-            lines.append("| %s |" % " | ".join(cells))
+            differences = [(table[schedule].mean(), mean_and_error(list(table[schedule] - table.joint)))
+                           for schedule in results.SCHEDULES[1:]]
+            lines.append(table_row(name, len(table), plus_minus(*mean_and_error(list(table.joint)), 3), *(
+                "%.3f (%s)" % (mean, plus_minus(*difference, 3, True)) for mean, difference in differences)))
         return "\n".join(lines)
 
     def solvers(self):
@@ -108,20 +128,15 @@ class Functions:
         for frames in (100, 500):
             for solver, table in tables.items():
                 models = table[table.set_index(["seed", "frames"]).index.isin(both) & (table.frames == frames)]
-                lines.append("| %d | %s | %d of %d | %.1f | %.1f | %.3g s |" % (
-                    frames, solver, models.success.sum(), len(models), (models.v_r / frames).median(),
-                    (models.v_p / frames).median(), models.train_s.median()))
+                lines.append(table_row(frames, solver, "%d of %d" % (models.success.sum(), len(models)), *(
+                    "%.1f" % (error / frames).median() for error in (models.v_r, models.v_p)),
+                    "%.3g s" % models.train_s.median()))
         return "\n".join(lines)
-
-    def rates(self, name):
-        return results.rates(self.path(name))
 
     def names(self):
         """{name: function} of all of them."""
-        names = ("table", "of", "value", "rows", "rates", "minutes", "paper_difference", "nuisances", "ablation",
-                 "schedules", "solvers")
-        return dict({name: getattr(self, name) for name in names}, mean_and_error=mean_and_error,
-                    plus_minus=plus_minus)
+        public = {name: getattr(self, name) for name in dir(self) if not name.startswith("_")}
+        return dict(public, mean_and_error=mean_and_error, plus_minus=plus_minus)
 
 
 def filled(text, functions, is_partial=False):

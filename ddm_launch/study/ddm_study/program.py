@@ -4,7 +4,7 @@ import os
 
 from ddm_launch.command import Failure, number, package_path, program_parser, run_program
 from ddm_launch.figure import add_figures
-from ddm_study import angles, collect, compare, diagnosis, dots, features, pages, schedules, tasks
+from ddm_study import collect, compare, curves, diagnosis, features, pages
 
 ABOUT = """\
 Makes and checks the committed results, ddm_launch/results. `study SUBCOMMAND --help` explains each subcommand."""
@@ -16,9 +16,8 @@ GOALS = """\
 goals: paper (the paper's experiments), efficient (as few images as possible), any file that the Makefile has a rule for,
 and variables of make: SEEDS=2 (at most two seeds of each sweep), PAPER=debug or EFFICIENT=debug (another preset),
 PILCO= (without PILCO, which takes hours)."""
-FIGURES = {"ablation": dots.ABLATION, "angle_trajectories": angles.TRAJECTORIES, "feature_plane": features.PLANE,
-           "nuisances": dots.NUISANCES, "pendulum_feature_space": features.SPACE, "prediction_strip": features.STRIP,
-           "schedules": schedules.FIGURE, "task": tasks.FIGURE, "trajectory_distributions": angles.DISTRIBUTIONS}
+FIGURES = {"angle_trajectories": curves.TRAJECTORIES, "feature_plane": features.PLANE,
+           "pendulum_feature_space": features.SPACE, "prediction_strip": features.STRIP, "task": curves.TASK}
 
 
 def reproduce(options):

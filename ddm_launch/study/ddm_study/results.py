@@ -1,13 +1,16 @@
-# Numbers behind the figures and pages: from the rows of all seeds to rates, differences and returns.
+# Numbers behind the figures and pages: from the rows of all seeds to differences, predictions and returns.
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
 import os
 
 import pandas
+import rosbag
 
-from ddm_launch.averages import holm, mean_and_error, sign_test, success_rates, wilson_interval
+import numpy as np
+
+from ddm_launch import tables
+from ddm_launch.averages import holm, mean_and_error, sign_test
 from ddm_launch.command import Failure
-from ddm_launch.run_folder import read_sweep
 
 SCHEDULES = ("joint", "sequential", "v_p_only", "joint_random_init")  # of training/schedule
 LATE_FRAMES = (900, 1500)  # the paper's curve is level over these
@@ -20,21 +23,18 @@ PHYSICS_FRAMES = 5
 
 def read_table(*names):
     """A CSV file. Raises Failure, which names it, if it cannot be read."""
-    path = os.path.join(*names)
+    return tables.read_table(os.path.join(*names), remedy="make it by `study reproduce`")
+
+
+def recorded_images(bag):
+    """The grey images of a recorded trial, as the learner got them  [N x size x size]. Raises Failure, which names the bag,
+    if it cannot be read."""
     try:
-        return pandas.read_csv(path, float_precision="round_trip")
-    except (OSError, ValueError) as error:  # ValueError: whatever pandas finds wrong with its contents
-        raise Failure("%s cannot be read (%s): make it by `study reproduce`" % (
-            path, getattr(error, "strerror", None) or error)) from None
-
-
-def rates(path, seeds=None):
-    """Success of these seeds, or of all, at each number of frames of a trials.csv, with Wilson's 95 % interval
-    [frames: rate, se, runs, low, high]."""
-    runs = [trials for seed, trials in read_sweep(path).items() if seeds is None or seed in seeds]
-    table = pandas.DataFrame(success_rates(runs), columns=["frames", "rate", "se", "runs"])
-    table["low"], table["high"] = zip(*map(wilson_interval, table.rate, table.runs))
-    return table.set_index("frames")
+        with rosbag.Bag(bag) as recording:
+            return np.array([np.frombuffer(message.data, np.uint8).reshape(message.height, message.width)
+                             for topic, message, _ in recording.read_messages() if topic.endswith("image_raw")])
+    except Exception as error:  # rosbag has a dozen types for what is damaged, and takes others from Python
+        raise Failure("%s cannot be read (%s): `rosbag check` tells whether it is damaged" % (bag, error)) from error
 
 
 def variants(folder):
@@ -49,11 +49,11 @@ def differences(folder, reference):
     Columns variant, frames, seeds, difference, se, p of the sign test, and p_holm over all variants at these frames. Frames
     are single numbers, then the mean over all that each variant has ("100 to 400") and over all but the first.
     """
-    tables = {name: read_table(path).pivot(index="frames", columns="seed", values="success")
-              for name, path in variants(folder).items() if not os.path.samefile(path, reference)}
+    success = {name: read_table(path).pivot(index="frames", columns="seed", values="success")
+               for name, path in variants(folder).items() if not os.path.samefile(path, reference)}
     preset = read_table(reference).pivot(index="frames", columns="seed", values="success")
-    frames = sorted(set(preset.index).intersection(*(table.index for table in tables.values())))
-    if not tables or not frames:
+    frames = sorted(set(preset.index).intersection(*(table.index for table in success.values())))
+    if not success or not frames:
         raise Failure("%s must hold trials.csv of variants with the frames of %s: run each with as many trials" % (
             folder, reference))
     groups = {str(count): [count] for count in frames}
@@ -61,7 +61,7 @@ def differences(folder, reference):
     rows = []
     for text, group in groups.items():
         changes = {name: (table.loc[group] - preset.loc[group]).mean(skipna=False).dropna()
-                   for name, table in tables.items()}
+                   for name, table in success.items()}
         p = {name: sign_test(list(change)) for name, change in changes.items()}
         rows += [(name, text, len(change), *mean_and_error(list(change)), p[name], p_holm)
                  for (name, change), p_holm in zip(changes.items(), holm(list(p.values())))]
@@ -69,26 +69,22 @@ def differences(folder, reference):
 
 
 def returns(path):
-    """Mean return of the greedy episodes after each number of frames  [frames: mean, se, physics_frames]."""
+    """Mean return of the greedy episodes after each number of frames  [frames: mean, se]."""
     groups = read_table(path).groupby("frames")["return"]
-    table = pandas.DataFrame([mean_and_error(list(group)) for _, group in groups], columns=["mean", "se"],
-                             index=[frames for frames, _ in groups])
-    table["physics_frames"] = PHYSICS_FRAMES * table.index
-    return table
+    return pandas.DataFrame({frames: mean_and_error(list(group)) for frames, group in groups}, index=["mean", "se"]).T
 
 
 def predictions(folder, plant):
     """Predictions of each schedule, of the seeds that all schedules have: {column: table [steps, seed: schedule ...]} of
-    rmse, rmse_repeat [grey], their ratio, and position_r2."""
-    tables = {name: read_table(folder, plant + "_predictions", name, "predictions.csv").set_index(["steps", "seed"])
-              for name in SCHEDULES}
-    found = {column: pandas.DataFrame({name: table[column] for name, table in tables.items()}).dropna()
-             for column in ("rmse", "rmse_repeat", "position_r2")}
-    return dict(found, ratio=found["rmse"] / found["rmse_repeat"])
+    ratio, rmse over that of repeating the last frame, and position_r2."""
+    found = {name: read_table(folder, plant + "_predictions", name, "predictions.csv").set_index(["steps", "seed"])
+             for name in SCHEDULES}
+    return {"ratio": pandas.DataFrame({name: table.rmse / table.rmse_repeat for name, table in found.items()}).dropna(),
+            "position_r2": pandas.DataFrame({name: table.position_r2 for name, table in found.items()}).dropna()}
 
 
 def late_success(folder):
     """Mean success over LATE_FRAMES of the seeds that all schedules have  [seed: schedule ...]."""
-    tables = {name: read_table(folder, "" if name == "joint" else name, "trials.csv") for name in SCHEDULES}
+    found = {name: read_table(folder, "" if name == "joint" else name, "trials.csv") for name in SCHEDULES}
     return pandas.DataFrame({name: table[table.frames.between(*LATE_FRAMES)].groupby("seed").success.mean()
-                             for name, table in tables.items()}).dropna()
+                             for name, table in found.items()}).dropna()

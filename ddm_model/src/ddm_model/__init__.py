@@ -1,4 +1,4 @@
-# Python side of the model: a model in NumPy, a run folder in pandas, and what a model makes of bags, in pictures and words.
+# The model in Python: a model file in NumPy, a run folder in pandas, and reports of a model on bags.
 # SPDX-License-Identifier: BSD-3-Clause
 import importlib
 
@@ -7,7 +7,7 @@ MODULES = {"Model": "model", "ModelFileError": "model", "load": "model",
 
 
 def __getattr__(name):
-    """NumPy and pandas are read by those who use them, not by every program that writes a file."""
+    """Imports NumPy and pandas only when they are used: most programs that write a file need neither."""
     if name in MODULES:
         return getattr(importlib.import_module("ddm_model." + MODULES[name]), name)
     raise AttributeError("module ddm_model has no '%s': it has %s" % (name, ", ".join(MODULES)))

@@ -6,7 +6,7 @@ import sys
 
 import numpy as np
 
-from ddm_model.model import ModelFileError, load
+from ddm_model.model import load
 from ddm_model.plain_file import write_file
 
 
@@ -29,7 +29,7 @@ def main(arguments=None):
     options = parser.parse_args(arguments)
     try:
         arrays = export(options.model, options.out)
-    except (ModelFileError, OSError) as error:
+    except OSError as error:
         print("export: %s" % error, file=sys.stderr)
         return 1
     print("wrote %s with %d arrays" % (options.out, len(arrays)))

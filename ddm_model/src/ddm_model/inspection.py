@@ -1,15 +1,14 @@
-# Is the model any good, and if not, what to do? A report of a model and of what it makes of bags.
+# Reports how good a model is, by itself and on bags, and what to do if it is not.
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
-import csv
-import io
 import os
 import sys
 
+import pandas
 import yaml
 
 from ddm_model import report, report_figures
-from ddm_model.model import ModelFileError, load
+from ddm_model.model import load
 from ddm_model.model_data import ModelData, ModelDataError
 from ddm_model.plain_file import write_file
 from ddm_model.verdict import summary, verdict
@@ -26,15 +25,6 @@ DATA_SET_OPTIONS = (
 
 def say(text):
     print(text, file=sys.stderr, flush=True)
-
-
-def write_table(path, columns):
-    """columns: {name: values}."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows(zip(*columns.values()))
-    write_file(path, text.getvalue())
 
 
 def facts_of(model):
@@ -74,7 +64,7 @@ def figures_of(data):
                     "When there are frames, and when images and torques that have no partner. A frame that is missing "
                     "splits its bag, and nothing is predicted across it."))
         out.append(("Reconstructions", lambda: report_figures.draw_reconstructions(data),
-                    "Images, what the principal components keep of them after model/blur, and what the features do."))
+                    "Images, what the principal components keep of them after model/blur, and what the features keep."))
         for kind, words in (("typical", "in the middle"), ("worst", "at the end")):
             if kind in data.predictions:
                 out.append(("A prediction: %s" % kind, lambda kind=kind: report_figures.draw_prediction(data, kind),
@@ -84,9 +74,10 @@ def figures_of(data):
             out.append(("Error by step", lambda: report_figures.draw_errors(data),
                         "Over %d predictions of each length. Predictions must stay below the grey curve to be of use."
                         % data.errors["num_predictions"][0]))
-    out.append(("Feature plane", lambda: report_figures.draw_plane(data),
-                "Images that the model decodes at 9 x 9 features, and where the frames lie. Neighbouring images must "
-                "look alike, and motions be paths without jumps."))
+    if data.options["feature_dim"] >= 2:
+        out.append(("Feature plane", lambda: report_figures.draw_plane(data),
+                    "Images that the model decodes at 9 x 9 features, and where the frames lie. Neighbouring images must "
+                    "look alike, and motions be paths without jumps."))
     if data.bags is not None:
         out.append(("Coverage", lambda: report_figures.draw_coverage(data),
                     "How often each feature and torque occurs; dashed: model/max_torque."))
@@ -124,7 +115,7 @@ def inspect(path, bags, out, steps, options):
     write_file(os.path.join(out, "model.yaml"), yaml.safe_dump(facts_of(data.model), sort_keys=False,
                                                                default_flow_style=None))
     for name, columns in data.tables.items():
-        write_table(os.path.join(out, name), columns)
+        write_file(os.path.join(out, name), pandas.DataFrame(columns).to_csv(index=False))
     write_file(os.path.join(out, "verdict.yaml"),
                yaml.safe_dump([dict(check._asdict()) for check in checks], sort_keys=False))
     write_file(os.path.join(out, "report.html"), page)
@@ -134,9 +125,9 @@ def inspect(path, bags, out, steps, options):
 def main(arguments=None):
     parser = argparse.ArgumentParser(
         prog="inspect",
-        description="Tells what a model is and, given bags, how well it describes and predicts them: DIR/report.html, "
-        "one file without links, and the numbers behind it as CSV and YAML. The verdict names what fails, the "
-        "figure, the rule and what to do.")
+        description="Tells what a model is and, given bags, how well it describes and predicts them. DIR/report.html is "
+        "a self-contained file; the numbers behind it are CSV and YAML files. The verdict names each check that "
+        "fails, what was measured, the rule and what to do.")
     parser.add_argument("--model", metavar="FILE", required=True, help="model file")
     parser.add_argument("--out", metavar="DIR", required=True, help="folder of the report; made if need be")
     parser.add_argument("--steps", type=int, default=15, help="longest prediction (%(default)s, as plans are)")
@@ -156,7 +147,7 @@ def main(arguments=None):
             bag_options.append("%s=%s" % (option, value))
     try:
         checks = inspect(options.model, options.bags, options.out, options.steps, bag_options)
-    except (ModelDataError, ModelFileError, OSError) as error:
+    except (ModelDataError, OSError) as error:
         print("inspect: %s" % error, file=sys.stderr)
         return 1
     for check in checks:

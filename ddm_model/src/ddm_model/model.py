@@ -10,8 +10,8 @@ MAGIC, HEADER = b"DDMMODEL", "<IQI"  # version, bytes of content, CRC-32
 VERSION = 5  # of the format
 
 
-class ModelFileError(ValueError):
-    """The file is not a model, or it is damaged."""
+class ModelFileError(OSError, ValueError):
+    """The file is not a model, or it is damaged. An OSError, as every other reason why it cannot be read."""
 
 
 class _Reader:

@@ -1,4 +1,4 @@
-# What a model makes of bags: features, reconstructions, predictions, their errors, and the tables of them.
+# Applies a model to bags: features, reconstructions, predictions, their errors, and tables of them.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
 import os
@@ -125,7 +125,7 @@ Prediction = collections.namedtuple("Prediction", "frame features images")
 
 
 class ModelData:
-    """A Model and what it makes of bags. Without bags `bags` and what comes after it are None, and tables is empty.
+    """A Model and its results on bags. Without bags, `bags` and the attributes after it are None, and tables is empty.
     unpaired: {what: number of the bag and time since its first frame [s]  [2 x N]}. notes: (bag, what to know about it).
     """
 
@@ -218,6 +218,6 @@ class ModelData:
         return np.broadcast_to(self.options["max_torque"], (self.model.torque_dim,))
 
     def decode_plane(self, features):
-        """Images of features of which the first two, or one, are given. The others are the goal's, without a goal zero."""
+        """Images of features of which the first two are given. The others are the goal's, without a goal zero."""
         goal = np.zeros(self.options["feature_dim"]) if self.goal_feature is None else self.goal_feature
         return grey(self.model.decode(np.column_stack([features, np.tile(goal[2:], (len(features), 1))])))

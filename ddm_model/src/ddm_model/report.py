@@ -1,4 +1,4 @@
-# A report as one HTML file: verdict, facts and figures, with nothing that is not in it.
+# A report as one self-contained HTML file: verdict, facts and figures.
 # SPDX-License-Identifier: BSD-3-Clause
 import html
 

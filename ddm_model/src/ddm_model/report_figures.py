@@ -1,4 +1,4 @@
-# The figures of a report: what a model makes of bags.
+# The figures of a report.
 # SPDX-License-Identifier: BSD-3-Clause
 import base64
 import io
@@ -10,14 +10,14 @@ import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.ticker import MaxNLocator  # noqa: E402
 import numpy as np  # noqa: E402
 
-from ddm_model.feature_grid import GRID, FeatureGrid  # noqa: E402
+from ddm_model.feature_grid import FeatureGrid  # noqa: E402
 from ddm_model.model import blurred  # noqa: E402
 from ddm_model.model_data import kept_by_pca  # noqa: E402
 
-# From the Okabe-Ito set: told apart by colour-blind readers, and dashes and shapes differ too.
+# From the Okabe-Ito set, which colour-blind readers can distinguish; dashes and shapes differ, too.
 BLUE, VERMILLION, YELLOW, GREY, LIGHT = "#0072B2", "#D55E00", "#F0E442", "#666666", "#dddddd"
 WIDTH = 9.0  # [in]
-MAX_COLUMNS = 16  # pictures side by side
+MAX_COLUMNS = 16  # images side by side
 RECONSTRUCTIONS = 8
 BAGS = 20
 
@@ -118,8 +118,6 @@ def plane_range(data):
 def draw_plane(data):
     """Decoded images over the range of the features, and the features of all frames."""
     low, high = plane_range(data)
-    if data.options["feature_dim"] < 2:
-        return draw_line(data, low[0], high[0])
     figure, axes = plt.subplots(figsize=(WIDTH, 6.2), constrained_layout=True)
     grid = FeatureGrid(low, high)
     grid.draw(axes, data.decode_plane(grid.features))
@@ -131,20 +129,6 @@ def draw_plane(data):
                      label="goal", zorder=3)
     if axes.get_legend_handles_labels()[0]:
         axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0))  # beside the images, not over them
-    return figure
-
-
-def draw_line(data, low, high):
-    """A model with one feature: decoded images along it, and how often the frames have it."""
-    figure, axes = plt.subplots(2, 1, figsize=(WIDTH, 2.6), constrained_layout=True, sharex=True)
-    features, step = np.linspace(low, high, GRID, retstep=True)
-    axes[0].imshow(np.hstack(list(data.decode_plane(features))), cmap="gray", vmin=0, vmax=255,
-                   extent=(low - step / 2, high + step / 2, 0.0, step), aspect="auto")
-    axes[0].set_yticks([])
-    if data.features is not None:
-        axes[1].hist(data.features[:, 0], bins=40, color=BLUE)
-    axes[1].set_ylabel("frames")
-    axes[1].set_xlabel("feature $z_1$ [-]")
     return figure
 
 

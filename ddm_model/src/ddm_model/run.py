@@ -24,21 +24,16 @@ class RunFolderError(ValueError):
     """The folder is not one of an experiment, or a table in it is damaged."""
 
 
-def _unreadable(path, error):
-    return RunFolderError("cannot read %s: %s; give a folder that experiment.launch or run_experiment has written"
-                          % (path, getattr(error, "strerror", None) or error))
-
-
 def _read_table(path, *columns):
     """columns: those without which it is none of ours."""
+    remedy = "give a folder that experiment.launch or run_experiment has written"
     try:
         table = pd.read_csv(path, float_precision="round_trip")  # the numbers as they were written
-    except (OSError, UnicodeDecodeError, pd.errors.EmptyDataError, pd.errors.ParserError) as error:
-        raise _unreadable(path, error) from error
+    except (OSError, ValueError) as error:  # ValueError: whatever pandas finds wrong with the contents
+        raise RunFolderError("cannot read %s: %s; %s" % (path, getattr(error, "strerror", None) or error, remedy)) from error
     missing = [name for name in columns if name not in table.columns]
     if missing:
-        raise RunFolderError("%s has no column '%s', only %s: give a folder that experiment.launch or run_experiment has "
-                             "written" % (path, "', '".join(missing), ", ".join(table.columns)))
+        raise RunFolderError("%s has no column '%s', only %s: %s" % (path, "', '".join(missing), ", ".join(table.columns), remedy))
     return table
 
 
@@ -48,7 +43,7 @@ def _read_config(folder):
         with open(path, encoding="utf-8") as stream:
             config = yaml.safe_load(stream)
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        raise _unreadable(path, error) from error
+        raise RunFolderError("cannot read %s: %s" % (path, getattr(error, "strerror", None) or error)) from error
     if not isinstance(config, dict):
         raise RunFolderError("%s must hold the blocks of a configuration, and holds %r" % (path, config))
     return config

@@ -1,4 +1,4 @@
-# What is good and what is not about a model and the bags it is shown, each with its figure, rule and remedy.
+# Judges a model and bags by checks, each with what was measured, the rule and the remedy.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
 
@@ -66,13 +66,7 @@ def num_lost(data):
 def check_pairs(data):
     lost = num_lost(data)
     share = lost / (lost + len(data.features))
-    return Check("Images have their torques", share <= LOST,
-                 "%d of %d images (%s) have no torque" % (
-                     lost, lost + len(data.features), percent(share)),
-                 "at most %s, from the first image that has one to the last: each one splits the trial, and nothing is predicted "
-                 "across it" % percent(LOST),
-                 "Stamp each torque with the header stamp of the image that it answers, or command one at least every "
-                 "data_set/dt.")
+    return share <= LOST, "%d of %d images (%s) have no torque" % (lost, lost + len(data.features), percent(share))
 
 
 def check_rate(data):
@@ -80,29 +74,18 @@ def check_rate(data):
     medians = data.bags["interval_s"]
     share = float(np.mean(np.abs(steps - 1.0) > JITTER)) if len(steps) else 0.0
     even = bool(np.max(medians) <= 1.1 * np.min(medians))
-    return Check("Frames come at one rate", share <= OFF_BEAT and even,
-                 "%s of the intervals are more than %s off; the bags' median interval is %s s" % (
-                     percent(share), percent(JITTER),
-                     "%.4g" % medians[0] if np.ptp(medians) == 0 else "%.4g to %.4g" % (min(medians), max(medians))),
-                 "at most %s, and medians within 10 %% of each other: the model takes frames as equally far apart"
-                 % percent(OFF_BEAT),
-                 "Take every image of the camera or a fixed fraction of them, stamp images when they are taken, and "
-                 "look for frames lost on the way (rostopic hz, a larger queue, image compression).")
+    return share <= OFF_BEAT and even, "%s of the intervals are more than %s off; the bags' median interval is %s s" % (
+        percent(share), percent(JITTER),
+        "%.4g" % medians[0] if np.ptp(medians) == 0 else "%.4g to %.4g" % (min(medians), max(medians)))
 
 
 def check_camera(data):
     kinds = sorted(set(data.bags["camera"]))
-    return Check("One camera setting", len(kinds) == 1, "images are " + ", ".join(kinds),
-                 "one size and encoding: training refuses to mix them",
-                 "Leave out the bags of other cameras, or record them again.")
+    return len(kinds) == 1, "images are " + ", ".join(kinds)
 
 
 def check_variation(data):
-    return Check("Images differ", data.variation >= VARIATION,
-                 "a pixel is %.3g grey away from its mean (root mean square; black 0, white 1)" % data.variation,
-                 "at least %g, about the noise of a camera: there must be something to see" % VARIATION,
-                 "See that the robot moves and fills the picture: crop the image to it, light it, and fix the "
-                 "camera's exposure.")
+    return data.variation >= VARIATION, "a pixel is %.3g grey away from its mean (root mean square; black 0, white 1)" % data.variation
 
 
 def limits(data):
@@ -112,63 +95,39 @@ def limits(data):
 def check_excitation(data):
     shares = data.torques.std(axis=0) / data.max_torque
     words = ", ".join("motor %d: %s" % (i + 1, percent(share)) for i, share in enumerate(shares))
-    return Check("Torques are excited", bool(np.min(shares) >= EXCITATION),
-                 "standard deviation over model/max_torque = %s N m: %s" % (limits(data), words),
-                 "at least %s for each motor; uniformly random torques have 58 %%" % percent(EXCITATION),
-                 "Record trials with random torques over the motor's whole range, held for a few frames; if the motor "
-                 "cannot do more, set model/max_torque to what it can, and train again.")
+    return np.min(shares) >= EXCITATION, "standard deviation over model/max_torque = %s N m: %s" % (limits(data), words)
 
 
 def check_torque_range(data):
     largest = np.max(np.abs(data.torques), axis=0)
-    return Check("Torques are within the model's range", bool(np.all(largest <= 1.05 * data.max_torque)),
-                 "the largest is %s N m, model/max_torque is %s N m" % (
-                     ", ".join("%.4g" % torque for torque in largest), limits(data)),
-                 "at most model/max_torque: beyond it f saturates",
-                 "Set model/max_torque to the limit of the motor and train again; check the unit of the torque topic "
-                 "(N m).")
+    return np.all(largest <= 1.05 * data.max_torque), "the largest is %s N m, model/max_torque is %s N m" % (
+        ", ".join("%.4g" % torque for torque in largest), limits(data))
 
 
 def check_frames(data):
     learned, components = data.model.info["frames"], data.options["pca_dim"]
-    return Check("Enough frames to learn from", learned >= FRAMES_PER_COMPONENT * components,
-                 "%d frames learned from, %d principal components" % (learned, components),
-                 "at least %g frames for each component; 10 are comfortable" % FRAMES_PER_COMPONENT,
-                 "Record more trials and train again, or lower model/pca_dim.")
+    return learned >= FRAMES_PER_COMPONENT * components, "%d frames learned from, %d principal components" % (learned, components)
 
 
 def check_shown(data):
-    return Check("Enough frames to judge by", len(data.features) >= FEW_FRAMES,
-                 "%d frames in these bags" % len(data.features),
-                 "at least %d: fewer make all figures below unsure" % FEW_FRAMES, "Record longer bags.")
+    return len(data.features) >= FEW_FRAMES, "%d frames in these bags" % len(data.features)
 
 
 def check_components(data):
     kept = kept_share(data, "pca_rms")
-    return Check("Enough components, for such images", kept >= KEPT_BY_PCA,
-                 "the model's %s principal components keep %s of what differs between these images" % (
-                     data.options["pca_dim"], percent(kept)),
-                 "at least %s" % percent(KEPT_BY_PCA),
-                 "If the spectrum falls slowly, raise model/pca_dim (it needs as many frames, and more) or crop the "
-                 "picture to the robot; if these bags look other than those learned from, train with them, too.")
+    return kept >= KEPT_BY_PCA, "the model's %s principal components keep %s of what differs between these images" % (
+        data.options["pca_dim"], percent(kept))
 
 
 def check_features(data):
     kept = kept_share(data, "reconstruction_rms")
-    return Check("Features hold the image", kept >= KEPT_BY_FEATURES,
-                 "reconstructions from %s features keep %s of what differs between the images" % (
-                     data.options["feature_dim"], percent(kept)),
-                 "at least %s: what a feature does not hold, no plan can steer" % percent(KEPT_BY_FEATURES),
-                 "Train with more starts (training/num_starts) or iterations; wider encoder and decoder; "
-                 "model/feature_dim must be at least the number of joints that move.")
+    return kept >= KEPT_BY_FEATURES, "reconstructions from %s features keep %s of what differs between the images" % (
+        data.options["feature_dim"], percent(kept))
 
 
 def check_spread(data):
     spread = spread_of(data.features)
-    return Check("Features tell images apart", spread >= COLLAPSED,
-                 "their distance to their mean is %.3g (root mean square)" % spread,
-                 "at least %g; features lie within 1.57" % COLLAPSED,
-                 "Train again with another seed or more starts; lower training/weight_decay.")
+    return spread >= COLLAPSED, "the distance of features to their mean is %.3g (root mean square)" % spread
 
 
 def first_third(data):
@@ -177,64 +136,95 @@ def first_third(data):
 
 
 def check_prediction(data):
-    name = "Predictions beat repeating the last frame"
-    rule = "somewhere in the first third of the steps at most %g of the error of the last frame repeated" % BEATS_REPEAT
-    if len(data.errors["steps"]) == 0:
-        return Check(name, None, "no stretch of frames without a gap is longer than model/order", rule,
-                     "Record longer bags without gaps.")
     near = first_third(data)
+    if near == 0:
+        return None, "no segment of frames without a gap is longer than model/order"
     ratios = data.errors["rmse"] / np.maximum(data.errors["rmse_repeat"], 1e-12)
     ahead = int(np.argmax(np.append(ratios, np.inf) >= 1.0))
-    return Check(name, np.min(ratios[:near]) <= BEATS_REPEAT,
-                 "at best %.2f times the error of repeating, in the first %d step(s); 1 step ahead %.3g grey, repeating "
-                 "%.3g; predictions are the better ones up to %d of %d step(s)" % (
-                     np.min(ratios[:near]), near, data.errors["rmse"][0], data.errors["rmse_repeat"][0], ahead,
-                     len(ratios)), rule,
-                 "More and better excited data first. Then training/prediction_steps 4 with residual and increments "
-                 "(as preset efficient), more starts, or training/max_delay 1 if the camera may be late.")
+    return np.min(ratios[:near]) <= BEATS_REPEAT, (
+        "at best %.2f times the error of repeating, in the first %d step(s); 1 step ahead %.3g grey, repeating %.3g; predictions "
+        "are the better ones up to %d of %d step(s)" % (
+            np.min(ratios[:near]), near, data.errors["rmse"][0], data.errors["rmse_repeat"][0], ahead, len(ratios)))
 
 
 def check_torque_effect(data):
-    name, rule = "The model responds to the torque", "at least %g times the error with the true torques" % TORQUE_EFFECT
-    if len(data.errors["steps"]) == 0:
-        return Check(name, None, "no prediction could be made", rule, "Record longer bags without gaps.")
     near = first_third(data)
+    if near == 0:
+        return None, "no prediction could be made"
     ratio = data.errors["rmse_mean_torque"][near - 1] / max(data.errors["rmse"][near - 1], 1e-12)
-    return Check(name, ratio >= TORQUE_EFFECT,
-                 "told of the mean torque instead of the true ones, it is wrong by %.2f times as much %d step(s) ahead"
-                 % (ratio, near), rule,
-                 "Without effect nothing can be steered. Check that the recorded torque is the one that the motor "
-                 "got, and that its stamp is that of the image before it acts; excite the motor more; learn from more "
-                 "frames.")
+    return ratio >= TORQUE_EFFECT, (
+        "with the mean torque instead of the true ones, the model is wrong by %.2f times as much %d step(s) ahead" % (ratio, near))
 
 
 def check_goal(data):
-    rule = "at most %g spreads of the features" % GOAL_DISTANCE
-    remedy = ("Let the robot come near the goal while recording (by hand, or by more trials of an experiment): the "
-              "model knows only what it has seen.")
     if data.goal_feature is None:
-        return Check("There is a goal", False, "the model has no goal image", "one, to plan to",
-                     "Train with --goal IMAGE, or record goal_image into the bags.")
+        return False, "the model has no goal image"
     features = data.model.support_states if data.features is None else data.features
     if len(features) == 0:
-        return Check("There is a goal", True, "the model has a goal image", "one, to plan to", remedy)
+        return True, "the model has a goal image"
     seen = np.concatenate([data.model.support_states, features])
     near = np.min(np.linalg.norm(seen - data.goal_feature, axis=1)) / max(spread_of(features), 1e-12)
-    return Check("The goal has been seen", near <= GOAL_DISTANCE,
-                 "of all frames here and of those that the model keeps, the nearest to the goal is %.2f spreads of the features "
-                 "away" % near, rule, remedy)
+    return near <= GOAL_DISTANCE, (
+        "of all frames here and of those that the model keeps, the nearest to the goal is %.2f spreads of the features away" % near)
 
 
+# Name, function that returns (ok, figure), rule and remedy of each check, in the order in which to mend what is wrong: the data
+# first. Those of a model alone are OF_MODEL.
+CHECKS = (
+    ("Images have their torques", check_pairs,
+     "at most %s, from the first image that has one to the last: each one splits the trial, and nothing is predicted across it"
+     % percent(LOST),
+     "Stamp each torque with the header stamp of the image that it answers, or command one at least every data_set/dt."),
+    ("Frames come at one rate", check_rate,
+     "at most %s, and medians within 10 %% of each other: the model takes frames as equally far apart" % percent(OFF_BEAT),
+     "Take every image of the camera or a fixed fraction of them, stamp images when they are taken, and look for frames lost "
+     "on the way (rostopic hz, a larger queue, image compression)."),
+    ("One camera setting", check_camera, "one size and encoding: training refuses to mix them",
+     "Leave out the bags of other cameras, or record them again."),
+    ("Images differ", check_variation, "at least %g, about the noise of a camera: there must be something to see" % VARIATION,
+     "See that the robot moves and fills the image: crop the image to it, light it, and fix the camera's exposure."),
+    ("Torques are excited", check_excitation,
+     "at least %s for each motor; uniformly random torques have 58 %%" % percent(EXCITATION),
+     "Record trials with random torques over the motor's whole range, held for a few frames; if the motor cannot do more, set "
+     "model/max_torque to what it can, and train again."),
+    ("Torques are within the model's range", check_torque_range, "at most model/max_torque: beyond it f saturates",
+     "Set model/max_torque to the limit of the motor and train again; check the unit of the torque topic (N m)."),
+    ("Enough frames to learn from", check_frames,
+     "at least %g frames for each component; 10 are comfortable" % FRAMES_PER_COMPONENT,
+     "Record more trials and train again, or lower model/pca_dim."),
+    ("Enough frames to judge by", check_shown, "at least %d: fewer make all figures below unsure" % FEW_FRAMES,
+     "Record longer bags."),
+    ("Enough components, for such images", check_components, "at least %s" % percent(KEPT_BY_PCA),
+     "If the spectrum falls slowly, raise model/pca_dim (it needs as many frames, and more) or crop the image to the robot; if "
+     "these bags look other than those learned from, train with them, too."),
+    ("Features hold the image", check_features,
+     "at least %s: what a feature does not hold, no plan can steer" % percent(KEPT_BY_FEATURES),
+     "Train with more starts (training/num_starts) or iterations; wider encoder and decoder; model/feature_dim must be at least "
+     "the number of joints that move."),
+    ("Features tell images apart", check_spread, "at least %g; features lie within 1.57" % COLLAPSED,
+     "Train again with another seed or more starts; lower training/weight_decay."),
+    ("Predictions beat repeating the last frame", check_prediction,
+     "somewhere in the first third of the steps at most %g of the error of the last frame repeated" % BEATS_REPEAT,
+     "More and better excited data first; longer bags without gaps if nothing could be predicted. Then training/prediction_steps "
+     "4 with residual and increments (as preset efficient), more starts, or training/max_delay 1 if the camera may be late."),
+    ("The model responds to the torque", check_torque_effect,
+     "at least %g times the error with the true torques" % TORQUE_EFFECT,
+     "Without effect nothing can be steered. Check that the recorded torque is the one that the motor got, and that its stamp is "
+     "that of the image before it acts; excite the motor more; learn from more frames."),
+    ("The goal has been seen", check_goal, "a goal image, at most %g spreads of the features from a frame" % GOAL_DISTANCE,
+     "Record goal_image into the bags, or train with --goal IMAGE. Let the robot come near the goal while recording (by hand, or "
+     "by more trials of an experiment): the model knows only what it has seen."))
 OF_MODEL = (check_frames, check_goal)
-OF_BAGS = (check_pairs, check_rate, check_camera, check_variation, check_excitation, check_torque_range,
-           check_frames, check_shown, check_components, check_features, check_spread, check_prediction,
-           check_torque_effect, check_goal)
 
 
 def verdict(data):
-    """All checks of a ModelData, in the order in which to mend what is wrong: the data first."""
-    checks = [check(data) for check in (OF_MODEL if data.bags is None else OF_BAGS)]
-    return [check._replace(ok=check.ok if check.ok is None else bool(check.ok)) for check in checks]
+    """All checks of a ModelData."""
+    checks = []
+    for name, check, rule, remedy in CHECKS:
+        if data.bags is not None or check in OF_MODEL:
+            ok, figure = check(data)
+            checks.append(Check(name, ok if ok is None else bool(ok), figure, rule, remedy))
+    return checks
 
 
 def summary(checks):

@@ -21,7 +21,7 @@ namespace ddm {
 /// cannot change in step 2 to that of a living process. SIGINT, SIGTERM and SIGHUP also delete it,
 /// unless the program handles them. The lock of a process that was killed remains: if that process
 /// ran on this machine, the next one replaces the lock; if not, nobody here can know that it has
-/// ended. ddm_launch/src/ddm_launch/folder_lock.py does the same in Python.
+/// ended.
 class FolderLock {
  public:
   /// @param folder  must exist
