@@ -78,7 +78,7 @@ gtest_programs=(
 debug_targets=("${loop_programs[@]}" "${gtest_programs[@]}" fuzz_targets)
 debug_tests="_gtest_($(IFS='|' && echo "${gtest_programs[*]}"))\$"
 threaded_programs=(
-  model_node_test mpc_node_stop_test mpc_node_test refused_params_test experiment_node robot_node train_from_bags trial_recorder_test
+  model_node_test mpc_node_stop_test mpc_node_test experiment_node robot_node train_from_bags trial_recorder_test
 )
 threaded_tests='^_ctest_ddm_[a-z]+_(rostest_test_(model_node|mpc_node|robot_node|trial_recorder)\.test|python_replay)$'
 

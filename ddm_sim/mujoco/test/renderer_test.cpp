@@ -7,6 +7,7 @@
 #include <ddm_plant_plugin/picture_message.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <boost/filesystem.hpp>
 #include <cmath>
 #include <cstdlib>
