@@ -10,6 +10,7 @@
 #include <iostream>
 #include <iterator>
 #include <memory>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -56,8 +57,14 @@ std::vector<std::string> splitBags(const std::string& text) {
   if (exists(text)) return {text};
   std::istringstream in(text);
   const std::istream_iterator<std::string> first(in), end;
-  const std::vector<std::string> bags(first, end);
-  return std::all_of(bags.begin(), bags.end(), exists) ? bags : po::split_unix(text);
+  std::vector<std::string> bags(first, end);
+  if (std::all_of(bags.begin(), bags.end(), exists)) return bags;
+  bags.clear();
+  static const std::regex kWord("'([^']*)'|\"([^\"]*)\"|(\\S+)");
+  for (std::sregex_iterator word(text.begin(), text.end(), kWord), last; word != last; ++word) {
+    bags.push_back((*word)[1].str() + (*word)[2].str() + (*word)[3].str());
+  }
+  return bags;
 }
 
 void setBags(const std::vector<std::string>& texts, Arguments* arguments) {

@@ -61,7 +61,7 @@ def test_its_keys_are_checked_and_an_unknown_plugin_or_plant_is_told_what_there_
             (["unknown key plant/masss", "mass?", "plant/goal", "mpc/horizon"],
              "plant: {masss: 1.0, goal: 3.0}\nmpc: {horizon: 0}\n", "ddm_cart/cart"),
             (["unknown key plant/gravity"], "plant: {gravity: 9.8}\n", "ddm_cart/cart"),
-            (["ddm_cart/Kart", "ddm_cart/Cart, moving_tile"], "plant: {type: ddm_cart/Kart}\n", "ddm_cart/cart"),
+            (["ddm_cart/Kart", "moving_tile, mujoco, pendulum, two_link, ddm_cart/Cart"], "plant: {type: ddm_cart/Kart}\n", "ddm_cart/cart"),
             (["unknown plant 'ddm_cart/kart'", "package ddm_cart cart", "pendulum_gravity"], "", "ddm_cart/kart"),
             (["unknown plant 'no_cart/cart'", "package no_cart", "setup.bash"], "", "no_cart/cart")):
         (tmp_path / "refused.yaml").write_text(config)

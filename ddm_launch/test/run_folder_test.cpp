@@ -146,7 +146,9 @@ TEST_F(RunFolderTest, AChangedModelFileIsRefused) {
 TEST_F(RunFolderTest, CropAndGoalOfARobotMayChangeUntilATrialIsFinished) {
   const std::vector<std::pair<std::string, std::function<void(Configuration*)>>> changes = {
       {"robot/crop: [0, 0, 0, 0] there, [8, 0, 0, 80] here",
-       [](auto* c) { c->robot->crop = {8, 0, 0, 80}; }},
+       [](auto* c) {
+         c->robot->crop = {8, 0, 0, 80};
+       }},
       {"robot/goal_file", [](auto* c) { c->robot->goal_file = "/goal.png"; }},
       {"evaluation/goal_distance: 0.0 there, 0.4 here",
        [](auto* c) { c->evaluation.goal_distance = 0.4; }}};

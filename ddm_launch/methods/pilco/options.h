@@ -51,16 +51,19 @@ struct GpTrainingOptions {
 struct SparseGpOptions {
   int max_points = 300;         ///< more data than this: as many inducing inputs [-]
   int first_iterations = 1500;  ///< of L-BFGS on the inducing inputs, from a random subset [-]
+  int max_iterations = 500;     ///< the same, from the inducing inputs of the trial before [-]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
     visitor("max_points", max_points);
     visitor("first_iterations", first_iterations);
+    visitor("max_iterations", max_iterations);
   }
   std::vector<std::string> problems() const {
     OptionChecks sparse_gp("sparse_gp");
     sparse_gp.requireAtLeast("max_points", max_points, 1);
     sparse_gp.requireWithin("first_iterations", first_iterations, 0, 1000000);
+    sparse_gp.requireWithin("max_iterations", max_iterations, 0, 1000000);
     return sparse_gp.problems();
   }
 };

@@ -17,8 +17,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "tables.h"
 #include "method.h"
+#include "tables.h"
 
 namespace ddm {
 namespace {

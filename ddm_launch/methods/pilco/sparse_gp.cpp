@@ -16,7 +16,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLogTwoPi = 1.8378770664093453;
-constexpr int kLaterIterations = 500;  // from the inducing inputs of the trial before, as published
 
 /// The matrices of one output. B = L M L^T with Kmm = L L^T, M = I + V diag(lambda)^-1 V^T and
 /// V = L^-1 Kmn: M is much better conditioned than B.
@@ -240,7 +239,7 @@ GpFit learnGp(const GpTrainingOptions& training, const SparseGpOptions& sparse,
                   : state->inducing;
   GpFit fit =
       trainSparseGp(start, inputs, targets, full.model.hyperparameters,
-                    from_subset ? sparse.first_iterations : kLaterIterations, on_evaluation);
+                    from_subset ? sparse.first_iterations : sparse.max_iterations, on_evaluation);
   if (fit.ok) state->inducing = fit.model.inputs;
   full.ok = fit.ok;
   full.model = std::move(fit.model);
