@@ -77,8 +77,8 @@ class History {
 std::vector<Eigen::Index> farthestPoints(const Eigen::Ref<const Eigen::MatrixXf>& points,
                                          Eigen::Index max_count);
 
-/// Chooses support states: controller states x_t (paper, eq. 8; see History) of samples, selected by
-/// farthest-point sampling of (z_t, z_t - z_{t-1}), each part in units of its own spread.
+/// Chooses support states: controller states x_t (paper, eq. 8; see History) of samples, selected
+/// by farthest-point sampling of (z_t, z_t - z_{t-1}), each part in units of its own spread.
 /// @param Z          features of all samples; columns after them are ignored  [feature_dim x >= N]
 /// @param data       torques and segments of the samples
 /// @param memory     n + d, number of features in a state

@@ -45,7 +45,8 @@ struct MinimiseOptions {
   int lbfgs_rank = 0;        ///< steps that L-BFGS stores [-]; 0: BFGS, for few parameters
   int max_iterations = 100;  ///< cap on the line searches [-]
   int max_evaluations = 0;   ///< cap on the evaluations of the function [-]; 0: no limit
-  /// The search ends if an iteration changes the cost by at most this fraction of its magnitude [-].
+  /// The search ends if an iteration changes the cost by at most this fraction of its magnitude
+  /// [-].
   double function_tolerance = 1e-10;
   /// The search ends if no entry of the gradient has a larger magnitude.
   double gradient_tolerance = 1e-7;
@@ -57,17 +58,17 @@ struct MinimiseOptions {
 };
 
 /// Minimises f from an initial point (BFGS: paper, Secs. 2.3 and 3.1). The line search shortens a
-/// step that ends where f is undefined. The result is never worse than the initial point. The reason
-/// is determined here, because the solver reports success even if no step lowered the cost.
+/// step that ends where f is undefined. The result is never worse than the initial point. The
+/// reason is determined here, because the solver reports success even if no step lowered the cost.
 /// @param start  initial point  [n]
 /// @throws std::invalid_argument if the initial point is empty or not finite, or if a limit is
 ///         negative; also every exception of f, stop and on_iteration
 Minimum minimise(const DifferentiableFunction& f, const Eigen::VectorXd& start,
                  const MinimiseOptions& options);
 
-/// Silences the log of Ceres, which warns on stderr about line searches over flat functions although
-/// each result already says how the search ended. Only programs call this function, once; a library
-/// must not change the log of its caller.
+/// Silences the log of Ceres, which warns on stderr about line searches over flat functions
+/// although each result already says how the search ended. Only programs call this function, once;
+/// a library must not change the log of its caller.
 void silenceSolverLog();
 
 }  // namespace ddm

@@ -10,13 +10,13 @@
 
 namespace ddm {
 
-/// Replaces x_i by atan(x_i) and sets slope_i = 1 / (1 + x_i^2), in a loop that compilers vectorise.
+/// Replaces x_i by atan(x_i) and sets slope_i = 1 / (1 + x_i^2), in a loop that vectorises.
 ///
 ///   |x| <= 1:  atan(x) = x p(x^2)          |x| > 1:  atan(x) = sign(x) pi/2 + r p(r^2),  r = -1/x
 ///
 /// p is the Chebyshev interpolant of atan(sqrt(s))/sqrt(s) on [0, 1] with 9 terms (float) or 22
-/// terms (double). The error is at most 3e-7 (float) or 5e-16 (double). NaN stays NaN; +-inf becomes
-/// +-pi/2 with slope 0.
+/// terms (double). The error is at most 3e-7 (float) or 5e-16 (double). NaN stays NaN; +-inf
+/// becomes +-pi/2 with slope 0.
 ///
 /// @param x      in: n values; out: their arctan [rad]
 /// @param slope  out: n values; must not overlap x
@@ -28,8 +28,9 @@ void arctan(double* x, double* slope, Eigen::Index n);
 ///
 ///   d^2 V / d[W b]^2  ~  (sum_i a_i a_i') (x) (sum_i e_i e_i') / N
 ///
-/// a_i is the input of the layer for sample i with a 1 appended. e_i is the derivative by the output
-/// of the layer, back-propagated from independent errors of variance 1 at the network's output.
+/// a_i is the input of the layer for sample i with a 1 appended. e_i is the derivative by the
+/// output of the layer, back-propagated from independent errors of variance 1 at the network's
+/// output.
 template <class Scalar>
 struct KroneckerFactors {
   using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
@@ -71,9 +72,9 @@ using LayerFactors = std::vector<KroneckerFactors<Scalar>>;
 ///
 ///   a_0 = input,   a_l = atan(W_l a_{l-1} + b_l) for l < L,   a_L = W_L a_{L-1} + b_L, or its atan
 ///
-/// Samples are columns. The caller owns the parameters, one flat vector, so that the joint objective
-/// V_R + V_P is a plain function of theta. Of the solvers, only kfac uses the division into layers.
-/// Scalar is float for training, and double for planning and for the gradient tests.
+/// Samples are columns. The caller owns the parameters, one flat vector, so that the joint
+/// objective V_R + V_P is a plain function of theta. Of the solvers, only kfac uses the division
+/// into layers. Scalar is float for training, and double for planning and for the gradient tests.
 template <class Scalar>
 class Mlp {
  public:
@@ -82,9 +83,9 @@ class Mlp {
 
   enum class Output { kLinear, kArctan };  ///< activation of the last layer
 
-  /// Record of a forward pass for backward(), and the memory of both. The tape is an explicit argument,
-  /// so that backward() cannot use the activations of another batch by mistake. Buffers grow to the
-  /// largest batch and are then reused.
+  /// Record of a forward pass for backward(), and the memory of both. The tape is an explicit
+  /// argument, so that backward() cannot use the activations of another batch by mistake. Buffers
+  /// grow to the largest batch and are then reused.
   struct Tape {
     Eigen::Index num_samples = 0;     ///< N of the last forward pass
     std::vector<Matrix> activations;  ///< a_0 ... a_L, each [width_l x >= N]
