@@ -17,12 +17,12 @@ namespace ddm {
 ///   h_n     = [z_t, u_{t-d}, z_{t-1}, u_{t-1-d}, ..., z_{t-n+1}, u_{t-n+1-d}]
 ///
 /// with u in units of max_torque. RollOut builds h_n. Deviations, each off by default:
-///  * model/delay d: an image that is d samples late shows a torque d samples later.
+///  * model/delay d: images are d samples late, so that h_n has the torques of d samples earlier.
 ///  * model/residual: f is z_t plus the network, so that a feature at rest needs no learning.
+///    Without it, f is the network, whose output layer is linear.
 ///  * model/increments: the network sees z_t, z_t - z_{t-1}, z_{t-1} - z_{t-2}, ... instead of the
 ///    features, because features of successive images are almost equal and only their differences
 ///    show the motion.
-/// Otherwise f is the network, whose output layer is linear.
 template <class Scalar>
 class PredictionModel {
  public:
@@ -46,7 +46,7 @@ class PredictionModel {
   int delay() const { return options_.delay; }
   /// @return n + d, the number of samples from the oldest one in h_n to the current one
   int memory() const { return options_.memory(); }
-  /// @return torque that f sees as 1 [N m]  [torque_dim]
+  /// @return scale of the torques: f sees u / maxTorque() [N m]  [torque_dim]
   const Eigen::VectorXd& maxTorque() const { return max_torque_; }
   /// @return n (feature_dim + torque_dim), the size of h_n
   int regressorDim() const { return network_.inputDim(); }

@@ -31,7 +31,8 @@ class RollOut {
   /// Allocates the memory for this many targets and steps.
   void reserve(Eigen::Index num_targets, int num_steps);
 
-  /// Sets the Kronecker factors of f, one per layer, to which backward() adds. Null: none
+  /// Sets the Kronecker factors of f, one per layer, to which backward() adds. Null: none. Call it
+  /// after reserve(), since steps that are added later have no factors.
   void collect(KroneckerFactors<Scalar>* factors) {
     for (typename Mlp<Scalar>::Tape& tape : tapes_) tape.factors = factors;
   }

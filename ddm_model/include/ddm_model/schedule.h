@@ -42,7 +42,7 @@ struct Schedule {
 ///   joint              V_R + V_P over all parameters (paper, eq. 5a)
 ///   sequential         V_R over theta_E and theta_D, then V_P over theta_P with fixed features
 ///                      (the paper's counter-example, footnote in Sec. 2.3)
-///   v_p_only           V_P over all parameters, without V_R, which the paper calls crucial (Sec. 2.3)
+///   v_p_only           V_P over all parameters, without V_R, which the paper calls crucial
 ///   v_r_only           V_R over theta_E and theta_D; f keeps its random initial weights
 ///   joint_random_init  like joint, but the auto-encoder has random initial weights
 std::vector<std::string> scheduleNames();

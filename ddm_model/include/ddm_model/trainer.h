@@ -20,8 +20,7 @@ struct TrainingProgress {
   /// Largest entry of the gradient of the scaled objective. With training/solver kfac, it refers to
   /// preconditioned coordinates, which change every 50 iterations; compare it only in between.
   double gradient_norm = 0.0;
-  double fraction_done =
-      0.0;  ///< iterations divided by their caps, over all restarts and stages [-]
+  double fraction_done = 0.0;  ///< iterations / their cap, over all restarts and stages [-]
 };
 
 /// Receives the progress: zeros while the principal components are computed, then numbers after

@@ -27,11 +27,11 @@ class PlanCost {
   virtual ~PlanCost() = default;
 
   /// @param U    torques [N m]                            [torqueDim() x horizon()]
-  /// @param d_U  out: dJ/dU; null: not wanted [1/(N m)]   [torqueDim() x horizon()]
+  /// @param d_U  out: dJ/dU; null: skip [1/(N m)]         [torqueDim() x horizon()]
   /// @return     J(U)
   virtual double evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) = 0;
 
-  /// @return an initial plan for the search [N m], [torqueDim() x horizon()]; empty if there is none
+  /// @return initial plan for the search [N m], [torqueDim() x horizon()]; empty if there is none
   virtual std::optional<Eigen::MatrixXd> proposal() { return std::nullopt; }
 
   /// @return z_0 and the features predicted by the last evaluate()  [feature_dim x (K + 1)]
