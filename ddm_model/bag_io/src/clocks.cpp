@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kLag = 0.5;          // largest lag that does not matter, in units of dt
 constexpr long kMaxDelay = 50;        // largest value of training/max_delay [samples]
-constexpr double kHeldBefore = 60.0;  // longest time from a torque to the first image [s]
+constexpr double kHeldBefore = 60.0;  // longest time from the last torque to the first image [s]
 constexpr double kLeap = 1.0;         // a clock that gains more at once has been set [s]
 constexpr char kRecordingTimes[] = ": the times at which messages were recorded count instead";
 
