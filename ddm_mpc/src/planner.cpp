@@ -16,7 +16,7 @@ namespace ddm {
 namespace {
 
 constexpr int kProposal = -1;       // number of the proposal, before the other initial plans
-constexpr double kMaxShare = 0.95;  // largest |u| / max_torque of an initial plan
+constexpr double kMaxShare = 0.95;  // largest |u| / max_torque of a proposed or random plan
 // Cap on |v| of an initial plan. tanh(3) = 0.995: beyond it the gradient almost vanishes.
 constexpr double kMaxV = 3.0;
 

@@ -18,8 +18,8 @@ namespace ddm {
 ///
 /// with u in units of max_torque. RollOut builds h_n. Deviations, each off by default:
 ///  * model/delay d: images are d samples late, so that h_n has the torques of d samples earlier.
-///  * model/residual: f is z_t plus the network, so that a feature at rest needs no learning.
-///    Without it, f is the network, whose output layer is linear.
+///  * model/residual: f is z_t plus the network, which then learns only the change of z. Without
+///    this option, f is the network. Its output layer is linear in both cases.
 ///  * model/increments: the network sees z_t, z_t - z_{t-1}, z_{t-1} - z_{t-2}, ... instead of the
 ///    features, because features of successive images are almost equal and only their differences
 ///    show the motion.
