@@ -19,7 +19,7 @@ namespace {
 using testing::accepts;
 using testing::require;
 
-/// What holds for all that was read from a bag.
+/// Requires the properties of everything that was read from a bag.
 void checkContent(const BagContent& content, int image_size) {
   const DataSet& data = content.data;
   const auto num_frames = static_cast<std::size_t>(data.numFrames());
@@ -38,7 +38,7 @@ void checkContent(const BagContent& content, int image_size) {
   }
 }
 
-/// The bytes of a bag.
+/// Reads the bytes as a bag.
 void bagFile(const std::uint8_t* data, std::size_t size) {
   constexpr int kImageSize = 4;
   std::istringstream bag(std::string(reinterpret_cast<const char*>(data), size));
@@ -46,8 +46,9 @@ void bagFile(const std::uint8_t* data, std::size_t size) {
       [&] { checkContent(readBagBytes(&bag, kImageSize, BagOptions()), kImageSize); });
 }
 
-/// "DDMMODEL" | version, uint32 | size, uint64 | CRC-32 | content: all but version and content are
-/// made right. What has no room for a header stays as it is.
+/// Corrects the magic number, the size and the checksum in the header of a model file ("DDMMODEL" |
+/// version, uint32 | size, uint64 | CRC-32 | content). Bytes too short for a header stay as they
+/// are.
 std::string repaired(std::string bytes) {
   constexpr std::size_t kSizeAt = 12, kChecksumAt = 20, kContentAt = 24;
   if (bytes.size() < kContentAt) return bytes;
@@ -60,7 +61,7 @@ std::string repaired(std::string bytes) {
   return bytes;
 }
 
-/// Whether a model that was read and written again has the same content, bit for bit.
+/// @return whether a model that was read and written again has the same content, bit for bit
 bool comesBack(const std::string& read, const std::string& written) {
   constexpr std::size_t kContentAt = 24;
   return read.compare(kContentAt, std::string::npos, written, kContentAt, std::string::npos) == 0;
@@ -88,14 +89,14 @@ void checkFile(const std::string& bytes) {
   require(serialiseModel(deserialiseModel(written, "fuzz")) == written, "what is written is read");
 }
 
-/// A model file, as it is and with its header repaired.
+/// Reads the bytes as a model file, unchanged and with a corrected header.
 void modelFile(const std::uint8_t* data, std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);
   checkFile(bytes);
   checkFile(repaired(bytes));
 }
 
-/// Bytes to a model message, to a model, and back.
+/// Reads the bytes as a model message, makes the model, and makes the message again.
 void modelMessage(const std::uint8_t* data, std::size_t size) {
   ddm_msgs::Model message;
   const auto parse = [&] {

@@ -1,4 +1,4 @@
-// model_node: trains a model from the recorded bags and publishes it.
+// model_node: trains a model from the recorded bags and publishes the model.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <actionlib/server/simple_action_server.h>
 #include <ddm_bag_io/bag_cache.h>
@@ -31,8 +31,8 @@ std::string textOf(const char* format, double value) {
   return text;
 }
 
-/// How this node is doing, on /diagnostics: the training that runs, or how the last one ended. Published once in
-/// `~diagnostic_period` (1 s) of wall time.
+/// Health of this node on /diagnostics: the running training, or the end of the last one. Published
+/// once per `~diagnostic_period` (1 s) of wall time.
 class TrainingHealth {
  public:
   TrainingHealth(const ros::NodeHandle& nh, const ros::NodeHandle& pnh) : updater_(nh, pnh) {
@@ -45,14 +45,14 @@ class TrainingHealth {
       if (!since_.isZero())
         status.addf("for [s]", "%.1f", (ros::SteadyTime::now() - since_).toSec());
     });
-    // Not Updater::update(), which goes by simulated time: that stands still while a model is trained.
+    // Updater::update() uses simulated time, which stands still during a training.
     timer_ =
         nh.createSteadyTimer(ros::WallDuration(updater_.getPeriod()),
                              [this](const ros::SteadyTimerEvent&) { updater_.force_update(); });
   }
 
-  /// May be called by another thread than the one that publishes.
-  /// @param is_new  whether this state begins now; false: it only has other numbers
+  /// Sets the status; any thread may call this function.
+  /// @param is_new  true: a new state begins; false: only its numbers change
   void set(std::uint8_t level, std::uint32_t trial, const std::string& text,
            const std::map<std::string, double>& values = {}, bool is_new = true) {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -63,18 +63,18 @@ class TrainingHealth {
   }
 
  private:
-  std::mutex mutex_;  // guards the next two
+  std::mutex mutex_;  // guards status_ and since_
   Status status_;
-  ros::SteadyTime since_;  // when the training began or ended; zero: there was none
+  ros::SteadyTime since_;  // start or end of the training; zero: none yet
   diagnostic_updater::Updater updater_;
   ros::SteadyTimer timer_;
 };
 
-/// Action `train` -> topic `model`, latched.
+/// Action `train`: trains a model from bags and publishes it on the latched topic `model`.
 class ModelNode {
  public:
-  /// @param nh   topics and action
-  /// @param pnh  parameters
+  /// @param nh   node handle of topics and action
+  /// @param pnh  node handle of parameters
   ModelNode(ros::NodeHandle nh, const ros::NodeHandle& pnh, const ModelConfig& config)
       : config_(config),
         bags_(config.image.size, config.data_set,
@@ -162,7 +162,7 @@ class ModelNode {
     return isWanted();
   }
 
-  /// Whether nobody asked to end the training or this node.
+  /// @return false if the client has cancelled the training or the node shuts down
   bool isWanted() { return ros::ok() && !server_.isPreemptRequested(); }
 
   void publish(const Ddm& model, ddm_msgs::TrainResult* result) {
@@ -189,7 +189,7 @@ class ModelNode {
 int main(int argc, char** argv) {
   ddm::silenceSolverLog();
   return ddm::runNode("model_node", argc, argv, [](auto nh, auto pnh, ddm::ParamReader* params) {
-    params->ignore("diagnostic_period");  // read by diagnostic_updater itself
+    params->ignore("diagnostic_period");  // diagnostic_updater reads it
     const ddm::ModelConfig config = ddm::readModelConfig(params);
     params->requireValid();
     ROS_INFO_STREAM("model_node runs with\n" << ddm::toText(config));

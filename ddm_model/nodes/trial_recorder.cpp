@@ -1,4 +1,4 @@
-// trial_recorder: one bag per trial, complete or not under its final name.
+// trial_recorder: records one bag per trial. A bag under its final name is always complete.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/bag_writer.h>
 #include <ddm_bag_io/model_config.h>
@@ -25,10 +25,10 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-constexpr int kQueue = 1000;  // a slow disk must not cost a frame
+constexpr int kQueue = 1000;  // a slow disk must not lose an image
 constexpr Seconds kSlice(0.1);
 
-/// A request to record may replace no file.
+/// Refuses a path that is no *.bag or that exists.
 void requireNew(const std::string& path) {
   if (std::filesystem::path(path).extension() != ".bag") {
     throw std::runtime_error("bag '" + path + "': the path of a recording must end in .bag");
@@ -39,10 +39,10 @@ void requireNew(const std::string& path) {
   }
 }
 
-/// Services `start_recording` and `stop_recording`; writes images, the goal image, and the torques
-/// that acted, by topic `applied_torque`. An image whose torque did not act in time has none in the
-/// bag: the trial has a gap there. An image of which nobody says what acted is an error.
-/// Needs a spinner with two threads or more: stopping waits for messages on their way.
+/// Services `start_recording` and `stop_recording`. Writes images, the goal image, and the torques
+/// that acted (topic `applied_torque`). If no single torque acted in time after an image, an empty
+/// torque reports it, and the trial has a gap there. An image without any report is an error. The
+/// node needs a spinner with at least two threads, because stop() waits for messages on their way.
 class TrialRecorder {
  public:
   TrialRecorder(ros::NodeHandle nh, const BagOptions& bag, const RecorderOptions& options);
@@ -63,13 +63,13 @@ class TrialRecorder {
   RecorderOptions options_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::unique_ptr<BagWriter> bag_;  // null while not recording
-  ros::Time after_;                 // messages up to this stamp are of an earlier trial
-  std::string error_;               // first write that failed
-  std::set<ros::Time> unanswered_;  // images of which is known that no torque acted in time
+  std::unique_ptr<BagWriter> bag_;  // null: not recording
+  ros::Time after_;                 // messages up to this stamp belong to an earlier trial
+  std::string error_;               // error of the first write that failed
+  std::set<ros::Time> unanswered_;  // images after which no torque acted in time
   sensor_msgs::ImageConstPtr goal_;
   int num_recordings_ = 0;
-  int stopping_ = 0;  // the recording for whose end a stop waits or has waited
+  int stopping_ = 0;  // number of the recording that stop() is waiting for or has waited for
   image_transport::ImageTransport transport_;
   image_transport::Subscriber image_sub_;
   ros::Subscriber torque_sub_;
@@ -81,7 +81,7 @@ class TrialRecorder {
 TrialRecorder::TrialRecorder(ros::NodeHandle nh, const BagOptions& bag,
                              const RecorderOptions& options)
     : bag_options_(bag), options_(options), transport_(nh) {
-  // Otherwise TCP holds an image back until the one before is acknowledged, while the trial goes on.
+  // Without TCP_NODELAY, TCP holds an image back until the one before is acknowledged.
   const auto no_delay = ros::TransportHints().tcpNoDelay();
   goal_sub_ = nh.subscribe<sensor_msgs::Image>(topics::kGoalImage, 1,
                                                [this](const sensor_msgs::ImageConstPtr& goal) {
@@ -122,10 +122,10 @@ void TrialRecorder::recordApplied(const ddm_msgs::Torque& torque) {
   changed_.notify_all();
 }
 
-/// The goal image is stamped with the first image, so that the bag does not begin before it. That
-/// image need not be of the trial: a robot shows images while its reset waits, and only those from
-/// the first torque to the last are learned from.
-/// The goal is written last: it may come after the first images, since it has a topic of its own.
+/// Writes the goal image with the stamp of the first image, so that the bag does not begin earlier.
+/// The first image may precede the trial: a robot publishes images during its reset, but training
+/// uses only those from the first torque to the last. The goal image is written at the end, because
+/// it may arrive after the first images.
 void TrialRecorder::writeGoal(BagWriter* bag) const {
   if (goal_ != nullptr && !bag->images().empty()) bag->writeGoal(*goal_, *bag->images().begin());
 }
@@ -150,7 +150,7 @@ bool TrialRecorder::start(ddm_msgs::StartRecording::Request& request,
   if (bag_ != nullptr) ROS_WARN("a recording was not stopped: its bag stays *.active");
   bag_ = std::move(bag);
   ++num_recordings_;
-  changed_.notify_all();  // a stop that still waits for the old one
+  changed_.notify_all();  // wakes a stop() that still waits for the old recording
   error_.clear();
   after_ = request.after;
   unanswered_.clear();
@@ -162,7 +162,8 @@ bool TrialRecorder::hasGoal(const ddm_msgs::StopRecording::Request& request) con
   return request.goal.isZero() || (goal_ != nullptr && goal_->header.stamp == request.goal);
 }
 
-/// Whether the bag has all images of the trial, and it is known of each what acted.
+/// @return whether the bag has all images of the trial and a report of the torque after each of
+///         them
 bool TrialRecorder::complete(const ddm_msgs::StopRecording::Request& request) const {
   const std::set<ros::Time>& images = bag_->images();
   if (images.size() < request.num_steps) return false;
@@ -180,7 +181,7 @@ bool TrialRecorder::complete(const ddm_msgs::StopRecording::Request& request) co
          });
 }
 
-/// Why the bag is not that of the trial; empty: it is.
+/// @return why the bag does not contain the trial; empty if it does
 std::string TrialRecorder::shortcoming(const ddm_msgs::StopRecording::Request& request) const {
   if (request.num_steps == 0) return "";
   std::ostringstream text;
@@ -213,15 +214,16 @@ bool TrialRecorder::stop(ddm_msgs::StopRecording::Request& request,
     response.message = "nothing is being recorded: call start_recording first";
     return true;
   }
-  if (stopping_ == num_recordings_) {  // a second wait would leave no thread for what both wait for
+  if (stopping_ == num_recordings_) {  // a second wait would block the last thread
     response.message = "this recording is being stopped already";
     return true;
   }
-  // Other services run while this one waits: afterwards the recording may be another one.
+  // Other services run during the wait, so that another recording may replace this one.
   const int recording = stopping_ = num_recordings_;
   const auto replaced = [&] { return bag_ == nullptr || num_recordings_ != recording; };
   const auto decided = [&] { return replaced() || !error_.empty() || complete(request); };
-  // In slices: a pause of this process takes one at most, and what came meanwhile is still read.
+  // Waits in slices: if the process is paused, at most one slice is lost, and messages that arrived
+  // meanwhile are still read.
   for (double left = options_.timeout; left > 0.0; left -= kSlice.count()) {
     if (changed_.wait_for(lock, std::min(kSlice, Seconds(left)), decided)) break;
   }
@@ -251,7 +253,7 @@ bool TrialRecorder::stop(ddm_msgs::StopRecording::Request& request,
 
 int main(int argc, char** argv) {
   return ddm::runNode("trial_recorder", argc, argv, [](auto nh, auto, ddm::ParamReader* params) {
-    params->ignore("image_transport");  // read by image_transport itself
+    params->ignore("image_transport");  // image_transport reads it
     const auto bag = params->read<ddm::BagOptions>("data_set");
     const auto options = params->read<ddm::RecorderOptions>("recorder");
     params->requireValid();

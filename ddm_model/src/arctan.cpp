@@ -1,4 +1,4 @@
-// The activation sigma = arctan of the paper, on whole arrays, together with its slope.
+// Activation sigma = arctan of the paper (Sec. 2.1) with its slope, computed on whole arrays.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 
@@ -30,8 +30,8 @@ struct Polynomial<double> {
       -8.2679958173371501883e-6};
 };
 
-/// p(s) by Horner's rule, from term k on. A recursion of templates: with a loop of 22 terms inside
-/// it, the loop over values would not be vectorised.
+/// Evaluates p(s) by Horner's rule from term k on. It is a recursion of templates because a loop of
+/// 22 terms would keep compilers from vectorising the loop over values.
 template <class Scalar, int k = 0>
 inline Scalar polynomial(Scalar s) {
   constexpr int kNumTerms = sizeof(Polynomial<Scalar>::kTerms) / sizeof(Scalar);
@@ -42,8 +42,8 @@ inline Scalar polynomial(Scalar s) {
   }
 }
 
-// Branches are written as selections of values that exist anyway: only then does the loop
-// vectorise.
+// Each ?: selects between values that are computed anyway, because a branch would keep compilers
+// from vectorising the loop.
 template <class Scalar>
 void arctanOf(Scalar* __restrict x, Scalar* __restrict slope, Eigen::Index n) {
   const Scalar half_pi = static_cast<Scalar>(1.57079632679489661923);

@@ -1,4 +1,4 @@
-// The experience that a model is trained on: images and torques of all trials so far.
+// The data that a model is trained on: images and torques of all trials so far.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/data_set.h"
 

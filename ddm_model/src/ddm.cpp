@@ -1,4 +1,4 @@
-// A trained deep dynamical model: images to features, features to images, features ahead in time.
+// A trained deep dynamical model: encoder, decoder and prediction model.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/ddm.h"
 
@@ -28,14 +28,14 @@ void requireFinite(const std::string& name, const Values& values) {
   }
 }
 
-/// [rows x columns], for messages.
+/// @return "[rows x columns]" for error messages
 std::string shape(Eigen::Index rows, Eigen::Index cols) {
   return "[" + std::to_string(rows) + " x " + std::to_string(cols) + "]";
 }
 
 using Pixels = Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>;
 
-/// Sum over all pixels of the squared difference [grey^2].
+/// @return sum over all pixels of the squared difference [grey^2]
 double squaredDistance(const Grey& a, const Grey& b) {
   const auto size = static_cast<Eigen::Index>(a.size());
   return (Eigen::Map<const Pixels>(a.data(), size).cast<double>() -
@@ -44,8 +44,8 @@ double squaredDistance(const Grey& a, const Grey& b) {
          (255.0 * 255.0);
 }
 
-/// Frames that have n + d - 1 predecessors and num_steps successors without a gap: what can be
-/// predicted from. In the order of the data.
+/// @return samples with n + d - 1 predecessors and num_steps successors without a gap, where
+///         rollouts can start, in the order of the data
 std::vector<Eigen::Index> predictionStarts(const Ddm& model, const DataSet& data, int num_steps) {
   std::vector<Eigen::Index> starts;
   for (const Segment& segment : data.segments()) {
@@ -85,7 +85,7 @@ Ddm::Ddm(ModelOptions options, int image_size, int torque_dim, Pca pca, Eigen::V
   }
   projection_ = Projection(pca_);
   if (hasGoal()) goal_feature_ = encode(goal_);
-  // Finite parameters may be too large to compute with.
+  // Finite parameters may still be too large to compute with.
   requireFinite("feature of the goal image", goal_feature_);
 }
 
@@ -94,13 +94,13 @@ Eigen::VectorXd Ddm::encode(const Grey& grey) const {
     throw std::invalid_argument("model: an image must have " + std::to_string(pca_.mean.size()) +
                                 " pixels, got " + std::to_string(grey.size()));
   }
-  Mlp<double>::Tape tape;  // g^-1, eq. (3a)
+  Mlp<double>::Tape tape;  // eq. (3a)
   networks_.encoder().forward(networks_.encoderOf(theta_.data()), projection_(grey), &tape);
   return tape.output();
 }
 
 Grey Ddm::decode(const Eigen::VectorXd& z) const {
-  Mlp<double>::Tape tape;  // g, eq. (3b)
+  Mlp<double>::Tape tape;  // eq. (3b)
   networks_.decoder().forward(networks_.decoderOf(theta_.data()), z, &tape);
   const Eigen::MatrixXd scores = tape.output();
   const Eigen::MatrixXf image = pca_.reconstruct(scores.cast<float>());

@@ -1,4 +1,4 @@
-// Controller state x: the last n features and the last n-1 torques; and states of a data set.
+// Controller state x (the last n features and n-1 torques), and support states of a data set.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/history.h"
 
@@ -9,8 +9,8 @@ namespace ddm {
 std::vector<Eigen::Index> farthestPoints(const Eigen::Ref<const Eigen::MatrixXf>& points,
                                          Eigen::Index max_count) {
   std::vector<Eigen::Index> chosen = {0};
-  Eigen::RowVectorXf distances =  // squared, of each point to the nearest that is chosen
-      (points.colwise() - points.col(0)).colwise().squaredNorm();
+  // Squared distance of each point to the nearest chosen point.
+  Eigen::RowVectorXf distances = (points.colwise() - points.col(0)).colwise().squaredNorm();
   while (static_cast<Eigen::Index>(chosen.size()) < max_count) {
     Eigen::Index farthest;
     if (!(distances.maxCoeff(&farthest) > 0.0F)) break;

@@ -16,7 +16,7 @@
 namespace ddm {
 namespace {
 
-/// One search: passes points to the function until a limit is reached, and keeps the best.
+/// One search. Evaluates the function until a limit is reached, and stores the best point.
 class Search : public ceres::IterationCallback {
  public:
   Search(const DifferentiableFunction& f, const Eigen::VectorXd& start,
@@ -27,7 +27,7 @@ class Search : public ceres::IterationCallback {
 
   Eigen::Index size() const { return point_.size(); }
 
-  /// What ceres::FirstOrderFunction::Evaluate() promises.
+  /// Implements ceres::FirstOrderFunction::Evaluate().
   bool evaluate(const double* x, double* value, double* gradient) {
     point_ = Eigen::Map<const Eigen::VectorXd>(x, size());
     if (!point_.allFinite() || ended()) return false;
@@ -35,7 +35,7 @@ class Search : public ceres::IterationCallback {
     *value = f_(point_, &slope_);
     if (!std::isfinite(*value) || !slope_.allFinite()) return false;
     if (gradient != nullptr) Eigen::Map<Eigen::VectorXd>(gradient, size()) = slope_;
-    if (!anyPoint()) best_.initial_cost = *value;  // the solver begins at the start
+    if (!anyPoint()) best_.initial_cost = *value;  // the solver evaluates the initial point first
     if (*value < best_.cost) {
       best_.x = point_;
       best_.gradient = slope_;
@@ -44,8 +44,8 @@ class Search : public ceres::IterationCallback {
     return true;
   }
 
-  /// Ends a search whose iterations hardly change the cost. The solver's own test compares the
-  /// change with the cost and not with its magnitude: it never ends a search with negative costs.
+  /// Ends the search if an iteration hardly changes the cost. Ceres divides the change by the cost
+  /// instead of its magnitude, and so never ends a search whose costs are negative.
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     const double last = accepted_cost_;
     accepted_cost_ = summary.cost;
@@ -59,10 +59,10 @@ class Search : public ceres::IterationCallback {
                : ceres::SOLVER_CONTINUE;
   }
 
-  /// @param summary  of the solver, which has ended
+  /// @param summary  summary of the solver after its end
   Minimum result(const ceres::GradientProblemSolver::Summary& summary) && {
-    // Of the solver's verdicts only that of operator() counts. It calls a line search that
-    // returns to where it began convergence, too.
+    // Only USER_SUCCESS, which operator() returns, means convergence. Ceres also reports
+    // convergence when a line search returns to its initial point.
     best_.reason = reason(summary.termination_type == ceres::USER_SUCCESS,
                           summary.termination_type == ceres::NO_CONVERGENCE);
     best_.message = message();
@@ -75,7 +75,7 @@ class Search : public ceres::IterationCallback {
  private:
   bool anyPoint() const { return best_.gradient.size() > 0; }
 
-  /// Whether the function must not be evaluated any more. It remains so.
+  /// @return whether the function must not be evaluated again; once true, always true
   bool ended() {
     if (!ended_by_ && options_.max_evaluations > 0 &&
         best_.evaluations >= options_.max_evaluations) {
@@ -123,7 +123,7 @@ class Search : public ceres::IterationCallback {
   Eigen::VectorXd point_;
   Eigen::VectorXd slope_;
   double accepted_cost_ = 0.0;             // of the last iteration
-  std::optional<MinimumReason> ended_by_;  // a limit that is not the solver's
+  std::optional<MinimumReason> ended_by_;  // limit that ended the search, unless Ceres checks it
 };
 
 class CeresFunction : public ceres::FirstOrderFunction {
@@ -144,9 +144,9 @@ ceres::GradientProblemSolver::Options solverOptions(const MinimiseOptions& optio
   out.line_search_direction_type = options.lbfgs_rank > 0 ? ceres::LBFGS : ceres::BFGS;
   if (options.lbfgs_rank > 0) out.max_lbfgs_rank = options.lbfgs_rank;
   out.max_num_iterations = options.max_iterations;
-  out.function_tolerance = 0.0;  // see Search::operator()
+  out.function_tolerance = 0.0;  // operator() tests it instead
   out.gradient_tolerance = options.gradient_tolerance;
-  out.parameter_tolerance = 0.0;  // a short step alone is not convergence
+  out.parameter_tolerance = 0.0;  // a short step alone does not mean convergence
   out.callbacks.push_back(callback);
   out.logging_type = ceres::SILENT;
   return out;

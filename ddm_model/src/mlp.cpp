@@ -1,4 +1,4 @@
-// Fully connected arctan network: the common building block of g^-1, g and f.
+// Fully connected arctan network: the common building block of encoder, decoder and f.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/mlp.h"
 
@@ -8,7 +8,7 @@
 namespace ddm {
 namespace {
 
-/// Room for n columns; a first batch may be empty, yet must have its rows.
+/// Resizes a buffer to at least n columns. An empty batch still needs the right number of rows.
 template <class Matrix>
 void reserve(Eigen::Index rows, Eigen::Index n, Matrix* matrix) {
   if (matrix->rows() != rows || matrix->cols() < n) matrix->resize(rows, n);
@@ -91,7 +91,7 @@ void Mlp<Scalar>::backward(const Scalar* theta, Tape* tape,
       tape->factors[layer].add(tape->activations[layer].leftCols(n), delta);
     }
     if (layer > 0) {
-      // a_layer has served its purpose: its memory takes the error that arrives there.
+      // a_layer is not needed any more, so that its memory can store the error of this layer.
       auto arriving = tape->activations[layer].leftCols(n);
       arriving.noalias() = weights(theta, layer).transpose() * delta;
       tape->slopes[layer - 1].leftCols(n).array() *= arriving.array();

@@ -28,7 +28,7 @@ std::uint32_t crc32(const char* bytes, size_t size) {
   return crc.checksum();
 }
 
-/// Appends numbers, vectors and texts to bytes. A vector has its size before it.
+/// Appends numbers, vectors and texts to bytes. The size of a vector or text precedes it.
 struct Writer {
   std::string bytes;
 
@@ -44,7 +44,7 @@ struct Writer {
   }
 };
 
-/// The inverse. Sizes are compared with what is there before memory is taken.
+/// Inverse of Writer. Checks each size against the bytes left before it allocates memory.
 class Reader {
  public:
   Reader(const char* bytes, size_t size) : at_(bytes), left_(size) {}
@@ -84,7 +84,7 @@ class Reader {
   size_t left_;
 };
 
-/// What follows the header of a file.
+/// Everything after the header of a file.
 struct Content {
   ModelOptions options;
   std::vector<int> decoder_widths;
@@ -96,7 +96,7 @@ struct Content {
   std::vector<double> variance, theta;
   Grey goal;
 
-  /// Shows all values to a Writer or a Reader, in the order of the file.
+  /// Passes all values to a Writer or a Reader, in the order of the file.
   template <class Archive>
   void visit(Archive* archive) {
     const auto each = [archive](auto&... values) { ((*archive)(values), ...); };
@@ -132,7 +132,7 @@ Content contentOf(const Ddm& model) {
   return content;
 }
 
-/// @throws std::exception if the content makes no sense
+/// @throws std::exception if the content is invalid
 Ddm modelOf(Content content) {
   const ModelOptions& options = content.options;
   ModelInfo& info = content.info;

@@ -1,4 +1,4 @@
-// Parameters of the deep dynamical model and of its training: what makes them valid.
+// Parameters of the deep dynamical model and of its training: checks of their values.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/model_options.h"
 

@@ -1,4 +1,4 @@
-// The three networks of the deep dynamical model: their initial parameters.
+// Initial weights of the three networks of the deep dynamical model.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/networks.h"
 
@@ -9,11 +9,12 @@
 namespace ddm {
 namespace {
 
-/// Standard deviation of a layer's leading unit before its arctan. Above 1 the arctan would saturate at once.
+/// Standard deviation of a layer's leading unit before arctan. Above 1, arctan would saturate.
 constexpr double kLayerStd = 0.3;
 
-/// PCA of the layer's inputs as the start of an encoder layer and its mirror image in the decoder.
-/// @return the encoder layer's output for the inputs  [width_out x M]
+/// Initialises an encoder layer and the decoder layer that mirrors it by the PCA of the inputs.
+/// @param inputs  inputs of the encoder layer         [width_in x M]
+/// @return        outputs of the encoder layer        [width_out x M]
 Eigen::MatrixXd initialisePair(const Eigen::MatrixXd& inputs, Eigen::Map<Eigen::MatrixXd> encoder_w,
                                Eigen::Map<Eigen::VectorXd> encoder_b,
                                Eigen::Map<Eigen::MatrixXd> decoder_w,
@@ -27,7 +28,7 @@ Eigen::MatrixXd initialisePair(const Eigen::MatrixXd& inputs, Eigen::Map<Eigen::
   for (Eigen::Index k = 0; k < rank; ++k) {
     Eigen::Index largest;
     basis.col(k).cwiseAbs().maxCoeff(&largest);
-    if (basis(largest, k) < 0.0) basis.col(k) *= -1.0;  // an arbitrary sign, made definite
+    if (basis(largest, k) < 0.0) basis.col(k) *= -1.0;  // eigenvectors have an arbitrary sign
   }
   const double spread = std::sqrt(std::max(eigen.eigenvalues().tail<1>()[0], 1e-12));
   const double c = kLayerStd / spread;

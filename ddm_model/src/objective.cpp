@@ -9,8 +9,9 @@
 namespace ddm {
 namespace {
 
-constexpr Eigen::Index kMaxPart = 128;  // images whose activations stay in cache
-constexpr size_t kLanes = 8;  // sums that are computed at once, however many processors there are
+constexpr Eigen::Index kMaxPart = 128;  // images of a part; their activations fit in the cache
+// Lanes, whatever the number of processors, so that this number does not change the sum.
+constexpr size_t kLanes = 8;
 
 }  // namespace
 
@@ -62,7 +63,7 @@ void JointObjective<Scalar>::requirePredictions() const {
       std::to_string(networks_.prediction_model.memory()) + " frames");
 }
 
-/// Memory for predictions so many steps ahead.
+/// Allocates memory for predictions up to num_steps ahead.
 template <class Scalar>
 void JointObjective<Scalar>::reserve(int num_steps) {
   const Eigen::Index columns = (1 + num_steps) * kMaxPart;
@@ -91,7 +92,7 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::evaluate(const Ve
     for (const Lane& lane : lanes_) *d_theta += 2 * lane.d_theta;
   }
   const auto addDecay = [&](const Mlp<Scalar>& net, auto part_of) {
-    double sum = 0.0;  // of the squared weights; biases are free
+    double sum = 0.0;  // sum of squared weights, without biases
     for (int layer = 0; layer < net.numLayers(); ++layer) {
       const auto weights = net.weights(part_of(theta.data()), layer);
       sum += static_cast<double>(weights.squaredNorm());
@@ -121,7 +122,7 @@ LayerFactors<Scalar> JointObjective<Scalar>::factors(const Vector& theta, const 
   return sum;
 }
 
-/// Kronecker factors of all layers that nothing was added to yet.
+/// @return one zero factor for each layer
 template <class Scalar>
 LayerFactors<Scalar> JointObjective<Scalar>::zeroFactors() const {
   LayerFactors<Scalar> factors;
@@ -131,8 +132,9 @@ LayerFactors<Scalar> JointObjective<Scalar>::zeroFactors() const {
   return factors;
 }
 
-/// Fills the lanes.
-/// @param error_seed  not null: derivatives and factors are those of errors that are drawn, see factors()
+/// Computes the sum of each lane.
+/// @param error_seed  not null: draws the errors at the outputs, and computes the derivatives and
+///                    Kronecker factors for these errors, see factors()
 template <class Scalar>
 void JointObjective<Scalar>::sumOverParts(const Vector& theta, const Terms& terms, bool gradient,
                                           const std::uint64_t* error_seed) {
@@ -160,8 +162,8 @@ void JointObjective<Scalar>::sumOverParts(const Vector& theta, const Terms& term
       if (gradient) backward(parts_[p], theta.data(), terms, &lane);
     }
   };
-  std::exception_ptr
-      failure;  // lack of memory: an exception that left the loop would end the process
+  // An exception (lack of memory) that leaves an OpenMP loop would end the process.
+  std::exception_ptr failure;
 #pragma omp parallel for schedule(static, 1) if (num_lanes > 1)
   for (int i = 0; i < num_lanes; ++i) {
     try {
@@ -174,8 +176,8 @@ void JointObjective<Scalar>::sumOverParts(const Vector& theta, const Terms& term
   if (failure) std::rethrow_exception(failure);
 }
 
-/// Reconstructions of a part's images and the predictions of them go through the decoder together.
-/// Leaves their residuals in the lane, and adds to its value.
+/// Computes V_R and V_P of a part. Its reconstructions and predictions are decoded in one batch.
+/// Stores the residuals in the lane and adds to the value of the lane.
 template <class Scalar>
 void JointObjective<Scalar>::forward(const Part& part, const Scalar* theta, const Terms& terms,
                                      Lane* lane) {
@@ -210,7 +212,7 @@ void JointObjective<Scalar>::forward(const Part& part, const Scalar* theta, cons
         residual.col(column) =
             decoded.col(column) - data_.scores.col(part.first + frame);  // eq. (4)
       } else {
-        residual.col(column).setZero();  // beyond the segment there is nothing to compare with
+        residual.col(column).setZero();  // beyond the segment there is no true image
       }
     }
   }
@@ -219,7 +221,7 @@ void JointObjective<Scalar>::forward(const Part& part, const Scalar* theta, cons
       static_cast<double>(residual.middleCols(size, steps * count).squaredNorm()) / steps;
 }
 
-/// Replaces residuals by random signs, for factors(). Targets beyond a segment keep their 0.
+/// Replaces residuals by random signs, for factors(). Targets beyond a segment keep residual 0.
 template <class Scalar>
 void JointObjective<Scalar>::drawErrors(const Part& part, int steps, std::mt19937_64 rng,
                                         Lane* lane) {
@@ -228,14 +230,14 @@ void JointObjective<Scalar>::drawErrors(const Part& part, int steps, std::mt1993
   for (Eigen::Index i = 0; i < columns; ++i) {
     auto residual = lane->residual.col(i);
     if (residual.isZero(0)) continue;
-    // V counts the square divided by the steps, as backward() divides the residual.
+    // V_P divides squares by `steps`, and backward() divides the residuals by `steps`, too.
     const Scalar size = i < num_images ? Scalar(1) : std::sqrt(Scalar(steps));
     for (Eigen::Index row = 0; row < residual.rows(); ++row)
       residual[row] = (rng() & 1) != 0 ? size : -size;
   }
 }
 
-/// Adds the derivative of V / 2 to the lane's. Uses its residuals up.
+/// Adds the gradient of V / 2 of a part to the lane. Overwrites the residuals.
 template <class Scalar>
 void JointObjective<Scalar>::backward(const Part& part, const Scalar* theta, const Terms& terms,
                                       Lane* lane) const {

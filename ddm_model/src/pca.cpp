@@ -1,4 +1,4 @@
-// Principal component analysis: images y to scores, before the encoder and after the decoder.
+// Principal component analysis, which turns images into scores for the encoder and back.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/pca.h"
 
@@ -16,7 +16,7 @@ namespace {
 constexpr int kOversampling = 10;
 constexpr int kMaxSweeps = 30;
 constexpr double kVarianceTolerance = 1e-5;
-constexpr Eigen::Index kBlock = 256;  // images that are floats at a time
+constexpr Eigen::Index kBlock = 256;  // images that are converted to float at a time
 constexpr float kWhite = 255.0F;
 
 Eigen::MatrixXf orthonormalised(const Eigen::MatrixXf& columns) {
@@ -24,9 +24,9 @@ Eigen::MatrixXf orthonormalised(const Eigen::MatrixXf& columns) {
   return qr.householderQ() * Eigen::MatrixXf::Identity(columns.rows(), columns.cols());
 }
 
-/// All images of a data set, the goal last, as bytes k less their mean, blurred: a matrix K of floats
-/// [D x M] that is never there as a whole, only a block of columns at a time. The blur is linear: it
-/// is applied to the few columns that K is multiplied with.
+/// The matrix K [D x M] of all images of a data set, the goal image last: grey values minus their
+/// mean, blurred. K is never stored; blocks of its columns are computed when needed. The blur is
+/// linear, and is applied to the few columns that K is multiplied with.
 class CentredImages {
  public:
   CentredImages(const DataSet& data, const Blur& blur) : data_(data), blur_(blur) {
@@ -35,7 +35,7 @@ class CentredImages {
     mean_ = (sum / static_cast<double>(data.numImages())).cast<float>();
   }
 
-  /// Of the blurred images.  [D]
+  /// @return mean of the blurred images  [D]
   Eigen::VectorXf mean() const {
     Eigen::MatrixXf mean = mean_;
     blur_.apply(&mean);
@@ -68,7 +68,7 @@ class CentredImages {
 
   const DataSet& data_;
   const Blur& blur_;
-  Eigen::VectorXf mean_;  // of the images as they are
+  Eigen::VectorXf mean_;  // of the images before the blur
 };
 
 }  // namespace
@@ -83,7 +83,7 @@ Blur::Blur(int image_size, double std) {
     }
     G.row(i) /= G.row(i).sum();
   }
-  G_ = G.cast<float>();  // last: NumPy then has the same weights
+  G_ = G.cast<float>();  // converted last, so that the weights equal those that NumPy computes
 }
 
 Eigen::MatrixXf Pca::project(const Eigen::Ref<const GreyMatrix>& pixels) const {
@@ -137,14 +137,14 @@ Pca fitPca(const DataSet& data, int dim, const Blur& blur, const std::function<v
 
   const Eigen::Index subspace = std::min<Eigen::Index>(
       {static_cast<Eigen::Index>(dim) + kOversampling, num_images, data.numPixels()});
-  std::mt19937_64 rng(1);  // any fixed start will do: the result does not depend on it
+  std::mt19937_64 rng(1);  // the result does not depend on the seed
   std::normal_distribution<float> normal;
   Eigen::MatrixXf next(data.numPixels(), subspace);
   for (Eigen::Index i = 0; i < next.size(); ++i) next.data()[i] = normal(rng);
 
-  Eigen::MatrixXf basis;  // orthonormal; `ritz` is the decomposition of the covariance within it
+  Eigen::MatrixXf basis;  // orthonormal columns; `ritz` decomposes the covariance in this basis
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz;
-  double captured = 0.0;  // variance within the first `dim` directions of the subspace
+  double captured = 0.0;  // variance along the first `dim` directions of the subspace
   bool settled = false;
   for (int sweep = 0; sweep < kMaxSweeps && !settled; ++sweep) {
     if (check) check();
@@ -161,7 +161,7 @@ Pca fitPca(const DataSet& data, int dim, const Blur& blur, const std::function<v
     throw std::invalid_argument("all " + std::to_string(num_images) +
                                 " images are the same: there is nothing to learn from them");
   }
-  // The sign of a component is arbitrary: fix it, so that equal data give equal models.
+  // The sign of a component is arbitrary. Fix it, so that equal data give equal models.
   for (int k = 0; k < dim; ++k) {
     Eigen::Index largest;
     pca.basis.col(k).cwiseAbs().maxCoeff(&largest);

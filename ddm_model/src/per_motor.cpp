@@ -1,4 +1,4 @@
-// Limits of motors: one number for all of them, or one for each.
+// Torque limits: one number for all motors, or one number for each motor.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/per_motor.h"
 

@@ -1,4 +1,4 @@
-// One of several trainings: from its own initial weights, with one delay.
+// One of several trainings, with its own initial weights and its own delay.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "restart.h"
 
@@ -10,11 +10,11 @@
 namespace ddm {
 namespace {
 
-constexpr Eigen::Index kPart = 100;    // frames
-constexpr Eigen::Index kMinParts = 4;  // so that even few frames come from several places
+constexpr Eigen::Index kPart = 100;    // samples of a part
+constexpr Eigen::Index kMinParts = 4;  // for few samples, so that they come from several places
 
-/// The terms that the best restart is chosen by: predictions training/selection_steps ahead, or what
-/// the schedule minimises.
+/// @return terms for the comparison of restarts: predictions training/selection_steps ahead, or the
+///         terms that the schedule minimises
 Terms selectionTerms(const Schedule& schedule, const TrainingOptions& training) {
   if (training.selection_steps == 0) return schedule.terms();
   Terms terms{false, true};
@@ -22,7 +22,7 @@ Terms selectionTerms(const Schedule& schedule, const TrainingOptions& training) 
   return terms;
 }
 
-/// Minimises one stage from where the restart is.
+/// Minimises one stage from the current weights of a restart.
 Minimum minimiseFrom(const Stage& stage, const TrainingOptions& training, Problem* problem,
                      Progress* progress, Restart* restart) {
   Minimum minimum = minimiseStage(stage, training, problem->networks, &problem->objective,
@@ -34,7 +34,7 @@ Minimum minimiseFrom(const Stage& stage, const TrainingOptions& training, Proble
   return minimum;
 }
 
-/// All stages of one restart.
+/// Minimises all stages of one restart, and computes the error by which restarts are compared.
 void minimiseRestart(const Schedule& schedule, const TrainingOptions& training,
                      const TrainingData<float>& data, Progress* progress, Restart* restart) {
   Problem problem(restart->model, data);
@@ -52,13 +52,13 @@ void minimiseRestart(const Schedule& schedule, const TrainingOptions& training,
     restart->message = text.str();
     return;
   }
-  // As many predictions as there are frames, so that delays can be compared: a longer one leaves fewer
-  // predictions, but as many images and weights.
+  // Scale V_P to the number of samples, to compare delays: a longer delay leaves fewer predictions,
+  // but the same number of images and weights.
   auto value = problem.objective.evaluate(restart->theta.cast<float>(), nullptr, selection);
   const auto num_predictions = static_cast<double>(problem.objective.numPredictions());
   if (selection.v_p) value.v_p *= static_cast<double>(data.torques.cols()) / num_predictions;
   restart->error = problem.objective.weight() * value.of(selection);
-  if (!std::isfinite(restart->error)) {  // a rollout that grows without bound
+  if (!std::isfinite(restart->error)) {  // a rollout diverges
     restart->error = std::numeric_limits<double>::max();
   }
 }
@@ -103,7 +103,8 @@ void minimiseStages(const Schedule& schedule, const TrainingOptions& training,
       errors[i] = std::current_exception();
     }
   };
-  // In a team of one thread its objective would start new threads at each evaluation.
+  // A single restart runs outside of a parallel region: inside, each of its evaluations would start
+  // new threads.
   if (count == 1) {
     attempt(0);
   } else {
@@ -129,7 +130,7 @@ void minimiseFinish(const Stage& finish, const TrainingOptions& training,
   for (size_t i = 0; i < counts.size(); ++i) {
     Problem problem(best->model, evenPart(data, counts[i], longer_than));
     Stage stage = finish;
-    stage.max_iterations = rest / static_cast<int>(counts.size() - i);  // about as many on each
+    stage.max_iterations = rest / static_cast<int>(counts.size() - i);  // in equal shares
     rest -= stage.max_iterations;
     if (stage.max_iterations > 0) minimiseFrom(stage, training, &problem, progress, best);
   }
@@ -139,7 +140,7 @@ TrainingData<float> evenPart(const TrainingData<float>& data, Eigen::Index max_f
                              Eigen::Index longer_than) {
   const Eigen::Index num_frames = data.torques.cols();
   if (num_frames <= max_frames) return data;
-  // Parts of 100 frames could not be spread over fewer frames than that.
+  // Fewer than 100 samples could not be spread over several places in parts of 100.
   const Eigen::Index length =
       max_frames >= kPart ? kPart : std::max(longer_than + 1, max_frames / kMinParts);
   std::vector<Segment> chosen;
@@ -148,7 +149,7 @@ TrainingData<float> evenPart(const TrainingData<float>& data, Eigen::Index max_f
     for (Eigen::Index at = 0; at < segment.size; at += length) {
       const Segment piece{segment.begin + at, std::min(length, segment.size - at)};
       seen += piece.size;
-      // Keeps parts until their share of all frames so far is max_frames / num_frames.
+      // A part is kept if the share of kept samples so far stays at most max_frames / num_frames.
       const bool due = (taken + piece.size) * num_frames <= seen * max_frames;
       if (!due || piece.size <= longer_than) continue;
       taken += piece.size;
@@ -156,7 +157,7 @@ TrainingData<float> evenPart(const TrainingData<float>& data, Eigen::Index max_f
     }
   }
   if (chosen.empty()) return data;
-  const Eigen::Index num_others = data.scores.cols() - num_frames;  // the goal
+  const Eigen::Index num_others = data.scores.cols() - num_frames;  // 1 if there is a goal image
   TrainingData<float> part;
   part.scores.resize(data.scores.rows(), taken + num_others);
   part.scores.rightCols(num_others) = data.scores.rightCols(num_others);

@@ -1,4 +1,4 @@
-// One of several trainings: from its own initial weights, with one delay.
+// One of several trainings, with its own initial weights and its own delay.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -16,21 +16,24 @@
 
 namespace ddm {
 
-/// Thrown where the callback of a training ends it.
+/// Thrown if the callback cancels the training.
 struct Cancelled {};
 
-/// The iterations of all restarts and stages as one progress, whichever of them run at the same time.
+/// Adds up the iterations of all restarts and stages, which may run at the same time.
 class Progress {
  public:
-  /// @param max_iterations  of the whole training
-  /// @param squared_scale   turns [score^2] into [grey^2]
+  /// @param callback        receives the progress; may be empty
+  /// @param max_iterations  cap on the iterations of the whole training
+  /// @param squared_scale   factor from [score^2] to [grey^2]
   Progress(const TrainingCallback& callback, double max_iterations, double squared_scale)
       : callback_(callback), max_iterations_(max_iterations), squared_scale_(squared_scale) {}
 
-  /// @return what is to be called while the next stage of one restart is minimised
-  /// @throws Cancelled if the callback has ended the training
+  /// @return callback for the next stage of one restart
+  /// @throws Cancelled if the training was cancelled
   StageCallback nextStage();
-  /// The stage ended, perhaps before its limit. @throws Cancelled likewise
+  /// Counts the iterations that a stage did not need.
+  /// @param skipped_iterations  cap of the stage minus its iterations
+  /// @throws Cancelled if the training was cancelled
   void endStage(int skipped_iterations);
 
  private:
@@ -40,17 +43,17 @@ class Progress {
   std::mutex mutex_;
   std::atomic<bool> cancelled_{false};
   int iterations_ = 0;    // of all stages
-  double skipped_ = 0.0;  // that no stage will need any more
+  double skipped_ = 0.0;  // iterations that stages did not need
 };
 
-/// The networks with one model/delay, and what is minimised over their parameters.
+/// Networks with one model/delay, and the objective over their parameters.
 struct Problem {
   Problem(ModelOptions model, const TrainingData<float>& data)
       : options(std::move(model)),
         networks(options, static_cast<int>(data.torques.rows())),
         objective(networks, data) {}
 
-  /// w times the terms.
+  /// @return the selected terms of V, with the factor w
   double cost(const Eigen::VectorXd& theta, const Terms& terms) {
     return objective.weight() * objective.evaluate(theta.cast<float>(), nullptr, terms).of(terms);
   }
@@ -60,36 +63,39 @@ struct Problem {
   JointObjective<float> objective;
 };
 
-/// What one training started from, and what it came to.
+/// One training: its initial weights and its result.
 struct Restart {
-  ModelOptions model;     ///< with the delay of this restart
-  Eigen::VectorXd theta;  ///< initial weights, then those reached  [P]
+  ModelOptions model;     ///< options with the delay of this restart
+  Eigen::VectorXd theta;  ///< initial weights, then current weights  [P]
   double initial_cost = 0.0;
-  /// By which restarts are compared; infinite: the objective did not fall, and the message says so.
+  /// Error by which restarts are compared. Infinite if a stage did not lower the objective.
   double error = std::numeric_limits<double>::infinity();
-  std::string message{};  ///< how the solver ended
+  std::string message{};  ///< how the solver ended, or why there is no error
   int iterations = 0;
   int evaluations = 0;
 };
 
-/// Minimises the stages of the schedule for all restarts, on as many processors as OpenMP may use.
-/// @throws Cancelled; what the first restart threw that refused its data
+/// Minimises all stages of the schedule, `finish` excepted, for each restart. Restarts run in
+/// parallel on the processors of OpenMP.
+/// @throws Cancelled if the training was cancelled; std::invalid_argument if a restart has no
+///         predictions to learn from
 void minimiseStages(const Schedule& schedule, const TrainingOptions& training,
                     const TrainingData<float>& data, Progress* progress,
                     std::vector<Restart>* restarts);
 
-/// Minimises the last stage of a schedule for the restart that was chosen, first on training/selection_frames,
-/// then on twice as many frames each time, up to all: what can be learned from few need not be learned from all.
+/// Minimises the last stage for the best restart: first on training/selection_frames samples, then
+/// on twice as many at a time, up to all. The first iterations need only few samples.
 /// @param longer_than  see evenPart()
-/// @throws Cancelled
+/// @throws Cancelled if the training was cancelled
 void minimiseFinish(const Stage& finish, const TrainingOptions& training,
                     const TrainingData<float>& data, Eigen::Index longer_than, Progress* progress,
                     Restart* best);
 
-/// Parts of segments of up to 100 frames, spread evenly over all and at most so many frames together, and the goal.
-/// @param max_frames   more than there are: all; fewer than 100: the parts are shorter
-/// @param longer_than  parts that are not longer are left out [frames]
-/// @return             all of the data, if no part is long enough
+/// Selects parts of segments, spread evenly over all data, and the goal image. A part has up to 100
+/// samples.
+/// @param max_frames   samples in all parts together at most; below 100, the parts are shorter
+/// @param longer_than  parts with at most this many samples are omitted
+/// @return             all data if there are at most max_frames samples, or if no part is left
 TrainingData<float> evenPart(const TrainingData<float>& data, Eigen::Index max_frames,
                              Eigen::Index longer_than);
 

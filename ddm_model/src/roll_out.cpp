@@ -1,4 +1,4 @@
-// Multi-step prediction: the regressor h_n, and predictions of f put one after the other.
+// Rollouts: the regressor h_n, and multi-step predictions of f.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/roll_out.h"
 
@@ -20,8 +20,8 @@ void RollOut<Scalar>::reserve(Eigen::Index num_targets, int num_steps) {
   regressors_.resize(f_.regressorDim(), targets);
 }
 
-/// h_n of the step that predicts the frame `step` after each target. Plain loops: the blocks have a
-/// few numbers each, and a plan spends a sixth of its time here if they are Eigen's.
+/// Fills in h_n for the prediction of the sample `step` steps after each target. Plain loops are
+/// used because blocks of a few numbers are slow in Eigen: a sixth of the time of a plan.
 template <class Scalar>
 void RollOut<Scalar>::fillRegressors(const Eigen::Ref<const Matrix>& Z,
                                      const Eigen::Ref<const Eigen::MatrixXd>& U,

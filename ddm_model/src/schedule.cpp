@@ -1,4 +1,4 @@
-// Training schedule: what is minimised over which parameters, one stage after the other.
+// Training schedule: the stages of a training, each with its terms and free parameters.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/schedule.h"
 
@@ -8,7 +8,7 @@
 namespace ddm {
 namespace {
 
-/// The stages of each schedule, without their numbers.
+/// @return terms and free parameters of each schedule, without weights and iterations
 const std::map<std::string, Schedule>& schedules() {
   const Stage joint{{true, true}, Stage::Free::kAll};
   const Stage auto_encoder{{true, false}, Stage::Free::kAutoEncoder};

@@ -1,4 +1,4 @@
-// One stage of a training schedule, minimised by BFGS, or by L-BFGS, preconditioned or not.
+// Minimisation of one stage of a training schedule by BFGS, L-BFGS or preconditioned L-BFGS.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "stage_minimisation.h"
 
@@ -13,23 +13,23 @@
 namespace ddm {
 namespace {
 
-/// d. Training is about equally fast from 0.01 to 0.3. Without damping, directions that have shown no curvature yet
-/// would take unbounded steps.
+/// Damping d. Training takes about equally long from 0.01 to 0.3. Without damping, directions
+/// without curvature would get unbounded steps.
 constexpr double kDamping = 0.03;
 
-/// The damped matrix to the power of -1/2; the identity where all is 0, or where errors have overflowed float.
+/// @return (matrix + damping)^(-1/2); the identity if the matrix is 0 or has overflowed float
 Eigen::MatrixXf inverseRoot(const Eigen::MatrixXd& matrix) {
   const Eigen::Index size = matrix.rows();
-  const double mean = matrix.trace() / static_cast<double>(size);  // of the eigenvalues
+  const double mean = matrix.trace() / static_cast<double>(size);  // mean of the eigenvalues
   if (!(mean > 0.0) || !std::isfinite(mean)) return Eigen::MatrixXf::Identity(size, size);
   const Eigen::MatrixXd damped = matrix + kDamping * mean * Eigen::MatrixXd::Identity(size, size);
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(damped).operatorInverseSqrt().cast<float>();
 }
 
-/// Iterations of L-BFGS after which the Kronecker factors are computed again. Every 25 to 100 does equally well.
+/// Iterations of L-BFGS between computations of the Kronecker factors; 25 to 100 do equally well.
 constexpr int kRefresh = 50;
 
-/// Where the parameters that a stage may change lie in theta, and which layers they belong to.
+/// Range of the free parameters in theta, and the layers that they belong to.
 struct Range {
   Eigen::Index begin;
   Eigen::Index size;
@@ -54,12 +54,13 @@ Range freeParameters(const Networks<float>& networks, Stage::Free free) {
   return {0, num_params, 0, layers_of_auto_encoder + layers_of_f};
 }
 
-/// The scaled objective of one stage in float32, as a function of the free parameters or of coordinates for them.
+/// Scaled objective of one stage in float32, as a function of the free parameters or of coordinates
+/// v.
 class StageObjective {
  public:
   using Value = JointObjective<float>::Value;
 
-  /// @param theta  all parameters; gives the values of those that are not free
+  /// @param theta  all parameters; those that are not free stay at these values
   StageObjective(JointObjective<float>* objective, const Terms& terms, Range free,
                  const Eigen::VectorXd& theta)
       : objective_(*objective),
@@ -85,7 +86,7 @@ class StageObjective {
     return cost;
   }
 
-  /// Takes coordinates for the parameters that suit the objective at x, which becomes their origin.
+  /// Computes new coordinates v from the Kronecker factors at x. They are 0 at x.
   void precondition(const Eigen::VectorXd& x, std::mt19937_64* rng) {
     origin_ = parametersAt(x);
     freeOf(theta_) = origin_;
@@ -94,13 +95,13 @@ class StageObjective {
     preconditioner_.emplace(LayerFactors<float>(first, first + free_.num_layers));
   }
 
-  /// @return free parameters  [size of the range]
+  /// @return free parameters at coordinates x  [size of the range]
   Eigen::VectorXf parametersAt(const Eigen::VectorXd& x) const {
     if (!preconditioner_) return x.cast<float>();
     return origin_ + (*preconditioner_)(x.cast<float>());
   }
 
-  /// V_R and V_P where the cost was lowest.
+  /// @return V_R and V_P at the lowest cost so far
   const Value& best() const { return best_; }
 
  private:
@@ -114,7 +115,7 @@ class StageObjective {
   Eigen::VectorXf theta_;
   Eigen::VectorXf d_theta_;
   Eigen::VectorXf origin_;
-  std::optional<Preconditioner> preconditioner_;  // none: the parameters themselves
+  std::optional<Preconditioner> preconditioner_;  // empty: x are the free parameters
   double lowest_ = std::numeric_limits<double>::infinity();
   Value best_;
 };
@@ -148,7 +149,7 @@ Minimum minimiseStage(const Stage& stage, const TrainingOptions& training,
   const Range free = freeParameters(networks, stage.free);
   StageObjective function(objective, stage.terms, free, *theta);
   const bool kfac = training.solver == "kfac";
-  std::mt19937_64 rng(1);  // of signs, see JointObjective::factors()
+  std::mt19937_64 rng(1);  // draws signs, see JointObjective::factors()
   const int cap = stage.max_iterations;
   MinimiseOptions options;
   options.lbfgs_rank = training.solver == "bfgs" ? 0 : training.lbfgs_rank;
@@ -176,7 +177,7 @@ Minimum minimiseStage(const Stage& stage, const TrainingOptions& training,
     }
     if (total.evaluations > 0) {
       minimum.initial_cost = total.initial_cost;
-      if (!found) minimum.cost = total.cost;  // what was reached before these factors still holds
+      if (!found) minimum.cost = total.cost;  // the result before this round stays
     }
     minimum.iterations += total.iterations;
     minimum.evaluations += total.evaluations;

@@ -1,4 +1,4 @@
-// One stage of a training schedule, minimised by BFGS, or by L-BFGS, preconditioned or not.
+// Minimisation of one stage of a training schedule by BFGS, L-BFGS or preconditioned L-BFGS.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,20 +12,21 @@
 
 namespace ddm {
 
-/// T of theta = theta_0 + T v, where theta are the parameters of some layers one after the other. For each layer,
-/// with its Kronecker factors A (of inputs) and E (of errors),
+/// Symmetric matrix T of the coordinates v, theta = theta_0 + T v, of training/solver kfac. theta
+/// are the parameters of several layers. For each layer with Kronecker factors A (inputs) and E
+/// (errors),
 ///
 ///   [W b] = [W b]_0 + E'^(-1/2) V A'^(-1/2),   A' = A / N + d mean(eig(A / N)) I,   E' likewise
 ///
-/// so that steps of L-BFGS in v are those of K-FAC in theta (Martens and Grosse, ICML 2015) as long as it has seen
-/// no curvature itself. T is symmetric. The power of a factor that is 0 or not finite counts as I.
+/// Before L-BFGS has measured curvature, its steps in v are those of K-FAC in theta (Martens and
+/// Grosse, ICML 2015). If a factor is 0 or not finite, its power is replaced by I.
 class Preconditioner {
  public:
-  /// @param factors  of the layers whose parameters theta are
+  /// @param factors  of the layers, in the order of theta
   explicit Preconditioner(const LayerFactors<float>& factors);
 
-  /// @param v  step in v, or derivative of the objective by theta    [P]
-  /// @return   T v: step in theta, or derivative of the objective by v  [P]
+  /// @param v  step in v, or gradient by theta   [P]
+  /// @return   T v: step in theta, or gradient by v  [P]
   Eigen::VectorXf operator()(const Eigen::VectorXf& v) const;
 
  private:
@@ -36,14 +37,16 @@ class Preconditioner {
   std::vector<Layer> layers_;
 };
 
-/// Called after each iteration with the best point so far and V_R, V_P there; false ends the stage.
+/// Receives the best point so far with its V_R and V_P, after each iteration. Returning false ends
+/// the stage.
 using StageCallback =
     std::function<bool(const Minimum& so_far, const JointObjective<float>::Value& value)>;
 
-/// Minimises w times the terms of the stage over the parameters that it leaves free.
-/// @param theta     in: all parameters, out: with the free ones at the minimum; as they were if the
-///                  objective cannot be evaluated there                            [P]
+/// Minimises w times the terms of a stage over its free parameters.
+/// @param theta     in: all parameters; out: the free parameters are at the minimum, or unchanged
+///                  if the objective is not finite at the initial point             [P]
 /// @param callback  may be empty
+/// @return          result of the solver, in its own coordinates
 Minimum minimiseStage(const Stage& stage, const TrainingOptions& training,
                       const Networks<float>& networks, JointObjective<float>* objective,
                       Eigen::VectorXd* theta, const StageCallback& callback);

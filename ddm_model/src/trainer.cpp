@@ -1,4 +1,4 @@
-// Joint training of the deep dynamical model (paper, Sec. 2): PCA, initial weights, V_R + V_P, minimise.
+// Training of the deep dynamical model (paper, Sec. 2.3): PCA, initial weights, minimisation.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/trainer.h"
 
@@ -21,7 +21,7 @@ namespace {
 
 constexpr Eigen::Index kMaxSupportStates = 1000;
 
-/// The largest delay that is tried: up to training/max_delay, as long as there is something to predict.
+/// @return the largest delay that leaves a prediction, at most training/max_delay [samples]
 int largestDelayOf(const DataSet& data, const ModelOptions& model,
                    const TrainingOptions& training) {
   Eigen::Index longest = 0;
@@ -30,7 +30,7 @@ int largestDelayOf(const DataSet& data, const ModelOptions& model,
   return std::max(model.delay, std::min(largestDelay(model, training), possible));
 }
 
-/// Cap on the iterations of the whole training.
+/// @return cap on the iterations of the whole training
 double maxIterations(const Schedule& schedule, std::size_t num_restarts) {
   const auto add = [](int sum, const Stage& stage) { return sum + stage.max_iterations; };
   const int stages = std::accumulate(schedule.stages.begin(), schedule.stages.end(), 0, add);
@@ -38,7 +38,7 @@ double maxIterations(const Schedule& schedule, std::size_t num_restarts) {
          (schedule.finish ? schedule.finish->max_iterations : 0);
 }
 
-/// The model of a training that is done.
+/// Makes the model from the weights of the best restart.
 Ddm makeModel(const Restart& best, Problem* problem, const DataSet& data, const Pca& pca,
               double squared_scale, ModelInfo info) {
   const auto value = problem->objective.evaluate(best.theta.cast<float>(), nullptr);
@@ -51,14 +51,14 @@ Ddm makeModel(const Restart& best, Problem* problem, const DataSet& data, const 
   return Ddm(best.model, data.imageSize(), data.torqueDim(), pca, best.theta, data.goal(), info);
 }
 
-/// See train(). @throws Cancelled also
+/// Implements train(). @throws Cancelled if the callback cancels the training
 TrainingResult trainUnlessCancelled(const DataSet& data, const ModelOptions& model,
                                     const TrainingOptions& training, const ModelInfo& info,
                                     const TrainingCallback& callback) {
   const Networks<double> networks(model, data.torqueDim());  // eqs. (2), (3a), (3b)
   const Schedule schedule = makeSchedule(training);
 
-  // Sec. 4: the encoder sees the leading principal components of the images, the goal image among them.
+  // Sec. 4: the encoder sees the leading principal components of all images and the goal image.
   const auto check = [&] {
     if (callback && !callback(TrainingProgress())) throw Cancelled();
   };
@@ -66,8 +66,9 @@ TrainingResult trainUnlessCancelled(const DataSet& data, const ModelOptions& mod
   const TrainingData<float> scores = makeTrainingData(data, pca);
   const double squared_scale = 1.0 / (static_cast<double>(pca.scale) * pca.scale);
 
-  // Sec. 2.3, "Initialization": the auto-encoder from layer-wise PCA. Deviation: several restarts, in which f
-  // has other random weights, each with every delay that is tried; the paper has one, with delay 0.
+  // Sec. 2.3, "Initialization": layer-wise PCA initialises the auto-encoder. Deviation: there are
+  // several restarts, in which f has other random weights, each with every delay that is tried. The
+  // paper has a single training with delay 0.
   const int largest_delay = largestDelayOf(data, model, training);
   std::mt19937_64 rng = randomStream({info.seed, info.trial}, StreamRole::kInitialisation);
   std::vector<Restart> restarts;
@@ -80,7 +81,7 @@ TrainingResult trainUnlessCancelled(const DataSet& data, const ModelOptions& mod
     }
   }
 
-  // Eq. (5a): V_R + V_P of eqs. (5b), (5c) is minimised over all parameters, or what the schedule says.
+  // Eq. (5a): minimises V_R + V_P of eqs. (5b, 5c), or the terms of the schedule.
   Progress progress(callback, maxIterations(schedule, restarts.size()), squared_scale);
   const Eigen::Index longer_than = model.order + largest_delay;
   const bool on_part = schedule.finish && training.selection_frames > 0;
@@ -88,7 +89,7 @@ TrainingResult trainUnlessCancelled(const DataSet& data, const ModelOptions& mod
                  on_part ? evenPart(scores, training.selection_frames, longer_than) : scores,
                  &progress, &restarts);
 
-  // The best restart is kept; it may go on alone.
+  // Keeps the best restart, which may continue alone.
   Restart& best =
       *std::min_element(restarts.begin(), restarts.end(),
                         [](const Restart& a, const Restart& b) { return a.error < b.error; });

@@ -1,4 +1,4 @@
-// Options of programs that read bags: what the block data_set says, on the command line.
+// Command line options for the parameters of block data_set.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -9,8 +9,9 @@
 
 namespace ddm {
 
-/// Adds the options. Values that are given appear in the block data_set of `given`, to be laid over the blocks of files.
-/// @param given  outlives the options
+/// Adds the options. Their values are written to the block data_set of `given`, which the program
+/// lays over the blocks of files.
+/// @param given  must outlive the options
 inline void addBagOptions(boost::program_options::options_description* options, YAML::Node* given) {
   const auto add = [&](const char* option, const std::string& key, const char* form,
                        const char* text) {

@@ -1,4 +1,4 @@
-// read_bags: the frames of bags as training reads them, for programs in Python.
+// read_bags: writes the samples of bags as training reads them, for programs in Python.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/bag_reader.h>
 #include <ddm_common/config_blocks.h>
@@ -21,17 +21,17 @@ namespace po = boost::program_options;
 
 namespace {
 
-constexpr int kMaxImageSize = 16384;  // of a model
+constexpr int kMaxImageSize = 16384;  // limit of the image size of a model
 
 struct Arguments {
   std::vector<std::string> configs;
   int image_size = 0;
   std::string out;
   std::vector<std::string> bags;
-  YAML::Node data_set;  // from the options of bags
+  YAML::Node data_set;  // from the command line
 };
 
-/// @return false where --help was asked for and has been printed
+/// @return false if --help was given and has been printed
 bool parse(int argc, char** argv, Arguments* arguments) {
   po::options_description options(
       "Writes the frames of bags, paired, cropped and resized as training reads them.\n\n"

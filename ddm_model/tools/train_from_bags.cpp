@@ -1,4 +1,4 @@
-// train_from_bags: what model_node does, from the command line and without a master.
+// train_from_bags: trains a model from bags like model_node, but without a ROS master.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_bag_io/model_config.h>
@@ -29,13 +29,13 @@ struct Arguments {
   std::vector<std::string> configs;
   std::vector<std::string> values;
   std::string goal;
-  std::int64_t seed = 0;  // signed: -1 is to be refused, not to become a huge number
+  std::int64_t seed = 0;  // signed, so that -1 is refused instead of read as a huge number
   std::string out;
   std::vector<std::string> bags;
-  YAML::Node data_set;  // from the options of bags
+  YAML::Node data_set;  // from the command line
 };
 
-/// @return false where --help was asked for and has been printed
+/// @return false if --help was given and has been printed
 bool parse(int argc, char** argv, Arguments* arguments) {
   po::options_description options(
       "Trains a deep dynamical model from recorded bags, without a ROS master.\n\n"
@@ -73,10 +73,10 @@ bool showProgress(const ddm::TrainingProgress& progress) {
   return true;
 }
 
-/// Blocks of all files. The limits of the motors are written once: `model/max_torque` is that of a
-/// robot or plant in the same files, unless they give it themselves.
-/// @throws std::invalid_argument if only a model file could say
-/// @param limits_from  out: the key that they come from
+/// Reads the blocks of all files and options. If they have no `model/max_torque`, the limits of a
+/// robot or plant in them are used.
+/// @param limits_from  out: name of the parameter that gives the limits
+/// @throws std::invalid_argument if only the model file of a plant gives the limits
 YAML::Node readConfigs(const Arguments& arguments, std::string* limits_from) {
   YAML::Node blocks(YAML::NodeType::Map);
   for (const std::string& file : arguments.configs) ddm::overlay(ddm::readBlocks(file), &blocks);

@@ -1,4 +1,4 @@
-// The torques that acted after each image, from the topic `applied_torque`.
+// The torques that acted after each image, received on the topic `applied_torque`.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace ddm {
 
-/// Receives applied torques in the thread that asks for them, which is the thread of the images.
+/// Receives applied torques in the thread that calls after(), which is the image thread.
 class AppliedTorques {
  public:
   explicit AppliedTorques(ros::NodeHandle nh) {
@@ -20,16 +20,16 @@ class AppliedTorques {
                                ros::TransportHints().tcpNoDelay());
   }
 
-  /// For a new trial: a simulator that was started again uses its stamps again.
+  /// Clears all torques for a new trial, because a simulator that restarts reuses its stamps.
   void clear() {
     queue_.clear();
     torques_.clear();
   }
 
-  /// The torque that acted after an image. It is sent at about the time of the next image, and may come
-  /// later than that image.
-  /// @param stamp  of the image
-  /// @return       null if none was reported: then the decided torque counts as the applied one
+  /// Finds the torque that acted after an image. It is sent at about the time of the next image and
+  /// may arrive after that image, so that this function waits for it up to 20 ms.
+  /// @param stamp  stamp of the image
+  /// @return       null if none was reported; the decided torque then counts as applied
   ddm_msgs::TorqueConstPtr after(const ros::Time& stamp) {
     const ros::WallDuration limit(0.02);
     if (subscriber_.getNumPublishers() == 0) return nullptr;
@@ -50,7 +50,7 @@ class AppliedTorques {
     if (torques_.size() > kQueue) torques_.erase(torques_.begin());
   }
 
-  std::map<ros::Time, ddm_msgs::TorqueConstPtr> torques_;  // by stamp, the newest ones
+  std::map<ros::Time, ddm_msgs::TorqueConstPtr> torques_;  // by stamp; the newest ones
   ros::CallbackQueue queue_;
   ros::Subscriber subscriber_;
 };

@@ -1,4 +1,4 @@
-// Health of mpc_node for /diagnostics: camera, torque, plans, model.
+// Health of mpc_node on /diagnostics: camera, torque, plans, model.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "control_health.h"
 
@@ -7,7 +7,7 @@
 namespace ddm {
 namespace {
 
-constexpr double kLate = 1.0;  // a message that is expected for longer is a warning [s]
+constexpr double kLate = 1.0;  // a message that is missing for longer is a warning [s]
 
 double ageOf(const ros::SteadyTime& time) { return (ros::SteadyTime::now() - time).toSec(); }
 
@@ -20,7 +20,7 @@ ControlHealth::ControlHealth(const ros::NodeHandle& nh, const ros::NodeHandle& p
   updater_.add("torque", [this](Status& status) { reportStream("torque", &torques_, &status); });
   updater_.add("plan", [this](Status& status) { reportPlans(&status); });
   updater_.add("model", [this](Status& status) { reportModel(&status); });
-  // Not Updater::update(), which goes by simulated time and would report a hundred times a second.
+  // Updater::update() uses simulated time, which may run a hundred times faster than real time.
   timer_ = nh.createSteadyTimer(ros::WallDuration(updater_.getPeriod()),
                                 [this](const ros::SteadyTimerEvent&) { onTick(); });
 }

@@ -1,4 +1,4 @@
-// Health of mpc_node for /diagnostics: camera, torque, plans, model.
+// Health of mpc_node on /diagnostics: camera, torque, plans, model.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,12 +13,12 @@
 
 namespace ddm {
 
-/// Counts what the node reports to it, from any thread, and publishes four statuses once in
-/// `~diagnostic_period` (1 s). All times are of a clock that nobody sets: in lock-step simulated
-/// time runs as fast as it can.
+/// Counts images, torques and plans, from any thread, and publishes four statuses once per
+/// `~diagnostic_period` (1 s). All times are of the steady clock, because in lock-step simulated
+/// time runs as fast as the computer allows.
 class ControlHealth {
  public:
-  /// The message without which the trial cannot go on.
+  /// The message that a trial needs next.
   enum class Expected { kNothing, kModel, kImage };
 
   ControlHealth(const ros::NodeHandle& nh, const ros::NodeHandle& pnh);
@@ -34,13 +34,13 @@ class ControlHealth {
 
   struct Stream {
     std::uint64_t total = 0;
-    std::uint64_t reported = 0;  ///< of these, in earlier reports
+    std::uint64_t reported = 0;  ///< value of total in the last report
     ros::SteadyTime last;
   };
   struct Plans {
     int count = 0;
     int failed = 0;
-    int cut = 0;  ///< by mpc/time_budget
+    int cut = 0;  ///< stopped by mpc/time_budget
     double sum_s = 0.0;
     double max_s = 0.0;
   };
@@ -51,15 +51,15 @@ class ControlHealth {
   void reportPlans(Status* status) const;
   void reportModel(Status* status) const;
 
-  std::mutex mutex_;  // guards all of these
+  std::mutex mutex_;  // guards the members up to model_came_
   Expected expected_ = Expected::kNothing;
   ros::SteadyTime expected_since_;
   ros::SteadyTime last_report_;
-  double period_ = 0.0;  ///< between the last two reports [s]
+  double period_ = 0.0;  ///< time between the last two reports [s]
   Stream images_;
   Stream torques_;
   Plans plans_;            ///< since the last report
-  ddm_msgs::Model model_;  ///< without its data; no id: none came
+  ddm_msgs::Model model_;  ///< without its data; empty id: none received
   ros::SteadyTime model_came_;
 
   diagnostic_updater::Updater updater_;

@@ -1,4 +1,4 @@
-// mpc_node: answers camera images with torques.
+// mpc_node: answers each camera image with a torque.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mpc_node.h"
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kQueue = 10;
 const ros::WallDuration kPlanLogPeriod(5.0);
-const ros::WallDuration kTick(0.1);  // of feedback too: for each frame it would be a load
+const ros::WallDuration kTick(0.1);  // also the period of feedback, to limit its load
 
 ros::NodeHandle withQueue(ros::NodeHandle nh, ros::CallbackQueue* queue) {
   nh.setCallbackQueue(queue);
@@ -49,12 +49,12 @@ MpcNode::MpcNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size, const 
       topics::kImage, 1, &MpcNode::onImage, this,
       image_transport::TransportHints("raw", ros::TransportHints().tcpNoDelay()));
   image_spinner_.start();
-  server_.start();  // last: whoever sees the action finds everything else in place
+  server_.start();  // last: a client that sees the action can use all topics
 }
 
 MpcNode::~MpcNode() {
-  stop();                 // else the spinner would wait for a plan
-  image_spinner_.stop();  // no callback is running from here on
+  stop();                 // otherwise the spinner waits for the end of the current plan
+  image_spinner_.stop();  // no callback runs after this line
 }
 
 bool MpcNode::stop() {
@@ -64,7 +64,8 @@ bool MpcNode::stop() {
 }
 
 void MpcNode::onGoal() {
-  std::unique_lock<std::mutex> lock(mutex_);  // an image that is sent now waits for its trial
+  // An image that arrives now is answered after the trial has begun.
+  std::unique_lock<std::mutex> lock(mutex_);
   goal_ = server_.acceptNewGoal();
   health_.expect(ControlHealth::Expected::kModel);
   last_progress_ = ros::SteadyTime::now();
@@ -83,7 +84,7 @@ void MpcNode::onGoal() {
 void MpcNode::onPreempt() {
   if (goal_ == nullptr) return;
   const ddm_msgs::RunTrialResult result = endTrial();
-  // A new goal sets this flag too, and is accepted right after; then there is nothing left to end.
+  // A new goal also sets the preempt flag and is accepted right after. It replaces this trial.
   if (server_.isActive() && !server_.isNewGoalAvailable()) server_.setPreempted(result);
 }
 
@@ -115,9 +116,9 @@ void MpcNode::onGoalImage(const sensor_msgs::ImageConstPtr& image) {
   beginIfReady(std::move(lock));
 }
 
-/// Makes the trial once its model and its goal image are there, and lets the thread of the images
-/// prepare it.
-/// @param lock  of mutex_
+/// Creates the trial once its model and its goal image have arrived, and queues its preparation for
+/// the image thread.
+/// @param lock  lock of mutex_
 void MpcNode::beginIfReady(std::unique_lock<std::mutex> lock) {
   if (goal_ == nullptr || trial_ != nullptr || finished_) return;
   const std::string& model_id = goal_->model_id;
@@ -140,15 +141,16 @@ void MpcNode::beginIfReady(std::unique_lock<std::mutex> lock) {
   image_queue_.addCallback(prepare_);
 }
 
-/// In lock-step the first image may have come before the goal, and no second one will come.
+/// Prepares the trial. In lock-step, the first image may have arrived before the goal, and the
+/// simulator sends no second image before it gets a torque.
 void MpcNode::prepare() {
   const std::shared_ptr<TrialRun> trial = preparedTrial();
   if (trial == nullptr || !trial->startIsGiven() || trial->lastAnswered()) return;
   if (last_image_ != nullptr) answer(*last_image_);
 }
 
-/// Prepares the trial if that has not been done, without the lock because it takes up to two seconds.
-/// @return the trial under way; null if there is none
+/// Prepares the trial unless that is done. Releases the lock meanwhile, up to two seconds.
+/// @return the current trial; null if there is none
 std::shared_ptr<TrialRun> MpcNode::preparedTrial() {
   std::unique_lock<std::mutex> lock(mutex_);
   const std::shared_ptr<TrialRun> trial = trial_;
@@ -156,7 +158,7 @@ std::shared_ptr<TrialRun> MpcNode::preparedTrial() {
   lock.unlock();
   trial->prepare();
   lock.lock();
-  if (trial_ != trial) return nullptr;  // cancelled meanwhile
+  if (trial_ != trial) return nullptr;  // the trial was cancelled meanwhile
   preparing_ = false;
   applied_.clear();
   last_progress_ = ros::SteadyTime::now();
@@ -172,7 +174,7 @@ void MpcNode::onImage(const sensor_msgs::ImageConstPtr& image) {
 
 void MpcNode::answer(const sensor_msgs::Image& image) {
   const auto arrival = std::chrono::steady_clock::now();
-  // A client that sees its goal accepted may send an image before prepare() has been called.
+  // A client whose goal is accepted may send an image before the queue calls prepare().
   const std::shared_ptr<TrialRun> trial = preparedTrial();
   std::unique_lock<std::mutex> lock(mutex_);
   if (trial == nullptr || trial->ended()) return;
@@ -190,7 +192,7 @@ void MpcNode::answer(const sensor_msgs::Image& image) {
 
   lock.lock();
   deciding_since_.reset();
-  if (trial->ended()) return;  // meanwhile: its motors have their zero
+  if (trial->ended()) return;  // it was cancelled meanwhile; its motors have zero torque
   if (!trouble.text.empty()) {
     publishTorque(image.header.stamp, Eigen::VectorXd::Zero(controller_.torque_dim), false);
   } else if (decision) {
@@ -207,8 +209,11 @@ void MpcNode::answer(const sensor_msgs::Image& image) {
   ros::getGlobalCallbackQueue()->addCallback(finish_);
 }
 
-/// Without the lock: another goal may take as long as a plan.
-/// @param new_goal  the goal image that came since the last image; null: none came
+/// Decides the torque for an image. Needs no lock: a new goal may take as long to prepare as a
+/// plan.
+/// @param new_goal  goal image that arrived after the last image; null: none
+/// @param arrival   arrival of the image, where mpc/time_budget begins
+/// @return          empty if the image is not the next one of the trial
 /// @throws std::invalid_argument if the image cannot be answered
 std::optional<Decision> MpcNode::decide(TrialRun* trial, const sensor_msgs::ImageConstPtr& new_goal,
                                         const sensor_msgs::Image& image,
@@ -252,10 +257,10 @@ void MpcNode::publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torqu
   if (effort_) effort_->publish(message.torque);
 }
 
-/// The thread of the images has ended the trial.
+/// Reports the end of a trial that the image thread has ended.
 void MpcNode::onFinish() {
   std::unique_lock<std::mutex> lock(mutex_);
-  if (!finished_) return;  // it was cancelled before this was called
+  if (!finished_) return;  // the trial was cancelled before this call
   const Trouble trouble = *finished_;
   lock.unlock();
   if (!trouble.text.empty()) return abort(trouble);
@@ -282,7 +287,7 @@ void MpcNode::onTick() {
   if (silence) abort(*silence);
 }
 
-/// What keeps the trial waiting for longer than its timeout; empty: nothing.
+/// @return what has been missing for longer than controller/timeout; empty if nothing is missing
 std::optional<MpcNode::Trouble> MpcNode::describeSilence() {
   std::ostringstream reason;
   std::string topic = model_sub_.getTopic();
@@ -307,7 +312,7 @@ std::optional<MpcNode::Trouble> MpcNode::describeSilence() {
   return Trouble{reason.str(), topic};
 }
 
-/// However a trial ends, an effort controller must not go on with its last torque.
+/// Ends the trial with zero torque, because an effort controller keeps its last torque otherwise.
 ddm_msgs::RunTrialResult MpcNode::endTrial() {
   goal_.reset();
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -324,7 +329,7 @@ ddm_msgs::RunTrialResult MpcNode::endTrial() {
   return result;
 }
 
-/// The zero first: the master may keep whoever asks it waiting.
+/// Ends the trial before it asks the ROS master for publishers, since the master may answer late.
 void MpcNode::abort(const Trouble& trouble) {
   const ddm_msgs::RunTrialResult result = endTrial();
   std::string reason = trouble.text;

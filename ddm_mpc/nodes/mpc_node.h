@@ -1,4 +1,4 @@
-// mpc_node: answers camera images with torques.
+// mpc_node: answers each camera image with a torque.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -29,20 +29,21 @@
 
 namespace ddm {
 
-/// Action `run_trial`: each image of the trial is answered on `torque` with the image's stamp.
-/// Images have a thread of their own, which prepares trials, plans, and takes in the applied torques. Everything else, such as
-/// a goal that is cancelled, a trial that times out or Ctrl-C, is handled by the thread that spins the global queue, so that
-/// neither a plan nor a preparation delays it.
+/// Action `run_trial`: publishes a torque on `torque` for each image of the trial, with the stamp
+/// of the image. One thread handles images: it prepares trials, plans, and reads applied torques.
+/// The thread that spins the global queue handles everything else, such as cancelled goals,
+/// timeouts and Ctrl-C, so that neither a plan nor a preparation delays them.
 class MpcNode {
  public:
-  /// @param nh   topics and action
-  /// @param pnh  parameters
+  /// @param nh          node handle of topics and action
+  /// @param pnh         node handle of parameters
+  /// @param image_size  width and height of the images after resizing [pixels]
   MpcNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size, const MpcOptions& mpc,
           const ControllerOptions& controller);
   ~MpcNode();
 
-  /// Ends a trial under way, with zero torque to every motor.
-  /// @return false if there is none
+  /// Ends the current trial and publishes zero torque to every motor if controller/publish_effort.
+  /// @return false if there is no trial
   bool stop();
 
  private:
@@ -59,13 +60,13 @@ class MpcNode {
     std::function<void()> function_;
   };
 
-  /// Why a trial cannot go on; no text: nothing is wrong.
+  /// Reason why a trial must end. An empty text means that nothing is wrong.
   struct Trouble {
     std::string text;
-    std::string topic;  ///< whose publishers are to be named; may be empty
+    std::string topic;  ///< topic whose publishers the message names; may be empty
   };
 
-  // In the thread of the global queue.
+  // Called by the thread of the global queue.
   void onGoal();
   void onPreempt();
   void onGoalImage(const sensor_msgs::ImageConstPtr& image);
@@ -77,7 +78,7 @@ class MpcNode {
   ddm_msgs::RunTrialResult endTrial();
   void abort(const Trouble& trouble);
 
-  // In the thread of the images.
+  // Called by the image thread.
   void prepare();
   std::shared_ptr<TrialRun> preparedTrial();
   void onImage(const sensor_msgs::ImageConstPtr& image);
@@ -88,28 +89,29 @@ class MpcNode {
   void publish(const std_msgs::Header& header, const Decision& decision);
   void publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torque, bool exploratory);
 
-  LogThread log_;  // a terminal that is stopped must not be in the way of a stop
+  LogThread log_;  // so that a paused terminal cannot delay stop()
   const int image_size_;
   const MpcOptions mpc_;
   const ControllerOptions controller_;
 
-  // Of the thread of the global queue.
+  // Used only by the thread of the global queue.
   std::shared_ptr<const Ddm> model_;
   std::string model_id_;
   ddm_msgs::RunTrialGoalConstPtr goal_;  // null: no trial
   std::uint32_t fed_back_ = 0;           // steps in the last feedback
 
-  // Of the thread of the images.
-  sensor_msgs::ImageConstPtr last_image_;  // may be the first of a trial whose goal is on its way
+  // Used only by the image thread.
+  sensor_msgs::ImageConstPtr last_image_;  // may belong to a trial whose goal is still to come
   PlanScalars scalars_;
   ros::SteadyTime last_plan_log_;
 
-  std::mutex mutex_;  // not held while a plan is computed; guards these and effort_
-  sensor_msgs::ImageConstPtr goal_image_;  // the newest; null: none came
-  bool goal_changed_ = false;              // the trial plans to an older one
-  std::shared_ptr<TrialRun> trial_;  // null: no trial, or its model or goal image has not come
-  bool preparing_ = false;           // trial_, before its first image
-  std::optional<Trouble> finished_;  // the thread of the images has ended the trial, and why
+  // Guards the members up to deciding_since_, and effort_. Not held while a plan is computed.
+  std::mutex mutex_;
+  sensor_msgs::ImageConstPtr goal_image_;  // the newest; null: none received
+  bool goal_changed_ = false;              // goal_image_ is newer than the goal of the trial
+  std::shared_ptr<TrialRun> trial_;        // null: no trial, or its model or goal image is missing
+  bool preparing_ = false;                 // whether trial_ still needs prepare()
+  std::optional<Trouble> finished_;        // set if the image thread has ended the trial
   ros::SteadyTime last_progress_;
   std::optional<ros::SteadyTime> deciding_since_;
 
@@ -117,7 +119,7 @@ class MpcNode {
   ros::CallbackQueue image_queue_;
   image_transport::ImageTransport transport_;
   ros::Publisher torque_pub_;
-  std::optional<EffortPublisher> effort_;  // empty: robot_node or a simulator has the motors
+  std::optional<EffortPublisher> effort_;  // empty: robot_node or a simulator commands the motors
   ros::Publisher plan_pub_;
   ros::Publisher scalars_pub_;
   image_transport::Subscriber image_sub_;
@@ -128,7 +130,7 @@ class MpcNode {
   actionlib::SimpleActionServer<ddm_msgs::RunTrialAction> server_;
   const ros::CallbackInterfacePtr prepare_;  // for image_queue_
   const ros::CallbackInterfacePtr finish_;   // for the global queue
-  // Last: it ends before anything that it uses.
+  // Last member: its destructor stops the image thread before other members are destroyed.
   ros::AsyncSpinner image_spinner_;
 };
 

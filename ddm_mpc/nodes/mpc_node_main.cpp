@@ -1,4 +1,4 @@
-// mpc_node: reads its parameters and runs.
+// mpc_node: reads its parameters and runs the node.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/image_options.h>
 #include <ddm_common/run_node.h>
@@ -11,8 +11,8 @@ namespace {
 const ros::WallDuration kLook(0.05);
 
 void run(const ros::NodeHandle& nh, const ros::NodeHandle& pnh, ddm::ParamReader* params) {
-  params->ignore("image_transport");    // read by image_transport itself
-  params->ignore("diagnostic_period");  // and by diagnostic_updater
+  params->ignore("image_transport");    // image_transport reads it
+  params->ignore("diagnostic_period");  // diagnostic_updater reads it
   const auto image = params->read<ddm::ImageOptions>("image");
   const auto mpc = params->read<ddm::MpcOptions>("mpc");
   const auto controller = params->read<ddm::ControllerOptions>("controller");

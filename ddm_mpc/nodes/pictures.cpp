@@ -1,4 +1,4 @@
-// Pictures that view_node draws: the feature space, and images of the model side by side.
+// Images that view_node draws: the feature space, and several images side by side.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pictures.h"
 
@@ -21,9 +21,10 @@ const cv::Scalar kCurrent(0, 255, 255);
 constexpr int kSmallRadius = 2;
 constexpr int kPlanRadius = 3;
 constexpr int kLargeRadius = 6;
-constexpr double kFarthestDot = 10.0;  // well outside, and small enough for OpenCV's integers
+// Far outside the image, yet small enough for OpenCV's integers.
+constexpr double kFarthestDot = 10.0;
 
-/// The outline keeps a dot visible on black, on white and on other dots.
+/// Draws a dot with an outline that keeps it visible on black, on white and on other dots.
 void drawDot(const cv::Point& at, int radius, const cv::Scalar& colour, cv::Mat* picture) {
   cv::circle(*picture, at, radius + 1, kOutline, cv::FILLED);
   cv::circle(*picture, at, radius, colour, cv::FILLED);
@@ -34,7 +35,7 @@ void drawText(const std::string& text, const cv::Point& at, const cv::Scalar& co
   cv::putText(*picture, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.5, colour, 1, cv::LINE_AA);
 }
 
-/// What the colours mean, in the margin below the grid; names of the axes.
+/// Draws the legend of the colours below the grid, and the names of the axes.
 void drawLegend(cv::Mat* picture) {
   const int baseline = FeaturePlane::kWidth - 20;
   drawText("experience", {86, baseline}, kExperience, picture);
@@ -106,7 +107,7 @@ cv::Mat drawPanels(const std::vector<Panel>& panels, int image_size) {
     cv::putText(picture, panels[i].caption, {left + 6, size + kPanelCaption - 7},
                 cv::FONT_HERSHEY_SIMPLEX, 0.5, caption_grey, 1, cv::LINE_AA);
     if (panels[i].grey.empty()) continue;
-    Grey grey = panels[i].grey;  // cv::Mat takes no const pixels
+    Grey grey = panels[i].grey;  // cv::Mat requires mutable pixels
     const cv::Mat image(image_size, image_size, CV_8UC1, grey.data());
     cv::resize(image, picture(cv::Rect(left, 0, size, size)), cv::Size(size, size), 0.0, 0.0,
                cv::INTER_NEAREST);

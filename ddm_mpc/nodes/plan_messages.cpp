@@ -1,4 +1,4 @@
-// Messages about plans: the plan itself, and its numbers for plotting tools.
+// Messages about plans: the plan itself, and its scalars for plotting tools.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plan_messages.h"
 

@@ -1,4 +1,4 @@
-// Messages about plans: the plan itself, and its numbers for plotting tools.
+// Messages about plans: the plan itself, and its scalars for plotting tools.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,25 +13,25 @@
 
 namespace ddm {
 
-/// All entries, column by column.
+/// @return all entries, column by column
 std::vector<double> flat(const Eigen::MatrixXd& values);
 
-/// @param stamp  of the image that the plan answers
+/// @param stamp  stamp of the image that the plan answers
 ddm_msgs::Plan planMessage(const ros::Time& stamp, const Plan& plan);
 
-/// Numbers about each plan of a trial. The prediction error compares the feature that the last plan predicted
-/// with the feature of the next image.
+/// Scalars of each plan of a trial. The prediction error is the distance between the feature of an
+/// image and the prediction of that feature by the plan before it.
 class PlanScalars {
  public:
-  /// @param goal_distance  in units of the features' spread; empty: not known
+  /// @param goal_distance  in units of the spread of the features; empty: unknown
   ddm_msgs::PlanScalars of(const ros::Time& stamp, const Plan& plan,
                            const std::optional<double>& goal_distance);
 
-  /// Says that the next image does not follow the last plan.
+  /// Call if the next image does not follow the last plan by one time step.
   void forget() { predicted_.resize(0); }
 
  private:
-  Eigen::VectorXd predicted_;  // z of the next image; empty: not known
+  Eigen::VectorXd predicted_;  // predicted z of the next image; empty: unknown
 };
 
 }  // namespace ddm

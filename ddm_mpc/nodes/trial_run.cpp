@@ -1,4 +1,4 @@
-// One trial under way: which images belong to it, and what has been answered so far.
+// One trial: decides which images belong to it, and collects its result.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "trial_run.h"
 
@@ -12,7 +12,7 @@
 namespace ddm {
 namespace {
 
-constexpr double kGap = 1.5;  // in time steps, as where bags are read
+constexpr double kGap = 1.5;  // gap / time step, the same as in the reader of bags
 
 std::shared_ptr<MpcPolicy> makePolicy(std::shared_ptr<const Ddm> model, int image_size,
                                       const MpcOptions& mpc, const ControllerOptions& controller) {
@@ -82,8 +82,8 @@ std::optional<Decision> TrialRun::decide(const sensor_msgs::Image& image,
   return decision;
 }
 
-/// Whether images are missing in between.
-/// @param interval  between two images [s]
+/// @param interval  time between two images [s]
+/// @return          whether images are missing between them
 bool TrialRun::isGap(double interval) {
   shortest_interval_ = std::min(shortest_interval_, interval);
   return interval > kGap * (dt_ > 0.0 ? dt_ : shortest_interval_);

@@ -1,4 +1,4 @@
-// One trial under way: which images belong to it, and what has been answered so far.
+// One trial: decides which images belong to it, and collects its result.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -19,53 +19,54 @@
 
 namespace ddm {
 
-/// Turns the images of one `run_trial` goal into decisions and collects the result. One thread at a
-/// time calls decide(); the caller guards the other functions by a mutex of its own, which it need
-/// not hold while decide() plans.
+/// Turns the images of one `run_trial` goal into decisions and collects the result. Only one thread
+/// at a time may call decide(). The caller guards the other functions by its own mutex, which it
+/// does not need to hold during decide().
 class TrialRun {
  public:
-  /// @param model       may be null where goal.epsilon = 1
-  /// @param goal_image  to plan to; null: the model's
+  /// @param model       may be null if goal.epsilon = 1
+  /// @param goal_image  goal of the plans; null: the goal image of the model
+  /// @param image_size  width and height of the images after resizing [pixels]
   /// @throws std::invalid_argument if goal, model and options do not fit together
   TrialRun(const ddm_msgs::RunTrialGoal& goal, std::shared_ptr<const Ddm> model,
            const sensor_msgs::ImageConstPtr& goal_image, int image_size, const MpcOptions& mpc,
            const ControllerOptions& controller);
 
-  /// Computes what the first plan needs, so that its torque is not late: the cost-to-go takes up to two
-  /// seconds.
+  /// Computes the cost-to-go, up to two seconds, so that the first torque is not late.
   void prepare() {
     if (greedy_ != nullptr) greedy_->prepare();
   }
 
-  /// @param arrival  of the image: mpc/time_budget begins there
-  /// @return the decision, or nothing for an image that is not the next of this trial: one from
-  ///         before its start, or one that was already answered
-  /// @throws std::invalid_argument for an image that cannot be used, that has no stamp, or whose
-  ///         size or encoding differs from those before
+  /// @param arrival  arrival of the image, where mpc/time_budget begins
+  /// @return the decision; empty for an image that is not the next one of this trial, because it is
+  ///         older than the trial or already answered
+  /// @throws std::invalid_argument for an image that cannot be decoded, has no stamp, or differs in
+  ///         size or encoding from those before
   std::optional<Decision> decide(const sensor_msgs::Image& image,
                                  std::chrono::steady_clock::time_point arrival);
 
-  /// Whether the goal says with which image the trial starts.
+  /// @return whether the goal gives the stamp of the first image of the trial
   bool startIsGiven() const { return start_is_given_; }
 
-  /// Stamp of the last image that was answered; empty before the first.
+  /// @return stamp of the last answered image; empty before the first
   std::optional<ros::Time> lastAnswered() const {
     return answered_ ? std::make_optional(last_stamp_) : std::nullopt;
   }
 
-  /// Takes in the torque that acted after the last image that was answered, see topic `applied_torque`.
-  /// @throws std::invalid_argument if it is neither empty nor one finite number for each motor
+  /// Adds the torque that acted after the last answered image (topic `applied_torque`). An empty
+  /// torque means that no single torque acted, and begins a new segment.
+  /// @throws std::invalid_argument unless it is empty or has one finite number for each motor
   void takeApplied(const ddm_msgs::Torque& applied);
 
-  /// From the next image on, plans to this goal.
-  /// @throws std::invalid_argument for an image that cannot be used; nothing has changed
+  /// Sets the goal of the plans from the next image on.
+  /// @throws std::invalid_argument for an image that cannot be decoded; the goal then stays
   void setGoal(const sensor_msgs::Image& goal);
 
-  /// Adds a decision that was published to the result.
+  /// Adds a published decision to the result.
   void collect(const ros::Time& stamp, const Decision& decision);
 
-  /// No image is answered from here on. May be called from any thread. A decide() under way ends its search,
-  /// and its decision no longer counts.
+  /// Ends the trial: no further image is answered. Any thread may call this function. It stops the
+  /// search of a running decide(), and the caller discards that decision.
   void end() { ended_ = true; }
   bool ended() const { return ended_; }
 
@@ -78,12 +79,12 @@ class TrialRun {
   std::uint32_t num_steps_;
   bool start_is_given_;
   int image_size_;
-  double dt_;              // 0: not known [s]
-  ros::Time last_stamp_;   // images up to this one do not count
-  bool answered_ = false;  // an image of this trial
+  double dt_;              // 0: unknown [s]
+  ros::Time last_stamp_;   // images up to this stamp do not count
+  bool answered_ = false;  // whether an image of this trial has been answered
   double shortest_interval_ = std::numeric_limits<double>::infinity();  // between images [s]
   std::string camera_;                 // size and encoding of the images
-  std::shared_ptr<MpcPolicy> greedy_;  // null: a random trial
+  std::shared_ptr<MpcPolicy> greedy_;  // null: random trial
   EpsilonGreedy policy_;
   std::atomic<bool> ended_{false};
   ddm_msgs::RunTrialResult result_;

@@ -1,4 +1,4 @@
-// view_node: shows the image, its reconstruction, the prediction and the feature space.
+// view_node: shows the image, its reconstruction, its prediction and the feature space.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cv_bridge/cv_bridge.h>
 #include <ddm_common/image_codec.h>
@@ -27,12 +27,12 @@ namespace ddm {
 namespace {
 
 constexpr int kQueue = 10;
-constexpr double kWarnPeriod = 5.0;     // [s]
-constexpr std::size_t kMaxSeen = 2000;  // images of experience
+constexpr double kWarnPeriod = 5.0;     // period of repeated warnings [s]
+constexpr std::size_t kMaxSeen = 2000;  // images that the feature space shows at most
 const ros::WallDuration kTick(0.1);
 
-/// @return predicted features, a column each; none where the plan failed
-/// @throws std::invalid_argument if the plan cannot be drawn
+/// @return predicted features, one per column; empty if the plan failed
+/// @throws std::invalid_argument if features are missing or not finite
 Eigen::MatrixXd featuresOf(const ddm_msgs::Plan& plan, std::size_t feature_dim) {
   if (plan.status == ddm_msgs::Plan::FAILED) return {};
   const std::size_t count = static_cast<std::size_t>(plan.horizon) + 1;
@@ -46,12 +46,11 @@ Eigen::MatrixXd featuresOf(const ddm_msgs::Plan& plan, std::size_t feature_dim) 
   return features;
 }
 
-/// Publishes `prediction_image` and `feature_space_image`, each at most ten times a second and only
-/// while it has a subscriber. If something cannot be shown, the node warns,
-/// leaves it out and goes on.
+/// Publishes `prediction_image` and `feature_space_image`, each at most ten times per second and
+/// only if it has a subscriber. If something cannot be shown, the node warns and omits it.
 class ViewNode {
  public:
-  /// @param image_size  size that images are brought to, the model's
+  /// @param image_size  width and height of the model's images [pixels]
   ViewNode(ros::NodeHandle nh, int image_size) : image_size_(image_size), transport_(nh) {
     advertise(topics::kPredictionImage, &prediction_);
     advertise(topics::kFeatureSpaceImage, &feature_space_);
@@ -62,8 +61,7 @@ class ViewNode {
   }
 
  private:
-  /// An image of the experience. It is kept as it was seen, because each new model puts it
-  /// elsewhere.
+  /// An image, kept because each new model encodes it to another feature.
   struct SeenImage {
     Grey grey;
     Eigen::VectorXd feature;  // empty: not yet encoded by the current model
@@ -104,13 +102,13 @@ class ViewNode {
     }
     model_id_ = id;
     plane_.reset();
-    plan_features_.resize(0, 0);  // a plan in the features of the last model means nothing in these
+    plan_features_.resize(0, 0);  // its features belong to the last model
     goal_feature_.resize(0);
     for (SeenImage& seen : seen_) seen.feature.resize(0);
     markOutdated();
   }
 
-  /// A plan that comes before the first model is not kept.
+  /// Ignores plans before the first model.
   void onPlan(const ddm_msgs::PlanConstPtr& message) {
     if (!model_) return;
     try {
@@ -141,7 +139,7 @@ class ViewNode {
   }
 
   void advertise(const char* topic, Output* output) {
-    // A subscriber that connects when nothing changes any more shall see the last state, too.
+    // A new subscriber gets the current state even if nothing changes any more.
     output->publisher = transport_.advertise(
         topic, 1,
         [output](const image_transport::SingleSubscriberPublisher&) { output->outdated = true; });
@@ -152,8 +150,8 @@ class ViewNode {
     feature_space_.outdated = true;
   }
 
-  /// The image just seen, its reconstruction, the last image of the plan. A panel whose image is not
-  /// known stays black.
+  /// Draws the newest image, its reconstruction, and the last predicted image of the plan. A panel
+  /// without an image stays black.
   sensor_msgs::ImagePtr drawPrediction() const {
     if (seen_.empty()) return nullptr;
     std::vector<Panel> panels = {
@@ -196,7 +194,7 @@ class ViewNode {
   std::optional<FeaturePlane> plane_;  // empty: not yet drawn for this model
   std::string model_id_;
   Eigen::MatrixXd plan_features_;  // of the newest plan; empty: none, or it failed
-  Eigen::VectorXd goal_feature_;   // to which it leads; empty: the model's
+  Eigen::VectorXd goal_feature_;   // goal of that plan; empty: the model's goal counts
   std::deque<SeenImage> seen_;     // newest last
   std_msgs::Header header_;        // of the newest image
 
@@ -214,7 +212,7 @@ class ViewNode {
 
 int main(int argc, char** argv) {
   return ddm::runNode("view_node", argc, argv, [](auto nh, auto, ddm::ParamReader* params) {
-    params->ignore("image_transport");  // read by image_transport itself
+    params->ignore("image_transport");  // image_transport reads it
     const auto image = params->read<ddm::ImageOptions>("image");
     params->requireValid();
     ROS_INFO_STREAM("view_node runs with\n" << ddm::toYaml(image));

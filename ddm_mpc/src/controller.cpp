@@ -1,4 +1,4 @@
-// The controller: the paper's MPC on images, and epsilon-greedy exploration around it. Its three steps come first.
+// The controller: MPC on images (paper, Sec. 3.1), and epsilon-greedy exploration (Sec. 3.2).
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/controller.h"
 
@@ -13,7 +13,7 @@ namespace ddm {
 
 using Clock = std::chrono::steady_clock;
 
-/// One step of Algorithm 1: the image y_t is answered by the torque u_t.
+/// One step of Algorithm 1: answers the image y_t with the torque u_t.
 Decision EpsilonGreedy::decide(const Grey& grey) {
   Decision decision;
   if (policy_ != nullptr) {
@@ -36,7 +36,7 @@ Decision EpsilonGreedy::decide(const Grey& grey) {
   return decision;
 }
 
-/// With probability epsilon, a random torque to be held (Sec. 3.2).
+/// Draws, with probability epsilon, a random torque and how long it is held (paper, Sec. 3.2).
 void EpsilonGreedy::drawTorque() {
   if (std::uniform_real_distribution<double>(0.0, 1.0)(rng_) >= options_.epsilon) return;
   held_torque_.resize(options_.max_torque.size());
@@ -47,7 +47,7 @@ void EpsilonGreedy::drawTorque() {
   held_steps_left_ = options_.hold_steps;
 }
 
-/// Encode: z_t = g^-1(y_t), eq. (3a), the newest feature of the state x_t, eq. (8).
+/// Encodes the image, z_t = g^-1(y_t) (eq. 3a), and adds z_t to the controller state x_t (eq. 8).
 void MpcPolicy::observe(const Grey& grey) {
   began_ = arrival_.value_or(Clock::now());
   arrival_.reset();
@@ -56,7 +56,7 @@ void MpcPolicy::observe(const Grey& grey) {
   x_.observe(z);
 }
 
-/// Plan: the torques U that minimise J(U), eq. (9), from x_t on. The first of them is u_t, see answerWith().
+/// Minimises J(U) (eq. 9) from x_t on. The first torque of the plan is u_t, see answerWith().
 Plan MpcPolicy::plan() {
   if (!hasGoal()) throw std::logic_error("there is no goal image to plan to");
   const auto begin = Clock::now();
@@ -71,7 +71,8 @@ Plan MpcPolicy::plan() {
   return plan;
 }
 
-/// The torque that acted becomes a part of the state, eq. (8). z_{t+1|t} = f(x_t, u_t), eq. (3b).
+/// Adds the torque that acted to the controller state (eq. 8). Predicts z_{t+1|t} = f(h_n) (eq. 2),
+/// which observe() compares with z_{t+1} for the offset.
 void MpcPolicy::apply(const Eigen::VectorXd& u) {
   if (offset_gain_ > 0.0) predicted_ = model_->predict(x_, u);
   x_.apply(u);

@@ -1,4 +1,4 @@
-// Cost-to-go: value iteration of the learned model over support states of its experience.
+// Cost-to-go: value iteration of the learned model over the support states of its training data.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/cost_to_go.h"
 
@@ -11,17 +11,18 @@
 namespace ddm {
 namespace {
 
-constexpr double kGamma = 0.99;                  // 100 steps ahead still count a third
-constexpr double kWorst = 1.0 / (1.0 - kGamma);  // V_max: never at the goal
-constexpr double kOptimism = 0.8;         // V_0 in units of V_max while the plant is explored
-constexpr double kSmoothness = 1.4;       // h in units of the mean distance between neighbours
-constexpr double kSmallestWeight = 1e-4;  // of a support state that still counts
-constexpr int kMaxSweeps = 1000;          // that compare all torques
-constexpr int kPolicySweeps = 20;         // that follow the best ones, after each of those
-constexpr double kTolerance = 1e-3;       // largest change of a V_i in the last sweep
-const double kUnknown = std::exp(-0.5 * 3.0 * 3.0);  // w_0: a support state 3 h away weighs as much
+constexpr double kGamma = 0.99;                  // a cost 100 steps ahead still counts a third
+constexpr double kWorst = 1.0 / (1.0 - kGamma);  // V_max: the goal is never reached
+constexpr double kOptimism = 0.8;                // V_0 / V_max during exploration
+constexpr double kSmoothness = 1.4;              // h / mean distance between neighbours
+constexpr double kSmallestWeight = 1e-4;         // smallest weight of a support state in an Outcome
+constexpr int kMaxSweeps = 1000;                 // cap on the sweeps that compare all torques
+constexpr int kPolicySweeps = 20;                // sweeps with the best torques after each of them
+constexpr double kTolerance = 1e-3;              // the iteration ends if no V_i changes by more
+// w_0, the kernel's weight at a distance of 3 h.
+const double kUnknown = std::exp(-0.5 * 3.0 * 3.0);
 
-/// All combinations of -max, 0 and max.
+/// @return all combinations of the torques -max, 0 and max  [torque_dim x 3^torque_dim]
 Eigen::MatrixXd combinations(const Eigen::VectorXd& max_torque) {
   Eigen::Index count = 1;
   for (Eigen::Index motor = 0; motor < max_torque.size(); ++motor) count *= 3;
@@ -35,7 +36,7 @@ Eigen::MatrixXd combinations(const Eigen::VectorXd& max_torque) {
   return torques;
 }
 
-/// Mean distance of a point to the nearest other one.
+/// @return mean distance of a point to its nearest neighbour
 double spacing(const Eigen::MatrixXd& points) {
   double sum = 0.0;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
@@ -46,10 +47,10 @@ double spacing(const Eigen::MatrixXd& points) {
   return sum / static_cast<double>(points.cols());
 }
 
-/// Where all support states lead to under the same torques.
-/// @param X  support states, see ModelInfo  [state_dim x M]
-/// @param u  [N m]                     [torque_dim]
-/// @return   features of each step     [feature_dim x M] each
+/// Predicts from all support states under the same torques.
+/// @param X  support states, see ModelInfo        [state_dim x M]
+/// @param u  torques [N m]                            [torque_dim]
+/// @return   features after each step, each     [feature_dim x M]
 std::vector<Eigen::MatrixXd> predictions(const Ddm& model, const Eigen::MatrixXd& X,
                                          const Eigen::VectorXd& u, int num_steps) {
   const Eigen::Index dim = model.featureDim(), motors = model.torqueDim(), M = X.cols();
@@ -88,7 +89,7 @@ void CostToGo::predictOutcomes() {
   const Eigen::MatrixXd changes = model_->options().memory() > 1
                                       ? Eigen::MatrixXd(Z - X.middleRows(dim, dim))
                                       : Eigen::MatrixXd::Zero(dim, M);
-  // Where nothing moved, or a state is one sample, states differ by their features alone.
+  // If nothing moves, or a state has a single feature, the states differ only in their features.
   constexpr double kNoChange = std::numeric_limits<double>::infinity();
   spread_ = std::max((Z.colwise() - Z.rowwise().mean()).norm() / std::sqrt(M),
                      std::numeric_limits<double>::min());
@@ -135,7 +136,7 @@ CostToGo::Outcome CostToGo::outcomeOf(const Eigen::MatrixXd& path) const {
   return outcome;
 }
 
-/// V_0
+/// @return V_0
 double CostToGo::unknownValue() const { return exploring_ ? kOptimism * kWorst : kWorst; }
 
 void CostToGo::setGoal(const Eigen::VectorXd& z_ref, bool exploring) {
@@ -157,15 +158,15 @@ void CostToGo::setGoal(const Eigen::VectorXd& z_ref, bool exploring) {
   iterate(costs);
 }
 
-/// Modified policy iteration: comparing all torques takes 3^torque_dim times as long as following the best ones, which soon
-/// stay the same.
-/// @param costs  of the steps of each outcome
+/// Modified policy iteration. A sweep that compares all torques takes 3^torque_dim times as long as
+/// a sweep with the best torques of the last comparison, and the best torques soon stop changing.
+/// @param costs  discounted sum of step costs, for each support state and combination of torques
 void CostToGo::iterate(const std::vector<std::vector<double>>& costs) {
   const double discount = std::pow(kGamma, kHoldSteps), unknown = unknownValue();
   values_.setConstant(points_.cols(), kWorst);
   const auto valueOf = [&](size_t i, size_t k) {
     const Outcome& outcome = outcomes_[i][k];
-    double gain = 0.0;  // on V_0
+    double gain = 0.0;  // how far known neighbours are better than V_0
     for (size_t j = 0; j < outcome.neighbours.size(); ++j) {
       gain += outcome.weights[j] * (unknown - values_[outcome.neighbours[j]]);
     }

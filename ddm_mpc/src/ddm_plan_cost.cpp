@@ -1,4 +1,4 @@
-// Cost J(U) of a plan by a deep dynamical model, with its gradient in closed form.
+// Cost J(U) of a plan for a deep dynamical model, with its gradient in closed form.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/ddm_plan_cost.h"
 
@@ -49,21 +49,22 @@ void DdmPlanCost::setProblem(const History& x, const Eigen::VectorXd& goal_featu
 }
 
 void DdmPlanCost::rollOut(const Eigen::Ref<const Eigen::MatrixXd>& U, int num_steps) {
-  const Eigen::Index target = f_.memory();  // z_1 follows the features that were seen
+  const Eigen::Index target = f_.memory();  // index of z_1 after the features of x_0
   torques_.rightCols(horizon_) = U;
   roll_out_.forward(theta_p_, features_, torques_, RollOut<double>::Targets(&target, 1), num_steps,
                     &offset_);
 }
 
-/// z_0, or a predicted feature.
+/// @return z_{num_steps}; z_0 is the current feature  [feature_dim]
 Eigen::VectorXd DdmPlanCost::featureAfter(int num_steps) const {
   if (num_steps == 0) return features_.rightCols(1);
   return roll_out_.predicted(num_steps - 1);
 }
 
-/// @param step  0 is the first
-/// @param d_z   out: by the feature it leads to; null: not wanted                [feature_dim]
-/// @param d_u   out: by its torque; null: not wanted [1/(N m)]                   [torque_dim]
+/// @param step  index of the step, from 0 on; leads to z_{step + 1}
+/// @param u     torque of the step [N m]                                         [torque_dim]
+/// @param d_z   out: derivative by z_{step + 1}; null: skip                     [feature_dim]
+/// @param d_u   out: derivative by u [1/(N m)]; null: skip                       [torque_dim]
 double DdmPlanCost::stepCost(int step, const Eigen::Ref<const Eigen::VectorXd>& u,
                              Eigen::VectorXd* d_z, Eigen::VectorXd* d_u) const {
   const auto z = roll_out_.predicted(step);

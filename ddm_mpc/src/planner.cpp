@@ -1,4 +1,4 @@
-// Planner: the torques u_0 ... u_{K-1} that minimise the plan cost, by BFGS from several starts.
+// Planner: minimises the cost of a plan over its torques, by BFGS from several initial plans.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/planner.h"
 
@@ -15,11 +15,12 @@
 namespace ddm {
 namespace {
 
-constexpr int kProposal = -1;       // a start before the others
-constexpr double kMaxShare = 0.95;  // of the largest torque that a start begins with
-constexpr double kMaxV = 3.0;  // tanh(3) = 0.995: a start beyond it would hardly feel a gradient
+constexpr int kProposal = -1;       // number of the proposal, before the other initial plans
+constexpr double kMaxShare = 0.95;  // largest |u| / max_torque of a proposed or random plan
+// Cap on |v| of an initial plan. tanh(3) = 0.995: beyond it the gradient almost vanishes.
+constexpr double kMaxV = 3.0;
 
-/// J as a function of v, with u = max_torque tanh(v).
+/// J as a function of v, where u = max_torque tanh(v).
 class BoundedCost {
  public:
   BoundedCost(PlanCost* cost, const Eigen::VectorXd& max_torque)
@@ -55,13 +56,14 @@ Planner::Planner(PlanCost* cost, const MpcOptions& options)
       cost_(*cost),
       max_torque_(perMotor(options.max_torque, cost->torqueDim(), "mpc/max_torque")) {}
 
-/// The variables v of torques that may lie at their bounds.
+/// @return v of these torques, moved inside the bounds if they lie there  [torque_dim x K]
 Eigen::MatrixXd Planner::unbounded(const Eigen::MatrixXd& torques) const {
   const Eigen::ArrayXXd share = torques.array().colwise() / max_torque_.array();
   return share.max(-kMaxShare).min(kMaxShare).unaryExpr([](double x) { return std::atanh(x); });
 }
 
-/// Unbounded variables that start number `start` begins with.
+/// @return v of initial plan number `start`: the last plan shifted by one step (if there is one),
+///         zero torque, then random constant torques  [torque_dim x K]
 Eigen::MatrixXd Planner::startOf(int start, std::mt19937_64* rng) const {
   const int dim = cost_.torqueDim();
   const int K = cost_.horizon();

@@ -1,4 +1,4 @@
-// The trials recorded so far as one data set; each bag is read once.
+// Reads the bags of all trials as one data set, each bag only once.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_bag_io/bag_cache.h"
 

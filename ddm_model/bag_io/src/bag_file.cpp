@@ -1,4 +1,4 @@
-// A bag on disk: its topics and messages.
+// A bag on disk, with its topics and messages.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bag_file.h"
 
@@ -17,7 +17,7 @@ constexpr char kMagic[] = "#ROSBAG V2.0\n";
 constexpr std::uint64_t kMaxChunk = 1U << 30U;  // [bytes]; rosbag writes 768 kB
 constexpr std::uint64_t kMaxBagHeader = 8192;   // [bytes]; rosbag writes 4096
 
-/// What people take for a bag, by its first bytes.
+/// A format that users mistake for a bag, recognised by its first bytes.
 struct OtherFormat {
   std::string magic;
   const char* what;
@@ -43,15 +43,15 @@ const OtherFormat kOtherFormats[] = {
     {"\x28\xb5\x2f\xfd", "compressed as a whole (Zstandard)", "unpack it with `unzstd`"},
     {"7z\xbc\xaf\x27\x1c", "a 7-Zip archive", "unpack it with `7z x`"},
     {"Rar!\x1a\x07", "a RAR archive", "unpack it with `unrar x`"}};
-constexpr const char* kWebPages[] = {"<!doctype", "<html", "<?xml"};  // behind blanks, in any case
+constexpr const char* kWebPages[] = {"<!doctype", "<html", "<?xml"};  // after blanks, in any case
 constexpr char kTar[] = "ustar";
 constexpr std::size_t kTarAt = 257;
 constexpr std::uint32_t kLongestMagic = kTarAt + sizeof(kTar) - 1;
 
-/// Kinds of records.
+/// Kinds of records (field `op`).
 enum : std::uint8_t { kMessage = 2, kBagHeader = 3, kChunk = 5, kChunkInfo = 6, kConnection = 7 };
 
-/// A fault of the file, not of a message.
+/// A fault of the file, as opposed to a fault of a message.
 struct Damage : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -84,7 +84,7 @@ void requireBag(const std::string& front) {
   }
 }
 
-/// Takes the first bytes of what is left of a bag.
+/// Removes and returns the first bytes of the rest of a bag.
 std::string_view take(std::size_t size, std::string_view* left) {
   if (size > left->size()) {
     refuseDamage(size, " bytes are due where ", left->size(), " are left");
@@ -102,12 +102,12 @@ Number numberOf(std::string_view bytes) {
   return value;
 }
 
-/// Bytes with their size before them.
+/// Removes and returns bytes that are preceded by their size.
 std::string_view takeSized(std::string_view* left) {
   return take(numberOf<std::uint32_t>(take(4, left)), left);
 }
 
-/// NAME=VALUE, each with its size before it.
+/// Fields NAME=VALUE, each preceded by its size.
 class Fields {
  public:
   explicit Fields(std::string_view bytes) {
@@ -148,7 +148,7 @@ struct Record {
   std::uint8_t kind;
 };
 
-/// The topic is in the record's own fields, the rest in its data.
+/// Reads a connection. The header of the record has the topic, its data have the rest.
 BagConnection connectionOf(const Record& record) {
   const Fields fields(record.data);
   return {record.fields.text("topic"), fields.text("type"), fields.text("md5sum"),
@@ -160,7 +160,7 @@ ros::Time timeOf(const Fields& fields) {
   return {static_cast<std::uint32_t>(time), static_cast<std::uint32_t>(time >> 32U)};
 }
 
-/// The records in a chunk.
+/// @return the records in a chunk
 std::string decompress(const Record& chunk) {
   const std::string compression = chunk.fields.text("compression");
   const auto size = chunk.fields.number<std::uint32_t>("size");
@@ -222,7 +222,7 @@ BagFile::BagFile(std::istream* in) : in_(in) {
   }
 }
 
-/// Bytes of the file.
+/// @return bytes [begin, end) of the file
 std::string BagFile::read(std::uint64_t begin, std::uint64_t end) {
   std::string bytes(end - begin, '\0');
   in_->clear();
@@ -253,7 +253,7 @@ void BagFile::forEachMessage(const std::set<std::string>& topics,
       const std::string messages = decompress(record);
       for (left = messages; !left.empty();) {
         const Record message(&left);
-        if (message.kind == kConnection) continue;  // they are in the index, too
+        if (message.kind == kConnection) continue;  // the index lists them, too
         message.requireKind(kMessage);
         const auto number = message.fields.number<std::uint32_t>("conn");
         if (connections_.count(number) == 0) {

@@ -1,4 +1,4 @@
-// A bag on disk: its topics and messages.
+// A bag on disk, with its topics and messages.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -19,36 +19,37 @@
 
 namespace ddm {
 
-/// A topic of a bag.
+/// A topic of a bag, with one of its publishers.
 struct BagConnection {
   std::string topic;
   std::string type;
-  std::string md5sum;     ///< of the definition of the message
-  std::string publisher;  ///< name of its node; empty: not known
+  std::string md5sum;     ///< checksum of the message definition
+  std::string publisher;  ///< name of the node; empty: unknown
 };
 
 struct BagMessage {
   const BagConnection& connection;
-  ros::Time recorded;      ///< when it arrived
-  std::string_view bytes;  ///< valid while the message is handled
+  ros::Time recorded;      ///< time of recording
+  std::string_view bytes;  ///< valid only during the callback
 };
 
-/// Reads bags of format 2.0. Not by rosbag::View, which follows positions and sizes of a damaged bag beyond
-/// its memory and then ends the process: each of them is compared here with the bytes that are there. As in
-/// rosbag, only chunks that the index names count, since older versions of `rosbag reindex` leave other bytes.
+/// Reads bags of format 2.0. rosbag::View is not used, because it follows positions and sizes in a
+/// damaged bag beyond its memory and ends the process. This class compares each of them with the
+/// size of the file. Like rosbag, it reads only chunks that the index lists, since older versions
+/// of `rosbag reindex` leave other bytes in the file.
 ///
 /// All functions throw std::runtime_error with the fault and the remedy.
 class BagFile {
  public:
   /// Reads the index.
-  /// @param in  owned by the caller; binary, can be positioned
+  /// @param in  binary and seekable; must outlive the object
   explicit BagFile(std::istream* in);
 
-  /// By their numbers in the file.
+  /// @return all connections, by their numbers in the file
   const std::map<std::uint32_t, BagConnection>& connections() const { return connections_; }
 
-  /// Calls `take` with each message of these topics, in the order of the file. Chunks that hold none of them
-  /// are neither read nor decompressed.
+  /// Calls `take` with each message of these topics, in the order of the file. Skips chunks without
+  /// these topics.
   void forEachMessage(const std::set<std::string>& topics,
                       const std::function<void(const BagMessage&)>& take);
 
@@ -56,15 +57,16 @@ class BagFile {
   std::string read(std::uint64_t begin, std::uint64_t end);
 
   std::istream* in_;
-  std::uint64_t index_ = 0;                                  // its position, after the last chunk
-  std::map<std::uint64_t, std::set<std::uint32_t>> chunks_;  // by position: connections in each
+  std::uint64_t index_ = 0;  // position of the index, after the last chunk
+  // Connections in each chunk, by position of the chunk.
+  std::map<std::uint64_t, std::set<std::uint32_t>> chunks_;
   std::map<std::uint32_t, BagConnection> connections_;
 };
 
 /// @throws std::runtime_error with the topic, the time and the fault
 [[noreturn]] void refuseMessage(const BagMessage& message, const std::exception& fault);
 
-/// A message as the type that its topic has.
+/// Parses a message as the given type, which must be that of its topic.
 /// @throws std::runtime_error with the topic, the time and the fault
 template <class Message>
 Message parse(const BagMessage& message) {

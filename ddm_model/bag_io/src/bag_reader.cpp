@@ -1,4 +1,4 @@
-// Reads bags: images and torques on the wire to a data set.
+// Reads the images and torques of a bag as a data set.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_bag_io/bag_reader.h"
 
@@ -29,16 +29,16 @@
 namespace ddm {
 namespace {
 
-/// "[1, 2]"
+/// @return numbers as text, such as "[1, 2]"
 std::string listOf(const std::vector<int>& numbers) {
   std::vector<std::string> texts;
   for (const int number : numbers) texts.push_back(std::to_string(number));
   return "[" + boost::algorithm::join(texts, ", ") + "]";
 }
 
-constexpr int kFewGreyValues = 64;  // of 256: what 14 bits of 16 leave
+constexpr int kFewGreyValues = 64;  // of 256; a 14 bit image in a 16 bit message has so few
 
-/// The times of an image, and what is the same in images with the same content.
+/// Reads the times of an image, and hashes its content without the header.
 BagImage bagImageOf(const BagMessage& message, std::size_t number) {
   MessageBytes bytes(message.bytes.data(), message.bytes.size());
   std_msgs::Header header;
@@ -51,7 +51,8 @@ BagImage bagImageOf(const BagMessage& message, std::size_t number) {
   return {header.stamp, message.recorded, number, std::hash<std::string_view>()(content)};
 }
 
-/// @param encoding  out: as the camera sent it
+/// Parses a raw or compressed image.
+/// @param encoding  out: encoding or format as the camera sent it
 /// @throws std::invalid_argument if a compressed image cannot be decoded
 sensor_msgs::Image imageOf(const BagMessage& message, std::string* encoding) {
   if (isRaw(message.connection)) {
@@ -64,8 +65,8 @@ sensor_msgs::Image imageOf(const BagMessage& message, std::string* encoding) {
   return unpacked(compressed);
 }
 
-/// Reads the times of all images and torques, and pairs them. Pixels are not decoded: many of a fast camera's
-/// images are in no frame.
+/// Reads the times of all images and torques, and pairs them. Pixels are not decoded, since many
+/// images of a fast camera belong to no sample.
 Pairs readPairs(BagFile* bag, const BagTopics& topics, const BagOptions& options) {
   TorqueReader reader(options.motors);
   Publishers controllers, cameras;
@@ -104,7 +105,7 @@ Pairs readPairs(BagFile* bag, const BagTopics& topics, const BagOptions& options
   return pairs;
 }
 
-/// The images of the frames of a bag, and its goal image.
+/// Collects the images of the samples of a bag, and its goal image.
 class FrameImages {
  public:
   FrameImages(Pairs pairs, int image_size, const BagOptions& options)
@@ -115,7 +116,7 @@ class FrameImages {
     for (std::size_t i = 0; i < greys_.size(); ++i) frame_of_[pairs_.frames[i].image] = i;
   }
 
-  /// Takes in the next image in the order of the file. One that cannot be decoded leaves a gap.
+  /// Adds the next image in the order of the file. An image that cannot be decoded leaves a gap.
   void add(const BagMessage& message) {
     const auto found = frame_of_.find(number_++);
     if (found == frame_of_.end()) return;
@@ -140,6 +141,7 @@ class FrameImages {
     }
   }
 
+  /// @return all samples, with notes to the user
   /// @throws std::runtime_error if more images are broken than whole
   BagContent content() const {
     if (2 * num_broken_ > greys_.size()) refuse(first_broken_);
@@ -197,7 +199,7 @@ class FrameImages {
                          const std::string& time) {
     const std::string size = textOf(image.width, "x", image.height, " ");
     if (camera_.empty()) camera_ = size + encoding;
-    // What a compressed image is called does not change its pixels.
+    // The format of a compressed image may change without a change of its pixels.
     const bool compressed = encoding != image.encoding;
     if (camera_ == size + encoding) return;
     if (compressed && boost::algorithm::starts_with(camera_, size)) return;
@@ -205,7 +207,7 @@ class FrameImages {
            ": record one camera setting per bag");
   }
 
-  /// The same number for frames with the same time, image and torque.
+  /// @return hash of time, image and torque of a sample
   static std::size_t idOf(const Grey& grey, const Pairs::Frame& frame) {
     std::string bytes(grey.begin(), grey.end());
     bytes.append(reinterpret_cast<const char*>(frame.torque.data()),
@@ -216,9 +218,9 @@ class FrameImages {
   Pairs pairs_;
   int image_size_;
   const BagOptions& options_;
-  std::map<std::size_t, std::size_t> frame_of_;  // by the number of the image
-  std::vector<Grey> greys_;                      // of the frames; empty until they come
-  std::size_t number_ = 0;                       // of the next image
+  std::map<std::size_t, std::size_t> frame_of_;  // index of the sample, by number of the image
+  std::vector<Grey> greys_;                      // of the samples; empty until the image is decoded
+  std::size_t number_ = 0;                       // number of the next image
   std::size_t num_broken_ = 0;
   std::string first_broken_;
   Grey goal_;
@@ -256,7 +258,7 @@ std::vector<std::string> BagOptions::problems() const {
 
 Grey greyOf(const sensor_msgs::Image& image, int image_size, const BagOptions& options) {
   const auto size = static_cast<std::uint32_t>(image_size);
-  const bool done = image.width == size && image.height == size;  // its crop, too
+  const bool done = image.width == size && image.height == size;  // and needs no crop
   const std::vector<int>& crop = options.crop;
   return decodeImage(image, image_size,
                      done ? ImageCrop() : ImageCrop{crop[0], crop[1], crop[2], crop[3]});
@@ -309,7 +311,7 @@ void DifferentBags::require(const std::string& path, const BagContent& content) 
       refuse("bag ", path, " is given twice", before == path ? "" : ", also as " + before, kRemedy);
     }
   }
-  std::map<std::string, std::size_t> shared;  // by bag
+  std::map<std::string, std::size_t> shared;  // number of samples in both, by path of the other bag
   for (const std::size_t id : content.frame_ids) {
     const auto added = frames_.emplace(id, path);
     if (!added.second && added.first->second != path) ++shared[added.first->second];

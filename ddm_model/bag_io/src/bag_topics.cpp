@@ -1,4 +1,4 @@
-// Which topics of a bag are meant, what their messages say, and who published them.
+// Topics of a bag: selects them, reads their torques and checks their publishers.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bag_topics.h"
 
@@ -29,10 +29,10 @@ const Names kImages = {"sensor_msgs/Image", "sensor_msgs/CompressedImage"};
 constexpr char kJoints[] = "sensor_msgs/JointState";
 constexpr char kWrench[] = "geometry_msgs/WrenchStamped";
 
-/// What a message says.
+/// Content of a torque message of any type.
 struct Values {
-  ros::Time stamp;             ///< of the header; 0: there is none
-  Names names;                 ///< of the values; empty: they have none
+  ros::Time stamp;             ///< header stamp; 0: there is none
+  Names names;                 ///< name of each value; empty: they have no names
   std::vector<double> values;  ///< [N m]
 };
 
@@ -65,7 +65,7 @@ Values effortsFrom(const BagMessage& message) {
   return {joints.header.stamp, joints.name, joints.effort};
 }
 
-/// How a message of each type is read.
+/// Functions that read a message, by its type.
 const std::map<std::string, Values (*)(const BagMessage&)> kReaders = {
     {"ddm_msgs/Torque", torqueFrom},
     {"std_msgs/Float64", numberFrom<std_msgs::Float64>},
@@ -84,7 +84,7 @@ bool anyIn(const Names& names, const Names& wanted) {
          names.end();
 }
 
-/// The values of the motors, in the order of the motors.
+/// @return values of the motors, in the order of the motors
 std::vector<double> valuesOf(const Names& motors, const Values& all, const std::string& topic) {
   std::vector<double> values;
   Names missing;
@@ -101,13 +101,14 @@ std::vector<double> valuesOf(const Names& motors, const Values& all, const std::
          ": set data_set/motors to names that are there");
 }
 
-/// "/camera/image_raw" of "camera/image_raw/compressed".
+/// @return "/camera/image_raw" for "camera/image_raw/compressed"
 std::string parentOf(const std::string& topic) {
   return absolute(topic.substr(0, topic.rfind('/')));
 }
 
-/// @param topic  found for an option, but cannot be read
-/// @param base   the name by which it was found
+/// Refuses a topic that was found but cannot be read.
+/// @param base   name without the transport
+/// @param key    option that names the topic
 [[noreturn]] void refuseType(const Topic& topic, std::string base, const Names& types,
                              const std::string& key) {
   if (absolute(topic.name) == base) {
@@ -124,11 +125,13 @@ std::string parentOf(const std::string& topic) {
          " in:=", base, " raw out:=/image_raw` and record that");
 }
 
-/// @param key  of the option that has the name
+/// @param key  option that gives the name
+/// @return     topic with an empty name if there is none
 Topic findTopic(const BagFile& bag, const std::string& name, const Names& types,
                 const std::string& key) {
   using Found = std::map<std::string, std::map<std::string, std::string>>;
-  Found exact, in_namespace;  // types by topic by base, the topic that image_transport made them of
+  // Type, by base (topic without transport) and by topic.
+  Found exact, in_namespace;
   for (const auto& entry : bag.connections()) {
     const BagConnection& connection = entry.second;
     std::vector<std::string> bases = {absolute(connection.topic)};
@@ -151,7 +154,7 @@ Topic findTopic(const BagFile& bag, const std::string& name, const Names& types,
     refuse("topics ", topics.begin()->first, " and ", found.rbegin()->second.begin()->first,
            " both match: set data_set/", key, " to one of them");
   }
-  for (const auto& [topic, type] : topics) {  // the raw one is the first
+  for (const auto& [topic, type] : topics) {  // a raw topic comes first
     const bool known = absolute(topic) == base || ends_with(topic, "/compressed");
     if (known && std::find(types.begin(), types.end(), type) != types.end()) return {topic, type};
   }
@@ -229,8 +232,8 @@ std::optional<BagTorque> TorqueReader::read(const BagMessage& message) {
   }
   const bool by_name = !motors_.empty() && !all.names.empty() && !all.values.empty();
   if (by_name) out.torque = valuesOf(motors_, all, topic);
-  // An effort that is not known is left out of a JointState, or NaN. Where no torque acted in time,
-  // applied_torque has no number.
+  // Drivers omit an unknown effort in a JointState, or set it to NaN. applied_torque has no number
+  // if no single torque acted.
   const bool is_unknown = std::all_of(out.torque.begin(), out.torque.end(),
                                       [](double value) { return std::isnan(value); });
   if (out.torque.empty() || (type == kJoints && is_unknown)) {

@@ -1,4 +1,4 @@
-// Which topics of a bag are meant, what their messages say, and who published them.
+// Topics of a bag: selects them, reads their torques and checks their publishers.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -15,24 +15,26 @@
 
 namespace ddm {
 
-/// A topic of a bag; an empty name: there is none.
+/// A topic of a bag. An empty name means that there is none.
 struct Topic {
   std::string name;
   std::string type;
 };
 
-/// The topics of a bag that are read.
+/// The topics that the reader uses.
 struct BagTopics {
   Topic images, torques;
   Topic goal;  ///< may be missing
 };
 
-/// "/torque" of "torque".
+/// @return "/torque" for "torque"
 std::string absolute(const std::string& topic);
 
-/// The topics that the options mean: of the same name, else in some namespace; of images also the compressed form.
-/// @throws std::runtime_error naming key and remedy: no such topic, several, another type, a transport that cannot be
-///         read, one topic with two meanings, torques without stamps of images where there is no dt
+/// Finds the topics that the options name: exactly, or else in some namespace. An image topic may
+/// also be a compressed form.
+/// @throws std::runtime_error that names the key and the remedy. Faults: there is no such topic, or
+///         several; the type or the image transport cannot be read; a topic has two roles; torques
+///         do not name their images, and dt is 0
 BagTopics findTopics(const BagFile& bag, const BagOptions& options);
 
 /// Whether images on the topic are sensor_msgs/Image, not CompressedImage.
@@ -41,39 +43,41 @@ bool isRaw(const BagConnection& connection);
 /// Reads the torques of one bag.
 class TorqueReader {
  public:
-  /// The types that are read.
+  /// @return message types that read() supports
   static std::vector<std::string> types();
-  /// Whether its messages carry the stamp of the image that they answer.
+  /// @return whether messages of this type have the stamp of the image that they answer
   static bool answersImages(const std::string& type) { return type == "ddm_msgs/Torque"; }
 
   /// @param motors  see BagOptions
   explicit TorqueReader(std::vector<std::string> motors) : motors_(std::move(motors)) {}
 
-  /// @return nothing for a message about other joints or without their effort, and where no torque
-  ///         acted
-  /// @throws std::runtime_error with the time, the fault and the remedy: a torque that is not
-  ///         finite, another number of motors than before, motors that are not in the message
+  /// @return the torque; empty for a message about other joints, without efforts, or about a time
+  ///         in which no single torque acted
+  /// @throws std::runtime_error with the time, the fault and the remedy. Faults: a torque is not
+  ///         finite; the number of motors changes; motors are not in the message
   std::optional<BagTorque> read(const BagMessage& message);
 
-  /// Which messages of which publishers have no effort of the motors: "12 messages of /driver"; empty: none.
+  /// @return publishers of messages without efforts, as "12 messages of /driver"; empty: none
   std::string withoutEffort() const;
 
  private:
   std::vector<std::string> motors_;
-  std::vector<std::string> names_;                     // of the joints of the first message
-  std::size_t dim_ = 0;                                // 0: no torque yet
-  std::map<std::string, std::size_t> without_effort_;  // messages by publisher
+  std::vector<std::string> names_;                     // joints of the first message
+  std::size_t dim_ = 0;                                // number of motors; 0: no torque yet
+  std::map<std::string, std::size_t> without_effort_;  // number of messages, by publisher
 };
 
-/// Who published on a topic, and when.
+/// Publishers of a topic, and the times at which they published.
 class Publishers {
  public:
   void add(const std::string& name, const ros::Time& time);
   bool empty() const { return spans_.empty(); }
 
-  /// A publisher without a name is not known to be another one: rosbag leaves it out in some latched messages.
-  /// @param remedy  for two at the same time
-  /// @return        a note if there are several, one after the other; else empty
+  /// Checks that no two publishers published at the same time. Ignores publishers without a name,
+  /// which rosbag omits in some latched messages.
+  /// @param what    beginning of the message, before the publishers
+  /// @param remedy  remedy for two publishers at the same time
+  /// @return        note to the user if several published, one after the other; otherwise empty
   /// @throws std::runtime_error if two published at the same time
   std::string requireOneAtATime(const std::string& what, const std::string& remedy) const;
 

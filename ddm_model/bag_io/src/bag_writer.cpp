@@ -1,4 +1,4 @@
-// Writes the bag of one trial, so that what is under the final name is always complete.
+// Writes the bag of one trial. A bag under its final name is always complete.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_bag_io/bag_writer.h"
 
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint32_t kChunkBytes = 32 * 1024;
 
-/// rosbag says what it could not do, and not why.
+/// @return error message of rosbag, with a reason that rosbag omits: a full disk
 std::string reason(const std::string& path, const std::exception& e) {
   std::error_code ignored;
   const fs::space_info space = fs::space(fs::absolute(path).parent_path(), ignored);
@@ -29,7 +29,8 @@ std::string reason(const std::string& path, const std::exception& e) {
                                     : "");
 }
 
-/// Makes an empty file; rosbag itself would replace one, which may be all that is left of a trial.
+/// Creates an empty file. rosbag would overwrite an existing one, perhaps all that is left of a
+/// trial.
 void claim(const std::string& active) {
   const int file = ::open(active.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file >= 0) {
@@ -56,21 +57,21 @@ BagWriter::BagWriter(const std::string& path, const BagOptions& options)
     bag_->setChunkThreshold(kChunkBytes);
   } catch (const std::exception& e) {
     abandon();
-    ::unlink((path_ + ".active").c_str());  // nothing is in it yet
+    ::unlink((path_ + ".active").c_str());  // it is still empty
     throw std::runtime_error("cannot write bag " + path_ + ".active: " + reason(path_, e));
   }
 }
 
 BagWriter::~BagWriter() {
   try {
-    if (bag_->isOpen()) bag_->close();  // stays PATH.active: nobody said that it is complete
-  } catch (const std::exception&) {     // a destructor has nobody to tell
+    if (bag_->isOpen()) bag_->close();  // stays PATH.active, as close() was not called
+  } catch (const std::exception&) {     // a destructor cannot report an error
     abandon();
   }
 }
 
-/// The bag's own destructor closes it, throws where that cannot be written, on a full disk say, and
-/// so ends the process: it is kept for good, and left to the system.
+/// Leaks the bag on purpose: its destructor closes it, which throws on a full disk and would end
+/// the process.
 void BagWriter::abandon() {
   static auto* const abandoned = new std::vector<rosbag::Bag*>;
   abandoned->push_back(bag_.release());
@@ -111,7 +112,7 @@ void BagWriter::close() {
   } catch (const std::exception& e) {
     throw std::runtime_error("cannot complete bag " + path_ + ".active: " + reason(path_, e));
   }
-  // On the disk before trials.csv can be: a trial that is listed there without its bag is refused.
+  // Renamed durably before trials.csv lists the trial: a listed trial without its bag is refused.
   renameDurably(path_ + ".active", path_);
 }
 

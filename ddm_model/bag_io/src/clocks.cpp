@@ -1,4 +1,4 @@
-// By which times the messages of a bag are compared: stamps, where they can be trusted, or times of recording.
+// Chooses the times of images and torques: header stamps if reliable, otherwise times of recording.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
@@ -11,18 +11,18 @@
 namespace ddm {
 namespace {
 
-constexpr double kLag = 0.5;          // of dt
-constexpr long kMaxDelay = 50;        // that training/max_delay may have [frames]
-constexpr double kHeldBefore = 60.0;  // [s]: a torque from before the first image may hold
-constexpr double kLeap = 1.0;         // [s]: a clock that gains more at once was set
+constexpr double kLag = 0.5;          // largest lag that does not matter, in units of dt
+constexpr long kMaxDelay = 50;        // largest value of training/max_delay [samples]
+constexpr double kHeldBefore = 60.0;  // longest time from the last torque to the first image [s]
+constexpr double kLeap = 1.0;         // a clock that gains more at once has been set [s]
 constexpr char kRecordingTimes[] = ": the times at which messages were recorded count instead";
 
-/// "0.5 s after"
+/// @return a lag as text, such as "0.5 s after"
 std::string lagText(double lag) {
   return secondsText(std::abs(lag)) + (lag < 0.0 ? " before" : " after");
 }
 
-/// How long after its stamp a message was usually recorded [s].
+/// @return median time from the stamp of a message to its recording [s]
 template <class Message>
 double usualLag(const std::vector<Message>& messages) {
   std::vector<double> lags;
@@ -32,7 +32,7 @@ double usualLag(const std::vector<Message>& messages) {
   return median(lags);
 }
 
-/// Times give the order of the frames, so they must be times that can be compared.
+/// Sorts messages by time of recording. Invalid times are an error, since they cannot be compared.
 template <class Message>
 void sortByRecording(const char* what, std::vector<Message>* messages) {
   for (const Message& message : *messages) {
@@ -49,14 +49,15 @@ void removeCopies(double dt, std::vector<BagImage>* images) {
   std::map<std::pair<ros::Time, std::size_t>, ros::Time> seen;
   const auto isAgain = [&](const BagImage& image) {
     const auto added = seen.emplace(std::make_pair(image.stamp, image.content), image.recorded);
-    // A robot at rest whose camera clock stands still sends the same image, too, but later.
+    // A robot at rest whose camera clock stands still also repeats an image, but later.
     return !added.second &&
            (dt == 0.0 || secondsBetween(added.first->second, image.recorded) < 0.5 * dt);
   };
   images->erase(std::remove_if(images->begin(), images->end(), isAgain), images->end());
 }
 
-/// Where the stamps of messages, which are in the order of their recording, go back; empty: nowhere.
+/// @return description of the first place where stamps decrease in the order of recording; empty:
+///         none
 template <class Message>
 std::string stepBack(const std::vector<Message>& messages, const std::string& what) {
   const auto isBack = [](const Message& a, const Message& b) { return b.stamp < a.stamp; };
@@ -66,7 +67,8 @@ std::string stepBack(const std::vector<Message>& messages, const std::string& wh
                                        " to ", timeText(std::next(at)->stamp));
 }
 
-/// Why the stamps are no time to go by; empty: they are. A recorder that was late gains no time.
+/// @return why the stamps are unreliable; empty if they are reliable. Messages that were recorded
+///         late are no fault
 /// @param longest_still  time for which several messages may have the same stamp [s]
 template <class Message>
 std::string clockFault(const std::vector<Message>& messages, const std::string& what,
@@ -78,7 +80,7 @@ std::string clockFault(const std::vector<Message>& messages, const std::string& 
   const std::string fault = stepBack(messages, what);
   if (!fault.empty()) return fault;
   const bool all_same = messages.size() > 1 && messages.front().stamp == messages.back().stamp;
-  std::size_t same_since = 0;  // the first of those with the same stamp
+  std::size_t same_since = 0;  // first message with the current stamp
   for (std::size_t i = 1; i < messages.size(); ++i) {
     const Message &before = messages[i - 1], &message = messages[i];
     const double gained = secondsBetween(before.stamp, message.stamp);
@@ -95,8 +97,8 @@ std::string clockFault(const std::vector<Message>& messages, const std::string& 
   return "";
 }
 
-/// Torques that do not say which image they answer: by stamps where both have them, else by the times of
-/// recording.
+/// Pairs images with torques that do not name their image: by stamps if both have reliable ones,
+/// otherwise by times of recording.
 /// @param images, torques  in the order of their recording
 Pairs pairByClocks(std::vector<BagImage> images, std::vector<BagTorque> torques, double dt) {
   std::vector<std::string> notes;
@@ -108,11 +110,11 @@ Pairs pairByClocks(std::vector<BagImage> images, std::vector<BagTorque> torques,
     return !fault.empty();
   };
   const bool image_fault = faultOf(images, "image", /*still=*/0.0);
-  // Drivers publish torques faster than they measure them.
+  // Drivers publish torques faster than they measure them, so that stamps repeat.
   const bool torque_fault = faultOf(torques, "torque", /*still=*/kLeap);
   const double image_lag = usualLag(images), torque_lag = usualLag(torques);
-  // A short delay of the camera does not matter. A long one may be that of the recorder, which then
-  // is that of the torques, too.
+  // A short lag between stamp and recording does not matter. A long one may be that of the
+  // recorder, which then also delays the torques.
   const bool lags = image_fault || std::abs(image_lag) > kLag * dt;
 
   const auto pairBy = [&](bool stamps) {
@@ -132,7 +134,8 @@ Pairs pairByClocks(std::vector<BagImage> images, std::vector<BagTorque> torques,
                             [](const BagTorque& a, const BagTorque& b) { return a.time < b.time; });
     const ros::Time first = images.front().act, last = images.back().act;
     Pairs pairs;
-    // One recorder has one clock: a torque that it took before the first image is still in force.
+    // All recorded times are of one clock: a torque recorded before the first image is still in
+    // force.
     if (span.first->time < last + ros::Duration(dt) &&
         secondsBetween(span.second->time, first) <= (stamps ? 0.0 : kHeldBefore)) {
       pairs = pairInTime(images, torques, dt);
@@ -179,7 +182,7 @@ Pairs pairUp(std::vector<BagImage> images, std::vector<BagTorque> torques, doubl
   sortByRecording("a torque", &torques);
   removeCopies(dt, &images);
   if (images.empty()) refuse("its image topic has no message: leave this bag out");
-  // BagWriter records a message at its stamp.
+  // BagWriter writes a message at its stamp, other recorders at its arrival.
   const bool of_others =
       dt > 0.0 || std::any_of(images.begin(), images.end(), [](const BagImage& image) {
         return image.recorded != std::max(image.stamp, ros::TIME_MIN);
@@ -209,7 +212,7 @@ Pairs pairUp(std::vector<BagImage> images, std::vector<BagTorque> torques, doubl
         " torques, no two have the same header stamp: stamp each torque with the image it answers");
   }
   pairs.of_others = of_others;
-  std::vector<std::size_t> begins;  // of segments after the first
+  std::vector<std::size_t> begins;  // first samples of all segments but the first
   for (std::size_t i = 1; i < pairs.frames.size(); ++i) {
     if (pairs.frames[i].new_segment) begins.push_back(i);
   }

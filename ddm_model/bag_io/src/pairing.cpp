@@ -1,4 +1,4 @@
-// Which torque acted after which image.
+// Pairs images with the torques that acted after them.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pairing.h"
 
@@ -11,9 +11,9 @@
 namespace ddm {
 namespace {
 
-constexpr double kGap = 1.5;            // in median intervals
-constexpr double kTolerance = 0.25;     // of dt: how far an image may be from where it is due
-constexpr double kRateTolerance = 0.1;  // of dt: how far the usual interval may be from it
+constexpr double kGap = 1.5;            // gap / median interval
+constexpr double kTolerance = 0.25;     // tolerance of the time of an image / dt
+constexpr double kRateTolerance = 0.1;  // tolerance of the median interval / dt
 
 template <class Item>
 std::vector<ros::Time> timesOf(const std::vector<Item>& items) {
@@ -22,7 +22,7 @@ std::vector<ros::Time> timesOf(const std::vector<Item>& items) {
   return times;
 }
 
-/// The position of the time that is nearest to another.
+/// @return index of the time that is nearest to `time`
 /// @param times  sorted, at least one
 std::size_t nearest(const std::vector<ros::Time>& times, const ros::Time& time) {
   const auto later = std::lower_bound(times.begin(), times.end(), time);
@@ -33,7 +33,7 @@ std::size_t nearest(const std::vector<ros::Time>& times, const ros::Time& time) 
              : at;
 }
 
-/// Positions of images dt apart; bool: whether a new segment begins.
+/// @return indices of images dt apart, each with whether a new segment begins there
 std::vector<std::pair<std::size_t, bool>> pickImages(const std::vector<ros::Time>& times,
                                                      double dt) {
   std::vector<std::pair<std::size_t, bool>> picked;
@@ -47,7 +47,8 @@ std::vector<std::pair<std::size_t, bool>> pickImages(const std::vector<ros::Time
         image = candidate + 1;
         continue;
       }
-      const auto after = std::upper_bound(times.begin(), times.end(), due);  // after the gap
+      // The next segment begins with the first image after the gap.
+      const auto after = std::upper_bound(times.begin(), times.end(), due);
       image = std::max(image, static_cast<std::size_t>(after - times.begin()));
       if (image == times.size()) break;
     }
@@ -57,9 +58,9 @@ std::vector<std::pair<std::size_t, bool>> pickImages(const std::vector<ros::Time
   return picked;
 }
 
-/// The images of a camera whose rate does not fit dt are each where the one before lets them be due,
-/// so that frames come at another rate, or one by one.
-/// @param apart  usual time between images [s]
+/// Refuses images whose rate does not fit dt. Each of them is within the tolerance of the one
+/// before, but samples have another rate, or stand alone in their segments.
+/// @param apart  median time between images [s]
 void requireRate(const Pairs& pairs, double apart, double dt) {
   const auto& frames = pairs.frames;
   std::size_t num_alone = 0;
@@ -139,16 +140,16 @@ Pairs pairInTime(const std::vector<BagImage>& images, std::vector<BagTorque> tor
   const double usual_age = std::max(dt, kGap * medianInterval(times));
   const auto picked = pickImages(image_times, dt);
   Pairs pairs;
-  std::size_t next_torque = 0;  // the first that is not counted yet
-  std::size_t num_held = 0;     // frames whose torque is older than usual
-  double longest_held = 0.0;    // age of the oldest torque when its frame ends [s]
+  std::size_t next_torque = 0;  // first torque that is not used or dropped yet
+  std::size_t num_held = 0;     // samples whose torque is older than usual
+  double longest_held = 0.0;    // age of the oldest torque at the end of its sample [s]
   for (std::size_t i = 0; i < picked.size(); ++i) {
     const BagImage& image = images[picked[i].first];
     const bool continued = i + 1 < picked.size() && !picked[i + 1].second;
     const ros::Time end =
         continued ? images[picked[i + 1].first].act : image.act + ros::Duration(dt);
     const auto after = std::lower_bound(times.begin(), times.end(), end);
-    if (after == times.begin()) {  // before the first torque
+    if (after == times.begin()) {  // there is no torque before the end of this sample
       pairs.images_without_torque.push_back(image.time);
       continue;
     }

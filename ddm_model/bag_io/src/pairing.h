@@ -1,4 +1,4 @@
-// Which torque acted after which image.
+// Pairs images with the torques that acted after them.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -11,7 +11,8 @@
 
 namespace ddm {
 
-/// [s], may be negative. A difference of ros::Time throws where clocks are 68 years apart.
+/// @return time difference, may be negative [s]. Subtracting ros::Time throws if it exceeds 68
+///         years
 inline double secondsBetween(const ros::Time& from, const ros::Time& to) {
   const std::int64_t seconds = std::int64_t{to.sec} - from.sec - (to.nsec < from.nsec ? 1 : 0);
   const std::int64_t rest =
@@ -19,71 +20,72 @@ inline double secondsBetween(const ros::Time& from, const ros::Time& to) {
   return static_cast<double>(seconds) + 1e-9 * static_cast<double>(rest);
 }
 
-/// A few messages may be late; only most of them tell of a clock. Of two middle values the lower one counts,
-/// since a gap only ever lengthens an interval.
+/// @return median of the values. Of two middle values it is the lower one, since gaps only lengthen
+///         intervals. Used for clocks because single messages may be late
 /// @param values  at least one
 double median(std::vector<double> values);
 
-/// [s]; 0 if there are fewer than two times.
+/// @return median time between successive times [s]; 0 if there are fewer than two
 double medianInterval(const std::vector<ros::Time>& times);
 
-/// An image of a bag, whose pixels have not been decoded yet.
+/// An image of a bag, before its pixels are decoded.
 struct BagImage {
-  ros::Time stamp;      ///< of the header; 0: there is none
-  ros::Time recorded;   ///< when it arrived
-  std::size_t number;   ///< in the order of the file
-  std::size_t content;  ///< the same number for images with the same bytes
-  ros::Time time{};     ///< set by pairUp(): by which images are ordered and gaps are found
-  ros::Time act{};      ///< set by pairUp(): when it was there, by the clock of the torques
+  ros::Time stamp;      ///< header stamp; 0: there is none
+  ros::Time recorded;   ///< time of recording
+  std::size_t number;   ///< index in the order of the file
+  std::size_t content;  ///< hash of the message without its header
+  ros::Time time{};     ///< set by pairUp(): time for the order and for gaps
+  ros::Time act{};      ///< set by pairUp(): time by the clock of the torques
 };
 
 /// A torque of a bag.
 struct BagTorque {
-  ros::Time stamp;             ///< of the header; 0: there is none
-  ros::Time recorded;          ///< when it arrived
-  std::vector<double> torque;  ///< one of each motor [N m]
-  ros::Time time{};            ///< set by pairUp(): the one of both times that counts
+  ros::Time stamp;             ///< header stamp; 0: there is none
+  ros::Time recorded;          ///< time of recording
+  std::vector<double> torque;  ///< of each motor [N m]
+  ros::Time time{};            ///< set by pairUp(): stamp or recorded
 };
 
-/// The frames of a bag, and what was left over.
+/// The samples of a bag, and the images and torques without a partner.
 struct Pairs {
-  /// An image and the torque that acted until the next one.
+  /// A sample: an image, and the torque that acted until the next image.
   struct Frame {
-    std::size_t image;           ///< its number
-    ros::Time time;              ///< of the image
+    std::size_t image;           ///< BagImage::number
+    ros::Time time;              ///< BagImage::time
     std::vector<double> torque;  ///< [N m]
-    bool new_segment;            ///< nothing of the frame before leads to it
+    bool new_segment;            ///< whether the previous sample is not its predecessor
   };
-  std::vector<Frame> frames{};  ///< by their times
+  std::vector<Frame> frames{};  ///< in order of time
   std::vector<ros::Time> images_without_torque{};
   std::vector<ros::Time> torques_without_image{};
-  double lag = 0.0;                  ///< of the torques' clock behind that of the images [s]
-  bool of_others = false;            ///< whether the bag was not recorded by this project
-  std::vector<std::string> notes{};  ///< what a user should know
+  double lag = 0.0;                  ///< clock of the torques minus clock of the images [s]
+  bool of_others = false;            ///< whether another program recorded the bag
+  std::vector<std::string> notes{};  ///< messages to the user
 
   std::vector<ros::Time> times() const;
 };
 
-/// Pairs what has the same stamp, as this project records it. A new segment begins after an image without a
-/// torque, and after a gap of more than 1.5 times the median interval.
-/// @param images  by their times
+/// Pairs images and torques with equal stamps, as trial_recorder records them. A new segment begins
+/// after an image without a torque, and after a gap of more than 1.5 times the median interval.
+/// @param images  in order of time
 /// @throws std::runtime_error if two different torques, or two images of a torque, have one stamp
 Pairs pairByStamp(const std::vector<BagImage>& images, std::vector<BagTorque> torques);
 
-/// Takes images dt apart, to a quarter of dt, and with each the torque that is in force when the next one is due.
-/// A torque is in force until there is another, as controllers hold it. A new segment begins where an image is
-/// missing.
-/// @param images  by their times
-/// @param dt      [s], > 0
-/// @throws std::runtime_error if images do not come at a multiple of dt
+/// Takes images dt apart, with a tolerance of dt/4, each with the torque that is in force when the
+/// next image is due. Controllers hold a torque, so that it is in force until the next torque. A
+/// new segment begins if an image is missing.
+/// @param images  in order of time
+/// @param dt      sampling time, > 0 [s]
+/// @throws std::runtime_error if dt is not about a multiple of the time between images
 Pairs pairInTime(const std::vector<BagImage>& images, std::vector<BagTorque> torques, double dt);
 
-/// Decides which times count, and pairs images and torques: by their stamps where dt is 0, else in time. Then stamps
-/// count where images and torques have stamps that can be trusted, else the times of recording, which know only
-/// one clock.
+/// Chooses the times that count, and pairs images and torques: by equal stamps if dt is 0,
+/// otherwise in time. In the latter case times are stamps if images and torques have reliable ones,
+/// and otherwise times of recording, which all come from one clock.
 /// @param images, torques  in the order of the file
-/// @return                 at least one frame
-/// @throws std::runtime_error also if there is no frame
+/// @param dt               sampling time [s]
+/// @return                 at least one sample
+/// @throws std::runtime_error like the functions above, and if there is no sample
 Pairs pairUp(std::vector<BagImage> images, std::vector<BagTorque> torques, double dt);
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// Texts and errors about a bag, put together from their parts.
+// Composes texts and errors about a bag.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace ddm {
 
-/// The parts one after the other, as a stream writes them.
+/// @return the parts one after the other, as a stream writes them
 template <class... Parts>
 std::string textOf(const Parts&... parts) {
   std::ostringstream text;
@@ -21,23 +21,23 @@ std::string textOf(const Parts&... parts) {
   return text.str();
 }
 
-/// "1700000000.020000 s"
+/// @return a time as text, such as "1700000000.020000 s"
 inline std::string timeText(const ros::Time& time) { return std::to_string(time.toSec()) + " s"; }
 
-/// "0.15 s"
+/// @return a duration as text, such as "0.15 s"
 inline std::string secondsText(double seconds) {
-  char text[400];  // the largest number has 309 digits
+  char text[400];  // the largest double has 309 digits
   std::snprintf(text, sizeof(text), std::abs(seconds) < 1000.0 ? "%.3g s" : "%.0f s", seconds);
   return text;
 }
 
-/// @throws std::runtime_error with the parts as its text: the fault and the remedy
+/// @throws std::runtime_error with the parts as its text, which give the fault and the remedy
 template <class... Parts>
 [[noreturn]] void refuse(const Parts&... parts) {
   throw std::runtime_error(textOf(parts...));
 }
 
-/// Adds a note, put together from its parts, to what a user should know about a bag.
+/// Adds a message to the user, composed of its parts.
 template <class... Parts>
 void addNote(std::vector<std::string>* notes, const Parts&... parts) {
   notes->push_back(textOf(parts...));

@@ -1,4 +1,4 @@
-// The experience that a model is trained on: images and torques of all trials so far.
+// The data that a model is trained on: images and torques of all trials so far.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -9,41 +9,41 @@
 
 namespace ddm {
 
-/// Grey values k of one image, row by row from the top left; the paper's y is k / 255.  [D]
+/// Grey values k of one image, row by row from the top left. The paper's y is k / 255.  [D]
 using Grey = std::vector<std::uint8_t>;
-/// The same of several images, one per column.  [D x N]
+/// Grey values of several images, one image per column.  [D x N]
 using GreyMatrix = Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>;
 
-/// Frames without a gap between them: frame i+1 follows frame i by one sampling time.
+/// Samples without a gap between them: sample i+1 follows sample i by one sampling time.
 struct Segment {
-  Eigen::Index begin = 0;  ///< first frame
-  Eigen::Index size = 0;   ///< number of frames
+  Eigen::Index begin = 0;  ///< index of the first sample
+  Eigen::Index size = 0;   ///< number of samples
 };
 
-/// Images and torques of any number of trials. A frame is a pair (y_t, u_t): the torque that was
-/// applied after the image was seen. Pixels are kept once, as bytes: copies of a data set, and
-/// others that it was appended to, share them.
+/// Images and torques of any number of trials. A sample is a pair (y_t, u_t) of an image and the
+/// torque that is applied after the image is seen. Pixels are stored once, as bytes: copies of a
+/// data set, and data sets that it is appended to, share the stored images.
 class DataSet {
  public:
-  /// @param image_size  images have image_size x image_size pixels
+  /// @param image_size  width and height of the images [pixels]
   /// @param torque_dim  number of motors
-  /// @throws std::invalid_argument if one is < 1
+  /// @throws std::invalid_argument if a parameter is < 1
   DataSet(int image_size, int torque_dim);
 
-  /// Appends a frame.
+  /// Appends a sample.
   /// @param grey       image y_t                                                            [D]
   /// @param torque     u_t [N m]                                                    [torque_dim]
-  /// @param new_segment  true where the previous frame is not the one of a sampling time before (the
-  ///                   first of a trial, or after a gap): no training pair straddles this
+  /// @param new_segment  true if the previous sample is not one sampling time earlier: at the first
+  ///                   sample of a trial and after a gap. No training pair spans such a boundary
   /// @throws std::invalid_argument for a wrong size or a torque that is not finite
   void append(const Grey& grey, const Eigen::VectorXd& torque, bool new_segment);
 
-  /// Appends all frames of another data set; no pair straddles the seam. Takes over its goal image if
-  /// it has one: the last one counts.
+  /// Appends all samples of another data set. No training pair spans the boundary between the two
+  /// data sets. If the other data set has a goal image, it replaces the goal image of this one.
   /// @throws std::invalid_argument if image size or torque dimension differ
   void append(const DataSet& other);
 
-  /// The paper's reference image; it is part of the auto-encoder's training data.
+  /// Sets the goal image y_ref (paper, Sec. 3.1), which is also training data of the auto-encoder.
   /// @throws std::invalid_argument for a wrong size
   void setGoal(const Grey& grey);
   bool hasGoal() const { return !goal_.empty(); }
@@ -55,16 +55,16 @@ class DataSet {
   Eigen::Index numFrames() const { return num_frames_; }
   const std::vector<Segment>& segments() const { return segments_; }
 
-  /// Number of frames, and one for the goal if there is one.
+  /// @return number of samples, plus one if there is a goal image
   Eigen::Index numImages() const { return num_frames_ + (hasGoal() ? 1 : 0); }
-  /// The image of a frame; numFrames() is the goal's number.
+  /// @return the image of sample `number`, or the goal image if number = numFrames()
   const Grey& image(Eigen::Index number) const {
     return number < num_frames_ ? *images_[number] : goal_;
   }
-  /// Images side by side, copied: for a block of them at a time.
+  /// Copies the images begin ... begin + size - 1 into columns. Meant for blocks of a few images.
   /// @return [D x size]
   GreyMatrix pixels(Eigen::Index begin, Eigen::Index size) const;
-  /// @return torques of all frames [N m]  [torque_dim x numFrames()]
+  /// @return torques of all samples [N m]  [torque_dim x numFrames()]
   Eigen::Map<const Eigen::MatrixXd> torques() const;
 
  private:

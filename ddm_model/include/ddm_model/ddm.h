@@ -1,4 +1,4 @@
-// A trained deep dynamical model: images to features, features to images, features ahead in time.
+// A trained deep dynamical model: encoder, decoder and prediction model.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -15,40 +15,41 @@
 
 namespace ddm {
 
-/// Where a model comes from; travels with it.
+/// Origin and statistics of a model, stored with the model.
 struct ModelInfo {
   std::uint64_t seed = 0;    ///< seed of the experiment
-  std::uint32_t trial = 0;   ///< last trial learned from
-  std::uint32_t frames = 0;  ///< frames learned from
-  double v_r = 0.0;          ///< V_R [grey^2]
-  double v_p = 0.0;          ///< V_P [grey^2]
-  /// Root of the mean squared distance of the features learned from to their mean; 0: not known.
+  std::uint32_t trial = 0;   ///< last trial in the training data
+  std::uint32_t frames = 0;  ///< number of samples in the training data
+  double v_r = 0.0;          ///< V_R of the training data [grey^2]
+  double v_p = 0.0;          ///< V_P of the training data [grey^2]
+  /// Root mean squared distance of the training data's features to their mean; 0 if unknown.
   double feature_spread = 0.0;
-  /// States learned from, see supportStates(); empty: not known.  [state_dim x M]
+  /// Support states, see supportStates(). Empty if unknown.  [state_dim x M]
   Eigen::MatrixXf support_states;
-  std::string config;  ///< YAML text of the configuration it was trained with
+  std::string config;  ///< YAML text of the training configuration
 };
 
-/// The trained model of eq. (3) of the paper. Computes in double, one image or feature at a time.
+/// Trained model (paper, eq. 3). Computes in double precision, one image or feature at a time.
 class Ddm {
  public:
-  /// @param image_size  images have image_size x image_size pixels
+  /// @param image_size  width and height of the images [pixels]
   /// @param torque_dim  number of motors
-  /// @param theta       theta_E, theta_D, theta_P
-  /// @param goal        goal image, empty if there is none
-  /// @throws std::invalid_argument if shapes do not fit together
+  /// @param theta       theta_E, theta_D, theta_P                                  [P]
+  /// @param goal        goal image, empty if there is none                         [D]
+  /// @throws std::invalid_argument if sizes do not fit together or a number is not finite
   Ddm(ModelOptions options, int image_size, int torque_dim, Pca pca, Eigen::VectorXd theta,
       Grey goal, ModelInfo info);
 
-  /// z = g^-1(y) (eq. 3a)
+  /// Encodes an image: z = g^-1(y) (paper, eq. 3a).
   /// @param grey  image  [D]
   /// @return      z      [feature_dim]
   /// @throws std::invalid_argument for a wrong number of pixels
   Eigen::VectorXd encode(const Grey& grey) const;
 
-  /// y_hat = g(z) (eq. 3b), clamped to what an image can show.
+  /// Decodes a feature: y_hat = g(z) (paper, eq. 3b), clamped to the grey values 0 ... 255.
   /// @param z  [feature_dim]
-  /// @pre the size of z (checked by eigen_assert, i.e. in debug builds only)
+  /// @return   image  [D]
+  /// @pre z has feature_dim entries (checked by eigen_assert, i.e. in debug builds only)
   Grey decode(const Eigen::VectorXd& z) const;
 
   /// z_ref, the feature of the goal image.
@@ -56,26 +57,26 @@ class Ddm {
   const Eigen::VectorXd& goalFeature() const;
   bool hasGoal() const { return !goal_.empty(); }
 
-  /// z_{t+1} = f(h_n), one step from the state that a policy keeps (eq. 2).
-  /// @param x  features and torques until t, not empty
+  /// Predicts one step from the controller state: z_{t+1} = f(h_n) (paper, eq. 2).
+  /// @param x  controller state x_t (paper, eq. 8), not empty
   /// @param u  u_t [N m]                                                 [torque_dim]
-  /// @return   [feature_dim]
-  /// @throws std::invalid_argument if x is empty, or x or u do not fit the model
+  /// @return   z_{t+1}                                                   [feature_dim]
+  /// @throws std::invalid_argument if x is empty, or if x or u have a wrong size
   Eigen::VectorXd predict(const History& x, const Eigen::VectorXd& u) const;
 
-  /// z_t, then z_{t+1} ... z_{t+num_steps} predicted from the last n + d features and torques that
-  /// were seen until t, and the torques that followed (paper, Sec. 4.1).
-  /// @param Z        features of all frames                               [feature_dim x N]
-  /// @param torques  torques of all frames [N m]                           [torque_dim x N]
-  /// @param frame    t; n + d - 1 <= t <= N - num_steps. No gap may lie in between
-  /// @return         [feature_dim x (num_steps + 1)]
-  /// @throws std::invalid_argument for sizes or a frame that do not fit
+  /// Predicts a rollout z_t, z_{t+1}, ..., z_{t+num_steps} (paper, eq. 2 step by step, and Sec.
+  /// 4.1) from the features and torques of the samples t - n - d + 1 ... t and the torques after t.
+  /// @param Z        features of all samples                              [feature_dim x N]
+  /// @param torques  torques of all samples [N m]                          [torque_dim x N]
+  /// @param frame    t, with n + d - 1 <= t <= N - num_steps. The samples used must have no gap
+  /// @return         z_t, then the predicted features       [feature_dim x (num_steps + 1)]
+  /// @throws std::invalid_argument if a size or the index t does not fit
   Eigen::MatrixXd rollOut(const Eigen::MatrixXd& Z,
                           const Eigen::Ref<const Eigen::MatrixXd>& torques, Eigen::Index frame,
                           int num_steps) const;
 
   const PredictionModel<double>& predictionModel() const { return networks_.prediction_model; }
-  /// Parameters theta_P of predictionModel().
+  /// @return theta_P, the parameters of predictionModel()  [P_f]
   const double* thetaP() const { return networks_.predictorOf(theta_.data()); }
 
   const ModelOptions& options() const { return options_; }
@@ -99,25 +100,28 @@ class Ddm {
   Eigen::VectorXd goal_feature_;
 };
 
-/// Features of all images of a data set, one by one through the encoder.
+/// Encodes all images of a data set except the goal image.
 /// @return Z  [feature_dim x numFrames()]
-/// @throws std::invalid_argument if the images have another size than the model's
+/// @throws std::invalid_argument if the size of the images is not that of the model
 Eigen::MatrixXd encodeAll(const Ddm& model, const DataSet& data);
 
-/// Error of all predictions that many steps ahead.
+/// Prediction error for a given number of steps ahead.
 struct PredictionError {
   int steps = 0;
   Eigen::Index num_predictions = 0;
-  double rmse = 0.0;         ///< root mean square over all pixels of all predicted images [grey]
-  double rmse_repeat = 0.0;  ///< the same for an image predicted to stay as it is [grey]
+  /// Root mean squared error over all pixels of all predicted images [grey].
+  double rmse = 0.0;
+  /// The same error if each image is predicted to equal the last image that was seen [grey].
+  double rmse_repeat = 0.0;
 };
 
-/// Predicts from all frames that have n + d - 1 predecessors and max_steps successors without a gap,
-/// and compares with what came.
-/// @param data       not learned from
-/// @param max_steps  longest prediction
-/// @return           for 1 ... max_steps steps ahead
-/// @throws std::invalid_argument if the data do not fit the model, or have no such frame
+/// Computes the prediction errors on a data set. Rollouts start at all samples that have n + d - 1
+/// predecessors and max_steps successors without a gap.
+/// @param data       data that the model was not trained on
+/// @param max_steps  length of the rollouts, >= 1
+/// @return           errors for 1 ... max_steps steps ahead  [max_steps]
+/// @throws std::invalid_argument if max_steps < 1, if the data do not fit the model, or if no
+///                   rollout can start in them
 std::vector<PredictionError> predictionErrors(const Ddm& model, const DataSet& data, int max_steps);
 
 }  // namespace ddm

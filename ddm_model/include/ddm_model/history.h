@@ -1,4 +1,4 @@
-// Controller state x: the last n features and the last n-1 torques; and states of a data set.
+// Controller state x (the last n features and n-1 torques), and support states of a data set.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -10,13 +10,16 @@
 
 namespace ddm {
 
-/// x_t = [z_t, ..., z_{t-n+1}, u_{t-1}, ..., u_{t-n+1}] (paper, eq. 8). At the start of a trial
-/// the first feature stands for those before it, with torque 0: the plant is taken to be at rest. Where
-/// images are d frames late, both reach back d frames more.
+/// Controller state x_t = [z_t, ..., z_{t-n+1}, u_{t-1}, ..., u_{t-n+1}] (paper, eq. 8). At the
+/// start of a trial the first feature fills all n features and the torques are 0, as if the plant
+/// had been at rest. Deviation: if images are d samples late (model/delay), features and torques
+/// reach back d samples more.
 class History {
  public:
-  /// @param memory  n + d, see ModelOptions
-  /// @throws std::invalid_argument if one is < 1
+  /// @param memory       n + d, see ModelOptions::memory()
+  /// @param feature_dim  dim z
+  /// @param torque_dim   number of motors
+  /// @throws std::invalid_argument if a parameter is < 1
   History(int memory, int feature_dim, int torque_dim) {
     if (memory < 1 || feature_dim < 1 || torque_dim < 1) {
       throw std::invalid_argument("history: memory and dimensions must be >= 1");
@@ -25,13 +28,13 @@ class History {
     torques_.setZero(torque_dim, memory - 1);
   }
 
-  /// Forgets everything: the next feature is the first of a trial.
+  /// Clears the state: the next feature is treated as the first of a trial.
   void clear() {
     empty_ = true;
     torques_.setZero();
   }
 
-  /// Takes in the feature of the image just seen.
+  /// Adds z_t, the feature of the newest image  [feature_dim]
   void observe(const Eigen::VectorXd& z) {
     if (empty_) {
       features_.colwise() = z;
@@ -41,19 +44,19 @@ class History {
     push(z, &features_);
   }
 
-  /// Takes in the torque [N m] that answers the image just seen.
+  /// Adds u_t, the torque that was applied after the newest image [N m]  [torque_dim]
   void apply(const Eigen::VectorXd& u) {
     if (torques_.cols() > 0) push(u, &torques_);
   }
 
   bool empty() const { return empty_; }
-  /// z_t, z_{t-1}, ...: the newest first  [feature_dim x (n + d)]
+  /// @return z_t, z_{t-1}, ...: newest first  [feature_dim x (n + d)]
   const Eigen::MatrixXd& features() const { return features_; }
-  /// u_{t-1}, u_{t-2}, ...: the newest first [N m]  [torque_dim x (n + d - 1)]
+  /// @return u_{t-1}, u_{t-2}, ...: newest first [N m]  [torque_dim x (n + d - 1)]
   const Eigen::MatrixXd& torques() const { return torques_; }
 
  private:
-  /// Puts the newest column first and drops the oldest.
+  /// Inserts the newest column at the front and drops the oldest.
   static void push(const Eigen::VectorXd& newest, Eigen::MatrixXd* columns) {
     for (Eigen::Index lag = columns->cols() - 1; lag > 0; --lag) {
       columns->col(lag) = columns->col(lag - 1);
@@ -66,21 +69,22 @@ class History {
   bool empty_ = true;
 };
 
-/// Farthest-point sampling (Gonzalez, Theoretical Computer Science 1985): each point after the first is
-/// the one that is farthest from all that are chosen before it.
+/// Farthest-point sampling (Gonzalez, Theoretical Computer Science 1985). Starts with column 0 and
+/// adds, one at a time, the point whose distance to the chosen points is largest.
 /// @param points     one per column, at least one  [dim x N]
-/// @param max_count  of points; there are fewer where fewer are different
-/// @return           numbers of the columns, 0 first
+/// @param max_count  number of points to choose; fewer are chosen if fewer distinct points exist
+/// @return           indices of the chosen columns, 0 first
 std::vector<Eigen::Index> farthestPoints(const Eigen::Ref<const Eigen::MatrixXf>& points,
                                          Eigen::Index max_count);
 
-/// States x_t (eq. 8, see History) of frames, chosen by farthest points (z_t, z_t - z_{t-1}), both in units
-/// of their spread.
-/// @param Z          features of all frames, others may follow           [feature_dim x >= N]
-/// @param data       torques and segments of the frames
-/// @param memory     n + d, the frames of a state
-/// @param max_count  of support states
-/// @return           z_t ... z_{t-n-d+1}, then u_{t-1} ... u_{t-n-d+1} [N m], in each column
+/// Chooses support states: controller states x_t (paper, eq. 8; see History) of samples, selected
+/// by farthest-point sampling of (z_t, z_t - z_{t-1}), each part in units of its own spread.
+/// @param Z          features of all samples; columns after them are ignored  [feature_dim x >= N]
+/// @param data       torques and segments of the samples
+/// @param memory     n + d, number of features in a state
+/// @param max_count  number of support states at most
+/// @return           in each column z_t ... z_{t-n-d+1}, then u_{t-1} ... u_{t-n-d+1} [N m]
+///                   [memory feature_dim + (memory - 1) torque_dim x M]
 Eigen::MatrixXf supportStates(const Eigen::Ref<const Eigen::MatrixXf>& Z, const DataSet& data,
                               int memory, Eigen::Index max_count);
 

@@ -9,60 +9,66 @@
 
 namespace ddm {
 
-/// A differentiable function. Sets its gradient where `gradient` is not null. A value or a gradient
-/// that is not finite means that the function cannot be evaluated at x.
+/// A differentiable function. Writes its gradient if `gradient` is not null. If the value or the
+/// gradient is not finite, the function counts as undefined at x.
 using DifferentiableFunction =
     std::function<double(const Eigen::VectorXd& x, Eigen::VectorXd* gradient)>;
 
 /// Why a minimisation ended.
 enum class MinimumReason {
-  kConverged,        ///< the gradient vanishes, or a search that lowered the cost hardly changes it
-  kIterationLimit,   ///< max_iterations
-  kEvaluationLimit,  ///< max_evaluations
-  kStopped,          ///< by `stop` or `on_iteration`
-  kNoDecrease,       ///< no step lowers the cost, though the gradient does not vanish
-  kStartFailed,      ///< the function cannot be evaluated at the start
+  /// The gradient vanishes, or an iteration hardly changes a cost that the search has lowered.
+  kConverged,
+  kIterationLimit,   ///< max_iterations is reached
+  kEvaluationLimit,  ///< max_evaluations is reached
+  kStopped,          ///< `stop` or `on_iteration` ended the search
+  kNoDecrease,       ///< no step lowers the cost, although the gradient does not vanish
+  kStartFailed,      ///< the function is undefined at the initial point
 };
 
-/// The best point that was evaluated, and why the search ended.
+/// Result of a minimisation: the best evaluated point, and why the search ended.
 struct Minimum {
   MinimumReason reason = MinimumReason::kStartFailed;
   std::string message;       ///< the reason in words
-  Eigen::VectorXd x;         ///< the best point evaluated; the initial point if there is none  [n]
-  Eigen::VectorXd gradient;  ///< there                        [n], empty if there is none
-  double cost = std::numeric_limits<double>::infinity();          ///< there
-  double initial_cost = std::numeric_limits<double>::infinity();  ///< at the initial point
-  int iterations = 0;                                             ///< line searches
-  int evaluations = 0;                                            ///< of the function
+  Eigen::VectorXd x;         ///< best evaluated point; the initial point if there is none  [n]
+  Eigen::VectorXd gradient;  ///< gradient at x; empty if no point was evaluated  [n]
+  double cost = std::numeric_limits<double>::infinity();          ///< cost at x
+  double initial_cost = std::numeric_limits<double>::infinity();  ///< cost at the initial point
+  int iterations = 0;                                             ///< number of line searches
+  int evaluations = 0;  ///< number of evaluations of the function
 
   bool converged() const { return reason == MinimumReason::kConverged; }
   bool improved() const { return cost < initial_cost; }
 };
 
-/// How to search, and when to end.
+/// Options of a minimisation.
 struct MinimiseOptions {
-  int lbfgs_rank = 0;                 ///< steps that L-BFGS remembers; 0: BFGS, for few parameters
-  int max_iterations = 100;           ///< line searches [-]
-  int max_evaluations = 0;            ///< of the function; 0: no limit [-]
-  double function_tolerance = 1e-10;  ///< end when an iteration changes the cost, which may be
-                                      ///< negative, by no more than this fraction [-]
-  double gradient_tolerance = 1e-7;   ///< end when no entry of the gradient is larger
-  /// Called before each evaluation, also before the first; true ends the search.
+  int lbfgs_rank = 0;        ///< steps that L-BFGS stores [-]; 0: BFGS, for few parameters
+  int max_iterations = 100;  ///< cap on the line searches [-]
+  int max_evaluations = 0;   ///< cap on the evaluations of the function [-]; 0: no limit
+  /// The search ends if an iteration changes the cost by at most this fraction of its magnitude
+  /// [-].
+  double function_tolerance = 1e-10;
+  /// The search ends if no entry of the gradient has a larger magnitude.
+  double gradient_tolerance = 1e-7;
+  /// Called before each evaluation, including the first. Returning true ends the search.
   std::function<bool()> stop;
-  /// Called with the best so far before the first iteration and after each; false ends the search.
+  /// Called with the best point so far, before the first iteration and after each iteration.
+  /// Returning false ends the search.
   std::function<bool(const Minimum& so_far)> on_iteration;
 };
 
-/// Minimises f from an initial point. Where f cannot be evaluated, the line search takes a shorter step. The result is
-/// never worse than the initial point, however the search ends. The reason does not rely on the verdict of the solver,
-/// which may call a search successful although no step lowered the cost.
-/// @throws std::invalid_argument if the initial point is empty or not finite, or a limit is negative;
-///         whatever f, stop and on_iteration throw
+/// Minimises f from an initial point (BFGS: paper, Secs. 2.3 and 3.1). The line search shortens a
+/// step that ends where f is undefined. The result is never worse than the initial point. The
+/// reason is determined here, because the solver reports success even if no step lowered the cost.
+/// @param start  initial point  [n]
+/// @throws std::invalid_argument if the initial point is empty or not finite, or if a limit is
+///         negative; also every exception of f, stop and on_iteration
 Minimum minimise(const DifferentiableFunction& f, const Eigen::VectorXd& start,
                  const MinimiseOptions& options);
 
-/// Ceres warns on stderr about line searches over flat functions, which are no news to a user: how
-/// a solver ended is in every result. Called once by a program, never by a library.
+/// Silences the log of Ceres, which warns on stderr about line searches over flat functions
+/// although each result already says how the search ended. Only programs call this function, once;
+/// a library must not change the log of its caller.
 void silenceSolverLog();
 
 }  // namespace ddm

@@ -8,25 +8,25 @@
 
 namespace ddm {
 
-/// A model as bytes, for a file or a message (little-endian):
+/// Writes a model as bytes, for a file or a message (little-endian):
 ///
 ///   "DDMMODEL" | format version, uint32 | size of the content, uint64 | CRC-32 of the content |
 ///   content
 ///
-/// Only the present version of the format is read.
+/// Programs read only the current version of the format.
 std::string serialiseModel(const Ddm& model);
 
-/// The inverse. Sizes are checked against what is there before memory is taken.
-/// @param bytes   what serialiseModel() made
-/// @param source  file or topic, for messages
-/// @throws std::runtime_error naming source and fault: not a model, an unknown version, cut
-///         short, wrong checksum, content that makes no sense
+/// Reads a model from bytes. Checks each size against the bytes left before it allocates memory.
+/// @param bytes   output of serialiseModel()
+/// @param source  name of the file or topic, for error messages
+/// @throws std::runtime_error that names the source and the fault: not a model, another version,
+///         truncated, wrong checksum, or invalid content
 Ddm deserialiseModel(const std::string& bytes, const std::string& source);
 
-/// Identity of a model: CRC-32 of its bytes, 8 hexadecimal digits. Equal ids are equal models.
+/// @return id of a model: CRC-32 of its bytes, 8 hexadecimal digits. Equal models have equal ids.
 std::string modelId(const std::string& bytes);
 
-/// CRC-32 of any text, 8 hexadecimal digits.
+/// @return CRC-32 of a text, 8 hexadecimal digits
 std::string checksum(const std::string& text);
 
 }  // namespace ddm

@@ -8,18 +8,19 @@
 
 namespace ddm {
 
-/// Block `model`: the architecture. Defaults are the paper's.
+/// Block `model`: the architecture. The defaults are those of the paper (Sec. 4).
 struct ModelOptions {
-  double blur = 0.0;                              ///< images are seen through, std [pixels]
-  int pca_dim = 50;                               ///< input of the encoder [-]
-  int feature_dim = 2;                            ///< dim z [-]
-  int order = 2;                                  ///< n, features and torques that f sees [-]
-  int delay = 0;                                  ///< d, how late an image shows a torque [frames]
-  std::vector<int> encoder_widths = {25, 12, 6};  ///< hidden layers of g^-1; those of g mirror them
+  double blur = 0.0;    ///< std of the Gaussian blur of all images [pixels]
+  int pca_dim = 50;     ///< principal components; input of the encoder [-]
+  int feature_dim = 2;  ///< dim z [-]
+  int order = 2;        ///< n, past features and torques in the input of f [-]
+  int delay = 0;        ///< d, delay of the images [samples]
+  std::vector<int> encoder_widths = {25, 12, 6};  ///< hidden layers of g^-1; g mirrors them
   std::vector<int> predictor_widths = {4};        ///< hidden layers of f
-  bool residual = false;                          ///< f predicts the change of z, not z
-  bool increments = false;                        ///< f sees past features as their differences
-  std::vector<double> max_torque = {6.0};  ///< f sees u / max_torque; one, or one per motor [N m]
+  bool residual = false;                          ///< f predicts the change of z instead of z
+  bool increments = false;                        ///< past features enter f as differences
+  /// Scale of the torques: f sees u / max_torque [N m]. One number for all motors, or one each.
+  std::vector<double> max_torque = {6.0};
 
   template <class Visitor>
   void visit(Visitor& visitor) {
@@ -34,9 +35,9 @@ struct ModelOptions {
     visitor("increments", increments);
     visitor("max_torque", max_torque);
   }
-  /// Frames that f looks back: n + d.
+  /// @return n + d, the number of samples that f looks back
   int memory() const { return order + delay; }
-  /// Hidden layers of g, feature first.
+  /// @return hidden layers of g, feature first
   std::vector<int> decoderWidths() const {
     return std::vector<int>(encoder_widths.rbegin(), encoder_widths.rend());
   }
@@ -45,19 +46,21 @@ struct ModelOptions {
 
 /// Block `training`.
 struct TrainingOptions {
-  std::string schedule = "joint";  ///< what is minimised over what, see scheduleNames()
+  std::string schedule = "joint";  ///< terms and free parameters, see scheduleNames()
   std::string solver = "lbfgs";    ///< "lbfgs", "kfac" or "bfgs"
-  int num_starts = 1;              ///< restarts, of which the best is kept [-]
-  int max_delay = 0;               ///< largest model/delay that is tried [frames]
-  int selection_steps = 0;         ///< by predictions so many steps ahead; 0: by what is minimised
-  int selection_iterations = 0;  ///< of each restart's last stage before they are compared; 0: all
-  int selection_frames = 0;      ///< compared on so many frames at most; 0: on all
-  int max_iterations = 500;      ///< cap on the iterations of the solver, each stage [-]
-  int prediction_steps = 1;      ///< V_P: predictions up to so many steps ahead [-]
-  int warm_up_iterations = 100;  ///< cap on those with one step first, if more are asked for [-]
-  double weight_decay = 0.0;     ///< weight of V_W, the squared weights [score^2]
-  double function_tolerance = 1e-6;  ///< stop when V changes by less than this fraction [-]
-  int lbfgs_rank = 20;               ///< pairs that L-BFGS remembers [-]
+  int num_starts = 1;              ///< restarts; training keeps the best [-]
+  int max_delay = 0;               ///< largest model/delay that training tries [samples]
+  /// The best restart has the smallest error of predictions over so many steps [-]; 0: the smallest
+  /// objective.
+  int selection_steps = 0;
+  int selection_iterations = 0;      ///< iterations of the last stage before the choice; 0: all [-]
+  int selection_frames = 0;          ///< samples for the choice at most; 0: all [-]
+  int max_iterations = 500;          ///< cap on the solver's iterations in each stage [-]
+  int prediction_steps = 1;          ///< k: V_P counts predictions 1 ... k steps ahead [-]
+  int warm_up_iterations = 100;      ///< if k > 1: cap on the iterations with k = 1 before [-]
+  double weight_decay = 0.0;         ///< weight of V_W, the sum of squared weights [score^2]
+  double function_tolerance = 1e-6;  ///< stop if V changes by less than this fraction [-]
+  int lbfgs_rank = 20;               ///< steps that L-BFGS stores [-]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
@@ -78,7 +81,7 @@ struct TrainingOptions {
   std::vector<std::string> problems() const;
 };
 
-/// The largest delay that is tried.
+/// @return the largest delay that training tries [samples]
 inline int largestDelay(const ModelOptions& model, const TrainingOptions& training) {
   return std::max(model.delay, training.max_delay);
 }

@@ -1,4 +1,4 @@
-// The three networks of the deep dynamical model, and where each lives in theta.
+// The three networks of the deep dynamical model, and their places in the parameter vector theta.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -11,21 +11,25 @@
 
 namespace ddm {
 
-/// One-step prediction in feature space (paper, eq. 2), without its parameters.
+/// Prediction model f: one step in feature space (paper, eq. 2). The caller holds its parameters.
 ///
-///   z_{t+1} = f(h_n; theta_P),   h_n = [z_t, u_{t-d}, z_{t-1}, u_{t-1-d}, ..., z_{t-n+1}, u_{t-n+1-d}]
+///   z_{t+1} = f(h_n; theta_P)
+///   h_n     = [z_t, u_{t-d}, z_{t-1}, u_{t-1-d}, ..., z_{t-n+1}, u_{t-n+1-d}]
 ///
-/// with u in units of max_torque; RollOut makes h_n. d is the dead time of the camera, model/delay, 0 in
-/// the paper: an image that is d frames late shows a torque d frames later. f is a network with a linear output layer, or,
-/// with model/residual, z_t plus such a network: what does not move is then predicted without
-/// learning. With model/increments the network sees z_t, z_t - z_{t-1}, z_{t-1} - z_{t-2}, ...
-/// instead: features of successive images are almost equal, and their differences are the motion.
+/// with u in units of max_torque. RollOut builds h_n. Deviations, each off by default:
+///  * model/delay d: images are d samples late, so that h_n has the torques of d samples earlier.
+///  * model/residual: f is z_t plus the network, which then learns only the change of z. Without
+///    this option, f is the network. Its output layer is linear in both cases.
+///  * model/increments: the network sees z_t, z_t - z_{t-1}, z_{t-1} - z_{t-2}, ... instead of the
+///    features, because features of successive images are almost equal and only their differences
+///    show the motion.
 template <class Scalar>
 class PredictionModel {
  public:
   using Matrix = typename Mlp<Scalar>::Matrix;
 
-  /// @throws std::invalid_argument if a width is < 1, or max_torque is for other motors
+  /// @throws std::invalid_argument if a width is < 1, or if max_torque has a wrong number of
+  ///         entries
   PredictionModel(const ModelOptions& options, int torque_dim)
       : options_(options),
         torque_dim_(torque_dim),
@@ -40,20 +44,20 @@ class PredictionModel {
   int order() const { return options_.order; }
   /// @return d
   int delay() const { return options_.delay; }
-  /// @return n + d, the frames from the oldest that h_n needs to the current one
+  /// @return n + d, the number of samples from the oldest one in h_n to the current one
   int memory() const { return options_.memory(); }
-  /// What f sees as 1 [N m]  [torque_dim]
+  /// @return scale of the torques: f sees u / maxTorque() [N m]  [torque_dim]
   const Eigen::VectorXd& maxTorque() const { return max_torque_; }
   /// @return n (feature_dim + torque_dim), the size of h_n
   int regressorDim() const { return network_.inputDim(); }
 
-  /// The network within f.
+  /// @return the network within f
   const Mlp<Scalar>& network() const { return network_; }
 
   /// @param theta_p     parameters of f                                                      [P_f]
-  /// @param regressors  one h_n per column; out: input of the network        [regressorDim() x N]
+  /// @param regressors  one h_n per column; out: inputs of the network       [regressorDim() x N]
   /// @param tape        out: record for backward()
-  /// @param predicted   out: z_{t+1}, of this size already                      [feature_dim x N]
+  /// @param predicted   out: z_{t+1}; must have this size already                [feature_dim x N]
   void forward(const Scalar* theta_p, Eigen::Ref<Matrix> regressors,
                typename Mlp<Scalar>::Tape* tape, Eigen::Ref<Matrix> predicted) const {
     for (int lag = options_.increments ? order() - 1 : 0; lag > 0; --lag) {
@@ -64,8 +68,10 @@ class PredictionModel {
     if (options_.residual) predicted += features(0, regressors);
   }
 
-  /// Vector-Jacobian product of forward(). Uses the tape up.
-  /// @param d_theta_p     dV/d theta_P is ADDED to this; null: not wanted                    [P_f]
+  /// Vector-Jacobian product of forward(). Consumes the tape.
+  /// @param theta_p       parameters of the forward pass                                     [P_f]
+  /// @param d_predicted   dV/dz_{t+1}                                            [feature_dim x N]
+  /// @param d_theta_p     dV/d theta_P is ADDED to it; null: skip                            [P_f]
   /// @param d_regressors  out: dV/dh_n in its first N columns              [regressorDim() x >= N]
   void backward(const Scalar* theta_p, typename Mlp<Scalar>::Tape* tape,
                 const Eigen::Ref<const Matrix>& d_predicted, Scalar* d_theta_p,
@@ -80,7 +86,7 @@ class PredictionModel {
   }
 
  private:
-  /// Rows of the feature of `lag` steps ago (0: the current one).
+  /// @return rows of the feature `lag` steps before the current one
   template <class Regressors>
   auto features(int lag, Regressors& regressors) const {
     return regressors.middleRows(lag * (featureDim() + torque_dim_), featureDim());
@@ -92,15 +98,16 @@ class PredictionModel {
   Mlp<Scalar> network_;
 };
 
-/// g^-1, g and f, and their places in the one flat vector theta = [theta_E, theta_D, theta_P].
+/// g^-1, g and f, and their places in the flat vector theta = [theta_E, theta_D, theta_P].
 ///
-///   z = g^-1(score; theta_E)  every layer through arctan, the feature too (paper, Sec. 2.1)
-///   score_hat = g(z; theta_D) hidden layers through arctan, the output linear
+///   z = g^-1(score; theta_E)   arctan after every layer, including the last (paper, Sec. 2.1)
+///   score_hat = g(z; theta_D)  arctan after hidden layers; the output layer is linear
 template <class Scalar>
 struct Networks {
   PredictionModel<Scalar> prediction_model;
 
-  /// @throws std::invalid_argument if a width is < 1, or max_torque is for other motors
+  /// @throws std::invalid_argument if a width is < 1, or if max_torque has a wrong number of
+  ///         entries
   Networks(const ModelOptions& options, int torque_dim)
       : prediction_model(options, torque_dim),
         encoder_(layerWidths(options.pca_dim, options.encoder_widths, options.feature_dim),
@@ -113,7 +120,7 @@ struct Networks {
   const Mlp<Scalar>& decoder() const { return decoder_; }
   const Mlp<Scalar>& f() const { return prediction_model.network(); }
 
-  /// Start of theta_E, theta_D and theta_P in theta (const or not).
+  /// @return address of theta_E, theta_D or theta_P in theta (const or not)
   template <class Pointer>
   Pointer encoderOf(Pointer theta) const {
     return theta;
@@ -134,17 +141,19 @@ struct Networks {
   Mlp<Scalar> decoder_;  // g:    feature_dim ... pca_dim
 };
 
-/// Initial theta (paper, Sec. 2.3, "Initialization"). The auto-encoder is unfolded: encoder layer k
-/// and the decoder layer that mirrors it form a pair, which starts as the PCA of that layer's
-/// input,
+/// Computes initial weights (paper, Sec. 2.3, "Initialization"). The auto-encoder is unfolded: each
+/// encoder layer and the decoder layer that mirrors it form a pair, and the PCA of the encoder
+/// layer's inputs initialises the pair,
 ///
 ///   encoder:  W = c B^T, b = -c B^T m        decoder:  W = B / c, b = m
 ///
-/// with basis B and mean m of the inputs. c gives the leading unit a spread of 0.3, where the arctan
-/// is nearly linear; the arctan's output is the input of the next pair. Units beyond the rank of the
-/// input have random initial weights, as has the whole auto-encoder without a PCA start, and f.
-/// @param scores  PCA scores of all images  [pca_dim x M]
-/// @return        theta                     [P]
+/// with basis B and mean m of the inputs. The scale c gives the leading unit a standard deviation
+/// of 0.3, where arctan is nearly linear. The output after arctan is the input of the next pair.
+/// Random numbers initialise f, units beyond the rank of the inputs, and, if pca_start is false,
+/// the whole auto-encoder.
+/// @param scores     PCA scores of all images                       [pca_dim x M]
+/// @param pca_start  false: the auto-encoder has random initial weights
+/// @return           theta                                                    [P]
 Eigen::VectorXd initialTheta(const Networks<double>& networks, const Eigen::MatrixXd& scores,
                              bool pca_start, std::mt19937_64* rng);
 

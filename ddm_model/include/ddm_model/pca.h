@@ -1,4 +1,4 @@
-// Principal component analysis: images y to scores, before the encoder and after the decoder.
+// Principal component analysis, which turns images into scores for the encoder and back.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -10,15 +10,16 @@
 
 namespace ddm {
 
-/// Y -> G Y G^T for an image Y, with the rows of G a Gaussian about their pixel, cut off at the edge
-/// of the image and normalised: a grey wall stays as it is. Thin parts of a large picture then
-/// share pixels from one pose to the next, and few principal components show them.
+/// Gaussian blur Y -> G Y G^T of an image Y. Each row of G is a Gaussian about its pixel, cut off
+/// at the edge of the image and normalised, so that a uniform image does not change. With blur,
+/// thin parts of a large image overlap from one pose to the next, and few principal components show
+/// them.
 class Blur {
  public:
   template <class Scalar>
   using Images = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 
-  Blur() = default;  ///< none
+  Blur() = default;  ///< no blur
   /// @param image_size  width and height of the images [pixels]
   /// @param std         standard deviation of the Gaussian [pixels]; 0: images stay as they are
   Blur(int image_size, double std);
@@ -28,9 +29,9 @@ class Blur {
   void apply(Images<Scalar>* images) const {
     map<Scalar>(G_.cast<Scalar>(), images);
   }
-  /// G; empty where there is no blur  [image_size x image_size]
+  /// @return G; empty if there is no blur  [image_size x image_size]
   const Eigen::MatrixXf& matrix() const { return G_; }
-  /// The transposed map.
+  /// Applies the transposed map Y -> G^T Y G.
   /// @param images  one image per column  [D x N]
   template <class Scalar>
   void applyTransposed(Images<Scalar>* images) const {
@@ -50,24 +51,24 @@ class Blur {
   Eigen::MatrixXf G_;  // empty: no blur  [image_size x image_size]
 };
 
-/// Orthonormal basis of the leading principal components.
+/// PCA: orthonormal basis of the leading principal components (paper, Sec. 4).
 ///
 ///   score = scale * basis^T (blur(y) - mean),      y_hat = mean + basis * score / scale
 ///
-/// One common scale for all scores keeps the geometry of the pixels; the leading score has a standard
-/// deviation of 1.
+/// All scores have the same scale, which preserves distances between images. It gives the leading
+/// score a standard deviation of 1.
 struct Pca {
-  Blur blur;                 ///< through which images are seen
-  Eigen::VectorXf mean;      ///< mean image, blurred                       [D]
+  Blur blur;                 ///< blur applied to every image
+  Eigen::VectorXf mean;      ///< mean of the blurred images             [D]
   Eigen::MatrixXf basis;     ///< orthonormal columns, leading one first    [D x pca_dim]
   Eigen::VectorXd variance;  ///< variance along each column [grey^2]    [pca_dim]
-  float scale = 1.0F;        ///< 1 / grey
+  float scale = 1.0F;        ///< scale of the scores [1 / grey]
 
   /// @param pixels  grey values k of N images      [D x N]
   /// @return        scores [-]                     [pca_dim x N]
   Eigen::MatrixXf project(const Eigen::Ref<const GreyMatrix>& pixels) const;
 
-  /// The same of all images of a data set, the goal last; a few at a time are floats.
+  /// Projects all images of a data set, the goal image last, in blocks of a few hundred images.
   /// @return        scores [-]                     [pca_dim x data.numImages()]
   Eigen::MatrixXf project(const DataSet& data) const;
 
@@ -76,11 +77,11 @@ struct Pca {
   Eigen::MatrixXf reconstruct(const Eigen::Ref<const Eigen::MatrixXf>& scores) const;
 };
 
-/// Scores of one image after another, in double: what comes after them may magnify a rounding error a hundred times.
-/// Blur, mean and basis are one linear map of the pixels.
+/// PCA of one image in double precision, because the networks may magnify a rounding error a
+/// hundred times. Blur, mean and basis form one affine map of the pixels.
 class Projection {
  public:
-  Projection() = default;  ///< of no use until another is assigned
+  Projection() = default;  ///< invalid until a projection is assigned
   explicit Projection(const Pca& pca);
 
   /// @param grey  grey values k  [D]
@@ -92,18 +93,19 @@ class Projection {
   Eigen::VectorXd offset_;   ///< scale basis^T mean             [pca_dim]
 };
 
-/// Leading principal components of all images of a data set, its goal image included, by subspace
-/// iteration from a fixed start (Halko, Martinsson, Tropp 2011, Alg. 4.4 and Sec. 4.5). Exact where
-/// there are at most as many images as the iterated subspace has dimensions.
+/// Computes the leading principal components of all images of a data set, including its goal image,
+/// by subspace iteration from fixed initial vectors (Halko, Martinsson, Tropp 2011, Alg. 4.4 and
+/// Sec. 4.5). The result is exact if there are at most dim + 10 images.
 ///
-/// It ends when a sweep changes the variance captured by less than 1e-5 of itself, or after 30. The
-/// variance missed is then less than 1e-6 of what there is where few things move, and less than
-/// 1e-3 where images are noise.
-/// @param data       at least dim + 1 images
-/// @param dim        number of components
-/// @param blur       through which all images are seen
-/// @param check      (optional) called before each sweep; may throw to end the search
-/// @throws std::invalid_argument if there are too few images or they are all the same
+/// The iteration ends when a sweep changes the captured variance by less than 1e-5 of it, or after
+/// 30 sweeps. The missed share of the variance is then below 1e-6 if few things move in the images,
+/// and below 1e-3 if the images are noise.
+/// @param data   at least dim + 1 images
+/// @param dim    number of components
+/// @param blur   blur applied to every image
+/// @param check  (optional) called before each sweep; may throw to end the iteration
+/// @throws std::invalid_argument if there are fewer than dim pixels or too few images, or if all
+///         images are equal; also every exception of check
 Pca fitPca(const DataSet& data, int dim, const Blur& blur = Blur(),
            const std::function<void()>& check = nullptr);
 

@@ -1,4 +1,4 @@
-// Limits of motors: one number for all of them, or one for each.
+// Torque limits: one number for all motors, or one number for each motor.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,21 +8,21 @@
 
 namespace ddm {
 
-/// The same limits, one for each motor.
-/// @param limits  one number, which holds for all motors, or one for each
-/// @param key     what they are, for the message: "model/max_torque"
+/// Expands limits to one number for each motor.
+/// @param limits  one number for all motors, or one for each motor
+/// @param key     name of the parameter in the error message, such as "model/max_torque"
 /// @return        [torque_dim]
-/// @throws std::invalid_argument if there is another number of them
+/// @throws std::invalid_argument for any other number of limits
 Eigen::VectorXd perMotor(const std::vector<double>& limits, int torque_dim, const std::string& key);
 
-/// Whether no motor's limit is larger than its outer one. Where both have one number for each motor
-/// there must be equally many.
+/// @return whether each motor's limit in `limits` is at most its limit in `outer`; false if both
+///         have several numbers, but not equally many
 bool within(const std::vector<double>& limits, const std::vector<double>& outer);
 
-/// As in a YAML file: "6", "[4, 2]".
+/// @return limits as a YAML file has them: "6", "[4, 2]"
 std::string limitsText(const std::vector<double>& limits);
 
-/// Whether there is at least one limit, and all are positive and finite.
+/// @return whether there is at least one limit and all limits are positive and finite
 bool areLimits(const std::vector<double>& limits);
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// Training schedule: what is minimised over which parameters, one stage after the other.
+// Training schedule: the stages of a training, each with its terms and free parameters.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -10,15 +10,15 @@
 
 namespace ddm {
 
-/// The terms of the objective that count.
+/// Terms of the objective.
 struct Terms {
   bool v_r = true;            ///< V_R, reconstruction error
   bool v_p = true;            ///< V_P, prediction error
-  int prediction_steps = 1;   ///< k of V_P
-  double weight_decay = 0.0;  ///< weight of V_W
+  int prediction_steps = 1;   ///< k, number of prediction steps in V_P [-]
+  double weight_decay = 0.0;  ///< weight of V_W [score^2]
 };
 
-/// One minimisation: `terms` over the parameters that are free, the others held fixed.
+/// One minimisation: `terms` over the free parameters. The other parameters stay fixed.
 struct Stage {
   enum class Free { kAll, kAutoEncoder, kPredictor };
 
@@ -27,31 +27,32 @@ struct Stage {
   int max_iterations = 0;  ///< cap on the iterations of the solver
 };
 
-/// How theta is found.
+/// Stages of a training.
 struct Schedule {
-  bool pca_start = true;        ///< auto-encoder starts from layer-wise PCA; false: at random
-  std::vector<Stage> stages;    ///< at least one; each restart goes through them
-  std::optional<Stage> finish;  ///< for the best restart alone, on more and more frames
+  bool pca_start = true;        ///< layer-wise PCA initialises the auto-encoder; false: random
+  std::vector<Stage> stages;    ///< stages of each restart, at least one
+  std::optional<Stage> finish;  ///< last stage, of the best restart alone, on more and more samples
 
-  /// The terms that any stage minimises.
+  /// @return all terms that occur in a stage
   Terms terms() const;
 };
 
-/// The values that `training/schedule` may have.
+/// @return the valid values of `training/schedule`:
 ///
 ///   joint              V_R + V_P over all parameters (paper, eq. 5a)
-///   sequential         V_R over theta_E and theta_D, then V_P over theta_P: the features are fixed
-///                      before f is learned (the paper's counter-example, footnote in Sec. 2.3)
-///   v_p_only           V_P over all parameters: without the term that the paper calls crucial
-///   v_r_only           V_R over theta_E and theta_D; f stays random: an auto-encoder alone
-///   joint_random_init  as joint, without the PCA start
+///   sequential         V_R over theta_E and theta_D, then V_P over theta_P with fixed features
+///                      (the paper's counter-example, footnote in Sec. 2.3)
+///   v_p_only           V_P over all parameters, without V_R, which the paper calls crucial
+///   v_r_only           V_R over theta_E and theta_D; f keeps its random initial weights
+///   joint_random_init  like joint, but the auto-encoder has random initial weights
 std::vector<std::string> scheduleNames();
 
-/// The schedule training/schedule with what else `training` says of V_P, V_W and iterations. Where
-/// predictions of more than one step are asked for, each stage with V_P is warmed up by one with a
-/// single step: long predictions of an untrained f have no useful gradient. Where restarts are
-/// compared before they are done, `finish` is the rest of the last stage.
-/// @pre the schedule has one of scheduleNames(), as TrainingOptions::problems() checks
+/// Builds the stages of training/schedule, with the prediction steps, weight decay and iterations
+/// of `training`. With several prediction steps, a stage with one step precedes each stage with
+/// V_P, because rollouts of an untrained f have no useful gradient. With
+/// training/selection_iterations, the last stage is split: `finish` is its rest after the choice
+/// among the restarts.
+/// @pre training/schedule is one of scheduleNames(), as TrainingOptions::problems() checks
 Schedule makeSchedule(const TrainingOptions& training);
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// Training: PCA, initial parameters, then the stages of a schedule minimised by (L-)BFGS.
+// Training: PCA, initial weights, then the stages of a schedule, minimised by (L-)BFGS.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,38 +12,42 @@
 
 namespace ddm {
 
-/// State of a training under way: at the best parameters so far of the present stage.
+/// Progress of a training, at the best parameters of the current stage so far.
 struct TrainingProgress {
   int iteration = 0;
   double v_r = 0.0;  ///< [grey^2]
   double v_p = 0.0;  ///< [grey^2]
-  /// Largest entry of the scaled objective's gradient; with training/solver kfac in preconditioned coordinates, which
-  /// change every 50 iterations, so that values before and after a change do not compare.
+  /// Largest entry of the gradient of the scaled objective. With training/solver kfac, it refers to
+  /// preconditioned coordinates, which change every 50 iterations; compare it only in between.
   double gradient_norm = 0.0;
-  double fraction_done = 0.0;  ///< iterations over their caps, of all restarts and stages
+  double fraction_done = 0.0;  ///< iterations / their cap, over all restarts and stages [-]
 };
 
-/// Called while the principal components are computed, with zeros, and after each iteration of any restart. The calls come
-/// from any thread, but never from two at a time. Returning false ends the training without a model.
+/// Receives the progress: zeros while the principal components are computed, then numbers after
+/// each iteration of any restart. Calls come from several threads, but never two at a time.
+/// Returning false cancels the training.
 using TrainingCallback = std::function<bool(const TrainingProgress&)>;
 
-/// What a training came to. Numerical trouble is reported here, never thrown.
+/// Result of a training. Numerical trouble is reported in `message`, never thrown.
 struct TrainingResult {
   std::optional<Ddm> model;  ///< empty if the training failed or was cancelled
-  bool cancelled = false;    ///< the callback ended it
-  std::string message;       ///< why there is no model, or why the search ended
+  bool cancelled = false;    ///< the callback cancelled the training
+  std::string message;       ///< why there is no model, or why the solver ended
   int iterations = 0;
-  int evaluations = 0;        ///< of the objective with its gradient
-  double initial_cost = 0.0;  ///< scaled sum of the terms that the schedule minimises, before
-  double final_cost = 0.0;    ///< and after, of the restart that is kept; 0 without a model
+  int evaluations = 0;        ///< evaluations of the objective with its gradient
+  double initial_cost = 0.0;  ///< scaled objective of the kept restart at its initial weights
+  double final_cost = 0.0;    ///< the same at the end; 0 without a model
   double seconds = 0.0;       ///< wall time [s]
 };
 
-/// Trains a model from scratch on all data (a warm start from the last optimum gets stuck) by the
-/// schedule of `training`, with num_starts restarts for each delay that is tried, and keeps the best.
-/// Its model/delay is in the model's options. Delays for which no segment is long enough are not tried.
-/// @param info  seed, trial and config are kept; frames, V_R, V_P and the spread are filled in
-/// @throws std::invalid_argument if the data are too few for the options, or all the same
+/// Trains a model on all data from new initial weights (a warm start from the last optimum gets
+/// stuck), by the stages of training/schedule (paper, Sec. 2.3). Trains num_starts restarts for
+/// each delay and keeps the best, whose delay is in the options of the model. Skips delays that
+/// leave no prediction in any segment.
+/// @param data   all samples so far
+/// @param model  architecture
+/// @param info   seed, trial and config are kept; the training fills in the other fields
+/// @throws std::invalid_argument if there are too few data for the options, or all images are equal
 TrainingResult train(const DataSet& data, const ModelOptions& model,
                      const TrainingOptions& training, const ModelInfo& info,
                      const TrainingCallback& callback = nullptr);

@@ -1,4 +1,4 @@
-// The controller: the paper's MPC on images, and epsilon-greedy exploration around it.
+// The controller: MPC on images (paper, Sec. 3.1), and epsilon-greedy exploration (Sec. 3.2).
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -19,18 +19,22 @@
 
 namespace ddm {
 
-/// Receding-horizon policy in feature space: encodes each image, keeps the state x, and plans towards
-/// the feature of the goal image (paper, Sec. 3.1), which is the model's own until there is another.
-/// mpc/time_budget covers the whole decision, from the arrival of the image on, but does not cut
-/// short what prepare() computes. An offset is added to each prediction and follows their errors,
+/// Receding-horizon policy in feature space (paper, Sec. 3.1): encodes each image (eq. 3a), keeps
+/// the controller state x (eq. 8) and plans towards the goal feature (eq. 9). The goal is that of
+/// the model until setGoal() is called. mpc/time_budget limits the time from the arrival of an
+/// image to the end of the search for a plan, but not the time of prepare().
+///
+/// Deviation: each prediction gets an offset, which follows the prediction errors,
 ///
 ///   offset <- offset + offset_gain (z_{t+1} - z_{t+1|t} - offset)
 ///
-/// so that the plant reaches its goal although the model is a little wrong about states at rest.
+/// so that the plant reaches its goal although the model predicts states at rest slightly wrong.
 class MpcPolicy : public Policy {
  public:
-  /// @throws std::invalid_argument if max_torque exceeds the model's or is for another number of motors; with mpc/cost time
-  ///         also if the model has fewer than two support states, or more motors than CostToGo takes
+  /// @param model  trained model, not null
+  /// @throws std::invalid_argument if max_torque exceeds that of the model or has a wrong number of
+  ///         entries. With mpc/cost time, also if the model has fewer than two support states or
+  ///         more than CostToGo::kMaxMotors motors
   MpcPolicy(std::shared_ptr<const Ddm> model, const MpcOptions& options);
 
   void startTrial(const TrialId& id) override;
@@ -39,22 +43,24 @@ class MpcPolicy : public Policy {
   void setGoal(const Grey& goal) override { z_ref_ = model_->encode(goal); }
   bool hasGoal() const { return z_ref_.size() > 0; }
 
-  /// Computes the cost-to-go of this goal, if it is not known yet: up to two seconds with mpc/cost
-  /// time. Optional: plan() calls it. Call it before the first image so that no torque is late.
+  /// Computes the cost-to-go of the goal if it is not yet computed, which takes up to two seconds
+  /// with mpc/cost time. Optional: plan() calls it. Call it before the first image so that no
+  /// torque is late.
   /// @pre hasGoal()
   void prepare() { cost_.setGoal(z_ref_, exploring_); }
 
-  /// Sets the time at which the next image arrived. Without it the time budget begins with observe().
+  /// Sets the arrival of the next image, where its time budget begins. Default: the call of
+  /// observe().
   void setArrival(std::chrono::steady_clock::time_point arrival) { arrival_ = arrival; }
 
-  /// Sets a condition that ends the search for a plan. It is checked before each evaluation of the cost.
+  /// Sets a condition that ends the search for a plan; evaluations of the cost check it.
   void setStop(std::function<bool()> stop) { stop_ = std::move(stop); }
 
   void observe(const Grey& grey) override;
-  /// |z - z_ref| in units of the features' spread; empty if the model does not know the spread, or
-  /// there is no goal.
+  /// @return |z - z_ref| in units of the spread of the features; empty if the model has no valid
+  ///         spread or there is no goal
   std::optional<double> goalDistance() const override;
-  /// The plan from the state now on.
+  /// Plans from the current state.
   /// @throws std::logic_error if there is no goal
   Plan plan();
   Answer answer() override { return answerWith(plan()); }
@@ -64,14 +70,15 @@ class MpcPolicy : public Policy {
   std::shared_ptr<const Ddm> model_;
   double offset_gain_;
   std::chrono::duration<double> time_budget_;
-  std::optional<std::chrono::steady_clock::time_point> arrival_;  // of the next image
-  std::chrono::steady_clock::time_point began_;                   // the decision under way
+  // Arrival of the next image; empty: not set.
+  std::optional<std::chrono::steady_clock::time_point> arrival_;
+  std::chrono::steady_clock::time_point began_;  // start of the current decision
   std::function<bool()> stop_;
   bool exploring_ = false;
   Eigen::VectorXd z_ref_;  // empty: no goal  [feature_dim]
   History x_;
   Eigen::VectorXd offset_;     // [feature_dim]
-  Eigen::VectorXd predicted_;  // z_{t+1|t}, empty before the first torque  [feature_dim]
+  Eigen::VectorXd predicted_;  // z_{t+1|t}; empty before the first torque  [feature_dim]
   DdmPlanCost cost_;
   Planner planner_;
   std::mt19937_64 rng_;
@@ -80,39 +87,43 @@ class MpcPolicy : public Policy {
 /// The decision for one image.
 struct Decision {
   Eigen::VectorXd torque;               ///< u_t [N m]                     [torque_dim]
-  bool exploratory = false;             ///< a random torque
-  std::optional<double> solve_time;     ///< see Answer; empty where exploratory [s]
-  std::optional<Plan> plan;             ///< of a policy that plans; empty where exploratory
+  bool exploratory = false;             ///< whether the torque is random
+  std::optional<double> solve_time;     ///< see Answer; empty if exploratory [s]
+  std::optional<Plan> plan;             ///< see Answer; empty if exploratory
   std::optional<double> goal_distance;  ///< see Policy::goalDistance()
 };
 
-/// With probability epsilon a random torque, otherwise the policy's answer (paper, Sec. 3.2). epsilon
-/// = 1 is the random trial, 0 the greedy one. A random torque is uniform in +-max_torque and held for
-/// hold_steps steps. Exploration has a random stream of its own.
+/// Epsilon-greedy exploration (paper, Sec. 3.2): with probability epsilon a random torque,
+/// otherwise the answer of the policy. In the random trial epsilon is 1, in an evaluation 0. A
+/// random torque is uniform in +-max_torque and is held for hold_steps steps. Exploration has its
+/// own random stream.
 class EpsilonGreedy {
  public:
   struct Options {
-    double epsilon = 0.2;  ///< [-]
-    int hold_steps = 1;    ///< how long a random torque is held [-]
+    double epsilon = 0.2;  ///< probability of a random torque [-]
+    int hold_steps = 1;    ///< steps for which a random torque is held [-]
     Eigen::VectorXd max_torque = Eigen::VectorXd::Constant(1, 6.0);  ///< of each motor [N m]
   };
 
-  /// @param policy  may be null where epsilon = 1
-  /// @throws std::invalid_argument if options are out of range or the policy is missing
+  /// @param policy  may be null if epsilon = 1
+  /// @param id      identifies the trial; seeds the random streams
+  /// @throws std::invalid_argument if an option is out of range, or if the policy is missing
   EpsilonGreedy(std::shared_ptr<Policy> policy, const Options& options, const TrialId& id);
 
   /// See Policy::setGoal().
   void setGoal(const Grey& goal);
 
-  /// Says that another torque acted than the last one decided. To be called before the next decide().
+  /// Replaces the last decided torque in the controller state by the torque that acted instead.
+  /// Call it before the next decide().
   /// @param torque  [N m]                                                          [torque_dim]
-  /// @throws std::invalid_argument if it is not one finite number for each motor
+  /// @throws std::invalid_argument unless it is one finite number for each motor
   void correctTorque(const Eigen::VectorXd& torque);
 
-  /// See Policy::startSegment(). To be called before the next decide().
+  /// See Policy::startSegment(). Call it before the next decide().
   void startSegment();
 
-  /// @param grey  the image just seen
+  /// Performs one step of Algorithm 1 of the paper.
+  /// @param grey  the newest image  [D]
   /// @throws std::invalid_argument for a wrong number of pixels
   Decision decide(const Grey& grey);
 
@@ -122,7 +133,8 @@ class EpsilonGreedy {
   std::shared_ptr<Policy> policy_;
   Options options_;
   std::mt19937_64 rng_;
-  std::optional<Eigen::VectorXd> acted_;  // between the last image and the next; empty: unknown
+  // Torque between the last image and the next; empty: unknown.
+  std::optional<Eigen::VectorXd> acted_;
   Eigen::VectorXd held_torque_;
   int held_steps_left_ = 0;
 };

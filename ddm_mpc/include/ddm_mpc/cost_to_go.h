@@ -1,4 +1,4 @@
-// Cost-to-go: value iteration of the learned model over support states of its experience.
+// Cost-to-go: value iteration of the learned model over the support states of its training data.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -9,63 +9,76 @@
 
 namespace ddm {
 
-/// V(x), the cost of all later steps under the best torques. A plan needs it where |z - z_ref| misleads: a weak motor has to
-/// swing a rod away from the goal before it gets there. A step costs up to 1, as in PILCO (Deisenroth and Rasmussen, ICML
-/// 2011),
+/// Cost-to-go V(x): the cost of all later steps under the best torques. Deviation: the paper has no
+/// cost-to-go. A plan needs it if |z - z_ref| misleads: a weak motor has to swing a rod away from
+/// the goal before it can reach the goal. A step costs at most 1, as in PILCO (Deisenroth and
+/// Rasmussen, ICML 2011),
 ///
 ///   stepCost(z) = 1 - exp(-|z - z_ref|^2 / (2 w^2 s^2))
 ///
-/// with the spread s of the support states' features and w = 1/4, and V is the discounted sum of these costs. It is computed
-/// for the support states x_i of the model, states that were seen, by predictions of f under each of the torques
-/// -max, 0, max of each motor, held for m = 4 steps, and smoothed in between by a kernel (Ormoneit and Sen,
-/// Machine Learning 2002, whose averages make the iteration converge):
+/// with w = 1/4 and the spread s of the support states' features. V is the discounted sum of these
+/// costs. Value iteration computes V_i at the support states x_i of the model, which are states of
+/// the training data. The prediction model f predicts m = 4 steps from each of them, under each
+/// combination of the torques -max, 0 and max of the motors. Between the support states, a kernel
+/// interpolates (Ormoneit and Sen, Machine Learning 2002; its averages make the iteration
+/// converge):
 ///
 ///   V_i = min_u  sum_{j=1..m} gamma^(j-1) stepCost(z_{i,j}) + gamma^m V(x_{i,m})
-///   V(x) = (w_0 V_0 + sum_i w_i V_i) / (w_0 + sum_i w_i),   w_i = exp(-|p(x) - p(x_i)|^2 / (2 h^2))
+///   V(x) = (w_0 V_0 + sum_i w_i V_i) / (w_0 + sum_i w_i)
+///   w_i  = exp(-|p(x) - p(x_i)|^2 / (2 h^2))
 ///
-/// p(x) = (z_t, z_t - z_{t-1}), both in units of their spread. h is 1.4 times the mean distance between neighbouring support
-/// states. V_0 is the value of states farther than 3 h from all of them, where nothing was seen: the goal is never reached
-/// from there, V_0 = V_max = 1 / (1 - gamma); or, where epsilon > 0, it is 160 steps away, V_0 = 0.8 V_max. So where no
-/// path to the goal is known, plans lead to states that were not seen yet, as in R-max (Brafman and Tennenholtz, JMLR 2002),
-/// and where one is known, plans follow it.
+/// where p(x) = (z_t, z_t - z_{t-1}), each part in units of its spread, and h is 1.4 times the mean
+/// distance between neighbouring support states. V_0 is the value of unknown states, which are
+/// farther than 3 h from all support states:
+///  * without exploration, V_0 = V_max = 1 / (1 - gamma): the goal is never reached from there
+///  * with exploration (epsilon > 0), V_0 = 0.8 V_max: the goal is 160 steps away
+/// With exploration, plans therefore lead to unknown states as long as no path to the goal is known
+/// (R-max: Brafman and Tennenholtz, JMLR 2002), and follow a path once it is known.
 class CostToGo {
  public:
-  static constexpr int kHoldSteps = 4;    ///< m
-  static constexpr double kWidth = 0.25;  ///< w
-  /// 3^3 sets of torques for each of up to 1000 support states, each with up to 1000 weights: up to half a
-  /// gigabyte, which takes two seconds. One motor more takes three times as much of both.
+  static constexpr int kHoldSteps = 4;    ///< m, steps for which the torques are held [-]
+  static constexpr double kWidth = 0.25;  ///< w [-]
+  /// Three motors have 3^3 combinations of torques for each of up to 1000 support states, each with
+  /// up to 1000 weights: up to half a gigabyte and two seconds. Each further motor triples both.
   static constexpr int kMaxMotors = 3;
 
-  /// @param model       has at least two support states, and at most kMaxMotors motors; outlives this
+  /// @param model       has at least two support states and at most kMaxMotors motors; must outlive
+  ///                    the object
   /// @param max_torque  of each motor [N m]  [torque_dim]
   /// @pre as above (checked by eigen_assert, i.e. in debug builds only)
   CostToGo(const Ddm& model, const Eigen::VectorXd& max_torque);
 
-  /// Computes V, which takes up to two seconds the first time, when the outcomes of all torques are predicted.
-  /// @param z_ref      feature of the goal  [feature_dim]
-  /// @param exploring  whether epsilon > 0, see V_0
+  /// Computes V for a goal. The first call also predicts the outcomes of all torques, which takes
+  /// up to two seconds.
+  /// @param z_ref      goal feature         [feature_dim]
+  /// @param exploring  whether epsilon > 0; determines V_0
   void setGoal(const Eigen::VectorXd& z_ref, bool exploring);
 
-  /// @param gradient  out: d stepCost / dz; null: not wanted  [feature_dim]
+  /// @param z         feature                                 [feature_dim]
+  /// @param gradient  out: d stepCost / dz; null: skip        [feature_dim]
+  /// @pre setGoal() was called
   double stepCost(const Eigen::Ref<const Eigen::VectorXd>& z, Eigen::VectorXd* gradient) const;
 
-  /// V of the state with the last two features.
-  /// @param z         z_t      [feature_dim]
-  /// @param before    z_{t-1}  [feature_dim]
-  /// @param d_z       out: dV/dz_t, and with it d_before: dV/dz_{t-1}; null: not wanted
+  /// Evaluates V(x) for a state with these two newest features.
+  /// @param z         z_t                                     [feature_dim]
+  /// @param before    z_{t-1}                                 [feature_dim]
+  /// @param d_z       out: dV/dz_t; null: skip both gradients [feature_dim]
+  /// @param d_before  out: dV/dz_{t-1}                        [feature_dim]
+  /// @pre setGoal() was called
   double value(const Eigen::Ref<const Eigen::VectorXd>& z,
                const Eigen::Ref<const Eigen::VectorXd>& before, Eigen::VectorXd* d_z,
                Eigen::VectorXd* d_before) const;
 
-  /// The torques that are compared, one set per column [N m]  [torque_dim x 3^torque_dim]
+  /// @return torques that value iteration compares, one combination per column [N m]
+  ///         [torque_dim x 3^torque_dim]
   const Eigen::MatrixXd& torques() const { return torques_; }
 
  private:
-  /// Where a support state leads to in kHoldSteps under one set of torques.
+  /// Prediction from a support state under one combination of torques.
   struct Outcome {
-    Eigen::MatrixXd path;         // features of these steps  [feature_dim x kHoldSteps]
-    std::vector<int> neighbours;  // support states near its end
-    std::vector<double> weights;  // of these in V; what is missing to 1 is the weight of V_0
+    Eigen::MatrixXd path;         // predicted features  [feature_dim x kHoldSteps]
+    std::vector<int> neighbours;  // support states near the last of them
+    std::vector<double> weights;  // their weights in V; the weight of V_0 is 1 minus their sum
   };
 
   void predictOutcomes();
@@ -78,12 +91,12 @@ class CostToGo {
 
   const Ddm* model_;
   Eigen::MatrixXd torques_;
-  double spread_ = 1.0;         // of the support states' features
-  double change_spread_ = 1.0;  // of their changes from one frame to the next
-  double h_ = 1.0;              // in units of both
+  double spread_ = 1.0;         // of the features of the support states
+  double change_spread_ = 1.0;  // of their changes z_t - z_{t-1}
+  double h_ = 1.0;              // width of the kernel, in units of both spreads
   Eigen::MatrixXd points_;      // p(x_i)  [2 feature_dim x M]
-  std::vector<std::vector<Outcome>>
-      outcomes_;  // of each support state, one for each set of torques; empty before setGoal()
+  // Of each support state, one for each combination of torques. Empty before setGoal().
+  std::vector<std::vector<Outcome>> outcomes_;
   Eigen::VectorXd z_ref_;
   bool exploring_ = false;
   Eigen::ArrayXd values_;  // V_i  [M]

@@ -1,4 +1,4 @@
-// Cost J(U) of a plan by a deep dynamical model, with its gradient in closed form.
+// Cost J(U) of a plan for a deep dynamical model, with its gradient in closed form.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -15,43 +15,52 @@
 
 namespace ddm {
 
-/// J(U) of eq. (9), with features as f predicts them from the current state x_0 (eq. 8) on:
+/// Cost J(U) of a plan (paper, eq. 9), see PlanCost. f predicts its features from the state x_0
+/// (eq. 8),
 ///
 ///   z_{k+1} = f(z_k, u_k, z_{k-1}, u_{k-1}) + offset
 ///
-/// or, with a CostToGo, by costs of a step that saturate, and the cost-to-go of the last state:
+/// Deviation: with a CostToGo, the cost of a step saturates, and the last state has a cost-to-go,
 ///
-///   J(U) = sum_{k=1}^{K} [1 - exp(-(|z_k - z_ref|^2 / s^2 + lambda |u_{k-1} / max_torque|^2) / (2 w^2))] + V(x_K)
+///   J(U) = sum_{k=1}^{K} (1 - exp(-c_k / (2 w^2))) + V(x_K)
+///   c_k  = |z_k - z_ref|^2 / s^2 + lambda |u_{k-1} / max_torque|^2
 ///
-/// with the s and w of CostToGo. A step far from the goal costs 1 whatever its torque; at the goal, torque makes it cost up
-/// to 1.
+/// with s and w of CostToGo. Far from the goal, a step costs 1 for every torque; at the goal, a
+/// torque raises the cost of the step to at most 1.
 ///
-/// The offset is the error of recent predictions (0 in the paper): the same error in every step, as offset-free model
-/// predictive control assumes it (Pannocchia and Rawlings, AIChE J. 2003).
+/// Deviation: the offset (0 in the paper) corrects each prediction by the error of recent
+/// predictions. Offset-free MPC assumes the same error in every step (Pannocchia and Rawlings,
+/// AIChE J. 2003).
 class DdmPlanCost : public PlanCost {
  public:
-  /// @param model           outlives the cost
-  /// @param horizon         K >= 1, steps
-  /// @param control_weight  lambda [(N m)^-2], with a CostToGo [-]: of a torque of max_torque
+  /// @param model           must outlive the cost
+  /// @param horizon         K, at least 1 [-]
+  /// @param control_weight  lambda [(N m)^-2]; with a CostToGo [-]
+  /// @param cost_to_go      empty: eq. (9)
   DdmPlanCost(const Ddm& model, int horizon, double control_weight,
               std::optional<CostToGo> cost_to_go = std::nullopt);
 
-  /// The feature to plan to, and whether epsilon > 0, which is for the CostToGo. If one has changed, computes the
-  /// cost-to-go, which takes up to two seconds. setProblem() does so too.
+  /// Sets the goal. If goal_feature or exploring has changed, computes the cost-to-go, which takes
+  /// up to two seconds. setProblem() sets the goal, too.
+  /// @param goal_feature  z_ref  [feature_dim]
+  /// @param exploring     whether epsilon > 0, see CostToGo
   void setGoal(const Eigen::VectorXd& goal_feature, bool exploring);
 
-  /// The state to plan from, the feature to plan to, and the offset.
-  /// @pre the history is not empty, and all sizes are those of the model (checked by eigen_assert)
+  /// Sets the current state, the goal and the offset of the next plans.
+  /// @param x             controller state, not empty
+  /// @param goal_feature  z_ref                                     [feature_dim]
+  /// @param offset        added to each predicted feature           [feature_dim]
+  /// @pre as above, and all sizes are those of the model (checked by eigen_assert)
   void setProblem(const History& x, const Eigen::VectorXd& goal_feature,
                   const Eigen::VectorXd& offset);
-  /// The same without an offset.
+  /// Sets the current state and the goal, with offset 0.
   void setProblem(const History& x, const Eigen::VectorXd& goal_feature) {
     setProblem(x, goal_feature, Eigen::VectorXd::Zero(f_.featureDim()));
   }
 
   double evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) override;
-  /// Of the torques that CostToGo compares, those that are best for its next steps, then for those
-  /// after them, and so on. Empty without a CostToGo.
+  /// Proposes a plan: of the torques that CostToGo compares, the best ones for its first kHoldSteps
+  /// steps, then the best ones for the steps after them, and so on. Empty without a CostToGo.
   std::optional<Eigen::MatrixXd> proposal() override;
   Eigen::MatrixXd predictedFeatures() const override;
   Eigen::VectorXd goalFeature() const override { return goal_feature_; }
@@ -67,7 +76,7 @@ class DdmPlanCost : public PlanCost {
   const PredictionModel<double>& f_;
   const double* theta_p_;
   int horizon_ = 0;
-  Eigen::ArrayXd control_weight_;  // of a squared torque, by motor [(N m)^-2]
+  Eigen::ArrayXd control_weight_;  // factor of each motor's squared torque [(N m)^-2]
   std::optional<CostToGo> cost_to_go_;
   bool exploring_ = false;
   Eigen::VectorXd goal_feature_;
@@ -75,15 +84,16 @@ class DdmPlanCost : public PlanCost {
   RollOut<double> roll_out_;
   Eigen::MatrixXd features_;   // z_{-n-d+1} ... z_0                    [feature_dim x (n + d)]
   Eigen::MatrixXd torques_;    // u_{-n-d+1} ... u_{K-1} [N m]  [torque_dim x (n + d - 1 + K)]
-  Eigen::MatrixXd d_torques_;  // dJ/du of these
+  Eigen::MatrixXd d_torques_;  // dJ/d torques_ [1/(N m)]
   Eigen::VectorXd d_step_;     // d stepCost / dz                           [feature_dim]
   Eigen::VectorXd d_torque_;   // d stepCost / du                           [torque_dim]
 };
 
-/// The cost that the options ask for.
-/// @param model  outlives the cost
-/// @throws std::invalid_argument if max_torque exceeds the model's or is for another number of motors; with mpc/cost time
-///         also if the model has fewer than two support states, or more motors than CostToGo takes
+/// Makes the cost that mpc/cost selects.
+/// @param model  must outlive the cost
+/// @throws std::invalid_argument if max_torque exceeds that of the model or has a wrong number of
+///         entries. With mpc/cost time, also if the model has fewer than two support states or more
+///         than CostToGo::kMaxMotors motors
 DdmPlanCost makePlanCost(const Ddm& model, const MpcOptions& options);
 
 }  // namespace ddm

@@ -13,16 +13,16 @@ namespace ddm {
 /// Block `mpc`.
 struct MpcOptions {
   int horizon = 15;               ///< K, planned steps [-]
-  std::string cost = "distance";  ///< of a step: "distance" to the goal, or "time" to get there
-  double control_weight = 0.01;   ///< lambda, weight of torque [(N m)^-2], with cost time [-]
-  double offset_gain = 0.0;       ///< share of a prediction error that corrects later ones [-]
-  std::vector<double> max_torque = {6.0};  ///< bound on |u|; one, or one per motor [N m]
+  std::string cost = "distance";  ///< cost of a step: "distance" or "time", see DdmPlanCost
+  double control_weight = 0.01;   ///< lambda, weight of torque [(N m)^-2]; with cost time [-]
+  double offset_gain = 0.0;       ///< share of a prediction error that enters the offset [-]
+  std::vector<double> max_torque = {6.0};  ///< bound on |u|; one for all motors, or one each [N m]
   double epsilon = 0.2;                    ///< probability of a uniformly random torque [-]
   int hold_steps = 1;                      ///< steps for which a random torque is held [-]
-  int num_starts = 3;                      ///< initial plans that the solver starts from [-]
-  int max_iterations = 40;                 ///< cap on the BFGS iterations of each start [-]
-  double function_tolerance = 1e-4;  ///< stop when the cost changes by less than this fraction [-]
-  double time_budget = 0.0;  ///< from an image to the end of the search for its plan; 0: none [s]
+  int num_starts = 3;                      ///< initial plans of the search [-]
+  int max_iterations = 40;                 ///< cap on the BFGS iterations from each of them [-]
+  double function_tolerance = 1e-4;        ///< stop if J changes by less than this fraction [-]
+  double time_budget = 0.0;  ///< from an image to the end of its search; 0: no limit [s]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
@@ -38,7 +38,7 @@ struct MpcOptions {
     visitor("function_tolerance", function_tolerance);
     visitor("time_budget", time_budget);
   }
-  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  /// @return all faults of these values, in words for the user; empty if the values are valid
   std::vector<std::string> problems() const {
     OptionChecks mpc("mpc");
     mpc.requireWithin("horizon", horizon, 1, 1000);
@@ -56,12 +56,12 @@ struct MpcOptions {
   }
 };
 
-/// Block `controller`: parameters of mpc_node beyond the planner's.
+/// Block `controller`: parameters of mpc_node other than those of the planner.
 struct ControllerOptions {
-  int torque_dim = 1;    ///< number of motors; a random trial has no model to take it from [-]
-  double timeout = 5.0;  ///< wall time that an image or the model may take to arrive [s]
-  double dt = 0.0;       ///< time step; 0: the shortest time between two images of the trial [s]
-  bool publish_effort = false;  ///< also send each torque to the motors themselves
+  int torque_dim = 1;           ///< number of motors; a random trial has no model that gives it [-]
+  double timeout = 5.0;         ///< wall time in which an image or the model must arrive [s]
+  double dt = 0.0;              ///< time step; 0: shortest time between two images of the trial [s]
+  bool publish_effort = false;  ///< whether mpc_node also commands the motors itself
 
   template <class Visitor>
   void visit(Visitor& visitor) {

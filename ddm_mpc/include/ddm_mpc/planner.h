@@ -1,4 +1,4 @@
-// Planner: the torques u_0 ... u_{K-1} that minimise the cost of a plan, by BFGS from several initial plans.
+// Planner: minimises the cost of a plan over its torques, by BFGS from several initial plans.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,28 +13,28 @@
 
 namespace ddm {
 
-/// Cost of the torques u_0 ... u_{K-1} from a current state on, which the implementation holds. With
-/// `mpc/cost: distance`
+/// Cost J(U) of the torques U = [u_0, ..., u_{K-1}] from the current state on, which the
+/// implementation stores. With `mpc/cost: distance`
 ///
 ///   J(U) = sum_{k=1}^{K} |z_k - z_ref|^2 + lambda |u_{k-1}|^2
 ///
-/// and DdmPlanCost has another. Implementations differ in whose predictions z_k are: eq. (7) of the paper plans with a known
-/// model of the state, eq. (9) in feature space. Deviation: the paper's sum runs over z_0 ...
-/// z_{K-1}, in which z_0 is a constant and u_{K-1} acts on nothing; here it runs over the K
-/// features that the K torques bring about.
+/// while DdmPlanCost also implements `mpc/cost: time`. Implementations differ in their model: eq.
+/// (7) of the paper plans with a known model of the state, eq. (9) with predicted features.
+/// Deviation: the sum in the paper runs over z_0 ... z_{K-1}, where z_0 is constant and u_{K-1} has
+/// no effect. Here it runs over the K features that the K torques lead to.
 class PlanCost {
  public:
   virtual ~PlanCost() = default;
 
   /// @param U    torques [N m]                            [torqueDim() x horizon()]
-  /// @param d_U  out: dJ/dU; null: not wanted [1/(N m)]   [torqueDim() x horizon()]
+  /// @param d_U  out: dJ/dU; null: skip [1/(N m)]         [torqueDim() x horizon()]
   /// @return     J(U)
   virtual double evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) = 0;
 
-  /// An initial plan from which a search is worthwhile; empty if there is none [N m]
+  /// @return initial plan for the search [N m], [torqueDim() x horizon()]; empty if there is none
   virtual std::optional<Eigen::MatrixXd> proposal() { return std::nullopt; }
 
-  /// z_0 and the features predicted in the last evaluate()  [feature_dim x (K + 1)]
+  /// @return z_0 and the features predicted by the last evaluate()  [feature_dim x (K + 1)]
   virtual Eigen::MatrixXd predictedFeatures() const = 0;
 
   virtual Eigen::VectorXd goalFeature() const = 0;  ///< z_ref  [feature_dim]
@@ -44,42 +44,43 @@ class PlanCost {
 
 /// How the search for a plan ended. The numbers are those of ddm_msgs/Plan.
 enum class PlanStatus {
-  kConverged = 0,       ///< the solver met its tolerance
-  kIterationLimit = 1,  ///< usable; the search ended before that
-  kFailed = 2,          ///< no usable plan
-  kTimeLimit = 3,       ///< usable; the search was stopped, this is the best plan it had found
+  kConverged = 0,       ///< usable: the search for this plan met its tolerance
+  kIterationLimit = 1,  ///< usable, but the search for this plan did not meet its tolerance
+  kFailed = 2,          ///< there is no usable plan
+  kTimeLimit = 3,       ///< usable: the best plan when `stop` ended the search
 };
 
-/// A plan and what it took to find it.
+/// A plan, and statistics of the search.
 struct Plan {
   PlanStatus status = PlanStatus::kFailed;
-  std::string message;           ///< why it failed
+  std::string message;           ///< reason of a failure
   Eigen::MatrixXd torques;       ///< u_0 ... u_{K-1} [N m]             [torque_dim x K]
   Eigen::MatrixXd features;      ///< z_0, predicted z_1 ... z_K        [feature_dim x (K + 1)]
   Eigen::VectorXd goal_feature;  ///< z_ref                         [feature_dim]
-  double cost = std::numeric_limits<double>::quiet_NaN();  ///< J; NaN where it failed
-  int iterations = 0;                                      ///< over all starts
-  int evaluations = 0;                                     ///< over all starts
+  double cost = std::numeric_limits<double>::quiet_NaN();  ///< J; NaN after a failure
+  int iterations = 0;                                      ///< sum over all initial plans
+  int evaluations = 0;                                     ///< sum over all initial plans
   double solve_time = 0.0;                                 ///< wall time [s]
 };
 
-/// Minimises J(U) by BFGS (paper, Sec. 3.1) from several initial plans and keeps the best result. The
-/// initial plans are the proposal of the cost, if it has one, the last plan moved on by one step, no
-/// torque, and constant torques drawn at random. The bound holds by construction, u = max_torque tanh(v),
-/// because clipping afterwards would bias the plan.
+/// Minimises J(U) by BFGS (paper, Sec. 3.1) from several initial plans and keeps the best result.
+/// The initial plans are the proposal of the cost if it has one, the last plan shifted by one step,
+/// zero torque, and constant random torques. The substitution u = max_torque tanh(v) enforces the
+/// bound; clipping after the search would bias the plan.
 class Planner {
  public:
-  /// @param cost  of plans from the current state on; outlives the planner
-  /// @throws std::invalid_argument if max_torque is for another number of motors
+  /// @param cost  cost of plans from the current state on; must outlive the planner
+  /// @throws std::invalid_argument if max_torque has a wrong number of entries
   Planner(PlanCost* cost, const MpcOptions& options);
 
-  /// Forgets the last plan: the next problem is the first of a trial.
+  /// Forgets the last plan. Call it at the start of a trial.
   void clear() { last_v_.resize(0, 0); }
 
-  /// Numerical trouble is reported by the status of the plan, never by an exception.
+  /// Reports numerical trouble in the status of the plan, never by an exception.
   /// @param rng   draws the random initial plans
-  /// @param stop  called before each evaluation of the cost but the first. If it returns true, the whole
-  ///              search ends, and the best plan evaluated so far is returned. Empty: never
+  /// @param stop  called before each evaluation of the cost except the first. If it returns true,
+  ///              the search ends and the best plan so far is returned. Empty: the search is not
+  ///              stopped
   Plan solve(std::mt19937_64* rng, const std::function<bool()>& stop = {});
 
  private:
@@ -89,7 +90,7 @@ class Planner {
   MpcOptions options_;
   PlanCost& cost_;
   Eigen::VectorXd max_torque_;  // of each motor [N m]
-  Eigen::MatrixXd last_v_;      // unbounded variables of the last plan; empty: none
+  Eigen::MatrixXd last_v_;      // v of the last plan; empty: there is none
 };
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// A policy: which torque answers the image just seen.
+// Interface of a policy, which answers each image with a torque.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -15,12 +15,12 @@ namespace ddm {
 
 /// The answer of a policy to an image.
 struct Answer {
-  Eigen::VectorXd torque;    ///< u_t [N m]; 0 where the policy finds none  [torque_dim]
-  double solve_time = 0.0;   ///< wall time that it took [s]
-  std::optional<Plan> plan;  ///< of a policy that plans: torque is the first of it
+  Eigen::VectorXd torque;    ///< u_t [N m]; 0 if the policy found none  [torque_dim]
+  double solve_time = 0.0;   ///< wall time of the decision [s]
+  std::optional<Plan> plan;  ///< plan whose first torque this is; empty: the policy does not plan
 };
 
-/// The answer of a policy that plans.
+/// Makes the answer of a policy that plans.
 inline Answer answerWith(Plan plan) {
   Answer answer;
   answer.torque = plan.torques.col(0);
@@ -29,39 +29,41 @@ inline Answer answerWith(Plan plan) {
   return answer;
 }
 
-/// Decides torques. For each image, observe(y_t) is called first, then answer(), unless a random torque is
-/// chosen, and then apply(u_t), before the next observe(), when it is known which torque acted.
+/// A policy decides torques. For each image, the caller calls observe(y_t); then answer(), unless
+/// it chooses a random torque; and, before the next observe(), apply(u_t) with the torque that
+/// acted.
 class Policy {
  public:
   virtual ~Policy() = default;
 
-  /// Forgets the last trial.
+  /// Clears the state of the last trial.
   virtual void startTrial(const TrialId& id) = 0;
 
-  /// Sets another goal than that of the data, from the next answer on. Policies that have learned to reach
-  /// one goal, or that read the true goal from the plant, ignore it.
+  /// Sets a new goal from the next answer on, in place of the goal image of the data. A policy
+  /// ignores it if it has learned to reach one goal, or if it reads the true goal from the plant.
   /// @throws std::invalid_argument for a wrong number of pixels
   virtual void setGoal(const Grey& /*goal*/) {}
 
-  /// Says that the next image does not follow the last one by one time step, or that no single torque acted
-  /// between them. As in training, no state may then contain both. Policies without a memory ignore it.
+  /// Begins a new segment: the next image does not follow the last one by one time step, or no
+  /// single torque acted between them. As in training, no controller state may then contain both
+  /// images. Policies without a state ignore it.
   virtual void startSegment() {}
 
-  /// Says whether epsilon > 0. Only then may a policy lead to states of which little is known.
+  /// Tells whether epsilon > 0. Only then may a policy lead to states with little data.
   virtual void setExploring(bool /*exploring*/) {}
 
-  /// Takes in the image just seen.
+  /// Adds the newest image.
   /// @throws std::invalid_argument for a wrong number of pixels
   virtual void observe(const Grey& grey) = 0;
 
-  /// Distance of the last image to the goal, in units that mean the same for every model. Empty if the policy
-  /// has no such distance.
+  /// @return distance of the last image to the goal, in units that are comparable between models.
+  ///         Empty if the policy has no such distance
   virtual std::optional<double> goalDistance() const { return std::nullopt; }
 
-  /// Decides u_t, the torque that answers the image just seen.
+  /// Decides u_t, the torque that answers the newest image.
   virtual Answer answer() = 0;
 
-  /// Takes in the torque that was applied, also if another part decided it [N m].
+  /// Adds the torque that was applied, whether or not the policy decided it [N m]  [torque_dim]
   virtual void apply(const Eigen::VectorXd& u) = 0;
 };
 

@@ -1,4 +1,4 @@
-// The trials recorded so far as one data set; each bag is read once.
+// Reads the bags of all trials as one data set, each bag only once.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -15,32 +15,33 @@
 
 namespace ddm {
 
-/// What BagCache::read() throws if it is told to end.
+/// Thrown by BagCache::read() if keep_going returns false.
 struct ReadingCancelled : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Keeps what it has read of a bag until the file changes or is no longer asked for.
+/// Reads bags and stores their content until the file changes or read() is called without it.
 class BagCache {
  public:
   using Warn = std::function<void(const std::string& note)>;
   using KeepGoing = std::function<bool()>;
 
-  /// @param warn  (optional) is told the notes of each bag when it is read, see BagContent
+  /// @param image_size  width and height of the images in the data set [pixels]
+  /// @param warn        (optional) receives the notes of each bag that is read, see BagContent
   BagCache(int image_size, BagOptions options, Warn warn = nullptr)
       : image_size_(image_size), options_(std::move(options)), warn_(std::move(warn)) {}
 
-  /// All bags as one data set, each a trial of its own, in the order given. The goal image is that of
-  /// the last bag that has one.
-  /// @throws std::runtime_error as readBag() does, or if camera or number of torques differ between
-  ///         bags, or if there is no bag or one is given twice
-  /// @param keep_going  (optional) asked between two bags
+  /// Reads all bags as one data set, each as a trial of its own, in the given order. The last bag
+  /// with a goal image determines the goal image.
+  /// @param keep_going  (optional) called between two bags
+  /// @throws std::runtime_error like readBag(); also if bags differ in camera or number of torques,
+  ///         if there is no bag, or if a bag is given twice
   /// @throws ReadingCancelled if keep_going returns false
   DataSet read(const std::vector<std::string>& paths, const KeepGoing& keep_going = nullptr);
 
  private:
   struct Entry {
-    std::int64_t modified;  // [ns]
+    std::int64_t modified;  // time of modification [ns]
     std::uintmax_t bytes;
     BagContent content;
   };

@@ -1,4 +1,4 @@
-// Reads bags: images and torques on the wire to a data set.
+// Reads the images and torques of a bag as a data set.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -19,15 +19,16 @@ namespace ddm {
 struct BagOptions {
   std::string image_topic = "camera/image_raw";  ///< sensor_msgs/Image or CompressedImage
   std::string torque_topic = "torque";           ///< see readBag()
-  std::string goal_topic = "goal_image";         ///< as images, may be missing in the bag
-  double dt = 0.0;  ///< time between frames, for bags without ddm_msgs/Torque [s]
-  /// Joints of a sensor_msgs/JointState, or parts ("torque.z") of a geometry_msgs/WrenchStamped;
-  /// empty: all joints, in the message's order.
+  std::string goal_topic = "goal_image";         ///< like image_topic; may be missing in the bag
+  double dt = 0.0;  ///< sampling time, for bags without ddm_msgs/Torque [s]
+  /// Motors: joints of a sensor_msgs/JointState, or parts ("torque.z") of a
+  /// geometry_msgs/WrenchStamped. Empty: all joints, in the order of the message.
   std::vector<std::string> motors{};
-  std::vector<int> crop{0, 0, 0, 0};  ///< of images: column, row, width, height; 0: to the edge
+  /// Part of the images: column, row, width, height [pixels]. Width or height 0: to the edge.
+  std::vector<int> crop{0, 0, 0, 0};
 
-  /// Whether some of the bags were recorded otherwise than this project does. Then their cameras
-  /// may differ: it is for who says so to see that the images look alike.
+  /// @return whether the options fit bags that another program recorded. The cameras of such bags
+  ///         may differ, and the user has to ensure that their images look alike
   bool ofOthers() const { return dt > 0.0 || crop != std::vector<int>{0, 0, 0, 0}; }
 
   template <class Visitor>
@@ -39,66 +40,72 @@ struct BagOptions {
     visitor("motors", motors);
     visitor("crop", crop);
   }
-  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  /// @return all faults of these values, in words for the user; empty if the values are valid
   std::vector<std::string> problems() const;
 };
 
-/// An image of a bag, or a picture that goes with bags, as training sees it: cropped and converted,
-/// but one of image_size is not cropped.
+/// Converts an image as training does: crops it, unless its size is image_size, and resizes it.
+/// @param image_size  width and height of the result [pixels]
+/// @return            [image_size^2]
 /// @throws std::invalid_argument see decodeImage()
 Grey greyOf(const sensor_msgs::Image& image, int image_size, const BagOptions& options);
 
-/// A bag and what was found in it.
+/// Content of a bag.
 struct BagContent {
-  DataSet data;                 ///< frames: images with their torques
-  std::string camera;           ///< size and encoding of the images, "51x51 mono8"
-  std::vector<double> times{};  ///< of each frame, since the first one [s]
-  /// A number for each frame; frames with the same time, image and torque have the same number.
-  /// Bags that DDM recorded have none, because each run of a simulator may begin at the same time.
+  DataSet data;                 ///< samples, and the goal image if there is one
+  std::string camera;           ///< size and encoding of the images, such as "51x51 mono8"
+  std::vector<double> times{};  ///< time of each sample since the first one [s]
+  /// Hash of time, image and torque of each sample. Empty for bags that DDM recorded, because each
+  /// run of a simulator may begin at the same time.
   std::vector<std::size_t> frame_ids{};
-  double interval = 0.0;  ///< median of those between frames [s]; 0 if there is only one
-  std::vector<double> images_without_torque{};  ///< their times, since the first frame [s]
-  std::vector<double> torques_without_image{};  ///< likewise
-  /// What a user should know: what does not count and why, clocks that cannot be trusted, and so on.
+  double interval = 0.0;  ///< median time between samples [s]; 0 if there is only one
+  std::vector<double> images_without_torque{};  ///< times since the first sample [s]
+  std::vector<double> torques_without_image{};  ///< times since the first sample [s]
+  /// Messages to the user: data that were dropped and why, unreliable clocks, and so on.
   std::vector<std::string> notes{};
 };
 
-/// Reads one bag: ours, or one made with plain `rosbag record`.
+/// Reads one bag, recorded by trial_recorder or by plain `rosbag record`.
 ///
-/// Torques are ddm_msgs/Torque: an image and a torque are a frame if their header stamps are equal,
-/// and a new segment begins after an image without a torque, and after a gap of more than 1.5 times
-/// the median interval. Or they are std_msgs/Float64 or Float32, arrays of them, the effort of a
-/// sensor_msgs/JointState, or parts of a geometry_msgs/WrenchStamped: then images are taken dt
-/// apart, each with the torque in force until the next, and a torque is in force until there is
-/// another. Stamps count where images and torques have them and they can be trusted, else the times
-/// at which messages were recorded.
+/// If torques are ddm_msgs/Torque, an image and a torque with equal header stamps are a sample. A
+/// new segment begins after an image without a torque, and after a gap of more than 1.5 times the
+/// median interval.
 ///
-/// A topic is found under its name or under any namespace, that of images also with /compressed
-/// behind it. The goal image is the last on its topic. An image that cannot be decoded leaves a gap.
-/// Memory is that of the frames and of the largest chunk; chunks without these topics are skipped.
-/// @param image_size  images are cropped and converted to image_size x image_size grey values; one
-///                    of that size is not cropped
-/// @throws std::runtime_error naming the bag, the fault and the remedy: unreadable, cut short,
-///         still active, without a topic, a topic of another type, images that change size or
-///         encoding, more broken images than whole ones, torques that are not finite or change
-///         dimension, no image with a torque, images farther apart than dt, torques of two nodes at
-///         the same time
+/// Torques may also be std_msgs/Float64 or Float32, arrays of them, the effort of a
+/// sensor_msgs/JointState, or parts of a geometry_msgs/WrenchStamped. Images are then taken dt
+/// apart, each with the torque that is in force when the next image is due. A torque is in force
+/// until the next torque. Times are header stamps if images and torques have reliable ones,
+/// otherwise times of recording.
+///
+/// A topic is found by its name or in any namespace; image topics are also found with /compressed
+/// at their end. The last message on its topic is the goal image. An image that cannot be decoded
+/// leaves a gap. Memory is that of the samples and of the largest chunk. Chunks without these
+/// topics are skipped.
+/// @param image_size  width and height of the images in the data set [pixels]; images of another
+///                    size are cropped and resized
+/// @throws std::runtime_error that names the bag, the fault and the remedy. Faults: the bag is
+///         unreadable, truncated, or still *.active; a topic is missing or has another type; images
+///         change size or encoding; more images are broken than whole; torques are not finite or
+///         change dimension; no image has a torque; images are farther apart than dt; two nodes
+///         publish torques or images at the same time
 BagContent readBag(const std::string& path, int image_size, const BagOptions& options);
 
-/// The same from any stream; messages do not name it.
-/// @param in  binary, can be positioned
+/// Reads a bag from any stream; error messages do not name the bag.
+/// @param in  binary and seekable
 BagContent readBagBytes(std::istream* in, int image_size, const BagOptions& options);
 
-/// Compares each bag with those before it: the same file by two paths, copies, and parts of a recording that overlap.
+/// Detects bags that share samples: one file under two paths, copies, or overlapping recordings.
 class DifferentBags {
  public:
-  /// @throws std::runtime_error if the file, or more than a tenth of the frames, were there before
+  /// Compares a bag with all bags of earlier calls.
+  /// @throws std::runtime_error if the file, or more than a tenth of its samples, occurred before
   void require(const std::string& path, const BagContent& content);
 
  private:
-  std::map<std::pair<std::uintmax_t, std::uintmax_t>, std::string>
-      files_;                                            // path of each device and inode
-  std::unordered_map<std::size_t, std::string> frames_;  // bag of each frame
+  // Path, by device and inode.
+  std::map<std::pair<std::uintmax_t, std::uintmax_t>, std::string> files_;
+  // Path of the bag, by hash of the sample.
+  std::unordered_map<std::size_t, std::string> frames_;
 };
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// Writes the bag of one trial, so that what is under the final name is always complete.
+// Writes the bag of one trial. A bag under its final name is always complete.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -14,31 +14,32 @@
 
 namespace ddm {
 
-/// Writes images, torques and the goal image of one trial. The bag is PATH.active until close().
-/// Chunks are LZ4 (raw chunks have no checksum) and small, so that little is lost with a killed
-/// recorder.
+/// Writes images, torques and the goal image of one trial to PATH.active, which close() renames to
+/// PATH. Chunks are LZ4, since uncompressed chunks have no checksum, and small, so that a recorder
+/// that is killed loses little.
 class BagWriter {
  public:
-  /// A PATH.active that is there already is not replaced: it may be all that is left of a trial,
-  /// and `rosbag reindex` can recover it.
+  /// Creates PATH.active. An existing PATH.active is an error, since it may be all that is left of
+  /// a trial; `rosbag reindex` can recover it.
   /// @throws std::runtime_error with the path and the reason
   BagWriter(const std::string& path, const BagOptions& options);
   ~BagWriter();
   BagWriter(const BagWriter&) = delete;
   BagWriter& operator=(const BagWriter&) = delete;
 
-  /// Each is written at its header stamp. @throws std::runtime_error with the path and the reason
+  /// Each function writes a message at its header stamp (the goal image at `stamp`).
+  /// @throws std::runtime_error with the path and the reason
   void write(const sensor_msgs::Image& image);
   void write(const ddm_msgs::Torque& torque);
   void writeGoal(const sensor_msgs::Image& goal, const ros::Time& stamp);
 
-  /// Their stamps.
+  /// @return stamps of the images or torques written so far
   const std::set<ros::Time>& images() const { return images_; }
   const std::set<ros::Time>& torques() const { return torques_; }
-  /// Number of images whose torque is there too.
+  /// @return number of images whose torque is written, too
   int numFrames() const;
 
-  /// Closes the bag and gives it its final name. From then on it survives a power cut.
+  /// Closes the bag and renames it to its final name. The bag then survives a power failure.
   /// @throws std::runtime_error with the path and the reason
   void close();
 
@@ -49,7 +50,7 @@ class BagWriter {
 
   std::string path_;
   BagOptions options_;
-  std::unique_ptr<rosbag::Bag> bag_;  // null where it was abandoned
+  std::unique_ptr<rosbag::Bag> bag_;  // null if abandoned
   std::set<ros::Time> images_;
   std::set<ros::Time> torques_;
 };

@@ -1,4 +1,4 @@
-// Everything that turns bags into a model, as it stands in YAML.
+// The parameters that determine how bags become a model, and their YAML form.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -16,7 +16,7 @@ namespace ddm {
 
 /// Block `recorder`.
 struct RecorderOptions {
-  double timeout = 5.0;  ///< wall time that the last messages of a trial may take to arrive [s]
+  double timeout = 5.0;  ///< wall time in which a trial's last messages must arrive [s]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
@@ -37,7 +37,7 @@ struct ModelConfig {
   BagOptions data_set;
 };
 
-/// Reads the four blocks; call reader->requireValid() when all blocks are read.
+/// Reads the four blocks. Call reader->requireValid() after all blocks are read.
 inline ModelConfig readModelConfig(ParamReader* reader) {
   ModelConfig config;
   config.image = reader->read<ImageOptions>("image");
@@ -57,7 +57,7 @@ inline YAML::Node toYaml(const ModelConfig& config) {
   return out;
 }
 
-/// The four blocks as YAML text, kept in each model.
+/// The four blocks as YAML text, which each model contains.
 inline std::string toText(const ModelConfig& config) { return YAML::Dump(toYaml(config)) + "\n"; }
 
 }  // namespace ddm

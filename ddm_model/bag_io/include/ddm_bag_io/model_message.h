@@ -1,4 +1,4 @@
-// A model on the wire.
+// Converts a model to a message.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace ddm {
 
-/// The whole model as a message, with its id.
+/// Makes the message of a model, with its id and its bytes.
 inline ddm_msgs::Model toMessage(const Ddm& model, const ros::Time& stamp) {
   const std::string bytes = serialiseModel(model);
   ddm_msgs::Model message;
