@@ -11,8 +11,9 @@ def success_rates(trials):
     """Success rate over the seeds at each number of frames. trials: table of read_trials().
 
     Returns a table with the index frames and the columns rate, se, runs, low and high (ends of Wilson's interval).
-    Trials with unknown success are excluded. The standard error of a rate p over n experiments is sqrt(p (1 - p) / (n -
-    1)), as in the paper's Fig. 8, and 0 for a single experiment.
+    Trials with unknown success are excluded. The standard error of a rate p over n experiments is
+
+      se = sqrt(p (1 - p) / (n - 1)),   as in the paper's Fig. 8, and 0 for a single experiment
     """
     groups = trials.dropna(subset=["success"]).groupby("frames").success
     rate, runs = groups.mean(), groups.size()
