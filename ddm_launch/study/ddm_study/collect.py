@@ -1,4 +1,4 @@
-# Collects from the folder of a sweep what tables and figures need of single runs.
+# study collect: collects data of single experiments from the folder of a sweep, for tables and figures.
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
 import os
@@ -19,7 +19,7 @@ Collects from the folder of a sweep what tables and figures need of single runs:
   last_models    success and mean return of the episodes that `evaluate` has left in each seed's folder last_model"""
 NUM_ANGLE_SEEDS, NUM_ANGLE_TRIALS = 16, 15
 SEARCH_KEYS = ["gp_s", "policy_search_s", "sparse", "points", "iterations", "evaluations", "cost_before", "cost_after",
-               "message"]  # of pilco.yaml
+               "message"]  # keys of pilco.yaml
 
 
 def angles(runs):

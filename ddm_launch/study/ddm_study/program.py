@@ -1,4 +1,4 @@
-# The subcommands of study.
+# study: subcommands that make and check the committed results.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
@@ -26,7 +26,7 @@ def reproduce(options):
     words += ["JOBS=%d" % options.jobs] if options.jobs else []
     words += ["--dry-run"] if options.dry_run else []
     try:
-        os.execvp(words[0], words)  # make is then the process that a signal ends
+        os.execvp(words[0], words)  # make replaces this process, so that signals reach make
     except FileNotFoundError:
         raise Failure("the program make is missing: install the package make") from None
 
