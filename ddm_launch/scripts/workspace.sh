@@ -1,5 +1,4 @@
-# Functions for demo.sh and test.sh, which source this file: from a bare system to a built catkin workspace that links
-# this checkout.
+# Functions for demo.sh and test.sh: from a bare system to a built catkin workspace that links this checkout.
 # SPDX-License-Identifier: BSD-3-Clause
 # shellcheck shell=bash disable=SC2034
 

@@ -1,5 +1,4 @@
-// benchmark_kernels: measures computing times on a finished experiment with Google Benchmark, and
-// round trips between nodes.
+// benchmark_kernels: measures computing times on a finished experiment, and message round trips.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <benchmark/benchmark.h>
 #include <ddm_bag_io/bag_cache.h>

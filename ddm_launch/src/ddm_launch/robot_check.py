@@ -1,5 +1,4 @@
-# robot_check: acts as the user of robot.launch with a simulated robot, and measures latencies and the success of
-# evaluations.
+# robot_check: acts as the user of a simulated robot, and measures latencies and the success of evaluations.
 # SPDX-License-Identifier: BSD-3-Clause
 import math
 import os

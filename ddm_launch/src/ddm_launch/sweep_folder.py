@@ -1,5 +1,4 @@
-# Class SweepFolder: the folder of a sweep with the script for one seed, the results of all seeds, and their common
-# table.
+# Class SweepFolder: the folder of a sweep with the script for one seed, and the results of all seeds.
 # SPDX-License-Identifier: BSD-3-Clause
 import contextlib
 import csv

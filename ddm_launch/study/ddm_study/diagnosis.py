@@ -1,5 +1,4 @@
-# study diagnose: shows why a task is not learned, by errors of features and predictions on the next trial, and by
-# frames near the goal.
+# study diagnose: shows why a task is not learned, by errors of features and predictions on the next trial.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
 import glob

@@ -1,5 +1,4 @@
-# Draws features and decoded images: the feature plane of a model, predicted images, and the pendulum's feature space
-# with a plan.
+# Draws features and decoded images: feature planes, predicted images, and the pendulum's plan in feature space.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 

@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 
 void throwError(const char* text) { throw std::runtime_error(std::string("MuJoCo: ") + text); }
 
-// MjData::warning counts warnings, see MujocoPhysics::requireStable().
+// mjData::warning counts warnings, see MujocoPhysics::requireStable().
 void ignoreWarning(const char* /*text*/) {}
 
 constexpr std::size_t kStlHeader = 84;  // header and number of triangles [bytes]

@@ -23,7 +23,7 @@ Mechanism::Mechanism(const std::shared_ptr<const MujocoModel>& model)
     joint.kind = m.jnt_type[i] == mjJNT_HINGE ? JointKind::kAngle : JointKind::kLength;
     joint.limited = m.jnt_limited[i] != 0;
     joint.effort = model->effortLimit(joint.name).value_or(0.0);
-    // ShowSlidesInPart() sets the range of a slide.
+    // showSlidesInPart() sets the range of a slide.
     const double reach = joint.isHinge() ? kPi : 0.0;
     joint.lower = joint.limited ? m.jnt_range[2 * i] : m.qpos0[i] - reach;
     joint.upper = joint.limited ? m.jnt_range[2 * i + 1] : m.qpos0[i] + reach;

@@ -1,5 +1,4 @@
-// Tests damaged model files: no file may crash or hang the program, or give a black image without
-// an error message.
+// Tests damaged model files: no file may crash or hang the program, or silently give black images.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/plain_file.h>
 #include <gtest/gtest.h>

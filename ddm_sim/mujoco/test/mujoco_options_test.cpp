@@ -1,5 +1,4 @@
-// Tests the options of plants with model files: messages for invalid values, and values from the
-// model file.
+// Tests options of plants with model files: invalid values, and values from the model file.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/mujoco_options.h"
 

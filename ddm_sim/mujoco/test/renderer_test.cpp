@@ -1,5 +1,4 @@
-// Tests the renderer: positions in the image, equal bytes for equal states, and disturbances of the
-// scene.
+// Tests the renderer: positions in the image, equal bytes for equal states, scene disturbances.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/renderer.h"
 

@@ -1,5 +1,4 @@
-// Compares the plants suite_* with the DeepMind Control Suite's own model files: motion and
-// rewards.
+// Compares the plants suite_* with models of the DeepMind Control Suite: motion and rewards.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_plant_plugin/plant_config.h>
 #include <gtest/gtest.h>

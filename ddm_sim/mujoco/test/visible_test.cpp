@@ -1,5 +1,4 @@
-// Tests the visibility of models: hidden groups, files without light, and images that do not
-// change.
+// Tests the visibility of models: hidden groups, missing light, images that do not change.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/testing/expect_error.h>
 #include <gtest/gtest.h>
