@@ -46,6 +46,8 @@ DIR/machine.yaml       processor, version, iterations of a plan"""
 
 
 class Benchmark:
+    """Measures all rows of speed.csv. out: folder for the results. scratch: temporary folder for the experiments."""
+
     def __init__(self, out, scratch):
         self.out, self.scratch = os.path.abspath(out), scratch
         self.rows = {}  # name: {column: time [us]}
@@ -61,6 +63,7 @@ class Benchmark:
         return process.output
 
     def keep_wall_time(self, name, run):
+        """Records the time of an experiment in the row `name`. Raises Failure if the experiment did not finish."""
         summary = read_yaml(os.path.join(run, "summary.yaml"))
         if summary.get("finished") is not True:
             raise Failure("%s: the experiment did not finish" % name)

@@ -59,6 +59,7 @@ ALTERED = {
 
 
 def altered(message, how):
+    """Copy of a message with fields changed by ALTERED."""
     result = copy.deepcopy(message)
     for field, value in ALTERED[how](message).items():
         setattr(result, field, value)
@@ -73,6 +74,7 @@ def shifted(message, seconds):
 
 
 def late(message):
+    """Delays a message by 1 s."""
     time.sleep(1.0)
     return [message]
 
@@ -108,6 +110,7 @@ class Motor:
         self.acted, self.stamp, self.since, self.until = [], None, float("inf"), float("inf")
 
     def acts(self):
+        """Whether a torque other than zero acts now."""
         return bool(self.acted) and self.acted[-1][1] != 0.0
 
     def begin(self, stamp=None, lasts=float("inf")):
@@ -165,6 +168,8 @@ def intrude(connection, other_end):
 
 
 class Injector:
+    """The node fault_injector. intruder: connection to the process of intrude()."""
+
     def __init__(self, intruder):
         phase, self.fault, self.runs, self.path = (rospy.get_param("~" + name) for name in ("phase", "fault", "runs", "report"))
         self.real_time, self.robot = phase.endswith(REAL_TIME), phase.endswith(ON_A_ROBOT)
@@ -285,6 +290,7 @@ class Injector:
                     raise
 
     def inject(self):
+        """Injects the fault and writes the report."""
         lasts = self.change.lasts if self.change else 0
         self.motor.begin(None if self.robot else self.stamp, lasts if self.robot and lasts else float("inf"))
         self.changes_until = time.monotonic() + lasts
@@ -302,6 +308,7 @@ class Injector:
         os.kill(self.pids[0], signal.SIGKILL)
 
     def do_stop(self):
+        """Stops the process of a node. The process continues after the time in STOPS."""
         block, key = LIMITS.get(self.what, OTHER_LIMIT)
         os.kill(self.pids[0], signal.SIGSTOP)
         if self.verb != "hold":  # a separate process sends SIGCONT even if this one has ended
@@ -318,6 +325,7 @@ class Injector:
             experiment, os.getppid())], start_new_session=True)
 
     def do_fill(self):
+        """Fills the disk of the run folder. Returns the error message of the full disk."""
         with open(os.path.join(self.runs, "filler"), "wb", buffering=0) as stream:
             try:
                 while True:

@@ -181,6 +181,7 @@ class CaseRun:
         return output
 
     def observed(self):
+        """Runs the case and returns the observed outcome."""
         self.output = self.disturb()
         if self.report is None:
             return "not injected"
@@ -248,6 +249,7 @@ class Live(CaseRun):
         return self.bench.launch_experiment(self.folder, self.folder, config=config, **arguments)
 
     def disturb(self):
+        """Runs the experiment with the fault. Returns its output, with that of fault_injector."""
         self.report_path = os.path.join(os.path.dirname(self.folder), "report.json")
         output = self.launch_and_log(self.case.fault)
         if self.case.fault not in CONFIGS:
@@ -300,6 +302,7 @@ class AtRest(CaseRun):
     experiment or a short recording."""
 
     def disturb(self):
+        """Prepares the run folder with the fault and runs the command. Returns its output."""
         fault, folder, bench = self.case.fault, self.folder, self.bench
         shutil.copytree(bench.begun, folder, dirs_exist_ok=True)
         self.before, self.undo = Finished.of(folder), lambda: None

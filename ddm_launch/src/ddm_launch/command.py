@@ -80,6 +80,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def expand_home(word):
+    """Expands `~` at the beginning of an argument, or after the equals sign of `--option=~/x`."""
     option, equals, value = word.partition("=") if word.startswith("--") else ("", "", word)
     return option + equals + os.path.expanduser(value)
 
@@ -113,6 +114,7 @@ def find_program(name, package="ddm_launch"):
 
 
 def package_path(*names, package="ddm_launch"):
+    """Path of a file in the source folder of a package."""
     return os.path.join(roslib.packages.get_pkg_dir(package), *names)
 
 

@@ -42,6 +42,8 @@ def plane_of(points):
 
 
 def read_clip(evaluation):
+    """Reads a folder RUN/evaluation_NNN and predicts its images. Returns a Clip. Raises Failure if the folder has
+    another name, or if the model and the plant have different image sizes."""
     evaluation = os.path.normpath(evaluation)
     found = EVALUATION.search(evaluation)
     if not found:
@@ -137,6 +139,7 @@ def as_panel(image):
 
 
 def draw_film(options):
+    """Draws evaluations one after the other into an animated WebP file."""
     if not options.out.lower().endswith(SUFFIX):
         raise Failure("a film must be a .webp, got '%s': give --out another name" % options.out)
     pictures, durations = [], []

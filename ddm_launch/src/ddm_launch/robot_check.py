@@ -58,6 +58,7 @@ class Load:
                                          stdin=subprocess.DEVNULL, start_new_session=True)
 
     def num_trainings(self):
+        """Number of trainings that have finished."""
         path = os.path.join(self._scratch.name, "trained")
         return os.path.getsize(path) if os.path.exists(path) else 0
 
@@ -85,6 +86,8 @@ def show_goal_and_enable(goal):
 
 
 class RobotCheck:
+    """Records latencies, deadline misses and errors of evaluations. Writes RUNS/robot_check.yaml after each trial."""
+
     def __init__(self, goal):
         self._plant_goal, self._runs = goal, rospy.get_param("~runs")
         self._lock = threading.Lock()

@@ -41,6 +41,7 @@ class Job(collections.namedtuple("Job", "number cluster")):
         return "Slurm job %s%s" % (self.number, self.cluster and " of cluster " + self.cluster)
 
     def command(self, name, *words):
+        """Command line of a program of Slurm for the cluster of this job."""
         return [name] + (["-M", self.cluster] if self.cluster else []) + list(words)
 
     def ask(self):
@@ -57,6 +58,7 @@ class Job(collections.namedtuple("Job", "number cluster")):
         return True, said or "squeue ended with code %d" % done.returncode
 
     def how_to_go_on(self):
+        """Message for the user that tells how to resume or cancel the job."""
         return ("%s may be running. The same command waits for it, '%s' cancels it"
                 % (self, " ".join(self.command("scancel", self.number))))
 

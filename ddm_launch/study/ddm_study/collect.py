@@ -23,6 +23,7 @@ SEARCH_KEYS = ["gp_s", "policy_search_s", "sparse", "points", "iterations", "eva
 
 
 def angles(runs):
+    """Angles over time in the evaluations of the first seeds. runs: {seed: run folder}."""
     parts = []
     for seed, folder in list(runs.items())[:NUM_ANGLE_SEEDS]:
         for trial in read_trials(os.path.join(folder, "trials.csv")).head(NUM_ANGLE_TRIALS).itertuples():
@@ -34,6 +35,7 @@ def angles(runs):
 
 
 def policies(runs):
+    """Times and results of the policy search in each trial of PILCO. Raises Failure if a trial has none."""
     rows = []
     for seed, folder in runs.items():
         for trial in read_trials(os.path.join(folder, "trials.csv")).itertuples():
@@ -47,6 +49,7 @@ def policies(runs):
 
 
 def last_models(runs):
+    """Success and mean return of the last model of each seed."""
     rows = []
     for seed, folder in runs.items():
         episodes = read_table(folder, "last_model", "evaluation.csv")

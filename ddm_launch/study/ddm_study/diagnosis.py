@@ -56,6 +56,7 @@ class Joints:
         return np.where(circular, np.abs((difference + math.pi) % (2.0 * math.pi) - math.pi), difference)
 
     def share_near_goal(self, positions):
+        """Share of positions [N x joints] whose joints are all near the goal."""
         limits = np.array([NEAR[unit] for unit in self.units])
         return np.mean(np.all(self.distances(positions, self.goal) < limits, axis=1))
 

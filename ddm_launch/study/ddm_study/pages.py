@@ -37,10 +37,12 @@ LABELS = {"auto_encoder_widths": "the paper's auto-encoder", "blur": "no blur", 
 
 
 def plus_minus(mean, error, digits=2, sign=False):
+    """Formats a mean and its standard error, with a minus sign in place of a hyphen."""
     return (("%+.*f ± %.*f" if sign else "%.*f ± %.*f") % (digits, mean, digits, error)).replace("-", "−")
 
 
 def table_row(*cells):
+    """Row of a Markdown table."""
     return "| %s |" % " | ".join(map(str, cells))
 
 

@@ -21,6 +21,7 @@ FIGURES = {"angle_trajectories": curves.TRAJECTORIES, "feature_plane": features.
 
 
 def reproduce(options):
+    """Replaces this process by make with the rules of the study. Raises Failure if make is missing."""
     os.makedirs(options.out, exist_ok=True)
     words = ["make", "-f", package_path("study", "Makefile"), "-C", options.out, *options.goals]
     words += ["JOBS=%d" % options.jobs] if options.jobs else []

@@ -38,6 +38,7 @@ def facts_of(model):
 
 
 def facts_table(data, path):
+    """HTML table with the facts of a model and the units of its errors."""
     facts = {"file": path, **facts_of(data.model)}
     facts.update(facts.pop("options"))
     del facts["config"]  # the configuration has its own section
@@ -85,6 +86,7 @@ def figures_of(data):
 
 
 def build_page(data, path):
+    """Returns (HTML page of the report, checks)."""
     checks = verdict(data)
     sections = ["<h2>Verdict</h2>", report.verdict_table(checks)]
     if data.bags is None:

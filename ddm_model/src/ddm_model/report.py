@@ -31,6 +31,7 @@ def figure(title, uri, caption):
 
 
 def verdict_table(checks):
+    """HTML table of checks. Failed checks are highlighted."""
     rows = [(MARKS[check.ok], check.name, check.figure, check.rule, "" if check.ok else check.remedy)
             for check in checks]
     marked = [i for i, check in enumerate(checks) if check.ok is False]

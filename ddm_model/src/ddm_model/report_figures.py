@@ -74,6 +74,7 @@ def draw_rows(rows, labels, columns):
 
 
 def draw_reconstructions(data):
+    """Draws some images, their projections on the principal components, and their reconstructions."""
     shown = np.unique(np.arange(RECONSTRUCTIONS) * len(data.images) // RECONSTRUCTIONS)
     images = data.images[shown]
     y = blurred(data.model.arrays, images.reshape(len(shown), -1) / 255.0)
@@ -93,6 +94,7 @@ def draw_prediction(data, kind):
 
 
 def draw_errors(data):
+    """Draws the errors of rollouts over the number of steps ahead."""
     figure, (axes,) = new_axes(3.4)
     steps = data.errors["steps"]
     for column, colour, style, label in (
