@@ -233,8 +233,8 @@ Urdf readUrdf(const std::string& text, const std::string& path, const FindPackag
   for (const XMLElement* joint : joints) {
     readJoint(*joint, joints, &urdf);
     if (attribute(*joint, "type") != "continuous") continue;
-    for (XMLElement* limit :
-         children(*joint, "limit")) {  // it turns without end, whatever they say
+    // A continuous joint has no limits, even if the file has values.
+    for (XMLElement* limit : children(*joint, "limit")) {
       limit->DeleteAttribute("lower");
       limit->DeleteAttribute("upper");
     }
