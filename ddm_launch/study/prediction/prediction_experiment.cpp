@@ -1,4 +1,4 @@
-// prediction_experiment: how well a model predicts frames that it was not trained on (Sec. 4.1).
+// prediction_experiment: measures how well a model predicts unseen images (paper, Sec. 4.1).
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/option_checks.h>
 #include <ddm_common/param_value.h>
@@ -34,19 +34,20 @@ constexpr char kAbout[] =
     "usage: rosrun ddm_launch prediction_experiment --preset paper --plant moving_tile --seed 1\n"
     "                                               --out DIR";
 
-constexpr int kTrainingSamples = 501;  // the paper has 601 in all
-constexpr int kHeldOutSamples = 100;   // after them, not learned from
-constexpr int kMaxSteps = 8;           // longest prediction
+constexpr int kTrainingSamples = 501;  // the paper uses 601 samples in total
+constexpr int kHeldOutSamples = 100;   // samples after the training samples, not used for training
+constexpr int kMaxSteps = 8;           // longest prediction [steps]
 
-/// A random trial: what a learner sees, and the true states behind it.
+/// A random trial of N samples: the data for the learner, and the true states.
 struct Recording {
   DataSet training;
   DataSet held_out;
-  Eigen::MatrixXd states;     ///< of all frames            [stateDim() x N]
-  Eigen::MatrixXd positions;  ///< visiblePosition() of all  [. x N]
+  Eigen::MatrixXd states;     ///< true states            [stateDim() x N]
+  Eigen::MatrixXd positions;  ///< Plant::visiblePosition()        [. x N]
 };
 
-/// Training and held-out samples in one go: uniformly random torques from a random initial state.
+/// Records training and held-out samples in one episode with uniformly random torques, from a
+/// random initial state.
 Recording record(const Configuration& all) {
   Environment environment(makePlant(*all.plant), all.camera);
   const Plant& plant = environment.plant();
@@ -66,7 +67,7 @@ Recording record(const Configuration& all) {
   return out;
 }
 
-/// [1, x_i, x_i x_j (i <= j)] of each sample.
+/// The monomials 1, x_i and x_i x_j (i <= j) of each sample, one sample per column.
 Eigen::MatrixXd monomials(const Eigen::MatrixXd& x) {
   const Eigen::Index n = x.rows();
   Eigen::MatrixXd out(1 + n + n * (n + 1) / 2, x.cols());
@@ -79,11 +80,12 @@ Eigen::MatrixXd monomials(const Eigen::MatrixXd& x) {
   return out;
 }
 
-/// How much the features say about the position of the moving part, if they may be a bent map of it:
-/// a quadratic map from features to positions is fitted to the training samples, and the result is
-/// its R^2 = 1 - sum |y - fit(x)|^2 / sum |y - mean(y)|^2 on the held-out ones; 1 is perfect.
-/// @param x  features of all samples, one per column
-/// @param y  positions of all samples
+/// Measures how well the features determine the position of the moving part. A quadratic map from
+/// features to positions is fitted to the training samples. The result is its coefficient of
+/// determination on the held-out samples, R^2 = 1 - sum |y - fit(x)|^2 / sum |y - mean(y)|^2; 1 is
+/// perfect.
+/// @param x  features of all samples                                                    [d x N]
+/// @param y  positions of all samples                                                   [. x N]
 double positionR2(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) {
   const Eigen::MatrixXd coefficients = monomials(x.leftCols(kTrainingSamples))
                                            .transpose()
@@ -107,7 +109,7 @@ std::string featuresCsv(const PlantInfo& plant, const Recording& recording,
   return text;
 }
 
-/// The prediction from the middle of the held-out frames, of those that have a full history.
+/// A rollout that begins in the middle of those held-out samples that have a full history.
 std::string stripCsv(const PlantInfo& plant, const Recording& recording, const Ddm& model,
                      const Eigen::MatrixXd& Z) {
   const Eigen::Index memory = model.options().memory();
@@ -136,7 +138,7 @@ void run(const Configuration& all) {
   RunFolder folder(all);
   for (const std::string& warning : folder.warnings()) std::cout << "warning: " << warning << "\n";
   const Recording recording = record(all);
-  folder.begin();  // nothing is left that could refuse
+  folder.begin();  // last: from here on, the command cannot be refused any more
   ModelInfo info;
   info.seed = static_cast<std::uint64_t>(all.experiment.seed);
   info.config = toText(all.model);
@@ -174,7 +176,7 @@ void run(const Configuration& all) {
             << " steps ahead: " << folder.path() << "\n";
 }
 
-/// @return false where --help was asked for and has been printed
+/// @return false if --help was given and has been printed
 bool configure(int argc, char** argv, Configuration* all) {
   Arguments arguments;
   if (!parseCommandLine(argc, argv, commonOptions(kAbout, &arguments))) return false;
