@@ -226,8 +226,8 @@ TEST_F(PilcoMethodTest, WhatIsPredictedIsWhatHappensAndItIsBetterThanTheFirstPol
   EXPECT_GT(std::abs(numberAt(predicted.back(), 4)), 1.5);
 }
 
-/// An observation of random numbers. The inverse squares of its length-scales are infinite, so that no
-/// cost is finite.
+/// An observation of random numbers. The inverse squares of its length-scales are infinite, so that
+/// no cost is finite.
 class PointlessObservation : public Observation {
  public:
   std::vector<std::string> names() const override { return {"z_1"}; }
