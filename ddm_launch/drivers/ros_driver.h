@@ -28,6 +28,7 @@ namespace ddm {
 /// except those of ground truth. Progress is reported by the waiting thread.
 class RosDriver : public Driver {
  public:
+  /// Optional nodes that the driver uses, and a time limit of the robot.
   struct Peers {
     bool recorder = true;  ///< whether a node records the trials
     bool trainer = true;   ///< whether a node trains models

@@ -12,9 +12,8 @@
 
 namespace ddm {
 
-/// Runs Algorithm 1 of the paper: records one trial with random torques. Then, for each trial,
-/// trains on all data recorded so far, runs a greedy evaluation, and records an epsilon-greedy
-/// trial.
+/// Runs Algorithm 1 of the paper. Records one trial with random torques. Then repeats three steps:
+/// trains on all data recorded so far, runs a greedy evaluation, records an epsilon-greedy trial.
 ///
 /// If the configuration has a block `start`, its bags count as trials before trial 0, and trial 0
 /// is epsilon-greedy instead of random. The model of trial 0 is that of `start`, or one trained on

@@ -102,6 +102,7 @@ struct EvaluationOptions {
   }
 };
 
+/// All blocks of a configuration, and the plant that they describe.
 struct Configuration {
   ExperimentOptions experiment;
   StartOptions start;

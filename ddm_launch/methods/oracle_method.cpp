@@ -58,8 +58,8 @@ class OraclePolicy : public Policy {
   std::mt19937_64 rng_;
 };
 
-/// Plans with the planner of the DDM. The oracle learns nothing: its rows in trials.csv have 0
-/// frames.
+/// Plans with the planner of the DDM. The oracle learns nothing, so that the column frames of its
+/// trials.csv is 0.
 class OracleMethod : public Method {
  public:
   OracleMethod(const Configuration& configuration, const Plant& plant)

@@ -1,5 +1,4 @@
-// evaluate: runs greedy evaluations of a saved model on a plant, one per seed, without a ROS
-// master.
+// evaluate: runs greedy evaluations of a saved model on a plant, one per seed, without a master.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/param_value.h>
 #include <ddm_common/plain_file.h>

@@ -76,8 +76,8 @@ class PilcoMethod : public Method {
 };
 
 /// Draws the parameters of the first RBF policy. The centres are drawn from the features of p(x_0),
-/// which are taken as Gaussian; the targets are small random numbers; the length-scales are those
-/// of the task.
+/// which are approximated by a Gaussian; the targets are small random numbers; the length-scales
+/// are those of the task.
 /// @param features  features of the task's state
 Eigen::VectorXd drawFirstPolicy(const PilcoTask& task, const pilco::Augmentation& features,
                                 int num_centres, int torque_dim, std::mt19937_64* rng);

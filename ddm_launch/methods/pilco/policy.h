@@ -81,7 +81,7 @@ class Squashing {
 
   Moments predict(const Gaussian& input) const;
 
-  /// Moments of squash(y) from those of y. y is taken as Gaussian.
+  /// Moments of squash(y) from those of y. y is approximated by a Gaussian.
   Moments applyTo(const Moments& y) const;
 
   /// Vector-Jacobian product of predict() at the same input. Only the diagonal of dJ/dV is used,
@@ -92,8 +92,8 @@ class Squashing {
   Eigen::VectorXd max_control_;
 };
 
-/// Moments of u = squash(pi(x)). pi(x) is taken as Gaussian; the gain is the gain of pi times the
-/// diagonal gain of the squashing.
+/// Moments of u = squash(pi(x)). pi(x) is approximated by a Gaussian; the gain is the gain of pi
+/// times the diagonal gain of the squashing.
 class SquashedPolicy {
  public:
   /// @param policy       pi, without squashing

@@ -65,7 +65,7 @@ class Augmentation {
 Augmentation replaceAngles(int input_dim, const std::vector<int>& angles);
 
 /// c(x) = 1 - exp(-1/2 (y - z)^T W (y - z)) (Deisenroth and Rasmussen, 2011) with the features y of
-/// an Augmentation, which are taken as Gaussian. For y ~ N(m, s), with P_k = W (I + k s W)^-1:
+/// an Augmentation. y is approximated by a Gaussian N(m, s). With P_k = W (I + k s W)^-1:
 ///
 ///   E[c]         = 1 - |I + s W|^-1/2 exp(-1/2 (m - z)^T P_1 (m - z))
 ///   E[(1 - c)^2] = |I + 2 s W|^-1/2 exp(-(m - z)^T P_2 (m - z))

@@ -25,8 +25,8 @@ const ros::TransportHints kNoDelay = ros::TransportHints().tcpNoDelay();
 
 class Stopwatch {
  public:
-  /// Tells the number of round trips so far. The first kWarmUp are ignored, because connections and
-  /// caches are new.
+  /// Records that `number` round trips are complete. The first kWarmUp are ignored, because
+  /// connections and caches are new.
   void tick(int number) {
     if (number < kWarmUp) return;
     last_ = Clock::now();
