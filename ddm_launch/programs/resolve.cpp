@@ -49,8 +49,8 @@ void setCrop(const std::string& text, Arguments* arguments) {
   arguments->set("robot/crop", crop);
 }
 
-/// Splits the text of a launch argument into bags, which are separated by blanks. A path that
-/// contains a blank must be quoted unless it is the whole text and exists.
+/// Splits the text of a launch argument into paths of bags, which are separated by blanks. Quotes are
+/// parsed only if the text as a whole is not a file and its words are not all files.
 std::vector<std::string> splitBags(const std::string& text) {
   const auto exists = [](const std::string& bag) { return fs::exists(expandHome(bag)); };
   if (exists(text)) return {text};
