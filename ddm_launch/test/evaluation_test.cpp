@@ -1,4 +1,4 @@
-// Tests of the evaluator: when a greedy run is a success.
+// Tests of the evaluation: when a greedy evaluation counts as a success.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation.h"
 
@@ -19,7 +19,7 @@ using States = std::vector<Eigen::VectorXd>;
 
 constexpr double kDegree = kPi / 180.0;
 
-/// Of a run without torques.
+/// Evaluates an episode without torques.
 Evaluation evaluated(const Plant& plant, const States& states) {
   return evaluate(plant, states, States(states.size(), Eigen::VectorXd::Zero(plant.torqueDim())));
 }
@@ -28,7 +28,7 @@ class EvaluationTest : public ::testing::Test {
  protected:
   static Eigen::VectorXd at(double angle) { return Eigen::Vector2d(angle, 0.0); }
 
-  /// `num_settled` frames at the goal after frames far from it.
+  /// `num_settled` images at the goal, after images far from the goal.
   static States arriving(int num_settled, int num_frames = 40) {
     States states(num_frames, at(0.0));
     for (int i = num_frames - num_settled; i < num_frames; ++i) states[i] = at(kPi);
@@ -44,7 +44,7 @@ class EvaluationTest : public ::testing::Test {
 TEST_F(EvaluationTest, SuccessTakesTheLastTenFramesAtTheGoal) {
   EXPECT_FALSE(evaluated(arriving(9)).success);
   EXPECT_TRUE(evaluated(arriving(10)).success);
-  EXPECT_TRUE(evaluated(arriving(9)).known);  // a failure is known, too
+  EXPECT_TRUE(evaluated(arriving(9)).known);  // failures are known results too
   States states(40, at(kPi));
   states.back() = at(kPi - 11.0 * kDegree);
   EXPECT_FALSE(evaluated(states).success);
@@ -55,7 +55,7 @@ TEST_F(EvaluationTest, StrictSuccessTakesTheLast25) {
   EXPECT_TRUE(evaluated(arriving(24)).success);
   EXPECT_FALSE(evaluated(arriving(24)).success_strict);
   EXPECT_TRUE(evaluated(arriving(25)).success_strict);
-  EXPECT_TRUE(evaluated(arriving(7, 7)).success_strict);  // all of a shorter run
+  EXPECT_TRUE(evaluated(arriving(7, 7)).success_strict);  // all images of a shorter episode
   EXPECT_FALSE(evaluated(arriving(6, 7)).success);
 }
 
@@ -94,7 +94,8 @@ TEST(EvaluationOfLengths, CountsTheCartWithinItsMetres) {
 }
 
 TEST(EvaluationOfRewards, AddsUpWhatThePlantSaysOfEachStepAndTheTorqueThatActs) {
-  const testing::ToyPlant plant(testing::colourfulToy());  // -x^2 - v^2 - 0.1 u^2, both + 0.1 u
+  // the reward is -x^2 - v^2 - 0.1 u^2; u adds 0.1 u to x and to v
+  const testing::ToyPlant plant(testing::colourfulToy());
   States states, torques;
   double expected = 0.0;
   for (int t = 0; t < 30; ++t) {
@@ -107,13 +108,13 @@ TEST(EvaluationOfRewards, AddsUpWhatThePlantSaysOfEachStepAndTheTorqueThatActs) 
   torques.back() *= 6.0 / 5.8;
   const double saturated = evaluate(plant, states, torques).total_reward.value();
   EXPECT_LT(saturated, expected - 1e-3);
-  torques.back() *= 2.0;  // beyond its limit the motor does the same
+  torques.back() *= 2.0;  // the motor saturates: a larger torque has the same effect
   EXPECT_NEAR(evaluate(plant, states, torques).total_reward.value(), saturated, 1e-9);
 }
 
 TEST(EvaluationOfRewards, CountsTheStepsOfLostFramesAndNoMoreStepsThanARunHas) {
   testing::ToyPlant plant(testing::colourfulToy());
-  const std::vector<int> steps = {1, 3, 1, 2};  // from each frame to the next
+  const std::vector<int> steps = {1, 3, 1, 2};  // time steps between successive images
   States states, torques;
   std::vector<double> times;
   double expected = 0.0, time = 0.4;
@@ -174,7 +175,7 @@ TEST(Quantile, IsTheValueThatAFractionDoesNotExceed) {
 }
 
 TEST(WilsonInterval, HoldsTheRatesThatTheRunsDoNotSpeakAgainst) {
-  // The ends are where a rate p is 1.96 standard errors of p away from what was seen.
+  // At each end, p is 1.96 standard errors of p away from the observed rate.
   for (const int successes : {1, 7, 19}) {
     const auto interval = wilsonInterval(successes, 20);
     for (const double p : {interval.first, interval.second}) {

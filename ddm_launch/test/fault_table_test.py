@@ -1,4 +1,4 @@
-# Faults of each class come to what is expected of them, and a case that does not fails.
+# One fault of each class has the expected result, and a case with another result fails.
 # SPDX-License-Identifier: BSD-3-Clause
 from ddm_qa.fault_cases import RECOVERS, Case
 from ddm_qa.fault_run import FaultBench

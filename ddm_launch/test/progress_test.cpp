@@ -1,4 +1,4 @@
-// Tests of the progress on the terminal: what it says, and that files stay free of escape codes.
+// Tests of the progress on the terminal: its text, and that files contain no escape codes.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "progress.h"
 
@@ -16,7 +16,8 @@ using testing::toyRow;
 
 class ProgressTest : public ::testing::Test {
  protected:
-  /// Two trials, the second a success, and the summary.
+  /// The text of an experiment with two trials, of which the second is a success, and of its
+  /// summary.
   std::string textOf(bool live) {
     std::ostringstream out;
     Progress progress(&out, live, /*num_trials=*/1, "px");
@@ -79,7 +80,8 @@ TEST_F(ProgressTest, NoLineIsWiderThanATerminal) {
     for (std::string line; std::getline(lines, line);) {
       for (size_t begin = 0; begin < line.size();) {
         const size_t end = std::min(line.find('\r', begin + 1), line.size());
-        EXPECT_LE(end - begin, 80u + 4u) << line.substr(begin, end - begin);  // 4: the escape code
+        // the escape code has 4 characters
+        EXPECT_LE(end - begin, 80u + 4u) << line.substr(begin, end - begin);
         begin = end;
       }
     }

@@ -1,4 +1,4 @@
-# run_experiment: its files, that a seed fixes them, that an interruption changes nothing, and what it refuses.
+# run_experiment: its files, repeatability with a seed, interruptions, and invalid inputs.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import shutil
@@ -19,14 +19,14 @@ def arguments(out, seed=1, trials=TRIALS):
 
 
 def run(out, *more, **values):
-    """Output of an experiment that succeeds."""
+    """Runs an experiment that must succeed. Returns its output."""
     code, output = run_experiment(*arguments(out, **values), *more)
     assert code == 0, output
     return output
 
 
 def kill(condition, *more):
-    """Kills an experiment when the condition of its process holds."""
+    """Kills an experiment as soon as condition(process) returns."""
     process = Process([find_program("run_experiment"), *more])
     condition(process)
     process.send(signal.SIGKILL)
@@ -109,7 +109,7 @@ def test_the_same_command_leaves_a_finished_run_as_it_is_but_for_the_time_of_its
 
 
 def test_a_saved_configuration_is_the_same_experiment_again_in_both_drivers(tmp_path):
-    """Of an experiment in which nothing is as by default, and which starts from a model and a bag."""
+    """In this experiment all values differ from the defaults, and it starts from a model and a bag."""
     before, original = tmp_path / "before", str(tmp_path / "original")
     (tmp_path / "more.yaml").write_text("mpc: {horizon: 4}\nplant: {friction: 0.02}\ncamera: {noise_std: 0.02}\n")
     run(before, "--plant", "pendulum_gravity", trials=0)
@@ -123,7 +123,8 @@ def test_a_saved_configuration_is_the_same_experiment_again_in_both_drivers(tmp_
     _, output = roslaunch(str(tmp_path), "experiment.launch", "config:=original/config.yaml", "runs:=" + nodes,
                           folder=str(tmp_path))
     for folder in (again, nodes):
-        names = [name for name in expected_files(1) if not name.endswith(".bag")]  # whose stamps are another simulated time
+        # stamps in bags are another simulated time
+        names = [name for name in expected_files(1) if not name.endswith(".bag")]
         assert differences(original, folder, names) == [], output
         assert read_yaml(folder, "config.yaml")["experiment"]["runs"] == folder
 

@@ -1,4 +1,4 @@
-# Base of the tests that write files: a folder for each test and, where asked for, one for all tests of a class.
+# Base classes for tests that write files: one folder per test, or one folder for all tests of a class.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import resource
@@ -7,17 +7,17 @@ import unittest
 
 
 def new_folder(add_cleanup):
-    """A new folder, which goes when the test or class of `add_cleanup` has ended. Returns its real path: programs tell
-    that one."""
+    """Makes a folder that is deleted after the test or class of `add_cleanup`. Returns its real path, because
+    programs print the real path."""
     folder = tempfile.TemporaryDirectory()
     add_cleanup(folder.cleanup)
     return os.path.realpath(folder.name)
 
 
 class ScratchCase(unittest.TestCase):
-    """scratch: a folder of each test. out: a path in it for what is asked for with --out; nothing is there yet."""
+    """scratch: folder of the test. out: a path in this folder for --out; no file is there yet."""
 
-    maxDiff = None  # lists of files and rows of tables are long
+    maxDiff = None  # differences of file lists and tables are long
 
     def setUp(self):
         self.scratch = new_folder(self.addCleanup)
@@ -28,8 +28,8 @@ class ScratchCase(unittest.TestCase):
         return os.path.join(self.scratch, *names)
 
     def limitFiles(self, size):
-        """Until the end of the test no file that this process writes may grow beyond this size [bytes]: as on a full
-        disk, but without root."""
+        """Limits the size of all files that this process writes until the end of the test [bytes]. The effect is
+        that of a full disk, but needs no root."""
         limits = resource.getrlimit(resource.RLIMIT_FSIZE)
         self.addCleanup(resource.setrlimit, resource.RLIMIT_FSIZE, limits)
         resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
@@ -44,7 +44,7 @@ class ScratchCase(unittest.TestCase):
 
 
 class SharedScratchCase(ScratchCase):
-    """class_scratch: a folder of all tests of the class, also gone after a setUpClass that failed."""
+    """class_scratch: a folder for all tests of the class, which is also deleted if setUpClass fails."""
 
     @classmethod
     def setUpClass(cls):

@@ -44,9 +44,7 @@ class Collector {
   void add(const fs::path& file) {
     if (!seen_.insert(file.lexically_normal().string()).second) return;
     const std::string bytes = readModelFile(file.string());
-    boost::crc_32_type checksum;
-    checksum.process_bytes(bytes.data(), bytes.size());
-    checksum_ += checksum.checksum();
+    checksum_.process_bytes(bytes.data(), bytes.size());
     const std::string mistaken = mistakenFor(bytes);
     if (!mistaken.empty()) refuse(file.string(), " ", mistaken);
     const std::size_t begin = bytes.find_first_not_of("\xef\xbb\xbf \t\r\n");
@@ -66,7 +64,7 @@ class Collector {
       if (pathsOf(name).empty()) missing.push_back(name);
     }
     char digest[32];  // the prefix keeps CSV and YAML readers from taking the digest for a number
-    std::snprintf(digest, sizeof(digest), "crc32-%08x", checksum_);
+    std::snprintf(digest, sizeof(digest), "crc32-%08x", checksum_.checksum());
     return {digest, boost::algorithm::join(missing, ", ")};
   }
 
@@ -99,7 +97,7 @@ class Collector {
   std::set<fs::path> folders_;   // folders of the model, of its meshes and of its textures
   std::set<std::string> names_;  // names of files, as they stand in the models' texts
   std::set<std::string> seen_;
-  std::uint32_t checksum_ = 0;  // a sum, so that the order of the files does not matter
+  boost::crc_32_type checksum_;
 };
 
 /// Text between the first two quotation marks after a word. Empty if the word does not occur.

@@ -1,4 +1,4 @@
-// Tests of moment matching through a GP: samples, derivatives, limits, refusals.
+// Tests of moment matching through a GP: samples, derivatives, limits and invalid inputs.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco/gp_moments.h"
 
@@ -54,7 +54,7 @@ TEST(GpMoments, AdjointInTheModelMatchesDifferences) {
   const Moments weights = randomMoments(kDim, kOutputs, random);
   for (const int rank : {3, 1, 0}) {
     const Gaussian input = randomGaussian(kDim, rank, 0.5, random);
-    // x: inputs, beta, log length-scales, each by columns
+    // x contains inputs, beta and log length-scales, each by columns.
     Eigen::VectorXd x(kDim * kPoints + kPoints * kOutputs + kDim * kOutputs);
     const auto views = [&](double* data) {
       return std::make_tuple(
