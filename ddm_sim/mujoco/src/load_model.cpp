@@ -235,7 +235,7 @@ void tryInOwnProcess(const ModelText& model) {
   const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   if (signal == SIGXCPU || signal == SIGALRM || signal == SIGKILL) {
     refuse("MuJoCo ", mj_versionString(),
-           " did not finish reading it within a minute: make its meshes and textures smaller");
+           " did not finish reading it in time: make its meshes and textures smaller");
   }
   refuse("MuJoCo ", mj_versionString(), " crashes on it (",
          signal == 0 ? "it ends the process" : strsignal(signal),
