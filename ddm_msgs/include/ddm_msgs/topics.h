@@ -27,7 +27,7 @@ constexpr char kPredictionImage[] =
     "prediction_image";  ///< sensor_msgs/Image: camera image, reconstruction, prediction
 constexpr char kFeatureSpaceImage[] =
     "feature_space_image";  ///< sensor_msgs/Image: features of the images and of the plan
-/// std_msgs/String, latched: results folder with trials.csv, and its goal
+/// std_msgs/String, latched: YAML with the text of trials.csv and the goal
 constexpr char kTrials[] = "trials";
 
 /// sensor_msgs/Image: unprocessed images of a robot's camera

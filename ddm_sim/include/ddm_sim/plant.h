@@ -33,12 +33,12 @@ struct PlantInfo {
   /// state has rates.                                                                  [stateDim()]
   std::vector<std::string> state_names;
 
-  /// names of the components of a torque, such as "torque_nm" [torqueDim()]
+  /// Names of the components of a torque, such as "torque_nm" [torqueDim()]
   std::vector<std::string> torque_names;
   Eigen::VectorXd max_torque;  ///< bound on each |u|, in the unit of its name [torqueDim() x 1]
   double dt = 0.2;             ///< time step [s]
   Eigen::VectorXd start;       ///< mean of the initial states [stateDim() x 1]
-  /// standard deviation of each component of the initial state [stateDim() x 1]
+  /// Standard deviation of each component of the initial state [stateDim() x 1]
   Eigen::VectorXd start_std;
   Eigen::VectorXd goal;      ///< state to reach and to hold [stateDim() x 1]
   std::string error_unit;    ///< unit of Plant::goalError(): "deg", "m", "px"

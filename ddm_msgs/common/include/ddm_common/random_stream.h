@@ -10,7 +10,7 @@ namespace ddm {
 /// Identifies an episode of an experiment and determines all of its random draws.
 struct TrialId {
   std::uint64_t seed = 0;   ///< seed of the experiment
-  std::uint32_t trial = 0;  ///< number of the trial; trial 0 uses random torques only
+  std::uint32_t trial = 0;  ///< trial * trial/episodes + episode: number of the training episode
   bool evaluation = false;  ///< true for the evaluation (greedy episode) that follows the trial
 };
 
