@@ -12,8 +12,8 @@ option(DDM_AVX2 "On x86-64, build for processors with AVX2 and FMA, which most h
 option(DDM_WERROR "Treat warnings as errors" OFF)
 set(DDM_SANITIZE "" CACHE STRING "Sanitizers: empty for none, address (with undefined behaviour) or thread")
 
-# The catkin of Debian 11 caches that it has found gtest and gmock, but not their targets. Without this line, catkin does
-# not search for them when a workspace is configured again, and no test links.
+# The catkin of Debian 11 caches that it has found gtest and gmock, but not their targets. Without this line, catkin
+# does not search for them when a workspace is configured again, and no test links.
 unset(GMOCK_FOUND CACHE)
 
 set(CMAKE_CXX_STANDARD 17)
@@ -44,8 +44,8 @@ endif()
 if(DDM_WERROR)
   add_compile_options(-Werror)
 endif()
-# Other libraries, such as Ceres, contain Eigen functions of the same names that are compiled for another instruction set.
-# If DDM exported its Eigen functions, these libraries would call them, and aligned loads would fault on their memory.
+# Other libraries, such as Ceres, contain Eigen functions of the same names that are compiled for another instruction
+# set. If DDM exported its Eigen functions, these libraries would call them, and aligned loads would fault on their memory.
 set(DDM_VERSION_SCRIPT ${CMAKE_BINARY_DIR}/without_eigen.map)
 file(WRITE ${DDM_VERSION_SCRIPT} "{ local: _ZN5Eigen*; _ZNK5Eigen*; _ZZN5Eigen*; _ZZNK5Eigen*; _ZGVZN5Eigen*; _ZGVZNK5Eigen*; };\n")
 add_link_options(-Wl,--version-script=${DDM_VERSION_SCRIPT})
@@ -69,8 +69,8 @@ endif()
 add_compile_options(${DDM_INSTRUMENTATION})
 link_libraries(${DDM_INSTRUMENTATION})
 
-# Adds the program PACKAGE_fuzz from fuzz/fuzz.cpp, with the fuzz targets of the package. The arguments are the libraries
-# of the program. `make fuzz_targets` builds these programs of all packages.
+# Adds the program PACKAGE_fuzz from fuzz/fuzz.cpp, with the fuzz targets of the package. The arguments are the
+# libraries of the program. `make fuzz_targets` builds these programs of all packages.
 function(ddm_add_fuzz_targets)
   if(NOT DDM_FUZZ)
     return()

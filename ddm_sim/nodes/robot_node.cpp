@@ -21,7 +21,7 @@ constexpr int kQueue = 10;
 constexpr int kRecordedQueue = 1000;  // long enough that a slow recorder loses no message
 // a camera without an image for longer is not available
 constexpr std::chrono::seconds kFreshCamera(1);
-// Period at which efforts are sent and time limits are checked
+// Period at which efforts are sent and time limits are checked.
 const ros::WallDuration kEffortPeriod(0.01);
 const ros::WallDuration kDiagnosisPeriod(1.0);
 const ros::WallDuration kImageLogPeriod(5.0);
@@ -144,7 +144,7 @@ void RobotNode::onImage(const sensor_msgs::ImageConstPtr& image) {
       if (!problem.empty()) return refuseImage(problem);
       image_problem_.clear();
       settle(true);
-      // Before publication, so that the answer cannot arrive earlier
+      // Before publication, so that the answer cannot arrive earlier.
       gate_.showImage(stamps_.taken(), stamp);
     }
     image_pub_.publish(out);
@@ -238,7 +238,7 @@ void RobotNode::lookAtPeers() {
 /// after each change.
 void RobotNode::publishEffort() {
   const std::vector<double>& effort = gate_.effort(steadyNow());
-  // Because a stop takes the motors from the reset service
+  // Because a stop takes the motors from the reset service.
   if (!gate_.armed()) routine_moves_ = false;
   if (!routine_moves_) effort_.publish(effort);
   if (gate_.state() != TorqueGate::State::kFollowing) settle(gate_.heldForAStep());

@@ -106,13 +106,13 @@ class RobotNode {
   SteadyTime image_arrival_;
   Stamp image_arrival_clock_{0};  // image_arrival_ by the clock of this machine
   std::string image_problem_;     // why the newest image cannot be used
-  // Size and encoding of the images that the crop was first used with; empty before
+  // Size and encoding of the images that the crop was first used with; empty before.
   std::string camera_format_;
   bool has_goal_ = false;
   bool routine_runs_ = false;  // true while a call of the user's reset service is open
-  // True while the reset service controls the motors and this node publishes no effort
+  // True while the reset service controls the motors and this node publishes no effort.
   bool routine_moves_ = false;
-  // Torque that acts now and has not been reported yet; empty if all torques have been reported
+  // Torque that acts now and has not been reported yet; empty if all torques have been reported.
   ddm_msgs::Torque acting_;
   ros::SteadyTime last_image_log_;
   bool was_armed_ = false;
@@ -122,7 +122,7 @@ class RobotNode {
   double worst_latency_ = 0.0;  // since the last diagnosis [s]
 
   std::mutex one_reset_;
-  // True while the node waits for a person to bring the robot to its initial state
+  // True while the node waits for a person to bring the robot to its initial state.
   std::atomic<bool> person_asked_{false};
   image_transport::ImageTransport transport_;
   image_transport::Publisher image_pub_;

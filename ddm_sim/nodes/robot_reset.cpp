@@ -19,7 +19,7 @@ namespace ddm {
 namespace {
 
 constexpr double kStepTolerance = 0.1;  // relative to dt; a larger error gives a warning
-// Relative to dt; with a larger error, each step would count as a gap
+// Relative to dt; with a larger error, each step would count as a gap.
 constexpr double kMaxStepTolerance = 0.5;
 constexpr char kGoalInTrial[] = "a trial is under way, and it has a goal: wait for its end";
 const ros::WallDuration kPollPeriod(0.05);

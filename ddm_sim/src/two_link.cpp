@@ -15,7 +15,7 @@
 namespace ddm {
 namespace {
 
-// Absolute and relative error per internal step, as for the pendulum
+// Absolute and relative error per internal step, as for the pendulum.
 constexpr double kTolerance = 1e-12;
 
 PlantInfo infoOf(const TwoLinkOptions& options) {

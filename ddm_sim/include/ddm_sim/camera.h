@@ -85,7 +85,7 @@ class Camera {
   std::mt19937_64 rng_;          ///< brightness and lost images
   std::mt19937_64 noise_;
   double phase_ = 0.0;  ///< phase of the brightness [rad]
-  /// The image on show, then the images that wait for their delay
+  /// The image on show, then the images that wait for their delay.
   std::deque<std::optional<Picture>> taken_;
   int frame_ = 0;  ///< t of the next image
 };

@@ -74,7 +74,7 @@ class Environment {
   std::uint64_t numSteps() const { return num_steps_; }  ///< time steps since the reset
   /// Time since the reset [s].
   double time() const { return static_cast<double>(num_steps_) * plant_->info().dt; }
-  /// Torque of the last step, zero after a reset
+  /// Torque of the last step, zero after a reset.
   const Eigen::VectorXd& applied() const { return applied_; }
 
  private:

@@ -19,7 +19,7 @@ struct PlantOptions {
   std::string type;                        ///< type of the plant; PACKAGE/CLASS names a plugin
   std::vector<double> max_torque = {6.0};  ///< bound on each |u| [unit of the plant]
   double dt = 0.2;                         ///< time step, over which u is constant [s]
-  /// Standard deviation of each component of the initial state
+  /// Standard deviation of each component of the initial state.
   std::vector<double> start_std = {0.1};
   int picture_size = 51;  ///< width and height of the rendered image [pixels]
 

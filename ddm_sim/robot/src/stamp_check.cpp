@@ -9,7 +9,7 @@
 namespace ddm {
 namespace {
 
-// Some seconds of images, in which the drift of clocks is negligible
+// Some seconds of images, in which the drift of clocks is negligible.
 constexpr std::size_t kNumOffsets = 100;
 constexpr int kLargestDrift = 500;        // clocks drift apart by less than 1 part in kLargestDrift
 constexpr std::size_t kNumIntervals = 9;  // number of intervals between images for the median

@@ -14,7 +14,7 @@ std::string listText(const std::vector<double>& values);
 struct RobotOptions {
   double dt = 0.2;  ///< time step: one image and one torque each [s]
   /// Used part of the camera image: column, row, width, height [pixels]; width or height 0: to the
-  /// edge
+  /// edge.
   std::vector<int> crop{0, 0, 0, 0};
   std::vector<double> max_torque{6.0};  ///< bound on the torque of each motor [N m]
   /// Bound on the change of each torque, one number or one per motor; 0: no bound [N m/s]
