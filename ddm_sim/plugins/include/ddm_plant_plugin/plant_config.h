@@ -12,8 +12,8 @@
 
 namespace ddm {
 
-/// Reads the block `plant`. The key `type` (default: pendulum) names the plant. PACKAGE/CLASS names a
-/// plugin of another package, which is loaded and stays loaded until the program ends.
+/// Reads the block `plant`. The key `type` (default: pendulum) names the plant. PACKAGE/CLASS names
+/// a plugin of another package, which is loaded and stays loaded until the program ends.
 /// @throws std::invalid_argument with the available plants if there is no such plant
 /// @throws std::runtime_error if the library of the plugin cannot be loaded
 std::shared_ptr<const PlantPlugin> readPlant(ParamReader* reader);
