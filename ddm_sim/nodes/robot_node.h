@@ -54,7 +54,8 @@ class RobotNode {
   void stopMotors(const std::string& reason);
 
  private:
-  /// State of the motors that a reset requires before it continues.
+  /// State of the motors that a reset requires before it continues. kAny: any state; kOn: on; kFit:
+  /// on and without a fault.
   enum class Motors { kAny, kOn, kFit };
 
   template <class Work>

@@ -162,7 +162,7 @@ bool RobotNode::onReset(ddm_msgs::Reset::Request& /*request*/,
   return true;
 }
 
-/// Forgets the stamps and the rate of all previous images.
+/// Forgets the stamps of all previous images; the estimate of the camera's rate is kept.
 void RobotNode::restartImages() {
   stamps_.restart();
   picker_.restart();

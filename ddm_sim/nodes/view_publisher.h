@@ -25,8 +25,8 @@ namespace ddm {
 ///
 ///   f = height / 2 / tan(fovy / 2),   c = ((width - 1) / 2, (height - 1) / 2)
 ///
-/// The offset of 1/2 pixel follows from the convention that the centre of the first pixel is (0,
-/// 0).
+/// The offset of 1/2 pixel follows from the convention that the first pixel has its centre at
+/// (0, 0).
 inline sensor_msgs::CameraInfo cameraInfoOf(const CameraModel& camera) {
   const double f = camera.focalLength();
   const double cx = 0.5 * (camera.width - 1);
@@ -115,7 +115,7 @@ class ViewPublisher {
     }
   };
 
-  // small, because views are large and an old view is useless
+  // The queue is short because views are large and an old view is useless.
   static constexpr int kViewQueueSize = 2;
 
   const Plant& plant_;

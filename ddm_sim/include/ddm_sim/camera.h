@@ -60,7 +60,7 @@ class Camera {
 
   /// Begins an episode: the next call of photograph() takes its first image.
   /// @param seed        seed of the experiment
-  /// @param trial       number of the trial; trial 0 uses random torques only
+  /// @param trial       number of the episode, see TrialId::trial
   /// @param evaluation  true for the evaluation (greedy episode) that follows `trial`
   void begin(std::uint64_t seed, std::uint32_t trial, bool evaluation);
 

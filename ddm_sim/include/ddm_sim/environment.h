@@ -27,7 +27,7 @@ class Environment {
   /// Sets the initial state and the goal of an episode, and returns its first image, which is never
   /// lost.
   /// @param seed        seed of the experiment
-  /// @param trial       number of the trial; trial 0 uses random torques only
+  /// @param trial       number of the episode, see TrialId::trial
   /// @param evaluation  true for the evaluation (greedy episode) that follows `trial`
   /// @param start       (optional) initial state, taken exactly; without it the initial state is
   ///         drawn

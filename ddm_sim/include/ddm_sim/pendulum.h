@@ -37,16 +37,19 @@ struct PendulumOptions : PlantOptions {
 ///   I omega' = u - b omega - m g l sin(phi) / 2,   phi' = omega,   I = m l^2 / 3
 ///
 /// At phi = 0 the rod hangs down; phi = pi is upright and is the goal. The angle is never wrapped.
-/// Without gravity the step has a closed form. With a = b / I, p1 = (1 - e^{-a dt}) / (a dt), p2 =
-/// (1 - p1) / (a dt):
+/// Without gravity the step has a closed form:
 ///
 ///   phi+   = phi + dt p1 omega + dt^2 p2 u / I
 ///   omega+ = e^{-a dt} omega + dt p1 u / I
+///   a = b / I,   p1 = (1 - e^{-a dt}) / (a dt),   p2 = (1 - p1) / (a dt)
 ///
-/// At the default values this is phi+ = phi + (omega - u)(1 - e^-0.6) / 3 + 0.2 u and omega+ =
-/// e^-0.6 omega + (1 - e^-0.6) u. With gravity, an adaptive Dormand-Prince method of order 5
-/// integrates the equation. The error is the angle to the goal along the shorter arc, in [0, 180]
-/// deg.
+/// At the default values this is
+///
+///   phi+   = phi + (omega - u)(1 - e^-0.6) / 3 + 0.2 u
+///   omega+ = e^-0.6 omega + (1 - e^-0.6) u
+///
+/// With gravity, an adaptive Dormand-Prince method of order 5 integrates the equation. The error is
+/// the angle to the goal along the shorter arc, in [0, 180] deg.
 /// Deviation: the paper states neither gravity nor a bound on the torque. Gravity 0 and a bound of
 /// 6 N m fit the trajectories that the authors published.
 class Pendulum : public Plant {

@@ -16,6 +16,7 @@ namespace ddm {
 
 enum class JointKind { kAngle, kLength };
 
+/// A joint of a plant: an angle [rad] or a length [m].
 struct Joint {
   std::string name;  ///< name in ground_truth/joint_states
   JointKind kind = JointKind::kAngle;
@@ -83,6 +84,7 @@ class Plant {
   /// setGoal().                                                                    [stateDim() x 1]
   const Eigen::VectorXd& goal() const { return goal_; }
 
+  /// Sets the goal state of this episode.
   /// @throws std::invalid_argument as setState()
   void setGoal(const Eigen::VectorXd& goal);
 
@@ -165,8 +167,14 @@ class Plant {
   /// Sum of the rewards of one time step. The default implementation treats the time step as one
   /// physics step.
   virtual double rewardOfStep(const Eigen::VectorXd& state, const Eigen::VectorXd& torque) const;
+
+  /// The error of `state` relative to `goal`, see goalError().
   virtual double distance(const Eigen::VectorXd& state, const Eigen::VectorXd& goal) const = 0;
+
+  /// The image of `state`, see render().
   virtual Picture draw(const Eigen::VectorXd& state) const = 0;
+
+  /// The positions of the moving parts, see visiblePosition().
   virtual Eigen::VectorXd locate(const Eigen::VectorXd& state) const = 0;
 
   Eigen::VectorXd saturated(const Eigen::VectorXd& torque) const;
@@ -176,10 +184,10 @@ class Plant {
   Eigen::VectorXd goal_;
 };
 
-/// Random stream for initial states. The arguments determine the stream. Each trial and each
-/// evaluation has its own stream, which is independent of the streams for all other purposes.
+/// Random stream for initial states. The arguments determine the stream. Each episode has its own
+/// stream, which is independent of the streams for all other purposes.
 /// @param seed        seed of the experiment
-/// @param trial       number of the trial; trial 0 uses random torques only
+/// @param trial       number of the episode, see TrialId::trial
 /// @param evaluation  true for the evaluation (greedy episode) that follows `trial`
 std::mt19937_64 startStream(std::uint64_t seed, std::uint32_t trial, bool evaluation);
 
@@ -194,6 +202,7 @@ class PlantMaker {
 
   virtual std::string type() const = 0;  ///< value of `plant/type`, for messages
 
+  /// Constructs a plant.
   /// @throws std::invalid_argument if the options do not fit together
   virtual std::unique_ptr<Plant> make() const = 0;
 };

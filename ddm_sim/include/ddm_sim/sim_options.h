@@ -11,7 +11,7 @@ namespace ddm {
 
 /// Block `sim`.
 struct SimOptions {
-  /// true: simulated time stops until the torque for the image arrives; false: real time
+  /// True: simulated time stops until the torque for the image arrives. False: real time.
   bool lockstep = true;
   double watchdog = 5.0;  ///< lock-step: longest wall time between an image and its torque [s]
 
@@ -31,7 +31,7 @@ struct SimOptions {
 
 /// Block `show`: parameters that do not change the results.
 struct ShowOptions {
-  /// lock-step: largest number of images per second of wall time; 0: no limit [1/s]
+  /// In lock-step: largest number of images per second of wall time; 0: no limit [1/s]
   double frame_rate = 0.0;
 
   template <class Visitor>

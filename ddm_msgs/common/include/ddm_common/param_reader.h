@@ -86,7 +86,7 @@ class ParamReader {
 
 template <class Options>
 Options ParamReader::read(const std::string& block) {
-  // const, because looking up a missing key must not add it
+  // The node is const because looking up a missing key must not add it.
   const YAML::Node values = openBlock(block);
   std::vector<std::string> known_keys;
   auto take = [&](const std::string& key, auto& value) {

@@ -9,8 +9,10 @@ namespace ddm {
 
 /// Identifies an episode of an experiment and determines all of its random draws.
 struct TrialId {
-  std::uint64_t seed = 0;   ///< seed of the experiment
-  std::uint32_t trial = 0;  ///< trial * trial/episodes + episode: number of the training episode
+  std::uint64_t seed = 0;  ///< seed of the experiment
+  /// Number of the episode: trial * trial/episodes + episode, where trial is the number of the trial
+  /// and episode the number within the trial. For an evaluation, number of the trial.
+  std::uint32_t trial = 0;
   bool evaluation = false;  ///< true for the evaluation (greedy episode) that follows the trial
 };
 

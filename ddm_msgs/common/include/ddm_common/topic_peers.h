@@ -11,6 +11,7 @@
 
 namespace ddm {
 
+/// Address of the XML-RPC server of a node.
 struct NodeAddress {
   std::string host;
   std::uint32_t port = 0;
@@ -58,9 +59,9 @@ std::vector<std::string> missingConnections(const std::vector<std::string>& topi
 /// @param topic  resolved name
 std::string otherPublishers(const std::string& topic);
 
+/// Finds the topics that several other nodes publish; this node is not counted.
 /// @param topics  resolved names
-/// @return "/torque: /intruder, /mpc_node" for each topic that more than one other node publishes;
-///         this node is not counted
+/// @return "/torque: /intruder, /mpc_node" for each such topic
 std::vector<std::string> sharedTopics(const std::vector<std::string>& topics);
 
 }  // namespace ddm

@@ -44,7 +44,7 @@ auto callWithin(std::chrono::duration<double> limit, Function function)
 
 constexpr char kInterrupted[] = "interrupted; the same command resumes";
 
-/// " (waited 60 s)"
+/// Formats a limit [s] as " (waited 60 s)", for messages.
 std::string waited(double limit);
 
 /// As callWithin(); also ends on shutdown.

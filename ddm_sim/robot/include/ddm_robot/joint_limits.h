@@ -57,8 +57,9 @@ class JointLimits {
   /// This is a warning and not a fault, because a person may hold the robot.
   std::string frozen() const;
 
-  /// Longer than the period of the joint states of all robots, and short enough to let a motor run
-  /// without joint states.
+  /// Time without a measurement after which a joint counts as silent. Longer than the period of the
+  /// joint states of all robots, and short enough that a motor may run for this time without joint
+  /// states.
   static constexpr std::chrono::milliseconds kSilence{200};
   /// If a second node reports a joint within this time after the first node, the joint has two
   /// reporters; after this time, the second node has replaced the first.

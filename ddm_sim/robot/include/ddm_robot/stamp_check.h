@@ -43,9 +43,9 @@ inline std::chrono::nanoseconds fromSeconds(double seconds) {
 ///
 /// The tolerance is one dt because a stamp that is ahead by less than dt hides at most one dt of
 /// the following images, which is no worse than a lost image. Late images are accepted, however
-/// late they are, and so are the images after them. A refused image does not change the state of
-/// this object: as soon as the camera's clock is correct again, its images are accepted. If the
-/// clock stays wrong, call restart().
+/// late they are, and so are the images after them. A refused image does not change the stored
+/// offsets: as soon as the camera's clock is correct again, its images are accepted. If the clock
+/// stays wrong, call restart().
 ///
 /// Joint states are checked in the same way.
 class StampCheck {
@@ -108,7 +108,8 @@ class ImagePicker {
   ///         images since restart()
   bool pick(Stamp stamp);
 
-  /// Forgets all stamps: the next image is selected, whatever its stamp is.
+  /// Forgets the last stamp, so that the next image is selected, whatever its stamp is. The
+  /// estimate of the camera's period is kept.
   void restart() { last_image_.reset(); }
 
   /// Time between selected images [s]; 0 if it is not known yet.
