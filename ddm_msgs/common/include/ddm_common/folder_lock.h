@@ -12,7 +12,7 @@ namespace ddm {
 /// missing on some cluster file systems or work within one machine only. All file systems can
 /// create a file exclusively and rename a file:
 ///
-///   1. The process that wants the lock creates .lock.new exclusively, with its own name.
+///   1. A process that requests the lock creates .lock.new exclusively, with its own name.
 ///   2. If there is no .lock, or its owner has ended, .lock.new is renamed to .lock. Otherwise
 ///      .lock.new is deleted.
 ///   3. The owner deletes .lock at its end.

@@ -33,8 +33,8 @@ struct ImageCrop {
 /// forms; bayer_*8, bayer_*16; YUV 4:2:2 under the names yuv422, uyvy, uyvy422, yuv422_uyvy and
 /// yuyv, yuy2, yuyv422, yuv422_yuy2; 8UC1/3/4 and 16UC1/3/4 (three channels in OpenCV's order blue,
 /// green, red); 32FC1 and 64FC1 with grey values in [0, 1]. The luma of YUV images is used without
-/// conversion. 16 bit values are divided by 257, so that 65535 becomes 255. Floats become k =
-/// round(255 grey). Pixels may be big-endian.
+/// conversion. 16 bit values are divided by 257, so that 65535 becomes 255. Floats become
+/// k = round(255 grey). Pixels may be big-endian.
 ///
 /// @param image  untrusted message; all of its fields are checked
 /// @param size   width and height of the result                                 [1 ... 16384]
@@ -51,8 +51,9 @@ std::vector<std::uint8_t> decodeImage(const sensor_msgs::Image& image, int size,
 /// @throws std::invalid_argument if OpenCV cannot decode the data, or a JPEG is truncated
 sensor_msgs::Image unpacked(const sensor_msgs::CompressedImage& image);
 
-/// Makes a mono8 image without padding, the inverse of decodeImage(): decodeImage(encodeImage(k,
-/// size, ...), size) == k.
+/// Makes a mono8 image without padding, the inverse of decodeImage():
+///
+///   decodeImage(encodeImage(k, size, ...), size) == k
 ///
 /// @param grey  grey values k, row by row from the top left corner              [size * size]
 /// @param size  width and height                                                [1 ... 16384]

@@ -1,4 +1,4 @@
-// Parameters of a ROS node as a YAML tree, so that nodes and tools share one reader.
+// Converts the parameters of a ROS node to a YAML tree, so that nodes and tools share one reader.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -102,6 +102,7 @@ class OptionChecks {
   std::vector<std::string> problems_;
 };
 
+/// Requires that the list of problems is empty.
 /// @throws std::invalid_argument with all problems, one per line, if there are any
 inline void requireNone(const std::vector<std::string>& problems) {
   if (problems.empty()) return;
