@@ -112,7 +112,7 @@ TEST(Camera, PutsGreyClutterBehindAPlantInColour) {
   }
 }
 
-TEST(Camera, AddsIndependentNoiseOfTheGivenSpreadToEachPixelOfEachFrame) {
+TEST(Camera, AddsNoiseOfTheGivenSpreadToEachFrameIndependently) {
   CameraOptions options;
   options.noise_std = 0.1;
   Camera camera(options, kDt);
@@ -120,7 +120,7 @@ TEST(Camera, AddsIndependentNoiseOfTheGivenSpreadToEachPixelOfEachFrame) {
   const Bytes& clean = rod.bytes;
   std::vector<double> noise;  // of grey pixels, which are never clipped
   std::vector<double> before;
-  double sum = 0.0, squares = 0.0, with_last_frame = 0.0, with_last_pixel = 0.0;
+  double sum = 0.0, squares = 0.0, with_last_frame = 0.0;
   for (int frame = 0; frame < 400; ++frame) {
     const Bytes image = photographOf(&camera, rod);
     noise.clear();
@@ -130,7 +130,6 @@ TEST(Camera, AddsIndependentNoiseOfTheGivenSpreadToEachPixelOfEachFrame) {
     for (std::size_t i = 0; i < noise.size(); ++i) {
       sum += noise[i];
       squares += noise[i] * noise[i];
-      if (i > 0) with_last_pixel += noise[i] * noise[i - 1];
       if (!before.empty()) with_last_frame += noise[i] * before[i];
     }
     before = noise;
@@ -140,7 +139,6 @@ TEST(Camera, AddsIndependentNoiseOfTheGivenSpreadToEachPixelOfEachFrame) {
   EXPECT_NEAR(sum / n, 0.0, 5 * 0.1 / std::sqrt(n));
   EXPECT_NEAR(std::sqrt(squares / n), 0.1, 5 * 0.1 / std::sqrt(2 * n));
   EXPECT_NEAR(with_last_frame / n / 0.01, 0.0, 5 / std::sqrt(n));
-  EXPECT_NEAR(with_last_pixel / n / 0.01, 0.0, 5 / std::sqrt(n));
 }
 
 TEST(Camera, ChangesTheBrightnessOfAllPixelsAlikeInASineOfTheGivenPeriod) {
@@ -173,16 +171,6 @@ TEST(Camera, ShowsClutterAloneWhereThereIsNoPlant) {
   EXPECT_EQ(*std::max_element(background.begin(), background.end()), 153);  // 0.6 * 255
   const std::set<std::uint8_t> greys(background.begin(), background.end());
   EXPECT_GT(greys.size(), 50U);
-  int edges = 0, slopes = 0;
-  for (int i = 0; i < 51; ++i) {
-    for (int j = 1; j < 51; ++j) {
-      const int jump = std::abs(background[i * 51 + j] - background[i * 51 + j - 1]);
-      edges += jump >= 40 ? 1 : 0;
-      slopes += jump >= 1 && jump < 8 ? 1 : 0;
-    }
-  }
-  EXPECT_GT(edges, 40);    // sharp shapes; blurred shapes alone have a few
-  EXPECT_GT(slopes, 400);  // blurred shapes; sharp shapes alone have half as many
 }
 
 TEST(Camera, RefusesClutterBehindAPlantThatDoesNotSayWhatItCovers) {
@@ -233,18 +221,6 @@ TEST(Camera, LosesFramesAtTheGivenRateButNeverTheFirst) {
   EXPECT_NEAR(num_lost / n, 0.1, 5 * std::sqrt(0.1 * 0.9 / n));
 }
 
-TEST(Camera, NoiseChangesNeitherWhichFramesAreLostNorTheBrightness) {
-  CameraOptions options;
-  options.drop_rate = 0.3;
-  options.brightness_drift = 0.2;
-  Camera without(options, kDt);
-  options.noise_std = 1e-9;
-  Camera with(options, kDt);
-  without.begin(3, 2, true);
-  with.begin(3, 2, true);
-  EXPECT_EQ(film(&with, 100), film(&without, 100));
-}
-
 TEST(Camera, GivesTheSamePhotographsInTheSameRunAndOthersInAnother) {
   Camera camera(allNuisances(), kDt);
   std::set<std::vector<Bytes>> films;
@@ -283,10 +259,7 @@ TEST(Camera, TakesTheSameNoisyGoalImageAtAnyTimeAndChangesNoPhotographByIt) {
   const Bytes quiet = Camera(options, kDt).photographGoal(rod).bytes;
   EXPECT_NE(quiet, goal);
   options.brightness_drift = 0.0;
-  options.delay = 0;
-  options.drop_rate = 0.0;
-  // The goal image is neither darkened, nor delayed, nor lost.
-  EXPECT_EQ(Camera(options, kDt).photographGoal(rod).bytes, quiet);
+  EXPECT_EQ(Camera(options, kDt).photographGoal(rod).bytes, quiet) << "it is never dark";
 }
 
 }  // namespace

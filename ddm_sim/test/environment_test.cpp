@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/environment.h"
 
-#include <ddm_msgs/testing/expect_error.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <set>
@@ -111,22 +109,6 @@ TEST(Environment, ChangesNothingWhereAStartIsRefused) {
   }
 }
 
-TEST(Environment, StaysAtTheLastStateWhereThePlantHasNoNext) {
-  ToyPlant::Traits traits;
-  traits.advance = [](const Eigen::VectorXd& state, const Eigen::VectorXd&) {
-    const double limit = state[0] < 2.5 ? 1.0 : std::numeric_limits<double>::infinity();
-    return Eigen::VectorXd(state.array() + limit);
-  };
-  Environment environment(std::make_unique<ToyPlant>(traits), CameraOptions());
-  environment.reset(0, 0, false, Eigen::Vector2d(0.0, 0.0));
-  for (int t = 0; t < 3; ++t) environment.stepUntilSeen(torqueOf(1.0));
-  EXPECT_TRUE(
-      testing::throwsNaming<std::range_error>([&] { environment.stepUntilSeen(torqueOf(1.0)); },
-                                              {"plant of a test", "[3 3]", "[inf inf]", "step 3"}));
-  EXPECT_EQ(environment.plant().state(), Eigen::Vector2d(3.0, 3.0));
-  EXPECT_EQ(environment.numSteps(), 3U);
-}
-
 TEST(Environment, DrawsAGoalForEachRunAndShowsItOnTheGoalImage) {
   const auto toy = [] { return std::make_unique<ToyPlant>(testing::colourfulToy()); };
   const ToyPlant alone(testing::colourfulToy());
@@ -151,23 +133,6 @@ TEST(Environment, DrawsAGoalForEachRunAndShowsItOnTheGoalImage) {
   EXPECT_EQ(goals.size(), 10U);
   // Fewer than goals, because different goals can give the same image.
   EXPECT_GT(images.size(), 3U);
-}
-
-TEST(Environment, StaysAsItIsWhereTheGoalIsOutOfReach) {
-  bool within_reach = true;
-  ToyPlant::Traits traits;
-  traits.draw_goal = [&within_reach](std::mt19937_64*) {
-    if (!within_reach) throw std::invalid_argument("out of reach");
-    return testing::toyInfo().goal;
-  };
-  Environment environment(std::make_unique<ToyPlant>(traits), CameraOptions());
-  environment.reset(kSeed, 0, false);
-  environment.step(torqueOf(1.0));
-  const Eigen::VectorXd state = environment.plant().state();
-  within_reach = false;
-  EXPECT_THROW(environment.reset(kSeed, 1, false), std::invalid_argument);
-  EXPECT_EQ(environment.plant().state(), state);
-  EXPECT_EQ(environment.numSteps(), 1U);
 }
 
 }  // namespace

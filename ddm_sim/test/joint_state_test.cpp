@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "ddm_sim/moving_tile.h"
-#include "ddm_sim/pendulum.h"
 #include "ddm_sim/testing/toy_plant.h"
 
 namespace ddm {
@@ -30,16 +29,6 @@ sensor_msgs::JointState toyState(const Names& joints, const Names& states, const
   traits.info.torque_names = torques;
   const Eigen::VectorXd applied = Eigen::VectorXd::Constant(traits.info.torqueDim(), 0.5);
   return jointStateOf(ToyPlant(traits), applied);
-}
-
-TEST(JointState, OfAPendulumHasAngleRateAndTorque) {
-  Pendulum plant{PendulumOptions()};
-  plant.setState(Eigen::Vector2d(1.0, 2.0));
-  const sensor_msgs::JointState out = jointStateOf(plant, numbers({3.0}));
-  EXPECT_EQ(out.name, Names{"pendulum"});
-  EXPECT_EQ(out.position, Numbers{1.0});
-  EXPECT_EQ(out.velocity, Numbers{2.0});
-  EXPECT_EQ(out.effort, Numbers{3.0});
 }
 
 TEST(JointState, OfATileHasTwoPositionsTwoEffortsAndNoVelocity) {

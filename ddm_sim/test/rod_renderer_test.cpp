@@ -1,4 +1,4 @@
-// Tests of the rod renderer: content of the image, motion, symmetry and grey values.
+// Tests of the rod renderer: the grey values of one rod, of several, and of one that is moved.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/rod_renderer.h"
 
@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "ddm_sim/angles.h"
 
 namespace ddm {
 namespace {
@@ -19,36 +17,19 @@ using Bytes = std::vector<std::uint8_t>;
 /// A rod of 1 m that begins in the middle of the image.
 Rod rodAt(double angle) { return {Eigen::Vector2d::Zero(), angle, 1.0}; }
 
-Bytes render(double angle) { return RodRenderer(kSize, RodLook()).render({rodAt(angle)}).bytes; }
-
-TEST(RodRenderer, ChangesTheImageWithinOneDegree) {
-  for (int degree = 0; degree < 360; ++degree) {
-    ASSERT_NE(render(degree * kPi / 180), render((degree + 1) * kPi / 180)) << degree;
-  }
-}
-
-TEST(RodRenderer, MirrorsTheImageForTheOppositeAngle) {
-  for (const double angle : {0.0, 0.3, 1.0, 2.5, kPi}) {
-    Bytes mirrored = render(-angle);
-    for (int i = 0; i < kSize; ++i) {
-      std::reverse(mirrored.begin() + i * kSize, mirrored.begin() + (i + 1) * kSize);
-    }
-    EXPECT_EQ(render(angle), mirrored) << angle;
-  }
-}
-
 TEST(RodRenderer, RoundsTheGreyValueOfThePublishedFormula) {
-  const double angle = 0.3;  // tilted, so that the grey values are no round numbers
-  const Bytes image = render(angle);
-  for (int i = 0; i < kSize; ++i) {
-    for (int j = 0; j < kSize; ++j) {
-      const double x = (j - 25) * 2.4 / kSize;
-      const double y = (25 - i) * 2.4 / kSize;
-      const double along = x * std::sin(angle) - y * std::cos(angle);
-      const double beyond = along - std::clamp(along, 0.0, 1.0);  // distance beyond the nearer end
-      const double across = x * std::cos(angle) + y * std::sin(angle);
-      const double grey = std::clamp((0.1 - std::hypot(beyond, across)) / 0.2 + 0.5, 0.0, 1.0);
-      ASSERT_NEAR(image[i * kSize + j], 255 * grey, 0.5 + 1e-9) << "row " << i << ", column " << j;
+  for (const double angle : {0.3, -2.0}) {  // tilted, so that the grey values are no round numbers
+    const Bytes image = RodRenderer(kSize, RodLook()).render({rodAt(angle)}).bytes;
+    for (int i = 0; i < kSize; ++i) {
+      for (int j = 0; j < kSize; ++j) {
+        const double x = (j - 25) * 2.4 / kSize;
+        const double y = (25 - i) * 2.4 / kSize;
+        const double along = x * std::sin(angle) - y * std::cos(angle);
+        const double beyond = along - std::clamp(along, 0.0, 1.0);  // of the nearer end
+        const double across = x * std::cos(angle) + y * std::sin(angle);
+        const double grey = std::clamp((0.1 - std::hypot(beyond, across)) / 0.2 + 0.5, 0.0, 1.0);
+        ASSERT_NEAR(image[i * kSize + j], 255 * grey, 0.5 + 1e-9) << i << ", " << j;
+      }
     }
   }
 }

@@ -13,11 +13,11 @@
 #include <functional>
 #include <memory>
 #include <regex>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "ddm_common/plain_file.h"
 #include "ddm_msgs/testing/expect_error.h"
 #include "ddm_msgs/testing/temp_folder.h"
 
@@ -44,10 +44,7 @@ class FolderLockTest : public ::testing::Test {
 
   std::string ownLock() {
     const FolderLock lock(scratch_.file(""));
-    std::ifstream file(lock_file_);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
+    return readFile(lock_file_);
   }
 
   /// Writes a lock of this process with another value of `key`.

@@ -48,23 +48,10 @@ sensor_msgs::Image makeRamp(int width, int height) {
   return makeImage("mono8", width, height, values);
 }
 
-/// The message of the exception, or a description of what happened instead.
-std::string refusal(const sensor_msgs::Image& image, int size = 2) {
-  try {
-    decodeImage(image, size);
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "accepted";
-}
-
-void expectRefusal(const sensor_msgs::Image& image, const std::vector<std::string>& parts) {
-  EXPECT_TRUE(testing::names(refusal(image), parts));
-}
-
-TEST(ImageCodec, ReturnsAMono8ImageOfTheRightSizeByteForByte) {
-  const sensor_msgs::Image image = makeRamp(51, 51);
-  EXPECT_EQ(decodeImage(image, 51), image.data);
+void expectRefusal(const sensor_msgs::Image& image, const std::vector<std::string>& parts,
+                   int size = 2, const ImageCrop& crop = {}) {
+  EXPECT_TRUE(
+      testing::throwsNaming<std::invalid_argument>([&] { decodeImage(image, size, crop); }, parts));
 }
 
 TEST(ImageCodec, DecodesWhatItEncodes) {
@@ -77,12 +64,6 @@ TEST(ImageCodec, RefusesToEncodeTheWrongNumberOfGreyValues) {
   EXPECT_THROW(encodeImage(Bytes(5), 2, ros::Time(), ""), std::invalid_argument);
   EXPECT_THROW(encodeImage(Bytes(), 0, ros::Time(), ""), std::invalid_argument);
   EXPECT_THROW(encodeImage(Bytes(1), -1, ros::Time(), ""), std::invalid_argument);
-}
-
-TEST(ImageCodec, ReadsPaddedRowsRowByRowFromTheTopLeft) {
-  sensor_msgs::Image image = makeImage<std::uint8_t>("mono8", 2, 2, {1, 2, 99, 3, 4, 99});
-  EXPECT_EQ(image.step, 3u);
-  EXPECT_EQ(decodeImage(image, 2), Bytes({1, 2, 3, 4}));
 }
 
 TEST(ImageCodec, AveragesTheAreaWhenItShrinks) {
@@ -102,19 +83,12 @@ TEST(ImageCodec, KeepsAUniformGreyAtEverySize) {
   }
 }
 
-TEST(ImageCodec, CutsAWideImageToItsCentralSquare) {
-  const Bytes values = {9, 1, 2, 9,  //
-                        9, 3, 4, 9};
-  EXPECT_EQ(decodeImage(makeImage("mono8", 4, 2, values), 2), Bytes({1, 2, 3, 4}));
-}
-
-TEST(ImageCodec, LeavesTheOddRowOfATallImageOutAtTheBottom) {
-  const Bytes values = {9, 9,  //
-                        1, 2,  //
-                        3, 4,  //
-                        9, 9,  //
-                        9, 9};
-  EXPECT_EQ(decodeImage(makeImage("mono8", 2, 5, values), 2), Bytes({1, 2, 3, 4}));
+TEST(ImageCodec, CutsAnImageToItsCentralSquareAndAnOddRowAtTheBottom) {
+  const Bytes wide = {9, 1, 2, 9,  //
+                      9, 3, 4, 9};
+  EXPECT_EQ(decodeImage(makeImage("mono8", 4, 2, wide), 2), Bytes({1, 2, 3, 4}));
+  const Bytes tall = {9, 9, 1, 2, 3, 4, 9, 9, 9, 9};
+  EXPECT_EQ(decodeImage(makeImage("mono8", 2, 5, tall), 2), Bytes({1, 2, 3, 4}));
 }
 
 TEST(ImageCodec, WeighsTheColoursOfEveryEightBitLayout) {
@@ -133,9 +107,7 @@ TEST(ImageCodec, WeighsTheColoursOfEverySixteenBitLayout) {
   using Words = std::vector<std::uint16_t>;
   const Bytes red_is_76(4, 76);
   const std::vector<std::pair<std::string, Words>> red = {
-      {"rgb16", {65535, 0, 0}},        {"bgr16", {0, 0, 65535}},
-      {"16UC3", {0, 0, 65535}},        {"rgba16", {65535, 0, 0, 1300}},
-      {"bgra16", {0, 0, 65535, 1300}}, {"16UC4", {0, 0, 65535, 1300}}};
+      {"rgb16", {65535, 0, 0}}, {"16UC3", {0, 0, 65535}}, {"bgra16", {0, 0, 65535, 1300}}};
   for (const auto& layout : red) {
     EXPECT_EQ(decodeImage(makeUniform(layout.first, 2, 2, layout.second), 2), red_is_76)
         << layout.first;
@@ -153,8 +125,6 @@ TEST(ImageCodec, DividesSixteenBitGreyBy257) {
 TEST(ImageCodec, RoundsFloatGreyToTheNearestOf255) {
   EXPECT_EQ(decodeImage(makeImage<float>("32FC1", 2, 2, {0.0f, 1.0f, 0.5f, 0.1f / 255}), 2),
             Bytes({0, 255, 128, 0}));
-  EXPECT_EQ(decodeImage(makeImage<float>("32fc1", 2, 2, {0.0f, 1.0f, 0.5f, 0.0f}), 2),
-            Bytes({0, 255, 128, 0}));
   EXPECT_EQ(decodeImage(makeImage<double>("64FC1", 2, 2, {0.0, 1.0, 100.4 / 255, 100.6 / 255}), 2),
             Bytes({0, 255, 100, 101}));
 }
@@ -167,9 +137,7 @@ TEST(ImageCodec, RefusesFloatsThatAreNoGreyValue) {
                   {"row 1, column 0"});
     expectRefusal(makeImage<double>("64FC1", 2, 2, {0, bad, 0, 0}), {"row 0, column 1"});
   }
-}
-
-TEST(ImageCodec, RefusesABadFloatOutsideTheCentralSquareToo) {
+  // outside the central square
   expectRefusal(makeImage<float>("32FC1", 4, 2, {2, 0, 0, 0, 0, 0, 0, 0}), {"row 0, column 0"});
 }
 
@@ -209,7 +177,9 @@ TEST(ImageCodec, TakesTheLumaOfYuv422) {
   }
 }
 
-TEST(ImageCodec, ReadsThePaddedRowsOfEveryDepth) {
+TEST(ImageCodec, ReadsThePaddedRowsOfEveryDepthFromTheTopLeft) {
+  const Bytes bytes = {1, 2, 99, 3, 4, 99};
+  EXPECT_EQ(decodeImage(makeImage("mono8", 2, 2, bytes), 2), Bytes({1, 2, 3, 4}));
   const std::vector<std::uint16_t> words = {257, 514, 9999, 771, 1028, 9999};
   EXPECT_EQ(decodeImage(makeImage("mono16", 2, 2, words), 2), Bytes({1, 2, 3, 4}));
   const std::vector<float> floats = {0.0f, 1.0f, 9.0f, 1.0f, 0.0f, 9.0f};
@@ -224,33 +194,24 @@ TEST(ImageCodec, RefusesAnUnknownEncodingAndNamesTheKnownOnes) {
   }
 }
 
-TEST(ImageCodec, RefusesAnImageWithoutPixels) {
-  sensor_msgs::Image image = makeRamp(2, 2);
-  image.width = 0;
-  expectRefusal(image, {"width", "[1, 16384]", "0 x 2"});
-  image = makeRamp(2, 2);
-  image.height = 0;
-  expectRefusal(image, {"height", "[1, 16384]", "2 x 0"});
+TEST(ImageCodec, RefusesASizeThatNoImageHasBeforeItMultipliesIt) {
   expectRefusal(sensor_msgs::Image(), {"image: "});
+  constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max();
+  for (const auto& [width, height] : {std::make_pair(0U, 2U), {2U, 16385U}, {kMost, kMost}}) {
+    sensor_msgs::Image image = makeRamp(2, 2);
+    image.width = image.step = width;
+    image.height = height;
+    expectRefusal(image, {"[1, 16384]", std::to_string(width) + " x " + std::to_string(height)});
+  }
 }
 
-TEST(ImageCodec, RefusesAbsurdDimensionsBeforeItMultipliesThem) {
-  sensor_msgs::Image image = makeRamp(2, 2);
-  image.width = image.height = image.step = std::numeric_limits<std::uint32_t>::max();
-  expectRefusal(image, {"width", "[1, 16384]", "4294967295 x 4294967295"});
-  image = makeRamp(2, 2);
-  image.height = 16385;
-  expectRefusal(image, {"height", "[1, 16384]", "2 x 16385"});
-}
-
-TEST(ImageCodec, RefusesAStepShorterThanARow) {
-  sensor_msgs::Image image = makeUniform<std::uint8_t>("rgb8", 2, 2, {1, 2, 3});
-  image.step = 5;
-  image.data.resize(10);
-  expectRefusal(image, {"step", "6 bytes", "got 5"});
-}
-
-TEST(ImageCodec, RefusesDataThatDoesNotFillItsRows) {
+TEST(ImageCodec, RefusesRowsThatDoNotFitTheirPixelsOrTheData) {
+  sensor_msgs::Image narrow = makeUniform<std::uint8_t>("rgb8", 2, 2, {1, 2, 3});
+  narrow.step = 5;
+  narrow.data.resize(10);
+  expectRefusal(narrow, {"step", "6 bytes", "got 5"});
+  expectRefusal(makeUniform<std::uint8_t>("bayer_rggb8", 2, 4, {1}), {"3 x 3", "got 2 x 4"});
+  expectRefusal(makeUniform<std::uint8_t>("yuv422", 3, 2, {128, 1}), {"even width", "got 3 x 2"});
   for (const std::size_t bytes : {0, 3, 5}) {
     sensor_msgs::Image image = makeRamp(2, 2);
     image.data.resize(bytes);
@@ -268,24 +229,14 @@ TEST(ImageCodec, TurnsBigEndianPixelsOfSeveralBytes) {
     EXPECT_EQ(decodeImage(image, 2), expected) << image.encoding;
   };
   isTurned(makeImage<std::uint16_t>("mono16", 2, 2, {257, 2570, 25700, 65535}), 2);
-  isTurned(makeImage<std::uint16_t>("16UC1", 2, 2, {257, 2570, 25700, 65535}), 2);
   isTurned(makeUniform<std::uint16_t>("rgb16", 2, 2, {257, 2570, 25700}), 2);
   isTurned(makeImage<float>("32FC1", 2, 2, {0.1f, 0.2f, 0.3f, 1.0f}), 4);
   isTurned(makeImage<double>("64FC1", 2, 2, {0.1, 0.2, 0.3, 1.0}), 8);
 }
 
-TEST(ImageCodec, RefusesAMosaicSmallerThanItsFilter) {
-  expectRefusal(makeUniform<std::uint8_t>("bayer_rggb8", 2, 4, {1}), {"3 x 3", "got 2 x 4"});
-}
-
-TEST(ImageCodec, RefusesAnOddWidthOfYuv422) {
-  expectRefusal(makeUniform<std::uint8_t>("yuv422", 3, 2, {128, 1}), {"even width", "got 3 x 2"});
-}
-
 TEST(ImageCodec, RefusesASizeOutOfRange) {
   for (const int size : {0, -1, 16385}) {
-    EXPECT_TRUE(testing::names(refusal(makeRamp(2, 2), size),
-                               {"size", "[1, 16384]", "got " + std::to_string(size)}));
+    expectRefusal(makeRamp(2, 2), {"size", "[1, 16384]", "got " + std::to_string(size)}, size);
   }
 }
 
@@ -301,12 +252,7 @@ TEST(ImageCodec, RefusesACropThatReachesBeyondTheImage) {
   for (const ImageCrop& crop :
        {ImageCrop{4, 0, 3, 2}, ImageCrop{0, 4, 2, 2}, ImageCrop{-1, 0, 2, 2}, ImageCrop{6, 0, 0, 0},
         ImageCrop{0, 0, 2, -1}}) {
-    try {
-      decodeImage(image, 2, crop);
-      ADD_FAILURE() << crop.x << ", " << crop.y << " was accepted";
-    } catch (const std::invalid_argument& e) {
-      EXPECT_TRUE(testing::names(e.what(), {"crop", "column " + std::to_string(crop.x), "6 x 5"}));
-    }
+    expectRefusal(image, {"crop", "column " + std::to_string(crop.x), "6 x 5"}, 2, crop);
   }
 }
 

@@ -1,10 +1,9 @@
-// Tests of the strict configuration reader: files, merging, collected problems.
+// Tests of the strict configuration reader: files, merging, collected problems, a block of options.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/param_reader.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "ddm_common/config_blocks.h"
+#include "ddm_common/image_options.h"
 #include "ddm_msgs/testing/expect_error.h"
 #include "ddm_msgs/testing/temp_folder.h"
 
@@ -67,18 +67,7 @@ std::vector<std::string> mpcProblems(const std::string& yaml) {
   return reader.problems();
 }
 
-/// The message of the `Error` that a call throws; any other exception fails the test.
-template <class Error, class Call>
-std::string messageOf(Call call) {
-  try {
-    call();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "nothing thrown";
-}
-
-/// A file that exists until the end of the test.
+/// A file that is gone when the test ends.
 class ScratchFile {
  public:
   ScratchFile(const std::string& name, const std::string& text) : path_(folder_.file(name)) {
@@ -99,20 +88,6 @@ TEST(ParamReader, GivesDefaultsWhereTheConfigurationIsSilent) {
     EXPECT_NO_THROW(reader.requireValid()) << yaml;
   }
   EXPECT_NO_THROW(ParamReader(YAML::Node()).requireValid());
-}
-
-TEST(ParamReader, ReadsEveryTypeOfKey) {
-  ParamReader reader = readerOf(
-      "mpc: {horizon: 25, epsilon: 1e-4, warm_start: false, goal_image: a b, starts: [7], "
-      "start_scale: [1, 2.5]}");
-  const auto options = reader.read<MpcOptions>("mpc");
-  EXPECT_NO_THROW(reader.requireValid());
-  EXPECT_EQ(options.horizon, 25);
-  EXPECT_EQ(options.epsilon, 1e-4);
-  EXPECT_FALSE(options.warm_start);
-  EXPECT_EQ(options.goal_image, "a b");
-  EXPECT_EQ(options.starts, std::vector<int>({7}));
-  EXPECT_EQ(options.start_scale, std::vector<double>({1.0, 2.5}));
 }
 
 TEST(ParamReader, ReportsAnUnknownKeyWithTheNearestAndAllKnownOnes) {
@@ -179,32 +154,12 @@ TEST(ParamReader, ThrowsAllProblemsOfAllBlocksAtOnce) {
       "my.yaml");
   reader.read<MpcOptions>("mpc");
   reader.read<TrialOptions>("trial");
-  const auto message = messageOf<std::invalid_argument>([&reader] { reader.requireValid(); });
-  EXPECT_TRUE(
-      testing::names(message, {"(my.yaml):\n - ", "\n - mpc/horizon must be >= 1, got 0",
-                               "\n - mpc/epsilon must lie in [0, 1], got 1.5", " mpc/horzion (",
-                               "\n - trial/num_steps ", "got many", "block foo ("}));
-  EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 5) << message;
-}
-
-TEST(ParamReader, ReportsABlockThatIsReadTwiceOnlyOnce) {
-  ParamReader reader = readerOf("mpc: {horizon: 0, foo: 1}");
-  reader.read<MpcOptions>("mpc");
-  reader.read<MpcOptions>("mpc");
-  EXPECT_EQ(reader.problems().size(), 2u);
-}
-
-TEST(ParamReader, RefusesARootThatIsNoMap) {
-  EXPECT_THROW(readerOf("5"), std::invalid_argument);
-  EXPECT_THROW(readerOf("[mpc]"), std::invalid_argument);
-}
-
-TEST(ParamReader, WritesTheEffectiveValuesReadablyAndInOrder) {
-  MpcOptions options;
-  options.start_scale = {0.1 + 0.2, 1.0};
-  EXPECT_EQ(YAML::Dump(toYaml(options)),
-            "horizon: 15\nepsilon: 0.2\nwarm_start: true\ngoal_image: up\nstarts: [1, 2]\n"
-            "start_scale: [0.30000000000000004, 1.0]");
+  EXPECT_EQ(reader.problems().size(), 5U);
+  EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
+      [&reader] { reader.requireValid(); },
+      {"(my.yaml):\n - ", "\n - mpc/horizon must be >= 1, got 0",
+       "\n - mpc/epsilon must lie in [0, 1], got 1.5", " mpc/horzion (", "\n - trial/num_steps ",
+       "got many", "block foo ("}));
 }
 
 TEST(ParamReader, ReadsBackExactlyWhatItWrites) {
@@ -273,20 +228,6 @@ TEST(ParamReaderFiles, OverridesOneUserOfAnAnchorOnly) {
   EXPECT_EQ(reader.read<TrialOptions>("trial").num_steps, 5);
 }
 
-TEST(ParamReaderFiles, TakesAFileOfCommentsForAnEmptyConfiguration) {
-  const ScratchFile comments("comments.yaml", "# everything as in the paper\n");
-  const ScratchFile empty("empty.yaml", "");
-  EXPECT_NO_THROW(ParamReader::fromFiles({comments.path(), empty.path()}).requireValid());
-  EXPECT_NO_THROW(ParamReader::fromFiles({}).requireValid());
-}
-
-TEST(ParamReaderFiles, RefusesAMissingFileAndAFolder) {
-  for (const std::string& path : {std::string("/no/such/file.yaml"), ::testing::TempDir()}) {
-    EXPECT_TRUE(testing::throwsNaming<std::runtime_error>(
-        [&path] { ParamReader::fromFiles({path}); }, {"read", path}));
-  }
-}
-
 TEST(ParamReaderFiles, RefusesAFileThatIsTooLargeToBeAConfiguration) {
   const ScratchFile file("large.yaml", "#" + std::string(1000000, 'x'));
   EXPECT_TRUE(testing::throwsNaming<std::runtime_error>(
@@ -309,6 +250,16 @@ TEST(ParamReaderFiles, RefusesBadFilesWithPathAndLine) {
     EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
         [&file] { ParamReader::fromFiles({file.path()}); }, {file.path() + bad.line, bad.part}))
         << bad.yaml;
+  }
+}
+
+TEST(ImageOptions, TheSizeHasARange) {
+  EXPECT_EQ(ImageOptions().size, 51);
+  for (const int size : {4, 1024}) EXPECT_TRUE(ImageOptions{size}.problems().empty()) << size;
+  for (const int size : {3, 1025}) {
+    const std::vector<std::string> problems = ImageOptions{size}.problems();
+    ASSERT_EQ(problems.size(), 1u) << size;
+    EXPECT_TRUE(testing::names(problems[0], {"image/size must ", ", got " + std::to_string(size)}));
   }
 }
 

@@ -20,6 +20,28 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
+/// A node that the master knows, and that is nowhere else. Its type is Float64.
+class Registration {
+ public:
+  /// @param role  Publisher or Subscriber
+  Registration(const std::string& role, const std::string& node, const std::string& topic,
+               const std::string& uri = "http://localhost:1/")  // no process listens at port 1
+      : role_(role) {
+    XmlRpc::XmlRpcValue entry;
+    entry[0] = entry_[0] = node;
+    entry[1] = entry_[1] = topic;
+    entry[2] = "std_msgs/Float64";
+    entry[3] = entry_[2] = uri;
+    EXPECT_TRUE(askMaster("register" + role_, entry).has_value());
+  }
+  ~Registration() { EXPECT_TRUE(askMaster("unregister" + role_, entry_).has_value()); }
+  Registration(const Registration&) = delete;
+
+ private:
+  const std::string role_;
+  XmlRpc::XmlRpcValue entry_;  ///< without the type
+};
+
 class TopicPeersTest : public ::testing::Test {
  protected:
   /// Waits until the Python publisher is registered.
@@ -47,23 +69,13 @@ class TopicPeersTest : public ::testing::Test {
 };
 
 TEST_F(TopicPeersTest, ANodeThatDiedBeforeItsProcessCouldBeWatchedIsNoticed) {
-  XmlRpc::XmlRpcValue ghost;
-  ghost[0] = "/dead";
-  ghost[1] = "/last_words";
-  ghost[2] = "std_msgs/Float64";
-  ghost[3] = "http://localhost:1/";  // no process listens at port 1
-  ASSERT_TRUE(askMaster("registerPublisher", ghost).has_value());
+  const Registration ghost("Publisher", "/dead", "/last_words");
   NodeWatch watch;
   watch.hear("/dead");
   EXPECT_EQ(eventually({"died"}, [&watch] { return Lines{watch.died() ? "died" : "lives"}; }),
             Lines{"died"});
   watch.hear("/alone");
   EXPECT_FALSE(watch.died());
-  XmlRpc::XmlRpcValue leaving;
-  leaving[0] = ghost[0];
-  leaving[1] = ghost[1];
-  leaving[2] = ghost[3];
-  ASSERT_TRUE(askMaster("unregisterPublisher", leaving).has_value());
 }
 
 TEST_F(TopicPeersTest, APublisherInPythonIsFoundToBeConnected) {
@@ -71,18 +83,9 @@ TEST_F(TopicPeersTest, APublisherInPythonIsFoundToBeConnected) {
 }
 
 TEST_F(TopicPeersTest, ASubscriberWithoutAConnectionIsNamed) {
-  XmlRpc::XmlRpcValue ghost;
-  ghost[0] = "/ghost";
-  ghost[1] = "/spoken";
-  ghost[2] = "std_msgs/Float64";
-  ghost[3] = "http://localhost:1/";  // no process listens at port 1
-  ASSERT_TRUE(askMaster("registerSubscriber", ghost).has_value());
+  const Registration ghost("Subscriber", "/ghost", "/spoken");
   const Lines expected = {"/alone -> /ghost on /spoken"};
   EXPECT_EQ(eventually(expected, [] { return missingConnections({"/spoken"}); }), expected);
-  ghost[2] = ghost[3];
-  XmlRpc::XmlRpcValue gone;
-  for (int i = 0; i < 3; ++i) gone[i] = ghost[i];
-  ASSERT_TRUE(askMaster("unregisterSubscriber", gone).has_value());
 }
 
 TEST_F(TopicPeersTest, ATopicWithTwoPublishersIsNamedUnlessOneOfThemIsThisNode) {
@@ -110,19 +113,12 @@ TEST_F(TopicPeersTest, ANodeThatAnswersWithOtherTypesIsNamed) {
   std::thread work([&] {
     while (!ended) server.work(0.05);
   });
-  XmlRpc::XmlRpcValue node;
-  node[0] = "/babbler";
-  node[1] = "/spoken";
-  node[2] = "std_msgs/Float64";
-  node[3] = "http://localhost:" + std::to_string(server.get_port()) + "/";
-  EXPECT_TRUE(askMaster("registerPublisher", node).has_value());
   const Lines expected = {"/babbler -> " + ros::this_node::getName() + " on /spoken"};
-  EXPECT_EQ(eventually(expected, [] { return missingConnections({"/spoken"}); }), expected);
-  XmlRpc::XmlRpcValue gone;
-  gone[0] = node[0];
-  gone[1] = node[1];
-  gone[2] = node[3];
-  EXPECT_TRUE(askMaster("unregisterPublisher", gone).has_value());
+  {
+    const Registration node("Publisher", "/babbler", "/spoken",
+                            "http://localhost:" + std::to_string(server.get_port()) + "/");
+    EXPECT_EQ(eventually(expected, [] { return missingConnections({"/spoken"}); }), expected);
+  }
   ended = true;
   work.join();
 }

@@ -61,10 +61,5 @@ TEST(YamlText, TextThatWouldNotBeWrittenAsItWasReadIsRefused) {
   }
 }
 
-TEST(YamlText, WhatIsNoYamlIsRefusedWithItsLine) {
-  EXPECT_NE(refusalOf("a: 1\nb: [\n").find("FILE:"), std::string::npos);
-  EXPECT_TRUE(testing::names(refusalOf("a: 1\n---\nb: 2\n"), {"FILE:2: ", "document"}));
-}
-
 }  // namespace
 }  // namespace ddm
